@@ -1,0 +1,1 @@
+"""What surrounds a flock: γ-agents (targets)."""

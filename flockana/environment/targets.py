@@ -1,0 +1,338 @@
+"""γ-agents: the moving or fixed reference (q_r, p_r) that Algorithms 2 and 3 follow.
+
+A target hands over the p_r that the law is given and, apart from it, the true rate dq_r/dt; sources sometimes print
+a p_r that is not that rate, which is allowed here and reported where a theorem needs it.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import cos, pi, sin
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.checks import FloatArray, ensure_finite_scalar, ensure_positive, ensure_vector
+from flockana.errors import ArgumentError
+
+_STEP = (
+    1e-5  # of a user's function for dq_r/dt by central difference: error about 1e-10 relative on smooth paths
+)
+
+
+class Target(ABC):
+    """A γ-agent; a subclass is a frozen dataclass with `position`, `rate` and, where p_r differs from it, `state`."""
+
+    @abstractmethod
+    def position(self, t: float) -> FloatArray:
+        """q_r(t), shape (m,).
+
+        Parameters
+        ----------
+        t : float
+            Time.
+        """
+
+    @abstractmethod
+    def rate(self, t: float) -> FloatArray:
+        """The true dq_r/dt, shape (m,).
+
+        Parameters
+        ----------
+        t : float
+            Time.
+        """
+
+    def state(self, t: float) -> tuple[FloatArray, FloatArray]:
+        """(q_r(t), p_r(t)) as handed to the law, two vectors of shape (m,).
+
+        Parameters
+        ----------
+        t : float
+            Time.
+        """
+        return self.position(t), self.rate(t)
+
+    def mismatch(self, times: npt.ArrayLike) -> float:
+        """Largest ‖p_r − dq_r/dt‖ over the given times: 0 for a target that is consistent.
+
+        Parameters
+        ----------
+        times : array_like, shape (T,)
+            Times to look at.
+        """
+        return max(float(np.linalg.norm(self.state(t)[1] - self.rate(t))) for t in np.ravel(times))
+
+    @property
+    def dimension(self) -> int:
+        """m."""
+        return int(self.position(0.0).size)
+
+
+def _freeze_vector(target: Target, name: str, m: int | None = None) -> FloatArray:
+    vector = ensure_vector(name, getattr(target, name), m)
+    object.__setattr__(target, name, tuple(vector.tolist()))
+    return vector
+
+
+@dataclass(frozen=True)
+class StaticTarget(Target):
+    """A fixed γ-agent at q; a velocity p ≠ 0 may be given beside it, as Theorem 6 and one source do.
+
+    Parameters
+    ----------
+    q : array_like, shape (m,)
+        Position q_d.
+    p : array_like, shape (m,), or 0
+        Velocity p_d handed to the law; the position stays fixed.
+
+    Examples
+    --------
+    >>> StaticTarget((5.0, 5.0)).state(3.0)
+    (array([5., 5.]), array([0., 0.]))
+    """
+
+    q: Any
+    p: Any = 0.0
+
+    def __post_init__(self) -> None:
+        m = _freeze_vector(self, "q").size
+        if np.isscalar(self.p) and self.p == 0:
+            object.__setattr__(self, "p", np.zeros(m))
+        _freeze_vector(self, "p", m)
+
+    def position(self, t: float) -> FloatArray:  # noqa: D102
+        return np.array(self.q)
+
+    def rate(self, t: float) -> FloatArray:  # noqa: D102
+        return np.zeros(len(self.q))
+
+    def state(self, t: float) -> tuple[FloatArray, FloatArray]:  # noqa: D102
+        return np.array(self.q), np.array(self.p)
+
+
+@dataclass(frozen=True)
+class LinearTarget(Target):
+    """A γ-agent on a straight line: q_r = q + p t.
+
+    Parameters
+    ----------
+    q : array_like, shape (m,)
+        Position at t = 0.
+    p : array_like, shape (m,)
+        Constant velocity.
+
+    Examples
+    --------
+    >>> LinearTarget((200.0, 30.0), (5.0, 0.0)).position(2.0).tolist()
+    [210.0, 30.0]
+    """
+
+    q: Any
+    p: Any
+
+    def __post_init__(self) -> None:
+        _freeze_vector(self, "p", _freeze_vector(self, "q").size)
+
+    def position(self, t: float) -> FloatArray:  # noqa: D102
+        return np.array(self.q) + np.array(self.p) * t
+
+    def rate(self, t: float) -> FloatArray:  # noqa: D102
+        return np.array(self.p)
+
+
+@dataclass(frozen=True)
+class SineTarget(Target):
+    """A γ-agent that travels on a line and swings across it: q_r = start + velocity t + A sin(2πft + φ) e_axis.
+
+    Parameters
+    ----------
+    start : array_like, shape (m,)
+        Position about which it swings at t = 0.
+    velocity : array_like, shape (m,)
+        Mean velocity.
+    amplitude : float
+        A, in length units.
+    frequency : float
+        f, in cycles per time unit.
+    phase : float
+        φ, in radians.
+    axis : int
+        Coordinate that swings.
+
+    Examples
+    --------
+    >>> SineTarget((0.0, 0.0), (1.0, 0.0), amplitude=2.0, frequency=0.25).position(1.0).tolist()
+    [1.0, 2.0]
+    """
+
+    start: Any
+    velocity: Any
+    amplitude: float
+    frequency: float
+    phase: float = 0.0
+    axis: int = 1
+
+    def __post_init__(self) -> None:
+        m = _freeze_vector(self, "start").size
+        _freeze_vector(self, "velocity", m)
+        for name in ("amplitude", "frequency", "phase"):
+            object.__setattr__(self, name, ensure_finite_scalar(name, getattr(self, name)))
+        if self.axis not in range(m):
+            raise ArgumentError(f"axis = {self.axis!r}: expected a coordinate of the flock, 0 to {m - 1}")
+
+    def _swing(self, value: float) -> FloatArray:
+        swing = np.zeros(len(self.start))
+        swing[self.axis] = value
+        return swing
+
+    def position(self, t: float) -> FloatArray:  # noqa: D102
+        angle = 2.0 * pi * self.frequency * t + self.phase
+        return np.array(self.start) + np.array(self.velocity) * t + self._swing(self.amplitude * sin(angle))
+
+    def rate(self, t: float) -> FloatArray:  # noqa: D102
+        omega = 2.0 * pi * self.frequency
+        return np.array(self.velocity) + self._swing(self.amplitude * omega * cos(omega * t + self.phase))
+
+
+@dataclass(frozen=True)
+class CircleTarget(Target):
+    """A γ-agent on a circle in the first two coordinates: centre + R (cos, sin)(2πft + φ).
+
+    Parameters
+    ----------
+    centre : array_like, shape (m,)
+        Centre; m = 2 or 3.
+    radius : float
+        R > 0.
+    frequency : float
+        f, in cycles per time unit.
+    phase : float
+        φ, in radians.
+
+    Examples
+    --------
+    >>> CircleTarget((50.0, 50.0), 100.0, frequency=0.5).position(0.0).tolist()
+    [150.0, 50.0]
+    """
+
+    centre: Any
+    radius: float
+    frequency: float
+    phase: float = 0.0
+
+    def __post_init__(self) -> None:
+        if _freeze_vector(self, "centre").size < 2:
+            raise ArgumentError(f"centre = {self.centre}: expected 2 or 3 components; a line holds no circle")
+        object.__setattr__(self, "radius", ensure_positive("radius", self.radius))
+        for name in ("frequency", "phase"):
+            object.__setattr__(self, name, ensure_finite_scalar(name, getattr(self, name)))
+
+    def _plane(self, x: float, y: float) -> FloatArray:
+        return np.array([x, y, 0.0])[: len(self.centre)]
+
+    def position(self, t: float) -> FloatArray:  # noqa: D102
+        angle = 2.0 * pi * self.frequency * t + self.phase
+        return np.array(self.centre) + self.radius * self._plane(cos(angle), sin(angle))
+
+    def rate(self, t: float) -> FloatArray:  # noqa: D102
+        omega = 2.0 * pi * self.frequency
+        angle = omega * t + self.phase
+        return self.radius * omega * self._plane(-sin(angle), cos(angle))
+
+
+@dataclass(frozen=True)
+class RescaledVelocity(Target):
+    """A γ-agent that moves as `target` does but hands over p_r = factor · dq_r/dt (the MSN project's mistake, E12).
+
+    Parameters
+    ----------
+    target : Target
+        The path.
+    factor : float
+        1 gives the consistent target back, 0 a γ-agent that hides its velocity.
+
+    Examples
+    --------
+    >>> RescaledVelocity(LinearTarget((0.0,), (2.0,)), 0.5).state(0.0)
+    (array([0.]), array([1.]))
+    """
+
+    target: Target
+    factor: float
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.target, Target):
+            raise ArgumentError(f"target = {self.target!r}: expected a Target such as CircleTarget(...)")
+        object.__setattr__(self, "factor", ensure_finite_scalar("factor", self.factor))
+
+    def position(self, t: float) -> FloatArray:  # noqa: D102
+        return self.target.position(t)
+
+    def rate(self, t: float) -> FloatArray:  # noqa: D102
+        return self.target.rate(t)
+
+    def state(self, t: float) -> tuple[FloatArray, FloatArray]:  # noqa: D102
+        return self.target.position(t), self.factor * self.target.rate(t)
+
+
+@dataclass(frozen=True)
+class CallableTarget(Target):
+    """A γ-agent given by a function; it need not be consistent, and cannot be written to a file.
+
+    Parameters
+    ----------
+    function : callable
+        ``t -> (q_r, p_r)``, two vectors of m components.
+
+    Raises
+    ------
+    ArgumentError
+        If the function does not return two finite vectors of equal length at t = 0.
+
+    Examples
+    --------
+    >>> target = CallableTarget(lambda t: ((t, 0.0), (1.0, 0.0)))
+    >>> bool(target.mismatch([0.0, 1.0]) < 1e-9)
+    True
+    """
+
+    function: Callable[[float], Any]
+
+    def __post_init__(self) -> None:
+        if not callable(self.function):
+            raise ArgumentError(f"function = {self.function!r}: expected a callable t -> (q_r, p_r)")
+        q, p = self._call(0.0)
+        if q.size != p.size:
+            raise ArgumentError(
+                f"function(0) gave q_r of {q.size} and p_r of {p.size} components: expected equal"
+            )
+
+    def _call(self, t: float) -> tuple[FloatArray, FloatArray]:
+        try:
+            q, p = self.function(t)
+        except (TypeError, ValueError) as error:
+            raise ArgumentError(
+                f"function({t:g}) failed ({error}): expected it to return (q_r, p_r)"
+            ) from error
+        return ensure_vector(f"q_r({t:g})", q), ensure_vector(f"p_r({t:g})", p)
+
+    def position(self, t: float) -> FloatArray:  # noqa: D102
+        return self._call(t)[0]
+
+    def state(self, t: float) -> tuple[FloatArray, FloatArray]:  # noqa: D102
+        return self._call(t)
+
+    def rate(self, t: float) -> FloatArray:
+        """dq_r/dt by central difference.
+
+        Parameters
+        ----------
+        t : float
+            Time.
+        """
+        step = _STEP * max(1.0, abs(t))
+        return (self.position(t + step) - self.position(t - step)) / (2.0 * step)

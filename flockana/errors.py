@@ -1,0 +1,50 @@
+"""The errors that flockana raises on purpose.
+
+Every message names the value it got, what was expected, and the remedy. Anything else that escapes is a bug.
+"""
+
+from __future__ import annotations
+
+
+class FlockanaError(Exception):
+    """Base class of every error that flockana raises on purpose."""
+
+
+class ArgumentError(FlockanaError, ValueError):
+    """An argument has a wrong value, shape or type."""
+
+
+class UnknownNameError(ArgumentError):
+    """A theorem, scenario, method or other name that does not exist.
+
+    Parameters
+    ----------
+    kind : str
+        What was looked for, such as ``"scenario"``.
+    name : str
+        The name that was given.
+    known : iterable of str
+        The names that exist; the closest ones are suggested.
+
+    Examples
+    --------
+    >>> str(UnknownNameError("scenario", "colapse", ["collapse", "msn-case1"]))
+    "unknown scenario 'colapse'; did you mean 'collapse'? Known: collapse, msn-case1"
+    """
+
+    def __init__(self, kind: str, name: object, known: object) -> None:
+        from collections.abc import Iterable
+        from difflib import get_close_matches
+
+        names = sorted(str(k) for k in known) if isinstance(known, Iterable) else [str(known)]
+        close = get_close_matches(str(name), names, n=1)
+        hint = f"did you mean {close[0]!r}? " if close else ""
+        super().__init__(f"unknown {kind} {name!r}; {hint}Known: {', '.join(names)}")
+
+
+class FileError(FlockanaError, OSError):
+    """A file that cannot be read, is not one of ours, is damaged, or cannot be written."""
+
+
+class SolverError(FlockanaError, RuntimeError):
+    """A numerical method gave up; the message says where and why."""

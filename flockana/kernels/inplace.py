@@ -1,0 +1,65 @@
+"""One step of a map that moves the agents one after the other, each seeing those before it already moved.
+
+The loop closes over a digest of the pair law's source for the reason given in `flockana.kernels.lift`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+from flockana.kernels.alpha import pair_alpha
+from flockana.kernels.lift import source_digest
+
+
+@njit(cache=True)
+def neighbour_lists(n, first, second):
+    """(start, neighbour): the neighbours of i are neighbour[start[i]:start[i + 1]], in the order of the pairs."""
+    start = np.zeros(n + 1, np.int64)
+    for k in range(first.size):
+        start[first[k] + 1] += 1
+        start[second[k] + 1] += 1
+    for i in range(n):
+        start[i + 1] += start[i]
+    fill = start[:-1].copy()
+    neighbour = np.empty(2 * first.size, np.int32)
+    for k in range(first.size):
+        i, j = first[k], second[k]
+        neighbour[fill[i]] = j
+        neighbour[fill[j]] = i
+        fill[i] += 1
+        fill[j] += 1
+    return start, neighbour
+
+
+def _compile(pair: Callable[..., Any]) -> Callable[..., None]:
+    digest = source_digest(pair)
+
+    @njit(cache=True)
+    def advance(q, p, u, start, neighbour, par, c1, c2, pull, drag, q_r, p_r, dt, position_factor):
+        """Overwrite q, p, u agent by agent: u_i from the state as it stands, then q_i and p_i from u_i."""
+        m = q.shape[1]
+        total = np.empty(m)
+        for i in range(q.shape[0]):
+            for c in range(m):
+                total[c] = 0.0 * digest - pull * (q[i, c] - q_r[c]) - drag * (p[i, c] - p_r[c])
+            for k in range(start[i], start[i + 1]):
+                j = neighbour[k]
+                s2 = 0.0
+                for c in range(m):
+                    s2 += (q[j, c] - q[i, c]) ** 2
+                w, rho = pair(s2, par)
+                for c in range(m):
+                    total[c] += c1 * w * (q[j, c] - q[i, c]) + c2 * rho * (p[j, c] - p[i, c])
+            for c in range(m):
+                u[i, c] = total[c]
+                q[i, c] += p[i, c] * dt + position_factor * total[c] * dt * dt
+                p[i, c] += total[c] * dt
+
+    return advance
+
+
+advance_alpha = _compile(pair_alpha)

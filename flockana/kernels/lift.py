@@ -1,0 +1,134 @@
+"""From a scalar pair law to sums over all pairs: forces, dissipation, potential, Hessian blocks.
+
+`lift` compiles the loops around a law's scalar functions; everything inlines into one loop over a block of pairs.
+numba's disk cache looks only at the file of the outer function, so each lifted loop also closes over a digest of
+the scalar functions' own source: editing them invalidates the cache.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+
+@dataclass(frozen=True)
+class PairKernels:
+    """Compiled sums over a block of pairs (i, j); arrays are changed in place where said.
+
+    Attributes
+    ----------
+    forces : callable
+        ``forces(q, p, i, j, par, c1, c2, u)`` adds c1 w (q_j − q_i) + c2 a (p_j − p_i) to u_i, its opposite to u_j,
+        and returns Σ a ‖p_j − p_i‖² over the block.
+    potential : callable
+        ``potential(q, i, j, par, panels)`` returns Σ ψ over the block.
+    terms : callable
+        ``terms(q, i, j, par)`` returns per pair the weight w, the adjacency a and dw/d(s²).
+    """
+
+    forces: Callable[..., float]
+    potential: Callable[..., float]
+    terms: Callable[..., Any]
+
+
+def source_digest(*functions: Callable[..., Any]) -> int:
+    """A number that changes when a file that defines one of `functions` (or what it imports from flockana) changes.
+
+    Parameters
+    ----------
+    *functions : callable
+        Python functions.
+    """
+    names = {f.__module__ for f in functions} | {"flockana.kernels.scalars"}
+    files = sorted({getattr(sys.modules.get(name), "__file__", None) or "" for name in names} - {""})
+    digest = hashlib.sha256()
+    for file in files:
+        digest.update(Path(file).read_bytes())
+    return int.from_bytes(digest.digest()[:4], "big")
+
+
+def lift(pair: Callable[..., Any], slope: Callable[..., Any], potential: Callable[..., Any]) -> PairKernels:
+    """Compile the pair sums of a law given by scalar functions of the squared distance s².
+
+    Parameters
+    ----------
+    pair : callable
+        ``pair(s2, par) -> (w, a)``, a `numba.extending.register_jitable` function.
+    slope : callable
+        ``slope(s2, par)`` = dw/d(s²).
+    potential : callable
+        ``potential(s2, par, panels)`` = ψ, whose gradient in q_i is −w (q_j − q_i).
+
+    Returns
+    -------
+    PairKernels
+    """
+    digest = source_digest(pair, slope, potential)
+
+    @njit(cache=True)
+    def forces(q, p, i, j, par, c1, c2, u):
+        total = 0.0 * digest
+        m = q.shape[1]
+        for k in range(i.size):
+            a, b = i[k], j[k]
+            s2, v2 = 0.0, 0.0
+            for c in range(m):
+                s2 += (q[b, c] - q[a, c]) ** 2
+                v2 += (p[b, c] - p[a, c]) ** 2
+            w, rho = pair(s2, par)
+            total += rho * v2
+            for c in range(m):
+                f = c1 * w * (q[b, c] - q[a, c]) + c2 * rho * (p[b, c] - p[a, c])
+                u[a, c] += f
+                u[b, c] -= f
+        return total
+
+    @njit(cache=True)
+    def energy(q, i, j, par, panels):
+        total = 0.0 * digest
+        for k in range(i.size):
+            s2 = 0.0
+            for c in range(q.shape[1]):
+                s2 += (q[j[k], c] - q[i[k], c]) ** 2
+            total += potential(s2, par, panels)
+        return total
+
+    @njit(cache=True)
+    def terms(q, i, j, par):
+        out = np.empty((3, i.size)) + 0.0 * digest
+        for k in range(i.size):
+            s2 = 0.0
+            for c in range(q.shape[1]):
+                s2 += (q[j[k], c] - q[i[k], c]) ** 2
+            out[0, k], out[1, k] = pair(s2, par)
+            out[2, k] = slope(s2, par)
+        return out
+
+    return PairKernels(forces, energy, terms)
+
+
+def lift_scalar(function: Callable[..., float]) -> Callable[..., Any]:
+    """Compile ``function(z, *parameters)`` to run over a one-dimensional array z.
+
+    Parameters
+    ----------
+    function : callable
+        A `register_jitable` scalar function.
+    """
+    digest = source_digest(function)
+
+    @njit(cache=True)
+    def over_array(z, *parameters):
+        out = np.empty(z.size) + 0.0 * digest
+        for k in range(z.size):
+            out[k] = function(z[k], *parameters)
+        return out
+
+    return over_array

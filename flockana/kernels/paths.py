@@ -1,0 +1,146 @@
+"""How close two agents come *between* samples: quintics through (q, p, u), bounded by their control points.
+
+Between two samples a path is the quintic that matches position, velocity and acceleration at both ends. In Bernstein
+form it stays in the convex hull of its control points, so subdivision bounds the distance of a pair from below for
+the whole interval: two crossings hidden in one step are found like one.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+_DEPTH = 48  # halvings of an interval: below rounding of the time itself
+
+
+@njit(cache=True)
+def _norm(x):
+    return np.sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2])
+
+
+@njit(cache=True)
+def control_points(h, q0, p0, u0, q1, p1, u1):
+    """Bernstein control points (n, 6, 3) of every agent's quintic, its reach (n,) and its error allowance (n,).
+
+    The flock's common drift is taken out, which changes no distance between agents. The reach bounds how far an
+    agent then gets from its first point.
+    The allowance is the largest distance between the quintic and the cubic that ignores u: it overestimates the
+    quintic's own error as soon as the samples resolve the motion.
+    """
+    n, m = q0.shape
+    points, allowance = np.zeros((n, 6, 3)), np.zeros(n)
+    for i in range(n):
+        off2, off3 = 0.0, 0.0
+        for k in range(m):
+            a, b = q0[i, k], q1[i, k]
+            points[i, 0, k], points[i, 5, k] = a, b
+            points[i, 1, k], points[i, 4, k] = a + h * p0[i, k] / 5.0, b - h * p1[i, k] / 5.0
+            points[i, 2, k] = a + 2.0 * h * p0[i, k] / 5.0 + h * h * u0[i, k] / 20.0
+            points[i, 3, k] = b - 2.0 * h * p1[i, k] / 5.0 + h * h * u1[i, k] / 20.0
+            c1, c2 = a + h * p0[i, k] / 3.0, b - h * p1[i, k] / 3.0
+            off2 += (points[i, 2, k] - (a + 6.0 * c1 + 3.0 * c2) / 10.0) ** 2
+            off3 += (points[i, 3, k] - (3.0 * c1 + 6.0 * c2 + b) / 10.0) ** 2
+        allowance[i] = 0.625 * np.sqrt(
+            max(off2, off3)
+        )  # 10 t²(1−t)² <= 0.625 weighs the two points that differ
+    reach = np.zeros(n)
+    for c in range(1, 6):
+        for k in range(m):
+            drift = 0.0
+            for i in range(n):
+                drift += (points[i, c, k] - points[i, 0, k]) / n
+            for i in range(n):
+                points[i, c, k] -= drift
+        for i in range(n):
+            reach[i] = max(reach[i], _norm(points[i, c] - points[i, 0]) + allowance[i])
+    return points, reach, allowance
+
+
+@njit(cache=True)
+def _start(points, reach, i, j, stop, stack):
+    """Load the pair's relative curve into the stack, unless its ends already rule out a distance below stop."""
+    s2 = 0.0
+    for x in range(3):
+        s2 += (points[j, 0, x] - points[i, 0, x]) ** 2
+    if s2 >= (stop + reach[i] + reach[j]) ** 2:
+        return False
+    for k in range(6):
+        for x in range(3):
+            stack[0, k, x] = points[j, k, x] - points[i, k, x]
+    return True
+
+
+@njit(cache=True)
+def _least_distance(stack, spans, stop, tol):
+    """(lower bound, distance, parameter) of the curve stack[0]: its closest point to 0 is within tol of both.
+
+    The distance is (stop, -1) if none is below stop; the bound holds all the same, up to stop.
+    The arrays are work space: (_DEPTH + 2, 6, 3) and (_DEPTH + 2, 2).
+    """
+    proven, best, where = stop, stop, -1.0
+    spans[0, 0], spans[0, 1] = 0.0, 1.0
+    top = 0
+    while top >= 0:
+        c, left, right = stack[top], spans[top, 0], spans[top, 1]
+        for end in (0, 5):
+            value = _norm(c[end])
+            if value < best:
+                best, where = value, left if end == 0 else right
+        bound, size = 0.0, 0.0
+        axis0, axis1, axis2 = 0.0, 0.0, 0.0
+        for k in range(6):
+            axis0, axis1, axis2 = axis0 + c[k, 0], axis1 + c[k, 1], axis2 + c[k, 2]
+        size = np.sqrt(axis0 * axis0 + axis1 * axis1 + axis2 * axis2)
+        if size > 0.0:
+            bound = np.inf
+            for k in range(6):
+                bound = min(bound, (c[k, 0] * axis0 + c[k, 1] * axis1 + c[k, 2] * axis2) / size)
+        if bound >= best - tol or right - left < 2.0**-_DEPTH:
+            proven = min(proven, bound)
+            top -= 1
+            continue
+        middle = 0.5 * (left + right)
+        for level in range(6):  # de Casteljau: the left half goes on top, the right half remains in place
+            for x in range(3):
+                stack[top + 1, level, x] = c[0, x]
+                for k in range(5 - level):
+                    c[k, x] = 0.5 * (c[k, x] + c[k + 1, x])
+        spans[top, 0] = middle
+        spans[top + 1, 0], spans[top + 1, 1] = left, middle
+        top += 1
+    return proven, best, where
+
+
+@njit(cache=True)
+def closest_pair(points, reach, allowance, first, second, stop, tol):
+    """Over the pairs given: (lower bound, distance reached, parameter, i, j); i = -1 if none comes below `stop`.
+
+    `reach` bounds how far each agent gets from its first control point.
+    """
+    lower, reached, where, a, b = stop, stop, -1.0, -1, -1
+    stack, spans = np.empty((_DEPTH + 2, 6, 3)), np.empty((_DEPTH + 2, 2))
+    for k in range(first.size):
+        i, j = first[k], second[k]
+        slack = allowance[i] + allowance[j]
+        if not _start(points, reach, i, j, lower + slack, stack):
+            continue
+        proven, value, at = _least_distance(stack, spans, lower + slack, tol)
+        if proven - slack < lower:
+            lower = max(0.0, proven - slack)
+            reached, where, a, b = min(value, reached), max(at, 0.0), i, j
+        if lower == 0.0 and reached <= tol:
+            break
+    return lower, reached, where, a, b
+
+
+@njit(cache=True)
+def touching_pairs(points, reach, first, second, tol, out):
+    """Mark in `out` the parameter at which each pair's quintics come within tol of each other, -1 if never."""
+    stack, spans = np.empty((_DEPTH + 2, 6, 3)), np.empty((_DEPTH + 2, 2))
+    for k in range(first.size):
+        out[k] = -1.0
+        if not _start(points, reach, first[k], second[k], tol, stack):
+            continue
+        value, at = _least_distance(stack, spans, tol, 0.0)
+        if at >= 0.0 and value < tol:
+            out[k] = at

@@ -1,0 +1,92 @@
+"""The scalar functions of Olfati-Saber's pair laws, each written once, for compiled and interpreted use.
+
+They are plain Python functions that numba may also inline into a compiled loop (`register_jitable`).
+"""
+
+from __future__ import annotations
+
+from math import cos, inf, pi, sin, sqrt
+
+from numba.extending import register_jitable
+
+
+@register_jitable
+def sigma_norm(x2, eps):
+    """‖x‖_σ from x2 = ‖x‖²; this form loses nothing where ε‖x‖² is small."""
+    root = sqrt(1.0 + eps * x2)
+    return x2 / (root + 1.0) if root < inf else sqrt(x2 / eps)
+
+
+@register_jitable
+def sigma_1(s):
+    """σ₁(s) = s/√(1+s²), without overflow for huge |s|."""
+    if abs(s) > 1e100:
+        return 1.0 if s > 0.0 else -1.0
+    return s / sqrt(1.0 + s * s)
+
+
+@register_jitable
+def bump(z, h):
+    """ρ_h(z): 1 on [0, h), a raised cosine on [h, 1], 0 otherwise."""
+    if z < 0.0 or z >= 1.0:
+        return 0.0
+    if z < h:
+        return 1.0
+    return 0.5 * (1.0 + cos(pi * (z - h) / (1.0 - h)))
+
+
+@register_jitable
+def bump_slope(z, h):
+    """dρ_h/dz (0 at the ends of the taper: ρ_h is C¹, not C²)."""
+    if z <= h or z >= 1.0:
+        return 0.0
+    return -0.5 * pi / (1.0 - h) * sin(pi * (z - h) / (1.0 - h))
+
+
+@register_jitable
+def phi(s, a, b, c):
+    """φ(s) = ½[(a+b) σ₁(s+c) + (a−b)] for c = (b−a)/√(4ab), as ½(a+b)[σ₁(s+c) − σ₁(c)] without its cancellation."""
+    if s + c <= 0.0 or s > 1.0:
+        return 0.5 * ((a + b) * sigma_1(s + c) + (a - b))
+    at_s, at_0 = sqrt(1.0 + (s + c) ** 2), sqrt(1.0 + c * c)
+    return 0.5 * (a + b) * s * (s + 2.0 * c) / (at_s * at_0 * ((s + c) * at_0 + c * at_s))
+
+
+@register_jitable
+def phi_slope(s, a, b, c):
+    """dφ/ds."""
+    return 0.5 * (a + b) / sqrt(1.0 + (s + c) ** 2) ** 3
+
+
+@register_jitable
+def phi_integral(s, a, b, c):
+    """∫_0^s φ = ½[(a+b)(√(1+(s+c)²) − √(1+c²)) + (a−b)s] ≥ 0, rearranged: nothing cancels where s is small."""
+    at_s, at_0, product = sqrt(1.0 + (s + c) ** 2), sqrt(1.0 + c * c), c * (s + c)
+    if product > 0.0:
+        gap = (1.0 + c * c + (s + c) ** 2) / (at_s * at_0 + product)  # at_s at_0 − product
+    else:
+        gap = at_s * at_0 - product
+    return 0.5 * (a + b) * (s / (at_s + at_0)) ** 2 * (gap + 1.0) / at_0
+
+
+@register_jitable
+def clenshaw(z, panels):
+    """A function given by Chebyshev panels at z: each row is (left, right, coefficients), rows in rising order.
+
+    Points outside take the value at the nearest end.
+    """
+    low, high = 0, panels.shape[0] - 1
+    while low < high:
+        middle = (low + high) // 2
+        if z < panels[middle, 1]:
+            high = middle
+        else:
+            low = middle + 1
+    left, right = panels[low, 0], panels[low, 1]
+    x = (2.0 * z - left - right) / (right - left)
+    if abs(x) > 1.0:  # not by min and max, which would turn a NaN into a number
+        x = 1.0 if x > 0.0 else -1.0
+    b1, b2 = 0.0, 0.0
+    for k in range(panels.shape[1] - 1, 2, -1):
+        b1, b2 = panels[low, k] + 2.0 * x * b1 - b2, b1
+    return panels[low, 2] + x * b1 - b2

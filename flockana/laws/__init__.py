@@ -1,0 +1,1 @@
+"""Laws of motion: `law.py` says what a law is; each family is one file."""

@@ -1,0 +1,118 @@
+"""The MSN project's discretisation of Algorithms 1 and 2, which is a map of its own rather than an integrator."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from flockana.checks import FloatArray, ensure_finite_scalar, ensure_positive
+from flockana.environment.targets import Target
+from flockana.errors import ArgumentError
+from flockana.interactions import AlphaInteraction, Gains
+from flockana.kernels.inplace import advance_alpha, neighbour_lists
+from flockana.kernels.neighbours import pair_list
+from flockana.laws.law import DiscreteLaw
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+
+PRINTED = 1.5  # q + (p + u dt) dt + ½ u dt² = q + p dt + (3/2) u dt² (erratum E9)
+CONSTANT_ACCELERATION = 0.5
+
+
+@dataclass(frozen=True)
+class MSNDiscretisation(DiscreteLaw):
+    """p' = p + u dt, q' = q + p dt + f u dt², agent by agent or all at once (the MSN project's iteration).
+
+    As the project wrote it, agents move one after the other and each sees those before it already moved, so action
+    and reaction differ within a step; f is 3/2, which moves each agent by u dt² too far (E9). Neighbours are those of
+    the end of the previous iteration, and the γ-agent has already moved on to the end of this one. The project sums
+    in single precision, which is not imitated.
+
+    Parameters
+    ----------
+    law : Algorithm1 or Algorithm2
+        The law whose input u is applied.
+    dt : float
+        Step, in time units.
+    in_place : bool
+        True as written; False evaluates every u before any agent moves.
+    position_factor : float
+        f: 3/2 as written, 1/2 for what a constant u does.
+
+    Raises
+    ------
+    ArgumentError
+        On another law (a variant's extra terms would be left out unnoticed), or a step that is not positive.
+
+    Examples
+    --------
+    >>> from flockana.environment.targets import StaticTarget
+    >>> pull = Algorithm2(gains=Gains(c1_gamma=1.0, c2_gamma=0.0), target=StaticTarget((1.0,)))
+    >>> q, p, u, _ = MSNDiscretisation(pull, dt=0.1).step(0.0, np.array([[0.0]]), np.array([[0.0]]), {})
+    >>> float(u[0, 0]), round(float(q[0, 0]), 6), float(p[0, 0])
+    (1.0, 0.015, 0.1)
+    """
+
+    law: Algorithm1 | Algorithm2
+    dt: float
+    in_place: bool = True
+    position_factor: float = PRINTED
+
+    references = ("isola-2024", "olfati-saber-2006")
+
+    def __post_init__(self) -> None:
+        if type(self.law) not in (Algorithm1, Algorithm2):
+            raise ArgumentError(f"law = {self.law!r}: expected Algorithm1(...) or Algorithm2(...) itself")
+        if not isinstance(self.in_place, bool):
+            raise ArgumentError(f"in_place = {self.in_place!r}: expected True or False")
+        object.__setattr__(self, "dt", ensure_positive("dt", self.dt))
+        object.__setattr__(
+            self, "position_factor", ensure_finite_scalar("position_factor", self.position_factor)
+        )
+
+    @property
+    def alpha(self) -> AlphaInteraction:
+        """The pair law."""
+        return self.law.alpha
+
+    @property
+    def gains(self) -> Gains:
+        """The gains."""
+        return self.law.gains
+
+    @property
+    def target(self) -> Target | None:
+        """The γ-agent; None for Algorithm 1."""
+        return self.law.target if isinstance(self.law, Algorithm2) else None
+
+    def check_dimension(self, m: int) -> None:  # noqa: D102
+        self.law.check_dimension(m)
+
+    def step(
+        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
+    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
+        """One iteration, unchecked; it needs no memory, since the previous net is that of the q it is given.
+
+        Parameters
+        ----------
+        t : float
+            Time at the start of the step.
+        q, p : ndarray, shape (n, m)
+            Positions and velocities; left as they are.
+        memory : mapping
+            Passed along.
+        """
+        later, h = t + self.dt, self.dt
+        if not self.in_place:
+            u, _ = self.law.flow(later, q, p)
+            return q + p * h + self.position_factor * u * h * h, p + u * h, u, memory
+        q, p, u = q.copy(), p.copy(), np.empty_like(q)
+        g, nobody = self.gains, np.zeros(q.shape[1])
+        q_r, p_r = (nobody, nobody) if self.target is None else self.target.state(later)
+        pull, drag = (0.0, 0.0) if self.target is None else (g.c1_gamma, g.c2_gamma)
+        # the project links agents at exactly r, which the strict neighbour search leaves out
+        lists = neighbour_lists(len(q), *pair_list(q, np.nextafter(self.alpha.r, np.inf)))
+        pair = (self.alpha.par, g.c1_alpha, g.c2_alpha)
+        advance_alpha(q, p, u, *lists, *pair, pull, drag, q_r, p_r, h, self.position_factor)
+        return q, p, u, memory

@@ -1,0 +1,68 @@
+"""The curves of a pair law over the Euclidean distance."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flockana.plots.style import BLUE, MUTED, VERMILLION, ensure_axes
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from flockana.interactions import AlphaInteraction
+
+_SAMPLES = 600
+
+
+def action(interaction: AlphaInteraction, *, ax: Axes | None = None) -> Axes:
+    """Draw φ_α over the distance of a pair: below zero it repels, above it attracts, beyond r nothing.
+
+    Parameters
+    ----------
+    interaction : AlphaInteraction
+        The pair law.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    ax = ensure_axes(ax)
+    x = np.linspace(0.0, 1.15 * interaction.r, _SAMPLES)
+    ax.plot(x, interaction.phi_alpha(interaction.sigma_norm(x)), color=BLUE, linestyle="-")
+    ax.axhline(0.0, color=MUTED, linewidth=0.8, linestyle="-")
+    return _frame(ax, interaction, "φ_α, the pair's action")
+
+
+def potential(interaction: AlphaInteraction, *, ax: Axes | None = None) -> Axes:
+    """Draw ψ_α over the distance of a pair: least at d, constant beyond r, c* where two agents coincide.
+
+    Parameters
+    ----------
+    interaction : AlphaInteraction
+        The pair law.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    ax = ensure_axes(ax)
+    x = np.linspace(0.0, 1.15 * interaction.r, _SAMPLES)
+    ax.plot(x, interaction.psi_alpha(interaction.sigma_norm(x)), color=VERMILLION, linestyle="-")
+    ax.annotate(f"c* = {interaction.c_star:.4g}", (0.0, interaction.c_star), (8, -3), textcoords="offset points")
+    return _frame(ax, interaction, "ψ_α, the pair's potential")
+
+
+def _frame(ax: Axes, interaction: AlphaInteraction, label: str) -> Axes:
+    for name, x in (("d", interaction.d), ("r", interaction.r)):
+        ax.axvline(x, color=MUTED, linewidth=0.8, linestyle=":")
+        ax.annotate(name, (x, 1.0), (3, -9), xycoords=("data", "axes fraction"), textcoords="offset points")
+    ax.set_xlabel("distance of the pair (length)")
+    ax.set_ylabel(label)
+    ax.set_xlim(0.0, 1.15 * interaction.r)
+    return ax

@@ -1,0 +1,241 @@
+"""Quantities of a run over time."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flockana.errors import UnknownNameError
+from flockana.laws.law import DiscreteLaw
+from flockana.plots.style import BLUE, GREEN, INK, MUTED, PURPLE, VERMILLION, ensure_axes, style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from flockana.trajectory import Trajectory
+
+# name in Trajectory.metrics(), label, logarithmic
+MEASURES = {
+    "connectivity": ("C, relative connectivity", False),
+    "cohesion_radius": ("R, cohesion radius (length)", False),
+    "deviation_energy": ("Ẽ, deviation energy", False),
+    "velocity_mismatch": ("K̃, velocity mismatch (length²/time²)", True),
+    "giant_share": ("C*, share of the largest component", False),
+    "min_distance": ("least distance (length)", False),
+    "inertia": ("J, inertia (length²)", False),
+    "order": ("polar order", False),
+}
+PANEL = ("connectivity", "cohesion_radius", "deviation_energy", "velocity_mismatch")
+
+
+def measure(trajectory: Trajectory, name: str, *, ax: Axes | None = None) -> Axes:
+    """Draw one of the run's metrics over time; left empty, and said so, where the law does not define it.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The run.
+    name : str
+        A variable of ``trajectory.metrics()``.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    UnknownNameError
+        If there is no such metric.
+    """
+    if name not in MEASURES:
+        raise UnknownNameError("metric", name, MEASURES)
+    label, logarithmic = MEASURES[name]
+    ax = ensure_axes(ax)
+    found = trajectory.metrics()
+    if name not in found:
+        return _empty(ax, label, "not defined for this law")
+    values = found[name].values
+    ax.plot(trajectory.t, values, color=BLUE, linestyle="-")
+    if logarithmic and (values > 0.0).any():
+        ax.set_yscale("log")
+    if name in ("connectivity", "giant_share", "order"):
+        ax.set_ylim(-0.03, 1.05)
+    elif not logarithmic:
+        ax.set_ylim(bottom=0.0)
+    return _frame(ax, trajectory, label)
+
+
+def panel(trajectory: Trajectory, *, axes: Any = None) -> Any:
+    """Draw C, R, Ẽ and K̃ (logarithmic) side by side.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The run.
+    axes : sequence of four Axes, optional
+        Where to draw; by default a new figure of two by two.
+
+    Returns
+    -------
+    ndarray of matplotlib.axes.Axes, shape (4,)
+    """
+    if axes is None:
+        import matplotlib.pyplot as plt
+
+        with style():
+            axes = plt.subplots(2, 2, figsize=(8.4, 5.0))[1]
+    flat = np.ravel(axes)
+    for name, ax in zip(PANEL, flat, strict=True):
+        measure(trajectory, name, ax=ax)
+    return flat
+
+
+def energy(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
+    """Draw the law's energy H over time, if it has one.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The run.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    ax = ensure_axes(ax)
+    values = trajectory.energy()
+    if not np.isfinite(values).any():
+        return _empty(ax, "H, energy", "this law has no energy")
+    ax.plot(trajectory.t, values, color=BLUE, linestyle="-")
+    return _frame(ax, trajectory, "H, energy")
+
+
+def energy_residual(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
+    """Draw H(t) − H(0) − ∫ dH/dt: what the integration got wrong, by the energy identity.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The run.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    ax = ensure_axes(ax)
+    label = "H − H(0) − ∫ dH/dt"
+    if "work" not in trajectory.extra:
+        return _empty(ax, label, "no energy balance: this law has no energy")
+    ax.axhline(0.0, color=MUTED, linewidth=0.8, linestyle="-")
+    ax.plot(trajectory.t, trajectory.energy_residual, color=VERMILLION, linestyle="-", linewidth=1.0)
+    return _frame(ax, trajectory, label)
+
+
+def distances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
+    """Draw the least distance of two agents at the samples, its lower bound between them, and d and r.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The run. Between the steps of a map there is nothing to bound.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    ax = ensure_axes(ax)
+    label = "least distance (length)"
+    if trajectory.n == 1:
+        return _empty(ax, label, "one agent has no distances")
+    t, least = trajectory.t, trajectory.metrics()["min_distance"].values
+    ax.plot(t, least, color=BLUE, linestyle="-", label="at the samples")
+    if len(t) > 1 and not isinstance(trajectory.law, DiscreteLaw):
+        bound = trajectory.closest_approach().lower_by_interval
+        ax.stairs(bound, t, baseline=None, color=VERMILLION, linestyle="--", linewidth=1.0, label="lower bound between")
+    pair_law = getattr(trajectory.law, "alpha", None)
+    for name, colour, dash in (("d", GREEN, ":"), ("r", PURPLE, "-.")):
+        if hasattr(pair_law, name):
+            ax.axhline(getattr(pair_law, name), color=colour, linestyle=dash, linewidth=1.1, label=name)
+    ax.set_ylim(bottom=0.0)
+    ax.legend(loc="best", ncols=2)
+    return _frame(ax, trajectory, label)
+
+
+def speeds(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
+    """Draw every agent's speed, the speed of the centre of mass, and the γ-agent's as handed to the law.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The run.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    ax = ensure_axes(ax)
+    t, target = trajectory.t, getattr(trajectory.law, "target", None)
+    speed = np.linalg.norm(trajectory.p, axis=2)
+    ax.plot(t, speed, color=BLUE, linestyle="-", linewidth=0.4, alpha=0.35)
+    ax.plot([], [], color=BLUE, linestyle="-", linewidth=0.8, label="agents")
+    centre = np.linalg.norm(trajectory.p.mean(axis=1), axis=1)
+    ax.plot(t, centre, color=INK, linestyle="-", linewidth=1.4, label="centre of mass")
+    if target is not None:
+        handed = [np.linalg.norm(target.state(s)[1]) for s in t.tolist()]
+        ax.plot(t, handed, color=VERMILLION, linestyle="--", label="γ-agent's ‖p_r‖")
+    ax.set_ylim(bottom=0.0)
+    ax.legend(loc="best")
+    return _frame(ax, trajectory, "speed (length/time)")
+
+
+def centre_of_mass(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
+    """Draw each coordinate of the centre of mass over time (solid), against the γ-agent's (dashed).
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The run.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    ax = ensure_axes(ax)
+    t, centre, target = trajectory.t, trajectory.q.mean(axis=1), getattr(trajectory.law, "target", None)
+    for k, colour in zip(range(trajectory.m), (BLUE, GREEN, PURPLE), strict=False):
+        ax.plot(t, centre[:, k], color=colour, linestyle="-", linewidth=1.8, label=f"{'xyz'[k]} of the centre")
+    if target is not None:
+        path = np.array([target.position(s) for s in t.tolist()])
+        for k, colour in zip(range(trajectory.m), (BLUE, GREEN, PURPLE), strict=False):
+            ax.plot(t, path[:, k], color=colour, linestyle="--", linewidth=1.1, label=f"{'xyz'[k]} of the γ-agent")
+    ax.legend(loc="best")
+    return _frame(ax, trajectory, "position (length)")
+
+
+def _frame(ax: Axes, trajectory: Trajectory, label: str) -> Axes:
+    ax.set_xlabel("t (time)")
+    ax.set_ylabel(label)
+    if len(trajectory.t) > 1:
+        ax.set_xlim(trajectory.t[0], trajectory.t[-1])
+    return ax
+
+
+def _empty(ax: Axes, label: str, reason: str) -> Axes:
+    ax.set_ylabel(label)
+    ax.set_xticks([])
+    ax.set_yticks([])
+    ax.text(0.5, 0.5, reason, ha="center", va="center", transform=ax.transAxes, color=MUTED)
+    return ax

@@ -1,0 +1,91 @@
+"""Paths through space: of every agent, and of the centre of mass against the γ-agent."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.collections import LineCollection
+from mpl_toolkits.mplot3d.art3d import Line3DCollection
+
+from flockana.checks import FloatArray
+from flockana.plots.style import BLUE, INK, MUTED, VERMILLION, ensure_axes
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from flockana.trajectory import Trajectory
+
+
+def trajectories(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
+    """Draw every agent's path with its end, and the γ-agent's; on a line, positions over time.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The run.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; three-dimensional for m = 3.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    ax = ensure_axes(ax, m=trajectory.m)
+    paths = np.stack([_plane(trajectory.t, trajectory.q[:, i]) for i in range(trajectory.n)])
+    kind = Line3DCollection if trajectory.m == 3 else LineCollection
+    ax.add_collection(kind(list(paths), colors=BLUE, linewidths=0.5, alpha=0.45))
+    ax.scatter(*paths[:, 0].T, s=7, facecolors="none", edgecolors=MUTED, linewidths=0.6, label="start", zorder=3)
+    ax.scatter(*paths[:, -1].T, s=7, color=INK, linewidths=0, label="end", zorder=3)
+    _target(ax, trajectory)
+    _frame(ax, trajectory.m)
+    ax.legend(loc="best")
+    return ax
+
+
+def centre_path(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
+    """Draw the path of the centre of mass against the γ-agent's; on a line, both over time.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The run.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; three-dimensional for m = 3.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    ax = ensure_axes(ax, m=trajectory.m)
+    centre = _plane(trajectory.t, trajectory.q.mean(axis=1))
+    ax.plot(*centre.T, color=BLUE, linestyle="-", linewidth=1.8, label="centre of mass")
+    ax.scatter(*centre[:1].T, s=28, facecolors="white", edgecolors=BLUE, zorder=3)
+    ax.scatter(*centre[-1:].T, s=28, color=BLUE, zorder=3)
+    _target(ax, trajectory)
+    _frame(ax, trajectory.m)
+    ax.legend(loc="best")
+    return ax
+
+
+def _plane(t: FloatArray, x: FloatArray) -> FloatArray:
+    """A path as points to draw: (t, x) where space is a line."""
+    return np.column_stack([t, x]) if x.shape[1] == 1 else x
+
+
+def _target(ax: Axes, trajectory: Trajectory) -> None:
+    target = getattr(trajectory.law, "target", None)
+    if target is not None:
+        path = _plane(trajectory.t, np.array([target.position(t) for t in trajectory.t.tolist()]))
+        ax.plot(*path.T, color=VERMILLION, linestyle="--", linewidth=1.4, label="γ-agent", zorder=4)
+        ax.scatter(*path[-1:].T, s=90, marker="*", color=VERMILLION, edgecolors="white", linewidths=0.6, zorder=5)
+
+
+def _frame(ax: Axes, m: int) -> None:
+    if m == 1:
+        ax.set_xlabel("t (time)")
+        ax.set_ylabel("x (length)")
+        return
+    for name in "xyz"[:m]:
+        getattr(ax, f"set_{name}label")(f"{name} (length)")
+    ax.set_aspect("equal", adjustable="datalim" if m == 2 else "box")

@@ -1,0 +1,344 @@
+"""Figures 10 to 13 of Olfati-Saber (2006), and three runs of our own on the same parameters."""
+
+from __future__ import annotations
+
+from functools import partial
+from math import cos, pi, sin, sqrt
+from typing import Any
+
+import numpy as np
+
+from flockana.checks import FloatArray
+from flockana.environment.targets import LinearTarget, StaticTarget
+from flockana.interactions import AlphaInteraction, Gains
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.metrics import coincident_pairs
+from flockana.nets import components, link_lengths, links
+from flockana.scenarios.scenario import Report, Scenario
+from flockana.theorems import Claim, Tolerances
+from flockana.theorems.theorem import Status, judge
+from flockana.trajectory import Trajectory
+
+_OURS = (
+    "The gains are not printed and are ours (c1α = 30, c2α = 2√30, c1γ = 1.1, c2γ = 2√1.1), as are the seed and the "
+    "end time, by which the motion has converged."
+)
+_FLOCKS: dict[str, Status] = {
+    "os-3": "verified",
+    "os-3:i": "verified",
+    "os-3:ii": "verified",
+    "os-3:iii": "verified",
+    "os-3:iv-printed": "verified",
+    "os-3:iv-none": "vacuous",
+    "alpha-flocking": "verified",
+    "alpha-flocking-strict": "verified",
+    "source": "verified",
+}
+
+
+def finding(
+    name: str,
+    margin: float,
+    detail: str,
+    *,
+    computed: Any = None,
+    stated: Any = None,
+    error: float = 0.0,
+    witness: Any = None,
+) -> Claim:
+    """A claim that is judged by its margin, without hypotheses.
+
+    Parameters
+    ----------
+    name, detail : str
+        As in `Claim`.
+    margin : float
+        Positive where the source's report agrees with the run.
+    computed, stated, witness : object
+        As in `Claim`.
+    error : float
+        Error of the margin.
+
+    Examples
+    --------
+    >>> finding("connected", 0.5, "one component").status
+    'verified'
+    """
+    status = judge(margin, error, [])
+    return Claim(name, status, "numeric", computed, stated, margin, error, witness, None, detail)
+
+
+def component_count(run: Trajectory, k: int = -1) -> int:
+    """Number of components of the net at sample k of a run.
+
+    Parameters
+    ----------
+    run : Trajectory
+        A run of a law with an interaction range.
+    k : int
+        Which sample; the last by default.
+    """
+    return int(components(run.n, links(run.q[k], run.law.alpha.r)).max()) + 1
+
+
+def _ends_connected(run: Trajectory, tolerances: Tolerances) -> Claim:
+    parts = component_count(run)
+    detail = f"{parts} component(s) at t = {run.t[-1]:g}"
+    return finding("connected", 1.5 - parts, detail, computed=parts, stated=1)
+
+
+def _ends_as_lattice(run: Trajectory, tolerances: Tolerances) -> Claim:
+    d, r = run.law.alpha.d, run.law.alpha.r
+    deviation = float(run.metrics().deviation_energy[-1])
+    lengths = link_lengths(run.q[-1], links(run.q[-1], r))
+    detail = (
+        f"Ẽ = {deviation:.3g} at the end (a link is off d by {100.0 * sqrt(deviation):.2g} % in root mean square); the "
+        f"{lengths.size} links are {lengths.min():.4g} to {lengths.max():.4g} long for d = {d:g}, squeezed inwards"
+    )
+    margin = tolerances.deviation - deviation
+    return finding("lattice-like", margin, detail, computed=deviation, stated=f"Ẽ <= {tolerances.deviation:g}")
+
+
+def _ends_matched(run: Trajectory, tolerances: Tolerances) -> Claim:
+    first, last = (float(run.metrics().velocity_mismatch[k]) for k in (0, -1))
+    detail = f"velocity mismatch K̃ goes from {first:.3g} to {last:.3g}"
+    margin = tolerances.mismatch - last
+    return finding("matched", margin, detail, computed=last, stated=f"K̃ <= {tolerances.mismatch:g}")
+
+
+def _topology_changes(run: Trajectory, tolerances: Tolerances) -> Claim:
+    nets = [{*map(tuple, links(q, run.law.alpha.r).tolist())} for q in run.q]
+    changes = sum(a != b for a, b in zip(nets, nets[1:], strict=False))
+    kept = len(nets[0] & nets[-1])
+    detail = (
+        f"the net differs between {changes} pairs of successive samples; of {len(nets[0])} links at the start {kept} "
+        f"are among the {len(nets[-1])} at the end"
+    )
+    return finding("topology", changes - 0.5, detail, computed=changes, stated="> 0")
+
+
+def _fragments(run: Trajectory, tolerances: Tolerances) -> Claim:
+    parts = component_count(run)
+    share = float(run.metrics().giant_share[-1])
+    detail = f"{parts} components at t = {run.t[-1]:g}, the largest with {share:.0%} of the agents"
+    return finding("fragments", parts - 1.5, detail, computed=parts, stated="more than 1")
+
+
+def _spreads(run: Trajectory, tolerances: Tolerances) -> Claim:
+    first, last = (float(run.metrics().cohesion_radius[k]) for k in (0, -1))
+    detail = f"cohesion radius R goes from {first:.4g} to {last:.4g}"
+    margin = last / first - tolerances.cohesion
+    return finding("spreads", margin, detail, computed=last / first, stated=f"> {tolerances.cohesion:g} R(0)")
+
+
+def _stays_mismatched(run: Trajectory, tolerances: Tolerances) -> Claim:
+    last = float(run.metrics().velocity_mismatch[-1])
+    margin = last - tolerances.mismatch
+    detail = f"velocity mismatch K̃ is {last:.3g} at t = {run.t[-1]:g}: the fragments move apart"
+    return finding("mismatched", margin, detail, computed=last, stated=f"K̃ > {tolerances.mismatch:g}")
+
+
+def _meets(run: Trajectory, tolerances: Tolerances) -> Claim:
+    q_r, p_r = run.law.target.state(float(run.t[-1]))
+    distance = float(np.linalg.norm(run.q[-1].mean(axis=0) - q_r))
+    speed = float(np.linalg.norm(run.p[-1].mean(axis=0) - p_r))
+    allowed = tolerances.agreement * run.law.alpha.d
+    detail = f"the centre of mass ends {distance:.2g} from the γ-agent, at a relative speed of {speed:.2g}"
+    return finding("meets", allowed - max(distance, speed), detail, computed=distance, stated=f"<= {allowed:g}")
+
+
+def _coincide(run: Trajectory, tolerances: Tolerances) -> Claim:
+    tol = tolerances.contact * run.law.alpha.d
+    pairs = coincident_pairs(run.q[-1], tol)
+    clusters = np.bincount(components(run.n, links(run.q[-1], tol)))
+    detail = f"{pairs} pairs coincide at t = {run.t[-1]:g}, in clusters of up to {clusters.max()} agents"
+    return finding("coincide", pairs - 0.5, detail, computed=pairs, stated="more than 0")
+
+
+_CONNECTED = Report("connected", "the net ends connected (Fig. 18: C = 1)", _ends_connected)
+_LATTICE = Report("lattice-like", "the flock ends as a quasi-lattice (Fig. 18: Ẽ small)", _ends_as_lattice)
+_MATCHED = Report("matched", "velocities match (Fig. 18: K̃ goes to 0)", _ends_matched)
+
+
+def random_start(seed: int, n: int, m: int) -> tuple[FloatArray, FloatArray]:
+    """The paper's start: q normal with variance 2500 per coordinate, p uniform in [−2, −1]^m.
+
+    Parameters
+    ----------
+    seed : int
+        Of the generator.
+    n, m : int
+        Agents and dimensions.
+
+    Examples
+    --------
+    >>> q, p = random_start(0, 150, 2)
+    >>> q.shape, bool(p.min() >= -2.0), bool(p.max() <= -1.0)
+    ((150, 2), True, True)
+    """
+    generator = np.random.default_rng(seed)
+    return generator.normal(0.0, 50.0, (n, m)), generator.uniform(-2.0, -1.0, (n, m))
+
+
+def _following(
+    seed: int = 0, *, name: str, title: str, source: str, n: int, end: float, m: int = 2, reports: tuple[Report, ...]
+) -> Scenario:
+    q_r, p_r = np.zeros(m), np.zeros(m)
+    q_r[:2], p_r[0] = (200.0, 30.0), 5.0
+    law = Algorithm2(target=LinearTarget(q_r, p_r))
+    return Scenario(
+        name, title, f"{source} {_OURS}", law, *random_start(seed, n, m), (0.0, end), seed, _FLOCKS, reports
+    )
+
+
+def _fragmentation(seed: int = 0) -> Scenario:
+    """Fig. 12. No claim of Theorem 1 applies: the run itself breaks its hypothesis."""
+    return Scenario(
+        "paper-fragmentation",
+        "Fig. 12: 40 agents without a γ-agent fall apart",
+        f"Olfati-Saber 2006, Fig. 12 and 18(b): n = 40, Algorithm 1, q and p as in Fig. 10. {_OURS}",
+        Algorithm1(),
+        *random_start(seed, 40, 2),
+        (0.0, 40.0),
+        seed,
+        {
+            "os-1": "vacuous",
+            "alpha-flocking": "refuted",
+            "alpha-flocking-strict": "refuted",
+            "alpha-flocking-strict:flock": "refuted",
+            "source": "verified",
+        },
+        (
+            Report("fragments", "the net ends in several components", _fragments),
+            Report("spreads", "the group does not stay together (Fig. 18(b): R grows)", _spreads),
+            Report("mismatched", "velocities do not match (Fig. 18(b): K̃ stays away from 0)", _stays_mismatched),
+        ),
+    )
+
+
+def _collapse(seed: int = 0) -> Scenario:
+    """Erratum E11: Theorem 3 holds, to the letter; what it converges to is no lattice."""
+    gains = Gains(c1_alpha=1.0, c2_alpha=1.0, c1_gamma=1.0, c2_gamma=1.0)
+    return Scenario(
+        "collapse",
+        "Unit gains: 150 agents are squeezed until pairs coincide",
+        "Ours, on the slides' summary that Algorithm 2 yields a lattice: parameters, q and p of Fig. 10, all gains 1, "
+        "a γ-agent at rest at the origin.",
+        Algorithm2(gains=gains, target=StaticTarget((0.0, 0.0))),
+        *random_start(seed, 150, 2),
+        (0.0, 120.0),
+        seed,
+        {
+            "os-3": "verified",
+            "os-3:i": "verified",
+            "os-3:ii": "verified",
+            "os-3:iii": "verified",
+            "alpha-flocking": "refuted",
+            "alpha-flocking:deviation": "refuted",
+            "alpha-flocking-strict": "refuted",
+            "alpha-flocking-strict:flock": "verified",
+            "E11": "refuted",
+            "source": "verified",
+        },
+        (Report("coincide", "pairs of agents end in the same place (erratum E11)", _coincide),),
+        references=("olfati-saber-2006", "flockana"),
+    )
+
+
+def _hexagon(seed: int = 0) -> Scenario:
+    """Theorem 1 with its hypotheses met: connected throughout, and H(0) < c*."""
+    alpha, generator = AlphaInteraction(), np.random.default_rng(seed)
+    ring = [(cos(k * pi / 3.0), sin(k * pi / 3.0)) for k in range(6)]
+    q = alpha.d * np.array([(0.0, 0.0), *ring]) + generator.uniform(-0.3, 0.3, (7, 2))
+    return Scenario(
+        "hexagon",
+        "Seven agents near a hexagon, with less energy than a collision costs",
+        "Ours: a hexagonal patch of side d = 7, each coordinate displaced by up to 0.3, velocities up to 0.5 per axis, "
+        "Algorithm 1 with the default gains. H(x(0), v(0)) < c*.",
+        Algorithm1(alpha=alpha),
+        q,
+        generator.uniform(-0.5, 0.5, (7, 2)),
+        (0.0, 30.0),
+        seed,
+        {
+            "os-1": "verified",
+            "os-1:i": "verified",
+            "os-1:ii": "verified",
+            "os-1:iii": "verified",
+            "alpha-flocking": "verified",
+            "alpha-flocking-strict": "verified",
+        },
+        references=("olfati-saber-2006", "flockana"),
+    )
+
+
+def _three_agents(seed: int = 0) -> Scenario:
+    """Erratum E13: energy for one coincident pair at a time, and two pairs that coincide, one after the other."""
+    alpha = AlphaInteraction(a=5e4, b=5e4)
+    gains = Gains(c1_alpha=1.0, c2_alpha=1.0, c1_gamma=0.01, c2_gamma=0.01)
+    p0 = np.array([[sqrt(5.6 * alpha.c_star)], [0.0], [0.0]])
+    return Scenario(
+        "three-agents-1d",
+        "Three agents on a line: one agent runs through both others",
+        "Ours, on Theorem 3(iv): q = (-12, 0, 30), p = (√(5.6 c*), 0, 0), a = b = 50000, c1α = c2α = 1, "
+        "c1γ = c2γ = 0.01, a γ-agent at rest at 0; other parameters as in the paper. The start is fixed.",
+        Algorithm2(alpha=alpha, gains=gains, target=StaticTarget((0.0,))),
+        np.array([[-12.0], [0.0], [30.0]]),
+        p0,
+        (0.0, 0.05),
+        seed,
+        {
+            "os-3": "refuted",
+            "os-3:i": "verified",
+            "os-3:ii": "inconclusive",
+            "os-3:iii": "inconclusive",
+            "os-3:iv-printed": "refuted",
+            "os-3:iv-instant": "verified",
+            "os-3:iv-none": "vacuous",
+            "E13": "refuted",
+        },
+        references=("olfati-saber-2006", "flockana"),
+    )
+
+
+SCENARIOS = {
+    "paper-flocking": partial(
+        _following,
+        name="paper-flocking",
+        title="Fig. 10: 150 agents gather and follow a γ-agent",
+        source="Olfati-Saber 2006, Fig. 10: n = 150, Algorithm 2, d = 7, r = 8.4, ε = 0.1, a = b = 5, h = 0.2, q normal "
+        "with variance 2500, p uniform in [-2, -1]², γ-agent from (200, 30) at (5, 0).",
+        n=150,
+        end=60.0,
+        reports=(_CONNECTED, _LATTICE, _MATCHED),
+    ),
+    "paper-dynamic-topology": partial(
+        _following,
+        name="paper-dynamic-topology",
+        title="Fig. 11: 100 agents whose net changes while they flock",
+        source="Olfati-Saber 2006, Fig. 11 and 18(a): n = 100, otherwise as Fig. 10.",
+        n=100,
+        end=50.0,
+        reports=(
+            Report("topology", "the net changes on the way", _topology_changes),
+            _CONNECTED,
+            _LATTICE,
+            _MATCHED,
+        ),
+    ),
+    "paper-fragmentation": _fragmentation,
+    "paper-rendezvous-3d": partial(
+        _following,
+        name="paper-rendezvous-3d",
+        title="Fig. 13: 50 agents meet in space",
+        source="Olfati-Saber 2006, Fig. 13: n = 50, m = 3, Algorithm 2. The start (as Fig. 10, in three dimensions) and "
+        "the γ-agent, from (200, 30, 0) at (5, 0, 0), are ours.",
+        n=50,
+        m=3,
+        end=60.0,
+        reports=(Report("meets", "the group meets at the γ-agent", _meets), _CONNECTED, _LATTICE),
+    ),
+    "collapse": _collapse,
+    "hexagon": _hexagon,
+    "three-agents-1d": _three_agents,
+}

@@ -1,0 +1,203 @@
+"""What a scenario is: a law, a start, a time span, where it was published, and what is expected of it."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import pkgutil
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from typing import Any
+
+from flockana.checks import FloatArray
+from flockana.errors import ArgumentError, UnknownNameError
+from flockana.laws.law import DiscreteLaw, Law
+from flockana.simulate import simulate
+from flockana.theorems import Claim, Tolerances, Verdict, verify
+from flockana.theorems.theorem import Status
+from flockana.trajectory import Trajectory
+
+SOURCE = "source"  # the id under which a source's own report is judged
+
+
+@dataclass(frozen=True)
+class Report:
+    """Something that the source says it saw, and the function that looks whether it is so.
+
+    Parameters
+    ----------
+    name : str
+        Short name.
+    text : str
+        What the source reports, in our words.
+    check : callable
+        ``check(trajectory, tolerances) -> Claim``.
+    """
+
+    name: str
+    text: str
+    check: Callable[[Trajectory, Tolerances], Claim]
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """One published simulation, ready to run.
+
+    Parameters
+    ----------
+    name, title : str
+        Name in the catalogue and one line.
+    source : str
+        Where it was published, and what is ours.
+    law : Law or DiscreteLaw
+        What moves the flock.
+    q0, p0 : ndarray, shape (n, m)
+        Start.
+    t_span : (float, float)
+        Start and end.
+    seed : int
+        Of the random start.
+    expected : mapping of str to str
+        Expected status by theorem id, and by ``"id:claim"`` where one claim matters.
+    reports : tuple of Report
+        What the source says it saw; judged as one verdict under the id ``"source"``.
+    options : mapping
+        Keyword arguments of `simulate`.
+    references : tuple of str
+        Keys of the bibliography.
+
+    Examples
+    --------
+    >>> scenario("notebook-algorithm1").q0.shape
+    (27, 2)
+    """
+
+    name: str
+    title: str
+    source: str
+    law: Law | DiscreteLaw
+    q0: FloatArray
+    p0: FloatArray
+    t_span: tuple[float, float]
+    seed: int = 0
+    expected: Mapping[str, Status] = field(default_factory=dict)
+    reports: tuple[Report, ...] = ()
+    options: Mapping[str, Any] = field(default_factory=dict)
+    references: tuple[str, ...] = ("olfati-saber-2006",)
+
+    @property
+    def theorems(self) -> tuple[str, ...]:
+        """Ids of the theorems that are checked on it."""
+        return tuple(dict.fromkeys(key.split(":")[0] for key in self.expected if key.split(":")[0] != SOURCE))
+
+    def run(self, *, progress: bool = False) -> Trajectory:
+        """Simulate it.
+
+        Parameters
+        ----------
+        progress : bool
+            Show a progress bar.
+        """
+        return simulate(self.law, self.q0, self.p0, self.t_span, progress=progress, **self.options)
+
+    def verify(self, trajectory: Trajectory, *, tolerances: Tolerances | None = None) -> tuple[Verdict, ...]:
+        """Check every theorem that applies, and what the source reports, on a run of this scenario.
+
+        Parameters
+        ----------
+        trajectory : Trajectory
+            What `run` returned, or a saved copy of it.
+        tolerances : Tolerances, optional
+            Thresholds.
+        """
+        found = [verify(name, trajectory, tolerances=tolerances, subject=self.name) for name in self.theorems]
+        if self.reports:
+            used = tolerances or Tolerances()
+            claims = tuple(report.check(trajectory, used) for report in self.reports)
+            found.append(Verdict(SOURCE, (), claims, used, self.name))
+        return tuple(found)
+
+    def surprises(self, verdict: Verdict) -> tuple[str, ...]:
+        """What in a verdict differs from the expected, one line each; empty if nothing does.
+
+        Parameters
+        ----------
+        verdict : Verdict
+            Of this scenario.
+        """
+        return differences(verdict, self.expected)
+
+
+def differences(verdict: Verdict, expected: Mapping[str, Status]) -> tuple[str, ...]:
+    """Where a verdict differs from expected statuses, keyed by theorem id and by ``"id:claim"``.
+
+    Parameters
+    ----------
+    verdict : Verdict
+        The finding.
+    expected : mapping of str to str
+        The expectation; what it does not name may be anything.
+    """
+    found = {verdict.theorem: verdict.status} | {f"{verdict.theorem}:{c.name}": c.status for c in verdict.claims}
+    return tuple(
+        f"{key} is {found.get(key, 'missing')}, expected {status}"
+        for key, status in expected.items()
+        if key.split(":")[0] == verdict.theorem and found.get(key) != status
+    )
+
+
+@cache
+def _catalogue() -> dict[str, Callable[..., Scenario]]:
+    package = importlib.import_module("flockana.scenarios")
+    found: dict[str, Callable[..., Scenario]] = {}
+    for info in pkgutil.iter_modules(package.__path__):
+        found |= getattr(importlib.import_module(f"flockana.scenarios.{info.name}"), "SCENARIOS", {})
+    return dict(sorted(found.items()))
+
+
+def scenarios() -> tuple[str, ...]:
+    """Names of the catalogue.
+
+    Examples
+    --------
+    >>> "collapse" in scenarios()
+    True
+    """
+    return tuple(_catalogue())
+
+
+def scenario(name: str, seed: int = 0, **options: Any) -> Scenario:
+    """Build a scenario of the catalogue.
+
+    Parameters
+    ----------
+    name : str
+        One of `scenarios`.
+    seed : int
+        Seed of its random start, >= 0.
+    **options
+        Options of that scenario by name; an unknown one is an error that lists those there are.
+
+    Raises
+    ------
+    UnknownNameError
+        If there is no such scenario.
+    ArgumentError
+        On a bad seed or an option that the scenario does not have.
+
+    Examples
+    --------
+    >>> scenario("collapse", seed=1).name
+    'collapse'
+    """
+    if name not in _catalogue():
+        raise UnknownNameError("scenario", name, scenarios())
+    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
+        raise ArgumentError(f"seed = {seed!r}: expected a whole number >= 0")
+    build = _catalogue()[name]
+    known = [key for key in inspect.signature(build).parameters if key != "seed"]
+    unknown = sorted(set(options) - set(known))
+    if unknown:
+        raise ArgumentError(f"{name} has no option {', '.join(unknown)}; it has {', '.join(known) or 'none'}")
+    return build(seed=seed, **options)

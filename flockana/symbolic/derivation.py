@@ -1,0 +1,96 @@
+"""Derivations as values: steps of text, equation and condition, printing as LaTeX, and computed residuals."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import sympy as sp
+
+
+@dataclass(frozen=True)
+class Step:
+    """One line of a derivation.
+
+    Parameters
+    ----------
+    text : str
+        What is done, as LaTeX text: inline mathematics between dollar signs.
+    equation : sympy.Basic
+        The equation or expression reached.
+    condition : sympy.Basic
+        When it holds; ``true`` if always.
+
+    Examples
+    --------
+    >>> x = sp.Symbol("x")
+    >>> Step("Square.", sp.Eq(x**2, 4), x > 0).latex()
+    '& \\\\text{Square.} \\\\\\\\\\n& \\\\quad x^{2} = 4 \\\\qquad \\\\text{if } x > 0'
+    """
+
+    text: str
+    equation: sp.Basic
+    condition: sp.Basic = sp.true
+
+    def latex(self) -> str:
+        """Return the step as two rows of an ``aligned`` environment."""
+        condition = "" if self.condition == sp.true else rf" \qquad \text{{if }} {sp.latex(self.condition)}"
+        return f"& \\text{{{self.text}}} \\\\\n& \\quad {sp.latex(self.equation)}{condition}"
+
+
+def latex_steps(title: str, steps: tuple[Step, ...]) -> str:
+    """Return a titled sequence of steps as one ``aligned`` environment.
+
+    Parameters
+    ----------
+    title : str
+        The heading, as LaTeX text.
+    steps : tuple of Step
+        The rows.
+
+    Examples
+    --------
+    >>> latex_steps("T", (Step("One.", sp.Integer(1)),)).startswith(r"\\begin{aligned}")
+    True
+    """
+    rows = [rf"& \textbf{{{title}}}", *(step.latex() for step in steps)]
+    return "\\begin{aligned}\n" + " \\\\\n".join(rows) + "\n\\end{aligned}"
+
+
+@dataclass(frozen=True)
+class Derivation:
+    """A result with the steps that lead to it.
+
+    Parameters
+    ----------
+    title : str
+        What is derived.
+    steps : tuple of Step
+        How, each with its condition.
+    result : sympy.Basic
+        What comes out.
+    residuals : tuple of sympy.Expr
+        Left minus right side of every equation that was checked by computing: all 0 if it holds.
+
+    Examples
+    --------
+    >>> Derivation("Nothing", (), sp.Integer(0), (sp.Integer(0),)).holds
+    True
+    """
+
+    title: str
+    steps: tuple[Step, ...]
+    result: sp.Basic
+    residuals: tuple[sp.Expr, ...]
+
+    @property
+    def holds(self) -> bool:
+        """Whether every computed residual vanishes identically."""
+        return all(residual == 0 for residual in self.residuals)
+
+    def latex(self) -> str:
+        """Return the steps as LaTeX."""
+        return latex_steps(self.title, self.steps)
+
+    def _repr_latex_(self) -> str:
+        """Show the steps in a notebook."""
+        return f"$${self.latex()}$$"

@@ -1,0 +1,271 @@
+"""dH/dt of Algorithms 1 and 2, derived for generic n from one generic pair and one generic agent.
+
+V is a sum over pairs, K and J are sums over agents, and every u_i is a sum over the other agents plus one
+own term. So dH/dt is a sum over pairs of one expression plus a sum over agents of another, and an identity
+between those two expressions is one for every n.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import sympy as sp
+
+from flockana.symbolic.derivation import Step, latex_steps
+from flockana.symbolic.functions import HALF
+from flockana.symbolic.norms import EPS, sigma_norm
+from flockana.symbolic.pair import (
+    ADJACENCY,
+    PHI,
+    along_flow,
+    ensure_dimension,
+    own_force,
+    pair_force,
+    pair_potential,
+    vector,
+)
+from flockana.symbolic.parameters import GAINS, GainSymbols
+from flockana.symbolic.sums import (
+    I_,
+    J_,
+    P,
+    Q,
+    V,
+    X,
+    Z,
+    hamiltonian,
+    over_agents,
+    over_pairs,
+    sigma_distance,
+    structural_hamiltonian,
+)
+
+
+@dataclass(frozen=True)
+class EnergyIdentity:
+    """An energy, its rate along the flow as derived, the closed form claimed, and what is left between them.
+
+    Parameters
+    ----------
+    name : str
+        What is identified.
+    energy : sympy.Expr
+        The energy, as sums over n agents.
+    rate : sympy.Expr
+        Its time derivative along the flow, by the chain rule.
+    claimed : sympy.Expr
+        The closed form.
+    residual : sympy.Expr
+        rate - claimed, computed: 0 for a theorem.
+    steps : tuple of Step
+        The derivation.
+
+    Examples
+    --------
+    >>> algorithm1_identity(2).residual
+    0
+    """
+
+    name: str
+    energy: sp.Expr
+    rate: sp.Expr
+    claimed: sp.Expr
+    residual: sp.Expr
+    steps: tuple[Step, ...]
+
+    @property
+    def holds(self) -> bool:
+        """Whether the residual vanishes identically."""
+        return bool(self.residual == 0)
+
+    def latex(self) -> str:
+        """Return the derivation as LaTeX."""
+        return latex_steps(self.name, self.steps)
+
+    def _repr_latex_(self) -> str:
+        """Show the derivation in a notebook."""
+        return f"$${self.latex()}$$"
+
+
+class GenericPair:
+    """Agents i and j among n, by components: the terms of dH/dt that involve both.
+
+    Parameters
+    ----------
+    m : int
+        Dimension, 1, 2 or 3.
+    frame : tuple of sympy.IndexedBase
+        Positions and velocities: (Q, P) in the given frame, (X, V) in the moving one.
+
+    Examples
+    --------
+    >>> GenericPair(1).tidy(pair_potential(*GenericPair(1).q))
+    c_1^alpha*psi_alpha(z_ij)
+    """
+
+    z = sp.Symbol("z_ij", nonnegative=True)
+
+    def __init__(self, m: int, frame: tuple[sp.IndexedBase, sp.IndexedBase] = (Q, P)) -> None:
+        self.m = ensure_dimension(m)
+        self.frame = frame
+        position, velocity = (str(base) for base in frame)
+        self.q = vector(f"{position}_i", m), vector(f"{position}_j", m)
+        self.p = vector(f"{velocity}_i", m), vector(f"{velocity}_j", m)
+
+    def forces(self, gains: GainSymbols = GAINS) -> tuple[sp.Matrix, sp.Matrix]:
+        """Return the force of j on i and, by the same formula, of i on j."""
+        (q_i, q_j), (p_i, p_j) = self.q, self.p
+        return pair_force(q_i, p_i, q_j, p_j, gains=gains), pair_force(q_j, p_j, q_i, p_i, gains=gains)
+
+    def along(self, energy: sp.Expr, gains: GainSymbols = GAINS) -> sp.Expr:
+        """Return the rate of a pair's energy under the forces between the two, tidied."""
+        components = [[*first, *second] for first, second in (self.q, self.p, self.forces(gains))]
+        return self.tidy(along_flow(energy, *components))
+
+    def laplacian_form(self) -> sp.Expr:
+        """Return the pair's block of p^T L p: a_ij times [[1, -1], [-1, 1]] for every component."""
+        stacked = sp.Matrix.vstack(*self.p)
+        block = sp.kronecker_product(sp.Matrix([[1, -1], [-1, 1]]), sp.eye(self.m))
+        return self.tidy(ADJACENCY(self.z) * (stacked.T * block * stacked)[0])
+
+    def tidy(self, expression: sp.Expr) -> sp.Expr:
+        """Return an expression expanded in relative coordinates, the sigma-norm of the pair named z_ij."""
+        root = sp.Symbol("w", positive=True)
+        relative = {
+            i: j + sp.Symbol(f"d{i}", real=True) for ends in (self.q, self.p) for i, j in zip(*ends, strict=True)
+        }
+        sigma = sigma_norm(self.q[1] - self.q[0])
+        expression = expression.xreplace({sigma: self.z}).subs(1 + EPS * sigma, root)
+        expanded = sp.expand(expression.subs(relative))
+        collected = sp.collect(expanded, [PHI(self.z), ADJACENCY(self.z)], func=sp.factor)
+        back = {relative[i] - j: i - j for ends in (self.q, self.p) for i, j in zip(*ends, strict=True)}
+        return collected.xreplace(back).subs(root, 1 + EPS * self.z)
+
+    def lift(self, expression: sp.Expr) -> sp.Expr:
+        """Return the sum over all pairs of an expression of this one."""
+        names: dict[sp.Expr, sp.Expr] = {self.z: Z[I_, J_]}
+        for base, ends in zip(self.frame, (self.q, self.p), strict=True):
+            for index, end in zip((I_, J_), ends, strict=True):
+                names |= {symbol: base[index, k] for k, symbol in enumerate(end, start=1)}
+        return over_pairs(expression.xreplace(names))
+
+
+def _pair_steps(pair: GenericPair, factor: sp.Expr, gains: GainSymbols) -> tuple[sp.Expr, sp.Expr, tuple[Step, ...]]:
+    """Return the pair's contribution to dH/dt, the one claimed, and the steps between."""
+    q_i, q_j = pair.q
+    p_i, p_j = pair.p
+    potential = pair.along(pair_potential(q_i, q_j, gains=gains), gains)
+    power = pair.along(factor * (p_i.dot(p_i) + p_j.dot(p_j)), gains)
+    total = pair.tidy(potential + power)
+    claimed = -gains.c2_alpha * pair.laplacian_form()
+    steps = (
+        Step(
+            r"One generic pair, $d\psi_\alpha/dz = \phi_\alpha$: its potential changes at "
+            r"$c_1^\alpha \nabla\psi_\alpha \cdot (p_j - p_i)$,",
+            potential,
+        ),
+        Step("the forces between the two, entered in the kinetic energy, work at", power),
+        Step("and together the pair contributes", total),
+    )
+    return total, claimed, steps
+
+
+def algorithm1_identity(m: int = 2, *, gains: GainSymbols = GAINS, kinetic_factor: sp.Expr = HALF) -> EnergyIdentity:
+    """Derive dH/dt = -c2_alpha p^T L p along Algorithm 1, in the given frame (Olfati-Saber, Theorem 1).
+
+    Parameters
+    ----------
+    m : int
+        Dimension, 1, 2 or 3.
+    gains : GainSymbols
+        Gains; all symbolic if not given.
+    kinetic_factor : sympy.Expr
+        H = V + factor * sum |p_i|^2. Anything but 1/2 leaves a residual (erratum E1).
+
+    Raises
+    ------
+    ArgumentError
+        If m is not 1, 2 or 3.
+
+    Examples
+    --------
+    >>> algorithm1_identity(3).holds
+    True
+    """
+    pair = GenericPair(m)
+    total, claimed, steps = _pair_steps(pair, kinetic_factor, gains)
+    energy = hamiltonian(m, gains=gains, factor=kinetic_factor)
+    rate = pair.lift(total)
+    stated = pair.lift(claimed)
+    lifting = (
+        Step("The energy, every pair once, with", energy),
+        Step("the sigma-distance of a pair:", sigma_distance(Q, m)),
+        *steps,
+        Step(
+            r"Lifting: $\dot H = \sum_{i<j} \dot\psi_{ij} + \sum_i p_i \cdot u_i$ and "
+            r"$u_i = \sum_{j \neq i} f_{ij}$ regroup by pairs "
+            r"($\phi_\alpha = a_{ij} = 0$ beyond $r_\alpha$), so $\dot H$ is",
+            rate,
+        ),
+        Step(r"and $-c_2^\alpha\, p^T \hat L p$ is, with $\hat L$ the sum of its pairs' blocks,", stated),
+    )
+    residual = pair.lift(pair.tidy(total - claimed))
+    return EnergyIdentity("Algorithm 1: energy", energy, rate, stated, residual, lifting)
+
+
+def structural_identity(m: int = 2, *, gains: GainSymbols = GAINS, lambda_: sp.Expr | None = None) -> EnergyIdentity:
+    """Derive dH_lambda/dt = -c2_gamma |v|^2 - c2_alpha v^T L v in the moving frame (Olfati-Saber, Theorem 3).
+
+    Parameters
+    ----------
+    m : int
+        Dimension, 1, 2 or 3.
+    gains : GainSymbols
+        Gains; all symbolic if not given. With c1_gamma = c2_gamma = 0 this is Algorithm 1.
+    lambda_ : sympy.Expr, optional
+        Weight of the inertia; c1_gamma if not given. Anything else leaves a residual.
+
+    Raises
+    ------
+    ArgumentError
+        If m is not 1, 2 or 3.
+
+    Examples
+    --------
+    >>> structural_identity(2).holds
+    True
+    >>> structural_identity(1, lambda_=sp.Symbol("lambda")).holds
+    False
+    """
+    lambda_ = gains.c1_gamma if lambda_ is None else lambda_
+    pair = GenericPair(m, (X, V))
+    total, claimed, steps = _pair_steps(pair, HALF, gains)
+    (x_i, _), (v_i, _) = pair.q, pair.p
+    q_c, p_c, q_r, p_r = (vector(name, m) for name in ("q_c", "p_c", "q_r", "p_r"))
+    own = own_force(q_c + x_i, p_c + v_i, q_r, p_r, gains=gains) - own_force(q_c, p_c, q_r, p_r, gains=gains)
+    own = own.expand()
+    agent = sp.factor_terms(sp.expand(along_flow(HALF * (lambda_ * x_i.dot(x_i) + v_i.dot(v_i)), x_i, v_i, own)))
+    agent_claimed = -gains.c2_gamma * v_i.dot(v_i)
+    names = {s: base[I_, k] for base, part in ((X, x_i), (V, v_i)) for k, s in enumerate(part, start=1)}
+    energy = structural_hamiltonian(m, gains=gains, lambda_=lambda_)
+    rate = pair.lift(total) + over_agents(agent.xreplace(names))
+    stated = pair.lift(claimed) + over_agents(agent_claimed.xreplace(names))
+    lifting = (
+        Step("The energy in the moving frame, with", energy),
+        Step("the sigma-distance of a pair:", sigma_distance(X, m)),
+        *steps,
+        Step(
+            r"One generic agent: $q_i = q_c + x_i$, $p_i = p_c + v_i$; its own force less the centre's is",
+            own,
+        ),
+        Step(r"and with $\lambda J + K$ it contributes", agent),
+        Step(
+            r"Lifting: forces between agents cancel in the mean $\dot p_c$, and $\sum_i v_i = 0$; "
+            r"summed over pairs and agents, $\dot H_\lambda$ is",
+            rate,
+        ),
+        Step(r"and $-c_2^\gamma \|v\|^2 - c_2^\alpha\, v^T \hat L v$ is", stated),
+    )
+    agents_left = over_agents(sp.expand(agent - agent_claimed).xreplace(names))
+    residual = pair.lift(pair.tidy(total - claimed)) + agents_left
+    return EnergyIdentity("Structural energy in the moving frame", energy, rate, stated, residual, lifting)

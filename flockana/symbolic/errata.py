@@ -1,0 +1,94 @@
+"""Erratum E1: the slides print H = V + sum |p_i|^2; the kinetic energy needs the factor 1/2."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import sympy as sp
+
+from flockana.symbolic.concrete import ConcreteFlock
+from flockana.symbolic.derivation import Step
+from flockana.symbolic.energy import EnergyIdentity, algorithm1_identity
+from flockana.symbolic.functions import HALF, adjacency, phi_alpha
+from flockana.symbolic.norms import EPS
+from flockana.symbolic.pair import ADJACENCY, PHI
+from flockana.symbolic.parameters import AlphaSymbols, GainSymbols
+
+
+def e1_identity(m: int = 2) -> EnergyIdentity:
+    """Derive dH/dt of the printed H: the residual -dV/dt - c2_alpha p^T L p, whose first term has no sign.
+
+    Parameters
+    ----------
+    m : int
+        Dimension, 1, 2 or 3.
+
+    Raises
+    ------
+    ArgumentError
+        If m is not 1, 2 or 3.
+
+    Examples
+    --------
+    >>> e1_identity(1).holds
+    False
+    """
+    printed = algorithm1_identity(m, kinetic_factor=sp.S.One)
+    left = Step(
+        r"The difference, $-\dot V - c_2^\alpha\, p^T \hat L p$, is not 0, and $\dot V$ has no sign:",
+        printed.residual,
+    )
+    return replace(printed, name=r"E1: the printed $H = V + \sum_i \|p_i\|^2$", steps=(*printed.steps, left))
+
+
+@dataclass(frozen=True)
+class RisingEnergy:
+    """A state at which the printed H rises, while the true one falls.
+
+    Parameters
+    ----------
+    alpha : AlphaSymbols
+        Interaction parameters, rational.
+    gains : GainSymbols
+        Gains, rational.
+    q, p : tuple of sympy.Rational
+        Positions and velocities of the agents, m = 1.
+    rate : sympy.Expr
+        Exact dH/dt of the printed H along Algorithm 1: positive.
+    true_rate : sympy.Expr
+        Exact dH/dt with the factor 1/2: not positive.
+
+    Examples
+    --------
+    >>> e1_counterexample().rate.is_positive
+    True
+    """
+
+    alpha: AlphaSymbols
+    gains: GainSymbols
+    q: tuple[sp.Rational, ...]
+    p: tuple[sp.Rational, ...]
+    rate: sp.Expr
+    true_rate: sp.Expr
+
+
+def e1_counterexample() -> RisingEnergy:
+    """Return two agents on a line, too close and separating, at which the printed H rises.
+
+    Examples
+    --------
+    >>> e1_counterexample().rate.evalf(6), e1_counterexample().true_rate
+    (1.60489, -1/25)
+    """
+    alpha = AlphaSymbols(eps=0.1, h=0.2, a=5, b=5, d=7, r=8.4)
+    gains = GainSymbols(c1_alpha=1, c2_alpha=1)
+    q, p = (sp.Integer(0), sp.Integer(2)), (sp.Integer(0), sp.Rational(1, 5))
+
+    def rate(factor: sp.Expr) -> sp.Expr:
+        flock = ConcreteFlock("algorithm1", 2, 1, gains, factor)
+        values = {row[0]: x for part, state in ((flock.q, q), (flock.p, p)) for row, x in zip(part, state, strict=True)}
+        at_state = flock.rate.subs({**values, EPS: alpha.eps})
+        concrete = at_state.replace(PHI, lambda z: phi_alpha(z, alpha=alpha))
+        return sp.expand(concrete.replace(ADJACENCY, lambda z: adjacency(z, alpha=alpha)))
+
+    return RisingEnergy(alpha, gains, q, p, rate(sp.S.One), rate(HALF))

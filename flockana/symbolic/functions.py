@@ -1,0 +1,126 @@
+"""The scalar functions of flocking as sympy expressions: bump, action functions, adjacency.
+
+Every function takes and returns sympy expressions. Parameters come in a frozen bundle, symbols by default
+and numbers where given, so that one formula serves a proof, a picture in LaTeX and a forty-digit value.
+"""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from flockana.symbolic.norms import sigma_1
+from flockana.symbolic.parameters import ALPHA, BETA, AlphaSymbols, BetaSymbols
+
+HALF = sp.Rational(1, 2)
+
+
+def taper(z: sp.Expr, *, h: sp.Expr = AlphaSymbols.h) -> sp.Expr:
+    """Return the falling half-cosine of the bump, without its range h <= z <= 1.
+
+    Parameters
+    ----------
+    z : sympy.Expr
+        Where to evaluate it.
+    h : sympy.Expr
+        End of the plateau, 0 < h < 1.
+
+    Examples
+    --------
+    >>> taper(sp.Rational(3, 4), h=sp.Rational(1, 2))
+    1/2
+    """
+    return HALF * (1 + sp.cos(sp.pi * (z - h) / (1 - h)))
+
+
+def bump(z: sp.Expr, *, h: sp.Expr = AlphaSymbols.h) -> sp.Expr:
+    """Return the bump rho_h: 1 on [0, h), a half-cosine on [h, 1], 0 beyond (Olfati-Saber 2006).
+
+    For h < 1 it is continuously differentiable, but not twice; at h = 1 it is the indicator of [0, 1), and jumps.
+
+    Parameters
+    ----------
+    z : sympy.Expr
+        Where to evaluate it, z >= 0.
+    h : sympy.Expr
+        End of the plateau, 0 < h <= 1.
+
+    Examples
+    --------
+    >>> bump(sp.Symbol("z"), h=sp.Integer(1))
+    Piecewise((1, z < 1), (0, True))
+    """
+    if h == 1:
+        return sp.Piecewise((1, z < 1), (0, True))
+    return sp.Piecewise((1, z < h), (taper(z, h=h), z <= 1), (0, True))
+
+
+def phi(s: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
+    """Return the uneven sigmoid ((a + b) sigma_1(s + c) + (a - b))/2, which vanishes at 0 if a <= b.
+
+    Parameters
+    ----------
+    s : sympy.Expr
+        Its argument.
+    alpha : AlphaSymbols
+        Parameters; all symbolic if not given.
+
+    Examples
+    --------
+    >>> phi(sp.Integer(0), alpha=AlphaSymbols(a=1, b=9))
+    0
+    """
+    return HALF * ((alpha.a + alpha.b) * sigma_1(s + alpha.c) + (alpha.a - alpha.b))
+
+
+def phi_alpha(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
+    """Return the action function rho_h(z/r_alpha) phi(z - d_alpha) (Olfati-Saber 2006).
+
+    Parameters
+    ----------
+    z : sympy.Expr
+        A sigma-norm, z >= 0.
+    alpha : AlphaSymbols
+        Parameters; all symbolic if not given.
+
+    Examples
+    --------
+    >>> phi_alpha(sp.Integer(1), alpha=AlphaSymbols(eps=1, h=0.5, a=1, b=1, d=sp.sqrt(8), r=sp.sqrt(24)))
+    -sqrt(2)/2
+    """
+    return adjacency(z, alpha=alpha) * phi(z - alpha.d_alpha, alpha=alpha)
+
+
+def adjacency(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
+    """Return the weight a_ij = rho_h(z/r_alpha) of a pair at sigma-distance z (Olfati-Saber 2006).
+
+    Parameters
+    ----------
+    z : sympy.Expr
+        A sigma-norm, z >= 0.
+    alpha : AlphaSymbols
+        Parameters; all symbolic if not given.
+
+    Examples
+    --------
+    >>> adjacency(sp.Integer(3), alpha=AlphaSymbols(eps=1, h=0.5, d=sp.sqrt(8), r=sp.sqrt(24)))
+    1/2
+    """
+    return bump(z / alpha.r_alpha, h=alpha.h)
+
+
+def phi_beta(z: sp.Expr, *, beta: BetaSymbols = BETA) -> sp.Expr:
+    """Return the repulsion rho_h(z/d_beta) (sigma_1(z - d_beta) - 1) of a beta-agent (Olfati-Saber 2006).
+
+    Parameters
+    ----------
+    z : sympy.Expr
+        A sigma-norm, z >= 0.
+    beta : BetaSymbols
+        Parameters; all symbolic if not given.
+
+    Examples
+    --------
+    >>> phi_beta(sp.Integer(0), beta=BetaSymbols(eps=1, h=0.9, d=sp.sqrt(3)))
+    -1 - sqrt(2)/2
+    """
+    return bump(z / beta.d_beta, h=beta.h) * (sigma_1(z - beta.d_beta) - 1)

@@ -1,0 +1,144 @@
+"""The generic pair: its potential, its forces, and the chain rule along the flow.
+
+The potential psi_alpha, its derivative phi_alpha and the weight a_ij are undefined functions of the sigma-
+distance here: what is derived from them holds for every interaction with psi' = phi.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import sympy as sp
+from sympy.core.function import UndefinedFunction
+
+from flockana.errors import ArgumentError
+from flockana.symbolic.norms import sigma_norm, sigma_norm_gradient
+from flockana.symbolic.parameters import GAINS, GainSymbols
+
+PHI = sp.Function("phi_alpha", real=True)
+ADJACENCY = sp.Function("a", real=True)
+PSI = UndefinedFunction("psi_alpha", real=True, __dict__={"fdiff": lambda self, argindex=1: PHI(self.args[0])})
+
+
+def ensure_dimension(m: int) -> int:
+    """Return the dimension m if it is 1, 2 or 3.
+
+    Parameters
+    ----------
+    m : int
+        What the caller gave.
+
+    Raises
+    ------
+    ArgumentError
+        If it is anything else.
+
+    Examples
+    --------
+    >>> ensure_dimension(2)
+    2
+    """
+    if m not in (1, 2, 3):
+        raise ArgumentError(f"m = {m!r}: expected a dimension of 1, 2 or 3")
+    return int(m)
+
+
+def vector(name: str, m: int) -> sp.Matrix:
+    """Return a column of m real symbols.
+
+    Parameters
+    ----------
+    name : str
+        Their common name, such as ``"q_i"``.
+    m : int
+        How many.
+
+    Examples
+    --------
+    >>> vector("p", 2).T
+    Matrix([[p1, p2]])
+    """
+    return sp.ImmutableMatrix([sp.Symbol(f"{name}{k}", real=True) for k in range(1, m + 1)])
+
+
+def pair_potential(q_i: sp.Matrix, q_j: sp.Matrix, *, gains: GainSymbols = GAINS) -> sp.Expr:
+    """Return c1_alpha psi_alpha of the pair's sigma-distance.
+
+    Parameters
+    ----------
+    q_i, q_j : sympy.Matrix, shape (m, 1)
+        Positions.
+    gains : GainSymbols
+        Gains; all symbolic if not given.
+
+    Examples
+    --------
+    >>> pair_potential(sp.Matrix([0]), sp.Matrix([0]))
+    c_1^alpha*psi_alpha(0)
+    """
+    return gains.c1_alpha * PSI(sigma_norm(q_j - q_i))
+
+
+def pair_force(
+    q_i: sp.Matrix, p_i: sp.Matrix, q_j: sp.Matrix, p_j: sp.Matrix, *, gains: GainSymbols = GAINS
+) -> sp.Matrix:
+    """Return what agent j contributes to u_i: c1_alpha phi_alpha n_ij + c2_alpha a_ij (p_j - p_i).
+
+    Parameters
+    ----------
+    q_i, p_i, q_j, p_j : sympy.Matrix, shape (m, 1)
+        Positions and velocities.
+    gains : GainSymbols
+        Gains; all symbolic if not given.
+
+    Examples
+    --------
+    >>> zero = sp.Matrix([0])
+    >>> pair_force(zero, zero, zero, sp.Matrix([1]))
+    Matrix([[c_2^alpha*a(0)]])
+    """
+    z = sigma_norm(q_j - q_i)
+    n_ij = sigma_norm_gradient(q_j - q_i)
+    return gains.c1_alpha * PHI(z) * n_ij + gains.c2_alpha * ADJACENCY(z) * (p_j - p_i)
+
+
+def own_force(
+    q_i: sp.Matrix, p_i: sp.Matrix, q_r: sp.Matrix, p_r: sp.Matrix, *, gains: GainSymbols = GAINS
+) -> sp.Matrix:
+    """Return the navigational feedback of Algorithm 2: -c1_gamma (q_i - q_r) - c2_gamma (p_i - p_r).
+
+    Parameters
+    ----------
+    q_i, p_i, q_r, p_r : sympy.Matrix, shape (m, 1)
+        Positions and velocities of the agent and of the gamma-agent.
+    gains : GainSymbols
+        Gains; all symbolic if not given.
+
+    Examples
+    --------
+    >>> zero = sp.Matrix([0])
+    >>> own_force(sp.Matrix([2]), zero, zero, zero)
+    Matrix([[-2*c_1^gamma]])
+    """
+    return -gains.c1_gamma * (q_i - q_r) - gains.c2_gamma * (p_i - p_r)
+
+
+def along_flow(energy: sp.Expr, q: Sequence[sp.Symbol], p: Sequence[sp.Symbol], u: Sequence[sp.Expr]) -> sp.Expr:
+    """Return the chain rule: the rate of an energy(q, p) along q' = p, p' = u.
+
+    Parameters
+    ----------
+    energy : sympy.Expr
+        A function of the symbols q and p.
+    q, p : sequence of sympy.Symbol
+        Positions and velocities, component by component.
+    u : sequence of sympy.Expr
+        Accelerations, in the same order.
+
+    Examples
+    --------
+    >>> q, p = sp.symbols("q p")
+    >>> along_flow(q**2 / 2 + p**2 / 2, [q], [p], [-q])
+    0
+    """
+    return sp.Add(*(sp.diff(energy, qk) * pk + sp.diff(energy, pk) * uk for qk, pk, uk in zip(q, p, u, strict=True)))

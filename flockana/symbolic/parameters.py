@@ -1,0 +1,184 @@
+"""Frozen bundles of the parameters that the formulas contain: symbols by default, exact numbers where given."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import Any
+
+import sympy as sp
+
+from flockana.errors import ArgumentError
+from flockana.symbolic.norms import EPS, sigma_norm
+
+_H, _A, _B, _D, _R, _D_PRIME = sp.symbols("h a b d r d'", positive=True)
+_C1_ALPHA, _C2_ALPHA, _C1_GAMMA, _C2_GAMMA = sp.symbols("c_1^alpha c_2^alpha c_1^gamma c_2^gamma", nonnegative=True)
+
+
+def exact(name: str, value: Any) -> sp.Expr:
+    """Return a number or expression as an exact sympy expression: the float 0.1 becomes 1/10.
+
+    Parameters
+    ----------
+    name : str
+        The argument's name, for the message.
+    value : number or sympy.Expr
+        What the caller gave.
+
+    Raises
+    ------
+    ArgumentError
+        If it is neither, or is not finite.
+
+    Examples
+    --------
+    >>> exact("eps", 0.1)
+    1/10
+    """
+    try:
+        expression = sp.sympify(value, strict=True)
+        if isinstance(expression, sp.Float):  # the shortest decimal that reads back as this float
+            expression = sp.Rational(str(float(value)))
+    except (sp.SympifyError, TypeError, ValueError):
+        expression = None
+    if not isinstance(expression, sp.Expr) or expression is sp.nan or expression.is_finite is False:
+        raise ArgumentError(f"{name} = {value!r}: expected a finite number or a sympy expression")
+    return expression
+
+
+def _fill(bundle: Any, derived: tuple[str, ...] = ()) -> None:
+    """Make every given field of a frozen bundle an exact expression."""
+    for field in fields(bundle):
+        value = getattr(bundle, field.name)
+        if value is not None or field.name not in derived:
+            object.__setattr__(bundle, field.name, exact(field.name, value))
+
+
+def _require(condition: bool | None, message: str) -> None:
+    """Refuse what sympy can decide to be false; what it cannot decide is the caller's assumption."""
+    if condition is False:
+        raise ArgumentError(message)
+
+
+@dataclass(frozen=True)
+class AlphaSymbols:
+    """Parameters of the interaction between two alpha-agents, symbols by default.
+
+    Parameters
+    ----------
+    eps, h, a, b, d, r : number or sympy.Expr
+        eps > 0 of the sigma-norm, plateau 0 < h <= 1 of the bump, 0 < a <= b of phi, lattice scale d and
+        interaction range r > d, both Euclidean lengths. Floats become the decimal fractions they print as.
+    c, d_alpha, r_alpha : sympy.Expr, optional
+        Computed from the others; give a symbol to keep its name in print.
+
+    Raises
+    ------
+    ArgumentError
+        If a value is not a finite number or expression, or lies outside its range.
+
+    Examples
+    --------
+    >>> AlphaSymbols(a=1, b=9).c
+    4/3
+    >>> AlphaSymbols().d_alpha
+    (sqrt(d**2*epsilon + 1) - 1)/epsilon
+    """
+
+    eps: sp.Expr = EPS
+    h: sp.Expr = _H
+    a: sp.Expr = _A
+    b: sp.Expr = _B
+    d: sp.Expr = _D
+    r: sp.Expr = _R
+    c: sp.Expr = None
+    d_alpha: sp.Expr = None
+    r_alpha: sp.Expr = None
+
+    def __post_init__(self) -> None:
+        _fill(self, ("c", "d_alpha", "r_alpha"))
+        for name in ("eps", "h", "a", "b", "d", "r"):
+            value = getattr(self, name)
+            _require(value.is_positive, f"{name} = {value}: expected a number > 0")
+        _require((1 - self.h).is_nonnegative, f"h = {self.h}: expected 0 < h <= 1")
+        _require((self.b - self.a).is_nonnegative, f"a = {self.a}, b = {self.b}: expected a <= b, or phi(0) != 0")
+        _require((self.r - self.d).is_positive, f"d = {self.d}, r = {self.r}: expected r > d")
+        computed = {
+            "c": sp.Abs(self.a - self.b) / sp.sqrt(4 * self.a * self.b),
+            "d_alpha": sigma_norm(self.d, eps=self.eps),
+            "r_alpha": sigma_norm(self.r, eps=self.eps),
+        }
+        for name, value in computed.items():
+            if getattr(self, name) is None:
+                object.__setattr__(self, name, value)
+
+
+@dataclass(frozen=True)
+class BetaSymbols:
+    """Parameters of the interaction with a beta-agent, symbols by default.
+
+    Parameters
+    ----------
+    eps, h, d : number or sympy.Expr
+        eps > 0 of the sigma-norm, plateau 0 < h <= 1 of the bump, distance d' > 0 where the repulsion ends.
+    d_beta : sympy.Expr, optional
+        Computed from the others; give a symbol to keep its name in print.
+
+    Raises
+    ------
+    ArgumentError
+        If a value is not a finite number or expression, or lies outside its range.
+
+    Examples
+    --------
+    >>> BetaSymbols(eps=1, h=0.9, d=sp.sqrt(3)).d_beta
+    1
+    """
+
+    eps: sp.Expr = EPS
+    h: sp.Expr = _H
+    d: sp.Expr = _D_PRIME
+    d_beta: sp.Expr = None
+
+    def __post_init__(self) -> None:
+        _fill(self, ("d_beta",))
+        for name in ("eps", "h", "d"):
+            value = getattr(self, name)
+            _require(value.is_positive, f"{name} = {value}: expected a number > 0")
+        _require((1 - self.h).is_nonnegative, f"h = {self.h}: expected 0 < h <= 1")
+        if self.d_beta is None:
+            object.__setattr__(self, "d_beta", sigma_norm(self.d, eps=self.eps))
+
+
+@dataclass(frozen=True)
+class GainSymbols:
+    """Gains of the protocols, symbols by default; floats become the decimal fractions they print as.
+
+    Parameters
+    ----------
+    c1_alpha, c2_alpha : number or sympy.Expr
+        Of the potential force and of the velocity consensus between agents.
+    c1_gamma, c2_gamma : number or sympy.Expr
+        Of the navigational feedback: position and velocity.
+
+    Examples
+    --------
+    >>> GainSymbols(c1_gamma=1.1).c1_gamma
+    11/10
+    """
+
+    c1_alpha: sp.Expr = _C1_ALPHA
+    c2_alpha: sp.Expr = _C2_ALPHA
+    c1_gamma: sp.Expr = _C1_GAMMA
+    c2_gamma: sp.Expr = _C2_GAMMA
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = exact(field.name, getattr(self, field.name))
+            if value.is_negative:
+                raise ArgumentError(f"{field.name} = {value}: expected a gain >= 0")
+            object.__setattr__(self, field.name, value)
+
+
+ALPHA = AlphaSymbols()
+BETA = BetaSymbols()
+GAINS = GainSymbols()

@@ -1,0 +1,263 @@
+"""The pair potentials psi_alpha and psi_beta, derived piece by piece.
+
+Both are integrals of (bump) x (smooth function): closed where the bump is 1, a smooth one-dimensional
+integral on its taper, constant beyond its cut-off. Which constant the closed piece carries depends on which
+side of the taper's start the potential's zero lies.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import sympy as sp
+
+from flockana.errors import ArgumentError
+from flockana.symbolic.derivation import Derivation, Step
+from flockana.symbolic.functions import HALF, phi, taper
+from flockana.symbolic.norms import sigma_1
+from flockana.symbolic.parameters import ALPHA, BETA, AlphaSymbols, BetaSymbols
+
+Z = sp.Symbol("z", nonnegative=True)
+_S = sp.Symbol("s", nonnegative=True)
+Scalar = Callable[[sp.Expr], sp.Expr]
+
+ALPHA_NAMED = AlphaSymbols(
+    c=sp.Symbol("c", nonnegative=True),
+    d_alpha=sp.Symbol("d_alpha", positive=True),
+    r_alpha=sp.Symbol("r_alpha", positive=True),
+)
+BETA_NAMED = BetaSymbols(d_beta=sp.Symbol("d_beta", positive=True))
+
+
+@dataclass(frozen=True)
+class _Potential:
+    """Integral from `zero` of `smooth` on [0, edge], of `tapered` on [edge, cutoff], of 0 beyond."""
+
+    smooth: Scalar
+    tapered: Scalar
+    closed: Scalar
+    zero: sp.Expr
+    edge: sp.Expr
+    cutoff: sp.Expr
+
+    def integral(self, low: sp.Expr, high: sp.Expr) -> sp.Expr:
+        """Return the integral over the taper, left unevaluated: it has no elementary form."""
+        return sp.S.Zero if low == high else sp.Integral(self.tapered(_S), (_S, low, high))
+
+    def pieces(self, zero_on_plateau: bool) -> tuple[Scalar, Scalar, Scalar]:
+        """Return the potential on the plateau, on the taper and beyond, for either place of its zero."""
+        start = self.edge if zero_on_plateau else self.zero
+        level = self.closed(self.edge) - self.closed(self.zero) if zero_on_plateau else sp.S.Zero
+        return (
+            lambda z: self.closed(z) - self.closed(self.edge) + self.integral(start, self.edge) + level,
+            lambda z: level + self.integral(start, z),
+            lambda z: level + self.integral(start, self.cutoff),
+        )
+
+    def conditions(self, z: sp.Expr) -> tuple[sp.Basic, sp.Basic, sp.Basic]:
+        """Return where each piece holds."""
+        return sp.Le(z, self.edge), sp.And(sp.Ge(z, self.edge), sp.Le(z, self.cutoff)), sp.Ge(z, self.cutoff)
+
+    def expression(self, z: sp.Expr) -> sp.Expr:
+        """Return all pieces in one Piecewise; numeric parameters leave only the case that holds."""
+        on_plateau = sp.Ge(self.edge, self.zero)
+        branches: list[tuple[sp.Expr, sp.Basic]] = []
+        for place, case in ((True, on_plateau), (False, sp.Not(on_plateau))):
+            bounds = sp.Le(z, self.edge), sp.Le(z, self.cutoff), sp.true
+            pieces = self.pieces(place)
+            branches += [(piece(z), sp.And(case, bound)) for piece, bound in zip(pieces, bounds, strict=True)]
+        return sp.Piecewise(*branches)
+
+    def residuals(self, zero_on_plateau: bool) -> tuple[sp.Expr, ...]:
+        """Return what must vanish: derivative less force on each piece, the jumps, the value at the zero."""
+        near, middle, far = self.pieces(zero_on_plateau)
+        at_zero = near if zero_on_plateau else middle
+        computed = (
+            sp.diff(self.closed(Z), Z) - self.smooth(Z),
+            sp.diff(near(Z), Z) - self.smooth(Z),
+            sp.diff(middle(Z), Z) - self.tapered(Z),
+            sp.diff(far(Z), Z),
+            near(self.edge) - middle(self.edge),
+            middle(self.cutoff) - far(self.cutoff),
+            at_zero(self.zero),
+        )
+        return tuple(sp.expand(residual) for residual in computed)
+
+
+def alpha_antiderivative(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
+    """Return an antiderivative of phi(z - d_alpha): ((a + b) sqrt(1 + (z - d_alpha + c)^2) + (a - b) z)/2.
+
+    Parameters
+    ----------
+    z : sympy.Expr
+        A sigma-norm.
+    alpha : AlphaSymbols
+        Parameters; all symbolic if not given.
+
+    Examples
+    --------
+    >>> z = sp.Symbol("z")
+    >>> sp.simplify(sp.diff(alpha_antiderivative(z), z) - phi(z - ALPHA.d_alpha))
+    0
+    """
+    root = sp.sqrt(1 + (z - alpha.d_alpha + alpha.c) ** 2)
+    return HALF * ((alpha.a + alpha.b) * root + (alpha.a - alpha.b) * z)
+
+
+def _alpha(alpha: AlphaSymbols) -> _Potential:
+    """Return the pieces that make psi_alpha."""
+    return _Potential(
+        smooth=lambda z: phi(z - alpha.d_alpha, alpha=alpha),
+        tapered=lambda z: taper(z / alpha.r_alpha, h=alpha.h) * phi(z - alpha.d_alpha, alpha=alpha),
+        closed=lambda z: alpha_antiderivative(z, alpha=alpha),
+        zero=alpha.d_alpha,
+        edge=alpha.h * alpha.r_alpha,
+        cutoff=alpha.r_alpha,
+    )
+
+
+def _beta(beta: BetaSymbols) -> _Potential:
+    """Return the pieces that make psi_beta, whose zero is its cut-off."""
+    return _Potential(
+        smooth=lambda z: sigma_1(z - beta.d_beta) - 1,
+        tapered=lambda z: taper(z / beta.d_beta, h=beta.h) * (sigma_1(z - beta.d_beta) - 1),
+        closed=lambda z: sp.sqrt(1 + (z - beta.d_beta) ** 2) - z,
+        zero=beta.d_beta,
+        edge=beta.h * beta.d_beta,
+        cutoff=beta.d_beta,
+    )
+
+
+def _refuse_indicator(h: sp.Expr) -> None:
+    """Refuse h = 1, at which there is no taper to integrate over."""
+    if h == 1:
+        raise ArgumentError("h = 1: expected 0 < h < 1, the bump of a potential needs a taper")
+
+
+def psi_alpha(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
+    """Return the potential psi_alpha(z), integral of phi_alpha from d_alpha (Olfati-Saber 2006).
+
+    Parameters
+    ----------
+    z : sympy.Expr
+        A sigma-norm, z >= 0.
+    alpha : AlphaSymbols
+        Parameters; all symbolic if not given. With numbers, ``.evalf(digits)`` gives the value.
+
+    Raises
+    ------
+    ArgumentError
+        If h = 1, where the bump has no taper.
+
+    Examples
+    --------
+    >>> paper = AlphaSymbols(eps=0.1, h=0.2, a=5, b=5, d=7, r=8.4)
+    >>> psi_alpha(sp.Integer(0), alpha=paper).evalf(17)
+    52.383811786644864
+    """
+    _refuse_indicator(alpha.h)
+    return _alpha(alpha).expression(sp.sympify(z))
+
+
+def psi_beta(z: sp.Expr, *, beta: BetaSymbols = BETA) -> sp.Expr:
+    """Return the potential psi_beta(z) >= 0, integral of phi_beta from d_beta.
+
+    Parameters
+    ----------
+    z : sympy.Expr
+        A sigma-norm, z >= 0.
+    beta : BetaSymbols
+        Parameters; all symbolic if not given.
+
+    Raises
+    ------
+    ArgumentError
+        If h = 1, where the bump has no taper.
+
+    Examples
+    --------
+    >>> psi_beta(sp.Integer(2), beta=BetaSymbols(eps=1, h=0.9, d=sp.sqrt(3)))
+    0
+    """
+    _refuse_indicator(beta.h)
+    potential = _beta(beta)
+    near, middle, _ = potential.pieces(zero_on_plateau=False)
+    z = sp.sympify(z)
+    return sp.Piecewise((near(z), z <= potential.edge), (middle(z), z <= potential.cutoff), (0, True))
+
+
+def _piece_steps(name: str, potential: _Potential, zero_on_plateau: bool, case: sp.Basic) -> tuple[Step, ...]:
+    """Return one step per piece, with the condition under which it holds."""
+    psi = sp.Function(name)(Z)
+    texts = (
+        "Plateau, where the bump is 1: closed form.",
+        "Taper: a smooth one-dimensional integral.",
+        "Beyond the cut-off: constant.",
+    )
+    pieces = potential.pieces(zero_on_plateau)
+    return tuple(
+        Step(text, sp.Eq(psi, piece(Z), evaluate=False), sp.And(case, where))
+        for text, piece, where in zip(texts, pieces, potential.conditions(Z), strict=True)
+    )
+
+
+def _phi_at_zero() -> tuple[sp.Expr, sp.Expr]:
+    """Return phi(0) with its root extracted, and its value where b = a + k, k >= 0."""
+    root = ALPHA.c**2 + 1
+    value = phi(sp.S.Zero).subs(root, sp.factor(root))
+    return value, value.subs(ALPHA.b, ALPHA.a + sp.Symbol("k", nonnegative=True))
+
+
+def derive_psi_alpha() -> Derivation:
+    """Derive psi_alpha in both cases: d_alpha on the plateau (h r_alpha >= d_alpha) or on the taper.
+
+    Examples
+    --------
+    >>> derive_psi_alpha().holds
+    True
+    """
+    alpha = ALPHA_NAMED
+    potential = _alpha(alpha)
+    zero, phi_at_zero = _phi_at_zero()
+    plateau = sp.Ge(potential.edge, potential.zero)
+    antiderivative = sp.Derivative(potential.closed(Z), Z)
+    steps = (
+        Step(
+            r"The force integrated: $\phi_\alpha(z) = \rho_h(z/r_\alpha)\,\phi(z - d_\alpha)$ with",
+            sp.Eq(sp.Function("phi")(Z - alpha.d_alpha), potential.smooth(Z), evaluate=False),
+        ),
+        Step(
+            r"It vanishes at $d_\alpha$, since $\sqrt{1 + c^2} = (a + b)/\sqrt{4ab}$:",
+            sp.Eq(sp.Function("phi")(0), zero, evaluate=False),
+            sp.Le(alpha.a, alpha.b),
+        ),
+        Step(
+            "A closed antiderivative, checked by differentiating:",
+            sp.Eq(antiderivative, sp.diff(potential.closed(Z), Z), evaluate=False),
+        ),
+        *_piece_steps("psi_alpha", potential, True, plateau),
+        *_piece_steps("psi_alpha", potential, False, sp.Not(plateau)),
+    )
+    residuals = (phi_at_zero, *potential.residuals(True), *potential.residuals(False))
+    return Derivation(r"The potential $\psi_\alpha$", steps, potential.expression(Z), residuals)
+
+
+def derive_psi_beta() -> Derivation:
+    """Derive psi_beta, whose zero d_beta is its cut-off: h d_beta < d_beta leaves one case.
+
+    Examples
+    --------
+    >>> derive_psi_beta().holds
+    True
+    """
+    potential = _beta(BETA_NAMED)
+    steps = (
+        Step(
+            r"A closed antiderivative of $\phi_\beta(z) = \sigma_1(z - d_\beta) - 1$ where the bump is 1:",
+            sp.Eq(sp.Derivative(potential.closed(Z), Z), sp.diff(potential.closed(Z), Z), evaluate=False),
+            sp.Lt(Z, potential.edge),
+        ),
+        *_piece_steps("psi_beta", potential, False, sp.true),
+    )
+    return Derivation(r"The potential $\psi_\beta$", steps, psi_beta(Z, beta=BETA_NAMED), potential.residuals(False))

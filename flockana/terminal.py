@@ -1,0 +1,165 @@
+"""Where a run ended: is it an equilibrium, is it a lattice, is it a minimum?"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import sqrt
+from typing import Any
+
+import numpy as np
+
+from flockana.checks import FloatArray
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2, moving_frame
+from flockana.metrics import coincident_pairs, connectivity, velocity_mismatch
+from flockana.nets import link_lengths, links
+
+_DENSE_LIMIT = 4000  # rows of a Hessian whose whole spectrum is still a matter of seconds
+
+
+@dataclass(frozen=True)
+class TerminalState:
+    """The geometry and the second-order character of a configuration under Algorithm 1 or 2.
+
+    Attributes
+    ----------
+    force : float
+        Largest force on an agent in the moving frame at zero relative velocity, over c1α b/√ε.
+    mismatch : float
+        K̃ = K/n.
+    strain : float
+        Largest |link − d|/d, NaN without links.
+    shortest, longest : float
+        Link lengths, NaN without links.
+    links : int
+        Number of links.
+    coincident : int
+        Number of pairs closer than 1e-9 d.
+    connected : bool
+        Whether the net is connected.
+    curvature : float
+        Smallest Hessian eigenvalue of V (Algorithm 1) or U_λ (Algorithm 2) off the rigid motions, over the largest.
+    """
+
+    force: float
+    mismatch: float
+    strain: float
+    shortest: float
+    longest: float
+    links: int
+    coincident: int
+    connected: bool
+    curvature: float
+
+
+def terminal_state(
+    law: Algorithm1 | Algorithm2, q: FloatArray, p: FloatArray, *, contact: float = 1e-9
+) -> TerminalState:
+    """Measure a state: residual force, link lengths, Hessian off the rigid motions.
+
+    Parameters
+    ----------
+    law : Algorithm1 or Algorithm2
+        The law.
+    q, p : ndarray, shape (n, m)
+        Positions and velocities.
+    contact : float
+        Distance, relative to d, at which two agents count as coincident.
+
+    Examples
+    --------
+    >>> at_rest = terminal_state(Algorithm1(), np.array([[0.0, 0.0], [7.0, 0.0]]), np.zeros((2, 2)))
+    >>> at_rest.strain, at_rest.force, at_rest.connected
+    (0.0, 0.0, True)
+    """
+    alpha = law.alpha
+    still = np.broadcast_to(p.mean(axis=0), p.shape)
+    force = np.linalg.norm(moving_frame(law.flow(0.0, q, np.ascontiguousarray(still))[0]), axis=1).max()
+    lengths = link_lengths(q, links(q, alpha.r))
+    empty = lengths.size == 0
+    return TerminalState(
+        force=float(force) / (law.gains.c1_alpha * alpha.b / sqrt(alpha.eps)),
+        mismatch=velocity_mismatch(p) / len(q),
+        strain=float("nan") if empty else float(np.abs(lengths - alpha.d).max() / alpha.d),
+        shortest=float("nan") if empty else float(lengths.min()),
+        longest=float("nan") if empty else float(lengths.max()),
+        links=int(lengths.size),
+        coincident=coincident_pairs(q, contact * alpha.d),
+        connected=connectivity(q, alpha.r) == 1.0,
+        curvature=relative_curvature(law, q),
+    )
+
+
+def rigid_motions(q: FloatArray) -> FloatArray:
+    """Orthonormal basis of the infinitesimal translations and rotations of a configuration, shape (n m, k).
+
+    Parameters
+    ----------
+    q : ndarray, shape (n, m)
+        Positions; k is less than m(m+1)/2 where they are degenerate (a point, a line in space).
+
+    Examples
+    --------
+    >>> rigid_motions(np.array([[0.0, 0.0], [1.0, 0.0]])).shape
+    (4, 3)
+    """
+    n, m = q.shape
+    x = moving_frame(q)
+    motions = [np.broadcast_to(axis, (n, m)).ravel() for axis in np.eye(m)]
+    for a in range(m):
+        for b in range(a):
+            turn = np.zeros((n, m))
+            turn[:, a], turn[:, b] = x[:, b], -x[:, a]
+            motions.append(turn.ravel())
+    basis, sizes, _ = np.linalg.svd(np.array(motions).T, full_matrices=False)
+    independent: FloatArray = basis[:, sizes > 1e-9 * sizes.max()]
+    return independent
+
+
+def relative_curvature(law: Any, q: FloatArray) -> float:
+    """Smallest eigenvalue of the law's stiffness off the rigid motions, over the largest in modulus.
+
+    NaN where there is nothing but rigid motions, or where the matrix is too large for its whole spectrum.
+
+    Parameters
+    ----------
+    law : Algorithm1 or Algorithm2
+        A law with `stiffness`.
+    q : ndarray, shape (n, m)
+        Positions.
+
+    Examples
+    --------
+    A bond of length d resists stretching:
+
+    >>> relative_curvature(Algorithm1(), np.array([[0.0, 0.0], [7.0, 0.0]]))
+    1.0
+    """
+    if q.size > _DENSE_LIMIT:
+        return float("nan")
+    rigid = rigid_motions(q)
+    free = np.linalg.svd(rigid, full_matrices=True)[0][:, rigid.shape[1] :]
+    if free.shape[1] == 0:
+        return float("nan")
+    eigenvalues = np.linalg.eigvalsh(free.T @ (law.stiffness(q) @ free))
+    largest = np.abs(eigenvalues).max()
+    return float(eigenvalues[0] / largest) if largest > 0.0 else 0.0
+
+
+def classify(strain: float, *, lattice: float, quasi: float) -> str:
+    """Name a configuration by its largest relative link error: α-lattice, quasi-α-lattice, or neither.
+
+    Parameters
+    ----------
+    strain : float
+        Largest |link − d|/d; NaN (no links) is neither.
+    lattice, quasi : float
+        Bounds of the two names.
+
+    Examples
+    --------
+    >>> classify(1e-9, lattice=1e-6, quasi=0.1), classify(0.03, lattice=1e-6, quasi=0.1)
+    ('α-lattice', 'quasi-α-lattice')
+    """
+    if strain <= lattice:
+        return "α-lattice"
+    return "quasi-α-lattice" if strain <= quasi else "neither"

@@ -1,0 +1,177 @@
+"""Claims that several theorems share: what a finite run can say of a limit, and of collisions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import floor
+
+import numpy as np
+
+from flockana.metrics import coincident_pairs
+from flockana.paths import Contact, contacts
+from flockana.terminal import TerminalState
+from flockana.theorems.theorem import Claim, Hypothesis, Tolerances, judge
+from flockana.trajectory import Trajectory
+
+
+def velocities_match(run: Trajectory, tolerances: Tolerances, needs: Iterable[Hypothesis], *, name: str) -> Claim:
+    """Velocities match in the moving frame: K̃ is negligible at the end. A finite run cannot refute it.
+
+    Parameters
+    ----------
+    run : Trajectory
+        The run.
+    tolerances : Tolerances
+        `velocity` is used.
+    needs : iterable of Hypothesis
+        Hypotheses of the claim.
+    name : str
+        Name of the claim.
+    """
+    series = run.metrics().velocity_mismatch.values
+    margin = tolerances.velocity - float(series[-1])
+    status = judge(margin, 0.0, needs)
+    return Claim(
+        name,
+        "inconclusive" if status == "refuted" else status,
+        computed=float(series[-1]),
+        stated=f"K̃ -> 0 (K̃ <= {tolerances.velocity:g} at the end)",
+        margin=margin,
+        error=0.0,
+        witness={"time": float(run.t[-1]), "K̃ at the start": float(series[0])},
+        detail=f"velocities match: K̃ goes from {series[0]:.3g} to {series[-1]:.3g} at t = {run.t[-1]:g}",
+    )
+
+
+def settled(end: TerminalState, tolerances: Tolerances) -> bool:
+    """Whether a terminal state is an equilibrium of the structural dynamics within tolerance.
+
+    Parameters
+    ----------
+    end : TerminalState
+        The state.
+    tolerances : Tolerances
+        `force` and `velocity` are used.
+    """
+    return end.force <= tolerances.force and end.mismatch <= tolerances.velocity
+
+
+def met(run: Trajectory, tolerances: Tolerances) -> tuple[Contact, ...]:
+    """Pairs that coincide at some time of the run.
+
+    Parameters
+    ----------
+    run : Trajectory
+        The run.
+    tolerances : Tolerances
+        `contact` is used, relative to d.
+    """
+    return contacts(run.t, run.q, run.p, run.u, tol=tolerances.contact * run.law.alpha.d)
+
+
+def no_collision(run: Trajectory, needs: Iterable[Hypothesis], tolerances: Tolerances, *, name: str) -> Claim:
+    """No two agents ever coincide: a lower bound of all distances, between samples too, is positive.
+
+    Parameters
+    ----------
+    run : Trajectory
+        The run.
+    needs : iterable of Hypothesis
+        Hypotheses of the claim.
+    tolerances : Tolerances
+        `contact` is used, relative to d.
+    name : str
+        Name of the claim.
+    """
+    closest = run.closest_approach()
+    floor_distance = tolerances.contact * run.law.alpha.d
+    # the bound already contains the interpolation error; contact itself is refutation, anything between is unknown
+    status = judge(closest.lower - floor_distance, 0.0, needs)
+    if status == "refuted" and closest.distance > floor_distance:
+        status = "inconclusive"
+    return Claim(
+        name,
+        status,
+        computed=closest.lower,
+        stated="distance > 0 between any two agents, always",
+        margin=closest.lower,
+        error=floor_distance,
+        witness={"pair": closest.pair, "time": closest.time},
+        detail=f"no collision: no distance falls below {closest.lower:.4g} (agents {closest.pair[0]} and "
+        f"{closest.pair[1]} at t = {closest.time:.4g})",
+    )
+
+
+def distinct_pairs(run: Trajectory, law: Hypothesis, tolerances: Tolerances, *, c_star: float, name: str) -> Claim:
+    """As printed: with H(0) < (k+1)c*, at most k distinct pairs collide over the whole run (refuted by E13).
+
+    Parameters
+    ----------
+    run : Trajectory
+        The run.
+    law : Hypothesis
+        That the law is the theorem's.
+    tolerances : Tolerances
+        `contact` is used.
+    c_star : float
+        Energy of a coincident pair, gain included.
+    name : str
+        Name of the claim.
+    """
+    energy = float(run.energy()[0])
+    k, pairs = floor(energy / c_star), run.n * (run.n - 1) // 2
+    bites = Hypothesis("k < n(n-1)/2", "met" if k < pairs else "unmet", float(pairs - k - 1))
+    found = met(run, tolerances)
+    status = judge(k + 0.5 - len(found), 0.0, [law, bites])
+    return Claim(
+        name,
+        status,
+        computed=len(found),
+        stated=f"at most {k} of {pairs} pairs collide, as H(0) = {energy / c_star:.4g} c*",
+        margin=float(k - len(found)),
+        error=0.0,
+        witness=[f"agents {c.i} and {c.j} at t = {c.time:.6g}{' (order changed)' if c.crossed else ''}" for c in found],
+        detail=f"as printed: {len(found)} distinct pairs collide, at most {k} may"
+        + ("; that is every pair, so nothing is claimed" if bites.status == "unmet" else ""),
+    )
+
+
+def pairs_at_one_instant(
+    run: Trajectory, law: Hypothesis, tolerances: Tolerances, *, c_star: float, name: str
+) -> Claim:
+    """Corrected: at any one instant at most ⌊H/c*⌋ pairs coincide.
+
+    Parameters
+    ----------
+    run : Trajectory
+        The run.
+    law : Hypothesis
+        That the law is the theorem's.
+    tolerances : Tolerances
+        `contact` is used.
+    c_star : float
+        Energy of a coincident pair, gain included.
+    name : str
+        Name of the claim.
+    """
+    tol = tolerances.contact * run.law.alpha.d
+    together = np.array([coincident_pairs(q, tol) for q in run.q])
+    allowed = np.floor(run.energy() / c_star)
+    simultaneous = (
+        max((sum(abs(a.time - b.time) <= 1e-12 for b in found) for a in found), default=0)
+        if (found := met(run, tolerances))
+        else 0
+    )
+    worst = int(np.argmin(allowed - together))
+    most = max(int(together.max()), simultaneous)
+    margin = min(float(allowed[worst] - together[worst]), float(allowed[0]) - simultaneous)
+    return Claim(
+        name,
+        judge(margin + 0.5, 0.0, [law]),
+        computed=most,
+        stated="at most floor(H(t)/c*) pairs coincide at the same time t",
+        margin=margin,
+        error=0.0,
+        witness={"time": float(run.t[worst]), "coincident": int(together[worst]), "allowed": int(allowed[worst])},
+        detail=f"per instant: at most {most} pairs coincide at one time; the energy allows {int(allowed.min())} or more",
+    )

@@ -1,0 +1,136 @@
+"""Find the theorems, one per file, and check them on a run, a configuration, or by themselves."""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+import re
+from functools import cache
+from typing import Any
+
+from flockana.checks import ensure_points, ensure_positive
+from flockana.errors import ArgumentError, UnknownNameError
+from flockana.simulate import simulate
+from flockana.theorems.theorem import Theorem, Tolerances, Verdict
+from flockana.trajectory import Trajectory
+
+
+@cache
+def _catalogue() -> dict[str, Theorem]:
+    package = importlib.import_module("flockana.theorems")
+    found: dict[str, Theorem] = {}
+    for info in pkgutil.iter_modules(package.__path__):
+        item = getattr(importlib.import_module(f"flockana.theorems.{info.name}"), "THEOREM", None)
+        for one in item if isinstance(item, tuple) else (item,):
+            if isinstance(one, Theorem):
+                found[one.id] = one
+    return dict(sorted(found.items(), key=lambda pair: _natural(pair[0])))
+
+
+def _natural(name: str) -> tuple[Any, ...]:
+    """E2 before E10, and the errata after the theorems."""
+    return (name[:1].isupper(), *(int(part) if part.isdigit() else part for part in re.split(r"(\d+)", name)))
+
+
+def theorems() -> tuple[str, ...]:
+    """Ids of every theorem, correction and erratum that can be checked.
+
+    Examples
+    --------
+    >>> "os-1" in theorems() and "E1" in theorems()
+    True
+    """
+    return tuple(_catalogue())
+
+
+def theorem(name: str) -> Theorem:
+    """The theorem of that id: its statement, its source, what it is checked on.
+
+    Parameters
+    ----------
+    name : str
+        One of `theorems`.
+
+    Raises
+    ------
+    UnknownNameError
+        If there is none; the closest name is suggested.
+
+    Examples
+    --------
+    >>> theorem("os-3").kind
+    'trajectory'
+    """
+    try:
+        return _catalogue()[name]
+    except (KeyError, TypeError):
+        raise UnknownNameError("theorem", name, theorems()) from None
+
+
+def verify(
+    name: str,
+    trajectory: Trajectory | None = None,
+    *,
+    law: Any = None,
+    q0: Any = None,
+    p0: Any = None,
+    t_span: Any = None,
+    q: Any = None,
+    d: float | None = None,
+    r: float | None = None,
+    tolerances: Tolerances | None = None,
+    subject: str = "",
+) -> Verdict:
+    """Check a theorem: on a run, on a law that is run first, on a configuration, or (errata) by itself.
+
+    Parameters
+    ----------
+    name : str
+        One of `theorems`.
+    trajectory : Trajectory, optional
+        The run, for theorems about motion.
+    law, q0, p0, t_span : optional
+        Instead of a trajectory: `simulate` is called with them and its defaults.
+    q : array_like, shape (n, m), optional
+        The configuration, for theorems about configurations, with d and r.
+    d, r : float, optional
+        Its scale and interaction range.
+    tolerances : Tolerances, optional
+        Thresholds; shown with the verdict.
+    subject : str
+        A name for the case, kept in the verdict.
+
+    Returns
+    -------
+    Verdict
+
+    Raises
+    ------
+    ArgumentError
+        If what the theorem needs is not given, or something else is.
+
+    Examples
+    --------
+    >>> verify("E8").claim("printed").computed
+    0.6666666666666666
+    """
+    item = theorem(name)
+    tolerances = tolerances or Tolerances()
+    motion = {"law": law, "q0": q0, "p0": p0, "t_span": t_span}
+    still = {"q": q, "d": d, "r": r}
+    given = {k for k, v in {"trajectory": trajectory, **motion, **still}.items() if v is not None}
+    needed = {"trajectory": ({"trajectory"}, set(motion)), "configuration": (set(still),), "fixed": (set(),)}[item.kind]
+    if given not in needed:
+        options = " or ".join(", ".join(sorted(option)) or "nothing" for option in needed)
+        raise ArgumentError(f"{name} is checked on {options}: got {', '.join(sorted(given)) or 'nothing'}")
+    if item.kind == "trajectory":
+        run = trajectory if trajectory is not None else simulate(law, q0, p0, t_span)
+        if not isinstance(run, Trajectory):
+            raise ArgumentError(f"trajectory = {run!r}: expected a Trajectory, such as scenario('collapse').run()")
+        subject_data: tuple[Any, ...] = (run,)
+    elif item.kind == "configuration":
+        subject_data = (ensure_points("q", q), ensure_positive("d", d), ensure_positive("r", r))
+    else:
+        subject_data = ()
+    hypotheses, claims = item.check(*subject_data, tolerances)
+    return Verdict(name, tuple(hypotheses), tuple(claims), tolerances, subject)

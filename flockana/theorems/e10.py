@@ -1,0 +1,52 @@
+"""Erratum E10: at h = 1 the bump function is an indicator, and no longer continuous."""
+
+from __future__ import annotations
+
+from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances
+
+
+def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+    """One-sided limits at the end of the bump, by sympy: for every h < 1, and for h = 1."""
+    import sympy as sp
+
+    from flockana.symbolic import bump
+    from flockana.symbolic.functions import taper
+
+    z, h = sp.Symbol("z", positive=True), sp.Symbol("h", positive=True)
+    indicator = bump(z, h=sp.Integer(1))
+    beside = sp.Symbol("t", positive=True)  # constant on either side, so its values there are the one-sided limits
+    jump = indicator.subs(z, 1 - beside) - indicator.subs(z, 1 + beside)
+    falling = taper(z, h=h)
+    ends = [sp.simplify(f.subs(z, end)) for end in (h, 1) for f in (falling, falling.diff(z))]
+    return [], [
+        Claim(
+            "printed",
+            "refuted" if jump != 0 else "verified",
+            "symbolic",
+            computed=f"ρ₁(1⁻) - ρ₁(1⁺) = {jump}",
+            stated="differentiable at h = 1",
+            witness="z = 1",
+            detail=f"at h = 1 the function jumps by {jump} at z = 1",
+        ),
+        Claim(
+            "corrected",
+            "verified" if ends == [1, 0, 0, 0] else "refuted",
+            "symbolic",
+            computed="ρ_h(h) = {}, ρ_h'(h) = {}, ρ_h(1) = {}, ρ_h'(1) = {}".format(*ends),
+            stated="C¹ for every 0 < h < 1",
+            witness="both ends of the taper",
+            detail="for 0 < h < 1 value and slope match at both ends of the taper",
+        ),
+    ]
+
+
+THEOREM = Theorem(
+    id="E10",
+    title="The bump function at h = 1 jumps",
+    statement="The slides say that with h = 1 the bump becomes an indicator function and stays differentiable.",
+    source="slides, bump functions",
+    kind="fixed",
+    check=_check,
+    references=("geschwender-2016", "olfati-saber-2006"),
+    expected={"E10": "refuted", "E10:printed": "refuted", "E10:corrected": "verified"},
+)

@@ -1,0 +1,53 @@
+"""Erratum E7: a share of nodes printed as a share of edges."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flockana.metrics import giant_share
+from flockana.nets import links, printed_edge_share
+from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
+
+
+def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+    """The slides' own example: components of 1, 1, 1, 1 and 96 agents."""
+    q = np.concatenate([np.arange(96.0), 1000.0 * np.arange(1.0, 5.0)])[:, None]
+    printed, true = printed_edge_share(100, links(q, 1.5)), giant_share(q, 1.5)
+    stated = 0.96
+    return [], [
+        Claim(
+            "printed",
+            judge(1e-12 - abs(printed - stated), 0.0, []),
+            computed=printed,
+            stated=stated,
+            margin=-abs(printed - stated),
+            error=0.0,
+            witness="components of 1, 1, 1, 1 and 96 agents",
+            detail=f"as printed, the share of edges in the giant component is {printed:g}, not 0.96",
+        ),
+        Claim(
+            "corrected",
+            judge(1e-12 - abs(true - stated), 0.0, []),
+            computed=true,
+            stated=stated,
+            margin=1e-12 - abs(true - stated),
+            error=0.0,
+            witness="the same components",
+            detail=f"the share of nodes is {true:g}, the example's number",
+        ),
+    ]
+
+
+THEOREM = Theorem(
+    id="E7",
+    title="C* is a share of nodes, not of edges",
+    statement=(
+        "The slides define C* = |E(Γ*)|/|E(G)| and give 0.96 for components of 1, 1, 1, 1, 96 agents. Isolated agents "
+        "have no edges, so that formula gives 1; the example counts nodes."
+    ),
+    source="slides, 'more accurate measure of connectivity'",
+    kind="fixed",
+    check=_check,
+    references=("geschwender-2016", "olfati-saber-2006"),
+    expected={"E7": "refuted", "E7:printed": "refuted", "E7:corrected": "verified"},
+)

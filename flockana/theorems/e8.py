@@ -1,0 +1,50 @@
+"""Erratum E8: the rank of the wrong matrix."""
+
+from __future__ import annotations
+
+from flockana.metrics import connectivity
+from flockana.nets import links, printed_rank_connectivity
+from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
+
+
+def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+    """A path of three agents: connected, so C must be 1."""
+    q = [[0.0], [1.0], [2.0]]
+    printed, true = printed_rank_connectivity(3, links(q, 1.5)), connectivity(q, 1.5)
+    return [], [
+        Claim(
+            "printed",
+            judge(1e-12 - abs(printed - 1.0), 0.0, []),
+            computed=printed,
+            stated=1.0,
+            margin=-abs(printed - 1.0),
+            error=0.0,
+            witness="a path of three agents",
+            detail=f"rank(A)/n of the adjacency matrix is {printed:.4g} on a connected path",
+        ),
+        Claim(
+            "corrected",
+            judge(1e-12 - abs(true - 1.0), 0.0, []),
+            computed=true,
+            stated=1.0,
+            margin=1e-12 - abs(true - 1.0),
+            error=0.0,
+            witness="the same path",
+            detail=f"rank(L)/(n - 1) of the Laplacian is {true:.4g}",
+        ),
+    ]
+
+
+THEOREM = Theorem(
+    id="E8",
+    title="Connectivity is the rank of the Laplacian",
+    statement=(
+        "The MSN project measures connectivity by C = rank(A)/n of the adjacency matrix, to be 1 on a connected net. A "
+        "path of three agents is connected and gives 2/3; C = rank(L)/(n - 1) gives 1."
+    ),
+    source="MSN project, data collection",
+    kind="fixed",
+    check=_check,
+    references=("isola-2024", "olfati-saber-2006"),
+    expected={"E8": "refuted", "E8:printed": "refuted", "E8:corrected": "verified"},
+)

@@ -1,0 +1,271 @@
+"""What a theorem, a hypothesis, a claim and a verdict are, and how a verdict follows from its claims."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import asdict, dataclass, field
+from typing import Any, Literal
+
+Status = Literal["verified", "refuted", "vacuous", "inconclusive"]
+Rigour = Literal["symbolic", "smt", "interval", "numeric"]
+HypothesisStatus = Literal["met", "unmet", "assumed"]
+Kind = Literal["trajectory", "configuration", "fixed"]
+
+_RIGOURS: tuple[Rigour, ...] = ("numeric", "interval", "smt", "symbolic")  # weakest first
+
+
+@dataclass(frozen=True)
+class Tolerances:
+    """Every threshold that a verdict uses; it is shown with the verdict.
+
+    Parameters
+    ----------
+    energy : float
+        Largest energy-balance residual, relative to the largest |H| of the run, that still counts as the identity.
+    velocity : float
+        Velocity mismatch K̃ (length²/time²) below which velocities count as matched.
+    force : float
+        Largest force on an agent in the moving frame, relative to the law's force scale c1α (a + b)/2/√ε, below which
+        a state counts as an equilibrium.
+    lattice : float
+        Largest |link − d|/d of what is called an α-lattice; measured, so not exact.
+    quasi : float
+        Largest |link − d|/d of what is called a quasi-α-lattice (δ ≪ d).
+    curvature : float
+        Smallest Hessian eigenvalue, relative to the largest, that counts as positive.
+    contact : float
+        Distance, relative to d, at which two agents count as coincident.
+    giant : float
+        Share of the agents that a giant component holds at least.
+    cohesion : float
+        Growth of the cohesion radius over the window, as a factor, that still counts as cohesive.
+    deviation : float
+        ε₁ of α-flocking: Ẽ ≤ ε₁.
+    mismatch : float
+        ε₂ of α-flocking: K̃ ≤ ε₂.
+    settle : float
+        Share of the run that is left out as transient before α-flocking is judged.
+    agreement : float
+        Relative difference at which a measured figure agrees with a predicted or a reported one.
+
+    Examples
+    --------
+    >>> Tolerances(quasi=0.1).quasi
+    0.1
+    """
+
+    energy: float = 1e-6
+    velocity: float = 1e-8
+    force: float = 1e-6
+    lattice: float = 1e-6
+    quasi: float = 0.1
+    curvature: float = 1e-6
+    contact: float = 1e-9
+    giant: float = 0.5
+    cohesion: float = 1.5
+    deviation: float = 0.05
+    mismatch: float = 0.05
+    settle: float = 0.5
+    agreement: float = 0.02
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """A condition of a theorem, as found in this case.
+
+    Parameters
+    ----------
+    name : str
+        The condition.
+    status : {"met", "unmet", "assumed"}
+        ``"assumed"`` where it quantifies over more than one run can show.
+    margin : float, optional
+        How far it is met (positive) or missed (negative).
+    detail : str
+        In words.
+    """
+
+    name: str
+    status: HypothesisStatus
+    margin: float | None = None
+    detail: str = ""
+
+
+@dataclass(frozen=True)
+class Claim:
+    """What a theorem says of this case, and whether it is so.
+
+    Parameters
+    ----------
+    name : str
+        Short name, such as ``"iii"``.
+    status : {"verified", "refuted", "vacuous", "inconclusive"}
+        The finding.
+    rigour : {"symbolic", "smt", "interval", "numeric"}
+        How it is known.
+    computed, stated : object
+        What was found and what the theorem says.
+    margin : float, optional
+        How far the claim holds (positive) or fails (negative).
+    error : float, optional
+        Numerical error of the margin; a margin below it is inconclusive.
+    witness : object
+        What shows it: a time, a pair of agents, an eigenvalue, an expression.
+    proof : str, optional
+        Identifier of an executable proof.
+    detail : str
+        The claim and the finding, in one sentence.
+    """
+
+    name: str
+    status: Status
+    rigour: Rigour = "numeric"
+    computed: Any = None
+    stated: Any = None
+    margin: float | None = None
+    error: float | None = None
+    witness: Any = None
+    proof: str | None = None
+    detail: str = ""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """The outcome of checking a theorem on a case.
+
+    Parameters
+    ----------
+    theorem : str
+        Its id.
+    hypotheses, claims : tuple
+        In the theorem's order.
+    tolerances : Tolerances
+        Thresholds that were used.
+    subject : str
+        What it was checked on.
+    """
+
+    theorem: str
+    hypotheses: tuple[Hypothesis, ...]
+    claims: tuple[Claim, ...]
+    tolerances: Tolerances = field(default_factory=Tolerances)
+    subject: str = ""
+
+    @property
+    def status(self) -> Status:
+        """Refuted if a claim is; else inconclusive if one is; else verified if one is; else vacuous."""
+        found = {claim.status for claim in self.claims}
+        order: tuple[Status, ...] = ("refuted", "inconclusive", "verified")
+        return next((status for status in order if status in found), "vacuous")
+
+    @property
+    def rigour(self) -> Rigour:
+        """The weakest rigour among the claims that decide the status."""
+        deciding = [c.rigour for c in self.claims if c.status == self.status] or ["numeric"]
+        return min(deciding, key=_RIGOURS.index)
+
+    def claim(self, name: str) -> Claim:
+        """The claim of that name.
+
+        Parameters
+        ----------
+        name : str
+            Such as ``"iii"``.
+
+        Raises
+        ------
+        KeyError
+            If there is none.
+        """
+        for claim in self.claims:
+            if claim.name == name:
+                return claim
+        raise KeyError(f"{self.theorem} has no claim {name!r}; it has {', '.join(c.name for c in self.claims)}")
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data for JSON; infinities and NaN become text."""
+        data: dict[str, Any] = _plain(asdict(self))
+        return {"theorem": data.pop("theorem"), "status": self.status, "rigour": self.rigour} | data
+
+    def __str__(self) -> str:
+        lines = [f"{self.theorem}: {self.status} ({self.rigour}){' on ' + self.subject if self.subject else ''}"]
+        lines += [f"  given {h.status:8} {h.name}{': ' + h.detail if h.detail else ''}" for h in self.hypotheses]
+        lines += [f"  {c.name:>14} {c.status:12} {c.detail}" for c in self.claims]
+        return "\n".join(lines)
+
+
+@dataclass(frozen=True)
+class Theorem:
+    """A published statement, or its correction, with the function that checks it.
+
+    Parameters
+    ----------
+    id : str
+        Such as ``"os-1"``.
+    title : str
+        One line.
+    statement : str
+        What it says, in our words.
+    source : str
+        Where it is printed.
+    kind : {"trajectory", "configuration", "fixed"}
+        What `check` takes before the tolerances: a Trajectory; q, d, r; or nothing.
+    check : callable
+        Returns (hypotheses, claims).
+    references : tuple of str
+        Keys of the bibliography.
+    expected : mapping of str to str
+        For a fixed theorem, the status that is expected of it (key = its id) and of its claims (key = ``"id:claim"``).
+    """
+
+    id: str
+    title: str
+    statement: str
+    source: str
+    kind: Kind
+    check: Callable[..., tuple[Iterable[Hypothesis], Iterable[Claim]]]
+    references: tuple[str, ...] = ("olfati-saber-2006",)
+    expected: Mapping[str, Status] = field(default_factory=dict)
+
+
+def judge(margin: float, error: float, hypotheses: Iterable[Hypothesis]) -> Status:
+    """Status of a claim from its margin: vacuous under an unmet hypothesis, inconclusive within the error.
+
+    Parameters
+    ----------
+    margin : float
+        Positive where the claim holds.
+    error : float
+        Numerical error of the margin.
+    hypotheses : iterable of Hypothesis
+        Those that the claim needs.
+
+    Examples
+    --------
+    >>> judge(0.5, 0.1, []), judge(0.05, 0.1, []), judge(-0.5, 0.1, []), judge(float("nan"), 0.0, [])
+    ('verified', 'inconclusive', 'refuted', 'inconclusive')
+    """
+    if any(h.status == "unmet" for h in hypotheses):
+        return "vacuous"
+    if not math.isfinite(error) or math.isnan(margin) or abs(margin) <= error:
+        return "inconclusive"
+    return "verified" if margin > 0.0 else "refuted"
+
+
+def _plain(value: Any) -> Any:
+    import numpy as np
+
+    if isinstance(value, dict):
+        return {str(k): _plain(v) for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(v) for v in value]
+    if isinstance(value, np.ndarray):
+        return _plain(value.tolist())
+    if isinstance(value, np.generic):
+        return _plain(value.item())
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(value)
+    if value is None or isinstance(value, bool | int | float | str):
+        return value
+    return str(value)

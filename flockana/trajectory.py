@@ -1,0 +1,302 @@
+"""A run as frozen data: times, states, inputs, the law that made it; to xarray and to a file and back."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flockana import metrics as measure
+from flockana._version import __version__
+from flockana.checks import FloatArray
+from flockana.errors import ArgumentError, FileError
+from flockana.paths import ClosestApproach, closest_approach
+from flockana.serialize import from_data, to_data
+
+if TYPE_CHECKING:
+    import xarray
+
+FORMAT = "flockana-trajectory"
+FORMAT_VERSION = 1
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """A sampled run.
+
+    Parameters
+    ----------
+    t : ndarray, shape (T,)
+        Sample times.
+    q, p, u : ndarray, shape (T, n, m)
+        Positions, velocities, accelerations at the samples.
+    law : object
+        The law that was integrated.
+    extra : mapping of str to ndarray
+        Further series over time; ``"work"`` is ∫ dH/dt from the start, where the law has an energy.
+    status : {"complete", "interrupted", "failed"}
+        How the run ended.
+    message : str
+        In words.
+    stats : mapping
+        Method, tolerances, numbers of steps and evaluations, seconds.
+    """
+
+    t: FloatArray
+    q: FloatArray
+    p: FloatArray
+    u: FloatArray
+    law: Any
+    extra: Mapping[str, FloatArray] = field(default_factory=dict)
+    status: str = "complete"
+    message: str = ""
+    stats: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        shape = np.shape(self.q)
+        if (
+            len(shape) != 3
+            or np.shape(self.t) != shape[:1]
+            or np.shape(self.p) != shape
+            or np.shape(self.u) != shape
+        ):
+            raise ArgumentError(
+                f"t {np.shape(self.t)}, q {shape}, p {np.shape(self.p)}, u {np.shape(self.u)}: "
+                "expected shapes (T,), (T, n, m), (T, n, m), (T, n, m)"
+            )
+        for name in ("t", "q", "p", "u"):
+            array = np.ascontiguousarray(getattr(self, name), dtype=np.float64)
+            array.setflags(write=False)
+            object.__setattr__(self, name, array)
+
+    @property
+    def n(self) -> int:
+        """Number of agents."""
+        return self.q.shape[1]
+
+    @property
+    def m(self) -> int:
+        """Dimension of space."""
+        return self.q.shape[2]
+
+    def energy(self) -> FloatArray:
+        """The law's energy H at each sample, shape (T,)."""
+        return self._energy
+
+    @cached_property
+    def _energy(self) -> FloatArray:
+        return np.array(
+            [self.law.hamiltonian(t, q, p) for t, q, p in zip(self.t, self.q, self.p, strict=True)]
+        )
+
+    def energy_rate(self) -> FloatArray:
+        """dH/dt in closed form at each sample, shape (T,)."""
+        return self._energy_rate
+
+    @cached_property
+    def _energy_rate(self) -> FloatArray:
+        return np.array([self.law.flow(t, q, p)[1] for t, q, p in zip(self.t, self.q, self.p, strict=True)])
+
+    @property
+    def energy_residual(self) -> FloatArray:
+        """H(t) − H(0) − ∫ dH/dt, shape (T,): what the integration got wrong, measured by the energy identity.
+
+        Raises
+        ------
+        ArgumentError
+            If the run carries no ``extra["work"]`` (its law has no energy).
+        """
+        if "work" not in self.extra:
+            raise ArgumentError("this run has no energy balance: its law has no energy")
+        energy = self.energy()
+        return energy - energy[0] - self.extra["work"]
+
+    def metrics(self) -> xarray.Dataset:
+        """C, R, Ẽ, K̃ and their companions over time, as an `xarray.Dataset` with dimension ``time``."""
+        return self._metrics
+
+    @cached_property
+    def _metrics(self) -> xarray.Dataset:
+        import xarray
+
+        n, interaction = self.n, getattr(self.law, "alpha", None)
+        series: dict[str, tuple[str, Any]] = {
+            "cohesion_radius": ("R = max ‖q_i − q_c‖", map(measure.cohesion_radius, self.q)),
+            "velocity_mismatch": ("K̃ = K/n", (measure.velocity_mismatch(p) / n for p in self.p)),
+            "inertia": ("J", map(measure.inertia, self.q)),
+            "min_distance": ("least distance at the samples", map(measure.min_distance, self.q)),
+            "order": ("polar order", map(measure.order, self.p)),
+        }
+        if interaction is not None:
+            d, r = interaction.d, interaction.r
+            nets = [measure.net_measures(q, d, r) for q in self.q]
+            series |= {
+                "connectivity": ("C = rank(L)/(n − 1)", (c for c, _, _ in nets)),
+                "giant_share": ("C*, share of nodes", (share for _, share, _ in nets)),
+                "deviation_energy": ("Ẽ = E/d²", (deviation / d**2 for _, _, deviation in nets)),
+            }
+        data = {
+            name: xarray.Variable("time", np.fromiter(values, float, len(self.t)), {"long_name": text})
+            for name, (text, values) in series.items()
+        }
+        return xarray.Dataset(data, coords={"time": self.t})
+
+    def closest_approach(self) -> ClosestApproach:
+        """The closest two agents come, between samples too."""
+        return self._closest
+
+    @cached_property
+    def _closest(self) -> ClosestApproach:
+        return closest_approach(self.t, self.q, self.p, self.u)
+
+    def min_distance(self) -> float:
+        """A lower bound of every distance between two agents at every time of the run."""
+        return self._closest.lower
+
+    def window(self, start: float, end: float) -> Trajectory:
+        """The samples with start ≤ t ≤ end, as a run of their own.
+
+        Parameters
+        ----------
+        start, end : float
+            Times.
+
+        Raises
+        ------
+        ArgumentError
+            If no sample lies between them.
+        """
+        keep = (self.t >= start) & (self.t <= end)
+        if not keep.any():
+            raise ArgumentError(
+                f"no sample between {start:g} and {end:g}: the run spans {self.t[0]:g} to {self.t[-1]:g}"
+            )
+        extra = {name: series[keep] for name, series in self.extra.items()}
+        if "work" in extra:
+            extra["work"] = extra["work"] - extra["work"][0]
+        return replace(self, t=self.t[keep], q=self.q[keep], p=self.p[keep], u=self.u[keep], extra=extra)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """The run as an `xarray.Dataset` with dimensions time, agent and axis; the law is in the attributes."""
+        import xarray
+
+        dims = ("time", "agent", "axis")
+        data: dict[str, Any] = {"q": (dims, self.q), "p": (dims, self.p), "u": (dims, self.u)}
+        data |= {
+            f"extra_{k}": (("time", *(f"{k}_{a}" for a in range(v.ndim - 1))), v)
+            for k, v in self.extra.items()
+        }
+        coords = {"time": self.t, "agent": np.arange(self.n), "axis": list("xyz"[: self.m])}
+        attrs = {
+            "format": FORMAT,
+            "format_version": FORMAT_VERSION,
+            "flockana_version": __version__,
+            "law": json.dumps(to_data(self.law)),
+            "status": self.status,
+            "message": self.message,
+            "stats": json.dumps(to_data_mapping(self.stats)),
+        }
+        return xarray.Dataset(data, coords, attrs)
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write the run, law and parameters included, as netCDF-4; an existing file is replaced only when whole.
+
+        Parameters
+        ----------
+        path : path-like
+            File to write.
+
+        Returns
+        -------
+        pathlib.Path
+
+        Raises
+        ------
+        FileError
+            If it cannot be written.
+        ArgumentError
+            If the law holds something that has no written form, such as a user's function.
+        """
+        target = Path(path)
+        dataset = self.to_xarray()
+        partial = target.with_name(f".{target.name}.{os.getpid()}.partial")
+        try:
+            dataset.to_netcdf(partial, engine="h5netcdf")
+            os.replace(partial, target)
+        except OSError as error:
+            raise FileError(
+                f"cannot write {target}: {error.strerror or error}; choose a folder you may write to"
+            ) from error
+        finally:
+            partial.unlink(missing_ok=True)
+        return target
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Trajectory:
+        """Read what `save` wrote.
+
+        Parameters
+        ----------
+        path : path-like
+            File to read.
+
+        Raises
+        ------
+        FileError
+            If the file is missing, is no netCDF, is not one of ours, is of a newer format, or is damaged.
+        """
+        import xarray
+
+        source = Path(path)
+        if not source.is_file():
+            raise FileError(f"no file {source}: expected one written by Trajectory.save")
+        try:
+            with xarray.open_dataset(source, engine="h5netcdf") as dataset:
+                data = dataset.load()
+        except Exception as error:  # h5py raises many kinds on damaged bytes
+            raise FileError(
+                f"cannot read {source} as netCDF-4: {error}; was it written by Trajectory.save?"
+            ) from error
+        if data.attrs.get("format") != FORMAT:
+            raise FileError(
+                f"{source} holds no flockana run (format {data.attrs.get('format')!r}, expected {FORMAT!r})"
+            )
+        if int(data.attrs["format_version"]) > FORMAT_VERSION:
+            raise FileError(
+                f"{source} is of format {data.attrs['format_version']}, newer than {FORMAT_VERSION}: update flockana"
+            )
+        try:
+            return cls(
+                *(np.array(data[name]) for name in ("time", "q", "p", "u")),
+                law=from_data(json.loads(data.attrs["law"])),
+                extra={
+                    str(k)[6:]: np.array(v) for k, v in data.data_vars.items() if str(k).startswith("extra_")
+                },
+                status=str(data.attrs["status"]),
+                message=str(data.attrs["message"]),
+                stats=json.loads(data.attrs["stats"]),
+            )
+        except (KeyError, ValueError, TypeError) as error:
+            raise FileError(f"{source} is damaged: {error!r}; run the simulation again") from error
+
+
+def to_data_mapping(stats: Mapping[str, Any]) -> dict[str, Any]:
+    """Plain data of a mapping with text keys.
+
+    Parameters
+    ----------
+    stats : mapping
+        Numbers, strings and sequences of them by name.
+
+    Examples
+    --------
+    >>> to_data_mapping({"steps": np.int64(3)})
+    {'steps': 3}
+    """
+    return {key: to_data(value) for key, value in stats.items()}

@@ -1,0 +1,145 @@
+"""Flocks written out, and the reference values computed from them, against plain numpy."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from functools import cache
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from flockana.errors import ArgumentError, UnknownNameError
+from flockana.symbolic import AlphaSymbols, ConcreteFlock, GainSymbols, NumericLaw, numeric_law, psi_alpha
+
+PAPER = AlphaSymbols(eps=0.1, h=0.2, a=5, b=5, d=7, r=8.4)
+UNEVEN = AlphaSymbols(eps=0.1, h=0.4, a=7, b=9, d=1.9, r=2.8)
+GAINS = GainSymbols(c1_alpha=3, c2_alpha=2, c1_gamma=1.1, c2_gamma=0.5)
+LAWS = ["algorithm1", "algorithm2"]
+SIZES = [(1, 1), (1, 3), (2, 1), (2, 2), (2, 3), (3, 1), (3, 2), (3, 3), (4, 2)]
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize(("n", "m"), SIZES)
+def test_the_chain_rule_gives_the_closed_form(law: str, n: int, m: int) -> None:
+    assert ConcreteFlock(law, n, m).residual == 0
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_a_wrong_kinetic_factor_leaves_a_residual(law: str) -> None:
+    assert ConcreteFlock(law, 2, 1, kinetic_factor=sp.S.One).residual != 0
+
+
+def test_laplacian_has_zero_rows_and_the_quadratic_form_of_its_edges() -> None:
+    flock = ConcreteFlock("algorithm1", 3, 1)
+    laplacian = flock.laplacian
+    z = sp.Matrix(sp.symbols("z1:4"))
+    edges = sum(-laplacian[i, j] * (z[i] - z[j]) ** 2 for i in range(3) for j in range(i))
+    assert laplacian * sp.ones(3, 1) == sp.zeros(3, 1)
+    assert laplacian == laplacian.T
+    assert sp.expand((z.T * laplacian * z)[0] - edges) == 0
+
+
+def scalars(alpha: AlphaSymbols, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """phi_alpha and a_ij in plain numpy, written from the definitions."""
+    h, a, b, c, d, r = (float(getattr(alpha, name)) for name in ("h", "a", "b", "c", "d_alpha", "r_alpha"))
+    ramp = 0.5 * (1 + np.cos(np.pi * (z / r - h) / (1 - h)))
+    rho = np.where(z < h * r, 1.0, np.where(z <= r, ramp, 0.0))
+    s = z - d + c
+    return rho * 0.5 * ((a + b) * s / np.sqrt(1 + s * s) + (a - b)), rho
+
+
+def dense(law: str, alpha: AlphaSymbols, q: np.ndarray, p: np.ndarray, target: list[float]) -> tuple[np.ndarray, float]:
+    """Acceleration and the closed form of the energy's rate, by loops over pairs."""
+    c1, c2, c1g, c2g = (float(getattr(GAINS, k)) for k in ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma"))
+    eps, n = float(alpha.eps), len(q)
+    u, rate = np.zeros_like(q), 0.0
+    for i in range(n):
+        for j in range(n):
+            delta, w = q[j] - q[i], p[j] - p[i]
+            root = np.sqrt(1 + eps * delta @ delta)
+            phi, rho = scalars(alpha, np.array((root - 1) / eps))
+            u[i] += c1 * phi * delta / root + c2 * rho * w
+            rate -= 0.5 * c2 * rho * (w @ w)
+    if law == "algorithm2":
+        u += -c1g * (q - target) - c2g * (p - 0.25)
+        v = p - p.mean(axis=0)
+        rate -= c2g * np.sum(v * v)
+    return u, float(rate)
+
+
+@cache
+def reference(law: str, n: int, m: int, alpha: AlphaSymbols) -> NumericLaw:
+    """Build a reference once per size."""
+    return numeric_law(law, n, m, alpha=alpha, gains=GAINS, q_r=[2.0] * m, p_r=[0.25] * m)
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize(("n", "m", "alpha"), [(2, 1, PAPER), (3, 2, PAPER), (3, 3, UNEVEN), (4, 2, UNEVEN)])
+def test_reference_values_agree_with_plain_numpy(law: str, n: int, m: int, alpha: AlphaSymbols) -> None:
+    """1e-12 relative to the largest term: the numpy side cancels in floats, the reference does not."""
+    rng = np.random.default_rng(n * m)
+    numeric = reference(law, n, m, alpha)
+    for spread in (0.3, 1.0):
+        q, p = rng.normal(size=(n, m)) * spread * float(alpha.r), rng.normal(size=(n, m))
+        u, rate = dense(law, alpha, q, p, [2.0] * m)
+        np.testing.assert_allclose(numeric.acceleration(q, p), u, rtol=1e-12, atol=1e-12 * np.abs(u).max())
+        assert numeric.energy_rate(q, p) == pytest.approx(rate, rel=1e-12, abs=1e-12)
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_the_rate_is_the_derivative_of_the_energy(law: str) -> None:
+    """Central difference along q + p t + u t^2/2, p + u t: error 340 t^2 here (measured), rounding 1e-14/t."""
+    numeric, t = reference(law, 3, 2, PAPER), 1e-5
+    q, p = np.array([[0.0, 0.0], [6.0, 1.0], [2.0, 7.5]]), np.array([[0.5, -0.2], [-1.0, 0.3], [0.1, 0.8]])
+    u = numeric.acceleration(q, p)
+    ahead, behind = (numeric.energy(q + s * p + s * s / 2 * u, p + s * u) for s in (t, -t))
+    assert (ahead - behind) / (2 * t) == pytest.approx(numeric.energy_rate(q, p), rel=1e-6)
+
+
+def test_energy_of_known_states() -> None:
+    """One pair at d costs nothing, coincident it costs c1 psi_alpha(0), far away c1 psi_alpha(r_alpha)."""
+    numeric = reference("algorithm1", 2, 1, PAPER)
+    rest = np.zeros((2, 1))
+    assert numeric.energy([[0.0], [7.0]], rest) == pytest.approx(0, abs=1e-25)
+    assert numeric.energy(rest, rest) == pytest.approx(3 * 52.383811786644864, rel=1e-15)
+    assert numeric.energy([[0.0], [1e3]], [[2.0], [0.0]]) == pytest.approx(3 * 0.73590113426239231 + 2, rel=1e-15)
+    assert numeric.acceleration(rest, rest).tolist() == [[0.0], [0.0]]
+
+
+def test_moving_frame_energy_ignores_translation_and_drift() -> None:
+    numeric = reference("algorithm2", 3, 2, PAPER)
+    q, p = np.array([[0.0, 0.0], [6.0, 1.0], [2.0, 7.5]]), np.array([[0.5, -0.25], [-1.0, 0.25], [0.125, 0.75]])
+    shift, drift = np.array([64.0, -32.0]), np.array([4.0, 8.0])
+    assert numeric.energy(q + shift, p + drift) == pytest.approx(numeric.energy(q, p), rel=1e-15)
+    assert reference("algorithm2", 1, 1, PAPER).energy([[5.0]], [[3.0]]) == 0
+
+
+def test_psi_alpha_by_evalf_agrees_with_the_reference() -> None:
+    value = psi_alpha(sp.Integer(16), alpha=PAPER).evalf(17)
+    q = [[0.0], [float(sp.sqrt((2.6**2 - 1) / 0.1))]]  # sigma-norm 16
+    energy = reference("algorithm1", 2, 1, PAPER).energy(q, [[0.0], [0.0]])
+    assert energy == pytest.approx(3 * float(value), rel=1e-14)
+
+
+def test_bad_input_is_named() -> None:
+    with pytest.raises(UnknownNameError, match="unknown law 'algoritm1'; did you mean 'algorithm1'"):
+        ConcreteFlock("algoritm1", 2, 1)
+    with pytest.raises(ArgumentError, match="n = 0: expected a number of agents >= 1"):
+        ConcreteFlock("algorithm1", 0, 1)
+    with pytest.raises(ArgumentError, match="m = 4: expected a dimension"):
+        ConcreteFlock("algorithm1", 2, 4)
+    with pytest.raises(ArgumentError, match=r"parameters \['c_1\^gamma', 'c_2\^gamma'\] are symbols"):
+        numeric_law("algorithm2", 2, 1, alpha=PAPER, gains=GainSymbols(1, 1))
+    with pytest.raises(ArgumentError, match="q_r has 1 components: expected 2"):
+        numeric_law("algorithm2", 2, 2, alpha=PAPER, gains=GAINS, q_r=[1.0])
+    with pytest.raises(ArgumentError, match=r"q has shape \(3, 1\): expected \(2, 1\)"):
+        reference("algorithm1", 2, 1, PAPER).energy(np.zeros((3, 1)), np.zeros((3, 1)))
+
+
+def test_importing_it_loads_sympy_but_no_kernel() -> None:
+    code = "import sys, flockana.symbolic; print([n for n in sys.modules if n.split('.')[0] in {0} or 'kernels' in n])"
+    heavy = {"numba", "scipy", "matplotlib", "xarray", "networkx", "jinja2", "casadi", "control"}
+    run = subprocess.run([sys.executable, "-c", code.replace("{0}", repr(heavy))], capture_output=True, text=True)
+    assert (run.stdout.strip(), run.returncode) == ("[]", 0), run.stderr
