@@ -1,0 +1,107 @@
+"""flockana: does this flock provably do what the theorem says, and how does it behave near its equilibrium?
+
+The public names are imported when they are first used, so that ``import flockana`` is fast.
+"""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+from flockana._version import __version__
+
+if TYPE_CHECKING:
+    from flockana import errors as errors
+    from flockana.environment.targets import CallableTarget as CallableTarget
+    from flockana.environment.targets import CircleTarget as CircleTarget
+    from flockana.environment.targets import LinearTarget as LinearTarget
+    from flockana.environment.targets import RescaledVelocity as RescaledVelocity
+    from flockana.environment.targets import SineTarget as SineTarget
+    from flockana.environment.targets import StaticTarget as StaticTarget
+    from flockana.environment.targets import Target as Target
+    from flockana.interactions import AlphaInteraction as AlphaInteraction
+    from flockana.interactions import BetaInteraction as BetaInteraction
+    from flockana.interactions import Gains as Gains
+    from flockana.interactions import PairInteraction as PairInteraction
+    from flockana.laws.law import DiscreteLaw as DiscreteLaw
+    from flockana.laws.law import Law as Law
+    from flockana.laws.olfati_saber import Algorithm1 as Algorithm1
+    from flockana.laws.olfati_saber import Algorithm2 as Algorithm2
+    from flockana.metrics import cohesion_radius as cohesion_radius
+    from flockana.metrics import connectivity as connectivity
+    from flockana.metrics import deviation_energy as deviation_energy
+    from flockana.metrics import giant_share as giant_share
+    from flockana.metrics import inertia as inertia
+    from flockana.metrics import min_distance as min_distance
+    from flockana.metrics import order as order
+    from flockana.metrics import velocity_mismatch as velocity_mismatch
+    from flockana.nets import components as components
+    from flockana.nets import laplacian as laplacian
+    from flockana.nets import links as links
+    from flockana.references import cite as cite
+    from flockana.scenarios.scenario import Scenario as Scenario
+    from flockana.scenarios.scenario import scenario as scenario
+    from flockana.scenarios.scenario import scenarios as scenarios
+    from flockana.simulate import simulate as simulate
+    from flockana.theorems.catalogue import theorem as theorem
+    from flockana.theorems.catalogue import theorems as theorems
+    from flockana.theorems.catalogue import verify as verify
+    from flockana.theorems.theorem import Tolerances as Tolerances
+    from flockana.theorems.theorem import Verdict as Verdict
+    from flockana.trajectory import Trajectory as Trajectory
+
+_TARGETS = (
+    "Target",
+    "StaticTarget",
+    "LinearTarget",
+    "SineTarget",
+    "CircleTarget",
+    "RescaledVelocity",
+    "CallableTarget",
+)
+_METRICS = ("connectivity", "cohesion_radius", "deviation_energy", "velocity_mismatch", "inertia", "giant_share")
+_BY_MODULE = {
+    "environment.targets": _TARGETS,
+    "interactions": ("PairInteraction", "AlphaInteraction", "BetaInteraction", "Gains"),
+    "laws.law": ("Law", "DiscreteLaw"),
+    "laws.olfati_saber": ("Algorithm1", "Algorithm2"),
+    "simulate": ("simulate",),
+    "trajectory": ("Trajectory",),
+    "metrics": (*_METRICS, "min_distance", "order"),
+    "nets": ("links", "components", "laplacian"),
+    "theorems": ("theorems", "theorem", "verify", "Verdict", "Tolerances"),
+    "scenarios": ("scenarios", "scenario", "Scenario"),
+    "references": ("cite",),
+}
+_HOME = {name: module for module, names in _BY_MODULE.items() for name in names}
+
+__all__ = ["__version__", "errors", *_HOME]  # all of them strings, from the table above
+
+
+def __getattr__(name: str) -> Any:
+    if name == "errors":
+        return import_module("flockana.errors")
+    if name not in _HOME:
+        raise AttributeError(f"module 'flockana' has no attribute {name!r}")
+    return globals().setdefault(name, getattr(import_module(f"flockana.{_HOME[name]}"), name))
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)
+
+
+class _Package(ModuleType):
+    """Keeps `simulate`, `theorems` and `scenarios` functions, although modules of these names exist.
+
+    Importing a submodule binds it as an attribute of its package, and would so hide the function, or not, depending
+    on what was imported first.
+    """
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if not (name in _HOME and isinstance(value, ModuleType)):
+            super().__setattr__(name, value)
+
+
+sys.modules[__name__].__class__ = _Package

@@ -34,7 +34,7 @@ def ensure_finite_scalar(name: str, value: Any) -> float:
     """
     try:
         number = float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise ArgumentError(f"{name} = {value!r}: expected one real number") from None
     if not np.isfinite(number):
         raise ArgumentError(f"{name} = {number}: expected a finite number")
@@ -73,6 +73,14 @@ def ensure_nonnegative(name: str, value: Any) -> float:
     return number
 
 
+def _real_array(value: Any) -> FloatArray:
+    """A contiguous float64 array; a complex one is refused rather than cut to its real part."""
+    array = np.asarray(value)
+    if array.dtype.kind == "c":
+        raise TypeError("complex numbers")
+    return np.asarray(array, dtype=np.float64, order="C")
+
+
 def ensure_points(name: str, value: Any) -> FloatArray:
     """Return an (n, m) float64 array of n >= 1 points in m = 1, 2 or 3 dimensions.
 
@@ -94,11 +102,9 @@ def ensure_points(name: str, value: Any) -> FloatArray:
     (2, 2)
     """
     try:
-        points = np.ascontiguousarray(value, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise ArgumentError(
-            f"{name}: expected numbers in an (n, m) array, got {type(value).__name__}"
-        ) from None
+        points = _real_array(value)
+    except (TypeError, ValueError, OverflowError):
+        raise ArgumentError(f"{name}: expected numbers in an (n, m) array, got {type(value).__name__}") from None
     if points.ndim != 2:
         raise ArgumentError(
             f"{name} has shape {points.shape}: expected (n, m), one row per agent; "
@@ -107,15 +113,11 @@ def ensure_points(name: str, value: Any) -> FloatArray:
     if points.shape[0] < 1:
         raise ArgumentError(f"{name} has no agents (shape {points.shape}): expected n >= 1")
     if points.shape[1] not in (1, 2, 3):
-        raise ArgumentError(
-            f"{name} has shape {points.shape}: expected m = 1, 2 or 3 columns, one per dimension"
-        )
+        raise ArgumentError(f"{name} has shape {points.shape}: expected m = 1, 2 or 3 columns, one per dimension")
     bad = ~np.isfinite(points).all(axis=1)
     if bad.any():
         agent = int(np.argmax(bad))
-        raise ArgumentError(
-            f"{name}[{agent}] = {points[agent]}: expected finite numbers ({int(bad.sum())} bad agents)"
-        )
+        raise ArgumentError(f"{name}[{agent}] = {points[agent]}: expected finite numbers ({int(bad.sum())} bad agents)")
     return points
 
 
@@ -161,8 +163,8 @@ def ensure_vector(name: str, value: Any, m: int | None = None) -> FloatArray:
     [150.0, 30.0]
     """
     try:
-        vector = np.ascontiguousarray(value, dtype=np.float64)
-    except (TypeError, ValueError):
+        vector = _real_array(value)
+    except (TypeError, ValueError, OverflowError):
         raise ArgumentError(f"{name} = {value!r}: expected a vector of numbers") from None
     if vector.ndim != 1 or vector.size not in (1, 2, 3):
         raise ArgumentError(f"{name} has shape {vector.shape}: expected a vector of 1, 2 or 3 components")
@@ -188,7 +190,7 @@ def ensure_time_span(t_span: Any) -> tuple[float, float]:
     """
     try:
         t0, t1 = (float(t) for t in t_span)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise ArgumentError(f"t_span = {t_span!r}: expected two numbers (t0, t1)") from None
     if not (np.isfinite(t0) and np.isfinite(t1) and t0 < t1):
         raise ArgumentError(f"t_span = ({t0:g}, {t1:g}): expected finite t0 < t1")

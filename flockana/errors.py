@@ -40,6 +40,10 @@ class UnknownNameError(ArgumentError):
         close = get_close_matches(str(name), names, n=1)
         hint = f"did you mean {close[0]!r}? " if close else ""
         super().__init__(f"unknown {kind} {name!r}; {hint}Known: {', '.join(names)}")
+        self._arguments = (str(kind), str(name), names)
+
+    def __reduce__(self) -> tuple[type[UnknownNameError], tuple[str, str, list[str]]]:
+        return type(self), self._arguments  # so that it travels between processes
 
 
 class FileError(FlockanaError, OSError):

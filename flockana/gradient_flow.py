@@ -13,6 +13,7 @@ from flockana.laws.olfati_saber import Algorithm1, Algorithm2, moving_frame
 
 _NEWTON_FROM = 1e-7  # relative force at which Newton's method takes over: a weak bond near r pulls no harder before
 _NEWTON_STEPS = 20
+_NEWTON_REACH = 1e-3  # of d: a step farther than that is no polishing, and might end where a bond lets go at r
 
 
 @dataclass(frozen=True)
@@ -93,14 +94,19 @@ def gradient_flow(law: Algorithm1 | Algorithm2, q0: Any, *, tol: float = 1e-11, 
     force = np.inf
     while solver.status == "running" and force > _NEWTON_FROM:
         solver.step()
-        force = float(np.abs(solver.f if hasattr(solver, "f") else solver.fun(solver.t, solver.y)).max()) * c1 / scale
-    q = solver.y.reshape(shape)
-    for _ in range(_NEWTON_STEPS):
+        force = _largest(structural_force(law, solver.y.reshape(shape))) / scale
+    flowed, q = force <= _NEWTON_FROM, solver.y.reshape(shape)
+    start = q
+    for _ in range(_NEWTON_STEPS if flowed else 0):
         residual = structural_force(law, q)
-        force = float(np.linalg.norm(residual, axis=1).max()) / scale
+        force = _largest(residual) / scale
         if force <= tol:
             break
         # least squares leaves the rigid motions alone, in which the stiffness is singular
-        step = np.linalg.lstsq(law.stiffness(q).toarray(), residual.ravel(), rcond=1e-10)[0]
-        q = q + step.reshape(shape) * min(1.0, 0.1 * law.alpha.d / max(float(np.abs(step).max()), 1e-300))
-    return GradientLimit(q, force, float(solver.t), force <= tol)
+        q = q + np.linalg.lstsq(law.stiffness(q).toarray(), residual.ravel(), rcond=1e-10)[0].reshape(shape)
+    near = _largest(q - start) <= _NEWTON_REACH * law.alpha.d
+    return GradientLimit(q, force, float(solver.t), flowed and near and force <= tol)
+
+
+def _largest(vectors: FloatArray) -> float:
+    return float(np.linalg.norm(vectors, axis=1).max())

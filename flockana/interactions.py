@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
-from math import sqrt
+from math import inf, sqrt
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
@@ -15,11 +15,13 @@ from flockana.errors import ArgumentError
 from flockana.kernels import alpha as kernel
 from flockana.kernels.lift import PairKernels, lift, lift_scalar
 from flockana.kernels.neighbours import pair_blocks
-from flockana.kernels.scalars import bump, phi, sigma_norm
+from flockana.kernels.scalars import bump, clenshaw, phi, phi_integral, sigma_norm
 from flockana.kernels.tables import integral_panels, panel_edges
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
+
+MAX_ASYMMETRY = 1e12  # of repulsion over attraction: beyond it φ(0) = 0 is lost in rounding
 
 _SCALARS = {
     f.__name__: lift_scalar(f)
@@ -31,8 +33,10 @@ _SCALARS = {
         kernel.psi_alpha,
         kernel.adjacency_alpha,
         kernel.phi_beta,
+        kernel.psi_beta,
+        kernel.adjacency_beta,
+        kernel.phi_alpha_slope,
     )
-    + (kernel.psi_beta, kernel.adjacency_beta, kernel.phi_alpha_slope)
 }
 _ALPHA = lift(kernel.pair_alpha, kernel.pair_alpha_slope, kernel.pair_alpha_potential)
 
@@ -77,9 +81,7 @@ class PairInteraction(ABC):
     def panels(self) -> FloatArray:
         """Chebyshev panels of the potential, or an empty (0, 0) array where it is in closed form."""
 
-    def forces(
-        self, q: FloatArray, p: FloatArray, *, stiffness: float, damping: float
-    ) -> tuple[FloatArray, float]:
+    def forces(self, q: FloatArray, p: FloatArray, *, stiffness: float, damping: float) -> tuple[FloatArray, float]:
         """Pair accelerations and their dissipation, unchecked (the integrators' inner loop).
 
         Parameters
@@ -115,7 +117,7 @@ class PairInteraction(ABC):
             near += self.kernels.potential(q, i, j, self.par, self.panels)
             pairs += i.size
         n = q.shape[0]
-        return near + (n * (n - 1) // 2 - pairs) * self.far_potential
+        return float(near + (n * (n - 1) // 2 - pairs) * self.far_potential)
 
     def hessian(self, q: FloatArray) -> csr_array:
         """∇²V(q), sparse and symmetric, in the order of ``q.ravel()``.
@@ -226,28 +228,27 @@ class AlphaInteraction(PairInteraction):
             object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
         object.__setattr__(self, "h", _ensure_bump_start(self.h))
         if self.r <= self.d:
-            raise ArgumentError(
-                f"r = {self.r:g} and d = {self.d:g}: expected r > d; the paper takes r = 1.2 d"
-            )
+            raise ArgumentError(f"r = {self.r:g} and d = {self.d:g}: expected r > d; the paper takes r = 1.2 d")
         if self.a > self.b:
-            raise ArgumentError(
-                f"a = {self.a:g} and b = {self.b:g}: expected a <= b (attraction at most repulsion)"
-            )
+            raise ArgumentError(f"a = {self.a:g} and b = {self.b:g}: expected a <= b (attraction at most repulsion)")
+        if self.b > MAX_ASYMMETRY * self.a:
+            raise ArgumentError(f"a = {self.a:g} and b = {self.b:g}: expected b <= {MAX_ASYMMETRY:g} a")
+        _ensure_resolved(self)
 
     @cached_property
     def c(self) -> float:
         """|a − b|/√(4ab)."""
-        return abs(self.a - self.b) / sqrt(4.0 * self.a * self.b)
+        return (self.b - self.a) / (2.0 * sqrt(self.a) * sqrt(self.b))
 
     @cached_property
     def d_alpha(self) -> float:
         """‖d‖_σ."""
-        return float(sigma_norm(self.d**2, self.eps))
+        return float(sigma_norm(self.d * self.d, self.eps))
 
     @cached_property
     def r_alpha(self) -> float:
         """‖r‖_σ."""
-        return float(sigma_norm(self.r**2, self.eps))
+        return float(sigma_norm(self.r * self.r, self.eps))
 
     @cached_property
     def kappa(self) -> float:
@@ -257,7 +258,7 @@ class AlphaInteraction(PairInteraction):
     @cached_property
     def c_star(self) -> float:
         """ψ_α(0)."""
-        return self.psi_alpha(0.0)
+        return float(self.psi_alpha(0.0))
 
     @property
     def range(self) -> float:
@@ -277,24 +278,21 @@ class AlphaInteraction(PairInteraction):
 
         def taper(z: FloatArray) -> FloatArray:
             rho = 0.5 * (1.0 + np.cos(np.pi * (z / r_alpha - self.h) / (1.0 - self.h)))
-            s = z - d_alpha + self.c
-            return 0.5 * rho * ((self.a + self.b) * s / np.sqrt(1.0 + s * s) + (self.a - self.b))
+            action = np.array([phi(s, self.a, self.b, self.c) for s in z - d_alpha])
+            tapered: FloatArray = rho * action
+            return tapered
 
         edges = panel_edges(knee, r_alpha, d_alpha - self.c)
         if knee < d_alpha:  # d_α lies on the taper: make it an edge, where ψ vanishes exactly
             edges = np.unique(np.append(edges, d_alpha))
         panels = integral_panels(taper, edges, value_at_right=0.0)
-        closed = _SCALARS["psi_alpha"]  # with par[7] = 0 and z below the knee: the bare antiderivative
-        at_d, at_knee = (
-            kernel.phi_antiderivative(z - d_alpha, self.a, self.b, self.c) for z in (d_alpha, knee)
-        )
-        left_end = _SCALARS["psi_alpha"](np.array([knee]), par, panels)[0]
+        at_knee = phi_integral(knee - d_alpha, self.a, self.b, self.c)
+        left_end = clenshaw(knee, panels)
         if knee < d_alpha:
-            shift = -float(closed(np.array([d_alpha]), par, panels)[0])
+            shift = -clenshaw(d_alpha, panels)
             par[7] = left_end + shift - at_knee
         else:
-            par[7] = -at_d
-            shift = at_knee - at_d - left_end
+            shift = at_knee - left_end
         panels[:, 2] += shift
         par[8] = shift
         for array in (par, panels):
@@ -319,7 +317,8 @@ class AlphaInteraction(PairInteraction):
         x : float or ndarray
             Euclidean lengths.
         """
-        return _evaluate("sigma_norm", np.square(np.asarray(x, dtype=np.float64)), self.eps)
+        with np.errstate(over="ignore"):
+            return _evaluate("sigma_norm", np.square(np.asarray(x, dtype=np.float64)), self.eps)
 
     def bump(self, z: Any) -> Any:
         """ρ_h(z).
@@ -410,8 +409,8 @@ class BetaInteraction:
     Examples
     --------
     >>> beta = BetaInteraction(d=4.2, r=5.04)
-    >>> beta.phi_beta(beta.d_beta), beta.psi_beta(beta.d_beta)
-    (0.0, 0.0)
+    >>> beta.phi_beta(beta.d_beta) == 0.0, beta.psi_beta(beta.d_beta)
+    (True, 0.0)
     """
 
     d: float = 4.2
@@ -424,19 +423,18 @@ class BetaInteraction:
             object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
         object.__setattr__(self, "h", _ensure_bump_start(self.h))
         if self.r <= self.d:
-            raise ArgumentError(
-                f"r = {self.r:g} and d = {self.d:g}: expected r > d; the paper takes r' = 1.2 d'"
-            )
+            raise ArgumentError(f"r = {self.r:g} and d = {self.d:g}: expected r > d; the paper takes r' = 1.2 d'")
+        _ensure_resolved(self)
 
     @cached_property
     def d_beta(self) -> float:
         """‖d'‖_σ."""
-        return float(sigma_norm(self.d**2, self.eps))
+        return float(sigma_norm(self.d * self.d, self.eps))
 
     @cached_property
     def r_beta(self) -> float:
         """‖r'‖_σ."""
-        return float(sigma_norm(self.r**2, self.eps))
+        return float(sigma_norm(self.r * self.r, self.eps))
 
     @cached_property
     def _parts(self) -> tuple[FloatArray, FloatArray]:
@@ -448,8 +446,7 @@ class BetaInteraction:
             return rho * ((z - d_beta) / np.sqrt(1.0 + (z - d_beta) ** 2) - 1.0)
 
         panels = integral_panels(taper, panel_edges(knee, d_beta, d_beta), value_at_right=0.0)
-        at_knee = float(_SCALARS["psi_beta"](np.array([knee]), par, panels)[0])
-        par[3] = at_knee - (sqrt(1.0 + (knee - d_beta) ** 2) - knee)
+        par[3] = clenshaw(knee, panels) - (sigma_norm((knee - d_beta) ** 2, 1.0) - knee)
         for array in (par, panels):
             array.setflags(write=False)
         return par, panels
@@ -528,14 +525,23 @@ class Gains:
         for name in self.__dataclass_fields__:
             value = ensure_finite_scalar(name, getattr(self, name))
             if value < 0.0:
-                raise ArgumentError(
-                    f"{name} = {value:g}: expected a gain >= 0; a negative one feeds energy in"
-                )
+                raise ArgumentError(f"{name} = {value:g}: expected a gain >= 0; a negative one feeds energy in")
             object.__setattr__(self, name, value)
 
 
+def _ensure_resolved(interaction: AlphaInteraction | BetaInteraction) -> None:
+    """Raise where the parameters are so extreme that d and r have no σ-norms apart from 0, ∞ and each other."""
+    d, r, eps = interaction.d, interaction.r, interaction.eps
+    near, far = sigma_norm(d * d, eps), sigma_norm(r * r, eps)
+    if not (0.0 < near < far < inf and eps * r * r < inf):
+        raise ArgumentError(
+            f"d = {d:g}, r = {r:g}, eps = {eps:g}: their σ-norms are {near:g} and {far:g}; "
+            "expected 0 < d_sigma < r_sigma, all finite: choose another length unit"
+        )
+
+
 def _ensure_bump_start(h: Any) -> float:
-    h = ensure_finite_scalar("h", h)
-    if not 0.0 < h < 1.0:
-        raise ArgumentError(f"h = {h:g}: expected 0 < h < 1; at h = 1 the bump jumps (erratum E10)")
-    return h
+    start = ensure_finite_scalar("h", h)
+    if not 0.0 < start < 1.0:
+        raise ArgumentError(f"h = {start:g}: expected 0 < h < 1; at h = 1 the bump jumps (erratum E10)")
+    return start

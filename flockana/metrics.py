@@ -165,7 +165,7 @@ def min_distance(q: Any) -> float:
     from scipy.spatial import KDTree
 
     q = ensure_points("q", q)
-    return float("inf") if len(q) == 1 else float(KDTree(q).query(q, k=2)[0][:, 1].min())
+    return float("inf") if len(q) == 1 else float(np.asarray(KDTree(q).query(q, k=2)[0])[:, 1].min())
 
 
 def order(p: Any) -> float:

@@ -11,6 +11,7 @@ from flockana.kernels.neighbours import pair_blocks
 from flockana.kernels.paths import closest_pair, control_points, touching_pairs
 from flockana.metrics import min_distance
 
+ROUNDING = 2.0**-50  # of the coordinates: a smaller distance is lost in their rounding and counts as 0
 RELATIVE_TOL = 1e-6  # of the subdivision: far below the interpolation allowance of any real run
 
 
@@ -73,9 +74,13 @@ def closest_approach(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray)
         h = t[k + 1] - t[k]
         points, reach, allowance = control_points(h, q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1])
         stop = float(min(at_samples[k], at_samples[k + 1]))
-        bounds[k] = stop
+        noise = ROUNDING * float(np.abs(q[k]).max())
+        bounds[k] = stop if stop > noise else 0.0
+        if bounds[k] == 0.0:
+            lower = 0.0
+            continue
         for i, j in pair_blocks(q[k], (stop + 2.0 * float(reach.max())) * (1.0 + 1e-9)):
-            tol = RELATIVE_TOL * bounds[k]
+            tol = max(RELATIVE_TOL * bounds[k], noise)
             low, distance, at, a, b = closest_pair(points, reach, allowance, i, j, bounds[k], tol)
             if a < 0:
                 continue
@@ -103,7 +108,7 @@ class Contact:
     i, j : int
         The agents, i < j.
     time : float
-        First time at which they touch.
+        First time at which they are within the tolerance.
     crossed : bool
         True if their order on the line changed between two samples (m = 1): then they certainly met.
     """
@@ -114,9 +119,7 @@ class Contact:
     crossed: bool
 
 
-def contacts(
-    t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, *, tol: float
-) -> tuple[Contact, ...]:
+def contacts(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, *, tol: float) -> tuple[Contact, ...]:
     """Pairs that come within `tol` of each other, each with its first time, in order of time.
 
     Parameters
@@ -132,8 +135,9 @@ def contacts(
     --------
     >>> q = np.array([[[0.0], [1.0]], [[1.0], [0.0]]])
     >>> p = np.array([[[1.0], [-1.0]]] * 2)
-    >>> contacts(np.array([0.0, 1.0]), q, p, 0.0 * p, tol=1e-9)
-    (Contact(i=0, j=1, time=0.5, crossed=True),)
+    >>> (contact,) = contacts(np.array([0.0, 1.0]), q, p, 0.0 * p, tol=1e-9)
+    >>> contact.i, contact.j, contact.crossed, abs(contact.time - 0.5) < 1e-9
+    (0, 1, True, True)
     """
     found: dict[tuple[int, int], Contact] = {}
     for k in range(len(t) - 1):

@@ -72,9 +72,7 @@ def from_data(data: Any) -> Any:
     name = str(data.get("type"))
     module, _, qualname = name.partition(":")
     if not module.startswith("flockana.") and module not in sys.modules:
-        raise FileError(
-            f"the file needs {name}, which is not part of flockana: import {module} first, then load again"
-        )
+        raise FileError(f"the file needs {name}, which is not part of flockana: import {module} first, then load again")
     try:
         cls: Any = importlib.import_module(module)
         for part in qualname.split("."):

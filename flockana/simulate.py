@@ -7,7 +7,7 @@ of the energy balance is `Trajectory.energy_residual`.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -41,6 +41,9 @@ class _Tally:
     steps: int = 0
     status: str = "complete"
     message: str = "reached the end of the time span"
+
+    def fail(self, message: str) -> None:
+        self.status, self.message = "failed", message
 
 
 def simulate(
@@ -99,6 +102,7 @@ def simulate(
     ensure_law(law)
     q0, p0 = ensure_state(q0, p0)
     law.check_dimension(q0.shape[1])
+    law.check_start(q0, p0)
     t_span = ensure_time_span(t_span)
     keep = _check_t_eval(t_eval, t_span)
     tally = _Tally()
@@ -106,19 +110,20 @@ def simulate(
         if dt is not None or method != "DOP853":
             raise ArgumentError("a discrete law brings its own step: expected neither dt nor method")
         samples, name = _discrete(law, q0, p0, t_span, tally), "discrete"
-        keep_samples = (
-            _every(samples) if keep is None else _nearest(samples, keep, ensure_positive("law.dt", law.dt))
-        )
+        step = _ensure_step("law.dt", law.dt, t_span)
+        keep_samples = samples if keep is None else _nearest(samples, keep, step)
     else:
         _check_method(method, dt)
         name = method
         if method == "RK4":
-            keep_samples = _rk4(law, q0, p0, t_span, ensure_positive("dt", dt), keep, tally)
+            keep_samples = _rk4(law, q0, p0, t_span, _ensure_step("dt", dt, t_span), keep, tally)
         else:
             tolerances = ensure_positive("rtol", rtol), ensure_positive("atol", atol)
             keep_samples = _adaptive(law, q0, p0, t_span, method, *tolerances, keep, tally)
     started = time.perf_counter()
     kept = _collect(keep_samples, t_span, tally, progress)
+    if not kept:  # ended before the first time to keep: the start at least is known
+        kept = [_start(law, q0, p0, t_span[0])]
     extra = {key: np.stack([s.extra[key] for s in kept]) for key in kept[0].extra}
     stats: dict[str, Any] = {"method": name, "steps": tally.steps, "evaluations": tally.evaluations}
     if name == "RK4" or isinstance(law, DiscreteLaw):
@@ -126,9 +131,31 @@ def simulate(
     else:
         stats |= {"rtol": rtol, "atol": atol}
     stats["seconds"] = time.perf_counter() - started
-    series = (np.stack([getattr(s, name) for s in kept]) for name in ("q", "p", "u"))
-    times = np.array([s.t for s in kept])
-    return Trajectory(times, *series, law, extra, tally.status, tally.message, stats)
+    q, p, u = (np.stack([getattr(s, name) for s in kept]) for name in ("q", "p", "u"))
+    return Trajectory(np.array([s.t for s in kept]), q, p, u, law, extra, tally.status, tally.message, stats)
+
+
+def _ensure_step(name: str, dt: Any, t_span: tuple[float, float]) -> float:
+    step, far = ensure_positive(name, dt), max(abs(t) for t in t_span)
+    if far + 0.5 * step == far:
+        raise ArgumentError(f"{name} = {step:g}: too small to change t = {far:g}; start the clock near t = 0")
+    return step
+
+
+def _start(law: Law | DiscreteLaw, q0: FloatArray, p0: FloatArray, t0: float) -> Sample:
+    """The initial state as a sample."""
+    if isinstance(law, DiscreteLaw):
+        return Sample(t0, q0, p0, np.zeros_like(q0), _copied(law.start(q0, p0)))
+    extra = {"work": np.array(0.0)} if _has_energy(law, t0, q0, p0) else {}
+    return Sample(t0, q0, p0, law.flow(t0, q0, p0)[0], extra)
+
+
+def _copied(memory: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+    return {name: np.array(value) for name, value in memory.items()}
+
+
+def _finite(*values: Any) -> bool:
+    return all(bool(np.isfinite(value).all()) for value in values)
 
 
 def _check_method(method: str, dt: float | None) -> None:
@@ -137,36 +164,33 @@ def _check_method(method: str, dt: float | None) -> None:
     if method == "RK4" and dt is None:
         raise ArgumentError("dt = None: method RK4 needs a fixed step, such as dt=0.005")
     if method != "RK4" and dt is not None:
-        raise ArgumentError(
-            f"dt = {dt!r}: {method} chooses its own steps; give t_eval to choose output times"
-        )
+        raise ArgumentError(f"dt = {dt!r}: {method} chooses its own steps; give t_eval to choose output times")
 
 
 def _check_t_eval(t_eval: Any, t_span: tuple[float, float]) -> FloatArray | None:
     if t_eval is None:
         return None
-    times = np.atleast_1d(np.asarray(t_eval, dtype=np.float64))
+    try:
+        times = np.atleast_1d(np.asarray(t_eval, dtype=np.float64))
+    except (TypeError, ValueError, OverflowError):
+        times = np.array([np.nan])
     good = times.ndim == 1 and times.size > 0 and np.isfinite(times).all() and (np.diff(times) > 0.0).all()
     if not good or times[0] < t_span[0] or times[-1] > t_span[1]:
         raise ArgumentError(f"t_eval = {t_eval!r}: expected rising times within t_span = {t_span}")
     return times
 
 
-def _collect(
-    samples: Iterator[Sample | None], t_span: tuple[float, float], tally: _Tally, progress: bool
-) -> list[Sample]:
+def _collect(samples: Iterator[Sample], t_span: tuple[float, float], tally: _Tally, progress: bool) -> list[Sample]:
     """Drain the integrator; on Ctrl-C keep what there is."""
     kept: list[Sample] = []
     with _progress_bar(t_span, enabled=progress) as advance:
         try:
             for sample in samples:
-                if sample is not None:
-                    kept.append(sample)
-                    advance(sample.t)
+                kept.append(sample)
+                advance(sample.t)
         except KeyboardInterrupt:
-            if not kept:
-                raise
-            tally.status, tally.message = "interrupted", f"interrupted at t = {kept[-1].t:g}"
+            until = f"the last sample is at t = {kept[-1].t:g}" if kept else "no sample was reached but the start"
+            tally.status, tally.message = "interrupted", f"interrupted: {until}"
     return kept
 
 
@@ -224,6 +248,8 @@ def _adaptive(
         p = y[size : 2 * size]
         u, rate = law.flow(t, y[:size].reshape(shape), p.reshape(shape))
         tally.evaluations += 1
+        if method == "LSODA" and not _finite(u, rate if energetic else 0.0):  # it would try to step over it for ever
+            raise FloatingPointError(f"the law's acceleration is not finite at t = {t:g}")
         return np.concatenate([p, u.ravel(), [rate] if energetic else []])
 
     def sample(t: float, y: FloatArray) -> Sample:
@@ -233,24 +259,25 @@ def _adaptive(
 
     y0 = np.concatenate([q0.ravel(), p0.ravel(), [0.0] if energetic else []])
     atols = np.full(y0.size, atol)
-    if (
-        energetic
-    ):  # the work is measured against the energy it is the change of, not against zero at the start
+    if energetic:  # the work is measured against the energy it is the change of, not against zero at the start
         atols[-1] = max(atol, rtol * abs(law.hamiltonian(t_span[0], q0, p0)))
-    solver = getattr(scipy.integrate, method)(rhs, t_span[0], y0, t_span[1], rtol=rtol, atol=atols)
     wanted = 0
     if keep is None or keep[0] == t_span[0]:
         wanted = 1
         yield sample(t_span[0], y0)
+    if not _finite(*law.flow(t_span[0], q0, p0)[: 2 if energetic else 1]):  # scipy's first step would look for its length for ever
+        tally.fail(f"the law's acceleration is not finite at the start, t = {t_span[0]:g}")
+        return
+    solver = getattr(scipy.integrate, method)(rhs, t_span[0], y0, t_span[1], rtol=rtol, atol=atols)
     while solver.status == "running":
-        message = solver.step()
-        if solver.status == "failed" or not np.isfinite(solver.y).all():
-            tally.status = "failed"
-            tally.message = (
-                f"{method} gave up at t = {solver.t:g}: {message or 'the state is no longer finite'}"
-            )
-            if wanted == 0:
-                yield sample(t_span[0], y0)
+        try:
+            message = solver.step()
+        except (ValueError, FloatingPointError, np.linalg.LinAlgError) as error:  # implicit solvers raise on NaN
+            if isinstance(error, ArgumentError):
+                raise
+            message, solver.status = str(error), "failed"
+        if solver.status == "failed" or not _finite(solver.y):
+            tally.fail(f"{method} gave up at t = {solver.t:g}: {message or 'the state is no longer finite'}")
             return
         tally.steps += 1
         if keep is None:
@@ -281,8 +308,7 @@ def _rk4(
     def sample() -> Sample:
         return Sample(t, q, p, u, {"work": np.array(work)} if energetic else {})
 
-    stops = _grid(t_span, dt) if keep is None else keep
-    for stop in stops:
+    for stop in _grid(t_span, dt) if keep is None else keep:
         while t < stop:
             remaining = stop - t
             # a step is split evenly rather than ending on a sliver, which would lose the order for nothing
@@ -300,18 +326,16 @@ def _rk4(
             u, rate = law.flow(t, q, p)
             tally.steps += 1
             tally.evaluations += 4
-            if not np.isfinite(u).all():
-                tally.status, tally.message = (
-                    "failed",
-                    f"RK4 left the finite numbers at t = {t:g}: reduce dt = {dt:g}",
-                )
+            if not _finite(q, p, u):
+                tally.fail(f"RK4 left the finite numbers at t = {t:g}: reduce dt = {dt:g}")
                 return
         yield sample()
 
 
-def _grid(t_span: tuple[float, float], dt: float) -> FloatArray:
-    steps = int(np.ceil((t_span[1] - t_span[0]) / dt - 1e-9))
-    return np.append(t_span[0] + dt * np.arange(steps), t_span[1])
+def _grid(t_span: tuple[float, float], dt: float) -> Iterator[float]:
+    for k in range(int(np.ceil((t_span[1] - t_span[0]) / dt - 1e-9))):
+        yield t_span[0] + k * dt
+    yield t_span[1]
 
 
 def _discrete(
@@ -319,21 +343,17 @@ def _discrete(
 ) -> Iterator[Sample]:
     """Iterate the map; sample k holds the state at t0 + k dt and the input that brought it there."""
     t, q, p, memory = t_span[0], q0, p0, law.start(q0, p0)
-    yield Sample(t, q, p, np.zeros_like(q), dict(memory))
+    yield Sample(t, q, p, np.zeros_like(q), _copied(memory))
     steps = int(np.floor((t_span[1] - t_span[0]) / law.dt + 1e-9))
     for k in range(1, steps + 1):
         q, p, u, memory = law.step(t, q, p, memory)
         t = t_span[0] + k * law.dt
         tally.steps += 1
         tally.evaluations += 1
-        if not (np.isfinite(q).all() and np.isfinite(p).all()):
-            tally.status, tally.message = "failed", f"the map left the finite numbers at t = {t:g}"
+        if not _finite(q, p):
+            tally.fail(f"the map left the finite numbers at t = {t:g}")
             return
-        yield Sample(t, q, p, u, dict(memory))
-
-
-def _every(samples: Iterator[Sample]) -> Iterator[Sample]:
-    return samples
+        yield Sample(t, q, p, u, _copied(memory))
 
 
 def _nearest(samples: Iterator[Sample], keep: FloatArray, dt: float) -> Iterator[Sample]:

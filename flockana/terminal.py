@@ -143,23 +143,3 @@ def relative_curvature(law: Any, q: FloatArray) -> float:
     eigenvalues = np.linalg.eigvalsh(free.T @ (law.stiffness(q) @ free))
     largest = np.abs(eigenvalues).max()
     return float(eigenvalues[0] / largest) if largest > 0.0 else 0.0
-
-
-def classify(strain: float, *, lattice: float, quasi: float) -> str:
-    """Name a configuration by its largest relative link error: α-lattice, quasi-α-lattice, or neither.
-
-    Parameters
-    ----------
-    strain : float
-        Largest |link − d|/d; NaN (no links) is neither.
-    lattice, quasi : float
-        Bounds of the two names.
-
-    Examples
-    --------
-    >>> classify(1e-9, lattice=1e-6, quasi=0.1), classify(0.03, lattice=1e-6, quasi=0.1)
-    ('α-lattice', 'quasi-α-lattice')
-    """
-    if strain <= lattice:
-        return "α-lattice"
-    return "quasi-α-lattice" if strain <= quasi else "neither"

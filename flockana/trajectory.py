@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -16,6 +17,7 @@ from flockana import metrics as measure
 from flockana._version import __version__
 from flockana.checks import FloatArray
 from flockana.errors import ArgumentError, FileError
+from flockana.laws.law import ensure_law
 from flockana.paths import ClosestApproach, closest_approach
 from flockana.serialize import from_data, to_data
 
@@ -26,7 +28,7 @@ FORMAT = "flockana-trajectory"
 FORMAT_VERSION = 1
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Trajectory:
     """A sampled run.
 
@@ -60,30 +62,25 @@ class Trajectory:
 
     def __post_init__(self) -> None:
         shape = np.shape(self.q)
-        if (
-            len(shape) != 3
-            or np.shape(self.t) != shape[:1]
-            or np.shape(self.p) != shape
-            or np.shape(self.u) != shape
-        ):
+        if len(shape) != 3 or np.shape(self.t) != shape[:1] or np.shape(self.p) != shape or np.shape(self.u) != shape:
             raise ArgumentError(
                 f"t {np.shape(self.t)}, q {shape}, p {np.shape(self.p)}, u {np.shape(self.u)}: "
                 "expected shapes (T,), (T, n, m), (T, n, m), (T, n, m)"
             )
         for name in ("t", "q", "p", "u"):
-            array = np.ascontiguousarray(getattr(self, name), dtype=np.float64)
-            array.setflags(write=False)
+            array = np.ascontiguousarray(getattr(self, name), dtype=np.float64).view()
+            array.setflags(write=False)  # of the view: the caller's array stays as it was
             object.__setattr__(self, name, array)
 
     @property
     def n(self) -> int:
         """Number of agents."""
-        return self.q.shape[1]
+        return int(self.q.shape[1])
 
     @property
     def m(self) -> int:
         """Dimension of space."""
-        return self.q.shape[2]
+        return int(self.q.shape[2])
 
     def energy(self) -> FloatArray:
         """The law's energy H at each sample, shape (T,)."""
@@ -91,9 +88,7 @@ class Trajectory:
 
     @cached_property
     def _energy(self) -> FloatArray:
-        return np.array(
-            [self.law.hamiltonian(t, q, p) for t, q, p in zip(self.t, self.q, self.p, strict=True)]
-        )
+        return np.array([self.law.hamiltonian(t, q, p) for t, q, p in zip(self.t, self.q, self.p, strict=True)])
 
     def energy_rate(self) -> FloatArray:
         """dH/dt in closed form at each sample, shape (T,)."""
@@ -115,7 +110,8 @@ class Trajectory:
         if "work" not in self.extra:
             raise ArgumentError("this run has no energy balance: its law has no energy")
         energy = self.energy()
-        return energy - energy[0] - self.extra["work"]
+        residual: FloatArray = energy - energy[0] - self.extra["work"]
+        return residual
 
     def metrics(self) -> xarray.Dataset:
         """C, R, Ẽ, K̃ and their companions over time, as an `xarray.Dataset` with dimension ``time``."""
@@ -188,10 +184,7 @@ class Trajectory:
 
         dims = ("time", "agent", "axis")
         data: dict[str, Any] = {"q": (dims, self.q), "p": (dims, self.p), "u": (dims, self.u)}
-        data |= {
-            f"extra_{k}": (("time", *(f"{k}_{a}" for a in range(v.ndim - 1))), v)
-            for k, v in self.extra.items()
-        }
+        data |= {f"extra_{k}": (("time", *(f"{k}_{a}" for a in range(v.ndim - 1))), v) for k, v in self.extra.items()}
         coords = {"time": self.t, "agent": np.arange(self.n), "axis": list("xyz"[: self.m])}
         attrs = {
             "format": FORMAT,
@@ -225,16 +218,18 @@ class Trajectory:
         """
         target = Path(path)
         dataset = self.to_xarray()
-        partial = target.with_name(f".{target.name}.{os.getpid()}.partial")
+        partial = target.parent / f".{target.name}.{os.getpid()}.partial"
         try:
             dataset.to_netcdf(partial, engine="h5netcdf")
             os.replace(partial, target)
-        except OSError as error:
+        except (OSError, ValueError) as error:
+            reason = getattr(error, "strerror", None) or error
             raise FileError(
-                f"cannot write {target}: {error.strerror or error}; choose a folder you may write to"
+                f"cannot write {str(target)!r}: {reason}; choose a file name and folder to write to"
             ) from error
         finally:
-            partial.unlink(missing_ok=True)
+            with suppress(OSError, ValueError):  # one that could not be written cannot be removed either
+                partial.unlink(missing_ok=True)
         return target
 
     @classmethod
@@ -260,24 +255,22 @@ class Trajectory:
             with xarray.open_dataset(source, engine="h5netcdf") as dataset:
                 data = dataset.load()
         except Exception as error:  # h5py raises many kinds on damaged bytes
-            raise FileError(
-                f"cannot read {source} as netCDF-4: {error}; was it written by Trajectory.save?"
-            ) from error
+            raise FileError(f"cannot read {source} as netCDF-4: {error}; was it written by Trajectory.save?") from error
         if data.attrs.get("format") != FORMAT:
             raise FileError(
                 f"{source} holds no flockana run (format {data.attrs.get('format')!r}, expected {FORMAT!r})"
             )
-        if int(data.attrs["format_version"]) > FORMAT_VERSION:
-            raise FileError(
-                f"{source} is of format {data.attrs['format_version']}, newer than {FORMAT_VERSION}: update flockana"
-            )
         try:
+            version = int(data.attrs["format_version"])
+            if version > FORMAT_VERSION:
+                raise FileError(f"{source} is of format {version}, newer than {FORMAT_VERSION}: update flockana")
             return cls(
-                *(np.array(data[name]) for name in ("time", "q", "p", "u")),
-                law=from_data(json.loads(data.attrs["law"])),
-                extra={
-                    str(k)[6:]: np.array(v) for k, v in data.data_vars.items() if str(k).startswith("extra_")
-                },
+                t=np.array(data["time"]),
+                q=np.array(data["q"]),
+                p=np.array(data["p"]),
+                u=np.array(data["u"]),
+                law=ensure_law(from_data(json.loads(data.attrs["law"]))),
+                extra={str(k)[6:]: np.array(v) for k, v in data.data_vars.items() if str(k).startswith("extra_")},
                 status=str(data.attrs["status"]),
                 message=str(data.attrs["message"]),
                 stats=json.loads(data.attrs["stats"]),

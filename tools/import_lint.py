@@ -21,7 +21,7 @@ STAGES: tuple[tuple[str, ...], ...] = (
     ("environment", "nets"),
     ("lattice",),
     ("laws",),
-    ("metrics",),
+    ("metrics", "clearance", "reynolds"),
     ("paths",),
     ("trajectory",),
     ("predicates",),

@@ -18,9 +18,7 @@ import numpy.typing as npt
 from flockana.checks import FloatArray, ensure_finite_scalar, ensure_positive, ensure_vector
 from flockana.errors import ArgumentError
 
-_STEP = (
-    1e-5  # of a user's function for dq_r/dt by central difference: error about 1e-10 relative on smooth paths
-)
+_STEP = 1e-5  # of a user's function for dq_r/dt by central difference: error about 1e-10 relative on smooth paths
 
 
 class Target(ABC):
@@ -64,7 +62,7 @@ class Target(ABC):
         times : array_like, shape (T,)
             Times to look at.
         """
-        return max(float(np.linalg.norm(self.state(t)[1] - self.rate(t))) for t in np.ravel(times))
+        return max((float(np.linalg.norm(self.state(t)[1] - self.rate(t))) for t in np.ravel(times)), default=0.0)
 
     @property
     def dimension(self) -> int:
@@ -183,6 +181,7 @@ class SineTarget(Target):
             object.__setattr__(self, name, ensure_finite_scalar(name, getattr(self, name)))
         if self.axis not in range(m):
             raise ArgumentError(f"axis = {self.axis!r}: expected a coordinate of the flock, 0 to {m - 1}")
+        object.__setattr__(self, "axis", int(self.axis))
 
     def _swing(self, value: float) -> FloatArray:
         swing = np.zeros(len(self.start))
@@ -307,17 +306,13 @@ class CallableTarget(Target):
             raise ArgumentError(f"function = {self.function!r}: expected a callable t -> (q_r, p_r)")
         q, p = self._call(0.0)
         if q.size != p.size:
-            raise ArgumentError(
-                f"function(0) gave q_r of {q.size} and p_r of {p.size} components: expected equal"
-            )
+            raise ArgumentError(f"function(0) gave q_r of {q.size} and p_r of {p.size} components: expected equal")
 
     def _call(self, t: float) -> tuple[FloatArray, FloatArray]:
         try:
             q, p = self.function(t)
         except (TypeError, ValueError) as error:
-            raise ArgumentError(
-                f"function({t:g}) failed ({error}): expected it to return (q_r, p_r)"
-            ) from error
+            raise ArgumentError(f"function({t:g}) failed ({error}): expected it to return (q_r, p_r)") from error
         return ensure_vector(f"q_r({t:g})", q), ensure_vector(f"p_r({t:g})", p)
 
     def position(self, t: float) -> FloatArray:  # noqa: D102

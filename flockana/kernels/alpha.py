@@ -86,7 +86,7 @@ def psi_beta(z, par, panels):
     if z >= par[2]:
         return 0.0
     if z < par[1] * par[2]:
-        return sqrt(1.0 + (z - par[2]) ** 2) - z + par[3]
+        return sigma_norm((z - par[2]) ** 2, 1.0) - z + par[3]  # √(1+s²) − 1 − z: no cancellation
     return clenshaw(z, panels)
 
 

@@ -20,7 +20,7 @@ IndexArray = npt.NDArray[np.int32]
 DENSE_MAX = 128  # up to here the direct search is the faster one (benchmarks/test_kernels.py)
 BLOCK = 8192  # pairs in a block: two index arrays of 32 kB stay in the first-level cache
 _CLAMP = 2.0**40  # farthest cell: agents beyond it share one, which is slow and still right
-_MARGIN = 1.0 + 1e-3  # cells larger than the range by more than the rounding of q/side, 2 · 2⁻⁵³ · _CLAMP cells
+_MARGIN = 1.0 + 1e-6  # cells a little larger than the range, so that rounding in q/side never skips one
 
 # The cell itself is handled apart; of each two opposite neighbouring cells one is listed.
 _FORWARD = np.array(

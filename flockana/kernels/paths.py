@@ -40,9 +40,7 @@ def control_points(h, q0, p0, u0, q1, p1, u1):
             c1, c2 = a + h * p0[i, k] / 3.0, b - h * p1[i, k] / 3.0
             off2 += (points[i, 2, k] - (a + 6.0 * c1 + 3.0 * c2) / 10.0) ** 2
             off3 += (points[i, 3, k] - (3.0 * c1 + 6.0 * c2 + b) / 10.0) ** 2
-        allowance[i] = 0.625 * np.sqrt(
-            max(off2, off3)
-        )  # 10 t²(1−t)² <= 0.625 weighs the two points that differ
+        allowance[i] = 0.625 * np.sqrt(max(off2, off3))  # 10 t²(1−t)² <= 0.625 weighs the two points that differ
     reach = np.zeros(n)
     for c in range(1, 6):
         for k in range(m):
@@ -71,6 +69,35 @@ def _start(points, reach, i, j, stop, stack):
 
 
 @njit(cache=True)
+def _hull_bound(c):
+    """A lower bound of the curve's distance to 0: its control points projected on their mean direction."""
+    axis0, axis1, axis2 = 0.0, 0.0, 0.0
+    for k in range(6):
+        axis0, axis1, axis2 = axis0 + c[k, 0], axis1 + c[k, 1], axis2 + c[k, 2]
+    size = np.sqrt(axis0 * axis0 + axis1 * axis1 + axis2 * axis2)
+    if size == 0.0:
+        return 0.0
+    bound = np.inf
+    for k in range(6):
+        bound = min(bound, (c[k, 0] * axis0 + c[k, 1] * axis1 + c[k, 2] * axis2) / size)
+    return bound
+
+
+@njit(cache=True)
+def _halve(stack, spans, top):
+    """De Casteljau: the left half of the curve stack[top] goes on top of it, the right half remains in place."""
+    c, left, right = stack[top], spans[top, 0], spans[top, 1]
+    middle = 0.5 * (left + right)
+    for level in range(6):
+        for x in range(3):
+            stack[top + 1, level, x] = c[0, x]
+            for k in range(5 - level):
+                c[k, x] = 0.5 * (c[k, x] + c[k + 1, x])
+    spans[top, 0] = middle
+    spans[top + 1, 0], spans[top + 1, 1] = left, middle
+
+
+@njit(cache=True)
 def _least_distance(stack, spans, stop, tol):
     """(lower bound, distance, parameter) of the curve stack[0]: its closest point to 0 is within tol of both.
 
@@ -86,29 +113,33 @@ def _least_distance(stack, spans, stop, tol):
             value = _norm(c[end])
             if value < best:
                 best, where = value, left if end == 0 else right
-        bound, size = 0.0, 0.0
-        axis0, axis1, axis2 = 0.0, 0.0, 0.0
-        for k in range(6):
-            axis0, axis1, axis2 = axis0 + c[k, 0], axis1 + c[k, 1], axis2 + c[k, 2]
-        size = np.sqrt(axis0 * axis0 + axis1 * axis1 + axis2 * axis2)
-        if size > 0.0:
-            bound = np.inf
-            for k in range(6):
-                bound = min(bound, (c[k, 0] * axis0 + c[k, 1] * axis1 + c[k, 2] * axis2) / size)
+        bound = _hull_bound(c)
         if bound >= best - tol or right - left < 2.0**-_DEPTH:
             proven = min(proven, bound)
             top -= 1
             continue
-        middle = 0.5 * (left + right)
-        for level in range(6):  # de Casteljau: the left half goes on top, the right half remains in place
-            for x in range(3):
-                stack[top + 1, level, x] = c[0, x]
-                for k in range(5 - level):
-                    c[k, x] = 0.5 * (c[k, x] + c[k + 1, x])
-        spans[top, 0] = middle
-        spans[top + 1, 0], spans[top + 1, 1] = left, middle
+        _halve(stack, spans, top)
         top += 1
     return proven, best, where
+
+
+@njit(cache=True)
+def _first_touch(stack, spans, tol):
+    """The first parameter at which the curve stack[0] is within tol of 0, -1 if it never is (work space as above)."""
+    spans[0, 0], spans[0, 1] = 0.0, 1.0
+    top = 0
+    while top >= 0:
+        left, right = spans[top, 0], spans[top, 1]
+        if _norm(stack[top, 0]) < tol:
+            return left
+        if _hull_bound(stack[top]) >= tol:
+            top -= 1
+        elif right - left < 2.0**-_DEPTH:
+            return left
+        else:
+            _halve(stack, spans, top)
+            top += 1
+    return -1.0
 
 
 @njit(cache=True)
@@ -124,23 +155,24 @@ def closest_pair(points, reach, allowance, first, second, stop, tol):
         slack = allowance[i] + allowance[j]
         if not _start(points, reach, i, j, lower + slack, stack):
             continue
-        proven, value, at = _least_distance(stack, spans, lower + slack, tol)
+        # there is no sense in resolving what the allowance blurs
+        proven, value, at = _least_distance(stack, spans, lower + slack, max(tol, 0.01 * slack))
         if proven - slack < lower:
             lower = max(0.0, proven - slack)
-            reached, where, a, b = min(value, reached), max(at, 0.0), i, j
-        if lower == 0.0 and reached <= tol:
+            where, a, b = max(at, 0.0), i, j
+        if at >= 0.0:
+            reached = min(reached, value)
+        if lower == 0.0:
             break
     return lower, reached, where, a, b
 
 
 @njit(cache=True)
 def touching_pairs(points, reach, first, second, tol, out):
-    """Mark in `out` the parameter at which each pair's quintics come within tol of each other, -1 if never."""
+    """Mark in `out` the first parameter at which each pair's quintics are within tol of each other, -1 if never."""
     stack, spans = np.empty((_DEPTH + 2, 6, 3)), np.empty((_DEPTH + 2, 2))
     for k in range(first.size):
         out[k] = -1.0
         if not _start(points, reach, first[k], second[k], tol, stack):
             continue
-        value, at = _least_distance(stack, spans, tol, 0.0)
-        if at >= 0.0 and value < tol:
-            out[k] = at
+        out[k] = _first_touch(stack, spans, tol)

@@ -62,10 +62,9 @@ def phi_slope(s, a, b, c):
 def phi_integral(s, a, b, c):
     """∫_0^s φ = ½[(a+b)(√(1+(s+c)²) − √(1+c²)) + (a−b)s] ≥ 0, rearranged: nothing cancels where s is small."""
     at_s, at_0, product = sqrt(1.0 + (s + c) ** 2), sqrt(1.0 + c * c), c * (s + c)
+    gap = at_s * at_0 - product
     if product > 0.0:
-        gap = (1.0 + c * c + (s + c) ** 2) / (at_s * at_0 + product)  # at_s at_0 − product
-    else:
-        gap = at_s * at_0 - product
+        gap = (1.0 + c * c + (s + c) ** 2) / (at_s * at_0 + product)
     return 0.5 * (a + b) * (s / (at_s + at_0)) ** 2 * (gap + 1.0) / at_0
 
 

@@ -29,11 +29,9 @@ def panel_edges(left: float, right: float, centre: float) -> FloatArray:
     Examples
     --------
     >>> panel_edges(0.0, 4.0, 1.0).tolist()
-    [0.0, 1.0, 2.0, 4.0]
+    [0.0, 1.0, 2.0, 3.0, 4.0]
     """
-    steps = 2.0 ** np.arange(
-        max(1, int(np.ceil(np.log2(1.0 + abs(left - centre) + abs(right - centre)))) + 1)
-    )
+    steps = 2.0 ** np.arange(max(1, int(np.ceil(np.log2(1.0 + abs(left - centre) + abs(right - centre)))) + 1))
     marks = np.concatenate([centre - steps, [centre], centre + steps])
     return np.concatenate([[left], np.sort(marks[(marks > left) & (marks < right)]), [right]])
 

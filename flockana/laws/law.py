@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, ClassVar
 
 from flockana.checks import FloatArray, ensure_finite_scalar, ensure_state
 from flockana.errors import ArgumentError
@@ -17,7 +17,7 @@ class Law(ABC):
     `energy_rate` are the validated public face of the same functions.
     """
 
-    references: tuple[str, ...] = ()
+    references: ClassVar[tuple[str, ...]] = ()
 
     @abstractmethod
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
@@ -43,13 +43,22 @@ class Law(ABC):
         """
         return float("nan")
 
-    def check_dimension(self, m: int) -> None:
+    def check_dimension(self, m: int) -> None:  # noqa: B027  # nothing to check unless a subclass says so
         """Raise if the law does not live in m dimensions; a law with vectors in its parameters overrides this.
 
         Parameters
         ----------
         m : int
             Dimension of the flock.
+        """
+
+    def check_start(self, q: FloatArray, p: FloatArray) -> None:  # noqa: B027  # as `check_dimension`
+        """Raise if the law must not be started from this state; `simulate` asks before it integrates.
+
+        Parameters
+        ----------
+        q, p : ndarray, shape (n, m)
+            Initial positions and velocities.
         """
 
     def _checked(self, t: Any, q: Any, p: Any) -> tuple[float, FloatArray, FloatArray]:
@@ -110,7 +119,7 @@ class DiscreteLaw(ABC):
     names to arrays, is passed along, and is recorded over time in `Trajectory.extra`.
     """
 
-    references: tuple[str, ...] = ()
+    references: ClassVar[tuple[str, ...]] = ()
     dt: float
 
     @abstractmethod
@@ -151,13 +160,22 @@ class DiscreteLaw(ABC):
         """
         return float("nan")
 
-    def check_dimension(self, m: int) -> None:
+    def check_dimension(self, m: int) -> None:  # noqa: B027  # nothing to check unless a subclass says so
         """Raise if the law does not live in m dimensions.
 
         Parameters
         ----------
         m : int
             Dimension of the flock.
+        """
+
+    def check_start(self, q: FloatArray, p: FloatArray) -> None:  # noqa: B027  # as `check_dimension`
+        """Raise if the law must not be started from this state.
+
+        Parameters
+        ----------
+        q, p : ndarray, shape (n, m)
+            Initial positions and velocities.
         """
 
 
@@ -177,6 +195,4 @@ def ensure_law(law: Any) -> Law | DiscreteLaw:
     if isinstance(law, Law | DiscreteLaw):
         return law
     hint = "; did you forget the parentheses?" if isinstance(law, type) else ""
-    raise ArgumentError(
-        f"law = {law!r}: expected a law such as Algorithm2(target=StaticTarget((0, 0))){hint}"
-    )
+    raise ArgumentError(f"law = {law!r}: expected a law such as Algorithm2(target=StaticTarget((0, 0))){hint}")

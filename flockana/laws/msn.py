@@ -67,9 +67,7 @@ class MSNDiscretisation(DiscreteLaw):
         if not isinstance(self.in_place, bool):
             raise ArgumentError(f"in_place = {self.in_place!r}: expected True or False")
         object.__setattr__(self, "dt", ensure_positive("dt", self.dt))
-        object.__setattr__(
-            self, "position_factor", ensure_finite_scalar("position_factor", self.position_factor)
-        )
+        object.__setattr__(self, "position_factor", ensure_finite_scalar("position_factor", self.position_factor))
 
     @property
     def alpha(self) -> AlphaInteraction:

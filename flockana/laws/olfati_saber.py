@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.law import Law
 
 if TYPE_CHECKING:
-    from scipy.sparse import csr_array, sparray
+    from scipy.sparse import csr_array
 
 
 def _ensure(name: str, value: Any, cls: type) -> None:
@@ -30,7 +30,8 @@ def moving_frame(x: FloatArray) -> FloatArray:
     x : ndarray, shape (n, m)
         Positions or velocities.
     """
-    return x - x.mean(axis=0)
+    deviations: FloatArray = x - x.mean(axis=0)
+    return deviations
 
 
 @dataclass(frozen=True)
@@ -50,14 +51,14 @@ class Algorithm1(Law):
 
     >>> law = Algorithm1()
     >>> u = law.acceleration(0.0, [[0.0, 0.0], [8.0, 0.0]], [[0.0, 0.0], [0.0, 0.0]])
-    >>> bool(u[0, 0] > 0.0), u.sum()
+    >>> bool(u[0, 0] > 0.0), float(u.sum())
     (True, 0.0)
     """
 
     alpha: AlphaInteraction = field(default_factory=AlphaInteraction)
     gains: Gains = field(default_factory=Gains)
 
-    references = ("olfati-saber-2006",)
+    references: ClassVar[tuple[str, ...]] = ("olfati-saber-2006",)
 
     def __post_init__(self) -> None:
         _ensure("alpha", self.alpha, AlphaInteraction)
@@ -100,7 +101,7 @@ class Algorithm1(Law):
         q, p = ensure_state(q, p)
         return self.hamiltonian(0.0, q, moving_frame(p))
 
-    def stiffness(self, q: Any) -> sparray:
+    def stiffness(self, q: Any) -> csr_array:
         """Hessian of the structural potential, c1α ∇²V (order of ``q.ravel()``), sparse.
 
         Parameters
@@ -108,8 +109,8 @@ class Algorithm1(Law):
         q : array_like, shape (n, m)
             Positions.
         """
-        hessian: csr_array = self.alpha.hessian(ensure_points("q", q))
-        return self.gains.c1_alpha * hessian
+        hessian: csr_array = self.gains.c1_alpha * self.alpha.hessian(ensure_points("q", q))
+        return hessian
 
 
 @dataclass(frozen=True)
@@ -142,15 +143,13 @@ class Algorithm2(Law):
     gains: Gains = field(default_factory=Gains)
     target: Target = None  # type: ignore[assignment]  # no default makes sense: checked below
 
-    references = ("olfati-saber-2006",)
+    references: ClassVar[tuple[str, ...]] = ("olfati-saber-2006",)
 
     def __post_init__(self) -> None:
         _ensure("alpha", self.alpha, AlphaInteraction)
         _ensure("gains", self.gains, Gains)
         if not isinstance(self.target, Target):
-            raise ArgumentError(
-                f"target = {self.target!r}: expected a γ-agent such as StaticTarget((0.0, 0.0))"
-            )
+            raise ArgumentError(f"target = {self.target!r}: expected a γ-agent such as StaticTarget((0.0, 0.0))")
 
     def check_dimension(self, m: int) -> None:
         """Raise unless the γ-agent lives in m dimensions.
@@ -180,9 +179,7 @@ class Algorithm2(Law):
         q_r, p_r = self.target.state(t)
         u -= g.c1_gamma * (q - q_r) + g.c2_gamma * (p - p_r)
         v = moving_frame(p)
-        return u, -g.c2_gamma * float(
-            np.sum(v * v)
-        ) - g.c2_alpha * dissipation  # L̂ ignores the common velocity
+        return u, -g.c2_gamma * float(np.sum(v * v)) - g.c2_alpha * dissipation  # L̂ ignores the common velocity
 
     def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:
         """H_λ(x, v) = c1α V(x) + c1γ J(x) + K(v) in the moving frame, for every target, unchecked.
@@ -209,7 +206,7 @@ class Algorithm2(Law):
         q, p = ensure_state(q, p)
         return self.hamiltonian(0.0, q, p)
 
-    def stiffness(self, q: Any) -> sparray:
+    def stiffness(self, q: Any) -> csr_array:
         """Hessian of U_λ: c1α ∇²V + c1γ I on deviations x (order of ``q.ravel()``), sparse.
 
         Parameters
@@ -220,4 +217,6 @@ class Algorithm2(Law):
         from scipy.sparse import eye_array
 
         q = ensure_points("q", q)
-        return self.gains.c1_alpha * self.alpha.hessian(q) + self.gains.c1_gamma * eye_array(q.size)
+        structural = self.gains.c1_alpha * self.alpha.hessian(q) + self.gains.c1_gamma * eye_array(q.size)
+        hessian: csr_array = structural.tocsr()
+        return hessian

@@ -8,7 +8,7 @@ import numpy as np
 
 from flockana.errors import UnknownNameError
 from flockana.laws.law import DiscreteLaw
-from flockana.plots.style import BLUE, GREEN, INK, MUTED, PURPLE, VERMILLION, ensure_axes, style
+from flockana.plots.style import BLUE, GREEN, INK, MUTED, PURPLE, VERMILLION, ensure_axes, hairline, legend_above, style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -157,7 +157,7 @@ def distances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     if trajectory.n == 1:
         return _empty(ax, label, "one agent has no distances")
     t, least = trajectory.t, trajectory.metrics()["min_distance"].values
-    ax.plot(t, least, color=BLUE, linestyle="-", label="at the samples")
+    ax.plot(t, least, color=BLUE, linestyle="-", linewidth=2.4, alpha=0.6, label="at the samples")
     if len(t) > 1 and not isinstance(trajectory.law, DiscreteLaw):
         bound = trajectory.closest_approach().lower_by_interval
         ax.stairs(bound, t, baseline=None, color=VERMILLION, linestyle="--", linewidth=1.0, label="lower bound between")
@@ -166,7 +166,7 @@ def distances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
         if hasattr(pair_law, name):
             ax.axhline(getattr(pair_law, name), color=colour, linestyle=dash, linewidth=1.1, label=name)
     ax.set_ylim(bottom=0.0)
-    ax.legend(loc="best", ncols=2)
+    legend_above(ax)
     return _frame(ax, trajectory, label)
 
 
@@ -187,7 +187,8 @@ def speeds(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     ax = ensure_axes(ax)
     t, target = trajectory.t, getattr(trajectory.law, "target", None)
     speed = np.linalg.norm(trajectory.p, axis=2)
-    ax.plot(t, speed, color=BLUE, linestyle="-", linewidth=0.4, alpha=0.35)
+    width, alpha = hairline(trajectory.n)
+    ax.plot(t, speed, color=BLUE, linestyle="-", linewidth=width, alpha=alpha)
     ax.plot([], [], color=BLUE, linestyle="-", linewidth=0.8, label="agents")
     centre = np.linalg.norm(trajectory.p.mean(axis=1), axis=1)
     ax.plot(t, centre, color=INK, linestyle="-", linewidth=1.4, label="centre of mass")
@@ -195,7 +196,7 @@ def speeds(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
         handed = [np.linalg.norm(target.state(s)[1]) for s in t.tolist()]
         ax.plot(t, handed, color=VERMILLION, linestyle="--", label="γ-agent's ‖p_r‖")
     ax.set_ylim(bottom=0.0)
-    ax.legend(loc="best")
+    legend_above(ax)
     return _frame(ax, trajectory, "speed (length/time)")
 
 
@@ -221,7 +222,7 @@ def centre_of_mass(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
         path = np.array([target.position(s) for s in t.tolist()])
         for k, colour in zip(range(trajectory.m), (BLUE, GREEN, PURPLE), strict=False):
             ax.plot(t, path[:, k], color=colour, linestyle="--", linewidth=1.1, label=f"{'xyz'[k]} of the γ-agent")
-    ax.legend(loc="best")
+    legend_above(ax)
     return _frame(ax, trajectory, "position (length)")
 
 

@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
-from mpl_toolkits.mplot3d.art3d import Line3DCollection
+from mpl_toolkits.mplot3d.art3d import Line3DCollection  # type: ignore[import-untyped]
 
 from flockana.checks import FloatArray, ensure_finite_scalar, ensure_points
 from flockana.nets import link_lengths, links
-from flockana.plots.style import INK, MUTED, STRAIN, VERMILLION, ensure_axes
+from flockana.plots.style import GREEN, INK, MUTED, STRAIN, VERMILLION, ensure_axes, frame_space
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from flockana.trajectory import Trajectory
 
-_ARROW = 0.09  # longest arrow as a share of the axes' width
+_ARROW = 0.07  # longest arrow as a share of the axes' width
 _AT_REST = 1e-9  # speed, relative to the size of the flock per unit of time, below which no arrow is drawn
 
 
@@ -103,21 +103,23 @@ def configuration(
     """
     points = ensure_points("q", q)
     m = points.shape[1]
-    ax = ensure_axes(ax, m=m)
+    axes: Any = ensure_axes(ax, m=m)
     x = _in_plane(points)
     if r is not None and len(points) > 1:
-        _links(ax, x, points, d, r, bar)
+        _links(axes, x, points, d, r, bar)
     size = float(np.clip(900.0 / len(x), 3.0, 26.0))
-    ax.scatter(*x.T, s=size, color=INK, linewidths=0, zorder=3, label="agents")
+    axes.scatter(*x.T, s=size, color=INK, linewidths=0, zorder=3, label="agents")
+    seen = x
     if target is not None:
         mark = _in_plane(np.asarray(target, dtype=np.float64)[None, :])
-        ax.scatter(
+        axes.scatter(
             *mark.T, s=110, marker="*", color=VERMILLION, edgecolors="white", linewidths=0.6, zorder=4, label="γ-agent"
         )
-    fastest = _arrows(ax, x, p)
-    ax.set_title(title + (f"   longest arrow: {fastest:.3g} length/time" if fastest else ""), fontsize=9)
-    _frame(ax, m)
-    return ax
+        seen = np.vstack([x, mark])
+    fastest = _arrows(axes, x, p)
+    axes.set_title(title + (f"   longest arrow: {fastest:.3g} length/time" if fastest else ""), fontsize=9)
+    _frame(axes, seen, m)
+    return axes  # type: ignore[no-any-return]  # the stubs have no three-dimensional axes
 
 
 def _in_plane(points: FloatArray) -> FloatArray:
@@ -125,10 +127,10 @@ def _in_plane(points: FloatArray) -> FloatArray:
     return np.column_stack([points, np.zeros(len(points))]) if points.shape[1] == 1 else points
 
 
-def _links(ax: Axes, x: FloatArray, points: FloatArray, d: float | None, r: float, bar: bool) -> None:
+def _links(ax: Any, x: FloatArray, points: FloatArray, d: float | None, r: float, bar: bool) -> None:
     pairs = links(points, r)
     segments = x[pairs]
-    kind = Line3DCollection if x.shape[1] == 3 else LineCollection
+    kind: Any = Line3DCollection if x.shape[1] == 3 else LineCollection
     width = float(np.clip(120.0 / len(points), 0.7, 1.8))
     if d is None:
         ax.add_collection(kind(segments, colors=MUTED, linewidths=width, zorder=2))
@@ -138,16 +140,12 @@ def _links(ax: Axes, x: FloatArray, points: FloatArray, d: float | None, r: floa
     lines.set_array(strain)
     ax.add_collection(lines)
     if bar:
-        spare = {"pad": 0.12} if x.shape[1] == 3 else {}
-        figure = ax.get_figure()
-        assert figure is not None
-        scale = figure.colorbar(
-            lines, ax=ax, extend="min", shrink=0.75, aspect=28, label="strain (length − d)/d", **spare
-        )
+        label, pad = "strain (length − d)/d", 0.12 if x.shape[1] == 3 else 0.03
+        scale = ax.get_figure().colorbar(lines, ax=ax, extend="min", shrink=0.75, aspect=28, pad=pad, label=label)
         scale.outline.set_visible(False)
 
 
-def _arrows(ax: Axes, x: FloatArray, p: Any) -> float:
+def _arrows(ax: Any, x: FloatArray, p: Any) -> float:
     """Draw velocities; return the largest speed drawn, 0 if none is worth an arrow."""
     if p is None:
         return 0.0
@@ -157,23 +155,20 @@ def _arrows(ax: Axes, x: FloatArray, p: Any) -> float:
     if fastest <= _AT_REST * extent:
         return 0.0
     if x.shape[1] == 3:
-        ax.quiver(*x.T, *v.T, length=_ARROW * extent / fastest, color=MUTED, linewidth=0.6, arrow_length_ratio=0.25)
+        ax.quiver(*x.T, *v.T, length=_ARROW * extent / fastest, color=GREEN, linewidth=0.6, arrow_length_ratio=0.25)
     else:
         ax.quiver(
-            *x.T, *v.T, angles="xy", scale_units="width", scale=fastest / _ARROW, width=0.0022, color=MUTED, zorder=2.5
+            *x.T, *v.T, angles="xy", scale_units="width", scale=fastest / _ARROW, width=0.0022, color=GREEN, zorder=2.5
         )
     return fastest
 
 
-def _frame(ax: Axes, m: int) -> None:
+def _frame(ax: Any, points: FloatArray, m: int) -> None:
     """Equal axes with units; a line has no y."""
-    names = "xyz"[: max(m, 2)]
-    for name in names:
-        getattr(ax, f"set_{name}label")(f"{name} (length)")
-    if m == 1:
-        ax.set_ylabel("")
-        ax.set_yticks([])
-        ax.set_ylim(-1.0, 1.0)
-        ax.margins(x=0.05)
+    if m > 1:
+        frame_space(ax, points)
         return
-    ax.set_aspect("equal", adjustable="datalim" if m == 2 else "box")
+    ax.set_xlabel("x (length)")
+    ax.set_yticks([])
+    ax.set_ylim(-1.0, 1.0)
+    ax.margins(x=0.05)

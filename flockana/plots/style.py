@@ -9,6 +9,9 @@ from typing import TYPE_CHECKING, Any
 import matplotlib as mpl
 from cycler import cycler
 from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.ticker import MaxNLocator
+
+from flockana.checks import FloatArray
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -86,3 +89,62 @@ def ensure_axes(ax: Any, *, m: int = 2) -> Axes:
     with style():
         figure = plt.figure(figsize=(5.2, 4.2))
         return figure.add_subplot(projection="3d" if m == 3 else None)
+
+
+def legend_above(ax: Any) -> None:
+    """Put the legend above the axes, where it hides no data.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes
+        With labelled artists.
+    """
+    columns = 3 if len(ax.get_legend_handles_labels()[0]) in (3, 5, 6) else 4
+    ax.legend(
+        loc="lower left",
+        bbox_to_anchor=(0.0, 1.0),
+        ncols=columns,
+        borderaxespad=0.2,
+        handlelength=1.8,
+        columnspacing=1.2,
+    )
+
+
+def hairline(n: int) -> tuple[float, float]:
+    """Width and opacity of one of n lines that share axes: the more there are, the fainter.
+
+    Parameters
+    ----------
+    n : int
+        Number of lines.
+
+    Examples
+    --------
+    >>> hairline(3), hairline(150)
+    ((1.2, 0.9), (0.4, 0.4))
+    """
+    return min(max(20.0 / n, 0.4), 1.2), min(max(20.0 / n, 0.4), 0.9)
+
+
+def frame_space(ax: Any, points: FloatArray) -> None:
+    """Label the axes of space and scale them equally: a cube about the points where m = 3.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes
+        Flat or three-dimensional.
+    points : ndarray, shape (k, m)
+        What must be in view, m = 2 or 3.
+    """
+    names = "xyz"[: points.shape[1]]
+    for name in names:
+        getattr(ax, f"set_{name}label")(f"{name} (length)")
+    if len(names) == 2:
+        ax.set_aspect("equal", adjustable="datalim")
+        return
+    ax.set_box_aspect(None, zoom=0.82)  # room for the labels, which the layout does not measure
+    low, high = points.min(axis=0), points.max(axis=0)
+    middle, half = 0.5 * (low + high), 0.53 * float((high - low).max()) or 1.0
+    for name, centre in zip(names, middle.tolist(), strict=True):
+        getattr(ax, f"set_{name}lim")(centre - half, centre + half)
+        getattr(ax, f"{name}axis").set_major_locator(MaxNLocator(4))

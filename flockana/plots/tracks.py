@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.collections import LineCollection
-from mpl_toolkits.mplot3d.art3d import Line3DCollection
+from mpl_toolkits.mplot3d.art3d import Line3DCollection  # type: ignore[import-untyped]
 
 from flockana.checks import FloatArray
-from flockana.plots.style import BLUE, INK, MUTED, VERMILLION, ensure_axes
+from flockana.plots.style import BLUE, INK, MUTED, VERMILLION, ensure_axes, frame_space, hairline, legend_above
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -31,16 +31,17 @@ def trajectories(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     -------
     matplotlib.axes.Axes
     """
-    ax = ensure_axes(ax, m=trajectory.m)
+    axes: Any = ensure_axes(ax, m=trajectory.m)
     paths = np.stack([_plane(trajectory.t, trajectory.q[:, i]) for i in range(trajectory.n)])
     kind = Line3DCollection if trajectory.m == 3 else LineCollection
-    ax.add_collection(kind(list(paths), colors=BLUE, linewidths=0.5, alpha=0.45))
-    ax.scatter(*paths[:, 0].T, s=7, facecolors="none", edgecolors=MUTED, linewidths=0.6, label="start", zorder=3)
-    ax.scatter(*paths[:, -1].T, s=7, color=INK, linewidths=0, label="end", zorder=3)
-    _target(ax, trajectory)
-    _frame(ax, trajectory.m)
-    ax.legend(loc="best")
-    return ax
+    width, alpha = hairline(trajectory.n)
+    axes.add_collection(kind(list(paths), colors=BLUE, linewidths=width, alpha=alpha))
+    axes.scatter(*paths[:, 0].T, s=7, facecolors="none", edgecolors=MUTED, linewidths=0.6, label="start", zorder=3)
+    axes.scatter(*paths[:, -1].T, s=7, color=INK, linewidths=0, label="end", zorder=3)
+    target = _target(axes, trajectory)
+    _frame(axes, np.vstack([paths.reshape(-1, paths.shape[2]), *target]), trajectory.m)
+    legend_above(axes)
+    return axes  # type: ignore[no-any-return]  # the stubs have no three-dimensional axes
 
 
 def centre_path(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
@@ -57,15 +58,15 @@ def centre_path(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     -------
     matplotlib.axes.Axes
     """
-    ax = ensure_axes(ax, m=trajectory.m)
+    axes: Any = ensure_axes(ax, m=trajectory.m)
     centre = _plane(trajectory.t, trajectory.q.mean(axis=1))
-    ax.plot(*centre.T, color=BLUE, linestyle="-", linewidth=1.8, label="centre of mass")
-    ax.scatter(*centre[:1].T, s=28, facecolors="white", edgecolors=BLUE, zorder=3)
-    ax.scatter(*centre[-1:].T, s=28, color=BLUE, zorder=3)
-    _target(ax, trajectory)
-    _frame(ax, trajectory.m)
-    ax.legend(loc="best")
-    return ax
+    axes.plot(*centre.T, color=BLUE, linestyle="-", linewidth=1.8, label="centre of mass")
+    axes.scatter(*centre[:1].T, s=28, facecolors="white", edgecolors=BLUE, zorder=3)
+    axes.scatter(*centre[-1:].T, s=28, color=BLUE, zorder=3)
+    target = _target(axes, trajectory)
+    _frame(axes, np.vstack([centre, *target]), trajectory.m)
+    legend_above(axes)
+    return axes  # type: ignore[no-any-return]  # the stubs have no three-dimensional axes
 
 
 def _plane(t: FloatArray, x: FloatArray) -> FloatArray:
@@ -73,19 +74,20 @@ def _plane(t: FloatArray, x: FloatArray) -> FloatArray:
     return np.column_stack([t, x]) if x.shape[1] == 1 else x
 
 
-def _target(ax: Axes, trajectory: Trajectory) -> None:
+def _target(ax: Any, trajectory: Trajectory) -> tuple[FloatArray, ...]:
+    """Draw the γ-agent's path, if there is one, and return it."""
     target = getattr(trajectory.law, "target", None)
-    if target is not None:
-        path = _plane(trajectory.t, np.array([target.position(t) for t in trajectory.t.tolist()]))
-        ax.plot(*path.T, color=VERMILLION, linestyle="--", linewidth=1.4, label="γ-agent", zorder=4)
-        ax.scatter(*path[-1:].T, s=90, marker="*", color=VERMILLION, edgecolors="white", linewidths=0.6, zorder=5)
+    if target is None:
+        return ()
+    path = _plane(trajectory.t, np.array([target.position(t) for t in trajectory.t.tolist()]))
+    ax.plot(*path.T, color=VERMILLION, linestyle="--", linewidth=1.4, label="γ-agent", zorder=4)
+    ax.scatter(*path[-1:].T, s=90, marker="*", color=VERMILLION, edgecolors="white", linewidths=0.6, zorder=5)
+    return (path,)
 
 
-def _frame(ax: Axes, m: int) -> None:
+def _frame(ax: Any, points: FloatArray, m: int) -> None:
     if m == 1:
         ax.set_xlabel("t (time)")
         ax.set_ylabel("x (length)")
-        return
-    for name in "xyz"[:m]:
-        getattr(ax, f"set_{name}label")(f"{name} (length)")
-    ax.set_aspect("equal", adjustable="datalim" if m == 2 else "box")
+    else:
+        frame_space(ax, points)

@@ -12,6 +12,7 @@ from flockana.symbolic.norms import EPS, sigma_norm
 
 _H, _A, _B, _D, _R, _D_PRIME = sp.symbols("h a b d r d'", positive=True)
 _C1_ALPHA, _C2_ALPHA, _C1_GAMMA, _C2_GAMMA = sp.symbols("c_1^alpha c_2^alpha c_1^gamma c_2^gamma", nonnegative=True)
+_C1_BETA, _C2_BETA = sp.symbols("c_1^beta c_2^beta", nonnegative=True)
 
 
 def exact(name: str, value: Any) -> sp.Expr:
@@ -159,6 +160,8 @@ class GainSymbols:
         Of the potential force and of the velocity consensus between agents.
     c1_gamma, c2_gamma : number or sympy.Expr
         Of the navigational feedback: position and velocity.
+    c1_beta, c2_beta : number or sympy.Expr
+        Of the repulsion from obstacles and of the damping at them.
 
     Examples
     --------
@@ -170,6 +173,8 @@ class GainSymbols:
     c2_alpha: sp.Expr = _C2_ALPHA
     c1_gamma: sp.Expr = _C1_GAMMA
     c2_gamma: sp.Expr = _C2_GAMMA
+    c1_beta: sp.Expr = _C1_BETA
+    c2_beta: sp.Expr = _C2_BETA
 
     def __post_init__(self) -> None:
         for field in fields(self):

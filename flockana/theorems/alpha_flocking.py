@@ -20,7 +20,7 @@ def _always(
     worst = int(np.argmin(margin))
     return Claim(
         name,
-        judge(float(margin[worst]), 0.0, []) if margin[worst] != 0.0 else "verified",
+        judge(float(margin[worst]), 0.0, []),
         computed=float(value[worst]),
         stated=stated,
         margin=float(margin[worst]),
@@ -50,7 +50,8 @@ def _plain(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], l
     share, radius = part.metrics().giant_share.values, part.metrics().cohesion_radius.values
     bound = tolerances.cohesion * float(radius[0])
     return [_window(run, part)], [
-        _always("giant", part, share - tolerances.giant, share, f"C* > {tolerances.giant:g}", "giant component C*"),
+        # shares come in steps of 1/n: a quarter step makes "more than" strict without a margin of 0
+        _always("giant", part, share - tolerances.giant - 0.25 / run.n, share, f"C* > {tolerances.giant:g}", "giant component C*"),
         _always("cohesive", part, bound - radius, radius, f"R <= {bound:.4g}", "cohesion radius R"),
         *_common(part, tolerances),
     ]
@@ -60,7 +61,8 @@ def _strict(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], 
     part = _settled(run, tolerances)
     connectivity = part.metrics().connectivity.values
     return [_window(run, part)], [
-        _always("flock", part, connectivity - 1.0, connectivity, "C = 1", "connectivity C"),
+        # C comes in steps of 1/(n − 1): half a step below 1 lies between connected and not
+        _always("flock", part, connectivity - 1.0 + 0.5 / max(1, run.n - 1), connectivity, "C = 1", "connectivity C"),
         *_common(part, tolerances),
     ]
 

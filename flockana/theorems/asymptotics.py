@@ -173,5 +173,6 @@ def pairs_at_one_instant(
         margin=margin,
         error=0.0,
         witness={"time": float(run.t[worst]), "coincident": int(together[worst]), "allowed": int(allowed[worst])},
-        detail=f"per instant: at most {most} pairs coincide at one time; the energy allows {int(allowed.min())} or more",
+        detail=f"per instant: at most {most} pairs coincide at one time; the energy never allows fewer than "
+        f"{int(allowed.min())}",
     )

@@ -65,7 +65,7 @@ def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
             margin=-rate,
             error=0.0,
             witness={"q": [str(x) for x in state.q], "p": [str(x) for x in state.p]},
-            detail=f"at an exact state of two agents the printed H rises at {rate:.4g}, the true one falls at {true_rate:g}",
+            detail=f"at an exact state of two agents the printed H has rate {rate:.4g}, the true one {true_rate:g}",
         ),
         _rising_run(),
         _identity(

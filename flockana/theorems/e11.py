@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from math import sqrt
 
+import numpy as np
+
 from flockana.environment.targets import StaticTarget
 from flockana.gradient_flow import gradient_flow
 from flockana.interactions import Gains
@@ -15,11 +17,13 @@ from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances
 from flockana.trajectory import Trajectory
 
 _RINGS = (1, 2, 3)  # hexagons of 7, 19 and 37 agents
-_HALVINGS = 8
+_LOWEST, _FACTOR = 0.1, 1.3  # where the search starts, and its steps
+_HALVINGS = 3
+_NUDGE = 1e-4  # of d
 
 
-def collapse_threshold(law: Algorithm2, rings: int, *, low: float = 1e-2, high: float = 1e2) -> tuple[float, float]:
-    """Bracket the ratio c1γ/c1α above which a relaxed hexagonal patch ends with coincident agents.
+def collapses(law: Algorithm2, rings: int, ratio: float) -> bool:
+    """Whether a hexagonal patch, slightly disturbed, relaxes to coincident agents at this c1γ/c1α.
 
     Parameters
     ----------
@@ -27,23 +31,41 @@ def collapse_threshold(law: Algorithm2, rings: int, *, low: float = 1e-2, high: 
         Its pair law is used; gains and target are set here.
     rings : int
         Rings of the patch.
-    low, high : float
-        A ratio known to be safe and one known to collapse; bisected on a logarithmic scale.
+    ratio : float
+        c1γ/c1α.
+    """
+    start = hexagonal_patch(rings, law.alpha.d)
+    # a perfect hexagon would be squeezed along its symmetry, past the ratio at which it is no minimum any more
+    start = start + _NUDGE * law.alpha.d * np.random.default_rng(0).standard_normal(start.shape)
+    squeezed = Algorithm2(law.alpha, Gains(c1_alpha=1.0, c1_gamma=ratio), StaticTarget((0.0, 0.0)))
+    limit = gradient_flow(squeezed, start)
+    return terminal_state(squeezed, limit.q, 0.0 * limit.q).coincident > 0
+
+
+def collapse_threshold(law: Algorithm2, rings: int) -> tuple[float, float]:
+    """Bracket the least ratio c1γ/c1α at which a hexagonal patch collapses.
+
+    The ratio is raised until it does, then bisected: far above the threshold agents may rest apart again.
+
+    Parameters
+    ----------
+    law : Algorithm2
+        Its pair law is used.
+    rings : int
+        Rings of the patch.
 
     Returns
     -------
     tuple of float
         (largest ratio seen safe, least ratio seen to collapse).
     """
-    start = hexagonal_patch(rings, law.alpha.d)
+    high = _LOWEST
+    while not collapses(law, rings, high):
+        high *= _FACTOR
+    low = high / _FACTOR
     for _ in range(_HALVINGS):
-        ratio = sqrt(low * high)
-        squeezed = Algorithm2(law.alpha, Gains(c1_alpha=1.0, c1_gamma=ratio), StaticTarget((0.0, 0.0)))
-        limit = gradient_flow(squeezed, start)
-        if terminal_state(squeezed, limit.q, 0.0 * limit.q).coincident:
-            high = ratio
-        else:
-            low = ratio
+        middle = sqrt(low * high)
+        low, high = (low, middle) if collapses(law, rings, middle) else (middle, high)
     return low, high
 
 
@@ -98,8 +120,8 @@ THEOREM = Theorem(
     id="E11",
     title="Algorithm 2 collapses when c1γ/c1α is too large",
     statement=(
-        "The sources take Algorithm 2 to yield a lattice. The γ-agent presses on every link: beyond a ratio c1γ/c1α that "
-        "falls with n, agents coincide for good, in a strict local minimum of U_λ."
+        "The sources take Algorithm 2 to yield a lattice. The γ-agent presses on every link: beyond a ratio c1γ/c1α "
+        "that falls with n, agents coincide for good, in a strict local minimum of U_λ."
     ),
     source="slides, summary of Theorem 3; both student projects",
     kind="trajectory",

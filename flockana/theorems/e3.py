@@ -119,8 +119,8 @@ def _strained(law: Algorithm1, tolerances: Tolerances) -> Claim:
         margin=tolerances.lattice - end.strain,
         error=limit.force,
         witness={"start": f"random_disc{_STRAINED}", "agents": len(parts[worst]), "links": end.links},
-        detail=f"{len(parts[worst])} distinct agents at rest with links of {end.shortest:.4g} to {end.longest:.4g}; least "
-        f"curvature {end.curvature:.1g}: not negative",
+        detail=f"{len(parts[worst])} distinct agents at rest with links of {end.shortest:.4g} to {end.longest:.4g}; "
+        f"least curvature {end.curvature:.1g}: not negative",
     )
 
 
@@ -155,9 +155,10 @@ THEOREM = Theorem(
     id="E3",
     title="The limit need not be an α-lattice",
     statement=(
-        "Theorem 1(i) and the slides' summaries say that almost every solution converges to an α-lattice. A strict local "
-        "minimum of V that is none, modulo rigid motions, attracts an open set of starts; Algorithm 2's λJ strains "
-        "every lattice. (Theorem 1 assumes in addition that all of Ω_c stays connected, which such starts do not grant.)"
+        "Theorem 1(i) and the slides' summaries say that almost every solution converges to an α-lattice. A strict "
+        "local minimum of V that is none, modulo rigid motions, attracts an open set of starts; Algorithm 2's λJ "
+        "strains every lattice. (Theorem 1 assumes in addition that all of Ω_c stays connected, which such starts do "
+        "not grant.)"
     ),
     source="slides, Theorems 1(i) and 3(ii) and their summaries",
     kind="fixed",

@@ -23,7 +23,7 @@ def _step(factor: float) -> tuple[float, float]:
 
 
 def _symbolic_excess(v: str) -> tuple[str, bool]:
-    """(q + v dt + ½ u dt² minus the integral of a constant u, as text; whether it is zero), v at the start or the end."""
+    """(q + v dt + ½ u dt² minus what a constant u does, as text; whether it is zero), v of the step's start or end."""
     import sympy as sp
 
     q, p, u, dt, s = sp.symbols("q p u dt s")

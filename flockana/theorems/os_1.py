@@ -6,9 +6,9 @@ from math import sqrt
 
 import numpy as np
 
-from flockana.lattice import harborth
+from flockana.lattice import classify, harborth
 from flockana.laws.olfati_saber import Algorithm1
-from flockana.terminal import classify, terminal_state
+from flockana.terminal import terminal_state
 from flockana.theorems.asymptotics import no_collision, settled, velocities_match
 from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
 from flockana.trajectory import Trajectory
@@ -44,8 +44,8 @@ def _stays_together(run: Trajectory) -> Hypothesis:
 def _below_c_star(run: Trajectory) -> Hypothesis:
     energy = run.law.structural_energy(run.q[0], run.p[0])
     c_star = run.law.gains.c1_alpha * run.law.alpha.c_star
-    status = "met" if energy < c_star else "unmet"
-    return Hypothesis("H(x(0), v(0)) < c*", status, c_star - energy, f"H(0) = {energy:.5g}, c* = {c_star:.5g}")
+    detail = f"H(0) = {energy:.5g}, c* = {c_star:.5g}"
+    return Hypothesis("H(x(0), v(0)) < c*", "met" if energy < c_star else "unmet", c_star - energy, detail)
 
 
 def _lattice(run: Trajectory, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
@@ -88,9 +88,9 @@ THEOREM = Theorem(
     id="os-1",
     title="Algorithm 1: lattice, matched velocities, no collision",
     statement=(
-        "If every solution that starts in the level set H(x, v) <= c is a cohesive dynamic flock, then (i) almost every "
-        "solution converges to an equilibrium that is an α-lattice, (ii) velocities match in the moving frame, and "
-        "(iii) if c < c* = ψ_α(0), no two agents ever collide."
+        "If every solution that starts in the level set H(x, v) <= c is a cohesive dynamic flock, then (i) almost "
+        "every solution converges to an equilibrium that is an α-lattice, (ii) velocities match in the moving frame, "
+        "and (iii) if c < c* = ψ_α(0), no two agents ever collide."
     ),
     source="Olfati-Saber 2006, Theorem 1",
     kind="trajectory",

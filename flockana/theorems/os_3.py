@@ -6,8 +6,9 @@ from math import floor, sqrt
 
 import numpy as np
 
+from flockana.lattice import classify
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.terminal import TerminalState, classify, terminal_state
+from flockana.terminal import TerminalState, terminal_state
 from flockana.theorems.asymptotics import (
     distinct_pairs,
     no_collision,
@@ -69,6 +70,7 @@ def _minimum(end: TerminalState, needs: list[Hypothesis], tolerances: Tolerances
     if status != "vacuous" and (status == "refuted" or not settled(end, tolerances)):
         status = "inconclusive"
     kind = classify(end.strain, lattice=tolerances.lattice, quasi=tolerances.quasi)
+    links = f"links off d by up to {100.0 * end.strain:.2g} %" if end.links else "no links"
     state = "equilibrium" if settled(end, tolerances) else "not yet an equilibrium"
     return Claim(
         "ii",
@@ -79,7 +81,7 @@ def _minimum(end: TerminalState, needs: list[Hypothesis], tolerances: Tolerances
         error=0.0,
         witness={"force": end.force, "K̃": end.mismatch, "strain": end.strain, "coincident pairs": end.coincident},
         detail=f"limit: {state} (residual force {end.force:.2g}), curvature {end.curvature:.2g}; as a lattice: {kind}, "
-        f"links off d by up to {100.0 * end.strain:.2g} %",
+        f"{links}",
     )
 
 
@@ -109,8 +111,8 @@ THEOREM = Theorem(
     statement=(
         "With c1γ, c2γ > 0 and finite K(v(0)), J(x(0)): (i) the group stays cohesive, (ii) almost every solution "
         "converges to a local minimum of U_λ (no lattice in general), (iii) velocities match, (iv) if "
-        "H_λ(0) < (k+1) c*, at most k distinct pairs can collide. (iv) holds per instant, and for k = 0; over time more "
-        "pairs can collide (erratum E13)."
+        "H_λ(0) < (k+1) c*, at most k distinct pairs can collide. (iv) holds per instant, and for k = 0; over time "
+        "more pairs can collide (erratum E13)."
     ),
     source="Olfati-Saber 2006, Theorem 3",
     kind="trajectory",

@@ -1,0 +1,191 @@
+"""Several obstacles together: sums over their β-agents, and whether they leave a start free."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from flockana.checks import FloatArray
+from flockana.environment.obstacles import Obstacle
+from flockana.errors import ArgumentError
+from flockana.interactions import BetaInteraction
+from flockana.kernels.obstacles import ObstacleKernels
+
+_PUSHES = 100  # rounds of looking for a free point near an agent that starts inside
+_OUTWARD = 1e-6  # how far beyond the surface a push ends, relative to its length
+
+
+class _Kind(NamedTuple):
+    """All obstacles of one kind, as the compiled sums take them."""
+
+    kernels: ObstacleKernels
+    pars: FloatArray
+    starts: Any
+    balls: FloatArray
+
+
+class BetaLinks(NamedTuple):
+    """The pairs of agent and β-agent within range r'.
+
+    `agent` and `obstacle` are index arrays (L,); `q`, `p` (L, m) are the β-agents' positions and velocities, and
+    `distance` (L,) the distances ‖q̂_ik − q_i‖.
+    """
+
+    agent: Any
+    obstacle: Any
+    q: FloatArray
+    p: FloatArray
+    distance: FloatArray
+
+
+@dataclass(frozen=True)
+class ObstacleField:
+    """Obstacles and the interaction that keeps agents off them.
+
+    Parameters
+    ----------
+    obstacles : tuple of Obstacle
+        Any kinds, of one dimension; they may overlap.
+    beta : BetaInteraction
+        Clearance d', range r'.
+    """
+
+    obstacles: tuple[Obstacle, ...]
+    beta: BetaInteraction
+
+    @cached_property
+    def _kinds(self) -> tuple[_Kind, ...]:
+        grouped: dict[int, list[Obstacle]] = {}
+        for obstacle in self.obstacles:
+            grouped.setdefault(id(obstacle.kernels), []).append(obstacle)
+        kinds = []
+        for group in grouped.values():
+            pars = [obstacle.par for obstacle in group]
+            starts = np.concatenate([[0], np.cumsum([par.size for par in pars])]).astype(np.int64)
+            balls = np.array([[*centre, radius] for centre, radius in (obstacle.ball for obstacle in group)])
+            kinds.append(_Kind(group[0].kernels, np.concatenate(pars), starts, balls))
+        return tuple(kinds)
+
+    def forces(self, q: FloatArray, p: FloatArray, u: FloatArray, *, stiffness: float, damping: float) -> float:
+        """Add c1 Σ_k φ_β n̂_ik + c2 Σ_k b_ik (p̂_ik − p_i) to u in place, unchecked (the integrators' inner loop).
+
+        Parameters
+        ----------
+        q, p : ndarray, shape (n, m)
+            Positions and velocities.
+        u : ndarray, shape (n, m)
+            Accelerations to add to.
+        stiffness, damping : float
+            Gains c1 and c2 of the β-terms.
+
+        Returns
+        -------
+        float
+            Σ_i Σ_k b_ik ⟨p_i, p̂_ik − p_i⟩, never positive while all agents are outside.
+        """
+        power, par, reach = 0.0, self.beta.par, self.beta.r
+        for kernels, pars, starts, balls in self._kinds:
+            power += kernels.forces(q, p, pars, starts, balls, par, reach, stiffness, damping, u)
+        return power
+
+    def potential_energy(self, q: FloatArray) -> float:
+        """Σ_i Σ_k ψ_β(‖q̂_ik − q_i‖_σ), unchecked.
+
+        Parameters
+        ----------
+        q : ndarray, shape (n, m)
+            Positions.
+        """
+        total, par, panels, reach = 0.0, self.beta.par, self.beta.panels, self.beta.r
+        for kernels, pars, starts, balls in self._kinds:
+            total += kernels.potential(q, pars, starts, balls, par, panels, reach)
+        return total
+
+    def hessian_blocks(self, q: FloatArray) -> FloatArray:
+        """Hessian of `potential_energy`: its diagonal blocks (n, m, m); the others vanish.
+
+        Parameters
+        ----------
+        q : ndarray, shape (n, m)
+            Positions.
+        """
+        n, m = q.shape
+        blocks = np.zeros((n, m, m))
+        for obstacle in self.obstacles:
+            obstacle.kernels.slopes(q, obstacle.par, self.beta.par, self.beta.r, blocks)
+        return blocks
+
+    def links(self, q: FloatArray, p: FloatArray) -> BetaLinks:
+        """The β-neighbours of every agent: obstacles k with ‖q̂_ik − q_i‖ < r'.
+
+        Parameters
+        ----------
+        q, p : ndarray, shape (n, m)
+            Positions and velocities.
+        """
+        found = []
+        for k, obstacle in enumerate(self.obstacles):
+            agents = obstacle.beta_agents(q, p)
+            near = np.flatnonzero(np.abs(agents.clearance) < self.beta.r)
+            found.append((near, np.full(near.size, k), agents.q[near], agents.p[near], np.abs(agents.clearance[near])))
+        empty = np.empty(0, np.int64), np.empty(0, np.int64), q[:0], p[:0], np.empty(0)
+        return BetaLinks(*map(np.concatenate, zip(empty, *found, strict=True)))
+
+
+def check_free(q: FloatArray, obstacles: Sequence[Obstacle]) -> None:
+    """Raise if an agent is inside or on the surface of an obstacle; the first such agent is named.
+
+    Parameters
+    ----------
+    q : ndarray, shape (n, m)
+        Initial positions.
+    obstacles : sequence of Obstacle
+        All obstacles.
+
+    Raises
+    ------
+    ArgumentError
+        With the nearest free point that was found, or the obstacles that leave none.
+    """
+    inside = np.array([obstacle.contains(q) for obstacle in obstacles]).reshape(len(obstacles), len(q))
+    agents = np.flatnonzero(inside.any(axis=0))
+    if agents.size == 0:
+        return
+    i = int(agents[0])
+    holders = np.flatnonzero(inside[:, i]).tolist()
+    where = " and ".join(f"obstacles[{k}] = {obstacles[k]}" for k in holders)
+    others = f" ({agents.size} agents do)" if agents.size > 1 else ""
+    free = _free_point(q[i], obstacles)
+    if free is None:
+        raise ArgumentError(
+            f"agent {i} at {q[i].tolist()} starts inside {where}{others}, and the overlapping obstacles leave no free "
+            "point that pushing it out would find: move the agent or an obstacle"
+        )
+    raise ArgumentError(
+        f"agent {i} at {q[i].tolist()} starts inside {where}{others}: "
+        f"expected every agent outside; {free.tolist()} is free"
+    )
+
+
+def _free_point(point: FloatArray, obstacles: Sequence[Obstacle]) -> FloatArray | None:
+    """Push a point out of one obstacle after the other until it is outside all of them."""
+    here = point[None, :].copy()
+    for _ in range(_PUSHES):
+        depth = [float(obstacle.clearance(here)[0]) for obstacle in obstacles]
+        k = int(np.argmin(depth))
+        if depth[k] > 0.0:
+            free: FloatArray = here[0]
+            return free
+        foot = obstacles[k].beta_agents(here, np.zeros_like(here)).q
+        step = foot - here
+        if not np.isfinite(step).all() or not step.any():  # at a centre, or on the surface: any direction will do
+            outward = np.zeros_like(here)
+            outward[0, 0] = max(abs(depth[k]), 1e-6 * float(np.abs(here).max()), 1e-9)
+            here = here + outward
+        else:
+            here = foot + _OUTWARD * step
+    return None

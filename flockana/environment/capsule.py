@@ -1,0 +1,88 @@
+"""A capsule: all points within a radius of a line segment, a rounded bar on the way."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numba.extending import register_jitable
+
+from flockana.checks import FloatArray, ensure_positive
+from flockana.environment.obstacles import Obstacle, freeze_vector
+from flockana.errors import ArgumentError
+from flockana.kernels.obstacles import lift_obstacle, project_ball
+
+
+@register_jitable
+def _onto_capsule(q, p, par, gap, rate):  # type: ignore[no-untyped-def]
+    """A sphere about the closest point of the segment, which slides with the agent along the bar; par = (a, b, R)."""
+    m, length2, along, speed = q.size, 0.0, 0.0, 0.0
+    for c in range(m):
+        side = par[m + c] - par[c]
+        length2 += side * side
+        along += side * (q[c] - par[c])
+        speed += side * p[c]
+    share = min(1.0, max(0.0, along / length2))
+    foot = np.empty(m)
+    for c in range(m):
+        side = par[m + c] - par[c]
+        foot[c] = par[c] + share * side
+        rate[c] = speed / length2 * side if 0.0 < share < 1.0 else 0.0
+    return project_ball(q, p, foot, par[2 * m], rate, gap, rate)
+
+
+_CAPSULE = lift_obstacle(_onto_capsule)
+
+
+@dataclass(frozen=True)
+class Capsule(Obstacle):
+    """The points within `radius` of the segment from a to b.
+
+    The velocity of its β-agents jumps where the straight part meets a cap, as the curvature does there.
+
+    Parameters
+    ----------
+    a, b : array_like, shape (m,)
+        Ends of the segment, two different points; m = 2 or 3.
+    radius : float
+        R > 0.
+
+    Raises
+    ------
+    ArgumentError
+        If the ends coincide or lie on a line (m = 1), the radius is not positive, or a vector is not finite.
+
+    Examples
+    --------
+    >>> agents = Capsule((0.0, 0.0), (4.0, 0.0), 1.0).beta_agents([[2.0, 3.0], [7.0, 0.0]], [[1.0, 1.0], [1.0, 1.0]])
+    >>> agents.q.tolist(), agents.clearance.tolist()
+    ([[2.0, 1.0], [5.0, 0.0]], [2.0, 2.0])
+    """
+
+    a: Any
+    b: Any
+    radius: float
+
+    kernels = _CAPSULE
+
+    def __post_init__(self) -> None:
+        a = freeze_vector(self, "a")
+        b = freeze_vector(self, "b", a.size)
+        if a.size == 1:
+            raise ArgumentError(f"a = {self.a}: expected 2 or 3 components; on a line the obstacle is a Sphere")
+        side = b - a
+        if not float(side @ side) > 0.0:
+            raise ArgumentError(f"a = {self.a} and b = {self.b}: expected two different points; a ball is a Sphere")
+        object.__setattr__(self, "radius", ensure_positive("radius", self.radius))
+
+    @property
+    def par(self) -> FloatArray:
+        """(a, b, R)."""
+        return np.array([*self.a, *self.b, self.radius])
+
+    @property
+    def ball(self) -> tuple[FloatArray, float]:
+        """(midpoint, half the length + R)."""
+        a, b = np.array(self.a), np.array(self.b)
+        return 0.5 * (a + b), 0.5 * float(np.linalg.norm(b - a)) * (1.0 + 1e-12) + self.radius

@@ -1,0 +1,250 @@
+"""Obstacles and their β-agents: the contract of an obstacle, spheres and walls.
+
+An obstacle is a closed convex solid. Of an agent outside it the β-agent is the closest point q̂ of the solid, and it
+moves at p̂ = dq̂/dt. The closest-point map of a convex solid is the gradient of a convex function and contracts, so
+its derivative D (p̂ = D p) is symmetric with 0 ≤ D ≤ I wherever it exists: ⟨p, p̂ − p⟩ ≤ 0 outside every obstacle,
+and D (q̂ − q) = 0. A wall has D = P, a sphere D = μP with P the projection on the tangent space.
+
+A new kind is one file: a frozen dataclass with its parameters, a bounding ball, and `kernels` lifted from one scalar
+function (see `flockana.kernels.obstacles`); laws and measures take it as it is.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from math import hypot, inf
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from numba.extending import register_jitable
+
+from flockana.checks import FloatArray, ensure_points, ensure_positive, ensure_state, ensure_vector
+from flockana.errors import ArgumentError
+from flockana.kernels.obstacles import ObstacleKernels, lift_obstacle, project_ball
+
+
+class BetaAgents(NamedTuple):
+    """The β-agents of one obstacle, one per agent: positions (n, m), velocities (n, m), signed clearances (n,)."""
+
+    q: FloatArray
+    p: FloatArray
+    clearance: FloatArray
+
+
+class Obstacle(ABC):
+    """A convex solid; a subclass is a frozen dataclass with `par`, `ball` and `kernels`.
+
+    Inside the solid (where a law must not be started) q̂ stays the closest point of the boundary.
+    """
+
+    kernels: ObstacleKernels
+
+    @property
+    @abstractmethod
+    def par(self) -> FloatArray:
+        """Parameters in the order that the scalar function reads."""
+
+    @property
+    @abstractmethod
+    def ball(self) -> tuple[FloatArray, float]:
+        """(centre, radius) of a ball that holds the obstacle; the radius is infinite if none does."""
+
+    @property
+    def dimension(self) -> int:
+        """m."""
+        return int(self.ball[0].size)
+
+    def _project(self, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """(gaps q̂ − q, velocities of the β-agents, clearances), unchecked."""
+        gap, rate, clearance = np.empty_like(q), np.empty_like(q), np.empty(len(q))
+        self.kernels.agents(q, p, self.par, gap, rate, clearance)
+        return gap, rate, clearance
+
+    def beta_agents(self, q: Any, p: Any) -> BetaAgents:
+        """The β-agent that each agent has on this obstacle, near or far.
+
+        Parameters
+        ----------
+        q, p : array_like, shape (n, m)
+            Positions and velocities of the agents.
+
+        Returns
+        -------
+        BetaAgents
+
+        Raises
+        ------
+        ArgumentError
+            On bad arrays, or agents of another dimension than the obstacle's.
+        """
+        q, p = ensure_state(q, p)
+        self.check_dimension(q.shape[1])
+        gap, rate, clearance = self._project(q, p)
+        return BetaAgents(q + gap, rate, clearance)
+
+    def clearance(self, q: Any) -> FloatArray:
+        """Signed distance of points from the surface, negative inside, shape (n,).
+
+        Parameters
+        ----------
+        q : array_like, shape (n, m)
+            Points.
+        """
+        q = ensure_points("q", q)
+        return self.beta_agents(q, np.zeros_like(q)).clearance
+
+    def contains(self, q: Any) -> npt.NDArray[np.bool_]:
+        """Which points lie inside or on the surface, shape (n,).
+
+        Parameters
+        ----------
+        q : array_like, shape (n, m)
+            Points.
+        """
+        inside: npt.NDArray[np.bool_] = self.clearance(q) <= 0.0
+        return inside
+
+    def check_dimension(self, m: int, name: str = "the obstacle") -> None:
+        """Raise unless the obstacle lives in m dimensions.
+
+        Parameters
+        ----------
+        m : int
+            Dimension of the flock.
+        name : str
+            How to call it in the message.
+        """
+        if self.dimension != m:
+            raise ArgumentError(
+                f"{name} = {self} has {self.dimension} components but the agents have {m}: expected equal dimensions"
+            )
+
+
+def freeze_vector(obstacle: Obstacle, name: str, m: int | None = None) -> FloatArray:
+    """Validate a vector field of a frozen obstacle, keep it as a tuple, and return it as an array.
+
+    Parameters
+    ----------
+    obstacle : Obstacle
+        The dataclass, in its ``__post_init__``.
+    name : str
+        The field.
+    m : int, optional
+        Components expected.
+    """
+    vector = ensure_vector(name, getattr(obstacle, name), m)
+    object.__setattr__(obstacle, name, tuple(vector.tolist()))
+    return vector
+
+
+@register_jitable
+def _onto_sphere(q, p, par, gap, rate):  # type: ignore[no-untyped-def]
+    """q̂ = μq + (1 − μ)y, p̂ = μPp with μ = R/‖q − y‖."""
+    rate[:] = 0.0
+    return project_ball(q, p, par[:-1], par[-1], rate, gap, rate)
+
+
+@register_jitable
+def _onto_wall(q, p, par, gap, rate):  # type: ignore[no-untyped-def]
+    """q̂ = Pq + (I − P)y, p̂ = Pp with P = I − aaᵀ; par = (y, a)."""
+    m, offset, speed = q.size, 0.0, 0.0
+    for c in range(m):
+        offset += par[m + c] * (q[c] - par[c])
+        speed += par[m + c] * p[c]
+    for c in range(m):
+        gap[c] = -offset * par[m + c]
+        rate[c] = p[c] - speed * par[m + c]
+    return offset
+
+
+_SPHERE, _WALL = lift_obstacle(_onto_sphere), lift_obstacle(_onto_wall)
+
+
+@dataclass(frozen=True)
+class Sphere(Obstacle):
+    """A ball: a disc in the plane, an interval on the line   (Olfati-Saber 2006).
+
+    Parameters
+    ----------
+    centre : array_like, shape (m,)
+        y.
+    radius : float
+        R > 0.
+
+    Raises
+    ------
+    ArgumentError
+        If the radius is not positive or the centre no finite vector.
+
+    Examples
+    --------
+    >>> agents = Sphere((0.0, 0.0), 2.0).beta_agents([[4.0, 0.0]], [[1.0, 1.0]])
+    >>> agents.q.tolist(), agents.p.tolist(), agents.clearance.tolist()
+    ([[2.0, 0.0]], [[0.0, 0.5]], [2.0])
+    """
+
+    centre: Any
+    radius: float
+
+    kernels = _SPHERE
+
+    def __post_init__(self) -> None:
+        freeze_vector(self, "centre")
+        object.__setattr__(self, "radius", ensure_positive("radius", self.radius))
+
+    @property
+    def par(self) -> FloatArray:
+        """(y, R)."""
+        return np.array([*self.centre, self.radius])
+
+    @property
+    def ball(self) -> tuple[FloatArray, float]:
+        """(y, R)."""
+        return np.array(self.centre), self.radius
+
+
+@dataclass(frozen=True)
+class Wall(Obstacle):
+    """A half-space behind a hyperplane, in any dimension   (Olfati-Saber 2006).
+
+    Parameters
+    ----------
+    point : array_like, shape (m,)
+        y, any point of the hyperplane.
+    normal : array_like, shape (m,)
+        Direction of the normal a, towards the free side; its length does not matter.
+
+    Raises
+    ------
+    ArgumentError
+        If the normal is zero, or a vector is not finite.
+
+    Examples
+    --------
+    >>> agents = Wall((0.0, 0.0), (0.0, 2.0)).beta_agents([[4.0, 3.0]], [[1.0, 1.0]])
+    >>> agents.q.tolist(), agents.p.tolist(), agents.clearance.tolist()
+    ([[4.0, 0.0]], [[1.0, 0.0]], [3.0])
+    """
+
+    point: Any
+    normal: Any
+
+    kernels = _WALL
+
+    def __post_init__(self) -> None:
+        normal = freeze_vector(self, "normal", freeze_vector(self, "point").size)
+        if not normal.any():
+            raise ArgumentError(f"normal = {self.normal}: expected a vector that is not zero, towards the free side")
+
+    @property
+    def par(self) -> FloatArray:
+        """(y, a) with a of unit length."""
+        normal = np.array(self.normal) / max(map(abs, self.normal))
+        return np.concatenate([self.point, normal / hypot(*normal)])
+
+    @property
+    def ball(self) -> tuple[FloatArray, float]:
+        """(y, ∞)."""
+        return np.array(self.point), inf

@@ -1,0 +1,192 @@
+"""The nonlinear program: CasADi expressions over a list of pairs, solved by IPOPT with exact derivatives.
+
+The value of ψ_α on its taper is no elementary function, so IPOPT gets the value from the kernels (a CasADi callback,
+exact to 1e-13 c*) and gradient and Hessian from the expressions generated from sympy. Nothing differentiates the
+callback, and the two sources are held against each other at every step of the line search.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+from flockana.checks import FloatArray
+from flockana.equilibria.potential import Potential
+from flockana.equilibria.terms import obstacle_term, pair_term, pull_term
+from flockana.laws.algorithm3 import Algorithm3
+from flockana.laws.olfati_saber import Algorithm2
+from flockana.nets import LinkArray
+
+_QUIET = {"print_time": False, "no_nlp_grad": True, "calc_lam_p": False, "ipopt.print_level": 0, "ipopt.sb": "yes"}
+
+
+class _Value(ca.Callback):  # type: ignore[misc]
+    """Potential energy in the program's units, from the kernels."""
+
+    def __init__(self, program: Program) -> None:
+        ca.Callback.__init__(self)
+        self._program = program
+        self.construct("value", {})
+
+    def get_n_in(self) -> int:
+        return 1
+
+    def get_n_out(self) -> int:
+        return 1
+
+    def get_sparsity_in(self, _: int) -> Any:
+        return ca.Sparsity.dense(self._program.size, 1)
+
+    def eval(self, arguments: Any) -> list[float]:
+        return [self._program.value(np.asarray(arguments[0]).ravel())]
+
+
+class Program:
+    """Minimise a potential over a fixed list of pairs, rigid motions fixed by linear constraints.
+
+    The unknown is x = q.ravel()/d, the objective the potential over force_scale d: gradients come out in units of the
+    force scale. The gauge Cᵀ(x − x⁰) = 0, C a basis of the potential's symmetries at the start, takes the directions
+    out in which it is flat by construction; every configuration has a copy that satisfies it, so nothing is lost.
+
+    Parameters
+    ----------
+    potential : Potential
+        What is minimised.
+    shape : tuple of int
+        (n, m).
+    pairs : int array, shape (M, 2)
+        Pairs that may come within range.
+    gauge : int
+        Number of gauge constraints.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> program = Program(Potential(Algorithm1()), (2, 1), np.array([[0, 1]], dtype=np.int32), 1)
+    >>> q, done, status = program.solve(np.array([[0.0], [6.5]]))
+    >>> bool(abs(q[1, 0] - q[0, 0] - 7.0) < 1e-6), done, status
+    (True, True, 'Solve_Succeeded')
+    """
+
+    def __init__(self, potential: Potential, shape: tuple[int, int], pairs: LinkArray, gauge: int) -> None:
+        self.potential, self.shape, self.pairs, self.gauge = potential, shape, pairs, gauge
+        self.size = shape[0] * shape[1]
+        self.d = potential.law.alpha.d
+        self.unit = potential.force_scale * self.d
+        x, c = ca.MX.sym("x", self.size), ca.MX.sym("c", self.size * gauge)
+        slope, hessian = self._derivatives(x)
+        self._callback = _Value(self)  # kept alive: CasADi holds no reference
+        value, multiplier, ignored = self._callback(x), ca.MX.sym("lam_f"), ca.MX.sym("lam_g", gauge)
+        held = ca.reshape(c, self.size, gauge).T @ x
+        self.derivatives = ca.Function("derivatives", [x], [slope, hessian], ["x"], ["gradient", "hessian"])
+        self._program = {"x": x, "p": c, "f": value, "g": held}
+        self._exact = {
+            "grad_f": ca.Function("grad_f", [x, c], [value, slope]),
+            "hess_lag": ca.Function("hess_lag", [x, c, multiplier, ignored], [multiplier * hessian]),
+        }
+        self._solvers: dict[tuple[float, int], Any] = {}
+
+    def value(self, x: FloatArray) -> float:
+        """Objective at x.
+
+        Parameters
+        ----------
+        x : ndarray, shape (n m,)
+            Positions over d.
+        """
+        return self.potential.listed_energy(self.d * x.reshape(self.shape), self.pairs) / self.unit
+
+    def solve(
+        self, q0: FloatArray, *, basis: FloatArray | None = None, tol: float = 1e-10, max_iter: int = 3000
+    ) -> tuple[FloatArray, bool, str]:
+        """Minimise from q0: (positions, whether IPOPT succeeded, IPOPT's status).
+
+        Parameters
+        ----------
+        q0 : ndarray, shape (n, m)
+            Start.
+        basis : ndarray, shape (n m, gauge), optional
+            Gauge; the symmetries at q0 by default.
+        tol : float
+            Gradient, relative to the force scale, at which IPOPT stops.
+        max_iter : int
+            Most iterations.
+        """
+        if (tol, max_iter) not in self._solvers:
+            options = {**_QUIET, "ipopt.tol": tol, "ipopt.max_iter": max_iter, "ipopt.nlp_scaling_method": "none"}
+            self._solvers[tol, max_iter] = ca.nlpsol("equilibrium", "ipopt", self._program, options | self._exact)
+        solver = self._solvers[tol, max_iter]
+        start = q0.ravel() / self.d
+        basis = self.potential.symmetries(q0) if basis is None else basis
+        held = basis.T @ start
+        found = solver(x0=start, p=basis.T.ravel(), lbg=held, ubg=held)
+        stats = solver.stats()
+        q = self.d * np.array(found["x"]).reshape(self.shape)
+        return q, bool(stats["success"]), str(stats["return_status"])
+
+    def _derivatives(self, x: Any) -> tuple[Any, Any]:
+        """Gradient and upper triangle of the Hessian at x, in the program's units."""
+        (n, m), (i, j) = self.shape, self.pairs.T
+        law, g = self.potential.law, self.potential.law.gains
+        q = self.d * ca.reshape(x, m, n)
+        slope, blocks = ca.MX.zeros(m, n), []
+        if i.size:
+            ends = _matrix(np.concatenate([i, j]), np.tile(np.arange(i.size), 2), np.repeat([-1.0, 1.0], i.size), (n, i.size))
+            pull, stiff = pair_term(law.alpha, m).map(i.size)(q @ ends)
+            slope = g.c1_alpha * (pull @ ends.T)
+            blocks.append(g.c1_alpha * ca.vec(stiff))
+        own_slope, own_blocks = self._own(q)
+        slope = slope + own_slope
+        blocks.append(ca.vec(own_blocks))
+        rows, columns, scatter = _scatter(n, m, i, j)
+        pattern = ca.Sparsity.triplet(n * m, n * m, rows.tolist(), columns.tolist())
+        hessian = ca.MX(pattern, scatter @ ca.vertcat(*blocks))
+        return ca.vec(slope) * (self.d / self.unit), hessian * (self.d**2 / self.unit)
+
+    def _own(self, q: Any) -> tuple[Any, Any]:
+        """Gradient (m, n) and Hessian blocks (m, m n) of what depends on one agent alone."""
+        (n, m), law, g = self.shape, self.potential.law, self.potential.law.gains
+        if isinstance(law, Algorithm2):  # J about the centre that the gauge holds: the same value, a diagonal Hessian
+            centred = q - ca.sum2(q) / n
+            return g.c1_gamma * centred, g.c1_gamma * ca.repmat(ca.MX.eye(m), 1, n)
+        slope, blocks = ca.MX.zeros(m, n), ca.MX.zeros(m, m * n)
+        if isinstance(law, Algorithm3):
+            terms = [(g.c1_gamma, pull_term(m), ca.DM(self.potential.target))]
+            terms += [(g.c1_beta, obstacle_term(obstacle, law.beta), ca.DM.zeros(m)) for obstacle in law.obstacles]
+            for gain, term, origin in terms:
+                one_slope, one_blocks = term.map(n)(q - ca.repmat(origin, 1, n))
+                slope, blocks = slope + gain * one_slope, blocks + gain * one_blocks
+        return slope, blocks
+
+
+def _matrix(rows: Any, columns: Any, values: Any, shape: tuple[int, int]) -> Any:
+    from scipy.sparse import coo_matrix
+
+    return ca.DM(coo_matrix((values, (rows, columns)), shape=shape).tocsc())
+
+
+def _scatter(n: int, m: int, i: Any, j: Any) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64], Any]:
+    """Where the blocks go: rows and columns of the upper triangle, and the matrix from block entries to them.
+
+    A pair's block enters twice on the diagonal and, negated, between its agents; an agent's own block once.
+    """
+    k, own = np.arange(i.size), np.arange(n)
+    placed = [(i, i, k, 1.0), (j, j, k, 1.0), (np.minimum(i, j), np.maximum(i, j), k, -1.0), (own, own, i.size + own, 1.0)]
+    rows, columns, sources, signs = [], [], [], []
+    for a, b, block, sign in placed:
+        for e in range(m):
+            for c in range(m):
+                row, column = a.astype(np.int64) * m + e, b.astype(np.int64) * m + c
+                kept = row <= column
+                rows.append(row[kept])
+                columns.append(column[kept])
+                sources.append((block * m * m + c * m + e)[kept])
+                signs.append(np.full(int(kept.sum()), sign))
+    row, column = np.concatenate(rows), np.concatenate(columns)
+    entries, slot = np.unique(column * (n * m) + row, return_inverse=True)  # column by column, as CasADi stores them
+    shape = (entries.size, m * m * (i.size + n))
+    scatter = _matrix(slot, np.concatenate(sources), np.concatenate(signs), shape)
+    return entries % (n * m), entries // (n * m), scatter

@@ -1,0 +1,302 @@
+"""Equilibria of Algorithms 1, 2 and 3: minima by IPOPT, critical points of any kind by a root-finder on the gradient."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+
+from flockana.checks import FloatArray, ensure_finite_scalar, ensure_points, ensure_positive
+from flockana.equilibria.classify import EquilibriumKind, ensure_small, kind_of, spectrum
+from flockana.equilibria.potential import FlockLaw, Potential, ensure_flock_law
+from flockana.equilibria.program import Program
+from flockana.errors import SolverError, UnknownNameError
+from flockana.nets import LinkArray, links
+
+METHODS = ("minimise", "root")
+RESIDUAL = 1e-9  # of the force scale: what counts as an equilibrium
+_ALL_PAIRS = 48  # up to here every pair is listed, and nothing need be checked again
+_MARGIN = 0.5  # of d, beyond the range, for the listed pairs
+_ROUNDS = 30
+_POLISH = 8
+_REACH = 1e-3  # of d: a polish that goes farther than that has left the point it should refine
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """A configuration at which no agent is pushed, and what kind of critical point it is.
+
+    Parameters
+    ----------
+    law : Algorithm1, Algorithm2 or Algorithm3
+        The law.
+    q : ndarray, shape (n, m)
+        Positions; under Algorithm 2 their centre is the γ-agent.
+    energy : float
+        Potential energy: c1α V, U_λ, or V_α + V_β + V_γ.
+    residual : float
+        Largest force on an agent over c1α b/√ε.
+    links : int array, shape (M, 2)
+        Pairs closer than r.
+    kind : {"minimum", "saddle", "maximum", "degenerate"}
+        From the Hessian off the rigid motions: strict minimum; saddle or maximum by its negative eigenvalues;
+        degenerate if none is negative and some are zero, so that the second order does not decide.
+    hessian_eigenvalues : ndarray
+        Off the rigid motions, rising.
+    rigid_modes : int
+        Rigid motions that leave the potential unchanged.
+    zero_modes : int
+        Zero eigenvalues beyond these: soft modes.
+    index : int
+        Number of negative eigenvalues.
+    success : bool
+        Whether the solver succeeded and the residual is small enough.
+    message : str
+        The solver's own status, and what was wrong if something was.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> pair = find_equilibrium(Algorithm1(), [[0.0, 0.0], [6.0, 1.0]])
+    >>> pair.kind, pair.rigid_modes, pair.strain(), pair.message
+    ('minimum', 3, 0.0, 'Solve_Succeeded')
+    """
+
+    law: FlockLaw = field(repr=False)
+    q: FloatArray = field(repr=False)
+    energy: float
+    residual: float
+    links: LinkArray = field(repr=False)
+    kind: EquilibriumKind
+    hessian_eigenvalues: FloatArray = field(repr=False)
+    rigid_modes: int
+    zero_modes: int
+    index: int
+    success: bool
+    message: str
+
+    def strain(self) -> float:
+        """Largest |link − d|/d to twelve digits; NaN without links."""
+        lengths = np.linalg.norm(self.q[self.links[:, 1]] - self.q[self.links[:, 0]], axis=1)
+        d = self.law.alpha.d
+        return round(float(np.abs(lengths - d).max() / d), 12) if lengths.size else float("nan")
+
+    @property
+    def curvature(self) -> float:
+        """Smallest eigenvalue off the rigid motions over the largest in modulus; NaN if there is none."""
+        values = self.hessian_eigenvalues
+        return float(values[0] / np.abs(values).max()) if values.size and values.any() else float("nan")
+
+
+def find_equilibrium(
+    law: Any,
+    q0: Any,
+    *,
+    method: str = "minimise",
+    t: float = 0.0,
+    margin: float = _MARGIN,
+    max_iter: int = 3000,
+    strict: bool = True,
+) -> Equilibrium:
+    """Find an equilibrium from q0: a minimum of the law's potential, or with ``method="root"`` any critical point.
+
+    Not the end of the motion from q0: IPOPT goes downhill, but not along the flow, and may end in another basin.
+
+    Parameters
+    ----------
+    law : Algorithm1, Algorithm2 or Algorithm3
+        The law; obstacles of Algorithm 3 must be spheres and walls.
+    q0 : array_like, shape (n, m)
+        Start, with no agent inside an obstacle.
+    method : {"minimise", "root"}
+        IPOPT on the potential, or Levenberg-Marquardt on its gradient, which finds saddles too (n m up to hundreds).
+    t : float
+        When, for a γ-agent that moves.
+    margin : float
+        Pairs are listed up to r + margin d, and listed anew if others have come into range.
+    max_iter : int
+        Most iterations of a solve.
+    strict : bool
+        Raise on failure; else return the last point with ``success=False`` and the reason.
+
+    Returns
+    -------
+    Equilibrium
+
+    Raises
+    ------
+    ArgumentError
+        On bad arguments.
+    SolverError
+        If no equilibrium was found, with the solver's status.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> hexagon = find_equilibrium(Algorithm1(), [[0, 0], [7, 0], [4, 6], [-3, 6], [-7, 0], [-4, -6], [3, -6]])
+    >>> hexagon.kind, len(hexagon.links), hexagon.zero_modes
+    ('minimum', 12, 0)
+    """
+    q = ensure_points("q0", q0)
+    law = ensure_flock_law(law, q.shape[1])
+    ensure_small(*q.shape)
+    if method not in METHODS:
+        raise UnknownNameError("method", method, METHODS)
+    potential = Potential(law, ensure_finite_scalar("t", t))
+    margin = ensure_positive("margin", margin) * law.alpha.d
+    law.check_start(q, np.zeros_like(q))
+    search = _minimise if method == "minimise" else _root
+    found, done, message = search(potential, q, margin, max_iter)
+    return finish(potential, found, done, message, strict=strict)
+
+
+def finish(potential: Potential, q: FloatArray, done: bool, message: str, *, strict: bool = True) -> Equilibrium:
+    """Polish what a solver returned, classify it, and refuse what is no equilibrium.
+
+    Parameters
+    ----------
+    potential : Potential
+        Whose equilibrium.
+    q : ndarray, shape (n, m)
+        What the solver returned.
+    done : bool
+        Whether it reported success.
+    message : str
+        Its status.
+    strict : bool
+        Raise on failure.
+
+    Raises
+    ------
+    SolverError
+        If the solver failed, or the force does not vanish.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> finish(Potential(Algorithm1()), np.array([[0.0], [7.0 + 1e-5]]), True, "given").residual < 1e-12
+    True
+    """
+    q = _polish(potential, q) if done else q
+    if potential.target is not None and not _fixed_in_space(potential):  # under Algorithm 2 the target holds the centre
+        q = q + (potential.target - q.mean(axis=0))
+    residual = potential.residual(q)
+    success = done and residual <= RESIDUAL
+    if done and not success:
+        message = f"{message}, yet the residual force is {residual:.2g} of c1α b/√ε, more than {RESIDUAL:g}"
+    if strict and not success:
+        raise SolverError(
+            f"no equilibrium of {type(potential.law).__name__} found: {message} (residual force {residual:.2g}); "
+            "start nearer to one (gradient_flow goes downhill more carefully), or raise max_iter"
+        )
+    found = spectrum(potential, q)
+    q.setflags(write=False)
+    return Equilibrium(
+        law=potential.law,
+        q=q,
+        energy=potential.energy(q),
+        residual=residual,
+        links=links(q, potential.law.alpha.r),
+        kind=kind_of(found),
+        hessian_eigenvalues=found.eigenvalues,
+        rigid_modes=found.rigid,
+        zero_modes=found.zero,
+        index=found.index,
+        success=success,
+        message=message,
+    )
+
+
+def _fixed_in_space(potential: Potential) -> bool:
+    """Whether the potential knows where the flock is, and the target acts through it (Algorithm 3)."""
+    from flockana.laws.algorithm3 import Algorithm3
+
+    return isinstance(potential.law, Algorithm3) or potential.law.gains.c1_gamma == 0.0
+
+
+def all_pairs(n: int) -> LinkArray:
+    """Every pair of n agents.
+
+    Parameters
+    ----------
+    n : int
+        Number of agents.
+
+    Examples
+    --------
+    >>> all_pairs(3).tolist()
+    [[0, 1], [0, 2], [1, 2]]
+    """
+    return np.array(list(combinations(range(n), 2)), dtype=np.int32).reshape(-1, 2)
+
+
+def _minimise(potential: Potential, q: FloatArray, margin: float, max_iter: int) -> tuple[FloatArray, bool, str]:
+    """Solve over the pairs near the start; as long as others have come into range, list anew and go on from there."""
+    n, reach = len(q), potential.law.alpha.r
+    for _ in range(_ROUNDS):
+        basis = potential.symmetries(q)
+        if basis.shape[1] == q.size:
+            return q, True, "nothing to solve: every motion is a rigid one"
+        listed = all_pairs(n) if n <= _ALL_PAIRS else links(q, reach + margin)
+        program = Program(potential, (n, q.shape[1]), listed, basis.shape[1])
+        q, done, status = program.solve(q, basis=basis, max_iter=max_iter)
+        if not (done and np.isfinite(q).all()):
+            return q, False, status
+        if n <= _ALL_PAIRS or _listed(links(q, reach), listed, n):
+            return q, True, status
+    return q, False, f"pairs outside the list came into range in each of {_ROUNDS} solves"
+
+
+def _listed(near: LinkArray, listed: LinkArray, n: int) -> bool:
+    """Whether every pair in range is on the list."""
+    keys = (pairs[:, 0].astype(np.int64) * n + pairs[:, 1] for pairs in (near, listed))
+    return bool(np.isin(*keys).all())
+
+
+def _root(potential: Potential, q: FloatArray, margin: float, max_iter: int) -> tuple[FloatArray, bool, str]:
+    """Levenberg-Marquardt on the scaled gradient with the gauge as extra equations, over all pairs."""
+    from scipy.optimize import least_squares
+
+    import casadi as ca
+
+    basis = potential.symmetries(q)
+    program = Program(potential, (len(q), q.shape[1]), all_pairs(len(q)), basis.shape[1])
+    start = q.ravel() / program.d
+
+    def equations(x: FloatArray) -> FloatArray:
+        return np.concatenate([np.array(program.derivatives(x)[0]).ravel(), basis.T @ (x - start)])
+
+    def jacobian(x: FloatArray) -> FloatArray:
+        return np.vstack([np.array(ca.triu2symm(program.derivatives(x)[1])), basis.T])
+
+    found = least_squares(equations, start, jacobian, xtol=1e-15, ftol=1e-15, gtol=1e-15, max_nfev=max_iter)
+    done = found.status > 0 and float(np.abs(found.fun).max()) < 1e-5
+    reason = found.message if done else f"{found.message} The gradient has a least square that is not zero."
+    return program.d * found.x.reshape(q.shape), done, reason
+
+
+def _polish(potential: Potential, q: FloatArray) -> FloatArray:
+    """Newton's last digits with the law's own stiffness, rigid motions held, soft modes left alone by a small shift."""
+    from scipy.sparse import block_array, csc_array, eye_array
+    from scipy.sparse.linalg import splu
+
+    best, least = q, potential.residual(q)
+    here = q
+    for _ in range(_POLISH):
+        if least <= 1e-14:
+            break
+        rigid, hessian = csc_array(potential.symmetries(here)), csc_array(potential.stiffness(here))
+        shift = 1e-9 * float(np.abs(hessian).max() or 1.0)
+        matrix = block_array([[hessian + shift * eye_array(q.size), rigid], [rigid.T, None]], format="csc")
+        force = np.concatenate([potential.force(here).ravel(), np.zeros(rigid.shape[1])])
+        step = splu(matrix).solve(force)[: q.size].reshape(q.shape)
+        here = here + step
+        if not np.isfinite(step).all() or np.abs(here - q).max() > _REACH * potential.law.alpha.d:
+            break
+        residual = potential.residual(here)
+        if residual >= least:
+            break
+        best, least = here, residual
+    return np.array(best)

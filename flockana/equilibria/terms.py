@@ -1,0 +1,114 @@
+"""Gradients of the potentials as CasADi functions, generated from the definitions in `flockana.symbolic`.
+
+ψ_α and ψ_β have no closed form on their tapers, but their derivatives φ_α and φ_β have: the gradients here are exact,
+and so are the Hessians that CasADi derives from them.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+import casadi as ca
+import sympy as sp
+
+from flockana.environment.obstacles import Obstacle, Sphere, Wall
+from flockana.equilibria.translate import to_casadi
+from flockana.errors import ArgumentError
+from flockana.interactions import AlphaInteraction, BetaInteraction
+from flockana.symbolic.functions import phi_alpha, phi_beta
+from flockana.symbolic.norms import EPS, sigma_1, sigma_norm
+from flockana.symbolic.obstacles import PHI_BETA, PSI_BETA, sphere_beta, wall_beta
+from flockana.symbolic.pair import PHI, pair_potential, vector
+from flockana.symbolic.parameters import AlphaSymbols, BetaSymbols, GainSymbols
+
+
+def _compile(name: str, gradient: list[Any], symbols: Any, values: dict[Any, float] | None = None) -> ca.Function:
+    """Return name(x) -> (gradient, Hessian), the Hessian by CasADi's differentiation."""
+    x = ca.SX.sym("x", len(symbols))
+    table = {symbol: x[k] for k, symbol in enumerate(symbols)} | (values or {})
+    slope = ca.vertcat(*(to_casadi(component, table) for component in gradient))
+    hessian = ca.densify(ca.jacobian(slope, x))
+    return ca.Function(name, [x], [slope, hessian], ["x"], ["gradient", "hessian"])
+
+
+@lru_cache(maxsize=64)
+def pair_term(alpha: AlphaInteraction, m: int) -> ca.Function:
+    """Gradient (m,) and Hessian (m, m) of ψ_α(‖Δ‖_σ) in Δ = q_j − q_i.
+
+    Parameters
+    ----------
+    alpha : AlphaInteraction
+        The pair law.
+    m : int
+        Dimension.
+
+    Examples
+    --------
+    >>> gradient, _ = pair_term(AlphaInteraction(), 2)([7.0, 0.0])
+    >>> float(gradient[0])
+    0.0
+    """
+    parameters = AlphaSymbols(**{name: getattr(alpha, name) for name in ("eps", "h", "a", "b", "d", "r")})
+    delta = vector("Delta_", m)
+    potential = pair_potential(sp.zeros(m, 1), delta, gains=GainSymbols(c1_alpha=1)).subs(EPS, parameters.eps)
+    gradient = [sp.diff(potential, x).replace(PHI, lambda z: phi_alpha(z, alpha=parameters)) for x in delta]
+    return _compile("pair", gradient, delta)
+
+
+@lru_cache(maxsize=64)
+def pull_term(m: int) -> ca.Function:
+    """Gradient and Hessian of √(1 + ‖x‖²) − 1, Algorithm 3's pull to the γ-agent, in x = q_i − q_r.
+
+    Parameters
+    ----------
+    m : int
+        Dimension.
+
+    Examples
+    --------
+    >>> [float(x) for x in ca.vertsplit(pull_term(2)([0.75, 0.0])[0])]
+    [0.6, 0.0]
+    """
+    x = vector("x", m)
+    return _compile("pull", list(sigma_1(x)), x)
+
+
+@lru_cache(maxsize=256)
+def obstacle_term(obstacle: Obstacle, beta: BetaInteraction) -> ca.Function:
+    """Gradient and Hessian of ψ_β(‖q̂ − q‖_σ) of one obstacle in the agent's position q.
+
+    Parameters
+    ----------
+    obstacle : Obstacle
+        A `Sphere` or a `Wall`.
+    beta : BetaInteraction
+        The law between agent and β-agent.
+
+    Raises
+    ------
+    ArgumentError
+        For another kind of obstacle: only these two have a symbolic closest point.
+
+    Examples
+    --------
+    >>> gradient, _ = obstacle_term(Wall((0.0, 0.0), (0.0, 1.0)), BetaInteraction())([3.0, 9.0])
+    >>> float(gradient[1])
+    0.0
+    """
+    m = obstacle.dimension
+    q = vector("q", m)
+    parameters = BetaSymbols(eps=beta.eps, h=beta.h, d=beta.d)
+    at_rest, (centre, other) = sp.zeros(m, 1), (vector("y", m), vector("a", m))
+    if isinstance(obstacle, Wall):
+        foot = wall_beta(q, at_rest, centre, other)[0]
+        values = dict(zip((*centre, *other), obstacle.par.tolist(), strict=True))
+    elif isinstance(obstacle, Sphere):
+        radius = sp.Symbol("R", positive=True)
+        foot = sphere_beta(q, at_rest, centre, radius)[0]
+        values = dict(zip((*centre, radius), obstacle.par.tolist(), strict=True))
+    else:
+        raise ArgumentError(f"{obstacle}: expected spheres and walls; equilibria at other obstacles are not supported")
+    potential = PSI_BETA(sigma_norm(foot - q)).subs(EPS, parameters.eps)
+    gradient = [sp.diff(potential, x).replace(PHI_BETA, lambda z: phi_beta(z, beta=parameters)) for x in q]
+    return _compile("obstacle", gradient, q, values)

@@ -1,0 +1,82 @@
+"""From sympy expressions to CasADi ones: what the solver differentiates is what the derivations are about."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import casadi as ca
+import sympy as sp
+
+from flockana.errors import ArgumentError
+
+_UNARY: dict[Any, Callable[[Any], Any]] = {sp.cos: ca.cos, sp.sin: ca.sin, sp.exp: ca.exp, sp.Abs: ca.fabs, sp.sign: ca.sign}
+_RELATIONS: dict[Any, Callable[[Any, Any], Any]] = {
+    sp.StrictLessThan: ca.lt,
+    sp.LessThan: ca.le,
+    sp.StrictGreaterThan: ca.gt,
+    sp.GreaterThan: ca.ge,
+}
+
+
+def to_casadi(expression: Any, values: Mapping[Any, Any]) -> Any:
+    """Translate a sympy expression, node by node; what has no symbols left becomes the nearest float.
+
+    Parameters
+    ----------
+    expression : sympy.Expr
+        Sums, products, powers, cosines, comparisons and Piecewise of the symbols.
+    values : mapping of sympy.Symbol to casadi.SX
+        What each symbol stands for.
+
+    Raises
+    ------
+    ArgumentError
+        On a function that has no translation (an unevaluated integral, say), or a symbol without a value.
+
+    Examples
+    --------
+    >>> x = ca.SX.sym("x")
+    >>> to_casadi(sp.sqrt(1 + sp.Symbol("x") ** 2), {sp.Symbol("x"): x})
+    SX(sqrt((1+sq(x))))
+    """
+    if isinstance(expression, sp.Expr) and not expression.free_symbols and not expression.has(sp.Integral):
+        return float(expression.evalf(25))
+    if expression in values:
+        return values[expression]
+    parts = [to_casadi(part, values) for part in expression.args if not isinstance(expression, sp.Piecewise)]
+    kind = type(expression)
+    if kind in _UNARY:
+        return _UNARY[kind](*parts)
+    if kind in _RELATIONS:
+        return _RELATIONS[kind](*parts)
+    if isinstance(expression, sp.Add):
+        return sum(parts[1:], parts[0])
+    if isinstance(expression, sp.Mul):
+        product = parts[0]
+        for part in parts[1:]:
+            product = product * part
+        return product
+    if isinstance(expression, sp.Pow):
+        return _power(parts[0], expression.exp, parts[1])
+    if isinstance(expression, sp.Piecewise):
+        return _piecewise(expression, values)
+    raise ArgumentError(f"{expression}: expected elementary functions of {', '.join(map(str, values))}")
+
+
+def _power(base: Any, exponent: Any, translated: Any) -> Any:
+    """Return base^exponent; roots as square roots, which CasADi differentiates without a logarithm."""
+    if (2 * exponent).is_Integer and not exponent.is_Integer:
+        return ca.sqrt(base) ** int(2 * exponent)
+    return base ** (int(exponent) if exponent.is_Integer else translated)
+
+
+def _piecewise(expression: sp.Piecewise, values: Mapping[Any, Any]) -> Any:
+    """Return nested if_else, last branch first; every branch must be finite everywhere."""
+    *others, last = expression.args
+    if last.cond != sp.true:
+        raise ArgumentError(f"{expression}: expected a Piecewise whose last branch holds otherwise")
+    result = to_casadi(last.expr, values)
+    for branch in reversed(others):
+        result = ca.if_else(to_casadi(branch.cond, values), to_casadi(branch.expr, values), result)
+    return result

@@ -1,0 +1,159 @@
+"""From the closest-point map of one convex obstacle to sums over all agents and obstacles of its kind.
+
+An obstacle kind is one scalar function, ``project(q, p, par, gap, rate) -> clearance``: it writes the gap q̂ − q from
+the agent to its β-agent and the β-agent's velocity dq̂/dt into the last two arguments, and returns the signed distance
+to the boundary, negative inside. The gap, not q̂, is what it gives: q̂ − q would cancel near the surface.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import sqrt
+
+import numpy as np
+from numba import njit
+from numba.extending import register_jitable
+
+from flockana.kernels.alpha import pair_beta, psi_beta
+from flockana.kernels.lift import source_digest
+from flockana.kernels.scalars import bump, bump_slope, sigma_1, sigma_norm
+
+
+@dataclass(frozen=True)
+class ObstacleKernels:
+    """Compiled sums over agents and the obstacles of one kind.
+
+    ``pars[starts[k]:starts[k + 1]]`` are the parameters of obstacle k, ``balls[k]`` is (centre, radius) of a ball
+    that holds it: agents farther from the ball than the range cost one distance.
+
+    Attributes
+    ----------
+    forces : callable
+        ``forces(q, p, pars, starts, balls, beta, reach, c1, c2, u)`` adds c1 φ_β n̂_ik + c2 b_ik (p̂_ik − p_i) to u_i
+        for every obstacle within reach, and returns Σ b_ik ⟨p_i, p̂_ik − p_i⟩.
+    potential : callable
+        ``potential(q, pars, starts, balls, beta, panels, reach)`` returns Σ ψ_β.
+    agents : callable
+        ``agents(q, p, par, gap, rate, clearance)`` fills the arrays for one obstacle and every agent.
+    slopes : callable
+        ``slopes(q, par, beta, reach, blocks)`` adds the Hessian block of ψ_β of one obstacle to every agent's.
+    """
+
+    forces: Callable[..., float]
+    potential: Callable[..., float]
+    agents: Callable[..., None]
+    slopes: Callable[..., None]
+
+
+@register_jitable
+def pair_beta_slope(s2, par):
+    """d/d(s²) of the weight of q̂_ik − q_i, what the Hessian of ψ_β needs beside the weight itself."""
+    eps, h, d_beta = par[0], par[1], par[2]
+    z, g = sigma_norm(s2, eps), 1.0 + eps * s2
+    s, x = z - d_beta, z / d_beta
+    phi = bump(x, h) * (sigma_1(s) - 1.0)
+    slope = bump_slope(x, h) / d_beta * (sigma_1(s) - 1.0) + bump(x, h) / sqrt(1.0 + s * s) ** 3
+    return 0.5 * (slope - eps * phi / sqrt(g)) / g
+
+
+@register_jitable
+def _out_of_reach(q, ball, reach):
+    s2, m = 0.0, q.size
+    for c in range(m):
+        s2 += (q[c] - ball[c]) ** 2
+    return s2 > (ball[m] + reach) ** 2
+
+
+def lift_obstacle(project: Callable[..., float]) -> ObstacleKernels:
+    """Compile the sums of an obstacle kind given by its closest-point map.
+
+    Parameters
+    ----------
+    project : callable
+        ``project(q, p, par, gap, rate) -> clearance``, a `numba.extending.register_jitable` function of one agent.
+
+    Returns
+    -------
+    ObstacleKernels
+    """
+    digest = source_digest(project, pair_beta, lift_obstacle)
+
+    @njit(cache=True)
+    def forces(q, p, pars, starts, balls, beta, reach, c1, c2, u):
+        total = 0.0 * digest
+        n, m = q.shape
+        gap, rate = np.empty(m), np.empty(m)
+        for k in range(balls.shape[0]):
+            par = pars[starts[k] : starts[k + 1]]
+            for i in range(n):
+                if _out_of_reach(q[i], balls[k], reach):
+                    continue
+                clearance = project(q[i], p[i], par, gap, rate)
+                if abs(clearance) >= reach:
+                    continue
+                w, b = pair_beta(clearance * clearance, beta)
+                for c in range(m):
+                    slip = rate[c] - p[i, c]
+                    u[i, c] += c1 * w * gap[c] + c2 * b * slip
+                    total += b * p[i, c] * slip
+        return total
+
+    @njit(cache=True)
+    def potential(q, pars, starts, balls, beta, panels, reach):
+        total = 0.0 * digest
+        n, m = q.shape
+        still, gap, rate = np.zeros(m), np.empty(m), np.empty(m)
+        for k in range(balls.shape[0]):
+            par = pars[starts[k] : starts[k + 1]]
+            for i in range(n):
+                if not _out_of_reach(q[i], balls[k], reach):
+                    clearance = project(q[i], still, par, gap, rate)
+                    total += psi_beta(sigma_norm(clearance * clearance, beta[0]), beta, panels)
+        return total
+
+    @njit(cache=True)
+    def agents(q, p, par, gap, rate, clearance):
+        for i in range(q.shape[0]):
+            clearance[i] = project(q[i], p[i], par, gap[i], rate[i]) + 0.0 * digest
+
+    @njit(cache=True)
+    def slopes(q, par, beta, reach, blocks):
+        # ∇ψ_β = −w (q̂ − q), so its derivative along e_c is w (e_c − D e_c) + 2 w' (q̂ − q)_c (q̂ − q), D = dq̂/dq
+        n, m = q.shape
+        axis, gap, rate = np.zeros(m), np.empty(m), np.empty(m)
+        for i in range(n):
+            for c in range(m):
+                axis[c] = 1.0
+                clearance = project(q[i], axis, par, gap, rate)
+                if abs(clearance) < reach:
+                    w = pair_beta(clearance * clearance, beta)[0]
+                    slope = pair_beta_slope(clearance * clearance, beta)
+                    for e in range(m):
+                        blocks[i, e, c] += w * (axis[e] - rate[e]) + 2.0 * slope * gap[c] * gap[e] + 0.0 * digest
+                axis[c] = 0.0
+
+    return ObstacleKernels(forces, potential, agents, slopes)
+
+
+@register_jitable
+def project_ball(q, p, centre, radius, along, gap, rate):
+    """The β-agent on a sphere about `centre`, which itself moves at `along`: spheres and the rims of other bodies.
+
+    `along` must be tangent to the sphere at the agent's foot (or zero).
+    """
+    s2, radial = 0.0, 0.0
+    for c in range(q.size):
+        s2 += (q[c] - centre[c]) ** 2
+        radial += (q[c] - centre[c]) * p[c]
+    distance = sqrt(s2)
+    if distance == 0.0:  # the centre has no closest point
+        gap[:] = np.nan
+        rate[:] = np.nan
+        return -radius
+    mu = radius / distance
+    for c in range(q.size):
+        a = (q[c] - centre[c]) / distance
+        gap[c] = (radius - distance) * a
+        rate[c] = along[c] + mu * (p[c] - along[c] - radial / distance * a)
+    return distance - radius

@@ -1,0 +1,205 @@
+"""Two segments: do they meet, and how far apart are they? Signs that know when they are unsure.
+
+Signs of determinants are taken in floating point where a bound of the rounding error vouches for them (Shewchuk 1997)
+and are handed back as UNSURE where it does not.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+UNSURE = 2
+_TURN = 3.5 * 2.0**-53  # Shewchuk's bounds are (3 + 16u)u and (7 + 56u)u; the rest is slack for subnormal products
+_VOLUME = 8.0 * 2.0**-53
+_DOT = 8.0 * 2.0**-53
+_TINY = 1e-280  # below, products may have underflowed
+
+
+@njit(cache=True)
+def turn(a0, a1, b0, b1, c0, c1):
+    """Sign of the turn a → b → c in the plane: 1 left, −1 right, 0 none, UNSURE.
+
+    Parameters
+    ----------
+    a0, a1, b0, b1, c0, c1 : float
+        Coordinates of the three points.
+
+    Examples
+    --------
+    >>> turn(0.0, 0.0, 1.0, 0.0, 0.0, 1.0), turn(0.0, 0.0, 1.0, 0.0, 3.0, 0.0), turn(0.0, 0.0, 0.1, 0.1, 0.3, 0.3)
+    (1, 0, 2)
+    """
+    u, v, w, z = a0 - c0, b1 - c1, a1 - c1, b0 - c0
+    left, right = u * v, w * z
+    det, size = left - right, abs(left) + abs(right)
+    if size > _TINY and abs(det) > _TURN * size:
+        return 1 if det > 0.0 else -1
+    if (u == 0.0 or v == 0.0) and (w == 0.0 or z == 0.0):
+        return 0
+    return UNSURE
+
+
+@njit(cache=True)
+def _volume(a, b, c, d):
+    """Sign of the volume of a tetrahedron, likewise."""
+    u, v, w = a - d, b - d, c - d
+    for k in range(3):
+        if u[k] == 0.0 and v[k] == 0.0 and w[k] == 0.0:
+            return 0
+    det, size = 0.0, 0.0
+    for k in range(3):
+        first, second = v[(k + 1) % 3] * w[(k + 2) % 3], v[(k + 2) % 3] * w[(k + 1) % 3]
+        det += u[k] * (first - second)
+        size += abs(u[k]) * (abs(first) + abs(second))
+    if size > _TINY and abs(det) > _VOLUME * size:
+        return 1 if det > 0.0 else -1
+    return UNSURE
+
+
+@njit(cache=True)
+def meet(c, d, a, b):
+    """Whether two closed segments with overlapping boxes meet in the plane: 1, 0 or UNSURE.
+
+    Parameters
+    ----------
+    c, d : int
+        Turns of the first segment towards the ends of the second.
+    a, b : int
+        Turns of the second segment towards the ends of the first.
+
+    Examples
+    --------
+    >>> meet(1, -1, 1, -1), meet(1, 1, 1, -1), meet(0, 0, 0, 0), meet(UNSURE, 1, 1, -1)
+    (1, 0, 1, 2)
+    """
+    if (c == d and abs(c) == 1) or (a == b and abs(a) == 1):
+        return 0
+    if c == UNSURE or d == UNSURE or a == UNSURE or b == UNSURE:
+        return UNSURE
+    return 1  # each line is met by the other segment; four points on one line have overlapping boxes
+
+
+@njit(cache=True)
+def _overlap(a, b, c, planes):
+    """Whether the links a–b and a–c of one agent share more than it: they run the same way."""
+    unsure = False
+    for k in range(planes):
+        t = (k + 1) % 3
+        sign = turn(a[k], a[t], b[k], b[t], c[k], c[t])
+        if abs(sign) == 1:
+            return 0
+        unsure = unsure or sign == UNSURE
+    dot, size, zero = 0.0, 0.0, True
+    for k in range(3):
+        term = (b[k] - a[k]) * (c[k] - a[k])
+        dot += term
+        size += abs(term)
+        zero = zero and (b[k] == a[k] or c[k] == a[k])
+    if zero or (size > _TINY and dot < -_DOT * size):
+        return 0
+    return 1 if not unsure and size > _TINY and dot > _DOT * size else UNSURE
+
+
+@njit(cache=True)
+def cross(x, i, j, g, h, planes):
+    """Whether the links i–j and g–h cross: 1, 0 or UNSURE.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n, 3)
+        Positions, padded with zeros.
+    i, j, g, h : int
+        Agents.
+    planes : int
+        1 in the plane and on a line, 3 in space.
+
+    Examples
+    --------
+    >>> x = np.array([[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])
+    >>> cross(x, 0, 1, 2, 3, 1), cross(x, 0, 2, 1, 3, 1), cross(x, 0, 1, 0, 2, 1)
+    (1, 0, 0)
+    """
+    if i == g:
+        return _overlap(x[i], x[j], x[h], planes)
+    if i == h:
+        return _overlap(x[i], x[j], x[g], planes)
+    if j == g:
+        return _overlap(x[j], x[i], x[h], planes)
+    if j == h:
+        return _overlap(x[j], x[i], x[g], planes)
+    a, b, c, d = x[i], x[j], x[g], x[h]
+    for s in range(3):
+        if max(a[s], b[s]) < min(c[s], d[s]) or max(c[s], d[s]) < min(a[s], b[s]):
+            return 0
+    answer = 1
+    for s in range(planes):  # segments that meet in space meet in every projection
+        t = (s + 1) % 3
+        c_side, d_side = turn(a[s], a[t], b[s], b[t], c[s], c[t]), turn(a[s], a[t], b[s], b[t], d[s], d[t])
+        a_side, b_side = turn(c[s], c[t], d[s], d[t], a[s], a[t]), turn(c[s], c[t], d[s], d[t], b[s], b[t])
+        found = meet(c_side, d_side, a_side, b_side)
+        if found == 0:
+            return 0
+        answer = max(answer, found)
+    if planes == 3:
+        sign = _volume(a, b, c, d)
+        if abs(sign) == 1:
+            return 0
+        answer = max(answer, 1 if sign == 0 else UNSURE)
+    return answer
+
+
+@njit(cache=True)
+def foot(p, a, b):
+    """Distance of a point from a segment.
+
+    Parameters
+    ----------
+    p, a, b : ndarray, shape (3,)
+        The point and the segment's ends.
+
+    Examples
+    --------
+    >>> foot(np.array([1.0, 2.0, 0.0]), np.zeros(3), np.array([3.0, 0.0, 0.0]))
+    2.0
+    """
+    along, size = 0.0, 0.0
+    for k in range(3):
+        along += (p[k] - a[k]) * (b[k] - a[k])
+        size += (b[k] - a[k]) ** 2
+    s = min(1.0, max(0.0, along / size)) if size > 0.0 else 0.0
+    far = 0.0
+    for k in range(3):
+        far += (p[k] - a[k] - s * (b[k] - a[k])) ** 2
+    return np.sqrt(far)
+
+
+@njit(cache=True)
+def between(a, b, c, d):
+    """Distance of two segments that do not cross: at an end of one, or along their common normal.
+
+    Parameters
+    ----------
+    a, b, c, d : ndarray, shape (3,)
+        Ends of the one and of the other.
+
+    Examples
+    --------
+    >>> x = np.array([[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, -1.0, 2.0], [0.0, 1.0, 2.0]])
+    >>> between(x[0], x[1], x[2], x[3])
+    2.0
+    """
+    nearest = min(min(foot(a, c, d), foot(b, c, d)), min(foot(c, a, b), foot(d, a, b)))
+    uu, uv, vv, uw, vw = 0.0, 0.0, 0.0, 0.0, 0.0
+    for k in range(3):
+        u, v, w = b[k] - a[k], d[k] - c[k], c[k] - a[k]
+        uu, uv, vv, uw, vw = uu + u * u, uv + u * v, vv + v * v, uw + u * w, vw + v * w
+    det = uu * vv - uv * uv
+    if det > 1e-14 * uu * vv:
+        s, t = (uw * vv - uv * vw) / det, (uw * uv - uu * vw) / det
+        if 0.0 < s < 1.0 and 0.0 < t < 1.0:
+            gap = 0.0
+            for k in range(3):
+                gap += (c[k] - a[k] + t * (d[k] - c[k]) - s * (b[k] - a[k])) ** 2
+            nearest = min(nearest, np.sqrt(gap))
+    return nearest

@@ -1,0 +1,292 @@
+"""Builders of α-lattices on the line, in the plane and in space, and the largest ratio at which each is one."""
+
+from __future__ import annotations
+
+from math import isqrt, sqrt
+from typing import Any
+
+import numpy as np
+
+from flockana.checks import FloatArray, ensure_positive
+from flockana.errors import ArgumentError, UnknownNameError
+
+_STEPS = np.array(
+    [(1.0, 0.0), (0.5, 0.75**0.5), (-0.5, 0.75**0.5), (-1.0, 0.0), (-0.5, -(0.75**0.5)), (0.5, -(0.75**0.5))]
+)
+_MAX_RATIO = {
+    "line": 2.0,
+    "triangular": sqrt(3.0),
+    "hexagonal_patch": sqrt(3.0),
+    "hexagonal_spiral": sqrt(3.0),
+    "square": sqrt(2.0),
+    "honeycomb": sqrt(3.0),
+    "simple_cubic": sqrt(2.0),
+    "fcc": sqrt(2.0),
+    "hcp": sqrt(2.0),
+    "bcc": 2.0 / sqrt(3.0),
+}
+
+
+def max_ratio(name: str) -> float:
+    """The largest κ = r/d for which a builder's pattern is an α-lattice: its second neighbour distance over its first.
+
+    The ratio itself is allowed, as neighbours are nearer than r: `links` takes a distance that equals r up to rounding
+    for r.
+
+    Parameters
+    ----------
+    name : str
+        The builder's name, such as ``"hexagonal_patch"`` or ``"bcc"``.
+
+    Raises
+    ------
+    UnknownNameError
+        If there is no such builder.
+
+    Examples
+    --------
+    >>> round(max_ratio("bcc"), 4)  # below the usual 1.2
+    1.1547
+    """
+    if name not in _MAX_RATIO:
+        raise UnknownNameError("lattice", name, _MAX_RATIO)
+    return _MAX_RATIO[name]
+
+
+def ensure_count(name: str, value: Any) -> int:
+    """Return `value` as a whole number >= 1.
+
+    Parameters
+    ----------
+    name : str
+        The argument's name, for the message.
+    value : object
+        What the caller gave.
+
+    Raises
+    ------
+    ArgumentError
+        If it is no whole number >= 1.
+
+    Examples
+    --------
+    >>> ensure_count("n", 7)
+    7
+    """
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 1:
+        raise ArgumentError(f"{name} = {value!r}: expected a whole number >= 1")
+    return int(value)
+
+
+def _sites(basis: Any, cell: Any, counts: dict[str, int], d: float) -> FloatArray:
+    """The sites `basis` in each of counts[0] × counts[1] ... cells of edge vectors `cell`, in units of d."""
+    sizes = [ensure_count(name, value) for name, value in counts.items()]
+    corners = np.stack(np.meshgrid(*map(np.arange, sizes), indexing="ij"), axis=-1).reshape(-1, len(sizes))
+    offsets = corners @ np.asarray(cell, dtype=float)
+    sites = offsets[:, None] + np.asarray(basis, dtype=float)[None]
+    points: FloatArray = ensure_positive("d", d) * sites.reshape(-1, sites.shape[-1])
+    return points
+
+
+def line(n: int, d: float) -> FloatArray:
+    """Agents on a line, d apart: n − 1 links.
+
+    Parameters
+    ----------
+    n : int
+        Number of agents.
+    d : float
+        Distance between neighbours.
+
+    Examples
+    --------
+    >>> line(3, 7.0).ravel().tolist()
+    [0.0, 7.0, 14.0]
+    """
+    return _sites([[0.0]], [[1.0]], {"n": n}, d)
+
+
+def triangular(n: int, d: float) -> FloatArray:
+    """The first n points of a nearly square patch of the triangular lattice, row by row.
+
+    Parameters
+    ----------
+    n : int
+        Number of agents; rows hold ⌈√n⌉ of them, every second one shifted by half the spacing.
+    d : float
+        Distance between neighbours.
+
+    Examples
+    --------
+    >>> triangular(4, 2.0)[:3].tolist()
+    [[0.0, 0.0], [2.0, 0.0], [1.0, 1.7320508075688772]]
+    """
+    n, d = ensure_count("n", n), ensure_positive("d", d)
+    width = isqrt(n - 1) + 1
+    row, column = np.divmod(np.arange(n), width)
+    return np.column_stack([d * (column + 0.5 * (row % 2)), d * sqrt(0.75) * row])
+
+
+def hexagonal_spiral(n: int, d: float) -> FloatArray:
+    """The first n points of a spiral on the triangular lattice: it has Harborth's largest number of links.
+
+    Parameters
+    ----------
+    n : int
+        Number of agents.
+    d : float
+        Distance between neighbours.
+
+    Returns
+    -------
+    ndarray, shape (n, 2)
+
+    Examples
+    --------
+    >>> from flockana.lattice import harborth, links
+    >>> len(links(hexagonal_spiral(19, 7.0), 8.4)) == harborth(19)
+    True
+    """
+    n, d = ensure_count("n", n), ensure_positive("d", d)
+    rings = [np.zeros((1, 2))]
+    for ring in range(1, (isqrt(12 * n) + 3) // 6 + 1):  # the last ring has 3 ring (ring + 1) + 1 >= n points
+        steps = np.repeat(_STEPS[[2, 3, 4, 5, 0, 1]], ring, axis=0)
+        rings.append(ring * _STEPS[0] + np.cumsum(steps, axis=0))  # the first lies between two of the ring inside
+    return d * np.concatenate(rings)[:n]
+
+
+def hexagonal_patch(k: int, d: float) -> FloatArray:
+    """A hexagon of the triangular lattice with k rings about its centre: 3k(k + 1) + 1 agents.
+
+    Parameters
+    ----------
+    k : int
+        Number of rings, >= 0.
+    d : float
+        Distance between neighbours.
+
+    Returns
+    -------
+    ndarray, shape (3k(k + 1) + 1, 2)
+
+    Examples
+    --------
+    >>> hexagonal_patch(1, 7.0).shape
+    (7, 2)
+    """
+    k = ensure_count("k", k) if k != 0 else 0
+    return hexagonal_spiral(3 * k * (k + 1) + 1, d)
+
+
+def square(rows: int, cols: int, d: float) -> FloatArray:
+    """A rectangle of the square lattice.
+
+    Parameters
+    ----------
+    rows, cols : int
+        Agents along y and along x.
+    d : float
+        Distance between neighbours.
+
+    Examples
+    --------
+    >>> square(2, 3, 7.0).shape
+    (6, 2)
+    """
+    return _sites([[0.0, 0.0]], [[0.0, 1.0], [1.0, 0.0]], {"rows": rows, "cols": cols}, d)
+
+
+def honeycomb(rows: int, cols: int, d: float) -> FloatArray:
+    """A parallelogram of the honeycomb: rows × cols cells of two agents.
+
+    Parameters
+    ----------
+    rows, cols : int
+        Cells along either edge.
+    d : float
+        Distance between neighbours.
+
+    Examples
+    --------
+    >>> honeycomb(2, 3, 7.0).shape
+    (12, 2)
+    """
+    h = sqrt(0.75)
+    return _sites([[0.0, 0.0], [0.0, 1.0]], [[h, 1.5], [2.0 * h, 0.0]], {"rows": rows, "cols": cols}, d)
+
+
+def simple_cubic(nx: int, ny: int, nz: int, d: float) -> FloatArray:
+    """A block of the simple cubic lattice.
+
+    Parameters
+    ----------
+    nx, ny, nz : int
+        Agents along each axis.
+    d : float
+        Distance between neighbours.
+
+    Examples
+    --------
+    >>> simple_cubic(2, 2, 2, 7.0).shape
+    (8, 3)
+    """
+    return _sites([[0.0, 0.0, 0.0]], np.eye(3), {"nx": nx, "ny": ny, "nz": nz}, d)
+
+
+def fcc(nx: int, ny: int, nz: int, d: float) -> FloatArray:
+    """A block of the face-centred cubic lattice: cubes of side √2 d with four agents each.
+
+    Parameters
+    ----------
+    nx, ny, nz : int
+        Cubes along each axis.
+    d : float
+        Distance between neighbours.
+
+    Examples
+    --------
+    >>> fcc(2, 2, 2, 7.0).shape
+    (32, 3)
+    """
+    side = sqrt(2.0)
+    basis = 0.5 * side * np.array([[0, 0, 0], [1, 1, 0], [1, 0, 1], [0, 1, 1]])
+    return _sites(basis, side * np.eye(3), {"nx": nx, "ny": ny, "nz": nz}, d)
+
+
+def hcp(nx: int, ny: int, nz: int, d: float) -> FloatArray:
+    """A block of the hexagonal close packing: cells d × √3 d × √(8/3) d with four agents each.
+
+    Parameters
+    ----------
+    nx, ny, nz : int
+        Cells along each axis.
+    d : float
+        Distance between neighbours.
+
+    Examples
+    --------
+    >>> hcp(2, 2, 2, 7.0).shape
+    (32, 3)
+    """
+    w, c = sqrt(3.0), sqrt(8.0 / 3.0)
+    basis = [[0.0, 0.0, 0.0], [0.5, w / 2.0, 0.0], [0.5, w / 6.0, c / 2.0], [0.0, 2.0 * w / 3.0, c / 2.0]]
+    return _sites(basis, np.diag([1.0, w, c]), {"nx": nx, "ny": ny, "nz": nz}, d)
+
+
+def bcc(nx: int, ny: int, nz: int, d: float) -> FloatArray:
+    """A block of the body-centred cubic lattice: cubes of side 2d/√3 with two agents each.
+
+    Parameters
+    ----------
+    nx, ny, nz : int
+        Cubes along each axis.
+    d : float
+        Distance between neighbours.
+
+    Examples
+    --------
+    >>> bcc(2, 2, 2, 7.0).shape
+    (16, 3)
+    """
+    side = 2.0 / sqrt(3.0)
+    return _sites([[0.0] * 3, [0.5 * side] * 3], side * np.eye(3), {"nx": nx, "ny": ny, "nz": nz}, d)

@@ -1,0 +1,210 @@
+"""Crossings of links, decided exactly for the positions as stored.
+
+Two links cross if they share a point that is not the position of a common agent:
+
+* links without a common agent cross if their closed segments meet: a proper crossing, an agent lying on another link,
+  two coincident agents, a collinear overlap, all count;
+* links of a common agent cross if they overlap, that is if their other ends lie on one ray from it; a link of length
+  zero overlaps no link of its own agents;
+* in space two links cross only if they lie in one plane.
+
+No tolerance enters. Each sign is taken in floating point where its error bound decides it, and in whole numbers
+otherwise: doubles are whole multiples of a power of two, so the determinants are exact however nearly degenerate the
+links are. What rounding of the positions themselves did before is not undone: in space, where a crossing is an
+equation, two links that ought to cross may miss each other by a rounding. `separation` tells by how much links miss.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import isfinite
+from typing import Any
+
+import numpy as np
+
+from flockana.checks import FloatArray, ensure_points, ensure_positive
+from flockana.errors import ArgumentError
+from flockana.kernels.crossings import crossing_blocks, nearest_links
+from flockana.kernels.segments import meet
+from flockana.nets import LinkArray
+
+
+def ensure_links(links: Any, n: int) -> LinkArray:
+    """Return links as an int32 array (M, 2) of agents 0 … n − 1.
+
+    Parameters
+    ----------
+    links : array_like, shape (M, 2)
+        Pairs of different agents.
+    n : int
+        Number of agents.
+
+    Raises
+    ------
+    ArgumentError
+        On another shape or type, an agent that does not exist, or a link of an agent to itself.
+
+    Examples
+    --------
+    >>> ensure_links([[0, 1]], 2).tolist()
+    [[0, 1]]
+    """
+    array = np.asarray(links)
+    if array.size == 0:
+        return np.empty((0, 2), dtype=np.int32)
+    if array.ndim != 2 or array.shape[1] != 2 or array.dtype.kind not in "iu":
+        raise ArgumentError(f"links has shape {array.shape} of {array.dtype}: expected (M, 2) whole numbers")
+    bad = ((array < 0) | (array >= n)).any(axis=1) | (array[:, 0] == array[:, 1])
+    if bad.any():
+        k = int(np.argmax(bad))
+        raise ArgumentError(f"links[{k}] = {array[k].tolist()}: expected two different agents of 0 … {n - 1}")
+    return np.ascontiguousarray(array, dtype=np.int32)
+
+
+def crossings(q: Any, links: Any, *, limit: int | None = None) -> LinkArray:
+    """Pairs of links that cross, exactly; sub-quadratic.
+
+    Parameters
+    ----------
+    q : array_like, shape (n, m)
+        Positions.
+    links : array_like, shape (M, 2)
+        Pairs of different agents.
+    limit : int, optional
+        Stop when that many are found: a collapsed flock of n has of the order of n⁴/24.
+
+    Returns
+    -------
+    int32 array, shape (K, 2)
+        Indices (a, b) of links, a < b, sorted: the agents are links[a] and links[b].
+
+    Notes
+    -----
+    See the module's text for what counts as crossing in degenerate cases.
+
+    Examples
+    --------
+    The diagonals of a square cross; its sides do not:
+
+    >>> q = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
+    >>> crossings(q, [[0, 1], [1, 2], [0, 2], [1, 3]]).tolist()
+    [[2, 3]]
+    """
+    q = ensure_points("q", q)
+    links = ensure_links(links, len(q))
+    if limit is not None and (isinstance(limit, bool) or not isinstance(limit, int | np.integer) or limit < 1):
+        raise ArgumentError(f"limit = {limit!r}: expected a whole number >= 1, or None for all")
+    exact = _Exact(q, links)
+    found, count = [np.empty((0, 2), dtype=np.int32)], 0
+    for a, b, sure in crossing_blocks(q, links):
+        true = sure.copy()
+        for k in np.flatnonzero(~sure):
+            true[k] = exact.cross(int(a[k]), int(b[k]))
+        found.append(np.column_stack([np.minimum(a, b), np.maximum(a, b)])[true])
+        count += len(found[-1])
+        if limit is not None and count >= limit:
+            found = [np.unique(np.concatenate(found), axis=0)]
+            count = len(found[0])
+            if count >= limit:
+                break
+    pairs: LinkArray = np.unique(np.concatenate(found), axis=0)
+    return pairs if limit is None else pairs[:limit]
+
+
+class _Exact:
+    """The same decisions as the kernel's, in whole numbers; each agent is converted when it is first needed."""
+
+    def __init__(self, q: FloatArray, links: LinkArray) -> None:
+        self._q, self._links, self._m = q, links, q.shape[1]
+        self._known: dict[int, tuple[int, ...]] = {}
+        self._shift = _common_exponent(q)
+
+    def point(self, i: int) -> tuple[int, ...]:
+        """Position of agent i in units of the common power of two, padded to three coordinates."""
+        if i not in self._known:
+            parts = [float(v).as_integer_ratio() for v in self._q[i]]
+            whole = [(over << self._shift) // under for over, under in parts]
+            self._known[i] = tuple(whole + [0] * (3 - self._m))
+        return self._known[i]
+
+    def cross(self, a: int, b: int) -> bool:
+        (i, j), (g, h) = ((int(v) for v in self._links[e]) for e in (a, b))
+        if i in (g, h) or j in (g, h):
+            shared = i if i in (g, h) else j
+            return _overlap(*(self.point(v) for v in (shared, i + j - shared, g + h - shared)))
+        return _meet_in_space(*(self.point(v) for v in (i, j, g, h)))
+
+
+def _common_exponent(q: FloatArray) -> int:
+    """Least s >= 0 for which all of 2^s q are whole numbers, or a little more."""
+    values = np.abs(q[q != 0.0])
+    return max(0, 53 - int(np.frexp(values.min())[1])) if values.size else 0
+
+
+def _turn(a: tuple[int, ...], b: tuple[int, ...], c: tuple[int, ...], s: int, t: int) -> int:
+    det = (a[s] - c[s]) * (b[t] - c[t]) - (a[t] - c[t]) * (b[s] - c[s])
+    return (det > 0) - (det < 0)
+
+
+def _overlap(a: tuple[int, ...], b: tuple[int, ...], c: tuple[int, ...]) -> bool:
+    if any(_turn(a, b, c, s, (s + 1) % 3) for s in range(3)):
+        return False
+    return sum((b[s] - a[s]) * (c[s] - a[s]) for s in range(3)) > 0
+
+
+def _meet_in_space(a: tuple[int, ...], b: tuple[int, ...], c: tuple[int, ...], d: tuple[int, ...]) -> bool:
+    """Coplanar, and meeting in all three projections, of which one at least is one to one on that plane."""
+    u, v, w = (tuple(p[s] - d[s] for s in range(3)) for p in (a, b, c))
+    if sum(u[s] * (v[s - 2] * w[s - 1] - v[s - 1] * w[s - 2]) for s in range(3)):
+        return False
+    return all(
+        meet(_turn(a, b, c, s, t), _turn(a, b, d, s, t), _turn(c, d, a, s, t), _turn(c, d, b, s, t))
+        for s, t in ((0, 1), (1, 2), (2, 0))
+    )
+
+
+@dataclass(frozen=True)
+class Separation:
+    """How near two links without a common agent come.
+
+    Attributes
+    ----------
+    distance : float
+        The least distance; `reach` if no two links are nearer, 0 if two cross.
+    links : (int, int) or None
+        Which two; None if none is nearer than `reach`.
+    """
+
+    distance: float
+    links: tuple[int, int] | None
+
+
+def separation(q: Any, links: Any, *, reach: float) -> Separation:
+    """Least distance between two links that share no agent, looked for up to `reach`; in floating point.
+
+    Parameters
+    ----------
+    q : array_like, shape (n, m)
+        Positions.
+    links : array_like, shape (M, 2)
+        Pairs of different agents.
+    reach : float
+        Distance beyond which links are not compared; d is a sensible one.
+
+    Examples
+    --------
+    Opposite edges of a regular tetrahedron of edge √2:
+
+    >>> q = [[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]]
+    >>> separation(q, [[0, 1], [2, 3]], reach=2.0)
+    Separation(distance=1.0, links=(0, 1))
+    """
+    q = ensure_points("q", q)
+    links, reach = ensure_links(links, len(q)), ensure_positive("reach", reach)
+    touching = crossings(q, links, limit=1)
+    if len(touching):
+        return Separation(0.0, (int(touching[0, 0]), int(touching[0, 1])))
+    distance, a, b = nearest_links(q, links, reach)
+    if not isfinite(distance):
+        raise ArgumentError(f"the positions reach {np.abs(q).max():.3g}: too far for distances in floating point")
+    return Separation(distance, None if a < 0 else (min(a, b), max(a, b)))

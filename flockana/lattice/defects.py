@@ -1,0 +1,107 @@
+"""Coordination numbers, and the defects of a triangular lattice: agents inside it without six neighbours."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.checks import FloatArray, ensure_points
+from flockana.lattice.builders import ensure_count
+from flockana.lattice.crossings import ensure_links
+from flockana.lattice.planarity import ensure_plane
+from flockana.nets import LinkArray
+
+IntArray = npt.NDArray[np.int64]
+
+
+def coordination(n: int, links: Any) -> IntArray:
+    """Number of neighbours of each agent.
+
+    Parameters
+    ----------
+    n : int
+        Number of agents.
+    links : array_like, shape (M, 2)
+        Links.
+
+    Examples
+    --------
+    >>> coordination(3, [[0, 1], [1, 2]]).tolist()
+    [1, 2, 1]
+    """
+    n = ensure_count("n", n)
+    count: IntArray = np.bincount(ensure_links(links, n).ravel(), minlength=n).astype(np.int64)
+    return count
+
+
+@dataclass(frozen=True, eq=False)
+class Defects:
+    """Neighbours of each agent, and who stands inside a triangulated part of the net.
+
+    Attributes
+    ----------
+    coordination : int array, shape (n,)
+        Number of neighbours.
+    interior : bool array, shape (n,)
+        Whether the agent is surrounded by triangles: each two neighbours that follow each other around it are linked.
+    charge : int array, shape (n,)
+        6 − coordination of interior agents (1 on a fivefold, −1 on a sevenfold defect), 0 of the others, at the rim or
+        at a hole, whose number of neighbours tells nothing.
+    """
+
+    coordination: IntArray
+    interior: npt.NDArray[np.bool_]
+    charge: IntArray
+
+    @property
+    def counts(self) -> dict[int, int]:
+        """How many interior agents have 3, 4, 5 … neighbours."""
+        sizes, numbers = np.unique(self.coordination[self.interior], return_counts=True)
+        return {int(k): int(v) for k, v in zip(sizes, numbers, strict=True)}
+
+
+def defects(q: Any, links: Any) -> Defects:
+    """Coordination numbers of a planar net, told apart by whether an agent is inside the net or at its rim.
+
+    Parameters
+    ----------
+    q : array_like, shape (n, 2)
+        Positions.
+    links : array_like, shape (M, 2)
+        Links, each once; where they cross, an agent may be called interior that is in no triangulation.
+
+    Examples
+    --------
+    >>> from flockana.lattice import hexagonal_patch, links
+    >>> q = hexagonal_patch(2, 7.0)
+    >>> defects(q, links(q, 8.4)).counts
+    {6: 7}
+    """
+    q = ensure_points("q", q)
+    ensure_plane(q.shape[1])
+    links = ensure_links(links, len(q))
+    count = coordination(len(q), links)
+    interior = _surrounded(q, links, count)
+    return Defects(count, interior, np.where(interior, 6 - count, 0))
+
+
+def _surrounded(q: FloatArray, links: LinkArray, count: IntArray) -> npt.NDArray[np.bool_]:
+    n = len(q)
+    centre, other = np.concatenate([links, links[:, ::-1]]).T.astype(np.int64)
+    step = q[other] - q[centre]
+    angle = np.arctan2(step[:, 1], step[:, 0])
+    order = np.lexsort((angle, centre))
+    centre, other, angle = centre[order], other[order], angle[order]
+    first = np.cumsum(count) - count
+    slot = np.arange(len(centre)) - first[centre]
+    following = first[centre] + (slot + 1) % np.maximum(count[centre], 1)
+    gap = np.mod(angle[following] - angle, 2.0 * np.pi)
+    codes = np.sort(centre * n + other)
+    sought = other * n + other[following]
+    place = np.minimum(np.searchsorted(codes, sought), max(len(codes) - 1, 0))
+    closed = (codes[place] == sought) & (gap < np.pi) & (gap > 0.0)
+    interior: npt.NDArray[np.bool_] = (np.bincount(centre[closed], minlength=n) == count) & (count >= 3)
+    return interior

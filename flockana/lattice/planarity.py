@@ -1,0 +1,212 @@
+"""Planar graphs and their bounds: 3n − 6, Harborth's, completeness, and a Kuratowski subgraph as witness."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import isqrt
+from typing import Any, Literal
+
+import numpy as np
+
+from flockana.errors import ArgumentError
+from flockana.lattice.builders import ensure_count
+from flockana.lattice.crossings import ensure_links
+from flockana.nets import LinkArray
+
+
+def harborth(n: int) -> int:
+    """Largest number of links of a planar α-lattice of n agents: ⌊3n − √(12n − 3)⌋   (Harborth 1974).
+
+    Parameters
+    ----------
+    n : int
+        Number of agents.
+
+    Examples
+    --------
+    >>> [harborth(n) for n in (1, 2, 3, 7, 19)]
+    [0, 1, 3, 12, 42]
+    """
+    n = ensure_count("n", n)
+    root = isqrt(12 * n - 3)  # ⌊3n − √x⌋ = 3n − ⌈√x⌉, in whole numbers
+    return 3 * n - (root if root * root == 12 * n - 3 else root + 1)
+
+
+def planar_bound(n: int) -> int:
+    """Largest number of links of a planar graph of n >= 3 agents, 3n − 6; for fewer, all there are (erratum E6).
+
+    Parameters
+    ----------
+    n : int
+        Number of agents.
+
+    Examples
+    --------
+    >>> [planar_bound(n) for n in (1, 2, 3, 4)]
+    [0, 1, 3, 6]
+    """
+    n = ensure_count("n", n)
+    return 3 * n - 6 if n >= 3 else n - 1
+
+
+def is_complete(n: int, links: Any) -> bool:
+    """Whether every two of n agents are linked.
+
+    Parameters
+    ----------
+    n : int
+        Number of agents.
+    links : array_like, shape (M, 2)
+        Links; one that comes twice counts once.
+
+    Examples
+    --------
+    >>> is_complete(3, [[0, 1], [1, 2], [0, 2]])
+    True
+    """
+    n = ensure_count("n", n)
+    return len(_distinct(n, links)) == n * (n - 1) // 2
+
+
+def is_planar(n: int, links: Any) -> bool:
+    """Whether the graph of n agents can be drawn in the plane without crossings, however its agents stand.
+
+    Parameters
+    ----------
+    n : int
+        Number of agents.
+    links : array_like, shape (M, 2)
+        Links.
+
+    See Also
+    --------
+    kuratowski : why not.
+
+    Examples
+    --------
+    >>> is_planar(5, [[i, j] for i in range(5) for j in range(i)])
+    False
+    """
+    n = ensure_count("n", n)
+    return _planar(n, _distinct(n, links))
+
+
+@dataclass(frozen=True, eq=False)
+class Kuratowski:
+    """A subgraph that no plane holds.
+
+    Attributes
+    ----------
+    kind : {"K5", "K3,3"}
+        What it is a subdivision of.
+    corners : tuple of int
+        Its five or six agents of degree above 2; in K3,3 the first three are linked, by paths, to the last three.
+    links : int32 array, shape (K, 2)
+        Its links.
+    """
+
+    kind: Literal["K5", "K3,3"]
+    corners: tuple[int, ...]
+    links: LinkArray
+
+
+def kuratowski(n: int, links: Any) -> Kuratowski | None:
+    """A subdivision of K5 or K3,3 in the graph; None if it is planar.
+
+    The links are thinned out in ever smaller parts as long as what remains is not planar, so that what is left at the
+    end falls apart if any one link is taken.
+
+    Parameters
+    ----------
+    n : int
+        Number of agents.
+    links : array_like, shape (M, 2)
+        Links.
+
+    Examples
+    --------
+    >>> found = kuratowski(6, [[i, j] for i in range(3) for j in range(3, 6)])
+    >>> found.kind, found.corners
+    ('K3,3', (0, 1, 2, 3, 4, 5))
+    """
+    n = ensure_count("n", n)
+    rest = _distinct(n, links)
+    if _planar(n, rest):
+        return None
+    size = len(rest)
+    while size >= 1:
+        size = min(size, len(rest))
+        start = 0
+        while start < len(rest):
+            fewer = np.delete(rest, slice(start, start + size), axis=0)
+            if _planar(n, fewer):
+                start += size
+            else:
+                rest = fewer
+        size //= 2
+    return _name(rest)
+
+
+def _name(links: LinkArray) -> Kuratowski:
+    agents, degree = np.unique(links, return_counts=True)
+    corners = [int(v) for v in agents[degree > 2]]
+    if len(corners) == 5:
+        return Kuratowski("K5", tuple(corners), links)
+    ends = _ends_of_paths(links, corners[0], set(corners))
+    return Kuratowski("K3,3", (*(v for v in corners if v not in ends), *sorted(ends)), links)
+
+
+def _ends_of_paths(links: LinkArray, corner: int, corners: set[int]) -> set[int]:
+    """The corners that paths from this one reach through agents of degree 2."""
+    near: dict[int, list[int]] = {}
+    for i, j in links.tolist():
+        near.setdefault(i, []).append(j)
+        near.setdefault(j, []).append(i)
+    ends = set()
+    for step in near[corner]:
+        before, here = corner, step
+        while here not in corners:
+            before, here = here, next(v for v in near[here] if v != before)
+        ends.add(here)
+    return ends
+
+
+def _distinct(n: int, links: Any) -> LinkArray:
+    pairs: LinkArray = np.unique(np.sort(ensure_links(links, n), axis=1), axis=0)
+    return pairs
+
+
+def _planar(n: int, links: LinkArray) -> bool:
+    """Few links are planar and many are not; between, the left-right test."""
+    import networkx
+
+    if len(links) < 9:  # K3,3 has nine; K5 ten
+        return True
+    agents = len(np.unique(links))
+    if len(links) > planar_bound(agents):
+        return False
+    graph = networkx.Graph()
+    graph.add_edges_from(links.tolist())
+    planar: bool = networkx.check_planarity(graph)[0]
+    return planar
+
+
+def ensure_plane(m: int) -> None:
+    """Refuse what has a meaning in the plane only.
+
+    Parameters
+    ----------
+    m : int
+        Dimension.
+
+    Raises
+    ------
+    ArgumentError
+        If it is not 2.
+
+    Examples
+    --------
+    >>> ensure_plane(2)
+    """
+    if m != 2:
+        raise ArgumentError(f"q has {m} columns: expected 2, as faces are those of a drawing in the plane")

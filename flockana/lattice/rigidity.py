@@ -1,0 +1,172 @@
+"""Infinitesimal rigidity: the rank of the rigidity matrix, flexes and self-stresses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flockana.checks import FloatArray, ensure_points, ensure_positive
+from flockana.errors import SolverError
+from flockana.lattice.crossings import ensure_links
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
+
+DENSE_MAX = 800  # coordinates up to which singular values take less than a second
+
+
+@dataclass(frozen=True)
+class Rigidity:
+    """How many ways there are to move without stretching a link, and to stress links in balance.
+
+    Attributes
+    ----------
+    rank : int
+        Rank of the rigidity matrix: of n m coordinates, so many combinations are held by the links.
+    rigid_motions : int
+        Translations and rotations: fewer than m(m + 1)/2 where the agents stand on a point or a line.
+    flexes : int
+        Other infinitesimal motions that keep all lengths to first order.
+    self_stresses : int
+        Independent stresses of the links that leave every agent in balance.
+    soft : int
+        Motions, among neither of these, that stretch so little that a threshold ten times as large had counted them as
+        flexes: if there are any, rank and flexes are a matter of the threshold.
+    """
+
+    rank: int
+    rigid_motions: int
+    flexes: int
+    self_stresses: int
+    soft: int
+
+    @property
+    def infinitesimally_rigid(self) -> bool:
+        """Whether only translations and rotations keep all lengths to first order."""
+        return self.flexes == 0
+
+
+def rigidity_matrix(q: Any, links: Any) -> csr_array:
+    """Rows (…, −u, …, u, …) with u the direction of each link: the rate of each length, from the velocities.
+
+    Parameters
+    ----------
+    q : array_like, shape (n, m)
+        Positions.
+    links : array_like, shape (M, 2)
+        Links; one of length zero has no direction, and a row of zeros.
+
+    Returns
+    -------
+    csr_array, shape (M, n m)
+
+    Examples
+    --------
+    >>> rigidity_matrix([[0.0, 0.0], [3.0, 4.0]], [[0, 1]]).toarray().tolist()
+    [[-0.6, -0.8, 0.6, 0.8]]
+    """
+    from scipy.sparse import csr_array
+
+    q = ensure_points("q", q)
+    links = ensure_links(links, len(q))
+    m = q.shape[1]
+    step = q[links[:, 1]] - q[links[:, 0]]
+    length = np.linalg.norm(step, axis=1, keepdims=True)
+    direction = np.divide(step, length, out=np.zeros_like(step), where=length > 0.0)
+    columns = (m * links[:, :, None].astype(np.int64) + np.arange(m)).reshape(len(links), 2 * m)
+    data = np.concatenate([-direction, direction], axis=1)
+    starts = np.arange(len(links) + 1) * 2 * m
+    return csr_array((data.ravel(), columns.ravel(), starts), shape=(len(links), q.size))
+
+
+def rigidity(q: Any, links: Any, *, tol: float = 1e-5, dense: bool | None = None) -> Rigidity:
+    """Rank of the rigidity matrix and what follows from it.
+
+    Small nets by singular values. Large ones by the inertia of RᵀR − (tol σ_max)² I from a sparse factorisation, which
+    counts the motions that stretch less than the threshold without computing any of them.
+
+    Parameters
+    ----------
+    q : array_like, shape (n, m)
+        Positions.
+    links : array_like, shape (M, 2)
+        Links.
+    tol : float
+        Singular values below tol times the largest count as zero. Squared in the sparse way, so not below 1e-7. The
+        softest true motion of a compact patch of n agents is at about 1/√n; a strip k agents long bends at about 1/k².
+    dense : bool, optional
+        Force singular values (True) or the factorisation (False).
+
+    Raises
+    ------
+    SolverError
+        If the sparse factorisation had to reorder rows, so that its pivots do not tell the inertia.
+
+    Examples
+    --------
+    >>> square, sides = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]], [[0, 1], [1, 2], [2, 3], [0, 3]]
+    >>> rigidity(square, sides).flexes, rigidity(square, [*sides, [0, 2]]).infinitesimally_rigid
+    (1, True)
+    """
+    q, tol = ensure_points("q", q), ensure_positive("tol", tol)
+    matrix = rigidity_matrix(q, links)
+    if dense is None:
+        dense = q.size <= DENSE_MAX
+    below, soft = _by_singular_values(matrix, tol) if dense else _by_inertia(matrix, max(tol, 1e-7))
+    rigid = rigid_motion_count(q)
+    rank = q.size - below
+    return Rigidity(rank, rigid, below - rigid, matrix.shape[0] - rank, soft)
+
+
+def rigid_motion_count(q: FloatArray) -> int:
+    """Number of independent infinitesimal translations and rotations of a configuration.
+
+    Parameters
+    ----------
+    q : ndarray, shape (n, m)
+        Positions: rotations that leave their affine hull where it is do not count.
+
+    Examples
+    --------
+    >>> rigid_motion_count(np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])), rigid_motion_count(np.eye(3))
+    (5, 6)
+    """
+    m = q.shape[1]
+    sizes = np.linalg.svd(q - q.mean(axis=0), compute_uv=False)
+    flat = m - int(np.sum(sizes > 1e-9 * max(sizes[0], np.abs(q).max(initial=0.0) * 1e-6)))
+    return m + m * (m - 1) // 2 - flat * (flat - 1) // 2
+
+
+def _by_singular_values(matrix: csr_array, tol: float) -> tuple[int, int]:
+    sizes = np.zeros(matrix.shape[1])
+    found = np.linalg.svd(matrix.toarray(), compute_uv=False)
+    sizes[: len(found)] = found
+    zero, more = (int(np.sum(sizes <= factor * tol * sizes[0])) for factor in (1.0, 10.0))
+    return zero, more - zero
+
+
+def _by_inertia(matrix: csr_array, tol: float) -> tuple[int, int]:
+    from scipy.sparse.linalg import eigsh
+
+    if matrix.shape[0] == 0:
+        return matrix.shape[1], 0
+    gram = (matrix.T @ matrix).tocsc()
+    start = np.random.default_rng(0).normal(size=gram.shape[0])  # a fixed start: the same answer every time
+    largest = float(eigsh(gram, k=1, v0=start, tol=1e-3, return_eigenvectors=False)[0])
+    zero, more = (_eigenvalues_below(gram, (factor * tol) ** 2 * largest) for factor in (1.0, 10.0))
+    return zero, more - zero
+
+
+def _eigenvalues_below(gram: Any, shift: float) -> int:
+    """Sylvester's law: the negative pivots of a symmetric elimination count the eigenvalues below the shift."""
+    from scipy.sparse import eye_array
+    from scipy.sparse.linalg import splu
+
+    shifted = (gram - shift * eye_array(gram.shape[0])).tocsc()
+    factor = splu(shifted, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    pivots: Any = factor.U.diagonal()
+    if not np.array_equal(factor.perm_r, factor.perm_c):
+        raise SolverError("the sparse elimination met a zero pivot: use another tol, or dense=True")
+    return int(np.count_nonzero(pivots < 0.0))

@@ -1,0 +1,164 @@
+"""Write the report: one HTML page that needs neither network nor JavaScript, and the verdicts as JSON beside it."""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import tempfile
+from collections import Counter
+from collections.abc import Iterable
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from flockana._version import __version__
+from flockana.errors import FileError
+from flockana.report.pages import FixedPage, FixedResult, Page, ScenarioPage, ScenarioResult, page
+from flockana.report.text import MARKS, deciding_claim, show, tolerance_rows
+
+HTML, JSON = "index.html", "verdicts.json"
+_LIBRARIES = ("numpy", "scipy", "numba", "sympy", "xarray", "matplotlib")
+_STATUSES = ("verified", "refuted", "vacuous", "inconclusive")
+
+
+def ensure_directory(directory: str | os.PathLike[str]) -> Path:
+    """Make a folder that can be written to, before any work whose results should go there.
+
+    Parameters
+    ----------
+    directory : path-like
+        Folder; made, with its parents, if there is none.
+
+    Returns
+    -------
+    pathlib.Path
+
+    Raises
+    ------
+    FileError
+        If it cannot be made or written to.
+    """
+    path = Path(directory)
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=path):
+            pass
+    except OSError as error:
+        reason = "there is a file of that name" if path.exists() and not path.is_dir() else error.strerror or error
+        raise FileError(f"cannot write to {path}: {reason}; choose a folder you may write to") from error
+    return path
+
+
+def write_report(
+    results: Iterable[ScenarioResult | FixedResult | Page],
+    directory: str | os.PathLike[str],
+    *,
+    seed: int = 0,
+    seconds: float | None = None,
+    complete: bool = True,
+) -> Path:
+    """Write ``index.html`` and ``verdicts.json``; existing ones are replaced only when the new ones are whole.
+
+    Parameters
+    ----------
+    results : iterable of ScenarioResult, FixedResult, ScenarioPage or FixedPage
+        What was found, in the order of the report.
+    directory : path-like
+        Folder to write to; made if there is none.
+    seed : int
+        Of the random starts.
+    seconds : float, optional
+        Wall time that it all took.
+    complete : bool
+        False if something that was asked for is missing; the page then says so.
+
+    Returns
+    -------
+    pathlib.Path
+        The page.
+
+    Raises
+    ------
+    FileError
+        If the folder cannot be written to.
+    """
+    folder = ensure_directory(directory)
+    pages = [page(r) if isinstance(r, ScenarioResult | FixedResult) else r for r in results]
+    run = _run_facts(seed, seconds, complete)
+    _write(folder / JSON, verdicts_json(pages, seed=seed, seconds=seconds, complete=complete))
+    return _write(folder / HTML, _html(pages, run))
+
+
+def verdicts_json(pages: Iterable[Page], *, seed: int = 0, seconds: float | None = None, complete: bool = True) -> str:
+    """All verdicts as JSON text, with the run that they come from.
+
+    Parameters
+    ----------
+    pages : iterable of ScenarioPage or FixedPage
+        What was found.
+    seed : int
+        Of the random starts.
+    seconds : float, optional
+        Wall time that it all took.
+    complete : bool
+        False if something that was asked for is missing.
+    """
+    pages = list(pages)
+    data = _run_facts(seed, seconds, complete) | {
+        "surprises": [text for one in pages for text in one.surprises],
+        "verdicts": [finding.to_dict() for one in pages for finding in one.findings],
+    }
+    return json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def _run_facts(seed: int, seconds: float | None, complete: bool) -> dict[str, Any]:
+    return {
+        "flockana": __version__,
+        "written": datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
+        "seed": seed,
+        "seconds": None if seconds is None else round(seconds, 2),
+        "complete": complete,
+        "python": platform.python_version(),
+        "libraries": {name: _version(name) for name in _LIBRARIES},
+    }
+
+
+def _version(name: str) -> str:
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return "unknown"
+
+
+def _html(pages: list[Page], run: dict[str, Any]) -> str:
+    environment = Environment(
+        loader=PackageLoader("flockana.report", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True
+    )
+    environment.filters |= {"show": show, "deciding": deciding_claim}
+    findings = [finding for one in pages for finding in one.findings]
+    counts: Counter[str] = Counter(finding.verdict.status for finding in findings)
+    return environment.get_template("template.html.j2").render(
+        run=run,
+        scenarios=[one for one in pages if isinstance(one, ScenarioPage)],
+        fixed=[one for one in pages if isinstance(one, FixedPage)],
+        counts=[(status, counts[status]) for status in _STATUSES],
+        surprises=[text for one in pages for text in one.surprises],
+        marks=MARKS,
+        tolerances=[tolerance_rows(t) for t in dict.fromkeys(f.verdict.tolerances for f in findings)],
+    )
+
+
+def _write(path: Path, text: str) -> Path:
+    partial = path.with_name(f".{path.name}.{os.getpid()}.partial")
+    try:
+        partial.write_text(text, encoding="utf-8")
+        os.replace(partial, path)
+    except OSError as error:
+        raise FileError(f"cannot write {path}: {error.strerror or error}; choose another folder") from error
+    finally:
+        partial.unlink(missing_ok=True)
+    return path

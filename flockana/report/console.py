@@ -1,0 +1,178 @@
+"""The terminal's view: tables that read well at 80 columns, in colour or in a pipe."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+
+import numpy as np
+from rich import box
+from rich.console import Console, Group
+from rich.markup import escape
+from rich.padding import Padding
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+from rich.text import Text
+
+from flockana.report.pages import Finding, Page, ScenarioPage
+from flockana.report.text import MARKS, deciding_claim, show
+from flockana.scenarios import scenario, scenarios
+from flockana.theorems import Verdict, theorem, theorems
+from flockana.trajectory import Trajectory
+
+_COLOURS = {"verified": "green", "refuted": "dark_orange3", "vacuous": "bright_black", "inconclusive": "yellow"}
+
+
+def _status(status: str) -> Text:
+    return Text(f"{MARKS[status]} {status}", style=_COLOURS[status])
+
+
+def _expectation(finding: Finding) -> Text:
+    if finding.as_expected is None:
+        return Text("—", style="bright_black")
+    return Text("yes", style="bright_black") if finding.as_expected else Text("NO", style="bold red")
+
+
+def verdict_table(pages: Iterable[Page]) -> Table:
+    """A row per verdict, grouped by what it was checked on.
+
+    Parameters
+    ----------
+    pages : iterable of ScenarioPage or FixedPage
+        What was found.
+    """
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), collapse_padding=True)
+    for heading in ("theorem", "status", "rigour", "decided by", "expected"):
+        table.add_column(heading, no_wrap=True)
+    for one in pages:
+        if isinstance(one, ScenarioPage):
+            table.add_row(Text(one.name, style="bold"))
+        for finding in one.findings:
+            verdict, claim = finding.verdict, deciding_claim(finding.verdict)
+            indent = "  " if isinstance(one, ScenarioPage) else ""
+            table.add_row(
+                Text(indent + verdict.theorem),
+                _status(verdict.status),
+                verdict.rigour,
+                Text("" if claim is None else claim.name, style="bright_black"),
+                _expectation(finding),
+            )
+    return table
+
+
+def details(verdict: Verdict) -> Group:
+    """A verdict in full: hypotheses and claims, each with its finding in words.
+
+    Parameters
+    ----------
+    verdict : Verdict
+        The finding.
+    """
+    on = f" on {verdict.subject}" if verdict.subject else ""
+    title = Text.assemble((verdict.theorem, "bold"), on, ": ", _status(verdict.status))
+    table = Table(box=None, show_header=False, pad_edge=False, padding=(0, 1))
+    table.add_column(max_width=26)
+    table.add_column(no_wrap=True)
+    table.add_column(ratio=1)
+    for h in verdict.hypotheses:
+        table.add_row(Text(f"given: {h.name}", style="bright_black"), h.status, Text(h.detail))
+    for c in verdict.claims:
+        margin = "" if c.margin is None else f" (margin {show(c.margin)}, error {show(c.error)})"
+        table.add_row(Text(c.name), _status(c.status), Text(c.detail + margin))
+    return Group(title, Padding(table, (0, 0, 1, 2)))
+
+
+def summary(pages: Sequence[Page], seconds: float) -> str:
+    """How many verdicts of each kind, how many as expected, in what time.
+
+    Parameters
+    ----------
+    pages : sequence of ScenarioPage or FixedPage
+        What was found.
+    seconds : float
+        Wall time.
+    """
+    findings = [finding for one in pages for finding in one.findings]
+    kinds = ((s, sum(f.verdict.status == s for f in findings)) for s in MARKS)
+    counts = ", ".join(f"{count} {status}" for status, count in kinds if count)
+    surprises = sum(len(one.surprises) for one in pages)
+    judged = "all as expected" if not surprises else f"{surprises} different from the expected"
+    if not any(f.expected for f in findings):
+        judged = "nothing was expected"
+    plural = "" if len(findings) == 1 else "s"
+    return f"{len(findings)} verdict{plural} in {seconds:.1f} s: {counts or 'none'}; {judged}"
+
+
+def scenario_table() -> Table:
+    """The catalogue of scenarios: size, law and time span, title, source, theorems."""
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), show_lines=True)
+    table.add_column("scenario", no_wrap=True)
+    table.add_column("what", ratio=1)
+    for name in scenarios():
+        item = scenario(name)
+        n, m = item.q0.shape
+        law = type(item.law).__name__
+        left = Text.assemble((name, "bold"), f"\nn = {n}, m = {m}\n{law}\nt = {item.t_span[0]:g} to {item.t_span[1]:g}")
+        right = Text.assemble((item.title, "bold"), "\n", (item.source, "bright_black"))
+        table.add_row(left, right + Text(f"\ntheorems: {', '.join(item.theorems) or 'none'}"))
+    return table
+
+
+def theorem_table() -> Table:
+    """The catalogue of theorems: id, title, what each is checked on, source."""
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
+    table.add_column("theorem", no_wrap=True, style="bold")
+    table.add_column("what, and where it is printed", ratio=1)
+    table.add_column("checked on", no_wrap=True)
+    kinds = {"trajectory": "a run", "configuration": "positions", "fixed": "itself"}
+    for name in theorems():
+        item = theorem(name)
+        table.add_row(name, Text.assemble(item.title, "\n", (item.source, "bright_black")), kinds[item.kind])
+    return table
+
+
+def run_table(run: Trajectory) -> Table:
+    """The metrics of a run at its start and its end.
+
+    Parameters
+    ----------
+    run : Trajectory
+        The run.
+    """
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
+    table.add_column("measure")
+    for when in (f"t = {run.t[0]:g}", f"t = {run.t[-1]:g}"):
+        table.add_column(when, justify="right", no_wrap=True)
+    for name, series in run.metrics().items():
+        label = f"{series.attrs['long_name']}"
+        table.add_row(escape(f"{name}: {label}"), *(f"{float(series[k]):.5g}" for k in (0, -1)))
+    energy = run.energy()
+    if np.isfinite(energy).any():
+        table.add_row("energy H", *(f"{energy[k]:.6g}" for k in (0, -1)))
+    if "work" in run.extra:
+        table.add_row("residual of the energy balance", "0", f"{run.energy_residual[-1]:.2g}")
+    return table
+
+
+@contextmanager
+def progress_bar(console: Console, total: int, *, enabled: bool) -> Iterator[Callable[[int, tuple[str, ...]], None]]:
+    """A bar over tasks, on a terminal only; gives a function to call with (done, names under way).
+
+    Parameters
+    ----------
+    console : rich.console.Console
+        Where to draw it.
+    total : int
+        Number of tasks.
+    enabled : bool
+        False draws nothing.
+    """
+    columns = (BarColumn(24), MofNCompleteColumn(), TimeElapsedColumn(), TextColumn("{task.description}"))
+    hidden = not (enabled and console.is_terminal)
+    with Progress(*columns, console=console, transient=True, disable=hidden) as bar:
+        task = bar.add_task("starting", total=total)
+
+        def advance(done: int, names: tuple[str, ...]) -> None:
+            bar.update(task, completed=done, description=", ".join(names))
+
+        yield advance

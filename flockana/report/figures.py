@@ -1,0 +1,119 @@
+"""The figures of one scenario, composed from `flockana.plots` and written as images that a page can hold."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Callable
+from dataclasses import dataclass
+from io import BytesIO
+
+import numpy as np
+from matplotlib.figure import Figure
+from PIL import Image
+
+from flockana import plots
+from flockana.trajectory import Trajectory
+
+_DPI = 125
+
+
+@dataclass(frozen=True)
+class Picture:
+    """An image with its words.
+
+    Parameters
+    ----------
+    caption : str
+        What it shows and how to read it.
+    source : str
+        A ``data:`` address that holds the image.
+    """
+
+    caption: str
+    source: str
+
+
+def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
+    """Draw a run: snapshots, paths, C R Ẽ K̃, energy with its balance, distances and speeds.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The run.
+
+    Returns
+    -------
+    tuple of Picture
+    """
+    linked = hasattr(trajectory.law, "alpha")
+    return (
+        Picture(
+            "Start, middle and end. "
+            + ("Links join agents closer than r, coloured by strain (length − d)/d. " if linked else "")
+            + "Arrows are velocities, scaled anew in each panel; a star is the γ-agent.",
+            _png(_snapshots, trajectory, (13.0, 4.3)),
+        ),
+        Picture(
+            "Paths of all agents; the centre of mass (solid, from circle to dot) against the γ-agent (dashed, ending "
+            "in a star), where there is one, in space and over time.",
+            _png(_motion, trajectory, (13.0, 4.0)),
+        ),
+        Picture(
+            "C = 1 exactly when the net is connected; R is the largest distance from the centre of mass; Ẽ is zero "
+            "when every link has length d; K̃ is zero when all velocities agree.",
+            _png(_measures, trajectory, (13.0, 2.9)),
+        ),
+        Picture(
+            "The energy H of the law (with a γ-agent: in the frame of the centre of mass), and the residual of its "
+            "balance, which is the numerical error of this run.",
+            _png(_energy, trajectory, (13.0, 2.9)),
+        ),
+        Picture(
+            "Least distance between two agents, with a lower bound that holds between the samples too; speeds of all "
+            "agents.",
+            _png(_distances, trajectory, (13.0, 2.9)),
+        ),
+    )
+
+
+def _png(draw: Callable[[Figure, Trajectory], None], run: Trajectory, size: tuple[float, float]) -> str:
+    with plots.style():
+        figure = Figure(figsize=size, layout="constrained")  # not pyplot's: nothing to close, safe in any process
+        draw(figure, run)
+        buffer = BytesIO()
+        figure.savefig(buffer, format="png", dpi=_DPI)
+    small = BytesIO()  # a palette makes drawings three times smaller, and no eye can tell
+    Image.open(buffer).convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(
+        small, "png", optimize=True
+    )
+    return "data:image/png;base64," + base64.b64encode(small.getvalue()).decode("ascii")
+
+
+def _snapshots(figure: Figure, run: Trajectory) -> None:
+    times = run.t[[0, np.searchsorted(run.t, 0.5 * (run.t[0] + run.t[-1])), -1]]
+    for k, time in enumerate(times.tolist()):
+        ax = figure.add_subplot(1, 3, k + 1, projection="3d" if run.m == 3 else None)
+        plots.snapshot(run, time, ax=ax, bar=k == 2)
+
+
+def _motion(figure: Figure, run: Trajectory) -> None:
+    projection = "3d" if run.m == 3 else None
+    plots.trajectories(run, ax=figure.add_subplot(1, 3, 1, projection=projection))
+    plots.centre_path(run, ax=figure.add_subplot(1, 3, 2, projection=projection))
+    plots.centre_of_mass(run, ax=figure.add_subplot(1, 3, 3))
+
+
+def _measures(figure: Figure, run: Trajectory) -> None:
+    plots.panel(run, axes=figure.subplots(1, 4))
+
+
+def _energy(figure: Figure, run: Trajectory) -> None:
+    left, right = figure.subplots(1, 2)
+    plots.energy(run, ax=left)
+    plots.energy_residual(run, ax=right)
+
+
+def _distances(figure: Figure, run: Trajectory) -> None:
+    left, right = figure.subplots(1, 2)
+    plots.distances(run, ax=left)
+    plots.speeds(run, ax=right)

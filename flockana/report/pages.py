@@ -1,0 +1,201 @@
+"""What a report is made of: results as they come, and the same as plain data that crosses processes cheaply."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from flockana.report.figures import Picture, pictures
+from flockana.report.text import parameters
+from flockana.scenarios import Scenario
+from flockana.scenarios.scenario import SOURCE, differences
+from flockana.theorems import Theorem, Verdict, theorem
+from flockana.theorems.theorem import Status
+from flockana.trajectory import Trajectory
+
+
+@dataclass(frozen=True)
+class ScenarioResult:
+    """A scenario that was run and verified.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        What was run.
+    trajectory : Trajectory
+        The run.
+    verdicts : tuple of Verdict
+        What `Scenario.verify` found.
+    """
+
+    scenario: Scenario
+    trajectory: Trajectory
+    verdicts: tuple[Verdict, ...]
+
+
+@dataclass(frozen=True)
+class FixedResult:
+    """A theorem or erratum that was checked by itself.
+
+    Parameters
+    ----------
+    theorem : Theorem
+        What was checked.
+    verdict : Verdict
+        The finding.
+    """
+
+    theorem: Theorem
+    verdict: Verdict
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A verdict beside what its reader needs: the statement, its source, and what was expected.
+
+    Parameters
+    ----------
+    verdict : Verdict
+        The finding.
+    title, statement, source : str
+        Of the theorem.
+    expected : mapping of str to str
+        Expected status by theorem id and by ``"id:claim"``; empty if nothing is.
+    surprises : tuple of str
+        What differs from the expected, one line each.
+    """
+
+    verdict: Verdict
+    title: str
+    statement: str
+    source: str
+    expected: Mapping[str, Status] = field(default_factory=dict)
+    surprises: tuple[str, ...] = ()
+
+    @property
+    def as_expected(self) -> bool | None:
+        """None where nothing was expected."""
+        return not self.surprises if self.expected else None
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data for JSON."""
+        return self.verdict.to_dict() | {
+            "title": self.title,
+            "expected": dict(self.expected),
+            "as_expected": self.as_expected,
+            "surprises": list(self.surprises),
+        }
+
+
+@dataclass(frozen=True)
+class ScenarioPage:
+    """All that the report says of one scenario, as plain data.
+
+    Parameters
+    ----------
+    name, title, source : str
+        Of the scenario.
+    facts : tuple of (str, str)
+        How it was run, by name.
+    findings : tuple of Finding
+        Its verdicts.
+    pictures : tuple of Picture
+        Its figures; empty if none were drawn.
+    trouble : str
+        Why the run ended early; empty if it did not.
+    """
+
+    name: str
+    title: str
+    source: str
+    facts: tuple[tuple[str, str], ...]
+    findings: tuple[Finding, ...]
+    pictures: tuple[Picture, ...] = ()
+    trouble: str = ""
+
+    @property
+    def surprises(self) -> tuple[str, ...]:
+        """What differs from the expected, a run that ended early included."""
+        found = tuple(text for finding in self.findings for text in finding.surprises)
+        return (self.trouble, *found) if self.trouble else found
+
+
+@dataclass(frozen=True)
+class FixedPage:
+    """All that the report says of a theorem or erratum that needs no run.
+
+    Parameters
+    ----------
+    finding : Finding
+        Its verdict.
+    """
+
+    finding: Finding
+
+    @property
+    def name(self) -> str:
+        """The theorem's id."""
+        return self.finding.verdict.theorem
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """The one verdict."""
+        return (self.finding,)
+
+    @property
+    def surprises(self) -> tuple[str, ...]:
+        """What differs from the expected."""
+        return self.finding.surprises
+
+
+Page = ScenarioPage | FixedPage
+
+
+def page(result: ScenarioResult | FixedResult, *, figures: bool = True) -> Page:
+    """Turn a result into plain data, its figures drawn.
+
+    Parameters
+    ----------
+    result : ScenarioResult or FixedResult
+        What was found.
+    figures : bool
+        Draw the figures.
+    """
+    if isinstance(result, FixedResult):
+        return FixedPage(_finding(result.verdict, result.theorem, result.theorem.expected))
+    scenario, run = result.scenario, result.trajectory
+    trouble = "" if run.status == "complete" else f"the run of {scenario.name} {run.status}: {run.message}"
+    return ScenarioPage(
+        scenario.name,
+        scenario.title,
+        scenario.source,
+        _facts(scenario, run),
+        tuple(_scenario_finding(scenario, verdict) for verdict in result.verdicts),
+        pictures(run) if figures else (),
+        trouble,
+    )
+
+
+def _scenario_finding(scenario: Scenario, verdict: Verdict) -> Finding:
+    expected = {k: v for k, v in scenario.expected.items() if k.split(":")[0] == verdict.theorem}
+    if verdict.theorem != SOURCE:
+        return _finding(verdict, theorem(verdict.theorem), expected)
+    said = " ".join(f"{report.name}: {report.text.rstrip('.')}." for report in scenario.reports)
+    return Finding(verdict, "What the source reports", said, scenario.source, expected, differences(verdict, expected))
+
+
+def _finding(verdict: Verdict, item: Theorem, expected: Mapping[str, Status]) -> Finding:
+    return Finding(verdict, item.title, item.statement, item.source, dict(expected), differences(verdict, expected))
+
+
+def _facts(scenario: Scenario, run: Trajectory) -> tuple[tuple[str, str], ...]:
+    stats = run.stats
+    tolerances = ", ".join(f"{key} {stats[key]:g}" for key in ("rtol", "atol", "dt") if stats.get(key) is not None)
+    return (
+        ("agents", f"{run.n} in {run.m} dimension{'s' if run.m > 1 else ''}"),
+        ("time", f"{run.t[0]:g} to {run.t[-1]:g}, {len(run.t)} samples"),
+        ("start", f"seed {scenario.seed}"),
+        *parameters(run.law),
+        ("integrated by", f"{stats.get('method', '—')} ({tolerances}): {stats.get('steps', '—')} steps"),
+    )

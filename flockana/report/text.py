@@ -1,0 +1,119 @@
+"""Values as short text, for the page and for the terminal."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from inspect import getdoc
+from typing import Any
+
+import numpy as np
+
+from flockana.theorems import Claim, Tolerances, Verdict
+
+MARKS = {"verified": "✓", "refuted": "✗", "vacuous": "∅", "inconclusive": "?"}
+_LONGEST = 6  # entries of a sequence that are written out
+_GAIN_OWNERS = {
+    "alpha": "alpha",
+    "beta": "beta",
+    "gamma": "target",
+}  # suffix of a gain: the field of the law it acts by
+
+
+def show(value: Any) -> str:
+    """Write any value of a claim briefly: numbers to four digits, long sequences by their number of entries.
+
+    Parameters
+    ----------
+    value : object
+        Computed, stated, margin, error or witness.
+
+    Examples
+    --------
+    >>> show(1.23456789), show(None), show({"pair": (1, 2)}), show(np.arange(9))
+    ('1.235', '—', 'pair: (1, 2)', '9 values')
+    """
+    if value is None:
+        return "—"
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    if isinstance(value, bool | str | int):
+        return str(value)
+    if isinstance(value, float):
+        return f"{value + 0.0:.4g}"  # + 0.0 drops the sign of a negative zero
+    if isinstance(value, Mapping):
+        return "; ".join(f"{key}: {_inner(item)}" for key, item in value.items())
+    if isinstance(value, list | tuple):
+        if len(value) > _LONGEST:
+            return f"{len(value)} values"
+        return f"({', '.join(show(item) for item in value)})"
+    return str(value)
+
+
+def _inner(value: Any) -> str:
+    return f"({show(value)})" if isinstance(value, Mapping) else show(value)
+
+
+def deciding_claim(verdict: Verdict) -> Claim | None:
+    """The first claim that has the verdict's own status; None for a verdict without claims.
+
+    Parameters
+    ----------
+    verdict : Verdict
+        The finding.
+    """
+    return next((claim for claim in verdict.claims if claim.status == verdict.status), None)
+
+
+def parameters(law: Any) -> tuple[tuple[str, str], ...]:
+    """A law's parameters as (name, value) to read; gains that act on nothing in this law are left out.
+
+    Parameters
+    ----------
+    law : Law or DiscreteLaw
+        A dataclass of dataclasses, numbers and functions.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> [name for name, value in parameters(Algorithm1())]
+    ['law', 'alpha', 'gains']
+    >>> parameters(Algorithm1())[2][1]
+    'Gains(c1_alpha = 30, c2_alpha = 10.95)'
+    """
+    if not is_dataclass(law):
+        return (("law", type(law).__name__),)
+    items = ((f.name, getattr(law, f.name)) for f in fields(law))
+    return (("law", type(law).__name__), *((name, _describe(value, law)) for name, value in items))
+
+
+def _describe(value: Any, law: Any) -> str:
+    if not is_dataclass(value):
+        return getattr(value, "__name__", None) or show(value)
+    parts = []
+    for f in fields(value):
+        owner = _GAIN_OWNERS.get(f.name.rpartition("_")[2]) if f.name.startswith(("c1_", "c2_")) else None
+        if owner is None or hasattr(law, owner):
+            parts.append(f"{f.name} = {_describe(getattr(value, f.name), law)}")
+    return f"{type(value).__name__}({', '.join(parts)})"
+
+
+def tolerance_rows(tolerances: Tolerances) -> tuple[tuple[str, str, str], ...]:
+    """(name, value, meaning) of every threshold; the meanings are those of the class's own documentation.
+
+    Parameters
+    ----------
+    tolerances : Tolerances
+        Thresholds.
+
+    Examples
+    --------
+    >>> tolerance_rows(Tolerances())[0][:2]
+    ('energy', '1e-06')
+    """
+    meanings = dict(re.findall(r"^(\w+) : float\n((?:[ ]{4}.+\n?)+)", getdoc(Tolerances) or "", re.MULTILINE))
+    names = [f.name for f in fields(tolerances)]
+    return tuple((n, show(getattr(tolerances, n)), " ".join(meanings.get(n, "").split())) for n in names)

@@ -1,0 +1,195 @@
+"""Run and verify many scenarios, in processes of their own where that pays."""
+
+from __future__ import annotations
+
+import multiprocessing
+import signal
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+from flockana.errors import ArgumentError, FlockanaError, SolverError, UnknownNameError
+from flockana.report.pages import FixedResult, Page, ScenarioResult, page
+from flockana.scenarios import scenario, scenarios
+from flockana.theorems import theorem, theorems, verify
+
+ERRATA = "errata"
+_TICK = 0.2  # seconds between looks at what is running
+
+
+@dataclass(frozen=True)
+class Task:
+    """A scenario to run and verify, or a theorem to check by itself; names and numbers only, so it can be sent.
+
+    Parameters
+    ----------
+    name : str
+        Of the scenario or the theorem.
+    fixed : bool
+        True for a theorem by itself.
+    seed : int
+        Of the scenario's random start.
+    only : tuple of str
+        Theorems to check on the scenario; empty for all of its own and what its source reports.
+    figures : bool
+        Draw the scenario's figures.
+    """
+
+    name: str
+    fixed: bool = False
+    seed: int = 0
+    only: tuple[str, ...] = ()
+    figures: bool = True
+
+
+def plan(name: str | None = None, *, seed: int = 0, figures: bool = True) -> tuple[Task, ...]:
+    """What to do for a name: scenarios in the order of the catalogue, then theorems by themselves.
+
+    Parameters
+    ----------
+    name : str, optional
+        A scenario; a theorem (on every scenario that names it, or by itself); ``"errata"``; by default everything.
+    seed : int
+        Of the random starts.
+    figures : bool
+        Draw figures.
+
+    Raises
+    ------
+    UnknownNameError
+        If there is no scenario or theorem of that name.
+    ArgumentError
+        If the theorem is checked on something that no scenario provides.
+
+    Examples
+    --------
+    >>> plan("E8")
+    (Task(name='E8', fixed=True, seed=0, only=(), figures=True),)
+    """
+    if name in scenarios():
+        return (Task(name, seed=seed, figures=figures),)
+    if name is None:
+        wanted: tuple[str, ...] = theorems()
+    elif name == ERRATA:
+        wanted = tuple(one for one in theorems() if one[0].isupper())
+    elif name in theorems():
+        wanted = (name,)
+    else:
+        raise UnknownNameError("scenario or theorem", name, (*scenarios(), *theorems(), ERRATA))
+    runs = []
+    for one in scenarios():
+        shared = tuple(t for t in scenario(one, seed).theorems if t in wanted)
+        if name is None or shared:
+            runs.append(Task(one, seed=seed, only=() if name is None else shared, figures=figures))
+    fixed = [Task(one, fixed=True) for one in wanted if theorem(one).kind == "fixed"]
+    if not runs and not fixed:
+        raise ArgumentError(
+            f"{name} is checked on a {theorem(wanted[0]).kind}, and no scenario names it: "
+            "use flockana.verify from Python, or --on with a saved run"
+        )
+    return (*runs, *fixed)
+
+
+def do(task: Task) -> Page:
+    """Carry out one task in this process.
+
+    Parameters
+    ----------
+    task : Task
+        What to do.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If the run was interrupted.
+    """
+    if task.fixed:
+        return page(FixedResult(theorem(task.name), verify(task.name)))
+    item = scenario(task.name, task.seed)
+    run = item.run()
+    if run.status == "interrupted":
+        raise KeyboardInterrupt
+    verdicts = tuple(verify(one, run, subject=item.name) for one in task.only) or item.verify(run)
+    return page(ScenarioResult(item, run, verdicts), figures=task.figures)
+
+
+def perform(
+    tasks: Sequence[Task], *, jobs: int = 1, watch: Callable[[tuple[str, ...]], None] = lambda names: None
+) -> Iterator[Page]:
+    """Carry out tasks, yielding each page as it is done; on Ctrl-C, stop what runs and raise.
+
+    Parameters
+    ----------
+    tasks : sequence of Task
+        What to do.
+    jobs : int
+        Processes at most; 1 works in this one.
+    watch : callable
+        Is told, again and again, the names of the tasks under way.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        On Ctrl-C, when all workers have ended.
+    SolverError
+        If a worker died, for want of memory most likely.
+    """
+    jobs = min(jobs, len(tasks))
+    if jobs <= 1:
+        for task in tasks:
+            watch((task.name,))
+            yield do(task)
+        return
+    # spawned, not forked: a forked child inherits the locks of threads that it does not have
+    context = multiprocessing.get_context("spawn")
+    pool = ProcessPoolExecutor(jobs, mp_context=context, initializer=_ignore_interrupts)
+    try:
+        with _interrupts_held():
+            futures = {pool.submit(_do_for_parent, task): task.name for task in tasks}
+        pending = set(futures)
+        while pending:
+            done, pending = wait(pending, timeout=_TICK, return_when=FIRST_COMPLETED)
+            for future in done:
+                yield _result(future)
+            watch(tuple(futures[f] for f in futures if f in pending and f.running())[:jobs])
+        pool.shutdown()
+    except BaseException:
+        pool.shutdown(wait=False, cancel_futures=True)
+        for worker in multiprocessing.active_children():
+            worker.terminate()
+        raise
+
+
+def _ignore_interrupts() -> None:
+    """Ctrl-C goes to every process of the terminal; the parent alone answers it."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+@contextmanager
+def _interrupts_held() -> Iterator[None]:
+    """Keep Ctrl-C for later; processes started meanwhile never see it, not even before they can ignore it."""
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _do_for_parent(task: Task) -> Page:
+    try:
+        return do(task)
+    except FlockanaError as error:
+        # sent as one plain kind: errors with constructors of their own do not survive the way between processes
+        raise FlockanaError(f"{task.name}: {error}") from None
+
+
+def _result(future: Future[Page]) -> Page:
+    try:
+        return future.result()
+    except BrokenProcessPool as error:
+        raise SolverError("a worker process died; if memory is short, try --jobs 1") from error

@@ -1,0 +1,133 @@
+"""The two runs of the R² notebook, with its tenfold push below 0.05 as an option."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from flockana.environment.targets import StaticTarget
+from flockana.interactions import AlphaInteraction, Gains
+from flockana.laws.notebook import MIN_DISTANCE, PushedAlgorithm1, PushedAlgorithm2
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.paths import contacts
+from flockana.scenarios.olfati_saber import finding
+from flockana.scenarios.scenario import Report, Scenario
+from flockana.simulate import simulate
+from flockana.theorems import Claim, Tolerances
+from flockana.theorems.theorem import Status
+from flockana.trajectory import Trajectory
+
+_UNIT = {"c1_alpha": 1.0, "c2_alpha": 1.0}
+_SWITCH: dict[Any, Any] = {
+    PushedAlgorithm1: Algorithm1,
+    PushedAlgorithm2: Algorithm2,
+    Algorithm1: PushedAlgorithm1,
+    Algorithm2: PushedAlgorithm2,
+}
+
+
+def _integrator(law: Algorithm1 | Algorithm2) -> dict[str, Any]:
+    """A fixed step for the push: squeezed pairs slide along its jump at 0.05, where adaptive steps never end."""
+    return {"method": "RK4", "dt": 0.005} if isinstance(law, PushedAlgorithm1 | PushedAlgorithm2) else {}
+
+
+def _other(run: Trajectory) -> Trajectory:
+    """The same start with the push switched on, or off."""
+    law = run.law
+    shared = {"alpha": law.alpha, "gains": law.gains} | ({"target": law.target} if hasattr(law, "target") else {})
+    other = _SWITCH[type(law)](**shared)
+    return simulate(other, run.q[0], run.p[0], (float(run.t[0]), float(run.t[-1])), **_integrator(other))
+
+
+def _push(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """Whether the push keeps agents farther apart than they come without it; nothing is claimed where it never acts."""
+    own = contacts(run.t, run.q, run.p, run.u, tol=MIN_DISTANCE)
+    if not own:  # then the run is the same with the push and without it
+        closest = run.closest_approach().distance
+        detail = f"the push never acts: no two agents come closer than {closest:.3g}"
+        return Claim("push", "vacuous", computed=closest, stated=f"< {MIN_DISTANCE:g} without the push", detail=detail)
+    runs = [run, _other(run)]
+    if isinstance(run.law, PushedAlgorithm1 | PushedAlgorithm2):
+        runs.reverse()
+    plain, pushed = (r.closest_approach().distance for r in runs)
+    apart = float(np.linalg.norm(runs[0].q[-1] - runs[1].q[-1], axis=1).max())
+    detail = (
+        f"{len(own)} pair(s) of this run come within {MIN_DISTANCE:g}; the closest approach is {plain:.3g} without the "
+        f"push and {pushed:.3g} with it, and final positions differ by up to {apart:.3g}"
+    )
+    return finding("push", pushed - plain, detail, computed=pushed, stated=f"> {plain:.6g}")
+
+
+def _velocity_follows(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """The notebook prints |u_γ| of one agent shrinking to below 0.001 by the last of its 150 steps."""
+    pull = run.law.gains.c2_gamma * np.linalg.norm(run.p[-1] - run.law.target.state(float(run.t[-1]))[1], axis=1)
+    middle = float(np.median(pull))
+    detail = f"‖u_γ‖ at the end is {middle:.2g} in the median and {pull.max():.2g} at most"
+    return finding("follows", 0.01 - middle, detail, computed=middle, stated="below 0.01")
+
+
+_PUSH = Report("push", "a tenfold push below 0.05 keeps agents apart", _push)
+
+
+def _algorithm1(seed: int = 0, push: bool = False) -> Scenario:
+    alpha, gains = AlphaInteraction(d=1.9, r=2.8, eps=0.1, h=0.4, a=7.0, b=9.0), Gains(**_UNIT)
+    law = PushedAlgorithm1(alpha, gains) if push else Algorithm1(alpha, gains)
+    generator = np.random.default_rng(seed)
+    # the start is not connected, so Theorem 1 says nothing; whether the push ever acts differs from start to start
+    expected: dict[str, Status] = {
+        "os-1": "vacuous",
+        "alpha-flocking-strict": "refuted",
+        "alpha-flocking-strict:flock": "refuted",
+    }
+    return Scenario(
+        "notebook-algorithm1",
+        "R² notebook: 27 agents, Algorithm 1, unequal attraction and repulsion",
+        "R² notebook, Algorithm 1: n = 27, d = 1.9, r = 2.8, ε = 0.1, h = 0.4, a = 7, b = 9, no gains "
+        "(unit), q uniform in [0, 13]², p standard normal, 5 time units. The notebook steps by 0.05; this is the flow.",
+        law,
+        generator.uniform(0.0, 13.0, (27, 2)),
+        generator.standard_normal((27, 2)),
+        (0.0, 5.0),
+        seed,
+        expected,
+        (_PUSH,),
+        options=_integrator(law),
+        references=("notebook-r2", "olfati-saber-2006"),
+    )
+
+
+def _algorithm2(seed: int = 0, push: bool = False) -> Scenario:
+    alpha = AlphaInteraction(d=1.7, r=2.5, eps=0.01, h=0.2, a=7.0, b=15.0)
+    gains = Gains(**_UNIT, c1_gamma=0.0, c2_gamma=0.5)
+    target = StaticTarget((5.0, 5.0), (0.7, 0.1))
+    law = PushedAlgorithm2(alpha, gains, target) if push else Algorithm2(alpha, gains, target)
+    generator = np.random.default_rng(seed)
+    # c1γ = 0: nothing draws the agents together, and of Theorem 3 only (iv) remains, which needs no c1γ
+    expected: dict[str, Status] = {
+        "alpha-flocking-strict:deviation": "verified",
+        "alpha-flocking-strict:mismatch": "verified",
+        "source:follows": "verified",
+    }
+    if not push:
+        expected |= {f"os-3:{claim}": "vacuous" for claim in ("i", "ii", "iii")}
+        expected |= {"os-3": "verified", "os-3:iv-printed": "verified"}
+    return Scenario(
+        "notebook-algorithm2",
+        "R² notebook: 35 agents, Algorithm 2 with velocity feedback only",
+        "R² notebook, Algorithm 2: n = 35, d = 1.7, r = 2.5, ε = 0.01, h = 0.2, a = 7, b = 15, unit gains, c1γ = 0, "
+        "c2γ = 0.5, γ-agent fixed at (5, 5) with p_r = (0.7, 0.1), q uniform in [0, 13]², p standard normal, 15 time "
+        "units. The notebook steps by 0.1; this is the continuous system.",
+        law,
+        generator.uniform(0.0, 13.0, (35, 2)),
+        generator.standard_normal((35, 2)),
+        (0.0, 15.0),
+        seed,
+        expected,
+        (_PUSH, Report("follows", "agents take on the γ-agent's velocity", _velocity_follows)),
+        options=_integrator(law),
+        references=("notebook-r2", "olfati-saber-2006"),
+    )
+
+
+SCENARIOS = {"notebook-algorithm1": _algorithm1, "notebook-algorithm2": _algorithm2}

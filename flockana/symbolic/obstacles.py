@@ -1,0 +1,264 @@
+"""Beta-agents at walls and spheres: the envelope fact, and the sign of what an obstacle does to the energy.
+
+The normal of a wall is any nonzero vector here, the centre and radius of a sphere are symbols; agents sit at
+q = y + x, with y a point of the wall or the centre. What is computed is rational in x and, at a sphere, |x|.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import sympy as sp
+from sympy.core.function import UndefinedFunction
+
+from flockana.errors import UnknownNameError
+from flockana.symbolic.derivation import Derivation, Step
+from flockana.symbolic.functions import HALF
+from flockana.symbolic.norms import EPS, sigma_norm, sigma_norm_gradient
+from flockana.symbolic.pair import along_flow, ensure_dimension, vector
+from flockana.symbolic.parameters import GAINS, GainSymbols
+
+KINDS = ("wall", "sphere")
+RADIUS = sp.Symbol("R", positive=True)
+MU = sp.Symbol("mu", positive=True)
+NORMAL_SPEED = sp.Symbol("w", real=True)  # <a, p>
+TANGENT_SQUARE = sp.Symbol("T", nonnegative=True)  # |P p|^2
+DEPTH = sp.Symbol("tau", positive=True)
+PHI_BETA = sp.Function("phi_beta", real=True)
+WEIGHT = sp.Function("b", real=True)
+PSI_BETA = UndefinedFunction("psi_beta", real=True, __dict__={"fdiff": lambda self, argindex=1: PHI_BETA(self.args[0])})
+
+
+def wall_beta(q: sp.Matrix, p: sp.Matrix, point: sp.Matrix, normal: sp.Matrix) -> tuple[sp.Matrix, sp.Matrix]:
+    """Return (q_hat, p_hat) = (P q + (I - P) y, P p), the beta-agent on a wall (Olfati-Saber 2006).
+
+    Parameters
+    ----------
+    q, p : sympy.Matrix, shape (m, 1)
+        Position and velocity of the agent.
+    point, normal : sympy.Matrix, shape (m, 1)
+        A point y of the wall, and any vector along its normal.
+
+    Examples
+    --------
+    >>> column = lambda *x: sp.Matrix(x)
+    >>> wall_beta(column(4, 3), column(1, 1), column(0, 0), column(0, 2))[0].T
+    Matrix([[4, 0]])
+    """
+    projection = sp.eye(len(q)) - normal * normal.T / normal.dot(normal)
+    return projection * q + (sp.eye(len(q)) - projection) * point, projection * p
+
+
+def sphere_beta(q: sp.Matrix, p: sp.Matrix, centre: sp.Matrix, radius: sp.Expr) -> tuple[sp.Matrix, sp.Matrix]:
+    """Return (q_hat, p_hat) = (mu q + (1 - mu) y, mu P p), the beta-agent on a sphere (Olfati-Saber 2006).
+
+    Parameters
+    ----------
+    q, p : sympy.Matrix, shape (m, 1)
+        Position and velocity of the agent.
+    centre : sympy.Matrix, shape (m, 1)
+        y.
+    radius : sympy.Expr
+        R.
+
+    Examples
+    --------
+    >>> column = lambda *x: sp.Matrix(x)
+    >>> sphere_beta(column(4, 0), column(1, 1), column(0, 0), 2)[1].T
+    Matrix([[0, 1/2]])
+    """
+    x = q - centre
+    mu = radius / sp.sqrt(x.dot(x))
+    projection = sp.eye(len(q)) - x * x.T / x.dot(x)
+    return mu * q + (1 - mu) * centre, mu * projection * p
+
+
+class GenericObstacle:
+    """One agent and one obstacle of a kind, by components.
+
+    Parameters
+    ----------
+    kind : str
+        ``"wall"`` or ``"sphere"``.
+    m : int
+        Dimension, 1, 2 or 3.
+
+    Examples
+    --------
+    >>> GenericObstacle("sphere", 2).reduce(sp.sqrt(sp.Symbol("x1", real=True)**2 + sp.Symbol("x2", real=True)**2))
+    rho
+    """
+
+    distance = sp.Symbol("rho", positive=True)
+    z = sp.Symbol("z_ik", nonnegative=True)
+
+    def __init__(self, kind: str, m: int) -> None:
+        if kind not in KINDS:
+            raise UnknownNameError("kind of obstacle", kind, KINDS)
+        self.kind, self.m = kind, ensure_dimension(m)
+        self.x, self.p, y = (vector(name, m) for name in ("x", "p_i", "y"))
+        q = y + self.x
+        if kind == "wall":
+            self.normal = vector("n", m)
+            self.mu = sp.S.One
+            beta = wall_beta(q, self.p, y, self.normal)
+        else:
+            self.normal = self.x
+            self.mu = RADIUS / sp.sqrt(self.x.dot(self.x))
+            beta = sphere_beta(q, self.p, y, RADIUS)
+        self.gap, self.rate = (beta[0] - q).applyfunc(sp.cancel), beta[1]
+        self.derivative = beta[0].jacobian(self.x)  # of q_hat in q = y + x
+
+    def reduce(self, expression: sp.Expr) -> sp.Expr:
+        """Return an expression in normal form, with |x| named rho: what vanishes identically comes out as 0.
+
+        Parameters
+        ----------
+        expression : sympy.Expr
+            Rational in the components and sqrt(x . x).
+        """
+        square, first = self.x.dot(self.x), self.x[0]
+        on_a_line = {sp.Abs(first): self.distance, sp.sign(first): first / self.distance}  # sqrt(x . x) if m = 1
+        named = expression.xreplace(on_a_line if self.m == 1 else {square: self.distance**2})
+        numerator, denominator = sp.fraction(sp.together(named))
+        remainder = sp.rem(sp.expand(numerator), sp.expand(self.distance**2 - square), first)
+        return sp.factor(remainder) / denominator if remainder != 0 else sp.S.Zero
+
+    def braking(self) -> sp.Expr:
+        """Return <p_i, p_hat - p_i>, by components."""
+        return self.p.dot(self.rate - self.p)
+
+    def geometric_braking(self) -> sp.Expr:
+        """Return (mu - 1) |P p|^2 - <a, p>^2, by components."""
+        along = self.normal.dot(self.p) ** 2 / self.normal.dot(self.normal)
+        return (self.mu - 1) * (self.p.dot(self.p) - along) - along
+
+    def force(self, gains: GainSymbols = GAINS) -> sp.Matrix:
+        """Return what the obstacle contributes to u_i: c1_beta phi_beta n_hat + c2_beta b (p_hat - p_i)."""
+        z = sigma_norm(self.gap)
+        attraction = gains.c1_beta * PHI_BETA(z) * sigma_norm_gradient(self.gap)
+        return attraction + gains.c2_beta * WEIGHT(z) * (self.rate - self.p)
+
+    def energy_residual(self, gains: GainSymbols = GAINS) -> sp.Expr:
+        """Return the rate of c1_beta psi_beta + |p|^2/2 under `force`, less c2_beta b <p, p_hat - p>, reduced."""
+        energy = gains.c1_beta * PSI_BETA(sigma_norm(self.gap)) + HALF * self.p.dot(self.p)
+        rate = along_flow(energy, self.x, self.p, self.force(gains))
+        claimed = gains.c2_beta * WEIGHT(sigma_norm(self.gap)) * self.braking()
+        phi, b, root = sp.symbols("phi b root", positive=True)
+        sigma = sigma_norm(self.gap)
+        named = (rate - claimed).xreplace({sigma: self.z}).subs(1 + EPS * sigma, root)
+        return self.reduce(named.xreplace({PHI_BETA(self.z): phi, WEIGHT(self.z): b}))
+
+
+def derive_envelope(kind: str, m: int = 2) -> Derivation:
+    """Derive that the gradient of psi_beta needs no derivative of q_hat, and that p_hat is the rate of q_hat.
+
+    With D = dq_hat/dq the gradient of |q_hat - q|^2/2 is (D - I)^T (q_hat - q). The gap q_hat - q is normal to the
+    surface and D maps into its tangent space, so D^T (q_hat - q) = 0 and -(q_hat - q) is left. This holds inside the
+    obstacle too, except at a sphere's centre, where q_hat does not exist.
+
+    Parameters
+    ----------
+    kind : str
+        ``"wall"`` or ``"sphere"``.
+    m : int
+        Dimension, 1, 2 or 3.
+
+    Raises
+    ------
+    ArgumentError
+        On an unknown kind or a bad dimension.
+
+    Examples
+    --------
+    >>> derive_envelope("sphere", 3).holds
+    True
+    """
+    generic = GenericObstacle(kind, m)
+    gap, jacobian = generic.gap, generic.derivative
+    squared = HALF * gap.dot(gap)
+    gradient = sp.Matrix([sp.diff(squared, x) for x in generic.x])
+    expressions: tuple[Iterable[sp.Expr], ...] = (
+        jacobian.T * gap,
+        gradient + gap,
+        jacobian * generic.p - generic.rate,
+        jacobian - jacobian.T,
+    )
+    steps = (
+        Step(r"The derivative of the closest point, $D = \partial \hat q/\partial q$, with $x = q - y$:", jacobian),
+        Step(r"maps the gap $\hat q - q =$", gap.applyfunc(generic.reduce)),
+        Step(r"to zero, $D^T (\hat q - q) = 0$; so the gradient of $\|\hat q - q\|^2/2$ is $-(\hat q - q)$;", squared),
+        Step(r"and $\hat p = D p$ is the velocity of $\hat q$.", generic.rate),
+    )
+    residuals = tuple(generic.reduce(term) for group in expressions for term in group)
+    return Derivation(f"The closest point of a {kind}", steps, jacobian, residuals)
+
+
+@dataclass(frozen=True)
+class Braking:
+    """What an obstacle does to the kinetic energy, <p, p_hat - p>, and its sign.
+
+    Parameters
+    ----------
+    kind : str
+        The obstacle.
+    residual : sympy.Expr
+        <p, p_hat - p> less its geometric form (mu - 1) |P p|^2 - <a, p>^2, computed: 0.
+    terms : tuple of sympy.Expr
+        The terms of the geometric form, outside the obstacle (mu = 1/(1 + tau), tau > 0, at a sphere).
+    inside : tuple of sympy.Expr
+        The same inside (mu = 1 + tau at a sphere; nothing changes at a wall).
+
+    Examples
+    --------
+    >>> derive_braking("sphere").holds
+    True
+    """
+
+    kind: str
+    residual: sp.Expr
+    terms: tuple[sp.Expr, ...]
+    inside: tuple[sp.Expr, ...]
+
+    @property
+    def holds(self) -> bool:
+        """Whether the form is exact, and sympy proves every term of it nonpositive outside the obstacle."""
+        return bool(self.residual == 0) and all(term.is_nonpositive is True for term in self.terms)
+
+    @property
+    def holds_inside(self) -> bool:
+        """Whether every term is nonpositive inside too: at a wall it is, in a sphere the tangential one is not."""
+        return all(term.is_nonpositive is True for term in self.inside)
+
+
+def derive_braking(kind: str, m: int = 2) -> Braking:
+    """Derive <p, p_hat - p> = (mu - 1) |P p|^2 - <a, p>^2 and the sign of each term; mu = 1 at a wall.
+
+    Parameters
+    ----------
+    kind : str
+        ``"wall"`` or ``"sphere"``.
+    m : int
+        Dimension, 1, 2 or 3.
+
+    Raises
+    ------
+    ArgumentError
+        On an unknown kind or a bad dimension.
+
+    Examples
+    --------
+    >>> derive_braking("wall").terms
+    (0, -w**2)
+    >>> derive_braking("sphere").inside
+    (T*tau, -w**2)
+    """
+    generic = GenericObstacle(kind, m)
+    residual = generic.reduce(generic.braking() - generic.geometric_braking())
+
+    def terms(mu: sp.Expr) -> tuple[sp.Expr, ...]:
+        return sp.factor((mu - 1) * TANGENT_SQUARE), -(NORMAL_SPEED**2)
+
+    outside, inside = (sp.S.One, sp.S.One) if kind == "wall" else (1 / (1 + DEPTH), 1 + DEPTH)
+    return Braking(kind, residual, terms(outside), terms(inside))

@@ -1,0 +1,113 @@
+"""Algorithms 1 and 2: facts by hand, and what the boundary refuses. Sums against the reference: tests/kernels."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+
+from flockana.environment.targets import LinearTarget, StaticTarget
+from flockana.errors import ArgumentError
+from flockana.interactions import AlphaInteraction, Gains
+from flockana.laws.law import DiscreteLaw, Law, ensure_law
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2, moving_frame
+
+TWO = Algorithm2(gains=Gains(c1_gamma=2.0, c2_gamma=3.0), target=LinearTarget((10.0, 0.0), (1.0, 0.0)))
+
+
+def test_the_gamma_agent_by_hand():
+    """One agent: −2 (q − (12, 0)) − 3 (p − (1, 0)) at t = 2; its own frame holds no energy."""
+    u = TWO.acceleration(2.0, [[13.0, 1.0]], [[2.0, 5.0]])
+    assert u.tolist() == [[-2.0 - 3.0, -2.0 - 15.0]]
+    assert TWO.energy(2.0, [[13.0, 1.0]], [[2.0, 5.0]]) == 0.0
+    assert TWO.energy_rate(2.0, [[13.0, 1.0]], [[2.0, 5.0]]) == 0.0
+
+
+def test_energies_by_hand():
+    """Two agents at d = 7: V = 0. K = ½(1 + 1), J = ½·2·3.5²; the frame's own motion counts for Algorithm 1 only."""
+    q, p = [[0.0, 0.0], [7.0, 0.0]], [[3.0, 1.0], [3.0, -1.0]]
+    one = Algorithm1()
+    assert one.energy(0.0, q, p) == pytest.approx(10.0, rel=1e-15)
+    assert one.structural_energy(q, p) == pytest.approx(1.0, rel=1e-14)
+    assert TWO.energy(0.0, q, p) == pytest.approx(1.0 + 2.0 * 12.25, rel=1e-15)
+    assert TWO.structural_energy(q, p) == TWO.energy(5.0, q, p)
+    a = one.alpha.adjacency(one.alpha.d_alpha)
+    dissipation = Gains().c2_alpha * a * 4.0
+    assert one.energy_rate(0.0, q, p) == pytest.approx(-dissipation, rel=1e-15)
+    assert TWO.energy_rate(0.0, q, p) == pytest.approx(-dissipation - 3.0 * 2.0, rel=1e-15)
+
+
+def test_gains_multiply_their_own_terms():
+    q, p = np.array([[0.0], [5.0]]), np.array([[0.0], [1.0]])
+    force = Algorithm1(gains=Gains(c1_alpha=1.0, c2_alpha=0.0)).acceleration(0.0, q, p)
+    drag = Algorithm1(gains=Gains(c1_alpha=0.0, c2_alpha=1.0)).acceleration(0.0, q, p)
+    both = Algorithm1(gains=Gains(c1_alpha=3.0, c2_alpha=7.0)).acceleration(0.0, q, p)
+    assert force[0, 0] < 0.0 < drag[0, 0]
+    np.testing.assert_allclose(both, 3.0 * force + 7.0 * drag, rtol=1e-15)
+
+
+def test_stiffness_is_the_hessian_of_the_structural_potential():
+    q = np.random.default_rng(0).uniform(0.0, 15.0, (8, 2))
+    hessian = AlphaInteraction().hessian(q).toarray()
+    np.testing.assert_allclose(Algorithm1().stiffness(q).toarray(), 30.0 * hessian, rtol=1e-15)
+    np.testing.assert_allclose(TWO.stiffness(q).toarray(), 30.0 * hessian + 2.0 * np.eye(16), rtol=1e-14)
+
+
+def test_moving_frame():
+    assert moving_frame(np.array([[1.0, 0.0], [3.0, 4.0]])).tolist() == [[-1.0, -2.0], [1.0, 2.0]]
+
+
+@pytest.mark.parametrize(
+    ("act", "message"),
+    [
+        (lambda: Algorithm1(alpha=3), "alpha = 3: expected AlphaInteraction(...)"),
+        (lambda: Algorithm1(gains=(1, 2)), "gains = (1, 2): expected Gains(...)"),
+        (lambda: Algorithm2(), "target = None: expected a γ-agent such as StaticTarget((0.0, 0.0))"),
+        (lambda: Algorithm2(target=(0.0, 0.0)), "target = (0.0, 0.0): expected a γ-agent"),
+        (lambda: Algorithm2(alpha=None, target=StaticTarget((0.0,))), "alpha = None: expected AlphaInteraction(...)"),
+        (lambda: TWO.acceleration(0.0, [[0.0]], [[0.0]]), "the target has 2 components but the agents have 1"),
+        (lambda: TWO.energy(np.nan, [[0.0, 0.0]], [[0.0, 0.0]]), "t = nan: expected a finite number"),
+        (lambda: TWO.energy_rate(0.0, [[np.inf, 0.0]], [[0.0, 0.0]]), "q[0] = [inf  0.]: expected finite numbers"),
+        (lambda: Algorithm1().acceleration(0.0, [0.0], [0.0]), "q has shape (1,): expected (n, m)"),
+        (lambda: Algorithm1().structural_energy([[0.0]], [[0.0, 1.0]]), "expected equal shapes"),
+        (lambda: Algorithm1().stiffness([[np.nan]]), "q[0] = [nan]: expected finite numbers"),
+        (lambda: ensure_law("os"), "law = 'os': expected a law such as Algorithm2(target=StaticTarget((0, 0)))"),
+        (lambda: ensure_law(Algorithm1), "did you forget the parentheses?"),
+    ],
+)
+def test_refusals(act, message):
+    with pytest.raises(ArgumentError, match=re.escape(message)):
+        act()
+
+
+def test_inputs_are_not_changed():
+    q, p = np.random.default_rng(0).normal(0.0, 5.0, (2, 20, 2))
+    before = q.copy(), p.copy()
+    TWO.acceleration(0.0, q, p), TWO.energy(0.0, q, p), TWO.energy_rate(0.0, q, p)
+    np.testing.assert_array_equal(q, before[0])
+    np.testing.assert_array_equal(p, before[1])
+
+
+def test_a_law_without_energy_says_nan():
+    class Drift(Law):
+        def flow(self, t, q, p):
+            return np.zeros_like(q), float("nan")
+
+    class Map(DiscreteLaw):
+        def step(self, t, q, p, memory):
+            return q, p, 0 * q, memory
+
+    assert np.isnan(Drift().energy(0.0, [[0.0]], [[0.0]]))
+    assert np.isnan(Map().hamiltonian(0.0, np.zeros((1, 1)), np.zeros((1, 1))))
+    assert ensure_law(Map()).check_dimension(3) is None
+    assert Map().start(np.zeros((1, 1)), np.zeros((1, 1))) == {}
+
+
+def test_huge_positions_do_not_break_the_law():
+    """10²⁰⁰ apart: no force between them, the constant potential of a far pair, no NaN."""
+    law = Algorithm1()
+    q, p = np.array([[0.0, 0.0], [1e200, -1e200]]), np.ones((2, 2))
+    with np.errstate(over="ignore"):
+        assert law.acceleration(0.0, q, p).tolist() == [[0.0, 0.0], [0.0, 0.0]]
+        assert law.energy(0.0, q, p) == 30.0 * law.alpha.far_potential + 2.0

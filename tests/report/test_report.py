@@ -1,0 +1,225 @@
+from __future__ import annotations
+
+import base64
+import json
+import re
+from html.parser import HTMLParser
+from io import BytesIO
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from flockana.environment.targets import CallableTarget, StaticTarget
+from flockana.errors import FileError
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.report.build import ensure_directory, verdicts_json, write_report
+from flockana.report.pages import FixedResult, ScenarioPage, ScenarioResult, page
+from flockana.report.text import deciding_claim, parameters, show, tolerance_rows
+from flockana.scenarios import Report, Scenario
+from flockana.theorems import Claim, Hypothesis, Tolerances, Verdict, theorem, verify
+
+NASTY = "<script>alert('no')</script>"
+VOID = {"meta", "br", "img"}
+
+
+def a_scenario(**changes):
+    q = np.array([[0.0, 0.0], [8.0, 0.0]])
+    saw = Report("saw", f"it moved {NASTY}", lambda run, tolerances: Claim("saw", "verified", detail=NASTY))
+    given = {
+        "name": "pair",
+        "title": "Two agents",
+        "source": f"ours {NASTY}",
+        "law": Algorithm1(),
+        "q0": q,
+        "p0": 0.0 * q,
+    }
+    given |= {"t_span": (0.0, 1.0), "seed": 5, "expected": {"os-1": "refuted", "source": "verified"}, "reports": (saw,)}
+    return Scenario(**(given | changes))
+
+
+@pytest.fixture(scope="module")
+def result():
+    item = a_scenario()
+    run = item.run()
+    good = Claim("i", "verified", computed=1.0, stated="< 2", margin=1.0, error=1e-9)
+    bad = Claim(
+        "ii",
+        "inconclusive",
+        computed=float("nan"),
+        stated=np.arange(3.0),
+        margin=float("inf"),
+        witness={"pair": (0, 1)},
+    )
+    verdict = Verdict("os-1", (Hypothesis("h", "unmet", -2.0, "why"),), (good, bad), Tolerances(quasi=0.3), item.name)
+    source = Verdict("source", (), (item.reports[0].check(run, Tolerances()),), Tolerances(), item.name)
+    return ScenarioResult(item, run, (verdict, source))
+
+
+class Checker(HTMLParser):
+    """Balanced tags, and every address."""
+
+    def __init__(self):
+        super().__init__()
+        self.stack, self.ids, self.links, self.sources, self.tags = [], [], [], [], set()
+
+    def handle_starttag(self, tag, attrs):
+        values = dict(attrs)
+        self.tags.add(tag)
+        self.ids += [values["id"]] if "id" in values else []
+        self.links += [values["href"]] if "href" in values else []
+        self.sources += [values["src"]] if "src" in values else []
+        if tag not in VOID:
+            self.stack.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.stack.pop() == tag
+
+
+def read(path):
+    checker = Checker()
+    checker.feed(path.read_text(encoding="utf-8"))
+    assert checker.stack == []
+    return checker
+
+
+def test_the_page_is_whole_self_contained_and_escaped(result, tmp_path):
+    written = write_report(
+        [result, FixedResult(theorem("E8"), verify("E8"))], tmp_path / "new" / "folder", seed=5, seconds=1.5
+    )
+    text, found = written.read_text(encoding="utf-8"), read(written)
+    assert written == tmp_path / "new" / "folder" / "index.html"
+    assert "script" not in found.tags
+    assert NASTY not in text
+    assert "&lt;script&gt;" in text
+    assert len(found.ids) == len(set(found.ids))
+    assert {link for link in found.links if link[1:] not in found.ids} == set()
+    assert not re.search(r'(src|href)="(?!data:image/png;base64,|#)', text)
+    assert "http" not in re.sub(r'src="data:[^"]*"', "", text)
+    for source in found.sources:
+        Image.open(BytesIO(base64.b64decode(source.split(",")[1]))).verify()
+    assert len(found.sources) == 5
+    assert len(text) < 1_000_000
+    for words in (
+        "Two agents",
+        "rank(A)/n",
+        "c1_alpha = 30",
+        "os-1 is inconclusive, expected refuted",
+        "seed 5",
+        "quasi",
+    ):
+        assert words in text
+    assert not list(written.parent.glob(".*partial"))
+
+
+def test_json_holds_every_verdict_and_is_strict(result):
+    pages = [page(result, figures=False), page(FixedResult(theorem("E8"), verify("E8")))]
+
+    def refuse(constant):
+        raise AssertionError(constant)
+
+    data = json.loads(verdicts_json(pages, seed=5, seconds=2.0), parse_constant=refuse)
+    assert [v["theorem"] for v in data["verdicts"]] == ["os-1", "source", "E8"]
+    assert [v["as_expected"] for v in data["verdicts"]] == [False, True, True]
+    assert data["surprises"] == ["os-1 is inconclusive, expected refuted"]
+    assert (data["seed"], data["complete"]) == (5, True)
+    assert data["verdicts"][0]["claims"][1]["computed"] == "nan"
+    assert data["verdicts"][0]["tolerances"]["quasi"] == 0.3
+    assert data["verdicts"][2]["claims"][0]["computed"] == pytest.approx(2 / 3)
+
+
+def test_different_tolerances_are_all_listed(result, tmp_path):
+    text = write_report([page(result, figures=False)], tmp_path).read_text(encoding="utf-8")
+    assert text.count("<td>quasi</td>") == 2  # the two verdicts of the fixture differ in it
+    assert "of what is called a quasi-α-lattice" in text
+
+
+def test_a_verdict_without_claims_and_one_that_nothing_was_expected_of(tmp_path):
+    item = a_scenario(expected={}, reports=())
+    bare = ScenarioResult(item, item.run(), (Verdict("os-1", (), (), Tolerances(), "pair"),))
+    made = page(bare, figures=False)
+    assert made.findings[0].as_expected is None
+    assert "no claim applies" in write_report([made], tmp_path).read_text(encoding="utf-8")
+
+
+def test_an_empty_report_and_an_incomplete_one(tmp_path):
+    text = write_report([], tmp_path, complete=False).read_text(encoding="utf-8")
+    assert "not complete" in text
+    assert json.loads((tmp_path / "verdicts.json").read_text())["complete"] is False
+
+
+def test_a_run_that_ended_early_is_a_surprise(result):
+    from dataclasses import replace
+
+    failed = replace(result, trajectory=replace(result.trajectory, status="failed", message="it blew up"))
+    made = page(failed, figures=False)
+    assert isinstance(made, ScenarioPage)
+    assert made.surprises[0] == "the run of pair failed: it blew up"
+
+
+def test_a_page_crosses_processes_though_its_law_cannot():
+    import pickle
+
+    law = Algorithm2(target=CallableTarget(lambda t: ((t, 0.0), (1.0, 0.0))))
+    item = a_scenario(law=law, expected={})
+    made = page(ScenarioResult(item, item.run(), ()), figures=False)
+    assert pickle.loads(pickle.dumps(made)) == made
+
+
+def test_directories_that_cannot_be_written_are_refused(tmp_path):
+    (tmp_path / "file").write_text("here")
+    with pytest.raises(FileError, match="there is a file of that name; choose a folder"):
+        ensure_directory(tmp_path / "file")
+    with pytest.raises(FileError, match="cannot write to"):
+        ensure_directory(tmp_path / "file" / "below")
+    assert ensure_directory(tmp_path / "a" / "b").is_dir()
+    assert list((tmp_path / "a" / "b").iterdir()) == []
+
+
+def test_an_old_report_survives_a_failed_write(tmp_path, result, monkeypatch):
+    write_report([], tmp_path)
+    before = (tmp_path / "index.html").read_text()
+    monkeypatch.setattr("os.replace", lambda *paths: (_ for _ in ()).throw(OSError(28, "No space left on device")))
+    with pytest.raises(FileError, match="No space left on device; choose another folder"):
+        write_report([page(result, figures=False)], tmp_path)
+    assert (tmp_path / "index.html").read_text() == before
+    assert not list(tmp_path.glob(".*partial"))
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (None, "—"),
+        (-0.0, "0"),
+        (1.0 / 3.0, "0.3333"),
+        (float("inf"), "inf"),
+        (np.float64(2.5), "2.5"),
+        (True, "True"),
+        ([1, 2.0], "(1, 2)"),
+        (range(3), "range(0, 3)"),
+        (np.zeros(7), "7 values"),
+        ({"a": {"b": 1}, "t": 0.5}, "a: (b: 1); t: 0.5"),
+    ],
+)
+def test_values_as_text(value, text):
+    assert show(value) == text
+
+
+def test_the_deciding_claim_has_the_verdict_s_status():
+    claims = (Claim("a", "verified"), Claim("b", "refuted"), Claim("c", "refuted"))
+    assert deciding_claim(Verdict("x", (), claims)).name == "b"
+    assert deciding_claim(Verdict("x", (), ())) is None
+
+
+def test_only_gains_that_act_are_listed():
+    assert dict(parameters(Algorithm1()))["gains"] == "Gains(c1_alpha = 30, c2_alpha = 10.95)"
+    both = dict(parameters(Algorithm2(target=StaticTarget((1.0, 2.0)))))
+    assert "c1_gamma = 1.1" in both["gains"]
+    assert "beta" not in both["gains"]
+    assert both["target"] == "StaticTarget(q = (1, 2), p = (0, 0))"
+
+
+def test_every_tolerance_has_its_meaning():
+    rows = tolerance_rows(Tolerances())
+    assert [name for name, _, _ in rows] == list(Tolerances.__dataclass_fields__)
+    assert all(len(meaning) > 10 for _, _, meaning in rows)

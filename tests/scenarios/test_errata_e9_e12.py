@@ -1,0 +1,96 @@
+"""E9 and E12: the excess of the printed step, and the gain of the centre of mass."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import pi
+
+import numpy as np
+import pytest
+
+from flockana.environment.targets import CircleTarget, RescaledVelocity, SineTarget, StaticTarget
+from flockana.errors import ArgumentError
+from flockana.interactions import Gains
+from flockana.laws.msn import MSNDiscretisation
+from flockana.laws.olfati_saber import Algorithm2
+from flockana.scenarios import scenario
+from flockana.simulate import simulate
+from flockana.symbolic.parameters import GainSymbols
+from flockana.symbolic.translational import frequency_gain
+from flockana.theorems import Tolerances, verify
+from flockana.theorems.e12 import predicted_gain, response_ratio
+
+OMEGA = 2 * pi * 0.025 / 0.045
+STRONG = scenario("msn-case4").law.gains
+
+
+def test_e9():
+    verdict = verify("E9")
+    assert verdict.status == "refuted"
+    assert verdict.claim("printed").computed == "dt**2*u"
+    assert (verdict.claim("printed").status, verdict.claim("printed").rigour) == ("refuted", "symbolic")
+    assert (verdict.claim("corrected").status, verdict.claim("corrected").computed) == ("verified", "0")
+    assert verdict.claim("excess").computed == verdict.claim("excess").stated == 0.125
+
+
+@pytest.mark.parametrize(("factor", "gain"), [(0.009, 0.852), (1.0, 1.109)])
+def test_gains_of_the_erratum_and_of_the_symbolic_transfer_function(factor, gain):
+    found = predicted_gain(STRONG, OMEGA, factor=factor)
+    assert found == pytest.approx(gain, abs=5e-4)
+    symbols = GainSymbols(c1_gamma=STRONG.c1_gamma, c2_gamma=STRONG.c2_gamma)
+    assert found == pytest.approx(float(frequency_gain(factor, gains=symbols, omega=OMEGA)), rel=1e-12)
+
+
+@pytest.mark.parametrize("path", [CircleTarget((0.0, 0.0), 2.0, 0.5), SineTarget((0.0, 0.0), (3.0, 0.0), 2.0, 0.5)])
+def test_e12_on_one_agent(path):
+    """The centre of mass is linear whatever the flock: one agent shows the gain to the integrator's accuracy."""
+    law = Algorithm2(gains=Gains(c1_gamma=20.0, c2_gamma=9.0), target=RescaledVelocity(path, 0.25))
+    run = simulate(law, [[1.0, 1.0]], [[0.0, 0.0]], (0.0, 20.0))
+    assert response_ratio(run)[0] == pytest.approx(predicted_gain(law.gains, pi, factor=0.25), abs=1e-6)
+    verdict = verify("E12", run)
+    assert [verdict.claim(name).status for name in ("predicted", "consistent", "printed")] == [
+        "verified",
+        "verified",
+        "refuted",
+    ]
+
+
+def test_e12_does_not_pass_a_gain_that_is_wrong():
+    """The same run with a law that says another factor: the prediction misses it by more than the tolerance."""
+    law = Algorithm2(gains=Gains(c1_gamma=20.0, c2_gamma=9.0), target=CircleTarget((0.0, 0.0), 2.0, 0.5))
+    run = simulate(law, [[1.0, 1.0]], [[0.0, 0.0]], (0.0, 20.0))
+    mislabelled = replace(run, law=replace(law, target=RescaledVelocity(law.target, 0.25)))
+    assert verify("E12", mislabelled).claim("predicted").status == "refuted"
+
+
+def test_e12_is_vacuous_elsewhere():
+    for target in (StaticTarget((0.0, 0.0)), CircleTarget((0.0, 0.0), 1.0, 1.0), CircleTarget((0.0, 0.0), 1.0, 0.1)):
+        run = simulate(Algorithm2(target=target), [[1.0, 1.0]], [[0.0, 0.0]], (0.0, 2.0))
+        assert verify("E12", run).status == "vacuous"
+    with pytest.raises(ArgumentError, match="expected at least one period, 10"):
+        response_ratio(run)
+
+
+def test_ratios_of_the_map_are_those_of_the_erratum():
+    """0.8375 (1.0907 with the true p_r) all at once; 0.794 to 0.797 (1.034 to 1.036) in place."""
+    entry = scenario("msn-case4-printed")
+    found = {}
+    for consistent in (False, True):
+        target = entry.law.target.target if consistent else entry.law.target
+        for in_place in (True, False):
+            law = MSNDiscretisation(replace(entry.law.law, target=target), 0.009, in_place=in_place)
+            found[consistent, in_place] = response_ratio(simulate(law, entry.q0, entry.p0, entry.t_span))[0]
+    assert found[False, False] == pytest.approx(0.8375, abs=5e-4)
+    assert found[True, False] == pytest.approx(1.0907, abs=5e-4)
+    # in place the ratio differs a little from start to start
+    assert found[False, True] == pytest.approx(0.7955, abs=0.004)
+    assert found[True, True] == pytest.approx(1.035, abs=0.006)
+
+
+def test_the_verdict_on_case_4_itself():
+    entry = scenario("msn-case4")
+    verdict = verify("E12", entry.run(), tolerances=Tolerances(agreement=1e-5))
+    assert verdict.claim("predicted").computed == pytest.approx(0.8518, abs=1e-4)
+    assert verdict.claim("consistent").computed == pytest.approx(1.1093, abs=1e-4)
+    assert entry.surprises(verdict) == ()
+    assert np.isclose(verdict.claim("printed").margin, 1.0 - 1.1093, atol=1e-4)

@@ -1,0 +1,144 @@
+"""The catalogue's entries: starts and parameters as printed, seeds, options, and statuses where they must be."""
+
+from __future__ import annotations
+
+from math import pi, sqrt
+
+import numpy as np
+import pytest
+
+from flockana.errors import ArgumentError
+from flockana.laws.msn import MSNDiscretisation
+from flockana.laws.notebook import PushedAlgorithm1, PushedAlgorithm2
+from flockana.scenarios import scenario, scenarios
+from flockana.theorems import Tolerances, theorems
+
+OWN = [
+    *("paper-flocking", "paper-dynamic-topology", "paper-fragmentation", "paper-rendezvous-3d"),
+    *("collapse", "hexagon", "three-agents-1d", "notebook-algorithm1", "notebook-algorithm2"),
+    *(f"msn-case{case}{suffix}" for case in (1, 2, 3, 4) for suffix in ("", "-printed")),
+]
+SHAPES = {
+    "paper-flocking": (150, 2),
+    "paper-dynamic-topology": (100, 2),
+    "paper-fragmentation": (40, 2),
+    "paper-rendezvous-3d": (50, 3),
+    "collapse": (150, 2),
+    "notebook-algorithm1": (27, 2),
+    "notebook-algorithm2": (35, 2),
+}
+CHEAP = ["paper-fragmentation", "hexagon", "three-agents-1d", "msn-case2", "msn-case4-printed", "notebook-algorithm2"]
+
+
+def test_every_entry_is_found():
+    assert set(OWN) <= set(scenarios())
+
+
+@pytest.mark.parametrize("name", OWN)
+def test_starts_follow_from_the_seed(name):
+    first, again, other = scenario(name, seed=5), scenario(name, seed=5), scenario(name, seed=6)
+    assert np.array_equal(first.q0, again.q0)
+    assert np.array_equal(first.p0, again.p0)
+    assert np.array_equal(first.q0, other.q0) is (name == "three-agents-1d")
+    assert first.seed == 5
+    assert first.law == other.law
+    assert first.title
+    assert first.references
+    assert all(key.split(":")[0] in {*theorems(), "source", "E11"} for key in first.expected)
+
+
+@pytest.mark.parametrize(("name", "shape"), SHAPES.items())
+def test_numbers_of_agents_and_dimensions(name, shape):
+    assert scenario(name).q0.shape == shape
+
+
+def test_the_papers_start():
+    entry = scenario("paper-flocking", seed=1)
+    # standard deviation 50 over 300 normal draws: its own standard error is 2
+    assert entry.q0.std() == pytest.approx(50.0, abs=8.0)
+    assert entry.p0.min() >= -2.0
+    assert entry.p0.max() <= -1.0
+    np.testing.assert_array_equal(entry.law.target.position(2.0), (210.0, 30.0))
+
+
+@pytest.mark.parametrize("suffix", ["", "-printed"])
+def test_the_msn_cases_are_as_printed(suffix):
+    gains = {}
+    for case, side in ((1, 50.0), (2, 50.0), (3, 150.0), (4, 150.0)):
+        entry = scenario(f"msn-case{case}{suffix}", seed=2)
+        assert entry.q0.shape == (100, 2)
+        assert 0.9 * side < entry.q0.max() < side
+        assert not entry.p0.any()
+        assert entry.t_span == (0.0, pytest.approx(4.86))
+        alpha = entry.law.alpha
+        assert (alpha.d, alpha.r, alpha.eps, alpha.h, alpha.a, alpha.b) == (15.0, 18.0, 0.1, 0.1, 3.0, 3.0)
+        gains[case] = entry.law.gains
+        if suffix:
+            assert isinstance(entry.law, MSNDiscretisation)
+            assert (entry.law.dt, entry.law.in_place, entry.law.position_factor) == (0.009, True, 1.5)
+    assert (gains[1].c1_alpha, gains[1].c2_alpha) == (50.0, 2 * sqrt(50))
+    assert (gains[2].c1_alpha, gains[2].c1_gamma, gains[2].c2_gamma) == (1.0, 1.0, 0.0)
+    for case in (3, 4):
+        g = gains[case]
+        assert (g.c1_alpha, g.c2_alpha, g.c1_gamma, g.c2_gamma) == (100.0, 20.0, 70.0, 2 * sqrt(70))
+
+
+@pytest.mark.parametrize("i", [0, 1, 77])
+def test_the_msn_gamma_agents_at_iteration_i(i):
+    angle = 2 * pi * 0.025 * i / 5
+    q, p = scenario("msn-case3").law.target.state(0.009 * i)
+    np.testing.assert_allclose(q, (50 + i / 5, 50 + 100 * np.sin(angle)), atol=1e-9)
+    np.testing.assert_allclose(p, (1 / 5, 100 * 2 * pi * 0.025 / 5 * np.cos(angle)), atol=1e-9)
+    q, p = scenario("msn-case4").law.target.state(0.009 * i)
+    np.testing.assert_allclose(q, (50 + 100 * np.cos(angle), 50 + 100 * np.sin(angle)), atol=1e-9)
+    np.testing.assert_allclose(p, 100 * 2 * pi * 0.025 / 5 * np.array((-np.sin(angle), np.cos(angle))), atol=1e-9)
+
+
+def test_three_agents_have_the_energy_of_the_erratum():
+    entry = scenario("three-agents-1d")
+    c_star = entry.law.alpha.c_star
+    assert entry.law.energy(0.0, entry.q0, entry.p0) / c_star == pytest.approx(1.909, abs=5e-4)
+
+
+def test_the_hexagon_starts_below_the_energy_of_a_collision():
+    for seed in range(5):
+        entry = scenario("hexagon", seed=seed)
+        assert entry.law.structural_energy(entry.q0, entry.p0) < entry.law.gains.c1_alpha * entry.law.alpha.c_star
+
+
+def test_the_push_is_an_option_of_the_notebook_alone():
+    assert isinstance(scenario("notebook-algorithm1", push=True).law, PushedAlgorithm1)
+    assert isinstance(scenario("notebook-algorithm2", push=True).law, PushedAlgorithm2)
+    with pytest.raises(ArgumentError, match="hexagon has no option push; it has none"):
+        scenario("hexagon", push=True)
+    with pytest.raises(ArgumentError, match="notebook-algorithm1 has no option pushed; it has push"):
+        scenario("notebook-algorithm1", pushed=True)
+    with pytest.raises(ArgumentError, match="paper-flocking has no option n; it has none"):
+        scenario("paper-flocking", n=3)
+
+
+@pytest.mark.parametrize("name", CHEAP)
+def test_statuses_are_as_expected(name):
+    entry = scenario(name)
+    for verdict in entry.verify(entry.run()):
+        assert entry.surprises(verdict) == ()
+
+
+def test_the_push_holds_a_squeezed_pair_apart():
+    """Seed 0: agents 20 and 21 all but coincide without the push, and slide along its edge at 0.05 with it."""
+    plain, pushed = (scenario("notebook-algorithm1", push=push) for push in (False, True))
+    runs = plain.run(), pushed.run()
+    pair = [float(np.linalg.norm(run.q[-1, 20] - run.q[-1, 21])) for run in runs]
+    assert pair[0] < 1e-4
+    assert 0.04 < pair[1] < 0.051
+    for entry, run in zip((plain, pushed), runs, strict=True):
+        (report,) = entry.reports
+        assert report.check(run, Tolerances()).status == "verified"
+
+
+def test_the_printed_map_heats_case_1_and_the_flow_does_not():
+    speeds = {}
+    for suffix in ("", "-printed"):
+        run = scenario(f"msn-case1{suffix}").run()
+        speeds[suffix] = float(np.linalg.norm(run.p[-1], axis=1).max())
+    assert speeds["-printed"] > 1.3 * speeds[""]

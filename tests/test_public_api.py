@@ -1,0 +1,66 @@
+from __future__ import annotations
+
+import subprocess
+import sys
+from types import FunctionType, ModuleType
+
+import pytest
+
+import flockana
+
+HEAVY = ("numba", "sympy", "matplotlib", "xarray", "scipy", "numpy", "jinja2", "rich", "typer")
+
+
+def python(code: str) -> str:
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60)
+    return done.stdout.strip()
+
+
+def test_importing_flockana_loads_nothing_heavy():
+    assert python(f"import sys, flockana; print([m for m in {HEAVY!r} if m in sys.modules])") == "[]"
+
+
+def test_the_command_line_answers_help_without_loading_numerics():
+    code = f"""
+import sys
+from flockana.cli import main
+try:
+    main(["--version"])
+except SystemExit as end:
+    print(end.code, [m for m in {HEAVY[:7]!r} if m in sys.modules])
+"""
+    assert python(code).splitlines()[-1] == "0 []"
+
+
+@pytest.mark.parametrize("name", flockana.__all__)
+def test_every_public_name_resolves(name):
+    value = getattr(flockana, name)
+    assert getattr(value, "__name__", name) in (name, "flockana.errors")
+    assert name in dir(flockana)
+
+
+def test_functions_win_over_modules_of_the_same_name_whatever_was_imported_first():
+    code = """
+import flockana.simulate, flockana.scenarios, flockana.theorems
+from flockana import simulate, scenarios, theorems
+print(*(type(x).__name__ for x in (simulate, scenarios, theorems, flockana.simulate)))
+"""
+    assert python(code) == "function function function function"
+    assert isinstance(flockana.simulate, FunctionType)
+    assert isinstance(sys.modules["flockana.simulate"], ModuleType)
+
+
+def test_submodules_are_still_reachable():
+    assert python("import flockana.nets; print(flockana.nets.__name__)") == "flockana.nets"
+
+
+def test_a_name_that_does_not_exist_is_an_attribute_error():
+    with pytest.raises(AttributeError, match="module 'flockana' has no attribute 'flock'"):
+        flockana.flock  # noqa: B018
+    with pytest.raises(ImportError):
+        from flockana import flock  # noqa: F401
+
+
+def test_setting_a_public_name_by_hand_still_works(monkeypatch):
+    monkeypatch.setattr(flockana, "simulate", 3)
+    assert flockana.simulate == 3

@@ -1,0 +1,115 @@
+"""How a verdict follows from its claims, and how theorems are found and called."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from flockana.errors import ArgumentError, UnknownNameError
+from flockana.laws.olfati_saber import Algorithm1
+from flockana.theorems import Claim, Hypothesis, Tolerances, Verdict, theorem, theorems, verify
+from flockana.theorems.theorem import judge
+
+UNMET = Hypothesis("connected", "unmet")
+ASSUMED = Hypothesis("connected", "assumed")
+
+
+@pytest.mark.parametrize(
+    ("statuses", "expected"),
+    [
+        (("verified", "refuted", "inconclusive", "vacuous"), "refuted"),
+        (("verified", "inconclusive", "vacuous"), "inconclusive"),
+        (("verified", "vacuous"), "verified"),
+        (("vacuous", "vacuous"), "vacuous"),
+        ((), "vacuous"),
+    ],
+)
+def test_a_verdict_takes_the_gravest_status_of_its_claims(statuses, expected):
+    verdict = Verdict("x", (), tuple(Claim(str(k), s) for k, s in enumerate(statuses)))
+    assert verdict.status == expected
+
+
+def test_the_rigour_of_a_verdict_is_the_weakest_among_the_claims_that_decide_it():
+    claims = (Claim("a", "refuted", "symbolic"), Claim("b", "refuted", "interval"), Claim("c", "verified", "numeric"))
+    assert Verdict("x", (), claims).rigour == "interval"
+
+
+@pytest.mark.parametrize(
+    ("margin", "error", "hypotheses", "expected"),
+    [
+        (1.0, 0.1, [], "verified"),
+        (-1.0, 0.1, [], "refuted"),
+        (0.05, 0.1, [], "inconclusive"),
+        (-0.05, 0.1, [], "inconclusive"),
+        (0.0, 0.0, [], "inconclusive"),
+        (1.0, 0.1, [UNMET], "vacuous"),
+        (-1.0, 0.1, [ASSUMED, UNMET], "vacuous"),
+        (1.0, 0.1, [ASSUMED], "verified"),
+        (float("nan"), 0.0, [], "inconclusive"),
+        (1.0, float("nan"), [], "inconclusive"),
+        (float("inf"), 0.0, [], "verified"),
+    ],
+)
+def test_judge(margin, error, hypotheses, expected):
+    assert judge(margin, error, hypotheses) == expected
+
+
+def test_a_verdict_is_plain_json_whatever_its_witness():
+    claim = Claim("i", "verified", computed=np.float64(2.0), margin=float("inf"), witness={"q": np.eye(2), 3: {1, 2}})
+    data = json.loads(json.dumps(Verdict("x", (ASSUMED,), (claim,)).to_dict()))
+    assert data["claims"][0]["computed"] == 2.0
+    assert data["claims"][0]["margin"] == "inf"
+    assert data["claims"][0]["witness"]["q"] == [[1.0, 0.0], [0.0, 1.0]]
+    assert data["tolerances"]["energy"] == Tolerances().energy
+    assert data["status"] == "verified"
+
+
+def test_every_theorem_has_what_its_users_read():
+    for name in theorems():
+        item = theorem(name)
+        assert item.id == name
+        assert len(item.statement) > 40
+        assert item.source
+        assert item.references
+        assert (item.kind == "fixed") == bool(item.expected), "fixed theorems carry their own expectation"
+
+
+def test_errata_are_listed_after_theorems_and_in_order():
+    names = theorems()
+    errata = [name for name in names if name[0] in "EJL"]
+    assert list(names[-len(errata) :]) == errata
+    numbers = [int(name[1:]) for name in errata if name[0] == "E"]
+    assert numbers == sorted(numbers)
+
+
+def test_unknown_theorem():
+    with pytest.raises(UnknownNameError, match=r"unknown theorem 'os1'; did you mean 'os-1'\?"):
+        verify("os1")
+
+
+@pytest.mark.parametrize(
+    ("name", "arguments", "message"),
+    [
+        ("os-1", {}, r"os-1 is checked on trajectory or law, p0, q0, t_span: got nothing"),
+        ("E8", {"q": [[0.0]]}, r"E8 is checked on nothing: got q"),
+        ("os-1", {"law": Algorithm1(), "q0": [[0.0]]}, r"got law, q0"),
+        ("os-1", {"trajectory": 3}, r"trajectory = 3: expected a Trajectory"),
+    ],
+)
+def test_wrong_arguments_are_named(name, arguments, message):
+    with pytest.raises(ArgumentError, match=message):
+        verify(name, **arguments)
+
+
+def test_a_law_can_be_given_instead_of_a_run():
+    still = [[0.0, 0.0], [0.0, 0.0]]
+    verdict = verify("energy", law=Algorithm1(), q0=[[0.0, 0.0], [8.0, 0.0]], p0=still, t_span=(0.0, 1.0))
+    assert verdict.status == "verified"
+    assert verdict.claim("balance").computed < 1e-8
+
+
+def test_claims_are_found_by_name():
+    with pytest.raises(KeyError, match="E8 has no claim 'ii'; it has printed, corrected"):
+        verify("E8").claim("ii")
