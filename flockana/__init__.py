@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from flockana.environment.targets import SineTarget as SineTarget
     from flockana.environment.targets import StaticTarget as StaticTarget
     from flockana.environment.targets import Target as Target
+    from flockana.equilibria.solve import Equilibrium as Equilibrium
+    from flockana.equilibria.solve import find_equilibrium as find_equilibrium
     from flockana.interactions import AlphaInteraction as AlphaInteraction
     from flockana.interactions import BetaInteraction as BetaInteraction
     from flockana.interactions import Gains as Gains
@@ -71,6 +73,7 @@ _BY_MODULE = {
     "trajectory": ("Trajectory",),
     "metrics": (*_METRICS, "min_distance", "order"),
     "nets": ("links", "components", "laplacian"),
+    "equilibria": ("find_equilibrium", "Equilibrium"),
     "theorems": ("theorems", "theorem", "verify", "Verdict", "Tolerances"),
     "scenarios": ("scenarios", "scenario", "Scenario"),
     "references": ("cite",),

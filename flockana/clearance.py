@@ -23,6 +23,7 @@ from flockana.nets import link_lengths, links
 
 RELATIVE_TOL = 1e-9  # of the halving, relative to the largest coordinate
 _DEPTH = 40  # halvings: below any resolved motion
+_MOST = 100_000  # parts open at once: beyond it the bound stays as weak as it is
 _CHUNK = 50_000  # agent-intervals handled at once
 _FIRST, _LAST = slice(0, 1), slice(5, 6)  # control points
 
@@ -159,7 +160,10 @@ def _refine(obstacle: Obstacle, curves: FloatArray, allowance: FloatArray, best:
         plane[~np.isfinite(plane) | (np.abs(here) <= tol)] = -inf  # no direction there: only the distance bounds
         bound = here - np.linalg.norm(hull, axis=2).max(axis=1)
         bound = np.maximum(bound, here + plane) - allowance
-        open_ = (bound < proven) & (bound + allowance < here - tol) & (depth < _DEPTH - 1)
+        # on the paths, without their allowance, an open part may still hold a point lower than any seen
+        open_ = (bound < proven) & (bound + allowance < min(value, best) - tol)
+        if depth == _DEPTH - 1 or np.count_nonzero(open_) > _MOST:
+            open_[:] = False  # their bounds hold as they are
         proven = min(proven, float(bound[~open_].min(initial=inf)))
         curves, allowance = np.concatenate([left[open_], right[open_]]), np.tile(allowance[open_], 2)
         start = np.concatenate([start[open_], start[open_] + 0.5 * width])

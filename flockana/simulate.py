@@ -265,7 +265,9 @@ def _adaptive(
     if keep is None or keep[0] == t_span[0]:
         wanted = 1
         yield sample(t_span[0], y0)
-    if not _finite(*law.flow(t_span[0], q0, p0)[: 2 if energetic else 1]):  # scipy's first step would look for its length for ever
+    if not _finite(
+        *law.flow(t_span[0], q0, p0)[: 2 if energetic else 1]
+    ):  # scipy's first step would look for its length for ever
         tally.fail(f"the law's acceleration is not finite at the start, t = {t_span[0]:g}")
         return
     solver = getattr(scipy.integrate, method)(rhs, t_span[0], y0, t_span[1], rtol=rtol, atol=atols)

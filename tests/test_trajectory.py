@@ -121,10 +121,24 @@ def test_a_save_that_fails_keeps_the_old_file(tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == [path]
 
 
+def test_the_old_file_is_replaced_in_one_move(tmp_path, monkeypatch):
+    path = RUN.save(tmp_path / "run.nc")
+    before = path.read_bytes()
+
+    def refuse(source, target):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr("flockana.trajectory.os.replace", refuse)
+    with pytest.raises(FileError, match="Permission denied; choose a file name and folder"):
+        RUN.window(0.0, 0.5).save(path)
+    assert path.read_bytes() == before
+    assert list(tmp_path.iterdir()) == [path]
+
+
 def test_places_that_cannot_be_written(tmp_path):
     (tmp_path / "file").write_text("x")
     for path in (tmp_path / "none" / "run.nc", tmp_path / "file" / "run.nc", tmp_path, "", "a\0b"):
-        with pytest.raises(FileError, match="cannot write .*choose a file name and folder to write to"):
+        with pytest.raises(FileError, match=r"cannot write .*choose a file name and folder to write to"):
             RUN.save(path)
     assert [p.name for p in tmp_path.iterdir()] == ["file"]
 
@@ -174,7 +188,7 @@ def test_files_with_other_contents(tmp_path, attributes, message):
 
 def test_files_that_are_missing_foreign_or_broken(tmp_path):
     whole = RUN.save(tmp_path / "run.nc").read_bytes()
-    with pytest.raises(FileError, match="no file .*nowhere.nc: expected one written by Trajectory.save"):
+    with pytest.raises(FileError, match=r"no file .*nowhere.nc: expected one written by Trajectory.save"):
         Trajectory.load(tmp_path / "nowhere.nc")
     with pytest.raises(FileError, match="no file"):
         Trajectory.load(tmp_path)

@@ -27,6 +27,7 @@ STAGES: tuple[tuple[str, ...], ...] = (
     ("predicates",),
     ("simulate",),
     ("terminal", "gradient_flow"),
+    ("equilibria",),
     ("theorems",),
     ("scenarios",),
     ("plots",),

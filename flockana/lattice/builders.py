@@ -212,7 +212,7 @@ def honeycomb(rows: int, cols: int, d: float) -> FloatArray:
     (12, 2)
     """
     h = sqrt(0.75)
-    return _sites([[0.0, 0.0], [0.0, 1.0]], [[h, 1.5], [2.0 * h, 0.0]], {"rows": rows, "cols": cols}, d)
+    return _sites([[0.0, 0.0], [h, 0.5]], [[h, 1.5], [2.0 * h, 0.0]], {"rows": rows, "cols": cols}, d)
 
 
 def simple_cubic(nx: int, ny: int, nz: int, d: float) -> FloatArray:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from itertools import pairwise
 from math import cos, pi, sin, sqrt
-from typing import Any
 
 import numpy as np
 
@@ -15,9 +14,10 @@ from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.metrics import coincident_pairs
 from flockana.nets import components, link_lengths, links
+from flockana.scenarios.findings import component_count, finding
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
-from flockana.theorems.theorem import Status, judge
+from flockana.theorems.theorem import Status
 from flockana.trajectory import Trajectory
 
 _OURS = (
@@ -25,6 +25,7 @@ _OURS = (
     "end time, by which the motion has converged."
 )
 _FLOCKS: dict[str, Status] = {
+    "energy": "verified",
     "os-3": "verified",
     "os-3:i": "verified",
     "os-3:ii": "verified",
@@ -35,51 +36,6 @@ _FLOCKS: dict[str, Status] = {
     "alpha-flocking-strict": "verified",
     "source": "verified",
 }
-
-
-def finding(
-    name: str,
-    margin: float,
-    detail: str,
-    *,
-    computed: Any = None,
-    stated: Any = None,
-    error: float = 0.0,
-    witness: Any = None,
-) -> Claim:
-    """A claim that is judged by its margin, without hypotheses.
-
-    Parameters
-    ----------
-    name, detail : str
-        As in `Claim`.
-    margin : float
-        Positive where the source's report agrees with the run.
-    computed, stated, witness : object
-        As in `Claim`.
-    error : float
-        Error of the margin.
-
-    Examples
-    --------
-    >>> finding("connected", 0.5, "one component").status
-    'verified'
-    """
-    status = judge(margin, error, [])
-    return Claim(name, status, "numeric", computed, stated, margin, error, witness, None, detail)
-
-
-def component_count(run: Trajectory, k: int = -1) -> int:
-    """Number of components of the net at sample k of a run.
-
-    Parameters
-    ----------
-    run : Trajectory
-        A run of a law with an interaction range.
-    k : int
-        Which sample; the last by default.
-    """
-    return int(components(run.n, links(run.q[k], run.law.alpha.r)).max()) + 1
 
 
 def _ends_connected(run: Trajectory, tolerances: Tolerances) -> Claim:
@@ -199,6 +155,7 @@ def _fragmentation(seed: int = 0) -> Scenario:
         (0.0, 40.0),
         seed,
         {
+            "energy": "verified",
             "os-1": "vacuous",
             "alpha-flocking": "refuted",
             "alpha-flocking-strict": "refuted",
@@ -225,6 +182,7 @@ def _collapse(seed: int = 0) -> Scenario:
         (0.0, 180.0),
         seed,
         {
+            "energy": "verified",
             "os-3": "verified",
             "os-3:i": "verified",
             "os-3:ii": "verified",
@@ -257,6 +215,7 @@ def _hexagon(seed: int = 0) -> Scenario:
         (0.0, 30.0),
         seed,
         {
+            "energy": "verified",
             "os-1": "verified",
             "os-1:i": "verified",
             "os-1:ii": "verified",
@@ -284,6 +243,7 @@ def _three_agents(seed: int = 0) -> Scenario:
         (0.0, 0.05),
         seed,
         {
+            "energy": "verified",
             "os-3": "refuted",
             "os-3:i": "verified",
             "os-3:ii": "inconclusive",

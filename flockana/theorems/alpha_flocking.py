@@ -48,10 +48,10 @@ def _window(run: Trajectory, part: Trajectory) -> Hypothesis:
 def _plain(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
     part = _settled(run, tolerances)
     share, radius = part.metrics().giant_share.values, part.metrics().cohesion_radius.values
-    bound = tolerances.cohesion * float(radius[0])
+    bound, least = tolerances.cohesion * float(radius[0]), tolerances.giant
     return [_window(run, part)], [
         # shares come in steps of 1/n: a quarter step makes "more than" strict without a margin of 0
-        _always("giant", part, share - tolerances.giant - 0.25 / run.n, share, f"C* > {tolerances.giant:g}", "giant component C*"),
+        _always("giant", part, share - least - 0.25 / run.n, share, f"C* > {least:g}", "giant component C*"),
         _always("cohesive", part, bound - radius, radius, f"R <= {bound:.4g}", "cohesion radius R"),
         *_common(part, tolerances),
     ]

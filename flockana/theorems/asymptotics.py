@@ -10,7 +10,7 @@ import numpy as np
 from flockana.metrics import coincident_pairs
 from flockana.paths import Contact, contacts
 from flockana.terminal import TerminalState
-from flockana.theorems.theorem import Claim, Hypothesis, Tolerances, judge
+from flockana.theorems.theorem import Claim, Hypothesis, HypothesisStatus, Tolerances, judge
 from flockana.trajectory import Trajectory
 
 
@@ -67,6 +67,26 @@ def met(run: Trajectory, tolerances: Tolerances) -> tuple[Contact, ...]:
         `contact` is used, relative to d.
     """
     return contacts(run.t, run.q, run.p, run.u, tol=tolerances.contact * run.law.alpha.d)
+
+
+def below_the_barrier(run: Trajectory, energy: float) -> Hypothesis:
+    """H(0) < min{V : two agents coincide}: met below its proved bound, unmet where a state with a pair is in reach.
+
+    Between the two it is assumed: `flockana.equilibria.barrier.collision_barrier` searches the minimum itself.
+
+    Parameters
+    ----------
+    run : Trajectory
+        The run.
+    energy : float
+        The law's structural energy at the start.
+    """
+    from flockana.equilibria.barrier import collision_bounds
+
+    low, high = (run.law.gains.c1_alpha * bound for bound in collision_bounds(run.law.alpha, run.n, run.m))
+    status: HypothesisStatus = "met" if energy < low else "unmet" if energy >= high else "assumed"
+    detail = f"H(0) = {energy:.5g}; the minimum is at least {low:.5g}, and a state of {high:.5g} is known"
+    return Hypothesis("H(0) < min{V : two agents coincide}", status, (high if status == "unmet" else low) - energy, detail)
 
 
 def no_collision(run: Trajectory, needs: Iterable[Hypothesis], tolerances: Tolerances, *, name: str) -> Claim:

@@ -15,7 +15,7 @@ def _identity(name: str, identity: object, stated: str, detail: str) -> Claim:
         name,
         "verified" if residual == 0 else "refuted",
         "symbolic",
-        computed=f"residual {residual}",
+        computed="residual 0" if residual == 0 else "a residual that is not 0",
         stated=stated,
         witness=str(residual),
         proof="energy-identities",

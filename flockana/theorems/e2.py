@@ -28,7 +28,7 @@ def _identity(name: str, residual: object, stated: str, detail: str) -> Claim:
 
 def _rising_run() -> Claim:
     """Two agents too close that approach further, a sphere beside them, the γ-agent at rest between them."""
-    law = Algorithm3(target=StaticTarget((2.0, 0.0)), obstacles=(Sphere((2.0, 5.0), 2.0),))
+    law = Algorithm3(target=StaticTarget((2.0, 0.0)), obstacles=(Sphere((2.0, 5.8), 2.0),))
     q0, p0 = [[0.0, 0.0], [4.0, 0.0]], [[5.0, 0.0], [-5.0, 0.0]]
     run = simulate(law, q0, p0, (0.0, 1.0))
     pairs = np.array([law.gains.c1_alpha * law.alpha.potential_energy(q) for q in run.q])

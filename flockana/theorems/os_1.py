@@ -9,7 +9,7 @@ import numpy as np
 from flockana.lattice import classify, harborth
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.terminal import terminal_state
-from flockana.theorems.asymptotics import no_collision, settled, velocities_match
+from flockana.theorems.asymptotics import below_the_barrier, no_collision, settled, velocities_match
 from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
 from flockana.trajectory import Trajectory
 
@@ -74,13 +74,15 @@ def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], l
     applies = type(run.law) is Algorithm1
     law = Hypothesis("Algorithm 1 is applied", "met" if applies else "unmet", detail=type(run.law).__name__)
     if not applies:
-        return [law], [Claim(name, "vacuous", detail="another law") for name in ("i", "ii", "iii")]
+        return [law], [Claim(name, "vacuous", detail="another law") for name in ("i", "ii", "iii", "iii-barrier")]
     together, energy = _stays_together(run), _below_c_star(run)
+    barrier = below_the_barrier(run, run.law.structural_energy(run.q[0], run.p[0]))
     needs = [law, together]
-    return [*needs, energy], [
+    return [*needs, energy, barrier], [
         _lattice(run, needs, tolerances),
         velocities_match(run, tolerances, needs, name="ii"),
         no_collision(run, [*needs, energy], tolerances, name="iii"),
+        no_collision(run, [law, barrier], tolerances, name="iii-barrier"),
     ]
 
 

@@ -10,6 +10,7 @@ from flockana.lattice import classify
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.terminal import TerminalState, terminal_state
 from flockana.theorems.asymptotics import (
+    below_the_barrier,
     distinct_pairs,
     no_collision,
     pairs_at_one_instant,
@@ -88,20 +89,22 @@ def _minimum(end: TerminalState, needs: list[Hypothesis], tolerances: Tolerances
 def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
     needs, consistent = _hypotheses(run)
     if needs[0].status == "unmet":
-        names = ("i", "ii", "iii", "iv-printed", "iv-instant", "iv-none")
+        names = ("i", "ii", "iii", "iv-printed", "iv-instant", "iv-none", "iv-barrier")
         return needs, [Claim(name, "vacuous", detail="another law") for name in names]
     end = terminal_state(run.law, run.q[-1], run.p[-1], contact=tolerances.contact)
     c_star = run.law.gains.c1_alpha * run.law.alpha.c_star
     k = floor(float(run.energy()[0]) / c_star)
     collision_free = Hypothesis("H_λ(0) < c* (k = 0)", "met" if k == 0 else "unmet", detail=f"k = {k}")
     energy_falls = [needs[0]]  # gains >= 0 are enough for (iv)
-    return [*needs, consistent, collision_free], [
+    barrier = below_the_barrier(run, float(run.energy()[0]))  # U_λ >= c1α V: a bound of V will do
+    return [*needs, consistent, collision_free, barrier], [
         _cohesive(run, needs),
         _minimum(end, needs, tolerances),
         velocities_match(run, tolerances, needs, name="iii"),
         distinct_pairs(run, needs[0], tolerances, c_star=c_star, name="iv-printed"),
         pairs_at_one_instant(run, needs[0], tolerances, c_star=c_star, name="iv-instant"),
         no_collision(run, [*energy_falls, collision_free], tolerances, name="iv-none"),
+        no_collision(run, [*energy_falls, barrier], tolerances, name="iv-barrier"),
     ]
 
 

@@ -97,7 +97,7 @@ def test_sparse_boxes_share_buckets():
 def test_rounding_of_huge_coordinates_skips_no_pair():
     """10¹¹ ranges from the origin the quotient q/side is off by up to 1e-5 cells, more than their margin."""
     rng, misses = np.random.default_rng(3), 0
-    for k in range(150):
+    for _ in range(150):
         base = 2.0 ** rng.uniform(37.0, 39.9) * 8.4
         ulp = np.spacing(base)
         steps = rng.integers(0, 40_000, 150)

@@ -60,12 +60,12 @@ def test_small_flocks(n, m, pair):
 
 @pytest.mark.parametrize("m", [1, 2, 3])
 def test_a_thousand_agents(m):
-    compare(*random_state(1000, m, 0), PAIRS[0])
+    compare(*random_state(1000, m, 0, spread=6.0 * 1000 ** (1 / m)), PAIRS[0])
 
 
 @pytest.mark.parametrize("m", [1, 2, 3])
 def test_all_in_one_cell(m):
-    compare(*random_state(160, m, 1, spread=3.0), PAIRS[0])
+    compare(*random_state(140, m, 1, spread=3.0), PAIRS[0])
 
 
 @pytest.mark.parametrize("m", [1, 2, 3])

@@ -1,4 +1,4 @@
-"""Hexagonal spirals and Harborth's number."""
+"""Builders: links counted by hand, ratios by brute force, Harborth's number."""
 
 from __future__ import annotations
 
@@ -7,10 +7,116 @@ import math
 import numpy as np
 import pytest
 
-from flockana.errors import ArgumentError
-from flockana.lattice import harborth, hexagonal_patch, hexagonal_spiral
+from flockana import nets
+from flockana.errors import ArgumentError, UnknownNameError
+from flockana.lattice import (
+    bcc,
+    fcc,
+    harborth,
+    hcp,
+    hexagonal_patch,
+    hexagonal_spiral,
+    honeycomb,
+    is_alpha_lattice,
+    line,
+    links,
+    max_ratio,
+    simple_cubic,
+    square,
+    triangular,
+)
 from flockana.metrics import min_distance
-from flockana.nets import link_lengths, links
+from flockana.nets import link_lengths
+
+D = 7.0
+# each with a block large enough that its middle agents have all first and second neighbours, and few enough to pair all
+PATTERNS = {
+    "line": (line(9, D), 2),
+    "triangular": (triangular(100, D), 6),
+    "hexagonal_patch": (hexagonal_patch(4, D), 6),
+    "hexagonal_spiral": (hexagonal_spiral(70, D), 6),
+    "square": (square(7, 8, D), 4),
+    "honeycomb": (honeycomb(6, 7, D), 3),
+    "simple_cubic": (simple_cubic(5, 5, 5, D), 6),
+    "fcc": (fcc(4, 4, 4, D), 12),
+    "hcp": (hcp(5, 4, 4, D), 12),
+    "bcc": (bcc(5, 5, 5, D), 8),
+}
+
+
+def shells(q) -> np.ndarray:
+    """All different distances of a configuration, in units of the shortest."""
+    i, j = np.triu_indices(len(q), 1)
+    lengths = np.linalg.norm(q[i] - q[j], axis=1)
+    return np.unique(np.round(lengths / lengths.min(), 9))
+
+
+@pytest.mark.parametrize("name", PATTERNS)
+def test_first_and_second_neighbours_by_brute_force(name):
+    q, coordination = PATTERNS[name]
+    assert min_distance(q) == pytest.approx(D, rel=1e-13)
+    assert shells(q)[1] == pytest.approx(max_ratio(name), rel=1e-8)
+    count = np.bincount(links(q, 1.05 * D).ravel())
+    assert count.max() == coordination
+
+
+@pytest.mark.parametrize("name", PATTERNS)
+def test_the_largest_ratio_itself_is_allowed_and_nothing_beyond_it(name):
+    q, _ = PATTERNS[name]
+    kappa = max_ratio(name)
+    assert is_alpha_lattice(q, D, kappa * D)
+    assert not is_alpha_lattice(q, D, kappa * D * (1.0 + 1e-9))
+    assert len(links(q, kappa * D)) == len(links(q, 1.05 * D))
+
+
+def test_a_guard_is_needed_at_the_ratio_and_only_there():
+    """What is stored decides the laws' own strict comparison either way; 1/7 of these nets would gain a diagonal."""
+    gained = 0
+    for d in np.linspace(1.0, 9.0, 50):
+        q = square(6, 6, d)
+        plain, guarded = nets.links(q, max_ratio("square") * d), links(q, max_ratio("square") * d)
+        assert len(guarded) == 60
+        gained += len(plain) > 60
+        np.testing.assert_array_equal(links(q, 1.2 * d), nets.links(q, 1.2 * d))
+    assert gained > 5
+
+
+@pytest.mark.parametrize(
+    ("build", "size", "count"),
+    [
+        (lambda: line(9, D), 9, 8),
+        (lambda: square(3, 5, D), 15, 3 * 4 + 5 * 2),
+        (lambda: honeycomb(3, 5, D), 30, 3 * 15 - 3 - 5),  # one inside each cell, one to the next in either direction
+        (lambda: simple_cubic(2, 3, 4, D), 24, 1 * 12 + 2 * 8 + 3 * 6),
+        (lambda: fcc(2, 3, 4, D), 96, 2 * (3 * 5 * 4 + 5 * 7 * 2 + 3 * 7 * 3)),
+        (lambda: bcc(2, 3, 4, D), 48, 3 * 5 * 7),
+        # rows of 4 and 4 shifted: 3 in each row, 4 + 3 between each two rows
+        (lambda: triangular(12, D), 12, 3 * 3 + 2 * 7),
+        (lambda: hcp(1, 1, 1, D), 4, 5),  # two pairs within the layers; three between them
+    ],
+)
+def test_links_counted_by_hand(build, size, count):
+    q = build()
+    r = 1.1 * D
+    assert (len(q), len(links(q, r))) == (size, count)
+    assert is_alpha_lattice(q, D, r)
+
+
+def test_hcp_is_not_fcc():
+    """Both have twelve neighbours; only in HCP do two neighbours stand at √(8/3) d, across a layer."""
+    assert math.sqrt(8.0 / 3.0) == pytest.approx(shells(PATTERNS["hcp"][0])[2], rel=1e-8)
+    assert shells(PATTERNS["fcc"][0])[2] == pytest.approx(math.sqrt(3.0), rel=1e-8)
+
+
+def test_bcc_is_no_lattice_at_the_usual_ratio():
+    q, _ = PATTERNS["bcc"]
+    assert max_ratio("bcc") < 1.2
+    assert not is_alpha_lattice(q, D, 1.2 * D)
+
+
+def test_unknown_pattern():
+    with pytest.raises(UnknownNameError, match="unknown lattice 'hpc'; did you mean 'hcp'"):
+        max_ratio("hpc")
 
 
 def test_harborth_by_hand():
@@ -27,11 +133,29 @@ def test_harborth_is_the_floor_even_where_floats_fail(n):
 
 @pytest.mark.parametrize("n", range(1, 80))
 def test_the_spiral_is_a_lattice_with_the_most_links(n):
-    q = hexagonal_spiral(n, 7.0)
+    q = hexagonal_spiral(n, D)
     pairs = links(q, 8.4)
     assert len(pairs) == harborth(n)
-    np.testing.assert_allclose(link_lengths(q, pairs), 7.0, rtol=1e-13)
-    assert n == 1 or min_distance(q) == pytest.approx(7.0, rel=1e-13)
+    np.testing.assert_allclose(link_lengths(q, pairs), D, rtol=1e-13)
+    assert n == 1 or min_distance(q) == pytest.approx(D, rel=1e-13)
+
+
+def test_no_triangular_cluster_has_more_links_than_harborth():
+    """Every connected set of up to six sites of the triangular lattice, grown site by site."""
+    steps = [(1, 0), (0, 1), (-1, 1), (-1, 0), (0, -1), (1, -1)]
+    clusters = {frozenset({(0, 0)})}
+    for n in range(2, 7):
+        grown = set()
+        for cluster in clusters:
+            for x, y in cluster:
+                for u, v in steps:
+                    if (x + u, y + v) not in cluster:
+                        whole = cluster | {(x + u, y + v)}
+                        low = min(whole)
+                        grown.add(frozenset((a - low[0], b - low[1]) for a, b in whole))
+        clusters = grown
+        most = max(sum((x + u, y + v) in c for x, y in c for u, v in steps) // 2 for c in clusters)
+        assert most == harborth(n)
 
 
 def test_a_patch_is_a_full_spiral():
@@ -42,5 +166,12 @@ def test_a_patch_is_a_full_spiral():
 
 @pytest.mark.parametrize("n", [0, -1, 2.5, True, "7"])
 def test_bad_counts_are_named(n):
-    with pytest.raises(ArgumentError, match="expected a whole number >= 1"):
-        hexagonal_spiral(n, 7.0)
+    with pytest.raises(ArgumentError, match=r"n = .*: expected a whole number >= 1"):
+        hexagonal_spiral(n, D)
+    with pytest.raises(ArgumentError, match=r"cols = .*: expected a whole number >= 1"):
+        square(2, n, D)
+
+
+def test_bad_scale():
+    with pytest.raises(ArgumentError, match="d = -7: expected a number > 0"):
+        fcc(1, 1, 1, -7.0)

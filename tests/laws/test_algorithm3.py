@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import mpmath
 import numpy as np
 import pytest
 import sympy as sp
@@ -42,7 +43,11 @@ OBSTACLES: dict[int, tuple[Obstacle, ...]] = {
         Capsule((-4.0, 0.0), (-2.0, 3.0), 0.5),
         Polygon([(0.0, 3.0), (2.0, 2.0), (1.0, 5.0)]),
     ),
-    3: (Sphere((1.0, -2.0, 0.5), 1.5), Wall((0.0, -4.0, 1.0), (1.0, 3.0, -2.0)), Capsule((1.0, 0, 2), (2.0, 1, 4), 0.5)),
+    3: (
+        Sphere((1.0, -2.0, 0.5), 1.5),
+        Wall((0.0, -4.0, 1.0), (1.0, 3.0, -2.0)),
+        Capsule((1.0, 0, 2), (2.0, 1, 4), 0.5),
+    ),
 }
 
 
@@ -164,6 +169,15 @@ def test_the_energy_balances_along_a_run(target: Target, obstacle: Obstacle) -> 
     assert np.abs(run.energy_residual).max() < 1e-6 * np.abs(run.energy()).max()
 
 
+def _psi_beta(z: sp.Expr, beta: symbolic.BetaSymbols) -> sp.Expr:
+    """The integral of the symbolic φ_β from d_β to z, by thirty-digit quadrature."""
+    with mpmath.workdps(30):
+        s = sp.Symbol("s", nonnegative=True)
+        edges = [beta.d_beta, beta.h * beta.d_beta] if z < beta.h * beta.d_beta else [beta.d_beta]
+        limits = [mpmath.mpf(sp.N(edge, 30)) for edge in (*edges, z)]
+        return sp.Float(mpmath.quad(sp.lambdify(s, symbolic.phi_beta(s, beta=beta), "mpmath"), limits), 30)
+
+
 def _symbolic_alone(kind: str, q: list[float], p: list[float], obstacle: Any) -> tuple[np.ndarray, float, float]:
     """(u, H, dH/dt) of one agent, thirty digits, from the symbolic functions; the target at the origin at rest."""
     exact = [sp.Rational(x) for x in q], [sp.Rational(x) for x in p]
@@ -179,7 +193,7 @@ def _symbolic_alone(kind: str, q: list[float], p: list[float], obstacle: Any) ->
     g = {name: sp.Rational(getattr(GAINS, name)) for name in ("c1_beta", "c2_beta", "c1_gamma", "c2_gamma")}
     u = g["c1_beta"] * phi * symbolic.sigma_norm_gradient(gap, eps=eps) + g["c2_beta"] * b * (rate - speed)
     u += -g["c1_gamma"] * symbolic.sigma_1(column) - g["c2_gamma"] * speed
-    energy = g["c1_beta"] * symbolic.psi_beta(z, beta=beta) + speed.dot(speed) / 2
+    energy = g["c1_beta"] * _psi_beta(z, beta) + speed.dot(speed) / 2
     energy += g["c1_gamma"] * (sp.sqrt(1 + column.dot(column)) - 1)
     closed = g["c2_beta"] * b * speed.dot(rate - speed) - g["c2_gamma"] * speed.dot(speed)
     return np.array([float(x.evalf(30)) for x in u]), float(energy.evalf(30)), float(closed.evalf(30))

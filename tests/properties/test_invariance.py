@@ -66,7 +66,7 @@ def test_force_is_minus_the_gradient_and_hessian_its_derivative(flock):
     """Fourth-order differences with step 1e-3, away from the kinks: error about 1e-8 of the largest entry."""
     seed, n, m, alpha = flock
     n = min(n, 6)
-    q, p, _ = state(seed, n, m)
+    q, _, _ = state(seed, n, m)
     if not settled(q, alpha):
         return
     law = Algorithm2(alpha, Gains(2.0, 0.0, 0.0, 0.0, 0.4, 0.0), StaticTarget(q.mean(axis=0)))

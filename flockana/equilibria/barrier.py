@@ -1,0 +1,292 @@
+"""How much energy it takes to bring two agents together: the barrier, and the sizes beyond which c* certifies nothing.
+
+All energies here are those of V, to be multiplied by c1α.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil, floor, inf, isfinite, pi, sin, sqrt
+
+import numpy as np
+
+from flockana.checks import FloatArray
+from flockana.equilibria.program import Program
+from flockana.equilibria.potential import Potential
+from flockana.equilibria.search import lattice_starts, random_starts
+from flockana.equilibria.solve import all_pairs
+from flockana.interactions import AlphaInteraction
+from flockana.lattice import ensure_count, harborth, hexagonal_spiral
+from flockana.laws.olfati_saber import Algorithm1
+from flockana.symbolic.pair import ensure_dimension
+
+# Least ratio of the longest to the shortest distance among so many points, by dimension: in the plane 4 are at best a
+# square, 5 a regular pentagon (Bateman and Erdős 1951, who go up to 7); in space 5 are a bipyramid (Seidel 1969).
+_LEAST_RATIO = {
+    2: {4: sqrt(2.0), 5: 0.5 * (1.0 + sqrt(5.0)), 6: 2.0 * sin(0.4 * pi), 7: 2.0},
+    3: {5: sqrt(12.0 / 7.0)},
+}
+_LARGEST = 2_000  # agents up to which the counts are followed
+
+
+@dataclass(frozen=True)
+class Barrier:
+    """Lowest energies found, with and without the demand that two agents coincide.
+
+    Parameters
+    ----------
+    n, m : int
+        Agents, dimension.
+    together : float
+        Lowest V found with a coincident pair: an upper bound of the true minimum, the unsafe side of a certificate.
+    ground : float
+        Lowest V found at all.
+    state : ndarray, shape (n, m)
+        The configuration with a coincident pair.
+    solves : int
+        Successful solves behind the two figures.
+    """
+
+    n: int
+    m: int
+    together: float
+    ground: float
+    state: FloatArray
+    solves: int
+
+    @property
+    def height(self) -> float:
+        """What has to be put into the best flock to bring two agents together, `together` − `ground`."""
+        return self.together - self.ground
+
+
+def collision_barrier(
+    alpha: AlphaInteraction, n: int, *, m: int = 2, starts: int = 24, seed: int = 0
+) -> Barrier:
+    """Search min{V(q) : two agents coincide} and min V by IPOPT from many starts; numeric, not rigorous.
+
+    Any pair will do, as agents are alike: the constraint is q_1 = q_2. Since every other pair then counts at least 0,
+    the first is at least c*; and V(q) < the first minimum, with V not rising along the flow, excludes every collision.
+
+    Parameters
+    ----------
+    alpha : AlphaInteraction
+        The pair law.
+    n : int
+        Number of agents, 2 or more.
+    m : int
+        Dimension.
+    starts : int
+        Starts of each kind, random and lattice.
+    seed : int
+        Of the starts.
+
+    Examples
+    --------
+    >>> round(collision_barrier(AlphaInteraction(), 3, starts=4).height, 3)
+    52.384
+    """
+    n, m = ensure_count("n", n), ensure_dimension(m)
+    free = Program(Potential(Algorithm1(alpha)), (n, m), all_pairs(n), m)
+    tied = Program(Potential(Algorithm1(alpha)), (n, m), all_pairs(n), 2 * m)
+    translations = np.tile(np.eye(m), (n, 1)) / sqrt(n)
+    apart = np.zeros((n, m, m))
+    apart[0], apart[1] = np.eye(m), -np.eye(m)
+    tie = np.hstack([translations, apart.reshape(n * m, m)])
+    ground, together, state, solves = inf, inf, np.full((n, m), np.nan), 0
+    for q in _starts(alpha, n, m, starts, seed):
+        low, done, _ = free.solve(q, basis=translations)
+        if done:
+            ground, solves = min(ground, alpha.potential_energy(low)), solves + 1
+    for q in _starts(alpha, n - 1, m, starts, seed):
+        doubled = _most_linked_first(q, alpha)
+        doubled = np.vstack([doubled[:1], doubled])
+        low, done, _ = tied.solve(doubled, basis=tie)
+        if done:
+            solves += 1
+            if (value := alpha.potential_energy(low)) < together:
+                together, state = value, low
+    return Barrier(n, m, together, ground, state, solves)
+
+
+def _starts(alpha: AlphaInteraction, n: int, m: int, count: int, seed: int) -> list[FloatArray]:
+    best = [hexagonal_spiral(n, alpha.d)] if m == 2 else []
+    grown = lattice_starts(n, m, alpha.d, count, seed=seed)
+    return best + grown + random_starts(n, m, alpha.d, count, seed=seed, density=2.0)
+
+
+def _most_linked_first(q: FloatArray, alpha: AlphaInteraction) -> FloatArray:
+    """The agent with the most neighbours, which is the cheapest to double, in front."""
+    near = np.linalg.norm(q[:, None] - q[None], axis=2) < alpha.r
+    order = np.argsort(-near.sum(axis=1), kind="stable")
+    return np.ascontiguousarray(q[order])
+
+
+def bound_range(alpha: AlphaInteraction) -> tuple[float, float]:
+    """Lengths between which a pair has ψ_α < ψ_α(r_α), so that it lowers V below that of pairs out of range.
+
+    Parameters
+    ----------
+    alpha : AlphaInteraction
+        The pair law.
+
+    Returns
+    -------
+    tuple of float
+        (shortest, r); the shortest is 0 where even a coincident pair has no more than ψ_α(r_α).
+
+    Examples
+    --------
+    >>> round(bound_range(AlphaInteraction())[0], 3)
+    6.568
+    """
+    from scipy.optimize import brentq
+
+    if alpha.c_star <= alpha.far_potential:
+        return 0.0, alpha.r
+    excess = lambda s: float(alpha.psi_alpha(alpha.sigma_norm(s))) - alpha.far_potential  # noqa: E731
+    return float(brentq(excess, 0.0, alpha.d, xtol=1e-12 * alpha.d)), alpha.r
+
+
+def largest_clique(ratio: float, m: int) -> int | None:
+    """An upper bound on how many points can have all distances within a factor below `ratio` of each other.
+
+    On a line p points have a ratio of p − 1 at least; four of the plane √2 (one angle is not acute), up to seven of it
+    and five in space are known too. Beyond, balls of half the shortest distance about the points fit into Jung's ball.
+
+    Parameters
+    ----------
+    ratio : float
+        Longest over shortest distance, > 1.
+    m : int
+        Dimension.
+
+    Examples
+    --------
+    >>> largest_clique(1.28, 2), largest_clique(1.5, 2), largest_clique(1.9, 1), largest_clique(1.28, 3)
+    (3, 4, 2, 4)
+    """
+    if not isfinite(ratio):
+        return None
+    packed = floor((1.0 + 2.0 * ratio * sqrt(m / (2.0 * (m + 1.0)))) ** m)
+    known = [points - 1 for points, least in _LEAST_RATIO.get(m, {}).items() if ratio <= least]
+    return min([packed, ceil(ratio)] if m == 1 else [packed, *known])
+
+
+def turan_pairs(n: int, clique: int) -> int:
+    """Most edges of a graph of n nodes without a clique of more than `clique` (Turán 1941).
+
+    Parameters
+    ----------
+    n, clique : int
+        Nodes, largest clique allowed.
+
+    Examples
+    --------
+    >>> [turan_pairs(n, 3) for n in (3, 4, 6)]
+    [3, 5, 12]
+    """
+    size, more = divmod(n, clique)
+    inside = more * (size + 1) * size // 2 + (clique - more) * size * (size - 1) // 2
+    return n * (n - 1) // 2 - inside
+
+
+def energy_floor(alpha: AlphaInteraction, n: int, m: int = 2) -> float:
+    """A proved lower bound of V over all configurations of n agents: pairs with ψ_α < ψ_α(r_α) form no large clique.
+
+    Parameters
+    ----------
+    alpha : AlphaInteraction
+        The pair law.
+    n, m : int
+        Agents, dimension.
+
+    Examples
+    --------
+    >>> alpha = AlphaInteraction()
+    >>> energy_floor(alpha, 22) < alpha.c_star < energy_floor(alpha, 23)
+    True
+    """
+    shortest, longest = bound_range(alpha)
+    clique = largest_clique(longest / shortest if shortest else inf, m)
+    if clique is None:
+        return 0.0
+    return alpha.far_potential * (n * (n - 1) // 2 - turan_pairs(n, clique))
+
+
+def none_from(alpha: AlphaInteraction, m: int = 2) -> int | None:
+    """Least n from which on, provably, no state at all has V < c*: Theorem 1(iii) says nothing there.
+
+    Parameters
+    ----------
+    alpha : AlphaInteraction
+        The pair law.
+    m : int
+        Dimension.
+
+    Returns
+    -------
+    int or None
+        None where the argument gives no bound.
+
+    Examples
+    --------
+    >>> none_from(AlphaInteraction()), none_from(AlphaInteraction(d=15.0, r=18.0, h=0.1, a=3.0, b=3.0))
+    (23, 26)
+    """
+    # the floor rises with n: every agent more adds pairs outside the cliques
+    return next((n for n in range(2, _LARGEST) if energy_floor(alpha, n, m) >= alpha.c_star > 0.0), None)
+
+
+def lattice_reach(alpha: AlphaInteraction, m: int = 2) -> int | None:
+    """Largest n of which an exact α-lattice has V < c*: there Theorem 1(iii) is not vacuous.
+
+    Parameters
+    ----------
+    alpha : AlphaInteraction
+        The pair law.
+    m : int
+        Dimension: 1 (chains) or 2 (Harborth's lattices); in space the most links possible are not known.
+
+    Returns
+    -------
+    int or None
+        None where κ is too large for these lattices, or m = 3.
+
+    Examples
+    --------
+    >>> lattice_reach(AlphaInteraction())
+    14
+    """
+    if m == 3 or alpha.kappa > (2.0 if m == 1 else sqrt(3.0)):
+        return None
+    pairs = lambda n: n * (n - 1) // 2 - (n - 1 if m == 1 else harborth(n))  # noqa: E731
+    return max(n for n in range(1, _LARGEST) if alpha.far_potential * pairs(n) < alpha.c_star)
+
+
+def collision_bounds(alpha: AlphaInteraction, n: int, m: int = 2) -> tuple[float, float]:
+    """Two bounds of min{V : two agents coincide} that need no search: a proved lower one and an attained upper one.
+
+    Below the first no two agents can meet; at the second a configuration is known in which two do. Of a coincident
+    pair, which costs c*, one agent can be taken away: n − 1 are left, with at least `energy_floor` between them. The
+    upper one doubles the agent with the most links in a compact lattice.
+
+    Parameters
+    ----------
+    alpha : AlphaInteraction
+        The pair law.
+    n, m : int
+        Agents, dimension.
+
+    Examples
+    --------
+    >>> low, high = collision_bounds(AlphaInteraction(), 7)
+    >>> AlphaInteraction().c_star < low < high, round(high, 3)
+    (True, 56.799)
+    """
+    n, m = ensure_count("n", n), ensure_dimension(m)
+    if n == 1:
+        return inf, inf
+    lattice = hexagonal_spiral(n - 1, alpha.d) if m == 2 else lattice_starts(n - 1, m, alpha.d, 1, noise=0.0)[0]
+    doubled = _most_linked_first(lattice, alpha)
+    return alpha.c_star + energy_floor(alpha, n - 1, m), alpha.potential_energy(np.vstack([doubled[:1], doubled]))

@@ -1,0 +1,110 @@
+"""Whether two configurations are the same up to translation, rotation, reflection and the numbering of the agents."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.spatial import KDTree
+from scipy.spatial.distance import cdist, pdist
+
+from flockana.checks import FloatArray
+
+
+def spectrum_of_distances(q: FloatArray) -> FloatArray:
+    """All pairwise distances in rising order: equal for congruent configurations, and rarely for others.
+
+    Parameters
+    ----------
+    q : ndarray, shape (n, m)
+        Positions.
+
+    Examples
+    --------
+    >>> spectrum_of_distances(np.array([[0.0], [3.0], [1.0]])).tolist()
+    [1.0, 2.0, 3.0]
+    """
+    return np.sort(pdist(q))
+
+
+def congruent(first: FloatArray, second: FloatArray, *, tol: float) -> bool:
+    """Whether an isometry and a renumbering take one configuration to the other.
+
+    Equal distance spectra are asked first; then the isometry is constructed, since different configurations can share
+    a spectrum.
+
+    Parameters
+    ----------
+    first, second : ndarray, shape (n, m)
+        Configurations.
+    tol : float
+        Distance within which points agree.
+
+    Examples
+    --------
+    >>> triangle = np.array([[0.0, 0.0], [3.0, 0.0], [0.0, 4.0]])
+    >>> congruent(triangle, triangle[[2, 0, 1]] * [-1.0, 1.0] + 5.0, tol=1e-9)
+    True
+    >>> congruent(np.array([[0.0], [1.0], [4.0], [10.0], [12.0], [17.0]]), np.array([[0.0], [1.0], [8.0], [11.0], [13.0],
+    ... [17.0]]), tol=1e-9)  # the same distances all the same
+    False
+    """
+    if first.shape != second.shape:
+        return False
+    if first.size and np.abs(spectrum_of_distances(first) - spectrum_of_distances(second)).max(initial=0.0) > 2.0 * tol:
+        return False
+    x, y = first - first.mean(axis=0), second - second.mean(axis=0)
+    frame = _frame(x)
+    images, tree = cdist(y, y), KDTree(y)
+    wanted, norms = cdist(x[frame], x[frame]), np.linalg.norm(x[frame], axis=1)
+    candidates = [np.flatnonzero(np.abs(np.linalg.norm(y, axis=1) - norm) <= 2.0 * tol) for norm in norms]
+    return any(
+        _maps(x, y, frame, image, tree, tol)
+        for image in _images(candidates, images, wanted, 4.0 * tol)
+    )
+
+
+def _frame(x: FloatArray) -> list[int]:
+    """Up to m agents whose positions about the centre are independent, the farthest first."""
+    chosen: list[int] = []
+    rest = x.copy()
+    for _ in range(min(x.shape)):
+        k = int(np.argmax(np.linalg.norm(rest, axis=1)))
+        size = float(np.linalg.norm(rest[k]))
+        if size <= 1e-6 * max(1.0, float(np.abs(x).max())):
+            break
+        chosen.append(k)
+        axis = rest[k] / size
+        rest = rest - np.outer(rest @ axis, axis)
+    return chosen
+
+
+def _images(candidates: list[FloatArray], distances: FloatArray, wanted: FloatArray, tol: float) -> list[tuple[int, ...]]:
+    """Tuples of agents with the frame's distances to the centre and between each other."""
+    found: list[tuple[int, ...]] = [()]
+    for k, options in enumerate(candidates):
+        found = [
+            (*image, int(agent))
+            for image in found
+            for agent in options
+            if all(abs(distances[agent, image[l]] - wanted[k, l]) <= tol for l in range(k))
+        ]
+    return found
+
+
+def _maps(x: FloatArray, y: FloatArray, frame: list[int], image: tuple[int, ...], tree: KDTree, tol: float) -> bool:
+    """Whether the rotation (or its mirror image) that takes the frame to its image takes all of x to y."""
+    m = x.shape[1]
+    u, _, vt = np.linalg.svd(x[frame].T @ y[list(image)])
+    flips = [np.eye(m)] if len(frame) == m else [np.eye(m), np.diag([1.0] * (m - 1) + [-1.0])]
+    for flip in flips:
+        distance, nearest = tree.query(x @ u @ flip @ vt)
+        if distance.max() <= 10.0 * tol and _one_to_one(nearest, y, tol):
+            return True
+    return False
+
+
+def _one_to_one(nearest: FloatArray, y: FloatArray, tol: float) -> bool:
+    """Whether as many agents go to each place as stand there (agents may coincide)."""
+    if np.unique(nearest).size == len(nearest):
+        return True
+    place = np.array([min(group) for group in KDTree(y).query_ball_point(y, 20.0 * tol)])
+    return bool(np.array_equal(np.bincount(place[nearest], minlength=len(y)), np.bincount(place, minlength=len(y))))

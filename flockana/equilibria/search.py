@@ -1,0 +1,247 @@
+"""Many starts, distinct equilibria: random discs and lattice patches, minimised in parallel, ranked by energy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, field
+from functools import partial
+from math import sqrt
+from typing import Any
+
+import numpy as np
+
+from flockana.checks import FloatArray, ensure_points, ensure_positive
+from flockana.equilibria.congruence import congruent
+from flockana.equilibria.solve import METHODS, Equilibrium, find_equilibrium
+from flockana.errors import ArgumentError, SolverError, UnknownNameError
+from flockana.metrics import coincident_pairs
+
+SAME = 1e-5  # of d: how closely two equilibria must agree to be one
+_CONTACT = 1e-6  # of d
+_LEVEL = 1e-4  # of c1α ψ_α(r_α): energies this close may be those of one equilibrium
+
+
+def random_starts(n: int, m: int, d: float, count: int, *, seed: int = 0, density: float = 1.3) -> list[FloatArray]:
+    """Starts uniform in a ball that holds n agents denser than a lattice of spacing d by the given factor.
+
+    Parameters
+    ----------
+    n, m : int
+        Agents, dimension.
+    d : float
+        Distance between neighbours.
+    count : int
+        How many starts.
+    seed : int
+        Of the generator.
+    density : float
+        Agents per volume, relative to one in d^m.
+
+    Examples
+    --------
+    >>> [start.shape for start in random_starts(5, 3, 7.0, 2)]
+    [(5, 3), (5, 3)]
+    """
+    rng = np.random.default_rng([n, m, seed])
+    volume = {1: 2.0, 2: np.pi, 3: 4.0 * np.pi / 3.0}[m]
+    radius = d * (n / (ensure_positive("density", density) * volume)) ** (1.0 / m)
+    starts = []
+    for _ in range(count):
+        direction = rng.standard_normal((n, m))
+        direction /= np.linalg.norm(direction, axis=1, keepdims=True)
+        starts.append(radius * direction * rng.uniform(size=(n, 1)) ** (1.0 / m))
+    return starts
+
+
+def lattice_starts(n: int, m: int, d: float, count: int, *, seed: int = 0, noise: float = 0.05) -> list[FloatArray]:
+    """Starts grown agent by agent on the line, the triangular lattice or FCC, at random free places, and disturbed.
+
+    Of three random free places the one with the most neighbours is taken: compact patches, but not the same each time.
+
+    Parameters
+    ----------
+    n, m : int
+        Agents, dimension.
+    d : float
+        Distance between neighbours.
+    count : int
+        How many starts.
+    seed : int
+        Of the generator.
+    noise : float
+        Standard deviation of the disturbance, over d.
+
+    Examples
+    --------
+    >>> [start.shape for start in lattice_starts(5, 2, 7.0, 2)]
+    [(5, 2), (5, 2)]
+    """
+    rng = np.random.default_rng([n, m, seed, 1])
+    basis = {1: np.eye(1), 2: np.array([[1.0, 0.0], [0.5, sqrt(0.75)]]), 3: np.array([[1.0, 1, 0], [1, 0, 1], [0, 1, 1]]) / sqrt(2)}[m]
+    cube = np.stack(np.meshgrid(*[np.arange(-1, 2)] * m, indexing="ij"), -1).reshape(-1, m)
+    steps = [tuple(step) for step in cube.tolist() if abs(np.linalg.norm(np.array(step) @ basis) - 1.0) < 1e-9]
+    starts = []
+    for _ in range(count):
+        taken = {(0,) * m}
+        while len(taken) < n:
+            free = sorted({tuple(a + b for a, b in zip(site, step, strict=True)) for site in taken for step in steps} - taken)
+            tried = [free[k] for k in rng.integers(len(free), size=3)]
+            degree = [sum(tuple(a + b for a, b in zip(site, step, strict=True)) in taken for step in steps) for site in tried]
+            taken.add(tried[int(np.argmax(degree))])
+        sites = np.array(sorted(taken), dtype=float) @ basis
+        starts.append(d * (sites + noise * rng.standard_normal((n, m))))
+    return starts
+
+
+@dataclass(frozen=True)
+class Found:
+    """One of the distinct equilibria of a search.
+
+    Parameters
+    ----------
+    equilibrium : Equilibrium
+        The first that was found.
+    count : int
+        How many starts ended there.
+    coincident : int
+        Pairs of its agents at one place.
+    """
+
+    equilibrium: Equilibrium
+    count: int
+    coincident: int
+
+
+@dataclass(frozen=True)
+class Search:
+    """What a search found.
+
+    Parameters
+    ----------
+    found : tuple of Found
+        Distinct equilibria, lowest energy first; degenerate ones are told apart by their energy only.
+    starts : int
+        How many starts there were.
+    failures : tuple of str
+        Messages of the solves that found nothing.
+    """
+
+    found: tuple[Found, ...]
+    starts: int
+    failures: tuple[str, ...] = field(default=(), repr=False)
+
+    @property
+    def best(self) -> Equilibrium:
+        """The equilibrium of lowest energy.
+
+        Raises
+        ------
+        SolverError
+            If every start failed.
+        """
+        if not self.found:
+            raise SolverError(f"none of {self.starts} starts led to an equilibrium; the first failure: {self.failures[:1]}")
+        return self.found[0].equilibrium
+
+    def strained(self, *, lattice: float = 1e-6, distinct: bool = True) -> tuple[Equilibrium, ...]:
+        """Strict minima that are no α-lattice.
+
+        Parameters
+        ----------
+        lattice : float
+            Largest |link − d|/d of what is one.
+        distinct : bool
+            Leave out those in which agents coincide.
+        """
+        return tuple(
+            one.equilibrium
+            for one in self.found
+            if one.equilibrium.kind == "minimum"
+            and one.equilibrium.strain() > lattice
+            and not (distinct and one.coincident)
+        )
+
+
+def _attempt(law: Any, method: str, start: FloatArray) -> Equilibrium | str:
+    try:
+        return find_equilibrium(law, start, method=method)
+    except SolverError as failure:
+        return str(failure)
+
+
+def search(
+    law: Any, starts: Iterable[Any], *, method: str = "minimise", executor: Executor | None = None
+) -> Search:
+    """Find the equilibria that many starts lead to, each once.
+
+    Parameters
+    ----------
+    law : Algorithm1, Algorithm2 or Algorithm3
+        The law.
+    starts : iterable of array_like, shape (n, m)
+        Starts, all of one shape, such as `random_starts` and `lattice_starts`.
+    method : {"minimise", "root"}
+        As in `find_equilibrium`; ``"root"`` finds saddles too.
+    executor : concurrent.futures.Executor, optional
+        Where to solve; here and now if not given.
+
+    Returns
+    -------
+    Search
+
+    Raises
+    ------
+    ArgumentError
+        If there is no start, or their shapes differ.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> result = search(Algorithm1(), random_starts(3, 2, 7.0, 4))
+    >>> result.best.kind, len(result.best.links), len(result.failures)
+    ('minimum', 3, 0)
+    """
+    if method not in METHODS:
+        raise UnknownNameError("method", method, METHODS)
+    points = [ensure_points(f"starts[{k}]", start) for k, start in enumerate(starts)]
+    if not points or any(point.shape != points[0].shape for point in points):
+        raise ArgumentError(f"starts: expected at least one, all of one shape, got {sorted({p.shape for p in points})}")
+    outcomes = list((executor.map if executor else map)(partial(_attempt, law, method), points))
+    return Search(
+        distinct([one for one in outcomes if isinstance(one, Equilibrium)]),
+        len(points),
+        tuple(one for one in outcomes if isinstance(one, str)),
+    )
+
+
+def distinct(equilibria: Sequence[Equilibrium]) -> tuple[Found, ...]:
+    """Group equilibria up to translation, rotation, reflection and numbering, lowest energy first.
+
+    Degenerate ones come in families (a hinge bends, a component drifts): those of equal energy and index are one.
+
+    Parameters
+    ----------
+    equilibria : sequence of Equilibrium
+        Of one law and one number of agents.
+    """
+    groups: list[list[Equilibrium]] = []
+    for one in sorted(equilibria, key=lambda each: each.energy):
+        for group in reversed(groups):
+            if one.energy - group[0].energy > _LEVEL * one.law.gains.c1_alpha * one.law.alpha.far_potential:
+                groups.append([one])
+                break
+            if _same(group[0], one):
+                group.append(one)
+                break
+        else:
+            groups.append([one])
+    contact = equilibria[0].law.alpha.d * _CONTACT if equilibria else 1.0
+    return tuple(Found(group[0], len(group), coincident_pairs(group[0].q, contact)) for group in groups)
+
+
+def _same(first: Equilibrium, second: Equilibrium) -> bool:
+    if (first.kind, first.index) != (second.kind, second.index):
+        return False
+    loose = bool(first.zero_modes or second.zero_modes)
+    return loose or congruent(first.q, second.q, tol=SAME * first.law.alpha.d)

@@ -1,0 +1,113 @@
+"""Erratum E4: c < c* excludes collisions, but soon no state at all is below c*; a barrier that does not go vacuous."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flockana.equilibria.barrier import bound_range, collision_barrier, energy_floor, lattice_reach, none_from
+from flockana.interactions import AlphaInteraction
+from flockana.lattice import harborth, hexagonal_spiral
+from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
+
+_SIZES = (3, 7, 10)  # of the barrier that is searched here; the larger ones take longer and change nothing
+_STARTS = 8
+_TRIANGLE = 3  # up to here all pairs can be in range, and the barrier is c* itself
+# the sources' parameter sets: d, r, ε, h, a, b
+_SETS = {
+    "paper": AlphaInteraction(),
+    "notebook-algorithm1": AlphaInteraction(1.9, 2.8, 0.1, 0.4, 7.0, 9.0),
+    "notebook-algorithm2": AlphaInteraction(1.7, 2.5, 0.01, 0.2, 7.0, 15.0),
+    "msn": AlphaInteraction(15.0, 18.0, 0.1, 0.1, 3.0, 3.0),
+}
+
+
+def _implication(alpha: AlphaInteraction) -> Claim:
+    """As printed, it is true: every other pair adds at least 0 to the c* of a coincident one."""
+    lengths = np.linspace(0.0, 1.1 * alpha.r, 2001)
+    least = float(np.min(alpha.psi_alpha(alpha.sigma_norm(lengths))))
+    return Claim(
+        "printed",
+        "verified" if least >= 0.0 else "refuted",
+        computed=least,
+        stated="ψ_α >= 0, so that V >= c* where two agents coincide, and c < c* excludes it",
+        margin=least,
+        error=0.0,
+        witness="ψ_α at 2001 lengths; its sign follows from that of φ_α",
+        detail=f"the implication holds: ψ_α is at least {least:.2g}, and V does not rise",
+    )
+
+
+def _reached(alpha: AlphaInteraction) -> Claim:
+    """The largest α-lattice below c*, its energy computed from the configuration and not from the count."""
+    n = lattice_reach(alpha)
+    energies = [alpha.potential_energy(hexagonal_spiral(size, alpha.d)) for size in (n, n + 1)]  # type: ignore[operator,list-item]
+    margin = min(alpha.c_star - energies[0], energies[1] - alpha.c_star)
+    return Claim(
+        "found",
+        judge(margin, 1e-9, []),
+        computed=n,
+        stated="the best α-lattices have V < c* for n <= 14 only",
+        margin=margin,
+        error=1e-9,
+        witness={"V(n)": energies[0], "V(n + 1)": energies[1], "c*": alpha.c_star},
+        detail=f"with the most links possible ({harborth(n)} at n = {n}), V = {energies[0]:.4g} < c* = "  # type: ignore[arg-type]
+        f"{alpha.c_star:.4g}; at n = {n + 1}, {energies[1]:.4g}",  # type: ignore[operator]
+    )
+
+
+def _none(alpha: AlphaInteraction) -> Claim:
+    """No state at all from n = 23 on: in any four points of the plane two distances differ by a factor √2 at least."""
+    n = none_from(alpha)
+    shortest, longest = bound_range(alpha)
+    margin = float("nan") if n is None else energy_floor(alpha, n) - alpha.c_star
+    table = {name: {m: [lattice_reach(one, m), none_from(one, m)] for m in (1, 2, 3)} for name, one in _SETS.items()}
+    return Claim(
+        "vacuous",
+        judge(margin, 1e-9, []),
+        rigour="numeric",
+        computed=n,
+        stated="for n >= 23 no configuration in the plane has V < c*",
+        margin=margin,
+        error=1e-9,
+        witness={"[largest n of a lattice below c*, least n without any state], by set and dimension": table},
+        detail=f"pairs that lower V are {shortest:.4g} to {longest:.4g} long, a ratio of {longest / shortest:.4g} < √2: "
+        f"no four agents are pairwise such, so by Turán V > c* from n = {n} on",
+    )
+
+
+def _barrier(alpha: AlphaInteraction) -> Claim:
+    """min{V : two agents coincide} by search, above c* as soon as a third of the pairs is out of range."""
+    found = {n: collision_barrier(alpha, n, starts=_STARTS) for n in _SIZES}
+    margin = min(one.together - alpha.c_star for n, one in found.items() if n > _TRIANGLE)
+    heights = ", ".join(f"{one.height:.3f} at n = {n}" for n, one in found.items())
+    return Claim(
+        "barrier",
+        judge(margin, 1e-9, []),
+        computed={n: {"together": one.together, "ground": one.ground} for n, one in found.items()},
+        stated="min{V : two agents coincide} > c*: a sharper certificate, and one that grows with min V",
+        margin=margin,
+        error=1e-9,
+        witness="minimised from many starts: an upper bound of the minimum, so no proof",
+        detail=f"to bring two agents together takes {heights}, from the best lattice (c* = {alpha.c_star:.3f})",
+    )
+
+
+def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+    alpha = AlphaInteraction()
+    return [], [_implication(alpha), _reached(alpha), _none(alpha), _barrier(alpha)]
+
+
+THEOREM = Theorem(
+    id="E4",
+    title="c < c* soon certifies nothing",
+    statement=(
+        "Theorem 1(iii) excludes collisions below c* = ψ_α(0). That is true, but each pair out of range adds ψ_α(r_α) "
+        "to the energy: in the plane no α-lattice of more than 14 agents is below c*, and no state of 23 or more. The "
+        "barrier min{V : two agents coincide} is a certificate that does not go vacuous; it is found numerically."
+    ),
+    source="slides, Theorem 1(iii)",
+    kind="fixed",
+    check=_check,
+    references=("geschwender-2016", "olfati-saber-2006"),
+    expected={"E4": "verified", "E4:printed": "verified", "E4:found": "verified", "E4:vacuous": "verified", "E4:barrier": "verified"},
+)

@@ -1,0 +1,281 @@
+"""Crossings against a brute force over all pairs of links in rational arithmetic, and every degenerate case by hand."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import combinations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from flockana.errors import ArgumentError
+from flockana.kernels.crossings import grid
+from flockana.lattice import bcc, crossings, fcc, links, separation, simple_cubic, square, triangular
+
+
+def rational_meet(a, b, c, d) -> bool:
+    """Do the closed segments meet? By solving a + s(b − a) = c + t(d − c) in fractions: no orientation test."""
+    u, v, w = ([y - x for x, y in zip(p, o, strict=True)] for p, o in ((a, b), (c, d), (a, c)))
+    rows = [(x, -y, z) for x, y, z in zip(u, v, w, strict=True)]  # s x − t y = z
+    for first, second in combinations(rows, 2):
+        det = first[0] * second[1] - first[1] * second[0]
+        if det:
+            s = (first[2] * second[1] - first[1] * second[2]) / det
+            t = (first[0] * second[2] - first[2] * second[0]) / det
+            return 0 <= s <= 1 and 0 <= t <= 1 and all(x * s + y * t == z for x, y, z in rows)
+    return any(on(p, x, y) for p, x, y in ((a, c, d), (b, c, d), (c, a, b), (d, a, b)))  # parallel, or a point
+
+
+def on(p, a, b) -> bool:
+    """Is p on the closed segment a–b?"""
+    size = sum((y - x) ** 2 for x, y in zip(a, b, strict=True))
+    if size == 0:
+        return p == a
+    s = sum((y - x) * (z - x) for x, y, z in zip(a, b, p, strict=True)) / size
+    return 0 <= s <= 1 and all(x + s * (y - x) == z for x, y, z in zip(a, b, p, strict=True))
+
+
+def rational_crossings(q, pairs):
+    points = [[Fraction(float(v)) for v in row] for row in np.asarray(q, dtype=float)]
+    found = []
+    for (a, (i, j)), (b, (g, h)) in combinations(enumerate(np.asarray(pairs).tolist()), 2):
+        shared = {i, j} & {g, h}
+        if shared:
+            s = points[shared.pop()] if len(shared) == 1 else points[i]
+            one, two = (points[j if points[i] is s else i], points[h if points[g] is s else g])
+            if one != s and two != s and (on(one, s, two) or on(two, s, one)):
+                found.append([a, b])
+        elif rational_meet(points[i], points[j], points[g], points[h]):
+            found.append([a, b])
+    return found
+
+
+SQUARE = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
+
+DEGENERATE = {
+    "proper crossing": (SQUARE, [[0, 2], [1, 3]], True),
+    "opposite sides": (SQUARE, [[0, 1], [2, 3]], False),
+    "sides at a corner": (SQUARE, [[0, 1], [1, 2]], False),
+    "an agent on the middle of a link": ([[0.0, 0.0], [2.0, 0.0], [1.0, 0.0], [1.0, 1.0]], [[0, 1], [2, 3]], True),
+    "an agent an ulp off a link": (
+        [[0.0, 0.0], [2.0, 0.0], [1.0, 5e-324], [1.0, 1.0]],
+        [[0, 1], [2, 3]],
+        False,
+    ),
+    "coincident agents": ([[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [1.0, 1.0]], [[0, 1], [2, 3]], True),
+    "collinear overlap": ([[0.0, 0.0], [2.0, 2.0], [1.0, 1.0], [3.0, 3.0]], [[0, 1], [2, 3]], True),
+    "collinear, touching at coincident ends": (
+        [[0.0, 0.0], [1.0, 1.0], [1.0, 1.0], [3.0, 3.0]],
+        [[0, 1], [2, 3]],
+        True,
+    ),
+    "collinear, apart": ([[0.0, 0.0], [1.0, 1.0], [2.0, 2.0], [3.0, 3.0]], [[0, 1], [2, 3]], False),
+    "parallel": ([[0.0, 0.0], [2.0, 2.0], [0.5, 0.0], [2.5, 2.0]], [[0, 1], [2, 3]], False),
+    "of one agent, opposite ways": ([[0.0, 0.0], [1.0, 1.0], [-1.0, -1.0]], [[0, 1], [0, 2]], False),
+    "of one agent, the same way": ([[0.0, 0.0], [1.0, 1.0], [3.0, 3.0]], [[0, 1], [0, 2]], True),
+    "of one agent, nearly the same way": (
+        [[0.0, 0.0], [1.0, 1.0], [3.0, np.nextafter(3.0, 4)]],
+        [[0, 1], [0, 2]],
+        False,
+    ),
+    "of one agent, at a right angle": (SQUARE, [[0, 1], [0, 3]], False),
+    "the same link twice": (SQUARE, [[0, 1], [1, 0]], True),
+    "a point on a link": ([[0.0, 0.0], [2.0, 0.0], [1.0, 0.0], [1.0, 0.0]], [[0, 1], [2, 3]], True),
+    "a point beside a link": ([[0.0, 0.0], [2.0, 0.0], [1.0, 1.0], [1.0, 1.0]], [[0, 1], [2, 3]], False),
+    "a point and its own agent's link": ([[0.0, 0.0], [0.0, 0.0], [1.0, 0.0]], [[0, 1], [0, 2]], False),
+    "two points": ([[0.0, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0]], [[0, 1], [2, 3]], True),
+    "on a line, overlapping": ([[0.0], [2.0], [1.0], [3.0]], [[0, 1], [2, 3]], True),
+    "on a line, one after the other": ([[0.0], [1.0], [2.0]], [[0, 1], [1, 2]], False),
+    "on a line, one in the other": ([[0.0], [1.0], [2.0]], [[0, 1], [0, 2]], True),
+    "in space, coplanar": ([[0.0, 0, 0], [1.0, 1, 1], [1.0, 0, 0], [0.0, 1, 1]], [[0, 1], [2, 3]], True),
+    "in space, an ulp apart": (
+        [[0.0, 0, 0], [1.0, 1, 1], [1.0, 0, 0], [0.0, 1, np.nextafter(1.0, 2)]],
+        [[0, 1], [2, 3]],
+        False,
+    ),
+    "in space, one above the other": ([[0.0, 0, 0], [1.0, 1, 0], [1.0, 0, 1], [0.0, 1, 1]], [[0, 1], [2, 3]], False),
+    "in space, collinear overlap": (
+        [[0.0, 0, 0], [2.0, 4, 6], [1.0, 2, 3], [3.0, 6, 9]],
+        [[0, 1], [2, 3]],
+        True,
+    ),
+    "in space, of one agent, the same way": ([[0.0, 0, 0], [1.0, 2, 3], [3.0, 6, 9]], [[0, 1], [0, 2]], True),
+    "huge": ([[0.0, 0.0], [1e300, 1e300], [0.0, 1e300], [1e300, 0.0]], [[0, 1], [2, 3]], True),
+    "tiny": ([[0.0, 0.0], [1e-300, 1e-300], [0.0, 1e-300], [1e-300, 0.0]], [[0, 1], [2, 3]], True),
+    "subnormal, apart": ([[0.0, 0.0], [2e-323, 1e-323], [5e-324, 5e-324], [0.0, 1e-323]], [[0, 1], [2, 3]], False),
+}
+
+
+@pytest.mark.parametrize("case", DEGENERATE)
+def test_degenerate_links_are_decided_as_documented(case):
+    q, pairs, cross = DEGENERATE[case]
+    assert crossings(q, pairs).tolist() == ([[0, 1]] if cross else [])
+    assert rational_crossings(q, pairs) == ([[0, 1]] if cross else [])
+
+
+def test_floating_point_alone_would_get_this_wrong():
+    """An agent next to a long diagonal, moved by single ulps (Kettner et al. 2008): naive signs scatter here."""
+    naive = wrong = 0
+    for i in range(16):
+        for j in range(16):
+            p = [0.5 + i * 2.0**-53, 0.5 + j * 2.0**-53]
+            q = [p, [0.0, 1.0], [12.0, 12.0], [24.0, 24.0], [0.25, 0.25]]
+            pairs = [[0, 1], [3, 4]]
+            exact = bool(rational_crossings(q, pairs))
+            assert bool(len(crossings(q, pairs))) == exact
+            side = (p[0] - 24.0) * (12.0 - 24.0) - (p[1] - 24.0) * (12.0 - 24.0)
+            naive += 1
+            wrong += (side >= 0.0) != exact
+    assert naive == 256
+    assert wrong > 0
+
+
+def configurations(m: int, coarse: bool):
+    """Few agents on a coarse grid, which is full of degenerate cases, or anywhere."""
+    value = st.integers(-3, 3).map(float) if coarse else st.floats(-2.0, 2.0, width=32)
+    points = st.lists(st.tuples(*m * [value]), min_size=2, max_size=8)
+    return points.flatmap(
+        lambda q: st.tuples(
+            st.just(q),
+            st.lists(
+                st.tuples(st.integers(0, len(q) - 1), st.integers(0, len(q) - 1)).filter(lambda p: p[0] != p[1]),
+                min_size=2,
+                max_size=14,
+            ),
+        )
+    )
+
+
+@pytest.mark.parametrize("m", [1, 2, 3])
+@pytest.mark.parametrize("coarse", [True, False])
+def test_all_crossings_are_those_of_rational_arithmetic(m, coarse):
+    @given(configurations(m, coarse))
+    def check(case):
+        q, pairs = case
+        assert crossings(q, pairs).tolist() == rational_crossings(q, pairs)
+
+    check()
+
+
+@pytest.mark.parametrize(("m", "n"), [(1, 12), (2, 40), (3, 25)])
+def test_random_nets_and_one_link_across_all_of_them(m, n):
+    rng = np.random.default_rng(m)
+    q = rng.uniform(0.0, 3.0 * 7.0, (n, m))
+    q[0], q[1] = -200.0, 250.0
+    pairs = np.concatenate([links(q, 8.4), [[0, 1]]])
+    found = crossings(q, pairs)
+    assert found.tolist() == rational_crossings(q, pairs)
+    assert (len(found) > 20) == (m < 3)
+    assert len(grid(q, pairs.astype(np.int32)).owner) > len(pairs)  # the long one was cut
+
+
+def test_coplanar_links_in_space():
+    """Face diagonals of cubes, turned out of the axes so that no coordinate is whole: three in 8 planes of 2 x 2."""
+    q = simple_cubic(3, 3, 3, 1.0)
+    pairs = links(q, 1.5)
+    found = crossings(q, pairs)
+    assert len(found) == 3 * 3 * 4
+    assert found.tolist() == rational_crossings(q, pairs)
+    shear = np.array([[1.0, 0.25, 0.5], [0.0, 1.0, 0.125], [0.0, 0.0, 1.0]])  # exact in binary
+    assert crossings(q @ shear, pairs).tolist() == found.tolist()
+
+
+@given(st.randoms(use_true_random=False), st.floats(0.0, 6.28), st.floats(-1e3, 1e3))
+def test_names_turns_and_shifts_do_not_matter(random, angle, shift):
+    rng = np.random.default_rng(random.randrange(2**32))
+    q = rng.uniform(0.0, 28.0, (20, 2))
+    pairs = links(q, 9.0)
+    found = {frozenset(map(tuple, np.sort(pairs[p]).tolist())) for p in crossings(q, pairs)}
+    turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    assert {frozenset(map(tuple, pairs[p].tolist())) for p in crossings(q @ turn + shift, pairs)} == found
+    names = rng.permutation(20)  # agent i is now called names[i]
+    renamed = names[pairs][rng.permutation(len(pairs))]
+    again = crossings(q[np.argsort(names)], renamed)
+    back = np.argsort(names)[renamed]
+    assert {frozenset(map(tuple, np.sort(back[p]).tolist())) for p in again} == found
+
+
+def test_lattices_do_not_cross_and_diagonals_do():
+    q = triangular(400, 7.0)
+    assert len(crossings(q, links(q, 8.4))) == 0
+    q = square(20, 20, 7.0)
+    assert len(crossings(q, links(q, 7.0 * 1.5))) == 19 * 19
+    for q in (fcc(3, 3, 3, 7.0), bcc(3, 3, 3, 7.0)):
+        assert len(crossings(q, links(q, 7.0 * 1.1))) == 0
+
+
+def test_a_limit_stops_early_and_lists_that_many():
+    q = square(20, 20, 7.0)
+    pairs = links(q, 10.5)
+    assert len(crossings(q, pairs, limit=5)) == 5
+    assert len(crossings(q, pairs, limit=1000)) == 361
+    every = {tuple(p) for p in crossings(q, pairs).tolist()}
+    assert {tuple(p) for p in crossings(q, pairs, limit=5).tolist()} <= every
+
+
+def test_all_agents_in_one_cell():
+    """A collapsed flock: every two of its agents are linked, and of every four in convex position two links cross."""
+    angle = 2.0 * np.pi * np.arange(30) / 30
+    q = np.column_stack([np.cos(angle), np.sin(angle)])
+    pairs = links(q, 8.4)
+    assert len(crossings(q, pairs)) == 30 * 29 * 28 * 27 // 24
+
+
+@pytest.mark.parametrize(
+    ("pairs", "message"),
+    [
+        ([[0, 4]], r"links\[0\] = \[0, 4\]: expected two different agents of 0 … 3"),
+        ([[0, 1], [2, 2]], r"links\[1\] = \[2, 2\]"),
+        ([[-1, 1]], r"links\[0\] = \[-1, 1\]"),
+        ([[0, 1, 2]], r"links has shape \(1, 3\) of int64: expected \(M, 2\) whole numbers"),
+        ([[0.0, 1.0]], "of float64: expected"),
+    ],
+)
+def test_bad_links_are_named(pairs, message):
+    with pytest.raises(ArgumentError, match=message):
+        crossings(SQUARE, pairs)
+
+
+@pytest.mark.parametrize("limit", [0, -1, 2.0, True])
+def test_bad_limits_are_named(limit):
+    with pytest.raises(ArgumentError, match=r"limit = .*: expected a whole number >= 1"):
+        crossings(SQUARE, [[0, 1]], limit=limit)
+
+
+def test_no_links():
+    assert crossings(SQUARE, []).shape == (0, 2)
+    assert separation(SQUARE, [], reach=1.0).links is None
+
+
+class TestSeparation:
+    def test_by_hand(self):
+        assert separation(SQUARE, [[0, 1], [2, 3]], reach=2.0).distance == 1.0
+        assert separation(SQUARE, [[0, 1], [2, 3]], reach=0.5) == separation(SQUARE, [[0, 1]], reach=0.5)
+        assert separation(SQUARE, [[0, 2], [1, 3]], reach=2.0).distance == 0.0
+        assert separation(SQUARE, [[0, 1], [1, 2]], reach=2.0).links is None
+
+    def test_of_lattices(self):
+        """Triangular: the height of a triangle. FCC: opposite edges of a tetrahedron, d/√2."""
+        q = triangular(30, 7.0)
+        assert separation(q, links(q, 8.4), reach=7.0).distance == pytest.approx(7.0 * np.sqrt(0.75), rel=1e-12)
+        q = fcc(2, 2, 2, 7.0)
+        assert separation(q, links(q, 8.4), reach=7.0).distance == pytest.approx(7.0 / np.sqrt(2.0), rel=1e-12)
+
+    @pytest.mark.parametrize("seed", range(4))
+    def test_in_space_against_sampling(self, seed):
+        """The distance of two segments is convex in (s, t): a coarse grid refined twice is near its minimum."""
+        rng = np.random.default_rng(seed)
+        q = rng.uniform(0.0, 20.0, (14, 3))
+        pairs = links(q, 9.0)
+        found = separation(q, pairs, reach=20.0)
+        best = np.inf
+        s = np.linspace(0.0, 1.0, 201)
+        for a, b in combinations(range(len(pairs)), 2):
+            (i, j), (g, h) = pairs[a], pairs[b]
+            if not {i, j} & {g, h}:
+                one, two = (q[u] + s[:, None] * (q[v] - q[u]) for u, v in ((i, j), (g, h)))
+                best = min(best, float(np.linalg.norm(one[:, None] - two[None], axis=2).min()))
+        assert found.distance <= best + 1e-12
+        assert found.distance == pytest.approx(best, abs=2.0 * 9.0 / 200.0)

@@ -1,0 +1,96 @@
+"""Edge-length error, classification, coordination and defects."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from flockana.errors import ArgumentError
+from flockana.lattice import (
+    classify,
+    coordination,
+    defects,
+    edge_length_error,
+    hexagonal_patch,
+    is_alpha_lattice,
+    links,
+    square,
+    strain,
+    triangular,
+)
+
+D, R = 7.0, 8.4
+
+
+def test_the_error_is_the_worst_link_either_way():
+    q = np.array([[0.0], [6.0], [13.5]])
+    assert edge_length_error(q, D, R) == 1.0
+    assert strain(q, D, R) == pytest.approx(1.0 / 7.0)
+    assert edge_length_error([[0.0], [8.3]], D, R) == pytest.approx(1.3)
+
+
+def test_without_links_nothing_is_a_lattice():
+    assert np.isnan(edge_length_error([[0.0], [100.0]], D, R))
+    assert not is_alpha_lattice([[0.0], [100.0]], D, R)
+    assert classify(float("nan"), lattice=1.0, quasi=1.0) == "neither"
+
+
+def test_the_tolerance_is_relative_to_d():
+    q = [[0.0], [D * (1.0 + 1e-7)]]
+    assert not is_alpha_lattice(q, D, R)
+    assert is_alpha_lattice(q, D, R, tol=2e-7)
+
+
+@pytest.mark.parametrize("guard", [-1e-3, 1.0, float("nan")])
+def test_bad_guards_are_named(guard):
+    with pytest.raises(ArgumentError, match="guard"):
+        links([[0.0]], R, guard=guard)
+
+
+def test_coordination_of_a_hexagon():
+    assert coordination(7, links(hexagonal_patch(1, D), R)).tolist() == [6, 3, 3, 3, 3, 3, 3]
+    assert coordination(3, []).tolist() == [0, 0, 0]
+
+
+@pytest.mark.parametrize("sides", [3, 4, 5, 6, 7, 8])
+def test_a_wheel_has_the_charge_of_its_missing_sides(sides):
+    angle = 2.0 * np.pi * np.arange(sides) / sides
+    q = np.concatenate([[[0.0, 0.0]], np.column_stack([np.cos(angle), np.sin(angle)])])
+    spokes = [[0, k] for k in range(1, sides + 1)]
+    rim = [[k, k % sides + 1] for k in range(1, sides + 1)]
+    found = defects(q, spokes + rim)
+    assert found.interior.tolist() == [True] + sides * [False]
+    assert found.charge.tolist() == [6 - sides] + sides * [0]
+    assert found.counts == {sides: 1}
+    assert not defects(q, spokes + rim[1:]).interior.any()  # one face is open
+
+
+def test_the_rim_of_a_patch_has_no_charge():
+    q = triangular(100, D)
+    found = defects(q, links(q, R))
+    assert found.counts == {6: 64}
+    assert not found.charge.any()
+
+
+def test_a_vacancy_is_a_hole_and_its_neighbours_are_not_defects():
+    q = np.delete(hexagonal_patch(3, D), 0, axis=0)
+    found = defects(q, links(q, R))
+    assert found.counts == {6: 12}  # 37 agents: 18 at the rim, 6 at the hole, 1 gone
+    assert sorted(set(found.coordination.tolist())) == [3, 4, 5, 6]
+
+
+def test_squares_are_no_triangles():
+    q = square(5, 5, D)
+    assert not defects(q, links(q, R)).interior.any()
+
+
+def test_defects_without_links_and_in_space():
+    assert not defects([[0.0, 0.0]], []).interior.any()
+    with pytest.raises(ArgumentError, match="q has 3 columns: expected 2"):
+        defects(np.zeros((2, 3)), [])
+
+
+def test_a_triangle_that_does_not_go_around_is_not_interior():
+    """All neighbours on one side, linked in a row and across: the gap behind is more than half a turn."""
+    q = [[0.0, 0.0], [1.0, -0.8], [1.0, 0.0], [1.0, 0.8]]
+    assert not defects(q, [[0, 1], [0, 2], [0, 3], [1, 2], [2, 3], [1, 3]]).interior[0]
