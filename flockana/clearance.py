@@ -148,18 +148,12 @@ def _refine(obstacle: Obstacle, curves: FloatArray, allowance: FloatArray, best:
             break
         left, right = _halves(curves)
         middle = np.ascontiguousarray(left[:, 5])
-        gap, _, here = obstacle._project(middle, np.zeros_like(middle))
+        here, bound = _at_once(obstacle, curves, middle, tol)
+        bound -= allowance
         lowest = int(np.argmin(here))
         if here[lowest] < value:
             value, which = float(here[lowest]), int(source[lowest])
             where = float(start[lowest]) + 0.5 * width
-        hull = curves - middle[:, None, :]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            outward = -gap / here[:, None]  # the gradient of the signed distance, inside too
-        plane = np.einsum("km,kcm->kc", outward, hull).min(axis=1)
-        plane[~np.isfinite(plane) | (np.abs(here) <= tol)] = -inf  # no direction there: only the distance bounds
-        bound = here - np.linalg.norm(hull, axis=2).max(axis=1)
-        bound = np.maximum(bound, here + plane) - allowance
         # on the paths, without their allowance, an open part may still hold a point lower than any seen
         open_ = (bound < proven) & (bound + allowance < min(value, best) - tol)
         if depth == _DEPTH - 1 or np.count_nonzero(open_) > _MOST:
@@ -169,6 +163,17 @@ def _refine(obstacle: Obstacle, curves: FloatArray, allowance: FloatArray, best:
         start = np.concatenate([start[open_], start[open_] + 0.5 * width])
         source, width = np.tile(source[open_], 2), 0.5 * width
     return _Bound(proven, value, where, which)
+
+
+def _at_once(obstacle: Obstacle, curves: FloatArray, middle: FloatArray, tol: float) -> tuple[FloatArray, FloatArray]:
+    """(signed distance at a point of each curve's hull, lower bound of it over the hull), without halving."""
+    gap, _, here = obstacle._project(middle, np.zeros_like(middle))
+    hull = curves - middle[:, None, :]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        outward = -gap / here[:, None]  # the gradient of the signed distance, inside too
+    plane = np.einsum("km,kcm->kc", outward, hull).min(axis=1)
+    plane[~np.isfinite(plane) | (np.abs(here) <= tol)] = -inf  # no direction there: only the distance bounds
+    return here, here + np.maximum(plane, -np.linalg.norm(hull, axis=2).max(axis=1))
 
 
 def _halves(curves: FloatArray) -> tuple[FloatArray, FloatArray]:

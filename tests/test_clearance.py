@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from flockana.clearance import clearance, constrained_lattice
+from flockana.clearance import _at_once, _refine, clearance, constrained_lattice
 from flockana.environment.capsule import Capsule
 from flockana.environment.obstacles import Obstacle, Sphere, Wall
 from flockana.environment.polygon import Polygon
@@ -83,6 +83,29 @@ def test_the_bound_lies_below_the_true_path_and_close_to_it(seed: int) -> None:
     assert found.reached == pytest.approx(true.min(), abs=1e-4)
     here = path(np.array([found.time]))[0][0, found.agent]
     assert OBSTACLES[found.obstacle].clearance([here])[0] == pytest.approx(found.reached, abs=1e-4)
+
+
+@pytest.mark.parametrize("obstacle", OBSTACLES, ids=str)
+def test_one_tangent_plane_bounds_a_whole_curve(obstacle: Obstacle) -> None:
+    """Without halving the bound of wide curves lies below them, and is mostly better than the Lipschitz one."""
+    rng, s = np.random.default_rng(0), np.linspace(0.0, 1.0, 2001)
+    bernstein = np.array([math.comb(5, k) * s**k * (1.0 - s) ** (5 - k) for k in range(6)])
+    better = 0
+    for curve in rng.uniform(-8.0, 8.0, (200, 1, 6, 2)):
+        least = obstacle.clearance(bernstein.T @ curve[0]).min()
+        middle = (bernstein.T @ curve[0])[1000:1001]
+        here, (bound,) = _at_once(obstacle, curve, middle, 1e-9)
+        lipschitz = here[0] - np.linalg.norm(curve[0] - middle, axis=1).max()
+        assert lipschitz - 1e-9 <= bound <= least + 1e-9
+        better += bound > lipschitz + 0.1
+    assert better > 100
+
+
+def test_the_allowance_is_taken_off() -> None:
+    curve = np.linspace((-5.0, 3.0), (6.0, 3.0), 6)[None]
+    found = _refine(Wall((0.0, 0.0), (0.0, 1.0)), curve, np.array([0.25]), np.inf, 1e-9)
+    assert found.lower == pytest.approx(2.75, abs=1e-12)
+    assert found.value == pytest.approx(3.0, abs=1e-12)
 
 
 def test_no_obstacles() -> None:

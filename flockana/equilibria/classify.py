@@ -58,7 +58,7 @@ def spectrum(potential: Potential, q: FloatArray, *, zero: float = ZERO) -> Spec
     q : ndarray, shape (n, m)
         Positions, an equilibrium.
     zero : float
-        Eigenvalues this small, relative to the largest in modulus, count as zero.
+        Eigenvalues this small, relative to the largest in modulus (at least force_scale/d), count as zero.
 
     Examples
     --------
@@ -74,8 +74,30 @@ def spectrum(potential: Potential, q: FloatArray, *, zero: float = ZERO) -> Spec
     off -= (off @ rigid) @ rigid.T
     above = 1.0 + 2.0 * float(np.abs(hessian).sum(axis=1).max())  # beyond every eigenvalue: where rigid motions are put
     values = np.linalg.eigvalsh(0.5 * (off + off.T) + above * (rigid @ rigid.T))[: q.size - rigid.shape[1]]
-    small = zero * float(np.abs(values).max(initial=0.0))
+    # where all agents are out of range the largest eigenvalue is rounding itself: a pair's stiffness is the measure then
+    small = zero * max(float(np.abs(values).max(initial=0.0)), potential.force_scale / potential.law.alpha.d)
     return Spectrum(values, rigid.shape[1], int(np.sum(values < -small)), int(np.sum(np.abs(values) <= small)))
+
+
+def falling(potential: Potential, q: FloatArray) -> FloatArray | None:
+    """The direction (n, m), of unit length, in which the potential falls most steeply to second order, if it does.
+
+    Parameters
+    ----------
+    potential : Potential
+        Whose Hessian.
+    q : ndarray, shape (n, m)
+        A critical point.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> falling(Potential(Algorithm1()), np.array([[0.0], [7.0]])) is None
+    True
+    """
+    values, vectors = np.linalg.eigh(potential.stiffness(q).toarray())
+    scale = max(float(np.abs(values).max()), potential.force_scale / potential.law.alpha.d)
+    return None if values[0] >= -ZERO * scale else np.ascontiguousarray(vectors[:, 0].reshape(q.shape))
 
 
 def kind_of(found: Spectrum) -> EquilibriumKind:

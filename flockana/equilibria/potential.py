@@ -162,6 +162,20 @@ class Potential:
         return independent
 
 
+def inside_obstacle(law: FlockLaw, q: FloatArray) -> bool:
+    """Whether an agent is inside an obstacle of Algorithm 3, where ψ_β falls again and means nothing.
+
+    Parameters
+    ----------
+    law : Algorithm1, Algorithm2 or Algorithm3
+        The law.
+    q : ndarray, shape (n, m)
+        Positions.
+    """
+    obstacles = law.obstacles if isinstance(law, Algorithm3) else ()
+    return not np.isfinite(q).all() or any(bool(obstacle.contains(q).any()) for obstacle in obstacles)
+
+
 def _free_rotations(law: Algorithm3, centre: FloatArray | None) -> list[FloatArray]:
     """Skew matrices that map every obstacle's axis (its centre from q_r, its normal) to zero: they move none."""
     m = law.target.dimension

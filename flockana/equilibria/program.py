@@ -14,12 +14,14 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.checks import FloatArray
-from flockana.equilibria.potential import Potential
+from flockana.equilibria.potential import Potential, inside_obstacle
 from flockana.equilibria.terms import obstacle_term, pair_term, pull_term
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.nets import LinkArray
 
+# the box is there to keep steps short, and is seldom active at the end: a barrier of almost nothing
+_BOX = {"ipopt.mu_init": 1e-6, "ipopt.bound_push": 1e-8, "ipopt.bound_frac": 1e-8, "ipopt.bound_relax_factor": 0.0}
 _QUIET = {"print_time": False, "no_nlp_grad": True, "calc_lam_p": False, "ipopt.print_level": 0, "ipopt.sb": "yes"}
 
 
@@ -90,17 +92,26 @@ class Program:
         self._solvers: dict[tuple[float, int], Any] = {}
 
     def value(self, x: FloatArray) -> float:
-        """Objective at x.
+        """Objective at x; NaN where an agent is inside an obstacle, which makes IPOPT take a shorter step.
 
         Parameters
         ----------
         x : ndarray, shape (n m,)
             Positions over d.
         """
-        return self.potential.listed_energy(self.d * x.reshape(self.shape), self.pairs) / self.unit
+        q = self.d * x.reshape(self.shape)
+        if inside_obstacle(self.potential.law, q):
+            return float("nan")
+        return self.potential.listed_energy(q, self.pairs) / self.unit
 
     def solve(
-        self, q0: FloatArray, *, basis: FloatArray | None = None, tol: float = 1e-10, max_iter: int = 3000
+        self,
+        q0: FloatArray,
+        *,
+        basis: FloatArray | None = None,
+        reach: float = np.inf,
+        tol: float = 1e-10,
+        max_iter: int = 3000,
     ) -> tuple[FloatArray, bool, str]:
         """Minimise from q0: (positions, whether IPOPT succeeded, IPOPT's status).
 
@@ -110,19 +121,22 @@ class Program:
             Start.
         basis : ndarray, shape (n m, gauge), optional
             Gauge; the symmetries at q0 by default.
+        reach : float
+            No coordinate changes by more than this.
         tol : float
             Gradient, relative to the force scale, at which IPOPT stops.
         max_iter : int
             Most iterations.
         """
         if (tol, max_iter) not in self._solvers:
-            options = {**_QUIET, "ipopt.tol": tol, "ipopt.max_iter": max_iter, "ipopt.nlp_scaling_method": "none"}
+            options = {**_QUIET, **_BOX, "ipopt.tol": tol, "ipopt.max_iter": max_iter, "ipopt.nlp_scaling_method": "none"}
             self._solvers[tol, max_iter] = ca.nlpsol("equilibrium", "ipopt", self._program, options | self._exact)
         solver = self._solvers[tol, max_iter]
         start = q0.ravel() / self.d
         basis = self.potential.symmetries(q0) if basis is None else basis
         held = basis.T @ start
-        found = solver(x0=start, p=basis.T.ravel(), lbg=held, ubg=held)
+        box = {"lbx": start - reach / self.d, "ubx": start + reach / self.d}
+        found = solver(x0=start, p=basis.T.ravel(), lbg=held, ubg=held, **box)
         stats = solver.stats()
         q = self.d * np.array(found["x"]).reshape(self.shape)
         return q, bool(stats["success"]), str(stats["return_status"])

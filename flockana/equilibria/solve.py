@@ -4,22 +4,25 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from itertools import combinations
+from math import sqrt
 from typing import Any
 
 import numpy as np
 
 from flockana.checks import FloatArray, ensure_finite_scalar, ensure_points, ensure_positive
-from flockana.equilibria.classify import EquilibriumKind, ensure_small, kind_of, spectrum
-from flockana.equilibria.potential import FlockLaw, Potential, ensure_flock_law
+from flockana.equilibria.classify import EquilibriumKind, ensure_small, falling, kind_of, spectrum
+from flockana.equilibria.potential import FlockLaw, Potential, ensure_flock_law, inside_obstacle
 from flockana.equilibria.program import Program
 from flockana.errors import SolverError, UnknownNameError
 from flockana.nets import LinkArray, links
 
 METHODS = ("minimise", "root")
 RESIDUAL = 1e-9  # of the force scale: what counts as an equilibrium
-_ALL_PAIRS = 48  # up to here every pair is listed, and nothing need be checked again
-_MARGIN = 0.5  # of d, beyond the range, for the listed pairs
-_ROUNDS = 30
+_ALL_PAIRS = 48  # up to here every pair is listed, and the program is used again
+_MARGIN = 1.0  # of d, beyond the range, for the listed pairs; agents move by half of it before the next list
+_ROUNDS = 200
+_INSIDE = 0.999  # of the box: what ends nearer to its faces goes on
+_ESCAPES, _SMALL, _NUDGE = 3, 400, 1e-2  # from saddles: how often, up to which n m, by how much of d
 _POLISH = 8
 _REACH = 1e-3  # of d: a polish that goes farther than that has left the point it should refine
 
@@ -115,7 +118,7 @@ def find_equilibrium(
     t : float
         When, for a γ-agent that moves.
     margin : float
-        Pairs are listed up to r + margin d, and listed anew if others have come into range.
+        Pairs are listed up to r + margin d; agents move by at most margin d/2 before they are listed anew.
     max_iter : int
         Most iterations of a solve.
     strict : bool
@@ -183,8 +186,11 @@ def finish(potential: Potential, q: FloatArray, done: bool, message: str, *, str
     if potential.target is not None and not _fixed_in_space(potential):  # under Algorithm 2 the target holds the centre
         q = q + (potential.target - q.mean(axis=0))
     residual = potential.residual(q)
-    success = done and residual <= RESIDUAL
-    if done and not success:
+    blocked = inside_obstacle(potential.law, q)
+    success = done and residual <= RESIDUAL and not blocked
+    if blocked:
+        message = f"{message}, but with an agent inside an obstacle"
+    elif done and not success:
         message = f"{message}, yet the residual force is {residual:.2g} of c1α b/√ε, more than {RESIDUAL:g}"
     if strict and not success:
         raise SolverError(
@@ -233,26 +239,30 @@ def all_pairs(n: int) -> LinkArray:
 
 
 def _minimise(potential: Potential, q: FloatArray, margin: float, max_iter: int) -> tuple[FloatArray, bool, str]:
-    """Solve over the pairs near the start; as long as others have come into range, list anew and go on from there."""
-    n, reach = len(q), potential.law.alpha.r
+    """Solve in a box about the start, then about what was found, until the box does not matter.
+
+    The box is so small that no pair outside the list can come within range, and IPOPT's long steps along soft
+    directions cannot scatter the flock. A point from which V falls is left along its most negative direction.
+    """
+    (n, m), escapes = q.shape, 0
+    program: Program | None = None
     for _ in range(_ROUNDS):
         basis = potential.symmetries(q)
         if basis.shape[1] == q.size:
             return q, True, "nothing to solve: every motion is a rigid one"
-        listed = all_pairs(n) if n <= _ALL_PAIRS else links(q, reach + margin)
-        program = Program(potential, (n, q.shape[1]), listed, basis.shape[1])
-        q, done, status = program.solve(q, basis=basis, max_iter=max_iter)
+        if program is None or n > _ALL_PAIRS or program.gauge != basis.shape[1]:
+            listed = all_pairs(n) if n <= _ALL_PAIRS else links(q, potential.law.alpha.r + margin)
+            program = Program(potential, (n, m), listed, basis.shape[1])
+        reach, start = margin / (2.0 * sqrt(m)), q
+        q, done, status = program.solve(q, basis=basis, reach=reach, max_iter=max_iter)
         if not (done and np.isfinite(q).all()):
             return q, False, status
-        if n <= _ALL_PAIRS or _listed(links(q, reach), listed, n):
+        if np.abs(q - start).max() > _INSIDE * reach:
+            continue
+        if escapes == _ESCAPES or q.size > _SMALL or (downhill := falling(potential, q)) is None:
             return q, True, status
-    return q, False, f"pairs outside the list came into range in each of {_ROUNDS} solves"
-
-
-def _listed(near: LinkArray, listed: LinkArray, n: int) -> bool:
-    """Whether every pair in range is on the list."""
-    keys = (pairs[:, 0].astype(np.int64) * n + pairs[:, 1] for pairs in (near, listed))
-    return bool(np.isin(*keys).all())
+        escapes, q = escapes + 1, q + _NUDGE * potential.law.alpha.d * downhill
+    return q, False, f"still on the way after {_ROUNDS} boxes of {margin / sqrt(m):.3g}"
 
 
 def _root(potential: Potential, q: FloatArray, margin: float, max_iter: int) -> tuple[FloatArray, bool, str]:

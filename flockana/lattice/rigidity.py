@@ -14,6 +14,7 @@ from flockana.lattice.crossings import ensure_links
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
+_ZERO_PIVOT = "the sparse elimination met a zero pivot: use another tol, or dense=True"
 DENSE_MAX = 800  # coordinates up to which singular values take less than a second
 
 
@@ -103,7 +104,7 @@ def rigidity(q: Any, links: Any, *, tol: float = 1e-5, dense: bool | None = None
     Raises
     ------
     SolverError
-        If the sparse factorisation had to reorder rows, so that its pivots do not tell the inertia.
+        If the sparse elimination met a zero pivot, so that its pivots do not tell the inertia.
 
     Examples
     --------
@@ -134,7 +135,7 @@ def rigid_motion_count(q: FloatArray) -> int:
     >>> rigid_motion_count(np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])), rigid_motion_count(np.eye(3))
     (5, 6)
     """
-    m = q.shape[1]
+    m = int(q.shape[1])
     sizes = np.linalg.svd(q - q.mean(axis=0), compute_uv=False)
     flat = m - int(np.sum(sizes > 1e-9 * max(sizes[0], np.abs(q).max(initial=0.0) * 1e-6)))
     return m + m * (m - 1) // 2 - flat * (flat - 1) // 2
@@ -149,10 +150,10 @@ def _by_singular_values(matrix: csr_array, tol: float) -> tuple[int, int]:
 
 
 def _by_inertia(matrix: csr_array, tol: float) -> tuple[int, int]:
-    if matrix.shape[0] == 0:
-        return matrix.shape[1], 0
     gram = (matrix.T @ matrix).tocsc()
     largest = float(abs(gram).sum(axis=0).max())  # at least σ_max², on a lattice at most about twice that
+    if largest == 0.0:
+        return matrix.shape[1], 0
     zero, more = (_eigenvalues_below(gram, (factor * tol) ** 2 * largest) for factor in (1.0, 10.0))
     return zero, more - zero
 
@@ -163,8 +164,11 @@ def _eigenvalues_below(gram: Any, shift: float) -> int:
     from scipy.sparse.linalg import splu
 
     shifted = (gram - shift * eye_array(gram.shape[0])).tocsc()
-    factor = splu(shifted, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    pivots: Any = factor.U.diagonal()
+    try:
+        factor = splu(shifted, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    except RuntimeError:
+        raise SolverError(_ZERO_PIVOT) from None
     if not np.array_equal(factor.perm_r, factor.perm_c):
-        raise SolverError("the sparse elimination met a zero pivot: use another tol, or dense=True")
+        raise SolverError(_ZERO_PIVOT)
+    pivots: Any = factor.U.diagonal()
     return int(np.sum(pivots < 0.0))

@@ -2,13 +2,8 @@
 
 from __future__ import annotations
 
-from math import sqrt
-
-import numpy as np
-
-from flockana.environment.targets import StaticTarget
+from flockana.equilibria.collapse import nudged, squeezed, threshold
 from flockana.gradient_flow import gradient_flow
-from flockana.interactions import Gains
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.terminal import terminal_state
@@ -19,11 +14,10 @@ from flockana.trajectory import Trajectory
 _RINGS = (1, 2, 3)  # hexagons of 7, 19 and 37 agents
 _LOWEST, _FACTOR = 0.1, 1.3  # where the search starts, and its steps
 _HALVINGS = 3
-_NUDGE = 1e-4  # of d
 
 
 def collapses(law: Algorithm2, rings: int, ratio: float) -> bool:
-    """Whether a hexagonal patch, slightly disturbed, relaxes to coincident agents at this c1γ/c1α.
+    """Whether a hexagonal patch, slightly disturbed, flows to coincident agents at this c1γ/c1α.
 
     Parameters
     ----------
@@ -34,18 +28,13 @@ def collapses(law: Algorithm2, rings: int, ratio: float) -> bool:
     ratio : float
         c1γ/c1α.
     """
-    start = hexagonal_patch(rings, law.alpha.d)
-    # a perfect hexagon would be squeezed along its symmetry, past the ratio at which it is no minimum any more
-    start = start + _NUDGE * law.alpha.d * np.random.default_rng(0).standard_normal(start.shape)
-    squeezed = Algorithm2(law.alpha, Gains(c1_alpha=1.0, c1_gamma=ratio), StaticTarget((0.0, 0.0)))
-    limit = gradient_flow(squeezed, start)
-    return terminal_state(squeezed, limit.q, 0.0 * limit.q).coincident > 0
+    pressed = squeezed(law.alpha, ratio)
+    limit = gradient_flow(pressed, nudged(hexagonal_patch(rings, law.alpha.d), law.alpha.d))
+    return terminal_state(pressed, limit.q, 0.0 * limit.q).coincident > 0
 
 
 def collapse_threshold(law: Algorithm2, rings: int) -> tuple[float, float]:
-    """Bracket the least ratio c1γ/c1α at which a hexagonal patch collapses.
-
-    The ratio is raised until it does, then bisected: far above the threshold agents may rest apart again.
+    """Bracket the least ratio c1γ/c1α at which the gradient flow of a hexagonal patch collapses.
 
     Parameters
     ----------
@@ -59,14 +48,7 @@ def collapse_threshold(law: Algorithm2, rings: int) -> tuple[float, float]:
     tuple of float
         (largest ratio seen safe, least ratio seen to collapse).
     """
-    high = _LOWEST
-    while not collapses(law, rings, high):
-        high *= _FACTOR
-    low = high / _FACTOR
-    for _ in range(_HALVINGS):
-        middle = sqrt(low * high)
-        low, high = (low, middle) if collapses(law, rings, middle) else (middle, high)
-    return low, high
+    return threshold(lambda ratio: collapses(law, rings, ratio), lowest=_LOWEST, factor=_FACTOR, halvings=_HALVINGS)
 
 
 def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:

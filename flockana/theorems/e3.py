@@ -8,6 +8,8 @@ import numpy as np
 
 from flockana.checks import FloatArray
 from flockana.environment.targets import StaticTarget
+from flockana.equilibria.coincidence import least_with_coincidence
+from flockana.equilibria.record import smallest_strained
 from flockana.gradient_flow import gradient_flow
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
@@ -124,6 +126,24 @@ def _strained(law: Algorithm1, tolerances: Tolerances) -> Claim:
     )
 
 
+def _smallest(tolerances: Tolerances) -> Claim:
+    """The smallest strained minimum of distinct agents that our searches found, verified anew from its file."""
+    found = smallest_strained()
+    trapped = found.kind == "minimum" and found.curvature > tolerances.curvature
+    return Claim(
+        "smallest",
+        "refuted" if trapped and found.strain() > tolerances.lattice else "inconclusive",
+        computed={"strain": found.strain(), "curvature": found.curvature, "agents": len(found.q)},
+        stated="every strict local minimum of V with distinct agents is an α-lattice",
+        margin=-found.curvature,
+        error=tolerances.curvature,
+        witness=found.q,
+        detail=f"{len(found.q)} distinct agents in a connected strict minimum with {len(found.links)} links, off d by up "
+        f"to {100.0 * found.strain():.2g} %; least curvature {found.curvature:.3g} of the largest. With coincident agents "
+        f"it takes {least_with_coincidence(found.law.alpha)} at least",
+    )
+
+
 def _compressed(tolerances: Tolerances) -> Claim:
     """Algorithm 2: λJ presses on every link."""
     law = Algorithm2(target=StaticTarget((0.0, 0.0)))
@@ -146,6 +166,7 @@ def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
     return [], [
         _shares(law, tolerances),
         _double_agent(law, tolerances),
+        _smallest(tolerances),
         _strained(law, tolerances),
         _compressed(tolerances),
     ]
@@ -167,6 +188,7 @@ THEOREM = Theorem(
     expected={
         "E3": "refuted",
         "E3:double-agent": "refuted",
+        "E3:smallest": "refuted",
         "E3:strained": "refuted",
         "E3:algorithm-2": "refuted",
     },

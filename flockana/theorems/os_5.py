@@ -30,7 +30,17 @@ from flockana.nets import LinkArray, link_lengths
 from flockana.theorems.theorem import Claim, Hypothesis, HypothesisStatus, Theorem, Tolerances, judge
 from flockana.trajectory import Trajectory
 
-CLAIMS = ("i", "i-graph", "ii", "ii-sharp", "iii", "extension", "extension-links", "extension-quantitative")
+CLAIMS = (
+    "i",
+    "i-graph",
+    "ii",
+    "ii-sharp",
+    "iii",
+    "extension",
+    "extension-lengths",
+    "extension-links",
+    "extension-quantitative",
+)
 _LISTED = 1000  # crossings that are listed at most
 _SHOWN = 10  # and shown as witness
 _WITNESS_LIMIT = 20_000  # links of which a Kuratowski subgraph is still found in about a minute
@@ -75,11 +85,11 @@ def _dimension(name: str, holds: bool, net: _Net) -> Hypothesis:
     return Hypothesis(name, "met" if holds else "unmet", detail=f"m = {net.m}, n = {net.n}")
 
 
-def _far_apart(net: _Net) -> Hypothesis:
-    margin = net.closest - net.r / sqrt(2.0)
+def _far_apart(net: _Net, length: float, name: str) -> Hypothesis:
+    margin = net.closest - length / sqrt(2.0)
     met = margin > _ROUNDING * net.r  # what a rounding decides is not taken for met
-    text = f"shortest distance {net.closest:.6g}, r/√2 = {net.r / sqrt(2.0):.6g}"
-    return Hypothesis("all pairs are farther apart than r/√2", "met" if met else "unmet", margin, text)
+    text = f"shortest distance {net.closest:.6g} against {length / sqrt(2.0):.6g}"
+    return Hypothesis(f"all pairs are farther apart than {name}", "met" if met else "unmet", margin, text)
 
 
 def _uncrossed(net: _Net, needs: list[Hypothesis], name: str, text: str) -> Claim:
@@ -180,7 +190,7 @@ def _quantitative(net: _Net) -> Claim:
         margin=found[worst][1],
         error=0.0,
         witness=net.agents(net.crossings[worst]),
-        detail=f"{net.crossing_text}; the nearest pair of each is within ℓ/√2 by {found[worst][1] / net.d:.3g} d or more",
+        detail=f"{net.crossing_text}; the nearest pairs are within ℓ/√2 by {found[worst][1] / net.d:.3g} d or more",
     )
 
 
@@ -211,16 +221,19 @@ def check(q: FloatArray, d: float, r: float, tolerances: Tolerances) -> tuple[li
     lattice = _lattice_hypotheses(net, tolerances)
     wide = _dimension("m = 2 or 3", net.m > 1, net)
     plane, many = _dimension("m = 2", net.m == 2, net), _dimension("n >= 3", net.n >= 3, net)
-    more, far = _dimension("n > m + 1", net.n > net.m + 1, net), _far_apart(net)
+    more, far = _dimension("n > m + 1", net.n > net.m + 1, net), _far_apart(net, net.r, "r/√2")
+    longest = float(net.lengths.max(initial=0.0))
+    loose = _far_apart(net, longest, "ℓ/√2, ℓ the longest link")
     printed = 3 * net.n - 6
-    return [*lattice, wide, plane, many, more, far], [
+    return [*lattice, wide, plane, many, more, far, loose], [
         _uncrossed(net, [*lattice, wide], "i", "edges of an α-lattice do not cross"),
         _graph(net, [*lattice, wide]),
         _bound(net, [*lattice, plane, many], "ii", printed, "3n - 6"),
         _bound(net, [*lattice, plane], "ii-sharp", harborth(net.n), "floor(3n - sqrt(12n - 3))"),
         _incomplete(net, [*lattice, more]),
         _uncrossed(net, [far], "extension", "links of pairs farther apart than r/√2 do not cross"),
-        _bound(net, [far, plane, many], "extension-links", printed, "3n - 6"),
+        _uncrossed(net, [loose], "extension-lengths", "links of pairs farther apart than ℓ/√2 do not cross"),
+        _bound(net, [loose, plane, many], "extension-links", printed, "3n - 6"),
         _quantitative(net),
     ]
 
@@ -238,7 +251,8 @@ _STATEMENT = (
     "Of an α-lattice of scale d and ratio κ > 1 with distinct positions: (i) no two edges cross, for m = 2 and 3 (and, "
     "as printed, the graph is planar: true of m = 2, false of m = 3, erratum E5); (ii) for m = 2 and n >= 3 there are "
     "at most 3n - 6 links, and sharply ⌊3n - √(12n - 3)⌋ (Harborth); (iii) with n > m + 1 agents it is not complete. "
-    "Extension to every net: if all pairs are farther apart than r/√2, no two links cross; if two links of lengths at "
+    "Extension to every net: if all pairs are farther apart than r/√2 (or only ℓ/√2, ℓ the longest link), no two "
+    "links cross, and in the plane there are at most 3n - 6; if two links of lengths at "
     "most ℓ cross, some two of their agents are within ℓ/√2 of each other. "
     f"Distances within {GUARD:g} r of r count as r."
 )

@@ -25,7 +25,7 @@ def _run(target: Target, obstacles: Any = OBSTACLES, span: float = 6.0, **gains:
     rng = np.random.default_rng(5)
     q = rng.uniform((-25.0, -12.0), (0.0, 12.0), (12, 2))
     law = Algorithm3(target=target, obstacles=obstacles, gains=Gains(**gains))
-    return simulate(law, q, rng.normal(size=q.shape), (0.0, span))
+    return simulate(law, q, rng.normal(size=q.shape), (0.0, span), rtol=1e-9)  # the β-taper is steep
 
 
 def _hypothesis(verdict: Any, part: str) -> Any:
@@ -53,7 +53,7 @@ def test_a_static_gamma_agent_verifies(static: Trajectory) -> None:
 
 def test_t0_is_the_first_sample_after_which_the_condition_stays() -> None:
     """p_d ≠ 0 at a fixed q_r, towards it: (76) holds once the flock is faster than p_d, as pulled it becomes."""
-    law = Algorithm3(target=StaticTarget((300.0, 0.0), (2.0, 0.0)), obstacles=OBSTACLES)
+    law = Algorithm3(target=StaticTarget((300.0, 0.0), (2.0, 0.0)), obstacles=(Wall((0.0, -14.0), (0.0, 1.0)),))
     run = simulate(law, [[-9.0, 0.0], [-9.0, 7.0]], [[1.0, 0.0], [1.0, 0.0]], (0.0, 6.0))
     slack, verdict = condition_76(run), verify("os-6", run)
     dense = [0.5 * np.sum(p * p) - 0.5 * len(p) * p.mean(axis=0) @ [2.0, 0.0] for p in run.p]

@@ -1,0 +1,48 @@
+"""How many agents a strict minimum of V needs at least if some of them stand at one place."""
+
+from __future__ import annotations
+
+from math import ceil
+
+import numpy as np
+
+from flockana.checks import FloatArray
+from flockana.interactions import AlphaInteraction
+from flockana.symbolic.pair import ensure_dimension
+
+
+def _trace(alpha: AlphaInteraction, lengths: FloatArray, m: int) -> FloatArray:
+    """Trace over R^m of the Hessian block of a pair at each length: φ_α' σ' ² along it, the stress m times."""
+    z, root = alpha.sigma_norm(lengths), np.sqrt(1.0 + alpha.eps * lengths**2)
+    phi, slope = alpha.phi_alpha(z), alpha.phi_alpha_slope(z)
+    trace: FloatArray = slope * (lengths / root) ** 2 + phi / root**3 + (m - 1) * phi / root
+    return trace
+
+
+def least_with_coincidence(alpha: AlphaInteraction, m: int = 2) -> int:
+    """No configuration of fewer agents, some of them coincident, is a local minimum of V.
+
+    Of c agents at one place the motions against each other feel c φ_α(0) I from within, negative, and one block per
+    agent elsewhere. These blocks must outweigh it in every direction, hence in the trace: k > m c |φ_α(0)|/max tr.
+
+    Parameters
+    ----------
+    alpha : AlphaInteraction
+        The pair law.
+    m : int
+        Dimension.
+
+    Examples
+    --------
+    >>> [least_with_coincidence(AlphaInteraction(), m) for m in (1, 2, 3)]
+    [4, 5, 6]
+    """
+    from scipy.optimize import minimize_scalar
+
+    m, repulsion = ensure_dimension(m), -float(alpha.phi_alpha(0.0))
+    lengths = np.linspace(0.0, alpha.r, 4001)
+    top = int(np.argmax(_trace(alpha, lengths, m)))
+    window = lengths[max(top - 1, 0)], lengths[min(top + 1, lengths.size - 1)]
+    best = minimize_scalar(lambda s: -float(_trace(alpha, np.array([s]), m)[0]), bounds=window, method="bounded")
+    most = -float(best.fun)
+    return 2 + max(1, ceil(2.0 * m * repulsion / most))  # c = 2 needs the fewest others; at d the trace is positive

@@ -1,0 +1,226 @@
+"""Erratum E11 from equilibria: minima of U_λ as λ/c1α grows, their shortest link, and where agents begin to coincide."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from math import sqrt
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.checks import FloatArray, ensure_positive
+from flockana.environment.targets import StaticTarget
+from flockana.equilibria.solve import Equilibrium, find_equilibrium
+from flockana.errors import ArgumentError, SolverError
+from flockana.interactions import AlphaInteraction, Gains
+from flockana.lattice import ensure_count, hexagonal_spiral
+from flockana.laws.olfati_saber import Algorithm2
+from flockana.metrics import coincident_pairs, min_distance
+
+CONTACT = 1e-6  # of d: closer than this two agents coincide
+_LOWEST, _FACTOR = 0.01, 1.5  # where the search for the threshold starts, and its steps
+_HIGHEST = 1e3
+_NUDGE = 1e-4  # of d: a symmetric start would be squeezed along its symmetry, past where it is a minimum
+
+
+@dataclass(frozen=True)
+class CollapseDiagram:
+    """Minima of U_λ that a lattice relaxes to, against its size and the ratio λ/c1α = c1γ/c1α.
+
+    Parameters
+    ----------
+    sizes : int array, shape (N,)
+        Numbers of agents.
+    ratios : ndarray, shape (L,)
+        c1γ/c1α.
+    closest : ndarray, shape (N, L)
+        Least distance between two agents over d, 0 once some coincide; NaN where the solver failed.
+    coincident : int array, shape (N, L)
+        Pairs at one place, −1 where the solver failed.
+    kinds : tuple of tuple of str
+        Kind of each equilibrium, ``"failed"`` where there is none.
+    """
+
+    sizes: npt.NDArray[np.int64]
+    ratios: FloatArray
+    closest: FloatArray
+    coincident: npt.NDArray[np.int64]
+    kinds: tuple[tuple[str, ...], ...]
+
+    def onset(self) -> FloatArray:
+        """Least ratio of the diagram at which agents coincide, for each size; NaN where they never do."""
+        return np.array([self.ratios[row > 0][0] if (row > 0).any() else np.nan for row in self.coincident])
+
+
+def squeezed(alpha: AlphaInteraction, ratio: float, m: int = 2) -> Algorithm2:
+    """Algorithm 2 with c1α = 1 and c1γ = ratio, its γ-agent at rest at the origin.
+
+    Parameters
+    ----------
+    alpha : AlphaInteraction
+        The pair law.
+    ratio : float
+        c1γ/c1α.
+    m : int
+        Dimension.
+
+    Examples
+    --------
+    >>> squeezed(AlphaInteraction(), 0.5).gains.c1_gamma
+    0.5
+    """
+    return Algorithm2(alpha, Gains(c1_alpha=1.0, c1_gamma=ensure_positive("ratio", ratio)), StaticTarget((0.0,) * m))
+
+
+def nudged(q: FloatArray, d: float) -> FloatArray:
+    """A configuration disturbed by 1e-4 d, always in the same way, so that no symmetry holds it up.
+
+    Parameters
+    ----------
+    q : ndarray, shape (n, m)
+        Positions.
+    d : float
+        Distance between neighbours.
+
+    Examples
+    --------
+    >>> bool(0.0 < np.abs(nudged(np.zeros((3, 2)), 7.0)).max() < 7e-3)
+    True
+    """
+    disturbed: FloatArray = q + _NUDGE * d * np.random.default_rng(0).standard_normal(q.shape)
+    return disturbed
+
+
+def relaxed(alpha: AlphaInteraction, n: int, ratio: float) -> Equilibrium:
+    """The minimum of U_λ that IPOPT finds from a hexagonal spiral of n agents, slightly disturbed.
+
+    Parameters
+    ----------
+    alpha : AlphaInteraction
+        The pair law.
+    n : int
+        Number of agents.
+    ratio : float
+        c1γ/c1α.
+
+    Examples
+    --------
+    >>> relaxed(AlphaInteraction(), 7, 0.1).strain() < 0.05
+    True
+    """
+    return find_equilibrium(squeezed(alpha, ratio), nudged(hexagonal_spiral(n, alpha.d), alpha.d))
+
+
+def collapse_diagram(
+    alpha: AlphaInteraction, sizes: Sequence[int], ratios: Sequence[float]
+) -> CollapseDiagram:
+    """Shortest distance and coincident pairs of the minima of U_λ over sizes and ratios.
+
+    Parameters
+    ----------
+    alpha : AlphaInteraction
+        The pair law.
+    sizes : sequence of int
+        Numbers of agents.
+    ratios : sequence of float
+        c1γ/c1α, rising.
+
+    Raises
+    ------
+    ArgumentError
+        If the ratios do not rise.
+
+    Examples
+    --------
+    >>> diagram = collapse_diagram(AlphaInteraction(), [7], [0.1, 8.0])
+    >>> diagram.coincident[0, 0], diagram.onset().tolist()
+    (np.int64(0), [8.0])
+    """
+    counts, rising = [ensure_count("sizes", n) for n in sizes], np.array([ensure_positive("ratios", x) for x in ratios])
+    if np.any(np.diff(rising) <= 0.0):
+        raise ArgumentError(f"ratios = {list(ratios)}: expected rising numbers")
+    shape = (len(counts), rising.size)
+    closest, coincident, kinds = np.full(shape, np.nan), np.full(shape, -1), []
+    for k, n in enumerate(counts):
+        row = []
+        for l, ratio in enumerate(rising):
+            try:
+                found = relaxed(alpha, n, float(ratio))
+            except SolverError:
+                row.append("failed")
+                continue
+            coincident[k, l] = coincident_pairs(found.q, CONTACT * alpha.d)
+            closest[k, l] = 0.0 if coincident[k, l] else min_distance(found.q) / alpha.d
+            row.append(found.kind)
+        kinds.append(tuple(row))
+    return CollapseDiagram(np.array(counts), rising, closest, coincident, tuple(kinds))
+
+
+def threshold(
+    collapses: Callable[[float], bool], *, lowest: float = _LOWEST, factor: float = _FACTOR, halvings: int = 4
+) -> tuple[float, float]:
+    """Bracket the least ratio at which something collapses: raised until it does, then bisected.
+
+    From below, since far above the threshold agents may rest apart again.
+
+    Parameters
+    ----------
+    collapses : callable
+        ratio -> bool; such as a relaxation by IPOPT, or the dynamics.
+    lowest : float
+        First ratio.
+    factor : float
+        Step of the rise, > 1.
+    halvings : int
+        Bisections.
+
+    Returns
+    -------
+    tuple of float
+        (largest ratio seen safe, least ratio seen to collapse).
+
+    Raises
+    ------
+    SolverError
+        If nothing collapses up to a ratio of 1000.
+
+    Examples
+    --------
+    >>> low, high = threshold(lambda ratio: ratio > 1.0, halvings=10)
+    >>> low <= 1.0 < high < 1.001
+    True
+    """
+    high = lowest
+    while not collapses(high):
+        high *= factor
+        if high > _HIGHEST:
+            raise SolverError(f"no collapse at ratios up to {high:.3g}: expected one below {_HIGHEST:g}")
+    low = high / factor
+    for _ in range(halvings):
+        middle = sqrt(low * high)
+        low, high = (low, middle) if collapses(middle) else (middle, high)
+    return low, high
+
+
+def collapse_threshold(alpha: AlphaInteraction, n: int, *, halvings: int = 4) -> tuple[float, float]:
+    """Bracket the ratio c1γ/c1α from which on the relaxed spiral of n agents holds coincident pairs.
+
+    Parameters
+    ----------
+    alpha : AlphaInteraction
+        The pair law.
+    n : int
+        Number of agents.
+    halvings : int
+        Bisections.
+
+    Examples
+    --------
+    >>> low, high = collapse_threshold(AlphaInteraction(), 7, halvings=2)
+    >>> 1.0 < low < high < 8.0
+    True
+    """
+    return threshold(
+        lambda ratio: coincident_pairs(relaxed(alpha, n, ratio).q, CONTACT * alpha.d) > 0, halvings=halvings
+    )

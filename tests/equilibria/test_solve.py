@@ -1,0 +1,198 @@
+"""Equilibria against force balances solved by hand, known indices, and the ways to fail."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from flockana.environment.obstacles import Sphere, Wall
+from flockana.environment.targets import LinearTarget, StaticTarget
+from flockana.equilibria import find_equilibrium
+from flockana.equilibria import solve as solve_module
+from flockana.equilibria.classify import Spectrum, kind_of, spectrum
+from flockana.equilibria.potential import Potential
+from flockana.equilibria.program import Program
+from flockana.equilibria.solve import all_pairs, finish
+from flockana.errors import ArgumentError, SolverError, UnknownNameError
+from flockana.interactions import AlphaInteraction, Gains
+from flockana.lattice import harborth, hexagonal_patch, hexagonal_spiral
+from flockana.laws.algorithm3 import Algorithm3
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+
+ALPHA = AlphaInteraction()
+
+
+def stress(s: float) -> float:
+    """φ_α(‖s‖_σ)/√(1 + εs²), from the scalar functions."""
+    return float(ALPHA.phi_alpha(ALPHA.sigma_norm(s))) / np.sqrt(1.0 + ALPHA.eps * s * s)
+
+
+def test_two_agents_under_algorithm_2_sit_where_the_pull_balances_the_push():
+    gains = Gains()
+    law = Algorithm2(target=StaticTarget((3.0, -1.0)))
+    found = find_equilibrium(law, [[0.0, 0.0], [6.0, 1.0]])
+    # each agent is s/2 from the γ-agent: c1α w(s) s + c1γ s/2 = 0
+    spacing = brentq(lambda s: gains.c1_alpha * stress(s) + 0.5 * gains.c1_gamma, 6.0, 7.0, xtol=1e-13)
+    assert np.linalg.norm(found.q[1] - found.q[0]) == pytest.approx(spacing, abs=1e-9)
+    np.testing.assert_allclose(found.q.mean(axis=0), [3.0, -1.0], atol=1e-12)
+    assert (found.kind, found.rigid_modes, found.zero_modes, found.success) == ("minimum", 3, 0, True)
+    assert np.abs(law.acceleration(0.0, found.q, np.zeros((2, 2)))).max() < 1e-9 * 474.0
+    expected = 30.0 * ALPHA.psi_alpha(ALPHA.sigma_norm(spacing)) + 1.1 * 0.25 * spacing**2
+    assert found.energy == pytest.approx(expected, rel=1e-12)
+
+
+def test_the_compressed_hexagon_has_the_spacing_of_its_force_balance():
+    law = Algorithm2(target=StaticTarget((0.0, 0.0)))
+    start = hexagonal_patch(1, 7.0) + 0.3 * np.random.default_rng(0).standard_normal((7, 2))
+    found = find_equilibrium(law, start)
+    spacing = brentq(lambda s: 60.0 * stress(s) + 1.1, 6.5, 7.0, xtol=1e-13)
+    assert found.strain() == pytest.approx(1.0 - spacing / 7.0, rel=1e-8)
+    assert (found.kind, len(found.links)) == ("minimum", 12)
+
+
+def test_two_agents_at_one_place_are_a_maximum_on_a_line_and_in_the_plane():
+    for m in (1, 2):
+        found = find_equilibrium(Algorithm1(), np.zeros((2, m)), method="root")
+        assert (found.kind, found.index, found.rigid_modes) == ("maximum", m, m)
+        np.testing.assert_allclose(found.hessian_eigenvalues, 60.0 * ALPHA.phi_alpha(0.0), rtol=1e-12)
+
+
+def test_a_doubled_end_of_a_link_is_a_saddle_of_index_one_and_a_doubled_corner_of_a_triangle_too():
+    """The coincident pair splits along φ_α(0) < 0, which a link stiffens by ψ'' = φ' s²/(1 + εs²) along itself."""
+    stiff = float(ALPHA.phi_alpha_slope(ALPHA.d_alpha)) * 49.0 / 5.9
+    split = 2.0 * float(ALPHA.phi_alpha(0.0))
+    found = find_equilibrium(Algorithm1(), [[0.0], [0.0], [7.0]], method="root")
+    assert (found.kind, found.index) == ("saddle", 1)
+    assert found.hessian_eigenvalues[0] == pytest.approx(30.0 * (split + stiff), rel=1e-9)
+    triangle = hexagonal_spiral(3, 7.0)
+    found = find_equilibrium(Algorithm1(), np.vstack([triangle, triangle[:1]]), method="root")
+    assert (found.kind, found.index) == ("saddle", 1 + (split + 1.5 * stiff < 0.0))
+    assert found.hessian_eigenvalues[0] == pytest.approx(30.0 * (split + 0.5 * stiff), rel=1e-9)
+
+
+def test_a_perturbed_saddle_is_found_by_the_root_finder():
+    start = np.array([[0.02, 0.01], [-0.01, 0.0], [7.1, 0.02]])
+    found = find_equilibrium(Algorithm1(), start, method="root")
+    assert found.kind == "saddle"
+    assert found.residual < 1e-12
+    assert np.linalg.norm(found.q[0] - found.q[1]) < 1e-9
+
+
+@pytest.mark.parametrize(("m", "rigid"), [(1, 1), (2, 3), (3, 6)])
+def test_a_simplex_is_a_minimum_in_every_dimension(m, rigid):
+    found = find_equilibrium(Algorithm1(), 5.5 * np.vstack([np.zeros(m), np.eye(m)]))
+    assert (found.kind, found.rigid_modes, found.strain()) == ("minimum", rigid, 0.0)
+    assert len(found.links) == m * (m + 1) // 2
+
+
+def test_a_hinge_and_a_drifting_component_are_soft_modes_and_not_rigid_ones():
+    chain = find_equilibrium(Algorithm1(), [[-7.2, 0.1], [0.0, 0.0], [6.9, 0.0]])
+    assert (chain.kind, chain.rigid_modes, chain.zero_modes) == ("degenerate", 3, 1)
+    apart = find_equilibrium(Algorithm1(), [[0.0, 0.0], [7.1, 0.0], [50.0, 0.0]])
+    assert (apart.kind, apart.zero_modes) == ("degenerate", 2)
+    nothing = find_equilibrium(Algorithm1(), [[0.0, 0.0], [20.0, 0.0], [50.0, 9.0]])
+    assert (nothing.kind, nothing.zero_modes, len(nothing.links)) == ("degenerate", 3, 0)
+
+
+def test_kind_by_the_spectrum():
+    def kind(values, index, zero):
+        return kind_of(Spectrum(np.array(values), 3, index, zero))
+
+    assert kind([-1.0, 0.0, 2.0], 1, 1) == "saddle"
+    assert kind([-2.0, -1.0], 2, 0) == "maximum"
+    assert kind([0.0, 1.0], 0, 1) == "degenerate"
+    assert kind([0.5, 1.0], 0, 0) == "minimum"
+
+
+def test_the_spectrum_leaves_out_the_rigid_motions_and_nothing_else():
+    q = hexagonal_patch(1, 7.0)
+    found = spectrum(Potential(Algorithm1()), q)
+    full = np.linalg.eigvalsh(Algorithm1().stiffness(q).toarray())
+    assert np.abs(full[:3]).max() < 1e-10
+    np.testing.assert_allclose(found.eigenvalues, full[3:], rtol=1e-9)
+
+
+def test_an_agent_between_a_wall_and_the_target_rests_where_the_forces_cancel():
+    law = Algorithm3(target=StaticTarget((0.0, -5.0)), obstacles=(Wall((0.0, 0.0), (0.0, 1.0)),))
+    found = find_equilibrium(law, [[0.3, 2.0]])
+
+    def balance(y: float) -> float:
+        z = law.beta.d_beta if y >= 4.2 else (np.sqrt(1.0 + 0.1 * y * y) - 1.0) / 0.1
+        push = -1500.0 * float(law.beta.phi_beta(z)) * y / np.sqrt(1.0 + 0.1 * y * y)
+        return push - 1.1 * (y + 5.0) / np.sqrt(1.0 + (y + 5.0) ** 2)
+
+    height = brentq(balance, 1.0, 4.2, xtol=1e-14)
+    np.testing.assert_allclose(found.q, [[0.0, height]], atol=1e-9)
+    assert (found.kind, found.rigid_modes) == ("minimum", 0)
+
+
+def test_what_algorithm_3_leaves_free_is_the_rotation_that_moves_no_obstacle():
+    q = np.random.default_rng(0).uniform(5.0, 9.0, (4, 3))
+    target, on_axis = StaticTarget((0.0, 0.0, 0.0)), Sphere((0.0, 0.0, 30.0), 1.0)
+    for obstacles, rigid in (((), 3), ((on_axis,), 1), ((on_axis, Sphere((30.0, 0.0, 0.0), 1.0)), 0)):
+        potential = Potential(Algorithm3(target=target, obstacles=obstacles))
+        basis = potential.symmetries(q)
+        assert basis.shape[1] == rigid
+        assert np.abs(basis.T @ potential.force(q).ravel()).max(initial=0.0) < 1e-11
+    off = Potential(Algorithm3(target=target, obstacles=(Wall((0.0, 0.0, -9.0), (0.0, 0.0, 1.0)),)))
+    assert off.symmetries(q).shape[1] == 1
+
+
+def test_a_moving_target_is_taken_at_its_time_and_its_velocity_does_not_push():
+    law = Algorithm3(target=LinearTarget((0.0, 0.0), (2.0, 1.0)))
+    found = find_equilibrium(law, [[1.0, 2.0]], t=3.0)
+    np.testing.assert_allclose(found.q, [[6.0, 3.0]], atol=1e-9)
+
+
+def test_the_pair_list_is_checked_again_and_renewed(monkeypatch):
+    listed = []
+
+    class Counted(Program):
+        def __init__(self, potential, shape, pairs, gauge):
+            listed.append(len(pairs))
+            super().__init__(potential, shape, pairs, gauge)
+
+    monkeypatch.setattr(solve_module, "Program", Counted)
+    monkeypatch.setattr(solve_module, "_ALL_PAIRS", 2)
+    law = Algorithm2(target=StaticTarget((0.0,)), gains=Gains(c1_gamma=0.5))
+    start = np.array([[-20.0], [0.0], [20.0], [40.0]])  # nothing is in range until the target has pulled them in
+    found = find_equilibrium(law, start, margin=1e-3)
+    assert len(listed) >= 2
+    assert listed[0] == 0
+    assert len(found.links) == 3
+    assert found.residual < 1e-12
+
+
+def test_pair_lists_and_all_pairs_agree(monkeypatch):
+    start = hexagonal_spiral(30, 7.0) + 0.2 * np.random.default_rng(1).standard_normal((30, 2))
+    every = find_equilibrium(Algorithm1(), start)
+    monkeypatch.setattr(solve_module, "_ALL_PAIRS", 0)
+    listed = find_equilibrium(Algorithm1(), start)
+    assert len(every.links) == harborth(30)
+    assert listed.energy == pytest.approx(every.energy, rel=1e-12)
+    np.testing.assert_allclose(listed.hessian_eigenvalues, every.hessian_eigenvalues, rtol=1e-6)
+
+
+def test_failures_are_clear():
+    start = hexagonal_patch(1, 7.0) + np.random.default_rng(0).standard_normal((7, 2))
+    with pytest.raises(SolverError, match="Maximum_Iterations_Exceeded"):
+        find_equilibrium(Algorithm1(), start, max_iter=1)
+    kept = find_equilibrium(Algorithm1(), start, max_iter=1, strict=False)
+    assert (kept.success, kept.message) == (False, "Maximum_Iterations_Exceeded")
+    with pytest.raises(SolverError, match="residual force"):
+        finish(Potential(Algorithm1()), np.array([[0.0], [6.0]]), True, "claimed")
+    with pytest.raises(UnknownNameError, match="did you mean 'root'"):
+        find_equilibrium(Algorithm1(), start, method="roots")
+    with pytest.raises(ArgumentError, match="expected Algorithm1, Algorithm2 or Algorithm3"):
+        find_equilibrium("Algorithm1", start)
+    with pytest.raises(ArgumentError, match="expected n m <= 6000"):
+        find_equilibrium(Algorithm1(), np.zeros((4000, 2)))
+    with pytest.raises(ArgumentError, match="starts inside"):
+        find_equilibrium(Algorithm3(target=StaticTarget((9.0, 0.0)), obstacles=(Sphere((0.0, 0.0), 2.0),)), [[0.5, 0.0]])
+
+
+def test_a_failed_nlp_does_not_pass_as_a_result():
+    program = Program(Potential(Algorithm1()), (3, 2), all_pairs(3), 3)
+    _, done, status = program.solve(10.0 * hexagonal_spiral(3, 0.5) + 0.3, max_iter=0)
+    assert (done, status) == (False, "Maximum_Iterations_Exceeded")

@@ -1,0 +1,230 @@
+"""Theorem 5 on lattices, on nets that are none, and on the ends of runs."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from flockana.lattice import (
+    bcc,
+    crossings,
+    fcc,
+    harborth,
+    hcp,
+    hexagonal_spiral,
+    honeycomb,
+    line,
+    links,
+    max_ratio,
+    simple_cubic,
+    square,
+    triangular,
+)
+from flockana.laws.olfati_saber import Algorithm1
+from flockana.simulate import simulate
+from flockana.theorems import Tolerances, verify
+from flockana.theorems.os_5 import CLAIMS
+
+D, R = 7.0, 8.4
+
+
+def statuses(verdict) -> dict[str, str]:
+    return {claim.name: claim.status for claim in verdict.claims}
+
+
+def expected(**found: str) -> dict[str, str]:
+    """All claims are vacuous but those given; an underscore stands for a hyphen."""
+    return dict.fromkeys(CLAIMS, "vacuous") | {name.replace("_", "-"): status for name, status in found.items()}
+
+
+PLANE = expected(
+    i="verified", i_graph="verified", ii="verified", ii_sharp="verified", iii="verified",
+    extension="verified", extension_lengths="verified", extension_links="verified",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "build", [lambda: hexagonal_spiral(37, D), lambda: square(5, 6, D), lambda: honeycomb(3, 4, D)]
+)
+def test_planar_lattices(build):
+    verdict = verify("os-5", q=build(), d=D, r=R)
+    assert statuses(verdict) == PLANE
+    assert verdict.status == "verified"
+    assert all(h.status == "met" for h in verdict.hypotheses)
+
+
+@pytest.mark.parametrize("name", ["square", "triangular"])
+def test_at_the_largest_ratio_second_neighbours_are_no_links(name):
+    q = {"square": square(6, 6, D), "triangular": triangular(36, D)}[name]
+    found = statuses(verify("os-5", q=q, d=D, r=D * max_ratio(name)))
+    assert found == PLANE | {"extension": "vacuous"}  # r/√2 >= d
+
+
+@pytest.mark.parametrize(
+    ("q", "kappa"),
+    [
+        (fcc(2, 2, 2, D), 1.2),
+        (hcp(3, 2, 2, D), 1.2),
+        (bcc(3, 3, 3, D), 1.1),
+        (simple_cubic(3, 3, 3, D), 1.2),
+    ],
+)
+def test_in_space_edges_do_not_cross_whatever_the_graph(q, kappa):
+    verdict = verify("os-5", q=q, d=D, r=kappa * D)
+    graph = verdict.claim("i-graph").status
+    assert statuses(verdict) == expected(
+        i="verified", i_graph=graph, iii="verified", extension="verified", extension_lengths="verified"
+    )
+    assert graph == "refuted"
+
+
+def test_on_a_line_only_iii_and_the_extension_speak():
+    assert statuses(verify("os-5", q=line(5, D), d=D, r=R)) == expected(
+        iii="verified", extension="verified", extension_lengths="verified"
+    )
+    assert statuses(verify("os-5", q=line(2, D), d=D, r=R)) == expected(
+        extension="verified", extension_lengths="verified"
+    )
+
+
+@pytest.mark.parametrize(("n", "iii"), [(3, "vacuous"), (4, "verified")])
+def test_iii_needs_more_than_a_simplex(n, iii):
+    verdict = verify("os-5", q=hexagonal_spiral(n, D), d=D, r=R)
+    assert verdict.claim("iii").status == iii
+    if n == 4:
+        assert verdict.claim("iii").computed == 1
+        i, j = verdict.claim("iii").witness
+        assert [min(i, j), max(i, j)] not in links(hexagonal_spiral(4, D), R).tolist()
+
+
+def test_ii_needs_three_agents_and_says_so():
+    verdict = verify("os-5", q=hexagonal_spiral(2, D), d=D, r=R)
+    assert (verdict.claim("ii").status, verdict.claim("ii").computed, verdict.claim("ii").margin) == (
+        "vacuous",
+        1,
+        -1.0,
+    )
+    assert verdict.claim("ii-sharp").status == "verified"
+
+
+def test_margins_are_the_distances_from_the_bounds():
+    verdict = verify("os-5", q=hexagonal_spiral(20, D), d=D, r=R)
+    assert verdict.claim("ii").margin == 54 - harborth(20)
+    assert verdict.claim("ii-sharp").margin == 0.0
+    by_name = {h.name: h.margin for h in verdict.hypotheses}
+    assert by_name["κ = r/d > 1"] == pytest.approx(0.2)
+    assert by_name["all pairs are farther apart than r/√2"] == pytest.approx(7.0 - 8.4 / np.sqrt(2.0))
+    assert by_name["all pairs are farther apart than ℓ/√2, ℓ the longest link"] == pytest.approx(
+        7.0 - 7.0 / np.sqrt(2.0)
+    )
+
+
+def test_a_strained_lattice_leaves_the_printed_theorem_vacuous_and_the_extension_not():
+    q = hexagonal_spiral(37, D) + np.random.default_rng(0).uniform(-0.2, 0.2, (37, 2))
+    verdict = verify("os-5", q=q, d=D, r=R)
+    assert statuses(verdict) == expected(extension="verified", extension_lengths="verified", extension_links="verified")
+    unmet = [h for h in verdict.hypotheses if h.status == "unmet"]
+    assert [h.name for h in unmet] == ["q is an α-lattice"]
+    assert unmet[0].detail.startswith("quasi-α-lattice")
+    assert verify("os-5", q=q, d=D, r=R, tolerances=Tolerances(lattice=0.1)).claim("i").status == "verified"
+
+
+def test_a_square_with_its_diagonals_is_the_limit_case_of_the_quantitative_form():
+    verdict = verify("os-5", q=square(2, 2, D), d=D, r=1.5 * D)
+    claim = verdict.claim("extension-quantitative")
+    assert statuses(verdict) == expected(extension_quantitative="verified")
+    assert claim.margin == pytest.approx(0.0, abs=1e-14)
+    assert sorted(map(sorted, claim.witness)) == [[0, 3], [1, 2]]
+    assert verdict.claim("i").computed == 1
+
+
+def test_coincident_agents_are_not_distinct():
+    q = np.concatenate([hexagonal_spiral(7, D), [[0.0, 0.0]]])
+    verdict = verify("os-5", q=q, d=D, r=R)
+    assert [h.name for h in verdict.hypotheses if h.status == "unmet"][:2] == [
+        "distinct positions",
+        "q is an α-lattice",
+    ]
+    assert statuses(verdict) == expected(extension_quantitative="verified")
+
+
+def test_kappa_below_one():
+    verdict = verify("os-5", q=line(3, D), d=D, r=6.0)
+    assert [h.name for h in verdict.hypotheses if h.status == "unmet"][:2] == ["κ = r/d > 1", "q is an α-lattice"]
+
+
+def test_a_collapsed_flock_lists_no_more_crossings_than_it_must():
+    q = np.random.default_rng(0).normal(size=(60, 2))
+    verdict = verify("os-5", q=q, d=D, r=R)
+    assert verdict.claim("i").computed == 1000
+    assert verdict.claim("extension").detail.endswith("at least 1000 pairs of 1770 links cross")
+    assert verdict.claim("extension-quantitative").status == "verified"
+    assert verdict.claim("iii").status == "vacuous"
+
+
+@given(st.integers(0, 2**32 - 1), st.sampled_from([1, 2, 3]), st.floats(0.3, 1.3))
+def test_the_extension_holds_of_every_net(seed, m, density):
+    """Points that keep r/√2 of each other, at random: never a crossing. And every crossing obeys the other form."""
+    rng = np.random.default_rng(seed)
+    q = rng.uniform(0.0, R * density * 40 ** (1.0 / m), (40, m))
+    verdict = verify("os-5", q=q, d=D, r=R)
+    assert verdict.claim("extension-quantitative").status in ("verified", "vacuous")
+    kept: list[np.ndarray] = []
+    for point in q:
+        if all(np.linalg.norm(point - other) > R / np.sqrt(2.0) * (1.0 + 1e-9) for other in kept):
+            kept.append(point)
+    assert verify("os-5", q=kept, d=D, r=R).claim("extension").status == "verified"
+    assert "refuted" not in [c.status for c in verify("os-5", q=kept, d=D, r=R * density).claims]
+
+
+def test_the_threshold_of_the_extension_is_sharp():
+    """Just below r/√2 the square's diagonals are links, and cross."""
+    side = R / np.sqrt(2.0)
+    for factor, count in ((1.0 - 1e-9, 1), (1.0 + 1e-9, 0)):
+        q = square(2, 2, side * factor)
+        assert len(crossings(q, links(q, R))) == count
+
+
+def test_in_space_only_a_clearance_above_rounding_is_believed():
+    """Two links of 7 within 1e-14 of each other: nobody knows whether they cross."""
+    q = D * np.array([[-0.5, 0.0, 0.0], [0.5, 0.0, 0.0], [0.0, -0.5, 1e-14], [0.0, 0.5, 1e-14]])
+    from flockana.theorems.os_5 import _Net, _uncrossed
+
+    net = _Net(q, D, R)
+    assert len(net.crossings) == 0
+    assert _uncrossed(net, [], "i", "").status == "inconclusive"
+    q[2:, 2] = 0.0
+    assert _uncrossed(_Net(q, D, R), [], "i", "").status == "refuted"
+
+
+class TestTerminal:
+    def test_a_run_is_judged_by_its_last_state(self):
+        rng = np.random.default_rng(1)
+        q0 = hexagonal_spiral(7, D) + rng.uniform(-0.3, 0.3, (7, 2))
+        run = simulate(Algorithm1(), q0, np.zeros_like(q0), (0.0, 20.0))
+        assert statuses(verify("os-5-terminal", run)) == PLANE
+        still = verify("os-5", q=run.q[-1], d=D, r=R)
+        assert statuses(still) == PLANE
+        early = statuses(verify("os-5-terminal", run.window(0.0, 0.01)))
+        assert early == expected(extension="verified", extension_lengths="verified", extension_links="verified")
+
+    def test_a_law_without_a_range(self):
+        from flockana.trajectory import Trajectory
+
+        class Free:
+            """No interaction."""
+
+        q = np.zeros((1, 2, 2))
+        verdict = verify("os-5-terminal", Trajectory(np.zeros(1), q, q, q, Free()))
+        assert statuses(verdict) == expected()
+        assert verdict.hypotheses[0].detail == "Free"
+
+
+def test_verdicts_are_plain_data():
+    for q in (fcc(2, 2, 2, D), square(3, 3, D), [[0.0, 0.0]]):
+        data = json.loads(json.dumps(verify("os-5", q=q, d=D, r=R).to_dict()))
+        assert [c["name"] for c in data["claims"]] == list(CLAIMS)
