@@ -57,7 +57,7 @@ def test_arrays_and_numpy_scalars_become_numbers():
 
 
 def test_the_type_is_named():
-    assert to_data(Gains())["type"] == "flockana.interactions:Gains"
+    assert to_data(Gains())["type"] == "flockana.interactions.gains:Gains"
 
 
 def test_functions_cannot_be_written():
@@ -78,10 +78,10 @@ def test_functions_cannot_be_written():
         ({"d": 7.0}, "the file needs None, which is not part of flockana"),
         ({"type": "flockana.nowhere:Law"}, "cannot rebuild flockana.nowhere:Law from the file"),
         ({"type": "flockana.interactions:Delta"}, "cannot rebuild flockana.interactions:Delta"),
-        ({"type": "flockana.interactions:sqrt"}, "is no parameter class"),
+        ({"type": "flockana.interactions.alpha:sqrt"}, "is no parameter class"),
         ({"type": "os:system", "command": "true"}, "is no parameter class"),
-        ({"type": "flockana.interactions:Gains", "c3": 1.0}, "unexpected keyword argument 'c3'"),
-        ({"type": "flockana.interactions:AlphaInteraction", "d": 9.0}, "expected r > d"),
+        ({"type": "flockana.interactions.gains:Gains", "c3": 1.0}, "unexpected keyword argument 'c3'"),
+        ({"type": "flockana.interactions.alpha:AlphaInteraction", "d": 9.0}, "expected r > d"),
     ],
 )
 def test_strange_data(data, message):

@@ -25,6 +25,7 @@ STAGES: tuple[tuple[str, ...], ...] = (
     ("paths",),
     ("trajectory",),
     ("predicates",),
+    ("integrators",),
     ("simulate",),
     ("terminal", "gradient_flow"),
     ("equilibria",),

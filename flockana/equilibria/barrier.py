@@ -11,8 +11,8 @@ from math import ceil, floor, inf, isfinite, pi, sin, sqrt
 import numpy as np
 
 from flockana.checks import FloatArray
-from flockana.equilibria.program import Program
 from flockana.equilibria.potential import Potential
+from flockana.equilibria.program import Program
 from flockana.equilibria.search import lattice_starts, random_starts
 from flockana.equilibria.solve import all_pairs
 from flockana.interactions import AlphaInteraction
@@ -60,9 +60,7 @@ class Barrier:
         return self.together - self.ground
 
 
-def collision_barrier(
-    alpha: AlphaInteraction, n: int, *, m: int = 2, starts: int = 24, seed: int = 0
-) -> Barrier:
+def collision_barrier(alpha: AlphaInteraction, n: int, *, m: int = 2, starts: int = 24, seed: int = 0) -> Barrier:
     """Search min{V(q) : two agents coincide} and min V by IPOPT from many starts; numeric, not rigorous.
 
     Any pair will do, as agents are alike: the constraint is q_1 = q_2. Since every other pair then counts at least 0,
@@ -289,4 +287,4 @@ def collision_bounds(alpha: AlphaInteraction, n: int, m: int = 2) -> tuple[float
         return inf, inf
     lattice = hexagonal_spiral(n - 1, alpha.d) if m == 2 else lattice_starts(n - 1, m, alpha.d, 1, noise=0.0)[0]
     doubled = _most_linked_first(lattice, alpha)
-    return alpha.c_star + energy_floor(alpha, n - 1, m), alpha.potential_energy(np.vstack([doubled[:1], doubled]))
+    return alpha.c_star + 3 * energy_floor(alpha, n, m), alpha.potential_energy(np.vstack([doubled[:1], doubled]))

@@ -21,7 +21,7 @@ class Spectrum(NamedTuple):
 
     eigenvalues: FloatArray
     rigid: int
-    index: int
+    negative: int
     zero: int
 
 
@@ -43,7 +43,9 @@ def ensure_small(n: int, m: int) -> None:
     >>> ensure_small(1000, 3)
     """
     if n * m > MAX_SIZE:
-        raise ArgumentError(f"n = {n} agents in m = {m} dimensions: expected n m <= {MAX_SIZE}, or the spectrum takes minutes")
+        raise ArgumentError(
+            f"n = {n} agents in m = {m} dimensions: expected n m <= {MAX_SIZE}, or the spectrum takes minutes"
+        )
 
 
 def spectrum(potential: Potential, q: FloatArray, *, zero: float = ZERO) -> Spectrum:
@@ -113,6 +115,6 @@ def kind_of(found: Spectrum) -> EquilibriumKind:
     >>> kind_of(Spectrum(np.array([-1.0, 0.0, 2.0]), 3, 1, 1)), kind_of(Spectrum(np.array([0.0, 2.0]), 3, 0, 1))
     ('saddle', 'degenerate')
     """
-    if found.index:
-        return "maximum" if found.index == found.eigenvalues.size else "saddle"
+    if found.negative:
+        return "maximum" if found.negative == found.eigenvalues.size else "saddle"
     return "degenerate" if found.zero else "minimum"

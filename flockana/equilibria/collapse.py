@@ -1,4 +1,4 @@
-"""Erratum E11 from equilibria: minima of U_λ as λ/c1α grows, their shortest link, and where agents begin to coincide."""
+"""Erratum E11 from equilibria: minima of U_λ as λ/c1α grows, and where agents begin to coincide."""
 
 from __future__ import annotations
 
@@ -112,9 +112,7 @@ def relaxed(alpha: AlphaInteraction, n: int, ratio: float) -> Equilibrium:
     return find_equilibrium(squeezed(alpha, ratio), nudged(hexagonal_spiral(n, alpha.d), alpha.d))
 
 
-def collapse_diagram(
-    alpha: AlphaInteraction, sizes: Sequence[int], ratios: Sequence[float]
-) -> CollapseDiagram:
+def collapse_diagram(alpha: AlphaInteraction, sizes: Sequence[int], ratios: Sequence[float]) -> CollapseDiagram:
     """Shortest distance and coincident pairs of the minima of U_λ over sizes and ratios.
 
     Parameters
@@ -133,9 +131,9 @@ def collapse_diagram(
 
     Examples
     --------
-    >>> diagram = collapse_diagram(AlphaInteraction(), [7], [0.1, 8.0])
+    >>> diagram = collapse_diagram(AlphaInteraction(), [7], [0.1, 4.5])
     >>> diagram.coincident[0, 0], diagram.onset().tolist()
-    (np.int64(0), [8.0])
+    (np.int64(0), [4.5])
     """
     counts, rising = [ensure_count("sizes", n) for n in sizes], np.array([ensure_positive("ratios", x) for x in ratios])
     if np.any(np.diff(rising) <= 0.0):
@@ -144,14 +142,14 @@ def collapse_diagram(
     closest, coincident, kinds = np.full(shape, np.nan), np.full(shape, -1), []
     for k, n in enumerate(counts):
         row = []
-        for l, ratio in enumerate(rising):
+        for c, ratio in enumerate(rising):
             try:
                 found = relaxed(alpha, n, float(ratio))
             except SolverError:
                 row.append("failed")
                 continue
-            coincident[k, l] = coincident_pairs(found.q, CONTACT * alpha.d)
-            closest[k, l] = 0.0 if coincident[k, l] else min_distance(found.q) / alpha.d
+            coincident[k, c] = coincident_pairs(found.q, CONTACT * alpha.d)
+            closest[k, c] = 0.0 if coincident[k, c] else min_distance(found.q) / alpha.d
             row.append(found.kind)
         kinds.append(tuple(row))
     return CollapseDiagram(np.array(counts), rising, closest, coincident, tuple(kinds))

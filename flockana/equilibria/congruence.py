@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from scipy.spatial import KDTree
 from scipy.spatial.distance import cdist, pdist
@@ -43,8 +45,8 @@ def congruent(first: FloatArray, second: FloatArray, *, tol: float) -> bool:
     >>> triangle = np.array([[0.0, 0.0], [3.0, 0.0], [0.0, 4.0]])
     >>> congruent(triangle, triangle[[2, 0, 1]] * [-1.0, 1.0] + 5.0, tol=1e-9)
     True
-    >>> congruent(np.array([[0.0], [1.0], [4.0], [10.0], [12.0], [17.0]]), np.array([[0.0], [1.0], [8.0], [11.0], [13.0],
-    ... [17.0]]), tol=1e-9)  # the same distances all the same
+    >>> first, second = np.array([[0.0, 1, 4, 10, 12, 17], [0, 1, 8, 11, 13, 17]])[:, :, None]
+    >>> congruent(first, second, tol=1e-9)  # the same distances all the same
     False
     """
     if first.shape != second.shape:
@@ -56,10 +58,7 @@ def congruent(first: FloatArray, second: FloatArray, *, tol: float) -> bool:
     images, tree = cdist(y, y), KDTree(y)
     wanted, norms = cdist(x[frame], x[frame]), np.linalg.norm(x[frame], axis=1)
     candidates = [np.flatnonzero(np.abs(np.linalg.norm(y, axis=1) - norm) <= 2.0 * tol) for norm in norms]
-    return any(
-        _maps(x, y, frame, image, tree, tol)
-        for image in _images(candidates, images, wanted, 4.0 * tol)
-    )
+    return any(_maps(x, y, frame, image, tree, tol) for image in _images(candidates, images, wanted, 4.0 * tol))
 
 
 def _frame(x: FloatArray) -> list[int]:
@@ -77,7 +76,7 @@ def _frame(x: FloatArray) -> list[int]:
     return chosen
 
 
-def _images(candidates: list[FloatArray], distances: FloatArray, wanted: FloatArray, tol: float) -> list[tuple[int, ...]]:
+def _images(candidates: list[Any], distances: FloatArray, wanted: FloatArray, tol: float) -> list[tuple[int, ...]]:
     """Tuples of agents with the frame's distances to the centre and between each other."""
     found: list[tuple[int, ...]] = [()]
     for k, options in enumerate(candidates):
@@ -85,7 +84,7 @@ def _images(candidates: list[FloatArray], distances: FloatArray, wanted: FloatAr
             (*image, int(agent))
             for image in found
             for agent in options
-            if all(abs(distances[agent, image[l]] - wanted[k, l]) <= tol for l in range(k))
+            if all(abs(distances[agent, image[e]] - wanted[k, e]) <= tol for e in range(k))
         ]
     return found
 
@@ -97,14 +96,14 @@ def _maps(x: FloatArray, y: FloatArray, frame: list[int], image: tuple[int, ...]
     flips = [np.eye(m)] if len(frame) == m else [np.eye(m), np.diag([1.0] * (m - 1) + [-1.0])]
     for flip in flips:
         distance, nearest = tree.query(x @ u @ flip @ vt)
-        if distance.max() <= 10.0 * tol and _one_to_one(nearest, y, tol):
+        if np.max(distance) <= 10.0 * tol and _one_to_one(nearest, y, tol):
             return True
     return False
 
 
-def _one_to_one(nearest: FloatArray, y: FloatArray, tol: float) -> bool:
+def _one_to_one(nearest: Any, y: FloatArray, tol: float) -> bool:
     """Whether as many agents go to each place as stand there (agents may coincide)."""
     if np.unique(nearest).size == len(nearest):
         return True
-    place = np.array([min(group) for group in KDTree(y).query_ball_point(y, 20.0 * tol)])
+    place = np.array([min(group) for group in np.atleast_1d(KDTree(y).query_ball_point(y, 20.0 * tol)).tolist()])
     return bool(np.array_equal(np.bincount(place[nearest], minlength=len(y)), np.bincount(place, minlength=len(y))))

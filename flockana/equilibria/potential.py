@@ -75,6 +75,13 @@ class Potential:
         """q_r(t), None under Algorithm 1."""
         return None if isinstance(self.law, Algorithm1) else np.asarray(self.law.target.state(self.t)[0], dtype=float)
 
+    @property
+    def centre(self) -> FloatArray:
+        """q_r(t) of a law that has a γ-agent."""
+        if (target := self.target) is None:
+            raise ArgumentError(f"{self.law}: expected a law with a γ-agent")
+        return target
+
     def energy(self, q: FloatArray) -> float:
         """Its value, pairs out of range included.
 
@@ -101,7 +108,7 @@ class Potential:
         if isinstance(law, Algorithm2):
             total += 0.5 * g.c1_gamma * float(np.sum(moving_frame(q) ** 2))
         elif isinstance(law, Algorithm3):
-            x2 = np.sum((q - self.target) ** 2, axis=1)
+            x2 = np.sum((q - self.centre) ** 2, axis=1)
             total += g.c1_gamma * float(np.sum(x2 / (np.sqrt(1.0 + x2) + 1.0)))
             total += g.c1_beta * law.obstacle_field.potential_energy(q)
         return total
@@ -153,8 +160,8 @@ class Potential:
         """
         if not isinstance(self.law, Algorithm3):
             return rigid_motions(q)
-        x = q - self.target
-        turns = [(x @ generator.T).ravel() for generator in _free_rotations(self.law, self.target)]
+        x = q - self.centre
+        turns = [(x @ generator.T).ravel() for generator in _free_rotations(self.law, self.centre)]
         if not turns or not np.any(turns):
             return np.zeros((q.size, 0))
         basis, sizes, _ = np.linalg.svd(np.array(turns).T, full_matrices=False)
@@ -176,7 +183,7 @@ def inside_obstacle(law: FlockLaw, q: FloatArray) -> bool:
     return not np.isfinite(q).all() or any(bool(obstacle.contains(q).any()) for obstacle in obstacles)
 
 
-def _free_rotations(law: Algorithm3, centre: FloatArray | None) -> list[FloatArray]:
+def _free_rotations(law: Algorithm3, centre: FloatArray) -> list[FloatArray]:
     """Skew matrices that map every obstacle's axis (its centre from q_r, its normal) to zero: they move none."""
     m = law.target.dimension
     generators = []

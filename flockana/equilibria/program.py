@@ -25,7 +25,7 @@ _BOX = {"ipopt.mu_init": 1e-6, "ipopt.bound_push": 1e-8, "ipopt.bound_frac": 1e-
 _QUIET = {"print_time": False, "no_nlp_grad": True, "calc_lam_p": False, "ipopt.print_level": 0, "ipopt.sb": "yes"}
 
 
-class _Value(ca.Callback):  # type: ignore[misc]
+class _Value(ca.Callback):
     """Potential energy in the program's units, from the kernels."""
 
     def __init__(self, program: Program) -> None:
@@ -84,7 +84,7 @@ class Program:
         value, multiplier, ignored = self._callback(x), ca.MX.sym("lam_f"), ca.MX.sym("lam_g", gauge)
         held = ca.reshape(c, self.size, gauge).T @ x
         self.derivatives = ca.Function("derivatives", [x], [slope, hessian], ["x"], ["gradient", "hessian"])
-        self._program = {"x": x, "p": c, "f": value, "g": held}
+        self._program: Any = {"x": x, "p": c, "f": value, "g": held}
         self._exact = {
             "grad_f": ca.Function("grad_f", [x, c], [value, slope]),
             "hess_lag": ca.Function("hess_lag", [x, c, multiplier, ignored], [multiplier * hessian]),
@@ -129,7 +129,13 @@ class Program:
             Most iterations.
         """
         if (tol, max_iter) not in self._solvers:
-            options = {**_QUIET, **_BOX, "ipopt.tol": tol, "ipopt.max_iter": max_iter, "ipopt.nlp_scaling_method": "none"}
+            options: Any = {
+                **_QUIET,
+                **_BOX,
+                "ipopt.tol": tol,
+                "ipopt.max_iter": max_iter,
+                "ipopt.nlp_scaling_method": "none",
+            }
             self._solvers[tol, max_iter] = ca.nlpsol("equilibrium", "ipopt", self._program, options | self._exact)
         solver = self._solvers[tol, max_iter]
         start = q0.ravel() / self.d
@@ -148,7 +154,9 @@ class Program:
         q = self.d * ca.reshape(x, m, n)
         slope, blocks = ca.MX.zeros(m, n), []
         if i.size:
-            ends = _matrix(np.concatenate([i, j]), np.tile(np.arange(i.size), 2), np.repeat([-1.0, 1.0], i.size), (n, i.size))
+            ends = _matrix(
+                np.concatenate([i, j]), np.tile(np.arange(i.size), 2), np.repeat([-1.0, 1.0], i.size), (n, i.size)
+            )
             pull, stiff = pair_term(law.alpha, m).map(i.size)(q @ ends)
             slope = g.c1_alpha * (pull @ ends.T)
             blocks.append(g.c1_alpha * ca.vec(stiff))
@@ -168,7 +176,7 @@ class Program:
             return g.c1_gamma * centred, g.c1_gamma * ca.repmat(ca.MX.eye(m), 1, n)
         slope, blocks = ca.MX.zeros(m, n), ca.MX.zeros(m, m * n)
         if isinstance(law, Algorithm3):
-            terms = [(g.c1_gamma, pull_term(m), ca.DM(self.potential.target))]
+            terms = [(g.c1_gamma, pull_term(m), ca.DM(self.potential.centre))]
             terms += [(g.c1_beta, obstacle_term(obstacle, law.beta), ca.DM.zeros(m)) for obstacle in law.obstacles]
             for gain, term, origin in terms:
                 one_slope, one_blocks = term.map(n)(q - ca.repmat(origin, 1, n))
@@ -188,7 +196,12 @@ def _scatter(n: int, m: int, i: Any, j: Any) -> tuple[npt.NDArray[np.int64], npt
     A pair's block enters twice on the diagonal and, negated, between its agents; an agent's own block once.
     """
     k, own = np.arange(i.size), np.arange(n)
-    placed = [(i, i, k, 1.0), (j, j, k, 1.0), (np.minimum(i, j), np.maximum(i, j), k, -1.0), (own, own, i.size + own, 1.0)]
+    placed = [
+        (i, i, k, 1.0),
+        (j, j, k, 1.0),
+        (np.minimum(i, j), np.maximum(i, j), k, -1.0),
+        (own, own, i.size + own, 1.0),
+    ]
     rows, columns, sources, signs = [], [], [], []
     for a, b, block, sign in placed:
         for e in range(m):

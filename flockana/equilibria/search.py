@@ -78,16 +78,24 @@ def lattice_starts(n: int, m: int, d: float, count: int, *, seed: int = 0, noise
     [(5, 2), (5, 2)]
     """
     rng = np.random.default_rng([n, m, seed, 1])
-    basis = {1: np.eye(1), 2: np.array([[1.0, 0.0], [0.5, sqrt(0.75)]]), 3: np.array([[1.0, 1, 0], [1, 0, 1], [0, 1, 1]]) / sqrt(2)}[m]
+    basis = {
+        1: np.eye(1),
+        2: np.array([[1.0, 0.0], [0.5, sqrt(0.75)]]),
+        3: np.array([[1.0, 1, 0], [1, 0, 1], [0, 1, 1]]) / sqrt(2),
+    }[m]
     cube = np.stack(np.meshgrid(*[np.arange(-1, 2)] * m, indexing="ij"), -1).reshape(-1, m)
     steps = [tuple(step) for step in cube.tolist() if abs(np.linalg.norm(np.array(step) @ basis) - 1.0) < 1e-9]
     starts = []
     for _ in range(count):
         taken = {(0,) * m}
         while len(taken) < n:
-            free = sorted({tuple(a + b for a, b in zip(site, step, strict=True)) for site in taken for step in steps} - taken)
+            free = sorted(
+                {tuple(a + b for a, b in zip(site, step, strict=True)) for site in taken for step in steps} - taken
+            )
             tried = [free[k] for k in rng.integers(len(free), size=3)]
-            degree = [sum(tuple(a + b for a, b in zip(site, step, strict=True)) in taken for step in steps) for site in tried]
+            degree = [
+                sum(tuple(a + b for a, b in zip(site, step, strict=True)) in taken for step in steps) for site in tried
+            ]
             taken.add(tried[int(np.argmax(degree))])
         sites = np.array(sorted(taken), dtype=float) @ basis
         starts.append(d * (sites + noise * rng.standard_normal((n, m))))
@@ -141,7 +149,9 @@ class Search:
             If every start failed.
         """
         if not self.found:
-            raise SolverError(f"none of {self.starts} starts led to an equilibrium; the first failure: {self.failures[:1]}")
+            raise SolverError(
+                f"none of {self.starts} starts led to an equilibrium; the first failure: {self.failures[:1]}"
+            )
         return self.found[0].equilibrium
 
     def strained(self, *, lattice: float = 1e-6, distinct: bool = True) -> tuple[Equilibrium, ...]:
@@ -170,9 +180,7 @@ def _attempt(law: Any, method: str, start: FloatArray) -> Equilibrium | str:
         return str(failure)
 
 
-def search(
-    law: Any, starts: Iterable[Any], *, method: str = "minimise", executor: Executor | None = None
-) -> Search:
+def search(law: Any, starts: Iterable[Any], *, method: str = "minimise", executor: Executor | None = None) -> Search:
     """Find the equilibria that many starts lead to, each once.
 
     Parameters

@@ -1,4 +1,4 @@
-"""Equilibria of Algorithms 1, 2 and 3: minima by IPOPT, critical points of any kind by a root-finder on the gradient."""
+"""Equilibria of Algorithms 1, 2 and 3: minima by IPOPT, critical points of any kind by a root-finder."""
 
 from __future__ import annotations
 
@@ -209,7 +209,7 @@ def finish(potential: Potential, q: FloatArray, done: bool, message: str, *, str
         hessian_eigenvalues=found.eigenvalues,
         rigid_modes=found.rigid,
         zero_modes=found.zero,
-        index=found.index,
+        index=found.negative,
         success=success,
         message=message,
     )
@@ -267,9 +267,8 @@ def _minimise(potential: Potential, q: FloatArray, margin: float, max_iter: int)
 
 def _root(potential: Potential, q: FloatArray, margin: float, max_iter: int) -> tuple[FloatArray, bool, str]:
     """Levenberg-Marquardt on the scaled gradient with the gauge as extra equations, over all pairs."""
-    from scipy.optimize import least_squares
-
     import casadi as ca
+    from scipy.optimize import least_squares
 
     basis = potential.symmetries(q)
     program = Program(potential, (len(q), q.shape[1]), all_pairs(len(q)), basis.shape[1])
@@ -298,7 +297,7 @@ def _polish(potential: Potential, q: FloatArray) -> FloatArray:
         if least <= 1e-14:
             break
         rigid, hessian = csc_array(potential.symmetries(here)), csc_array(potential.stiffness(here))
-        shift = 1e-9 * float(np.abs(hessian).max() or 1.0)
+        shift = 1e-9 * float(abs(hessian).max() or 1.0)
         matrix = block_array([[hessian + shift * eye_array(q.size), rigid], [rigid.T, None]], format="csc")
         force = np.concatenate([potential.force(here).ravel(), np.zeros(rigid.shape[1])])
         step = splu(matrix).solve(force)[: q.size].reshape(q.shape)

@@ -10,7 +10,13 @@ import sympy as sp
 
 from flockana.errors import ArgumentError
 
-_UNARY: dict[Any, Callable[[Any], Any]] = {sp.cos: ca.cos, sp.sin: ca.sin, sp.exp: ca.exp, sp.Abs: ca.fabs, sp.sign: ca.sign}
+_UNARY: dict[Any, Callable[[Any], Any]] = {
+    sp.cos: ca.cos,
+    sp.sin: ca.sin,
+    sp.exp: ca.exp,
+    sp.Abs: ca.fabs,
+    sp.sign: ca.sign,
+}
 _RELATIONS: dict[Any, Callable[[Any, Any], Any]] = {
     sp.StrictLessThan: ca.lt,
     sp.LessThan: ca.le,

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+import numpy.typing as npt
+
 from flockana.nets import components, links
 from flockana.theorems.theorem import Claim, judge
 from flockana.trajectory import Trajectory
@@ -52,3 +55,14 @@ def component_count(run: Trajectory, k: int = -1) -> int:
         Which sample; the last by default.
     """
     return int(components(run.n, links(run.q[k], run.law.alpha.r)).max()) + 1
+
+
+def component_counts(run: Trajectory) -> npt.NDArray[np.int64]:
+    """Number of components of the net at each sample of a run, shape (T,).
+
+    Parameters
+    ----------
+    run : Trajectory
+        A run of a law with an interaction range.
+    """
+    return np.rint(run.n - run.metrics().connectivity.values * (run.n - 1)).astype(np.int64)

@@ -135,13 +135,25 @@ class GenericObstacle:
         return (self.mu - 1) * (self.p.dot(self.p) - along) - along
 
     def force(self, gains: GainSymbols = GAINS) -> sp.Matrix:
-        """Return what the obstacle contributes to u_i: c1_beta phi_beta n_hat + c2_beta b (p_hat - p_i)."""
+        """Return what the obstacle contributes to u_i: c1_beta phi_beta n_hat + c2_beta b (p_hat - p_i).
+
+        Parameters
+        ----------
+        gains : GainSymbols
+            Gains; all symbolic by default.
+        """
         z = sigma_norm(self.gap)
         attraction = gains.c1_beta * PHI_BETA(z) * sigma_norm_gradient(self.gap)
         return attraction + gains.c2_beta * WEIGHT(z) * (self.rate - self.p)
 
     def energy_residual(self, gains: GainSymbols = GAINS) -> sp.Expr:
-        """Return the rate of c1_beta psi_beta + |p|^2/2 under `force`, less c2_beta b <p, p_hat - p>, reduced."""
+        """Return the rate of c1_beta psi_beta + |p|^2/2 under `force`, less c2_beta b <p, p_hat - p>, reduced.
+
+        Parameters
+        ----------
+        gains : GainSymbols
+            Gains; all symbolic by default.
+        """
         energy = gains.c1_beta * PSI_BETA(sigma_norm(self.gap)) + HALF * self.p.dot(self.p)
         rate = along_flow(energy, self.x, self.p, self.force(gains))
         claimed = gains.c2_beta * WEIGHT(sigma_norm(self.gap)) * self.braking()

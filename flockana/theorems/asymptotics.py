@@ -86,7 +86,8 @@ def below_the_barrier(run: Trajectory, energy: float) -> Hypothesis:
     low, high = (run.law.gains.c1_alpha * bound for bound in collision_bounds(run.law.alpha, run.n, run.m))
     status: HypothesisStatus = "met" if energy < low else "unmet" if energy >= high else "assumed"
     detail = f"H(0) = {energy:.5g}; the minimum is at least {low:.5g}, and a state of {high:.5g} is known"
-    return Hypothesis("H(0) < min{V : two agents coincide}", status, (high if status == "unmet" else low) - energy, detail)
+    bound = high if status == "unmet" else low
+    return Hypothesis("H(0) < min{V : two agents coincide}", status, bound - energy, detail)
 
 
 def no_collision(run: Trajectory, needs: Iterable[Hypothesis], tolerances: Tolerances, *, name: str) -> Claim:

@@ -138,9 +138,9 @@ def _smallest(tolerances: Tolerances) -> Claim:
         margin=-found.curvature,
         error=tolerances.curvature,
         witness=found.q,
-        detail=f"{len(found.q)} distinct agents in a connected strict minimum with {len(found.links)} links, off d by up "
-        f"to {100.0 * found.strain():.2g} %; least curvature {found.curvature:.3g} of the largest. With coincident agents "
-        f"it takes {least_with_coincidence(found.law.alpha)} at least",
+        detail=f"{len(found.q)} distinct agents in a connected strict minimum with {len(found.links)} links, off d by "
+        f"up to {100.0 * found.strain():.2g} %; least curvature {found.curvature:.3g} of the largest. With coincident "
+        f"agents it takes {least_with_coincidence(found.law.alpha)} at least",
     )
 
 

@@ -82,7 +82,7 @@ def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], l
         _lattice(run, needs, tolerances),
         velocities_match(run, tolerances, needs, name="ii"),
         no_collision(run, [*needs, energy], tolerances, name="iii"),
-        no_collision(run, [law, barrier], tolerances, name="iii-barrier"),
+        no_collision(run, [*needs, barrier], tolerances, name="iii-barrier"),
     ]
 
 

@@ -157,7 +157,7 @@ def test_the_pair_list_is_checked_again_and_renewed(monkeypatch):
     monkeypatch.setattr(solve_module, "_ALL_PAIRS", 2)
     law = Algorithm2(target=StaticTarget((0.0,)), gains=Gains(c1_gamma=0.5))
     start = np.array([[-20.0], [0.0], [20.0], [40.0]])  # nothing is in range until the target has pulled them in
-    found = find_equilibrium(law, start, margin=1e-3)
+    found = find_equilibrium(law, start)
     assert len(listed) >= 2
     assert listed[0] == 0
     assert len(found.links) == 3
@@ -189,7 +189,9 @@ def test_failures_are_clear():
     with pytest.raises(ArgumentError, match="expected n m <= 6000"):
         find_equilibrium(Algorithm1(), np.zeros((4000, 2)))
     with pytest.raises(ArgumentError, match="starts inside"):
-        find_equilibrium(Algorithm3(target=StaticTarget((9.0, 0.0)), obstacles=(Sphere((0.0, 0.0), 2.0),)), [[0.5, 0.0]])
+        find_equilibrium(
+            Algorithm3(target=StaticTarget((9.0, 0.0)), obstacles=(Sphere((0.0, 0.0), 2.0),)), [[0.5, 0.0]]
+        )
 
 
 def test_a_failed_nlp_does_not_pass_as_a_result():

@@ -21,7 +21,11 @@ from flockana.interactions import AlphaInteraction, BetaInteraction
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 
-SETS = (AlphaInteraction(), AlphaInteraction(1.9, 2.8, 0.1, 0.4, 7.0, 9.0), AlphaInteraction(1.7, 2.5, 0.01, 0.9, 7.0, 15.0))
+SETS = (
+    AlphaInteraction(),
+    AlphaInteraction(1.9, 2.8, 0.1, 0.4, 7.0, 9.0),
+    AlphaInteraction(1.7, 2.5, 0.01, 0.9, 7.0, 15.0),
+)
 
 
 @pytest.mark.parametrize("alpha", SETS)
@@ -57,7 +61,12 @@ def test_the_obstacle_term_is_the_kernels_force_and_hessian(obstacle):
 LAWS = (
     (Algorithm1(), 2),
     (Algorithm2(target=StaticTarget((1.0, 2.0, 3.0))), 3),
-    (Algorithm3(target=StaticTarget((10.0, 2.0)), obstacles=(Sphere((-3.0, 0.0), 2.0), Wall((0.0, -2.0), (0.0, 1.0)))), 2),
+    (
+        Algorithm3(
+            target=StaticTarget((10.0, 2.0)), obstacles=(Sphere((-3.0, 0.0), 2.0), Wall((0.0, -2.0), (0.0, 1.0)))
+        ),
+        2,
+    ),
 )
 
 

@@ -116,7 +116,7 @@ def test_two_agents_by_hand():
 
 
 def test_blocks_do_not_change_the_sums(monkeypatch):
-    import flockana.interactions as module
+    import flockana.interactions.pair as module
     from flockana.kernels.neighbours import pair_blocks
 
     q, p = random_state(300, 2, 9)

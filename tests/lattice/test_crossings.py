@@ -104,6 +104,7 @@ DEGENERATE = {
     "in space, of one agent, the same way": ([[0.0, 0, 0], [1.0, 2, 3], [3.0, 6, 9]], [[0, 1], [0, 2]], True),
     "huge": ([[0.0, 0.0], [1e300, 1e300], [0.0, 1e300], [1e300, 0.0]], [[0, 1], [2, 3]], True),
     "tiny": ([[0.0, 0.0], [1e-300, 1e-300], [0.0, 1e-300], [1e-300, 0.0]], [[0, 1], [2, 3]], True),
+    "tiny, of one agent, opposite ways": ([[0.0, 0.0], [1e-200, 1e-200], [-1e-200, -1e-200]], [[0, 1], [0, 2]], False),
     "subnormal, apart": ([[0.0, 0.0], [2e-323, 1e-323], [5e-324, 5e-324], [0.0, 1e-323]], [[0, 1], [2, 3]], False),
 }
 
@@ -124,6 +125,8 @@ def test_floating_point_alone_would_get_this_wrong():
             q = [p, [0.0, 24.0], [0.1, 0.1], [24.3, 24.3]]
             exact = bool(rational_crossings(q, [[0, 1], [2, 3]]))
             assert bool(len(crossings(q, [[0, 1], [2, 3]]))) == exact
+            upright = np.array(q)[:, [0, 0, 1]]  # the same in a plane of space that the first projection hides
+            assert bool(len(crossings(upright, [[0, 1], [2, 3]]))) == exact
             side = (0.1 - p[0]) * (24.3 - p[1]) - (0.1 - p[1]) * (24.3 - p[0])
             wrong += (side >= 0.0) != exact
     assert wrong > 0

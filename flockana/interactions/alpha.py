@@ -1,0 +1,238 @@
+"""The α-pair law among agents."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import sqrt
+from typing import Any
+
+import numpy as np
+
+from flockana.checks import FloatArray, ensure_positive
+from flockana.errors import ArgumentError
+from flockana.interactions.pair import PairInteraction, ensure_bump_start, ensure_resolved, evaluate
+from flockana.kernels import alpha as kernel
+from flockana.kernels.lift import lift, lift_scalar
+from flockana.kernels.scalars import bump, clenshaw, phi, phi_integral, sigma_norm
+from flockana.kernels.tables import integral_panels, panel_edges
+
+MAX_ASYMMETRY = 1e12  # of repulsion over attraction: beyond it φ(0) = 0 is lost in rounding
+
+_ADJACENCY_ALPHA = lift_scalar(kernel.adjacency_alpha)
+_BUMP = lift_scalar(bump)
+_PHI = lift_scalar(phi)
+_PHI_ALPHA = lift_scalar(kernel.phi_alpha)
+_PHI_ALPHA_SLOPE = lift_scalar(kernel.phi_alpha_slope)
+_PSI_ALPHA = lift_scalar(kernel.psi_alpha)
+_SIGMA_NORM = lift_scalar(sigma_norm)
+_ALPHA = lift(kernel.pair_alpha, kernel.pair_alpha_slope, kernel.pair_alpha_potential)
+
+
+@dataclass(frozen=True)
+class AlphaInteraction(PairInteraction):
+    """The α-pair law of Olfati-Saber (2006): action φ_α, potential ψ_α, adjacency a_ij.
+
+    Parameters
+    ----------
+    d : float
+        Desired distance between neighbours, in the user's length unit.
+    r : float
+        Interaction range, r > d; the ratio is κ = r/d.
+    eps : float
+        ε > 0 of the σ-norm.
+    h : float
+        Where the bump ρ_h begins to fall, 0 < h < 1.
+    a, b : float
+        Strength of attraction and of repulsion, 0 < a ≤ b.
+
+    Attributes
+    ----------
+    c : float
+        |a − b|/√(4ab), which makes φ(0) = 0.
+    d_alpha, r_alpha : float
+        σ-norms of d and r.
+    kappa : float
+        r/d.
+    c_star : float
+        ψ_α(0), the energy of a coincident pair.
+
+    Raises
+    ------
+    ArgumentError
+        If a parameter is outside the range above.
+
+    Examples
+    --------
+    >>> alpha = AlphaInteraction(d=7.0, r=8.4)
+    >>> round(alpha.c_star, 12), round(alpha.psi_alpha(alpha.r_alpha), 12)
+    (52.383811786645, 0.735901134262)
+    >>> alpha.phi_alpha(alpha.d_alpha)
+    0.0
+    """
+
+    d: float = 7.0
+    r: float = 8.4
+    eps: float = 0.1
+    h: float = 0.2
+    a: float = 5.0
+    b: float = 5.0
+
+    kernels = _ALPHA
+
+    def __post_init__(self) -> None:
+        for name in ("d", "r", "eps", "a", "b"):
+            object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
+        object.__setattr__(self, "h", ensure_bump_start(self.h))
+        if self.r <= self.d:
+            raise ArgumentError(f"r = {self.r:g} and d = {self.d:g}: expected r > d; the paper takes r = 1.2 d")
+        if self.a > self.b:
+            raise ArgumentError(f"a = {self.a:g} and b = {self.b:g}: expected a <= b (attraction at most repulsion)")
+        if self.b > MAX_ASYMMETRY * self.a:
+            raise ArgumentError(f"a = {self.a:g} and b = {self.b:g}: expected b <= {MAX_ASYMMETRY:g} a")
+        ensure_resolved(self.d, self.r, self.eps)
+
+    @cached_property
+    def c(self) -> float:
+        """|a − b|/√(4ab)."""
+        return (self.b - self.a) / (2.0 * sqrt(self.a) * sqrt(self.b))
+
+    @cached_property
+    def d_alpha(self) -> float:
+        """‖d‖_σ."""
+        return float(sigma_norm(self.d * self.d, self.eps))
+
+    @cached_property
+    def r_alpha(self) -> float:
+        """‖r‖_σ."""
+        return float(sigma_norm(self.r * self.r, self.eps))
+
+    @cached_property
+    def kappa(self) -> float:
+        """Ratio r/d."""
+        return self.r / self.d
+
+    @cached_property
+    def c_star(self) -> float:
+        """ψ_α(0)."""
+        return float(self.psi_alpha(0.0))
+
+    @property
+    def range(self) -> float:
+        """The interaction range r."""
+        return self.r
+
+    @property
+    def far_potential(self) -> float:
+        """ψ_α(r_α)."""
+        return float(self.par[8])
+
+    @cached_property
+    def _parts(self) -> tuple[FloatArray, FloatArray]:
+        """(par, panels): ψ_α(d_α) = 0 fixes the constants of the closed piece and of the taper."""
+        d_alpha, r_alpha, knee = self.d_alpha, self.r_alpha, self.h * self.r_alpha
+        par = np.array([self.eps, self.h, self.a, self.b, self.c, d_alpha, r_alpha, 0.0, 0.0])
+
+        def taper(z: FloatArray) -> FloatArray:
+            rho = 0.5 * (1.0 + np.cos(np.pi * (z / r_alpha - self.h) / (1.0 - self.h)))
+            action = np.array([phi(s, self.a, self.b, self.c) for s in z - d_alpha])
+            tapered: FloatArray = rho * action
+            return tapered
+
+        edges = panel_edges(knee, r_alpha, d_alpha - self.c)
+        if knee < d_alpha:  # d_α lies on the taper: make it an edge, where ψ vanishes exactly
+            edges = np.unique(np.append(edges, d_alpha))
+        panels = integral_panels(taper, edges, value_at_right=0.0)
+        at_knee = phi_integral(knee - d_alpha, self.a, self.b, self.c)
+        left_end = clenshaw(knee, panels)
+        if knee < d_alpha:
+            shift = -clenshaw(d_alpha, panels)
+            par[7] = left_end + shift - at_knee
+        else:
+            shift = at_knee - left_end
+        panels[:, 2] += shift
+        par[8] = shift
+        for array in (par, panels):
+            array.setflags(write=False)
+        return par, panels
+
+    @property
+    def par(self) -> FloatArray:
+        """(ε, h, a, b, c, d_α, r_α, constant of ψ_α where ρ_h = 1, ψ_α(r_α))."""
+        return self._parts[0]
+
+    @property
+    def panels(self) -> FloatArray:
+        """Chebyshev panels of ψ_α on [h r_α, r_α]."""
+        return self._parts[1]
+
+    def sigma_norm(self, x: Any) -> Any:
+        """‖x‖_σ = (√(1 + ε x²) − 1)/ε of a Euclidean length.
+
+        Parameters
+        ----------
+        x : float or ndarray
+            Euclidean lengths.
+        """
+        with np.errstate(over="ignore"):
+            return evaluate(_SIGMA_NORM, np.square(np.asarray(x, dtype=np.float64)), self.eps)
+
+    def bump(self, z: Any) -> Any:
+        """ρ_h(z).
+
+        Parameters
+        ----------
+        z : float or ndarray
+            Arguments; 0 outside [0, 1].
+        """
+        return evaluate(_BUMP, z, self.h)
+
+    def phi(self, s: Any) -> Any:
+        """φ(s) = ½[(a+b) σ₁(s+c) + (a−b)].
+
+        Parameters
+        ----------
+        s : float or ndarray
+            Differences of σ-norms.
+        """
+        return evaluate(_PHI, s, self.a, self.b, self.c)
+
+    def phi_alpha(self, z: Any) -> Any:
+        """φ_α(z) = ρ_h(z/r_α) φ(z − d_α): negative repels.
+
+        Parameters
+        ----------
+        z : float or ndarray
+            σ-norms.
+        """
+        return evaluate(_PHI_ALPHA, z, self.par)
+
+    def phi_alpha_slope(self, z: Any) -> Any:
+        """dφ_α/dz, the stiffness of a link at its length.
+
+        Parameters
+        ----------
+        z : float or ndarray
+            σ-norms.
+        """
+        return evaluate(_PHI_ALPHA_SLOPE, z, self.par)
+
+    def psi_alpha(self, z: Any) -> Any:
+        """ψ_α(z) = ∫_{d_α}^{z} φ_α, to 1e-13 c* absolute.
+
+        Parameters
+        ----------
+        z : float or ndarray
+            σ-norms.
+        """
+        return evaluate(_PSI_ALPHA, z, self.par, self.panels)
+
+    def adjacency(self, z: Any) -> Any:
+        """a_ij as a function of z = ‖q_j − q_i‖_σ.
+
+        Parameters
+        ----------
+        z : float or ndarray
+            σ-norms.
+        """
+        return evaluate(_ADJACENCY_ALPHA, z, self.par)

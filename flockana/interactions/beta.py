@@ -1,0 +1,132 @@
+"""The repulsion between an agent and the β-agent of an obstacle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from flockana.checks import FloatArray, ensure_positive
+from flockana.errors import ArgumentError
+from flockana.interactions.pair import ensure_bump_start, ensure_resolved, evaluate
+from flockana.kernels import alpha as kernel
+from flockana.kernels.lift import lift_scalar
+from flockana.kernels.scalars import clenshaw, sigma_norm
+from flockana.kernels.tables import integral_panels, panel_edges
+
+_ADJACENCY_BETA = lift_scalar(kernel.adjacency_beta)
+_PHI_BETA = lift_scalar(kernel.phi_beta)
+_PSI_BETA = lift_scalar(kernel.psi_beta)
+
+
+@dataclass(frozen=True)
+class BetaInteraction:
+    """The repulsion between an agent and the β-agent of an obstacle (Olfati-Saber 2006).
+
+    Parameters
+    ----------
+    d : float
+        Desired clearance d' from obstacles, in the user's length unit.
+    r : float
+        Range r' > d' of the neighbour query; the force ends at d' already.
+    eps : float
+        ε > 0 of the σ-norm.
+    h : float
+        Where the bump begins to fall, 0 < h < 1.
+
+    Attributes
+    ----------
+    d_beta, r_beta : float
+        σ-norms of d and r.
+
+    Raises
+    ------
+    ArgumentError
+        If a parameter is outside the range above.
+
+    Examples
+    --------
+    >>> beta = BetaInteraction(d=4.2, r=5.04)
+    >>> beta.phi_beta(beta.d_beta) == 0.0, beta.psi_beta(beta.d_beta)
+    (True, 0.0)
+    """
+
+    d: float = 4.2
+    r: float = 5.04
+    eps: float = 0.1
+    h: float = 0.9
+
+    def __post_init__(self) -> None:
+        for name in ("d", "r", "eps"):
+            object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
+        object.__setattr__(self, "h", ensure_bump_start(self.h))
+        if self.r <= self.d:
+            raise ArgumentError(f"r = {self.r:g} and d = {self.d:g}: expected r > d; the paper takes r' = 1.2 d'")
+        ensure_resolved(self.d, self.r, self.eps)
+
+    @cached_property
+    def d_beta(self) -> float:
+        """‖d'‖_σ."""
+        return float(sigma_norm(self.d * self.d, self.eps))
+
+    @cached_property
+    def r_beta(self) -> float:
+        """‖r'‖_σ."""
+        return float(sigma_norm(self.r * self.r, self.eps))
+
+    @cached_property
+    def _parts(self) -> tuple[FloatArray, FloatArray]:
+        d_beta, knee = self.d_beta, self.h * self.d_beta
+        par = np.array([self.eps, self.h, d_beta, 0.0])
+
+        def taper(z: FloatArray) -> FloatArray:
+            rho = 0.5 * (1.0 + np.cos(np.pi * (z / d_beta - self.h) / (1.0 - self.h)))
+            return rho * ((z - d_beta) / np.sqrt(1.0 + (z - d_beta) ** 2) - 1.0)
+
+        panels = integral_panels(taper, panel_edges(knee, d_beta, d_beta), value_at_right=0.0)
+        par[3] = clenshaw(knee, panels) - (sigma_norm((knee - d_beta) ** 2, 1.0) - knee)
+        for array in (par, panels):
+            array.setflags(write=False)
+        return par, panels
+
+    @property
+    def par(self) -> FloatArray:
+        """(ε, h, d_β, constant of ψ_β where ρ_h = 1)."""
+        return self._parts[0]
+
+    @property
+    def panels(self) -> FloatArray:
+        """Chebyshev panels of ψ_β on [h d_β, d_β]."""
+        return self._parts[1]
+
+    def phi_beta(self, z: Any) -> Any:
+        """φ_β(z) = ρ_h(z/d_β)(σ₁(z − d_β) − 1) ≤ 0.
+
+        Parameters
+        ----------
+        z : float or ndarray
+            σ-norms.
+        """
+        return evaluate(_PHI_BETA, z, self.par)
+
+    def psi_beta(self, z: Any) -> Any:
+        """ψ_β(z) = ∫_{d_β}^{z} φ_β ≥ 0.
+
+        Parameters
+        ----------
+        z : float or ndarray
+            σ-norms.
+        """
+        return evaluate(_PSI_BETA, z, self.par, self.panels)
+
+    def adjacency(self, z: Any) -> Any:
+        """b_ik as a function of z = ‖q̂_ik − q_i‖_σ.
+
+        Parameters
+        ----------
+        z : float or ndarray
+            σ-norms.
+        """
+        return evaluate(_ADJACENCY_BETA, z, self.par)

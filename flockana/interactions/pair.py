@@ -1,0 +1,186 @@
+"""What every pair law has once its scalar functions are given: sums over all pairs within its range."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from math import inf
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flockana.checks import FloatArray, ensure_finite_scalar
+from flockana.errors import ArgumentError
+from flockana.kernels.lift import PairKernels
+from flockana.kernels.neighbours import pair_blocks
+from flockana.kernels.scalars import sigma_norm
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
+
+
+def evaluate(compiled: Callable[..., Any], x: Any, *parameters: Any) -> Any:
+    """Run a compiled scalar function (`kernels.lift.lift_scalar`) over a scalar or an array of any shape.
+
+    Parameters
+    ----------
+    compiled : callable
+        Takes a one-dimensional array and the parameters.
+    x : float or ndarray
+        Where to evaluate it.
+    *parameters : object
+        Passed on.
+    """
+    values = np.asarray(x, dtype=np.float64)
+    out = compiled(values.ravel(), *parameters)
+    return float(out[0]) if values.ndim == 0 else out.reshape(values.shape)
+
+
+class PairInteraction(ABC):
+    """What every pair law has once its scalar functions are given: sums over all pairs within its range.
+
+    A subclass is a frozen dataclass that sets `range`, `kernels`, `par` and `panels`; pairs beyond the range have the
+    constant potential `far_potential` and no force.
+    """
+
+    kernels: PairKernels
+
+    @property
+    @abstractmethod
+    def range(self) -> float:
+        """Euclidean distance from which on the pair force vanishes."""
+
+    @property
+    @abstractmethod
+    def far_potential(self) -> float:
+        """Potential of a pair beyond the range."""
+
+    @property
+    @abstractmethod
+    def par(self) -> FloatArray:
+        """Parameters in the order that the kernels read."""
+
+    @property
+    @abstractmethod
+    def panels(self) -> FloatArray:
+        """Chebyshev panels of the potential, or an empty (0, 0) array where it is in closed form."""
+
+    def forces(self, q: FloatArray, p: FloatArray, *, stiffness: float, damping: float) -> tuple[FloatArray, float]:
+        """Pair accelerations and their dissipation, unchecked (the integrators' inner loop).
+
+        Parameters
+        ----------
+        q, p : ndarray, shape (n, m)
+            Positions and velocities.
+        stiffness, damping : float
+            Gains c1 of the gradient term and c2 of the velocity-consensus term.
+
+        Returns
+        -------
+        u : ndarray, shape (n, m)
+            c1 Σ_j φ n_ij + c2 Σ_j a_ij (p_j − p_i).
+        dissipation : float
+            pᵀL̂p = ½ Σ over ordered pairs of a_ij ‖p_j − p_i‖².
+        """
+        u = np.zeros_like(q)
+        dissipation = 0.0
+        for i, j in pair_blocks(q, self.range):
+            dissipation += self.kernels.forces(q, p, i, j, self.par, stiffness, damping, u)
+        return u, dissipation
+
+    def potential_energy(self, q: FloatArray) -> float:
+        """V(q) = ½ Σ_i Σ_{j≠i} ψ: every pair once, those out of range included.
+
+        Parameters
+        ----------
+        q : ndarray, shape (n, m)
+            Positions.
+        """
+        near, pairs = 0.0, 0
+        for i, j in pair_blocks(q, self.range):
+            near += self.kernels.potential(q, i, j, self.par, self.panels)
+            pairs += i.size
+        n = q.shape[0]
+        return float(near + (n * (n - 1) // 2 - pairs) * self.far_potential)
+
+    def hessian(self, q: FloatArray) -> csr_array:
+        """∇²V(q), sparse and symmetric, in the order of ``q.ravel()``.
+
+        Parameters
+        ----------
+        q : ndarray, shape (n, m)
+            Positions.
+
+        Returns
+        -------
+        scipy.sparse.csr_array, shape (n m, n m)
+        """
+        return self._assemble(q, self._stiffness_blocks)
+
+    def laplacian(self, q: FloatArray) -> csr_array:
+        """L̂(q) = L ⊗ I_m with the weights a_ij, sparse, in the order of ``q.ravel()``.
+
+        Parameters
+        ----------
+        q : ndarray, shape (n, m)
+            Positions.
+
+        Returns
+        -------
+        scipy.sparse.csr_array, shape (n m, n m)
+        """
+        return self._assemble(q, lambda delta, terms: terms[1][:, None, None] * np.eye(delta.shape[1]))
+
+    @staticmethod
+    def _stiffness_blocks(delta: FloatArray, terms: FloatArray) -> FloatArray:
+        # gradient of w(s²) Δ in Δ: w I + 2 w' ΔΔᵀ
+        w, slope = terms[0][:, None, None], terms[2][:, None, None]
+        blocks: FloatArray = w * np.eye(delta.shape[1]) + 2.0 * slope * delta[:, :, None] * delta[:, None, :]
+        return blocks
+
+    def _assemble(self, q: FloatArray, block_of: Any) -> csr_array:
+        """Sum ±B over pairs: B on the two diagonal blocks, −B on the two others."""
+        from scipy.sparse import coo_array
+
+        n, m = q.shape
+        axes = np.arange(m)
+        rows, columns, values = [], [], []
+        for i, j in pair_blocks(q, self.range):
+            block = block_of(q[j] - q[i], self.kernels.terms(q, i, j, self.par))
+            for a, b, sign in ((i, i, 1.0), (j, j, 1.0), (i, j, -1.0), (j, i, -1.0)):
+                shape = (i.size, m, m)
+                rows.append(np.broadcast_to((a[:, None] * m + axes)[:, :, None], shape).ravel())
+                columns.append(np.broadcast_to((b[:, None] * m + axes)[:, None, :], shape).ravel())
+                values.append((sign * block).ravel())
+        entries = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
+        return coo_array(entries, shape=(n * m, n * m)).tocsr()
+
+
+def ensure_resolved(d: float, r: float, eps: float) -> None:
+    """Raise where the parameters are so extreme that d and r have no σ-norms apart from 0, ∞ and each other.
+
+    Parameters
+    ----------
+    d, r, eps : float
+        Distance, range and ε, all positive.
+    """
+    near, far = sigma_norm(d * d, eps), sigma_norm(r * r, eps)
+    if not (0.0 < near < far < inf and eps * r * r < inf):
+        raise ArgumentError(
+            f"d = {d:g}, r = {r:g}, eps = {eps:g}: their σ-norms are {near:g} and {far:g}; "
+            "expected 0 < d_sigma < r_sigma, all finite: choose another length unit"
+        )
+
+
+def ensure_bump_start(h: Any) -> float:
+    """Return h as a float strictly between 0 and 1.
+
+    Parameters
+    ----------
+    h : object
+        What the caller gave.
+    """
+    start = ensure_finite_scalar("h", h)
+    if not 0.0 < start < 1.0:
+        raise ArgumentError(f"h = {start:g}: expected 0 < h < 1; at h = 1 the bump jumps (erratum E10)")
+    return start
