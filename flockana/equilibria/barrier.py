@@ -258,8 +258,8 @@ def lattice_reach(alpha: AlphaInteraction, m: int = 2) -> int | None:
     """
     if m == 3 or alpha.kappa > (2.0 if m == 1 else sqrt(3.0)):
         return None
-    pairs = lambda n: n * (n - 1) // 2 - (n - 1 if m == 1 else harborth(n))  # noqa: E731
-    return max(n for n in range(1, _LARGEST) if alpha.far_potential * pairs(n) < alpha.c_star)
+    links = {n: n - 1 if m == 1 else harborth(n) for n in range(1, _LARGEST)}
+    return max(n for n, most in links.items() if alpha.far_potential * (n * (n - 1) // 2 - most) < alpha.c_star)
 
 
 def collision_bounds(alpha: AlphaInteraction, n: int, m: int = 2) -> tuple[float, float]:
@@ -287,4 +287,4 @@ def collision_bounds(alpha: AlphaInteraction, n: int, m: int = 2) -> tuple[float
         return inf, inf
     lattice = hexagonal_spiral(n - 1, alpha.d) if m == 2 else lattice_starts(n - 1, m, alpha.d, 1, noise=0.0)[0]
     doubled = _most_linked_first(lattice, alpha)
-    return alpha.c_star + 3 * energy_floor(alpha, n, m), alpha.potential_energy(np.vstack([doubled[:1], doubled]))
+    return alpha.c_star + energy_floor(alpha, n - 1, m), alpha.potential_energy(np.vstack([doubled[:1], doubled]))

@@ -76,7 +76,7 @@ def spectrum(potential: Potential, q: FloatArray, *, zero: float = ZERO) -> Spec
     off -= (off @ rigid) @ rigid.T
     above = 1.0 + 2.0 * float(np.abs(hessian).sum(axis=1).max())  # beyond every eigenvalue: where rigid motions are put
     values = np.linalg.eigvalsh(0.5 * (off + off.T) + above * (rigid @ rigid.T))[: q.size - rigid.shape[1]]
-    # where all agents are out of range the largest eigenvalue is rounding itself: a pair's stiffness is the measure then
+    # with all agents out of range the largest eigenvalue is rounding itself: a pair's stiffness is the measure then
     small = zero * max(float(np.abs(values).max(initial=0.0)), potential.force_scale / potential.law.alpha.d)
     return Spectrum(values, rigid.shape[1], int(np.sum(values < -small)), int(np.sum(np.abs(values) <= small)))
 

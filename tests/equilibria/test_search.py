@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from flockana.equilibria.coincidence import least_with_coincidence
+from flockana.equilibria.coincidence import _trace, least_with_coincidence
 from flockana.equilibria.collapse import CollapseDiagram, collapse_diagram, collapse_threshold, threshold
 from flockana.equilibria.congruence import congruent
 from flockana.equilibria.record import read_equilibrium, smallest_strained, write_equilibrium
@@ -142,6 +142,12 @@ def test_a_record_is_verified_when_read(tmp_path):
 
 def test_coincident_agents_need_enough_neighbours():
     alpha = AlphaInteraction()
+    for m in (1, 2, 3):
+        for length in (0.0, 2.0, 6.5, 8.0):
+            pair = np.zeros((2, m))
+            pair[1, 0] = length
+            trace = float(np.trace(alpha.hessian(pair).toarray()[:m, :m]))
+            assert float(_trace(alpha, np.array([length]), m)[0]) == pytest.approx(trace, abs=1e-11)
     assert [least_with_coincidence(alpha, m) for m in (1, 2, 3)] == [4, 5, 6]
     # five is reached in the plane, four on a line: a pair between two others
     assert find_equilibrium(LAW, rhombus_with_double_agent(7.0), method="root").kind == "minimum"

@@ -102,6 +102,10 @@ def test_links_counted_by_hand(build, size, count):
     assert is_alpha_lattice(q, D, r)
 
 
+def test_the_triangular_patch_is_nearly_square():
+    assert np.ptp(triangular(100, D), axis=0).tolist() == pytest.approx([9.5 * D, 9.0 * D * np.sqrt(0.75)])
+
+
 def test_hcp_is_not_fcc():
     """Both have twelve neighbours; only in HCP do two neighbours stand at √(8/3) d, across a layer."""
     assert math.sqrt(8.0 / 3.0) == pytest.approx(shells(PATTERNS["hcp"][0])[2], rel=1e-8)

@@ -117,19 +117,34 @@ def test_degenerate_links_are_decided_as_documented(case):
 
 
 def test_floating_point_alone_would_get_this_wrong():
-    """An agent next to the middle of a long diagonal, moved by single ulps: naive signs scatter here."""
+    """An agent next to a long link, moved by single ulps: naive signs are wrong, not only zero."""
+    start, end = [0.958409335179392, 0.7165132345658071], [29.805079751784863, 25.745566490890397]
     wrong = 0
-    for i in range(16):
-        for j in range(16):
-            p = [12.1 + i * 2.0**-49, 12.1 + j * 2.0**-49]
-            q = [p, [0.0, 24.0], [0.1, 0.1], [24.3, 24.3]]
-            exact = bool(rational_crossings(q, [[0, 1], [2, 3]]))
-            assert bool(len(crossings(q, [[0, 1], [2, 3]]))) == exact
+    for i in range(8):
+        for j in range(8):
+            p = [20.958783335823433 + i * 2.0**-49, 18.07000390711034 + j * 2.0**-49]
+            q, pairs = [p, [0.0, 24.0], start, end], [[0, 1], [2, 3]]
+            exact = bool(rational_crossings(q, pairs))
+            assert bool(len(crossings(q, pairs))) == exact
             upright = np.array(q)[:, [0, 0, 1]]  # the same in a plane of space that the first projection hides
-            assert bool(len(crossings(upright, [[0, 1], [2, 3]]))) == exact
-            side = (0.1 - p[0]) * (24.3 - p[1]) - (0.1 - p[1]) * (24.3 - p[0])
-            wrong += (side >= 0.0) != exact
+            assert bool(len(crossings(upright, pairs))) == exact
+            side = (start[0] - p[0]) * (end[1] - p[1]) - (start[1] - p[1]) * (end[0] - p[0])
+            wrong += (side < 0.0 and not exact) or (side > 0.0 and exact)
     assert wrong > 0
+
+
+def test_coplanar_in_space_although_floating_point_sees_a_volume():
+    """Diagonals of parallelograms of large whole coordinates: their determinant is 0, its terms have 75 bits."""
+    rng = np.random.default_rng(0)
+    seen = 0
+    for _ in range(20):
+        centre, u, v = rng.integers(-(2**25), 2**25, (3, 3)).astype(float)
+        q = np.array([centre - u, centre + u, centre - v, centre + v])
+        assert crossings(q, [[0, 1], [2, 3]]).tolist() == [[0, 1]]
+        a, b, c = q[:3] - q[3]
+        minors = [b[k - 2] * c[k - 1] - b[k - 1] * c[k - 2] for k in range(3)]
+        seen += a[0] * minors[0] + a[1] * minors[1] + a[2] * minors[2] != 0.0
+    assert seen > 0
 
 
 def configurations(m: int, coarse: bool):
