@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from flockana.nets import components as components
     from flockana.nets import laplacian as laplacian
     from flockana.nets import links as links
+    from flockana.plots.animation import animate as animate
     from flockana.references import cite as cite
     from flockana.scenarios.scenario import Scenario as Scenario
     from flockana.scenarios.scenario import scenario as scenario
@@ -76,6 +77,7 @@ _BY_MODULE = {
     "equilibria": ("find_equilibrium", "Equilibrium"),
     "theorems": ("theorems", "theorem", "verify", "Verdict", "Tolerances"),
     "scenarios": ("scenarios", "scenario", "Scenario"),
+    "plots.animation": ("animate",),
     "references": ("cite",),
 }
 _HOME = {name: module for module, names in _BY_MODULE.items() for name in names}

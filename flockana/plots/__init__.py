@@ -1,22 +1,41 @@
 """Figures: each function draws what it is given on an Axes, or on a new one, and returns it; it computes nothing."""
 
+from flockana.plots.animation import animate, animation
+from flockana.plots.obstacles import obstacles
 from flockana.plots.pair import action, potential
-from flockana.plots.series import centre_of_mass, distances, energy, energy_residual, measure, panel, speeds
+from flockana.plots.reynolds import rules
+from flockana.plots.series import (
+    centre_of_mass,
+    clearances,
+    components,
+    distances,
+    energy,
+    energy_residual,
+    measure,
+    panel,
+    speeds,
+)
 from flockana.plots.snapshot import configuration, snapshot
 from flockana.plots.style import style
 from flockana.plots.tracks import centre_path, trajectories
 
 __all__ = [
     "action",
+    "animate",
+    "animation",
     "centre_of_mass",
     "centre_path",
+    "clearances",
+    "components",
     "configuration",
     "distances",
     "energy",
     "energy_residual",
     "measure",
+    "obstacles",
     "panel",
     "potential",
+    "rules",
     "snapshot",
     "speeds",
     "style",

@@ -5,10 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from matplotlib.ticker import FormatStrFormatter, NullFormatter
 
+from flockana.clearance import clearance
 from flockana.errors import UnknownNameError
 from flockana.laws.law import DiscreteLaw
 from flockana.plots.style import BLUE, GREEN, INK, MUTED, PURPLE, VERMILLION, ensure_axes, hairline, legend_above, style
+from flockana.scenarios.findings import component_counts
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -166,6 +169,69 @@ def distances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
         if hasattr(pair_law, name):
             ax.axhline(getattr(pair_law, name), color=colour, linestyle=dash, linewidth=1.1, label=name)
     ax.set_ylim(bottom=0.0)
+    legend_above(ax)
+    return _frame(ax, trajectory, label)
+
+
+def components(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
+    """Draw the number of components of the net over time (logarithmic), if the law has an interaction range.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The run.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    ax = ensure_axes(ax)
+    label = "components of the net"
+    if "connectivity" not in trajectory.metrics():
+        return _empty(ax, label, "not defined for this law")
+    counts = component_counts(trajectory)
+    ax.plot(trajectory.t, counts, color=BLUE, linestyle="-", drawstyle="steps-post")
+    ax.set_yscale("log")
+    ax.set_ylim(0.8, max(2.5, 1.3 * float(counts.max())))
+    ax.yaxis.set_major_formatter(FormatStrFormatter("%d"))
+    ax.yaxis.set_minor_formatter(NullFormatter())
+    return _frame(ax, trajectory, label)
+
+
+def clearances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
+    """Draw the least clearance of any agent from each obstacle at the samples, d', and the bound for all times.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The run.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    ax = ensure_axes(ax)
+    label = "least clearance (length)"
+    solids = getattr(trajectory.law, "obstacles", ())
+    if not solids:
+        return _empty(ax, label, "there are no obstacles")
+    t, q, p, u = trajectory.t, trajectory.q, trajectory.p, trajectory.u
+    width, alpha = hairline(2 * len(solids))
+    for k, solid in enumerate(solids):
+        least = solid.clearance(q.reshape(-1, trajectory.m)).reshape(len(t), -1).min(axis=1)
+        name = "each obstacle, at the samples" if k == 0 else None
+        ax.plot(t, least, color=BLUE, linestyle="-", linewidth=width, alpha=alpha, label=name)
+    bound = clearance(t, q, p, u, solids).lower
+    ax.axhline(bound, color=VERMILLION, linestyle="--", linewidth=1.1, label="lower bound for all times")
+    beta = getattr(trajectory.law, "beta", None)
+    if beta is not None:
+        ax.axhline(beta.d, color=GREEN, linestyle=":", linewidth=1.1, label="d'")
+        ax.set_ylim(min(0.0, bound), max(6.0 * beta.d, 1.5 * bound))
+    ax.axhline(0.0, color=INK, linewidth=0.8, linestyle="-")
     legend_above(ax)
     return _frame(ax, trajectory, label)
 

@@ -1,7 +1,8 @@
-"""One instant of a flock: agents, velocities, links coloured by strain, the γ-agent."""
+"""One instant of a flock: agents, velocities, links coloured by strain, the γ-agent, obstacles with β-agents."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,8 +11,13 @@ from matplotlib.colors import Normalize
 from mpl_toolkits.mplot3d.art3d import Line3DCollection  # type: ignore[import-untyped]
 
 from flockana.checks import FloatArray, ensure_finite_scalar, ensure_points
+from flockana.environment.beta import ObstacleField
+from flockana.environment.obstacles import Obstacle
+from flockana.interactions import BetaInteraction
 from flockana.nets import link_lengths, links
-from flockana.plots.style import GREEN, INK, MUTED, STRAIN, VERMILLION, ensure_axes, frame_space
+from flockana.plots.obstacles import bounds
+from flockana.plots.obstacles import obstacles as draw_obstacles
+from flockana.plots.style import GREEN, INK, MUTED, PURPLE, STRAIN, VERMILLION, ensure_axes, frame_space
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -30,7 +36,9 @@ def snapshot(
     velocities: bool = True,
     bar: bool = True,
 ) -> Axes:
-    """Draw the sample of a run that is nearest to a time, with its links if the law has an interaction range.
+    """Draw the sample of a run nearest to a time, with its links if the law has an interaction range.
+
+    Obstacles are drawn, and the β-agents on them, where the law has any.
 
     Parameters
     ----------
@@ -59,6 +67,8 @@ def snapshot(
         d=getattr(pair_law, "d", None),
         r=getattr(pair_law, "r", None),
         target=None if target is None else target.position(t),
+        obstacles=getattr(trajectory.law, "obstacles", ()),
+        beta=getattr(trajectory.law, "beta", None),
         ax=ax,
         bar=bar,
         title=f"t = {t:.4g}",
@@ -72,11 +82,14 @@ def configuration(
     d: float | None = None,
     r: float | None = None,
     target: Any = None,
+    obstacles: Sequence[Obstacle] = (),
+    beta: BetaInteraction | None = None,
     ax: Axes | None = None,
     bar: bool = True,
     title: str = "",
 ) -> Axes:
-    """Draw agents, and what else is given: velocities as arrows, links within r coloured by (length − d)/d, a γ-agent.
+    """Draw agents, and what else is given: velocities as arrows, links within r coloured by (length − d)/d, a γ-agent,
+    obstacles, and the β-agents on them that are within r' of their agent, each joined to it by a dotted line.
 
     Parameters
     ----------
@@ -90,6 +103,10 @@ def configuration(
         Interaction range; without it no links are drawn.
     target : array_like, shape (m,), optional
         Position of the γ-agent.
+    obstacles : sequence of Obstacle
+        Drawn in full, and kept in view where they are bounded.
+    beta : BetaInteraction, optional
+        Its r' says which β-agents to draw; without it there are none.
     ax : matplotlib.axes.Axes, optional
         Where to draw; three-dimensional for m = 3.
     bar : bool
@@ -116,6 +133,11 @@ def configuration(
             *mark.T, s=110, marker="*", color=VERMILLION, edgecolors="white", linewidths=0.6, zorder=4, label="γ-agent"
         )
         seen = np.vstack([x, mark])
+    if len(obstacles):
+        seen = np.vstack([seen, _in_plane(bounds(obstacles))])
+        draw_obstacles(obstacles, ax=axes, view=seen[:, :m])
+        if beta is not None:
+            _beta_agents(axes, points, ObstacleField(tuple(obstacles), beta), size)
     fastest = _arrows(axes, x, p)
     axes.set_title(title + (f"   longest arrow: {fastest:.3g} length/time" if fastest else ""), fontsize=9)
     _frame(axes, seen, m)
@@ -143,6 +165,18 @@ def _links(ax: Any, x: FloatArray, points: FloatArray, d: float | None, r: float
         label, pad = "strain (length − d)/d", 0.12 if x.shape[1] == 3 else 0.03
         scale = ax.get_figure().colorbar(lines, ax=ax, extend="min", shrink=0.75, aspect=28, pad=pad, label=label)
         scale.outline.set_visible(False)
+
+
+def _beta_agents(ax: Any, points: FloatArray, field: ObstacleField, size: float) -> None:
+    """Draw the β-agents in range, each joined to its agent."""
+    near = field.links(points, np.zeros_like(points))
+    if near.agent.size == 0:
+        return
+    ends = np.stack([_in_plane(points[near.agent]), _in_plane(near.q)], axis=1)
+    kind: Any = Line3DCollection if ends.shape[2] == 3 else LineCollection
+    ax.add_collection(kind(ends, colors=PURPLE, linewidths=0.9, linestyles=":", zorder=2))
+    look = {"facecolors": "white", "edgecolors": PURPLE, "linewidths": 0.8, "zorder": 3}
+    ax.scatter(*ends[:, 1].T, s=0.7 * size, marker="D", label="β-agents", **look)
 
 
 def _arrows(ax: Any, x: FloatArray, p: Any) -> float:

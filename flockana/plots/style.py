@@ -107,6 +107,7 @@ def legend_above(ax: Any) -> None:
         borderaxespad=0.2,
         handlelength=1.8,
         columnspacing=1.2,
+        fontsize=_STYLE["legend.fontsize"],
     )
 
 

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from flockana import plots
+from flockana.scenarios.findings import component_counts
 from flockana.trajectory import Trajectory
 
 _DPI = 125
@@ -34,7 +35,7 @@ class Picture:
 
 
 def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
-    """Draw a run: snapshots, paths, C R Ẽ K̃, energy with its balance, distances and speeds.
+    """Draw a run: snapshots, paths, C R Ẽ K̃, energy with its balance, distances and speeds; among obstacles, clearance.
 
     Parameters
     ----------
@@ -45,11 +46,16 @@ def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
     -------
     tuple of Picture
     """
-    linked = hasattr(trajectory.law, "alpha")
-    return (
+    linked, blocked = hasattr(trajectory.law, "alpha"), bool(getattr(trajectory.law, "obstacles", ()))
+    drawn = (
         Picture(
-            "Start, middle and end. "
+            (
+                "Start, middle (of a flock that splits: where it is most split) and end. "
+                if blocked
+                else "Start, middle and end. "
+            )
             + ("Links join agents closer than r, coloured by strain (length − d)/d. " if linked else "")
+            + ("Dotted lines lead to β-agents, the closest points of obstacles within r'. " if blocked else "")
             + "Arrows are velocities, scaled anew in each panel; a star is the γ-agent.",
             _png(_snapshots, trajectory, (13.0, 4.3)),
         ),
@@ -64,7 +70,7 @@ def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
             _png(_measures, trajectory, (13.0, 2.9)),
         ),
         Picture(
-            "The energy H of the law (with a γ-agent: in the frame of the centre of mass), and the residual of its "
+            "The energy H of the law (of Algorithm 2: in the frame of the centre of mass), and the residual of its "
             "balance, which is the numerical error of this run.",
             _png(_energy, trajectory, (13.0, 2.9)),
         ),
@@ -74,6 +80,13 @@ def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
             _png(_distances, trajectory, (13.0, 2.9)),
         ),
     )
+    if not blocked:
+        return drawn
+    caption = (
+        "Least clearance of any agent from each obstacle, with a lower bound that holds between the samples too, and "
+        "d', where repulsion begins; the number of components of the net, which leaves 1 where the flock splits."
+    )
+    return (*drawn, Picture(caption, _png(_clearance, trajectory, (13.0, 2.9))))
 
 
 def _png(draw: Callable[[Figure, Trajectory], None], run: Trajectory, size: tuple[float, float]) -> str:
@@ -90,10 +103,20 @@ def _png(draw: Callable[[Figure, Trajectory], None], run: Trajectory, size: tupl
 
 
 def _snapshots(figure: Figure, run: Trajectory) -> None:
-    times = run.t[[0, np.searchsorted(run.t, 0.5 * (run.t[0] + run.t[-1])), -1]]
+    times = run.t[[0, _middle(run), -1]]
     for k, time in enumerate(times.tolist()):
         ax = figure.add_subplot(1, 3, k + 1, projection="3d" if run.m == 3 else None)
         plots.snapshot(run, time, ax=ax, bar=k == 2)
+
+
+def _middle(run: Trajectory) -> int:
+    """The sample halfway in time; among obstacles the one where a flock, once connected, is most split."""
+    if getattr(run.law, "obstacles", ()):
+        counts = component_counts(run)
+        since = int(np.argmax(counts == 1))
+        if counts[since] == 1 and counts[since:].max() > 1:
+            return since + int(np.argmax(counts[since:]))
+    return int(np.searchsorted(run.t, 0.5 * (run.t[0] + run.t[-1])))
 
 
 def _motion(figure: Figure, run: Trajectory) -> None:
@@ -117,3 +140,9 @@ def _distances(figure: Figure, run: Trajectory) -> None:
     left, right = figure.subplots(1, 2)
     plots.distances(run, ax=left)
     plots.speeds(run, ax=right)
+
+
+def _clearance(figure: Figure, run: Trajectory) -> None:
+    left, right = figure.subplots(1, 2)
+    plots.clearances(run, ax=left)
+    plots.components(run, ax=right)

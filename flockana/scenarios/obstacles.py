@@ -315,7 +315,7 @@ SCENARIOS: dict[str, Callable[..., Scenario]] = dict(
             centre=(0.0, 0.0, 0.0),
             n=40,
             spread=25.0,
-            end=200.0,
+            end=150.0,
             expected=_STATIC,
             reports=(_RESTS, _TOUCHES),
         ),

@@ -1,0 +1,251 @@
+"""A run as a film: frames at equal spacing in time, in a view that holds still."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flockana.checks import FloatArray, ensure_positive
+from flockana.errors import ArgumentError, FileError
+from flockana.laws.law import DiscreteLaw
+from flockana.plots.obstacles import bounds
+from flockana.plots.snapshot import snapshot
+from flockana.plots.style import style
+
+if TYPE_CHECKING:
+    from matplotlib.animation import FuncAnimation
+
+    from flockana.trajectory import Trajectory
+
+_DPI = 100
+_WIDTH, _LEAST, _MOST = 8.0, 3.2, 7.0  # inches: of the film, and between what its height lies
+_FRAMES = 20_000  # a longer film is a slip of the pen
+_SAME = ".gif", ".mp4"
+
+
+def equal_times(trajectory: Trajectory, count: int) -> Trajectory:
+    """The run at equally spaced times, between samples by cubics that match values and slopes.
+
+    Of a map, which has no state between its steps, the nearest ones.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The run.
+    count : int
+        Number of times, >= 1; with 1 the start alone.
+
+    Returns
+    -------
+    Trajectory
+        Without its ``extra`` series.
+    """
+    t = trajectory.t
+    times = np.linspace(t[0], t[-1], count)
+    if isinstance(trajectory.law, DiscreteLaw) or len(t) == 1:
+        k = np.abs(np.searchsorted(0.5 * (t[:-1] + t[1:]), times, side="right"))
+        q, p, u, times = trajectory.q[k], trajectory.p[k], trajectory.u[k], t[k]
+    else:
+        from scipy.interpolate import CubicHermiteSpline
+
+        # an agent that hits an obstacle brakes within less than a sample: both cubics follow it, with no overshoot
+        q = CubicHermiteSpline(t, trajectory.q, trajectory.p)(times)
+        p = CubicHermiteSpline(t, trajectory.p, trajectory.u)(times)
+        u = CubicHermiteSpline(t, trajectory.p, trajectory.u).derivative()(times)
+    return replace(trajectory, t=times, q=q, p=p, u=u, extra={})
+
+
+def animation(
+    trajectory: Trajectory, *, seconds: float = 10.0, fps: float = 15.0, velocities: bool = False
+) -> FuncAnimation:
+    """Make a film of a run: `snapshot` after `snapshot`; in a notebook show it by its ``to_jshtml()``.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The run.
+    seconds : float
+        Length of the film.
+    fps : float
+        Frames per second.
+    velocities : bool
+        Draw arrows.
+
+    Returns
+    -------
+    matplotlib.animation.FuncAnimation
+
+    Raises
+    ------
+    ArgumentError
+        If seconds or fps is not positive, or they ask for too many frames.
+    """
+    from matplotlib.animation import FuncAnimation
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    frames = frame_count(seconds, fps)
+    film, view = equal_times(trajectory, frames), _view(trajectory)
+    # outside the style, whose layout engine would fit each frame anew and make the view tremble
+    figure = Figure(figsize=_size(view), dpi=_DPI)
+    FigureCanvasAgg(figure)
+    with style():
+        ax: Any = figure.add_subplot(projection="3d" if trajectory.m == 3 else None)
+        height = _size(view)[1]
+        edges = (0.0, 0.0, 0.95, 0.95) if trajectory.m == 3 else (0.09, 0.6 / height, 0.98, 1.0 - 0.35 / height)
+        figure.subplots_adjust(*edges)
+
+    def draw(k: int) -> list[Any]:
+        with style():
+            ax.clear()
+            snapshot(film, float(film.t[k]), ax=ax, velocities=velocities, bar=False)
+        _hold(ax, view)
+        return []
+
+    return FuncAnimation(figure, draw, frames=frames, init_func=lambda: [], interval=1000.0 / fps, repeat=False)
+
+
+def animate(
+    trajectory: Trajectory,
+    path: str | os.PathLike[str],
+    *,
+    seconds: float = 10.0,
+    fps: float = 15.0,
+    velocities: bool = False,
+    progress: Callable[[int, int], None] = lambda done, total: None,
+) -> Path:
+    """Write a film of a run: GIF always, MP4 where the program ffmpeg is installed.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The run.
+    path : path-like
+        File to write, ``.gif`` or ``.mp4``; an existing one is replaced only when the new one is whole.
+    seconds : float
+        Length of the film.
+    fps : float
+        Frames per second; a GIF rounds the time of a frame to hundredths of a second.
+    velocities : bool
+        Draw arrows.
+    progress : callable
+        Is told the number of frames drawn and their total.
+
+    Returns
+    -------
+    pathlib.Path
+
+    Raises
+    ------
+    ArgumentError
+        On a bad file name, or bad seconds or fps.
+    FileError
+        If the file cannot be written, or ffmpeg is missing.
+    """
+    from matplotlib.animation import FFMpegWriter, PillowWriter
+
+    target = ensure_film(path, seconds=seconds, fps=fps)
+    film = animation(trajectory, seconds=seconds, fps=fps, velocities=velocities)
+    writer = PillowWriter(fps=fps) if target.suffix.lower() == ".gif" else FFMpegWriter(fps=fps)  # type: ignore[arg-type]
+    partial = target.with_name(f".{target.stem}.{os.getpid()}.partial{target.suffix.lower()}")
+    try:
+        film.save(partial, writer, dpi=_DPI, progress_callback=lambda k, total: progress(k + 1, total))
+        os.replace(partial, target)
+    except OSError as error:
+        raise FileError(f"cannot write {target}: {error.strerror or error}; choose another file") from error
+    finally:
+        with suppress(OSError):
+            partial.unlink(missing_ok=True)
+    return target
+
+
+def ensure_film(path: str | os.PathLike[str], *, seconds: float, fps: float) -> Path:
+    """Raise unless a film of that name, length and rate can be written, before any work for it is done.
+
+    Parameters
+    ----------
+    path : path-like
+        File to write; its folder must exist.
+    seconds, fps : float
+        As for `animate`.
+    """
+    from matplotlib.animation import FFMpegWriter
+
+    target = Path(path)
+    frame_count(seconds, fps)
+    if target.suffix.lower() not in _SAME:
+        raise ArgumentError(f"{target}: expected a file name that ends in .gif or .mp4")
+    if target.is_dir():
+        raise ArgumentError(f"{target} is a folder: expected a file name")
+    if target.suffix.lower() == ".mp4" and not FFMpegWriter.isAvailable():
+        raise FileError(f"cannot write {target}: MP4 needs the program ffmpeg; install it, or write a .gif")
+    try:
+        with tempfile.TemporaryFile(dir=target.parent):
+            pass
+    except OSError as error:
+        raise FileError(f"cannot write to {target.parent}: {error.strerror or error}; choose another folder") from error
+    return target
+
+
+def frame_count(seconds: float, fps: float) -> int:
+    """Number of frames of a film, at least 1.
+
+    Parameters
+    ----------
+    seconds, fps : float
+        As for `animate`.
+
+    Examples
+    --------
+    >>> frame_count(2.5, 20.0)
+    50
+    """
+    frames = ensure_positive("seconds", seconds) * ensure_positive("fps", fps)
+    if fps > 50.0 or frames > _FRAMES:
+        raise ArgumentError(
+            f"seconds = {seconds:g} at fps = {fps:g}: expected at most 50 frames per second and {_FRAMES} in all"
+        )
+    return max(1, round(frames))
+
+
+def _view(trajectory: Trajectory) -> FloatArray:
+    """Two opposite corners of a box about all that the film shows, with a margin."""
+    law = trajectory.law
+    shown = [trajectory.q.reshape(-1, trajectory.m)]
+    if getattr(law, "target", None) is not None:
+        shown.append(np.array([law.target.position(t) for t in trajectory.t.tolist()]))
+    if getattr(law, "obstacles", ()):
+        shown.append(bounds(law.obstacles))
+    points = np.concatenate(shown)
+    low, high = points.min(axis=0), points.max(axis=0)
+    margin = 0.04 * float((high - low).max()) or 1.0
+    return np.array([low - margin, high + margin])
+
+
+def _size(view: FloatArray) -> tuple[float, float]:
+    """Width and height in inches that suit the view, in even numbers of pixels, as MP4 wants them."""
+    extent = view[1] - view[0]
+    if extent.size == 3:
+        return 6.4, 5.6
+    height = 1.0 + (_WIDTH * float(extent[1] / extent[0]) if extent.size == 2 else 0.0)
+    return _WIDTH, round(50.0 * min(max(height, _LEAST), _MOST)) / 50.0
+
+
+def _hold(ax: Any, view: FloatArray) -> None:
+    """The same view in every frame."""
+    low, high = view
+    if low.size == 3:
+        ax.set_box_aspect(None, zoom=0.95)
+        middle, half = 0.5 * (low + high), 0.5 * float((high - low).max())
+        low, high = middle - half, middle + half
+    for name, a, b in zip("xyz", low.tolist(), high.tolist(), strict=False):
+        getattr(ax, f"set_{name}lim")(a, b)
+    if low.size == 2:
+        ax.set_aspect("equal", adjustable="box")

@@ -1,0 +1,229 @@
+"""Lattices by their neighbours, the collapse of Algorithm 2, and the barrier against collisions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.collections import LineCollection
+from matplotlib.colors import Normalize
+from matplotlib.ticker import FixedLocator, NullFormatter, ScalarFormatter
+from mpl_toolkits.mplot3d.art3d import Line3DCollection  # type: ignore[import-untyped]
+
+from flockana.plots.style import (
+    BLUE,
+    GREEN,
+    INK,
+    MUTED,
+    ORANGE,
+    PURPLE,
+    STRAIN,
+    VERMILLION,
+    ensure_axes,
+    frame_space,
+    legend_above,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from flockana.equilibria.collapse import CollapseDiagram
+
+_MOST = 12
+_SKY, _YELLOW = "#56B4E9", "#F0E442"  # the rest of Okabe and Ito's colours
+# marker and colour of an agent with k neighbours: from 3 to 6 a polygon with k corners; told apart in grey too
+_LOOKS: tuple[tuple[Any, str], ...] = (
+    ("X", INK),
+    ("o", MUTED),
+    ("d", PURPLE),
+    ("^", ORANGE),
+    ("s", GREEN),
+    ("p", VERMILLION),
+    ("h", BLUE),
+    ((7, 1, 0), _YELLOW),
+    ("D", _SKY),
+    ("v", PURPLE),
+    ("P", ORANGE),
+    ("<", VERMILLION),
+    ("o", BLUE),
+    ("*", INK),
+)
+_RASTER = 5000  # agents from which on a vector picture holds an image instead
+
+
+def defect_map(
+    q: Any,
+    links: Any,
+    coordination: Any,
+    *,
+    strain: Any = None,
+    limit: float | None = None,
+    ax: Axes | None = None,
+    title: str = "",
+) -> Axes:
+    """Draw agents by their number of neighbours, in colour and shape, and links by their strain.
+
+    Parameters
+    ----------
+    q : array_like, shape (n, m)
+        Positions, m = 1, 2 or 3.
+    links : array_like, shape (M, 2)
+        Links.
+    coordination : array_like, shape (n,)
+        Number of neighbours of each agent.
+    strain : array_like, shape (M,), optional
+        (length − d)/d of each link; without it links are grey.
+    limit : float, optional
+        Strain at the ends of the colour scale; by default the largest.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; three-dimensional for m = 3.
+    title : str
+        Of the axes.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    points = np.asarray(q, dtype=np.float64)
+    m = points.shape[1]
+    x = np.column_stack([points, np.zeros(len(points))]) if m == 1 else points
+    axes: Any = ensure_axes(ax, m=m)
+    raster = len(x) > _RASTER
+    if len(links):
+        _draw_links(axes, x[np.asarray(links)], strain, limit, raster)
+    size = float(np.clip(2600.0 / len(x), 3.0, 70.0))
+    shown = np.minimum(coordination, _MOST + 1)
+    for k in np.unique(shown).tolist():
+        (marker, colour), these = _LOOKS[k], x[shown == k]
+        label = f"{k if k <= _MOST else f'{k} or more'} neighbour{'' if k == 1 else 's'}: {len(these)}"
+        edge = {"edgecolors": INK, "linewidths": 0.5 if size > 10.0 else 0.0}
+        axes.scatter(*these.T, s=size, marker=marker, color=colour, label=label, zorder=3, rasterized=raster, **edge)
+    axes.set_title(title)
+    if m == 1:
+        axes.set(xlabel="x (length)", yticks=[], ylim=(-1.0, 1.0))
+    else:
+        frame_space(axes, x)
+    axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.14), ncols=3, borderaxespad=0.0, markerscale=1.0)
+    return axes  # type: ignore[no-any-return]  # the stubs have no three-dimensional axes
+
+
+def _draw_links(ax: Any, segments: Any, strain: Any, limit: float | None, raster: bool) -> None:
+    kind: Any = Line3DCollection if segments.shape[2] == 3 else LineCollection
+    width = float(np.clip(120.0 / len(segments) ** 0.5, 0.3, 2.2))
+    if strain is None:
+        ax.add_collection(kind(segments, colors=MUTED, linewidths=width, zorder=2, rasterized=raster))
+        return
+    values = np.asarray(strain, dtype=np.float64)
+    end = (float(np.abs(values).max()) if limit is None else limit) or 1.0
+    lines = kind(segments, cmap=STRAIN, norm=Normalize(-end, end), linewidths=width, zorder=2, rasterized=raster)
+    lines.set_array(values)
+    ax.add_collection(lines)
+    extend = ("min" if values.min() < -end else "") + ("max" if values.max() > end else "")
+    scale = ax.get_figure().colorbar(
+        lines,
+        ax=ax,
+        label="strain of links (length − d)/d",
+        shrink=0.75,
+        aspect=28,
+        pad=0.1 if segments.shape[2] == 3 else 0.03,
+        extend={"": "neither", "minmax": "both"}.get(extend, extend),
+    )
+    scale.outline.set_visible(False)
+
+
+def collapse(diagram: CollapseDiagram, *, ax: Axes | None = None) -> Axes:
+    """Draw the shortest distance of the relaxed flocks over their size and c1γ/c1α, and where agents coincide.
+
+    Parameters
+    ----------
+    diagram : CollapseDiagram
+        What was found.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    axes: Any = ensure_axes(ax)
+    n, ratio = np.broadcast_arrays(diagram.sizes[:, None], diagram.ratios[None, :])
+    apart, together, failed = diagram.coincident == 0, diagram.coincident > 0, diagram.coincident < 0
+    dots = axes.scatter(
+        n[apart], ratio[apart], c=diagram.closest[apart], cmap="cividis", vmin=0.0, vmax=1.0, s=34, zorder=3
+    )
+    axes.scatter(n[together], ratio[together], marker="x", color=VERMILLION, s=30, zorder=3, label="agents coincide")
+    if failed.any():
+        axes.scatter(n[failed], ratio[failed], marker="_", color=MUTED, s=30, label="no equilibrium found")
+    onset = diagram.onset()
+    axes.plot(diagram.sizes, onset, color=INK, linestyle="--", linewidth=1.0, label="onset")
+    axes.get_figure().colorbar(dots, ax=axes, label="least distance over d", aspect=28).outline.set_visible(False)
+    return _over_size(axes, diagram.sizes.tolist(), "c1γ/c1α")
+
+
+def collapse_brackets(brackets: Mapping[int, Sequence[float]], *, ax: Axes | None = None) -> Axes:
+    """Draw between which two ratios c1γ/c1α a flock begins to collapse, against its size.
+
+    Parameters
+    ----------
+    brackets : mapping of int to (float, float)
+        By number of agents: the largest ratio seen safe, the least seen to collapse.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    axes: Any = ensure_axes(ax)
+    sizes = sorted(brackets)
+    low, high = np.array([brackets[n] for n in sizes]).T
+    axes.vlines(sizes, low, high, color=MUTED, linewidth=1.2, zorder=2)
+    axes.plot(sizes, high, marker="x", color=VERMILLION, linestyle="--", linewidth=1.0, label="agents coincide")
+    axes.plot(sizes, low, marker="o", color=BLUE, linestyle="-", linewidth=1.0, label="all stay apart")
+    return _over_size(axes, sizes, "c1γ/c1α")
+
+
+def barrier(
+    together: Mapping[int, float], ground: Mapping[int, float], c_star: float, *, ax: Axes | None = None
+) -> Axes:
+    """Draw, against n and in units of c*: the least energy with two agents at one place, the least of all, the barrier.
+
+    Where the least energy of all is above 1, no state meets the printed condition V < c*.
+
+    Parameters
+    ----------
+    together, ground : mapping of int to float
+        Least energies, by number of agents.
+    c_star : float
+        The printed bound, ψ_α(0).
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    axes: Any = ensure_axes(ax)
+    sizes = sorted(together)
+    upper, lower = (np.array([one[n] for n in sizes]) / c_star for one in (together, ground))
+    axes.plot(sizes, upper, marker="x", color=VERMILLION, linestyle="--", label="least V with two agents at one place")
+    axes.plot(sizes, lower, marker="o", color=BLUE, linestyle="-", label="least V")
+    axes.plot(sizes, upper - lower, marker="s", color=GREEN, linestyle="-.", label="barrier: their difference")
+    axes.axhline(1.0, color=INK, linewidth=0.9, linestyle=":", label="c*, the printed bound")
+    axes.set_ylim(bottom=0.0)
+    return _over_size(axes, sizes, "energy over c*", logarithmic=False)
+
+
+def _over_size(ax: Any, sizes: Sequence[int], label: str, *, logarithmic: bool = True) -> Axes:
+    """Frame axes over the number of agents; few sizes are all named."""
+    if logarithmic:
+        ax.set_yscale("log")
+        ax.yaxis.set_major_formatter(ScalarFormatter())
+        ax.yaxis.set_minor_formatter(ScalarFormatter() if np.ptp(np.log10(ax.get_ylim())) < 1.5 else NullFormatter())
+    if len(sizes) <= 12:
+        ax.xaxis.set_major_locator(FixedLocator(sizes))
+    ax.set_xlabel("n, agents")
+    ax.set_ylabel(label)
+    legend_above(ax)
+    return ax  # type: ignore[no-any-return]

@@ -1,0 +1,92 @@
+"""Obstacles of any kind, drawn through their contract alone: the closest points of what lies around them.
+
+The closest-point map of a convex solid takes any closed curve (or surface) around it onto its whole boundary, so the
+bounding ball's points trace the outline. An unbounded solid is traced as far as the view reaches.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.patches import Polygon
+
+from flockana.checks import FloatArray
+from flockana.environment.obstacles import Obstacle
+from flockana.plots.style import FAINT, MUTED, ensure_axes
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_ROUND = 720  # points of an outline in the plane: corners are met exactly, arcs to 4e-5 of their radius
+_MESH = 19, 37  # of a surface in space
+_OUTSIDE = 1.001  # the tracing ball must lie outside
+_BEYOND = 4.0  # how far an unbounded obstacle is traced, in radii of the view
+
+
+def obstacles(items: Iterable[Obstacle], *, ax: Axes | None = None, view: Any = None) -> Axes:
+    """Draw obstacles: solid in the plane, as wire meshes in space, as intervals on a line.
+
+    Parameters
+    ----------
+    items : iterable of Obstacle
+        All of one dimension.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; three-dimensional for m = 3.
+    view : array_like, shape (k, m), optional
+        Points that are in view; an unbounded obstacle is drawn about them, by default about the origin.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    solids = tuple(items)
+    axes: Any = ensure_axes(ax, m=solids[0].dimension if solids else 2)
+    for solid in solids:
+        _draw(axes, solid, np.zeros((1, solid.dimension)) if view is None else np.asarray(view, dtype=np.float64))
+    return axes  # type: ignore[no-any-return]  # the stubs have no three-dimensional axes
+
+
+def bounds(items: Iterable[Obstacle]) -> FloatArray:
+    """Corners of the boxes about the bounded ones among obstacles, shape (2 K, m): what a view must show.
+
+    Parameters
+    ----------
+    items : iterable of Obstacle
+        All of one dimension; at least one.
+    """
+    solids = tuple(items)
+    balls = [solid.ball for solid in solids if np.isfinite(solid.ball[1])]
+    corners = [centre + side * radius for centre, radius in balls for side in (-1.0, 1.0)]
+    return np.array(corners).reshape(-1, solids[0].dimension)
+
+
+def _draw(ax: Any, solid: Obstacle, view: FloatArray) -> None:
+    centre, radius = solid.ball
+    bounded = bool(np.isfinite(radius))
+    if not bounded:
+        centre = 0.5 * (view.min(axis=0) + view.max(axis=0))
+        radius = _BEYOND * max(1.0, float(np.linalg.norm(view - centre, axis=1).max()))
+    if solid.dimension == 3:
+        turn, tilt = np.linspace(0.0, 2.0 * np.pi, _MESH[1]), np.linspace(0.0, np.pi, _MESH[0])[:, None]
+        ball = np.stack([np.sin(tilt) * np.cos(turn), np.sin(tilt) * np.sin(turn), np.cos(tilt) + 0.0 * turn], axis=2)
+        traced, inside = _trace(solid, centre + _OUTSIDE * radius * ball.reshape(-1, 3))
+        traced[inside] = np.nan  # of an unbounded solid only its surface shows
+        ax.plot_wireframe(*traced.T.reshape(3, *_MESH), color=MUTED, linewidth=0.4, rstride=2, cstride=3)
+        return
+    if solid.dimension == 1:
+        ends, _ = _trace(solid, centre + _OUTSIDE * radius * np.array([[-1.0], [1.0]]))
+        corners = np.array([[x, y] for x, y in zip(ends[[0, 1, 1, 0], 0], (-0.3, -0.3, 0.3, 0.3), strict=True)])
+    else:
+        angle = np.linspace(0.0, 2.0 * np.pi, _ROUND, endpoint=False)
+        corners, _ = _trace(solid, centre + _OUTSIDE * radius * np.column_stack([np.cos(angle), np.sin(angle)]))
+    patch = Polygon(corners, closed=True, facecolor=FAINT, edgecolor=MUTED, linewidth=0.8, zorder=1)
+    (ax.add_patch if bounded else ax.add_artist)(patch)  # an artist does not widen the view
+
+
+def _trace(solid: Obstacle, around: FloatArray) -> tuple[FloatArray, Any]:
+    """(closest points of the solid, which of the given ones are inside and stay where they are)."""
+    foot = solid.beta_agents(around, np.zeros_like(around))
+    inside = foot.clearance <= 0.0
+    return np.where(inside[:, None], around, foot.q), inside

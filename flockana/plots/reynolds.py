@@ -1,0 +1,74 @@
+"""Reynolds' three rules on a flock: who pulls, who pushes, and what each rule asks of every agent."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.collections import LineCollection
+
+from flockana.checks import FloatArray, ensure_points
+from flockana.errors import ArgumentError
+from flockana.plots.style import BLUE, FAINT, GREEN, INK, VERMILLION, ensure_axes, frame_space, legend_above
+from flockana.reynolds import Reynolds
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_ARROW = 0.1  # longest arrow as a share of the axes' width
+
+
+def rules(parts: Reynolds, q: Any, *, ax: Axes | None = None) -> Axes:
+    """Draw links by the sign of their stress, and the three parts of u as arrows on one scale.
+
+    Parameters
+    ----------
+    parts : Reynolds
+        What `flockana.reynolds.reynolds` found.
+    q : array_like, shape (n, 2)
+        The positions that it was given.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    ArgumentError
+        If the flock is not in the plane, or has another number of agents than `parts`.
+    """
+    points = ensure_points("q", q)
+    if points.shape != parts.total.shape or points.shape[1] != 2:
+        raise ArgumentError(f"q of shape {points.shape}, rules of shape {parts.total.shape}: expected (n, 2) of both")
+    axes: Any = ensure_axes(ax)
+    signs = (parts.stress > 0.0, parts.stress < 0.0, parts.stress == 0.0)
+    looks = ((BLUE, "-", "F⁺, pulls"), (VERMILLION, "--", "F⁻, pushes"), (FAINT, ":", "F⁰"))
+    for chosen, (colour, dash, name) in zip(signs, looks, strict=True):
+        if chosen.any():
+            lines = points[parts.links[chosen]]
+            axes.add_collection(LineCollection(lines, colors=colour, linestyles=dash, linewidths=0.8, label=name))
+    axes.scatter(*points.T, s=12, color=INK, linewidths=0, zorder=3)
+    arrows = (
+        ("flock centring", parts.centring, BLUE),
+        ("collision avoidance", parts.avoidance, VERMILLION),
+        ("velocity matching", parts.matching, GREEN),
+    )
+    longest = max(float(np.linalg.norm(part, axis=1).max()) for _, part, _ in arrows)
+    for name, part, colour in arrows:
+        _arrows(axes, points, part, longest, colour, name)
+    said = f"longest arrow: {longest:.3g} length/time²" if longest > 0.0 else "no rule acts"
+    axes.text(0.01, 0.01, said, transform=axes.transAxes, fontsize=8, color=INK)
+    axes.margins(0.12)
+    frame_space(axes, points)
+    legend_above(axes)
+    return axes  # type: ignore[no-any-return]
+
+
+def _arrows(ax: Any, points: FloatArray, part: FloatArray, longest: float, colour: str, name: str) -> None:
+    """One rule's arrows, where it acts at all."""
+    acts = np.linalg.norm(part, axis=1) > 1e-3 * longest
+    if acts.any():
+        scale = {"angles": "xy", "scale_units": "width", "scale": longest / _ARROW, "width": 0.004, "zorder": 4}
+        ax.quiver(*points[acts].T, *part[acts].T, color=colour, label=name, **scale)
