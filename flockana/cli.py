@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from flockana._version import __version__
+from flockana.commands import equilibrium, lattice
 from flockana.errors import ArgumentError, FlockanaError
 
 if TYPE_CHECKING:
@@ -238,6 +239,10 @@ def _theorems() -> None:
     from flockana.report.console import theorem_table
 
     Console(highlight=False).print(theorem_table())
+
+
+for _command in (lattice, equilibrium):
+    _command.register(app)
 
 
 def _complain(message: str) -> None:

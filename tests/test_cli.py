@@ -117,6 +117,10 @@ def test_everything_is_every_scenario_with_all_its_verdicts(catalogue):
         (["run", "hexagon"], "--output"),
         (["run", "hexagn", "-o", "x.nc"], "unknown scenario 'hexagn'; did you mean 'hexagon'?"),
         (["run", "hexagon", "-o", "."], ". is a folder"),
+        (["animate", "hexagon"], "--output"),
+        (["animate", "hexagn", "-o", "x.gif"], "unknown scenario 'hexagn'; did you mean 'hexagon'?"),
+        (["animate", "hexagon", "-o", "x.png"], "expected a file name that ends in .gif or .mp4"),
+        (["animate", "hexagon", "-o", "x.gif", "--seconds", "0"], "seconds = 0.0"),
         (["flock"], "No such command 'flock'"),
         (["verify", "--colour"], "--colour"),
     ],
@@ -143,6 +147,32 @@ def test_an_unwritable_output_is_refused_before_the_run(call, monkeypatch, tmp_p
     code, _, err = call("run", "hexagon", "-o", "below/run.nc")
     assert code == 2
     assert "cannot write to below" in err
+
+
+def test_an_unwritable_film_is_refused_before_the_run(call, monkeypatch, tmp_path):
+    (tmp_path / "below").write_text("a file")
+    monkeypatch.setattr(Scenario, "run", lambda *a, **k: pytest.fail("it ran"))
+    monkeypatch.setattr("matplotlib.animation.FFMpegWriter.isAvailable", classmethod(lambda cls: False))
+    for name, message in (("below/x.gif", "cannot write to below"), ("x.mp4", "needs the program ffmpeg")):
+        code, _, err = call("animate", "hexagon", "-o", name)
+        assert (code, message in err) == (2, True)
+
+
+def test_animate_writes_a_film(call, catalogue, monkeypatch, tmp_path):
+    from dataclasses import replace
+
+    from PIL import Image
+
+    film = ("animate", "right", "-o", "new/film.gif", "--seconds", 0.3, "--fps", 10)
+    code, out, err = call(*film)
+    assert (code, err) == (0, "")
+    assert "written: new/film.gif" in out
+    with Image.open(tmp_path / "new" / "film.gif") as image:
+        assert image.n_frames == 3
+    whole = Scenario.run
+    for status, expected in (("failed", 3), ("interrupted", 130)):
+        monkeypatch.setattr(Scenario, "run", lambda self, s=status, **k: replace(whole(self), status=s))
+        assert call(*film)[0] == expected
 
 
 def test_run_saves_and_verify_reads_it_back(call, catalogue, tmp_path):

@@ -33,6 +33,7 @@ STAGES: tuple[tuple[str, ...], ...] = (
     ("scenarios",),
     ("plots",),
     ("report",),
+    ("commands",),
     ("cli",),
 )
 STAGE = {name: k for k, names in enumerate(STAGES) for name in names}

@@ -1,6 +1,7 @@
 """Figures: each function draws what it is given on an Axes, or on a new one, and returns it; it computes nothing."""
 
 from flockana.plots.animation import animate, animation
+from flockana.plots.lattice import barrier, collapse, collapse_brackets, defect_map
 from flockana.plots.obstacles import obstacles
 from flockana.plots.pair import action, potential
 from flockana.plots.reynolds import rules
@@ -23,11 +24,15 @@ __all__ = [
     "action",
     "animate",
     "animation",
+    "barrier",
     "centre_of_mass",
     "centre_path",
     "clearances",
+    "collapse",
+    "collapse_brackets",
     "components",
     "configuration",
+    "defect_map",
     "distances",
     "energy",
     "energy_residual",

@@ -211,7 +211,8 @@ def _hexagon(seed: int = 0) -> Scenario:
         "hexagon",
         "Seven agents near a hexagon, with less energy than a collision costs",
         "Ours: a hexagonal patch of side d = 7, each coordinate displaced by up to 0.2, velocities up to 0.3 per axis, "
-        "Algorithm 1 with the default gains. H(x(0), v(0)) is below c* and below the energy of the best disconnected state.",
+        "Algorithm 1 with the default gains. H(x(0), v(0)) is below c* and below that of every disconnected "
+        "state that we know.",
         Algorithm1(alpha=alpha),
         q,
         generator.uniform(-0.3, 0.3, (7, 2)),

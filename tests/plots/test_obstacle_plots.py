@@ -1,0 +1,168 @@
+"""Obstacles, β-agents, clearance, components and Reynolds' rules, as drawn."""
+
+from __future__ import annotations
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from matplotlib.patches import Polygon as Outline
+
+from flockana import plots
+from flockana.environment.capsule import Capsule
+from flockana.environment.obstacles import Sphere, Wall
+from flockana.environment.polygon import Polygon
+from flockana.environment.targets import StaticTarget
+from flockana.errors import ArgumentError
+from flockana.interactions import BetaInteraction
+from flockana.laws.algorithm3 import Algorithm3
+from flockana.laws.olfati_saber import Algorithm1
+from flockana.plots.obstacles import bounds
+from flockana.report.figures import _middle, pictures
+from flockana.reynolds import reynolds
+from flockana.simulate import simulate
+from flockana.trajectory import Trajectory
+
+
+@pytest.fixture(autouse=True)
+def _nothing_left_open():
+    yield
+    plt.close("all")
+
+
+def axes(m=2):
+    return Figure().add_subplot(projection="3d" if m == 3 else None)
+
+
+def outline(solid, **options):
+    ax = plots.obstacles([solid], ax=axes(), **options)
+    (patch,) = [p for p in (*ax.patches, *ax.artists) if isinstance(p, Outline)]
+    return ax, patch.get_xy()[:-1]
+
+
+def area(corners):
+    x, y = corners.T
+    return 0.5 * abs(float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1))))
+
+
+@pytest.mark.parametrize(
+    ("solid", "size"),
+    [
+        (Sphere((3.0, -2.0), 5.0), np.pi * 25.0),
+        (Capsule((0.0, 0.0), (8.0, 6.0), 2.0), 40.0 + np.pi * 4.0),
+        (Polygon([(0.0, 0.0), (4.0, 0.0), (4.0, 3.0)]), 6.0),
+        (Polygon([(0.0, 0.0), (40.0, 0.0), (40.0, 0.5), (0.0, 0.5)]), 20.0),
+    ],
+)
+def test_the_outline_is_the_boundary_of_the_whole_solid(solid, size):
+    _, corners = outline(solid)
+    np.testing.assert_allclose(solid.clearance(corners), 0.0, atol=1e-9)
+    # the polygon of 720 points misses at most 1 − sin(2π/720)/(2π/720) = 1.3e-5 of a disc
+    assert area(corners) == pytest.approx(size, rel=3e-5)
+
+
+def test_a_wall_fills_its_side_of_the_view_and_does_not_widen_it():
+    view = np.array([[0.0, 0.0], [10.0, 10.0]])
+    ax, corners = outline(Wall((0.0, 2.0), (0.0, 1.0)), view=view)
+    assert corners[:, 1].max() == pytest.approx(2.0)
+    assert corners[:, 1].min() < -10.0
+    assert corners[:, 0].min() < 0.0 < 10.0 < corners[:, 0].max()
+    assert not np.isfinite(ax.dataLim.get_points()).any() or ax.dataLim.y0 > -10.0
+
+
+def test_on_a_line_an_obstacle_is_an_interval_and_in_space_a_mesh_on_the_surface():
+    (patch,) = plots.obstacles([Sphere((4.0,), 1.5)], ax=axes()).patches
+    assert (patch.get_xy()[:, 0].min(), patch.get_xy()[:, 0].max()) == (2.5, 5.5)
+    solid = Sphere((1.0, 2.0, 3.0), 2.0)
+    (mesh,) = plots.obstacles([solid], ax=axes(3)).collections
+    lines = np.concatenate(mesh._segments3d)
+    np.testing.assert_allclose(solid.clearance(lines), 0.0, atol=1e-12)
+    assert np.ptp(lines[:, 2]) == pytest.approx(4.0)
+    wall = Wall((0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
+    (mesh,) = plots.obstacles([wall], ax=axes(3), view=np.array([[-5.0, -5.0, 0.0], [5.0, 5.0, 5.0]])).collections
+    lines = np.concatenate(mesh._segments3d)
+    np.testing.assert_allclose(lines[~np.isnan(lines[:, 2]), 2], 1.0)
+
+
+def test_bounds_hold_the_bounded_ones_alone():
+    found = bounds([Wall((0.0, 0.0), (0.0, 1.0)), Sphere((5.0, 6.0), 2.0)])
+    np.testing.assert_array_equal(found, [[3.0, 4.0], [7.0, 8.0]])
+    assert bounds([Wall((0.0, 0.0), (0.0, 1.0))]).shape == (0, 2)
+
+
+def test_beta_agents_are_drawn_within_their_range_only():
+    beta, solids = BetaInteraction(), [Sphere((0.0, 0.0), 3.0), Wall((0.0, -20.0), (0.0, 1.0))]
+    q = np.array([[8.0, 0.0], [8.05, 1e3], [0.0, -15.5]])  # 5 and 4.5 away are within r' = 5.04
+    ax = plots.configuration(q, obstacles=solids, beta=beta, ax=axes())
+    marks = next(c for c in ax.collections if c.get_label() == "β-agents")
+    np.testing.assert_allclose(marks.get_offsets(), [[3.0, 0.0], [0.0, -20.0]])
+    joins = next(c for c in ax.collections if isinstance(c, LineCollection))
+    np.testing.assert_allclose(joins.get_segments(), [[[8.0, 0.0], [3.0, 0.0]], [[0.0, -15.5], [0.0, -20.0]]])
+    without = plots.configuration(q, obstacles=solids, ax=axes())
+    assert not any(c.get_label() == "β-agents" for c in without.collections)
+
+
+@pytest.mark.parametrize("m", [1, 2, 3])
+def test_a_snapshot_shows_the_obstacles_of_the_law(m):
+    centre = (20.0, *(0.0,) * (m - 1))
+    law = Algorithm3(target=StaticTarget((0.0,) * m), obstacles=(Sphere(centre, 5.0), Wall((-30.0,) * m, (1.0,) * m)))
+    q = np.zeros((2, m))
+    q[1, 0] = 10.5
+    run = simulate(law, q, 0.0 * q, (0.0, 0.01))
+    ax = plots.snapshot(run, 0.0, ax=axes(m))
+    assert any(c.get_label() == "β-agents" for c in ax.collections)
+    ax.get_figure().canvas.draw()
+    assert ax.get_xlim()[1] >= 25.0
+
+
+def two_discs():
+    """A made-up run: two agents part round a disc and meet again, sampled coarsely."""
+    law = Algorithm3(target=StaticTarget((0.0, 0.0)), obstacles=(Sphere((0.0, 0.0), 1.0), Sphere((0.0, 90.0), 1.0)))
+    q = np.array([[[-9.0, 4.0], [-9.0, -4.0]], [[0.0, 6.0], [0.0, -7.0]], [[9.0, 4.0], [9.0, -4.0]]])
+    p = np.zeros_like(q) + (9.0, 0.0)
+    return Trajectory(np.array([0.0, 1.0, 2.0]), q, p, 0.0 * q, law)
+
+
+def test_clearances_and_components_are_those_of_the_run():
+    run = two_discs()
+    ax = plots.clearances(run, ax=axes())
+    near, far, bound, distance, zero = ax.get_lines()
+    np.testing.assert_allclose(near.get_ydata(), [np.hypot(9, 4) - 1, 5.0, np.hypot(9, 4) - 1])
+    np.testing.assert_allclose(far.get_ydata(), [np.hypot(9, 86) - 1, 83.0, np.hypot(9, 86) - 1])
+    assert bound.get_ydata()[0] <= 5.0
+    assert (distance.get_ydata()[0], zero.get_ydata()[0]) == (pytest.approx(4.2), 0.0)
+    (steps,) = plots.components(run, ax=axes()).get_lines()
+    assert steps.get_ydata().tolist() == [1, 2, 1]
+    assert _middle(run) == 1
+    free = simulate(Algorithm1(), [[0.0, 0.0], [7.0, 0.0]], np.zeros((2, 2)), (0.0, 1.0))
+    assert "no obstacles" in plots.clearances(free, ax=axes()).texts[0].get_text()
+
+
+def test_the_report_adds_a_figure_where_there_are_obstacles():
+    drawn = pictures(two_discs())
+    assert len(drawn) == 6
+    assert "β-agents" in drawn[0].caption
+    assert "clearance" in drawn[5].caption
+
+
+def test_rules_draw_links_by_sign_and_the_parts_of_u_on_one_scale():
+    q = np.array([[0.0, 0.0], [5.0, 0.0], [13.0, 0.0], [13.0, 40.0]])
+    p = np.array([[0.0, 1.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0]])
+    parts = reynolds(q, p)
+    ax = plots.rules(parts, q, ax=axes())
+    lines = {c.get_label(): c.get_segments() for c in ax.collections if isinstance(c, LineCollection)}
+    np.testing.assert_array_equal(lines["F⁻, pushes"], [q[[0, 1]]])
+    np.testing.assert_array_equal(lines["F⁺, pulls"], [q[[1, 2]]])
+    arrows = {c.get_label(): c for c in ax.collections if hasattr(c, "U")}
+    assert set(arrows) == {"flock centring", "collision avoidance", "velocity matching"}
+    avoidance = arrows["collision avoidance"]
+    np.testing.assert_allclose(np.column_stack([avoidance.U, avoidance.V]), parts.avoidance[:2])
+    np.testing.assert_allclose(arrows["velocity matching"].V, parts.matching[:2, 1])
+    assert len({c.scale for c in arrows.values()}) == 1
+    longest = np.linalg.norm(parts.avoidance, axis=1).max()
+    assert f"longest arrow: {longest:.3g}" in ax.texts[0].get_text()
+    with pytest.raises(ArgumentError, match=r"q of shape \(3, 2\), rules of shape \(4, 2\)"):
+        plots.rules(parts, q[:3], ax=axes())
+    with pytest.raises(ArgumentError, match="expected \\(n, 2\\)"):
+        plots.rules(reynolds(q[:, :1], p[:, :1]), q[:, :1], ax=axes())
