@@ -1,4 +1,4 @@
-"""The gradient flow q' = −∇U of a law's structural potential, followed to its limit: the nearest equilibrium downhill."""
+"""The gradient flow q' = −∇U of a law's structural potential, followed to its limit: an equilibrium downhill."""
 
 from __future__ import annotations
 

@@ -56,6 +56,7 @@ def _equilibrium(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, and nothing else.")] = False,
 ) -> int:
     from flockana.commands.picture import KINDS, ensure_file, write_picture
+    from flockana.commands.source import ensure_source
     from flockana.equilibria import find_equilibrium
     from flockana.equilibria.record import write_equilibrium
     from flockana.errors import SolverError
@@ -69,6 +70,7 @@ def _equilibrium(
             _ensure_free(source, time=time, algorithm=algorithm, d=d, r=r)
             law, q = _of_scenario(source, start, seed)
         else:
+            ensure_source(source, scenarios())
             law, q = _of_source(source, algorithm=algorithm, d=d, r=r, time=time)
         found = find_equilibrium(law, q)
     except SolverError as error:

@@ -75,7 +75,7 @@ def _draw(ax: Any, given: Source, pairs: LinkArray) -> None:
 
     q, d, r = given.q, given.d, given.r
     strain = (link_lengths(q, pairs) - d) / d
-    title = f"{given.name}: {len(q)} agents, {len(pairs)} links"
+    title = f"{given.name}: n = {len(q)}, {len(pairs)} links"
     plots.defect_map(q, pairs, coordination(len(q), pairs), strain=strain, limit=r / d - 1.0, ax=ax, title=title)
 
 

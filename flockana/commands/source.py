@@ -98,6 +98,7 @@ def read_source(name: str, *, d: float | None = None, r: float | None = None, ti
         return _scaled(name, found.q, found.law, 0.0, d=d, r=r)
     if path.suffix in _FILES or path.exists():
         return _scaled(name, read_csv(path), None, 0.0, d=d, r=r)
+    ensure_source(name)
     scale = D if d is None else d
     q, ratio = build(name, scale)
     return Source(name, q, scale, KAPPA * scale if r is None else r, max_ratio=ratio)
@@ -124,6 +125,30 @@ def _sample(path: Path, time: float | None) -> tuple[FloatArray, Any, float]:
     return run.q[k], run.law, float(run.t[k])
 
 
+def ensure_source(name: str, more: tuple[str, ...] = ()) -> None:
+    """Raise on a name that can be neither a file nor a builder, before anything is read.
+
+    Parameters
+    ----------
+    name : str
+        What the user gave.
+    more : tuple of str
+        Other names that would have done, to suggest.
+
+    Raises
+    ------
+    UnknownNameError
+        With the nearest name.
+
+    Examples
+    --------
+    >>> ensure_source("line:3")
+    """
+    path, builder = Path(name), name.partition(":")[0]
+    if path.suffix not in _FILES and builder not in _BUILDERS and not path.exists():
+        raise UnknownNameError("scenario, file or builder" if more else "file or builder", builder, (*more, *_BUILDERS))
+
+
 def builders() -> tuple[str, ...]:
     """Every builder with the form of its size.
 
@@ -141,14 +166,12 @@ def build(text: str, d: float) -> tuple[FloatArray, float]:
     Parameters
     ----------
     text : str
-        Its name, a colon, its size.
+        Its name, which must exist, a colon, its size.
     d : float
         Distance between neighbours.
 
     Raises
     ------
-    UnknownNameError
-        If there is no such builder.
     ArgumentError
         If the size is no size, or a million agents are exceeded.
 
@@ -158,8 +181,6 @@ def build(text: str, d: float) -> tuple[FloatArray, float]:
     (array([[ 0.], [ 7.], [14.]]), 2.0)
     """
     name, _, size = text.partition(":")
-    if name not in _BUILDERS:
-        raise UnknownNameError("file or builder", name, _BUILDERS)
     function, form = _BUILDERS[name]
     parts = size.split("x")
     if len(parts) != len(form.split("x")) or not all(p.isascii() and p.isdigit() and len(p) <= 9 for p in parts):

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 _DPI = 100
 _WIDTH, _LEAST, _MOST = 8.0, 3.2, 7.0  # inches: of the film, and between what its height lies
 _FRAMES = 20_000  # a longer film is a slip of the pen
-_SAME = ".gif", ".mp4"
+_SUFFIXES = ".gif", ".mp4"
 
 
 def equal_times(trajectory: Trajectory, count: int) -> Trajectory:
@@ -50,7 +50,7 @@ def equal_times(trajectory: Trajectory, count: int) -> Trajectory:
     t = trajectory.t
     times = np.linspace(t[0], t[-1], count)
     if isinstance(trajectory.law, DiscreteLaw) or len(t) == 1:
-        k = np.abs(np.searchsorted(0.5 * (t[:-1] + t[1:]), times, side="right"))
+        k = np.searchsorted(0.5 * (t[:-1] + t[1:]), times, side="right")
         q, p, u, times = trajectory.q[k], trajectory.p[k], trajectory.u[k], t[k]
     else:
         from scipy.interpolate import CubicHermiteSpline
@@ -156,7 +156,8 @@ def animate(
     writer = PillowWriter(fps=fps) if target.suffix.lower() == ".gif" else FFMpegWriter(fps=fps)  # type: ignore[arg-type]
     partial = target.with_name(f".{target.stem}.{os.getpid()}.partial{target.suffix.lower()}")
     try:
-        film.save(partial, writer, dpi=_DPI, progress_callback=lambda k, total: progress(k + 1, total))
+        with style():
+            film.save(partial, writer, dpi=_DPI, progress_callback=lambda k, total: progress(k + 1, total))
         os.replace(partial, target)
     except OSError as error:
         raise FileError(f"cannot write {target}: {error.strerror or error}; choose another file") from error
@@ -180,7 +181,7 @@ def ensure_film(path: str | os.PathLike[str], *, seconds: float, fps: float) -> 
 
     target = Path(path)
     frame_count(seconds, fps)
-    if target.suffix.lower() not in _SAME:
+    if target.suffix.lower() not in _SUFFIXES:
         raise ArgumentError(f"{target}: expected a file name that ends in .gif or .mp4")
     if target.is_dir():
         raise ArgumentError(f"{target} is a folder: expected a file name")

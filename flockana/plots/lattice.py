@@ -89,6 +89,8 @@ def defect_map(
     m = points.shape[1]
     x = np.column_stack([points, np.zeros(len(points))]) if m == 1 else points
     axes: Any = ensure_axes(ax, m=m)
+    if m == 3:
+        axes.computed_zorder = False  # else links are drawn across the agents in front of them
     raster = len(x) > _RASTER
     if len(links):
         _draw_links(axes, x[np.asarray(links)], strain, limit, raster)
@@ -97,7 +99,8 @@ def defect_map(
     for k in np.unique(shown).tolist():
         (marker, colour), these = _LOOKS[k], x[shown == k]
         label = f"{k if k <= _MOST else f'{k} or more'} neighbour{'' if k == 1 else 's'}: {len(these)}"
-        edge = {"edgecolors": INK, "linewidths": 0.5 if size > 10.0 else 0.0}
+        edge: dict[str, Any] = {"edgecolors": INK, "linewidths": 0.5 if size > 10.0 else 0.0}
+        edge |= {"depthshade": False} if m == 3 else {}
         axes.scatter(*these.T, s=size, marker=marker, color=colour, label=label, zorder=3, rasterized=raster, **edge)
     axes.set_title(title)
     if m == 1:
@@ -110,7 +113,7 @@ def defect_map(
 
 def _draw_links(ax: Any, segments: Any, strain: Any, limit: float | None, raster: bool) -> None:
     kind: Any = Line3DCollection if segments.shape[2] == 3 else LineCollection
-    width = float(np.clip(120.0 / len(segments) ** 0.5, 0.3, 2.2))
+    width = float(np.clip(20.0 / len(segments) ** 0.5, 0.3, 2.2)) * (0.6 if segments.shape[2] == 3 else 1.0)
     if strain is None:
         ax.add_collection(kind(segments, colors=MUTED, linewidths=width, zorder=2, rasterized=raster))
         return
@@ -187,7 +190,8 @@ def collapse_brackets(brackets: Mapping[int, Sequence[float]], *, ax: Axes | Non
 def barrier(
     together: Mapping[int, float], ground: Mapping[int, float], c_star: float, *, ax: Axes | None = None
 ) -> Axes:
-    """Draw, against n and in units of c*: the least energy with two agents at one place, the least of all, the barrier.
+    """Draw, against n and in units of c*: the least energy with two agents at one place, the least of all, and the
+    barrier, which is their difference.
 
     Where the least energy of all is above 1, no state meets the printed condition V < c*.
 
@@ -207,10 +211,10 @@ def barrier(
     axes: Any = ensure_axes(ax)
     sizes = sorted(together)
     upper, lower = (np.array([one[n] for n in sizes]) / c_star for one in (together, ground))
-    axes.plot(sizes, upper, marker="x", color=VERMILLION, linestyle="--", label="least V with two agents at one place")
+    axes.plot(sizes, upper, marker="x", color=VERMILLION, linestyle="--", label="least V where two meet")
     axes.plot(sizes, lower, marker="o", color=BLUE, linestyle="-", label="least V")
-    axes.plot(sizes, upper - lower, marker="s", color=GREEN, linestyle="-.", label="barrier: their difference")
-    axes.axhline(1.0, color=INK, linewidth=0.9, linestyle=":", label="c*, the printed bound")
+    axes.plot(sizes, upper - lower, marker="s", color=GREEN, linestyle="-.", label="barrier")
+    axes.axhline(1.0, color=INK, linewidth=0.9, linestyle=":", label="c*")
     axes.set_ylim(bottom=0.0)
     return _over_size(axes, sizes, "energy over c*", logarithmic=False)
 

@@ -59,10 +59,10 @@ def rules(parts: Reynolds, q: Any, *, ax: Axes | None = None) -> Axes:
     for name, part, colour in arrows:
         _arrows(axes, points, part, longest, colour, name)
     said = f"longest arrow: {longest:.3g} length/time²" if longest > 0.0 else "no rule acts"
-    axes.text(0.01, 0.01, said, transform=axes.transAxes, fontsize=8, color=INK)
     axes.margins(0.12)
     frame_space(axes, points)
     legend_above(axes)
+    axes.get_legend().set_title(said, prop={"size": 8})
     return axes  # type: ignore[no-any-return]
 
 

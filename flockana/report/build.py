@@ -17,6 +17,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from flockana._version import __version__
 from flockana.errors import FileError
+from flockana.report.lattices import lattice_section
 from flockana.report.pages import FixedPage, FixedResult, Page, ScenarioPage, ScenarioResult, page
 from flockana.report.text import MARKS, deciding_claim, show, tolerance_rows
 
@@ -145,6 +146,7 @@ def _html(pages: list[Page], run: dict[str, Any]) -> str:
         run=run,
         scenarios=[one for one in pages if isinstance(one, ScenarioPage)],
         fixed=[one for one in pages if isinstance(one, FixedPage)],
+        lattices=lattice_section(pages),
         counts=[(status, counts[status]) for status in _STATUSES],
         surprises=[text for one in pages for text in one.surprises],
         marks=MARKS,

@@ -42,8 +42,9 @@ def verdict_table(pages: Iterable[Page]) -> Table:
         What was found.
     """
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), collapse_padding=True)
-    for heading in ("theorem", "status", "rigour", "decided by", "expected"):
-        table.add_column(heading, no_wrap=True)
+    widths = {"theorem": None, "status": 14, "rigour": 8, "decided by": None, "expected": 8}
+    for heading, width in widths.items():  # on a narrow terminal names give way, findings do not
+        table.add_column(heading, no_wrap=True, min_width=width)
     for one in pages:
         if isinstance(one, ScenarioPage):
             table.add_row(Text(one.name, style="bold"))

@@ -90,9 +90,22 @@ def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
 
 
 def _png(draw: Callable[[Figure, Trajectory], None], run: Trajectory, size: tuple[float, float]) -> str:
+    return png(lambda figure: draw(figure, run), size)
+
+
+def png(draw: Callable[[Figure], None], size: tuple[float, float]) -> str:
+    """A figure in flockana's look, as a ``data:`` address.
+
+    Parameters
+    ----------
+    draw : callable
+        Draws on the figure that it is given.
+    size : (float, float)
+        Width and height in inches.
+    """
     with plots.style():
         figure = Figure(figsize=size, layout="constrained")  # not pyplot's: nothing to close, safe in any process
-        draw(figure, run)
+        draw(figure)
         buffer = BytesIO()
         figure.savefig(buffer, format="png", dpi=_DPI)
     small = BytesIO()  # a palette makes drawings three times smaller, and no eye can tell

@@ -120,7 +120,7 @@ def two_discs():
     """A made-up run: two agents part round a disc and meet again, sampled coarsely."""
     law = Algorithm3(target=StaticTarget((0.0, 0.0)), obstacles=(Sphere((0.0, 0.0), 1.0), Sphere((0.0, 90.0), 1.0)))
     q = np.array([[[-9.0, 4.0], [-9.0, -4.0]], [[0.0, 6.0], [0.0, -7.0]], [[9.0, 4.0], [9.0, -4.0]]])
-    p = np.zeros_like(q) + (9.0, 0.0)
+    p = np.broadcast_to((9.0, 0.0), q.shape)
     return Trajectory(np.array([0.0, 1.0, 2.0]), q, p, 0.0 * q, law)
 
 
@@ -158,10 +158,12 @@ def test_rules_draw_links_by_sign_and_the_parts_of_u_on_one_scale():
     assert set(arrows) == {"flock centring", "collision avoidance", "velocity matching"}
     avoidance = arrows["collision avoidance"]
     np.testing.assert_allclose(np.column_stack([avoidance.U, avoidance.V]), parts.avoidance[:2])
+    centring = arrows["flock centring"]
+    np.testing.assert_allclose(np.column_stack([centring.U, centring.V]), parts.centring[1:3])
     np.testing.assert_allclose(arrows["velocity matching"].V, parts.matching[:2, 1])
     assert len({c.scale for c in arrows.values()}) == 1
     longest = np.linalg.norm(parts.avoidance, axis=1).max()
-    assert f"longest arrow: {longest:.3g}" in ax.texts[0].get_text()
+    assert f"longest arrow: {longest:.3g}" in ax.get_legend().get_title().get_text()
     with pytest.raises(ArgumentError, match=r"q of shape \(3, 2\), rules of shape \(4, 2\)"):
         plots.rules(parts, q[:3], ax=axes())
     with pytest.raises(ArgumentError, match="expected \\(n, 2\\)"):

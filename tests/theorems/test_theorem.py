@@ -9,6 +9,7 @@ import pytest
 
 from flockana.errors import ArgumentError, UnknownNameError
 from flockana.laws.olfati_saber import Algorithm1
+from flockana.scenarios.scenario import differences
 from flockana.theorems import Claim, Hypothesis, Tolerances, Verdict, theorem, theorems, verify
 from flockana.theorems.theorem import judge
 
@@ -113,3 +114,12 @@ def test_a_law_can_be_given_instead_of_a_run():
 def test_claims_are_found_by_name():
     with pytest.raises(KeyError, match="E8 has no claim 'ii'; it has printed, corrected"):
         verify("E8").claim("ii")
+
+
+def test_differences_name_what_differs_and_what_is_missing():
+    verdict = Verdict("x", (), (Claim("i", "verified"), Claim("ii", "vacuous")))
+    assert differences(verdict, {"x": "verified", "x:i": "verified", "y": "refuted"}) == ()
+    assert differences(verdict, {"x": "refuted", "x:iii": "verified"}) == (
+        "x is verified, expected refuted",
+        "x:iii is missing, expected verified",
+    )

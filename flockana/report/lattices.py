@@ -1,0 +1,129 @@
+"""The report's section on lattices and equilibria, made of what the verdicts hold; nothing is simulated again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from flockana import plots
+from flockana.lattice import harborth, hexagonal_spiral, links
+from flockana.report.figures import Picture, png
+from flockana.report.pages import Page
+from flockana.theorems import Verdict
+
+_SIZES = range(3, 21)
+_TOPICS = ("os-5-terminal", "E3", "E4", "E5", "E6", "E11")
+
+
+@dataclass(frozen=True)
+class EndState:
+    """The net of one run's last state.
+
+    Parameters
+    ----------
+    scenario : str
+        Its name.
+    kind : str
+        α-lattice, quasi-α-lattice or neither, with its strain.
+    links, crossings : str
+        Their numbers.
+    printed, extension : str
+        Statuses of "no two links cross", as printed of α-lattices, and extended to every net with distances above
+        r/√2.
+    """
+
+    scenario: str
+    kind: str
+    links: str
+    crossings: str
+    printed: str
+    extension: str
+
+
+@dataclass(frozen=True)
+class LatticeSection:
+    """What the section shows.
+
+    Parameters
+    ----------
+    ends : tuple of EndState
+        By scenario.
+    spirals : tuple of (int, int, int)
+        n, links of the hexagonal spiral, Harborth's number.
+    pictures : tuple of Picture
+        Collapse and barrier, where their verdicts are at hand.
+    """
+
+    ends: tuple[EndState, ...]
+    spirals: tuple[tuple[int, int, int], ...]
+    pictures: tuple[Picture, ...]
+
+
+def lattice_section(pages: Iterable[Page]) -> LatticeSection | None:
+    """Gather it from the verdicts; None if none of them is about lattices or equilibria.
+
+    Parameters
+    ----------
+    pages : iterable of ScenarioPage or FixedPage
+        What was found.
+    """
+    found = [(one.name, finding.verdict) for one in pages for finding in one.findings]
+    found = [(name, verdict) for name, verdict in found if verdict.theorem in _TOPICS]
+    if not found:
+        return None
+    ends = (_end(name, verdict) for name, verdict in found if verdict.theorem == "os-5-terminal")
+    spirals = tuple((n, len(links(hexagonal_spiral(n, 7.0), 8.4)), harborth(n)) for n in _SIZES)
+    pictures = (_collapse([v for _, v in found]), _barrier([v for _, v in found]))
+    return LatticeSection(
+        tuple(end for end in ends if end is not None), spirals, tuple(one for one in pictures if one is not None)
+    )
+
+
+def _end(name: str, verdict: Verdict) -> EndState | None:
+    claims = {claim.name: claim for claim in verdict.claims}
+    kinds = [h.detail for h in verdict.hypotheses if h.name == "q is an α-lattice"]
+    if not kinds or "ii-sharp" not in claims:
+        return None
+    printed, extension, count = claims["i"], claims["extension"], claims["ii-sharp"].computed
+    return EndState(name, kinds[0], str(count), str(printed.computed), printed.status, extension.status)
+
+
+def _computed(verdicts: Sequence[Verdict], theorem: str, claim: str) -> Any:
+    """What the first verdict on the theorem that says so computed for the claim; None if there is none."""
+    claims = (c for v in verdicts if v.theorem == theorem for c in v.claims if c.name == claim)
+    return next((c.computed for c in claims if c.computed is not None), None)
+
+
+def _collapse(verdicts: Sequence[Verdict]) -> Picture | None:
+    brackets = _computed(verdicts, "E11", "threshold")
+    if brackets is None:
+        return None
+
+    def draw(figure: Figure) -> None:
+        plots.collapse_brackets(brackets, ax=figure.subplots())
+
+    text = (
+        "Algorithm 2 on hexagonal patches (E11): up to the lower mark all agents stay apart, from the upper on some "
+        "coincide for good. The larger the flock, the smaller the ratio of the gains that it bears."
+    )
+    return Picture(text, png(draw, (6.5, 3.4)))
+
+
+def _barrier(verdicts: Sequence[Verdict]) -> Picture | None:
+    computed = _computed(verdicts, "E4", "barrier")
+    witness = next((c.witness for v in verdicts if v.theorem == "E4" for c in v.claims if c.name == "found"), None)
+    if computed is None or witness is None:
+        return None
+    together, ground = ({n: one[key] for n, one in computed.items()} for key in ("together", "ground"))
+
+    def draw(figure: Figure) -> None:
+        plots.barrier(together, ground, witness["c*"], ax=figure.subplots())
+
+    text = (
+        "The barrier against collisions (E4), found numerically: V < c* excludes them, but the least V of all rises "
+        "with n until no state is left below c*; the barrier, V where two agents meet less the least V, stays near c*."
+    )
+    return Picture(text, png(draw, (6.5, 3.4)))
