@@ -14,6 +14,17 @@ from flockana._version import __version__
 
 if TYPE_CHECKING:
     from flockana import errors as errors
+    from flockana import lattice as lattice
+    from flockana import metrics as metrics
+    from flockana import plots as plots
+    from flockana import predicates as predicates
+    from flockana import reynolds as reynolds
+    from flockana import symbolic as symbolic
+    from flockana.environment.capsule import Capsule as Capsule
+    from flockana.environment.obstacles import Obstacle as Obstacle
+    from flockana.environment.obstacles import Sphere as Sphere
+    from flockana.environment.obstacles import Wall as Wall
+    from flockana.environment.polygon import Polygon as Polygon
     from flockana.environment.targets import CallableTarget as CallableTarget
     from flockana.environment.targets import CircleTarget as CircleTarget
     from flockana.environment.targets import LinearTarget as LinearTarget
@@ -27,6 +38,7 @@ if TYPE_CHECKING:
     from flockana.interactions import BetaInteraction as BetaInteraction
     from flockana.interactions import Gains as Gains
     from flockana.interactions import PairInteraction as PairInteraction
+    from flockana.laws.algorithm3 import Algorithm3 as Algorithm3
     from flockana.laws.law import DiscreteLaw as DiscreteLaw
     from flockana.laws.law import Law as Law
     from flockana.laws.olfati_saber import Algorithm1 as Algorithm1
@@ -67,9 +79,13 @@ _TARGETS = (
 _METRICS = ("connectivity", "cohesion_radius", "deviation_energy", "velocity_mismatch", "inertia", "giant_share")
 _BY_MODULE = {
     "environment.targets": _TARGETS,
+    "environment.obstacles": ("Obstacle", "Sphere", "Wall"),
+    "environment.capsule": ("Capsule",),
+    "environment.polygon": ("Polygon",),
     "interactions": ("PairInteraction", "AlphaInteraction", "BetaInteraction", "Gains"),
     "laws.law": ("Law", "DiscreteLaw"),
     "laws.olfati_saber": ("Algorithm1", "Algorithm2"),
+    "laws.algorithm3": ("Algorithm3",),
     "simulate": ("simulate",),
     "trajectory": ("Trajectory",),
     "metrics": (*_METRICS, "min_distance", "order"),
@@ -82,12 +98,14 @@ _BY_MODULE = {
 }
 _HOME = {name: module for module, names in _BY_MODULE.items() for name in names}
 
-__all__ = ["__version__", "errors", *_HOME]  # all of them strings, from the table above
+_SUBMODULES = ("errors", "lattice", "metrics", "plots", "predicates", "reynolds", "symbolic")
+
+__all__ = ["__version__", *_SUBMODULES, *_HOME]  # all of them strings, from the table above
 
 
 def __getattr__(name: str) -> Any:
-    if name == "errors":
-        return import_module("flockana.errors")
+    if name in _SUBMODULES:
+        return import_module(f"flockana.{name}")
     if name not in _HOME:
         raise AttributeError(f"module 'flockana' has no attribute {name!r}")
     return globals().setdefault(name, getattr(import_module(f"flockana.{_HOME[name]}"), name))
