@@ -1,4 +1,4 @@
-"""Right-hand sides and neighbour search, against a plain numpy loop over agents and against themselves at other sizes."""
+"""Right-hand sides and neighbour search, against a numpy loop over agents and against themselves at other sizes."""
 
 from __future__ import annotations
 

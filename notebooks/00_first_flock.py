@@ -35,13 +35,14 @@ print(case.source)
 # %% [markdown]
 # ## Run it
 #
-# The integrator carries $\int \dot H\,dt$ beside the state. What is left of $H(t) - H(0) - \int_0^t \dot H\,dt$ is the error
-# that it made.
+# The integrator carries $\int \dot H\,dt$ beside the state. What is left of $H(t) - H(0) - \int_0^t \dot H\,dt$ is the
+# error that it made.
 
 # %%
 run = case.run()
 print(f"{run.n} agents, {run.stats['steps']} steps in {run.stats['seconds']:.1f} s")
-print(f"energy falls from {run.energy()[0]:.4g} to {run.energy()[-1]:.4g}, balance off by {abs(run.energy_residual).max():.1g}")
+print(f"energy falls from {run.energy()[0]:.4g} to {run.energy()[-1]:.4g}")
+print(f"the balance is off by {abs(run.energy_residual).max():.1g} at most")
 
 # %%
 figure, axes = plt.subplots(1, 2, figsize=(11, 5))

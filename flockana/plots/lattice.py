@@ -95,7 +95,7 @@ def defect_map(
     if len(links):
         _draw_links(axes, x[np.asarray(links)], strain, limit, raster)
     size = float(np.clip(2600.0 / len(x), 3.0, 70.0))
-    shown = np.minimum(coordination, _MOST)
+    shown = np.minimum(coordination, _MOST + 1)
     for k in np.unique(shown).tolist():
         (marker, colour), these = _LOOKS[k], x[shown == k]
         label = f"{k if k <= _MOST else f'{k} or more'} neighbour{'' if k == 1 else 's'}: {len(these)}"

@@ -83,6 +83,9 @@ def test_a_square_bends_and_its_diagonals_cross_once_they_are_links(call, measur
     assert "1 flex; rank 4, 0 self-stresses" in out
     assert "up to κ = 1.4142" in out
     assert "none; each decided exactly" in out
+    assert "0 of 7 interior agents without six neighbours, charge 0" in " ".join(
+        call("lattice", "hexagonal-spiral:19")[1].split()
+    )
 
 
 def test_a_seven_fold_defect_is_counted(call, tmp_path):
