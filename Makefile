@@ -2,7 +2,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: verify test check bench notebooks clean
+.PHONY: verify test check bench proofs notebooks clean
 
 verify: .venv/.installed  ## run the catalogue, check every theorem, write report/index.html
 	$(BIN)/flockana verify
@@ -18,6 +18,9 @@ check: .venv/.dev  ## format, lint, types, import direction
 
 bench: .venv/.dev  ## ratios against baselines
 	$(BIN)/python -m pytest benchmarks --benchmark-only -p no:xdist
+
+proofs: .venv/.dev  ## run every executable proof
+	$(BIN)/python -m proofs
 
 notebooks: .venv/.dev  ## execute every notebook
 	$(BIN)/python tools/run_notebooks.py

@@ -1,0 +1,1 @@
+"""Executable proofs, one file each: `python -m proofs` runs them all."""
