@@ -195,3 +195,28 @@ def ensure_time_span(t_span: Any) -> tuple[float, float]:
     if not (np.isfinite(t0) and np.isfinite(t1) and t0 < t1):
         raise ArgumentError(f"t_span = ({t0:g}, {t1:g}): expected finite t0 < t1")
     return t0, t1
+
+
+def ensure_count(name: str, value: Any) -> int:
+    """Return `value` as a whole number >= 1.
+
+    Parameters
+    ----------
+    name : str
+        The argument's name, for the message.
+    value : object
+        What the caller gave.
+
+    Raises
+    ------
+    ArgumentError
+        If it is no whole number >= 1.
+
+    Examples
+    --------
+    >>> ensure_count("n", 7)
+    7
+    """
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 1:
+        raise ArgumentError(f"{name} = {value!r}: expected a whole number >= 1")
+    return int(value)

@@ -10,13 +10,13 @@ from math import ceil, floor, inf, isfinite, pi, sin, sqrt
 
 import numpy as np
 
-from flockana.checks import FloatArray
+from flockana.checks import FloatArray, ensure_count
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.program import Program
 from flockana.equilibria.search import lattice_starts, random_starts
 from flockana.equilibria.solve import all_pairs
 from flockana.interactions import AlphaInteraction
-from flockana.lattice import ensure_count, harborth, hexagonal_spiral
+from flockana.lattice import harborth, hexagonal_spiral
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.symbolic.pair import ensure_dimension
 

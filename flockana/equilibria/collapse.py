@@ -9,12 +9,12 @@ from math import sqrt
 import numpy as np
 import numpy.typing as npt
 
-from flockana.checks import FloatArray, ensure_positive
+from flockana.checks import FloatArray, ensure_count, ensure_positive
 from flockana.environment.targets import StaticTarget
 from flockana.equilibria.solve import Equilibrium, find_equilibrium
 from flockana.errors import ArgumentError, SolverError
 from flockana.interactions import AlphaInteraction, Gains
-from flockana.lattice import ensure_count, hexagonal_spiral
+from flockana.lattice import hexagonal_spiral
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.metrics import coincident_pairs, min_distance
 

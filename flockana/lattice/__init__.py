@@ -2,7 +2,6 @@
 
 from flockana.lattice.builders import (
     bcc,
-    ensure_count,
     fcc,
     hcp,
     hexagonal_patch,
@@ -38,7 +37,6 @@ __all__ = [
     "crossings",
     "defects",
     "edge_length_error",
-    "ensure_count",
     "fcc",
     "harborth",
     "hcp",

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from flockana.checks import FloatArray, ensure_positive
-from flockana.errors import ArgumentError, UnknownNameError
+from flockana.checks import FloatArray, ensure_count, ensure_positive
+from flockana.errors import UnknownNameError
 
 _STEPS = np.array(
     [(1.0, 0.0), (0.5, 0.75**0.5), (-0.5, 0.75**0.5), (-1.0, 0.0), (-0.5, -(0.75**0.5)), (0.5, -(0.75**0.5))]
@@ -51,31 +51,6 @@ def max_ratio(name: str) -> float:
     if name not in _MAX_RATIO:
         raise UnknownNameError("lattice", name, _MAX_RATIO)
     return _MAX_RATIO[name]
-
-
-def ensure_count(name: str, value: Any) -> int:
-    """Return `value` as a whole number >= 1.
-
-    Parameters
-    ----------
-    name : str
-        The argument's name, for the message.
-    value : object
-        What the caller gave.
-
-    Raises
-    ------
-    ArgumentError
-        If it is no whole number >= 1.
-
-    Examples
-    --------
-    >>> ensure_count("n", 7)
-    7
-    """
-    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 1:
-        raise ArgumentError(f"{name} = {value!r}: expected a whole number >= 1")
-    return int(value)
 
 
 def _sites(basis: Any, cell: Any, counts: dict[str, int], d: float) -> FloatArray:

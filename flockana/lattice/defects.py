@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.checks import FloatArray, ensure_points
-from flockana.lattice.builders import ensure_count
+from flockana.checks import FloatArray, ensure_count, ensure_points
 from flockana.lattice.crossings import ensure_links
 from flockana.lattice.planarity import ensure_plane
 from flockana.nets import LinkArray

@@ -8,8 +8,8 @@ from typing import Any, Literal
 
 import numpy as np
 
+from flockana.checks import ensure_count
 from flockana.errors import ArgumentError
-from flockana.lattice.builders import ensure_count
 from flockana.lattice.crossings import ensure_links
 from flockana.nets import LinkArray
 
