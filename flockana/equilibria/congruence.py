@@ -90,15 +90,13 @@ def _images(candidates: list[Any], distances: FloatArray, wanted: FloatArray, to
 
 
 def _maps(x: FloatArray, y: FloatArray, frame: list[int], image: tuple[int, ...], tree: KDTree, tol: float) -> bool:
-    """Whether the rotation (or its mirror image) that takes the frame to its image takes all of x to y."""
-    m = x.shape[1]
+    """Whether the rotation, or reflection, that takes the frame to its image takes all of x to y.
+
+    The frame spans x, so the map is fixed where it matters: what it does across a flat x moves nothing.
+    """
     u, _, vt = np.linalg.svd(x[frame].T @ y[list(image)])
-    flips = [np.eye(m)] if len(frame) == m else [np.eye(m), np.diag([1.0] * (m - 1) + [-1.0])]
-    for flip in flips:
-        distance, nearest = tree.query(x @ u @ flip @ vt)
-        if np.max(distance) <= 10.0 * tol and _one_to_one(nearest, y, tol):
-            return True
-    return False
+    distance, nearest = tree.query(x @ u @ vt)
+    return bool(np.max(distance) <= 10.0 * tol) and _one_to_one(nearest, y, tol)
 
 
 def _one_to_one(nearest: Any, y: FloatArray, tol: float) -> bool:

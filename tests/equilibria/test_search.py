@@ -31,6 +31,7 @@ def test_congruence_up_to_motion_mirror_and_numbering(m):
     turn = np.linalg.qr(rng.standard_normal((m, m)))[0]
     assert congruent(q, (q @ turn)[rng.permutation(6)] + 3.0, tol=1e-9)
     assert congruent(q, -q, tol=1e-9)
+    assert congruent(q, q * np.append(np.ones(m - 1), -1.0), tol=1e-9)  # a reflection; -q in the plane is none
     moved = q.copy()
     moved[2, 0] += 1e-3
     assert not congruent(q, moved, tol=1e-6)
