@@ -10,10 +10,15 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Step:
-    """One checked step: what it says, and whether the check went through."""
+    """One checked step: what it says, and whether the check went through; None if the machine could not tell.
+
+    `latex` is the formula that was checked and `evidence` what the machine answered, both for the certificate.
+    """
 
     text: str
-    holds: bool
+    holds: bool | None
+    latex: str = ""
+    evidence: str = ""
 
 
 @dataclass(frozen=True)
