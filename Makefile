@@ -2,7 +2,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: verify test check bench proofs notebooks clean
+.PHONY: verify test check bench proofs notebooks course clean
 
 verify: .venv/.installed  ## run the catalogue, check every theorem, write report/index.html
 	$(BIN)/flockana verify
@@ -22,8 +22,11 @@ bench: .venv/.dev  ## ratios against baselines
 proofs: .venv/.dev  ## run every executable proof
 	$(BIN)/python -m proofs
 
-notebooks: .venv/.dev  ## execute every notebook
+notebooks: .venv/.dev  ## execute every notebook with its solutions
 	$(BIN)/python tools/run_notebooks.py
+
+course: .venv/.dev  ## write course/student and course/solutions as .ipynb
+	$(BIN)/python tools/course.py
 
 .venv/bin/python:
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "flockana needs Python 3.11 or newer: make PYTHON=python3.12 ...")'

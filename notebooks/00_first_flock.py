@@ -27,6 +27,7 @@ import matplotlib.pyplot as plt
 
 import flockana as fl
 from flockana import plots
+from flockana.course import grade
 
 case = fl.scenario("paper-flocking")
 print(case.title)
@@ -59,16 +60,47 @@ figure.tight_layout()
 # %%
 print(fl.verify("os-3", run))
 
-# %% [markdown]
+# %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# 1. Run the scenario `collapse`. What does its γ-agent do to the lattice, and what does `fl.verify("E11", ...)` say?
-# 2. Ask `fl.verify("os-1", ...)` about `paper-fragmentation`. Which hypothesis fails, and when?
+# **1.** Run the scenario `collapse` and ask erratum E11 about it. What is the status of the verdict?
+
+# %% tags=["answer"]
+collapse_status = ...
 
 # %% tags=["solution"]
 collapse = fl.scenario("collapse").run()
-print(fl.verify("E11", collapse))
+collapse_status = fl.verify("E11", collapse).status
+plots.snapshot(collapse)
+# %% tags=["check"]
+grade(collapse_status, "refuted", hint="fl.verify(name, run).status, one word")
+
+# %% [markdown] tags=["exercise"]
+# **2.** Ask Theorem 1 (`os-1`) about a run of `paper-fragmentation`. It is vacuous: at what time does the run itself
+# break a hypothesis for the first time? (Two digits.)
+
+# %% tags=["answer"]
+broken_at = ...
 
 # %% tags=["solution"]
 fragments = fl.scenario("paper-fragmentation").run()
 print(fl.verify("os-1", fragments))
+broken_at = 0.21
+
+# %% tags=["check"]
+grade(broken_at, lambda t: 0.205 < t < 0.22, hint="read the line that says what this run is not")
+
+# %% [markdown] tags=["exercise"]
+# **3.** scipy would have integrated with `rtol=1e-3` and `atol=1e-6`, had we not asked for better. By what factor does
+# the largest energy residual of `case` grow at those tolerances?
+
+# %% tags=["answer"]
+factor = ...
+
+# %% tags=["solution"]
+loose = fl.simulate(case.law, case.q0, case.p0, case.t_span, rtol=1e-3, atol=1e-6)
+factor = abs(loose.energy_residual).max() / abs(run.energy_residual).max()
+print(f"{factor:.0f} times")
+
+# %% tags=["check"]
+grade(factor, lambda x: 1e3 < x < 1e5, hint="fl.simulate(case.law, ...), then abs(run.energy_residual).max()")

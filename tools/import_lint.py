@@ -13,7 +13,7 @@ PACKAGE = "flockana"
 
 # Earlier lines may not import later ones; names on one line may not import each other, unless they are the same name.
 STAGES: tuple[tuple[str, ...], ...] = (
-    ("errors", "_version"),
+    ("errors", "_version", "course"),
     ("checks", "references"),
     ("serialize",),
     ("symbolic", "kernels"),
