@@ -16,6 +16,7 @@ import numpy as np
 from flockana import metrics as measure
 from flockana._version import __version__
 from flockana.checks import FloatArray
+from flockana.clearance import Clearance, clearance
 from flockana.errors import ArgumentError, FileError
 from flockana.laws.law import ensure_law
 from flockana.paths import ClosestApproach, closest_approach
@@ -23,6 +24,8 @@ from flockana.serialize import from_data, to_data
 
 if TYPE_CHECKING:
     import xarray
+
+    from flockana.plots.film import Film
 
 FORMAT = "flockana-trajectory"
 FORMAT_VERSION = 1
@@ -154,6 +157,34 @@ class Trajectory:
     def min_distance(self) -> float:
         """A lower bound of every distance between two agents at every time of the run."""
         return self._closest.lower
+
+    def clearance(self) -> Clearance:
+        """How close any agent comes to any obstacle of the law, between samples too; infinite without obstacles."""
+        return self._clearance
+
+    @cached_property
+    def _clearance(self) -> Clearance:
+        return clearance(self.t, self.q, self.p, self.u, getattr(self.law, "obstacles", ()))
+
+    def animate(self, *, seconds: float = 10.0, fps: float = 15.0, velocities: bool = False) -> Film:
+        """The run as a film: a notebook shows it, ``.save(path)`` writes GIF or MP4.
+
+        Parameters
+        ----------
+        seconds : float
+            Length of the film.
+        fps : float
+            Frames per second.
+        velocities : bool
+            Draw arrows.
+
+        Returns
+        -------
+        flockana.plots.Film
+        """
+        from flockana.plots.film import Film
+
+        return Film(self, seconds, fps, velocities)
 
     def window(self, start: float, end: float) -> Trajectory:
         """The samples with start ≤ t ≤ end, as a run of their own.

@@ -1,6 +1,7 @@
 """Figures: each function draws what it is given on an Axes, or on a new one, and returns it; it computes nothing."""
 
 from flockana.plots.animation import animate, animation
+from flockana.plots.film import Film
 from flockana.plots.lattice import barrier, collapse, collapse_brackets, defect_map
 from flockana.plots.obstacles import obstacles
 from flockana.plots.pair import action, potential
@@ -21,6 +22,7 @@ from flockana.plots.style import style
 from flockana.plots.tracks import centre_path, trajectories
 
 __all__ = [
+    "Film",
     "action",
     "animate",
     "animation",

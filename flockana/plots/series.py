@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.ticker import FormatStrFormatter, NullFormatter
 
-from flockana.clearance import clearance
 from flockana.errors import UnknownNameError
 from flockana.laws.law import DiscreteLaw
 from flockana.plots.style import BLUE, GREEN, INK, MUTED, PURPLE, VERMILLION, ensure_axes, hairline, legend_above, style
@@ -219,13 +218,13 @@ def clearances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     solids = getattr(trajectory.law, "obstacles", ())
     if not solids:
         return _empty(ax, label, "there are no obstacles")
-    t, q, p, u = trajectory.t, trajectory.q, trajectory.p, trajectory.u
+    t, q = trajectory.t, trajectory.q
     width, alpha = hairline(2 * len(solids))
     for k, solid in enumerate(solids):
         least = solid.clearance(q.reshape(-1, trajectory.m)).reshape(len(t), -1).min(axis=1)
         name = "each obstacle, at the samples" if k == 0 else None
         ax.plot(t, least, color=BLUE, linestyle="-", linewidth=width, alpha=alpha, label=name)
-    bound = clearance(t, q, p, u, solids).lower
+    bound = trajectory.clearance().lower
     ax.axhline(bound, color=VERMILLION, linestyle="--", linewidth=1.1, label="lower bound for all times")
     beta = getattr(trajectory.law, "beta", None)
     if beta is not None:

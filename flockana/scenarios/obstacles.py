@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from flockana.checks import FloatArray
-from flockana.clearance import ConstrainedLattice, clearance, constrained_lattice
+from flockana.clearance import ConstrainedLattice, constrained_lattice
 from flockana.environment.capsule import Capsule
 from flockana.environment.obstacles import Obstacle, Sphere
 from flockana.environment.targets import LinearTarget, StaticTarget, Target
@@ -80,7 +80,7 @@ def free_start(
 
 
 def _stays_clear(run: Trajectory, tolerances: Tolerances) -> Claim:
-    least = clearance(run.t, run.q, run.p, run.u, run.law.obstacles)
+    least = run.clearance()
     detail = (
         f"agent {least.agent} comes closest, {least.reached:.4g} from obstacles[{least.obstacle}] at "
         f"t = {least.time:.4g}; no agent is closer than {least.lower:.4g} to any at any time"

@@ -6,7 +6,6 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from flockana.clearance import clearance
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
@@ -88,7 +87,7 @@ def stays_outside(run: Trajectory) -> Hypothesis:
         A run of Algorithm 3.
     """
     name = "no agent enters an obstacle"
-    least = clearance(run.t, run.q, run.p, run.u, run.law.obstacles)
+    least = run.clearance()
     if not run.law.obstacles:
         return Hypothesis(name, "met", detail="there is none")
     where = f"(agent {least.agent} at obstacles[{least.obstacle}], t = {least.time:.4g})"

@@ -1,0 +1,67 @@
+"""A film that shows itself in a notebook and saves itself to a file."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from flockana.plots.animation import animate, animation, frame_count
+
+if TYPE_CHECKING:
+    from flockana.trajectory import Trajectory
+
+
+@dataclass(frozen=True, eq=False)
+class Film:
+    """A run as a film: a player where a notebook shows it, a GIF or MP4 where it is saved.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The run.
+    seconds : float
+        Length of the film.
+    fps : float
+        Frames per second.
+    velocities : bool
+        Draw arrows.
+
+    Raises
+    ------
+    ArgumentError
+        If seconds or fps is not positive, or they ask for too many frames.
+    """
+
+    trajectory: Trajectory
+    seconds: float = 10.0
+    fps: float = 15.0
+    velocities: bool = False
+
+    def __post_init__(self) -> None:
+        frame_count(self.seconds, self.fps)
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write the film; an existing file is replaced only when the new one is whole.
+
+        Parameters
+        ----------
+        path : path-like
+            ``.gif``, or ``.mp4`` where the program ffmpeg is installed.
+
+        Returns
+        -------
+        pathlib.Path
+
+        Raises
+        ------
+        ArgumentError, FileError
+            As `flockana.plots.animate`.
+        """
+        return animate(self.trajectory, path, seconds=self.seconds, fps=self.fps, velocities=self.velocities)
+
+    def _repr_html_(self) -> str:
+        """The player, with the frames inside it."""
+        film = animation(self.trajectory, seconds=self.seconds, fps=self.fps, velocities=self.velocities)
+        return str(film.to_jshtml(fps=round(self.fps), default_mode="loop"))
