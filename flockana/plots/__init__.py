@@ -5,6 +5,7 @@ from flockana.plots.film import Film
 from flockana.plots.lattice import barrier, collapse, collapse_brackets, defect_map
 from flockana.plots.obstacles import obstacles
 from flockana.plots.pair import action, potential
+from flockana.plots.phase import phase_portrait
 from flockana.plots.reynolds import rules
 from flockana.plots.series import (
     centre_of_mass,
@@ -41,6 +42,7 @@ __all__ = [
     "measure",
     "obstacles",
     "panel",
+    "phase_portrait",
     "potential",
     "rules",
     "snapshot",

@@ -1,0 +1,35 @@
+"""Phase portraits show the motion that they are given, over the level curves that they are given."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from flockana.errors import ArgumentError
+from flockana.plots.phase import phase_portrait
+
+
+def test_each_column_is_a_curve_from_start_to_end():
+    t = np.linspace(0.0, 1.0, 5)
+    x, v = np.column_stack([t, 2.0 * t]), np.column_stack([1.0 - t, t])
+    ax = phase_portrait(x, v)
+    curves = [line.get_xydata() for line in ax.lines if len(line.get_xdata()) == 5]
+    assert [np.array_equal(curve, np.column_stack([x[:, k], v[:, k]])) for k, curve in enumerate(curves)] == [True] * 2
+    start, end = (mark.get_offsets() for mark in ax.collections)
+    assert start.tolist() == [[0.0, 1.0], [0.0, 0.0]]
+    assert end.tolist() == [[1.0, 0.0], [2.0, 1.0]]
+
+
+def test_level_curves_are_of_the_energy_given():
+    x, v = np.linspace(-2.0, 2.0, 41), np.linspace(-2.0, 2.0, 41)
+    ax = phase_portrait([1.0], [0.0], energy=(x, v, x**2 + v[:, None] ** 2))
+    level = ax.collections[0]
+    for path, value in zip(level.get_paths(), level.levels, strict=True):
+        radii = np.hypot(*path.vertices.T) if len(path.vertices) else np.array([np.sqrt(value)])
+        if value <= 3.5:  # whole circles
+            assert np.abs(radii**2 - value).max() < 0.02
+
+
+def test_unequal_shapes_are_refused():
+    with pytest.raises(ArgumentError, match=r"position \(3,\), velocity \(2,\): expected equal shapes"):
+        phase_portrait([0.0, 1.0, 2.0], [0.0, 1.0])
