@@ -23,8 +23,6 @@
 #       - c_1^\gamma (q_i - q_r) - c_2^\gamma (p_i - p_r).$$
 
 # %%
-import matplotlib.pyplot as plt
-
 import flockana as fl
 from flockana import plots
 from flockana.course import grade
@@ -46,10 +44,9 @@ print(f"energy falls from {run.energy()[0]:.4g} to {run.energy()[-1]:.4g}")
 print(f"the balance is off by {abs(run.energy_residual).max():.1g} at most")
 
 # %%
-figure, axes = plt.subplots(1, 2, figsize=(11, 5))
+figure, axes = plots.subplots(1, 2, size=(11, 5))
 plots.snapshot(run, time=run.t[0], ax=axes[0])
-plots.snapshot(run, time=run.t[-1], ax=axes[1])
-figure.tight_layout()
+_ = plots.snapshot(run, time=run.t[-1], ax=axes[1])
 
 # %% [markdown]
 # ## Ask a theorem
@@ -71,7 +68,7 @@ collapse_status = ...
 # %% tags=["solution"]
 collapse = fl.scenario("collapse").run()
 collapse_status = fl.verify("E11", collapse).status
-plots.snapshot(collapse)
+_ = plots.snapshot(collapse)
 # %% tags=["check"]
 grade(collapse_status, "refuted", hint="fl.verify(name, run).status, one word")
 

@@ -19,7 +19,7 @@ from flockana.plots.series import (
     speeds,
 )
 from flockana.plots.snapshot import configuration, snapshot
-from flockana.plots.style import style
+from flockana.plots.style import style, subplots
 from flockana.plots.tracks import centre_path, trajectories
 
 __all__ = [
@@ -48,5 +48,6 @@ __all__ = [
     "snapshot",
     "speeds",
     "style",
+    "subplots",
     "trajectories",
 ]

@@ -54,7 +54,7 @@ def potential(interaction: AlphaInteraction, *, ax: Axes | None = None) -> Axes:
     ax = ensure_axes(ax)
     x = np.linspace(0.0, 1.15 * interaction.r, _SAMPLES)
     ax.plot(x, interaction.psi_alpha(interaction.sigma_norm(x)), color=VERMILLION, linestyle="-")
-    ax.annotate(f"c* = {interaction.c_star:.4g}", (0.0, interaction.c_star), (8, -3), textcoords="offset points")
+    ax.annotate(f"c* = {interaction.c_star:.4g}", (0.0, interaction.c_star), (30, -4), textcoords="offset points")
     return _frame(ax, interaction, "ψ_α, the pair's potential")
 
 

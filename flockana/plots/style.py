@@ -68,8 +68,15 @@ def style() -> Iterator[None]:
     >>> inside, matplotlib.rcParams["axes.spines.top"]
     (False, True)
     """
-    with mpl.rc_context(_STYLE):  # type: ignore[arg-type]  # the stubs know each key's type, a plain dict does not
-        yield
+    interactive = mpl.is_interactive()
+    try:
+        with mpl.rc_context(_STYLE):  # type: ignore[arg-type]  # the stubs know each key's type, a plain dict does not
+            try:
+                yield
+            finally:
+                interactive = mpl.is_interactive()
+    finally:  # a notebook's backend, if the first figure loads it here, turns this on for good
+        mpl.interactive(interactive)
 
 
 def ensure_axes(ax: Any, *, m: int = 2) -> Axes:
@@ -89,6 +96,33 @@ def ensure_axes(ax: Any, *, m: int = 2) -> Axes:
     with style():
         figure = plt.figure(figsize=(5.2, 4.2))
         return figure.add_subplot(projection="3d" if m == 3 else None)
+
+
+def subplots(
+    rows: int = 1, columns: int = 1, *, size: tuple[float, float] | None = None, m: int = 2
+) -> tuple[Any, Any]:
+    """A new figure in flockana's look, as ``pyplot.subplots`` makes one: (figure, Axes or array of Axes).
+
+    Parameters
+    ----------
+    rows, columns : int
+        Of the grid.
+    size : (float, float), optional
+        Width and height in inches; by default 4.4 by 3.4 for each Axes.
+    m : int
+        Dimension of what will be drawn: 3 for three-dimensional axes.
+
+    Examples
+    --------
+    >>> figure, axes = subplots(1, 2)
+    >>> axes.shape, figure.get_size_inches().tolist()
+    ((2,), [8.8, 3.4])
+    """
+    import matplotlib.pyplot as plt
+
+    with style():
+        kind = {"projection": "3d"} if m == 3 else {}
+        return plt.subplots(rows, columns, figsize=size or (4.4 * columns, 3.4 * rows), subplot_kw=kind)
 
 
 def legend_above(ax: Any) -> None:

@@ -186,3 +186,14 @@ def test_without_axes_new_ones_are_made_for_the_dimension():
     run = simulate(Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 0.1))
     assert plots.energy(run).get_ylabel() == "H, energy"
     assert plots.panel(run).shape == (4,)
+
+
+def test_a_backend_that_turns_interactive_mode_on_inside_the_style_keeps_it():
+    before = mpl.is_interactive()
+    try:
+        mpl.interactive(False)
+        with plots.style():
+            mpl.interactive(True)  # what a notebook's backend does when the first figure loads it
+        assert mpl.is_interactive()
+    finally:
+        mpl.interactive(before)

@@ -1,0 +1,152 @@
+# ---
+# jupyter:
+#   jupytext:
+#     text_representation:
+#       extension: .py
+#       format_name: percent
+#   kernelspec:
+#     display_name: Python 3
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # σ-norm, bumps and pair potentials
+#
+# **Aims.** Build the potential that makes agents keep their distance, from its parts, and know which of its properties
+# are proved, which are computed to what accuracy, and where a formula loses digits.
+#
+# Olfati-Saber (2006, section II) replaces the Euclidean norm, which has no gradient at zero, by
+#
+# $$\|z\|_\sigma = \frac{1}{\varepsilon}\left(\sqrt{1 + \varepsilon \|z\|^2} - 1\right), \qquad
+#   \nabla \|z\|_\sigma = \frac{z}{\sqrt{1 + \varepsilon\|z\|^2}}.$$
+
+# %%
+import numpy as np
+
+import flockana as fl
+from flockana import plots, symbolic
+from flockana.course import grade
+
+alpha = fl.AlphaInteraction(d=7.0, r=8.4, eps=0.1, h=0.2, a=5.0, b=5.0)
+x = np.linspace(0.0, 12.0, 400)
+figure, axes = plots.subplots(1, 2)
+axes[0].plot(x, alpha.sigma_norm(x), label="σ-norm, ε = 0.1")
+axes[0].plot(x, x, label="Euclidean norm")
+axes[0].set(xlabel="length", ylabel="norm")
+axes[0].legend()
+axes[1].plot(x / 12, alpha.bump(x / 12))
+_ = axes[1].set(xlabel="z", ylabel="bump ρ_h(z), h = 0.2")
+
+# %% [markdown]
+# ## From action to potential
+#
+# The action of a pair is an uneven sigmoid, cut off by the bump,
+#
+# $$\phi_\alpha(z) = \rho_h(z/r_\alpha)\,\phi(z - d_\alpha), \qquad
+#   \phi(s) = \tfrac12\left[(a+b)\,\sigma_1(s+c) + (a-b)\right], \qquad \sigma_1(s) = \frac{s}{\sqrt{1+s^2}},$$
+#
+# with $c = |a-b|/\sqrt{4ab}$, so that $\phi(0) = 0$. Its integral from $d_\alpha$ is the potential $\psi_\alpha$. Let
+# sympy derive it, step by step:
+
+# %%
+symbolic.derive_psi_alpha()
+
+# %% [markdown]
+# On the plateau of the bump there is a closed form; on the taper there is none, and the library integrates it to
+# $10^{-13} c^*$. Over the distance of the two agents:
+
+# %%
+figure, axes = plots.subplots(1, 2)
+plots.action(alpha, ax=axes[0])
+plots.potential(alpha, ax=axes[1])
+print(f"d_α = {alpha.d_alpha:.6f}, r_α = {alpha.r_alpha:.6f}, c* = ψ_α(0) = {alpha.c_star:.6f}")
+print(f"ψ_α(r_α) = {alpha.psi_alpha(alpha.r_alpha):.6f}: what two agents out of range cost, each pair of them")
+
+# %% [markdown]
+# The attraction is a shallow well beside a high wall: pulling a pair apart costs $0.74$, pushing it together $52.4$. A
+# student notebook on the same algorithm draws this curve over $z$ itself (its Fig. 3; here with the parameters of its
+# first run, $a = 7$, $b = 9$, $h = 0.4$):
+
+# %%
+pair = fl.AlphaInteraction(d=1.9, r=2.8, eps=0.1, h=0.4, a=7.0, b=9.0)
+z = np.linspace(0.0, 1.2 * pair.r_alpha, 500)
+figure, ax = plots.subplots()
+ax.plot(z, pair.psi_alpha(z))
+_ = ax.set(xlabel="z = ‖q_j − q_i‖_σ", ylabel="ψ_α(z)")
+
+# %% [markdown]
+# ## Three witnesses
+#
+# The kernel, the symbolic expression and plain quadrature are three independent routes to one number.
+
+# %%
+from scipy.integrate import quad
+
+z = 5.0
+print(f"kernel      {alpha.psi_alpha(z):.15f}")
+print(f"quadrature  {quad(alpha.phi_alpha, alpha.d_alpha, z, epsabs=1e-13)[0]:.15f}")
+
+# %% [markdown]
+# ## Digits that disappear
+#
+# For two agents $10^{-9}$ apart, $\sqrt{1+\varepsilon x^2}-1$ is a difference of equal numbers. The library computes
+# $x^2/(\sqrt{1+\varepsilon x^2}+1)$, which is the same and loses nothing.
+
+# %%
+tiny = 1e-9
+print(f"as printed {(np.sqrt(1 + 0.1 * tiny**2) - 1) / 0.1:.3e},  as computed {alpha.sigma_norm(tiny):.3e}")
+
+# %% [markdown] tags=["exercise"]
+# ## Exercises
+#
+# **1.** For $a = 1$, $b = 5$: what is $c$, and how large is $\phi(0)$ if $c$ is left out? Give the second number.
+
+# %% tags=["answer"]
+phi_at_zero = ...
+
+# %% tags=["solution"]
+phi_at_zero = 0.5 * ((1 + 5) * 0 + (1 - 5))
+
+# %% tags=["check"]
+grade(phi_at_zero, -2.0, hint="set s + c = 0 in φ")
+
+# %% [markdown] tags=["exercise"]
+# **2.** A lattice link costs nothing and a pair out of range costs $\psi_\alpha(r_\alpha)$. How many pairs out of range
+# weigh as much as one coincident pair, for `alpha`?
+
+# %% tags=["answer"]
+pairs = ...
+
+# %% tags=["solution"]
+pairs = alpha.c_star / alpha.psi_alpha(alpha.r_alpha)
+
+# %% tags=["check"]
+grade(pairs, 71.1833, rtol=1e-3, hint="alpha.c_star and alpha.psi_alpha")
+
+# %% [markdown] tags=["exercise"]
+# **3.** At $h = 1$ the bump is an indicator, which the slides call "still differentiable". Ask erratum E10 and give the
+# height of the jump.
+
+# %% tags=["answer"]
+jump = ...
+
+# %% tags=["solution"]
+print(fl.verify("E10"))
+jump = 1.0
+
+# %% tags=["check"]
+grade(jump, 1.0, hint="one-sided limits at z = 1")
+
+# %% [markdown] tags=["exercise"]
+# **4.** Where is the attraction strongest? Give the distance of the pair, to three digits.
+
+# %% tags=["answer"]
+strongest = ...
+
+# %% tags=["solution"]
+fine = np.linspace(alpha.d, alpha.r, 200_001)
+strongest = fine[np.argmax(alpha.phi_alpha(alpha.sigma_norm(fine)))]
+
+# %% tags=["check"]
+grade(strongest, lambda s: abs(s - 7.314) < 0.005, hint="maximise φ_α between d and r")
