@@ -75,6 +75,11 @@ class Trajectory:
             array.setflags(write=False)  # of the view: the caller's array stays as it was
             object.__setattr__(self, name, array)
 
+    def __repr__(self) -> str:
+        """One line: arrays of thousands of numbers tell nobody anything."""
+        span, law = f"t = {self.t[0]:g} to {self.t[-1]:g}", type(self.law).__name__
+        return f"<Trajectory of {self.n} agents, m = {self.m}, {law}, {len(self.t)} samples, {span}, {self.status}>"
+
     @property
     def n(self) -> int:
         """Number of agents."""

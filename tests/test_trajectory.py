@@ -207,3 +207,8 @@ def test_a_file_without_its_velocities(tmp_path):
     RUN.to_xarray().drop_vars("p").to_netcdf(path, engine="h5netcdf")
     with pytest.raises(FileError, match="is damaged: KeyError"):
         Trajectory.load(path)
+
+
+def test_a_run_shows_itself_in_one_line():
+    run = simulate(Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 1.0), t_eval=[0.0, 1.0])
+    assert repr(run) == "<Trajectory of 2 agents, m = 1, Algorithm1, 2 samples, t = 0 to 1, complete>"

@@ -1,0 +1,150 @@
+# ---
+# jupyter:
+#   jupytext:
+#     text_representation:
+#       extension: .py
+#       format_name: percent
+#   kernelspec:
+#     display_name: Python 3
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # Algorithm 1: energy, and why flocks fragment
+#
+# **Aims.** Derive the energy identity of Algorithm 1, watch it hold along a run, and see what it does not give:
+# cohesion.
+#
+# Algorithm 1 of Olfati-Saber (2006, section IV) is a gradient term and a consensus term,
+#
+# $$u_i = c_1 \sum_{j\in N_i} \phi_\alpha(\|q_j-q_i\|_\sigma)\,n_{ij} + c_2 \sum_{j\in N_i} a_{ij}(q)(p_j-p_i)
+#   \quad\Longleftrightarrow\quad \dot p = -c_1\nabla V(q) - c_2 \hat L(q)\,p.$$
+#
+# ## The energy identity, derived
+#
+# $V$ and $u$ are sums over pairs, so one generic pair is enough for every $n$:
+
+# %%
+import numpy as np
+
+import flockana as fl
+from flockana import plots, symbolic
+from flockana.course import grade
+
+identity = symbolic.algorithm1_identity(m=2)
+print("residual of dH/dt + c2 pᵀL̂p:", identity.residual)
+identity
+
+# %% [markdown]
+# With $H = V + \sum\|p_i\|^2$, as a set of lecture slides prints it, a term without sign remains (erratum E1), and at
+# some states this $H$ rises:
+
+# %%
+print(symbolic.e1_identity(m=2).residual)
+print(fl.verify("E1"))
+
+# %% [markdown]
+# ## A run of forty agents
+#
+# Nothing in Algorithm 1 calls a stray agent back. The paper shows it in its Fig. 12:
+
+# %%
+run = fl.scenario("paper-fragmentation").run()
+figure, axes = plots.subplots(1, 2, size=(10, 4.5))
+plots.snapshot(run, time=0.0, ax=axes[0], bar=False)
+_ = plots.snapshot(run, ax=axes[1])
+
+# %%
+figure, axes = plots.subplots(1, 3, size=(12, 3))
+plots.energy(run, ax=axes[0])
+plots.energy_residual(run, ax=axes[1])
+_ = plots.components(run, ax=axes[2])
+
+# %% [markdown]
+# The energy falls to a constant, and its balance closes to nine digits. The number of components falls too, but not to
+# one: energy decay says nothing about connectivity.
+
+# %%
+print(fl.verify("energy", run))
+print(fl.verify("os-1", run))
+
+# %% [markdown]
+# Theorem 1 is *vacuous* here, and it says why: its hypothesis is that every solution starting in a level set of $H$ is
+# a cohesive flock, and this very run is none.
+#
+# ## Two agents, all there is to see
+#
+# With little damping a pair circles its well; with more energy than $\psi_\alpha(r_\alpha)$ it escapes.
+
+# %%
+law = fl.Algorithm1(gains=fl.Gains(c1_alpha=1.0, c2_alpha=0.2))
+pair = fl.simulate(law, [[0.0], [6.6]], [[0.0], [0.0]], (0.0, 60.0), t_eval=np.linspace(0.0, 60.0, 1500))
+distance, rate = np.diff(pair.q, axis=1)[:, 0], np.diff(pair.p, axis=1)[:, 0]
+
+x, v = np.linspace(6.2, 8.6, 200), np.linspace(-2.5, 2.5, 200)
+H = law.alpha.psi_alpha(law.alpha.sigma_norm(x)) + v[:, None] ** 2 / 4
+_ = plots.phase_portrait(
+    distance, rate, energy=(x, v, H), labels=("distance of the pair (length)", "its rate (length/time)")
+)
+
+# %% [markdown]
+# ## A student project's two films
+#
+# A course project (see `fl.cite(fl.scenario("notebook-algorithm1"))`) animates 27 agents under Algorithm 1 and 35 under
+# Algorithm 2. Here they are, three lines each:
+
+# %%
+film = fl.scenario("notebook-algorithm1").run().animate(seconds=4, fps=10)
+film
+
+# %%
+film = fl.scenario("notebook-algorithm2").run().animate(seconds=4, fps=10)
+film
+
+# %% [markdown] tags=["exercise"]
+# ## Exercises
+#
+# **1.** In how many components does `run` end?
+
+# %% tags=["answer"]
+components = ...
+
+# %% tags=["solution"]
+labels = fl.components(run.n, fl.links(run.q[-1], run.law.alpha.r))
+components = len(set(labels))
+
+# %% tags=["check"]
+grade(components, 24, hint="fl.components(n, links) labels every agent, fl.links(q, r) finds the links")
+
+# %% [markdown] tags=["exercise"]
+# **2.** From which start at rest, closer than $d$, does the pair of `law` just escape if there is no damping? Give the
+# distance to three digits. (At rest $H = \psi_\alpha$, and escape needs $\psi_\alpha(r_\alpha)$.)
+
+# %% tags=["answer"]
+start = ...
+
+# %% tags=["solution"]
+from scipy.optimize import brentq
+
+psi = law.alpha.psi_alpha
+start = brentq(lambda s: psi(law.alpha.sigma_norm(s)) - psi(law.alpha.r_alpha), 5.0, 7.0)
+
+# %% tags=["check"]
+grade(start, 6.568, rtol=5e-4, hint="solve ψ_α(‖s‖_σ) = ψ_α(r_α) below d")
+
+# %% [markdown] tags=["exercise"]
+# **3.** The momentum $\sum p_i$ of Algorithm 1 is conserved, because each pair acts equally and oppositely. By how much
+# does it change in `run`, relative to $\sum \|p_i(0)\|$? Is that above $10^{-10}$?
+
+# %% tags=["answer"]
+above = ...
+
+# %% tags=["solution"]
+momentum = run.p.sum(axis=1)
+change = np.abs(momentum - momentum[0]).max() / np.linalg.norm(run.p[0], axis=1).sum()
+print(f"{change:.1e}")
+above = bool(change > 1e-10)
+
+# %% tags=["check"]
+grade(above, False, hint="run.p has shape (T, n, m)")
