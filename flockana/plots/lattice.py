@@ -107,7 +107,8 @@ def defect_map(
         axes.set(xlabel="x (length)", yticks=[], ylim=(-1.0, 1.0))
     else:
         frame_space(axes, x)
-    axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.14), ncols=3, borderaxespad=0.0, markerscale=1.0)
+    look: dict[str, Any] = {"borderaxespad": 0.0, "fontsize": 8, "handletextpad": 0.2, "columnspacing": 1.0}
+    axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.14), ncols=2, **look)  # wider, it would squeeze the axes
     return axes  # type: ignore[no-any-return]  # the stubs have no three-dimensional axes
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.ticker import FormatStrFormatter, NullFormatter
+from matplotlib.ticker import FormatStrFormatter, MaxNLocator, NullFormatter
 
 from flockana.errors import UnknownNameError
 from flockana.laws.law import DiscreteLaw
@@ -28,6 +28,7 @@ MEASURES = {
     "inertia": ("J, inertia (length²)", False),
     "order": ("polar order", False),
 }
+_FEW = 12  # components that a linear scale shows as well
 PANEL = ("connectivity", "cohesion_radius", "deviation_energy", "velocity_mismatch")
 
 
@@ -173,7 +174,7 @@ def distances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
 
 
 def components(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
-    """Draw the number of components of the net over time (logarithmic), if the law has an interaction range.
+    """Draw the number of components of the net over time (logarithmic where many), if the law has an interaction range.
 
     Parameters
     ----------
@@ -192,10 +193,13 @@ def components(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
         return _empty(ax, label, "not defined for this law")
     counts = component_counts(trajectory)
     ax.plot(trajectory.t, counts, color=BLUE, linestyle="-", drawstyle="steps-post")
-    ax.set_yscale("log")
+    if counts.max() > _FEW:
+        ax.set_yscale("log")
+        ax.yaxis.set_major_formatter(FormatStrFormatter("%d"))
+        ax.yaxis.set_minor_formatter(NullFormatter())
+    else:
+        ax.yaxis.set_major_locator(MaxNLocator(integer=True))
     ax.set_ylim(0.8, max(2.5, 1.3 * float(counts.max())))
-    ax.yaxis.set_major_formatter(FormatStrFormatter("%d"))
-    ax.yaxis.set_minor_formatter(NullFormatter())
     return _frame(ax, trajectory, label)
 
 

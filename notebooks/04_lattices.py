@@ -1,0 +1,142 @@
+# ---
+# jupyter:
+#   jupytext:
+#     text_representation:
+#       extension: .py
+#       format_name: percent
+#   kernelspec:
+#     display_name: Python 3
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # α-lattices: crossings, planarity, Harborth's count
+#
+# **Aims.** Build lattices, measure how far a configuration is from one, test Theorem 5 claim by claim, and find the one
+# that is false in space.
+#
+# An *α-lattice* of scale $d$ and ratio $\kappa = r/d$ is a configuration in which every agent is exactly $d$ away from
+# each of its neighbours, the agents nearer than $r$ (Olfati-Saber 2006, Definition 1). Which patterns qualify depends
+# on the distance of *second* neighbours: it must not fall below $r$.
+
+# %%
+import numpy as np
+
+import flockana as fl
+from flockana import lattice, plots
+from flockana.course import grade
+
+for name in ("triangular", "square", "honeycomb", "simple_cubic", "fcc", "hcp", "bcc"):
+    print(f"{name:>12}: κ at most {lattice.max_ratio(name):.4f}")
+
+# %%
+d, r = 7.0, 8.4
+q = lattice.hexagonal_patch(3, d)
+pairs = lattice.links(q, r)
+print(f"{len(q)} agents, {len(pairs)} links, α-lattice: {lattice.is_alpha_lattice(q, d, r)}")
+print(f"Theorem 5 allows 3n − 6 = {lattice.planar_bound(len(q))}; Harborth's sharp bound is {lattice.harborth(len(q))}")
+
+# %% [markdown]
+# ## What a flock really ends in
+#
+# Algorithm 2 ends near a lattice, not in one: the γ-agent's pull compresses it. Colour and shape of an agent tell its
+# number of neighbours; six of them is the perfect interior.
+
+# %%
+run = fl.scenario("paper-flocking").run()
+end = run.q[-1] - run.q[-1].mean(axis=0)
+net = lattice.links(end, r)
+length = np.linalg.norm(end[net[:, 0]] - end[net[:, 1]], axis=1)
+plots.defect_map(end, net, lattice.coordination(len(end), net), strain=length / d - 1)
+print(f"largest strain {lattice.strain(end, d, r):.3f}, crossings {len(lattice.crossings(end, net))}")
+
+# %% [markdown]
+# Theorem 5 is about lattices, so on this state most of it is vacuous. An extension is not: **if all pairs are farther
+# apart than $r/\sqrt2$, no two links cross**, lattice or not. (Two crossing links are the diagonals of a convex
+# quadrilateral, one of whose sides is at most $1/\sqrt2$ of the longer diagonal.)
+
+# %%
+print(fl.verify("os-5", q=end, d=d, r=r))
+
+# %% [markdown]
+# ## In space, planarity fails
+#
+# The theorem's proof shows that edges do not cross. In the plane that *is* planarity; in space it is nothing of the
+# sort. Eight agents of a face-centred cubic lattice suffice (erratum E5):
+
+# %%
+eight = np.array([[0, 0, 0], [1, 0, 1], [2, 1, 1], [1, 1, 0], [2, 2, 0], [2, 1, -1], [1, 0, -1], [2, 0, 0]])
+fragment = eight * d / np.sqrt(2)
+edges = lattice.links(fragment, r)
+print(f"crossings: {len(lattice.crossings(fragment, edges))}, planar: {lattice.is_planar(8, edges)}")
+print(lattice.kuratowski(8, edges))
+figure, ax = plots.subplots(m=3, size=(5, 4.5))
+_ = plots.configuration(fragment, d=d, r=r, ax=ax, bar=False)
+
+# %% [markdown]
+# ## Rigidity
+#
+# A framework whose only infinitesimal motions are translations and rotations holds its shape. Its rigidity matrix says
+# so, and its links carry a self-stress where there are more of them than needed:
+
+# %%
+print(lattice.rigidity(q, pairs))
+
+# %% [markdown] tags=["exercise"]
+# ## Exercises
+#
+# **1.** How many links can an α-lattice of 100 agents in the plane have at most?
+
+# %% tags=["answer"]
+most = ...
+
+# %% tags=["solution"]
+most = lattice.harborth(100)
+
+# %% tags=["check"]
+grade(most, 265, hint="⌊3n − √(12n − 3)⌋")
+
+# %% [markdown] tags=["exercise"]
+# **2.** For $r = 1.2\,d$, at what least distance between any two agents does the extension guarantee that no links
+# cross? Give it as a multiple of $d$.
+
+# %% tags=["answer"]
+safe = ...
+
+# %% tags=["solution"]
+safe = 1.2 / np.sqrt(2)
+
+# %% tags=["check"]
+grade(safe, 0.848528, rtol=1e-3, hint="r/√2")
+
+# %% [markdown] tags=["exercise"]
+# **3.** Build thirteen agents: an FCC site with its twelve nearest neighbours, as an array `thirteen` of shape (13, 3)
+# with scale $d = 7$. More than $3n - 6 = 33$ links are possible in space.
+
+# %% tags=["answer"]
+thirteen = ...
+
+# %% tags=["solution"]
+steps = [(a, b, c) for a in (-1, 0, 1) for b in (-1, 0, 1) for c in (-1, 0, 1) if abs(a) + abs(b) + abs(c) in (0, 2)]
+thirteen = np.array(steps) * d / np.sqrt(2)
+print(len(lattice.links(thirteen, r)), "links")
+
+# %% tags=["check"]
+grade(
+    thirteen,
+    lambda x: np.shape(x) == (13, 3) and lattice.is_alpha_lattice(x, d, r) and len(lattice.links(x, r)) == 36,
+    hint="sites of even coordinate sum, times d/√2; 36 links",
+)
+
+# %% [markdown] tags=["exercise"]
+# **4.** Theorem 5 bounds the links of 2 agents by $3n - 6$. Is that right?
+
+# %% tags=["answer"]
+bound_holds_for_two = ...
+
+# %% tags=["solution"]
+bound_holds_for_two = bool(len(lattice.links(lattice.line(2, d), r)) <= 3 * 2 - 6)
+
+# %% tags=["check"]
+grade(bound_holds_for_two, False, hint="erratum E6")
