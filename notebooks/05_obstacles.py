@@ -17,8 +17,8 @@
 # which hypothesis makes the energy fall.
 #
 # Algorithm 3 (Olfati-Saber 2006, section VII) adds to each agent a β-agent on every obstacle in range: the closest
-# point $\hat q_{ik}$, moving with the velocity $\hat p_{ik}$ that the agent's own motion gives it. For a sphere with centre
-# $y$ and radius $R$,
+# point $\hat q_{ik}$, moving with the velocity $\hat p_{ik}$ that the agent's own motion gives it. For a sphere with
+# centre $y$ and radius $R$,
 #
 # $$\mu = \frac{R}{\|q_i - y\|},\quad a = \frac{q_i-y}{\|q_i-y\|},\quad P = I - aa^\top,\qquad
 #   \hat q_{ik} = \mu q_i + (1-\mu) y,\quad \hat p_{ik} = \mu P p_i .$$

@@ -1,0 +1,137 @@
+# ---
+# jupyter:
+#   jupytext:
+#     text_representation:
+#       extension: .py
+#       format_name: percent
+#   kernelspec:
+#     display_name: Python 3
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # What the theorems really say: vacuous bounds and errata
+#
+# **Aims.** Read a theorem as a contract: which hypothesis does the work, when can it be met at all, and how would you
+# notice that a printed claim is false?
+#
+# ## A true statement that says nothing
+#
+# Theorem 1(iii) of Olfati-Saber (2006): if $H(x(0), v(0)) < c^* = \psi_\alpha(0)$, no two agents ever collide. True:
+# the energy does not rise, and a coincident pair alone costs $c^*$. But **every pair out of range costs
+# $\psi_\alpha(r_\alpha)$ too**, and there are about $n^2/2$ of those.
+
+# %%
+import numpy as np
+
+import flockana as fl
+from flockana import lattice, plots
+from flockana.course import grade
+from flockana.equilibria.barrier import energy_floor, lattice_reach, none_from
+
+alpha = fl.AlphaInteraction()
+sizes = np.arange(2, 31)
+best = [alpha.potential_energy(lattice.hexagonal_spiral(n, alpha.d)) for n in sizes.tolist()]
+floor = [energy_floor(alpha, n) for n in sizes.tolist()]
+figure, ax = plots.subplots(size=(6, 3.4))
+ax.plot(sizes, best, "o-", label="V of the best α-lattice")
+ax.plot(sizes, floor, "s--", label="proved floor of V, any state")
+ax.axhline(alpha.c_star, color="black", linestyle=":", label="c*")
+ax.set(xlabel="n, agents", ylabel="energy", ylim=(0, 150))
+ax.legend()
+print(f"lattices stay below c* up to n = {lattice_reach(alpha)}, and from n = {none_from(alpha)} on no state does")
+
+# %% [markdown]
+# The floor is a theorem of its own. A pair that lowers $V$ below $\psi_\alpha(r_\alpha)$ is between 6.568 and 8.4
+# long, a ratio below $\sqrt2$; among four points of the plane some two distances have a ratio of at least $\sqrt2$;
+# so no four agents are pairwise such, and Turán bounds the number of such pairs (erratum E4).
+#
+# A certificate that does not go vacuous replaces $c^*$ by the barrier $\min\{V : \text{two agents coincide}\}$. `os-1`
+# checks both:
+
+# %%
+hexagon = fl.scenario("hexagon").run()
+print(fl.verify("os-1", hexagon))
+
+# %% [markdown]
+# ## A false statement that nearly always looks true
+#
+# "Almost every solution converges to an α-lattice." From 40 random starts you may well see 40 lattices. A strict local
+# minimum of $V$ that is no lattice refutes it all the same, because it has an open basin. Five agents suffice:
+
+# %%
+print(fl.verify("E3").claim("double-agent").detail)
+
+# %% [markdown]
+# ## A statement that counts the wrong thing
+#
+# Theorem 3(iv): if $H_\lambda(0) < (k+1)c^*$, at most $k$ distinct pairs could collide. Energy bounds what happens
+# *at one instant*. Three agents on a line, an energy of $1.9\,c^*$, hence $k = 1$:
+
+# %%
+line = fl.scenario("three-agents-1d").run()
+verdict = fl.verify("os-3", line)
+for name in ("iv-printed", "iv-instant"):
+    print(f"{name:>10}: {verdict.claim(name).status:9} {verdict.claim(name).detail}")
+
+early = line.window(0.0, 0.04)
+figure, ax = plots.subplots(size=(6, 3))
+ax.plot(early.t, early.q[:, :, 0])
+_ = ax.set(xlabel="t (time)", ylabel="x (length)")
+
+# %% [markdown]
+# Two crossings within 0.03 time units can hide between samples. The library therefore looks along the interpolated
+# paths, and bounds what it cannot see.
+#
+# ## All errata at once
+
+# %%
+for name in fl.theorems():
+    if name.startswith("E"):
+        print(f"{name:>4}  {fl.theorem(name).title}")
+
+# %% [markdown] tags=["exercise"]
+# ## Exercises
+#
+# **1.** With $a = b = 1$ instead of 5 (all else equal), from which $n$ on does no state have $V < c^*$?
+
+# %% tags=["answer"]
+n_none = ...
+
+# %% tags=["solution"]
+n_none = none_from(fl.AlphaInteraction(a=1.0, b=1.0))
+
+# %% tags=["check"]
+grade(
+    n_none,
+    none_from(fl.AlphaInteraction(a=1.0, b=1.0)),
+    hint="none_from(AlphaInteraction(...)): think before you run it",
+)
+
+# %% [markdown] tags=["exercise"]
+# **2.** Erratum E9: a constant input $u = 2$ for one step $\Delta t = 0.1$ from rest. How far does the printed update
+# move the agent?
+
+# %% tags=["answer"]
+moved = ...
+
+# %% tags=["solution"]
+u, dt = 2.0, 0.1
+moved = (u * dt) * dt + 0.5 * u * dt**2
+
+# %% tags=["check"]
+grade(moved, 0.03, hint="p + v_new dt + ½ u dt²")
+
+# %% [markdown] tags=["exercise"]
+# **3.** A run of `paper-flocking` keeps all agents apart. What is the status of claim `iv-none` of `os-3` on it, and
+# why?
+
+# %% tags=["answer"]
+status = ...
+
+# %% tags=["solution"]
+status = fl.verify("os-3", fl.scenario("paper-flocking").run()).claim("iv-none").status
+
+# %% tags=["check"]
+grade(status, "vacuous", hint="is H_λ(0) < c*?")
