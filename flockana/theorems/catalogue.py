@@ -68,7 +68,7 @@ def theorem(name: str) -> Theorem:
 
 
 def verify(
-    name: str,
+    name: str | Theorem,
     trajectory: Trajectory | None = None,
     *,
     law: Any = None,
@@ -85,8 +85,8 @@ def verify(
 
     Parameters
     ----------
-    name : str
-        One of `theorems`.
+    name : str or Theorem
+        One of `theorems`, or a theorem of your own.
     trajectory : Trajectory, optional
         The run, for theorems about motion.
     law, q0, p0, t_span : optional
@@ -114,7 +114,7 @@ def verify(
     >>> verify("E8").claim("printed").computed
     0.6666666666666666
     """
-    item = theorem(name)
+    item = name if isinstance(name, Theorem) else theorem(name)
     tolerances = tolerances or Tolerances()
     motion = {"law": law, "q0": q0, "p0": p0, "t_span": t_span}
     still = {"q": q, "d": d, "r": r}
@@ -122,7 +122,7 @@ def verify(
     needed = {"trajectory": ({"trajectory"}, set(motion)), "configuration": (set(still),), "fixed": (set(),)}[item.kind]
     if given not in needed:
         options = " or ".join(", ".join(sorted(option)) or "nothing" for option in needed)
-        raise ArgumentError(f"{name} is checked on {options}: got {', '.join(sorted(given)) or 'nothing'}")
+        raise ArgumentError(f"{item.id} is checked on {options}: got {', '.join(sorted(given)) or 'nothing'}")
     if item.kind == "trajectory":
         run = trajectory if trajectory is not None else simulate(law, q0, p0, t_span)
         if not isinstance(run, Trajectory):
@@ -133,4 +133,4 @@ def verify(
     else:
         subject_data = ()
     hypotheses, claims = item.check(*subject_data, tolerances)
-    return Verdict(name, tuple(hypotheses), tuple(claims), tolerances, subject)
+    return Verdict(item.id, tuple(hypotheses), tuple(claims), tolerances, subject)

@@ -10,7 +10,7 @@ import pytest
 from flockana.errors import ArgumentError, UnknownNameError
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.scenarios.scenario import differences
-from flockana.theorems import Claim, Hypothesis, Tolerances, Verdict, theorem, theorems, verify
+from flockana.theorems import Claim, Hypothesis, Theorem, Tolerances, Verdict, theorem, theorems, verify
 from flockana.theorems.theorem import judge
 
 UNMET = Hypothesis("connected", "unmet")
@@ -123,3 +123,12 @@ def test_differences_name_what_differs_and_what_is_missing():
         "x is verified, expected refuted",
         "x:iii is missing, expected verified",
     )
+
+
+def test_a_theorem_of_ones_own_is_checked_without_a_place_in_the_catalogue():
+    claim = Claim("one", "verified", computed=1)
+    mine = Theorem("mine", "Mine", "One is one.", "nowhere", "fixed", lambda tolerances: ((), (claim,)))
+    verdict = verify(mine)
+    assert (verdict.theorem, verdict.status, verdict.claims) == ("mine", "verified", (claim,))
+    with pytest.raises(ArgumentError, match=r"mine is checked on nothing: got d"):
+        verify(mine, d=1.0)
