@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import os
 from typing import Any
 
 import numpy as np
@@ -173,6 +175,38 @@ def ensure_vector(name: str, value: Any, m: int | None = None) -> FloatArray:
     if not np.isfinite(vector).all():
         raise ArgumentError(f"{name} = {vector}: expected finite numbers")
     return vector
+
+
+def ensure_fits(name: str, shape: tuple[int, ...], remedy: str) -> None:
+    """Raise before an array of floats is allocated that would take more than half of the machine's memory.
+
+    Parameters
+    ----------
+    name : str
+        The array's name, for the message.
+    shape : tuple of int
+        Its shape.
+    remedy : str
+        What to do instead.
+
+    Raises
+    ------
+    ArgumentError
+        If it does not fit.
+
+    Examples
+    --------
+    >>> ensure_fits("A", (600, 600), "sparse=True")
+    """
+    size = 8 * math.prod(shape)
+    if not hasattr(os, "sysconf"):
+        return  # a system that does not tell; the allocation itself may fail
+    memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    if 2 * size > memory:
+        raise ArgumentError(
+            f"{name} of shape {shape} would take {size:.3g} bytes, more than half of this machine's {memory:.3g}: "
+            f"{remedy}"
+        )
 
 
 def ensure_time_span(t_span: Any) -> tuple[float, float]:

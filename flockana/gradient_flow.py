@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from flockana.checks import FloatArray, ensure_points, ensure_positive
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2, moving_frame
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain, moving_frame
 
 _NEWTON_FROM = 1e-7  # relative force at which Newton's method takes over: a weak bond near r pulls no harder before
 _NEWTON_STEPS = 20
@@ -70,6 +70,11 @@ def gradient_flow(law: Algorithm1 | Algorithm2, q0: Any, *, tol: float = 1e-11, 
     horizon : float
         Longest time of the flow, in units of 1/c1α.
 
+    Raises
+    ------
+    ArgumentError
+        With per-agent gains, under which the force does not vanish in a moving frame.
+
     Examples
     --------
     >>> limit = gradient_flow(Algorithm1(), [[0.0, 0.0], [6.0, 0.0]])
@@ -79,6 +84,8 @@ def gradient_flow(law: Algorithm1 | Algorithm2, q0: Any, *, tol: float = 1e-11, 
     from scipy.integrate import BDF
 
     q = ensure_points("q0", q0)
+    if isinstance(law, Algorithm2):
+        ensure_one_gain(law.gains)
     shape, c1 = q.shape, law.gains.c1_alpha
     tol, horizon = ensure_positive("tol", tol), ensure_positive("horizon", horizon)
     scale = c1 * law.alpha.b / sqrt(law.alpha.eps)

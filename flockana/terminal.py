@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from flockana.checks import FloatArray
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2, moving_frame
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain, moving_frame
 from flockana.metrics import coincident_pairs, connectivity, velocity_mismatch
 from flockana.nets import link_lengths, links
 
@@ -65,12 +65,19 @@ def terminal_state(
     contact : float
         Distance, relative to d, at which two agents count as coincident.
 
+    Raises
+    ------
+    ArgumentError
+        With per-agent gains, under which there is no moving frame to measure forces in.
+
     Examples
     --------
     >>> at_rest = terminal_state(Algorithm1(), np.array([[0.0, 0.0], [7.0, 0.0]]), np.zeros((2, 2)))
     >>> at_rest.strain, at_rest.force, at_rest.connected
     (0.0, 0.0, True)
     """
+    if isinstance(law, Algorithm2):
+        ensure_one_gain(law.gains)
     alpha = law.alpha
     still = np.broadcast_to(p.mean(axis=0), p.shape)
     force = np.linalg.norm(moving_frame(law.flow(0.0, q, np.ascontiguousarray(still))[0]), axis=1).max()

@@ -119,6 +119,30 @@ class ObstacleField:
             obstacle.kernels.slopes(q, obstacle.par, self.beta.par, self.beta.r, blocks)
         return blocks
 
+    def braking_blocks(self, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Derivatives of Σ_k b_ik (p̂_ik − p_i) in q_i and in p_i: blocks (n, m, m); agents do not see each other's.
+
+        Parameters
+        ----------
+        q, p : ndarray, shape (n, m)
+            Positions and velocities.
+
+        Raises
+        ------
+        ArgumentError
+            If agents move and a kind of obstacle does not say how its β-agents turn.
+        """
+        n, m = q.shape
+        by_position, by_velocity = np.zeros((n, m, m)), np.zeros((n, m, m))
+        for obstacle in self.obstacles:
+            if not obstacle.kernels.turns and p.any():
+                raise ArgumentError(
+                    f"{obstacle}: its kind does not say how β-agents turn, which the Jacobian needs where agents move: "
+                    "hand lift_obstacle(...) a turn (no_turn for flat faces)"
+                )
+            obstacle.kernels.braking(q, p, obstacle.par, self.beta.par, self.beta.r, by_position, by_velocity)
+        return by_position, by_velocity
+
     def links(self, q: FloatArray, p: FloatArray) -> BetaLinks:
         """The β-neighbours of every agent: obstacles k with ‖q̂_ik − q_i‖ < r'.
 

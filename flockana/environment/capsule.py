@@ -11,12 +11,12 @@ from numba.extending import register_jitable
 from flockana.checks import FloatArray, ensure_positive
 from flockana.environment.obstacles import Obstacle, freeze_vector
 from flockana.errors import ArgumentError
-from flockana.kernels.obstacles import lift_obstacle, project_ball
+from flockana.kernels.obstacles import lift_obstacle, project_ball, turn_ball
 
 
 @register_jitable
-def _onto_capsule(q, p, par, gap, rate):  # type: ignore[no-untyped-def]
-    """A sphere about the closest point of the segment, which slides with the agent along the bar; par = (a, b, R)."""
+def _slide(q, p, par, foot, rate):  # type: ignore[no-untyped-def]
+    """The closest point of the segment, and its velocity; par = (a, b, R)."""
     m, length2, along, speed = q.size, 0.0, 0.0, 0.0
     for c in range(m):
         side = par[m + c] - par[c]
@@ -24,15 +24,29 @@ def _onto_capsule(q, p, par, gap, rate):  # type: ignore[no-untyped-def]
         along += side * (q[c] - par[c])
         speed += side * p[c]
     share = min(1.0, max(0.0, along / length2))
-    foot = np.empty(m)
     for c in range(m):
         side = par[m + c] - par[c]
         foot[c] = par[c] + share * side
         rate[c] = speed / length2 * side if 0.0 < share < 1.0 else 0.0
-    return project_ball(q, p, foot, par[2 * m], rate, gap, rate)
 
 
-_CAPSULE = lift_obstacle(_onto_capsule)
+@register_jitable
+def _onto_capsule(q, p, par, gap, rate):  # type: ignore[no-untyped-def]
+    """A sphere about the closest point of the segment, which slides with the agent along the bar."""
+    foot = np.empty(q.size)
+    _slide(q, p, par, foot, rate)
+    return project_ball(q, p, foot, par[2 * q.size], rate, gap, rate)
+
+
+@register_jitable
+def _turn_capsule(q, p, e, par, out):  # type: ignore[no-untyped-def]
+    foot, p_foot, e_foot = np.empty(q.size), np.empty(q.size), np.empty(q.size)
+    _slide(q, p, par, foot, p_foot)
+    _slide(q, e, par, foot, e_foot)
+    turn_ball(q, p, e, foot, par[2 * q.size], p_foot, e_foot, out)
+
+
+_CAPSULE = lift_obstacle(_onto_capsule, _turn_capsule)
 
 
 @dataclass(frozen=True)

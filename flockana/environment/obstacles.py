@@ -6,7 +6,8 @@ its derivative D (p̂ = D p) is symmetric with 0 ≤ D ≤ I wherever it exists:
 and D (q̂ − q) = 0. A wall has D = P, a sphere D = μP with P the projection on the tangent space.
 
 A new kind is one file: a frozen dataclass with its parameters, a bounding ball, and `kernels` lifted from one scalar
-function (see `flockana.kernels.obstacles`); laws and measures take it as it is.
+function, with a second one for Jacobians at moving agents (see `flockana.kernels.obstacles`); laws and measures take it
+as it is.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from numba.extending import register_jitable
 
 from flockana.checks import FloatArray, ensure_points, ensure_positive, ensure_state, ensure_vector
 from flockana.errors import ArgumentError
-from flockana.kernels.obstacles import ObstacleKernels, lift_obstacle, project_ball
+from flockana.kernels.obstacles import ObstacleKernels, lift_obstacle, no_turn, project_ball, turn_ball
 
 
 class BetaAgents(NamedTuple):
@@ -147,6 +148,12 @@ def _onto_sphere(q, p, par, gap, rate):  # type: ignore[no-untyped-def]
 
 
 @register_jitable
+def _turn_sphere(q, p, e, par, out):  # type: ignore[no-untyped-def]
+    still = np.zeros(q.size)
+    turn_ball(q, p, e, par[:-1], par[-1], still, still, out)
+
+
+@register_jitable
 def _onto_wall(q, p, par, gap, rate):  # type: ignore[no-untyped-def]
     """q̂ = Pq + (I − P)y, p̂ = Pp with P = I − aaᵀ; par = (y, a)."""
     m, offset, speed = q.size, 0.0, 0.0
@@ -159,7 +166,7 @@ def _onto_wall(q, p, par, gap, rate):  # type: ignore[no-untyped-def]
     return offset
 
 
-_SPHERE, _WALL = lift_obstacle(_onto_sphere), lift_obstacle(_onto_wall)
+_SPHERE, _WALL = lift_obstacle(_onto_sphere, _turn_sphere), lift_obstacle(_onto_wall, no_turn)
 
 
 @dataclass(frozen=True)

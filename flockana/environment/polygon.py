@@ -12,7 +12,7 @@ from numba.extending import register_jitable
 from flockana.checks import FloatArray, ensure_points
 from flockana.environment.obstacles import Obstacle
 from flockana.errors import ArgumentError
-from flockana.kernels.obstacles import lift_obstacle
+from flockana.kernels.obstacles import lift_obstacle, no_turn
 
 
 @register_jitable
@@ -38,7 +38,7 @@ def _onto_polygon(q, p, par, gap, rate):  # type: ignore[no-untyped-def]
     return -sqrt(best) if inside else sqrt(best)
 
 
-_POLYGON = lift_obstacle(_onto_polygon)
+_POLYGON = lift_obstacle(_onto_polygon, no_turn)
 
 
 @dataclass(frozen=True)

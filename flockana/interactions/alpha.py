@@ -26,7 +26,9 @@ _PHI_ALPHA = lift_scalar(kernel.phi_alpha)
 _PHI_ALPHA_SLOPE = lift_scalar(kernel.phi_alpha_slope)
 _PSI_ALPHA = lift_scalar(kernel.psi_alpha)
 _SIGMA_NORM = lift_scalar(sigma_norm)
-_ALPHA = lift(kernel.pair_alpha, kernel.pair_alpha_slope, kernel.pair_alpha_potential)
+_ALPHA = lift(
+    kernel.pair_alpha, kernel.pair_alpha_slope, kernel.pair_alpha_potential, kernel.pair_alpha_adjacency_slope
+)
 
 
 @dataclass(frozen=True)
@@ -126,6 +128,27 @@ class AlphaInteraction(PairInteraction):
     def far_potential(self) -> float:
         """ψ_α(r_α)."""
         return float(self.par[8])
+
+    @property
+    def length(self) -> float:
+        """The desired distance d."""
+        return self.d
+
+    @property
+    def strength(self) -> float:
+        """b/√ε."""
+        return self.b / sqrt(self.eps)
+
+    def energy_at(self, lengths: FloatArray) -> FloatArray:
+        """ψ_α(‖x‖_σ) at Euclidean distances x.
+
+        Parameters
+        ----------
+        lengths : ndarray
+            Distances.
+        """
+        values: FloatArray = self.psi_alpha(self.sigma_norm(lengths))
+        return values
 
     @cached_property
     def _parts(self) -> tuple[FloatArray, FloatArray]:

@@ -3,10 +3,34 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import sqrt
+from typing import Any
 
-from flockana.checks import ensure_finite_scalar
+import numpy as np
+
+from flockana.checks import FloatArray, ensure_finite_scalar
 from flockana.errors import ArgumentError
+
+PER_AGENT = ("c1_gamma", "c2_gamma")
+
+
+def weighted(gain: Any, values: FloatArray) -> float:
+    """Σ_i gain_i values_i, for one gain or one per agent.
+
+    Parameters
+    ----------
+    gain : float or tuple of float
+        A gain of `Gains`.
+    values : ndarray, shape (n,)
+        One per agent.
+
+    Examples
+    --------
+    >>> weighted(2.0, np.array([1.0, 3.0])), weighted((2.0, 1.0), np.array([1.0, 3.0]))
+    (8.0, 5.0)
+    """
+    return float(np.dot(gain, values)) if isinstance(gain, tuple) else float(gain * float(np.sum(values)))
 
 
 @dataclass(frozen=True)
@@ -22,25 +46,78 @@ class Gains:
         Gradient and velocity consensus among agents.
     c1_beta, c2_beta : float
         Repulsion and damping at obstacles.
-    c1_gamma, c2_gamma : float
-        Navigational feedback to the γ-agent.
+    c1_gamma, c2_gamma : float or array_like, shape (n,)
+        Navigational feedback to the γ-agent, one gain for all or one per agent; arrays are kept as tuples.
+
+    Raises
+    ------
+    ArgumentError
+        On a gain that is negative or no number, or an array of gains where one is expected.
 
     Examples
     --------
     >>> Gains(c1_alpha=1.0).c1_alpha
     1.0
+    >>> Gains(c1_gamma=[1, 2]).c1_gamma
+    (1.0, 2.0)
     """
 
     c1_alpha: float = 30.0
     c2_alpha: float = 2.0 * sqrt(30.0)
     c1_beta: float = 1500.0
     c2_beta: float = 2.0 * sqrt(1500.0)
-    c1_gamma: float = 1.1
-    c2_gamma: float = 2.0 * sqrt(1.1)
+    c1_gamma: Any = 1.1
+    c2_gamma: Any = 2.0 * sqrt(1.1)
 
     def __post_init__(self) -> None:
         for name in self.__dataclass_fields__:
-            value = ensure_finite_scalar(name, getattr(self, name))
-            if value < 0.0:
-                raise ArgumentError(f"{name} = {value:g}: expected a gain >= 0; a negative one feeds energy in")
-            object.__setattr__(self, name, value)
+            value = getattr(self, name)
+            several = name in PER_AGENT and isinstance(value, list | tuple | np.ndarray) and np.ndim(value) == 1
+            if several and len(value) == 0:
+                raise ArgumentError(f"{name} is empty: expected one gain, or one per agent")
+            gain = tuple(_gain(f"{name}[{i}]", x) for i, x in enumerate(value)) if several else _gain(name, value)
+            object.__setattr__(self, name, gain)
+
+    @cached_property
+    def per_agent(self) -> bool:
+        """Whether c1γ or c2γ is given agent by agent."""
+        return any(isinstance(getattr(self, name), tuple) for name in PER_AGENT)
+
+    @cached_property
+    def pull(self) -> Any:
+        """c1γ as it multiplies an array of shape (n, m): a number, or a column of n."""
+        return _column(self.c1_gamma)
+
+    @cached_property
+    def drag(self) -> Any:
+        """c2γ as it multiplies an array of shape (n, m): a number, or a column of n."""
+        return _column(self.c2_gamma)
+
+    def check_agents(self, n: int) -> None:
+        """Raise unless per-agent gains are as many as the agents.
+
+        Parameters
+        ----------
+        n : int
+            Number of agents.
+
+        Raises
+        ------
+        ArgumentError
+            If they are not.
+        """
+        for name in PER_AGENT:
+            gain = getattr(self, name)
+            if isinstance(gain, tuple) and len(gain) != n:
+                raise ArgumentError(f"{name} has {len(gain)} gains but there are {n} agents: expected one per agent")
+
+
+def _gain(name: str, value: Any) -> float:
+    gain = ensure_finite_scalar(name, value)
+    if gain < 0.0:
+        raise ArgumentError(f"{name} = {gain:g}: expected a gain >= 0; a negative one feeds energy in")
+    return gain
+
+
+def _column(gain: Any) -> Any:
+    return np.array(gain)[:, None] if isinstance(gain, tuple) else gain

@@ -57,6 +57,26 @@ class PairInteraction(ABC):
 
     @property
     @abstractmethod
+    def length(self) -> float:
+        """The distance at which it holds neighbours: the unit of lengths."""
+
+    @property
+    @abstractmethod
+    def strength(self) -> float:
+        """The strongest force between two agents, nearly; of a contact, where it is unbounded: the unit of forces."""
+
+    @abstractmethod
+    def energy_at(self, lengths: FloatArray) -> FloatArray:
+        """Potential of a pair at each Euclidean distance.
+
+        Parameters
+        ----------
+        lengths : ndarray
+            Distances.
+        """
+
+    @property
+    @abstractmethod
     def par(self) -> FloatArray:
         """Parameters in the order that the kernels read."""
 
@@ -129,10 +149,53 @@ class PairInteraction(ABC):
         -------
         scipy.sparse.csr_array, shape (n m, n m)
         """
-        return self._assemble(q, lambda delta, terms: terms[1][:, None, None] * np.eye(delta.shape[1]))
+        return self._assemble(q, lambda i, j, delta, terms: terms[1][:, None, None] * np.eye(delta.shape[1]))
+
+    def jacobian(
+        self, q: FloatArray, p: FloatArray, *, stiffness: float, damping: float
+    ) -> tuple[csr_array, csr_array]:
+        """Derivatives of the accelerations of `forces` in q and in p, sparse, in the order of ``q.ravel()``.
+
+        Parameters
+        ----------
+        q, p : ndarray, shape (n, m)
+            Positions and velocities.
+        stiffness, damping : float
+            Gains c1 and c2, as in `forces`.
+
+        Returns
+        -------
+        by_position, by_velocity : scipy.sparse.csr_array, shape (n m, n m)
+            −c1 ∇²V + c2 Σ_j (p_j − p_i) ∂a_ij/∂q, and −c2 L̂.
+
+        Raises
+        ------
+        ArgumentError
+            If velocities differ within the range and the law gives no slope of its adjacency.
+        """
+        slope_of = self.kernels.adjacency_slope
+
+        def consensus(i: Any, j: Any, delta: FloatArray, _: FloatArray) -> FloatArray:
+            # gradient of a(s²) (p_j − p_i) in Δ: 2 a' (p_j − p_i) Δᵀ
+            slip = p[j] - p[i]
+            if slope_of is None:
+                if slip.any():
+                    raise ArgumentError(
+                        f"{type(self).__name__} gives no slope of its adjacency, which the Jacobian needs where the "
+                        "velocities of neighbours differ: hand lift(...) an adjacency_slope, or give equal velocities"
+                    )
+                return np.zeros((i.size, q.shape[1], q.shape[1]))
+            slope = slope_of(np.einsum("kc,kc->k", delta, delta), self.par)
+            blocks: FloatArray = 2.0 * slope[:, None, None] * slip[:, :, None] * delta[:, None, :]
+            return blocks
+
+        by_position = -stiffness * self.hessian(q)
+        if damping:
+            by_position = by_position - damping * self._assemble(q, consensus)
+        return by_position, -damping * self.laplacian(q)
 
     @staticmethod
-    def _stiffness_blocks(delta: FloatArray, terms: FloatArray) -> FloatArray:
+    def _stiffness_blocks(_i: Any, _j: Any, delta: FloatArray, terms: FloatArray) -> FloatArray:
         # gradient of w(s²) Δ in Δ: w I + 2 w' ΔΔᵀ
         w, slope = terms[0][:, None, None], terms[2][:, None, None]
         blocks: FloatArray = w * np.eye(delta.shape[1]) + 2.0 * slope * delta[:, :, None] * delta[:, None, :]
@@ -146,7 +209,7 @@ class PairInteraction(ABC):
         axes = np.arange(m)
         rows, columns, values = [], [], []
         for i, j in pair_blocks(q, self.range):
-            block = block_of(q[j] - q[i], self.kernels.terms(q, i, j, self.par))
+            block = block_of(i, j, q[j] - q[i], self.kernels.terms(q, i, j, self.par))
             for a, b, sign in ((i, i, 1.0), (j, j, 1.0), (i, j, -1.0), (j, i, -1.0)):
                 shape = (i.size, m, m)
                 rows.append(np.broadcast_to((a[:, None] * m + axes)[:, :, None], shape).ravel())

@@ -69,6 +69,12 @@ def pair_alpha_slope(s2, par):
 
 
 @register_jitable
+def pair_alpha_adjacency_slope(s2, par):
+    """d(a_ij)/d(s2), what the Jacobian of the consensus term needs where velocities differ."""
+    return 0.5 * bump_slope(sigma_norm(s2, par[0]) / par[6], par[1]) / (par[6] * sqrt(1.0 + par[0] * s2))
+
+
+@register_jitable
 def pair_alpha_potential(s2, par, panels):
     """ψ_α of a pair at squared distance s2."""
     return psi_alpha(sigma_norm(s2, par[0]), par, panels)

@@ -31,11 +31,14 @@ class PairKernels:
         ``potential(q, i, j, par, panels)`` returns Σ ψ over the block.
     terms : callable
         ``terms(q, i, j, par)`` returns per pair the weight w, the adjacency a and dw/d(s²).
+    adjacency_slope : callable, optional
+        ``adjacency_slope(s2, par)`` returns da/d(s²) over an array of squared distances; None if the law gives none.
     """
 
     forces: Callable[..., float]
     potential: Callable[..., float]
     terms: Callable[..., Any]
+    adjacency_slope: Callable[..., Any] | None = None
 
 
 def source_digest(*functions: Callable[..., Any]) -> int:
@@ -54,7 +57,12 @@ def source_digest(*functions: Callable[..., Any]) -> int:
     return int.from_bytes(digest.digest()[:4], "big")
 
 
-def lift(pair: Callable[..., Any], slope: Callable[..., Any], potential: Callable[..., Any]) -> PairKernels:
+def lift(
+    pair: Callable[..., Any],
+    slope: Callable[..., Any],
+    potential: Callable[..., Any],
+    adjacency_slope: Callable[..., float] | None = None,
+) -> PairKernels:
     """Compile the pair sums of a law given by scalar functions of the squared distance s².
 
     Parameters
@@ -65,6 +73,8 @@ def lift(pair: Callable[..., Any], slope: Callable[..., Any], potential: Callabl
         ``slope(s2, par)`` = dw/d(s²).
     potential : callable
         ``potential(s2, par, panels)`` = ψ, whose gradient in q_i is −w (q_j − q_i).
+    adjacency_slope : callable, optional
+        ``adjacency_slope(s2, par)`` = da/d(s²): only the Jacobian at unequal velocities needs it.
 
     Returns
     -------
@@ -111,7 +121,7 @@ def lift(pair: Callable[..., Any], slope: Callable[..., Any], potential: Callabl
             out[2, k] = slope(s2, par)
         return out
 
-    return PairKernels(forces, energy, terms)
+    return PairKernels(forces, energy, terms, None if adjacency_slope is None else lift_scalar(adjacency_slope))
 
 
 def lift_scalar(function: Callable[..., float]) -> Callable[..., Any]:

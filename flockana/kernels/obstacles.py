@@ -38,12 +38,26 @@ class ObstacleKernels:
         ``agents(q, p, par, gap, rate, clearance)`` fills the arrays for one obstacle and every agent.
     slopes : callable
         ``slopes(q, par, beta, reach, blocks)`` adds the Hessian block of ψ_β of one obstacle to every agent's.
+    braking : callable
+        ``braking(q, p, par, beta, reach, by_position, by_velocity)`` adds the derivatives of b_ik (p̂_ik − p_i) of one
+        obstacle to every agent's blocks.
+    turns : bool
+        Whether the kind says how p̂ turns as an agent moves; if not, `braking` is right where p = 0 alone.
     """
 
     forces: Callable[..., float]
     potential: Callable[..., float]
     agents: Callable[..., None]
     slopes: Callable[..., None]
+    braking: Callable[..., None]
+    turns: bool
+
+
+@register_jitable
+def adjacency_beta_slope(s2, par):
+    """d(b_ik)/d(s²)."""
+    z = sigma_norm(s2, par[0])
+    return 0.5 * bump_slope(z / par[2], par[1]) / (par[2] * sqrt(1.0 + par[0] * s2))
 
 
 @register_jitable
@@ -65,19 +79,29 @@ def _out_of_reach(q, ball, reach):
     return s2 > (ball[m] + reach) ** 2
 
 
-def lift_obstacle(project: Callable[..., float]) -> ObstacleKernels:
+@register_jitable
+def no_turn(q, p, e, par, out):
+    """Flat faces: p̂ = Dp with a constant D."""
+    out[:] = 0.0
+
+
+def lift_obstacle(project: Callable[..., float], turn: Callable[..., None] | None = None) -> ObstacleKernels:
     """Compile the sums of an obstacle kind given by its closest-point map.
 
     Parameters
     ----------
     project : callable
         ``project(q, p, par, gap, rate) -> clearance``, a `numba.extending.register_jitable` function of one agent.
+    turn : callable, optional
+        ``turn(q, p, e, par, out)`` writes the derivative of dq̂/dt in q along e, at fixed p, into out: `no_turn` for
+        flat faces. Only the Jacobian of a law at moving agents needs it.
 
     Returns
     -------
     ObstacleKernels
     """
-    digest = source_digest(project, pair_beta, lift_obstacle)
+    turns, turned = turn is not None, no_turn if turn is None else turn
+    digest = source_digest(project, turned, pair_beta, lift_obstacle)
 
     @njit(cache=True)
     def forces(q, p, pars, starts, balls, beta, reach, c1, c2, u):
@@ -133,7 +157,28 @@ def lift_obstacle(project: Callable[..., float]) -> ObstacleKernels:
                         blocks[i, e, c] += w * (axis[e] - rate[e]) + 2.0 * slope * gap[c] * gap[e] + 0.0 * digest
                 axis[c] = 0.0
 
-    return ObstacleKernels(forces, potential, agents, slopes)
+    @njit(cache=True)
+    def braking(q, p, par, beta, reach, by_position, by_velocity):
+        # d(s²) = −2 (q̂ − q)·dq, since D (q̂ − q) = 0
+        n, m = q.shape
+        axis, gap, rate, along, bend = np.zeros(m), np.empty(m), np.empty(m), np.empty(m), np.empty(m)
+        for i in range(n):
+            clearance = project(q[i], p[i], par, gap, rate)
+            if abs(clearance) >= reach:
+                continue
+            s2 = clearance * clearance
+            b, slope = pair_beta(s2, beta)[1], adjacency_beta_slope(s2, beta) + 0.0 * digest
+            slip = rate - p[i]
+            for c in range(m):
+                axis[c] = 1.0
+                project(q[i], axis, par, gap, along)
+                turned(q[i], p[i], axis, par, bend)
+                for e in range(m):
+                    by_velocity[i, e, c] += b * (along[e] - axis[e])
+                    by_position[i, e, c] += b * bend[e] - 2.0 * slope * slip[e] * gap[c]
+                axis[c] = 0.0
+
+    return ObstacleKernels(forces, potential, agents, slopes, braking, turns)
 
 
 @register_jitable
@@ -157,3 +202,26 @@ def project_ball(q, p, centre, radius, along, gap, rate):
         gap[c] = (radius - distance) * a
         rate[c] = along[c] + mu * (p[c] - along[c] - radial / distance * a)
     return distance - radius
+
+
+@register_jitable
+def turn_ball(q, p, e, centre, radius, p_centre, e_centre, out):
+    """How the velocity on a sphere (`project_ball`) turns as the agent moves along e and the centre along e_centre.
+
+    −(μ/ρ) [⟨a,e⟩ Pp + ⟨a,p⟩ Pe + a ⟨Pe,p⟩], symmetric in p and e, both relative to the centre; ⟨a,p⟩ sees no centre
+    that moves tangentially.
+    """
+    s2 = 0.0
+    for c in range(q.size):
+        s2 += (q[c] - centre[c]) ** 2
+    distance = sqrt(s2)
+    ap, ae, pe = 0.0, 0.0, 0.0
+    for c in range(q.size):
+        a, slip, step = (q[c] - centre[c]) / distance, p[c] - p_centre[c], e[c] - e_centre[c]
+        ap += a * slip
+        ae += a * step
+        pe += slip * step
+    for c in range(q.size):
+        a, slip, step = (q[c] - centre[c]) / distance, p[c] - p_centre[c], e[c] - e_centre[c]
+        bend = ae * (slip - ap * a) + ap * (step - ae * a) + (pe - ap * ae) * a
+        out[c] = -radius / s2 * bend

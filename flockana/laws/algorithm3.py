@@ -15,7 +15,8 @@ from flockana.environment.obstacles import Obstacle
 from flockana.environment.targets import Target
 from flockana.errors import ArgumentError
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
-from flockana.laws.law import Law
+from flockana.interactions.gains import weighted
+from flockana.laws.law import Law, block_diagonal
 
 if TYPE_CHECKING:
     from scipy.sparse import sparray
@@ -108,6 +109,16 @@ class Algorithm3(Law):
                 f"the target has {self.target.dimension} components but the agents have {m}: expected equal dimensions"
             )
 
+    def check_agents(self, n: int) -> None:
+        """Raise unless per-agent gains are as many as the agents.
+
+        Parameters
+        ----------
+        n : int
+            Number of agents.
+        """
+        self.gains.check_agents(n)
+
     def check_start(self, q: FloatArray, p: FloatArray) -> None:
         """Raise if an agent starts inside or on an obstacle.
 
@@ -116,6 +127,7 @@ class Algorithm3(Law):
         q, p : ndarray, shape (n, m)
             Initial positions and velocities.
         """
+        super().check_start(q, p)
         check_free(q, self.obstacles)
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
@@ -138,10 +150,13 @@ class Algorithm3(Law):
         x = q - q_r
         pull = x / np.sqrt(1.0 + np.einsum("ij,ij->i", x, x))[:, None]
         slip = p - p_r
-        u -= g.c1_gamma * pull + g.c2_gamma * slip
-        drag = float(np.vdot(p, slip))
-        carried = float(pull.sum(axis=0) @ self.target.rate(t))
-        return u, g.c2_beta * braking - g.c2_alpha * dissipation - g.c2_gamma * drag - g.c1_gamma * carried
+        pulled, rate = g.pull * pull, self.target.rate(t)
+        u -= pulled + g.drag * slip
+        if g.per_agent:
+            drag, carried = float(np.vdot(g.drag * p, slip)), float(pulled.sum(axis=0) @ rate)
+        else:
+            drag, carried = g.c2_gamma * float(np.vdot(p, slip)), g.c1_gamma * float(pull.sum(axis=0) @ rate)
+        return u, g.c2_beta * braking - g.c2_alpha * dissipation - drag - carried
 
     def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:
         """H = c1α V + c1β ΣΣ ψ_β + c1γ Σ(√(1 + ‖q_i − q_r‖²) − 1) + ½ Σ‖p_i‖², unchecked.
@@ -157,9 +172,45 @@ class Algorithm3(Law):
         """
         g, x = self.gains, q - self.target.state(t)[0]
         x2 = np.einsum("ij,ij->i", x, x)
-        attraction = float(np.sum(x2 / (np.sqrt(1.0 + x2) + 1.0)))  # √(1 + x²) − 1 without its cancellation
+        attraction = weighted(g.c1_gamma, x2 / (np.sqrt(1.0 + x2) + 1.0))  # √(1 + x²) − 1 without its cancellation
         potential = g.c1_alpha * self.alpha.potential_energy(q) + g.c1_beta * self.obstacle_field.potential_energy(q)
-        return potential + g.c1_gamma * attraction + 0.5 * float(np.sum(p * p))
+        return potential + attraction + 0.5 * float(np.sum(p * p))
+
+    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[sparray, sparray]:
+        """(∂u/∂q, ∂u/∂p) with the β-agents moving as the agents do, sparse, unchecked.
+
+        ∂u/∂q is minus `stiffness` but for what moving agents add: c2α Σ_j (p_j − p_i) ∂a_ij/∂q and
+        c2β Σ_k ∂[b_ik (p̂_ik − p_i)]/∂q_i.
+
+        Parameters
+        ----------
+        t : float
+            Time.
+        q, p : ndarray, shape (n, m)
+            Positions and velocities.
+        """
+        g = self.gains
+        pairs = self.alpha.jacobian(q, p, stiffness=g.c1_alpha, damping=g.c2_alpha)
+        braking = self.obstacle_field.braking_blocks(q, p)
+        pull, drag = self.target_derivatives(t, q)
+        by_position = g.c2_beta * braking[0] - g.c1_beta * self.obstacle_field.hessian_blocks(q) - pull
+        return pairs[0] + block_diagonal(by_position), pairs[1] + block_diagonal(g.c2_beta * braking[1] - drag)
+
+    def target_derivatives(self, t: float, q: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """(∂u_i/∂q_r, ∂u_i/∂p_r), two arrays of blocks (n, m, m), unchecked: c1γ times the derivative of σ₁, c2γ I.
+
+        Parameters
+        ----------
+        t : float
+            Time.
+        q : ndarray, shape (n, m)
+            Positions.
+        """
+        g, x = self.gains, q - self.target.state(t)[0]
+        root = np.sqrt(1.0 + np.einsum("ij,ij->i", x, x))[:, None, None]
+        pull = np.eye(q.shape[1]) / root - x[:, :, None] * x[:, None, :] / root**3
+        drag = np.broadcast_to(np.eye(q.shape[1]), pull.shape)
+        return np.reshape(g.pull, (-1, 1, 1)) * pull, np.reshape(g.drag, (-1, 1, 1)) * drag
 
     def stiffness(self, q: Any, t: float = 0.0) -> sparray:
         """Hessian of the potential, α-, β- and γ-part, in the order of ``q.ravel()``, sparse.
@@ -171,13 +222,9 @@ class Algorithm3(Law):
         t : float
             When: the γ-agent may move.
         """
-        from scipy.sparse import block_diag
-
         q = ensure_points("q", q)
         self.check_dimension(q.shape[1])
-        x = q - self.target.state(t)[0]
-        root = np.sqrt(1.0 + np.einsum("ij,ij->i", x, x))[:, None, None]
-        attraction = np.eye(q.shape[1]) / root - x[:, :, None] * x[:, None, :] / root**3
-        own = self.gains.c1_beta * self.obstacle_field.hessian_blocks(q) + self.gains.c1_gamma * attraction
-        hessian: sparray = self.gains.c1_alpha * self.alpha.hessian(q) + block_diag(tuple(own), format="csr")
+        self.check_agents(len(q))
+        own = self.gains.c1_beta * self.obstacle_field.hessian_blocks(q) + self.target_derivatives(t, q)[0]
+        hessian: sparray = self.gains.c1_alpha * self.alpha.hessian(q) + block_diagonal(own)
         return hessian

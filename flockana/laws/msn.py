@@ -14,7 +14,7 @@ from flockana.interactions import AlphaInteraction, Gains
 from flockana.kernels.inplace import advance_alpha, neighbour_lists
 from flockana.kernels.neighbours import pair_list
 from flockana.laws.law import DiscreteLaw
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain
 
 PRINTED = 1.5  # q + (p + u dt) dt + ½ u dt² = q + p dt + (3/2) u dt² (erratum E9)
 CONSTANT_ACCELERATION = 0.5
@@ -64,6 +64,8 @@ class MSNDiscretisation(DiscreteLaw):
     def __post_init__(self) -> None:
         if type(self.law) not in (Algorithm1, Algorithm2):
             raise ArgumentError(f"law = {self.law!r}: expected Algorithm1(...) or Algorithm2(...) itself")
+        if isinstance(self.law, Algorithm2):
+            ensure_one_gain(self.law.gains)
         if not isinstance(self.in_place, bool):
             raise ArgumentError(f"in_place = {self.in_place!r}: expected True or False")
         object.__setattr__(self, "dt", ensure_positive("dt", self.dt))

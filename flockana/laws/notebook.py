@@ -7,6 +7,7 @@ keep their values and only n_ij becomes σ_ε(10 (q_j − q_i)). The force then 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -76,6 +77,23 @@ class _Push:
         f = c1 * extra_push(alpha, q, min_distance=self.min_distance, factor=self.factor)
         # Σ⟨f_i, p_i⟩ is the same in the moving frame, for the pushes cancel
         return found[0] + f, found[1] + float(np.sum(f * p))
+
+    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> Any:
+        """Those of the law without the push; raise where it acts.
+
+        Parameters
+        ----------
+        t : float
+            Time.
+        q, p : ndarray, shape (n, m)
+            Positions and velocities.
+        """
+        if any(i.size for i, _ in pair_blocks(q, self.min_distance)):
+            raise ArgumentError(
+                f"agents are closer than min_distance = {self.min_distance:g}: expected them farther apart, where the "
+                "push does not act; it has no derivatives here"
+            )
+        return super().derivatives(t, q, p)  # type: ignore[misc]
 
 
 @dataclass(frozen=True)

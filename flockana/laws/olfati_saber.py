@@ -11,15 +11,40 @@ from flockana.checks import FloatArray, ensure_points, ensure_state
 from flockana.environment.targets import Target
 from flockana.errors import ArgumentError
 from flockana.interactions import AlphaInteraction, Gains
-from flockana.laws.law import Law
+from flockana.interactions.gains import weighted
+from flockana.laws.law import Law, block_diagonal
 
 if TYPE_CHECKING:
-    from scipy.sparse import csr_array
+    from scipy.sparse import csr_array, sparray
 
 
 def _ensure(name: str, value: Any, cls: type) -> None:
     if not isinstance(value, cls):
         raise ArgumentError(f"{name} = {value!r}: expected {cls.__name__}(...)")
+
+
+def ensure_one_gain(gains: Gains) -> None:
+    """Raise on per-agent gains, for what needs the split into a shape and a centre of mass.
+
+    Parameters
+    ----------
+    gains : Gains
+        Gains of Algorithm 2.
+
+    Raises
+    ------
+    ArgumentError
+        If c1γ or c2γ is given agent by agent.
+
+    Examples
+    --------
+    >>> ensure_one_gain(Gains())
+    """
+    if gains.per_agent:
+        raise ArgumentError(
+            "c1_gamma or c2_gamma is given per agent: expected one of each, or the shape does not separate from the "
+            "centre of mass; find_equilibrium and the stability functions take both kinds"
+        )
 
 
 def moving_frame(x: FloatArray) -> FloatArray:
@@ -89,6 +114,18 @@ class Algorithm1(Law):
             Positions and velocities.
         """
         return self.gains.c1_alpha * self.alpha.potential_energy(q) + 0.5 * float(np.sum(p * p))
+
+    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[csr_array, csr_array]:
+        """(∂u/∂q, ∂u/∂p) = (−c1α ∇²V + c2α Σ_j (p_j − p_i) ∂a_ij/∂q, −c2α L̂), sparse, unchecked.
+
+        Parameters
+        ----------
+        t : float
+            Time (the law does not depend on it).
+        q, p : ndarray, shape (n, m)
+            Positions and velocities.
+        """
+        return self.alpha.jacobian(q, p, stiffness=self.gains.c1_alpha, damping=self.gains.c2_alpha)
 
     def structural_energy(self, q: Any, p: Any) -> float:
         """H(x, v) = c1α V(x) + K(v), the energy in the frame that moves with the centre of mass.
@@ -164,8 +201,20 @@ class Algorithm2(Law):
                 f"the target has {self.target.dimension} components but the agents have {m}: expected equal dimensions"
             )
 
+    def check_agents(self, n: int) -> None:
+        """Raise unless per-agent gains are as many as the agents.
+
+        Parameters
+        ----------
+        n : int
+            Number of agents.
+        """
+        self.gains.check_agents(n)
+
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
         """(u, dH_λ/dt) with dH_λ/dt = −c2γ‖v‖² − c2α vᵀL̂v, unchecked.
+
+        With per-agent gains (u, dH/dt), dH/dt = −c2α pᵀL̂p − Σ c2γ_i ⟨p_i, p_i − p_r⟩ − Σ c1γ_i ⟨q_i − q_r, dq_r/dt⟩.
 
         Parameters
         ----------
@@ -177,12 +226,19 @@ class Algorithm2(Law):
         g = self.gains
         u, dissipation = self.alpha.forces(q, p, stiffness=g.c1_alpha, damping=g.c2_alpha)
         q_r, p_r = self.target.state(t)
-        u -= g.c1_gamma * (q - q_r) + g.c2_gamma * (p - p_r)
+        pull, slip = g.pull * (q - q_r), p - p_r
+        u -= pull + g.drag * slip
+        if g.per_agent:
+            power = float(np.vdot(g.drag * p, slip)) + float(pull.sum(axis=0) @ self.target.rate(t))
+            return u, -g.c2_alpha * dissipation - power
         v = moving_frame(p)
         return u, -g.c2_gamma * float(np.sum(v * v)) - g.c2_alpha * dissipation  # L̂ ignores the common velocity
 
     def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:
         """H_λ(x, v) = c1α V(x) + c1γ J(x) + K(v) in the moving frame, for every target, unchecked.
+
+        With per-agent gains the flock's shape does not separate from its centre, and no frame but the given one will
+        do for every target: H(t, q, p) = c1α V(q) + ½ Σ c1γ_i ‖q_i − q_r‖² + ½ Σ‖p_i‖², as under Algorithm 3.
 
         Parameters
         ----------
@@ -191,9 +247,41 @@ class Algorithm2(Law):
         q, p : ndarray, shape (n, m)
             Positions and velocities in any frame.
         """
+        if self.gains.per_agent:
+            off = q - self.target.state(t)[0]
+            attraction = weighted(self.gains.c1_gamma, 0.5 * np.einsum("ij,ij->i", off, off))
+            potential = self.gains.c1_alpha * self.alpha.potential_energy(q) + attraction
+            return float(potential + 0.5 * float(np.sum(p * p)))
         x, v = moving_frame(q), moving_frame(p)
         inertia, kinetic = 0.5 * float(np.sum(x * x)), 0.5 * float(np.sum(v * v))
-        return self.gains.c1_alpha * self.alpha.potential_energy(q) + self.gains.c1_gamma * inertia + kinetic
+        return float(self.gains.c1_alpha * self.alpha.potential_energy(q) + self.gains.c1_gamma * inertia + kinetic)
+
+    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[sparray, sparray]:
+        """(∂u/∂q, ∂u/∂p): those of Algorithm 1 less diag(c1γ) and diag(c2γ), sparse, unchecked.
+
+        Parameters
+        ----------
+        t : float
+            Time (they do not depend on it).
+        q, p : ndarray, shape (n, m)
+            Positions and velocities.
+        """
+        pairs = self.alpha.jacobian(q, p, stiffness=self.gains.c1_alpha, damping=self.gains.c2_alpha)
+        own = self.target_derivatives(t, q)
+        return pairs[0] - block_diagonal(own[0]), pairs[1] - block_diagonal(own[1])
+
+    def target_derivatives(self, t: float, q: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """(∂u_i/∂q_r, ∂u_i/∂p_r), two arrays of blocks (n, m, m), unchecked.
+
+        Parameters
+        ----------
+        t : float
+            Time (they do not depend on it).
+        q : ndarray, shape (n, m)
+            Positions.
+        """
+        g, blocks = self.gains, np.broadcast_to(np.eye(q.shape[1]), (*q.shape, q.shape[1]))
+        return np.reshape(g.pull, (-1, 1, 1)) * blocks, np.reshape(g.drag, (-1, 1, 1)) * blocks
 
     def structural_energy(self, q: Any, p: Any) -> float:
         """H_λ(x, v): the same as `energy`, which lives in the moving frame already.
@@ -202,21 +290,29 @@ class Algorithm2(Law):
         ----------
         q, p : array_like, shape (n, m)
             Positions and velocities in any frame.
+
+        Raises
+        ------
+        ArgumentError
+            With per-agent gains, under which the shape has no energy of its own.
         """
         q, p = ensure_state(q, p)
+        ensure_one_gain(self.gains)
         return self.hamiltonian(0.0, q, p)
 
     def stiffness(self, q: Any) -> csr_array:
-        """Hessian of U_λ: c1α ∇²V + c1γ I on deviations x (order of ``q.ravel()``), sparse.
+        """Hessian of U_λ: c1α ∇²V + c1γ I on deviations x (order of ``q.ravel()``), sparse; diag(c1γ_i) per agent.
 
         Parameters
         ----------
         q : array_like, shape (n, m)
             Positions.
         """
-        from scipy.sparse import eye_array
+        from scipy.sparse import diags_array
 
         q = ensure_points("q", q)
-        structural = self.gains.c1_alpha * self.alpha.hessian(q) + self.gains.c1_gamma * eye_array(q.size)
+        self.check_agents(len(q))
+        own = np.broadcast_to(self.gains.pull, q.shape).ravel()
+        structural = self.gains.c1_alpha * self.alpha.hessian(q) + diags_array(own)
         hessian: csr_array = structural.tocsr()
         return hessian

@@ -23,7 +23,7 @@ from flockana.scenarios.findings import component_count, finding
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.simulate import simulate
 from flockana.theorems import Claim, Tolerances
-from flockana.theorems.e12 import response_ratio
+from flockana.stability.tracking import response_ratio
 from flockana.theorems.theorem import Status
 from flockana.trajectory import Trajectory
 

@@ -14,6 +14,7 @@ from flockana.trajectory import Trajectory
 _RINGS = (1, 2, 3)  # hexagons of 7, 19 and 37 agents
 _LOWEST, _FACTOR = 0.1, 1.3  # where the search starts, and its steps
 _HALVINGS = 3
+_NAMES = ("printed", "minimum", "threshold")
 
 
 def collapses(law: Algorithm2, rings: int, ratio: float) -> bool:
@@ -55,7 +56,10 @@ def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], l
     applies = type(run.law) is Algorithm2
     law = Hypothesis("Algorithm 2 is applied", "met" if applies else "unmet", detail=type(run.law).__name__)
     if not applies:
-        return [law], [Claim(name, "vacuous", detail="another law") for name in ("printed", "minimum", "threshold")]
+        return [law], [Claim(name, "vacuous", detail="another law") for name in _NAMES]
+    if run.law.gains.per_agent:
+        single = Hypothesis("one c1γ for all agents", "unmet", detail="gains are given per agent")
+        return [law, single], [Claim(name, "vacuous", detail=single.detail) for name in _NAMES]
     end = terminal_state(run.law, run.q[-1], run.p[-1], contact=tolerances.contact)
     at_rest = settled(end, tolerances)
     ratio = run.law.gains.c1_gamma / run.law.gains.c1_alpha

@@ -6,13 +6,28 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from flockana.environment.obstacles import Sphere, Wall
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
 from flockana.trajectory import Trajectory
 
 
-def balance(run: Trajectory, needs: Iterable[Hypothesis], tolerances: Tolerances) -> Claim:
+def proved(run: Trajectory, proof: str = "energy-identities") -> str | None:
+    """The id of the proof of this law's energy identity, which knows walls, spheres and gains common to all agents.
+
+    Parameters
+    ----------
+    run : Trajectory
+        A run of Algorithm 1, 2 or 3.
+    proof : str
+        The id.
+    """
+    known = all(type(obstacle) in (Sphere, Wall) for obstacle in getattr(run.law, "obstacles", ()))
+    return proof if known and not run.law.gains.per_agent else None
+
+
+def balance(run: Trajectory, needs: Iterable[Hypothesis], tolerances: Tolerances, *, proof: str | None = None) -> Claim:
     """H(t) − H(0) agrees with the integral of the closed-form rate: the identity, and the integration, are right.
 
     Parameters
@@ -23,6 +38,8 @@ def balance(run: Trajectory, needs: Iterable[Hypothesis], tolerances: Tolerances
         Hypotheses of the claim.
     tolerances : Tolerances
         `energy` is used.
+    proof : str, optional
+        Id of the proof of the identity.
     """
     energy, residual = run.energy(), run.energy_residual
     size = float(np.abs(energy).max()) or 1.0
@@ -38,11 +55,12 @@ def balance(run: Trajectory, needs: Iterable[Hypothesis], tolerances: Tolerances
         margin=margin,
         error=rounding,
         witness={"time": float(run.t[worst]), "residual": float(residual[worst])},
+        proof=proof,
         detail=f"H {course} from {energy[0]:.6g} to {energy[-1]:.6g}; the balance is off by {share:.2g} of it at most",
     )
 
 
-def never_rises(run: Trajectory, needs: Iterable[Hypothesis], *, since: int = 0) -> Claim:
+def never_rises(run: Trajectory, needs: Iterable[Hypothesis], *, since: int = 0, proof: str | None = None) -> Claim:
     """dH/dt ≤ 0 at every sample from one on, by the closed form.
 
     The terms of Algorithms 1 and 2 have one sign each, which rounding cannot change; those of Algorithm 3 that are
@@ -56,12 +74,14 @@ def never_rises(run: Trajectory, needs: Iterable[Hypothesis], *, since: int = 0)
         Hypotheses of the claim.
     since : int
         Index of the first sample that counts.
+    proof : str, optional
+        Id of the proof of the sign.
     """
     rate, error = run.energy_rate()[since:], np.zeros(len(run.t) - since)
     if isinstance(run.law, Algorithm3):
         gains, speed2 = run.law.gains, np.sum(run.p[since:] ** 2, axis=(1, 2))
         told = np.array([float(np.abs(run.law.target.state(t)[1]).sum()) for t in run.t[since:]])
-        drag = gains.c2_gamma * (speed2 + told * np.sqrt(run.n * speed2))
+        drag = np.max(gains.c2_gamma) * (speed2 + told * np.sqrt(run.n * speed2))
         error = 1e-14 * (gains.c2_beta * len(run.law.obstacles) * speed2 + drag)
     worst = int(np.argmax(rate - error))
     highest = float(rate[worst])
@@ -74,6 +94,7 @@ def never_rises(run: Trajectory, needs: Iterable[Hypothesis], *, since: int = 0)
         margin=-highest,
         error=float(error[worst]),
         witness={"time": float(run.t[since + worst])},
+        proof=proof,
         detail=f"the closed-form rate is at most {highest:.3g} from t = {run.t[since]:.4g} on",
     )
 
@@ -112,7 +133,10 @@ def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], l
     if not applies:
         return [law], [Claim(name, "vacuous", detail="no energy is known for this law") for name in ("rate", "balance")]
     needs = [law, _at_rest(run), stays_outside(run)] if isinstance(run.law, Algorithm3) else [law]
-    return needs, [never_rises(run, needs), balance(run, [law], tolerances)]
+    if type(run.law) is Algorithm2 and run.law.gains.per_agent:  # no moving frame: a moving γ-agent does work
+        needs.append(_at_rest(run))
+    proof = proved(run)
+    return needs, [never_rises(run, needs, proof=proof), balance(run, [law], tolerances, proof=proof)]
 
 
 THEOREM = Theorem(

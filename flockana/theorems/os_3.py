@@ -28,6 +28,9 @@ def _hypotheses(run: Trajectory) -> tuple[list[Hypothesis], Hypothesis]:
     if not applies:
         return [law], Hypothesis("dq_r/dt = p_r", "unmet", detail="no γ-agent")
     gains = run.law.gains
+    if gains.per_agent:
+        single = Hypothesis("one c1γ and one c2γ for all agents", "unmet", detail="gains are given per agent")
+        return [single], Hypothesis("dq_r/dt = p_r", "unmet", detail="no claim is judged")
     least = min(gains.c1_gamma, gains.c2_gamma)
     positive = Hypothesis(
         "c1γ > 0 and c2γ > 0",
@@ -60,6 +63,7 @@ def _cohesive(run: Trajectory, needs: list[Hypothesis]) -> Claim:
         margin=margin,
         error=error,
         witness={"time": float(run.t[worst])},
+        proof="cohesion",
         detail=f"cohesive: R <= {radius[worst]:.4g}, and H_λ(0) allows {bound:.4g}",
     )
 
@@ -90,7 +94,7 @@ def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], l
     needs, consistent = _hypotheses(run)
     if needs[0].status == "unmet":
         names = ("i", "ii", "iii", "iv-printed", "iv-instant", "iv-none", "iv-barrier")
-        return needs, [Claim(name, "vacuous", detail="another law") for name in names]
+        return needs, [Claim(name, "vacuous", detail=needs[0].detail) for name in names]
     end = terminal_state(run.law, run.q[-1], run.p[-1], contact=tolerances.contact)
     c_star = run.law.gains.c1_alpha * run.law.alpha.c_star
     k = floor(float(run.energy()[0]) / c_star)

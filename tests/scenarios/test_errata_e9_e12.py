@@ -15,10 +15,11 @@ from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.scenarios import scenario
 from flockana.simulate import simulate
+from flockana.stability.tracking import response_ratio
+from flockana.stability.translational import predicted_gain
 from flockana.symbolic.parameters import GainSymbols
 from flockana.symbolic.translational import frequency_gain
 from flockana.theorems import Tolerances, verify
-from flockana.theorems.e12 import predicted_gain, response_ratio
 
 OMEGA = 2 * pi * 0.025 / 0.045
 STRONG = scenario("msn-case4").law.gains

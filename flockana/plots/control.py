@@ -1,0 +1,202 @@
+"""Pictures that control engineers know: Bode plot, root locus, gain sweep, norms against size, delay margins."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.ticker import FuncFormatter, NullFormatter
+
+from flockana.plots.style import (
+    BLUE,
+    FAINT,
+    GREEN,
+    INK,
+    MUTED,
+    PURPLE,
+    VERMILLION,
+    ensure_axes,
+    hairline,
+    legend_above,
+    style,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from matplotlib.axes import Axes
+
+    from flockana.stability.norms import NormTable
+    from flockana.stability.sweeps import MarginSweep, Sweep
+
+_DASHES = ((BLUE, "-"), (VERMILLION, "--"), (GREEN, "-."), (PURPLE, ":"))
+_NAMES = {"c1_alpha": "c1α", "c2_alpha": "c2α", "c1_gamma": "c1γ", "c2_gamma": "c2γ"}
+_UNITS = {"c1": "1/time²", "c2": "1/time"}
+
+
+def bode(responses: Mapping[str, Any], *, marks: Mapping[str, float] | None = None, axes: Any = None) -> Any:
+    """Draw magnitude (decibels) and phase of scalar frequency responses, one above the other.
+
+    Parameters
+    ----------
+    responses : mapping of str to control.FrequencyResponseData
+        By label, such as those of `CentreOfMass.frequency_response`; four at most.
+    marks : mapping of str to float, optional
+        Frequencies to point out, by label.
+    axes : sequence of two Axes, optional
+        Where to draw magnitude and phase; by default a new figure.
+
+    Returns
+    -------
+    ndarray of matplotlib.axes.Axes, shape (2,)
+    """
+    if axes is None:
+        import matplotlib.pyplot as plt
+
+        with style():
+            axes = plt.subplots(2, 1, figsize=(5.2, 4.6), sharex=True)[1]
+    magnitude, phase = np.ravel(axes)
+    for (label, response), (colour, dash) in zip(responses.items(), _DASHES, strict=False):
+        gain, angle = np.abs(np.ravel(response.complex)), np.unwrap(np.angle(np.ravel(response.complex)))
+        magnitude.semilogx(response.omega, 20.0 * np.log10(gain), color=colour, linestyle=dash, label=label)
+        phase.semilogx(response.omega, np.degrees(angle), color=colour, linestyle=dash)
+    for name, omega in (marks or {}).items():
+        for ax in (magnitude, phase):
+            ax.axvline(omega, color=MUTED, linewidth=0.9, linestyle=":")
+        text = {"xytext": (3, 4), "textcoords": "offset points", "color": MUTED, "fontsize": 8}
+        magnitude.annotate(name, (omega, 0.0), xycoords=magnitude.get_xaxis_transform(), **text)
+    magnitude.axhline(0.0, color=FAINT, linewidth=1.2, linestyle="-", zorder=0)
+    legend_above(magnitude)
+    magnitude.set_ylabel("|q_c/q_r| (dB)")
+    phase.set_ylabel("phase (degrees)")
+    phase.set_xlabel("ω (radians/time)")
+    phase.yaxis.set_major_locator(_degrees())
+    return np.ravel(axes)
+
+
+def root_locus(sweep: Sweep, *, ax: Axes | None = None) -> Axes:
+    """Draw the branches of eigenvalues in the complex plane: crosses at the least gain, dots at the greatest.
+
+    Parameters
+    ----------
+    sweep : flockana.stability.sweeps.Sweep
+        From `centre_locus` or `gain_sweep`.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    ax = ensure_axes(ax)
+    roots = sweep.eigenvalues
+    width, alpha = hairline(roots.shape[1])
+    ax.plot(roots.real, roots.imag, color=BLUE, linestyle="-", linewidth=max(0.7, width), alpha=max(0.6, alpha))
+    name = _NAMES[sweep.name]
+    first, last = f"{name} = {sweep.values[0]:.4g}", f"{name} = {sweep.values[-1]:.4g}"
+    ax.plot(roots[0].real, roots[0].imag, "x", color=INK, markersize=5, linestyle="none", label=first)
+    ax.plot(roots[-1].real, roots[-1].imag, "o", color=VERMILLION, markersize=3.5, linestyle="none", label=last)
+    ax.axvline(0.0, color=MUTED, linewidth=0.9, linestyle="-", zorder=0)
+    ax.set_xlabel("Re s (1/time)")
+    ax.set_ylabel("Im s (radians/time)")
+    legend_above(ax)
+    return ax
+
+
+def gain_sweep(sweep: Sweep, *, ax: Axes | None = None) -> Axes:
+    """Draw the real parts of all eigenvalues over the gain, the largest one in front.
+
+    Parameters
+    ----------
+    sweep : flockana.stability.sweeps.Sweep
+        From `gain_sweep` or `centre_locus`.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    ax = ensure_axes(ax)
+    parts = sweep.eigenvalues.real[:, sweep.neutral :]
+    width, alpha = hairline(parts.shape[1])
+    ax.plot(sweep.values, parts, color=MUTED, linestyle="-", linewidth=width, alpha=alpha)
+    ax.plot([], [], color=MUTED, linestyle="-", linewidth=0.8, label="every mode")
+    ax.plot(sweep.values, sweep.abscissa, color=VERMILLION, linestyle="-", linewidth=2.0, label="the slowest")
+    ax.axhline(0.0, color=INK, linewidth=0.8, linestyle="-")
+    if sweep.neutral:
+        ax.plot([], [], linestyle="none", label=f"({sweep.neutral} neutral set apart)")
+    ax.set_xlabel(_gain_label(sweep.name))
+    ax.set_ylabel("Re s (1/time)")
+    ax.set_xlim(sweep.values[0], sweep.values[-1])
+    legend_above(ax)
+    return ax
+
+
+def norms(table: NormTable, *, ax: Axes | None = None) -> Axes:
+    """Draw H₂, between its closed-form bounds, and H∞ against the number of agents, both logarithmic.
+
+    Parameters
+    ----------
+    table : flockana.stability.norms.NormTable
+        From `norms_against_size`.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    ax = ensure_axes(ax)
+    n, (low, high) = table.sizes, table.bounds.T
+    ax.fill_between(n, low, high, color=BLUE, alpha=0.15, linewidth=0.0, label="bounds of H₂")
+    ax.plot(n, table.h2, "o-", color=BLUE, markersize=4, label="H₂ (time^(3/2))")
+    ax.plot(n, table.hinf, "s--", color=VERMILLION, markersize=4, label="H∞ (time²)")
+    ax.set_xscale("log")
+    ax.set_yscale("log")
+    ax.set_xticks(n)
+    ax.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
+    ax.xaxis.set_minor_formatter(NullFormatter())
+    ax.tick_params(axis="x", which="minor", bottom=False)
+    ax.set_xlabel("n, agents")
+    ax.set_ylabel("norm from forces to the shape")
+    legend_above(ax)
+    return ax
+
+
+def delay_chart(sweeps: Mapping[str, MarginSweep], *, ax: Axes | None = None) -> Axes:
+    """Draw the delay margin over a gain; the flock is stable below its line.
+
+    Parameters
+    ----------
+    sweeps : mapping of str to flockana.stability.sweeps.MarginSweep
+        By label, over the same gain; four at most. The area below the first is shaded.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    ax = ensure_axes(ax)
+    for k, ((label, sweep), (colour, dash)) in enumerate(zip(sweeps.items(), _DASHES, strict=False)):
+        if k == 0:
+            ax.fill_between(sweep.values, 0.0, sweep.margins, color=BLUE, alpha=0.12, linewidth=0.0)
+            ax.set_xlabel(_gain_label(sweep.name))
+            ax.set_xlim(sweep.values[0], sweep.values[-1])
+        ax.plot(sweep.values, sweep.margins, color=colour, linestyle=dash, label=label)
+    ax.text(0.03, 0.05, "stable", transform=ax.transAxes, color=MUTED)
+    ax.set_ylim(bottom=0.0)
+    ax.set_ylabel("τ*, delay margin (time)")
+    legend_above(ax)
+    return ax
+
+
+def _gain_label(name: str) -> str:
+    return f"{_NAMES[name]} ({_UNITS[name[:2]]})"
+
+
+def _degrees() -> Any:
+    from matplotlib.ticker import MultipleLocator
+
+    return MultipleLocator(45.0)

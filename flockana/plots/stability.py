@@ -1,0 +1,225 @@
+"""Linearised stability in pictures: poles, mode shapes on the flock, modes as films."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.collections import LineCollection
+from mpl_toolkits.mplot3d.art3d import Line3DCollection  # type: ignore[import-untyped]
+
+from flockana.plots.animation import animate
+from flockana.plots.style import (
+    BLUE,
+    FAINT,
+    GREEN,
+    INK,
+    MUTED,
+    PURPLE,
+    VERMILLION,
+    ensure_axes,
+    frame_space,
+    legend_above,
+)
+from flockana.stability.modes import Mode
+from flockana.stability.motion import mode_motion
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from flockana.stability.linearise import Linearisation
+
+_LOOKS = (("x", BLUE), ("+", GREEN), ("1", PURPLE), ("2", INK))
+_RATIOS = (0.1, 0.3, 0.5, 0.7, 0.9)
+_ARROW = 0.09  # longest arrow as a share of the flock's width
+_RING = np.linspace(0.0, 2.0 * np.pi, 49)
+
+
+def pole_map(poles: Any, *, grid: bool = True, ax: Axes | None = None) -> Axes:
+    """Draw eigenvalues in the complex plane; zeros as a ring with their number, growing ones as red triangles.
+
+    Parameters
+    ----------
+    poles : array_like of complex, or mapping of str to array_like
+        Eigenvalues; with labels, up to four groups.
+    grid : bool
+        Draw rays of constant damping ratio.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    axes: Any = ensure_axes(ax)
+    groups = dict(poles) if isinstance(poles, Mapping) else {"eigenvalues": poles}
+    values = {name: np.asarray(group, dtype=np.complex128).ravel() for name, group in groups.items()}
+    whole = np.concatenate(list(values.values()))
+    axes.axhline(0.0, color=MUTED, linewidth=0.8, zorder=1)
+    axes.axvline(0.0, color=INK, linewidth=1.0, zorder=1)
+    for (marker, colour), (name, group) in zip(_LOOKS, values.items(), strict=False):
+        shown = group[(group != 0.0) & (group.real <= 0.0)]
+        axes.plot(
+            shown.real, shown.imag, marker, color=colour, markersize=6.0, markeredgewidth=1.3, label=name, zorder=3
+        )
+    grows, zeros = whole[whole.real > 0.0], int(np.sum(whole == 0.0))
+    if grows.size:
+        axes.plot(grows.real, grows.imag, "^", color=VERMILLION, markersize=6.0, label="growing", zorder=3)
+    if zeros:
+        look = {"color": INK, "markerfacecolor": "none", "markersize": 9.0, "zorder": 4}
+        axes.plot(0.0, 0.0, "o", label=f"zero modes: {zeros}", **look)
+    axes.set_xlabel("Re λ (1/time)")
+    axes.set_ylabel("Im λ (rad/time)")
+    axes.margins(0.08)
+    axes.autoscale_view()
+    height = max(1.08 * float(np.abs(whole.imag).max()), 0.2 * float(np.abs(whole).max()))  # real poles have none
+    if height:
+        axes.set_ylim(-height, height)
+    if grid:
+        _damping_rays(axes)
+    legend_above(axes)
+    return axes  # type: ignore[no-any-return]
+
+
+def _damping_rays(ax: Any) -> None:
+    """Rays of constant damping ratio into the left half-plane, named at the edge of the axes."""
+    (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
+    if left >= 0.0:
+        return
+    ax.grid(False)
+    for ratio in _RATIOS:
+        slope = np.sqrt(1.0 - ratio**2) / ratio
+        for sign, edge in ((1.0, high), (-1.0, low)):
+            if sign * edge <= 0.0:
+                continue
+            reach = min(-left, abs(edge) / slope)
+            ax.plot([0.0, -reach], [0.0, sign * slope * reach], color=FAINT, linestyle="-", linewidth=0.7, zorder=0)
+            if sign > 0.0:
+                inside = 0.97 * reach
+                ax.text(-inside, slope * inside, f"ζ = {ratio:g}", color=MUTED, fontsize=7, ha="left", va="top")
+    ax.set_xlim(left, right)
+    ax.set_ylim(low, high)
+
+
+def mode_shape(q: Any, links: Any, shape: Any, *, target: Any = None, ax: Axes | None = None, title: str = "") -> Axes:
+    """Draw a mode on the flock: an arrow from each agent, and the ellipse that it runs through where it swings.
+
+    Parameters
+    ----------
+    q : array_like, shape (n, m)
+        Positions, m = 1, 2 or 3.
+    links : array_like, shape (M, 2)
+        Links.
+    shape : array_like, shape (n, m)
+        Displacements, real or complex, of any size: the longest arrow is a tenth of the flock.
+    target : array_like, shape (m,), optional
+        Position of the γ-agent.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; three-dimensional for m = 3.
+    title : str
+        Of the axes.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    points, moves = np.asarray(q, dtype=np.float64), np.asarray(shape)
+    m = points.shape[1]
+    axes: Any = ensure_axes(ax, m=m)
+    if m == 1:  # agents on a line move along it
+        points, moves = (np.column_stack([part, np.zeros(len(part))]) for part in (points, moves))
+    extent = float(np.ptp(points, axis=0).max()) or 1.0
+    moves = moves * (_ARROW * extent / (float(np.abs(moves).max()) or 1.0))
+    kind: Any = Line3DCollection if m == 3 else LineCollection
+    if len(links):
+        axes.add_collection(kind(points[np.asarray(links)], colors=FAINT, linewidths=1.0, zorder=1))
+    if np.iscomplexobj(moves):
+        orbits = points[:, None] + np.real(np.exp(1j * _RING)[None, :, None] * moves[:, None])
+        axes.add_collection(kind(orbits, colors=VERMILLION, linewidths=0.9, zorder=2))
+    size = float(np.clip(700.0 / len(points), 3.0, 22.0))
+    axes.scatter(*points.T, s=size, color=INK, linewidths=0, zorder=3)
+    arrows = np.real(moves)
+    if m == 3:
+        axes.quiver(*points.T, *arrows.T, color=BLUE, linewidth=1.0, arrow_length_ratio=0.3)
+    else:
+        look = {"angles": "xy", "scale_units": "xy", "scale": 1.0, "width": 0.004, "color": BLUE, "zorder": 4}
+        axes.quiver(*points.T, *arrows.T, **look)
+    seen = np.vstack([points, points + np.abs(moves), points - np.abs(moves)])
+    if target is not None:
+        mark = np.zeros((1, points.shape[1]))
+        mark[0, :m] = target
+        axes.scatter(*mark.T, s=90, marker="*", color=PURPLE, edgecolors="white", linewidths=0.6, zorder=3.5)
+        seen = np.vstack([seen, mark])
+    axes.set_title(title)
+    if m == 1:
+        axes.set(xlabel="x (length)", yticks=[], ylim=(-1.0, 1.0))
+    else:
+        if m == 2:  # neither arrows nor collections count in the view
+            axes.update_datalim(seen)
+            axes.autoscale_view()
+        frame_space(axes, seen)
+    return axes  # type: ignore[no-any-return]  # the stubs have no three-dimensional axes
+
+
+def mode_title(mode: Mode) -> str:
+    """Name and numbers of a mode, for its picture.
+
+    Parameters
+    ----------
+    mode : Mode
+        The mode.
+
+    Examples
+    --------
+    >>> mode_title(Mode(-3 + 4j, np.ones((1, 1)), "breathing"))
+    'breathing: λ = −3 ± 4i, ζ = 0.6'
+    >>> mode_title(Mode(-3 + 0j, np.ones((1, 1)), "7")), mode_title(Mode(0j, np.ones((1, 1)), "rotation"))
+    ('mode 7: λ = −3', 'rotation: λ = 0')
+    """
+    name = f"mode {mode.name}" if mode.name.isdigit() else mode.name
+    real = f"{mode.eigenvalue.real:.3g}".replace("-", "−")
+    if mode.frequency:
+        return f"{name}: λ = {real} ± {mode.frequency:.3g}i, ζ = {mode.damping_ratio:.2g}"
+    return f"{name}: λ = {real}"
+
+
+def animate_mode(
+    linearisation: Linearisation,
+    mode: Mode,
+    path: str | os.PathLike[str],
+    *,
+    amplitude: float | None = None,
+    periods: float = 2.0,
+    damped: bool = True,
+    seconds: float = 4.0,
+    fps: float = 15.0,
+) -> Path:
+    """Write a film of a mode: GIF always, MP4 where the program ffmpeg is installed.
+
+    Parameters
+    ----------
+    linearisation : Linearisation
+        Where the mode is from.
+    mode : Mode
+        Which one.
+    path : path-like
+        File to write, ``.gif`` or ``.mp4``.
+    amplitude, periods, damped : object
+        As for `flockana.stability.mode_motion`.
+    seconds, fps : float
+        As for `flockana.plots.animate`.
+
+    Returns
+    -------
+    pathlib.Path
+
+    Raises
+    ------
+    ArgumentError, FileError
+        As `flockana.plots.animate`.
+    """
+    run = mode_motion(linearisation, mode, amplitude=amplitude, periods=periods, damped=damped)
+    return animate(run, path, seconds=seconds, fps=fps)

@@ -1,0 +1,170 @@
+"""The flock about a state as x'' = −K x − D x' + w, and what is left of it once rigid motions are divided out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from flockana.checks import FloatArray, ensure_points
+from flockana.equilibria.potential import Potential
+from flockana.equilibria.solve import RESIDUAL
+from flockana.errors import ArgumentError
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.terminal import rigid_motions
+
+NEUTRAL = 1e-9  # of the largest stiffness: a rigid motion that meets no more than that is neutral
+MOST = 2000  # rows of a dense matrix of the second order; its state space has twice as many
+
+
+@dataclass(frozen=True)
+class Blocks:
+    """x'' = −K x − D x' + w in the order of ``q.ravel()``, w a disturbing force on each agent.
+
+    Parameters
+    ----------
+    stiffness, damping : ndarray, shape (n m, n m)
+        K and D, symmetric.
+    rigid : ndarray, shape (n m, r)
+        Orthonormal basis of all rigid motions.
+    neutral : ndarray, shape (n m, k)
+        Those with K ρ = 0: nothing brings the flock back.
+    drifting : ndarray, shape (n m, f)
+        Those with D ρ = 0 as well: nothing even slows it down.
+
+    Examples
+    --------
+    Algorithm 1 lets a bond drift (2 translations) and leaves its orientation neutral:
+
+    >>> pair = second_order(Algorithm1(), [[0.0, 0.0], [7.0, 0.0]])
+    >>> pair.rigid.shape[1], pair.neutral.shape[1], pair.drifting.shape[1]
+    (3, 3, 2)
+    """
+
+    stiffness: FloatArray
+    damping: FloatArray
+    rigid: FloatArray
+    neutral: FloatArray
+    drifting: FloatArray
+
+    def matrix(self) -> FloatArray:
+        """A of (x, x')' = A (x, x'), shape (2 n m, 2 n m)."""
+        zero, one = np.zeros_like(self.stiffness), np.eye(len(self.stiffness))
+        return np.block([[zero, one], [-self.stiffness, -self.damping]])
+
+    def quotient(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """A and B without the rigid motions that nothing holds, and the bases N of positions, V of velocities.
+
+        The state is (Nᵀx, Vᵀx'). (ρ, 0) with K ρ = 0 is invariant, and what drifts is so with its velocity: dividing
+        them out is exact. What remains knows every shape, but neither the orientation nor, under Algorithm 1, the
+        centre of mass. Disturbances turn the flock by a random walk; that is no fault of its shape.
+        """
+        positions, velocities = complement(self.neutral), complement(self.drifting)
+        a = np.block(
+            [
+                [np.zeros((positions.shape[1],) * 2), positions.T @ velocities],
+                [-velocities.T @ self.stiffness @ positions, -velocities.T @ self.damping @ velocities],
+            ]
+        )
+        b = np.vstack([np.zeros((positions.shape[1], len(self.stiffness))), velocities.T])
+        return a, b, positions, velocities
+
+
+def complement(basis: FloatArray) -> FloatArray:
+    """Orthonormal basis of what is orthogonal to an orthonormal basis.
+
+    Parameters
+    ----------
+    basis : ndarray, shape (N, k)
+        Orthonormal columns.
+
+    Examples
+    --------
+    >>> np.abs(complement(np.array([[1.0], [0.0]]))).tolist()
+    [[0.0], [1.0]]
+    """
+    if basis.shape[1] == 0:
+        return np.eye(basis.shape[0])
+    rest: FloatArray = np.linalg.svd(basis, full_matrices=True)[0][:, basis.shape[1] :]
+    return rest
+
+
+def blocks(stiffness: FloatArray, damping: FloatArray, q: FloatArray) -> Blocks:
+    """Sort a flock's rigid motions by what holds them.
+
+    Parameters
+    ----------
+    stiffness, damping : ndarray, shape (n m, n m)
+        K and D, such as those of a `Linearisation`, dense.
+    q : ndarray, shape (n, m)
+        Positions.
+
+    Examples
+    --------
+    >>> blocks(np.zeros((2, 2)), np.eye(2), np.array([[0.0, 0.0]])).drifting.shape
+    (2, 0)
+    """
+    rigid = rigid_motions(q)
+    neutral = _kernel(stiffness, rigid)
+    return Blocks(stiffness, damping, rigid, neutral, _kernel(damping, neutral))
+
+
+def second_order(law: Any, q: Any, *, t: float = 0.0, strict: bool = True) -> Blocks:
+    """K and D of Algorithm 1 or 2 at an equilibrium, with the rigid motions sorted by what holds them.
+
+    K = c1α ∇²V + c1γ and D = c2α L̂ + c2γ, the gains of the γ-agent one for all or one per agent. Under Algorithm 2
+    translations are held by c1γ; the rotation about the γ-agent is neutral at every equilibrium, because the stress
+    of the pressed links cancels what c1γ holds.
+
+    Parameters
+    ----------
+    law : Algorithm1 or Algorithm2
+        The law.
+    q : array_like, shape (n, m)
+        Positions.
+    t : float
+        When: with per-agent gains the place of the γ-agent matters.
+    strict : bool
+        Refuse a state that is no equilibrium.
+
+    Raises
+    ------
+    ArgumentError
+        On another law, too many agents for a dense matrix, or a state that is no equilibrium.
+
+    Examples
+    --------
+    >>> from flockana.environment.targets import StaticTarget
+    >>> one = second_order(Algorithm2(target=StaticTarget((0.0,))), [[0.0]])
+    >>> one.stiffness.tolist(), one.neutral.shape
+    ([[1.1]], (1, 0))
+    """
+    q = ensure_points("q", q)
+    if not isinstance(law, Algorithm1 | Algorithm2):
+        raise ArgumentError(f"law = {law!r}: expected Algorithm1 or Algorithm2")
+    law.check_dimension(q.shape[1])
+    law.check_agents(len(q))
+    if q.size > MOST:
+        raise ArgumentError(
+            f"n m = {q.size}: expected at most {MOST} for a dense spectrum; linearise has sparse matrices"
+        )
+    if strict and (residual := Potential(law, t).residual(q)) > RESIDUAL:
+        raise ArgumentError(
+            f"q is no equilibrium: residual force {residual:.2g} of c1α b/√ε, more than {RESIDUAL:g}; "
+            "find_equilibrium finds one, and strict=False studies this state all the same"
+        )
+    stiffness = law.stiffness(q).toarray()
+    damping = law.gains.c2_alpha * law.alpha.laplacian(q).toarray()
+    if isinstance(law, Algorithm2):
+        damping[np.diag_indices(q.size)] += np.broadcast_to(law.gains.drag, q.shape).ravel()
+    return blocks(stiffness, damping, q)
+
+
+def _kernel(matrix: FloatArray, basis: FloatArray) -> FloatArray:
+    """Orthonormal basis of the vectors in the span of `basis` that the matrix takes to zero."""
+    if basis.shape[1] == 0:
+        return basis
+    _, sizes, rows = np.linalg.svd(matrix @ basis, full_matrices=False)
+    small: FloatArray = basis @ rows[sizes <= NEUTRAL * float(np.abs(matrix).max())].T
+    return small

@@ -1,0 +1,390 @@
+"""Delayed interactions: how much delay the flock bears, and where its characteristic roots go.
+
+x''(t) = −K₀ x(t) − D₀ x'(t) − K₁ x(t − τ) − D₁ x'(t − τ): all that an agent hears is τ old ("all": K₀ = D₀ = 0), or
+only what it hears of other agents ("pairs": the γ-terms act at once).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf, pi
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.checks import FloatArray, ensure_count, ensure_positive, ensure_state, ensure_time_span
+from flockana.errors import ArgumentError, UnknownNameError
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.stability.blocks import second_order
+
+ComplexArray = npt.NDArray[np.complex128]
+
+DELAYED = ("all", "pairs")
+_CHECK = 0.3  # of the smallest estimate: crossings that come so close to it are located exactly
+_LOWEST = 1e-4  # of the highest frequency at which roots can cross: the sweep begins there
+
+
+@dataclass(frozen=True)
+class DelaySystem:
+    """x'' = −K₀ x − D₀ x' − K₁ x(t−τ) − D₁ x'(t−τ).
+
+    Parameters
+    ----------
+    prompt : tuple of ndarray
+        (K₀, D₀), shape (N, N).
+    late : tuple of ndarray
+        (K₁, D₁).
+    neutral : int
+        Roots at s = 0, whatever the delay: of rigid motions that nothing holds.
+    """
+
+    prompt: tuple[FloatArray, FloatArray]
+    late: tuple[FloatArray, FloatArray]
+    neutral: int = 0
+
+    @property
+    def highest(self) -> float:
+        """No root crosses the imaginary axis above this frequency, since there s² outweighs the rest."""
+        k, d = (sum(float(np.linalg.norm(part[i], 2)) for part in (self.prompt, self.late)) for i in (0, 1))
+        return 0.5 * (d + float(np.sqrt(d * d + 4.0 * k)))
+
+    def characteristic(self, s: complex, delay: float) -> ComplexArray:
+        """s² + K₀ + s D₀ + (K₁ + s D₁) e^(−sτ), singular at the roots.
+
+        Parameters
+        ----------
+        s : complex
+            Where.
+        delay : float
+            τ.
+        """
+        (k0, d0), (k1, d1) = self.prompt, self.late
+        matrix: ComplexArray = s * s * np.eye(len(k0)) + k0 + s * d0 + (k1 + s * d1) * np.exp(-s * delay)
+        return matrix
+
+
+@dataclass(frozen=True)
+class DelayMargin:
+    """The delay at which stability is lost.
+
+    Parameters
+    ----------
+    delay : float
+        τ*; infinite if no delay does it, 0 if the flock is unstable without one.
+    frequency : float
+        Of the oscillation that then neither grows nor decays, in radians per time unit; NaN where there is none.
+    """
+
+    delay: float
+    frequency: float
+
+
+def delay_system(law: Algorithm1 | Algorithm2, q: Any, *, delayed: str = "all", strict: bool = True) -> DelaySystem:
+    """The linearised flock whose interactions are delayed.
+
+    Parameters
+    ----------
+    law : Algorithm1 or Algorithm2
+        The law.
+    q : array_like, shape (n, m)
+        Equilibrium.
+    delayed : {"all", "pairs"}
+        Everything, an agent's own state included, or the terms between agents only.
+    strict : bool
+        Refuse a state that is no equilibrium.
+
+    Raises
+    ------
+    ArgumentError
+        On a bad law, state or name.
+
+    Examples
+    --------
+    >>> from flockana.environment.targets import StaticTarget
+    >>> one = delay_system(Algorithm2(target=StaticTarget((0.0,))), [[0.0]])
+    >>> [block.tolist() for block in one.late], one.neutral
+    ([[[1.1]], [[2.0976176963403033]]], 0)
+    """
+    if delayed not in DELAYED:
+        raise UnknownNameError("set of delayed terms", delayed, DELAYED)
+    flock = second_order(law, q, strict=strict)
+    neutral, zero = flock.neutral.shape[1] + flock.drifting.shape[1], np.zeros_like(flock.stiffness)
+    if delayed == "all":
+        return DelaySystem((zero, zero), (flock.stiffness, flock.damping), neutral)
+    prompt_k, prompt_d = zero.copy(), zero.copy()
+    if isinstance(law, Algorithm2):
+        shape, own = np.shape(q), np.diag_indices(len(zero))
+        prompt_k[own] = np.broadcast_to(law.gains.pull, shape).ravel()
+        prompt_d[own] = np.broadcast_to(law.gains.drag, shape).ravel()
+    return DelaySystem((prompt_k, prompt_d), (flock.stiffness - prompt_k, flock.damping - prompt_d), neutral)
+
+
+def scalar_margin(k: float, d: float) -> DelayMargin:
+    """Delay margin of x'' = −k x(t−τ) − d x'(t−τ) in closed form.
+
+    On the axis k + jωd = ω² e^jωτ: ω² = (d² + √(d⁴ + 4k²))/2 and τ = atan2(ωd, k)/ω.
+
+    Parameters
+    ----------
+    k, d : float
+        Stiffness and damping, both >= 0.
+
+    Examples
+    --------
+    >>> round(scalar_margin(0.0, 2.0).delay / pi, 12)
+    0.25
+    """
+    if k == 0.0 and d == 0.0:
+        return DelayMargin(inf, float("nan"))
+    omega = float(np.sqrt(0.5 * (d * d + np.hypot(d * d, 2.0 * k))))
+    return DelayMargin(float(np.arctan2(omega * d, k)) / omega, omega)
+
+
+def delay_margin(system: DelaySystem, *, grid: int = 200) -> DelayMargin:
+    """The least delay at which a root reaches the imaginary axis, by a sweep over frequency.
+
+    s = jω is a root for the delay τ where z = e^jωτ is an eigenvalue of −(K₀ − ω² + jωD₀)⁻¹(K₁ + jωD₁): the moduli of
+    these, sorted, are continuous in ω, and each passage through 1 is one crossing, with τ from the phase. No root at
+    s = 0 is met, so neutral motions are set apart by themselves. Passages that turn back within one step of the sweep
+    would be missed; `rightmost_roots` is the check.
+
+    Parameters
+    ----------
+    system : DelaySystem
+        Stable without delay, but for neutral motions.
+    grid : int
+        Frequencies, logarithmic.
+
+    Returns
+    -------
+    DelayMargin
+
+    Examples
+    --------
+    >>> one = DelaySystem((np.zeros((1, 1)), np.zeros((1, 1))), (np.array([[4.0]]), np.array([[3.0]])))
+    >>> bool(abs(delay_margin(one).delay - scalar_margin(4.0, 3.0).delay) < 1e-12)
+    True
+    """
+    from scipy.optimize import brentq
+
+    if _unstable(system):
+        return DelayMargin(0.0, float("nan"))
+    top = 1.01 * system.highest
+    omegas = np.geomspace(_LOWEST * top, top, ensure_count("grid", grid) + 1)
+    spectra = [_phases(system, omega) for omega in omegas.tolist()]
+    levels = np.array([np.abs(z) for z in spectra]) - 1.0
+    step, index = np.nonzero(levels[:-1] * levels[1:] < 0.0)
+    guesses = [_angle(spectra[k][i]) / omegas[k] for k, i in zip(step.tolist(), index.tolist(), strict=True)]
+    best = DelayMargin(inf, float("nan"))
+    for guess, k, i in sorted(zip(guesses, step.tolist(), index.tolist(), strict=True)):
+        if guess > (1.0 + _CHECK) * best.delay:
+            break
+        omega = float(
+            brentq(lambda w, i=i: float(abs(_phases(system, w)[i])) - 1.0, omegas[k], omegas[k + 1], xtol=1e-14 * top)
+        )
+        delay = _angle(_phases(system, omega)[i]) / omega
+        if delay < best.delay:
+            best = DelayMargin(delay, omega)
+    return best
+
+
+def _phases(system: DelaySystem, omega: float) -> ComplexArray:
+    """The values that e^jωτ would have to take, largest modulus first."""
+    (k0, d0), (k1, d1) = system.prompt, system.late
+    now = k0 - omega**2 * np.eye(len(k0)) + 1j * omega * d0
+    found = np.linalg.eigvals(-np.linalg.solve(now, k1 + 1j * omega * d1)).astype(np.complex128)
+    return found[np.argsort(-np.abs(found), kind="stable")]
+
+
+def _angle(z: complex) -> float:
+    return float(np.angle(z)) % (2.0 * pi)
+
+
+def _unstable(system: DelaySystem) -> bool:
+    """Whether a root without delay has a positive real part; the neutral ones are the smallest in modulus."""
+    (k0, d0), (k1, d1) = system.prompt, system.late
+    zero, one = np.zeros_like(k0), np.eye(len(k0))
+    roots = np.linalg.eigvals(np.block([[zero, one], [-(k0 + k1), -(d0 + d1)]]))
+    roots = roots[np.argsort(np.abs(roots))][system.neutral :]
+    return bool(roots.real.max(initial=-inf) > 1e-9 * np.abs(roots).max(initial=1.0))
+
+
+def rightmost_roots(system: DelaySystem, delay: float, *, nodes: int = 16, count: int = 6) -> ComplexArray:
+    """The rightmost characteristic roots, neutral ones left out, by Chebyshev collocation of the generator.
+
+    The delayed state over [−τ, 0] is a polynomial through nodes + 1 Chebyshev points (Breda, Maset, Vermiglio 2005);
+    each root is then refined by Newton's method on the characteristic matrix itself, which has no such error.
+
+    Parameters
+    ----------
+    system : DelaySystem
+        The linearised flock.
+    delay : float
+        τ > 0.
+    nodes : int
+        Degree of the polynomial; the matrix has 2N (nodes + 1) rows.
+    count : int
+        Roots wanted; conjugates count too.
+
+    Returns
+    -------
+    complex ndarray, shape (count,)
+        Largest real part first.
+
+    Examples
+    --------
+    At the margin of x'' = −x'(t − τ) the roots ±j are the rightmost:
+
+    >>> one = DelaySystem((np.zeros((1, 1)), np.zeros((1, 1))), (np.zeros((1, 1)), np.ones((1, 1))), neutral=1)
+    >>> [round(float(abs(s)), 9) for s in rightmost_roots(one, 0.5 * pi, count=2) - np.array([1j, -1j])]
+    [0.0, 0.0]
+    """
+    delay, nodes = ensure_positive("delay", delay), ensure_count("nodes", nodes)
+    (k0, d0), (k1, d1) = system.prompt, system.late
+    size, zero, one = len(k0), np.zeros_like(k0), np.eye(len(k0))
+    now, then = np.block([[zero, one], [-k0, -d0]]), np.block([[zero, zero], [-k1, -d1]])
+    generator = np.kron(_chebyshev(nodes) * (2.0 / delay), np.eye(2 * size))
+    generator[: 2 * size] = 0.0
+    generator[: 2 * size, : 2 * size] = now
+    generator[: 2 * size, -2 * size :] += then
+    values = np.linalg.eigvals(generator)
+    small = np.argsort(np.abs(values))[: system.neutral]
+    values = np.delete(values, small)
+    values = values[np.argsort(-values.real, kind="stable")][: ensure_count("count", count)]
+    refined = np.array([_refine(system, complex(s), delay) for s in values])
+    return refined[np.lexsort((-refined.imag, -refined.real.round(12)))]
+
+
+def _chebyshev(nodes: int) -> FloatArray:
+    """Differentiation matrix on the Chebyshev points cos(πk/nodes), from 1 to −1 (Trefethen 2000, chapter 6)."""
+    k = np.arange(nodes + 1)
+    x = np.cos(pi * k / nodes)
+    weight = np.where((k == 0) | (k == nodes), 2.0, 1.0) * (-1.0) ** k
+    matrix = np.outer(weight, 1.0 / weight) / (x[:, None] - x[None, :] + np.eye(nodes + 1))
+    difference: FloatArray = matrix - np.diag(matrix.sum(axis=1))
+    return difference
+
+
+def _refine(system: DelaySystem, s: complex, delay: float) -> complex:
+    """Newton's method for (v, s) with M(s) v = 0, started from the singular vector at s."""
+    (k0, d0), (k1, d1) = system.prompt, system.late
+    start, size = s, len(k0)
+    v = np.linalg.svd(system.characteristic(s, delay))[2][-1].conj()
+    fixed = v.conj()
+    for _ in range(8):
+        late = np.exp(-s * delay)
+        matrix = system.characteristic(s, delay)
+        slope = (2.0 * s * np.eye(size) + d0 + (d1 - delay * (k1 + s * d1)) * late) @ v
+        bordered = np.block([[matrix, slope[:, None]], [fixed[None, :], np.zeros((1, 1))]])
+        try:
+            step = np.linalg.solve(bordered, np.append(-matrix @ v, 1.0 - fixed @ v))
+        except np.linalg.LinAlgError:
+            break
+        v, s = v + step[:-1], s + complex(step[-1])
+        if abs(step[-1]) <= 1e-14 * max(1.0, abs(s)):
+            break
+    near = abs(s - start) <= 0.1 * max(abs(start), 1.0 / delay)
+    return s if near and np.isfinite(s) else start
+
+
+@dataclass(frozen=True)
+class DelayedRun:
+    """A run whose interactions are delayed.
+
+    Parameters
+    ----------
+    t : ndarray, shape (T,)
+        Times, one step apart.
+    q, p : ndarray, shape (T, n, m)
+        Positions and velocities.
+    delay : float
+        τ.
+    """
+
+    t: FloatArray
+    q: FloatArray
+    p: FloatArray
+    delay: float
+
+
+def simulate_delayed(
+    law: Algorithm1 | Algorithm2, q0: Any, p0: Any, t_span: Any, *, delay: float, steps: int = 20, delayed: str = "all"
+) -> DelayedRun:
+    """Integrate the nonlinear flock with delayed interactions: RK4, `steps` steps per delay.
+
+    Before the start the flock moved with its initial velocities. What an agent hears, the γ-agent's position and
+    velocity included, is τ old; with ``delayed="pairs"`` only what it hears of other agents. Steps divide the delay, so
+    that kinks of the solution fall on steps; halfway between, the past is a Hermite cubic: the order is four.
+
+    Parameters
+    ----------
+    law : Algorithm1 or Algorithm2
+        The law.
+    q0, p0 : array_like, shape (n, m)
+        State at the start.
+    t_span : (float, float)
+        Start and end; the last step may go beyond the end.
+    delay : float
+        τ > 0.
+    steps : int
+        Steps per delay.
+    delayed : {"all", "pairs"}
+        As in `delay_system`.
+
+    Raises
+    ------
+    ArgumentError
+        On bad arguments.
+
+    Examples
+    --------
+    A lone agent sees the target where it was: at first it falls with constant acceleration.
+
+    >>> from flockana.environment.targets import StaticTarget
+    >>> from flockana.interactions import Gains
+    >>> law = Algorithm2(gains=Gains(c1_gamma=2.0, c2_gamma=0.0), target=StaticTarget((0.0,)))
+    >>> run = simulate_delayed(law, [[1.0]], [[0.0]], (0.0, 0.5), delay=0.5)
+    >>> round(float(run.q[-1, 0, 0]), 12)
+    0.75
+    """
+    if not isinstance(law, Algorithm1 | Algorithm2):
+        raise ArgumentError(f"law = {law!r}: expected Algorithm1 or Algorithm2")
+    if delayed not in DELAYED:
+        raise UnknownNameError("set of delayed terms", delayed, DELAYED)
+    q, p = ensure_state(q0, p0)
+    law.check_dimension(q.shape[1])
+    law.check_start(q, p)
+    t0, t1 = ensure_time_span(t_span)
+    delay, steps = ensure_positive("delay", delay), ensure_count("steps", steps)
+    h = delay / steps
+    total = int(np.ceil((t1 - t0) / h - 1e-9))
+    past = np.arange(-steps, 1)[:, None, None] * h
+    qs, ps, us = (np.empty((steps + 1 + total, *q.shape)) for _ in range(3))
+    qs[: steps + 1], ps[: steps + 1], us[:steps] = q + past * p, p, 0.0
+
+    def push(t: float, q: FloatArray, p: FloatArray, q_old: FloatArray, p_old: FloatArray) -> FloatArray:
+        if delayed == "all":
+            return law.flow(t - delay, q_old, p_old)[0]
+        own = law.gains
+        heard = law.alpha.forces(q_old, p_old, stiffness=own.c1_alpha, damping=own.c2_alpha)[0]
+        if isinstance(law, Algorithm2):
+            q_r, p_r = law.target.state(t)
+            heard -= own.pull * (q - q_r) + own.drag * (p - p_r)
+        return heard
+
+    us[steps] = push(t0, q, p, qs[0], ps[0])
+    for k in range(steps, steps + total):
+        t, old = t0 + (k - steps) * h, k - steps
+        q, p = qs[k], ps[k]
+        q_mid = 0.5 * (qs[old] + qs[old + 1]) + h / 8.0 * (ps[old] - ps[old + 1])
+        arriving = us[old + 1] if old + 1 != steps else 0.0  # the acceleration jumps at the start
+        p_mid = 0.5 * (ps[old] + ps[old + 1]) + h / 8.0 * (us[old] - arriving)
+        k1 = us[k]
+        k2 = push(t + h / 2, q + h / 2 * p, p + h / 2 * k1, q_mid, p_mid)
+        k3 = push(t + h / 2, q + h / 2 * (p + h / 2 * k1), p + h / 2 * k2, q_mid, p_mid)
+        k4 = push(t + h, q + h * (p + h / 2 * k2), p + h * k3, qs[old + 1], ps[old + 1])
+        qs[k + 1] = q + h * p + h * h / 6 * (k1 + k2 + k3)
+        ps[k + 1] = p + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+        us[k + 1] = push(t + h, qs[k + 1], ps[k + 1], qs[old + 1], ps[old + 1])
+    return DelayedRun(t0 + h * np.arange(total + 1.0), qs[steps:], ps[steps:], delay)

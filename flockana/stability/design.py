@@ -1,0 +1,360 @@
+"""Gains that make the slowest mode decay fastest: one c1γ and c2γ for all agents, or one of each per agent.
+
+The question is that of Montanari, Barioni, Duan and Motter ("Optimal flock formation induced by agent heterogeneity"):
+minimise the largest real part among the eigenvalues of [[0, I], [−diag(c1γ) − c1α∇²V, −diag(c2γ) − c2α L̂]] at a given
+quasi-lattice, gains between bounds. Their simplified form drops ∇²V.
+
+Which modes are set apart. Translation is no zero mode here: c1γ holds it, and how fast it dies is what the γ-agent is
+for; it counts. Rotation about the γ-agent is neutral at every equilibrium of the law, for any gains, because the stress
+in the pressed links cancels what c1γ seems to hold. At a lattice that is no equilibrium of the law, an unstressed one
+above all, the printed matrix does hold it, which no flock at rest does. So rotation="counted" reads the matrix as
+printed, and rotation="apart" divides the rotation about the centre out, as `blocks.Blocks.quotient` does.
+
+Found for the hexagonal spiral of 30 agents, c1α = 30, c2α = 2√30, gains within [0, 5], as decay rates per time unit:
+1.740 alike and 2.061 per agent with the rotation counted (18 % faster); 2.236 = √5 and 2.247 with it apart (0.5 %);
+0.2962 and 0.3067 in the simplified form (3.5 %). At the equilibria that these gains have, where rotation is neutral,
+critical damping alike, (5, 2√5), keeps 2.236, and the two per-agent designs decay at 2.064 and 2.147; designed with
+that equilibrium's own stiffness, c1γ = 5 for all and c2γ per agent reach 2.249 (0.6 %).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import sqrt
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.checks import FloatArray, ensure_count, ensure_nonnegative, ensure_points
+from flockana.errors import ArgumentError, UnknownNameError
+from flockana.interactions import Gains
+from flockana.interactions.alpha import AlphaInteraction
+from flockana.stability.blocks import complement
+from flockana.terminal import rigid_motions
+
+ComplexArray = npt.NDArray[np.complex128]
+
+FORMS = ("full", "simplified")
+ROTATIONS = ("apart", "counted")
+_ROUNDS = 200
+_ACTIVE = 40  # eigenvalues with the largest real parts that a step looks at
+_SMALLEST = 1e-8  # trust region at which a search ends, in units of the gains
+_GRID = 10
+
+
+@dataclass(frozen=True)
+class GainProblem:
+    """The matrix of the design problem and its eigenvalues as functions of the gains.
+
+    Parameters
+    ----------
+    stiffness : ndarray, shape (N, N)
+        c1α ∇²V, or zero in the simplified form.
+    damping : ndarray, shape (N, N)
+        c2α L̂.
+    apart : ndarray, shape (N, k)
+        Orthonormal motions whose position is divided out.
+    agents : int
+        n; each has N/n coordinates.
+
+    Examples
+    --------
+    One agent, c1γ = 2 and c2γ = 3, has the roots −1 and −2:
+
+    >>> alone = GainProblem(np.zeros((1, 1)), np.zeros((1, 1)), np.zeros((1, 0)), 1)
+    >>> round(alone.abscissa(np.array([2.0, 3.0])), 12)
+    -1.0
+    """
+
+    stiffness: FloatArray
+    damping: FloatArray
+    apart: FloatArray
+    agents: int
+
+    def matrix(self, gains: FloatArray) -> FloatArray:
+        """The state matrix for gains (c1γ_1 … c1γ_n, c2γ_1 … c2γ_n), without what is set apart.
+
+        Parameters
+        ----------
+        gains : ndarray, shape (2 n,)
+            Gains.
+        """
+        each = len(self.stiffness) // self.agents
+        pull, drag = np.repeat(gains, each).reshape(2, -1)
+        kept = complement(self.apart)
+        top = np.hstack([np.zeros((kept.shape[1],) * 2), kept.T])
+        return np.vstack([top, np.hstack([-(self.stiffness + np.diag(pull)) @ kept, -self.damping - np.diag(drag)])])
+
+    def eigenvalues(self, gains: FloatArray) -> ComplexArray:
+        """Eigenvalues of `matrix`, largest real part first.
+
+        Parameters
+        ----------
+        gains : ndarray, shape (2 n,)
+            Gains.
+        """
+        values: ComplexArray = np.linalg.eigvals(self.matrix(gains)).astype(np.complex128)
+        return values[np.lexsort((values.imag, -values.real))]
+
+    def abscissa(self, gains: FloatArray) -> float:
+        """Largest real part: minus the decay rate of the slowest mode.
+
+        Parameters
+        ----------
+        gains : ndarray, shape (2 n,)
+            Gains.
+        """
+        return float(np.linalg.eigvals(self.matrix(gains)).real.max())
+
+    def slopes(self, gains: FloatArray) -> tuple[ComplexArray, FloatArray]:
+        """(eigenvalues, derivatives of their real parts in the gains), shapes (M,) and (M, 2 n).
+
+        dλ = y* dA x/(y* x) with left and right eigenvectors y, x; meaningless where eigenvalues coalesce.
+
+        Parameters
+        ----------
+        gains : ndarray, shape (2 n,)
+            Gains.
+        """
+        from scipy.linalg import eig
+
+        values, left, right = eig(self.matrix(gains), left=True, right=True)  # type: ignore[misc]
+        kept, size = complement(self.apart), len(self.stiffness)
+        force = left[-size:].conj()
+        scale = np.einsum("ij,ij->j", left.conj(), right)
+        scale = np.where(np.abs(scale) > 1e-14, scale, 1e-14)
+        moved = np.vstack([kept @ right[: kept.shape[1]], right[-size:]]).reshape(2, self.agents, -1, values.size)
+        slope = -np.einsum("aim,gaim->gam", force.reshape(self.agents, -1, values.size), moved)
+        return values, (slope.reshape(2 * self.agents, -1) / scale).real.T
+
+
+@dataclass(frozen=True)
+class GainDesign:
+    """The best gains found, alike and per agent, with the eigenvalues that certify them.
+
+    Parameters
+    ----------
+    problem : GainProblem
+        What was minimised.
+    homogeneous, heterogeneous : ndarray, shape (2 n,)
+        Gains (c1γ of each agent, then c2γ).
+    rate_homogeneous, rate_heterogeneous : float
+        Decay rates of the slowest mode, per time unit.
+    eigenvalues_homogeneous, eigenvalues_heterogeneous : complex ndarray
+        Spectra, largest real part first.
+    starts : int
+        Searches for the second.
+    """
+
+    problem: GainProblem
+    homogeneous: FloatArray
+    heterogeneous: FloatArray
+    rate_homogeneous: float
+    rate_heterogeneous: float
+    eigenvalues_homogeneous: ComplexArray
+    eigenvalues_heterogeneous: ComplexArray
+    starts: int
+
+    @property
+    def ratio(self) -> float:
+        """How much faster the heterogeneous flock is; a lower bound, as the search need not be global."""
+        return self.rate_heterogeneous / self.rate_homogeneous
+
+    def gains(self, base: Gains, *, heterogeneous: bool = True) -> Gains:
+        """`base` with the designed c1γ and c2γ.
+
+        Parameters
+        ----------
+        base : Gains
+            The other gains.
+        heterogeneous : bool
+            One per agent, or one for all.
+        """
+        from dataclasses import replace
+
+        found = self.heterogeneous if heterogeneous else self.homogeneous
+        pull, drag = found.reshape(2, -1)
+        if heterogeneous:
+            return replace(base, c1_gamma=pull, c2_gamma=drag)
+        return replace(base, c1_gamma=float(pull[0]), c2_gamma=float(drag[0]))
+
+
+def gain_problem(
+    q: Any, *, alpha: AlphaInteraction, gains: Gains, form: str = "full", rotation: str = "apart"
+) -> GainProblem:
+    """The design problem at a configuration.
+
+    Parameters
+    ----------
+    q : array_like, shape (n, m)
+        A quasi-lattice.
+    alpha : AlphaInteraction
+        The pair law.
+    gains : Gains
+        c1α and c2α are used.
+    form : {"full", "simplified"}
+        With c1α ∇²V or without. Without it coordinates decouple into m copies of one problem of n, and nothing knows
+        of rotations.
+    rotation : {"apart", "counted"}
+        Whether the rotation about the centre is divided out; no matter in the simplified form.
+
+    Raises
+    ------
+    UnknownNameError
+        On another form or rotation.
+
+    Examples
+    --------
+    >>> problem = gain_problem([[0.0, 0.0], [7.0, 0.0]], alpha=AlphaInteraction(), gains=Gains(), form="simplified")
+    >>> problem.damping.shape, problem.apart.shape
+    ((2, 2), (2, 0))
+    """
+    q = ensure_points("q", q)
+    n, m = q.shape
+    for name, value, known in (("form", form, FORMS), ("rotation", rotation, ROTATIONS)):
+        if value not in known:
+            raise UnknownNameError(name, value, known)
+    damping = gains.c2_alpha * alpha.laplacian(q).toarray()
+    if form == "simplified":
+        return GainProblem(np.zeros((n, n)), damping[::m, ::m], np.zeros((n, 0)), n)
+    rigid = rigid_motions(q)
+    translations = np.tile(np.eye(m), (n, 1)) / sqrt(n)
+    inside = rigid - translations @ (translations.T @ rigid)
+    basis, sizes, _ = np.linalg.svd(inside, full_matrices=False)
+    turns = basis[:, sizes > 0.5] if rotation == "apart" else np.zeros((q.size, 0))
+    return GainProblem(gains.c1_alpha * alpha.hessian(q).toarray(), damping, turns, n)
+
+
+def design_gains(
+    problem: GainProblem, *, bounds: tuple[float, float] = (0.0, 5.0), starts: int = 6, polish: int = 0, seed: int = 0
+) -> GainDesign:
+    """Minimise the spectral abscissa over gains within bounds, alike for all agents and one per agent.
+
+    Alike, the two gains are searched on a grid and by Nelder and Mead's method. Per agent, sequential linear programs
+    minimise the largest of the linearised real parts within a trust region, from the homogeneous optimum, near it and
+    from random starts; the abscissa is not smooth where eigenvalues coalesce, which `polish` generations of CMA-ES may
+    get over. What is found is a local minimum, the best of its starts.
+
+    Parameters
+    ----------
+    problem : GainProblem
+        From `gain_problem`.
+    bounds : (float, float)
+        Least and greatest gain, for c1γ and c2γ alike.
+    starts : int
+        Random starts, half of them near the homogeneous optimum.
+    polish : int
+        Generations of CMA-ES.
+    seed : int
+        Of the starts and of CMA-ES.
+
+    Raises
+    ------
+    ArgumentError
+        On bounds that are no interval of gains >= 0.
+
+    Examples
+    --------
+    A lone agent is best damped critically: √5 with c1γ <= 5.
+
+    >>> alone = GainProblem(np.zeros((1, 1)), np.zeros((1, 1)), np.zeros((1, 0)), 1)
+    >>> found = design_gains(alone, starts=1)
+    >>> round(found.rate_homogeneous**2, 3), found.homogeneous.round(2).tolist()
+    (5.0, [5.0, 4.47])
+    """
+    low, high = _bounds(bounds)
+    n, rng = problem.agents, np.random.default_rng(seed)
+    alike = _homogeneous(problem, low, high)
+    trials = [alike]
+    for k in range(ensure_count("starts", starts)):
+        near = alike + 0.1 * (high - low) * rng.standard_normal(2 * n)
+        trials.append(np.clip(near, low, high) if k % 2 == 0 else rng.uniform(low, high, 2 * n))
+    found = [_descend(problem, start, low, high) for start in trials]
+    best = min([alike, *found], key=problem.abscissa)
+    if polish:
+        best = min([best, _evolve(problem, best, low, high, polish, seed)], key=problem.abscissa)
+    spectra = problem.eigenvalues(alike), problem.eigenvalues(best)
+    rates = [-float(values[0].real) for values in spectra]
+    return GainDesign(problem, alike, best, rates[0], rates[1], spectra[0], spectra[1], starts)
+
+
+def _bounds(bounds: Any) -> tuple[float, float]:
+    try:
+        low, high = (ensure_nonnegative("bounds", x) for x in bounds)
+    except TypeError:
+        raise ArgumentError(f"bounds = {bounds!r}: expected (least, greatest) gain") from None
+    if not low < high:
+        raise ArgumentError(f"bounds = ({low:g}, {high:g}): expected least < greatest")
+    return low, high
+
+
+def _homogeneous(problem: GainProblem, low: float, high: float) -> FloatArray:
+    """The best pair of gains: grid, then a simplex search that folds back at the bounds."""
+    from scipy.optimize import minimize
+
+    def spread(pair: Any) -> FloatArray:
+        return np.repeat(np.clip(pair, low, high), problem.agents)
+
+    axis = np.linspace(low, high, _GRID)
+    grid = sorted((problem.abscissa(spread((a, b))), a, b) for a in axis.tolist() for b in axis.tolist())[:2]
+    best = spread(grid[0][1:])
+    for _, a, b in grid:
+        simplex = np.array([[a, b], [a - 0.2 * (high - low) / _GRID, b], [a, b + 0.4 * (high - low) / _GRID]])
+        options: Any = {"initial_simplex": np.clip(simplex, low, high), "xatol": 1e-8, "fatol": 1e-10, "maxfev": 200}
+        box = [(low, high)] * 2
+        found = minimize(_folded(problem, spread), np.array([a, b]), method="Nelder-Mead", bounds=box, options=options)
+        best = min(best, spread(found.x), key=problem.abscissa)
+    return best
+
+
+def _folded(problem: GainProblem, spread: Callable[[Any], FloatArray]) -> Callable[[Any], float]:
+    return lambda pair: problem.abscissa(spread(pair))
+
+
+def _descend(problem: GainProblem, gains: FloatArray, low: float, high: float) -> FloatArray:
+    """Sequential linear programming: min t such that each linearised real part is at most t, in a trust region."""
+    from scipy.optimize import linprog
+
+    radius, value = 0.2 * (high - low), problem.abscissa(gains)
+    values, slopes = problem.slopes(gains)
+    cost = np.append(np.zeros(gains.size), 1.0)
+    for _ in range(_ROUNDS):
+        active = np.argsort(-values.real)[:_ACTIVE]
+        active = active[values.imag[active] >= 0.0]
+        rows = np.column_stack([slopes[active], -np.ones(active.size)])
+        box = np.column_stack([np.maximum(low, gains - radius), np.minimum(high, gains + radius)])
+        plan = linprog(cost, rows, slopes[active] @ gains - values.real[active], bounds=[*box.tolist(), (None, None)])
+        promised = value - float(plan.x[-1]) if plan.x is not None else 0.0
+        if plan.x is None or promised <= 1e-10:
+            break
+        trial = np.clip(plan.x[:-1], low, high)
+        reached = problem.abscissa(trial)
+        if reached < value - 0.1 * promised:
+            gains, value, radius = trial, reached, 1.5 * radius
+            values, slopes = problem.slopes(gains)
+        else:
+            radius *= 0.4
+        if radius < _SMALLEST:
+            break
+    return gains
+
+
+def _evolve(
+    problem: GainProblem, gains: FloatArray, low: float, high: float, generations: int, seed: int
+) -> FloatArray:
+    """CMA-ES about a point where slopes mislead."""
+    from cmaes import SepCMA
+
+    box = np.tile([low, high], (gains.size, 1))
+    search = SepCMA(mean=gains.copy(), sigma=0.02 * (high - low), bounds=box, seed=seed)
+    best, least = gains, problem.abscissa(gains)
+    for _ in range(generations):
+        tried = [search.ask() for _ in range(search.population_size)]
+        rated = [(x, problem.abscissa(x)) for x in tried]
+        search.tell(rated)
+        x, value = min(rated, key=lambda pair: pair[1])
+        if value < least:
+            best, least = x, value
+    return best

@@ -1,0 +1,369 @@
+"""Linearised dynamics of a flock near an equilibrium: matrices, eigenvalues, modes, python-control systems."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from math import sqrt
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.checks import FloatArray, ensure_finite_scalar, ensure_fits, ensure_points, ensure_positive, ensure_state
+from flockana.errors import ArgumentError
+from flockana.interactions import PairInteraction
+from flockana.lattice.crossings import ensure_links
+from flockana.laws.law import DiscreteLaw, Law
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2, moving_frame
+from flockana.nets import LinkArray
+from flockana.nets import links as links_within
+from flockana.stability.modes import ZERO, Mode, SecondOrder
+
+if TYPE_CHECKING:
+    import control
+    from scipy.sparse import csr_array
+
+RESIDUAL = 1e-9  # of the force scale: what counts as an equilibrium, as in `flockana.equilibria`
+_LATER = 0.7310585786  # time units after which a steady motion must still have the same Jacobian
+_STEADY = 1e-9  # relative
+
+
+@dataclass(frozen=True, eq=False)
+class Linearisation:
+    """δq'' + D δq' + K δq = 0 near an equilibrium, in the frame that moves with it.
+
+    Parameters
+    ----------
+    law : Law
+        The law.
+    q, p : ndarray, shape (n, m)
+        Where it is linearised; every agent has the velocity of the frame.
+    t : float
+        When.
+    residual : float
+        How far the state is from an equilibrium, relative to the law's forces.
+    links : int array, shape (M, 2)
+        Links, whose lengths are outputs of `state_space`.
+    A_sparse : scipy.sparse.csr_array, shape (2nm, 2nm)
+        A of d(δq, δp)/dt = A (δq, δp), in the order ``(q.ravel(), p.ravel())``.
+    zero : float
+        What counts as a zero mode: a motion that K multiplies by less than this, relative to its largest row sum.
+
+    Examples
+    --------
+    Two agents at their distance: a spring and a damper between them, and a plane to move in.
+
+    >>> pair = linearise(Algorithm1(), [[0.0, 0.0], [7.0, 0.0]])
+    >>> [mode.name for mode in pair.zero_modes], pair.drifting
+    (['translation x', 'translation y', 'rotation'], ('translation x', 'translation y'))
+    >>> [(mode.name, round(mode.decay_rate, 4)) for mode in pair.modes]
+    [('breathing', 1.9637), ('rotation', 3.9275)]
+    """
+
+    law: Law
+    q: FloatArray = field(repr=False)
+    p: FloatArray = field(repr=False)
+    t: float
+    residual: float
+    links: LinkArray = field(repr=False)
+    A_sparse: csr_array = field(repr=False)
+    zero: float
+
+    @cached_property
+    def A(self) -> FloatArray:  # noqa: N802  # what control engineers call it
+        """The matrix as a dense array; refused where it would not fit in memory."""
+        ensure_fits("A", self.A_sparse.shape, "use A_sparse and slowest_modes(...)")
+        dense: FloatArray = self.A_sparse.toarray()
+        return dense
+
+    @property
+    def stiffness(self) -> csr_array:
+        """K = −∂u/∂q, sparse."""
+        size = self.q.size
+        return -self.A_sparse[size:, :size]
+
+    @property
+    def damping(self) -> csr_array:
+        """D = −∂u/∂p, sparse."""
+        size = self.q.size
+        return -self.A_sparse[size:, size:]
+
+    @cached_property
+    def second_order(self) -> SecondOrder:
+        """The quadratic eigenproblem (λ² + λ D + K) v = 0."""
+        return SecondOrder(self.q, self.stiffness, self.damping, zero=self.zero)
+
+    @property
+    def _dense(self) -> SecondOrder:
+        ensure_fits("A", self.A_sparse.shape, "use A_sparse and slowest_modes(...)")
+        return self.second_order
+
+    @property
+    def eigenvalues(self) -> npt.NDArray[np.complex128]:
+        """All 2nm eigenvalues of A, the largest real part first; zero modes come out as exact zeros."""
+        return self._dense.eigenvalues
+
+    @property
+    def zero_modes(self) -> tuple[Mode, ...]:
+        """Motions that cost nothing, K v = 0: translations, rotations, then soft ones (hinges, loose parts)."""
+        return self._dense.invariant.zero
+
+    @property
+    def drifting(self) -> tuple[str, ...]:
+        """Names of the zero modes along which a velocity persists: no force, no damping, a Jordan block."""
+        return self._dense.invariant.drifting
+
+    @property
+    def semisimple(self) -> bool:
+        """Whether the zero modes have no Jordan block: every perturbation then stays bounded along them."""
+        return self._dense.invariant.chains == 0
+
+    @property
+    def modes(self) -> tuple[Mode, ...]:
+        """All other modes, slowest first; one for each real eigenvalue or conjugate pair."""
+        return self._dense.modes
+
+    @property
+    def decay_rate(self) -> float:
+        """Slowest decay rate off the zero modes, per time unit; negative if something grows, NaN without modes."""
+        return self.modes[0].decay_rate if self.modes else float("nan")
+
+    @property
+    def structural_decay_rate(self) -> float:
+        """`decay_rate` of the shape alone, the centre of mass left out; raises where they do not separate."""
+        self.ensure_split()
+        centre = {id(mode) for mode in self._dense.invariant.translational}
+        return next((mode.decay_rate for mode in self.modes if id(mode) not in centre), float("nan"))
+
+    @property
+    def spectral_abscissa(self) -> float:
+        """Largest real part of the eigenvalues off the zero modes: minus `decay_rate`."""
+        return -self.decay_rate
+
+    def limit(self, dq: Any, dp: Any) -> FloatArray:
+        """Where a small perturbation ends: its displacement along the manifold of equilibria, to first order.
+
+        The zero modes keep what their left eigenvectors measure, w·(D δq + δp); all else decays if `decay_rate` > 0.
+        Under Algorithms 1 and 2 the manifold is the orbit of the equilibrium under its symmetries.
+
+        Parameters
+        ----------
+        dq, dp : array_like, shape (n, m)
+            Perturbation of positions and velocities.
+
+        Returns
+        -------
+        ndarray, shape (n, m)
+
+        Raises
+        ------
+        ArgumentError
+            If a zero mode drifts, so that there is no limit, or on bad arrays.
+        """
+        dq, dp = ensure_state(dq, dp)
+        if dq.shape != self.q.shape:
+            raise ArgumentError(f"dq has shape {dq.shape}: expected {self.q.shape}, that of the equilibrium")
+        if not self.semisimple:
+            raise ArgumentError(
+                f"zero modes drift ({', '.join(self.drifting) or 'combined'}): there is no limit in this frame; "
+                "take the mean off dq and dp and look at `structural`"
+            )
+        zero = self._dense.invariant
+        kept = zero.cokernel.T @ (self.damping @ dq.ravel() + dp.ravel())  # constant in time
+        return (zero.kernel @ np.linalg.solve(zero.cokernel.T @ (self.damping @ zero.kernel), kept)).reshape(dq.shape)
+
+    def ensure_split(self) -> None:
+        """Raise unless the centre of mass and the shape move independently of each other, to first order.
+
+        Raises
+        ------
+        ArgumentError
+            With the leak from the one to the other.
+        """
+        found = self.second_order.split
+        if not found.exact:
+            raise ArgumentError(
+                f"{type(self.law).__name__} does not split into shape and centre of mass here: {found.leak:.2g} of a "
+                "translation goes into the shape or back (relative to the largest entry of K and D). Expected forces "
+                "between agents that cancel, and one linear pull on all: no σ₁, no obstacles, no gains that differ; "
+                "use modes and state_space"
+            )
+
+    @cached_property
+    def state_space(self) -> control.StateSpace:
+        """Python-control system of all agents.
+
+        States q0_x, …, p0_x, …; inputs f0_x, … (a disturbance force on each agent) and qr_x, …, pr_x, … (the
+        γ-agent, if there is one); outputs qc_x, … (centre of mass), x0_x, … (deviations from it), l0_1, … (lengths of
+        links), all as differences from the equilibrium.
+        """
+        from flockana.stability.signals import whole_system
+
+        return whole_system(self)
+
+    @cached_property
+    def structural(self) -> control.StateSpace:
+        """Python-control system of the shape; raises where the split is not exact.
+
+        States x0_x, …, v0_x, … of all agents but the last, which is minus their sum; inputs f0_x, …; outputs x0_x, … of
+        all agents, l0_1, ….
+        """
+        from flockana.stability.signals import structural_system
+
+        return structural_system(self)
+
+    @cached_property
+    def translational(self) -> control.StateSpace:
+        """Python-control system of the centre; raises where the split is not exact.
+
+        States qc_x, …, pc_x, …; inputs f0_x, …, qr_x, …, pr_x, …; outputs qc_x, ….
+        """
+        from flockana.stability.signals import translational_system
+
+        return translational_system(self)
+
+
+def linearise(
+    law: Any,
+    equilibrium: Any,
+    p: Any = None,
+    *,
+    t: float = 0.0,
+    links: Any = None,
+    force_tolerance: float = RESIDUAL,
+    allow_residual: bool = False,
+    zero: float = ZERO,
+) -> Linearisation:
+    """Linearise a law about an equilibrium, in the frame that moves with it.
+
+    Under Algorithms 1 and 2 (with one gain for all) that is the frame of the centre of mass: it is exact for every
+    motion of the γ-agent, for the Jacobian depends on differences of positions alone, and the centre obeys the same
+    linear equation wherever it is. Then only the shape must be at equilibrium. Under any other law all agents must keep
+    one constant velocity with no force on them, along which the Jacobian must not change.
+
+    Parameters
+    ----------
+    law : Law
+        A continuous law with `jacobian`: Algorithms 1, 2, 3, or any other.
+    equilibrium : Equilibrium or array_like, shape (n, m)
+        From `find_equilibrium`, or positions.
+    p : array_like, shape (n, m), optional
+        Velocities; by default those of the γ-agent, else zero.
+    t : float
+        When, for a law that depends on time.
+    links : array_like, shape (M, 2), optional
+        Links whose lengths are outputs; by default those of the equilibrium, or pairs within the law's range.
+    force_tolerance : float
+        Largest residual. It is the largest force on an agent over c1α b/√ε (of another law: over the largest entry of
+        ∂u/∂q times the size of the flock), or the largest relative velocity over that force times d (or size), square
+        root taken, whichever is larger.
+    allow_residual : bool
+        Linearise about a state that is no equilibrium as if it stood still.
+    zero : float
+        See `Linearisation`.
+
+    Returns
+    -------
+    Linearisation
+
+    Raises
+    ------
+    ArgumentError
+        If the state is no equilibrium, the law has no Jacobian there, or an argument is bad.
+
+    Examples
+    --------
+    >>> from flockana.environment.targets import StaticTarget
+    >>> law = Algorithm2(target=StaticTarget((0.0,)))
+    >>> one = linearise(law, [[0.0]])
+    >>> [round(value.real, 6) for value in one.eigenvalues.tolist()] == [-1.048809, -1.048809]
+    True
+    """
+    if isinstance(law, DiscreteLaw) or not isinstance(law, Law):
+        raise ArgumentError(f"law = {law!r}: expected a continuous law, such as Algorithm2(...); a map has no q'' = u")
+    q = ensure_points("equilibrium", getattr(equilibrium, "q", equilibrium))
+    law.check_dimension(q.shape[1])
+    t = ensure_finite_scalar("t", t)
+    target = getattr(law, "target", None)
+    if p is None:
+        p = np.zeros_like(q) if target is None else np.tile(target.rate(t), (len(q), 1))
+    q, p = ensure_state(q, p)
+    tolerance, zero = ensure_positive("force_tolerance", force_tolerance), ensure_positive("zero", zero)
+    matrix = _finite_jacobian(law, t, q, p)
+    residual = _residual(law, t, q, p, matrix)
+    if not residual <= tolerance and not allow_residual:
+        raise ArgumentError(
+            f"the state is no equilibrium of {type(law).__name__}: its residual is {residual:.3g}, expected at most "
+            f"{tolerance:g}; start from find_equilibrium(...), or ask for allow_residual=True"
+        )
+    if not allow_residual:
+        _ensure_steady(law, t, q, p, matrix)
+    if links is None:
+        links = getattr(equilibrium, "links", None)
+    found = _default_links(law, q) if links is None else ensure_links(links, len(q))
+    q, p = q.copy(), p.copy()
+    for array in (q, p):
+        array.setflags(write=False)
+    return Linearisation(law, q, p, t, residual, found, matrix, zero)
+
+
+def _finite_jacobian(law: Law, t: float, q: FloatArray, p: FloatArray) -> csr_array:
+    matrix = law.jacobian(t, q, p, sparse=True)
+    if np.isfinite(matrix.data).all():
+        return matrix  # type: ignore[return-value]  # sparse was asked for
+    from scipy.spatial import cKDTree
+
+    why = ""
+    if len(q) > 1:
+        found: Any = cKDTree(q).query(q, k=2)
+        distance, other = found
+        i = int(np.argmin(distance[:, 1]))
+        j = other[i, 1] if other[i, 1] != i else other[i, 0]  # of coincident agents either may come first
+        why = f", where agents {min(i, j)} and {max(i, j)} are {distance[i, 1]:.3g} apart"
+    raise ArgumentError(
+        f"{type(law).__name__} has no Jacobian at this state{why}: expected distinct agents, "
+        "none at the centre of an obstacle"
+    )
+
+
+def _moves_with_centre(law: Law) -> bool:
+    """Whether the shape is autonomous and the centre linear: Algorithm 1, and 2 with one gain for all."""
+    return isinstance(law, Algorithm1) or (isinstance(law, Algorithm2) and not law.gains.per_agent)
+
+
+def _residual(law: Law, t: float, q: FloatArray, p: FloatArray, matrix: csr_array) -> float:
+    """Largest force and relative velocity, over the law's own scales."""
+    force = law.flow(t, q, p)[0]
+    if _moves_with_centre(law):
+        force = moving_frame(force)
+    alpha, gains = getattr(law, "alpha", None), getattr(law, "gains", None)
+    if alpha is not None and gains is not None:
+        scale, length = gains.c1_alpha * alpha.b / sqrt(alpha.eps), alpha.d
+    else:
+        length = float(np.linalg.norm(q - q.mean(axis=0), axis=1).max()) or 1.0
+        scale = float(abs(matrix[q.size :, : q.size]).max()) * length
+    scale = scale or 1.0
+    strongest, fastest = (float(np.linalg.norm(x, axis=1).max()) for x in (force, moving_frame(p)))
+    return max(strongest / scale, fastest / sqrt(scale * length))
+
+
+def _ensure_steady(law: Law, t: float, q: FloatArray, p: FloatArray, matrix: csr_array) -> None:
+    """Raise if the Jacobian changes along the steady motion: the linear system would depend on time."""
+    if _moves_with_centre(law):
+        return
+    change = abs(law.jacobian(t + _LATER, q + _LATER * p, p, sparse=True) - matrix).max()
+    if change > _STEADY * abs(matrix).max():
+        raise ArgumentError(
+            f"the Jacobian of {type(law).__name__} changes along the motion of this state (by {change:.3g} in "
+            f"{_LATER:.2f} time units): expected a γ-agent that rests or moves steadily, no obstacles where it moves; "
+            "allow_residual=True linearises at the instant"
+        )
+
+
+def _default_links(law: Law, q: FloatArray) -> LinkArray:
+    """Pairs within the range of the law's pair interaction, if it has one."""
+    pair = next((value for value in vars(law).values() if isinstance(value, PairInteraction)), None)
+    if pair is None or not np.isfinite(pair.range):
+        return np.zeros((0, 2), dtype=np.int32)
+    return links_within(q, pair.range)

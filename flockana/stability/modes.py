@@ -1,0 +1,382 @@
+"""Modes of δq'' + D δq' + K δq = 0: a shape, how fast it decays, how fast it swings; zero modes set apart.
+
+The motions that cost nothing span an invariant subspace that is known beforehand, and so does the centre of mass where
+it moves by itself. Both are taken out exactly, by the left eigenvectors, before any eigenvalue is computed: a zero
+comes out as 0, and a double one does not smear over ±√(rounding).
+"""
+
+from __future__ import annotations
+
+from cmath import sqrt
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.checks import FloatArray
+from flockana.errors import SolverError
+from flockana.terminal import rigid_motions
+
+ZERO = 1e-8  # of the largest row sum: what K does to a motion that costs nothing
+_SPLIT = 1e-10  # relative: how much of the centre's motion may leak into the shape where the split is called exact
+_PURE = 0.99  # cosine to a rotation or a uniform expansion from which on a mode is named for it
+_NAMED = 1e-6  # how far a rigid motion may be from the kernel that it is found in
+
+
+@dataclass(frozen=True)
+class Mode:
+    """One way in which a flock near equilibrium moves: Re(shape · exp(eigenvalue t)).
+
+    Parameters
+    ----------
+    eigenvalue : complex
+        λ, per time unit; of a conjugate pair the one with Im λ >= 0.
+    shape : ndarray, shape (n, m)
+        Displacements of the agents, of unit length together; complex where agents pass their extremes at different
+        times, and then turned so that the real part is as large as can be.
+    name : str
+        "translation x", "rotation", "breathing" where the shape is that, else a number: 1 is the slowest.
+
+    Examples
+    --------
+    >>> swing = Mode(-0.3 + 0.4j, np.ones((1, 1)), "1")
+    >>> swing.decay_rate, swing.frequency, swing.natural_frequency, swing.damping_ratio
+    (0.3, 0.4, 0.5, 0.6)
+    """
+
+    eigenvalue: complex
+    shape: npt.NDArray[Any]
+    name: str
+
+    @property
+    def decay_rate(self) -> float:
+        """−Re λ, per time unit; negative if the mode grows."""
+        return -self.eigenvalue.real
+
+    @property
+    def frequency(self) -> float:
+        """Im λ, in radians per time unit: of the damped swing; 0 without one."""
+        return abs(self.eigenvalue.imag)
+
+    @property
+    def natural_frequency(self) -> float:
+        """|λ|, in radians per time unit."""
+        return abs(self.eigenvalue)
+
+    @property
+    def damping_ratio(self) -> float:
+        """−Re λ/|λ|: 1 of a mode that creeps back without a swing; NaN of a zero mode."""
+        return self.decay_rate / abs(self.eigenvalue) if self.eigenvalue else float("nan")
+
+
+class Split(NamedTuple):
+    """What the centre of mass feels if it moves by itself, by axis, and how far it is from doing so."""
+
+    stiffness: FloatArray
+    damping: FloatArray
+    leak: float
+
+    @property
+    def exact(self) -> bool:
+        """Whether the linear dynamics of centre and shape do not touch each other."""
+        return self.leak <= _SPLIT
+
+
+def translations(n: int, m: int) -> FloatArray:
+    """Unit translations along the axes, one per column, shape (n m, m).
+
+    Parameters
+    ----------
+    n, m : int
+        Number of agents, dimension.
+
+    Examples
+    --------
+    >>> translations(4, 1).ravel().tolist()
+    [0.5, 0.5, 0.5, 0.5]
+    """
+    unit: FloatArray = np.tile(np.eye(m), (n, 1)) / np.sqrt(n)
+    return unit
+
+
+def split(stiffness: Any, damping: Any, m: int) -> Split:
+    """Look for the split into centre of mass and shape: K and D map translations to translations, and Kᵀ, Dᵀ do.
+
+    Parameters
+    ----------
+    stiffness, damping : sparse array, shape (n m, n m)
+        K and D.
+    m : int
+        Dimension.
+
+    Examples
+    --------
+    >>> split(np.diag([2.0, 2.0]), np.zeros((2, 2)), 1).exact, split(np.diag([2.0, 1.0]), np.zeros((2, 2)), 1).exact
+    (True, False)
+    """
+    unit = translations(stiffness.shape[0] // m, m)
+    own, leak = [], 0.0
+    for matrix in (stiffness, damping):
+        size = float(abs(matrix).max()) or 1.0
+        block = unit.T @ (matrix @ unit)
+        diagonal = np.diag(block)
+        for image in (matrix @ unit, matrix.T @ unit):
+            leak = max(leak, float(np.abs(image - unit * diagonal).max()) / size)
+        own.append(diagonal)
+    return Split(own[0], own[1], leak)
+
+
+class Invariant(NamedTuple):
+    """What is set apart: modes, and the invariant subspace that they span, right and left (2nm, r).
+
+    `chains` counts the zero modes along which a velocity persists (Jordan blocks), `drifting` names those that are
+    a zero mode of their own.
+    """
+
+    zero: tuple[Mode, ...]
+    translational: tuple[Mode, ...]
+    eigenvalues: npt.NDArray[np.complex128]
+    right: FloatArray
+    left: FloatArray
+    kernel: FloatArray
+    cokernel: FloatArray
+    chains: int
+    drifting: tuple[str, ...]
+
+
+class SecondOrder:
+    """The quadratic eigenproblem (λ² + λ D + K) v = 0 at a configuration.
+
+    Parameters
+    ----------
+    q : ndarray, shape (n, m)
+        Positions.
+    stiffness, damping : sparse array, shape (n m, n m)
+        K and D, symmetric or not.
+    zero : float
+        What counts as zero, relative to the largest row sum of K (of D, for damping).
+
+    Examples
+    --------
+    >>> from scipy.sparse import csr_array
+    >>> spring = csr_array(np.array([[1.0, -1.0], [-1.0, 1.0]]))
+    >>> modes = SecondOrder(np.array([[0.0], [1.0]]), spring, 1.5 * spring).modes  # λ² + 3λ + 2 = 0
+    >>> [(mode.name, round(mode.decay_rate, 9)) for mode in modes]
+    [('breathing', 1.0), ('breathing', 2.0)]
+    """
+
+    def __init__(self, q: FloatArray, stiffness: Any, damping: Any, *, zero: float = ZERO) -> None:
+        self.q, self.stiffness, self.damping, self.zero = q, stiffness, damping, zero
+        self.scale = float(abs(stiffness).sum(axis=1).max()) or 1.0
+        self.damping_scale = float(abs(damping).sum(axis=1).max()) or 1.0
+
+    @cached_property
+    def split(self) -> Split:
+        """The split into centre of mass and shape, or how far it is from one."""
+        return split(self.stiffness, self.damping, self.q.shape[1])
+
+    @cached_property
+    def invariant(self) -> Invariant:
+        """What is set apart, by the whole kernel of K (dense)."""
+        stiffness = self.stiffness.toarray()
+        if self.split.exact:
+            unit = translations(*self.q.shape)
+            away = self.scale - self.split.stiffness  # translations are dealt with by themselves
+            stiffness = stiffness + unit * away @ unit.T
+        left, sizes, right = np.linalg.svd(stiffness)
+        flat = sizes <= self.zero * self.scale
+        return self._set_apart(right[flat].T, left[:, flat])
+
+    @cached_property
+    def rigid_invariant(self) -> Invariant:
+        """What is set apart if no motions but rigid ones cost nothing (sparse)."""
+        rigid = rigid_motions(self.q)
+        if self.split.exact:
+            unit = translations(*self.q.shape)
+            rest, sizes, _ = np.linalg.svd(rigid - unit @ (unit.T @ rigid), full_matrices=False)
+            rigid = rest[:, sizes > 0.5]
+        kernels = []
+        for matrix in (self.stiffness, self.stiffness.T):
+            _, sizes, rows = np.linalg.svd(matrix @ rigid, full_matrices=False)
+            kernels.append(rigid @ rows[sizes <= self.zero * self.scale].T)
+        if kernels[0].shape != kernels[1].shape:
+            raise SolverError("a rigid motion costs nothing but is no left eigenvector of K: use the dense modes")
+        return self._set_apart(*kernels)
+
+    @cached_property
+    def modes(self) -> tuple[Mode, ...]:
+        """All modes off the zero modes, slowest first, one for each real eigenvalue or conjugate pair (dense)."""
+        values, vectors = self._others
+        kept = values.imag >= 0.0
+        return self.named(values[kept], vectors[:, kept], self.invariant.translational)
+
+    @cached_property
+    def eigenvalues(self) -> npt.NDArray[np.complex128]:
+        """All 2nm eigenvalues, the largest real part first; zeros exact."""
+        whole = np.concatenate([self.invariant.eigenvalues, self._others[0]])
+        ordered: npt.NDArray[np.complex128] = whole[np.lexsort((whole.imag, abs(whole.imag), -whole.real))]
+        return ordered
+
+    @cached_property
+    def _others(self) -> tuple[npt.NDArray[np.complex128], npt.NDArray[np.complex128]]:
+        """Eigenvalues and displacements of what is not set apart."""
+        left, size = self.invariant.left, self.q.size
+        rest = np.linalg.qr(left, mode="complete")[0][:, left.shape[1] :]  # A maps it into itself
+        image = np.vstack([rest[size:], -(self.stiffness @ rest[:size]) - self.damping @ rest[size:]])
+        values, vectors = np.linalg.eig(rest.T @ image)
+        return values.astype(np.complex128), (rest[:size] @ vectors).astype(np.complex128)
+
+    def named(self, values: Any, vectors: Any, others: tuple[Mode, ...]) -> tuple[Mode, ...]:
+        """Modes from eigenvalues and columns of displacements, with `others` among them, in order, named.
+
+        Parameters
+        ----------
+        values : complex ndarray, shape (k,)
+            Eigenvalues.
+        vectors : complex ndarray, shape (n m, k)
+            Displacements.
+        others : tuple of Mode
+            Modes that have their names.
+        """
+        fields = _pure_fields(self.q)
+        modes = list(others)
+        for value, vector in zip(values.tolist(), vectors.T, strict=True):
+            shape = _normalised(vector, real=complex(value).imag == 0.0)
+            near = [name for name, field in fields if abs(np.vdot(field, shape)) >= _PURE]
+            modes.append(Mode(complex(value), shape.reshape(self.q.shape), near[0] if near else ""))
+        modes.sort(key=lambda mode: (mode.decay_rate, mode.frequency))
+        return tuple(
+            mode if mode.name else Mode(mode.eigenvalue, mode.shape, str(k)) for k, mode in enumerate(modes, start=1)
+        )
+
+    def _set_apart(self, kernel: FloatArray, cokernel: FloatArray) -> Invariant:
+        """Chains of generalised eigenvectors at 0 from the kernels of K and Kᵀ, and the centre's own motion."""
+        k = kernel.shape[1]
+        names, kernel = _name_kernel(kernel, self.q)
+        drag = cokernel.T @ (self.damping @ kernel)  # a zero mode is semisimple iff D pushes it out of the range of K
+        small = self.zero * self.damping_scale
+        u, sizes, vt = np.linalg.svd(drag) if k else (drag, np.zeros(0), drag)
+        flat = sizes <= small
+        on, off = kernel @ vt[flat].T, cokernel @ u[:, flat]
+        nothing = np.zeros_like
+        right = [np.vstack([kernel, nothing(kernel)]), np.vstack([self._against(on), on])]
+        b = self._against(off, transposed=True)
+        left = [np.vstack([self.damping.T @ cokernel, cokernel]), np.vstack([off + self.damping.T @ b, b])]
+        drifting = [name for name, column in zip(names, drag.T, strict=True) if np.abs(column).max() <= small]
+        zero = [Mode(0j, vector.reshape(self.q.shape), name) for name, vector in zip(names, kernel.T, strict=True)]
+        chains = int(flat.sum())
+        values: list[complex] = [0j] * (k + chains)
+        translational: list[Mode] = []
+        if self.split.exact:
+            unit = translations(*self.q.shape)
+            free = np.abs(self.split.stiffness) <= self.zero * self.scale
+            slow = np.where(free & (np.abs(self.split.damping) <= small), 0.0, self.split.damping)
+            fields = [column.reshape(self.q.shape) for column in unit.T]
+            labels = [f"translation {axis}" for axis in "xyz"[: len(fields)]]
+            for stiff, drag_, name, shape in zip(
+                np.where(free, 0.0, self.split.stiffness).tolist(), slow.tolist(), labels, fields, strict=True
+            ):
+                roots = _roots(stiff, drag_)
+                values += roots
+                translational += [Mode(root, shape, name) for root in roots if root != 0.0 and root.imag >= 0.0]
+            alone = free & (slow == 0.0)
+            chains += int(alone.sum())
+            drifting += [name for name, one in zip(labels, alone, strict=True) if one]
+            zero = [*(Mode(0j, fields[c], labels[c]) for c in np.flatnonzero(free)), *zero]
+            kernel, cokernel = (np.hstack([unit[:, free], part]) for part in (kernel, cokernel))
+            blank = np.zeros_like(unit)
+            both = [np.vstack([unit, blank]), np.vstack([blank, unit])]
+            right, left = [*right, *both], [*left, *both]
+        return Invariant(
+            tuple(zero),
+            tuple(translational),
+            np.array(values, dtype=np.complex128),
+            np.hstack(right),
+            np.hstack(left),
+            kernel,
+            cokernel,
+            chains,
+            tuple(sorted(drifting)),
+        )
+
+    def _against(self, motion: FloatArray, *, transposed: bool = False) -> FloatArray:
+        """x with K x = −D motion (Kᵀ x = −Dᵀ motion), which has a solution; 0 where D motion is."""
+        matrix, damping = (self.stiffness.T, self.damping.T) if transposed else (self.stiffness, self.damping)
+        push = damping @ motion
+        if not push.size or np.abs(push).max() <= self.zero * self.damping_scale:
+            return np.zeros_like(motion)
+        found: FloatArray = -np.linalg.lstsq(matrix.toarray(), push, rcond=self.zero)[0]
+        return found
+
+
+def _roots(stiffness: float, damping: float) -> list[complex]:
+    """Both roots of λ² + damping λ + stiffness; one at zero comes first, a double one is exactly double."""
+    if stiffness == 0.0:
+        return [0j, complex(0.0 - damping)]
+    square = damping**2 - 4.0 * stiffness
+    spread = sqrt(0.0 if abs(square) <= 1e-12 * damping**2 else square)
+    far = -0.5 * (damping + spread) if damping >= 0.0 else -0.5 * (damping - spread)
+    return [far, stiffness / far]
+
+
+def _normalised(vector: Any, *, real: bool) -> Any:
+    """Unit length, turned so that the real part is as large as can be; the first large component positive."""
+    vector = vector / np.linalg.norm(vector)
+    vector = vector * np.exp(-0.5j * np.angle(np.sum(vector**2)))
+    size = np.abs(vector.real)
+    if vector.real[np.argmax(size > (1.0 - _NAMED) * size.max())] < 0.0:
+        vector = -vector
+    return vector.real / np.linalg.norm(vector.real) if real else vector
+
+
+def _rotations(q: FloatArray) -> list[tuple[str, FloatArray]]:
+    """Infinitesimal rotations about the centre, by axis, not normalised."""
+    x, m = q - q.mean(axis=0), q.shape[1]
+    turns = []
+    for name, (a, b) in {"rotation x": (1, 2), "rotation y": (2, 0), "rotation z": (0, 1)}.items():
+        if max(a, b) < m:
+            turn = np.zeros_like(x)
+            turn[:, a], turn[:, b] = -x[:, b], x[:, a]
+            turns.append(("rotation" if m == 2 else name, turn.ravel()))
+    return turns
+
+
+def _pure_fields(q: FloatArray) -> list[tuple[str, FloatArray]]:
+    """Unit fields that give a mode its name: uniform expansion, translations, rotations."""
+    fields = [("breathing", (q - q.mean(axis=0)).ravel())]
+    fields += [(f"translation {'xyz'[c]}", column) for c, column in enumerate(translations(*q.shape).T)]
+    fields += _rotations(q)
+    return [(name, field / np.linalg.norm(field)) for name, field in fields if np.linalg.norm(field) > 0.0]
+
+
+def _name_kernel(kernel: FloatArray, q: FloatArray) -> tuple[list[str], FloatArray]:
+    """Names and an orthonormal basis of a kernel: rigid motions first, by axis where they can be told apart."""
+    names: list[str] = []
+    found = np.zeros((q.size, 0))
+    for name, field in _pure_fields(q):
+        if name == "breathing":  # of a flock without neighbours it costs nothing, but it is no rigid motion
+            continue
+        rest = field - found @ (found.T @ field)
+        inside = np.linalg.norm(field - kernel @ (kernel.T @ field)) <= _NAMED
+        if inside and np.linalg.norm(rest) > _NAMED:
+            names, found = [*names, name], np.column_stack([found, rest / np.linalg.norm(rest)])
+    rigid, unit = rigid_motions(q), translations(*q.shape)
+    for fields, kind in ((unit, "translation"), (rigid, "rotation")):  # along no axis, or about the γ-agent
+        left = _off(kernel, found)
+        u, sizes, _ = np.linalg.svd(left.T @ fields, full_matrices=False)
+        mixed = _off(left @ u[:, sizes > 1.0 - _NAMED], found)
+        names, found = [*names, *[kind] * mixed.shape[1]], np.column_stack([found, mixed])
+    soft = _off(kernel, found)
+    names += [f"soft {k}" for k in range(1, soft.shape[1] + 1)]
+    return names, np.column_stack([found, soft])
+
+
+def _off(kernel: FloatArray, found: FloatArray) -> FloatArray:
+    """Orthonormal basis of what a kernel holds beyond `found`, which it contains."""
+    if kernel.shape[1] == 0:
+        return kernel
+    basis, sizes, _ = np.linalg.svd(kernel - found @ (found.T @ kernel), full_matrices=False)
+    rest: FloatArray = basis[:, sizes > 0.5]
+    return rest

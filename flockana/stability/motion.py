@@ -1,0 +1,77 @@
+"""A mode as a motion of the flock, to look at."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+
+from flockana.checks import ensure_count, ensure_positive
+from flockana.errors import ArgumentError
+from flockana.stability.linearise import Linearisation
+from flockana.stability.modes import Mode
+from flockana.trajectory import Trajectory
+
+_SHARE = 0.3  # of the mean distance between agents (a square's side for each): largest displacement
+_CREEP = 4.0  # time constants of a mode that does not swing
+
+
+def mode_motion(
+    linearisation: Linearisation,
+    mode: Mode,
+    *,
+    amplitude: float | None = None,
+    periods: float = 2.0,
+    damped: bool = True,
+    samples: int = 121,
+) -> Trajectory:
+    """The linear motion q + Re(a · shape · exp(λt)) of one mode, in the frame that moves with the equilibrium.
+
+    Parameters
+    ----------
+    linearisation : Linearisation
+        Where the mode is from.
+    mode : Mode
+        Which one; a zero mode is swung to and fro, once per time unit, for it has no time of its own.
+    amplitude : float, optional
+        Largest displacement of an agent at the start; by default a third of a typical distance between agents, more
+        than linear but easy to see.
+    periods : float
+        How many periods; of a mode that does not swing, in units of four time constants.
+    damped : bool
+        Let it decay; without, only the swing is shown.
+    samples : int
+        Number of instants.
+
+    Returns
+    -------
+    Trajectory
+        Its ``u`` is the linear acceleration.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> from flockana.stability.linearise import linearise
+    >>> pair = linearise(Algorithm1(), [[0.0], [7.0]])
+    >>> run = mode_motion(pair, pair.modes[0], amplitude=0.5, samples=5)
+    >>> run.q[0].ravel().round(12).tolist(), len(run.t)
+    ([0.5, 6.5], 5)
+    """
+    q = linearisation.q
+    if np.shape(mode.shape) != q.shape:
+        raise ArgumentError(f"mode.shape is {np.shape(mode.shape)}: expected {q.shape}, a mode of this linearisation")
+    periods, samples = ensure_positive("periods", periods), ensure_count("samples", samples)
+    if amplitude is None:
+        extent = float(np.ptp(q, axis=0).max())
+        amplitude = _SHARE * (extent / max(1.0, len(q) ** (1.0 / q.shape[1]) - 1.0) or 1.0)
+    value = mode.eigenvalue or 2j * pi
+    swings = value.imag != 0.0
+    length = 2.0 * pi / abs(value.imag) if swings else _CREEP / abs(value)
+    if swings and not damped:
+        value = 1j * value.imag
+    t = np.linspace(0.0, periods * length, samples)
+    scale = ensure_positive("amplitude", amplitude) / float(np.linalg.norm(np.real(mode.shape), axis=1).max())
+    wave = scale * np.exp(value * t)[:, None, None] * mode.shape
+    moved = (np.ascontiguousarray(np.real(factor * wave)) for factor in (1.0, value, value**2))
+    dq, dp, du = moved
+    return Trajectory(t, q + dq, dp, du, linearisation.law)

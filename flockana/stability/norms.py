@@ -1,0 +1,250 @@
+"""H₂ and H∞ norms from disturbing forces on the agents to the deviations of the flock."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import inf, sqrt
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flockana.checks import FloatArray, ensure_count, ensure_positive
+from flockana.equilibria.solve import find_equilibrium
+from flockana.errors import SolverError, UnknownNameError
+from flockana.lattice import hexagonal_spiral
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.stability.blocks import Blocks, complement, second_order
+
+if TYPE_CHECKING:
+    from control import StateSpace
+
+OUTPUTS = ("shape", "deviations")
+_ROUNDS = 30
+_IMAGINARY = 1e-9  # of the largest eigenvalue: real parts below that are zero
+
+
+def disturbance_system(flock: Blocks, *, output: str = "shape") -> StateSpace | None:
+    """From a force on each agent to the flock's deviations, a `control.StateSpace`; None where that is unbounded.
+
+    "shape" is the deviation from the nearest displaced and turned copy of the equilibrium, all rigid motions taken
+    out; "deviations" is x_i − x_c, which still holds the turning. Nothing brings the orientation of a free flock back,
+    so a disturbance turns it without bound: the system is integrating, and has no norm.
+
+    Parameters
+    ----------
+    flock : Blocks
+        The linearised flock.
+    output : {"shape", "deviations"}
+        What is put out.
+
+    Examples
+    --------
+    >>> flock = second_order(Algorithm1(), [[0.0, 0.0], [7.0, 0.0]])
+    >>> system = disturbance_system(flock)
+    >>> system.nstates, system.ninputs, system.noutputs
+    (3, 4, 1)
+    >>> disturbance_system(flock, output="deviations") is None
+    True
+    """
+    import control
+
+    if output not in OUTPUTS:
+        raise UnknownNameError("output", output, OUTPUTS)
+    a, b, positions, _ = flock.quotient()
+    seen = complement(flock.rigid)
+    if output == "deviations":
+        n_m, m = len(flock.stiffness), _dimension(flock)
+        seen = complement(np.tile(np.eye(m), (n_m // m, 1)) / sqrt(n_m // m))
+        if np.abs(seen.T @ flock.neutral).max(initial=0.0) > 1e-9:
+            return None
+    c = np.hstack([seen.T @ positions, np.zeros((seen.shape[1], a.shape[0] - positions.shape[1]))])
+    return control.StateSpace(a, b, c, np.zeros((c.shape[0], b.shape[1])), remove_useless_states=False)
+
+
+def _dimension(flock: Blocks) -> int:
+    """m, from the translations, which are the rigid motions that move all agents alike."""
+    for m in (3, 2, 1):
+        n, rest = divmod(len(flock.stiffness), m)
+        moves = np.tile(np.eye(m), (n, 1))
+        if rest == 0 and np.abs(moves - flock.rigid @ (flock.rigid.T @ moves)).max() < 1e-9:
+            return m
+    raise AssertionError("translations are rigid motions")
+
+
+def h2_norm(system: StateSpace) -> float:
+    """Square root of the power of the output under white noise of unit intensity in every input.
+
+    The controllability Gramian by Bartels and Stewart's method (scipy); infinite unless the system is stable.
+
+    Parameters
+    ----------
+    system : control.StateSpace
+        Strictly proper.
+
+    Examples
+    --------
+    x'' + d x' + k x = w has 1/√(2 d k):
+
+    >>> import control
+    >>> round(h2_norm(control.ss([[0, 1], [-8, -1]], [[0], [1]], [[1, 0]], 0)), 12)
+    0.25
+    """
+    from scipy.linalg import solve_continuous_lyapunov
+
+    if system.nstates == 0 or system.noutputs == 0:
+        return 0.0
+    if not _stable(system.A):
+        return inf
+    gramian = solve_continuous_lyapunov(system.A, -system.B @ system.B.T)
+    return sqrt(max(0.0, float(np.trace(system.C @ gramian @ system.C.T))))
+
+
+def h2_bounds(flock: Blocks) -> tuple[float, float]:
+    """Closed-form bounds of the H₂ norm to the shape: √(tr K⁺/(2 d_max)) and √(tr K⁺/(2 d_min)), K⁺ on shapes.
+
+    With noise of intensity 2 D in place of 1 the stationary law is Gibbs's, with covariance K⁻¹; since
+    d_min ≤ D ≤ d_max and covariance grows with the noise, that brackets it. They meet where D is a multiple of 1.
+
+    Parameters
+    ----------
+    flock : Blocks
+        The linearised flock, stable but for its rigid motions.
+
+    Examples
+    --------
+    >>> low, high = h2_bounds(second_order(Algorithm1(), [[0.0], [7.0]]))
+    >>> bool(abs(high / low - 1.0) < 1e-12)
+    True
+    """
+    positions, velocities, shapes = (complement(x) for x in (flock.neutral, flock.drifting, flock.rigid))
+    rates = np.linalg.eigvalsh(velocities.T @ flock.damping @ velocities)
+    seen = positions.T @ shapes
+    trace = float(np.sum(seen * np.linalg.solve(positions.T @ flock.stiffness @ positions, seen)))
+    low, high = (sqrt(trace / (2.0 * float(rate))) if rate > 0.0 else inf for rate in (rates[-1], rates[0]))
+    return low, high
+
+
+def hinf_norm(system: StateSpace, *, tol: float = 1e-9) -> tuple[float, float]:
+    """(H∞ norm, frequency of the peak): the largest gain over all harmonic disturbances.
+
+    Bruinsma and Steinbuch (1990): a gain is exceeded exactly where the Hamiltonian matrix has imaginary eigenvalues,
+    between which the next frequencies are tried. The norm is at least what is returned, and at most (1 + tol) times.
+    slycot's `ab13dd`, the same method, is used where slycot is installed; python-control's own fallback takes square
+    systems only and bisects.
+
+    Parameters
+    ----------
+    system : control.StateSpace
+        Strictly proper; infinite unless it is stable.
+    tol : float
+        Relative tolerance.
+
+    Raises
+    ------
+    SolverError
+        If it does not converge.
+
+    Examples
+    --------
+    x'' + d x' + k x = w has 1/(d √(k − d²/4)) at √(k − d²/2):
+
+    >>> import control
+    >>> norm, peak = hinf_norm(control.ss([[0, 1], [-25, -6]], [[0], [1]], [[1, 0]], 0))
+    >>> round(norm * 24, 9), round(peak**2, 5)
+    (1.0, 7.0)
+    """
+    if system.nstates == 0 or system.noutputs == 0:
+        return 0.0, 0.0
+    tol, a, b, c = ensure_positive("tol", tol), system.A, system.B, system.C
+    if not _stable(a):
+        return inf, float("nan")
+    if _slycot():
+        import control
+
+        norm, peak = control.linfnorm(system, tol)
+        return float(norm), float(peak)
+    poles = np.linalg.eigvals(a)
+    trials = np.unique(np.concatenate([[0.0], np.abs(poles), np.abs(poles.imag)]))
+    best = max((_gain(a, b, c, w), w) for w in trials.tolist()[:: max(1, trials.size // 24)])
+    bb, cc = b @ b.T, c.T @ c
+    for _ in range(_ROUNDS):
+        level = (1.0 + tol) * best[0]
+        values = np.linalg.eigvals(np.block([[a, bb / level], [-cc / level, -a.T]]))
+        crossing = np.sort(values.imag[(np.abs(values.real) <= _IMAGINARY * np.abs(values).max()) & (values.imag >= 0)])
+        middles = np.concatenate([crossing, 0.5 * (crossing[1:] + crossing[:-1])])
+        found = max(((_gain(a, b, c, w), w) for w in middles.tolist()), default=(0.0, 0.0))
+        if found[0] <= level:
+            return max(best, found)
+        best = found
+    raise SolverError(f"the H∞ norm did not settle in {_ROUNDS} rounds; the last lower bound is {best[0]:.6g}")
+
+
+def _slycot() -> bool:
+    from importlib.util import find_spec
+
+    return find_spec("slycot") is not None
+
+
+def _gain(a: FloatArray, b: FloatArray, c: FloatArray, omega: float) -> float:
+    return float(np.linalg.norm(c @ np.linalg.solve(1j * omega * np.eye(len(a)) - a, b), 2))
+
+
+def _stable(a: FloatArray) -> bool:
+    values = np.linalg.eigvals(a)
+    return bool(values.real.max() < -1e-12 * np.abs(values).max())
+
+
+@dataclass(frozen=True)
+class NormTable:
+    """Norms of relaxed hexagonal flocks against their size.
+
+    Parameters
+    ----------
+    sizes : tuple of int
+        Numbers of agents.
+    h2, hinf : ndarray, shape (N,)
+        Norms from a force on each agent to the shape, in length over force.
+    peak : ndarray, shape (N,)
+        Frequency of the largest gain, in radians per time unit.
+    bounds : ndarray, shape (N, 2)
+        Closed-form bounds of `h2`.
+    """
+
+    sizes: tuple[int, ...]
+    h2: FloatArray
+    hinf: FloatArray
+    peak: FloatArray
+    bounds: FloatArray
+
+
+def norms_against_size(law: Algorithm1 | Algorithm2, sizes: Sequence[int]) -> NormTable:
+    """H₂ and H∞ of the equilibria that hexagonal spirals of these sizes relax to (in the plane).
+
+    Parameters
+    ----------
+    law : Algorithm1 or Algorithm2
+        The law, with one gain for all.
+    sizes : sequence of int
+        Numbers of agents.
+
+    Examples
+    --------
+    >>> table = norms_against_size(Algorithm1(), [3, 7])
+    >>> bool(table.h2[1] > table.h2[0] and np.all(table.bounds[:, 0] <= table.h2))
+    True
+    """
+    counts = tuple(ensure_count("sizes", n) for n in sizes)
+    rows = []
+    for n in counts:
+        flock = second_order(law, _relaxed(law, n))
+        system = disturbance_system(flock)
+        assert system is not None  # shapes are always bounded
+        rows.append((h2_norm(system), *hinf_norm(system), *h2_bounds(flock)))
+    table = np.array(rows).reshape(-1, 5)
+    return NormTable(counts, table[:, 0], table[:, 1], table[:, 2], table[:, 3:])
+
+
+def _relaxed(law: Any, n: int) -> FloatArray:
+    found: FloatArray = find_equilibrium(law, hexagonal_spiral(n, law.alpha.d)).q
+    return found

@@ -1,0 +1,145 @@
+"""Linearised flocks as python-control systems, with a name for every state, input and output."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flockana.checks import FloatArray, ensure_fits
+from flockana.errors import ArgumentError
+from flockana.lattice.rigidity import rigidity_matrix
+from flockana.stability.modes import translations
+
+if TYPE_CHECKING:
+    import control
+
+    from flockana.stability.linearise import Linearisation
+
+
+def labels(name: str, n: int, m: int) -> list[str]:
+    """Names of a quantity of n agents by component, in the order of ``q.ravel()``.
+
+    Parameters
+    ----------
+    name : str
+        Such as ``"q"``.
+    n, m : int
+        Number of agents, dimension.
+
+    Examples
+    --------
+    >>> labels("q", 2, 2)
+    ['q0_x', 'q0_y', 'q1_x', 'q1_y']
+    """
+    return [f"{name}{i}_{axis}" for i in range(n) for axis in "xyz"[:m]]
+
+
+def _vector(name: str, m: int) -> list[str]:
+    return [f"{name}_{axis}" for axis in "xyz"[:m]]
+
+
+def _target_inputs(found: Linearisation) -> tuple[FloatArray, list[str]]:
+    """Columns of ∂u/∂(q_r, p_r) and their names; none for a law without a γ-agent."""
+    size, m = found.q.size, found.q.shape[1]
+    if not hasattr(found.law, "target_derivatives"):
+        return np.zeros((size, 0)), []
+    by_position, by_velocity = found.law.target_derivatives(found.t, found.q)
+    return np.hstack([by_position.reshape(size, m), by_velocity.reshape(size, m)]), _vector("qr", m) + _vector("pr", m)
+
+
+def _lengths(found: Linearisation) -> tuple[FloatArray, list[str]]:
+    rates = rigidity_matrix(found.q, found.links).toarray() if len(found.links) else np.zeros((0, found.q.size))
+    return rates, [f"l{i}_{j}" for i, j in found.links.tolist()]
+
+
+def _system(
+    blocks: tuple[Any, Any],
+    drive: FloatArray,
+    read: FloatArray,
+    names: tuple[list[str], list[str], list[str]],
+    title: str,
+) -> control.StateSpace:
+    """x'' = −K x − D x' + B u, y = C x, as a first-order system."""
+    import control
+
+    stiffness, damping = blocks
+    k, (inputs, outputs) = stiffness.shape[0], (drive.shape[1], read.shape[0])
+    ensure_fits("the state space", (2 * k + outputs, 2 * k + inputs), "use A_sparse")
+    A = np.block([[np.zeros((k, k)), np.eye(k)], [-stiffness, -damping]])
+    B = np.vstack([np.zeros((k, inputs)), drive])
+    C = np.hstack([read, np.zeros((outputs, k))])
+    states, given, seen = names
+    return control.ss(A, B, C, np.zeros((outputs, inputs)), states=states, inputs=given, outputs=seen, name=title)
+
+
+def whole_system(found: Linearisation) -> control.StateSpace:
+    """All agents: see `Linearisation.state_space`.
+
+    Parameters
+    ----------
+    found : Linearisation
+        The linearised flock.
+    """
+    n, m = found.q.shape
+    ensure_fits("A", found.A_sparse.shape, "use A_sparse and slowest_modes(...)")
+    unit = translations(n, m)
+    target, target_names = _target_inputs(found)
+    lengths, length_names = _lengths(found)
+    drive = np.hstack([np.eye(n * m), target])
+    read = np.vstack([unit.T / np.sqrt(n), np.eye(n * m) - unit @ unit.T, lengths])
+    names = (
+        labels("q", n, m) + labels("p", n, m),
+        labels("f", n, m) + target_names,
+        _vector("qc", m) + labels("x", n, m) + length_names,
+    )
+    return _system((found.stiffness.toarray(), found.damping.toarray()), drive, read, names, "flock")
+
+
+def structural_system(found: Linearisation) -> control.StateSpace:
+    """The shape alone: see `Linearisation.structural`.
+
+    Parameters
+    ----------
+    found : Linearisation
+        The linearised flock.
+    """
+    found.ensure_split()
+    n, m = found.q.shape
+    if n == 1:
+        raise ArgumentError("n = 1: expected at least two agents; one has no shape")
+    ensure_fits("A", found.A_sparse.shape, "use A_sparse and slowest_modes(...)")
+    unit = translations(n, m)
+    kept = (n - 1) * m
+    extend = np.vstack([np.eye(kept), -np.tile(np.eye(m), (1, n - 1))])  # the last agent's deviation
+    off = (np.eye(n * m) - unit @ unit.T)[:kept]
+    lengths, length_names = _lengths(found)
+    blocks = ((found.stiffness[:kept] @ extend), (found.damping[:kept] @ extend))
+    names = (
+        labels("x", n - 1, m) + labels("v", n - 1, m),
+        labels("f", n, m),
+        labels("x", n, m) + length_names,
+    )
+    return _system(blocks, off, np.vstack([extend, lengths @ extend]), names, "shape")
+
+
+def translational_system(found: Linearisation) -> control.StateSpace:
+    """The centre of mass alone: see `Linearisation.translational`.
+
+    Parameters
+    ----------
+    found : Linearisation
+        The linearised flock.
+    """
+    found.ensure_split()
+    n, m = found.q.shape
+    mean = translations(n, m).T / np.sqrt(n)
+    target, target_names = _target_inputs(found)
+    alone = found.second_order.split
+    names = (
+        _vector("qc", m) + _vector("pc", m),
+        labels("f", n, m) + target_names,
+        _vector("qc", m),
+    )
+    blocks = (np.diag(alone.stiffness), np.diag(alone.damping))
+    return _system(blocks, mean @ np.hstack([np.eye(n * m), target]), np.eye(m), names, "centre")

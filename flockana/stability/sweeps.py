@@ -1,0 +1,230 @@
+"""Eigenvalues of the linearised flock, and poles of its centre of mass, as one gain varies."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.checks import FloatArray, ensure_nonnegative, ensure_points
+from flockana.equilibria.solve import find_equilibrium
+from flockana.errors import ArgumentError, UnknownNameError
+from flockana.interactions import Gains
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain
+from flockana.stability.blocks import second_order
+from flockana.stability.delay import delay_margin, delay_system
+from flockana.stability.translational import CentreOfMass
+
+if TYPE_CHECKING:
+    from control import TransferFunction
+
+ComplexArray = npt.NDArray[np.complex128]
+
+GAINS = ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma")
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """Branches of eigenvalues against one gain.
+
+    Parameters
+    ----------
+    name : str
+        The gain.
+    values : ndarray, shape (L,)
+        Its values.
+    eigenvalues : complex ndarray, shape (L, M)
+        One column per branch, joined by continuity.
+    neutral : int
+        Columns in front that stay at 0: rigid motions that nothing holds.
+    """
+
+    name: str
+    values: FloatArray
+    eigenvalues: ComplexArray
+    neutral: int
+
+    @property
+    def abscissa(self) -> FloatArray:
+        """Largest real part at each value, neutral ones set apart, shape (L,); NaN if nothing else is left."""
+        rest = self.eigenvalues.real[:, self.neutral :]
+        return rest.max(axis=1) if rest.shape[1] else np.full(len(self.values), np.nan)
+
+
+def gain_sweep(law: Algorithm1 | Algorithm2, q: Any, name: str, values: Any, *, follow: bool = True) -> Sweep:
+    """Eigenvalues of Algorithm 1 or 2 about an equilibrium as one gain varies.
+
+    Equilibria of Algorithm 2 move with c1γ/c1α: they are followed, each found from the last; with ``follow=False`` the
+    configuration stays, and at what is then no equilibrium rotations need not be neutral.
+
+    Parameters
+    ----------
+    law : Algorithm1 or Algorithm2
+        The law; its other gains stay.
+    q : array_like, shape (n, m)
+        Equilibrium at the first value, or near it.
+    name : {"c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma"}
+        The gain.
+    values : array_like, shape (L,)
+        Its values, rising.
+    follow : bool
+        Find the equilibrium anew at every value.
+
+    Raises
+    ------
+    ArgumentError
+        On a gain that the law does not use, or values that do not rise.
+
+    Examples
+    --------
+    >>> from flockana.environment.targets import StaticTarget
+    >>> law = Algorithm2(target=StaticTarget((0.0,)))
+    >>> found = gain_sweep(law, [[0.0]], "c1_gamma", [1.0, 2.0])
+    >>> [round(float(x), 6) for x in (found.eigenvalues[1] * found.eigenvalues[1].conj()).real]
+    [2.0, 2.0]
+    """
+    _ensure_gain(law, name)
+    q, levels = ensure_points("q", q), _rising(values)
+    rows: list[ComplexArray] = []
+    neutral = 0
+    for level in levels.tolist():
+        here = replace(law, gains=replace(law.gains, **{name: level}))
+        q = np.array(find_equilibrium(here, q).q) if follow else q
+        flock = second_order(here, q, strict=follow)
+        roots = np.linalg.eigvals(flock.matrix()).astype(np.complex128)
+        roots = roots[np.argsort(np.abs(roots), kind="stable")]
+        count = flock.neutral.shape[1] + flock.drifting.shape[1]
+        roots[:count] = 0.0  # a defective zero rounds to about 1e-8
+        neutral = count if not rows else min(neutral, count)
+        rows.append(_joined(rows[-1], roots) if rows else roots)
+    return Sweep(name, levels, np.array(rows), neutral)
+
+
+def centre_locus(gains: Gains, name: str, values: Any) -> tuple[Sweep, TransferFunction]:
+    """Root locus of the centre of mass over c1γ or c2γ, and the open loop L(s) with 1 + gain L(s) = 0.
+
+    L = 1/(s² + c2γ s) for c1γ and s/(s² + c1γ) for c2γ: what `control.root_locus` takes.
+
+    Parameters
+    ----------
+    gains : Gains
+        The other gain of the two is used.
+    name : {"c1_gamma", "c2_gamma"}
+        The gain.
+    values : array_like, shape (L,)
+        Its values, rising.
+
+    Raises
+    ------
+    ArgumentError
+        On another gain, or per-agent gains.
+
+    Examples
+    --------
+    >>> locus, loop = centre_locus(Gains(c2_gamma=2.0), "c1_gamma", [0.0, 1.0, 2.0])
+    >>> locus.eigenvalues.round(6).tolist()
+    [[(-2+0j), 0j], [(-1+0j), (-1+0j)], [(-1-1j), (-1+1j)]]
+    """
+    import control
+
+    ensure_one_gain(gains)
+    if name not in GAINS[2:]:
+        raise UnknownNameError("gain", name, GAINS[2:])
+    levels = _rising(values)
+    rows: list[ComplexArray] = []
+    for level in levels.tolist():
+        roots = CentreOfMass(replace(gains, **{name: level})).poles + 0.0
+        rows.append(_joined(rows[-1], roots) if rows else roots)
+    numerator, denominator = ([1.0], [1.0, gains.c2_gamma, 0.0])
+    if name == "c2_gamma":
+        numerator, denominator = [1.0, 0.0], [1.0, 0.0, gains.c1_gamma]
+    return Sweep(name, levels, np.array(rows), 0), control.TransferFunction(numerator, denominator)
+
+
+def _rising(values: Any) -> FloatArray:
+    levels = np.array([ensure_nonnegative("values", x) for x in np.ravel(values)])
+    if levels.size == 0 or np.any(np.diff(levels) <= 0.0):
+        raise ArgumentError(f"values = {values!r}: expected rising gains")
+    return levels
+
+
+def _joined(before: ComplexArray, after: ComplexArray) -> ComplexArray:
+    """`after` in the order that continues each branch of `before`: the assignment with the least sum of squares."""
+    from scipy.optimize import linear_sum_assignment
+
+    return after[linear_sum_assignment(np.abs(before[:, None] - after[None, :]) ** 2)[1]]
+
+
+@dataclass(frozen=True)
+class MarginSweep:
+    """Delay margin against one gain.
+
+    Parameters
+    ----------
+    name : str
+        The gain.
+    values : ndarray, shape (L,)
+        Its values.
+    margins, frequencies : ndarray, shape (L,)
+        τ* and the frequency of the oscillation there; infinite and NaN where no delay does harm.
+    delayed : str
+        Which terms are delayed.
+    """
+
+    name: str
+    values: FloatArray
+    margins: FloatArray
+    frequencies: FloatArray
+    delayed: str
+
+
+def margin_sweep(
+    law: Algorithm1 | Algorithm2, q: Any, name: str, values: Any, *, delayed: str = "all", grid: int = 120
+) -> MarginSweep:
+    """Delay margin of the followed equilibrium as one gain varies.
+
+    Parameters
+    ----------
+    law : Algorithm1 or Algorithm2
+        The law; its other gains stay.
+    q : array_like, shape (n, m)
+        Equilibrium at the first value, or near it.
+    name : {"c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma"}
+        The gain.
+    values : array_like, shape (L,)
+        Its values, rising.
+    delayed : {"all", "pairs"}
+        As in `delay_system`.
+    grid : int
+        As in `delay_margin`.
+
+    Raises
+    ------
+    ArgumentError
+        On a gain that the law does not use, or values that do not rise.
+
+    Examples
+    --------
+    The more damping is delayed, the less delay it bears:
+
+    >>> from flockana.environment.targets import StaticTarget
+    >>> found = margin_sweep(Algorithm2(target=StaticTarget((0.0,))), [[0.0]], "c2_gamma", [1.0, 4.0, 16.0])
+    >>> bool(found.margins[1] < found.margins[0] and found.margins[2] < found.margins[1])
+    True
+    """
+    _ensure_gain(law, name)
+    q, levels, found = ensure_points("q", q), _rising(values), []
+    for level in levels.tolist():
+        here = replace(law, gains=replace(law.gains, **{name: level}))
+        q = np.array(find_equilibrium(here, q).q)
+        found.append(delay_margin(delay_system(here, q, delayed=delayed), grid=grid))
+    margins, frequencies = (np.array([getattr(x, kind) for x in found]) for kind in ("delay", "frequency"))
+    return MarginSweep(name, levels, margins, frequencies, delayed)
+
+
+def _ensure_gain(law: Any, name: str) -> None:
+    known = GAINS[:2] if isinstance(law, Algorithm1) else GAINS
+    if name not in known:
+        raise UnknownNameError("gain", name, known)

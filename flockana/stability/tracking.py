@@ -1,0 +1,379 @@
+"""How the centre of mass follows a γ-agent on a line, a sine or a circle: closed form against runs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.checks import FloatArray, ensure_vector
+from flockana.environment.targets import CircleTarget, LinearTarget, RescaledVelocity, SineTarget, StaticTarget, Target
+from flockana.errors import ArgumentError
+from flockana.interactions import Gains
+from flockana.laws.msn import MSNDiscretisation
+from flockana.laws.olfati_saber import Algorithm2
+from flockana.stability.translational import CentreOfMass, map_gain
+from flockana.trajectory import Trajectory
+
+ComplexArray = npt.NDArray[np.complex128]
+
+
+def path_and_factor(target: Target | None) -> tuple[Target | None, float]:
+    """(the γ-agent's path, the factor of its p_r), unwrapped.
+
+    Parameters
+    ----------
+    target : Target or None
+        A γ-agent.
+
+    Examples
+    --------
+    >>> path_and_factor(RescaledVelocity(LinearTarget((0.0,), (2.0,)), 0.5))[1]
+    0.5
+    """
+    if isinstance(target, RescaledVelocity):
+        return target.target, target.factor
+    return target, 1.0
+
+
+@dataclass(frozen=True)
+class Motion:
+    """q_r(t) = start + velocity t + Re(swing e^jωt) and p_r(t) = drift + factor Re(jω swing e^jωt).
+
+    Parameters
+    ----------
+    start, velocity, drift : ndarray, shape (m,)
+        Where it is at t = 0 but for the swing, how fast it travels, and what it says about that.
+    swing : complex ndarray, shape (m,)
+        Amplitudes.
+    omega : float
+        Angular frequency, 0 without a swing.
+    factor : float
+        p_r over dq_r/dt, of the swing.
+    """
+
+    start: FloatArray
+    velocity: FloatArray
+    drift: FloatArray
+    swing: ComplexArray
+    omega: float
+    factor: float
+
+
+def motion(target: Target) -> Motion:
+    """A γ-agent's motion as a line plus a harmonic.
+
+    Parameters
+    ----------
+    target : Target
+        Static, on a line, a sine or a circle; with a rescaled p_r or not.
+
+    Raises
+    ------
+    ArgumentError
+        On another target.
+
+    Examples
+    --------
+    >>> motion(CircleTarget((1.0, 2.0), 3.0, 0.5)).swing.tolist()
+    [(3+0j), -3j]
+    """
+    path, factor = path_and_factor(target)
+    if isinstance(path, StaticTarget):
+        start, still = np.array(path.q), np.zeros(len(path.q))
+        told = path.state(0.0)[1] if path is target else still
+        return Motion(start, still, told, still.astype(np.complex128), 0.0, factor)
+    if isinstance(path, LinearTarget):
+        velocity = np.array(path.p)
+        return Motion(np.array(path.q), velocity, factor * velocity, velocity.astype(np.complex128) * 0.0, 0.0, factor)
+    if isinstance(path, SineTarget):
+        velocity, swing = np.array(path.velocity), np.zeros(len(path.start), dtype=np.complex128)
+        swing[path.axis] = -1j * path.amplitude * np.exp(1j * path.phase)
+        omega = 2.0 * pi * path.frequency
+        return Motion(np.array(path.start), velocity, factor * velocity, swing, omega, factor)
+    if isinstance(path, CircleTarget):
+        swing = np.zeros(len(path.centre), dtype=np.complex128)
+        swing[:2] = path.radius * np.exp(1j * path.phase) * np.array([1.0, -1j])
+        still, omega = np.zeros(len(path.centre)), 2.0 * pi * path.frequency
+        return Motion(np.array(path.centre), still, still, swing, omega, factor)
+    raise ArgumentError(f"target = {target!r}: expected a static, linear, sine or circle target")
+
+
+def _steady(gains: Gains, moving: Motion) -> tuple[FloatArray, ComplexArray]:
+    """(constant lag behind the line, swing of the centre of mass) once the transient is gone."""
+    c1, c2 = gains.c1_gamma, gains.c2_gamma
+    if c1 == 0.0:
+        raise ArgumentError("c1_gamma = 0: expected a pull > 0; without one the centre of mass follows no position")
+    if c2 == 0.0 and moving.swing.any() and abs(moving.omega**2 - c1) <= 1e-12 * c1:
+        raise ArgumentError(
+            f"c2_gamma = 0 and the γ-agent swings at √c1γ = {moving.omega:g}: resonance, no steady state"
+        )
+    lag: FloatArray = c2 * (moving.velocity - moving.drift) / c1
+    return lag, CentreOfMass(gains, moving.factor).response(moving.omega) * moving.swing
+
+
+def steady_error(gains: Gains, target: Target) -> tuple[float, float]:
+    """Largest ‖q_c − q_r‖ for ever after the transient: (of the line, of the swing).
+
+    On a line the centre lags by c2γ ‖v − p_r‖/c1γ, by nothing if p_r is the true velocity; on a sine or circle of
+    size A by |G(jω) − 1| A.
+
+    Parameters
+    ----------
+    gains : Gains
+        c1γ and c2γ are used.
+    target : Target
+        Static, on a line, a sine or a circle.
+
+    Raises
+    ------
+    ArgumentError
+        On another target, without a pull, or in resonance.
+
+    Examples
+    --------
+    >>> hidden = RescaledVelocity(LinearTarget((0.0, 0.0), (3.0, 0.0)), 0.0)
+    >>> steady_error(Gains(c1_gamma=2.0, c2_gamma=4.0), hidden)
+    (6.0, 0.0)
+    """
+    moving = motion(target)
+    lag, swing = _steady(gains, moving)
+    off = swing - moving.swing
+    # the longest semi-axis of the ellipse Re(off e^jωt)
+    square = 0.5 * (float(np.vdot(off, off).real) + abs(complex(off @ off)))
+    return float(np.linalg.norm(lag)), float(np.sqrt(square))
+
+
+def centre_path(gains: Gains, target: Target, t: Any, q_c: Any, p_c: Any) -> FloatArray:
+    """q_c(t) in closed form from its start at t[0], transient included, shape (T, m).
+
+    Parameters
+    ----------
+    gains : Gains
+        c1γ > 0 and c2γ are used.
+    target : Target
+        Static, on a line, a sine or a circle.
+    t : array_like, shape (T,)
+        Times.
+    q_c, p_c : array_like, shape (m,)
+        Position and velocity of the centre of mass at t[0].
+
+    Raises
+    ------
+    ArgumentError
+        On another target, without a pull, or in resonance.
+
+    Examples
+    --------
+    Without damping it swings through a target at rest and as far beyond:
+
+    >>> swing = Gains(c1_gamma=1.0, c2_gamma=0.0)
+    >>> centre_path(swing, StaticTarget((5.0,)), [0.0, pi], [1.0], [0.0]).round(9).ravel().tolist()
+    [1.0, 9.0]
+    """
+    moving, times = motion(target), np.atleast_1d(np.asarray(t, dtype=np.float64))
+    start, speed = ensure_vector("q_c", q_c, moving.start.size), ensure_vector("p_c", p_c, moving.start.size)
+    lag, swing = _steady(gains, moving)
+    turn = np.exp(1j * moving.omega * times)[:, None]
+    steady = moving.start + moving.velocity * times[:, None] - lag + (swing * turn).real
+    rate = moving.velocity + (1j * moving.omega * swing * turn[0]).real
+    left, swift = start - steady[0], speed - rate
+    since = (times - times[0])[:, None]
+    decay, root = 0.5 * gains.c2_gamma, np.sqrt(complex(0.25 * gains.c2_gamma**2 - gains.c1_gamma))
+    # e^At of the companion matrix: cosh and sinh(√Δ t)/√Δ, real whatever the sign of Δ; decay ≥ Re √Δ, so no overflow
+    rise, fall = np.exp((root - decay) * since), np.exp((-root - decay) * since)
+    level = 0.5 * (rise + fall).real
+    slope = ((rise - fall) / (2.0 * root)).real if root != 0.0 else since * np.exp(-decay * since)
+    path: FloatArray = steady + left * level + (swift + decay * left) * slope
+    return path
+
+
+def _amplitude(t: FloatArray, x: FloatArray, omega: float) -> tuple[ComplexArray, float]:
+    """(complex amplitude at ω, its error): least squares of A cos ωt + B sin ωt + C + D t on each coordinate of x."""
+    basis = np.column_stack([np.cos(omega * t), np.sin(omega * t), np.ones_like(t), t])
+    fit = np.linalg.lstsq(basis, x, rcond=None)[0]
+    residual = x - basis @ fit
+    return fit[0] - 1j * fit[1], float(np.sqrt(np.mean(np.sum(residual**2, axis=1))))
+
+
+def _swings(run: Trajectory) -> tuple[ComplexArray, ComplexArray, float]:
+    """Complex amplitudes of the flock and the γ-agent over the last whole periods, and the error of the fit."""
+    path, _ = path_and_factor(getattr(run.law, "target", None))
+    if not isinstance(path, SineTarget | CircleTarget):
+        raise ArgumentError(f"target = {path!r}: expected a SineTarget or a CircleTarget")
+    period, length = 1.0 / path.frequency, float(run.t[-1] - run.t[0])
+    if length < period:
+        raise ArgumentError(f"the run lasts {length:g}: expected at least one period, {period:g}")
+    window = run.window(run.t[-1] - period * max(1, int(0.5 * length / period)), run.t[-1])
+    omega = 2.0 * pi * path.frequency
+    flock, error = _amplitude(window.t, window.q.mean(axis=1), omega)
+    agent, _ = _amplitude(window.t, np.array([path.position(t) for t in window.t]), omega)
+    return flock, agent, error
+
+
+def response_ratio(run: Trajectory) -> tuple[float, float]:
+    """Ratio of the centre of mass's circle or sine to the γ-agent's, over the last whole periods, and its error.
+
+    At most half of the run is used, but at least one period: what precedes is transient. The error is the root mean
+    square of what the fit leaves over, relative to the γ-agent's amplitude.
+
+    Parameters
+    ----------
+    run : Trajectory
+        A run whose law has a sine or circle as its target.
+
+    Raises
+    ------
+    ArgumentError
+        If the law has no such target, or the run is shorter than one period.
+
+    Examples
+    --------
+    >>> from flockana.simulate import simulate
+    >>> law = Algorithm2(gains=Gains(c1_gamma=4.0, c2_gamma=4.0), target=CircleTarget((0.0, 0.0), 1.0, 0.25))
+    >>> ratio, error = response_ratio(simulate(law, [[1.0, 0.0]], [[0.0, 0.0]], (0.0, 30.0)))
+    >>> bool(abs(ratio - abs(CentreOfMass(law.gains).response(0.5 * pi))) < 1e-6)
+    True
+    """
+    flock, agent, error = _swings(run)
+    size = float(np.linalg.norm(agent))
+    return float(np.linalg.norm(flock)) / size, error / size
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One figure, as the linear system predicts it and as the run shows it.
+
+    Parameters
+    ----------
+    name : str
+        What it is, with its unit.
+    predicted, measured : float
+        The two values.
+    error : float
+        Uncertainty of the measured one.
+    """
+
+    name: str
+    predicted: float
+    measured: float
+    error: float = 0.0
+
+
+@dataclass(frozen=True)
+class Tracking:
+    """How a flock's centre of mass follows its γ-agent, predicted and measured.
+
+    Parameters
+    ----------
+    centre : CentreOfMass
+        The linear system, with the factor of the γ-agent's p_r.
+    quantities : tuple of Quantity
+        Predictions and measurements.
+    """
+
+    centre: CentreOfMass
+    quantities: tuple[Quantity, ...]
+
+    def quantity(self, name: str) -> Quantity:
+        """The quantity whose name begins with `name`.
+
+        Parameters
+        ----------
+        name : str
+            Beginning of a name.
+        """
+        return next(item for item in self.quantities if item.name.startswith(name))
+
+
+def tracking(run: Trajectory) -> Tracking:
+    """Compare a run of Algorithm 2, or of the MSN project's map of it, with the linear system of its centre of mass.
+
+    Ratio and phase for a sine or circle, the lag on a line, the turning points and the period where an underdamped
+    flock swings about a target at rest, and under the continuous law the whole path.
+
+    Parameters
+    ----------
+    run : Trajectory
+        A run of Algorithm 2, or of its map, with a static, linear, sine or circle target.
+
+    Raises
+    ------
+    ArgumentError
+        On another law or target, or per-agent gains.
+
+    Examples
+    --------
+    >>> from flockana.simulate import simulate
+    >>> law = Algorithm2(gains=Gains(c1_gamma=1.0, c2_gamma=0.0), target=StaticTarget((5.0,)))
+    >>> found = tracking(simulate(law, [[1.0]], [[0.0]], (0.0, 7.0)))
+    >>> [round(x, 4) for x in (found.quantity("period").predicted, found.quantity("period").measured)]
+    [6.2832, 6.2832]
+    """
+    law = run.law
+    if type(law) not in (Algorithm2, MSNDiscretisation) or law.target is None:
+        raise ArgumentError(f"{type(law).__name__}: expected a run of Algorithm 2 or of the MSN project's map of it")
+    moving = motion(law.target)
+    centre = CentreOfMass(law.gains, moving.factor)
+    found: list[Quantity] = []
+    if type(law) is Algorithm2:
+        q_c = run.q.mean(axis=1)
+        path = centre_path(law.gains, law.target, run.t, q_c[0], run.p[0].mean(axis=0))
+        found.append(Quantity("path, largest deviation (length)", 0.0, float(np.abs(q_c - path).max())))
+    if moving.swing.any():
+        found += _ratio(run, centre, moving)
+    elif moving.velocity.any():
+        lag = np.linalg.norm(run.q[-1].mean(axis=0) - law.target.position(float(run.t[-1])))
+        found.append(Quantity("lag (length)", steady_error(law.gains, law.target)[0], float(lag)))
+    elif type(law) is Algorithm2 and np.isfinite(centre.period):
+        found += _swing(run, centre)
+    return Tracking(centre, tuple(found))
+
+
+def _ratio(run: Trajectory, centre: CentreOfMass, moving: Motion) -> list[Quantity]:
+    flock, agent, error = _swings(run)
+    size = float(np.linalg.norm(agent))
+    discrete = isinstance(run.law, MSNDiscretisation)
+    gain = map_gain(run.law, moving.omega, factor=moving.factor) if discrete else abs(centre.response(moving.omega))
+    ratio = Quantity("ratio of sizes", float(gain), float(np.linalg.norm(flock)) / size, error / size)
+    if discrete:
+        return [ratio]
+    phase = float(np.degrees(np.angle(np.vdot(agent, flock))))
+    predicted = float(np.degrees(np.angle(centre.response(moving.omega))))
+    return [ratio, Quantity("phase (degrees)", predicted, phase, float(np.degrees(error / size)))]
+
+
+def _swing(run: Trajectory, centre: CentreOfMass) -> list[Quantity]:
+    """Turning points along the line through the start and the target: where they are, and how long between two."""
+    target = run.law.target.position(0.0)
+    x, v, a = run.q.mean(axis=1) - target, run.p.mean(axis=1), run.u.mean(axis=1)
+    axis = x[0] / (float(np.linalg.norm(x[0])) or 1.0)
+    place, speed, slope = x @ axis, v @ axis, a @ axis
+    at_rest = [float(run.t[0])] if abs(speed[0]) <= 1e-12 * max(1.0, float(np.abs(speed).max())) else []
+    turns, places = list(at_rest), [float(place[0])] * len(at_rest)
+    for k in np.flatnonzero(speed[:-1] * speed[1:] < 0.0):
+        time, where = _rest(run.t[k : k + 2], place[k : k + 2], speed[k : k + 2], slope[k : k + 2])
+        turns.append(time)
+        places.append(where)
+    if len(turns) < 2:
+        return []
+    period = 2.0 * float(np.mean(np.diff(turns)))
+    damping = 0.5 * centre.gains.c2_gamma
+    farthest = -places[0] * float(np.exp(-damping * 0.5 * centre.period))
+    return [
+        Quantity("period (time)", centre.period, period),
+        Quantity("first turning point beyond the target (length)", farthest, places[1]),
+    ]
+
+
+def _rest(t: FloatArray, x: FloatArray, v: FloatArray, a: FloatArray) -> tuple[float, float]:
+    """Time and place between two samples at which the velocity vanishes, by its Hermite cubic."""
+    from scipy.interpolate import CubicHermiteSpline
+    from scipy.optimize import brentq
+
+    velocity, place = CubicHermiteSpline(t, v, a), CubicHermiteSpline(t, x, v)
+    time = float(brentq(lambda s: float(velocity(s)), t[0], t[1], xtol=1e-14))
+    return time, float(place(time))

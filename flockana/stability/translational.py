@@ -1,0 +1,204 @@
+"""Algorithm 2's centre of mass as the linear second-order system that it is: transfer functions, poles, responses.
+
+Pair forces cancel in the sum over agents, so q_c'' = −c1γ (q_c − q_r) − c2γ (q_c' − p_r), exactly, whatever the flock
+does (Olfati-Saber 2006, section V). Every coordinate obeys the same scalar equation. With per-agent gains there is no
+such equation, and these functions refuse.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf, pi, sqrt
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.checks import FloatArray, ensure_finite_scalar
+from flockana.errors import ArgumentError
+from flockana.interactions import Gains
+from flockana.laws.msn import MSNDiscretisation
+from flockana.laws.olfati_saber import Algorithm2, ensure_one_gain
+
+if TYPE_CHECKING:
+    from control import FrequencyResponseData, StateSpace, TimeResponseData, TransferFunction
+
+
+@dataclass(frozen=True)
+class CentreOfMass:
+    """From q_r to q_c, for a γ-agent with p_r = factor dq_r/dt: G(s) = (factor c2γ s + c1γ)/(s² + c2γ s + c1γ).
+
+    Parameters
+    ----------
+    gains : Gains
+        c1γ and c2γ are used.
+    factor : float
+        1 for the true velocity, 0 for a p_r held at zero, 0.009 for the MSN project's (erratum E12).
+
+    Raises
+    ------
+    ArgumentError
+        With per-agent gains.
+
+    Examples
+    --------
+    >>> centre = CentreOfMass(Gains(c1_gamma=4.0, c2_gamma=4.0))
+    >>> centre.natural_frequency, centre.damping_ratio, centre.poles.real.tolist()
+    (2.0, 1.0, [-2.0, -2.0])
+    """
+
+    gains: Gains
+    factor: float = 1.0
+
+    def __post_init__(self) -> None:
+        ensure_one_gain(self.gains)
+        object.__setattr__(self, "factor", ensure_finite_scalar("factor", self.factor))
+
+    @property
+    def natural_frequency(self) -> float:
+        """ω_n = √c1γ, in radians per time unit."""
+        return sqrt(self.gains.c1_gamma)
+
+    @property
+    def damping_ratio(self) -> float:
+        """ζ = c2γ/(2 √c1γ); infinite without a pull."""
+        return float(self.gains.c2_gamma / (2.0 * self.natural_frequency)) if self.gains.c1_gamma > 0.0 else inf
+
+    @property
+    def poles(self) -> npt.NDArray[np.complex128]:
+        """Roots of s² + c2γ s + c1γ, the slower one last; both without cancellation."""
+        c1, c2 = self.gains.c1_gamma, self.gains.c2_gamma
+        root = np.sqrt(complex(0.25 * c2 * c2 - c1))
+        far = -(0.5 * c2 + root)
+        return np.array([far, c1 / far if root.real > 0.0 else np.conj(far)], dtype=np.complex128)
+
+    @property
+    def period(self) -> float:
+        """2π over the damped frequency √(c1γ − c2γ²/4); infinite where nothing oscillates."""
+        square = self.gains.c1_gamma - 0.25 * self.gains.c2_gamma**2
+        return 2.0 * pi / sqrt(square) if square > 0.0 else inf
+
+    def system(self) -> TransferFunction:
+        """G(s) as a `control.TransferFunction`."""
+        import control
+
+        c1, c2 = self.gains.c1_gamma, self.gains.c2_gamma
+        return control.TransferFunction([self.factor * c2, c1], [1.0, c2, c1], inputs="q_r", outputs="q_c")
+
+    def response(self, omega: Any) -> Any:
+        """G(jω), complex, of the shape of `omega`.
+
+        Parameters
+        ----------
+        omega : float or array_like
+            Angular frequency, in radians per time unit.
+        """
+        s = 1j * np.asarray(omega, dtype=np.float64)
+        c1, c2 = self.gains.c1_gamma, self.gains.c2_gamma
+        return (self.factor * c2 * s + c1) / (s * s + c2 * s + c1)
+
+    def step_response(self, t: Any) -> TimeResponseData:
+        """q_c after q_r has jumped by 1, by python-control (a jump has no velocity that a γ-agent could hand over).
+
+        Parameters
+        ----------
+        t : array_like, shape (T,)
+            Equally spaced times from 0.
+        """
+        import control
+
+        return control.step_response(CentreOfMass(self.gains, 0.0).system(), np.asarray(t, dtype=np.float64))
+
+    def frequency_response(self, omega: Any) -> FrequencyResponseData:
+        """Magnitude and phase over frequency, by python-control.
+
+        Parameters
+        ----------
+        omega : array_like, shape (F,)
+            Angular frequencies, in radians per time unit.
+        """
+        import control
+
+        return control.frequency_response(self.system(), np.asarray(omega, dtype=np.float64))
+
+
+def predicted_gain(gains: Gains, omega: float, *, factor: float = 1.0) -> float:
+    """|G(jω)|, the size of the flock's circle or sine over that of the γ-agent's.
+
+    Parameters
+    ----------
+    gains : Gains
+        c1γ and c2γ are used.
+    omega : float
+        Angular frequency, in radians per time unit.
+    factor : float
+        p_r over dq_r/dt.
+
+    Examples
+    --------
+    >>> round(predicted_gain(Gains(c1_gamma=4.0, c2_gamma=3.0), 2.0, factor=0.0), 6)
+    0.666667
+    """
+    return float(abs(CentreOfMass(gains, factor).response(omega)))
+
+
+def map_system(law: MSNDiscretisation) -> StateSpace:
+    """The MSN project's map of the centre of mass from (q_r, p_r) to q_c as a discrete `control.StateSpace`.
+
+    Exact if all agents move at once; agent by agent, action and reaction differ within a step, and the sum over
+    agents obeys no equation of its own.
+
+    Parameters
+    ----------
+    law : MSNDiscretisation
+        Around Algorithm 2.
+
+    Raises
+    ------
+    ArgumentError
+        If the map has no γ-agent.
+
+    Examples
+    --------
+    >>> from flockana.environment.targets import StaticTarget
+    >>> pull = Algorithm2(gains=Gains(c1_gamma=1.0, c2_gamma=2.0), target=StaticTarget((0.0,)))
+    >>> system = map_system(MSNDiscretisation(pull, dt=0.1, in_place=False))
+    >>> system.dt, round(float(system.dcgain()[0, 0]), 12)
+    (0.1, 1.0)
+    """
+    import control
+
+    if not isinstance(law, MSNDiscretisation) or not isinstance(law.law, Algorithm2):
+        raise ArgumentError(f"law = {law!r}: expected an MSNDiscretisation of Algorithm 2")
+    h, f, c1, c2 = law.dt, law.position_factor, law.gains.c1_gamma, law.gains.c2_gamma
+    push = np.array([f * h * h, h])  # what one u does to (q, p)
+    feedback: FloatArray = np.array([c1, c2])
+    a = np.array([[1.0, h], [0.0, 1.0]]) - np.outer(push, feedback)
+    b = np.outer(push, feedback)
+    # the γ-agent has moved on to the end of the step: its input acts at once on the state that is put out
+    return control.StateSpace(a, b, a[:1], b[:1], h, inputs=["q_r", "p_r"], outputs="q_c", states=["q", "p"])
+
+
+def map_gain(law: MSNDiscretisation, omega: float, *, factor: float = 1.0) -> float:
+    """`predicted_gain` for the MSN project's map: |G_q(e^jωh) + factor jω G_p(e^jωh)|.
+
+    Parameters
+    ----------
+    law : MSNDiscretisation
+        Around Algorithm 2.
+    omega : float
+        Angular frequency, in radians per time unit.
+    factor : float
+        p_r over dq_r/dt.
+
+    Examples
+    --------
+    >>> from flockana.environment.targets import StaticTarget
+    >>> pull = Algorithm2(gains=Gains(c1_gamma=70.0, c2_gamma=16.733200530681511), target=StaticTarget((0.0, 0.0)))
+    >>> omega = 2.0 * pi * 0.025 / 0.045
+    >>> [round(map_gain(MSNDiscretisation(pull, dt=0.009), omega, factor=f), 4) for f in (0.009, 1.0)]
+    [0.8375, 1.0907]
+    """
+    omega = ensure_finite_scalar("omega", omega)
+    by_position, by_velocity = map_system(law)(np.exp(1j * omega * law.dt)).ravel()
+    return float(abs(by_position + factor * 1j * omega * by_velocity))

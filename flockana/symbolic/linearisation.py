@@ -1,0 +1,224 @@
+"""Jacobians of Algorithms 1, 2 and 3 at any state, from one generic pair, one agent and one obstacle.
+
+u_i is a sum over the other agents, one own term and a sum over obstacles, so its Jacobian is put together from these
+blocks for every n. The action functions and weights stay generic: φ' and a' are functions of the σ-distance.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import sympy as sp
+from sympy.core.function import UndefinedFunction
+
+from flockana.symbolic.derivation import Derivation, Step
+from flockana.symbolic.energy import GenericPair
+from flockana.symbolic.norms import EPS, sigma_norm
+from flockana.symbolic.obstacles import PHI_BETA, WEIGHT, GenericObstacle
+from flockana.symbolic.pair import ADJACENCY, PHI, ensure_dimension, own_force, vector
+from flockana.symbolic.parameters import GAINS, GainSymbols
+from flockana.symbolic.theorem6 import gamma_force
+
+ROOT = sp.Symbol("w", positive=True)  # √(1 + ε s²), s the distance
+PHI_SLOPE, ADJACENCY_SLOPE, PHI_BETA_SLOPE, WEIGHT_SLOPE = (
+    sp.Function(name, real=True) for name in ("phi_alpha'", "a'", "phi_beta'", "b'")
+)
+
+
+def _slopes(force: sp.Matrix, table: dict[Any, Any], variables: sp.Matrix, sigma: sp.Expr, z: sp.Symbol) -> sp.Matrix:
+    """Derivative of a force, columns by variable; generic functions of σ by name, σ named z, √(1 + ε s²) named w."""
+    aware = {}
+    for function, slope in table.items():  # the same function, but it knows its derivative
+        derivative = {"fdiff": lambda self, argindex=1, slope=slope: slope(self.args[0])}
+        aware[function] = UndefinedFunction(f"{function.__name__}*", real=True, __dict__=derivative)
+        force = force.replace(function, aware[function])
+    found = sp.Matrix(force).jacobian(sp.Matrix(list(variables))).xreplace({sigma: z}).subs(1 + EPS * sigma, ROOT)
+    return sp.ImmutableMatrix(found.xreplace({aware[function](z): function(z) for function in table}))
+
+
+def derive_pair_jacobian(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivation:
+    """Derive what agent j does to ∂u_i/∂(q, p): c1 (w I + 2 w' ΔΔᵀ) + 2 c2 a' (p_j − p_i) Δᵀ in q_j, c2 a I in p_j.
+
+    w is the weight of Δ = q_j − q_i in the force; w' and a' are derivatives in ‖Δ‖². The result is (∂/∂q_j, ∂/∂p_j) side
+    by side; those in q_i, p_i are their negatives, and those of the force on j are the opposite of all: the residuals
+    hold each of them.
+
+    Parameters
+    ----------
+    m : int
+        Dimension, 1, 2 or 3.
+    gains : GainSymbols
+        Gains; all symbolic if not given.
+
+    Raises
+    ------
+    ArgumentError
+        If m is not 1, 2 or 3.
+
+    Examples
+    --------
+    >>> derive_pair_jacobian(2).holds
+    True
+    """
+    pair = GenericPair(m)
+    (q_i, q_j), (p_i, p_j) = pair.q, pair.p
+    delta, slip, z = q_j - q_i, p_j - p_i, pair.z
+    table = {PHI: PHI_SLOPE, ADJACENCY: ADJACENCY_SLOPE}
+    sigma = sigma_norm(delta)
+
+    def blocks(force: sp.Matrix) -> list[sp.Matrix]:
+        return [_slopes(force, table, end, sigma, z) for end in (q_i, q_j, p_i, p_j)]
+
+    on_i, on_j = (blocks(force) for force in pair.forces(gains))
+    weight, slope = PHI(z) / ROOT, (PHI_SLOPE(z) - EPS * PHI(z) / ROOT) / (2 * ROOT**2)
+    consensus = ADJACENCY_SLOPE(z) / (2 * ROOT)
+    stiffness = gains.c1_alpha * (weight * sp.eye(m) + 2 * slope * delta * delta.T)
+    by_position = stiffness + 2 * gains.c2_alpha * consensus * slip * delta.T
+    by_velocity = gains.c2_alpha * ADJACENCY(z) * sp.eye(m)
+    stated = (-by_position, by_position, -by_velocity, by_velocity)
+    residuals = [
+        sp.expand(entry)
+        for found, sign in ((on_i, 1), (on_j, -1))
+        for one, claimed in zip(found, stated, strict=True)
+        for entry in one - sign * claimed
+    ]
+    steps = (
+        Step(
+            r"The force of $j$ on $i$ in $\Delta = q_j - q_i$, with $w = \sqrt{1 + \epsilon \|\Delta\|^2}$:",
+            weight * delta,
+        ),
+        Step(r"the slope of its weight in $\|\Delta\|^2$,", slope),
+        Step(r"and of $a_{ij}$,", consensus),
+        Step(r"so $\partial u_i/\partial q_j = -\partial u_i/\partial q_i$ has from this pair", by_position),
+        Step(r"and $\partial u_i/\partial p_j = -\partial u_i/\partial p_i$", by_velocity),
+    )
+    result = sp.ImmutableMatrix(sp.Matrix.hstack(by_position, by_velocity))
+    return Derivation("Jacobian of one pair", steps, result, tuple(residuals))
+
+
+def derive_agent_jacobian(m: int = 2, *, gains: GainSymbols = GAINS, bounded: bool = False) -> Derivation:
+    """Derive what the γ-agent does to ∂u_i/∂(q_i, p_i), with x = q_i − q_r: −c1 I, or −c1 (I/w − x xᵀ/w³), and −c2 I.
+
+    Parameters
+    ----------
+    m : int
+        Dimension, 1, 2 or 3.
+    gains : GainSymbols
+        Gains; all symbolic if not given.
+    bounded : bool
+        The pull of Algorithm 3, by σ₁, instead of Algorithm 2's; w = √(1 + ‖x‖²).
+
+    Raises
+    ------
+    ArgumentError
+        If m is not 1, 2 or 3.
+
+    Examples
+    --------
+    >>> derive_agent_jacobian(3, bounded=True).holds
+    True
+    """
+    q_i, p_i, q_r, p_r = (vector(name, ensure_dimension(m)) for name in ("q_i", "p_i", "q_r", "p_r"))
+    x = q_i - q_r
+    force = (gamma_force if bounded else own_force)(q_i, p_i, q_r, p_r, gains=gains)
+    pull = sp.eye(m)
+    if bounded:
+        root = sp.sqrt(1 + sp.Add(*(c**2 for c in x)))
+        pull = sp.eye(m) / root - x * x.T / root**3
+    by_position, by_velocity = -gains.c1_gamma * pull, -gains.c2_gamma * sp.eye(m)
+    stated = ((q_i, by_position), (p_i, by_velocity), (q_r, -by_position), (p_r, -by_velocity))
+    residuals = [
+        sp.simplify(entry)
+        for end, claimed in stated
+        for entry in sp.ImmutableMatrix(force).jacobian(sp.Matrix(list(end))) - claimed
+    ]
+    steps = (
+        Step(r"The pull to the $\gamma$-agent:", force),
+        Step(r"in $q_i$, and with the other sign in $q_r$,", by_position),
+        Step(r"in $p_i$, and with the other sign in $p_r$,", by_velocity),
+    )
+    result = sp.ImmutableMatrix(sp.Matrix.hstack(by_position, by_velocity))
+    return Derivation("Jacobian of the pull to the gamma-agent", steps, result, tuple(residuals))
+
+
+def turn(obstacle: GenericObstacle) -> sp.Matrix:
+    """Return d(p_hat)/dq at fixed p: how the velocity of the closest point turns as the agent moves.
+
+    Zero at a wall; at a sphere, along e, −(μ/ρ) [⟨a, e⟩ Pp + ⟨a, p⟩ Pe + a ⟨Pe, p⟩] with a = x/ρ.
+
+    Parameters
+    ----------
+    obstacle : GenericObstacle
+        An agent and an obstacle of a kind.
+
+    Examples
+    --------
+    >>> turn(GenericObstacle("wall", 2))
+    Matrix([
+    [0, 0],
+    [0, 0]])
+    """
+    m, x, p = obstacle.m, obstacle.x, obstacle.p
+    if obstacle.kind == "wall":
+        return sp.zeros(m, m)
+    distance = sp.sqrt(x.dot(x))
+    a = x / distance
+    projection = sp.eye(m) - a * a.T
+    bend = projection * p * a.T + a.dot(p) * projection + a * (projection * p).T
+    return -obstacle.mu / distance * bend
+
+
+def derive_obstacle_jacobian(kind: str, m: int = 2, *, gains: GainSymbols = GAINS) -> Derivation:
+    """Derive what an obstacle does to ∂u_i/∂(q_i, p_i), its β-agent moving as the agent does.
+
+    With the gap g = q̂ − q, D = ∂q̂/∂q and w the weight of g: in q_i
+    −c1 [w (I − D) + 2 w' g gᵀ] + c2 [b ∂p̂/∂q − 2 b' (p̂ − p) gᵀ], since the gradient of ‖g‖² is −2g; in p_i
+    c2 b (D − I).
+
+    Parameters
+    ----------
+    kind : str
+        ``"wall"`` or ``"sphere"``.
+    m : int
+        Dimension, 1, 2 or 3.
+    gains : GainSymbols
+        Gains; all symbolic if not given.
+
+    Raises
+    ------
+    ArgumentError
+        On an unknown kind or a bad dimension.
+
+    Examples
+    --------
+    >>> derive_obstacle_jacobian("sphere", 2).holds
+    True
+    """
+    one = GenericObstacle(kind, m)
+    gap, slip, z = one.gap, one.rate - one.p, one.z
+    table = {PHI_BETA: PHI_BETA_SLOPE, WEIGHT: WEIGHT_SLOPE}
+    weight = PHI_BETA(z) / ROOT
+    slope = (PHI_BETA_SLOPE(z) - EPS * PHI_BETA(z) / ROOT) / (2 * ROOT**2)
+    braking = WEIGHT_SLOPE(z) / (2 * ROOT)
+    own = sp.eye(m) - one.derivative
+    by_position = -gains.c1_beta * (weight * own + 2 * slope * gap * gap.T)
+    by_position += gains.c2_beta * (WEIGHT(z) * turn(one) - 2 * braking * slip * gap.T)
+    by_velocity = -gains.c2_beta * WEIGHT(z) * own
+    names = {
+        f(z): sp.Symbol(f.__name__) for f in (PHI_BETA, WEIGHT, PHI_BETA_SLOPE, WEIGHT_SLOPE)
+    }  # then it is rational
+    force = one.force(gains)
+    residuals = [
+        one.reduce((entry - claimed).xreplace(names))
+        for end, block in ((one.x, by_position), (one.p, by_velocity))
+        for entry, claimed in zip(_slopes(force, table, end, sigma_norm(gap), z), block, strict=True)
+    ]
+    steps = (
+        Step(r"The gap to the closest point, $g = \hat q - q$:", gap),
+        Step(r"how the closest point follows, $D = \partial \hat q/\partial q$:", one.derivative),
+        Step(r"how its velocity turns, $\partial \hat p/\partial q$:", turn(one)),
+        Step(r"so in $q_i$, with $w = \sqrt{1 + \epsilon \|g\|^2}$,", by_position),
+        Step(r"and in $p_i$", by_velocity),
+    )
+    result = sp.ImmutableMatrix(sp.Matrix.hstack(by_position, by_velocity))
+    return Derivation(f"Jacobian of a {kind}", steps, result, tuple(residuals))

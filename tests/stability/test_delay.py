@@ -1,0 +1,191 @@
+"""Delay margins against closed forms, roots against the margin, and delayed flocks just below and above it."""
+
+from __future__ import annotations
+
+from math import cos, inf, pi, sin
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.special import lambertw
+
+from flockana.environment.targets import LinearTarget, StaticTarget
+from flockana.equilibria import find_equilibrium
+from flockana.errors import ArgumentError, UnknownNameError
+from flockana.interactions import Gains
+from flockana.lattice import hexagonal_spiral
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.simulate import simulate
+from flockana.stability.delay import (
+    DelaySystem,
+    delay_margin,
+    delay_system,
+    rightmost_roots,
+    scalar_margin,
+    simulate_delayed,
+)
+
+ORIGIN = StaticTarget((0.0, 0.0))
+LAW = Algorithm2(target=ORIGIN)
+
+
+def scalar(k, d, k0=0.0, d0=0.0, neutral=0):
+    return DelaySystem((np.array([[k0]]), np.array([[d0]])), (np.array([[k]]), np.array([[d]])), neutral)
+
+
+def lone(c1, c2, target=None):
+    return Algorithm2(gains=Gains(c1_gamma=c1, c2_gamma=c2), target=target or StaticTarget((0.0,)))
+
+
+@given(st.floats(0.0, 30.0), st.floats(0.1, 20.0))
+@settings(max_examples=25, deadline=None)
+def test_the_sweep_finds_the_scalar_margin(k, d):
+    """k + jωd = ω² e^jωτ: on the axis the equation holds, and the sweep finds the same delay."""
+    margin = scalar_margin(k, d)
+    w, tau = margin.frequency, margin.delay
+    assert k + 1j * w * d == pytest.approx(w * w * np.exp(1j * w * tau), rel=1e-9)
+    assert delay_margin(scalar(k, d, neutral=int(k == 0.0))).delay == pytest.approx(tau, rel=1e-9)
+
+
+def test_margins_that_are_known():
+    assert scalar_margin(0.0, 2.0).delay == pytest.approx(pi / 4)  # v' = −2 v(t − τ): π/(2·2)
+    assert scalar_margin(9.0, 0.0).delay == 0.0  # without damping any delay feeds energy in
+    assert scalar_margin(0.0, 0.0).delay == inf
+    assert delay_margin(scalar(4.0, -1.0)).delay == 0.0  # unstable without delay
+    # prompt damping that outweighs the delayed pull at every frequency: |ω² + jω d0| > k where d0² > 2 k ... never lost
+    assert delay_margin(scalar(1.0, 0.0, k0=3.0, d0=4.0)).delay == inf
+
+
+def test_modes_that_commute_have_the_least_of_their_margins():
+    rng = np.random.default_rng(3)
+    basis = np.linalg.qr(rng.standard_normal((5, 5)))[0]
+    k, d = rng.uniform(1.0, 40.0, 5), rng.uniform(0.5, 8.0, 5)
+    zero = np.zeros((5, 5))
+    system = DelaySystem((zero, zero), (basis * k @ basis.T, basis * d @ basis.T))
+    each = [scalar_margin(*pair) for pair in zip(k, d, strict=True)]
+    best = min(each, key=lambda margin: margin.delay)
+    found = delay_margin(system)
+    assert (found.delay, found.frequency) == pytest.approx((best.delay, best.frequency), rel=1e-9)
+
+
+@pytest.mark.parametrize("tau", [0.3, 1.0, 3.0])
+def test_roots_of_a_first_order_equation_are_lambert_w(tau):
+    """v' = −v(t − τ): s = W_k(−τ)/τ; the position adds the root 0, set apart as neutral."""
+    found = rightmost_roots(scalar(0.0, 1.0, neutral=1), tau, nodes=20, count=4)
+    exact = np.array([lambertw(-tau, k) for k in (-3, -2, -1, 0, 1, 2)]) / tau
+    exact = exact[np.lexsort((-exact.imag, -exact.real.round(9)))][:4]
+    np.testing.assert_allclose(found, exact, rtol=1e-9)
+
+
+@pytest.mark.parametrize("delayed", ["all", "pairs"])
+def test_at_the_margin_the_rightmost_roots_are_on_the_axis(delayed):
+    system = delay_system(LAW, find_equilibrium(LAW, hexagonal_spiral(3, 7.0)).q, delayed=delayed)
+    margin = delay_margin(system)
+    for share, sign in ((0.9, -1.0), (1.0, 0.0), (1.1, 1.0)):
+        root = rightmost_roots(system, share * margin.delay, nodes=10, count=1)[0]
+        assert np.sign(root.real.round(9)) == sign
+        assert np.linalg.svd(system.characteristic(root, share * margin.delay))[1][-1] < 1e-8
+        if share == 1.0:
+            assert abs(root.imag) == pytest.approx(margin.frequency, rel=1e-9)
+
+
+def test_a_flocks_margin_lies_between_those_of_its_numerical_range():
+    """Frozen: n = 7 under the default gains, by sweep and by collocation; damping by the γ-agent delayed or not."""
+    q = find_equilibrium(LAW, hexagonal_spiral(7, 7.0)).q
+    margins = [delay_margin(delay_system(LAW, q, delayed=name)).delay for name in ("all", "pairs")]
+    assert margins == pytest.approx([0.0127827452, 0.0129921726], rel=1e-8)
+    lattice = delay_margin(delay_system(Algorithm1(), hexagonal_spiral(7, 7.0)))
+    assert lattice.delay == pytest.approx(0.0086924950, rel=1e-8)
+
+
+def test_the_integrator_is_of_fourth_order():
+    """At the margin, k = ω² cos ωτ and d = ω sin ωτ: halving the step takes the error down by sixteen."""
+    w, tau = 1.3, 0.4
+    law = lone(w * w * cos(w * tau), w * sin(w * tau))
+    errors, fine = [], simulate_delayed(law, [[1.0]], [[0.0]], (0.0, 6.0), delay=tau, steps=64)
+    for steps in (2, 4, 8):
+        run = simulate_delayed(law, [[1.0]], [[0.0]], (0.0, 6.0), delay=tau, steps=steps)
+        errors.append(abs(run.q[-1, 0, 0] - fine.q[-1, 0, 0]))
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(4.0, abs=0.6)
+    assert np.log2(errors[1] / errors[2]) == pytest.approx(4.0, abs=0.6)
+
+
+def test_the_method_of_steps_by_hand():
+    """x'' = −2 x(t − 1), at rest at 1 before: 1 − t², then 1 − t² + (t − 1)⁴/6."""
+    run = simulate_delayed(lone(2.0, 0.0), [[1.0]], [[0.0]], (0.0, 2.0), delay=1.0, steps=10)
+    t = run.t
+    exact = 1.0 - t**2 + np.where(t > 1.0, (t - 1.0) ** 4 / 6.0, 0.0)
+    np.testing.assert_allclose(run.q[:, 0, 0], exact, atol=2e-5)
+    fine = simulate_delayed(lone(2.0, 0.0), [[1.0]], [[0.0]], (0.0, 2.0), delay=1.0, steps=80)
+    assert abs(fine.q[-1, 0, 0] - exact[-1]) < 1e-8
+
+
+def test_a_moving_past_is_heard():
+    """Before the start the agent moved steadily: what is heard at t = 0 is where it was τ ago, and so is the target."""
+    run = simulate_delayed(
+        lone(2.0, 0.5, LinearTarget((1.0,), (3.0,))), [[0.0]], [[4.0]], (0.0, 0.1), delay=0.1, steps=50
+    )
+    u = -2.0 * ((-0.4) - (1.0 - 0.3)) - 0.5 * (4.0 - 3.0)
+    assert (run.p[1, 0, 0] - 4.0) / run.t[1] == pytest.approx(u, abs=5e-3)
+
+
+@pytest.mark.parametrize("delayed", ["all", "pairs"])
+def test_a_short_delay_is_none(delayed):
+    q = hexagonal_spiral(4, 7.0) + 0.2
+    p = np.random.default_rng(1).standard_normal(q.shape)
+    late = simulate_delayed(LAW, q, p, (0.0, 0.3), delay=1e-3, steps=1, delayed=delayed)
+    prompt = simulate(LAW, q, p, (0.0, 0.3), t_eval=[0.3])
+    np.testing.assert_allclose(late.q[-1], prompt.q[-1], atol=5e-3)
+
+
+def grown(system, q, share, law):
+    """(slope of log amplitude of the nonlinear delayed flock, rightmost real part), started in the rightmost mode."""
+    tau = share * delay_margin(system).delay
+    root = rightmost_roots(system, tau, nodes=10, count=1)[0]
+    mode = np.linalg.svd(system.characteristic(root, tau))[2][-1].conj()
+    size = 1e-5 / np.abs(mode).max()
+    span, steps = 1.2, 8
+    q0, p0 = (
+        q + size * (s * mode).real.reshape(q.shape) if k == 0 else size * (s * mode).real.reshape(q.shape)
+        for k, s in enumerate((1.0, root))
+    )
+    run = simulate_delayed(law, q0, p0, (0.0, span), delay=tau, steps=steps)
+    amplitude = np.linalg.norm((run.p @ np.eye(q.shape[1])).reshape(len(run.t), -1), axis=1)
+    period = 2 * pi / abs(root.imag)
+    centres = np.arange(0.4 * span, span - period, period)
+    tops = [np.log(np.sqrt(np.mean(amplitude[(run.t >= c) & (run.t < c + period)] ** 2))) for c in centres]
+    return np.polyfit(centres, tops, 1)[0], root.real
+
+
+@pytest.mark.parametrize("share", [0.85, 1.15])
+def test_the_nonlinear_flock_decays_below_the_margin_and_grows_above(share):
+    q = find_equilibrium(LAW, hexagonal_spiral(3, 7.0)).q
+    slope, predicted = grown(delay_system(LAW, q), q, share, LAW)
+    assert np.sign(slope) == np.sign(share - 1.0)
+    assert slope == pytest.approx(
+        predicted, rel=0.1
+    )  # the past before the start is a line, no mode: others are excited
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "message"),
+    [
+        (
+            lambda: delay_system(LAW, [[0.0, 0.0]], delayed="some"),
+            UnknownNameError,
+            "unknown set of delayed terms 'some'",
+        ),
+        (lambda: rightmost_roots(scalar(1.0, 1.0), 0.0), ArgumentError, "delay = 0: expected a number > 0"),
+        (
+            lambda: simulate_delayed(LAW, [[0.0]], [[0.0]], (0, 1), delay=0.1),
+            ArgumentError,
+            "the target has 2 components",
+        ),
+        (lambda: simulate_delayed(LAW, [[0.0, 0.0]], [[0.0, 0.0]], (0, 1), delay=-1.0), ArgumentError, "delay = -1"),
+        (lambda: simulate_delayed(None, [[0.0]], [[0.0]], (0, 1), delay=0.1), ArgumentError, "law = None: expected"),
+    ],
+)
+def test_refusals(call, error, message):
+    with pytest.raises(error, match=message):
+        call()

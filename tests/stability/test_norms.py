@@ -1,0 +1,190 @@
+"""Norms against closed forms, python-control, and the bounds that hold for every flock."""
+
+from __future__ import annotations
+
+from math import inf, sqrt
+
+import control
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from flockana.environment.targets import StaticTarget
+from flockana.equilibria import find_equilibrium
+from flockana.errors import ArgumentError, UnknownNameError
+from flockana.interactions import AlphaInteraction, Gains
+from flockana.lattice import hexagonal_spiral
+from flockana.laws.algorithm3 import Algorithm3
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.stability.blocks import complement, second_order
+from flockana.stability.norms import disturbance_system, h2_bounds, h2_norm, hinf_norm, norms_against_size
+
+ALPHA = AlphaInteraction()
+ORIGIN = StaticTarget((0.0, 0.0))
+
+
+def oscillator(k, d):
+    return control.ss([[0.0, 1.0], [-k, -d]], [[0.0], [1.0]], [[1.0, 0.0]], 0.0)
+
+
+@given(st.floats(0.1, 50.0), st.floats(0.05, 20.0))
+@settings(max_examples=30, deadline=None)
+def test_a_scalar_oscillator_has_the_textbooks_norms(k, d):
+    assert h2_norm(oscillator(k, d)) == pytest.approx(1.0 / sqrt(2.0 * d * k), rel=1e-9)
+    resonant = d * d < 2.0 * k
+    norm, peak = hinf_norm(oscillator(k, d))
+    assert norm == pytest.approx(1.0 / (d * sqrt(k - d * d / 4.0)) if resonant else 1.0 / k, rel=1e-8)
+    # the peak is flat: its place is known to the square root of the tolerance
+    assert peak == pytest.approx(sqrt(max(0.0, k - d * d / 2.0)), abs=2e-3 * sqrt(k))
+
+
+def test_unstable_and_integrating_systems_have_no_norm():
+    for system in (oscillator(1.0, -0.1), oscillator(1.0, 0.0), oscillator(0.0, 1.0)):
+        assert (h2_norm(system), hinf_norm(system)[0]) == (inf, inf)
+
+
+def bond(law):
+    """Two agents d apart under Algorithm 1: stretching has stiffness 2 c1α φ', damping 2 c2α a."""
+    q = np.array([[0.0], [7.0]])
+    return 2.0 * law.gains.c1_alpha * ALPHA.hessian(q)[0, 0], 2.0 * law.gains.c2_alpha * ALPHA.laplacian(q)[0, 0]
+
+
+def test_a_bond_has_the_norms_of_one_oscillator():
+    law = Algorithm1()
+    (k, d), system = bond(law), disturbance_system(second_order(law, [[0.0], [7.0]]))
+    assert h2_norm(system) == pytest.approx(1.0 / sqrt(2.0 * d * k), rel=1e-12)
+    assert hinf_norm(system)[0] == pytest.approx(1.0 / (d * sqrt(k - d * d / 4.0)), rel=1e-8)
+
+
+@pytest.mark.parametrize("law", [Algorithm1(), Algorithm2(target=ORIGIN)])
+def test_against_python_control(law):
+    """Its scipy fallback for H₂ and its bisection for H∞ (tolerance 1e-6), on a flock of seven."""
+    system = disturbance_system(second_order(law, find_equilibrium(law, hexagonal_spiral(7, 7.0)).q))
+    assert h2_norm(system) == pytest.approx(control.norm(system, 2, method="scipy"), rel=1e-9)
+    more = system.ninputs - system.noutputs  # its fallback takes as many outputs as inputs only (control 0.10.2)
+    square = control.ss(system.A, system.B, np.vstack([system.C, np.zeros((more, system.nstates))]), 0.0)
+    assert hinf_norm(system)[0] == pytest.approx(control.norm(square, "inf", method="scipy"), rel=3e-6)
+
+
+def test_slycot_is_asked_where_it_is_present(monkeypatch):
+    """A stand-in: slycot is not among our requirements."""
+    monkeypatch.setattr("flockana.stability.norms._slycot", lambda: True)
+    monkeypatch.setattr(control, "linfnorm", lambda system, tol: (system.nstates + tol, 7.0))
+    assert hinf_norm(oscillator(1.0, 1.0), tol=0.5) == (2.5, 7.0)
+
+
+def test_the_peak_is_the_largest_gain_of_a_fine_sweep():
+    law = Algorithm2(target=ORIGIN)
+    system = disturbance_system(second_order(law, find_equilibrium(law, hexagonal_spiral(12, 7.0)).q))
+    norm, peak = hinf_norm(system)
+    gains = [np.linalg.norm(system(1j * w), 2) for w in np.linspace(0.0, 60.0, 300)]
+    assert max(gains) <= norm * (1.0 + 1e-9)
+    assert np.linalg.norm(system(1j * peak), 2) == pytest.approx(norm, rel=1e-9)
+    assert max(gains) > 0.99 * norm
+
+
+def test_the_quotient_is_exact():
+    """What is left of the spectrum is the whole, less one zero for each neutral or drifting motion."""
+    for law, gone in ((Algorithm1(), 5), (Algorithm2(target=ORIGIN), 1)):
+        flock = second_order(law, find_equilibrium(law, hexagonal_spiral(7, 7.0)).q)
+        every, left = np.linalg.eigvals(flock.matrix()), np.linalg.eigvals(flock.quotient()[0])
+        assert len(every) - len(left) == gone
+        every = every[np.argsort(np.abs(every))]
+        assert np.abs(every[:gone]).max() < 1e-5
+        np.testing.assert_allclose(np.sort_complex(every[gone:].round(8)), np.sort_complex(left.round(8)), atol=1e-6)
+        assert left.real.max() < 0.0
+
+
+def test_white_noise_moves_the_shape_as_the_norm_says():
+    """Covariance of the whole flock, integrated to its limit from zero, against the norm to the shape."""
+    law = Algorithm2(target=ORIGIN)
+    flock = second_order(law, find_equilibrium(law, hexagonal_spiral(3, 7.0)).q)
+    from scipy.linalg import expm
+
+    a, n = flock.matrix(), len(flock.stiffness)
+    noise = np.zeros((2 * n, 2 * n))
+    noise[n:, n:] = np.eye(n)
+    big = expm(np.block([[-a, noise], [np.zeros_like(a), a.T]]) * 0.05)  # Van Loan: one step of the covariance
+    step, q_step = big[2 * n :, 2 * n :].T, big[2 * n :, 2 * n :].T @ big[: 2 * n, 2 * n :]
+    covariance = np.zeros_like(a)
+    for _ in range(800):
+        covariance = step @ covariance @ step.T + q_step
+    shapes = complement(flock.rigid)
+    power = np.trace(shapes.T @ covariance[:n, :n] @ shapes)
+    assert h2_norm(disturbance_system(flock)) == pytest.approx(sqrt(power), rel=1e-9)
+    assert covariance[:n, :n].max() > 10.0 * power  # while the orientation walks away
+
+
+def test_deviations_that_hold_the_turning_are_unbounded_but_on_a_line():
+    law = Algorithm2(target=ORIGIN)
+    assert (
+        disturbance_system(second_order(law, find_equilibrium(law, hexagonal_spiral(3, 7.0)).q), output="deviations")
+        is None
+    )
+    line = Algorithm2(target=StaticTarget((0.0,)))
+    flock = second_order(line, find_equilibrium(line, [[-4.0], [3.0]]).q)
+    norms = [h2_norm(disturbance_system(flock, output=name)) for name in ("shape", "deviations")]
+    assert norms[0] == pytest.approx(norms[1], rel=1e-12)
+
+
+@pytest.mark.parametrize("law", [Algorithm1(), Algorithm2(target=ORIGIN, gains=Gains(c1_gamma=0.3, c2_gamma=8.0))])
+def test_the_closed_form_brackets_h2(law):
+    flock = second_order(law, find_equilibrium(law, hexagonal_spiral(12, 7.0)).q)
+    low, high = h2_bounds(flock)
+    assert low <= h2_norm(disturbance_system(flock)) <= high
+
+
+def test_with_equal_damping_the_bracket_closes():
+    law = Algorithm2(target=ORIGIN, gains=Gains(c2_alpha=0.0, c2_gamma=3.0))
+    flock = second_order(law, find_equilibrium(law, hexagonal_spiral(7, 7.0)).q)
+    assert h2_bounds(flock) == pytest.approx((h2_norm(disturbance_system(flock)),) * 2, rel=1e-9)
+
+
+def test_norms_grow_with_the_flock():
+    table = norms_against_size(Algorithm2(target=ORIGIN), [3, 7, 12])
+    assert table.sizes == (3, 7, 12)
+    assert np.all(np.diff(table.h2) > 0.0)
+    assert np.all(np.diff(table.hinf) > 0.0)
+    np.testing.assert_allclose(table.h2, [0.02118798, 0.04182836, 0.06465914], rtol=1e-6)  # frozen: our own values
+    np.testing.assert_allclose(table.hinf, [0.00683181, 0.01109939, 0.01846696], rtol=1e-6)
+
+
+def test_per_agent_gains_keep_one_neutral_rotation():
+    law = Algorithm2(target=ORIGIN, gains=Gains(c1_gamma=np.linspace(0.5, 2.0, 7), c2_gamma=np.linspace(3.0, 1.0, 7)))
+    flock = second_order(law, find_equilibrium(law, hexagonal_spiral(7, 7.0)).q)
+    assert (flock.neutral.shape[1], flock.drifting.shape[1]) == (1, 0)
+    assert 0.0 < h2_norm(disturbance_system(flock)) < inf
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "message"),
+    [
+        (
+            lambda: second_order(Algorithm1(), [[0.0], [6.0]]),
+            ArgumentError,
+            "no equilibrium: residual force .* finds one",
+        ),
+        (
+            lambda: second_order(Algorithm3(target=ORIGIN), [[0.0, 0.0]]),
+            ArgumentError,
+            "expected Algorithm1 or Algorithm2",
+        ),
+        (lambda: second_order(Algorithm1(), np.zeros((1001, 2))), ArgumentError, "n m = 2002: expected at most 2000"),
+        (lambda: second_order(Algorithm2(target=ORIGIN), [[0.0]]), ArgumentError, "the target has 2 components"),
+        (
+            lambda: disturbance_system(second_order(Algorithm1(), [[0.0], [7.0]]), output="all"),
+            UnknownNameError,
+            "unknown output 'all'",
+        ),
+        (lambda: norms_against_size(Algorithm1(), [0]), ArgumentError, "sizes = 0"),
+    ],
+)
+def test_refusals(call, error, message):
+    with pytest.raises(error, match=message):
+        call()
+
+
+def test_one_agent_has_no_shape():
+    system = disturbance_system(second_order(Algorithm2(target=ORIGIN), [[0.0, 0.0]]))
+    assert (h2_norm(system), hinf_norm(system)) == (0.0, (0.0, 0.0))
