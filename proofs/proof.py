@@ -1,11 +1,16 @@
-"""What a proof is: a statement, its hypotheses, and steps that a machine checks."""
+"""What a proof is: a statement, its hypotheses, and steps that a machine checks; and where proofs are found."""
 
 from __future__ import annotations
 
 import importlib
 import pkgutil
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from pathlib import Path
+
+RIGOURS = ("symbolic", "smt", "interval")
+_DEFINES_PROOF = re.compile(r"^PROOF\b", re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -23,9 +28,11 @@ class Step:
 
 @dataclass(frozen=True)
 class Proof:
-    """A theorem with the function that checks its steps, in order; one that fails ends the proof.
+    """A theorem with the function that checks its steps, in order: all must hold.
 
-    `rigour` is ``"symbolic"``, ``"smt"`` or ``"interval"``: sampling is no proof.
+    `rigour` is ``"symbolic"``, ``"smt"`` or ``"interval"``, the weakest of its steps: sampling is no proof. `id` is the
+    name of the file, with hyphens. `theorems` names the entries of the catalogue that it backs; a run that takes longer
+    than `time_limit` seconds is killed, and nothing is proved.
     """
 
     id: str
@@ -33,11 +40,32 @@ class Proof:
     hypotheses: str
     rigour: str
     steps: Callable[[], Iterator[Step]]
+    title: str = ""
+    theorems: tuple[str, ...] = ()
+    time_limit: float = 120.0
+
+    def __post_init__(self) -> None:
+        if self.rigour not in RIGOURS:
+            raise ValueError(f"rigour = {self.rigour!r}: expected one of {', '.join(RIGOURS)}; sampling is no proof")
+
+
+def names(package: str = "proofs") -> tuple[str, ...]:
+    """Ids of all proofs: the files of a package that define `PROOF`, but for `_template.py`. None is imported."""
+    infos = pkgutil.iter_modules(importlib.import_module(package).__path__)
+    files = ((info.name, Path(info.module_finder.path, f"{info.name}.py")) for info in infos if info.name[0] != "_")
+    found = (name for name, file in files if _DEFINES_PROOF.search(file.read_text(encoding="utf-8")))
+    return tuple(sorted(name.replace("_", "-") for name in found))
+
+
+def load(name: str, package: str = "proofs") -> Proof:
+    """The proof of that id."""
+    module = importlib.import_module(f"{package}.{name.replace('-', '_')}")
+    proof: Proof = module.PROOF
+    if proof.id != name:
+        raise ValueError(f"{module.__name__} calls its proof {proof.id!r}: expected {name!r}, after the file")
+    return proof
 
 
 def proofs() -> tuple[Proof, ...]:
-    """Every `PROOF` of a file of this package, by id."""
-    package = importlib.import_module("proofs")
-    modules = (importlib.import_module(f"proofs.{info.name}") for info in pkgutil.iter_modules(package.__path__))
-    found = (getattr(module, "PROOF", None) for module in modules if not module.__name__.endswith("__main__"))
-    return tuple(sorted((one for one in found if isinstance(one, Proof)), key=lambda one: one.id))
+    """Every proof, by id."""
+    return tuple(load(name) for name in names())

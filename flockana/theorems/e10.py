@@ -26,6 +26,7 @@ def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
             computed=f"ρ₁(1⁻) - ρ₁(1⁺) = {jump}",
             stated="differentiable at h = 1",
             witness="z = 1",
+            proof="smoothness",
             detail=f"at h = 1 the function jumps by {jump} at z = 1",
         ),
         Claim(
@@ -35,6 +36,7 @@ def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
             computed="ρ_h(h) = {}, ρ_h'(h) = {}, ρ_h(1) = {}, ρ_h'(1) = {}".format(*ends),
             stated="C¹ for every 0 < h < 1",
             witness="both ends of the taper",
+            proof="smoothness",
             detail="for 0 < h < 1 value and slope match at both ends of the taper",
         ),
     ]

@@ -31,6 +31,7 @@ _EIGHT: tuple[Site, ...] = (
     (2, 0, 0),
 )
 _FRAGMENT = 6
+_PROOF = "nonplanar-fcc"
 
 
 def fcc_star(d: float) -> FloatArray:
@@ -148,6 +149,7 @@ def _counterexample(name: str, q: FloatArray, sites: tuple[Site, ...], tolerance
             margin=graph.margin,
             error=0.0,
             witness={"q": q} | (vars(witness) if witness else {}),
+            proof=_PROOF,
             detail=f"{len(sites)} face-centred cubic sites: {graph.detail}",
         ),
         Claim(
@@ -158,6 +160,7 @@ def _counterexample(name: str, q: FloatArray, sites: tuple[Site, ...], tolerance
             margin=uncrossed.margin,
             error=uncrossed.error,
             witness=uncrossed.witness,
+            proof=_PROOF,
             detail=f"in space its edges do not cross: {uncrossed.detail}",
         ),
     ]
@@ -176,6 +179,7 @@ def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
             margin=0.5 - bad,
             error=0.0,
             witness="every connected fragment, up to translation",
+            proof=_PROOF,
             detail=f"all {total} connected fragments of {_FRAGMENT} sites were tested: {bad} are not planar",
         ),
     ]

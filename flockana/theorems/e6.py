@@ -7,6 +7,7 @@ from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, ju
 
 _MOST = 60
 _D, _R = 7.0, 8.4
+_PROOF = "theorem5-counts"
 
 
 def link_counts() -> dict[int, tuple[int, int, int]]:
@@ -35,6 +36,7 @@ def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
             margin=float(table[2][1] - table[2][0]),
             error=0.0,
             witness={"n": exceeding},
+            proof=_PROOF,
             detail="two agents at distance d have 1 link; 3n - 6 is 0",
         ),
         Claim(
@@ -45,6 +47,7 @@ def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
             margin=float(slack),
             error=0.0,
             witness={"n with 3n - 6 links": [n for n in range(3, _MOST + 1) if table[n][0] == table[n][1]]},
+            proof=_PROOF,
             detail=f"hexagonal spirals of 3 to {_MOST} agents have at most 3n - 6 links, and that many only if n = 3",
         ),
         Claim(
@@ -55,6 +58,7 @@ def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
             margin=0.5 - len(off),
             error=0.0,
             witness={"n": off},
+            proof=_PROOF,
             detail=f"hexagonal spirals of 1 to {_MOST} agents have Harborth's number of links, every one",
         ),
     ]

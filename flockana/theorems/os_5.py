@@ -44,6 +44,7 @@ CLAIMS = (
 _LISTED = 1000  # crossings that are listed at most
 _SHOWN = 10  # and shown as witness
 _WITNESS_LIMIT = 20_000  # links of which a Kuratowski subgraph is still found in about a minute
+_CROSSINGS, _COUNTS = "theorem5-crossings", "theorem5-counts"  # executable proofs
 _ROUNDING = 1e-12  # relative error of a distance of two stored positions near the origin
 
 
@@ -96,7 +97,8 @@ def _uncrossed(net: _Net, needs: list[Hypothesis], name: str, text: str) -> Clai
     """No two links cross: exact for the positions as stored; in space only a clearance speaks for the true ones."""
     count = len(net.crossings)
     if any(h.status == "unmet" for h in needs):
-        return Claim(name, "vacuous", computed=count, stated="no crossing", detail=f"{text}: {net.crossing_text}")
+        detail = f"{text}: {net.crossing_text}"
+        return Claim(name, "vacuous", computed=count, stated="no crossing", proof=_CROSSINGS, detail=detail)
     if count:
         margin, error, which, near = -float(count), 0.0, None, ""
     else:
@@ -112,6 +114,7 @@ def _uncrossed(net: _Net, needs: list[Hypothesis], name: str, text: str) -> Clai
         margin=margin,
         error=error,
         witness={"crossing": [net.agents(p) for p in net.crossings[:_SHOWN]]} if count else {"nearest": which},
+        proof=_CROSSINGS,
         detail=f"{text}: {net.crossing_text}{near}",
     )
 
@@ -138,7 +141,9 @@ def _graph(net: _Net, needs: list[Hypothesis]) -> Claim:
     )
 
 
-def _bound(net: _Net, needs: list[Hypothesis], name: str, bound: int, text: str) -> Claim:
+def _bound(
+    net: _Net, needs: list[Hypothesis], name: str, bound: int, text: str, *, proof: str | None = _COUNTS
+) -> Claim:
     count = len(net.links)
     return Claim(
         name,
@@ -148,6 +153,7 @@ def _bound(net: _Net, needs: list[Hypothesis], name: str, bound: int, text: str)
         margin=float(bound - count),
         error=0.0,
         witness=None,
+        proof=proof,
         detail=f"{count} links, {text} = {bound} (Harborth's number is {harborth(net.n)})",
     )
 
@@ -162,6 +168,7 @@ def _incomplete(net: _Net, needs: list[Hypothesis]) -> Claim:
         margin=float(missing) - 0.5,
         error=0.0,
         witness=_unlinked(net) if missing else None,
+        proof=_COUNTS,
         detail=f"not complete: {missing} pairs of {net.n} agents are not linked",
     )
 
@@ -179,7 +186,7 @@ def _quantitative(net: _Net) -> Claim:
     found = [_nearest_of_crossing(net, net.links[pair]) for pair in net.crossings]
     name, stated = "extension-quantitative", "of two crossing links of lengths at most ℓ, two agents are within ℓ/√2"
     if not found:
-        return Claim(name, "vacuous", computed=0, stated=stated, detail="no links cross")
+        return Claim(name, "vacuous", computed=0, stated=stated, proof=_CROSSINGS, detail="no links cross")
     failing = [k for k, (holds, _) in enumerate(found) if not holds]
     worst = failing[0] if failing else min(range(len(found)), key=lambda k: found[k][1])
     return Claim(
@@ -190,6 +197,7 @@ def _quantitative(net: _Net) -> Claim:
         margin=found[worst][1],
         error=0.0,
         witness=net.agents(net.crossings[worst]),
+        proof=_CROSSINGS,
         detail=f"{net.crossing_text}; the nearest pairs are within ℓ/√2 by {found[worst][1] / net.d:.3g} d or more",
     )
 
@@ -229,7 +237,7 @@ def check(q: FloatArray, d: float, r: float, tolerances: Tolerances) -> tuple[li
         _uncrossed(net, [*lattice, wide], "i", "edges of an α-lattice do not cross"),
         _graph(net, [*lattice, wide]),
         _bound(net, [*lattice, plane, many], "ii", printed, "3n - 6"),
-        _bound(net, [*lattice, plane], "ii-sharp", harborth(net.n), "floor(3n - sqrt(12n - 3))"),
+        _bound(net, [*lattice, plane], "ii-sharp", harborth(net.n), "floor(3n - sqrt(12n - 3))", proof=None),  # cited
         _incomplete(net, [*lattice, more]),
         _uncrossed(net, [far], "extension", "links of pairs farther apart than r/√2 do not cross"),
         _uncrossed(net, [loose], "extension-lengths", "links of pairs farther apart than ℓ/√2 do not cross"),

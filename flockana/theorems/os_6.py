@@ -6,7 +6,7 @@ import numpy as np
 
 from flockana.checks import FloatArray
 from flockana.laws.algorithm3 import Algorithm3
-from flockana.theorems.energy import balance, never_rises, stays_outside
+from flockana.theorems.energy import balance, never_rises, proved, stays_outside
 from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances
 from flockana.trajectory import Trajectory
 
@@ -58,7 +58,8 @@ def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], l
         return [law], [Claim(name, "vacuous", detail="another law") for name in ("rate", "balance")]
     static, (condition, since), outside = _static(run), _condition(run), stays_outside(run)
     needs = [law, static, condition, outside]
-    return needs, [never_rises(run, needs, since=since), balance(run, needs, tolerances)]
+    proof = proved(run, "theorem6")
+    return needs, [never_rises(run, needs, since=since, proof=proof), balance(run, needs, tolerances, proof=proof)]
 
 
 THEOREM = Theorem(

@@ -1,0 +1,292 @@
+"""The scalar functions of flocking in ball arithmetic (Arb): every result encloses the true values.
+
+An argument is an `arb` ball, or an exact number (int, Fraction, fmpq; a float counts with its binary value): the result
+contains the function's values on all of it. Comparisons of balls are true only if certain. Work at a precision of your
+choice, ``with flint.ctx.workdps(40): ...``. Squares of balls around 0 by `square`: ``x**2`` gives nan there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from fractions import Fraction
+from functools import cache
+from typing import Any
+
+from flint import acb, arb, ctx, fmpq
+
+
+def ball(x: Any) -> arb:
+    """An exact number, or a ball, as a ball at the present precision."""
+    return arb(fmpq(x.numerator, x.denominator)) if isinstance(x, Fraction) else arb(x)
+
+
+def exact(x: Any) -> fmpq:
+    """A number as a rational: a float or a string is the decimal that it prints as, 0.1 = 1/10."""
+    fraction = Fraction(str(x))
+    return fmpq(fraction.numerator, fraction.denominator)
+
+
+def hull(*balls: arb) -> arb:
+    """The smallest ball around several."""
+    first, *rest = balls
+    for one in rest:
+        first = first.union(one)
+    return first
+
+
+def square(x: arb) -> arb:
+    """x², never below 0."""
+    return (x * x).nonnegative_part()
+
+
+def monotone(f: Callable[[arb], arb], x: arb) -> arb:
+    """The range of a monotone function on a ball, from the ends of the ball: no overestimation."""
+    return f(x) if x.is_exact() else hull(f(x.lower()), f(x.upper()))
+
+
+def clamp(x: arb) -> arb:
+    """The nearest number in [0, 1]."""
+    return x.max(arb(0)).min(arb(1))
+
+
+@dataclass(frozen=True)
+class AlphaParameters:
+    """Parameters of the α-pair law as exact rationals; decimals as printed, d = "8.4" or 8.4 alike."""
+
+    d: fmpq = 7
+    r: fmpq = "8.4"
+    eps: fmpq = "0.1"
+    h: fmpq = "0.2"
+    a: fmpq = 5
+    b: fmpq = 5
+
+    def __post_init__(self) -> None:
+        _rationals(self)
+        if not (0 < self.d < self.r and self.eps > 0 and 0 < self.h < 1 and 0 < self.a <= self.b):
+            raise ValueError(f"{self}: expected 0 < d < r, eps > 0, 0 < h < 1, 0 < a <= b")
+
+    @classmethod
+    def of(cls, alpha: Any) -> AlphaParameters:
+        """Of an `AlphaInteraction`, each number as the decimal that it prints as."""
+        return cls(**{field.name: getattr(alpha, field.name) for field in fields(cls)})
+
+    def __str__(self) -> str:
+        return _listed(self)
+
+
+@dataclass(frozen=True)
+class BetaParameters:
+    """Parameters of the β-pair law as exact rationals: d' (here d), ε and h."""
+
+    d: fmpq = "4.2"
+    eps: fmpq = "0.1"
+    h: fmpq = "0.9"
+
+    def __post_init__(self) -> None:
+        _rationals(self)
+        if not (self.d > 0 and self.eps > 0 and 0 < self.h < 1):
+            raise ValueError(f"{self}: expected d > 0, eps > 0, 0 < h < 1")
+
+    @classmethod
+    def of(cls, beta: Any) -> BetaParameters:
+        """Of a `BetaInteraction`, each number as the decimal that it prints as."""
+        return cls(**{field.name: getattr(beta, field.name) for field in fields(cls)})
+
+    def __str__(self) -> str:
+        return _listed(self)
+
+
+def _rationals(bundle: Any) -> None:
+    for field in fields(bundle):
+        object.__setattr__(bundle, field.name, exact(getattr(bundle, field.name)))
+
+
+def _listed(bundle: Any) -> str:
+    return ", ".join(f"{field.name} = {getattr(bundle, field.name)}" for field in fields(bundle))
+
+
+def sigma_of_square(s: arb, eps: Any) -> arb:
+    """‖x‖_σ as a function of s = ‖x‖² >= 0, without cancellation at small s."""
+    s = ball(s).nonnegative_part()
+    return monotone(lambda s: s / ((1 + ball(eps) * s).sqrt() + 1), s)
+
+
+def sigma_norm(x: arb, eps: Any) -> arb:
+    """‖x‖_σ = (√(1 + ε x²) − 1)/ε of a Euclidean length."""
+    return sigma_of_square(square(ball(x)), eps)
+
+
+def sigma_1(s: arb) -> arb:
+    """s/√(1 + s²), increasing."""
+    return monotone(lambda s: s * (1 + square(s)).rsqrt(), ball(s))
+
+
+def sigma_1_slope(s: arb) -> arb:
+    """(1 + s²)^(−3/2)."""
+    root = (1 + square(ball(s))).rsqrt()
+    return root * root * root
+
+
+def bump(z: arb, h: Any) -> arb:
+    """ρ_h(z) for z >= 0, 0 < h < 1: nonincreasing, so that no ball is too wide for it."""
+    return monotone(lambda z: (1 + (clamp((z - ball(h)) / (1 - ball(h)))).cos_pi()) / 2, ball(z))
+
+
+def bump_slope(z: arb, h: Any) -> arb:
+    """ρ_h'(z), continuous: −π sin(π (z − h)/(1 − h))/(2 (1 − h)) on [h, 1], 0 elsewhere."""
+    rest = 1 - ball(h)
+    return -arb.pi() / (2 * rest) * clamp((ball(z) - ball(h)) / rest).sin_pi()
+
+
+def shift(a: Any, b: Any) -> arb:
+    """c = |a − b|/√(4ab), which makes φ(0) = 0."""
+    return (ball(b) - ball(a)) / (4 * ball(a) * ball(b)).sqrt()
+
+
+def phi(s: arb, a: Any, b: Any) -> arb:
+    """φ(s) = ½[(a+b) σ₁(s+c) + (a−b)], increasing."""
+    return ((ball(a) + ball(b)) * sigma_1(ball(s) + shift(a, b)) + ball(a) - ball(b)) / 2
+
+
+def phi_slope(s: arb, a: Any, b: Any) -> arb:
+    """φ'(s) > 0."""
+    return (ball(a) + ball(b)) / 2 * sigma_1_slope(ball(s) + shift(a, b))
+
+
+def d_alpha(par: AlphaParameters) -> arb:
+    """‖d‖_σ."""
+    return sigma_norm(ball(par.d), par.eps)
+
+
+def r_alpha(par: AlphaParameters) -> arb:
+    """‖r‖_σ."""
+    return sigma_norm(ball(par.r), par.eps)
+
+
+def adjacency(z: arb, par: AlphaParameters) -> arb:
+    """a_ij = ρ_h(z/r_α)."""
+    return bump(ball(z) / r_alpha(par), par.h)
+
+
+def phi_alpha(z: arb, par: AlphaParameters) -> arb:
+    """φ_α(z) = ρ_h(z/r_α) φ(z − d_α)."""
+    return adjacency(z, par) * phi(ball(z) - d_alpha(par), par.a, par.b)
+
+
+def phi_alpha_slope(z: arb, par: AlphaParameters) -> arb:
+    """dφ_α/dz, continuous."""
+    x, s, cutoff = ball(z) / r_alpha(par), ball(z) - d_alpha(par), r_alpha(par)
+    falling = bump_slope(x, par.h) / cutoff * phi(s, par.a, par.b)
+    return falling + bump(x, par.h) * phi_slope(s, par.a, par.b)
+
+
+def psi_alpha(z: arb, par: AlphaParameters) -> arb:
+    """ψ_α(z) = ∫_{d_α}^{z} φ_α for z >= 0: falls to 0 at d_α, rises up to r_α, constant beyond.
+
+    Closed form where ρ_h = 1; on the taper the integral is enclosed by Arb.
+    """
+    z, zero = ball(z).nonnegative_part(), d_alpha(par)
+    if z.is_exact():
+        return _psi_alpha(z, par)
+    if z <= zero or z >= zero:
+        return monotone(lambda z: _psi_alpha(z, par), z)
+    return hull(arb(0), _psi_alpha(z.lower(), par), _psi_alpha(z.upper(), par))
+
+
+def _psi_alpha(z: arb, par: AlphaParameters) -> arb:
+    """ψ_α at a point."""
+    at_zero, at_cutoff = _alpha_levels(par, ctx.prec)
+    return (at_cutoff if z >= r_alpha(par) else _alpha_from_knee(z, par)) - at_zero
+
+
+@cache
+def _alpha_levels(par: AlphaParameters, prec: int) -> tuple[arb, arb]:
+    """The integral of φ_α from h r_α to d_α and to r_α; what is kept holds at the precision it was computed at."""
+    return _alpha_from_knee(d_alpha(par), par), _alpha_from_knee(r_alpha(par), par)
+
+
+def _alpha_from_knee(z: arb, par: AlphaParameters) -> arb:
+    """The integral of φ_α from h r_α to z: closed form before, enclosed by Arb after; z may lie on either side."""
+    cutoff = r_alpha(par)
+    knee = ball(par.h) * cutoff
+    before = arb(0) if z >= knee else _alpha_closed(z.min(knee), par) - _alpha_closed(knee, par)
+    after = arb(0) if z <= knee else _alpha_taper(knee, z.max(knee).min(cutoff), par)
+    return before + after
+
+
+def _alpha_closed(z: arb, par: AlphaParameters) -> arb:
+    """An antiderivative of φ(z − d_α)."""
+    a, b, s = ball(par.a), ball(par.b), z - d_alpha(par) + shift(par.a, par.b)
+    return ((a + b) * (1 + square(s)).sqrt() + (a - b) * z) / 2
+
+
+def _alpha_taper(low: arb, high: arb, par: AlphaParameters) -> arb:
+    """The integral of φ_α between two points of the taper."""
+    a, b, h, cutoff = ball(par.a), ball(par.b), ball(par.h), r_alpha(par)
+    offset = shift(par.a, par.b) - d_alpha(par)
+
+    def integrand(z: acb, analytic: bool) -> acb:
+        s = z + offset
+        action = (a + b) * s * (1 + s * s).rsqrt(analytic=analytic) + (a - b)
+        return (1 + ((z / cutoff - h) / (1 - h)).cos_pi()) * action / 4
+
+    return acb.integral(integrand, low, high).real
+
+
+def c_star(par: AlphaParameters) -> arb:
+    """c* = ψ_α(0), the energy of a coincident pair (without the gain c1α)."""
+    return psi_alpha(arb(0), par)
+
+
+def far_potential(par: AlphaParameters) -> arb:
+    """ψ_α(r_α), what every pair out of range adds to V."""
+    return psi_alpha(r_alpha(par), par)
+
+
+def d_beta(par: BetaParameters) -> arb:
+    """‖d'‖_σ."""
+    return sigma_norm(ball(par.d), par.eps)
+
+
+def phi_beta(z: arb, par: BetaParameters) -> arb:
+    """φ_β(z) = ρ_h(z/d_β)(σ₁(z − d_β) − 1)."""
+    return bump(ball(z) / d_beta(par), par.h) * (sigma_1(ball(z) - d_beta(par)) - 1)
+
+
+def phi_beta_slope(z: arb, par: BetaParameters) -> arb:
+    """dφ_β/dz, continuous."""
+    x, s = ball(z) / d_beta(par), ball(z) - d_beta(par)
+    falling = bump_slope(x, par.h) / d_beta(par) * (sigma_1(s) - 1)
+    return falling + bump(x, par.h) * sigma_1_slope(s)
+
+
+def psi_beta(z: arb, par: BetaParameters) -> arb:
+    """ψ_β(z) = ∫_{d_β}^{z} φ_β for z >= 0: falls to 0 at d_β, and stays there."""
+    return monotone(lambda z: _psi_beta(z, par), ball(z).nonnegative_part())
+
+
+def _psi_beta(z: arb, par: BetaParameters) -> arb:
+    """ψ_β at a point."""
+    cutoff = d_beta(par)
+    if z >= cutoff:
+        return arb(0)
+    knee = ball(par.h) * cutoff
+    before = arb(0) if z >= knee else _beta_closed(z.min(knee) - cutoff) - _beta_closed(knee - cutoff)
+    return before + _beta_taper(z.max(knee).min(cutoff), par)
+
+
+def _beta_closed(s: arb) -> arb:
+    """An antiderivative of σ₁(s) − 1."""
+    return (1 + square(s)).sqrt() - s
+
+
+def _beta_taper(low: arb, par: BetaParameters) -> arb:
+    """The integral of −φ_β from a point of the taper to its end."""
+    h, cutoff = ball(par.h), d_beta(par)
+
+    def integrand(z: acb, analytic: bool) -> acb:
+        s = z - cutoff
+        return (1 + ((z / cutoff - h) / (1 - h)).cos_pi()) * (1 - s * (1 + s * s).rsqrt(analytic=analytic)) / 2
+
+    return acb.integral(integrand, low, cutoff).real

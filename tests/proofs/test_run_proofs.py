@@ -1,0 +1,258 @@
+"""The frame around the proofs: what fails, hangs, dies or lacks a library is never called proved, nor false."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+from flockana.cli import main
+from proofs import certificates, proof, run
+from proofs.proof import Step
+from proofs.run import Outcome, check
+
+HEAD = """
+from proofs.proof import Proof, Step
+
+def steps():
+    yield Step("one is one", 1 == 1, "1 = 1", "counted")
+    {body}
+
+PROOF = Proof("{name}", "{name} is so.", "nothing", "symbolic", steps, title="Toy: {name}", time_limit={limit})
+"""
+BODIES = {
+    "holds": "yield Step('two is two', True)",
+    "broken": "yield Step('two is three', False, '2 = 3', 'it is not')",
+    "puzzled": "yield Step('P is NP', None, evidence='unknown, timeout')",
+    "hangs": "import time; time.sleep(60)",
+    "crashes": "1 / 0",
+    "dies": "import os; os._exit(7)",
+    "lacks": "raise ModuleNotFoundError(\"No module named 'flint'\", name='flint.types')",
+    "misses": "import no_such_module",
+}
+
+
+@pytest.fixture
+def toys(tmp_path, monkeypatch):
+    """A package of toy proofs, each going wrong in its own way."""
+    folder = tmp_path / "toy_proofs"
+    folder.mkdir()
+    (folder / "__init__.py").touch()
+    for name, body in BODIES.items():
+        limit = 5.0 if name == "hangs" else 60.0
+        (folder / f"{name}.py").write_text(HEAD.format(name=name, body=body, limit=limit))
+    (folder / "by_another_name.py").write_text(HEAD.format(name="other", body="", limit=60.0))
+    (folder / "helper.py").write_text("NOT_A_PROOF = 1  # PROOF\n")
+    (folder / "_template.py").write_text("PROOF = 1\n")
+    (folder / "unlucky.py").write_text("import z3_is_not_here as z3\nPROOF = 1\n")
+    (folder / "hollow.py").write_text(
+        HEAD.format(name="hollow", body="", limit=60.0).replace("yield", "return\n    yield")
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    importlib.invalidate_caches()
+    sys.modules.pop("toy_proofs", None)
+    return "toy_proofs"
+
+
+def checked(package, *names, **options):
+    return {outcome.id: outcome for outcome in check(names, package=package, **options)}
+
+
+def test_proofs_are_found_by_their_files_and_not_imported(toys):
+    assert proof.names(toys) == tuple(sorted([*BODIES, "by-another-name", "hollow", "unlucky"]))
+    assert not any(name.startswith("toy_proofs.") for name in sys.modules)
+
+
+def test_each_way_of_going_wrong_reads_as_it_should(toys):
+    found = checked(toys, *proof.names(toys), jobs=2)
+    assert {name: outcome.status for name, outcome in found.items()} == {
+        "holds": "proved",
+        "broken": "failed",
+        **dict.fromkeys(("puzzled", "hangs", "crashes", "dies", "lacks", "misses"), "unknown"),
+        **dict.fromkeys(("by-another-name", "hollow", "unlucky"), "unknown"),
+    }
+    assert {name: list(outcome.objections()) for name, outcome in found.items()} == {
+        "holds": [],
+        "broken": ["does not hold: two is three (it is not)"],
+        "puzzled": ["could not tell: P is NP (unknown, timeout)"],
+        "hangs": ["stopped after 5 s, with 1 steps checked"],
+        "crashes": ["stopped by ZeroDivisionError: division by zero"],
+        "dies": ["its process ended before the proof did (exit code 7)"],
+        "lacks": ["python-flint is not installed: pip install 'flockana[proofs]'"],
+        "misses": ["stopped by ModuleNotFoundError: No module named 'no_such_module'"],
+        "by-another-name": [
+            "stopped by ValueError: toy_proofs.by_another_name calls its proof 'other': expected 'by-another-name', "
+            "after the file"
+        ],
+        "hollow": ["it has no steps"],
+        "unlucky": ["stopped by ModuleNotFoundError: No module named 'z3_is_not_here'"],
+    }
+    assert [len(found[name].steps) for name in ("holds", "broken", "puzzled", "hangs", "dies")] == [2, 2, 2, 1, 1]
+
+
+def test_a_limit_given_replaces_the_proofs_own(toys):
+    (outcome,) = check(["hangs"], package=toys, time_limit=1.5)
+    assert outcome.reason.startswith("stopped after 1.5 s")
+    assert 1.5 <= outcome.seconds < 30.0
+
+
+def test_leaving_early_leaves_no_process(toys):
+    from multiprocessing import active_children
+
+    results = check(["holds", "hangs"], package=toys, jobs=2, time_limit=50.0)
+    assert next(results).id == "holds"
+    (hanging,) = active_children()
+    results.close()
+    assert hanging.exitcode == -signal.SIGKILL
+    assert active_children() == []
+
+
+def test_a_false_step_outweighs_an_unknown_one():
+    steps = [Step("a", True), Step("b", None), Step("c", False)]
+    assert Outcome("x", steps=steps).status == "failed"
+    assert Outcome("x", steps=steps[:2]).status == "unknown"
+    assert Outcome("x", steps=steps[:1], reason="stopped").status == "unknown"
+    assert Outcome("x", steps=steps[:1]).status == "proved"
+    assert Outcome("x").status == "unknown"
+
+
+def test_the_certificate_as_json(tmp_path):
+    outcome = Outcome("toy", "Toy", "x = x.", "x real", "smt", ("os-1",), steps=[Step("one", True, "x = x", "said so")])
+    certificates.write(outcome, tmp_path)
+    data = json.loads((tmp_path / "toy.json").read_text(encoding="utf-8"))
+    assert list(data) == [
+        *("schema", "status", "id", "title", "statement", "hypotheses", "rigour", "theorems", "time_limit"),
+        *("steps", "seconds", "reason", "versions"),
+    ]
+    assert (data["schema"], data["status"], data["id"], data["rigour"]) == (1, "proved", "toy", "smt")
+    assert data["steps"] == [{"text": "one", "holds": True, "latex": "x = x", "evidence": "said so"}]
+    assert set(data["versions"]) == {"python", "flockana", "sympy", "python-flint", "z3-solver"}
+
+
+def test_the_certificate_to_read():
+    steps = [Step("one", True, "x\n= x", "said so"), Step("two", None), Step("three", False)]
+    text = certificates.as_markdown(Outcome("toy", "Toy", "x = x.", "x real", "smt", ("os-1",), steps=steps))
+    assert text.startswith("# Toy\n\n**FAILED** · proof `toy` · smt · 3 steps · 0.0 s\n\n**Statement.** x = x.\n")
+    assert "**Given.** x real" in text
+    assert "**Backs** os-1" in text
+    assert "1. one: holds. *said so*\n\n   $$\n   x\n   = x\n   $$\n" in text
+    assert "2. two: **unknown**." in text
+    assert "3. three: **does not hold**." in text
+    assert "- could not tell: two\n- does not hold: three\n" in text
+    signs = certificates.as_markdown(Outcome("toy", statement="|x| < c* and <b>", reason="`x`"))
+    assert r"**Statement.** \|x\| \< c\* and \<b>" in signs
+    assert r"- \`x\`" in signs
+    proved = certificates.as_markdown(Outcome("toy", steps=steps[:1]))
+    assert proved.startswith("# toy\n\n**Proved**")
+    unknown = certificates.as_markdown(Outcome("toy", reason="stopped after 1 s"))
+    assert "**Unknown**" in unknown
+    assert "- stopped after 1 s" in unknown
+
+
+@pytest.fixture
+def prove(toys, monkeypatch, capsys, tmp_path):
+    """`flockana prove` on the toys."""
+    monkeypatch.setattr(proof, "names", partial(proof.names, toys))
+    monkeypatch.setattr(run, "check", partial(check, package=toys))
+    monkeypatch.chdir(tmp_path)
+
+    def call(*arguments):
+        with pytest.raises(SystemExit) as end:
+            main(["prove", *map(str, arguments)])
+        out = capsys.readouterr()
+        return end.value.code, out.out, out.err
+
+    return call
+
+
+def test_a_proof_that_holds_is_0(prove):
+    code, out, err = prove("holds")
+    assert (code, err) == (0, "")
+    assert "1 of 1 proved, 2 steps" in out
+    assert "holds is so." in " ".join(out.split())
+    assert sorted(path.name for path in Path("certificates").iterdir()) == ["holds.json", "holds.md", "index.md"]
+    assert (
+        "| [Toy: holds](holds.md) | holds is so. | symbolic | 2 | Proved |" in Path("certificates/index.md").read_text()
+    )
+
+
+@pytest.mark.parametrize(("name", "word"), [("broken", "FAILED"), ("puzzled", "unknown"), ("lacks", "unknown")])
+def test_anything_else_is_3_and_says_why(prove, name, word):
+    code, out, err = prove("holds", name, "--output", "deep/er", "--jobs", 2)
+    assert (code, err) == (3, "")
+    assert f" {word} " in out
+    assert "1 of 2 proved" in out
+    assert f"{name}: " in out
+    assert json.loads(Path(f"deep/er/{name}.json").read_text())["status"] == word.lower()
+
+
+def test_bad_input_is_2_before_any_work(prove, tmp_path):
+    code, out, err = prove("hold")
+    assert (code, out) == (2, "")
+    assert "unknown proof 'hold'; did you mean 'holds'? Known: " in err
+    (tmp_path / "file").touch()
+    code, out, err = prove("holds", "--output", "file")
+    assert (code, out) == (2, "")
+    assert "cannot write to file: there is a file of that name; choose a folder you may write to" in err
+    assert prove("holds", "--jobs", 0)[0] == 2
+
+
+def test_outside_a_checkout_is_one_line_and_2(prove, monkeypatch):
+    from flockana.commands import prove as command
+
+    monkeypatch.setattr(command, "__file__", str(Path.cwd() / "site-packages" / "flockana" / "commands" / "prove.py"))
+    code, out, err = prove("holds")
+    assert (code, out) == (2, "")
+    assert err == (
+        "flockana: the proofs are not installed with flockana: clone its repository and run `flockana prove` in that "
+        "folder\n"
+    )
+
+
+def test_ctrl_c_is_130_and_leaves_what_was_done(toys, tmp_path):
+    script = (
+        "from functools import partial\nfrom proofs import proof, run\nfrom flockana.cli import main\n"
+        f"proof.names = partial(proof.names, {toys!r})\nrun.check = partial(run.check, package={toys!r})\n"
+        "if __name__ == '__main__':\n"
+        "    main(['prove', 'holds', 'hangs', '-o', 'out', '--jobs', '1', '--time-limit', '50'])\n"
+    )
+    (tmp_path / "script.py").write_text(script)
+    root = str(Path(proof.__file__).parents[1])
+    path = os.pathsep.join([root, str(tmp_path)])
+    process = subprocess.Popen(
+        [sys.executable, "script.py"],
+        cwd=tmp_path,
+        env=os.environ | {"PYTHONPATH": path},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    finished = tmp_path / "out" / "holds.md"
+    for _ in range(600):
+        if finished.exists() or process.poll() is not None:
+            break
+        time.sleep(0.05)
+    time.sleep(0.5)
+    os.killpg(process.pid, signal.SIGINT)
+    _, err = process.communicate(timeout=30)
+    assert process.returncode == 130, err
+    assert err == "flockana: interrupted\n"  # and no traceback of a child
+    assert finished.exists()
+
+
+def test_python_m_proofs_is_the_same_command(tmp_path):
+    root = Path(proof.__file__).parents[1]
+    done = subprocess.run(
+        [sys.executable, "-m", "proofs", "nope"], cwd=root, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 2
+    assert done.stderr.startswith("flockana: unknown proof 'nope'; ")
