@@ -187,6 +187,29 @@ def order(p: Any) -> float:
     return float(np.linalg.norm(headings.mean(axis=0)))
 
 
+def coordination(p: Any) -> float:
+    """C of Jond: the mean over all pairs of the cosine between their velocities; agents at rest are left out.
+
+    NaN if fewer than two agents move.
+
+    Parameters
+    ----------
+    p : array_like, shape (n, m)
+        Velocities.
+
+    Examples
+    --------
+    >>> coordination([[1.0, 0.0], [3.0, 0.0], [0.0, 2.0]])  # cosines 1, 0, 0
+    0.3333333333333333
+    """
+    p = ensure_points("p", p)
+    speed = np.linalg.norm(p, axis=1)
+    moving = p[speed > 0.0] / speed[speed > 0.0, None]
+    k = len(moving)
+    # |Σ ĥ|² counts every pair twice and every agent once
+    return float("nan") if k < 2 else float((np.sum(moving.sum(axis=0) ** 2) - k) / (k * (k - 1)))
+
+
 def coincident_pairs(q: Any, tol: float) -> int:
     """Number of unordered pairs closer than `tol`.
 

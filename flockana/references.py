@@ -34,6 +34,17 @@ BIBLIOGRAPHY = {
   journal = {Elemente der Mathematik},
   volume  = {29}, pages = {14--15}, year = {1974}
 }""",
+    "jond-2025": """@misc{jond2025bearing,
+  author        = {Jond, Hossein B.},
+  title         = {Bearing-Distance Flocking with Zone-Based Interactions in Constrained Dynamic Environments},
+  howpublished  = {Preprint, fifth version}, year = {2025},
+  archiveprefix = {arXiv}, eprint = {2409.10047}
+}""",
+    "li-dead-zone": """@inproceedings{lideadzone,
+  author = {Li, Yang and Yuan, Jin and Liu, Xuemei},
+  title  = {A Flocking Algorithm for Second-Order Multi-Agent Systems},
+  note   = {Conference paper; its theorem is stated without proof}
+}""",
     "flockana": """@software{flockana,
   author = {{The flockana developers}},
   title  = {flockana: control-theoretic analysis of flocking},

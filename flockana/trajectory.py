@@ -122,7 +122,7 @@ class Trajectory:
         return residual
 
     def metrics(self) -> xarray.Dataset:
-        """C, R, Ẽ, K̃ and their companions over time, as an `xarray.Dataset` with dimension ``time``."""
+        """C, R, Ẽ, K̃ and their companions, and the law's own `measures`, over time: a Dataset of dimension ``time``."""
         return self._metrics
 
     @cached_property
@@ -136,6 +136,7 @@ class Trajectory:
             "inertia": ("J", map(measure.inertia, self.q)),
             "min_distance": ("least distance at the samples", map(measure.min_distance, self.q)),
             "order": ("polar order", map(measure.order, self.p)),
+            "coordination": ("C, mean cosine between velocities", map(measure.coordination, self.p)),
         }
         if interaction is not None:
             d, r = interaction.d, interaction.r
@@ -145,6 +146,7 @@ class Trajectory:
                 "giant_share": ("C*, share of nodes", (share for _, share, _ in nets)),
                 "deviation_energy": ("Ẽ = E/d²", (deviation / d**2 for _, _, deviation in nets)),
             }
+        series |= self.law.measures(self.t, self.q, self.p, self.extra)
         data = {
             name: xarray.Variable("time", np.fromiter(values, float, len(self.t)), {"long_name": text})
             for name, (text, values) in series.items()

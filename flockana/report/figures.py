@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import base64
+import importlib
+import pkgutil
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from io import BytesIO
 
 import numpy as np
@@ -34,8 +37,33 @@ class Picture:
     source: str
 
 
+@cache
+def _own() -> tuple[tuple[tuple[type, ...], Callable[[Trajectory], tuple[Picture, ...]]], ...]:
+    """(laws, pictures) of every module of this package whose name ends in _figures: laws with figures of their own."""
+    package = importlib.import_module("flockana.report")
+    names = [info.name for info in pkgutil.iter_modules(package.__path__) if info.name.endswith("_figures")]
+    modules = [importlib.import_module(f"flockana.report.{name}") for name in names]
+    return tuple((module.LAWS, module.pictures) for module in modules)
+
+
 def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
-    """Draw a run: snapshots, paths, C R Ẽ K̃, energy with its balance, distances and speeds; among obstacles, clearance.
+    """Draw a run: by the ``*_figures`` module that names its law among its ``LAWS``, else as any flock is drawn.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The run.
+
+    Returns
+    -------
+    tuple of Picture
+    """
+    draw = next((own for laws, own in _own() if isinstance(trajectory.law, laws)), flock_pictures)
+    return draw(trajectory)
+
+
+def flock_pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
+    """Draw snapshots, paths, C R Ẽ K̃, energy with its balance, distances and speeds; among obstacles, clearance.
 
     Parameters
     ----------

@@ -1,0 +1,161 @@
+"""What zone-based flocking avoids: polygons of any simple shape, and the walls of a box.
+
+Discs and balls are `flockana.environment.obstacles.Sphere`. A `SimplePolygon` need not be convex, so it has no
+β-agents and is no `Obstacle` of Algorithm 3.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from flockana.checks import FloatArray, ensure_points, ensure_vector
+from flockana.environment.obstacles import Sphere
+from flockana.errors import ArgumentError
+from flockana.kernels.zone_obstacles import polygon_clearance, polygon_clearance_on_segments
+
+
+@dataclass(frozen=True)
+class SimplePolygon:
+    """A polygon in the plane whose boundary does not meet itself; it may be concave.
+
+    Parameters
+    ----------
+    vertices : array_like, shape (V, 2)
+        Corners in order, either way round; V >= 3.
+
+    Raises
+    ------
+    ArgumentError
+        If the corners are fewer than three, not in the plane, or the boundary meets itself (where is said).
+
+    Examples
+    --------
+    >>> arrow = SimplePolygon([(0.0, 0.0), (4.0, 2.0), (0.0, 4.0), (2.0, 2.0)])
+    >>> arrow.clearance([[0.0, 2.0], [5.0, 2.0], [3.5, 2.0]]).round(3).tolist()
+    [1.414, 1.0, -0.224]
+    """
+
+    vertices: Any
+
+    def __post_init__(self) -> None:
+        corners = ensure_points("vertices", self.vertices)
+        if corners.shape[0] < 3 or corners.shape[1] != 2:
+            raise ArgumentError(f"vertices have shape {corners.shape}: expected (V, 2) with V >= 3")
+        import shapely
+
+        shape = shapely.Polygon(corners)
+        if not shape.is_valid or not shape.area > 0.0:
+            reason = shapely.is_valid_reason(shape) if not shape.is_valid else "no area"
+            raise ArgumentError(
+                f"vertices = {corners.tolist()}: expected a boundary that does not meet itself and encloses an area, "
+                f"found {reason}; give the corners in order around the polygon, each once"
+            )
+        object.__setattr__(self, "vertices", tuple(map(tuple, corners.tolist())))
+
+    @property
+    def edges(self) -> FloatArray:
+        """Rows (x0, y0, x1, y1), shape (V, 4)."""
+        corners = np.array(self.vertices)
+        return np.hstack([corners, np.roll(corners, -1, axis=0)])
+
+    def clearance(self, q: Any) -> FloatArray:
+        """Signed distance of points from the boundary, negative inside, shape (N,).
+
+        Parameters
+        ----------
+        q : array_like, shape (N, 2)
+            Points.
+        """
+        found: FloatArray = polygon_clearance(ensure_points("q", q), self.edges)
+        return found
+
+    def clearance_on_way(self, start: FloatArray, end: FloatArray) -> FloatArray:
+        """Lower bound of the signed distance along straight ways, exact outside the polygon, shape (N,).
+
+        Parameters
+        ----------
+        start, end : ndarray, shape (N, 2)
+            Ends of the ways.
+        """
+        found: FloatArray = polygon_clearance_on_segments(start, end, self.edges)
+        return found
+
+    def enclosing_circle(self) -> Sphere:
+        """The smallest disc that holds it: the buffer zone of the conventional method that the paper compares with."""
+        import shapely
+
+        circle = shapely.minimum_bounding_circle(shapely.Polygon(self.vertices))
+        centre = (circle.centroid.x, circle.centroid.y)
+        return Sphere(centre, float(np.linalg.norm(np.array(self.vertices) - centre, axis=1).max()))
+
+
+def ball_clearance_on_way(ball: Sphere, start: FloatArray, end: FloatArray) -> FloatArray:
+    """Least signed distance from a ball along straight ways, exact, shape (N,).
+
+    Parameters
+    ----------
+    ball : Sphere
+        The ball.
+    start, end : ndarray, shape (N, m)
+        Ends of the ways.
+
+    Examples
+    --------
+    >>> ball_clearance_on_way(Sphere((0.0, 0.0), 1.0), np.array([[-9.0, 3.0]]), np.array([[9.0, 3.0]])).tolist()
+    [2.0]
+    """
+    way, away = end - start, np.array(ball.centre) - start
+    length2 = np.sum(way**2, axis=1)
+    share = np.divide(np.sum(way * away, axis=1), length2, out=np.zeros(len(way)), where=length2 > 0.0)
+    nearest = np.clip(share, 0.0, 1.0)[:, None] * way - away
+    found: FloatArray = np.linalg.norm(nearest, axis=1) - ball.radius
+    return found
+
+
+@dataclass(frozen=True)
+class Box:
+    """The box low <= q <= high, whose walls agents must not cross.
+
+    Parameters
+    ----------
+    low, high : array_like, shape (m,)
+        Opposite corners.
+
+    Raises
+    ------
+    ArgumentError
+        If a side has no length.
+
+    Examples
+    --------
+    >>> Box((0.0, 0.0), (50.0, 50.0)).clearance([[1.0, 30.0], [51.0, 3.0]]).tolist()
+    [1.0, -1.0]
+    """
+
+    low: Any
+    high: Any
+
+    def __post_init__(self) -> None:
+        low = ensure_vector("low", self.low)
+        high = ensure_vector("high", self.high, low.size)
+        if not (low < high).all():
+            raise ArgumentError(f"low = {low.tolist()}, high = {high.tolist()}: expected low < high on every axis")
+        object.__setattr__(self, "low", tuple(low.tolist()))
+        object.__setattr__(self, "high", tuple(high.tolist()))
+
+    def clearance(self, q: Any) -> FloatArray:
+        """Distance of points from the nearest wall, negative outside the box (then from the farthest wall crossed).
+
+        On a straight way it is least at one of the ends.
+
+        Parameters
+        ----------
+        q : array_like, shape (N, m)
+            Points.
+        """
+        q = ensure_points("q", q)
+        found: FloatArray = np.minimum(q - np.array(self.low), np.array(self.high) - q).min(axis=1)
+        return found

@@ -1,0 +1,200 @@
+"""The surroundings of zone-based flocking: obstacles, a box, and aliens that hunt."""
+
+from __future__ import annotations
+
+from dataclasses import KW_ONLY, dataclass
+from typing import Any
+
+import numpy as np
+
+from flockana.checks import FloatArray, ensure_positive, ensure_vector
+from flockana.environment.obstacles import Sphere
+from flockana.environment.zone_obstacles import Box, SimplePolygon, ball_clearance_on_way
+from flockana.errors import ArgumentError
+from flockana.kernels.zones import World
+
+
+@dataclass(frozen=True)
+class Alien:
+    """An agent that is not of the flock: it goes for the nearest flock agent that it detects, and else rests.
+
+    The paper gives the range of detection, 9 m, and that it is trapped in a triangle; speed and triangle are ours.
+
+    Parameters
+    ----------
+    start : array_like, shape (m,)
+        Where it begins.
+    territory : SimplePolygon, optional
+        What it cannot leave (m = 2); by default it goes anywhere.
+    detection : float
+        Range of detection.
+    speed : float
+        Of its pursuit. A step is not shortened when the prey is nearer than it.
+
+    Raises
+    ------
+    ArgumentError
+        If it begins outside its territory, or a number is out of range.
+
+    Examples
+    --------
+    >>> Alien((15.0, 30.0), SimplePolygon([(8.0, 22.0), (24.0, 24.0), (14.0, 42.0)])).speed
+    1.5
+    """
+
+    start: Any
+    territory: SimplePolygon | None = None
+    _: KW_ONLY
+    detection: float = 9.0
+    speed: float = 1.5
+
+    def __post_init__(self) -> None:
+        start = ensure_vector("start", self.start)
+        object.__setattr__(self, "start", tuple(start.tolist()))
+        for name in ("detection", "speed"):
+            object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
+        if self.territory is None:
+            return
+        if not isinstance(self.territory, SimplePolygon) or start.size != 2:
+            raise ArgumentError(f"territory = {self.territory!r}: expected a SimplePolygon, of an alien in the plane")
+        if self.territory.clearance(start[None])[0] > 0.0:
+            raise ArgumentError(f"start = {self.start}: expected a point of the alien's territory {self.territory}")
+
+
+@dataclass(frozen=True)
+class ZoneWorld:
+    """Obstacles, a box and aliens; empty by default.
+
+    Parameters
+    ----------
+    obstacles : sequence of SimplePolygon and Sphere
+        Solids at rest; polygons in the plane only.
+    box : Box, optional
+        Walls around all.
+    aliens : sequence of Alien
+        Hunters.
+
+    Raises
+    ------
+    ArgumentError
+        On other things than these, or things of different dimensions.
+
+    Examples
+    --------
+    >>> ZoneWorld(box=Box((0.0, 0.0), (50.0, 50.0))).dimension
+    2
+    """
+
+    obstacles: tuple[SimplePolygon | Sphere, ...] = ()
+    box: Box | None = None
+    aliens: tuple[Alien, ...] = ()
+
+    def __post_init__(self) -> None:
+        kinds: tuple[tuple[str, Any], ...] = (("obstacles", (SimplePolygon, Sphere)), ("aliens", Alien))
+        for name, kind in kinds:
+            items = getattr(self, name)
+            if not isinstance(items, tuple | list) or not all(isinstance(item, kind) for item in items):
+                expected = "SimplePolygon or Sphere" if name == "obstacles" else "Alien"
+                raise ArgumentError(f"{name} = {items!r}: expected a sequence of {expected}")
+            object.__setattr__(self, name, tuple(items))
+        if self.box is not None and not isinstance(self.box, Box):
+            raise ArgumentError(f"box = {self.box!r}: expected a Box")
+        if len(set(self._dimensions())) > 1:
+            raise ArgumentError(f"{self}: expected obstacles, box and aliens of one dimension")
+
+    def _dimensions(self) -> list[int]:
+        found = [2 if isinstance(o, SimplePolygon) else o.dimension for o in self.obstacles]
+        return found + [len(a.start) for a in self.aliens] + ([] if self.box is None else [len(self.box.low)])
+
+    @property
+    def dimension(self) -> int | None:
+        """m, or None for an empty world."""
+        return next(iter(self._dimensions()), None)
+
+    @property
+    def alien_starts(self) -> FloatArray:
+        """Where the aliens begin, shape (K, m); without any, (0, 0)."""
+        return np.array([alien.start for alien in self.aliens]).reshape(len(self.aliens), -1)
+
+    def arrays(self, m: int, *, buffer: bool = False) -> World:
+        """The world as the compiled step reads it.
+
+        Parameters
+        ----------
+        m : int
+            Dimension of the flock.
+        buffer : bool
+            Give every polygon as the smallest disc that holds it.
+        """
+        solids = [o.enclosing_circle() if buffer and isinstance(o, SimplePolygon) else o for o in self.obstacles]
+        edges, starts = _chained([o.edges for o in solids if isinstance(o, SimplePolygon)])
+        territory, of_alien = _chained(
+            [np.empty((0, 4)) if a.territory is None else a.territory.edges for a in self.aliens]
+        )
+        balls = [[*o.centre, o.radius] for o in solids if isinstance(o, Sphere)]
+        box = [[-np.inf] * m, [np.inf] * m] if self.box is None else [self.box.low, self.box.high]
+        return World(
+            edges,
+            starts,
+            np.array(balls).reshape(-1, m + 1),
+            np.array(box),
+            territory,
+            of_alien,
+            np.array([a.detection for a in self.aliens]),
+            np.array([a.speed for a in self.aliens]),
+        )
+
+    def clearance(self, q: FloatArray) -> FloatArray:
+        """Signed distance of points from the nearest obstacle, ∞ without any, shape (N,).
+
+        Parameters
+        ----------
+        q : ndarray, shape (N, m)
+            Points.
+        """
+        found: FloatArray = np.min([o.clearance(q) for o in self.obstacles] or [np.full(len(q), np.inf)], axis=0)
+        return found
+
+    def clearance_on_way(self, start: FloatArray, end: FloatArray) -> FloatArray:
+        """Lower bound of the signed distance from all obstacles along straight ways, exact outside them, shape (N,).
+
+        Parameters
+        ----------
+        start, end : ndarray, shape (N, m)
+            Ends of the ways.
+        """
+        found = [np.full(len(start), np.inf)]
+        for o in self.obstacles:
+            if isinstance(o, Sphere):
+                found.append(ball_clearance_on_way(o, start, end))
+            else:
+                found.append(o.clearance_on_way(start, end))
+        return np.min(found, axis=0)  # type: ignore[no-any-return]
+
+    def check_start(self, q: FloatArray) -> None:
+        """Raise if an agent begins outside the box, in an obstacle, or at an alien.
+
+        Parameters
+        ----------
+        q : ndarray, shape (n, m)
+            Positions.
+        """
+        if self.box is not None and (inside := self.box.clearance(q)).min() < 0.0:
+            i = int(np.argmin(inside))
+            raise ArgumentError(f"q[{i}] = {q[i]}: expected a point of {self.box}")
+        for k, obstacle in enumerate(self.obstacles):
+            if (free := obstacle.clearance(q)).min() <= 0.0:
+                i = int(np.argmin(free))
+                raise ArgumentError(f"q[{i}] = {q[i]}: expected a point outside obstacle {k}, {obstacle}")
+        for k, alien in enumerate(self.aliens):
+            apart = np.linalg.norm(q - np.array(alien.start), axis=1)
+            if apart.min() == 0.0:
+                raise ArgumentError(
+                    f"q[{int(np.argmin(apart))}] is where alien {k} begins, {alien.start}: expected agents apart from "
+                    "it, since there is no direction to flee in"
+                )
+
+
+def _chained(parts: list[FloatArray]) -> tuple[FloatArray, Any]:
+    """Rows of all parts one after the other, and where each part begins and ends."""
+    return np.vstack([np.empty((0, 4)), *parts]), np.cumsum([0, *(len(part) for part in parts)])

@@ -1,0 +1,207 @@
+"""Zones of repulsion, conflict, attraction and surveillance, and how much an agent heeds what is in them."""
+
+from __future__ import annotations
+
+from dataclasses import KW_ONLY, dataclass, fields
+from typing import Any
+
+import numpy as np
+
+from flockana.checks import FloatArray, ensure_nonnegative, ensure_positive
+from flockana.errors import ArgumentError
+
+PerAgent = float | tuple[float, ...]
+Table = float | tuple[tuple[float, ...], ...]
+_PAIRS = ("separation", "cohesion", "alignment")
+
+
+def _each(name: str, value: Any, ensure: Any) -> PerAgent:
+    """One number, or one for each agent."""
+    if np.ndim(value) == 0:
+        return float(ensure(name, value))
+    if np.ndim(value) != 1:
+        raise ArgumentError(f"{name} has shape {np.shape(value)}: expected one number, or one for each agent")
+    return tuple(ensure(f"{name}[{i}]", one) for i, one in enumerate(value))
+
+
+def _spread(name: str, value: PerAgent, n: int) -> FloatArray:
+    if isinstance(value, tuple) and len(value) != n:
+        raise ArgumentError(f"{name} has {len(value)} entries: expected one number, or one for each of the {n} agents")
+    return np.array(np.broadcast_to(np.asarray(value, dtype=np.float64), (n,)))
+
+
+@dataclass(frozen=True)
+class ZoneRadii:
+    """Radii of an agent's zones: 0 < r <= c < a < s.
+
+    Agents at most r away repel; those up to c repel and attract (conflict); those up to a attract. Aliens are watched
+    up to s. Each radius is one number, or one for each agent.
+
+    Parameters
+    ----------
+    r : float or sequence of n floats
+        Of repulsion.
+    a : float or sequence of n floats
+        Of attraction.
+    c : float or sequence of n floats, optional
+        Of conflict; by default r, that is, no conflict zone (Remark 1).
+    s : float or sequence of n floats, optional
+        Of surveillance; by default as r (Remark 1), which leaves the printed annulus a < d <= s empty.
+
+    Raises
+    ------
+    ArgumentError
+        If the radii do not increase, or there are different numbers of them.
+
+    Examples
+    --------
+    >>> ZoneRadii(1.5, a=5.0).c
+    1.5
+    """
+
+    r: PerAgent
+    _: KW_ONLY
+    a: PerAgent
+    c: PerAgent | None = None
+    s: PerAgent | None = None
+
+    @property
+    def reach(self) -> tuple[float, float, float]:
+        """(r, c, a), the largest of each."""
+        r, c, a = (float(np.max(np.asarray(x, dtype=np.float64))) for x in (self.r, self.c, self.a))
+        return r, c, a
+
+    def __post_init__(self) -> None:
+        watched = self.s is not None
+        object.__setattr__(self, "c", self.r if self.c is None else self.c)
+        for name in ("r", "a", "c", *("s" if watched else "")):
+            object.__setattr__(self, name, _each(name, getattr(self, name), ensure_positive))
+        sizes = {name: len(v) for name in "rcas" if isinstance(v := getattr(self, name), tuple)}
+        if len(set(sizes.values())) > 1:
+            raise ArgumentError(f"numbers of radii {sizes}: expected one number each, or one for each agent")
+        r, c, a, s = self.arrays(max(sizes.values(), default=1))
+        bad = ~((r <= c) & (c < a) & ((a < s) | (not watched)))
+        if bad.any():
+            i = int(np.argmax(bad))
+            found = f"r = {r[i]:g}, c = {c[i]:g}, a = {a[i]:g}" + (f", s = {s[i]:g}" if watched else "")
+            raise ArgumentError(f"{found}: expected radii that increase, 0 < r <= c < a{' < s' if watched else ''}")
+
+    def arrays(self, n: int) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """(r, c, a, s) of n agents, each of shape (n,).
+
+        Parameters
+        ----------
+        n : int
+            Number of agents.
+
+        Raises
+        ------
+        ArgumentError
+            If there are radii for another number of agents.
+        """
+        r, c, a = (_spread(name, getattr(self, name), n) for name in ("r", "c", "a"))
+        return r, c, a, r if self.s is None else _spread("s", self.s, n)
+
+
+@dataclass(frozen=True)
+class ZoneWeights:
+    """Weights of the six behaviours, and gains of the two that are means.
+
+    The weights of cohesion and of alignment are divided by their sum, so equal ones cancel: 0.75 and 0.25 in the
+    paper do nothing (A9). What sets the strength is `cohesion_gain` and `alignment_gain`, 1 as printed; the defaults
+    are those with which section 5.1 does what is said of it.
+
+    Parameters
+    ----------
+    separation, cohesion, alignment : float or array of shape (n, n)
+        w^ls, w^lc, w^la >= 0: how much agent i heeds agent j.
+    speed, obstacle : float or sequence of n floats
+        w^ga and w^oa >= 0 of each agent; w^ga = 0 for one that is not informed of the desired speed.
+    alien : float or array of shape (n, K)
+        w^ss >= 0: how much agent i heeds alien k.
+    cohesion_gain, alignment_gain : float
+        g_c and g_a >= 0.
+
+    Raises
+    ------
+    ArgumentError
+        On a negative weight, a wrong shape, or weights of a mean that sum to zero.
+
+    Examples
+    --------
+    >>> ZoneWeights(cohesion=[[0.0, 0.0], [1.0, 0.0]])
+    Traceback (most recent call last):
+    flockana.errors.ArgumentError: cohesion[0] sums to zero: its mean is not defined; switch cohesion off ...
+    """
+
+    separation: Table = 5.0
+    cohesion: Table = 0.75
+    alignment: Table = 0.25
+    speed: PerAgent = 5.0
+    alien: Table = 5.0
+    obstacle: PerAgent = 5.0
+    cohesion_gain: float = 0.25
+    alignment_gain: float = 8.0
+
+    def __post_init__(self) -> None:
+        for name in (*_PAIRS, "alien"):
+            object.__setattr__(self, name, _table(name, getattr(self, name)))
+        for name in ("cohesion", "alignment"):
+            _check_sums(name, getattr(self, name))
+        for name in ("speed", "obstacle"):
+            object.__setattr__(self, name, _each(name, getattr(self, name), ensure_nonnegative))
+        for name in ("cohesion_gain", "alignment_gain"):
+            object.__setattr__(self, name, ensure_nonnegative(name, getattr(self, name)))
+
+    def arrays(self, n: int, aliens: int = 0) -> dict[str, FloatArray]:
+        """The weights by name as arrays: (n, n) of pairs, (n, K) of aliens, (n,) of agents.
+
+        Parameters
+        ----------
+        n : int
+            Number of agents.
+        aliens : int
+            Number of aliens, K.
+
+        Raises
+        ------
+        ArgumentError
+            If there are weights for another number of agents or aliens.
+        """
+        found = {}
+        for field in fields(self)[:6]:
+            name, value = field.name, getattr(self, field.name)
+            if name in ("speed", "obstacle"):
+                found[name] = _spread(name, value, n)
+                continue
+            shape: tuple[int, ...] = (n, aliens if name == "alien" else n)
+            if isinstance(value, tuple) and np.shape(value) != shape:
+                raise ArgumentError(f"{name} has shape {np.shape(value)}: expected one number, or {shape}")
+            found[name] = np.array(np.broadcast_to(np.asarray(value, dtype=np.float64), shape))
+        return found
+
+
+def _table(name: str, value: Any) -> Table:
+    """One number >= 0, or a table of them."""
+    if np.ndim(value) == 0:
+        return ensure_nonnegative(name, value)
+    table = np.asarray(value, dtype=object)
+    if table.ndim != 2 or (name in _PAIRS and len(set(table.shape)) > 1):
+        raise ArgumentError(
+            f"{name} has shape {table.shape}: expected one number, or {'(n, n)' if name in _PAIRS else '(n, K)'}"
+        )
+    return tuple(
+        tuple(ensure_nonnegative(f"{name}[{i}][{j}]", one) for j, one in enumerate(row)) for i, row in enumerate(table)
+    )
+
+
+def _check_sums(name: str, value: Table) -> None:
+    """Refuse weights of a mean that sum to zero over the other agents."""
+    remedy = f"sums to zero: its mean is not defined; switch {name} off by {name}_gain=0"
+    if value == 0.0:
+        raise ArgumentError(f"{name} {remedy}")
+    if isinstance(value, tuple):
+        others = np.array(value) * (1.0 - np.eye(len(value)))
+        empty = others.sum(axis=1) == 0.0
+        if empty.any() and len(value) > 1:
+            raise ArgumentError(f"{name}[{int(np.argmax(empty))}] {remedy}")

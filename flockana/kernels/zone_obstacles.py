@@ -1,0 +1,218 @@
+"""What an agent's obstacle zone meets, and how hard it is pushed: polygons, balls and the walls of a box.
+
+The zone is a triangle in the plane and a cone in space: an altitude `depth` along the heading, and a half base `half`
+across it. It is a body of revolution about the heading, so that against balls and walls both are one formula in the
+axial and the lateral coordinate. Segments are rows (x0, y0, x1, y1), the counter-clockwise boundary of a polygon.
+"""
+
+from __future__ import annotations
+
+from math import inf, sqrt
+
+import numpy as np
+from numba import njit
+
+
+@njit(cache=True)
+def _cross(ax, ay, bx, by, x, y):
+    return (bx - ax) * (y - ay) - (by - ay) * (x - ax)
+
+
+@njit(cache=True)
+def _between(ax, ay, bx, by, x, y):
+    return min(ax, bx) <= x <= max(ax, bx) and min(ay, by) <= y <= max(ay, by)
+
+
+@njit(cache=True)
+def segments_meet(ax, ay, bx, by, cx, cy, dx, dy):
+    """Whether two closed segments of the plane share a point; touching counts."""
+    o1, o2 = _cross(ax, ay, bx, by, cx, cy), _cross(ax, ay, bx, by, dx, dy)
+    o3, o4 = _cross(cx, cy, dx, dy, ax, ay), _cross(cx, cy, dx, dy, bx, by)
+    if ((o1 > 0.0) != (o2 > 0.0)) and ((o3 > 0.0) != (o4 > 0.0)) and o1 * o2 != 0.0 and o3 * o4 != 0.0:
+        return True
+    if o1 == 0.0 and _between(ax, ay, bx, by, cx, cy):
+        return True
+    if o2 == 0.0 and _between(ax, ay, bx, by, dx, dy):
+        return True
+    if o3 == 0.0 and _between(cx, cy, dx, dy, ax, ay):
+        return True
+    return o4 == 0.0 and _between(cx, cy, dx, dy, bx, by)
+
+
+@njit(cache=True)
+def to_segment(x, y, ax, ay, bx, by):
+    """Vector from a point to the closest point of a segment, which may be a point."""
+    sx, sy = bx - ax, by - ay
+    length2 = sx * sx + sy * sy
+    share = 0.0
+    if length2 > 0.0:
+        share = min(1.0, max(0.0, (sx * (x - ax) + sy * (y - ay)) / length2))
+    return ax + share * sx - x, ay + share * sy - y
+
+
+@njit(cache=True)
+def to_boundary(x, y, edges, first, last):
+    """(vector to the closest boundary point of the polygon edges[first:last], whether the point is inside)."""
+    best, gx, gy, inside = inf, 0.0, 0.0, False
+    for k in range(first, last):
+        ax, ay, bx, by = edges[k, 0], edges[k, 1], edges[k, 2], edges[k, 3]
+        ux, uy = to_segment(x, y, ax, ay, bx, by)
+        s2 = ux * ux + uy * uy
+        if s2 < best:
+            best, gx, gy = s2, ux, uy
+        if (ay > y) != (by > y) and x < ax + (y - ay) / (by - ay) * (bx - ax):
+            inside = not inside
+    return gx, gy, inside
+
+
+@njit(cache=True)
+def zone_meets_polygon(x, y, hx, hy, depth, half, edges, first, last, literal):
+    """Whether the triangular zone at (x, y) with unit heading (hx, hy) meets a polygon.
+
+    Literal: one of the segments from the agent to the three corners meets an edge, which misses a corner of the
+    polygon that comes in between them. Else exact: edges cross, or one of the two holds the other.
+    """
+    ax, ay = x + depth * hx, y + depth * hy
+    rx, ry, lx, ly = x + half * hy, y - half * hx, x - half * hy, y + half * hx
+    for k in range(first, last):
+        cx, cy, dx, dy = edges[k, 0], edges[k, 1], edges[k, 2], edges[k, 3]
+        if literal:
+            if segments_meet(x, y, ax, ay, cx, cy, dx, dy) or segments_meet(rx, ry, lx, ly, cx, cy, dx, dy):
+                return True
+        elif (
+            segments_meet(ax, ay, rx, ry, cx, cy, dx, dy)
+            or segments_meet(rx, ry, lx, ly, cx, cy, dx, dy)
+            or segments_meet(lx, ly, ax, ay, cx, cy, dx, dy)
+        ):
+            return True
+    if literal:
+        return False
+    cx, cy = edges[first, 0] - x, edges[first, 1] - y
+    along, across = cx * hx + cy * hy, abs(cx * hy - cy * hx)
+    return (along >= 0.0 and along / depth + across / half <= 1.0) or to_boundary(x, y, edges, first, last)[2]
+
+
+@njit(cache=True)
+def zone_meets_ball(along, across, depth, half, radius, literal):
+    """As `zone_meets_polygon` for a ball whose centre has these coordinates along and across (>= 0) the heading."""
+    bx, by = to_segment(along, across, 0.0, 0.0, 0.0, half)
+    ux, uy = to_segment(along, across, 0.0, 0.0, depth, 0.0)
+    vx, vy = to_segment(along, across, depth, 0.0, 0.0, half)
+    if not literal and along >= 0.0 and along / depth + across / half <= 1.0:
+        return True
+    side2 = ux * ux + uy * uy if literal else vx * vx + vy * vy
+    return min(bx * bx + by * by, side2) <= radius * radius
+
+
+@njit(cache=True)
+def push(distance, c, inside, outward, repulsive):
+    """Factor of the unit vector b from the agent to the closest boundary point, for one obstacle or wall."""
+    if inside and outward:
+        return distance + c
+    return min(0.0, distance - c) if repulsive else distance - c
+
+
+@njit(cache=True)
+def obstacle_terms(x, h, moving, depth, half, c, world, choices, out):
+    """Write Σ_e (d_ie − c) b_ie over all triggered obstacles and walls of one agent into `out`.
+
+    Parameters
+    ----------
+    x, h : ndarray, shape (m,)
+        Position and unit heading; `moving` is False where there is no heading, and then there is no zone either.
+    """
+    m, buffer = x.size, choices.obstacle_zone == 1
+    outward, repulsive, literal = choices.inside == 0, choices.obstacle_force == 0, choices.trigger == 1
+    for k in range(m):
+        out[k] = 0.0
+    for o in range(world.starts.size - 1):
+        first, last = world.starts[o], world.starts[o + 1]
+        gx, gy, inside = to_boundary(x[0], x[1], world.edges, first, last)
+        s2 = gx * gx + gy * gy
+        if s2 == 0.0 or (s2 > (depth + half) ** 2 and not inside):
+            continue
+        if (inside and not literal) or (
+            moving and zone_meets_polygon(x[0], x[1], h[0], h[1], depth, half, world.edges, first, last, literal)
+        ):
+            distance = sqrt(s2)
+            factor = push(distance, c, inside, outward, repulsive) / distance
+            out[0] += factor * gx
+            out[1] += factor * gy
+    for o in range(world.balls.shape[0]):
+        s2, along = 0.0, 0.0
+        for k in range(m):
+            gap = world.balls[o, k] - x[k]
+            s2 += gap * gap
+            along += gap * h[k]
+        radius, apart = world.balls[o, m], sqrt(s2)
+        across = sqrt(max(0.0, s2 - along * along))
+        inside = apart < radius
+        if apart == 0.0 or apart == radius:
+            continue
+        met = moving and zone_meets_ball(along, across, depth, half, radius, literal)
+        if inside or (apart - radius <= c if buffer else met):
+            # b points away from the centre where the agent is inside
+            sign = -1.0 if inside else 1.0
+            factor = sign * push(abs(apart - radius), c, inside, outward, repulsive) / apart
+            for k in range(m):
+                out[k] += factor * (world.balls[o, k] - x[k])
+    _walls(x, h, moving, depth, half, c, world.box, choices, out)
+
+
+@njit(cache=True)
+def _walls(x, h, moving, depth, half, c, box, choices, out):
+    """Add one term for each wall that the zone reaches, or for the nearest of them."""
+    buffer, nearest, least = choices.obstacle_zone == 1, choices.walls == 1, inf
+    outward, repulsive = choices.inside == 0, choices.obstacle_force == 0
+    axis, force = -1, 0.0
+    for k in range(x.size):
+        for side in range(2):
+            normal = 2.0 * side - 1.0
+            distance = normal * (box[side, k] - x[k])
+            reach = 0.0
+            if moving:
+                reach = max(0.0, depth * normal * h[k], half * sqrt(max(0.0, 1.0 - h[k] * h[k])))
+            if not (distance <= c if buffer else distance < reach or distance < 0.0):
+                continue
+            beyond = distance < 0.0
+            toward = -normal if beyond else normal
+            term = push(abs(distance), c, beyond, outward, repulsive) * toward
+            if not nearest:
+                out[k] += term
+            elif distance < least:
+                least, axis, force = distance, k, term
+    if axis >= 0:
+        out[axis] += force
+
+
+@njit(cache=True)
+def polygon_clearance(q, edges):
+    """Signed distance of points (N, 2) from a polygon's boundary, negative inside."""
+    found = np.empty(q.shape[0])
+    for i in range(q.shape[0]):
+        gx, gy, inside = to_boundary(q[i, 0], q[i, 1], edges, 0, edges.shape[0])
+        found[i] = -sqrt(gx * gx + gy * gy) if inside else sqrt(gx * gx + gy * gy)
+    return found
+
+
+@njit(cache=True)
+def polygon_clearance_on_segments(a, b, edges):
+    """Lower bound of the signed distance from a polygon along the segments a[i] b[i]: exact where they stay outside.
+
+    Where one enters, the signed distance s changes by at most the way travelled: s >= (s_a + s_b − length)/2.
+    """
+    ends, found = (polygon_clearance(a, edges), polygon_clearance(b, edges)), np.empty(a.shape[0])
+    for i in range(a.shape[0]):
+        ax, ay, bx, by = a[i, 0], a[i, 1], b[i, 0], b[i, 1]
+        found[i] = min(ends[0][i], ends[1][i])
+        enters = found[i] < 0.0
+        for k in range(edges.shape[0]):
+            cx, cy, dx, dy = edges[k, 0], edges[k, 1], edges[k, 2], edges[k, 3]
+            enters = enters or segments_meet(ax, ay, bx, by, cx, cy, dx, dy)
+            for x, y in ((cx, cy), (dx, dy)):
+                ux, uy = to_segment(x, y, ax, ay, bx, by)
+                found[i] = min(found[i], sqrt(ux * ux + uy * uy))
+        if enters:
+            length = sqrt((bx - ax) ** 2 + (by - ay) ** 2)
+            found[i] = min(found[i], 0.5 * (ends[0][i] + ends[1][i] - length))
+    return found

@@ -1,0 +1,309 @@
+"""Zone-based flocking: the six behaviours of an agent in two forms, and whole runs of the map.
+
+Equation numbers are those of Jond's paper on bearing-distance flocking. The position form is (3) to (8); the bearing
+form is (14), (15) and (18) to (21), from distances, bearings b and their rates alone. All pairs are looked at.
+"""
+
+from __future__ import annotations
+
+from math import sqrt, tanh
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from flockana.kernels.zone_obstacles import obstacle_terms, to_boundary
+
+FloatArray = npt.NDArray[np.float64]
+COHESION, ALIGNMENT, SEPARATION, STRATEGIC, OBSTACLE, SPEED = range(6)
+_NEAR_ZERO = 1e-4  # below it tanh(x)/x is 1 − x²/3 to rounding: the next term is 2x⁴/15
+
+
+class Zones(NamedTuple):
+    """Radii (n,), weights of pairs (n, n), of agents (n,) and of agents and aliens (n, K)."""
+
+    r: FloatArray
+    c: FloatArray
+    a: FloatArray
+    s: FloatArray
+    separation: FloatArray
+    cohesion: FloatArray
+    alignment: FloatArray
+    speed: FloatArray
+    obstacle: FloatArray
+    alien: FloatArray
+
+
+class Settings(NamedTuple):
+    """Numbers of the law."""
+
+    dt: float
+    desired_speed: float
+    u_max: float
+    v_max: float
+    cohesion_gain: float
+    alignment_gain: float
+    base: float
+
+
+class Choices(NamedTuple):
+    """Which reading of the paper: 0 is the recommended one, the others as in `flockana.laws.bearing_distance`."""
+
+    form: int
+    order: int
+    speed_bound: int
+    own_velocity: int
+    surveillance: int
+    obstacle_zone: int
+    zone_length: int
+    trigger: int
+    obstacle_force: int
+    inside: int
+    walls: int
+
+
+class World(NamedTuple):
+    """Edges of all polygons, balls (centre, radius), the box (low, high), and each alien's territory and habits."""
+
+    edges: FloatArray
+    starts: npt.NDArray[np.int64]
+    balls: FloatArray
+    box: FloatArray
+    territory: FloatArray
+    territory_starts: npt.NDArray[np.int64]
+    detection: FloatArray
+    pace: FloatArray
+
+
+@njit(cache=True)
+def saturation(norm, bound):
+    """Factor by which (9) and (10) shorten a vector of this norm: tanh(x)/x at x = norm/bound, 1 at 0."""
+    x = norm / bound
+    return 1.0 - x * x / 3.0 if x < _NEAR_ZERO else tanh(x) / x
+
+
+@njit(cache=True)
+def _length(x):
+    s2 = 0.0
+    for k in range(x.size):
+        s2 += x[k] * x[k]
+    return sqrt(s2)
+
+
+@njit(cache=True)
+def _neighbours(i, q, p, zones, settings, bearing, out):
+    """Cohesion, alignment and separation of agent i."""
+    n, m = q.shape
+    r, c, a = zones.r[i], zones.c[i], zones.a[i]
+    total_c, total_a = 0.0, 0.0
+    for j in range(n):
+        if j == i:
+            continue
+        d2 = 0.0
+        for k in range(m):
+            d2 += (q[j, k] - q[i, k]) ** 2
+        d = sqrt(d2)
+        if d > a or d == 0.0:
+            continue
+        if d <= c:
+            w = zones.separation[i, j] * (d - c)
+            for k in range(m):
+                out[SEPARATION, k] += w * ((q[j, k] - q[i, k]) / d)
+        if d <= r:
+            continue
+        w_c, w_a = zones.cohesion[i, j], zones.alignment[i, j]
+        total_c += w_c
+        total_a += w_a
+        if not bearing:
+            for k in range(m):
+                out[COHESION, k] += w_c * q[j, k]
+                out[ALIGNMENT, k] += w_a * p[j, k]
+            continue
+        rate = 0.0  # of the distance
+        for k in range(m):
+            rate += (q[j, k] - q[i, k]) / d * (p[j, k] - p[i, k])
+        for k in range(m):
+            b = (q[j, k] - q[i, k]) / d
+            b_rate = (p[j, k] - p[i, k] - rate * b) / d
+            out[COHESION, k] += w_c * d * b
+            out[ALIGNMENT, k] += w_a * (d * b_rate + rate * b)
+    for k in range(m):
+        own_q, own_p = (0.0, 0.0) if bearing else (q[i, k], p[i, k])
+        out[COHESION, k] = settings.cohesion_gain * (out[COHESION, k] / total_c - own_q) if total_c > 0.0 else 0.0
+        out[ALIGNMENT, k] = settings.alignment_gain * (out[ALIGNMENT, k] / total_a - own_p) if total_a > 0.0 else 0.0
+
+
+@njit(cache=True)
+def _aliens(i, q, alien, zones, annulus, out):
+    """Strategic separation (7) of agent i from the aliens that it watches."""
+    m = q.shape[1]
+    for e in range(alien.shape[0]):
+        d2 = 0.0
+        for k in range(m):
+            d2 += (alien[e, k] - q[i, k]) ** 2
+        d = sqrt(d2)
+        if 0.0 < d <= zones.s[i] and not (annulus and d <= zones.a[i]):
+            for k in range(m):
+                out[STRATEGIC, k] += zones.alien[i, e] * (d - zones.s[i]) * ((alien[e, k] - q[i, k]) / d)
+
+
+@njit(cache=True)
+def behave(i, q, p, heading, estimate, alien, zones, settings, choices, world, out):
+    """Write the six behaviours of agent i into out (6, m); its heading and its velocity estimate move on."""
+    m = q.shape[1]
+    out[:] = 0.0
+    _neighbours(i, q, p, zones, settings, choices.form == 1, out)
+    _aliens(i, q, alien, zones, choices.surveillance == 1, out)
+    speed = _length(p[i])
+    if speed > 0.0:
+        for k in range(m):
+            heading[i, k] = p[i, k] / speed
+    moving = _length(heading[i]) > 0.0
+    c = zones.c[i]
+    depth = zones.a[i] if choices.zone_length == 1 else c
+    obstacle_terms(q[i], heading[i], moving, depth, settings.base * c, c, world, choices, out[OBSTACLE])
+    own2 = 0.0
+    for k in range(m):
+        out[OBSTACLE, k] *= zones.obstacle[i]
+        others = (
+            out[COHESION, k] + out[ALIGNMENT, k] + out[SEPARATION, k] + out[STRATEGIC, k] + out[OBSTACLE, k]
+        )  # (16)
+        if choices.own_velocity == 2:  # (17)
+            estimate[i, k] += settings.dt * others
+        else:
+            estimate[i, k] = p[i, k] + (settings.dt * others if choices.own_velocity == 1 else 0.0)
+        own2 += estimate[i, k] ** 2
+    if own2 > 0.0:
+        for k in range(m):
+            wanted = settings.desired_speed * estimate[i, k] / sqrt(own2)
+            out[SPEED, k] = zones.speed[i] * (wanted - estimate[i, k])
+
+
+@njit(cache=True)
+def behaviours(q, p, heading, estimate, alien, zones, settings, choices, world):
+    """The six behaviours of all agents at one instant, shape (6, n, m); headings and estimates are changed."""
+    n, m = q.shape
+    found, out = np.empty((6, n, m)), np.empty((6, m))
+    for i in range(n):
+        behave(i, q, p, heading, estimate, alien, zones, settings, choices, world, out)
+        found[:, i] = out
+    return found
+
+
+@njit(cache=True)
+def _move(i, q, p, u, settings, literal):
+    """(j), (k): agent i takes its input, is bounded in speed, and moves with its new velocity."""
+    m = q.shape[1]
+    for k in range(m):
+        p[i, k] += settings.dt * u[i, k]
+    speed = _length(p[i])
+    factor = saturation(speed, settings.v_max) if literal else min(1.0, settings.v_max / max(speed, 1e-300))
+    for k in range(m):
+        p[i, k] *= factor
+        q[i, k] += settings.dt * p[i, k]
+
+
+@njit(cache=True)
+def _hunt(alien, q, dt, world):
+    """Every alien goes for the nearest agent that it detects, and stays in its territory."""
+    m = q.shape[1]
+    for e in range(alien.shape[0]):
+        best, prey = world.detection[e] ** 2, -1
+        for i in range(q.shape[0]):
+            d2 = 0.0
+            for k in range(m):
+                d2 += (q[i, k] - alien[e, k]) ** 2
+            if d2 <= best and (prey < 0 or d2 < best):
+                best, prey = d2, i
+        if prey < 0 or best == 0.0:
+            continue
+        pace = dt * world.pace[e] / sqrt(best)
+        for k in range(m):
+            alien[e, k] += pace * (q[prey, k] - alien[e, k])
+        first, last = world.territory_starts[e], world.territory_starts[e + 1]
+        if last > first:
+            gx, gy, inside = to_boundary(alien[e, 0], alien[e, 1], world.territory, first, last)
+            if not inside:
+                alien[e, 0] += gx
+                alien[e, 1] += gy
+
+
+@njit(cache=True)
+def run(q, p, heading, estimate, alien, zones, settings, choices, world, steps):
+    """Take `steps` steps; the five arrays of state are changed. Returns all six over time, each (steps, ...)."""
+    n, m = q.shape
+    qs, ps, us, hs, es = (
+        np.empty((steps, n, m)),
+        np.empty((steps, n, m)),
+        np.empty((steps, n, m)),
+        np.empty((steps, n, m)),
+        np.empty((steps, n, m)),
+    )
+    aliens = np.empty((steps, alien.shape[0], m))
+    u, out, total = np.empty((n, m)), np.empty((6, m)), np.empty(m)
+    in_turn, literal = choices.order == 1, choices.speed_bound == 1
+    for step in range(steps):
+        for i in range(n):
+            behave(i, q, p, heading, estimate, alien, zones, settings, choices, world, out)
+            total[:] = 0.0
+            for term in range(6):
+                for k in range(m):
+                    total[k] += out[term, k]
+            factor = saturation(_length(total), settings.u_max)
+            for k in range(m):
+                u[i, k] = factor * total[k]
+            if in_turn:
+                _move(i, q, p, u, settings, literal)
+        if not in_turn:
+            for i in range(n):
+                _move(i, q, p, u, settings, literal)
+        _hunt(alien, q, settings.dt, world)
+        qs[step], ps[step], us[step], hs[step], es[step], aliens[step] = q, p, u, heading, estimate, alien
+    return qs, ps, us, hs, es, aliens
+
+
+@njit(cache=True)
+def populations(q, r, c, a):
+    """Mean number of agents in the zones of repulsion, conflict and attraction of an agent, (T, n, m) -> (T, 3)."""
+    steps, n, m = q.shape
+    found = np.zeros((steps, 3))
+    for t in range(steps):
+        for i in range(n):
+            for j in range(n):
+                d2 = 0.0
+                for k in range(m):
+                    d2 += (q[t, j, k] - q[t, i, k]) ** 2
+                d = sqrt(d2)
+                if j == i or d > a[i]:
+                    continue
+                found[t, 0 if d <= r[i] else 1 if d <= c[i] else 2] += 1.0 / n
+    return found
+
+
+@njit(cache=True)
+def fragments(q, a):
+    """(Components, agents in the largest) over time, (T, 2); linked are those of whom one attracts the other."""
+    steps, n, m = q.shape
+    found = np.zeros((steps, 2), np.int64)
+    seen, stack = np.empty(n, np.bool_), np.empty(n, np.int64)
+    for t in range(steps):
+        seen[:] = False
+        for root in range(n):
+            if seen[root]:
+                continue
+            seen[root], stack[0], waiting, size = True, root, 1, 0
+            while waiting:
+                waiting -= 1
+                i = stack[waiting]
+                size += 1
+                for j in range(n):
+                    d2 = 0.0
+                    for k in range(m):
+                        d2 += (q[t, j, k] - q[t, i, k]) ** 2
+                    if not seen[j] and sqrt(d2) <= max(a[i], a[j]):
+                        seen[j], stack[waiting] = True, j
+                        waiting += 1
+            found[t, 0] += 1
+            found[t, 1] = max(found[t, 1], size)
+    return found

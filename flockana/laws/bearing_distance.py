@@ -1,0 +1,294 @@
+"""Zone-based flocking from bearings and distances (Jond): a map from step to step, and every reading of its text.
+
+Where the paper is silent, or its letter misbehaves, the law has a choice by name: the first of `CHOICES` is the
+recommended one and the default, the last is the letter of the paper (`ZoneFlocking.printed`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import KW_ONLY, dataclass, field
+from typing import Any, Self
+
+import numpy as np
+
+from flockana.checks import FloatArray, ensure_positive, ensure_state
+from flockana.environment.zone_world import ZoneWorld
+from flockana.errors import ArgumentError
+from flockana.interactions import ZoneRadii, ZoneWeights
+from flockana.kernels import zones as compiled
+from flockana.laws.law import DiscreteLaw
+
+CHOICES: dict[str, tuple[str, ...]] = {
+    "form": ("position", "bearing"),
+    "order": ("synchronous", "sequential"),
+    "speed_bound": ("clip", "tanh"),
+    "own_velocity": ("measured", "predicted", "estimated"),
+    "surveillance": ("disc", "annulus"),
+    "obstacle_zone": ("triangle", "buffer"),
+    "zone_length": ("conflict", "attraction"),
+    "trigger": ("exact", "three-segments"),
+    "obstacle_force": ("repulsive", "literal"),
+    "inside": ("outward", "literal"),
+    "walls": ("each", "nearest"),
+}
+_OURS = ("obstacle_zone", "zone_length")  # choices that are no readings of the printed law
+BEHAVIOURS = ("cohesion", "alignment", "separation", "strategic", "obstacle", "speed")  # in the kernel's order
+
+
+def _radii_of_section_5() -> ZoneRadii:
+    return ZoneRadii(1.5, c=3.0, a=5.0)
+
+
+@dataclass(frozen=True)
+class ZoneFlocking(DiscreteLaw):
+    """u = cohesion + alignment + separation + strategic separation + obstacle avoidance + global speed, by zones.
+
+    One step: u_i from (22), bounded by tanh (9); v_i += dt u_i, bounded (10); p_i += dt v_i. Then the aliens move.
+    Each alternative below names, after its default, the letter of the paper; spec letters A1 to A18 are its list of
+    ambiguities. The memory is each agent's heading, its estimate of its own velocity, and where the aliens are.
+
+    Parameters
+    ----------
+    radii : ZoneRadii
+        Zones; those of section 5.1 by default.
+    weights : ZoneWeights
+        How much of everything.
+    world : ZoneWorld
+        Obstacles, box and aliens; none by default.
+    desired_speed : float
+        v^d of the global speed behaviour.
+    u_max, v_max : float
+        Bounds of input and speed.
+    dt : float
+        Step.
+    base : float
+        Half base of the obstacle zone over the radius of conflict, 0 < base <= 1 (called α, not printed). Beyond
+        1/√3 the heading is no longer the longest altitude of the triangle.
+    form : {"position", "bearing"}
+        Expressions (3)-(8), or (14)-(21); equal to rounding but for the global speed.
+    order : {"synchronous", "sequential"}
+        All inputs from one snapshot, or each agent moves at once and the next ones see it moved (A16).
+    speed_bound : {"clip", "tanh"}
+        v min(1, v^max/‖v‖), or (10), a drag that makes 3 into 2.541 in each step (A7, erratum J7).
+    own_velocity : {"measured", "predicted", "estimated"}
+        What the global speed behaviour takes for v_i: v_i, v_i + dt u^aux, or (17), which drifts (A8, J8).
+    surveillance : {"disc", "annulus"}
+        Aliens that are heeded: 0 < d <= s, or a < d <= s, which lets one nearer than a walk in (A1, J9).
+    obstacle_zone : {"triangle", "buffer"}
+        Directed zone (a cone in space), or the conventional method that section 5.2 compares with: each polygon in
+        its smallest disc, and all within c repels whatever the heading.
+    zone_length : {"conflict", "attraction"}
+        Altitude of the zone: c, or a as the paper suggests for fast agents.
+    trigger : {"exact", "three-segments"}
+        The zone meets the obstacle, or one of its segments from the agent does, which misses some corners (A12).
+    obstacle_force : {"repulsive", "literal"}
+        min(0, d − c), or d − c, which attracts where the zone is longer than c (A11).
+    inside : {"outward", "literal"}
+        Of an agent in an obstacle or beyond a wall: pushed out by d + c, or by the letter deeper in (A13, J12).
+    walls : {"each", "nearest"}
+        One term for each wall that the zone reaches, or the nearest only (A14).
+
+    Raises
+    ------
+    ArgumentError
+        On parameters out of range, an unknown choice, or a box smaller than a zone.
+
+    Examples
+    --------
+    Two agents in each other's zone of conflict, at the desired speed side by side:
+
+    >>> law = ZoneFlocking()
+    >>> parts = law.behaviours([[0.0, 0.0], [0.0, 2.0]], [[3.0, 0.0], [3.0, 0.0]])
+    >>> parts["separation"][0].tolist(), parts["cohesion"][0].tolist(), parts["speed"][0].tolist()
+    ([0.0, -5.0], [0.0, 0.5], [0.0, 0.0])
+    """
+
+    radii: ZoneRadii = field(default_factory=_radii_of_section_5)
+    weights: ZoneWeights = field(default_factory=ZoneWeights)
+    world: ZoneWorld = field(default_factory=ZoneWorld)
+    _: KW_ONLY
+    desired_speed: float = 3.0
+    u_max: float = 2.0
+    v_max: float = 4.0
+    dt: float = 0.1
+    base: float = 0.5
+    form: str = "position"
+    order: str = "synchronous"
+    speed_bound: str = "clip"
+    own_velocity: str = "measured"
+    surveillance: str = "disc"
+    obstacle_zone: str = "triangle"
+    zone_length: str = "conflict"
+    trigger: str = "exact"
+    obstacle_force: str = "repulsive"
+    inside: str = "outward"
+    walls: str = "each"
+
+    references = ("jond-2025",)
+    steps_at_once = 256  # a step of ten agents takes microseconds
+
+    @classmethod
+    def printed(cls, radii: ZoneRadii | None = None, weights: ZoneWeights | None = None, **options: Any) -> Self:
+        """The law by the letter of the paper, with gains 1; what is given goes before the letter.
+
+        Parameters
+        ----------
+        radii : ZoneRadii, optional
+            Those of section 5.1 by default.
+        weights : ZoneWeights, optional
+            Those of section 5.1 by default.
+        **options
+            Other parameters of the law by name.
+
+        Examples
+        --------
+        >>> ZoneFlocking.printed().speed_bound
+        'tanh'
+        """
+        letter: dict[str, Any] = {name: names[-1] for name, names in CHOICES.items() if name not in _OURS}
+        gains = ZoneWeights(cohesion_gain=1.0, alignment_gain=1.0)
+        return cls(radii or _radii_of_section_5(), weights or gains, **(letter | options))
+
+    def __post_init__(self) -> None:
+        for name, kind in (("radii", ZoneRadii), ("weights", ZoneWeights), ("world", ZoneWorld)):
+            if not isinstance(getattr(self, name), kind):
+                raise ArgumentError(f"{name} = {getattr(self, name)!r}: expected a {kind.__name__}")
+        for name in ("desired_speed", "u_max", "v_max", "dt", "base"):
+            object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
+        if self.base > 1.0:
+            raise ArgumentError(f"base = {self.base:g}: expected at most 1, so that the zone lies in that of conflict")
+        for name, names in CHOICES.items():
+            if getattr(self, name) not in names:
+                raise ArgumentError(f"{name} = {getattr(self, name)!r}: expected one of {', '.join(names)}")
+        self._check_box()
+
+    def _check_box(self) -> None:
+        box = self.world.box
+        if box is None:
+            return
+        reach, side = 2.0 * self.radii.reach[1], float(np.min(np.subtract(box.high, box.low)))
+        if side <= reach:
+            raise ArgumentError(
+                f"the box {box} has a side of {side:g}, the zone of conflict a diameter of {reach:g}: expected a box "
+                "larger than a zone, in which an agent can stay clear of all walls"
+            )
+
+    def check_dimension(self, m: int) -> None:  # noqa: D102
+        if self.world.dimension not in (None, m):
+            raise ArgumentError(f"the world of the law has {self.world.dimension} dimensions, the agents {m}")
+
+    def check_start(self, q: FloatArray, p: FloatArray) -> None:  # noqa: D102
+        self._zones(len(q))
+        self.world.check_start(q)
+
+    def start(self, q: FloatArray, p: FloatArray) -> Mapping[str, FloatArray]:
+        """Headings along the velocities (none at rest), velocity estimates that are right, aliens where they begin.
+
+        Parameters
+        ----------
+        q, p : ndarray, shape (n, m)
+            Initial positions and velocities.
+        """
+        speed = np.linalg.norm(p, axis=1, keepdims=True)
+        heading = np.divide(p, speed, out=np.zeros_like(p), where=speed > 0.0)
+        memory = {"heading": heading, "estimate": np.array(p)}
+        return memory | ({"alien": self.world.alien_starts} if self.world.aliens else {})
+
+    def step(
+        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
+    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
+        """One step (Algorithm 1 of the paper), unchecked.
+
+        Parameters
+        ----------
+        t : float
+            Time at the start of the step.
+        q, p : ndarray, shape (n, m)
+            Positions and velocities; left as they are.
+        memory : mapping of str to ndarray
+            ``heading``, ``estimate`` and, if there are aliens, ``alien``.
+        """
+        q, p, u, after = self.iterate(t, q, p, memory, 1)
+        return q[0], p[0], u[0], {name: values[0] for name, values in after.items()}
+
+    def iterate(  # noqa: D102
+        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray], steps: int
+    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
+        found = compiled.run(np.array(q), np.array(p), *self._state(q, memory), *self._constants(*q.shape), steps)
+        after = {"heading": found[3], "estimate": found[4]} | ({"alien": found[5]} if self.world.aliens else {})
+        return found[0], found[1], found[2], after
+
+    def behaviours(self, q: Any, p: Any, memory: Mapping[str, Any] | None = None) -> dict[str, FloatArray]:
+        """The six accelerations at one instant by name, each of shape (n, m), before the bound (9).
+
+        Parameters
+        ----------
+        q, p : array_like, shape (n, m)
+            Positions and velocities.
+        memory : mapping of str to array_like, optional
+            As `step` takes it; by default that of a start.
+
+        Raises
+        ------
+        ArgumentError
+            On bad arrays, or a law for other agents than these.
+        """
+        q, p = ensure_state(q, p)
+        self.check_dimension(q.shape[1])
+        known = self.start(q, p) if memory is None else memory
+        found = compiled.behaviours(q, p, *self._state(q, known), *self._constants(*q.shape))
+        return dict(zip(BEHAVIOURS, found, strict=True))
+
+    def measures(  # noqa: D102
+        self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
+    ) -> Mapping[str, tuple[str, FloatArray]]:
+        n = q.shape[1]
+        r, c, a, _ = self.radii.arrays(n)
+        parts, counts = compiled.fragments(q, a), compiled.populations(q, r, c, a)
+        found = {
+            "connectivity": (
+                "C = rank(L)/(n − 1), of agents within a",
+                (n - parts[:, 0]) / (n - 1) if n > 1 else parts[:, 0],
+            ),
+            "giant_share": ("C*, share of nodes", parts[:, 1] / n),
+        }
+        for k, zone in enumerate(("repulsion", "conflict", "attraction")):
+            found[f"in_{zone}"] = (f"mean number of agents in the zone of {zone}", counts[:, k])
+        if "alien" in extra:
+            gaps = np.linalg.norm(q[:, :, None] - extra["alien"][:, None], axis=3)
+            found["alien_distance"] = ("least distance from an alien", gaps.min(axis=(1, 2)))
+        if self.world.obstacles:
+            found |= self._clearances(t, q)
+        if self.world.box is not None:
+            inside = self.world.box.clearance(q.reshape(-1, q.shape[2])).reshape(q.shape[:2]).min(axis=1)
+            found["wall_distance"] = ("least distance from a wall, negative outside the box", inside)
+        return found
+
+    def _clearances(self, t: FloatArray, q: FloatArray) -> dict[str, tuple[str, FloatArray]]:
+        """Clearance at the samples, and its bound on the straight way from each sample to the next."""
+        n, m = q.shape[1:]
+        at = self.world.clearance(q.reshape(-1, m)).reshape(-1, n).min(axis=1)
+        on_way = np.append(at[:1], np.full(len(t) - 1, np.nan))
+        taken = np.flatnonzero(np.diff(t) < 1.5 * self.dt)  # between samples further apart the way is not known
+        ways = self.world.clearance_on_way(q[taken].reshape(-1, m), q[taken + 1].reshape(-1, m))
+        on_way[taken + 1] = ways.reshape(-1, n).min(axis=1)
+        return {
+            "obstacle_clearance": ("least distance from an obstacle, negative inside", at),
+            "obstacle_clearance_bound": ("lower bound of it on the way to the sample", on_way),
+        }
+
+    def _state(self, q: FloatArray, memory: Mapping[str, Any]) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Fresh copies of (heading, estimate, alien)."""
+        alien = memory.get("alien", np.empty((0, q.shape[1])))
+        return np.array(memory["heading"], float), np.array(memory["estimate"], float), np.array(alien, float)
+
+    def _zones(self, n: int) -> compiled.Zones:
+        return compiled.Zones(*self.radii.arrays(n), **self.weights.arrays(n, len(self.world.aliens)))
+
+    def _constants(self, n: int, m: int) -> tuple[compiled.Zones, compiled.Settings, compiled.Choices, compiled.World]:
+        """What the compiled step reads beside the state."""
+        gains = self.weights.cohesion_gain, self.weights.alignment_gain
+        settings = compiled.Settings(self.dt, self.desired_speed, self.u_max, self.v_max, *gains, self.base)
+        choices = compiled.Choices(**{name: names.index(getattr(self, name)) for name, names in CHOICES.items()})
+        return self._zones(n), settings, choices, self.world.arrays(m, buffer=self.obstacle_zone == "buffer")

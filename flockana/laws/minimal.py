@@ -1,0 +1,385 @@
+"""The minimal flocking model of the bearing-distance paper: alignment with the mean, and springs of length α_i r_i."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import KW_ONLY, dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.checks import FloatArray, ensure_nonnegative, ensure_points, ensure_positive
+from flockana.errors import ArgumentError
+from flockana.kernels.minimal import edge_forces, perceived_edges
+from flockana.laws.law import DiscreteLaw, Law
+from flockana.laws.perception import Edges, ensure_edges
+from flockana.nets import components
+
+if TYPE_CHECKING:
+    from scipy.sparse import sparray
+
+PerAgent = float | tuple[float, ...]
+PerPair = float | tuple[tuple[float, ...], ...]
+
+
+class EdgeData(NamedTuple):
+    """What acts along each directed edge, arrays of shape (M,).
+
+    Parameters
+    ----------
+    head, tail : int64 arrays
+        The agent i that perceives and the agent j that it perceives.
+    mu, rho, align : ndarray
+        Weight μ_ij of the spring, its length ρ_i = α_i r_i, and the weight of v_j − v_i.
+    """
+
+    head: npt.NDArray[np.int64]
+    tail: npt.NDArray[np.int64]
+    mu: FloatArray
+    rho: FloatArray
+    align: FloatArray
+
+
+def _per_agent(name: str, value: Any) -> PerAgent:
+    """One number > 0, or one for each agent."""
+    if np.ndim(value) == 0:
+        return ensure_positive(name, value)
+    return tuple(ensure_positive(f"{name}[{k}]", one) for k, one in enumerate(value))
+
+
+def _per_pair(name: str, value: Any) -> PerPair:
+    """One number >= 0, or a square table of them."""
+    if np.ndim(value) == 0:
+        return ensure_nonnegative(name, value)
+    table = np.asarray(value, dtype=object)
+    if table.ndim != 2 or table.shape[0] != table.shape[1]:
+        raise ArgumentError(f"{name} has shape {table.shape}: expected one number, or (n, n): how much i heeds j")
+    return tuple(
+        tuple(ensure_nonnegative(f"{name}[{i}][{j}]", one) for j, one in enumerate(row)) for i, row in enumerate(table)
+    )
+
+
+@dataclass(frozen=True)
+class MinimalFlocking(Law):
+    """u_i = Σ σ_ij v_j / Σ σ_ij − v_i + Σ μ_ij (1 − α_i r_i/‖p_j − p_i‖)(p_j − p_i) over N_i  (eq. (23)-(25)).
+
+    N_i holds the agents within i's own perception radius (closed), so perception is directed where radii differ; or
+    it is frozen by `edges`. As printed α_i = β_i |N_i| with β_i = 1/r_i: the desired spacing of an agent is as many
+    length units as it has neighbours, it jumps when one comes or goes, and neighbours disagree about it (erratum J5).
+    `spacing` sets it once and for all, as the corrected Theorem 1 asks.
+
+    An agent without neighbours moves straight on; coincident agents have no bearing and no spring.
+
+    Parameters
+    ----------
+    radius : float or sequence of n floats
+        Perception radius r_i.
+    beta : float or sequence of n floats, optional
+        β_i; 1/r_i by default. Not with `spacing`.
+    spacing : float or sequence of n floats, optional
+        Constant ρ_i = α_i r_i; by default β_i |N_i| r_i.
+    mu, sigma : float or array of shape (n, n)
+        μ_ij and σ_ij >= 0: how much agent i heeds agent j. σ = 0 leaves separation alone.
+    edges : sequence of (int, int), optional
+        A frozen graph: (j, i) if i perceives j, at any distance. By default the perceived one.
+    normalised : bool
+        Divide by Σ σ_ij as printed; False sums σ_ij (v_j − v_i), which is reciprocal if σ is symmetric.
+
+    Raises
+    ------
+    ArgumentError
+        On numbers out of range, tables of different sizes, a mean without weights, both `beta` and `spacing`.
+
+    Examples
+    --------
+    Agent 1 perceives agent 0, two units away, and wants to be one unit away; agent 0 perceives nobody:
+
+    >>> MinimalFlocking(edges=[(0, 1)], spacing=1.0).acceleration(0.0, [[0.0], [2.0]], [[0.0], [0.0]]).tolist()
+    [[0.0], [-1.0]]
+    """
+
+    radius: PerAgent = 10.0
+    _: KW_ONLY
+    beta: PerAgent | None = None
+    spacing: PerAgent | None = None
+    mu: PerPair = 1.0
+    sigma: PerPair = 1.0
+    edges: Edges | None = None
+    normalised: bool = True
+
+    references = ("jond-2025",)
+
+    def __post_init__(self) -> None:
+        if self.beta is not None and self.spacing is not None:
+            raise ArgumentError(f"beta = {self.beta} and spacing = {self.spacing}: expected one of them, or neither")
+        if not isinstance(self.normalised, bool):
+            raise ArgumentError(f"normalised = {self.normalised!r}: expected True or False")
+        for name in ("radius", "beta", "spacing"):
+            if name == "radius" or getattr(self, name) is not None:
+                object.__setattr__(self, name, _per_agent(name, getattr(self, name)))
+        for name in ("mu", "sigma"):
+            object.__setattr__(self, name, _per_pair(name, getattr(self, name)))
+        if self.edges is not None:
+            object.__setattr__(self, "edges", ensure_edges(self.edges))
+        self._check_sizes()
+        self._check_means()
+
+    def _check_sizes(self) -> None:
+        sizes = {name: len(v) for name in self._tables if isinstance(v := getattr(self, name), tuple)}
+        if len(set(sizes.values())) > 1:
+            raise ArgumentError(f"{sizes}: expected tables of equal length, one entry for each agent")
+        last = max((max(edge) for edge in self.edges or ()), default=-1)
+        if sizes and last >= min(sizes.values()):
+            raise ArgumentError(f"edges name agent {last}: expected agents below {min(sizes.values())}, as in {sizes}")
+
+    def _check_means(self) -> None:
+        """A weighted mean over agents whose weights are all zero is no mean; σ = 0 throughout is asked for."""
+        if not isinstance(self.sigma, tuple) or not self.normalised:
+            return
+        sigma = np.array(self.sigma)
+        heard = ~np.eye(len(sigma), dtype=bool) if self.edges is None else np.zeros(sigma.shape, dtype=bool)
+        for j, i in self.edges or ():
+            heard[i, j] = True
+        silent = heard.any(axis=1) & ((sigma * heard).sum(axis=1) == 0.0)
+        if silent.any() and sigma.any():
+            i = int(np.argmax(silent))
+            raise ArgumentError(
+                f"sigma[{i}] sums to zero over the agents that {i} may perceive: expected a weight > 0; for separation "
+                "alone give sigma=0"
+            )
+
+    _tables = ("radius", "beta", "spacing", "mu", "sigma")
+
+    @property
+    def agents(self) -> int | None:
+        """Number of agents that the tables fix; None if all parameters are single numbers."""
+        return next((len(v) for name in self._tables if isinstance(v := getattr(self, name), tuple)), None)
+
+    def check_agents(self, n: int) -> None:  # noqa: D102
+        least = 1 + max((max(edge) for edge in self.edges or ()), default=-1)
+        if n < least or (self.agents is not None and n != self.agents):
+            raise ArgumentError(
+                f"{n} agents: expected {self.agents or f'at least {least}'}, as the law's parameters name them"
+            )
+
+    @cached_property
+    def _frozen(self) -> EdgeData:
+        pairs = np.array(self.edges, dtype=np.int64)
+        return self._weigh(pairs[:, 1].copy(), pairs[:, 0].copy())
+
+    def edge_data(self, q: FloatArray) -> EdgeData:
+        """Directed edges of a state with their weights and spacings, unchecked.
+
+        Parameters
+        ----------
+        q : ndarray, shape (n, m)
+            Positions.
+        """
+        if self.edges is not None:
+            return self._frozen
+        return self._weigh(*perceived_edges(q, np.full(len(q), self.radius)))
+
+    def _weigh(self, head: npt.NDArray[np.int64], tail: npt.NDArray[np.int64]) -> EdgeData:
+        def of_agent(value: PerAgent) -> Any:
+            return value if isinstance(value, float) else np.array(value)[head]
+
+        def of_pair(value: PerPair) -> FloatArray:
+            return np.full(head.size, value) if isinstance(value, float) else np.array(value)[head, tail]
+
+        if self.spacing is not None:
+            rho = of_agent(self.spacing)
+        else:
+            count = np.bincount(head)[head]
+            rho = count if self.beta is None else of_agent(self.beta) * of_agent(self.radius) * count
+        align = of_pair(self.sigma)
+        if self.normalised:
+            total = np.bincount(head, align)[head]
+            align = np.divide(align, total, out=np.zeros_like(align), where=total > 0.0)
+        return EdgeData(head, tail, of_pair(self.mu), np.full(head.size, rho, dtype=np.float64), align)
+
+    def perceived(self, q: Any) -> Edges:
+        """The directed edges (j, i) of a state: i perceives j.
+
+        Parameters
+        ----------
+        q : array_like, shape (n, m)
+            Positions.
+
+        Examples
+        --------
+        >>> MinimalFlocking((3.0, 1.0)).perceived([[0.0], [2.0]])
+        ((1, 0),)
+        """
+        q = ensure_points("q", q)
+        self.check_agents(len(q))
+        data = self.edge_data(q)
+        return tuple(zip(data.tail.tolist(), data.head.tolist(), strict=True))
+
+    @cached_property
+    def reciprocal(self) -> bool:
+        """Whether the graph is frozen and every edge has its reverse, of equal μ, spacing and alignment weight."""
+        if self.edges is None:
+            return False
+        what = dict(zip(self.edges, zip(*self._frozen[2:], strict=True), strict=True))
+        return all(what.get((i, j)) == value for (j, i), value in what.items())
+
+    def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
+        """(u, dH/dt), unchecked, with dH/dt = −Σ σ ‖v_i − v_j‖² over links if the law is `reciprocal`, else NaN.
+
+        Parameters
+        ----------
+        t : float
+            Time (the law does not depend on it).
+        q, p : ndarray, shape (n, m)
+            Positions and velocities.
+        """
+        u = np.zeros_like(q)
+        dissipated = edge_forces(q, p, *self.edge_data(q), u)
+        return u, -0.5 * dissipated if self.reciprocal else float("nan")
+
+    def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:
+        """H = ½ Σ‖v_i − v̄‖² + ½ Σ μ (‖x‖ − ρ)² over links, if the law is `reciprocal`; else NaN. Unchecked.
+
+        Parameters
+        ----------
+        t : float
+            Time (H does not depend on it).
+        q, p : ndarray, shape (n, m)
+            Positions and velocities.
+        """
+        if not self.reciprocal:
+            return float("nan")
+        head, tail, mu, rho, _ = self._frozen
+        stretch = np.linalg.norm(q[tail] - q[head], axis=1) - rho
+        v = p - p.mean(axis=0)
+        return 0.5 * float(np.sum(v * v)) + 0.25 * float(np.sum(mu * stretch * stretch))  # links come twice
+
+    def measures(  # noqa: D102
+        self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
+    ) -> Mapping[str, tuple[str, FloatArray]]:
+        if self.edges is not None:
+            head, tail, _, rho, _ = self._frozen
+            errors = np.abs(np.linalg.norm(q[:, tail] - q[:, head], axis=2) - rho)
+            return {"edge_error": ("largest | ‖x_e‖ − ρ_e | of an edge", errors.max(axis=1))}
+        labels = [components(q.shape[1], np.column_stack(self.edge_data(one)[:2])) for one in q]
+        parts, largest = (np.array([f(np.bincount(one)) for one in labels], float) for f in (np.size, np.max))
+        n = q.shape[1]
+        return {
+            "connectivity": ("C = rank(L)/(n − 1), directions forgotten", (n - parts) / max(n - 1, 1)),
+            "giant_share": ("C*, share of nodes", largest / n),
+        }
+
+    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[sparray, sparray]:
+        """(∂u/∂q, ∂u/∂p), sparse, with the graph as it is at q, unchecked.
+
+        ∂u_i/∂q_j = μ ((1 − ρ/‖x‖) I + ρ/‖x‖ b bᵀ) with the bearing b = x/‖x‖, and ∂u_i/∂p_j = a I; the blocks of an
+        agent sum to zero. Where an agent comes or goes the law jumps and has no derivative: that is not seen here.
+
+        Parameters
+        ----------
+        t : float
+            Time (the law does not depend on it).
+        q, p : ndarray, shape (n, m)
+            Positions and velocities.
+
+        Raises
+        ------
+        ArgumentError
+            If two agents coincide of which one perceives the other.
+        """
+        from scipy.sparse import coo_array
+
+        n, m = q.shape
+        head, tail, mu, rho, align = self.edge_data(q)
+        x = q[tail] - q[head]
+        length = np.linalg.norm(x, axis=1)[:, None, None]
+        if not length.all():
+            e = int(np.argmin(length))
+            raise ArgumentError(f"agents {tail[e]} and {head[e]} coincide: expected distinct ones, for a derivative")
+        bearing = x[:, :, None] / length
+        ratio, identity = rho[:, None, None] / length, np.eye(m)
+        stiffness = mu[:, None, None] * ((1.0 - ratio) * identity + ratio * bearing * bearing.transpose(0, 2, 1))
+        rows, columns = (m * head[:, None] + np.arange(m))[:, :, None], (m * tail[:, None] + np.arange(m))[:, None, :]
+        own = (m * head[:, None] + np.arange(m))[:, None, :]
+
+        def summed(blocks: FloatArray) -> Any:
+            """Σ over edges of a block at (i, j) and its opposite at (i, i)."""
+            entries = np.concatenate([blocks.ravel(), -blocks.ravel()])
+            at = [np.broadcast_to(index, blocks.shape).ravel() for index in (rows, rows, columns, own)]
+            indices = np.concatenate(at[:2]), np.concatenate(at[2:])
+            return coo_array((entries, indices), shape=(n * m, n * m)).tocsr()
+
+        return summed(stiffness), summed(align[:, None, None] * identity)
+
+    def discrete(self, dt: float = 0.1) -> DiscreteMinimalFlocking:
+        """The same law in steps, as the paper simulates it.
+
+        Parameters
+        ----------
+        dt : float
+            Step.
+        """
+        return DiscreteMinimalFlocking(self, dt)
+
+
+@dataclass(frozen=True)
+class DiscreteMinimalFlocking(DiscreteLaw):
+    """v' = v + δ u(p, v), p' = p + δ v': the minimal model in the order of the paper's Algorithm 1, all agents at once.
+
+    Parameters
+    ----------
+    law : MinimalFlocking
+        What gives u.
+    dt : float
+        Step δ; 0.1 in the paper.
+
+    Raises
+    ------
+    ArgumentError
+        On another law, or a step that is not positive.
+
+    Examples
+    --------
+    >>> law = MinimalFlocking(edges=[(0, 1)], spacing=1.0).discrete(0.5)
+    >>> q, p, u, _ = law.step(0.0, np.array([[0.0], [2.0]]), np.zeros((2, 1)), {})
+    >>> q[1].tolist(), p[1].tolist(), u[1].tolist()
+    ([1.75], [-0.5], [-1.0])
+    """
+
+    law: MinimalFlocking
+    dt: float = 0.1
+
+    references = ("jond-2025",)
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.law, MinimalFlocking):
+            raise ArgumentError(f"law = {self.law!r}: expected MinimalFlocking(...)")
+        object.__setattr__(self, "dt", ensure_positive("dt", self.dt))
+
+    def check_start(self, q: FloatArray, p: FloatArray) -> None:  # noqa: D102
+        self.law.check_agents(len(q))
+
+    def measures(  # noqa: D102
+        self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
+    ) -> Mapping[str, tuple[str, FloatArray]]:
+        return self.law.measures(t, q, p, extra)
+
+    def step(
+        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
+    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
+        """One step, unchecked; it needs no memory.
+
+        Parameters
+        ----------
+        t : float
+            Time at the start of the step.
+        q, p : ndarray, shape (n, m)
+            Positions and velocities; left as they are.
+        memory : mapping
+            Passed along.
+        """
+        u, _ = self.law.flow(t, q, p)
+        v = p + self.dt * u
+        return q + self.dt * v, v, u, memory

@@ -1,0 +1,271 @@
+"""Zone-based flocking: one instant with obstacle zones, box and aliens, and its series against their bounds."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.patches import Circle, Polygon, Rectangle
+from mpl_toolkits.mplot3d.art3d import Line3DCollection  # type: ignore[import-untyped]
+
+from flockana.checks import FloatArray, ensure_finite_scalar
+from flockana.environment.obstacles import Sphere
+from flockana.environment.zone_world import ZoneWorld
+from flockana.errors import ArgumentError
+from flockana.laws.bearing_distance import ZoneFlocking
+from flockana.nets import links
+from flockana.plots.style import (
+    BLUE,
+    FAINT,
+    GREEN,
+    INK,
+    MUTED,
+    ORANGE,
+    PURPLE,
+    VERMILLION,
+    ensure_axes,
+    frame_space,
+    hairline,
+    legend_above,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from flockana.trajectory import Trajectory
+
+
+def _law(trajectory: Trajectory) -> ZoneFlocking:
+    if not isinstance(trajectory.law, ZoneFlocking):
+        raise ArgumentError(f"law = {trajectory.law!r}: expected a run of ZoneFlocking")
+    return trajectory.law
+
+
+def zones(trajectory: Trajectory, time: float | None = None, *, ax: Axes | None = None) -> Axes:
+    """Draw the sample nearest to a time: agents with their obstacle zones, links within a, world, aliens.
+
+    In the plane an obstacle zone is a triangle ahead of its agent; in space the heading stands for it. Of the
+    conventional method the circular buffers are drawn instead.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        A run of ZoneFlocking.
+    time : float, optional
+        By default the end.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; three-dimensional for m = 3.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    ArgumentError
+        If it is a run of another law, or of agents on a line.
+    """
+    law, m = _law(trajectory), trajectory.m
+    if m == 1:
+        raise ArgumentError("the agents live on a line: expected m = 2 or 3")
+    when = trajectory.t[-1] if time is None else ensure_finite_scalar("time", time)
+    k = int(np.argmin(np.abs(trajectory.t - when)))
+    q, heading = trajectory.q[k], trajectory.extra["heading"][k]
+    axes: Any = ensure_axes(ax, m=m)
+    seen = [q]
+    if m == 2:
+        seen.append(_world(axes, law.world, buffer=law.obstacle_zone == "buffer"))
+        if law.obstacle_zone == "triangle":
+            _triangles(axes, q, heading, law)
+    kind: Any = Line3DCollection if m == 3 else LineCollection
+    pairs = links(q, float(np.nextafter(law.radii.reach[2], np.inf)))
+    axes.add_collection(kind(q[pairs], colors=MUTED, linewidths=0.8, alpha=0.7, zorder=2))
+    axes.scatter(*q.T, s=22, color=INK, linewidths=0, zorder=3, label="agents")
+    if m == 3:
+        axes.quiver(*q.T, *heading.T, length=law.radii.reach[1], color=BLUE, linewidth=0.8)
+    if "alien" in trajectory.extra:
+        aliens = trajectory.extra["alien"][k]
+        seen.append(aliens)
+        axes.scatter(*aliens.T, s=70, marker="X", color=VERMILLION, edgecolors="white", linewidths=0.6, zorder=4)
+    axes.set_title(f"t = {trajectory.t[k]:.4g}", fontsize=9)
+    frame_space(axes, np.vstack(seen))
+    return axes  # type: ignore[no-any-return]  # the stubs have no three-dimensional axes
+
+
+def _triangles(ax: Any, q: FloatArray, heading: FloatArray, law: ZoneFlocking) -> None:
+    """The obstacle zone ahead of every agent that has a heading."""
+    _, c, a, _ = law.radii.arrays(len(q))
+    ahead = heading * (a if law.zone_length == "attraction" else c)[:, None]
+    aside = law.base * c[:, None] * np.column_stack([heading[:, 1], -heading[:, 0]])
+    corners = np.stack([q + ahead, q + aside, q - aside], axis=1)[heading.any(axis=1)]
+    ax.add_collection(PolyCollection(list(corners), facecolors=BLUE, edgecolors=BLUE, alpha=0.25, linewidths=0.6))
+
+
+def _world(ax: Any, world: ZoneWorld, *, buffer: bool) -> FloatArray:
+    """Draw obstacles, buffers, territories and box; return points that must be in view."""
+    seen = [np.empty((0, 2))]
+    for solid in world.obstacles:
+        disc = solid if isinstance(solid, Sphere) else solid.enclosing_circle()
+        if isinstance(solid, Sphere):
+            ax.add_patch(Circle(disc.centre, disc.radius, facecolor=FAINT, edgecolor=MUTED, linewidth=0.8, zorder=1))
+            seen.append(np.array(disc.centre) + disc.radius * np.array([[-1.0, -1.0], [1.0, 1.0]]))
+        else:
+            ax.add_patch(Polygon(solid.vertices, facecolor=FAINT, edgecolor=MUTED, linewidth=0.8, zorder=1))
+            seen.append(np.array(solid.vertices))
+        if buffer:
+            ax.add_patch(Circle(disc.centre, disc.radius, fill=False, edgecolor=PURPLE, linestyle="--", linewidth=1.0))
+    for alien in world.aliens:
+        if alien.territory is not None:
+            ax.add_patch(
+                Polygon(alien.territory.vertices, facecolor=ORANGE, edgecolor=ORANGE, alpha=0.25, linewidth=0.8)
+            )
+    if world.box is not None:
+        low, high = np.array(world.box.low), np.array(world.box.high)
+        width, height = (high - low).tolist()
+        ax.add_patch(Rectangle(world.box.low, width, height, fill=False, edgecolor=INK, linewidth=1.2))
+        seen += [low[None], high[None]]
+    return np.vstack(seen)
+
+
+def zone_distances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
+    """Draw the distances of all pairs over time, the least of them, and the radii of the zones.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        A run of ZoneFlocking.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    law, ax = _law(trajectory), ensure_axes(ax)
+    first, second = np.triu_indices(trajectory.n, 1)
+    apart = np.linalg.norm(trajectory.q[:, first] - trajectory.q[:, second], axis=2)
+    width, alpha = hairline(2 * max(1, first.size))
+    ax.plot(trajectory.t, apart, color=BLUE, linestyle="-", linewidth=width, alpha=alpha)
+    ax.plot([], [], color=BLUE, linestyle="-", linewidth=0.8, label="pairs")
+    if first.size:
+        ax.plot(trajectory.t, apart.min(axis=1), color=INK, linestyle="-", linewidth=1.3, label="least (D)")
+    looks = (("r", VERMILLION, "--"), ("c", PURPLE, "-."), ("a", GREEN, ":"))
+    for radius, (name, colour, dash) in zip(law.radii.reach, looks, strict=True):
+        ax.axhline(radius, color=colour, linestyle=dash, linewidth=1.1, label=name)
+    ax.set_ylim(bottom=0.0)
+    return _frame(ax, trajectory, "distance (length)")
+
+
+def zone_speeds(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
+    """Draw the speeds of all agents, their mean, the desired speed and the bound.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        A run of ZoneFlocking.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    law, ax = _law(trajectory), ensure_axes(ax)
+    _agents(ax, trajectory, np.linalg.norm(trajectory.p, axis=2))
+    ax.axhline(law.desired_speed, color=GREEN, linestyle=":", linewidth=1.2, label="desired")
+    ax.axhline(law.v_max, color=VERMILLION, linestyle="--", linewidth=1.1, label="bound")
+    ax.set_ylim(0.0, 1.08 * law.v_max)
+    return _frame(ax, trajectory, "speed (length/time)")
+
+
+def zone_controls(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
+    """Draw the inputs of all agents, their mean and the bound.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        A run of ZoneFlocking.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    law, ax = _law(trajectory), ensure_axes(ax)
+    _agents(ax, trajectory, np.linalg.norm(trajectory.u, axis=2))
+    ax.axhline(law.u_max, color=VERMILLION, linestyle="--", linewidth=1.1, label="bound")
+    ax.set_ylim(0.0, 1.08 * law.u_max)
+    return _frame(ax, trajectory, "input ‖u‖ (length/time²)")
+
+
+def zone_safety(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
+    """Draw how near the flock comes to obstacles (bound between the steps too), to walls and to aliens.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        A run of ZoneFlocking.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    _law(trajectory)
+    ax, found = ensure_axes(ax), trajectory.metrics()
+    shown = (
+        ("obstacle_clearance_bound", "obstacle", BLUE, "-"),
+        ("wall_distance", "wall", GREEN, "-."),
+        ("alien_distance", "alien", VERMILLION, "--"),
+    )
+    for name, label, colour, dash in shown:
+        if name in found:
+            ax.plot(trajectory.t, found[name].values, color=colour, linestyle=dash, linewidth=1.1, label=label)
+    if not ax.get_legend_handles_labels()[0]:
+        ax.set_yticks([])
+        ax.text(0.5, 0.5, "nothing to keep clear of", ha="center", va="center", transform=ax.transAxes, color=MUTED)
+    else:
+        ax.axhline(0.0, color=INK, linewidth=0.8, linestyle="-")
+    return _frame(ax, trajectory, "least distance (length)")
+
+
+def zone_populations(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
+    """Draw how many agents are in the zones of repulsion, conflict and attraction of an agent, on the mean.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        A run of ZoneFlocking.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    _law(trajectory)
+    ax, found = ensure_axes(ax), trajectory.metrics()
+    for zone, colour, dash in (("repulsion", VERMILLION, "--"), ("conflict", PURPLE, "-."), ("attraction", GREEN, ":")):
+        ax.plot(trajectory.t, found[f"in_{zone}"].values, color=colour, linestyle=dash, linewidth=1.2, label=zone)
+    ax.set_ylim(bottom=0.0)
+    return _frame(ax, trajectory, "agents in the zone, mean")
+
+
+def _agents(ax: Any, trajectory: Trajectory, values: FloatArray) -> None:
+    width, alpha = hairline(2 * trajectory.n)
+    ax.plot(trajectory.t, values, color=BLUE, linestyle="-", linewidth=width, alpha=alpha)
+    ax.plot([], [], color=BLUE, linestyle="-", linewidth=0.8, label="agents")
+    ax.plot(trajectory.t, values.mean(axis=1), color=INK, linestyle="-", linewidth=1.4, label="mean")
+
+
+def _frame(ax: Any, trajectory: Trajectory, label: str) -> Axes:
+    if ax.get_legend_handles_labels()[0]:
+        legend_above(ax)
+    ax.set_xlabel("t (time)")
+    ax.set_ylabel(label)
+    if len(trajectory.t) > 1:
+        ax.set_xlim(trajectory.t[0], trajectory.t[-1])
+    return ax  # type: ignore[no-any-return]

@@ -1,0 +1,161 @@
+"""The bearing-distance paper's minimal model: its two runs of 60 agents, and frozen trees for its Theorem 1.
+
+As printed the spacing an agent wants, as many metres as it sees agents, jumps whenever one comes or goes, and few
+agree about it. The recommended settings have one spacing, equal for all, and velocity differences that are summed, not
+averaged: then forces are mutual, momentum is kept, and H falls but where perception switches.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from flockana.laws.minimal import MinimalFlocking
+from flockana.laws.perception import both_ways, random_out_tree
+from flockana.metrics import coordination
+from flockana.scenarios.findings import finding
+from flockana.scenarios.scenario import Report, Scenario
+from flockana.theorems import Claim, Tolerances
+from flockana.theorems.j11 import ALIGNED, DT, DURATION, LONGER, RECOMMENDED, minimal_start
+from flockana.theorems.theorem import Status
+from flockana.trajectory import Trajectory
+
+_SETTLED = 0.1  # largest relative change of a distance over the last tenth of the run that counts as at rest
+_REFERENCES = ("jond-2025",)
+
+
+def _cohesive(run: Trajectory, tolerances: Tolerances) -> Claim:
+    found = run.metrics()
+    share, radius = float(found.giant_share[-1]), found.cohesion_radius.values
+    detail = (
+        f"{share:.0%} of the agents are in one component at the end; R goes from {radius[0]:.3g} to {radius[-1]:.3g}"
+    )
+    return finding("cohesive", share - 1.0 + 0.5 / run.n, detail, computed=share, stated="one component")
+
+
+def _aligned(run: Trajectory, tolerances: Tolerances) -> Claim:
+    C = coordination(run.p[-1])
+    detail = f"the mean cosine between two velocities goes from {coordination(run.p[0]):.2f} to {C:.4f}"
+    return finding("aligned", C - ALIGNED, detail, computed=C, stated=f">= {ALIGNED:g}")
+
+
+def _collision_free(run: Trajectory, tolerances: Tolerances) -> Claim:
+    D = run.metrics().min_distance.values
+    k = int(np.argmin(D))
+    detail = f"the least distance at the steps is {D[k]:.3g} m, at t = {run.t[k]:.3g} s; {D[-1]:.3g} m at the end"
+    return finding("collision-free", float(D[k]), detail, computed=float(D[k]), stated="> 0")
+
+
+def _stable(run: Trajectory, tolerances: Tolerances) -> Claim:
+    before = int(np.searchsorted(run.t, run.t[-1] - 0.1 * (run.t[-1] - run.t[0])))
+    i, j = np.triu_indices(run.n, 1)
+    old, new = (np.linalg.norm(run.q[k, i] - run.q[k, j], axis=1) for k in (before, -1))
+    change = float(np.abs(new / old - 1.0).max())
+    detail = f"from t = {run.t[before]:.3g} s on, a distance between two agents still changes by {change:.2g} of itself"
+    return finding("stable", _SETTLED - change, detail, computed=change, stated=f"<= {_SETTLED:g}")
+
+
+_REPORTS = (
+    Report("cohesive", "the flock is cohesive", _cohesive),
+    Report("collision-free", "no two agents collide", _collision_free),
+    Report("aligned", "the agents are aligned", _aligned),
+    Report("stable", "distances between agents come to rest", _stable),
+)
+
+
+def _flock(m: int, *, printed: bool) -> Callable[[int], Scenario]:
+    law = MinimalFlocking() if printed else MinimalFlocking(**RECOMMENDED)
+    duration = DURATION[m] if printed else LONGER
+    how = (
+        f"r = 10 m, β = 1/r, σ = μ = 1, {duration:g} s in steps of 0.1 s"
+        if printed
+        else f"Ours: r = 15 m, one spacing of 5 m, μ = 0.4, velocity differences summed with σ = 0.1, {duration:g} s"
+    )
+    status: Status = "refuted" if printed else "verified"
+    expected: dict[str, Status] = {
+        "zone-1-printed": "vacuous",  # perception changes, and never is a tree
+        "zone-1-corrected": "vacuous",
+        "source:collision-free": "verified",
+        "source:aligned": status,
+        "source:stable": status,
+    }
+    if not printed:
+        expected["source"] = expected["source:cohesive"] = "verified"
+
+    def build(seed: int = 0) -> Scenario:
+        q, p = minimal_start(m, seed)
+        return Scenario(
+            f"minimal-{m}d{'-printed' if printed else ''}",
+            f"Minimal bearing-distance model, 60 agents in {m} dimensions{'' if printed else ', recommended settings'}",
+            f"Bearing-distance paper, Fig. 10, n = 60, q uniform in [0, 30]^{m} m, p in [-1, 1]^{m} m/s. {how}. "
+            "Velocity first, then position, all agents at once; the seed is ours.",
+            law.discrete(DT),
+            q,
+            p,
+            (0.0, duration),
+            seed,
+            expected,
+            _REPORTS,
+            references=_REFERENCES,
+        )
+
+    return build
+
+
+def _zone_tree(seed: int = 0, n: int = 8, m: int = 2) -> Scenario:
+    rng = np.random.default_rng(seed)
+    law = MinimalFlocking(edges=random_out_tree(n, rng), spacing=2.0)
+    expected: dict[str, Status] = {
+        "zone-1-printed": "refuted",
+        "zone-1-printed:equilibrium": "refuted",
+        "zone-1-printed:velocities": "verified",
+        "zone-1-corrected": "verified",
+        "zone-1-corrected:lengths": "verified",
+        "zone-1-corrected:spectrum": "verified",
+    }
+    return Scenario(
+        "zone-tree",
+        f"Theorem 1 of the bearing-distance paper on a directed tree of {n} agents",
+        "Ours: a random rooted out-tree that never changes, α_i r_i = 2 m for all, σ = μ = 1, q uniform in a box of "
+        "6 m, p in [-1, 1] m/s.",
+        law,
+        rng.uniform(0.0, 6.0, (n, m)),
+        rng.uniform(-1.0, 1.0, (n, m)),
+        (0.0, 100.0),
+        seed,
+        expected,
+        references=_REFERENCES,
+    )
+
+
+def _zone_path(seed: int = 0, n: int = 6, m: int = 2) -> Scenario:
+    rng = np.random.default_rng(seed)
+    path = both_ways([(k, k + 1) for k in range(n - 1)])
+    expected: dict[str, Status] = {
+        "zone-1-printed": "vacuous",
+        "zone-1-corrected": "verified",
+        "zone-1-corrected:energy": "verified",
+        "zone-1-corrected:lengths": "verified",
+        "zone-1-corrected:spectrum": "verified",
+    }
+    return Scenario(
+        "zone-path",
+        f"The corrected Theorem 1 of the bearing-distance paper on an undirected path of {n} agents",
+        "Ours: a path that never changes, mutual forces (velocity differences summed), α_i r_i = 2 m for all, "
+        "σ = μ = 1, q uniform in a box of 6 m, p in [-1, 1] m/s.",
+        MinimalFlocking(edges=path, spacing=2.0, normalised=False),
+        rng.uniform(0.0, 6.0, (n, m)),
+        rng.uniform(-1.0, 1.0, (n, m)),
+        (0.0, 200.0),
+        seed,
+        expected,
+        references=_REFERENCES,
+    )
+
+
+SCENARIOS: dict[str, Callable[..., Scenario]] = {
+    f"minimal-{m}d{'-printed' if printed else ''}": _flock(m, printed=printed)
+    for m in DURATION
+    for printed in (False, True)
+} | {"zone-tree": _zone_tree, "zone-path": _zone_path}

@@ -1,0 +1,221 @@
+"""Zone-based flocking of one pair in sympy: both forms of the behaviours, the bound, the drag, the stand-off.
+
+Equation numbers are those of Jond's paper. A sum over a zone is a sum of these pairs, divided by the sum of the
+weights where the behaviour is a mean, so that a pair shows the equality of the two forms for every number of agents.
+"""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from flockana.symbolic.derivation import Derivation, Step
+from flockana.symbolic.pair import ensure_dimension, vector
+from flockana.symbolic.parameters import exact
+
+C, GAIN, STEP = sp.symbols("c w delta", positive=True)
+SPEED, BOUND = sp.symbols("v^d m", positive=True)
+OWN = sp.Symbol("v", real=True)  # of an agent on a line
+_X = sp.Symbol("x", nonnegative=True)
+
+
+def pair_symbols(m: int = 2) -> tuple[sp.Matrix, sp.Matrix, sp.Matrix, sp.Matrix]:
+    """Return (p_i, v_i, p_j, v_j): positions and velocities of an agent and of one in its zones.
+
+    Parameters
+    ----------
+    m : int
+        Dimension.
+
+    Examples
+    --------
+    >>> pair_symbols(2)[2].T
+    Matrix([[p_j1, p_j2]])
+    """
+    p_i, v_i, p_j, v_j = (vector(name, ensure_dimension(m)) for name in ("p_i", "v_i", "p_j", "v_j"))
+    return p_i, v_i, p_j, v_j
+
+
+def bearing(m: int = 2) -> tuple[sp.Expr, sp.Matrix, sp.Expr, sp.Matrix]:
+    """Return (d, b, d', b'): distance and bearing (11) from i to j, and their rates by the chain rule (12).
+
+    Parameters
+    ----------
+    m : int
+        Dimension.
+
+    Examples
+    --------
+    >>> d, _, rate, _ = bearing(2)
+    >>> rate.subs(dict(zip([*pair_symbols(2)[0], *pair_symbols(2)[2]], (0, 0, 3, 4))))
+    -3*v_i1/5 - 4*v_i2/5 + 3*v_j1/5 + 4*v_j2/5
+    """
+    p_i, v_i, p_j, v_j = pair_symbols(m)
+    gap = p_j - p_i
+    d = sp.sqrt(gap.dot(gap))
+    b = gap / d
+    state, flow = [*p_i, *p_j], [*v_i, *v_j]
+
+    def rate(expression: sp.Expr) -> sp.Expr:
+        return sum((expression.diff(x) * v for x, v in zip(state, flow, strict=True)), sp.S.Zero)
+
+    return d, b, rate(d), b.applyfunc(rate)
+
+
+def position_form(m: int = 2) -> dict[str, sp.Matrix]:
+    """Return cohesion (3), alignment (4) and separation (6) of a pair with unit weights, from positions.
+
+    Parameters
+    ----------
+    m : int
+        Dimension.
+
+    Examples
+    --------
+    >>> position_form(1)["cohesion"]
+    Matrix([[-p_i1 + p_j1]])
+    """
+    p_i, v_i, p_j, v_j = pair_symbols(m)
+    d = sp.sqrt((p_j - p_i).dot(p_j - p_i))
+    return {"cohesion": p_j - p_i, "alignment": v_j - v_i, "separation": (1 - C / d) * (p_j - p_i)}
+
+
+def bearing_form(m: int = 2) -> dict[str, sp.Matrix]:
+    """Return cohesion (14), alignment (15) and separation (19) of a pair with unit weights, from bearing and distance.
+
+    Parameters
+    ----------
+    m : int
+        Dimension.
+
+    Examples
+    --------
+    >>> p_i, _, p_j, _ = pair_symbols(1)
+    >>> bearing_form(1)["separation"].subs({p_i[0]: 0, p_j[0]: 2, C: 3})
+    Matrix([[-1]])
+    """
+    d, b, d_rate, b_rate = bearing(m)
+    return {"cohesion": d * b, "alignment": d * b_rate + d_rate * b, "separation": (d - C) * b}
+
+
+def derive_equivalence(m: int = 2) -> Derivation:
+    """Derive that the two forms agree for cohesion, alignment (the identity (13)) and separation.
+
+    Parameters
+    ----------
+    m : int
+        Dimension.
+
+    Examples
+    --------
+    >>> derive_equivalence().holds
+    True
+    """
+    left, right = bearing_form(m), position_form(m)
+    residuals = tuple(sp.simplify(a - b) for name in left for a, b in zip(left[name], right[name], strict=True))
+    d, b, d_rate, b_rate = sp.symbols("d_ij b_ij d'_ij b'_ij")
+    steps = (
+        Step(
+            "The rates of distance and bearing by the chain rule.",
+            sp.Eq(d * b_rate + d_rate * b, sp.Symbol("v_j") - sp.Symbol("v_i")),
+        ),
+        Step("Both forms of cohesion and of separation.", sp.Eq((d - C) * b, (1 - C / d) * d * b), d > 0),
+    )
+    return Derivation("Position form and bearing-distance form", steps, sp.Integer(0), residuals)
+
+
+def estimate_gap() -> sp.Expr:
+    """Return v(t + δ) − v̂(t + δ) after one step from v̂ = v by (17): δ u^ga, in the absence of saturation.
+
+    (17) adds δ u^aux, the input without the global speed term u^ga, so that Remark 3's equivalence fails (J8).
+
+    Examples
+    --------
+    >>> estimate_gap()
+    delta*w*(-v + v^d*sign(v))
+    """
+    aux = sp.Symbol("u^aux", real=True)
+    drive = GAIN * (SPEED * sp.sign(OWN) - OWN)
+    return sp.factor(sp.expand(OWN + STEP * (aux + drive) - (OWN + STEP * aux)), STEP, GAIN)
+
+
+def saturation(norm: sp.Expr = _X, *, bound: sp.Expr = BOUND) -> sp.Expr:
+    """Return m tanh(x/m), the length that (9) and (10) give to a vector of length x.
+
+    Parameters
+    ----------
+    norm : number or sympy.Expr
+        Length of the vector.
+    bound : number or sympy.Expr
+        The bound m.
+
+    Examples
+    --------
+    The drag of (10): at 3 m/s with a bound of 4 a single step leaves (erratum J7)
+
+    >>> saturation(3, bound=4).evalf(4)
+    2.541
+    """
+    bound = exact("bound", bound)
+    return bound * sp.tanh(exact("norm", norm) / bound)
+
+
+def saturation_factor(order: int = 6) -> sp.Expr:
+    """Return the series of tanh(x)/x at its removable singularity 0, as a polynomial in x.
+
+    Parameters
+    ----------
+    order : int
+        Terms below this power.
+
+    Examples
+    --------
+    >>> saturation_factor(4)
+    1 - x**2/3
+    """
+    return sp.series(sp.tanh(_X) / _X, _X, 0, order).removeO()
+
+
+def fastest_under_drag(step: sp.Expr, force: sp.Expr, bound: sp.Expr, *, digits: int = 15) -> sp.Float:
+    """Return lim sup ‖v‖ under (10) for inputs up to `force`: the fixed point of v ↦ sat(v + δ u).
+
+    Parameters
+    ----------
+    step, force, bound : number or sympy.Expr
+        δ, u^max and v^max.
+    digits : int
+        Precision.
+
+    Examples
+    --------
+    >>> fastest_under_drag(0.1, 2, 4, digits=5)
+    2.0083
+    """
+    v = sp.Symbol("v", positive=True)
+    delta, u, m = (exact(name, x) for name, x in (("step", step), ("force", force), ("bound", bound)))
+    return sp.nsolve(saturation(v + delta * u, bound=m) - v, v, m / 2, prec=digits)
+
+
+def stand_off(*, desired_speed: sp.Expr = SPEED, drive: sp.Expr | None = None, weight: sp.Expr = GAIN) -> sp.Expr:
+    """Return the distance at which an agent that heads for a wall stands: global drive and repulsion balance (J12).
+
+    Parameters
+    ----------
+    desired_speed : number or sympy.Expr
+        v^d.
+    drive : number or sympy.Expr, optional
+        w^ga.
+    weight : number or sympy.Expr
+        w^oa of the wall, or w^ls of an agent.
+
+    Examples
+    --------
+    >>> stand_off(desired_speed=3, drive=5, weight=5).subs(C, 3), stand_off(desired_speed=3, drive=5, weight=20)
+    (0, c - 3/4)
+    """
+    d = sp.Symbol("d", real=True)
+    push = exact("weight", weight) * (d - C)
+    forward = (sp.Symbol("w^ga", positive=True) if drive is None else exact("drive", drive)) * exact(
+        "v^d", desired_speed
+    )
+    (distance,) = sp.solve(sp.Eq(forward + push, 0), d)
+    return sp.expand(distance)

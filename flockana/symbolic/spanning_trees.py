@@ -1,0 +1,262 @@
+"""Matrices of directed perception graphs, and what they give on rooted trees: the bearing-distance Theorem 1.
+
+Edge e = (j, i): j sends, i receives; D has +1 at the receiver and -1 at the sender, D_in keeps the +1. With
+x = (-D^T (x) I) p the minimal model reads u = -D_in W^s D^T p - D_in W^a D^T v, W^s = diag w_e. Everything here is
+one component of space where the equations are the same in each.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import prod
+
+import sympy as sp
+
+from flockana.symbolic.derivation import Derivation, Step
+
+S = sp.Symbol("s")
+LAMBDA = sp.Symbol("lambda")
+MU, RHO = sp.symbols("mu rho", positive=True)
+Edges = Sequence[tuple[int, int]]
+
+
+def incidence_matrix(edges: Edges) -> sp.Matrix:
+    """Return D, a row for each agent and a column for each edge.
+
+    Parameters
+    ----------
+    edges : sequence of (int, int)
+        Directed edges (j, i).
+
+    Examples
+    --------
+    >>> incidence_matrix([(0, 1), (1, 2)])
+    Matrix([
+    [-1,  0],
+    [ 1, -1],
+    [ 0,  1]])
+    """
+    agents = 1 + max(max(edge) for edge in edges)
+    return sp.Matrix(agents, len(edges), lambda i, e: int(i == edges[e][1]) - int(i == edges[e][0]))
+
+
+def receiver_matrix(edges: Edges) -> sp.Matrix:
+    """Return D_in: the entries +1 of D.
+
+    Parameters
+    ----------
+    edges : sequence of (int, int)
+        Directed edges (j, i).
+
+    Examples
+    --------
+    >>> receiver_matrix([(0, 1), (1, 2)]) * incidence_matrix([(0, 1), (1, 2)]).T
+    Matrix([
+    [ 0,  0, 0],
+    [-1,  1, 0],
+    [ 0, -1, 1]])
+    """
+    return incidence_matrix(edges).applyfunc(lambda entry: sp.Max(entry, 0))
+
+
+def _weights(name: str, edges: Edges) -> sp.Matrix:
+    return sp.diag(*(sp.Symbol(f"{name}_{j}{i}") for j, i in edges))
+
+
+def _column(name: str, size: int) -> sp.Matrix:
+    return sp.Matrix(sp.symbols(f"{name}_0:{size}"))
+
+
+def stacked_form(edges: Edges) -> Derivation:
+    """Derive (35), u = -D_in W^s D^T p - D_in W^a D^T v, from the sums over neighbours, and L = D D^T beside it.
+
+    Parameters
+    ----------
+    edges : sequence of (int, int)
+        Directed edges (j, i).
+
+    Examples
+    --------
+    >>> stacked_form([(0, 1), (1, 2)]).holds
+    True
+    """
+    D, D_in, w, a = incidence_matrix(edges), receiver_matrix(edges), _weights("w", edges), _weights("a", edges)
+    p, v = _column("p", D.rows), _column("v", D.rows)
+    u = sp.zeros(D.rows, 1)
+    for e, (j, i) in enumerate(edges):
+        u[i] += w[e, e] * (p[j] - p[i]) + a[e, e] * (v[j] - v[i])
+    stacked = -D_in * w * D.T * p - D_in * a * D.T * v
+    steps = (
+        Step("Each agent sums over the edges that it receives:", u),
+        Step("The same, stacked: only the receivers' rows remain.", stacked),
+        Step(r"$L = D D^T$ forgets the directions; the loop holds", D_in * D.T),
+    )
+    return Derivation("Stacked form (35)", steps, D_in * D.T, tuple(sp.expand(u - stacked)))
+
+
+def separation_forms(edges: Edges) -> dict[str, Derivation]:
+    """Derive the separation from its sums, and hold the paper's matrix forms against it, as printed and corrected.
+
+    With q_e = k_e x_e, k_e = rho/|x_e|, agent i separates by the sum of x_e - q_e over its edges (mu = 1). The printed
+    (28) adds q, and the identity before (34) gives q the sign of D^T p: both are wrong, and since they are used
+    together (34) comes out right.
+
+    Parameters
+    ----------
+    edges : sequence of (int, int)
+        Directed edges (j, i).
+
+    Returns
+    -------
+    dict of str to Derivation
+        "28", "28-corrected", "identity", "identity-corrected", "34"; the residuals are the rows of left minus right.
+
+    Examples
+    --------
+    >>> [name for name, form in separation_forms([(0, 1)]).items() if form.holds]
+    ['28-corrected', 'identity-corrected', '34']
+    """
+    D, D_in = incidence_matrix(edges), receiver_matrix(edges)
+    p, factors = _column("p", D.rows), sp.diag(*sp.symbols(f"k_0:{len(edges)}"))
+    x = -D.T * p
+    q = factors * x
+    separation = sp.zeros(D.rows, 1)
+    for e, (_, i) in enumerate(edges):
+        separation[i] += x[e] - q[e]
+    forms = {
+        "28": (separation, -D_in * D.T * p + D_in * q),
+        "28-corrected": (separation, -D_in * D.T * p - D_in * q),
+        "identity": (D_in * q, D_in * factors * D.T * p),
+        "identity-corrected": (D_in * q, -D_in * factors * D.T * p),
+        "34": (separation, -D_in * (sp.eye(len(edges)) - factors) * D.T * p),
+    }
+    return {
+        name: Derivation(
+            f"Separation, {name}",
+            (Step("By its sums:", left), Step("As a product of matrices:", right)),
+            right,
+            tuple(sp.expand(left - right)),
+        )
+        for name, (left, right) in forms.items()
+    }
+
+
+def edge_matrices(edges: Edges) -> tuple[sp.Matrix, sp.Matrix]:
+    """Return A^s = D^T D_in W^s and A^a = D^T D_in W^a of the edge dynamics x'' = -A^a x' - A^s x.
+
+    On a rooted tree every agent but the root has one edge, so W^a = I; elsewhere an agent's edges share its mean.
+
+    Parameters
+    ----------
+    edges : sequence of (int, int)
+        Directed edges (j, i).
+
+    Examples
+    --------
+    >>> edge_matrices([(0, 1), (1, 2)])[1]
+    Matrix([
+    [ 1, 0],
+    [-1, 1]])
+    """
+    D, D_in = incidence_matrix(edges), receiver_matrix(edges)
+    shares = sp.diag(*(sp.Rational(1, sum(i == head for _, head in edges)) for _, i in edges))
+    return D.T * D_in * _weights("w", edges), D.T * D_in * shares
+
+
+def tree_characteristic(edges: Edges) -> Derivation:
+    """Derive det(s^2 I + s A^a + A^s) = prod (s^2 + s + w_e) on a rooted tree, for weights w_e of any sign.
+
+    Parameters
+    ----------
+    edges : sequence of (int, int)
+        Directed edges (j, i) of a rooted out-tree.
+
+    Examples
+    --------
+    >>> tree_characteristic([(0, 1), (0, 2), (2, 3)]).holds
+    True
+    """
+    stiffness, damping = edge_matrices(edges)
+    pencil = S**2 * sp.eye(len(edges)) + S * damping + stiffness
+    found = sp.expand(pencil.det(method="berkowitz"))
+    factors = prod(S**2 + S + sp.Symbol(f"w_{j}{i}") for j, i in edges)
+    steps = (
+        Step("The pencil of the edge dynamics, triangular in the order of the tree:", pencil),
+        Step("Its determinant:", found),
+        Step(r"One factor for each edge, with $w_e = \mu_e(1 - \rho_e/|x_e|)$:", factors),
+    )
+    return Derivation("Spectrum on a rooted tree", steps, factors, (sp.expand(found - factors),))
+
+
+def frozen_eigenvalues(ratio: sp.Expr, *, mu: sp.Expr = sp.S.One) -> tuple[sp.Expr, sp.Expr]:
+    """Return the roots of s^2 + s + mu (1 - 1/ratio): an edge of the matrix A_cl at |x| = ratio rho.
+
+    Parameters
+    ----------
+    ratio : number or sympy.Expr
+        Length over desired spacing, positive.
+    mu : number or sympy.Expr
+        Weight.
+
+    Examples
+    --------
+    >>> frozen_eigenvalues(1), frozen_eigenvalues(sp.Rational(1, 2))
+    ((0, -1), (-1/2 + sqrt(5)/2, -sqrt(5)/2 - 1/2))
+    """
+    w = sp.sympify(mu) * (1 - 1 / sp.sympify(ratio))
+    root = sp.sqrt(1 - 4 * w)
+    return sp.expand((-1 + root) / 2), sp.expand((-1 - root) / 2)
+
+
+def symmetric_part(children: int) -> Derivation:
+    """Derive the spectrum of the symmetric part of D^T D_in for root -> a -> k children: 1 and 1 +- sqrt(k)/2.
+
+    Parameters
+    ----------
+    children : int
+        k.
+
+    Examples
+    --------
+    >>> symmetric_part(5).result, symmetric_part(5).holds
+    (1 - sqrt(5)/2, True)
+    """
+    edges = [(0, 1), *((1, 2 + k) for k in range(children))]
+    edge_laplacian = incidence_matrix(edges).T * receiver_matrix(edges)
+    symmetric = (edge_laplacian + edge_laplacian.T) / 2
+    least = 1 - sp.sqrt(children) / 2
+    expected = (LAMBDA - 1) ** (children - 1) * ((LAMBDA - 1) ** 2 - sp.Rational(children, 4))
+    left = sp.expand(symmetric.charpoly(LAMBDA).as_expr() - expected)
+    steps = (
+        Step(r"The symmetric part of $D^T D_{in}$:", symmetric),
+        Step("Its characteristic polynomial:", expected),
+        Step("Its least eigenvalue, negative from five children on:", least),
+    )
+    return Derivation("The edge Laplacian of a tree is not positive definite", steps, least, (left,))
+
+
+def spacing_spectrum(m: int) -> Derivation:
+    """Derive the spectrum of an edge at |x| = rho in m dimensions: s^2 + s + mu once, s^2 + s the other m - 1 times.
+
+    Parameters
+    ----------
+    m : int
+        Dimension.
+
+    Examples
+    --------
+    >>> spacing_spectrum(3).result
+    s**2*(s + 1)**2*(mu + s**2 + s)
+    """
+    x = sp.Matrix(sp.symbols(f"x_0:{m}", real=True))
+    force = MU * (1 - RHO / sp.sqrt(x.dot(x))) * x
+    at = {x[0]: RHO, **{x[k]: 0 for k in range(1, m)}}
+    stiffness = force.jacobian(x).subs(at).applyfunc(sp.simplify)
+    expected = (S**2 + S + MU) * (S**2 + S) ** (m - 1)
+    found = (S**2 * sp.eye(m) + S * sp.eye(m) + stiffness).det()
+    steps = (
+        Step("The spring of an edge:", force),
+        Step(r"Its derivative at length $\rho$ along the first axis:", stiffness),
+        Step("The characteristic polynomial of the edge:", expected),
+    )
+    return Derivation("Spectrum at the desired spacing", steps, sp.factor(expected), (sp.expand(found - expected),))

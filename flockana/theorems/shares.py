@@ -1,0 +1,144 @@
+"""Shares of random starts for which something holds, with exact intervals: what ensembles of errata are made of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from flockana.checks import FloatArray
+from flockana.nets import components, links
+from flockana.theorems.theorem import Claim, judge
+
+CONFIDENCE = 0.95
+
+
+def share(holds: Iterable[Any]) -> tuple[int, int, tuple[float, float]]:
+    """(how often, of how many, exact Clopper-Pearson interval of the share).
+
+    Parameters
+    ----------
+    holds : iterable of truth values
+        One for each start.
+
+    Examples
+    --------
+    >>> share([True] * 20)[2][1], share([False] * 20)[0]
+    (1.0, 0)
+    """
+    from scipy.stats import binomtest
+
+    found = np.array(list(holds), dtype=bool)
+    interval = binomtest(int(found.sum()), found.size).proportion_ci(CONFIDENCE, method="exact")
+    return int(found.sum()), found.size, (float(interval.low), float(interval.high))
+
+
+def always(name: str, holds: Iterable[Any], what: str, stated: str, *, witness: Any = None) -> Claim:
+    """A claim about every start: refuted if the share is below 1 for certain, never verified by a sample.
+
+    Parameters
+    ----------
+    name : str
+        Name of the claim.
+    holds : iterable of truth values
+        One for each start.
+    what : str
+        What was seen, for the detail.
+    stated : str
+        What the source says.
+    witness : object
+        As in `Claim`.
+    """
+    count, size, interval = share(holds)
+    return Claim(
+        name,
+        "refuted" if interval[1] < 1.0 else "inconclusive",
+        computed={"holds": count, "of": size, "share": interval},
+        stated=stated,
+        margin=interval[1] - 1.0,
+        error=0.0,
+        witness=witness,
+        detail=f"{what} in {count} of {size} seeds: a share of {interval[1]:.2f} at most ({CONFIDENCE:.0%})",
+    )
+
+
+def mostly(
+    name: str, holds: Iterable[Any], what: str, stated: str, *, least: float = 0.5, witness: Any = None
+) -> Claim:
+    """A claim about a share, judged by the lower end of its interval.
+
+    Parameters
+    ----------
+    name : str
+        Name of the claim.
+    holds : iterable of truth values
+        One for each start.
+    what : str
+        What was seen, for the detail.
+    stated : str
+        What is said.
+    least : float
+        Share that the interval must exceed.
+    witness : object
+        As in `Claim`.
+    """
+    count, size, interval = share(holds)
+    status = judge(interval[0] - least, 0.0, [])
+    return Claim(
+        name,
+        "inconclusive" if status == "refuted" and interval[1] > least else status,
+        computed={"holds": count, "of": size, "share": interval},
+        stated=stated,
+        margin=interval[0] - least,
+        error=0.0,
+        witness=witness,
+        detail=f"{what} in {count} of {size} seeds: a share of {interval[0]:.2f} at least ({CONFIDENCE:.0%})",
+    )
+
+
+def zone_start(seed: int, n: int = 10) -> tuple[FloatArray, FloatArray]:
+    """The random start of section 5.1 of the bearing-distance paper: q in (0, 10)² m, p in (0, 1)² m/s by component.
+
+    Parameters
+    ----------
+    seed : int
+        Of the generator.
+    n : int
+        Number of agents.
+
+    Examples
+    --------
+    >>> zone_start(0)[0].shape
+    (10, 2)
+    """
+    rng = np.random.default_rng(seed)
+    return rng.uniform(0.0, 10.0, (n, 2)), rng.uniform(0.0, 1.0, (n, 2))
+
+
+def separated_start(seed: int, n: int = 10, *, least: float = 2.0, reach: float = 5.0) -> tuple[FloatArray, FloatArray]:
+    """As `zone_start`, drawn agent by agent until no two are closer than `least`, and the net within `reach` connected.
+
+    Parameters
+    ----------
+    seed : int
+        Of the generator.
+    n : int
+        Number of agents.
+    least, reach : float
+        Least distance and range of the net, in m.
+
+    Examples
+    --------
+    >>> from flockana.metrics import min_distance
+    >>> min_distance(separated_start(0)[0]) > 2.0
+    True
+    """
+    rng = np.random.default_rng(seed)
+    while True:
+        q = rng.uniform(0.0, 10.0, (1, 2))
+        for x in rng.uniform(0.0, 10.0, (100 * n, 2)):
+            if len(q) < n and np.linalg.norm(q - x, axis=1).min() > least:
+                q = np.vstack([q, x])
+        if len(q) == n and not components(n, links(q, reach)).any():
+            return q, rng.uniform(0.0, 1.0, (n, 2))

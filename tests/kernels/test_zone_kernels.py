@@ -1,0 +1,188 @@
+"""Zone-based flocking's compiled step against a transcription of the paper's Algorithm 1 in plain loops."""
+
+from __future__ import annotations
+
+from math import isclose, tanh
+
+import numpy as np
+import pytest
+
+from flockana.environment.zone_world import Alien, ZoneWorld
+from flockana.interactions import ZoneRadii, ZoneWeights
+from flockana.kernels.zones import fragments, populations, saturation
+from flockana.laws.bearing_distance import BEHAVIOURS, ZoneFlocking
+
+R, C, A, S = 1.5, 3.0, 5.0, 6.0
+RADII = ZoneRadii(R, c=C, a=A, s=S)
+
+
+def weights_of(n, aliens, rng):
+    tables = {name: rng.uniform(0.2, 2.0, (n, n)) for name in ("separation", "cohesion", "alignment")}
+    agents = {name: rng.uniform(0.5, 2.0, n) for name in ("speed", "obstacle")}
+    return ZoneWeights(
+        **{name: tuple(map(tuple, table.tolist())) for name, table in tables.items()},
+        **{name: tuple(values.tolist()) for name, values in agents.items()},
+        alien=tuple(map(tuple, rng.uniform(0.5, 2.0, (n, aliens)).tolist())),
+        cohesion_gain=0.7,
+        alignment_gain=1.3,
+    )
+
+
+def transcription(q, v, aliens, w, *, printed):
+    """(3) to (7) as written, agent by agent; the sets by their definitions."""
+    n, m = q.shape
+    found = {name: np.zeros((n, m)) for name in BEHAVIOURS}
+    for i in range(n):
+        d = [float(np.sqrt(sum((q[j] - q[i]) ** 2))) for j in range(n)]
+        repels = [j for j in range(n) if j != i and 0.0 < d[j] <= C]
+        attracts = [j for j in range(n) if j != i and R < d[j] <= A]
+        for j in repels:
+            found["separation"][i] += w.separation[i][j] * (d[j] - C) * (q[j] - q[i]) / d[j]
+        if attracts:
+            whole = sum(w.cohesion[i][j] for j in attracts)
+            mean = sum(w.cohesion[i][j] * q[j] for j in attracts) / whole
+            found["cohesion"][i] = w.cohesion_gain * (mean - q[i])
+            whole = sum(w.alignment[i][j] for j in attracts)
+            mean = sum(w.alignment[i][j] * v[j] for j in attracts) / whole
+            found["alignment"][i] = w.alignment_gain * (mean - v[i])
+        for k, x in enumerate(aliens):
+            apart = float(np.linalg.norm(x - q[i]))
+            if (A if printed else 0.0) < apart <= S:
+                found["strategic"][i] += w.alien[i][k] * (apart - S) * (x - q[i]) / apart
+        speed = float(np.linalg.norm(v[i]))
+        found["speed"][i] = w.speed[i] * (3.0 * v[i] / speed - v[i])
+    return found
+
+
+def a_state(m, seed, n=9, side=7.0):
+    rng = np.random.default_rng(seed)
+    return rng.uniform(0.0, side, (n, m)), rng.normal(size=(n, m)), rng.uniform(0.0, side, (2, m)), rng
+
+
+@pytest.mark.parametrize("m", [1, 2, 3])
+@pytest.mark.parametrize("form", ["position", "bearing"])
+@pytest.mark.parametrize("surveillance", ["disc", "annulus"])
+def test_behaviours_are_those_of_the_paper(m, form, surveillance):
+    q, v, aliens, rng = a_state(m, 10 * m)
+    w = weights_of(len(q), 2, rng)
+    law = ZoneFlocking(
+        RADII, w, ZoneWorld(aliens=tuple(Alien(x) for x in aliens)), form=form, surveillance=surveillance
+    )
+    wanted = transcription(q, v, aliens, w, printed=surveillance == "annulus")
+    found = law.behaviours(q, v)
+    for name in BEHAVIOURS:  # cancellation of positions of size 7 in the mean: some units of 7 · 2^-52
+        np.testing.assert_allclose(found[name], wanted[name], rtol=1e-12, atol=2e-14, err_msg=name)
+    assert min(np.abs(found[name]).max() for name in BEHAVIOURS if name != "obstacle") > 0.1
+
+
+@pytest.mark.parametrize(
+    ("distance", "separates", "attracts"),
+    [
+        (R, True, False),
+        (np.nextafter(R, 9.0), True, True),
+        (C, False, True),  # in the set, but d − c = 0
+        (np.nextafter(C, 0.0), True, True),
+        (np.nextafter(C, 9.0), False, True),
+        (A, False, True),
+        (np.nextafter(A, 9.0), False, False),
+        (0.0, False, False),  # no bearing
+    ],
+)
+@pytest.mark.parametrize("form", ["position", "bearing"])
+def test_zones_are_closed_where_the_paper_closes_them(distance, separates, attracts, form):
+    parts = ZoneFlocking(RADII, form=form).behaviours([[0.0, 0.0], [distance, 0.0]], [[0.0, 0.0], [0.0, 1.0]])
+    assert bool(parts["separation"].any()) is separates
+    assert bool(parts["cohesion"].any()) is attracts
+    assert bool(parts["alignment"].any()) is attracts
+
+
+@pytest.mark.parametrize(
+    ("distance", "disc", "annulus"), [(4.0, 10.0, 0.0), (A, 5.0, 0.0), (5.5, 2.5, 2.5), (S, 0.0, 0.0)]
+)
+def test_the_printed_annulus_lets_an_alien_in(distance, disc, annulus):
+    world = ZoneWorld(aliens=(Alien((distance, 0.0)),))
+    for name, push in (("disc", disc), ("annulus", annulus)):
+        law = ZoneFlocking(RADII, world=world, surveillance=name)
+        assert law.behaviours([[0.0, 0.0]], [[0.0, 0.0]])["strategic"].tolist() == [[-push, 0.0]]
+
+
+def test_agents_that_heed_nobody_in_reach_feel_nothing_of_a_mean():
+    w = ZoneWeights(cohesion=((0.0, 0.0, 1.0), (1.0, 0.0, 1.0), (1.0, 1.0, 0.0)))
+    parts = ZoneFlocking(RADII, w).behaviours([[0.0], [2.0], [90.0]], np.zeros((3, 1)))
+    assert parts["cohesion"].tolist() == [[0.0], [-0.5], [0.0]]  # of agent 0 only the far one counts
+
+
+def test_saturation_has_its_limit_at_zero_and_no_seam():
+    assert saturation(0.0, 2.0) == 1.0
+    for x in (1e-9, 9.99e-5, 1.0001e-4, 0.3, 7.0):
+        assert isclose(saturation(2.0 * x, 2.0), tanh(x) / x, rel_tol=3e-16)
+
+
+@pytest.mark.parametrize("order", ["synchronous", "sequential"])
+@pytest.mark.parametrize("bound", ["clip", "tanh"])
+def test_one_step_is_the_papers(order, bound):
+    law = ZoneFlocking(RADII, order=order, speed_bound=bound, u_max=2.0, v_max=3.5, dt=0.2)
+    q, v, _, _ = a_state(2, 5)
+    v *= 3.0
+    new_q, new_p, u, memory = law.step(0.0, q, v, law.start(q, v))
+    x, p = q.copy(), v.copy()
+    frozen = x.copy(), p.copy()
+    for i in range(len(q)):
+        seen = (x, p) if order == "sequential" else frozen
+        total = sum(part[i] for part in law.behaviours(*seen).values())
+        size = float(np.linalg.norm(total))
+        wanted = 2.0 * tanh(size / 2.0) * total / size
+        np.testing.assert_allclose(u[i], wanted, rtol=1e-13)
+        w = p[i] + 0.2 * wanted
+        speed = float(np.linalg.norm(w))
+        w = w * (3.5 * tanh(speed / 3.5) / speed if bound == "tanh" else min(1.0, 3.5 / speed))
+        x[i], p[i] = x[i] + 0.2 * w, w
+    np.testing.assert_allclose(new_p, p, rtol=1e-13)
+    np.testing.assert_allclose(new_q, x, rtol=1e-13)
+    np.testing.assert_allclose(memory["heading"], v / np.linalg.norm(v, axis=1, keepdims=True), rtol=1e-15)
+    assert np.linalg.norm(v, axis=1).max() > 3.5, "no agent was fast enough to test the bound"
+
+
+def test_populations_and_fragments_against_matrices():
+    q = np.random.default_rng(3).uniform(0.0, 14.0, (4, 8, 2))
+    d = np.linalg.norm(q[:, :, None] - q[:, None], axis=3) + 1e9 * np.eye(8)
+    counts = populations(q, *(np.full(8, x) for x in (R, C, A)))
+    edges = [(0.0, R), (R, C), (C, A)]
+    wanted = np.stack([((d > low) & (d <= high)).sum(axis=(1, 2)) / 8.0 for low, high in edges], axis=1)
+    np.testing.assert_allclose(counts, wanted, rtol=1e-14)
+    assert wanted.max() > 0.5
+    for k in range(4):
+        reached = np.linalg.matrix_power((d[k] <= A) + np.eye(8), 8) > 0
+        sizes = reached.sum(axis=1)
+        assert fragments(q, np.full(8, A))[k].tolist() == [round(sum(1.0 / sizes)), sizes.max()]
+
+
+def test_one_who_sees_farther_links_both():
+    q = np.array([[[0.0], [4.0]]])
+    assert fragments(q, np.array([1.0, 5.0]))[0].tolist() == [1, 2]
+    assert fragments(q, np.array([1.0, 3.0]))[0].tolist() == [2, 1]
+
+
+def test_an_alien_hunts_the_nearest_in_reach_and_keeps_to_its_triangle():
+    from flockana.environment.zone_obstacles import SimplePolygon
+
+    home = SimplePolygon([(0.0, 0.0), (4.0, 0.0), (0.0, 4.0)])
+    law = ZoneFlocking(
+        RADII, world=ZoneWorld(aliens=(Alien((1.0, 1.0), home), Alien((30.0, 30.0)))), desired_speed=1e-9
+    )
+    q, v = np.array([[7.0, 7.0], [9.0, 1.0]]), np.zeros((2, 2))
+    *_, series = law.iterate(0.0, q, v, law.start(q, v), 30)
+    alien = series["alien"]
+    np.testing.assert_allclose(alien[0, 0], [1.15, 1.0], rtol=1e-15)  # dt · 1.5 towards the nearer agent
+    assert alien[:, 0].sum(axis=1).max() <= 4.0 + 1e-12
+    np.testing.assert_allclose(alien[-1, 0].sum(), 4.0, rtol=1e-12)  # on the slanted side, as near as it gets
+    assert (alien[:, 1] == 30.0).all(), "an agent out of reach was hunted"
+
+
+def test_detection_is_closed():
+    law = ZoneFlocking(RADII, world=ZoneWorld(aliens=(Alien((0.0, 0.0)),)))
+    for x, moves in ((9.0, True), (np.nextafter(9.0, 10.0), False)):
+        q = np.array([[x, 0.0]])
+        memory = law.start(q, 0.0 * q)
+        # the agent is at rest and nobody pushes it: it is where it was when the alien looks
+        assert bool(law.step(0.0, q, 0.0 * q, memory)[3]["alien"].any()) is moves

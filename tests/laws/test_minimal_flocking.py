@@ -1,0 +1,315 @@
+"""The minimal bearing-distance model against a transcription of (23)-(25) in plain loops, and exact two-agent facts."""
+
+from __future__ import annotations
+
+from math import cos, exp, sin, sqrt
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from flockana.errors import ArgumentError
+from flockana.kernels.minimal import perceived_edges
+from flockana.laws.minimal import DiscreteMinimalFlocking, MinimalFlocking
+from flockana.laws.perception import (
+    both_ways,
+    edge_vectors,
+    ensure_edges,
+    incidence,
+    out_tree_root,
+    random_out_tree,
+    receivers,
+)
+from flockana.serialize import from_data, to_data
+from flockana.simulate import simulate
+from flockana.trajectory import Trajectory
+
+R, BETA = (1.5, 3.0, 2.2, 4.0, 0.4), (0.5, 0.2, 0.9, 0.3, 1.0)
+TREE = ((0, 1), (1, 2), (1, 3), (0, 4))
+
+
+def table(n, seed):
+    return np.random.default_rng(seed).uniform(0.2, 2.0, (n, n))
+
+
+def state(n, m, seed=0, size=3.0):
+    rng = np.random.default_rng(seed)
+    return rng.uniform(0.0, size, (n, m)), rng.uniform(-1.0, 1.0, (n, m))
+
+
+def transcription(q, p, *, radius, mu, sigma, beta=None, spacing=None, edges=None, normalised=True):
+    """Sums agent by agent; square roots of plain sums of squares, so that it takes complex states too."""
+    n, m = q.shape
+    u = np.zeros_like(q)
+    for i in range(n):
+        if edges is None:
+            apart = [sqrt(sum((q[j, c] - q[i, c]).real ** 2 for c in range(m))) for j in range(n)]
+            near = [j for j in range(n) if j != i and apart[j] <= radius[i]]
+        else:
+            near = [j for j, k in edges if k == i]
+        rho = (beta[i] if beta else 1 / radius[i]) * len(near) * radius[i] if spacing is None else spacing[i]
+        weight = sum(sigma[i][j] for j in near)
+        for c in range(m):
+            if normalised and weight > 0.0:
+                u[i, c] += sum(sigma[i][j] * p[j, c] for j in near) / weight - p[i, c]
+            elif not normalised:
+                u[i, c] += sum(sigma[i][j] * (p[j, c] - p[i, c]) for j in near)
+        for j in near:
+            x = q[j] - q[i]
+            length = np.sqrt(sum(x[c] * x[c] for c in range(m)))
+            u[i] += mu[i][j] * (1.0 - rho / length) * x
+    return u
+
+
+CASES = {
+    "perceived": {"radius": R, "mu": table(5, 1), "sigma": table(5, 2)},
+    "beta": {"radius": R, "mu": table(5, 1), "sigma": table(5, 2), "beta": BETA},
+    "spacing": {"radius": R, "mu": table(5, 1), "sigma": table(5, 2), "spacing": BETA},
+    "summed": {"radius": R, "mu": table(5, 1), "sigma": table(5, 2), "normalised": False},
+    "tree": {"radius": R, "mu": table(5, 1), "sigma": table(5, 2), "edges": TREE},
+    "tree-spacing": {"radius": R, "mu": table(5, 1), "sigma": table(5, 2), "edges": TREE, "spacing": BETA},
+    "cycle": {
+        "radius": R,
+        "mu": table(5, 1),
+        "sigma": table(5, 2),
+        "edges": ((0, 1), (1, 2), (2, 0), (3, 2)),
+        "normalised": False,
+    },
+}
+
+
+def law_of(radius, **options):
+    return MinimalFlocking(radius, **options)
+
+
+@pytest.mark.parametrize("m", [1, 2, 3])
+@pytest.mark.parametrize("case", CASES)
+def test_it_is_the_printed_law(case, m):
+    q, p = state(5, m, seed=m)
+    options = CASES[case]
+    found = law_of(**options).acceleration(0.0, q, p)
+    # two orders of summation of at most four terms of order ten
+    np.testing.assert_allclose(found, transcription(q, p, **options), rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize("m", [1, 2, 3])
+@pytest.mark.parametrize("case", CASES)
+def test_the_jacobian_is_the_complex_step_of_the_transcription(case, m):
+    q, p = state(5, m, seed=m)
+    options, step = CASES[case], 1e-30
+    columns = []
+    for k in range(2 * q.size):
+        nudge = np.zeros(2 * q.size, dtype=complex)
+        nudge[k] = 1j * step
+        dq, dp = nudge[: q.size].reshape(q.shape), nudge[q.size :].reshape(q.shape)
+        u = transcription(q + dq, p + dp, **options)
+        columns.append(np.concatenate([(p + dp).imag.ravel(), u.imag.ravel()]) / step)
+    law = law_of(**options)
+    np.testing.assert_allclose(law.jacobian(0.0, q, p), np.array(columns).T, rtol=0, atol=1e-12)
+    np.testing.assert_array_equal(law.jacobian(0.0, q, p, sparse=True).toarray(), law.jacobian(0.0, q, p))
+
+
+def test_neighbours_are_within_their_own_closed_radius():
+    q = np.array([[0.0], [3.0], [7.0]])
+    law = MinimalFlocking((3.0, 2.999, 4.0))
+    assert set(law.perceived(q)) == {(1, 0), (1, 2)}
+    assert law.acceleration(0.0, q, 0 * q)[1, 0] == 0.0  # perceives nobody
+    assert law.acceleration(0.0, q, 0 * q)[0, 0] == 2.0  # one neighbour, so one metre is wanted, and 3 are found
+
+
+def test_perceived_edges_of_many_agents_in_several_blocks():
+    rng = np.random.default_rng(3)
+    q, radius = rng.uniform(0.0, 20.0, (300, 2)), rng.uniform(2.0, 9.0, 300)
+    head, tail = perceived_edges(q, radius)
+    distance = np.linalg.norm(q[:, None] - q, axis=2)
+    near = (distance <= radius[:, None]) & ~np.eye(300, dtype=bool)
+    assert len(head) > 8192  # more than a block of pairs holds
+    assert set(zip(head.tolist(), tail.tolist(), strict=True)) == {tuple(edge) for edge in np.argwhere(near).tolist()}
+
+
+def test_the_printed_spacing_is_the_number_of_neighbours():
+    """A triangle of side 2: two neighbours want 2 m; with a third agent in the middle of nothing, nothing changes."""
+    triangle = np.array([[0.0, 0.0], [2.0, 0.0], [1.0, sqrt(3.0)]])
+    assert np.abs(MinimalFlocking().acceleration(0.0, triangle, 0 * triangle)).max() < 1e-15
+    moved = np.vstack([triangle, [[100.0, 0.0]]])
+    assert np.abs(MinimalFlocking().acceleration(0.0, moved, 0 * moved)).max() < 1e-15
+    near = np.vstack([triangle, [[1.0, -5.0]]])  # one more neighbour, and all want 3 m at once
+    assert np.abs(MinimalFlocking().acceleration(0.0, near, 0 * near)[2]).max() > 0.5
+
+
+def test_a_driven_edge_follows_its_closed_form():
+    """Root at rest: y'' + y' + μ y = 0 for y = x − ρ on the line."""
+    mu, rho, y0 = 2.0, 1.5, 0.7
+    law = MinimalFlocking(edges=[(0, 1)], spacing=rho, mu=mu)
+    run = simulate(law, [[0.0], [rho + y0]], [[0.0], [0.0]], (0.0, 6.0), rtol=1e-11, atol=1e-12)
+    w = sqrt(mu - 0.25)
+    exact = [rho + y0 * exp(-t / 2) * (cos(w * t) + sin(w * t) / (2 * w)) for t in run.t]
+    np.testing.assert_allclose(run.q[:, 1, 0], exact, rtol=0, atol=1e-9)
+    assert np.all(run.q[:, 0] == 0.0)
+
+
+def test_agents_without_neighbours_move_straight_on():
+    q, p = state(4, 2, size=100.0)
+    assert not MinimalFlocking(0.1).acceleration(0.0, q, p).any()
+
+
+def test_coincident_agents_have_no_spring_but_align():
+    q, p = np.zeros((2, 2)), np.array([[1.0, 0.0], [-1.0, 0.0]])
+    u = MinimalFlocking(edges=[(0, 1)], spacing=1.0).acceleration(0.0, q, p)
+    np.testing.assert_array_equal(u, [[0.0, 0.0], [2.0, 0.0]])
+    with pytest.raises(ArgumentError, match="agents 0 and 1 coincide"):
+        MinimalFlocking(edges=[(0, 1)], spacing=1.0).jacobian(0.0, q, p)
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.integers(0, 10**6), st.integers(1, 3), st.floats(-3.0, 3.0), st.booleans())
+def test_translations_and_galilean_boosts_change_nothing(seed, m, shift, frozen):
+    q, p = state(6, m, seed)
+    law = MinimalFlocking(2.0, edges=random_out_tree(6, np.random.default_rng(seed)) if frozen else None)
+    if not frozen and np.abs(np.linalg.norm(q[:, None] - q, axis=2) - 2.0).min() < 1e-9:
+        return
+    moved = law.acceleration(0.0, q + shift, p - shift)
+    np.testing.assert_allclose(moved, law.acceleration(0.0, q, p), rtol=0, atol=1e-9)
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.integers(0, 10**6), st.integers(2, 3))
+def test_the_energy_rate_is_exact_along_the_flow(seed, m):
+    """dH/dt by central differences of H along (p, u): the step makes an error of 1e-10 of third derivatives."""
+    q, p = state(5, m, seed)
+    law = MinimalFlocking(edges=both_ways(TREE), spacing=1.1, mu=1.7, sigma=0.6, normalised=False)
+    u, h = law.acceleration(0.0, q, p), 1e-5
+    ahead, behind = (law.energy(0.0, q + s * p, p + s * u) for s in (h, -h))
+    assert (ahead - behind) / (2 * h) == pytest.approx(law.energy_rate(0.0, q, p), rel=1e-6, abs=1e-7)
+    rate = -0.6 * sum(np.sum((p[i] - p[j]) ** 2) for i, j in TREE)
+    assert law.energy_rate(0.0, q, p) == pytest.approx(rate, rel=1e-12)
+
+
+def test_energy_of_two_agents_by_hand():
+    law = MinimalFlocking(edges=both_ways([(0, 1)]), spacing=2.0, mu=3.0, normalised=False)
+    # ½·3·(5 − 2)² and ½(1² + 1²) in the moving frame
+    assert law.energy(0.0, [[0.0, 0.0], [3.0, 4.0]], [[1.0, 5.0], [-1.0, 5.0]]) == 13.5 + 1.0
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"edges": TREE, "spacing": 1.0},  # directed
+        {"edges": both_ways(TREE), "spacing": (1.0, 2.0, 1.0, 1.0, 1.0)},  # two lengths for one link
+        {"edges": both_ways(TREE), "spacing": 1.0},  # means over different numbers of neighbours
+        {"edges": both_ways(TREE), "spacing": 1.0, "normalised": False, "sigma": table(5, 0)},
+        {"edges": both_ways(TREE), "spacing": 1.0, "normalised": False, "mu": table(5, 0)},
+        {"spacing": 1.0, "normalised": False},  # perception may switch
+    ],
+)
+def test_there_is_no_energy_without_reciprocity(options):
+    law = MinimalFlocking(**options)
+    assert not law.reciprocal
+    assert np.isnan(law.energy(0.0, *state(5, 2)))
+    assert np.isnan(law.energy_rate(0.0, *state(5, 2)))
+
+
+def test_reciprocal_runs_account_for_their_energy_and_keep_their_momentum():
+    law = MinimalFlocking(edges=both_ways(TREE), spacing=1.0, normalised=False)
+    run = simulate(law, *state(5, 3), (0.0, 20.0))
+    assert np.abs(run.energy_residual).max() < 1e-6 * run.energy()[0]
+    np.testing.assert_allclose(run.p.mean(axis=1), np.broadcast_to(run.p[0].mean(axis=0), (len(run.t), 3)), atol=1e-12)
+    assert np.diff(run.energy()).max() < 1e-9
+
+
+def test_one_discrete_step_is_velocity_first():
+    law, dt = law_of(**CASES["perceived"]), 0.1
+    q, p = state(5, 2)
+    after_q, after_p, u, memory = law.discrete(dt).step(0.0, q, p, {})
+    expected = transcription(q, p, **CASES["perceived"])
+    np.testing.assert_allclose(after_p, p + dt * expected, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(after_q, q + dt * (p + dt * expected), rtol=0, atol=1e-13)
+    np.testing.assert_allclose(u, expected, rtol=0, atol=1e-13)
+    assert memory == {}
+
+
+def test_the_discrete_variant_approaches_the_flow_at_first_order():
+    law = MinimalFlocking(edges=TREE, spacing=1.0)
+    q, p = state(5, 2)
+    exact = simulate(law, q, p, (0.0, 1.0), rtol=1e-11, atol=1e-12).q[-1]
+    errors = [np.abs(simulate(law.discrete(dt), q, p, (0.0, 1.0)).q[-1] - exact).max() for dt in (0.01, 0.005)]
+    assert errors[0] / errors[1] == pytest.approx(2.0, abs=0.1)
+
+
+def test_laws_survive_files(tmp_path):
+    for law in (law_of(**CASES["tree-spacing"]), MinimalFlocking(), MinimalFlocking(edges=TREE).discrete(0.2)):
+        assert from_data(to_data(law)) == law
+    run = simulate(law_of(**CASES["tree-spacing"]), *state(5, 2), (0.0, 1.0))
+    assert Trajectory.load(run.save(tmp_path / "run.nc")).law == run.law
+
+
+def test_trees_are_told_from_the_rest():
+    assert out_tree_root(5, TREE) == 0
+    assert out_tree_root(3, ((2, 1), (2, 0))) == 2
+    assert out_tree_root(3, ((0, 2), (1, 2))) is None  # an in-tree: all reach agent 2, as the paper words it
+    assert out_tree_root(3, ((0, 1), (1, 2), (2, 0))) is None
+    assert out_tree_root(4, ((0, 1), (2, 3))) is None
+    assert out_tree_root(4, ((0, 1), (1, 0), (2, 3))) is None  # n − 1 edges and a cycle
+    assert out_tree_root(4, TREE[:2]) is None  # agent 3 is alone
+    for seed in range(5):
+        assert out_tree_root(9, random_out_tree(9, np.random.default_rng(seed))) == 0
+
+
+def test_incidence_and_edge_vectors():
+    chain = ((0, 1), (1, 2))
+    D, D_in = incidence(3, chain), receivers(3, chain)
+    np.testing.assert_array_equal(D @ D.T, [[1, -1, 0], [-1, 2, -1], [0, -1, 1]])
+    np.testing.assert_array_equal(D_in @ D.T, [[0, 0, 0], [-1, 1, 0], [0, -1, 1]])
+    q, _ = state(3, 2)
+    np.testing.assert_allclose(edge_vectors(q, chain), -D.T @ q)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"radius": 0.0}, r"radius = 0: expected a number > 0"),
+        ({"radius": (1.0, -1.0)}, r"radius\[1\] = -1: expected a number > 0"),
+        ({"spacing": 0.0}, "spacing = 0"),
+        ({"beta": 1.0, "spacing": 1.0}, "expected one of them, or neither"),
+        ({"mu": -1.0}, "mu = -1: expected a number >= 0"),
+        ({"mu": [[1.0, -2.0], [1.0, 1.0]]}, r"mu\[0\]\[1\] = -2"),
+        ({"mu": [1.0, 2.0]}, r"mu has shape \(2,\): expected one number, or \(n, n\)"),
+        ({"radius": (1.0, 2.0), "spacing": (1.0, 2.0, 3.0)}, "expected tables of equal length"),
+        ({"spacing": (1.0, 2.0), "edges": [(0, 2)]}, "edges name agent 2: expected agents below 2"),
+        ({"edges": []}, r"edges = \[\]: expected pairs"),
+        ({"edges": [(0, 0)]}, r"edges\[0\] = \(0, 0\): expected two different agents"),
+        ({"edges": [(0, 1), (0, 1)]}, r"edges\[1\] = \(0, 1\): expected each edge once"),
+        ({"edges": [(0, 1.5)]}, r"edges\[0\] = \(0, 1.5\): expected two different agents"),
+        ({"edges": 7}, "edges = 7: expected pairs"),
+        ({"normalised": 1}, "normalised = 1: expected True or False"),
+        ({"sigma": [[0.0, 1.0], [0.0, 0.0]]}, r"sigma\[1\] sums to zero .* for separation alone give sigma=0"),
+    ],
+)
+def test_bad_parameters_name_themselves(options, message):
+    with pytest.raises(ArgumentError, match=message):
+        MinimalFlocking(**options)
+
+
+def test_a_silent_root_is_no_mean_without_weights():
+    MinimalFlocking(edges=[(0, 1)], sigma=[[0.0, 0.0], [1.0, 0.0]])
+    with pytest.raises(ArgumentError, match=r"sigma\[1\] sums to zero"):
+        MinimalFlocking(edges=[(0, 1)], sigma=[[0.0, 1.0], [0.0, 0.0]])
+
+
+def test_the_number_of_agents_must_fit():
+    with pytest.raises(ArgumentError, match="4 agents: expected 5"):
+        law_of(**CASES["spacing"]).acceleration(0.0, *state(4, 2))
+    with pytest.raises(ArgumentError, match="3 agents: expected at least 5"):
+        simulate(MinimalFlocking(edges=TREE), *state(3, 2), (0.0, 1.0))
+    with pytest.raises(ArgumentError, match="3 agents: expected at least 5"):
+        simulate(MinimalFlocking(edges=TREE).discrete(), *state(3, 2), (0.0, 1.0))
+    with pytest.raises(ArgumentError, match=r"expected MinimalFlocking\(\.\.\.\)"):
+        DiscreteMinimalFlocking(3)
+    with pytest.raises(ArgumentError, match="dt = 0"):
+        MinimalFlocking().discrete(0.0)
+
+
+def test_edges_are_given_in_any_form():
+    assert ensure_edges(np.array(TREE)) == TREE
+    assert ensure_edges(iter([[0, 1]])) == ((0, 1),)

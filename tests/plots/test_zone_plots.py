@@ -1,0 +1,104 @@
+"""Figures of zone-based flocking: the artists hold the run's numbers; every law gets the figures made for it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle, Polygon, Rectangle
+
+from flockana import plots
+from flockana.environment.obstacles import Sphere
+from flockana.environment.zone_obstacles import Box
+from flockana.environment.zone_world import ZoneWorld
+from flockana.errors import ArgumentError
+from flockana.laws.bearing_distance import ZoneFlocking
+from flockana.laws.olfati_saber import Algorithm1
+from flockana.report.figures import pictures
+from flockana.scenarios import scenario
+from flockana.simulate import simulate
+
+
+@pytest.fixture(scope="module")
+def run():
+    entry = scenario("zone-52")
+    return simulate(entry.law, entry.q0, entry.p0, (0.0, 3.0))
+
+
+def axes(m=2):
+    return Figure().add_subplot(projection="3d" if m == 3 else None)
+
+
+def test_triangles_point_ahead(run):
+    ax = plots.zones(run, 2.0, ax=axes())
+    (found,) = (c for c in ax.collections if isinstance(c, PolyCollection))
+    corners = found.get_paths()[4].vertices[:3]
+    q, h = run.q[20, 4], run.extra["heading"][20, 4]
+    np.testing.assert_allclose(corners[0], q + 3.0 * h)
+    np.testing.assert_allclose(0.5 * (corners[1] + corners[2]), q)
+    assert np.linalg.norm(corners[1] - corners[2]) == pytest.approx(3.0)
+    assert "t = 2" in ax.get_title(loc="left") + ax.get_title()
+
+
+def test_the_world_is_drawn(run):
+    ax = plots.zones(run, ax=axes())
+    kinds = [type(patch) for patch in ax.patches]
+    assert (kinds.count(Polygon), kinds.count(Rectangle), kinds.count(Circle)) == (2, 1, 0)
+    np.testing.assert_allclose(ax.collections[-1].get_offsets(), run.extra["alien"][-1])
+
+
+def test_buffers_instead_of_triangles():
+    entry = scenario("zone-gap-buffer")
+    ax = plots.zones(simulate(entry.law, entry.q0, entry.p0, (0.0, 1.0)), ax=axes())
+    assert [type(patch) for patch in ax.patches].count(Circle) == 1
+    assert not any(isinstance(c, PolyCollection) for c in ax.collections)
+
+
+def test_space_and_balls():
+    rng = np.random.default_rng(0)
+    law = ZoneFlocking(world=ZoneWorld((Sphere((20.0, 20.0, 20.0), 3.0),), Box((0.0,) * 3, (40.0,) * 3)))
+    solid = simulate(law, rng.uniform(1.0, 9.0, (6, 3)), rng.uniform(0.0, 1.0, (6, 3)), (0.0, 1.0))
+    plots.zones(solid, ax=axes(3)).get_figure().canvas.draw()
+    flat = ZoneFlocking(world=ZoneWorld((Sphere((20.0, 20.0), 3.0),)))
+    disc = simulate(flat, rng.uniform(1.0, 9.0, (6, 2)), rng.uniform(0.0, 1.0, (6, 2)), (0.0, 1.0))
+    assert plots.zones(disc, ax=axes()).patches[0].get_radius() == 3.0
+
+
+def test_series_hold_the_numbers_and_their_bounds(run):
+    lines = {line.get_label(): line for line in plots.zone_distances(run, ax=axes()).get_lines()}
+    np.testing.assert_allclose(lines["least (D)"].get_ydata(), run.metrics().min_distance)
+    assert [lines[name].get_ydata()[0] for name in "rca"] == [1.5, 3.0, 5.0]
+    lines = {line.get_label(): line for line in plots.zone_speeds(run, ax=axes()).get_lines()}
+    assert (lines["desired"].get_ydata()[0], lines["bound"].get_ydata()[0]) == (3.0, 4.0)
+    lines = {line.get_label(): line for line in plots.zone_controls(run, ax=axes()).get_lines()}
+    np.testing.assert_allclose(lines["mean"].get_ydata(), np.linalg.norm(run.u, axis=2).mean(axis=1))
+    assert lines["bound"].get_ydata()[0] == 10.0
+    lines = {line.get_label(): line for line in plots.zone_safety(run, ax=axes()).get_lines()}
+    np.testing.assert_allclose(lines["wall"].get_ydata(), run.metrics().wall_distance)
+    lines = {line.get_label(): line for line in plots.zone_populations(run, ax=axes()).get_lines()}
+    np.testing.assert_allclose(lines["conflict"].get_ydata(), run.metrics().in_conflict)
+    np.testing.assert_allclose(
+        plots.measure(run, "coordination", ax=axes()).get_lines()[0].get_ydata(), run.metrics().coordination
+    )
+
+
+def test_an_empty_plane_says_so():
+    ax = plots.zone_safety(simulate(ZoneFlocking(), [[0.0, 0.0]], [[1.0, 0.0]], (0.0, 1.0)), ax=axes())
+    assert ax.texts[0].get_text() == "nothing to keep clear of"
+
+
+def test_other_laws_and_lines_are_refused():
+    other = simulate(Algorithm1(), [[0.0, 0.0]], [[1.0, 0.0]], (0.0, 1.0))
+    for draw in (plots.zones, plots.zone_distances, plots.zone_safety):
+        with pytest.raises(ArgumentError, match="expected a run of ZoneFlocking"):
+            draw(other, ax=axes())
+    with pytest.raises(ArgumentError, match="agents live on a line"):
+        plots.zones(simulate(ZoneFlocking(), [[0.0]], [[1.0]], (0.0, 1.0)), ax=axes())
+
+
+def test_the_report_draws_a_law_by_its_own_module(run):
+    own = pictures(run)
+    assert len(own) == 4
+    assert "obstacles" in own[0].caption
+    assert all(picture.source.startswith("data:image/png;base64,") for picture in own)

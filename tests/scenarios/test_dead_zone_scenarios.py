@@ -1,0 +1,43 @@
+"""The dead-zone scenarios: what is expected of them is what they show, at another seed too."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from flockana.scenarios import scenario
+
+NAMES = ("dead-zone", "dead-zone-wide-lattice", "dead-zone-wide-start", "dead-zone-hard", "dead-zone-flow")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_status_is_the_expected_one(name):
+    item = scenario(name)
+    for verdict in item.verify(item.run()):
+        assert item.surprises(verdict) == ()
+
+
+def test_the_default_is_the_specified_one():
+    item = scenario("dead-zone")
+    assert (item.q0.shape, item.law.dt, item.t_span) == ((50, 2), 0.01, (0.0, 200.0))
+    assert 0.0 <= item.q0.min() <= item.q0.max() <= 40.0
+    assert np.abs(item.p0).max() <= 1.0
+    pair = item.law.law.interaction
+    assert (pair.r, pair.delta, pair.k_delta, pair.d1, pair.d2) == (15.0, 4.5, 1.3, 3.5, 12.5)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_the_spacing_is_that_of_the_reference(seed):
+    """3.40 in the mean at k1 = 0.01 (an independent computation with the same scheme)."""
+    item = scenario("dead-zone", seed=seed)
+    run = item.run()
+    claims = {claim.name: claim for claim in item.verify(run)[-1].claims}
+    assert claims["lattice"].computed == pytest.approx(3.40, abs=0.01)
+    assert claims["consensus"].computed < 1e-9
+
+
+def test_hard_jumps_leave_the_mismatch_of_the_erratum():
+    item = scenario("dead-zone-hard")
+    claims = {claim.name: claim for claim in item.verify(item.run())[-1].claims}
+    assert 0.1 < claims["consensus"].computed < 0.8
+    assert claims["lattice"].computed == pytest.approx(3.5, abs=0.01)

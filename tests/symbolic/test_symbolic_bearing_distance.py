@@ -1,0 +1,71 @@
+"""The pair's symbolic behaviours against the compiled ones, the bound's series, the drag and the stand-off."""
+
+from __future__ import annotations
+
+from math import tanh
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from flockana.interactions import ZoneRadii, ZoneWeights
+from flockana.kernels.zones import saturation as compiled_saturation
+from flockana.laws.bearing_distance import ZoneFlocking
+from flockana.symbolic import bearing_distance as symbolic
+
+PLAIN = ZoneWeights(separation=1.0, cohesion_gain=1.0, alignment_gain=1.0)
+
+
+@pytest.mark.parametrize("m", [1, 2, 3])
+def test_the_two_forms_are_one(m):
+    derivation = symbolic.derive_equivalence(m)
+    assert derivation.residuals == (0,) * (3 * m)
+
+
+def test_a_wrong_rate_of_the_bearing_would_show(monkeypatch):
+    d, b, d_rate, b_rate = symbolic.bearing(2)
+    monkeypatch.setattr(symbolic, "bearing", lambda m: (d, b, d_rate, b_rate + d_rate * b))
+    assert not symbolic.derive_equivalence(2).holds
+
+
+@pytest.mark.parametrize("m", [1, 2, 3])
+@pytest.mark.parametrize("form", ["position", "bearing"])
+def test_kernel_and_derivation_agree(m, form):
+    expressions = {"position": symbolic.position_form, "bearing": symbolic.bearing_form}[form](m)
+    symbols = [x for part in symbolic.pair_symbols(m) for x in part]
+    law, rng = ZoneFlocking(ZoneRadii(0.1, c=3.0, a=5.0), PLAIN, form=form), np.random.default_rng(m)
+    for _ in range(5):
+        gap = rng.normal(size=m)
+        p_i, v_i, v_j = rng.normal(size=(3, m))
+        p_j = p_i + 2.0 * gap / np.linalg.norm(gap)  # in the zone of conflict, where all three act
+        values = dict(zip(symbols, [*p_i, *v_i, *p_j, *v_j], strict=True)) | {symbolic.C: 3}
+        found = law.behaviours(np.stack([p_i, p_j]), np.stack([v_i, v_j]))
+        for name, expression in expressions.items():
+            wanted = [float(x) for x in expression.xreplace(values).evalf(25)]
+            np.testing.assert_allclose(found[name][0], wanted, rtol=1e-12, atol=1e-14, err_msg=name)
+
+
+def test_the_series_of_the_bound():
+    x = symbolic._X
+    assert symbolic.saturation_factor(6) == 1 - x**2 / 3 + 2 * x**4 / 15
+    assert sp.limit(symbolic.saturation(x) / x, x, 0) == 1
+    for value in (1e-12, 5e-5, 0.2, 3.0):
+        exact = symbolic.saturation(sp.Rational(str(value)), bound=2).evalf(30) / sp.Rational(str(value))
+        assert compiled_saturation(value, 2.0) == pytest.approx(float(exact), rel=4e-16)
+    seam = 1e-4  # below it the kernel keeps the first two terms: the third is under half a unit of rounding
+    assert float(2 * sp.Rational(str(seam)) ** 4 / 15) < 2.0**-54
+
+
+@pytest.mark.parametrize(("step", "speed"), [(0.1, 2.0083), (0.05, 1.628), (0.01, 0.974), (0.001, 0.457)])
+def test_the_drag_of_the_printed_bound(step, speed):
+    """Reference: the errata's figures (A7), found there by iteration."""
+    found = float(symbolic.fastest_under_drag(step, 2, 4))
+    assert found == pytest.approx(speed, abs=6e-4)
+    assert 4.0 * tanh((found + 2.0 * step) / 4.0) == pytest.approx(found, rel=1e-12)
+
+
+def test_stand_off():
+    assert symbolic.stand_off(desired_speed=3, drive=5, weight=5).subs(symbolic.C, 3) == 0
+    assert symbolic.stand_off(desired_speed=3, drive=5, weight=20).subs(symbolic.C, 3) == sp.Rational(9, 4)
+    general = symbolic.stand_off()
+    assert sp.simplify(general - (symbolic.C - symbolic.SPEED * sp.Symbol("w^ga", positive=True) / symbolic.GAIN)) == 0

@@ -1,0 +1,185 @@
+"""The bearing-distance Theorem 1 as printed and as corrected, on runs that meet its hypotheses and runs that do not."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import sqrt
+
+import numpy as np
+import pytest
+
+from flockana.environment.targets import StaticTarget
+from flockana.laws.minimal import MinimalFlocking
+from flockana.laws.olfati_saber import Algorithm2
+from flockana.laws.perception import both_ways, edge_vectors, random_out_tree
+from flockana.simulate import simulate
+from flockana.theorems import theorem, verify
+from flockana.theorems.tree_case import characteristic_residual, root_edges, tree_case
+
+TREE = ((0, 1), (1, 2), (1, 3), (0, 4))
+CORRECTED = ("lengths", "velocities", "spectrum", "exponential", "root-edge", "energy", "no-collision")
+
+
+def run_on(edges, *, m=2, seed=0, end=80.0, size=2.0, speed=0.5, **options):
+    law = MinimalFlocking(edges=edges, **({"spacing": 1.0} | options))
+    n = 1 + max(map(max, edges))
+    rng = np.random.default_rng(seed)
+    return simulate(law, rng.uniform(-size, size, (n, m)), rng.uniform(-speed, speed, (n, m)), (0.0, end))
+
+
+@pytest.fixture(scope="module")
+def directed():
+    return run_on(TREE)
+
+
+@pytest.fixture(scope="module")
+def undirected():
+    return run_on(both_ways(TREE), normalised=False)
+
+
+def test_as_printed_it_is_refuted_with_its_counterexample(directed):
+    verdict = verify("zone-1-printed", directed)
+    assert verdict.status == "refuted"
+    assert {c.name: c.status for c in verdict.claims} == {
+        "equilibrium": "refuted",
+        "edges": "refuted",
+        "velocities": "verified",
+        "hurwitz": "refuted",
+    }
+    assert all(h.status == "met" for h in verdict.hypotheses)
+    # the witness, run anew, stays where it is, with every edge one unit long
+    q = np.array(verdict.claim("equilibrium").witness["q"])
+    again = simulate(directed.law, q, 0.0 * q, (0.0, 50.0))
+    assert np.abs(again.q - q).max() < 1e-9
+    np.testing.assert_allclose(np.linalg.norm(edge_vectors(again.q[-1], TREE), axis=1), 1.0, atol=1e-9)
+
+
+def test_a_limit_is_not_refuted_before_the_certificate_bites():
+    """At the start V is far above μρ²/2 on both edges from the root: no bound, and no verdict on the limit."""
+    run = run_on(TREE, end=0.1, size=9.0)
+    assert all(floor < 0.0 for _, floor in root_edges(tree_case(run.law, 5), run.q[-1], run.p[-1]).values())
+    assert verify("zone-1-printed", run).claim("edges").status == "inconclusive"
+    assert verify("zone-1-corrected", run).claim("lengths").status == "inconclusive"
+
+
+def test_hurwitz_while_all_edges_are_too_long():
+    law = MinimalFlocking(edges=((0, 1),), spacing=1.0)
+    run = simulate(law, [[0.0, 0.0], [9.0, 0.0]], np.zeros((2, 2)), (0.0, 0.5))
+    claim = verify("zone-1-printed", run).claim("hurwitz")
+    assert claim.status == "verified"
+    assert claim.computed == pytest.approx(-0.5)
+    inside = simulate(law, [[0.0, 0.0], [0.5, 0.0]], np.zeros((2, 2)), (0.0, 0.5))
+    claim = verify("zone-1-printed", inside).claim("hurwitz")
+    assert claim.status == "refuted"
+    assert claim.computed == pytest.approx((sqrt(5.0) - 1.0) / 2.0, abs=1e-9)
+
+
+@pytest.mark.parametrize(("m", "seed"), [(1, 0), (2, 1), (3, 2)])
+def test_as_corrected_it_holds_on_directed_trees(m, seed):
+    run = run_on(random_out_tree(6, np.random.default_rng(seed)), m=m, seed=seed, end=100.0, mu=1.3)
+    verdict = verify("zone-1-corrected", run)
+    assert verdict.status == "verified"
+    assert verdict.claim("spectrum").computed["zero modes"] == 5 * (m - 1)
+    assert verdict.claim("lengths").computed < 1e-6
+
+
+def test_unequal_spacings_and_weights_are_covered():
+    mu = np.outer([1.0, 0.5, 2.0, 3.0, 1.5], np.ones(5))
+    run = run_on(TREE, spacing=(1.0, 0.7, 1.3, 2.0, 1.1), mu=mu, end=100.0)
+    assert verify("zone-1-corrected", run).status == "verified"
+    lengths = np.linalg.norm(edge_vectors(run.q[-1], TREE), axis=1)
+    np.testing.assert_allclose(lengths, [0.7, 1.3, 2.0, 1.1], rtol=1e-6)
+
+
+def test_as_corrected_it_holds_on_undirected_trees(undirected):
+    verdict = verify("zone-1-corrected", undirected)
+    assert verdict.status == "verified"
+    assert verdict.claim("energy").computed <= 0.0
+    assert verdict.claim("spectrum").computed["zero modes"] == 4
+    assert verify("zone-1-printed", undirected).status == "vacuous"
+
+
+def test_the_bound_of_an_edge_from_the_root_is_respected_and_close():
+    """Pushed inwards with V(0) just below μρ²/2, without alignment to lose it quickly: |x| comes near its bound."""
+    speed = 0.9
+    law = MinimalFlocking(edges=((0, 1),), spacing=1.0, mu=4.0)
+    run = simulate(law, [[0.0, 0.0], [1.0, 0.0]], [[0.0, 0.0], [-speed, 0.0]], (0.0, 40.0))
+    claim = verify("zone-1-corrected", run).claim("root-edge")
+    assert claim.status == "verified"
+    bound = 1.0 - sqrt(speed**2 / 4.0)  # ρ − sqrt(2V(0)/μ)
+    assert claim.witness["edge (0, 1)"]["bound"] == pytest.approx(bound)
+    least = np.linalg.norm(run.q[:, 1] - run.q[:, 0], axis=1).min()
+    assert bound < least < bound + 0.3
+
+
+def test_no_collision_below_the_energy_of_one():
+    law = MinimalFlocking(edges=both_ways(TREE), spacing=1.0, normalised=False)
+    q = tree_case(law, 5).on_manifold(np.random.default_rng(0).uniform(-1.0, 1.0, (5, 2)))
+    p = np.random.default_rng(1).uniform(-0.3, 0.3, (5, 2))
+    claim = verify("zone-1-corrected", simulate(law, q, p, (0.0, 80.0))).claim("no-collision")
+    assert claim.status == "verified"
+    assert claim.witness["H(0)"] < claim.witness["least μρ²/2"] == 0.5
+    far = verify("zone-1-corrected", run_on(both_ways(TREE), normalised=False, size=5.0)).claim("no-collision")
+    assert far.status == "vacuous"
+
+
+@pytest.mark.parametrize(
+    ("options", "missing"),
+    [
+        ({"edges": ((0, 2), (1, 2), (3, 2), (4, 2))}, "the graph is a spanning tree"),  # an in-tree: nobody reaches all
+        ({"edges": ((0, 1), (1, 2), (2, 0), (0, 3), (0, 4))}, "the graph is a spanning tree"),
+        ({"edges": both_ways(TREE)}, "the graph is a spanning tree"),  # means: not reciprocal
+        ({"edges": TREE, "mu": 0.0}, "μ > 0"),
+        ({"edges": TREE, "sigma": 0.0}, "alignment is at work"),
+    ],
+)
+def test_what_is_not_met_makes_it_vacuous(options, missing):
+    verdict = verify("zone-1-corrected", run_on(**options, end=1.0))
+    assert verdict.status == "vacuous"
+    assert [h.name for h in verdict.hypotheses if h.status == "unmet"] == [missing]
+
+
+def test_a_perceived_graph_may_change_and_another_law_is_another_law(directed):
+    perceived = replace(directed, law=MinimalFlocking(3.0))
+    verdict = verify("zone-1-corrected", perceived)
+    assert verdict.status == "vacuous"
+    assert verdict.hypotheses[1].detail == "perceived"
+    other = replace(directed, law=Algorithm2(target=StaticTarget((0.0, 0.0))))
+    for name in ("zone-1-printed", "zone-1-corrected"):
+        assert verify(name, other).status == "vacuous"
+    assert {c.name for c in verify("zone-1-corrected", other).claims} == set(CORRECTED)
+
+
+def test_a_law_with_half_the_speed_of_convergence_is_noticed(directed):
+    """The same states read twice as slowly fall at half the rate, which is below half the slowest of the spectrum."""
+    slow = replace(directed, t=3.0 * directed.t)
+    assert verify("zone-1-corrected", directed).claim("exponential").status == "verified"
+    assert verify("zone-1-corrected", slow).claim("exponential").status == "inconclusive"
+
+
+def test_a_run_whose_energy_rises_is_caught(undirected):
+    heated = replace(undirected, p=undirected.p * (1.0 + 0.01 * undirected.t)[:, None, None])
+    assert verify("zone-1-corrected", heated).claim("energy").status == "refuted"
+
+
+def test_characteristic_residual_tells_polynomials_apart():
+    A = np.array([[0.0, 1.0], [-2.0, -3.0]])
+    assert characteristic_residual(A, [(3.0, 2.0)]) < 1e-14
+    assert characteristic_residual(A, [(3.0, 2.001)]) > 1e-6
+
+
+def test_separation_alone_oscillates_and_alignment_does_not_exclude_a_collision():
+    verdict = verify("zone-separation")
+    assert verdict.claim("alone").computed["period"] == pytest.approx(2.0 * np.pi / sqrt(6.0), rel=1e-4)
+    assert (
+        verdict.claim("alone").status == verdict.claim("energy").status == verdict.claim("chain").status == "verified"
+    )
+    close = verdict.claim("close-encounters")
+    assert close.computed < -1.0  # 1 − 4 exp(−t) sin t falls through zero: they change places, and settle beyond
+    assert close.status == "refuted"
+
+
+def test_statements_name_their_source():
+    for name in ("zone-1-printed", "zone-1-corrected", "zone-separation"):
+        assert theorem(name).references == ("jond-2025",)
+        assert theorem(name).source.startswith("Jond")
