@@ -135,7 +135,8 @@ def test_the_old_file_is_replaced_in_one_move(tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_places_that_cannot_be_written(tmp_path):
+def test_places_that_cannot_be_written(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # names without a folder must leave nothing behind here
     (tmp_path / "file").write_text("x")
     for path in (tmp_path / "none" / "run.nc", tmp_path / "file" / "run.nc", tmp_path, "", "a\0b"):
         with pytest.raises(FileError, match=r"cannot write .*choose a file name and folder to write to"):
