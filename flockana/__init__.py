@@ -19,7 +19,9 @@ if TYPE_CHECKING:
     from flockana import plots as plots
     from flockana import predicates as predicates
     from flockana import reynolds as reynolds
+    from flockana import stability as stability
     from flockana import symbolic as symbolic
+    from flockana.ensemble.campaign import ensemble as ensemble
     from flockana.environment.capsule import Capsule as Capsule
     from flockana.environment.obstacles import Obstacle as Obstacle
     from flockana.environment.obstacles import Sphere as Sphere
@@ -32,19 +34,31 @@ if TYPE_CHECKING:
     from flockana.environment.targets import SineTarget as SineTarget
     from flockana.environment.targets import StaticTarget as StaticTarget
     from flockana.environment.targets import Target as Target
+    from flockana.environment.zone_obstacles import Box as Box
+    from flockana.environment.zone_obstacles import SimplePolygon as SimplePolygon
+    from flockana.environment.zone_world import Alien as Alien
+    from flockana.environment.zone_world import ZoneWorld as ZoneWorld
     from flockana.equilibria.solve import Equilibrium as Equilibrium
     from flockana.equilibria.solve import find_equilibrium as find_equilibrium
     from flockana.interactions import AlphaInteraction as AlphaInteraction
     from flockana.interactions import BetaInteraction as BetaInteraction
+    from flockana.interactions import DeadZoneInteraction as DeadZoneInteraction
     from flockana.interactions import Gains as Gains
     from flockana.interactions import PairInteraction as PairInteraction
+    from flockana.interactions import ZoneRadii as ZoneRadii
+    from flockana.interactions import ZoneWeights as ZoneWeights
     from flockana.laws.algorithm3 import Algorithm3 as Algorithm3
+    from flockana.laws.bearing_distance import ZoneFlocking as ZoneFlocking
+    from flockana.laws.dead_zone import DeadZoneFlocking as DeadZoneFlocking
     from flockana.laws.law import DiscreteLaw as DiscreteLaw
     from flockana.laws.law import Law as Law
+    from flockana.laws.minimal import DiscreteMinimalFlocking as DiscreteMinimalFlocking
+    from flockana.laws.minimal import MinimalFlocking as MinimalFlocking
     from flockana.laws.olfati_saber import Algorithm1 as Algorithm1
     from flockana.laws.olfati_saber import Algorithm2 as Algorithm2
     from flockana.metrics import cohesion_radius as cohesion_radius
     from flockana.metrics import connectivity as connectivity
+    from flockana.metrics import coordination as coordination
     from flockana.metrics import deviation_energy as deviation_energy
     from flockana.metrics import giant_share as giant_share
     from flockana.metrics import inertia as inertia
@@ -60,6 +74,10 @@ if TYPE_CHECKING:
     from flockana.scenarios.scenario import scenario as scenario
     from flockana.scenarios.scenario import scenarios as scenarios
     from flockana.simulate import simulate as simulate
+    from flockana.stability.linearise import Linearisation as Linearisation
+    from flockana.stability.linearise import linearise as linearise
+    from flockana.stability.modes import Mode as Mode
+    from flockana.stability.slowest import slowest_modes as slowest_modes
     from flockana.theorems.catalogue import theorem as theorem
     from flockana.theorems.catalogue import theorems as theorems
     from flockana.theorems.catalogue import verify as verify
@@ -76,29 +94,45 @@ _TARGETS = (
     "RescaledVelocity",
     "CallableTarget",
 )
+_INTERACTIONS = (
+    "PairInteraction",
+    "AlphaInteraction",
+    "BetaInteraction",
+    "Gains",
+    "DeadZoneInteraction",
+    "ZoneRadii",
+    "ZoneWeights",
+)
 _METRICS = ("connectivity", "cohesion_radius", "deviation_energy", "velocity_mismatch", "inertia", "giant_share")
 _BY_MODULE = {
     "environment.targets": _TARGETS,
     "environment.obstacles": ("Obstacle", "Sphere", "Wall"),
     "environment.capsule": ("Capsule",),
     "environment.polygon": ("Polygon",),
-    "interactions": ("PairInteraction", "AlphaInteraction", "BetaInteraction", "Gains"),
+    "environment.zone_obstacles": ("Box", "SimplePolygon"),
+    "environment.zone_world": ("Alien", "ZoneWorld"),
+    "interactions": _INTERACTIONS,
     "laws.law": ("Law", "DiscreteLaw"),
     "laws.olfati_saber": ("Algorithm1", "Algorithm2"),
     "laws.algorithm3": ("Algorithm3",),
+    "laws.bearing_distance": ("ZoneFlocking",),
+    "laws.minimal": ("MinimalFlocking", "DiscreteMinimalFlocking"),
+    "laws.dead_zone": ("DeadZoneFlocking",),
     "simulate": ("simulate",),
     "trajectory": ("Trajectory",),
-    "metrics": (*_METRICS, "min_distance", "order"),
+    "metrics": (*_METRICS, "min_distance", "order", "coordination"),
     "nets": ("links", "components", "laplacian"),
     "equilibria": ("find_equilibrium", "Equilibrium"),
+    "stability": ("linearise", "Linearisation", "Mode", "slowest_modes"),
     "theorems": ("theorems", "theorem", "verify", "Verdict", "Tolerances"),
     "scenarios": ("scenarios", "scenario", "Scenario"),
+    "ensemble": ("ensemble",),
     "plots.animation": ("animate",),
     "references": ("cite",),
 }
 _HOME = {name: module for module, names in _BY_MODULE.items() for name in names}
 
-_SUBMODULES = ("errors", "lattice", "metrics", "plots", "predicates", "reynolds", "symbolic")
+_SUBMODULES = ("errors", "lattice", "metrics", "plots", "predicates", "reynolds", "stability", "symbolic")
 
 __all__ = ["__version__", *_SUBMODULES, *_HOME]  # all of them strings, from the table above
 

@@ -256,7 +256,7 @@ class Trajectory:
         """
         target = Path(path)
         if "\0" in str(target):  # HDF5 would write to what precedes it
-            raise FileError(f"cannot write {str(target)!r}: a null character; choose a file name and folder to write to")
+            raise FileError(f"cannot write {str(target)!r}: null byte; choose a file name and folder to write to")
         dataset = self.to_xarray()
         partial = target.parent / f".{target.name}.{os.getpid()}.partial"
         try:

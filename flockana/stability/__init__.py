@@ -1,8 +1,53 @@
 """Linearised stability: Jacobians, modes, transfer functions, margins, norms and the design of gains."""
 
+from flockana.stability.blocks import Blocks, blocks, second_order
+from flockana.stability.delay import (
+    DelayMargin,
+    delay_margin,
+    delay_system,
+    rightmost_roots,
+    scalar_margin,
+    simulate_delayed,
+)
+from flockana.stability.design import GainDesign, design_gains, gain_problem
 from flockana.stability.linearise import Linearisation, linearise
 from flockana.stability.modes import Mode
 from flockana.stability.motion import mode_motion
+from flockana.stability.norms import disturbance_system, h2_norm, hinf_norm, norms_against_size
 from flockana.stability.slowest import SlowModes, slowest_modes
+from flockana.stability.sweeps import centre_locus, gain_sweep, margin_sweep
+from flockana.stability.tracking import response_ratio, steady_error, tracking
+from flockana.stability.translational import CentreOfMass, predicted_gain
 
-__all__ = ["Linearisation", "Mode", "SlowModes", "linearise", "mode_motion", "slowest_modes"]
+__all__ = [
+    "Blocks",
+    "CentreOfMass",
+    "DelayMargin",
+    "GainDesign",
+    "Linearisation",
+    "Mode",
+    "SlowModes",
+    "blocks",
+    "centre_locus",
+    "delay_margin",
+    "delay_system",
+    "design_gains",
+    "disturbance_system",
+    "gain_problem",
+    "gain_sweep",
+    "h2_norm",
+    "hinf_norm",
+    "linearise",
+    "margin_sweep",
+    "mode_motion",
+    "norms_against_size",
+    "predicted_gain",
+    "response_ratio",
+    "rightmost_roots",
+    "scalar_margin",
+    "second_order",
+    "simulate_delayed",
+    "slowest_modes",
+    "steady_error",
+    "tracking",
+]
