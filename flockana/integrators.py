@@ -6,7 +6,7 @@ Beside the state, ∫ dH/dt is integrated as one more variable.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -36,12 +36,15 @@ class Tally:
         Counts of right-hand sides and of steps.
     status, message : str
         As in `Trajectory`.
+    notes : dict
+        What else an integrator has to tell, for `Trajectory.stats`.
     """
 
     evaluations: int = 0
     steps: int = 0
     status: str = "complete"
     message: str = "reached the end of the time span"
+    notes: dict[str, Any] = field(default_factory=dict)
 
     def fail(self, message: str) -> None:
         """Note that the run ended early, and why.
@@ -258,18 +261,22 @@ def discrete(
     tally : Tally
         Filled in on the way.
     """
-    t, q, p, memory = t_span[0], q0, p0, law.start(q0, p0)
-    yield Sample(t, q, p, np.zeros_like(q), _copied(memory))
+    q, p, memory = q0, p0, law.start(q0, p0)
+    yield Sample(t_span[0], q, p, np.zeros_like(q), _copied(memory))
     steps = int(np.floor((t_span[1] - t_span[0]) / law.dt + 1e-9))
-    for k in range(1, steps + 1):
-        q, p, u, memory = law.step(t, q, p, memory)
-        t = t_span[0] + k * law.dt
-        tally.steps += 1
-        tally.evaluations += 1
-        if not _finite(q, p):
-            tally.fail(f"the map left the finite numbers at t = {t:g}")
-            return
-        yield Sample(t, q, p, u, _copied(memory))
+    for first in range(0, steps, law.steps_at_once):
+        some = min(law.steps_at_once, steps - first)
+        qs, ps, us, series = law.iterate(t_span[0] + first * law.dt, q, p, memory, some)
+        for k in range(some):
+            t = t_span[0] + (first + k + 1) * law.dt
+            tally.steps += 1
+            tally.evaluations += 1
+            if not _finite(qs[k], ps[k]):
+                tally.fail(f"the map left the finite numbers at t = {t:g}")
+                return
+            yield Sample(t, qs[k], ps[k], us[k], {name: values[k] for name, values in series.items()})
+        # a copy: a law may change its memory in place
+        q, p, memory = qs[-1], ps[-1], _copied({name: values[-1] for name, values in series.items()})
 
 
 def nearest(samples: Iterator[Sample], keep: FloatArray, dt: float) -> Iterator[Sample]:

@@ -16,6 +16,8 @@ from flockana.checks import FloatArray, ensure_positive, ensure_state, ensure_ti
 from flockana.errors import ArgumentError, UnknownNameError
 from flockana.integrators import Sample, Tally, adaptive, discrete, nearest, rk4, start_sample
 from flockana.laws.law import DiscreteLaw, Law, ensure_law
+from flockana.laws.switched import SwitchedLaw
+from flockana.switched import located
 from flockana.trajectory import Trajectory
 
 ADAPTIVE = ("DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA")
@@ -43,7 +45,8 @@ def simulate(
     Parameters
     ----------
     law : Law or DiscreteLaw
-        What moves the flock. A discrete law brings its own step; method, tolerances and dt do not apply to it.
+        What moves the flock. A discrete law brings its own step; method, tolerances and dt do not apply to it. A
+        `SwitchedLaw` is integrated from switch to switch, except by RK4; a sliding mode ends the run and is reported.
     q0, p0 : array_like, shape (n, m)
         Initial positions and velocities.
     t_span : (float, float)
@@ -96,13 +99,16 @@ def simulate(
             keep_samples = rk4(law, q0, p0, t_span, _ensure_step("dt", dt, t_span), keep, tally)
         else:
             tolerances = ensure_positive("rtol", rtol), ensure_positive("atol", atol)
-            keep_samples = adaptive(law, q0, p0, t_span, method, *tolerances, keep, tally)
+            if isinstance(law, SwitchedLaw) and law.located:
+                keep_samples = located(law, q0, p0, t_span, method, *tolerances, keep, tally)
+            else:
+                keep_samples = adaptive(law, q0, p0, t_span, method, *tolerances, keep, tally)
     started = time.perf_counter()
     kept = _collect(keep_samples, t_span, tally, progress)
     if not kept:  # ended before the first time to keep: the start at least is known
         kept = [start_sample(law, q0, p0, t_span[0])]
     extra = {key: np.stack([s.extra[key] for s in kept]) for key in kept[0].extra}
-    stats: dict[str, Any] = {"method": name, "steps": tally.steps, "evaluations": tally.evaluations}
+    stats: dict[str, Any] = {"method": name, "steps": tally.steps, "evaluations": tally.evaluations} | tally.notes
     if name == "RK4" or isinstance(law, DiscreteLaw):
         stats["dt"] = law.dt if isinstance(law, DiscreteLaw) else dt
     else:

@@ -26,6 +26,7 @@ STAGES: tuple[tuple[str, ...], ...] = (
     ("trajectory",),
     ("predicates",),
     ("integrators",),
+    ("switched",),
     ("simulate",),
     ("terminal", "gradient_flow"),
     ("equilibria",),

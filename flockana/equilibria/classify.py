@@ -77,7 +77,7 @@ def spectrum(potential: Potential, q: FloatArray, *, zero: float = ZERO) -> Spec
     above = 1.0 + 2.0 * float(np.abs(hessian).sum(axis=1).max())  # beyond every eigenvalue: where rigid motions are put
     values = np.linalg.eigvalsh(0.5 * (off + off.T) + above * (rigid @ rigid.T))[: q.size - rigid.shape[1]]
     # with all agents out of range the largest eigenvalue is rounding itself: a pair's stiffness is the measure then
-    small = zero * max(float(np.abs(values).max(initial=0.0)), potential.force_scale / potential.law.alpha.d)
+    small = zero * max(float(np.abs(values).max(initial=0.0)), potential.force_scale / potential.pair.length)
     return Spectrum(values, rigid.shape[1], int(np.sum(values < -small)), int(np.sum(np.abs(values) <= small)))
 
 
@@ -98,7 +98,7 @@ def falling(potential: Potential, q: FloatArray) -> FloatArray | None:
     True
     """
     values, vectors = np.linalg.eigh(potential.stiffness(q).toarray())
-    scale = max(float(np.abs(values).max()), potential.force_scale / potential.law.alpha.d)
+    scale = max(float(np.abs(values).max()), potential.force_scale / potential.pair.length)
     return None if values[0] >= -ZERO * scale else np.ascontiguousarray(vectors[:, 0].reshape(q.shape))
 
 

@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from math import sqrt
 from typing import Any, TypeAlias
 
 import numpy as np
 
 from flockana.checks import FloatArray
-from flockana.environment.obstacles import Sphere, Wall
+from flockana.environment.obstacles import Obstacle, Sphere, Wall
 from flockana.errors import ArgumentError
+from flockana.interactions.gains import weighted
+from flockana.interactions.pair import PairInteraction
 from flockana.laws.algorithm3 import Algorithm3
+from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, moving_frame
 from flockana.nets import LinkArray
 from flockana.terminal import rigid_motions
 
-FlockLaw: TypeAlias = Algorithm1 | Algorithm2 | Algorithm3
+FlockLaw: TypeAlias = Algorithm1 | Algorithm2 | Algorithm3 | DeadZoneFlocking
 
 
 def ensure_flock_law(law: Any, m: int) -> FlockLaw:
-    """Return the law if it is Algorithm 1, 2 or 3 in m dimensions.
+    """Return the law if it is Algorithm 1, 2 or 3, or dead-zone flocking with a ramp, in m dimensions.
 
     Parameters
     ----------
@@ -39,19 +42,29 @@ def ensure_flock_law(law: Any, m: int) -> FlockLaw:
     >>> ensure_flock_law(Algorithm1(), 2) == Algorithm1()
     True
     """
-    if not isinstance(law, Algorithm1 | Algorithm2 | Algorithm3):
-        raise ArgumentError(f"law = {law!r}: expected Algorithm1, Algorithm2 or Algorithm3, whose forces are gradients")
+    if not isinstance(law, FlockLaw):
+        raise ArgumentError(
+            f"law = {law!r}: expected Algorithm1, Algorithm2 or Algorithm3, or DeadZoneFlocking: their forces are "
+            "gradients"
+        )
+    if isinstance(law, DeadZoneFlocking) and law.located:
+        raise ArgumentError(
+            "ramp = 0: contacts sit where the force jumps and never vanishes; give the interaction a ramp"
+        )
     law.check_dimension(m)
     return law
 
 
 @dataclass(frozen=True)
 class Potential:
-    """V (Algorithm 1), U_λ in the moving frame (Algorithm 2), V_α + V_β + V_γ (Algorithm 3) at one time.
+    """V (Algorithm 1, dead zone), U_λ in the moving frame (Algorithm 2), V_α + V_β + V_γ (Algorithm 3) at one time.
+
+    Under Algorithm 2 with per-agent gains the γ-agent's pull fixes the flock in space, as under Algorithm 3:
+    c1α V + ½ Σ c1γ_i ‖q_i − q_r‖².
 
     Parameters
     ----------
-    law : Algorithm1, Algorithm2 or Algorithm3
+    law : Algorithm1, Algorithm2, Algorithm3 or DeadZoneFlocking
         The law.
     t : float
         When: a γ-agent may move.
@@ -66,14 +79,33 @@ class Potential:
     t: float = 0.0
 
     @property
+    def pinned(self) -> bool:
+        """Whether it knows where the flock is, so that a translation changes it."""
+        return isinstance(self.law, Algorithm3) or (isinstance(self.law, Algorithm2) and self.law.gains.per_agent)
+
+    @property
     def force_scale(self) -> float:
-        """c1α b/√ε, the strongest force between two agents, nearly."""
-        return self.law.gains.c1_alpha * self.law.alpha.b / sqrt(self.law.alpha.eps)
+        """c1α b/√ε, the strongest force between two agents, nearly; a contact's force for the dead zone."""
+        return self.gain * self.pair.strength
+
+    @property
+    def pair(self) -> PairInteraction:
+        """The pair law among agents."""
+        return self.law.interaction if isinstance(self.law, DeadZoneFlocking) else self.law.alpha
+
+    @property
+    def gain(self) -> float:
+        """What its potential is multiplied by, c1α; 1 for the dead zone, which carries its own."""
+        return 1.0 if isinstance(self.law, DeadZoneFlocking) else self.law.gains.c1_alpha
 
     @property
     def target(self) -> FloatArray | None:
-        """q_r(t), None under Algorithm 1."""
-        return None if isinstance(self.law, Algorithm1) else np.asarray(self.law.target.state(self.t)[0], dtype=float)
+        """q_r(t), None under a law without γ-agent."""
+        return (
+            None
+            if isinstance(self.law, Algorithm1 | DeadZoneFlocking)
+            else np.asarray(self.law.target.state(self.t)[0], dtype=float)
+        )
 
     @property
     def centre(self) -> FloatArray:
@@ -93,7 +125,7 @@ class Potential:
         return float(self.law.hamiltonian(self.t, q, np.zeros_like(q)))
 
     def listed_energy(self, q: FloatArray, pairs: LinkArray) -> float:
-        """Its value from the listed pairs, less ψ_α(r_α) for each pair of agents: no large constant to round.
+        """Its value from the listed pairs, less the far potential of each pair of agents: no large constant to round.
 
         Parameters
         ----------
@@ -102,14 +134,18 @@ class Potential:
         pairs : int array, shape (M, 2)
             Pairs, all those within range among them.
         """
-        law, alpha, g = self.law, self.law.alpha, self.law.gains
-        z = alpha.sigma_norm(np.linalg.norm(q[pairs[:, 1]] - q[pairs[:, 0]], axis=1))
-        total = g.c1_alpha * float(np.sum(alpha.psi_alpha(z) - alpha.far_potential))
-        if isinstance(law, Algorithm2):
+        law, lengths = self.law, np.linalg.norm(q[pairs[:, 1]] - q[pairs[:, 0]], axis=1)
+        total = self.gain * float(np.sum(self.pair.energy_at(lengths) - self.pair.far_potential))
+        if isinstance(law, DeadZoneFlocking):
+            return total
+        g = law.gains
+        if isinstance(law, Algorithm2) and not self.pinned:
             total += 0.5 * g.c1_gamma * float(np.sum(moving_frame(q) ** 2))
+        elif isinstance(law, Algorithm2):
+            total += weighted(g.c1_gamma, 0.5 * np.sum((q - self.centre) ** 2, axis=1))
         elif isinstance(law, Algorithm3):
             x2 = np.sum((q - self.centre) ** 2, axis=1)
-            total += g.c1_gamma * float(np.sum(x2 / (np.sqrt(1.0 + x2) + 1.0)))
+            total += weighted(g.c1_gamma, x2 / (np.sqrt(1.0 + x2) + 1.0))
             total += g.c1_beta * law.obstacle_field.potential_energy(q)
         return total
 
@@ -121,11 +157,12 @@ class Potential:
         q : ndarray, shape (n, m)
             Positions.
         """
-        if not isinstance(self.law, Algorithm3):
+        if not self.pinned:
             return moving_frame(self.law.flow(self.t, q, np.zeros_like(q))[0])
+        assert isinstance(self.law, Algorithm2 | Algorithm3)
         p_r = np.broadcast_to(self.law.target.state(self.t)[1], q.shape)  # at this velocity the γ-agent does not pull
         still = np.zeros_like(q)
-        push: FloatArray = self.law.flow(self.t, q, still)[0] - self.law.gains.c2_gamma * p_r
+        push: FloatArray = self.law.flow(self.t, q, still)[0] - self.law.gains.drag * p_r
         return push
 
     def residual(self, q: FloatArray) -> float:
@@ -151,17 +188,18 @@ class Potential:
     def symmetries(self, q: FloatArray) -> FloatArray:
         """Orthonormal basis (n m, k) of the rigid motions that leave it unchanged.
 
-        All of them under Algorithms 1 and 2; under Algorithm 3 the rotations about the γ-agent that move no obstacle.
+        All of them under Algorithms 1 and 2 and the dead zone; under Algorithm 3 the rotations about the γ-agent that
+        move no obstacle, and those about it under Algorithm 2 with per-agent gains.
 
         Parameters
         ----------
         q : ndarray, shape (n, m)
             Positions.
         """
-        if not isinstance(self.law, Algorithm3):
+        if not self.pinned:
             return rigid_motions(q)
-        x = q - self.centre
-        turns = [(x @ generator.T).ravel() for generator in _free_rotations(self.law, self.centre)]
+        x, obstacles = q - self.centre, self.law.obstacles if isinstance(self.law, Algorithm3) else ()
+        turns = [(x @ generator.T).ravel() for generator in _free_rotations(obstacles, self.centre)]
         if not turns or not np.any(turns):
             return np.zeros((q.size, 0))
         basis, sizes, _ = np.linalg.svd(np.array(turns).T, full_matrices=False)
@@ -183,19 +221,19 @@ def inside_obstacle(law: FlockLaw, q: FloatArray) -> bool:
     return not np.isfinite(q).all() or any(bool(obstacle.contains(q).any()) for obstacle in obstacles)
 
 
-def _free_rotations(law: Algorithm3, centre: FloatArray) -> list[FloatArray]:
+def _free_rotations(obstacles: Sequence[Obstacle], centre: FloatArray) -> list[FloatArray]:
     """Skew matrices that map every obstacle's axis (its centre from q_r, its normal) to zero: they move none."""
-    m = law.target.dimension
+    m = centre.size
     generators = []
     for a in range(m):
         for b in range(a):
             skew = np.zeros((m, m))
             skew[a, b], skew[b, a] = 1.0, -1.0
             generators.append(skew)
-    if not generators or not law.obstacles:
+    if not generators or not obstacles:
         return generators
     axes = []
-    for obstacle in law.obstacles:
+    for obstacle in obstacles:
         if isinstance(obstacle, Sphere):
             axes.append(np.asarray(obstacle.centre) - centre)
         elif isinstance(obstacle, Wall):

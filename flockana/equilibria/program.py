@@ -76,7 +76,7 @@ class Program:
     def __init__(self, potential: Potential, shape: tuple[int, int], pairs: LinkArray, gauge: int) -> None:
         self.potential, self.shape, self.pairs, self.gauge = potential, shape, pairs, gauge
         self.size = shape[0] * shape[1]
-        self.d = potential.law.alpha.d
+        self.d = potential.pair.length
         self.unit = potential.force_scale * self.d
         x, c = ca.MX.sym("x", self.size), ca.MX.sym("c", self.size * gauge)
         slope, hessian = self._derivatives(x)
@@ -150,16 +150,16 @@ class Program:
     def _derivatives(self, x: Any) -> tuple[Any, Any]:
         """Gradient and upper triangle of the Hessian at x, in the program's units."""
         (n, m), (i, j) = self.shape, self.pairs.T
-        law, g = self.potential.law, self.potential.law.gains
+        gain = self.potential.gain
         q = self.d * ca.reshape(x, m, n)
         slope, blocks = ca.MX.zeros(m, n), []
         if i.size:
             ends = _matrix(
                 np.concatenate([i, j]), np.tile(np.arange(i.size), 2), np.repeat([-1.0, 1.0], i.size), (n, i.size)
             )
-            pull, stiff = pair_term(law.alpha, m).map(i.size)(q @ ends)
-            slope = g.c1_alpha * (pull @ ends.T)
-            blocks.append(g.c1_alpha * ca.vec(stiff))
+            pull, stiff = pair_term(self.potential.pair, m).map(i.size)(q @ ends)
+            slope = gain * (pull @ ends.T)
+            blocks.append(gain * ca.vec(stiff))
         own_slope, own_blocks = self._own(q)
         slope = slope + own_slope
         blocks.append(ca.vec(own_blocks))
@@ -170,7 +170,14 @@ class Program:
 
     def _own(self, q: Any) -> tuple[Any, Any]:
         """Gradient (m, n) and Hessian blocks (m, m n) of what depends on one agent alone."""
-        (n, m), law, g = self.shape, self.potential.law, self.potential.law.gains
+        (n, m), law = self.shape, self.potential.law
+        if not isinstance(law, Algorithm2 | Algorithm3):
+            return ca.MX.zeros(m, n), ca.MX.zeros(m, m * n)
+        g = law.gains
+        if isinstance(law, Algorithm2) and self.potential.pinned:
+            pull = ca.DM(np.broadcast_to(g.pull.T if np.ndim(g.pull) else g.pull, (m, n)))
+            own = ca.DM(np.kron(np.broadcast_to(np.ravel(g.pull), n), np.eye(m)))
+            return pull * (q - ca.repmat(ca.DM(self.potential.centre), 1, n)), ca.MX(own)
         if isinstance(law, Algorithm2):  # J about the centre that the gauge holds: the same value, a diagonal Hessian
             centred = q - ca.sum2(q) / n
             return g.c1_gamma * centred, g.c1_gamma * ca.repmat(ca.MX.eye(m), 1, n)

@@ -13,6 +13,7 @@ import numpy as np
 
 from flockana.checks import FloatArray, ensure_points, ensure_positive
 from flockana.equilibria.congruence import congruent
+from flockana.equilibria.potential import Potential
 from flockana.equilibria.solve import METHODS, Equilibrium, find_equilibrium
 from flockana.errors import ArgumentError, SolverError, UnknownNameError
 from flockana.metrics import coincident_pairs
@@ -235,8 +236,9 @@ def distinct(equilibria: Sequence[Equilibrium]) -> tuple[Found, ...]:
     """
     groups: list[list[Equilibrium]] = []
     for one in sorted(equilibria, key=lambda each: each.energy):
+        potential = Potential(one.law)
         for group in reversed(groups):
-            if one.energy - group[0].energy > _LEVEL * one.law.gains.c1_alpha * one.law.alpha.far_potential:
+            if one.energy - group[0].energy > _LEVEL * potential.gain * potential.pair.far_potential:
                 groups.append([one])
                 break
             if _same(group[0], one):
@@ -244,7 +246,7 @@ def distinct(equilibria: Sequence[Equilibrium]) -> tuple[Found, ...]:
                 break
         else:
             groups.append([one])
-    contact = equilibria[0].law.alpha.d * _CONTACT if equilibria else 1.0
+    contact = Potential(equilibria[0].law).pair.length * _CONTACT if equilibria else 1.0
     return tuple(Found(group[0], len(group), coincident_pairs(group[0].q, contact)) for group in groups)
 
 
@@ -252,4 +254,4 @@ def _same(first: Equilibrium, second: Equilibrium) -> bool:
     if (first.kind, first.index) != (second.kind, second.index):
         return False
     loose = bool(first.zero_modes or second.zero_modes)
-    return loose or congruent(first.q, second.q, tol=SAME * first.law.alpha.d)
+    return loose or congruent(first.q, second.q, tol=SAME * Potential(first.law).pair.length)

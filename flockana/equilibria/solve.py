@@ -1,4 +1,4 @@
-"""Equilibria of Algorithms 1, 2 and 3: minima by IPOPT, critical points of any kind by a root-finder."""
+"""Equilibria of the continuous laws with a potential: minima by IPOPT, critical points of any kind by a root-finder."""
 
 from __future__ import annotations
 
@@ -11,9 +11,10 @@ import numpy as np
 
 from flockana.checks import FloatArray, ensure_finite_scalar, ensure_points, ensure_positive
 from flockana.equilibria.classify import EquilibriumKind, ensure_small, falling, kind_of, spectrum
-from flockana.equilibria.potential import FlockLaw, Potential, ensure_flock_law, inside_obstacle
+from flockana.equilibria.potential import Potential, ensure_flock_law, inside_obstacle
 from flockana.equilibria.program import Program
 from flockana.errors import SolverError, UnknownNameError
+from flockana.laws.olfati_saber import Algorithm2
 from flockana.nets import LinkArray, links
 
 METHODS = ("minimise", "root")
@@ -33,10 +34,10 @@ class Equilibrium:
 
     Parameters
     ----------
-    law : Algorithm1, Algorithm2 or Algorithm3
+    law : Algorithm1, Algorithm2, Algorithm3 or DeadZoneFlocking
         The law.
     q : ndarray, shape (n, m)
-        Positions; under Algorithm 2 their centre is the γ-agent.
+        Positions; under Algorithm 2 with one c1γ their centre is the γ-agent.
     energy : float
         Potential energy: c1α V, U_λ, or V_α + V_β + V_γ.
     residual : float
@@ -67,7 +68,7 @@ class Equilibrium:
     ('minimum', 3, 0.0, 'Solve_Succeeded')
     """
 
-    law: FlockLaw = field(repr=False)
+    law: Any = field(repr=False)
     q: FloatArray = field(repr=False)
     energy: float
     residual: float
@@ -83,7 +84,7 @@ class Equilibrium:
     def strain(self) -> float:
         """Largest |link − d|/d to twelve digits; NaN without links."""
         lengths = np.linalg.norm(self.q[self.links[:, 1]] - self.q[self.links[:, 0]], axis=1)
-        d = self.law.alpha.d
+        d = Potential(self.law).pair.length
         return round(float(np.abs(lengths - d).max() / d), 12) if lengths.size else float("nan")
 
     @property
@@ -109,8 +110,8 @@ def find_equilibrium(
 
     Parameters
     ----------
-    law : Algorithm1, Algorithm2 or Algorithm3
-        The law; obstacles of Algorithm 3 must be spheres and walls.
+    law : Algorithm1, Algorithm2, Algorithm3 or DeadZoneFlocking
+        The law, the last with a ramp; obstacles of Algorithm 3 must be spheres and walls.
     q0 : array_like, shape (n, m)
         Start, with no agent inside an obstacle.
     method : {"minimise", "root"}
@@ -148,7 +149,7 @@ def find_equilibrium(
     if method not in METHODS:
         raise UnknownNameError("method", method, METHODS)
     potential = Potential(law, ensure_finite_scalar("t", t))
-    margin = ensure_positive("margin", margin) * law.alpha.d
+    margin = ensure_positive("margin", margin) * potential.pair.length
     law.check_start(q, np.zeros_like(q))
     search = _minimise if method == "minimise" else _root
     found, done, message = search(potential, q, margin, max_iter)
@@ -204,7 +205,7 @@ def finish(potential: Potential, q: FloatArray, done: bool, message: str, *, str
         q=q,
         energy=potential.energy(q),
         residual=residual,
-        links=links(q, potential.law.alpha.r),
+        links=links(q, potential.pair.range),
         kind=kind_of(found),
         hessian_eigenvalues=found.eigenvalues,
         rigid_modes=found.rigid,
@@ -217,9 +218,7 @@ def finish(potential: Potential, q: FloatArray, done: bool, message: str, *, str
 
 def _fixed_in_space(potential: Potential) -> bool:
     """Whether the potential knows where the flock is, and the target acts through it (Algorithm 3)."""
-    from flockana.laws.algorithm3 import Algorithm3
-
-    return isinstance(potential.law, Algorithm3) or potential.law.gains.c1_gamma == 0.0
+    return potential.pinned or (isinstance(potential.law, Algorithm2) and potential.law.gains.c1_gamma == 0.0)
 
 
 def all_pairs(n: int) -> LinkArray:
@@ -251,7 +250,7 @@ def _minimise(potential: Potential, q: FloatArray, margin: float, max_iter: int)
         if basis.shape[1] == q.size:
             return q, True, "nothing to solve: every motion is a rigid one"
         if program is None or n > _ALL_PAIRS or program.gauge != basis.shape[1]:
-            listed = all_pairs(n) if n <= _ALL_PAIRS else links(q, potential.law.alpha.r + margin)
+            listed = all_pairs(n) if n <= _ALL_PAIRS else links(q, potential.pair.range + margin)
             program = Program(potential, (n, m), listed, basis.shape[1])
         reach, start = margin / (2.0 * sqrt(m)), q
         q, done, status = program.solve(q, basis=basis, reach=reach, max_iter=max_iter)
@@ -261,7 +260,7 @@ def _minimise(potential: Potential, q: FloatArray, margin: float, max_iter: int)
             continue
         if escapes == _ESCAPES or q.size > _SMALL or (downhill := falling(potential, q)) is None:
             return q, True, status
-        escapes, q = escapes + 1, q + _NUDGE * potential.law.alpha.d * downhill
+        escapes, q = escapes + 1, q + _NUDGE * potential.pair.length * downhill
     return q, False, f"still on the way after {_ROUNDS} boxes of {margin / sqrt(m):.3g}"
 
 
@@ -302,7 +301,7 @@ def _polish(potential: Potential, q: FloatArray) -> FloatArray:
         force = np.concatenate([potential.force(here).ravel(), np.zeros(rigid.shape[1])])
         step = splu(matrix).solve(force)[: q.size].reshape(q.shape)
         here = here + step
-        if not np.isfinite(step).all() or np.abs(here - q).max() > _REACH * potential.law.alpha.d:
+        if not np.isfinite(step).all() or np.abs(here - q).max() > _REACH * potential.pair.length:
             break
         residual = potential.residual(here)
         if residual >= least:

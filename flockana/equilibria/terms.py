@@ -15,7 +15,8 @@ import sympy as sp
 from flockana.environment.obstacles import Obstacle, Sphere, Wall
 from flockana.equilibria.translate import to_casadi
 from flockana.errors import ArgumentError
-from flockana.interactions import AlphaInteraction, BetaInteraction
+from flockana.interactions import AlphaInteraction, BetaInteraction, DeadZoneInteraction, PairInteraction
+from flockana.symbolic import dead_zone as dead
 from flockana.symbolic.functions import phi_alpha, phi_beta
 from flockana.symbolic.norms import EPS, sigma_1, sigma_norm
 from flockana.symbolic.obstacles import PHI_BETA, PSI_BETA, sphere_beta, wall_beta
@@ -33,15 +34,20 @@ def _compile(name: str, gradient: list[Any], symbols: Any, values: dict[Any, flo
 
 
 @lru_cache(maxsize=64)
-def pair_term(alpha: AlphaInteraction, m: int) -> ca.Function:
-    """Gradient (m,) and Hessian (m, m) of ψ_α(‖Δ‖_σ) in Δ = q_j − q_i.
+def pair_term(pair: PairInteraction, m: int) -> ca.Function:
+    """Gradient (m,) and Hessian (m, m) of the pair's potential in Δ = q_j − q_i.
 
     Parameters
     ----------
-    alpha : AlphaInteraction
-        The pair law.
+    pair : PairInteraction
+        The pair law, one whose definition `flockana.symbolic` has.
     m : int
         Dimension.
+
+    Raises
+    ------
+    ArgumentError
+        For another pair law.
 
     Examples
     --------
@@ -49,11 +55,38 @@ def pair_term(alpha: AlphaInteraction, m: int) -> ca.Function:
     >>> float(gradient[0])
     0.0
     """
-    parameters = AlphaSymbols(**{name: getattr(alpha, name) for name in ("eps", "h", "a", "b", "d", "r")})
     delta = vector("Delta_", m)
+    if isinstance(pair, DeadZoneInteraction):
+        return _compile("pair", list(dead_zone_gradient(delta, pair)), delta)
+    if not isinstance(pair, AlphaInteraction):
+        raise ArgumentError(f"{pair}: expected AlphaInteraction or DeadZoneInteraction; no other has a symbolic form")
+    parameters = AlphaSymbols(**{name: getattr(pair, name) for name in ("eps", "h", "a", "b", "d", "r")})
     potential = pair_potential(sp.zeros(m, 1), delta, gains=GainSymbols(c1_alpha=1)).subs(EPS, parameters.eps)
     gradient = [sp.diff(potential, x).replace(PHI, lambda z: phi_alpha(z, alpha=parameters)) for x in delta]
     return _compile("pair", gradient, delta)
+
+
+def dead_zone_gradient(delta: sp.Matrix, pair: DeadZoneInteraction) -> sp.Matrix:
+    """F(‖Δ‖) Δ/‖Δ‖ with the numbers of a pair law put in.
+
+    Parameters
+    ----------
+    delta : sympy.Matrix, shape (m, 1)
+        q_j − q_i.
+    pair : DeadZoneInteraction
+        The pair law.
+
+    Examples
+    --------
+    >>> [float(x) for x in dead_zone_gradient(sp.Matrix([8, 0]), DeadZoneInteraction(k1=0.5))]
+    [4.0, 0.0]
+    """
+    names = {"d_1": "d1", "d_2": "d2", "r": "r", "r_d": "r_d", "k_r": "k_r", "k_delta": "k_delta"}
+    names |= {"k_1": "k1", "eta": "eta"}
+    rho = sp.sqrt(delta.dot(delta))
+    weight = dead.force(dead.RHO, ramp=sp.Float(pair.ramp)) / dead.RHO
+    numbers = {s: getattr(pair, names[s.name]) for s in weight.free_symbols if s.name in names}
+    return weight.subs(numbers).subs(dead.RHO, rho) * delta
 
 
 @lru_cache(maxsize=64)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import reduce
 from typing import Any
 
 import casadi as ca
@@ -31,7 +32,7 @@ def to_casadi(expression: Any, values: Mapping[Any, Any]) -> Any:
     Parameters
     ----------
     expression : sympy.Expr
-        Sums, products, powers, cosines, comparisons and Piecewise of the symbols.
+        Sums, products, powers, minima, cosines, comparisons and Piecewise of the symbols.
     values : mapping of sympy.Symbol to casadi.SX
         What each symbol stands for.
 
@@ -56,6 +57,8 @@ def to_casadi(expression: Any, values: Mapping[Any, Any]) -> Any:
         return _UNARY[kind](*parts)
     if kind in _RELATIONS:
         return _RELATIONS[kind](*parts)
+    if isinstance(expression, sp.Min | sp.Max):
+        return reduce(ca.fmin if isinstance(expression, sp.Min) else ca.fmax, parts)
     if isinstance(expression, sp.Add):
         return sum(parts[1:], parts[0])
     if isinstance(expression, sp.Mul):

@@ -2,7 +2,17 @@
 
 from flockana.interactions.alpha import AlphaInteraction
 from flockana.interactions.beta import BetaInteraction
+from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.interactions.gains import Gains
 from flockana.interactions.pair import PairInteraction
+from flockana.interactions.zones import ZoneRadii, ZoneWeights
 
-__all__ = ["AlphaInteraction", "BetaInteraction", "Gains", "PairInteraction"]
+__all__ = [
+    "AlphaInteraction",
+    "BetaInteraction",
+    "DeadZoneInteraction",
+    "Gains",
+    "PairInteraction",
+    "ZoneRadii",
+    "ZoneWeights",
+]

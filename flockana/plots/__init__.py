@@ -1,6 +1,7 @@
 """Figures: each function draws what it is given on an Axes, or on a new one, and returns it; it computes nothing."""
 
 from flockana.plots.animation import animate, animation
+from flockana.plots.dead_zone import dead_zone_energies, dead_zone_force
 from flockana.plots.film import Film
 from flockana.plots.lattice import barrier, collapse, collapse_brackets, defect_map
 from flockana.plots.obstacles import obstacles
@@ -19,13 +20,23 @@ from flockana.plots.series import (
     speeds,
 )
 from flockana.plots.snapshot import configuration, snapshot
+from flockana.plots.stability import animate_mode, mode_shape, mode_title, pole_map
 from flockana.plots.style import style, subplots
 from flockana.plots.tracks import centre_path, trajectories
+from flockana.plots.zones import (
+    zone_controls,
+    zone_distances,
+    zone_populations,
+    zone_safety,
+    zone_speeds,
+    zones,
+)
 
 __all__ = [
     "Film",
     "action",
     "animate",
+    "animate_mode",
     "animation",
     "barrier",
     "centre_of_mass",
@@ -35,14 +46,19 @@ __all__ = [
     "collapse_brackets",
     "components",
     "configuration",
+    "dead_zone_energies",
+    "dead_zone_force",
     "defect_map",
     "distances",
     "energy",
     "energy_residual",
     "measure",
+    "mode_shape",
+    "mode_title",
     "obstacles",
     "panel",
     "phase_portrait",
+    "pole_map",
     "potential",
     "rules",
     "snapshot",
@@ -50,4 +66,10 @@ __all__ = [
     "style",
     "subplots",
     "trajectories",
+    "zone_controls",
+    "zone_distances",
+    "zone_populations",
+    "zone_safety",
+    "zone_speeds",
+    "zones",
 ]

@@ -27,6 +27,8 @@ MEASURES = {
     "min_distance": ("least distance (length)", False),
     "inertia": ("J, inertia (length²)", False),
     "order": ("polar order", False),
+    "coordination": ("C, coordination", False),
+    "edge_error": ("largest edge error (length)", True),
 }
 _FEW = 12  # components that a linear scale shows as well
 PANEL = ("connectivity", "cohesion_radius", "deviation_energy", "velocity_mismatch")
@@ -66,6 +68,8 @@ def measure(trajectory: Trajectory, name: str, *, ax: Axes | None = None) -> Axe
         ax.set_yscale("log")
     if name in ("connectivity", "giant_share", "order"):
         ax.set_ylim(-0.03, 1.05)
+    elif name == "coordination":
+        ax.set_ylim(min(-0.03, float(np.nanmin(values, initial=0.0)) - 0.05), 1.05)
     elif not logarithmic:
         ax.set_ylim(bottom=0.0)
     return _frame(ax, trajectory, label)

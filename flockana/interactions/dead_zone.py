@@ -1,0 +1,292 @@
+"""The dead-zone pair law: repulsion near, attraction far, nothing between."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import asinh, exp, inf, sinh, sqrt
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from flockana.checks import FloatArray, ensure_finite_scalar, ensure_positive
+from flockana.errors import ArgumentError
+from flockana.interactions.pair import PairInteraction, evaluate
+from flockana.kernels import dead_zone as kernel
+from flockana.kernels.lift import lift, lift_scalar
+from flockana.kernels.scalars import clenshaw
+from flockana.kernels.tables import integral_panels
+
+_ACTION = lift_scalar(kernel.action)
+_FORCE = lift_scalar(kernel.force)
+_POTENTIAL = lift_scalar(kernel.potential)
+_DEAD_ZONE = lift(
+    kernel.pair_dead_zone,
+    kernel.pair_dead_zone_slope,
+    kernel.pair_dead_zone_potential,
+    kernel.pair_dead_zone_adjacency_slope,
+)
+
+
+class Jump(NamedTuple):
+    """Where the force of a pair jumps, and from what to what as the distance grows."""
+
+    where: str
+    distance: float
+    below: float
+    above: float
+
+
+@dataclass(frozen=True)
+class DeadZoneInteraction(PairInteraction):
+    """The dead-zone pair law of Li, Yuan and Liu, eq. (7)-(9), made definite (errata L1-L3).
+
+    The force along the line from i to j is F(ρ) = f(ρ) ρ/√(1 + ηρ²) + k₁ρ within r and 0 beyond, with
+    f = −(2k_r/ρ² + k_δ) below d₁ = r_b − δ, 0 on [d₁, d₂ = r_b + δ] and 2k_r/(r_d − ρ)² + k_δ above: negative repels.
+    Its potential is unbounded at 0, but only as −2k_r ln ρ.
+
+    The paper gives r, δ and k_δ; the rest is ours. The defaults put contacts at d₁ = 3.5, so that 50 agents fit within
+    r of their centre.
+
+    Parameters
+    ----------
+    r : float
+        Interaction range, in the user's length unit; a pair at r exactly does not interact.
+    r_b : float
+        Middle of the dead zone, the paper's balance distance.
+    delta : float
+        Half its width δ, 0 < δ < r_b. With r_b + δ ≥ r only k₁ attracts.
+    r_d : float
+        Pole of the attraction, r_d > r, or the force would be infinite within reach.
+    k_r, k_delta : float
+        Strength of the force: k_r > 0 and k_δ ≥ 0.
+    eta : float
+        η ≥ 0: n_ij = (q_j − q_i)/√(1 + η‖q_j − q_i‖²) is no unit vector.
+    k1 : float
+        Gain k₁ ≥ 0 of the linear pull among neighbours; it grows with their number and compresses the flock.
+    ramp : float
+        Length over which the force rises from 0 beside the dead zone. 0 gives the printed jumps; at r the force jumps
+        in either case.
+
+    Attributes
+    ----------
+    d1, d2 : float
+        Ends of the dead zone.
+    contact_force : float
+        |f| ρ/√(1 + ηρ²) at d₁ without the ramp: the scale of forces.
+
+    Raises
+    ------
+    ArgumentError
+        If a parameter is outside the range above.
+
+    Examples
+    --------
+    >>> pair = DeadZoneInteraction()
+    >>> pair.d1, pair.d2, pair.force([3.5, 8.0, 15.0]).tolist()
+    (3.5, 12.5, [0.035, 0.08, 0.0])
+    >>> [round(float(psi), 3) for psi in pair.psi([1e-3, 3.5, 8.0, 15.0, 99.0])]
+    [2926.738, 0.061, 0.32, 5.589, 5.589]
+    """
+
+    r: float = 15.0
+    r_b: float = 8.0
+    delta: float = 4.5
+    r_d: float = 40.0
+    k_r: float = 200.0
+    k_delta: float = 1.3
+    eta: float = 1.0
+    k1: float = 0.01
+    ramp: float = 0.25
+
+    kernels = _DEAD_ZONE
+
+    def __post_init__(self) -> None:
+        for name in ("r", "r_b", "delta", "r_d", "k_r"):
+            object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
+        for name in ("k_delta", "eta", "k1", "ramp"):
+            value = ensure_finite_scalar(name, getattr(self, name))
+            if value < 0.0:
+                raise ArgumentError(f"{name} = {value:g}: expected a number >= 0")
+            object.__setattr__(self, name, value)
+        if self.delta >= self.r_b:
+            raise ArgumentError(
+                f"delta = {self.delta:g} and r_b = {self.r_b:g}: expected delta < r_b, or nothing repels (d1 <= 0)"
+            )
+        if self.r_d <= self.r:
+            raise ArgumentError(
+                f"r_d = {self.r_d:g} and r = {self.r:g}: expected r_d > r, or the attraction has its pole within range"
+            )
+        if self.d1 >= self.r:
+            raise ArgumentError(
+                f"r_b - delta = {self.d1:g} and r = {self.r:g}: expected the dead zone to begin below r"
+            )
+        if self.ramp >= self.d1:
+            raise ArgumentError(f"ramp = {self.ramp:g}: expected less than r_b - delta = {self.d1:g}, such as 0.25")
+
+    @property
+    def d1(self) -> float:
+        """r_b − δ, where repulsion ends: the lattice constant."""
+        return self.r_b - self.delta
+
+    @property
+    def d2(self) -> float:
+        """r_b + δ, where attraction begins."""
+        return self.r_b + self.delta
+
+    @property
+    def contact_force(self) -> float:
+        """(2k_r/d₁² + k_δ) d₁/√(1 + ηd₁²)."""
+        return (2.0 * self.k_r / self.d1**2 + self.k_delta) * self.d1 / sqrt(1.0 + self.eta * self.d1**2)
+
+    @property
+    def range(self) -> float:
+        """The interaction range r."""
+        return self.r
+
+    @property
+    def length(self) -> float:
+        """d₁, where contacts sit."""
+        return self.d1
+
+    @property
+    def strength(self) -> float:
+        """`contact_force`."""
+        return self.contact_force
+
+    def energy_at(self, lengths: FloatArray) -> FloatArray:
+        """`psi` at each distance.
+
+        Parameters
+        ----------
+        lengths : ndarray
+            Distances.
+        """
+        values: FloatArray = self.psi(lengths)
+        return values
+
+    @cached_property
+    def far_potential(self) -> float:
+        """ψ(r) + ½ k₁ r²: what a pair out of range keeps, so that the energy does not jump (erratum L5)."""
+        return float(_POTENTIAL(np.array([self.r]), self.par, self.panels)[0])
+
+    @cached_property
+    def _parts(self) -> tuple[FloatArray, FloatArray]:
+        """(par, panels): ψ = 0 on the dead zone fixes the constants; a panel for each ramp that lies within range."""
+        edges = self.d1, self.d2, self.r, self.r_d
+        par = np.array([self.eta, self.k_r, self.k_delta, self.k1, *edges, self.ramp, 0.0, 0.0])
+        panels = np.zeros((0, 0))
+        if self.ramp > 0.0:
+            free = par.copy()
+            free[3] = 0.0
+
+            def ramped(s: FloatArray) -> FloatArray:
+                forces: FloatArray = _FORCE(s, free)
+                return forces
+
+            # F is analytic within each ramp: repulsion's pole at 0 is farther from [d1 - ramp, d1] than d1 - ramp, and
+            # narrow panels near it keep the series short
+            inner = self.d1 - _fractions(self.ramp, self.d1)[::-1]
+            panels = integral_panels(ramped, inner, value_at_right=0.0)
+            par[9] = clenshaw(inner[0], panels)
+            if self.d2 < self.r:
+                end = min(self.d2 + self.ramp, self.r)
+                # beyond r the kernel's force is 0, and at r the rule would meet that jump: stop just short of it
+                span = np.array([self.d2, end])
+                free[6] = inf
+                outer = integral_panels(ramped, span, value_at_right=0.0)
+                outer[:, 2] -= clenshaw(self.d2, outer)
+                par[10] = clenshaw(end, outer)
+                panels = np.vstack([panels, outer])
+        for array in (par, panels):
+            array.setflags(write=False)
+        return par, panels
+
+    @property
+    def par(self) -> FloatArray:
+        """(η, k_r, k_δ, k₁, d₁, d₂, r, r_d, ramp, ψ(d₁ − ramp), ψ(d₂ + ramp))."""
+        return self._parts[0]
+
+    @property
+    def panels(self) -> FloatArray:
+        """Chebyshev panels of ψ on the ramps."""
+        return self._parts[1]
+
+    def action(self, s: Any) -> Any:
+        """f(ρ), the paper's φ_z without its direction: negative repels.
+
+        Parameters
+        ----------
+        s : float or ndarray
+            Distances.
+        """
+        return evaluate(_ACTION, s, self.par)
+
+    def force(self, s: Any) -> Any:
+        """F(ρ), the force between two agents along the line that joins them: negative repels.
+
+        Parameters
+        ----------
+        s : float or ndarray
+            Distances.
+        """
+        return evaluate(_FORCE, s, self.par)
+
+    def psi(self, s: Any) -> Any:
+        """The pair's potential: ψ + ½ k₁ρ², with dψ/dρ = F, constant from r on and ∞ at 0.
+
+        Parameters
+        ----------
+        s : float or ndarray
+            Distances.
+        """
+        return evaluate(_POTENTIAL, s, self.par, self.panels)
+
+    def jumps(self) -> tuple[Jump, ...]:
+        """Where F jumps: at r, and without a ramp at both ends of the dead zone; what does not jump is left out."""
+        s, inside = np.array([self.d1, self.d2, self.r]), np.nextafter
+        par = self.par
+        sides = [
+            ("d1", self.d1, inside(s[0], 0.0), s[0]),
+            ("d2", self.d2, s[1], inside(s[1], inf)),
+            ("r", self.r, inside(s[2], 0.0), s[2]),
+        ]
+        found = []
+        for name, where, low, high in sides:
+            below, above = (float(x) for x in _FORCE(np.array([low, high]), par))
+            if where <= self.r and not np.isclose(below, above, rtol=1e-9, atol=1e-9 * self.contact_force):
+                found.append(Jump(name, where, below, above))
+        return tuple(found)
+
+    def least_distance(self, energy: float) -> float:
+        """No pair of total energy at most `energy` is closer than this: where repulsion alone has that potential.
+
+        For η > 0 and no ramp 1/(√η sinh(H/2k_r + asinh(1/(√η d₁)))), for η = 0 d₁ exp(−H/2k_r): positive, but
+        exponentially small. k_δ is left out, and the ramp is taken as if all of it were free of force.
+
+        Parameters
+        ----------
+        energy : float
+            An upper bound of the energy, such as H̄(0).
+
+        Examples
+        --------
+        >>> round(DeadZoneInteraction(ramp=0.0).least_distance(400.0), 3)
+        0.601
+        """
+        share, b = ensure_finite_scalar("energy", energy) / (2.0 * self.k_r), self.d1 - self.ramp
+        if self.eta == 0.0:
+            return b * exp(-share)
+        root = sqrt(self.eta)
+        argument = share + asinh(1.0 / (root * b))
+        # sinh overflows beyond 710; there it is half the exponential
+        return 1.0 / (root * sinh(argument)) if argument < 700.0 else 2.0 * exp(-argument) / root
+
+
+def _fractions(ramp: float, d1: float) -> FloatArray:
+    """Rising offsets from d₁ inwards, 0 to ramp, no panel wider than its distance from the pole at 0."""
+    marks, left = [0.0], d1
+    while left - (d1 - ramp) > 0.5 * left:
+        left *= 0.5
+        marks.append(d1 - left)
+    return np.array([*marks, ramp])

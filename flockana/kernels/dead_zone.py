@@ -1,0 +1,225 @@
+"""The dead-zone pair law as scalar functions of the distance ρ, and its sums with every pair held in its zone.
+
+Parameter vector (float64): (η, k_r, k_δ, k₁, d₁, d₂, r, r_d, ramp, ψ where the inner ramp begins, ψ where the outer one
+ends). Zones of a pair: 0 repulsion, 1 dead zone, 2 attraction, 3 out of range. Without a ramp the force jumps between
+them; `zone_forces` continues each piece smoothly beyond its zone, which is what a located switch needs.
+"""
+
+from __future__ import annotations
+
+from math import inf, log, log1p, sqrt
+
+import numpy as np
+from numba import njit
+from numba.extending import register_jitable
+
+from flockana.kernels.scalars import clenshaw
+
+REPULSION, DEAD, ATTRACTION, OUT = 0, 1, 2, 3
+
+
+@register_jitable
+def repulsion(s, par):
+    """2k_r/s² + k_δ, without ramp."""
+    return 2.0 * par[1] / (s * s) + par[2] if s > 0.0 else inf
+
+
+@register_jitable
+def attraction(s, par):
+    """2k_r/(r_d − s)² + k_δ, without ramp."""
+    return 2.0 * par[1] / (par[7] - s) ** 2 + par[2]
+
+
+@register_jitable
+def zone_of(s, par):
+    """Which zone a pair at distance s is in; the dead zone is closed, the range open."""
+    if s >= par[6]:
+        return OUT
+    if s < par[4]:
+        return REPULSION
+    return DEAD if s <= par[5] else ATTRACTION
+
+
+@register_jitable
+def action(s, par):
+    """f(s): negative repels, positive attracts; ramped to 0 at both ends of the dead zone."""
+    zone, ramp = zone_of(s, par), par[8]
+    if zone == REPULSION:
+        return -repulsion(s, par) * (min(1.0, (par[4] - s) / ramp) if ramp > 0.0 else 1.0)
+    if zone == ATTRACTION:
+        return attraction(s, par) * (min(1.0, (s - par[5]) / ramp) if ramp > 0.0 else 1.0)
+    return 0.0
+
+
+@register_jitable
+def action_slope(s, par):
+    """df/ds off the edges of the zones."""
+    zone, ramp = zone_of(s, par), par[8]
+    if zone == REPULSION:
+        slope, share = 4.0 * par[1] / s**3, (par[4] - s) / ramp if ramp > 0.0 else 1.0
+        return slope * share + repulsion(s, par) / ramp if share < 1.0 else slope
+    if zone == ATTRACTION:
+        slope, share = 4.0 * par[1] / (par[7] - s) ** 3, (s - par[5]) / ramp if ramp > 0.0 else 1.0
+        return slope * share + attraction(s, par) / ramp if share < 1.0 else slope
+    return 0.0
+
+
+@register_jitable
+def force(s, par):
+    """F(s) = f(s) s/√(1 + ηs²) + k₁ s within the range, 0 beyond: negative repels."""
+    if s >= par[6]:
+        return 0.0
+    return action(s, par) * s / sqrt(1.0 + par[0] * s * s) + par[3] * s
+
+
+@register_jitable
+def repulsive_part(s, b, par):
+    """∫_s^b (2k_r/x² + k_δ) x/√(1 + ηx²) dx for 0 < s ≤ b, every difference rearranged: η = 0 is no special case."""
+    at_s, at_b = sqrt(1.0 + par[0] * s * s), sqrt(1.0 + par[0] * b * b)
+    gap = (b - s) * (b + s) / (at_s + at_b)
+    near = b < 2.0 * s  # else nothing cancels, and 1 + x would round
+    ratio = log1p((b - s) / s) if near else log(b / s)
+    roots = log1p(-par[0] * gap / (1.0 + at_b)) if near else log((1.0 + at_s) / (1.0 + at_b))
+    return 2.0 * par[1] * (ratio + roots) + par[2] * gap
+
+
+@register_jitable
+def attractive_part(a, s, par):
+    """∫_a^s (2k_r/(r_d − x)² + k_δ) x/√(1 + ηx²) dx for a ≤ s < r_d."""
+    eta, r_d = par[0], par[7]
+    big = 1.0 + eta * r_d * r_d
+    at_s, at_a, root = sqrt(1.0 + eta * s * s), sqrt(1.0 + eta * a * a), sqrt(big)
+    pole = r_d / big * (at_s / (r_d - s) - at_a / (r_d - a))
+    ratio = (1.0 + eta * r_d * s + root * at_s) / (1.0 + eta * r_d * a + root * at_a)
+    logarithm = (log(ratio) + log((r_d - a) / (r_d - s))) / (big * root)
+    return 2.0 * par[1] * (pole - logarithm) + par[2] * (s - a) * (s + a) / (at_s + at_a)
+
+
+@register_jitable
+def potential(s, par, panels):
+    """ψ(s) + ½ k₁ s²: closed form off the ramps, Chebyshev panels on them, constant from r on, ∞ at 0."""
+    if s <= 0.0:
+        return inf
+    x, ramp = min(s, par[6]), par[8]
+    pull = 0.5 * par[3] * x * x
+    inner, outer = par[4] - ramp, par[5] + ramp
+    if x <= inner:
+        return repulsive_part(x, inner, par) + par[9] + pull
+    if par[4] <= x <= par[5]:
+        return pull
+    if x < par[4] or x < outer:
+        return clenshaw(x, panels) + pull
+    return attractive_part(outer, x, par) + par[10] + pull
+
+
+@register_jitable
+def pair_dead_zone(s2, par):
+    """(weight of q_j − q_i, a_ij) of a pair at squared distance s2 within the range."""
+    return action(sqrt(s2), par) / sqrt(1.0 + par[0] * s2) + par[3], 1.0
+
+
+@register_jitable
+def pair_dead_zone_slope(s2, par):
+    """d(weight)/d(s2)."""
+    s, g = sqrt(s2), 1.0 + par[0] * s2
+    return 0.5 * (action_slope(s, par) / s - par[0] * action(s, par) / g) / sqrt(g)
+
+
+@register_jitable
+def pair_dead_zone_potential(s2, par, panels):
+    """ψ + ½ k₁ s² of a pair at squared distance s2."""
+    return potential(sqrt(s2), par, panels)
+
+
+@register_jitable
+def pair_dead_zone_adjacency_slope(s2, par):
+    """da/d(s2) = 0: a_ij is 1 within the range and 0 beyond."""
+    return 0.0
+
+
+@njit(cache=True)
+def zones(q, par):
+    """Zone of every pair, shape (n(n−1)/2,), pairs in lexicographic order."""
+    n, m = q.shape
+    out, k = np.empty(n * (n - 1) // 2, np.int8), 0
+    for i in range(n):
+        for j in range(i + 1, n):
+            s2 = 0.0
+            for c in range(m):
+                s2 += (q[j, c] - q[i, c]) ** 2
+            out[k] = zone_of(sqrt(s2), par)
+            k += 1
+    return out
+
+
+@njit(cache=True)
+def zone_margins(q, zone, par):
+    """How far inside its zone each pair is (negative beyond it), and whether the nearer edge is the upper one."""
+    n, m = q.shape
+    margins, upper, k = np.empty(zone.size), np.empty(zone.size, np.bool_), 0
+    for i in range(n):
+        for j in range(i + 1, n):
+            s2 = 0.0
+            for c in range(m):
+                s2 += (q[j, c] - q[i, c]) ** 2
+            s, z = sqrt(s2), zone[k]
+            low = (0.0, par[4], par[5], par[6])[z]
+            high = (par[4], min(par[5], par[6]), par[6], inf)[z]
+            upper[k] = high - s < s - low if z != REPULSION else True
+            margins[k] = high - s if upper[k] else s - low
+            k += 1
+    return margins, upper
+
+
+@njit(cache=True)
+def zone_forces(q, p, zone, par, c2, u):
+    """Add every pair's force, continued beyond its zone and without ramps, to u; return Σ a_ij ‖p_j − p_i‖²."""
+    n, m = q.shape
+    total, k = 0.0, 0
+    for i in range(n):
+        for j in range(i + 1, n):
+            z = zone[k]
+            k += 1
+            if z == OUT:
+                continue
+            s2 = 0.0
+            for c in range(m):
+                s2 += (q[j, c] - q[i, c]) ** 2
+                total += (p[j, c] - p[i, c]) ** 2
+            s, f = sqrt(s2), 0.0
+            if z == REPULSION:
+                f = -repulsion(s, par)
+            elif z == ATTRACTION:
+                f = attraction(s, par)
+            w = f / sqrt(1.0 + par[0] * s2) + par[3]
+            for c in range(m):
+                x = w * (q[j, c] - q[i, c]) + c2 * (p[j, c] - p[i, c])
+                u[i, c] += x
+                u[j, c] -= x
+    return total
+
+
+@njit(cache=True)
+def semi_implicit_steps(q, p, par, c2, dt, steps):
+    """`steps` semi-implicit Euler steps of the law: q, p after each of them and the u that was applied."""
+    n, m = q.shape
+    all_q, all_p, all_u = np.empty((steps, n, m)), np.empty((steps, n, m)), np.zeros((steps, n, m))
+    x, v, r2 = q.copy(), p.copy(), par[6] * par[6]
+    for step in range(steps):
+        u = all_u[step]
+        for i in range(n):
+            for j in range(i + 1, n):
+                s2 = 0.0
+                for c in range(m):
+                    s2 += (x[j, c] - x[i, c]) ** 2
+                if s2 >= r2:
+                    continue
+                w = action(sqrt(s2), par) / sqrt(1.0 + par[0] * s2) + par[3]
+                for c in range(m):
+                    f = w * (x[j, c] - x[i, c]) + c2 * (v[j, c] - v[i, c])
+                    u[i, c] += f
+                    u[j, c] -= f
+        v += dt * u
+        x += dt * v
+        all_q[step], all_p[step] = x, v
+    return all_q, all_p, all_u

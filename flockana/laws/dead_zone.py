@@ -1,0 +1,309 @@
+"""The dead-zone law of Li, Yuan and Liu: a flock held by forces that act only off a band of distances."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flockana.checks import FloatArray, ensure_finite_scalar, ensure_points, ensure_state
+from flockana.errors import ArgumentError
+from flockana.interactions.dead_zone import DeadZoneInteraction
+from flockana.kernels.dead_zone import ATTRACTION, DEAD, OUT, semi_implicit_steps, zone_forces, zone_margins, zones
+from flockana.laws.olfati_saber import moving_frame
+from flockana.laws.switched import Margins, Pieces, SwitchedLaw
+from flockana.nets import components, links
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
+
+SLIDES = 1e-6  # of d1: a pair driven back from both sides that swings no farther than this counts as held
+
+
+@dataclass(frozen=True)
+class DeadZoneFlocking(SwitchedLaw):
+    """u_i = Σ_{j∈N_i} [f(ρ_ij) n_ij + k₁ (q_j − q_i) + k₂ (p_j − p_i)], eq. (9) made definite (errata L1, L2).
+
+    N_i are the agents closer than r, a_ij = 1 for them. No leader appears; momentum is conserved, and energy is
+    measured in the frame of the centre of mass. The right-hand side jumps where a pair comes into range, and, if the
+    interaction has no ramp, at both ends of the dead zone: then `simulate` locates every switch, and ends the run with
+    a message where a pair is held at one (`SwitchedLaw`). With a ramp no surface can hold a pair, and the steps of the
+    adaptive solvers shorten at r by themselves.
+
+    Parameters
+    ----------
+    interaction : DeadZoneInteraction
+        The pair law; its `ramp` decides between the printed jumps (0) and a steep rise (default).
+    k2 : float
+        Gain k₂ ≥ 0 of velocity consensus.
+
+    Raises
+    ------
+    ArgumentError
+        On a negative gain or another interaction.
+
+    Examples
+    --------
+    Nothing but k₁ acts within the dead zone, and two agents too near repel each other:
+
+    >>> law = DeadZoneFlocking(DeadZoneInteraction(k1=0.0))
+    >>> law.acceleration(0.0, [[0.0, 0.0], [8.0, 0.0]], [[0.0, 0.0], [0.0, 0.0]]).tolist()
+    [[0.0, 0.0], [0.0, 0.0]]
+    >>> bool(law.acceleration(0.0, [[0.0, 0.0], [2.0, 0.0]], [[0.0, 0.0], [0.0, 0.0]])[0, 0] < 0.0)
+    True
+    """
+
+    interaction: DeadZoneInteraction = field(default_factory=DeadZoneInteraction)
+    k2: float = 1.0
+
+    references = ("li-dead-zone",)
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.interaction, DeadZoneInteraction):
+            raise ArgumentError(f"interaction = {self.interaction!r}: expected DeadZoneInteraction(...)")
+        gain = ensure_finite_scalar("k2", self.k2)
+        if gain < 0.0:
+            raise ArgumentError(f"k2 = {gain:g}: expected a gain >= 0; a negative one feeds energy in")
+        object.__setattr__(self, "k2", gain)
+
+    def check_start(self, q: FloatArray, p: FloatArray) -> None:
+        """Raise if two agents coincide: their force has no direction and their potential is infinite.
+
+        Parameters
+        ----------
+        q, p : ndarray, shape (n, m)
+            Initial positions and velocities.
+        """
+        super().check_start(q, p)
+        _ensure_apart(q)
+
+    def acceleration(self, t: float, q: Any, p: Any) -> FloatArray:
+        """Control input u(q, p).
+
+        Parameters
+        ----------
+        t : float
+            Time (the law does not depend on it).
+        q, p : array_like, shape (n, m)
+            Positions and velocities.
+
+        Raises
+        ------
+        ArgumentError
+            On wrong shapes, values that are not finite, or two agents at one place.
+        """
+        t, q, p = self._checked(t, q, p)
+        _ensure_apart(q)
+        return self.flow(t, q, p)[0]
+
+    def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
+        """(u, dH̄/dt) with dH̄/dt = −k₂ pᵀL̂p across all switches, unchecked.
+
+        Parameters
+        ----------
+        t : float
+            Time (the law does not depend on it).
+        q, p : ndarray, shape (n, m)
+            Positions and velocities.
+        """
+        u, dissipation = self.interaction.forces(q, p, stiffness=1.0, damping=self.k2)
+        return u, -self.k2 * dissipation
+
+    def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:
+        """H̄ = ½ Σ‖p_i − p̄‖² + Σ_{i<j} ψ(min(ρ_ij, r)), the saturated energy, unchecked (erratum L5).
+
+        Parameters
+        ----------
+        t : float
+            Time (H̄ does not depend on it).
+        q, p : ndarray, shape (n, m)
+            Positions and velocities.
+        """
+        return self.interaction.potential_energy(q) + 0.5 * float(np.sum(moving_frame(p) ** 2))
+
+    def literal_energy(self, q: Any, p: Any) -> float:
+        """The energy of neighbours only: it jumps by ψ(r) whenever a pair comes into range (erratum L5).
+
+        Parameters
+        ----------
+        q, p : array_like, shape (n, m)
+            Positions and velocities.
+        """
+        q, p = ensure_state(q, p)
+        n = len(q)
+        apart = n * (n - 1) // 2 - len(links(q, self.interaction.r))
+        return self.hamiltonian(0.0, q, p) - apart * self.interaction.far_potential
+
+    def stiffness(self, q: Any) -> csr_array:
+        """Hessian of Σ ψ̄ off the switches, in the order of ``q.ravel()``, sparse.
+
+        Parameters
+        ----------
+        q : array_like, shape (n, m)
+            Positions.
+        """
+        q = ensure_points("q", q)
+        _ensure_apart(q)
+        return self.interaction.hessian(q)
+
+    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[csr_array, csr_array]:
+        """(∂u/∂q, ∂u/∂p) off the switches, where a_ij is constant: (−∇²Σψ̄, −k₂ L̂), sparse, unchecked.
+
+        Parameters
+        ----------
+        t : float
+            Time (the law does not depend on it).
+        q, p : ndarray, shape (n, m)
+            Positions and velocities.
+        """
+        return self.interaction.jacobian(q, p, stiffness=1.0, damping=self.k2)
+
+    def measures(
+        self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
+    ) -> Mapping[str, tuple[str, FloatArray]]:
+        """Connectivity and giant component of the net at r, and the energy of neighbours only, over time.
+
+        Parameters
+        ----------
+        t : ndarray, shape (T,)
+            Sample times.
+        q, p : ndarray, shape (T, n, m)
+            Positions and velocities.
+        extra : mapping
+            Not used.
+        """
+        n, r = q.shape[1], self.interaction.r
+        sizes = [np.bincount(components(n, links(x, r))) for x in q]
+        connectivity = np.array([1.0 if n == 1 else (n - s.size) / (n - 1) for s in sizes])
+        literal = np.array([self.literal_energy(x, v) for x, v in zip(q, p, strict=True)])
+        return {
+            "connectivity": ("C = rank(L)/(n − 1) of the net at r", connectivity),
+            "giant_share": ("C*, share of nodes", np.array([s.max() / n for s in sizes])),
+            "literal_energy": ("H of neighbours only", literal),
+        }
+
+    def semi_implicit(
+        self, q: FloatArray, p: FloatArray, dt: float, steps: int
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Semi-implicit Euler steps in one compiled loop: q, p after each step and u before, shape (steps, n, m).
+
+        Parameters
+        ----------
+        q, p : ndarray, shape (n, m)
+            Positions and velocities.
+        dt : float
+            Step.
+        steps : int
+            How many.
+        """
+        found: tuple[FloatArray, FloatArray, FloatArray] = semi_implicit_steps(
+            q, p, self.interaction.par, self.k2, dt, steps
+        )
+        return found
+
+    @property
+    def located(self) -> bool:
+        """Whether the force jumps at the dead zone, so that every switch is located: there is no ramp."""
+        return self.interaction.ramp == 0.0
+
+    def pieces(self, q: FloatArray) -> Pieces:
+        """Zone of every pair: 0 repulsion, 1 dead zone, 2 attraction, 3 out of range.
+
+        Parameters
+        ----------
+        q : ndarray, shape (n, m)
+            Positions.
+        """
+        found: Pieces = zones(q, self.interaction.par)
+        return found
+
+    def piece_flow(self, pieces: Pieces, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
+        """As `flow`, every pair held in its zone.
+
+        Parameters
+        ----------
+        pieces : ndarray of int8
+            Zones.
+        t : float
+            Time (the law does not depend on it).
+        q, p : ndarray, shape (n, m)
+            Positions and velocities.
+        """
+        u = np.zeros_like(q)
+        return u, -self.k2 * zone_forces(q, p, pieces, self.interaction.par, self.k2, u)
+
+    def margins(self, pieces: Pieces, q: FloatArray) -> Margins:
+        """How far each pair is inside its zone.
+
+        Parameters
+        ----------
+        pieces : ndarray of int8
+            Zones.
+        q : ndarray, shape (n, m)
+            Positions.
+        """
+        return Margins(*zone_margins(q, pieces, self.interaction.par))
+
+    def crossed(self, pieces: Pieces, margins: Margins) -> Pieces:
+        """The zones after every pair with a negative margin has gone to the next.
+
+        Parameters
+        ----------
+        pieces : ndarray of int8
+            Zones before.
+        margins : Margins
+            At the switch.
+        """
+        step = np.where(margins.inside < 0.0, np.where(margins.upper, 1, -1), 0)
+        after = pieces + step
+        if self.interaction.d2 >= self.interaction.r:  # there is no zone of attraction
+            after = np.where(after == ATTRACTION, np.where(step > 0, OUT, DEAD), after)
+        return after.astype(np.int8)
+
+    def sliding(self, before: Pieces, after: Pieces, t: float, q: FloatArray, p: FloatArray) -> str | None:
+        """The pairs that both sides of the edge just crossed drive back, if they swing by less than 1e-6 d₁.
+
+        Parameters
+        ----------
+        before, after : ndarray of int8
+            Zones on the two sides.
+        t : float
+            Time.
+        q, p : ndarray, shape (n, m)
+            Positions and velocities at the switch.
+        """
+        rows, columns = np.triu_indices(len(q), 1)
+        for k in np.flatnonzero(before != after):
+            i, j = int(rows[k]), int(columns[k])
+            x, v = q[j] - q[i], p[j] - p[i]
+            rho = float(np.linalg.norm(x))
+            speed = float(v @ x) / rho
+            bend = (float(v @ v) - speed**2) / rho
+            held = p.copy()  # at the surface the two neither approach nor recede: damping of that is no push
+            held[i] += 0.5 * speed / rho * x
+            held[j] -= 0.5 * speed / rho * x
+            old, new = (self.piece_flow(side, t, q, held)[0] for side in (before, after))
+            out = 1.0 if after[k] > before[k] else -1.0
+            leaving, back = (out * (float((u[j] - u[i]) @ x) / rho + bend) for u in (old, new))
+            if leaving > 0.0 > back and speed**2 <= 2.0 * SLIDES * self.interaction.d1 * min(leaving, -back):
+                return (
+                    f"agents {i} and {j} slide at distance {rho:.6g}: the force of one zone drives them into the other "
+                    "and back; give the interaction a ramp to go on"
+                )
+        return None
+
+
+def _ensure_apart(q: FloatArray) -> None:
+    from scipy.spatial import KDTree
+
+    if len(q) > 1:
+        distance, neighbour = (np.asarray(x) for x in KDTree(q).query(q, k=2))
+        i = int(np.argmin(distance[:, 1]))
+        if distance[i, 1] == 0.0:
+            j = next(int(k) for k in neighbour[i] if k != i)
+            raise ArgumentError(
+                f"agents {min(i, j)} and {max(i, j)} coincide: the dead-zone force is infinite there and has no "
+                "direction; expected distinct positions"
+            )

@@ -1,0 +1,145 @@
+"""Any continuous law, stepped by the semi-implicit Euler scheme: velocities first, then positions with the new ones."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from flockana.checks import FloatArray, ensure_positive
+from flockana.errors import ArgumentError
+from flockana.laws.dead_zone import DeadZoneFlocking
+from flockana.laws.law import DiscreteLaw, Law
+
+
+@dataclass(frozen=True)
+class SemiImplicitEuler(DiscreteLaw):
+    """p' = p + dt u(t, q, p), q' = q + dt p': what sources mean that give a step and no integrator.
+
+    A scheme of first order with a fixed step: where the law jumps it neither sees the jump nor resolves it, and where
+    the law holds a pair at a jump it chatters about it (erratum L7).
+
+    Parameters
+    ----------
+    law : Law
+        The continuous law.
+    dt : float
+        Step.
+
+    Raises
+    ------
+    ArgumentError
+        If the law is no continuous one, or the step not positive.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> import numpy as np
+    >>> euler = SemiImplicitEuler(Algorithm1(), dt=0.01)
+    >>> q, p, _, _ = euler.step(0.0, np.array([[0.0], [8.0]]), np.zeros((2, 1)), {})
+    >>> bool(q[0, 0] == 0.01 * p[0, 0] > 0.0)
+    True
+    """
+
+    law: Law
+    dt: float = 0.01
+
+    steps_at_once = 200  # of the dead-zone law, whose loop is compiled: 14 µs a step of 50 agents
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.law, Law):
+            raise ArgumentError(f"law = {self.law!r}: expected a continuous law such as DeadZoneFlocking()")
+        object.__setattr__(self, "dt", ensure_positive("dt", self.dt))
+
+    @property
+    def references(self) -> tuple[str, ...]:  # type: ignore[override]  # those of the law that is stepped
+        """Keys of the law's bibliography."""
+        return self.law.references
+
+    def step(
+        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
+    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
+        """One step, unchecked.
+
+        Parameters
+        ----------
+        t : float
+            Time at its start.
+        q, p : ndarray, shape (n, m)
+            Positions and velocities.
+        memory : mapping
+            Empty.
+        """
+        if isinstance(self.law, DeadZoneFlocking):  # the same sums in the same order as `iterate`
+            next_q, next_p, applied = self.law.semi_implicit(q, p, self.dt, 1)
+            return next_q[0], next_p[0], applied[0], memory
+        u = self.law.flow(t, q, p)[0]
+        p = p + self.dt * u
+        return q + self.dt * p, p, u, memory
+
+    def iterate(
+        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray], steps: int
+    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
+        """Several steps at once, in one compiled loop where the law has one.
+
+        Parameters
+        ----------
+        t : float
+            Time at the start of the first.
+        q, p : ndarray, shape (n, m)
+            Positions and velocities.
+        memory : mapping
+            Empty.
+        steps : int
+            How many.
+        """
+        if isinstance(self.law, DeadZoneFlocking):
+            return (*self.law.semi_implicit(q, p, self.dt, steps), {})
+        return super().iterate(t, q, p, memory, steps)
+
+    def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:
+        """The energy of the law that is stepped; the scheme does not keep its balance.
+
+        Parameters
+        ----------
+        t : float
+            Time.
+        q, p : ndarray, shape (n, m)
+            Positions and velocities.
+        """
+        return self.law.hamiltonian(t, q, p)
+
+    def check_dimension(self, m: int) -> None:
+        """Raise if the law does not live in m dimensions.
+
+        Parameters
+        ----------
+        m : int
+            Dimension of the flock.
+        """
+        self.law.check_dimension(m)
+
+    def check_start(self, q: FloatArray, p: FloatArray) -> None:
+        """Raise if the law must not be started from this state.
+
+        Parameters
+        ----------
+        q, p : ndarray, shape (n, m)
+            Initial positions and velocities.
+        """
+        self.law.check_start(q, p)
+
+    def measures(
+        self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
+    ) -> Mapping[str, tuple[str, FloatArray]]:
+        """What the law that is stepped measures.
+
+        Parameters
+        ----------
+        t : ndarray, shape (T,)
+            Sample times.
+        q, p : ndarray, shape (T, n, m)
+            Positions and velocities.
+        extra : mapping of str to ndarray
+            Further series of the run.
+        """
+        return self.law.measures(t, q, p, extra)

@@ -1,0 +1,97 @@
+"""Laws whose acceleration jumps across surfaces in space: what `simulate` must know to stop at each switch."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.checks import FloatArray
+from flockana.laws.law import Law
+
+Pieces = npt.NDArray[np.int8]
+
+
+class Margins(NamedTuple):
+    """Per pair: how far inside its piece it is, negative beyond, and whether the nearer edge is the upper one."""
+
+    inside: FloatArray
+    upper: npt.NDArray[np.bool_]
+
+
+class SwitchedLaw(Law):
+    """A law made of smooth pieces, one for each pair of agents, that meet in jumps.
+
+    Where `located` is true, `simulate` integrates the pieces held as they are, stops where the first pair leaves its
+    own, and goes on with the next; where a pair is driven back from both sides it holds at the surface (a Filippov
+    sliding mode), which is reported and ends the run.
+    """
+
+    @property
+    @abstractmethod
+    def located(self) -> bool:
+        """Whether switches are to be located."""
+
+    @abstractmethod
+    def pieces(self, q: FloatArray) -> Pieces:
+        """Which piece each pair is in.
+
+        Parameters
+        ----------
+        q : ndarray, shape (n, m)
+            Positions.
+        """
+
+    @abstractmethod
+    def piece_flow(self, pieces: Pieces, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
+        """As `flow`, with every pair's piece continued smoothly beyond its edges.
+
+        Parameters
+        ----------
+        pieces : ndarray of int8
+            From `pieces`.
+        t : float
+            Time.
+        q, p : ndarray, shape (n, m)
+            Positions and velocities.
+        """
+
+    @abstractmethod
+    def margins(self, pieces: Pieces, q: FloatArray) -> Margins:
+        """How far each pair is from leaving its piece.
+
+        Parameters
+        ----------
+        pieces : ndarray of int8
+            Where each pair is held.
+        q : ndarray, shape (n, m)
+            Positions.
+        """
+
+    @abstractmethod
+    def crossed(self, pieces: Pieces, margins: Margins) -> Pieces:
+        """The pieces after every pair with a negative margin has gone over its edge.
+
+        Parameters
+        ----------
+        pieces : ndarray of int8
+            Before.
+        margins : Margins
+            At the switch.
+        """
+
+    @abstractmethod
+    def sliding(self, before: Pieces, after: Pieces, t: float, q: FloatArray, p: FloatArray) -> str | None:
+        """What holds at the surface that was just crossed, in words; None if nothing does.
+
+        Parameters
+        ----------
+        before, after : ndarray of int8
+            Pieces on the two sides.
+        t : float
+            Time.
+        q, p : ndarray, shape (n, m)
+            Positions and velocities at the switch.
+        """

@@ -1,0 +1,186 @@
+"""The dead-zone paper's simulation, with what it leaves open filled in, and runs that show where its claims end."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from flockana.checks import ensure_positive
+from flockana.interactions import DeadZoneInteraction
+from flockana.laws.dead_zone import DeadZoneFlocking
+from flockana.laws.semi_implicit import SemiImplicitEuler
+from flockana.metrics import min_distance, velocity_mismatch
+from flockana.scenarios.findings import finding
+from flockana.scenarios.scenario import Report, Scenario
+from flockana.theorems import Claim, Tolerances
+from flockana.theorems.dead_zone_case import dead_zone_law, parts
+from flockana.theorems.theorem import Status
+from flockana.trajectory import Trajectory
+
+_PRINTED = (
+    "Li, Yuan and Liu, section V: n = 50, r = 15, δ = 4.5, k_δ = 1.3, no more. Ours: r_b = 8, so that the flock fits "
+    "within r, r_d = 40, k_r = 200, η = 1, k1 = 0.01, k2 = 1, q uniform in a box, p uniform in [-1, 1]², semi-implicit "
+    "Euler steps of 0.01 for 200 time units."
+)
+_MATCHED = 1e-6  # largest velocity against the mean that counts as consensus: what is drawn as equal
+_SAMPLES = 401
+
+
+def _interaction(run: Trajectory) -> DeadZoneInteraction:
+    law = dead_zone_law(run)
+    assert law is not None
+    return law.interaction
+
+
+def _consensus(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """All velocities agree in the end."""
+    off = float(np.abs(run.p[-1] - run.p[-1].mean(axis=0)).max())
+    start = velocity_mismatch(run.p[0]) / run.n
+    detail = f"K̃ is {start:.3g} at the start; at t = {run.t[-1]:g} a velocity is off the mean by up to {off:.3g}"
+    return finding("consensus", _MATCHED - off, detail, computed=off, stated="speeds converge to the same")
+
+
+def _together(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """One flock in the end."""
+    end = parts(run.q[-1], run.p[-1], _interaction(run).r)
+    detail = f"{end.count} component(s) at t = {run.t[-1]:g}"
+    return finding("together", 1.5 - end.count, detail, computed=end.count, stated="the agents swarm together")
+
+
+def _safe(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """Safe distances all the time: read as the distance below which agents repel."""
+    d1 = _interaction(run).d1
+    least = min(min_distance(q) for q in run.q)
+    detail = f"agents come as near as {least:.3g}, where repulsion begins at d1 = {d1:g}"
+    return finding("safe", least - 0.5 * d1, detail, computed=least, stated="safe distances all the time (over d1/2)")
+
+
+def _lattice(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """An α-lattice: every agent's nearest neighbour at one distance, within the tolerance of a quasi-lattice."""
+    from scipy.spatial import KDTree
+
+    nearest = np.asarray(KDTree(run.q[-1]).query(run.q[-1], k=2)[0])[:, 1]
+    d1 = _interaction(run).d1
+    spread = float(np.abs(nearest / d1 - 1.0).max())
+    detail = (
+        f"nearest neighbours are {nearest.min():.4g} to {nearest.max():.4g} apart, {nearest.mean():.4g} in the mean"
+    )
+    return finding("lattice", tolerances.quasi - spread, detail, computed=float(nearest.mean()), stated=f"d1 = {d1:g}")
+
+
+_REPORTS = (
+    Report("consensus", "speeds converge to the same", _consensus),
+    Report("together", "the agents swarm together", _together),
+    Report("safe", "agents hold safe distances all the time", _safe),
+    Report("lattice", "the agents get an α-lattice", _lattice),
+)
+
+
+def _scenario(
+    name: str,
+    title: str,
+    source: str,
+    interaction: DeadZoneInteraction,
+    seed: int,
+    n: int,
+    box: float,
+    expected: dict[str, Status],
+    *,
+    flow: bool = False,
+    t_end: float = 200.0,
+) -> Scenario:
+    generator = np.random.default_rng(seed)
+    box, law = ensure_positive("box", box), DeadZoneFlocking(interaction)
+    options: dict[str, Any] = {} if flow else {"t_eval": np.linspace(0.0, t_end, _SAMPLES)}
+    return Scenario(
+        name,
+        title,
+        source,
+        law if flow else SemiImplicitEuler(law, 0.01),
+        generator.uniform(0.0, box, (n, 2)),
+        generator.uniform(-1.0, 1.0, (n, 2)),
+        (0.0, t_end),
+        seed,
+        expected,
+        _REPORTS,
+        options,
+        ("li-dead-zone",),
+    )
+
+
+def _default(seed: int = 0, n: int = 50, box: float = 40.0, ramp: float = 0.25) -> Scenario:
+    expected: dict[str, Status] = {
+        "dead-zone-1-printed": "refuted",
+        "dead-zone-1-printed:energy": "refuted",  # cohesion differs from seed to seed: R ends between 13 and 15.4
+        "dead-zone-1-printed:velocity": "verified",
+        "dead-zone-1-printed:collision": "verified",
+        "dead-zone-1-corrected": "verified",
+        "source:consensus": "verified",
+        "source:together": "verified",
+        "source:lattice": "verified",
+    }
+    title = "Dead zone: 50 agents contract to a lattice of contacts"
+    return _scenario("dead-zone", title, _PRINTED, DeadZoneInteraction(ramp=ramp), seed, n, box, expected)
+
+
+def _wide_lattice(seed: int = 0, n: int = 50, box: float = 40.0, ramp: float = 0.25) -> Scenario:
+    expected: dict[str, Status] = {
+        "dead-zone-1-printed:energy": "refuted",
+        "dead-zone-1-corrected:rate": "verified",  # k1 is all that attracts: velocities settle over 1/k1 and longer
+        "dead-zone-1-corrected:distance": "verified",
+        "source:together": "verified",
+    }
+    interaction = DeadZoneInteraction(r_b=12.0, k_r=60.0, k1=0.02, ramp=ramp)
+    source = _PRINTED + " Here r_b = 12, k_r = 60, k1 = 0.02: the dead zone ends beyond r, and only k1 attracts."
+    title = "Dead zone, large spacing: only k1 attracts, and the flock is wider than r"
+    return _scenario("dead-zone-wide-lattice", title, source, interaction, seed, n, box, expected)
+
+
+def _wide_start(seed: int = 0, n: int = 50, box: float = 150.0, ramp: float = 0.25) -> Scenario:
+    expected: dict[str, Status] = {
+        "dead-zone-1-printed": "refuted",
+        "dead-zone-1-corrected": "verified",
+        "dead-zone-1-corrected:components": "verified",
+        "source:consensus": "refuted",
+        "source:together": "refuted",
+    }
+    title = "Dead zone, wide start: the flock stays in pieces"
+    source = _PRINTED + " Here the box has side 150."
+    interaction = DeadZoneInteraction(ramp=ramp)
+    return _scenario("dead-zone-wide-start", title, source, interaction, seed, n, box, expected, t_end=800.0)
+
+
+def _hard(seed: int = 0, n: int = 50, box: float = 40.0) -> Scenario:
+    expected: dict[str, Status] = {
+        "dead-zone-1-printed": "refuted",
+        "dead-zone-1-printed:velocity": "inconclusive",
+        "dead-zone-1-corrected:components": "inconclusive",
+        "dead-zone-1-corrected:distance": "verified",
+        "source:consensus": "refuted",
+        "source:together": "verified",
+    }
+    title = "Dead zone with the printed jumps: contacts chatter"
+    source = _PRINTED + " Here without the ramp: the force jumps, as printed."
+    return _scenario("dead-zone-hard", title, source, DeadZoneInteraction(ramp=0.0), seed, n, box, expected)
+
+
+def _flow(seed: int = 0, n: int = 16, box: float = 20.0, ramp: float = 0.25) -> Scenario:
+    expected: dict[str, Status] = {
+        "dead-zone-1-printed:collision": "verified",
+        "dead-zone-1-corrected": "verified",
+        "dead-zone-1-corrected:balance": "verified",
+    }
+    title = "Dead zone, the flow itself: 16 agents, energy balance and distances between samples"
+    source = "Ours: the continuous law that the other dead-zone runs step by semi-implicit Euler."
+    interaction = DeadZoneInteraction(ramp=ramp)
+    return _scenario("dead-zone-flow", title, source, interaction, seed, n, box, expected, flow=True, t_end=120.0)
+
+
+SCENARIOS = {
+    "dead-zone": _default,
+    "dead-zone-wide-lattice": _wide_lattice,
+    "dead-zone-wide-start": _wide_start,
+    "dead-zone-hard": _hard,
+    "dead-zone-flow": _flow,
+}

@@ -1,0 +1,179 @@
+"""The dead-zone law: forces by hand, energy balance, derivatives, located switches, sliding, the Euler scheme."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from flockana.errors import ArgumentError
+from flockana.interactions import AlphaInteraction, DeadZoneInteraction
+from flockana.laws.dead_zone import DeadZoneFlocking
+from flockana.laws.olfati_saber import Algorithm1
+from flockana.laws.semi_implicit import SemiImplicitEuler
+from flockana.serialize import from_data, to_data
+from flockana.simulate import simulate
+
+HARD = DeadZoneInteraction(ramp=0.0)
+
+
+def start(n=12, box=12.0, seed=0, m=2):
+    rng = np.random.default_rng(seed)
+    return rng.uniform(0.0, box, (n, m)), rng.uniform(-1.0, 1.0, (n, m))
+
+
+@pytest.mark.parametrize("m", [1, 2, 3])
+def test_the_input_is_the_sum_of_the_paper(m):
+    q, p = start(9, 25.0, m=m)
+    pair, k2 = DeadZoneInteraction(ramp=0.0, k1=0.03), 0.7
+    u = np.zeros_like(q)
+    for i in range(9):
+        for j in range(9):
+            x = q[j] - q[i]
+            rho = np.linalg.norm(x)
+            if i == j or rho >= 15.0:
+                continue
+            f = -(400.0 / rho**2 + 1.3) if rho < 3.5 else 400.0 / (40.0 - rho) ** 2 + 1.3 if rho > 12.5 else 0.0
+            u[i] += f * x / np.sqrt(1.0 + rho**2) + 0.03 * x + k2 * (p[j] - p[i])
+    found = DeadZoneFlocking(pair, k2).acceleration(0.0, q, p)
+    assert np.abs(found - u).max() <= 1e-13 * np.abs(u).max()
+    assert np.abs(found.sum(axis=0)).max() <= 1e-12 * np.abs(u).max()  # momentum
+
+
+def test_the_saturated_energy_is_measured_about_the_centre_and_counts_pairs_out_of_range():
+    law = DeadZoneFlocking()
+    q, p = np.array([[0.0, 0.0], [99.0, 0.0]]), np.array([[5.0, 1.0], [7.0, 1.0]])
+    far = law.interaction.far_potential
+    assert law.energy(0.0, q, p) == pytest.approx(far + 1.0, rel=1e-15)  # ½(1 + 1)
+    assert law.literal_energy(q, p) == pytest.approx(1.0, rel=1e-13)
+
+
+def test_the_balance_holds_along_a_ramped_run():
+    q, p = start()
+    run = simulate(DeadZoneFlocking(), q, p, (0.0, 10.0))
+    assert np.abs(run.energy_residual).max() < 1e-6 * run.energy()[0]
+    assert run.energy_rate().max() <= 0.0
+    assert run.energy()[-1] < 0.7 * run.energy()[0]
+
+
+def test_derivatives_against_differences():
+    q, p = start(7, 16.0, seed=3)
+    law, h = DeadZoneFlocking(DeadZoneInteraction(k1=0.05)), 1e-6
+    jacobian = law.jacobian(0.0, q, p)
+    columns = []
+    for k in range(28):
+        y = np.concatenate([q.ravel(), p.ravel()])
+        step = np.zeros(28)
+        step[k] = h
+        sides = [law.acceleration(0.0, *(y + s * step).reshape(2, 7, 2)).ravel() for s in (1, -1)]
+        columns.append((sides[0] - sides[1]) / (2.0 * h))
+    assert np.abs(jacobian[14:] - np.array(columns).T).max() < 1e-6 * np.abs(jacobian).max()
+    assert np.abs(law.stiffness(q).toarray() + law.jacobian(0.0, q, 0.0 * p)[14:, :14]).max() == 0.0
+
+
+def test_a_pair_crosses_every_zone_and_each_switch_is_located():
+    # k2 = 0: in through r and d2, and head on to repulsion and back out, so six switches
+    law = DeadZoneFlocking(HARD, k2=0.0)
+    run = simulate(law, [[0.0, 0.0], [16.0, 0.0]], [[2.0, 0.0], [-2.0, 0.0]], (0.0, 12.0))
+    assert (run.status, run.stats["switches"]) == ("complete", 6)
+    assert np.abs(run.energy_residual).max() < 1e-8 * run.energy()[0]
+    rho = np.linalg.norm(run.q[:, 1] - run.q[:, 0], axis=1)
+    for edge in (15.0, 12.5, 3.5):
+        assert np.sum(np.abs(rho - edge) < 1e-12) == 2  # a sample at each switch
+    assert run.p[-1] == pytest.approx(-run.p[0], abs=1e-7)  # a mirror image in time: it leaves as it came
+    assert run.closest_approach().distance < 3.5
+
+
+def test_output_times_do_not_change_a_located_run():
+    law, q, p = DeadZoneFlocking(HARD), [[0.0, 0.0], [16.0, 0.0]], [[1.0, 0.1], [-1.0, 0.0]]
+    whole, kept = simulate(law, q, p, (0.0, 20.0)), simulate(law, q, p, (0.0, 20.0), t_eval=[0.0, 7.3, 20.0])
+    assert kept.t.tolist() == [0.0, 7.3, 20.0]
+    assert kept.q[-1] == pytest.approx(whole.q[-1], abs=1e-12)
+    assert kept.stats["switches"] == whole.stats["switches"]
+
+
+def test_sliding_ends_the_run_and_is_told():
+    run = simulate(DeadZoneFlocking(HARD), [[0.0, 0.0], [3.6, 0.0]], np.zeros((2, 2)), (0.0, 500.0))
+    assert run.status == "failed"
+    assert "sliding at t = " in run.message
+    assert "agents 0 and 1 slide at distance 3.5" in run.message
+    assert "ramp" in run.stats["sliding"]
+    assert run.stats["switches"] > 2
+    assert np.linalg.norm(run.q[-1, 1] - run.q[-1, 0]) == pytest.approx(3.5, abs=1e-9)
+
+
+def test_without_a_pull_nothing_slides():
+    # in the dead zone with k1 = 0 no force drives the pair back to d1; at speed 0.1 damping brings it there at rest
+    law = DeadZoneFlocking(DeadZoneInteraction(ramp=0.0, k1=0.0))
+    for speed in (0.1, 0.3):
+        run = simulate(law, [[0.0], [3.6]], [[speed], [-speed]], (0.0, 50.0))
+        assert (run.status, run.stats["switches"]) == ("complete", 2)
+
+
+def test_a_wide_dead_zone_leads_straight_out_of_range():
+    law = DeadZoneFlocking(DeadZoneInteraction(r_b=12.0, k1=0.0, ramp=0.0), k2=0.0)
+    run = simulate(law, [[0.0], [14.0]], [[0.0], [1.0]], (0.0, 3.0))
+    assert run.stats["switches"] == 1
+    assert run.q[-1].ravel() == pytest.approx([0.0, 17.0], abs=1e-12)
+
+
+def test_semi_implicit_steps_are_the_scheme():
+    q, p = start(5, 10.0)
+    for law in (DeadZoneFlocking(HARD), Algorithm1(AlphaInteraction(d=3.0, r=4.0))):
+        euler = SemiImplicitEuler(law, 0.01)
+        u = law.acceleration(0.0, q, p)
+        next_q, next_p, applied, _ = euler.step(0.0, q, p, {})
+        assert applied == pytest.approx(u, rel=1e-13, abs=1e-13)
+        assert next_p == pytest.approx(p + 0.01 * u, rel=1e-13)
+        assert next_q == pytest.approx(q + 0.01 * next_p, rel=1e-13)
+        many = euler.iterate(0.0, q, p, {}, 7)
+        q_k, p_k = q, p
+        for _ in range(7):
+            q_k, p_k = euler.step(0.0, q_k, p_k, {})[:2]
+        assert np.array_equal(many[0][-1], q_k)
+        assert np.array_equal(many[1][-1], p_k)
+
+
+def test_the_scheme_is_of_first_order():
+    q, p = start(4, 14.0, seed=5)
+    law = DeadZoneFlocking()
+    exact = simulate(law, q, p, (0.0, 1.0), rtol=1e-11, atol=1e-12).q[-1]
+    errors = [np.abs(simulate(SemiImplicitEuler(law, h), q, p, (0.0, 1.0)).q[-1] - exact).max() for h in (4e-3, 2e-3)]
+    assert 1.7 < errors[0] / errors[1] < 2.3
+
+
+def test_metrics_show_the_net_and_the_energy_of_neighbours():
+    q, p = start(6, 60.0, seed=2)
+    run = simulate(SemiImplicitEuler(DeadZoneFlocking(), 0.01), q, p, (0.0, 0.1))
+    found = run.metrics()
+    reach = np.linalg.norm(q[:, None] - q, axis=2) < 15.0
+    walks = np.linalg.matrix_power(reach.astype(int), 6) > 0
+    parts = len({tuple(row) for row in walks.tolist()})
+    assert float(found.connectivity[0]) == pytest.approx((6 - parts) / 5)
+    assert float(found.giant_share[0]) == pytest.approx(walks.sum(axis=1).max() / 6)
+    assert float(found.literal_energy[0]) == DeadZoneFlocking().literal_energy(q, p)
+
+
+def test_law_and_scheme_survive_being_written_down():
+    euler = SemiImplicitEuler(DeadZoneFlocking(DeadZoneInteraction(k1=0.3), 2.0), 0.02)
+    assert from_data(to_data(euler)) == euler
+
+
+def test_coincident_agents_are_refused():
+    law, q = DeadZoneFlocking(), [[0.0, 0.0], [1.0, 0.0], [1.0, 0.0]]
+    for act in (
+        lambda: law.acceleration(0.0, q, q),
+        lambda: law.stiffness(q),
+        lambda: simulate(law, q, q, (0.0, 1.0)),
+        lambda: simulate(SemiImplicitEuler(law), q, q, (0.0, 1.0)),
+    ):
+        with pytest.raises(ArgumentError, match="agents 1 and 2 coincide"):
+            act()
+
+
+def test_bad_parameters_are_named():
+    with pytest.raises(ArgumentError, match="k2 = -1: expected a gain >= 0"):
+        DeadZoneFlocking(k2=-1.0)
+    with pytest.raises(ArgumentError, match="expected DeadZoneInteraction"):
+        DeadZoneFlocking(AlphaInteraction())
+    with pytest.raises(ArgumentError, match="expected a continuous law"):
+        SemiImplicitEuler(SemiImplicitEuler(DeadZoneFlocking()))
