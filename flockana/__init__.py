@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from flockana import stability as stability
     from flockana import symbolic as symbolic
     from flockana.ensemble.campaign import ensemble as ensemble
+    from flockana.ensemble.dataset import shares as shares
+    from flockana.ensemble.intervals import clopper_pearson as clopper_pearson
     from flockana.environment.capsule import Capsule as Capsule
     from flockana.environment.obstacles import Obstacle as Obstacle
     from flockana.environment.obstacles import Sphere as Sphere
@@ -126,7 +128,7 @@ _BY_MODULE = {
     "stability": ("linearise", "Linearisation", "Mode", "slowest_modes"),
     "theorems": ("theorems", "theorem", "verify", "Verdict", "Tolerances"),
     "scenarios": ("scenarios", "scenario", "Scenario"),
-    "ensemble": ("ensemble",),
+    "ensemble": ("ensemble", "shares", "clopper_pearson"),
     "plots.animation": ("animate",),
     "references": ("cite",),
 }

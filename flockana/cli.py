@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from flockana._version import __version__
-from flockana.commands import equilibrium, lattice
+from flockana.commands import ensemble, equilibrium, lattice, prove
 from flockana.errors import ArgumentError, FlockanaError
 
 if TYPE_CHECKING:
@@ -241,7 +241,7 @@ def _theorems() -> None:
     Console(highlight=False).print(theorem_table())
 
 
-for _command in (lattice, equilibrium):
+for _command in (lattice, equilibrium, prove, ensemble):
     _command.register(app)
 
 

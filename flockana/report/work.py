@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import multiprocessing
-import signal
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, Future, wait
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
 from dataclasses import dataclass
 
+from flockana.ensemble.executors import ProcessPool
 from flockana.errors import ArgumentError, FlockanaError, SolverError, UnknownNameError
 from flockana.report.pages import FixedResult, Page, ScenarioResult, page
 from flockana.scenarios import scenario, scenarios
@@ -142,12 +140,9 @@ def perform(
             watch((task.name,))
             yield do(task)
         return
-    # spawned, not forked: a forked child inherits the locks of threads that it does not have
-    context = multiprocessing.get_context("spawn")
-    pool = ProcessPoolExecutor(jobs, mp_context=context, initializer=_ignore_interrupts)
+    pool = ProcessPool(jobs)
     try:
-        with _interrupts_held():
-            futures = {pool.submit(_do_for_parent, task): task.name for task in tasks}
+        futures = {pool.submit(_do_for_parent, task): task.name for task in tasks}
         pending = set(futures)
         while pending:
             done, pending = wait(pending, timeout=_TICK, return_when=FIRST_COMPLETED)
@@ -156,28 +151,8 @@ def perform(
             watch(tuple(futures[f] for f in futures if f in pending and f.running())[:jobs])
         pool.shutdown()
     except BaseException:
-        pool.shutdown(wait=False, cancel_futures=True)
-        for worker in multiprocessing.active_children():
-            worker.terminate()
+        pool.stop()
         raise
-
-
-def _ignore_interrupts() -> None:
-    """Ctrl-C goes to every process of the terminal; the parent alone answers it."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-
-
-@contextmanager
-def _interrupts_held() -> Iterator[None]:
-    """Keep Ctrl-C for later; processes started meanwhile never see it, not even before they can ignore it."""
-    if not hasattr(signal, "pthread_sigmask"):  # Windows
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _do_for_parent(task: Task) -> Page:

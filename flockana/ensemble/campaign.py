@@ -1,0 +1,301 @@
+"""Many runs of a scenario: over seeds and options, on any number of processors, into a store that can be resumed."""
+
+from __future__ import annotations
+
+import inspect
+import os
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor
+from contextlib import ExitStack, contextmanager
+from hashlib import sha256
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flockana.ensemble.dataset import RESERVED, job_grid, metric_name, to_dataset
+from flockana.ensemble.digest import run_key
+from flockana.ensemble.executors import cores, crew, ensure_crew, make_runs
+from flockana.ensemble.measures import METRICS
+from flockana.ensemble.store import Store
+from flockana.ensemble.work import COMPLETE, Job, Request, Scalar, reference, resolve
+from flockana.errors import ArgumentError, UnknownNameError
+from flockana.scenarios import Scenario, scenarios
+from flockana.scenarios import scenario as named_scenario
+from flockana.scenarios.scenario import SOURCE
+from flockana.theorems import Tolerances, theorem, theorems
+from flockana.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    import xarray
+
+
+def ensemble(
+    scenario: str | Callable[..., Scenario],
+    seeds: Iterable[int],
+    *,
+    theorems: Iterable[str] | None = None,
+    parameters: Mapping[str, Scalar | Iterable[Scalar]] | None = None,
+    metrics: Iterable[str | Callable[[Trajectory], float]] = METRICS,
+    tolerances: Tolerances | None = None,
+    executor: Executor | None = None,
+    cluster: str | None = None,
+    jobs: int | None = None,
+    store: str | os.PathLike[str] | None = None,
+    retry: bool = False,
+    progress: bool = False,
+) -> xarray.Dataset:
+    """Run and verify a scenario for many seeds, and for all combinations of given options.
+
+    The same seeds give the same numbers, ``seconds`` aside, whoever computes them and in whatever order, on processors
+    of one kind with the same libraries. A run that fails is part of the result, with its error; it ends nothing.
+
+    Parameters
+    ----------
+    scenario : str or callable
+        A name of the catalogue, or a function ``seed, **options -> Scenario`` from the top of a module.
+    seeds : iterable of int
+        Seeds, each >= 0 and given once.
+    theorems : iterable of str, optional
+        Which to check, ``"source"`` standing for what the source reports; by default all of the scenario's own and
+        what its source reports. Empty for none.
+    parameters : mapping of str to scalar or iterable, optional
+        Options of the scenario: several values make a dimension of the result, one value does not.
+    metrics : iterable of str or callable
+        What to keep of each run: names, by default all of `METRICS`, or functions ``trajectory -> float`` from the
+        top of a module.
+    tolerances : Tolerances, optional
+        Thresholds of the verdicts.
+    executor : concurrent.futures.Executor, optional
+        Who computes; it is left running. By default a pool of processes that is started for the purpose.
+    cluster : str, optional
+        Address of a Dask scheduler, or ``"local"`` to start one on this machine (needs ``flockana[cluster]``).
+    jobs : int, optional
+        Processes to start, by default one per core; with 1 this process computes.
+    store : path-like, optional
+        File that keeps runs as they are done. What it holds is not computed again, so an interrupted ensemble goes on
+        from where it was when the same call is made again; a larger one computes what it lacks.
+    retry : bool
+        Make runs anew that the store holds as failed.
+    progress : bool
+        Show a bar with rate and time left, on a terminal.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over the parameters and ``seed``: ``status``, ``margin`` and ``error`` of each claim (dimension ``claim``),
+        ``verdict`` of each theorem (dimension ``theorem``), the metrics, and of each run its status ``run``,
+        ``message``, ``steps``, ``evaluations`` and ``seconds``. Codes are explained by their ``flag_meanings``; -1 is
+        a claim that was not checked. `shares` makes a table of it.
+
+    Raises
+    ------
+    ArgumentError
+        On bad input, before anything is computed.
+    FileError
+        If the store cannot be written, is damaged, or is of another version.
+    SolverError
+        If the executor fails; what was done is in the store.
+    KeyboardInterrupt
+        On Ctrl-C; what was done is in the store.
+
+    Examples
+    --------
+    >>> found = ensemble("hexagon", range(4), theorems=["os-1"], jobs=1)
+    >>> found.claim.values.tolist()
+    ['os-1:i', 'os-1:ii', 'os-1:iii', 'os-1:iii-barrier']
+    >>> found.status.sel(claim="os-1:iii").values.tolist()  # 0 is verified
+    [0, 0, 0, 0]
+    """
+    ensure_crew(executor, cluster, jobs)
+    seeds = ensure_seeds(seeds)
+    axes, fixed = _split(parameters)
+    chosen = _ensure_metrics(metrics)
+    _ensure_names(axes, fixed, chosen)
+    if tolerances is not None and not isinstance(tolerances, Tolerances):
+        raise ArgumentError(f"tolerances = {tolerances!r}: expected flockana.Tolerances(...)")
+    name = _ensure_scenario(scenario, axes, fixed, seeds[0])
+    request = Request(name, _ensure_theorems(theorems), chosen, tolerances or Tolerances())
+    grid = job_grid(axes, fixed, seeds)
+    with ExitStack() as stack:
+        kept = None if store is None else stack.enter_context(Store(store))
+        keys = _keys(request, grid, strict=kept is not None)
+        found = {} if kept is None else kept.read(keys.values())
+        if retry:
+            found = {key: one for key, one in found.items() if one.status == COMPLETE}
+        missing = [job for job in grid if keys[job] not in found]
+        if missing:
+            advance = stack.enter_context(_bar(len(missing), len(grid), enabled=progress))
+            if executor is None and cluster is None:
+                jobs = min(jobs or cores(), len(missing))
+            with crew(executor, cluster=cluster, jobs=jobs) as hands:
+                for records in make_runs(request, missing, hands):
+                    new = {keys[one.job]: one for one in records}
+                    if kept is not None:
+                        kept.add(name, new)
+                    found |= new
+                    advance(len(new))
+    return to_dataset(request, axes, fixed, seeds, [found[keys[job]] for job in grid])
+
+
+def ensure_seeds(seeds: Any) -> tuple[int, ...]:
+    """Return seeds as a tuple of whole numbers >= 0, each of them once.
+
+    Parameters
+    ----------
+    seeds : iterable of int
+        What the caller gave.
+
+    Raises
+    ------
+    ArgumentError
+        If there are none, one is bad, or one comes twice.
+
+    Examples
+    --------
+    >>> ensure_seeds(range(3))
+    (0, 1, 2)
+    """
+    if isinstance(seeds, str) or not isinstance(seeds, Iterable):
+        raise ArgumentError(f"seeds = {seeds!r}: expected several whole numbers, such as range(200)")
+    given = tuple(seeds)
+    for seed in given:
+        if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or not 0 <= seed < 2**63:
+            raise ArgumentError(f"seed {seed!r}: expected a whole number >= 0, below 2^63")
+    if not given:
+        raise ArgumentError("seeds: there are none; expected at least one, such as range(200)")
+    found = tuple(int(seed) for seed in given)
+    if len(set(found)) < len(found):
+        twice = next(seed for k, seed in enumerate(found) if seed in found[:k])
+        raise ArgumentError(f"seed {twice} comes twice: expected different seeds")
+    return found
+
+
+def _split(parameters: Any) -> tuple[dict[str, list[Scalar]], dict[str, Scalar]]:
+    """(options with several values, options with one)."""
+    axes: dict[str, list[Scalar]] = {}
+    fixed: dict[str, Scalar] = {}
+    if not isinstance(parameters, Mapping | None):
+        raise ArgumentError(f"parameters = {parameters!r}: expected a dictionary, such as {{'n': [20, 40]}}")
+    for name, given in (parameters or {}).items():
+        if isinstance(given, str) or not isinstance(given, Iterable):
+            fixed[name] = _scalar(name, given)
+            continue
+        values = [_scalar(name, value) for value in given]
+        if not values or len(set(values)) < len(values) or len({isinstance(v, str) for v in values}) > 1:
+            raise ArgumentError(f"{name} = {values}: expected at least one value, all different and of one kind")
+        axes[name] = values
+    return axes, fixed
+
+
+def _scalar(name: str, value: Any) -> Scalar:
+    plain = value.item() if isinstance(value, np.generic) else value
+    if not isinstance(plain, bool | int | float | str) or plain != plain:
+        raise ArgumentError(f"{name} = {value!r}: expected numbers, texts or truth values that an option can have")
+    return plain
+
+
+def _ensure_metrics(metrics: Any) -> tuple[str, ...]:
+    if isinstance(metrics, str) or not isinstance(metrics, Iterable):
+        raise ArgumentError(f"metrics = {metrics!r}: expected several names or functions, such as ('strain',)")
+    found = []
+    for one in metrics:
+        if not callable(one) and one not in METRICS:
+            raise UnknownNameError("metric", one, METRICS)
+        found.append(reference(one) if callable(one) else one)
+    return tuple(found)
+
+
+def _ensure_names(axes: Mapping[str, Any], fixed: Mapping[str, Any], metrics: Sequence[str]) -> None:
+    """Options and metrics become names in one dataset: none may come twice."""
+    seen = {*RESERVED}
+    for name in (*axes, *fixed, *(metric_name(one) for one in metrics)):
+        if name in seen:
+            raise ArgumentError(f"{name}: the result has another variable of that name; leave it out or rename it")
+        seen.add(name)
+
+
+def _ensure_theorems(names: Any) -> tuple[str, ...] | None:
+    if names is None:
+        return None
+    if isinstance(names, str) or not isinstance(names, Iterable):
+        raise ArgumentError(f"theorems = {names!r}: expected several names, such as ['os-1', '{SOURCE}']")
+    found = tuple(dict.fromkeys(names))
+    for name in found:
+        if name not in (SOURCE, *theorems()):
+            raise UnknownNameError("theorem", name, (SOURCE, *theorems()))
+        if name != SOURCE and theorem(name).kind != "trajectory":
+            raise ArgumentError(f"{name} is not about a run: expected theorems about motion, such as os-1")
+    return found
+
+
+def _ensure_scenario(
+    scenario: Any, axes: Mapping[str, Sequence[Scalar]], fixed: Mapping[str, Scalar], seed: int
+) -> str:
+    """Its name, when its options are known to be good: those of the catalogue are tried once each."""
+    if isinstance(scenario, str):
+        if scenario not in scenarios():
+            raise UnknownNameError("scenario", scenario, scenarios())
+        for job in job_grid(axes, fixed, [seed]):
+            named_scenario(scenario, seed, **dict(job.options))
+        return scenario
+    if not callable(scenario):
+        raise ArgumentError(f"scenario = {scenario!r}: expected a name of the catalogue or a function")
+    name = reference(scenario)
+    try:
+        inspect.signature(scenario).bind(seed, **dict.fromkeys((*axes, *fixed)))
+    except TypeError as error:
+        raise ArgumentError(f"{name} cannot be called with a seed and these options: {error}") from None
+    return name
+
+
+def _keys(request: Request, grid: Sequence[Job], *, strict: bool) -> dict[Job, str]:
+    """Key of each run; of a user's own functions the source is part of it, and must be known for a store."""
+    shared = request.to_dict()
+    own = {name for name in (request.scenario, *request.metrics) if ":" in name}
+    shared["own"] = {name: _source_digest(name, strict=strict) for name in sorted(own)}
+    return {job: run_key(shared | {"seed": job.seed, "options": dict(job.options)}) for job in grid}
+
+
+def _source_digest(name: str, *, strict: bool) -> str:
+    file = inspect.getsourcefile(resolve(name))
+    if file is not None and Path(file).is_file():
+        return sha256(Path(file).read_bytes()).hexdigest()
+    if strict:
+        raise ArgumentError(
+            f"{name}: its source file is not known, so a store cannot tell its versions apart; leave "
+            "the store out, or put the function into a module"
+        )
+    return ""
+
+
+@contextmanager
+def _bar(missing: int, total: int, *, enabled: bool) -> Iterator[Callable[[int], None]]:
+    """A bar with rate and time left, on a terminal; gives a function to call with the number of runs just done."""
+    from rich.console import Console
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
+
+    console = Console(stderr=True)
+    if not (enabled and console.is_terminal):
+        yield lambda done: None
+        return
+    stored = f", {total - missing} stored before" if total > missing else ""
+    columns = (BarColumn(24), MofNCompleteColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
+    left = (TextColumn("left"), TimeRemainingColumn())
+    with Progress(*columns, *left, console=console, transient=True) as bar:
+        task = bar.add_task(f"runs{stored}", total=missing)
+
+        def advance(done: int) -> None:
+            bar.advance(task, done)
+            state = next(one for one in bar.tasks if one.id == task)
+            rate = state.completed / state.elapsed if state.elapsed else 0.0
+            bar.update(task, description=f"runs{stored}, {rate:.3g}/s")
+
+        yield advance

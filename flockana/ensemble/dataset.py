@@ -1,0 +1,217 @@
+"""The records of an ensemble as one `xarray.Dataset`, and the shares of runs in which each claim holds."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from itertools import product
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flockana._version import __version__
+from flockana.ensemble.intervals import clopper_pearson, ensure_level
+from flockana.ensemble.measures import measure_named
+from flockana.ensemble.work import COMPLETE, DIED, ERROR, FAILED, Job, Record, Request, Scalar
+from flockana.errors import ArgumentError
+
+if TYPE_CHECKING:
+    import xarray
+
+STATUSES = ("verified", "refuted", "vacuous", "inconclusive")
+RUNS = (COMPLETE, FAILED, ERROR, DIED)
+RESERVED = (
+    *("seed", "claim", "theorem", "status", "margin", "error", "verdict"),
+    *("run", "message", "steps", "evaluations", "seconds"),
+)
+
+
+def job_grid(axes: Mapping[str, Sequence[Scalar]], fixed: Mapping[str, Scalar], seeds: Sequence[int]) -> list[Job]:
+    """All runs of an ensemble, in the order of its dataset: parameters as given, seeds fastest.
+
+    Parameters
+    ----------
+    axes : mapping of str to sequence
+        Values by option.
+    fixed : mapping of str to scalar
+        Options with one value.
+    seeds : sequence of int
+        Seeds.
+
+    Examples
+    --------
+    >>> [job.seed for job in job_grid({"n": [3, 4]}, {}, [0, 1])]
+    [0, 1, 0, 1]
+    """
+    points = (dict(zip(axes, values, strict=True)) | dict(fixed) for values in product(*axes.values()))
+    return [Job(seed, tuple(sorted(point.items()))) for point in points for seed in seeds]
+
+
+def to_dataset(
+    request: Request,
+    axes: Mapping[str, Sequence[Scalar]],
+    fixed: Mapping[str, Scalar],
+    seeds: Sequence[int],
+    records: Sequence[Record],
+) -> xarray.Dataset:
+    """Lay records out along parameters, seeds, claims and theorems.
+
+    Parameters
+    ----------
+    request : Request
+        What was asked.
+    axes, fixed, seeds
+        As in `job_grid`.
+    records : sequence of Record
+        In the order of `job_grid`.
+    """
+    import xarray
+
+    dims, shape = (*axes, "seed"), (*(len(values) for values in axes.values()), len(seeds))
+    claims = list(dict.fromkeys(name for one in records for name in one.claims))
+    theorems = list(dict.fromkeys(name for one in records for name in one.verdicts))
+
+    def over_runs(values: Sequence[Any], dtype: Any, **attributes: Any) -> xarray.Variable:
+        return xarray.Variable(dims, np.array(values, dtype=dtype).reshape(shape), attributes)
+
+    def by(name: str, labels: Sequence[str], rows: Sequence[Sequence[Any]], **attributes: Any) -> xarray.Variable:
+        dtype = np.int8 if "flag_values" in attributes else np.float64
+        table = np.array(rows, dtype=dtype).reshape(*shape, len(labels))
+        return xarray.Variable((*dims, name), table, attributes)
+
+    found = [[one.claims.get(name, (None, None, None)) for name in claims] for one in records]
+    verdicts = [[_code(STATUSES, one.verdicts.get(name)) for name in theorems] for one in records]
+    of_claims = {
+        "status": by("claim", claims, [[_code(STATUSES, s) for s, _, _ in row] for row in found], **_flags(STATUSES)),
+        "margin": by("claim", claims, [[_float(m) for _, m, _ in row] for row in found], long_name="margin of a claim"),
+        "error": by("claim", claims, [[_float(e) for _, _, e in row] for row in found], long_name="error of a margin"),
+        "verdict": by("theorem", theorems, verdicts, **_flags(STATUSES)),
+    }
+    of_runs = {
+        "run": over_runs([_code(RUNS, one.status) for one in records], np.int8, **_flags(RUNS)),
+        "message": over_runs([one.message for one in records], object, long_name="why a run did not complete"),
+        "steps": over_runs([one.stats.get("steps", 0) for one in records], np.int64),
+        "evaluations": over_runs([one.stats.get("evaluations", 0) for one in records], np.int64),
+        "seconds": over_runs([one.seconds for one in records], np.float64, long_name="wall time", units="s"),
+    }
+    measured = {
+        metric_name(name): over_runs([one.metrics.get(name, np.nan) for one in records], np.float64, **_described(name))
+        for name in request.metrics
+    }
+    coords: dict[str, Any] = {name: list(values) for name, values in axes.items()} | dict(fixed)
+    coords |= {
+        "seed": list(seeds),
+        "claim": np.array(claims, dtype=object),
+        "theorem": np.array(theorems, dtype=object),
+    }
+    attributes = {
+        "scenario": request.scenario,
+        "tolerances": json.dumps(request.to_dict()["tolerances"]),
+        "mathematics": request.mathematics,
+        "flockana_version": __version__,
+    }
+    return xarray.Dataset(of_claims | of_runs | measured, coords, attributes)
+
+
+def metric_name(name: str) -> str:
+    """The variable of a measure: its own name, or the function's in a ``"module:function"``.
+
+    Parameters
+    ----------
+    name : str
+        As in `Request`.
+
+    Examples
+    --------
+    >>> metric_name("strain"), metric_name("my.module:spread")
+    ('strain', 'spread')
+    """
+    return name.rpartition(":")[2]
+
+
+def _described(name: str) -> dict[str, str]:
+    if ":" in name:
+        return {"long_name": metric_name(name)}
+    found = measure_named(name)
+    return {"long_name": found.text, "units": found.unit}
+
+
+def _flags(names: Sequence[str]) -> dict[str, Any]:
+    """What codes mean, in the convention of CF; -1 stands for a claim or a run that is not there."""
+    return {"flag_values": list(range(len(names))), "flag_meanings": " ".join(names)}
+
+
+def _code(names: Sequence[str], name: str | None) -> int:
+    return -1 if name is None else names.index(name)
+
+
+def _float(value: float | None) -> float:
+    return np.nan if value is None else value
+
+
+def ensure_ensemble(dataset: Any) -> None:
+    """Check that a dataset is one of `ensemble`.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        What the caller gave.
+
+    Raises
+    ------
+    ArgumentError
+        If it is not.
+    """
+    import xarray
+
+    if not (isinstance(dataset, xarray.Dataset) and {"status", "run"} <= {*dataset} and "seed" in dataset.dims):
+        raise ArgumentError(f"dataset is {type(dataset).__name__}: expected what flockana.ensemble returned")
+
+
+def shares(dataset: xarray.Dataset, *, level: float = 0.95) -> xarray.Dataset:
+    """In which share of the runs each claim is verified, and refuted, with the interval of Clopper and Pearson.
+
+    The share is of all complete runs on which the claim was checked, those on which it is vacuous or inconclusive
+    included: what is not verified is not counted as if it were.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        From `ensemble`.
+    level : float
+        Confidence of each interval by itself.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over parameters and claims: ``runs`` (how many checked the claim), a count for each status, and ``share``,
+        ``low`` and ``high`` over a dimension ``of`` with the entries verified and refuted. Over parameters alone:
+        ``incomplete``, the number of runs that are left out because they did not complete.
+
+    Raises
+    ------
+    ArgumentError
+        If the dataset is none of an ensemble, or the level no confidence.
+
+    Examples
+    --------
+    >>> from flockana.ensemble import ensemble
+    >>> found = shares(ensemble("hexagon", range(3), theorems=["energy"], jobs=1))
+    >>> part = found.sel(claim="energy:balance", of="verified")
+    >>> int(part.runs), float(part.share), round(float(part.low), 3)
+    (3, 1.0, 0.292)
+    """
+    import xarray
+
+    ensure_ensemble(dataset)
+    ensure_level(level)
+    counts = {name: (dataset.status == code).sum("seed") for code, name in enumerate(STATUSES)}
+    runs = (dataset.status >= 0).sum("seed")
+    judged = xarray.concat([counts["verified"], counts["refuted"]], dim="of")
+    trials = runs.broadcast_like(judged)
+    low, high = clopper_pearson(judged.values, trials.values, level=level)
+    share = (judged / trials.where(trials > 0)).assign_attrs(long_name="share of the runs")
+    incomplete = (dataset.run != RUNS.index(COMPLETE)).sum("seed")
+    found = {"share": share, "low": judged.copy(data=low), "high": judged.copy(data=high), "runs": runs}
+    found |= {"incomplete": incomplete, **counts}
+    return xarray.Dataset(found, attrs=dataset.attrs | {"level": level}).assign_coords(of=["verified", "refuted"])

@@ -1,0 +1,97 @@
+"""Under which key a run is stored, and the version of the mathematics that its numbers come from.
+
+The version is no constant that somebody must remember to raise: a stale number that is taken for a fresh one is the
+worst that a store can do. It is a digest of all that decides the numbers: every source of the package up to the
+scenarios and the measures of runs, without comments and docstrings, and the versions of the libraries that compute.
+What only shows numbers (plots, reports, commands) and how runs are distributed is left out. So a better sentence in a
+docstring keeps a store, and a changed kernel does not.
+"""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import json
+import platform
+from collections.abc import Mapping
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+_LIBRARIES = ("numpy", "scipy", "numba")
+_SILENT = ("plots", "report", "commands", "cli", "falsify", "ensemble", "references", "_version", "__init__")
+_ENSEMBLE = ("ensemble/work.py", "ensemble/measures.py")  # of the ensemble, what makes a record
+
+
+@cache
+def mathematics() -> str:
+    """Version of all that decides the numbers of a run, 16 hexadecimal digits.
+
+    Examples
+    --------
+    >>> len(mathematics())
+    16
+    """
+    root = Path(__file__).resolve().parent.parent
+    return digest_of_sources({str(p.relative_to(root)): p.read_bytes() for p in _sources(root)})
+
+
+def _sources(root: Path) -> list[Path]:
+    """The package's modules and data that decide numbers."""
+    files = (p for p in root.rglob("*") if p.suffix in (".py", ".json") and "__pycache__" not in p.parts)
+    parts = ((p, p.relative_to(root)) for p in files)
+    silent = {*_SILENT}
+    return sorted(p for p, r in parts if r.as_posix() in _ENSEMBLE or not silent & {r.parts[0], r.parts[0][:-3]})
+
+
+def digest_of_sources(sources: Mapping[str, bytes]) -> str:
+    """Digest of files by name, of what Python makes of them: comments, layout and docstrings do not count.
+
+    Parameters
+    ----------
+    sources : mapping of str to bytes
+        Contents by name; modules end in ``.py``.
+
+    Examples
+    --------
+    >>> plain, commented = b"x = 1", b"x = (1)  # one"
+    >>> digest_of_sources({"a.py": plain}) == digest_of_sources({"a.py": commented})
+    True
+    >>> digest_of_sources({"a.py": plain}) == digest_of_sources({"a.py": b"x = 2"})
+    False
+    """
+    libraries = {name: version(name) for name in _LIBRARIES}
+    # the syntax tree is written differently by each version of Python, which is one of the things that compute
+    total = hashlib.sha256(json.dumps([platform.python_version_tuple()[:2], libraries]).encode())
+    for name, source in sorted(sources.items()):
+        total.update(f"\0{name}\0".encode())
+        total.update(_meaning(source) if name.endswith(".py") else source)
+    return total.hexdigest()[:16]
+
+
+def _meaning(source: bytes) -> bytes:
+    tree = ast.parse(source)
+    for node in ast.walk(tree):
+        body = getattr(node, "body", None)
+        if isinstance(body, list) and isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and body:
+            first = body[0]
+            if isinstance(first, ast.Expr) and isinstance(first.value, ast.Constant):
+                del body[0]
+    return ast.dump(tree).encode()
+
+
+def run_key(what: Mapping[str, Any]) -> str:
+    """Key of one run in a store: a digest of plain data in which the order of names does not matter.
+
+    Parameters
+    ----------
+    what : mapping
+        Scenario, options, seed, theorems, metrics, tolerances, version of the mathematics.
+
+    Examples
+    --------
+    >>> run_key({"seed": 1, "scenario": "hexagon"}) == run_key({"scenario": "hexagon", "seed": 1})
+    True
+    """
+    return hashlib.sha256(json.dumps(what, sort_keys=True).encode()).hexdigest()

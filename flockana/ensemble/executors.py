@@ -1,0 +1,372 @@
+"""Who makes the runs: this process, a pool of processes of our own, a Dask cluster, or any executor of the user's.
+
+All are used in the same way: batches of runs go out, a few more than there are workers, and records come back as they
+are done. Nothing is decided by which comes first, so the numbers do not depend on who computes them.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor
+from concurrent.futures import wait as wait_for
+from contextlib import contextmanager
+from dataclasses import dataclass
+from multiprocessing.connection import wait as wait_for_end
+from typing import Any
+
+from flockana.checks import ensure_count
+from flockana.ensemble.work import DIED, Job, Record, Request, run_batch
+from flockana.errors import ArgumentError, FlockanaError, SolverError
+
+_TICK = 0.5  # seconds between looks around
+_QUEUED = 2  # batches per worker that are out at once: one at work, one ready
+_BATCH_SECONDS = 0.5  # runs shorter than this travel together
+_LONGEST_BATCH = 256
+_HOPELESS = 3  # workers that died in a row, without one batch done in between
+_CONNECT = 10.0  # seconds to find a scheduler and a worker
+_ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+
+
+def cores() -> int:
+    """Number of processors that this process may use."""
+    affinity = getattr(os, "sched_getaffinity", None)  # not on macOS and Windows
+    return len(affinity(0)) if affinity else os.cpu_count() or 1
+
+
+class Serial(Executor):
+    """An executor that works at once, in the caller's own process and thread.
+
+    Examples
+    --------
+    >>> Serial().submit(pow, 2, 5).result()
+    32
+    """
+
+    def submit(self, function: Callable[..., Any], /, *arguments: Any, **options: Any) -> Future[Any]:
+        """Call the function now; Ctrl-C ends it and goes on to the caller.
+
+        Parameters
+        ----------
+        function : callable
+            What to call.
+        *arguments, **options
+            With what.
+        """
+        future: Future[Any] = Future()
+        try:
+            future.set_result(function(*arguments, **options))
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
+
+class ProcessPool(ProcessPoolExecutor):
+    """Spawned processes that never see Ctrl-C, use one thread each, and end when their parent does, however it ends.
+
+    Parameters
+    ----------
+    jobs : int
+        Processes at most.
+    """
+
+    def __init__(self, jobs: int) -> None:
+        # spawned, not forked: a forked child inherits the locks of threads that it does not have
+        context = multiprocessing.get_context("spawn")
+        super().__init__(jobs, mp_context=context, initializer=_begin_worker)
+
+    def submit(self, function: Callable[..., Any], /, *arguments: Any, **options: Any) -> Future[Any]:
+        """Call the function in a process, which is started if there are too few.
+
+        Parameters
+        ----------
+        function : callable
+            What to call.
+        *arguments, **options
+            With what.
+        """
+        with interrupts_held(), _single_threaded_children():
+            return super().submit(function, *arguments, **options)
+
+    def stop(self) -> None:
+        """End all processes at once, with what they are doing."""
+        workers = list((getattr(self, "_processes", None) or {}).values())  # Python 3.14 has a public way
+        self.shutdown(wait=False, cancel_futures=True)
+        for worker in workers:
+            worker.terminate()
+
+
+def _begin_worker() -> None:
+    """Ctrl-C goes to every process of the terminal; the parent alone answers it. And nothing outlives the parent."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True).start()
+
+
+def _end_with(sentinel: int) -> None:
+    wait_for_end([sentinel])
+    os._exit(1)
+
+
+@contextmanager
+def interrupts_held() -> Iterator[None]:
+    """Keep Ctrl-C for later; processes started meanwhile never see it, not even before they can ignore it."""
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextmanager
+def _single_threaded_children() -> Iterator[None]:
+    """Processes started meanwhile use one thread for linear algebra: there are as many of them as cores."""
+    before = {name: os.environ.get(name) for name in _ONE_THREAD}
+    os.environ |= dict.fromkeys(_ONE_THREAD, "1")
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value
+
+
+@dataclass
+class Crew:
+    """An executor and what must be known of it to keep it busy.
+
+    Parameters
+    ----------
+    executor : Executor
+        Who works.
+    width : callable
+        How many batches it can work on at once, now.
+    renew : callable, optional
+        Gives a new executor after a worker's death broke this one.
+    """
+
+    executor: Executor
+    width: Callable[[], int]
+    renew: Callable[[], Executor] | None = None
+
+
+@contextmanager
+def crew(executor: Executor | None = None, *, cluster: str | None = None, jobs: int | None = None) -> Iterator[Crew]:
+    """Who makes the runs; what is started here ends here.
+
+    Parameters
+    ----------
+    executor : Executor, optional
+        The user's own, which is left running.
+    cluster : str, optional
+        Address of a Dask scheduler, or ``"local"`` to start one.
+    jobs : int, optional
+        Processes to start, by default as many as there are cores; with 1 this process works itself.
+
+    Raises
+    ------
+    ArgumentError
+        If the choices exclude each other.
+    SolverError
+        If there is no scheduler at the address, or it has no workers.
+    """
+    ensure_crew(executor, cluster, jobs)
+    count = cores() if jobs is None else jobs
+    if executor is not None:
+        width = getattr(executor, "_max_workers", None) or cores()
+        yield Crew(executor, lambda: width)
+    elif cluster is not None:
+        with _dask(cluster, count) as found:
+            yield found
+    elif count == 1:
+        yield Crew(Serial(), lambda: 1)
+    else:
+        with _pool(count) as found:
+            yield found
+
+
+def ensure_crew(executor: Any, cluster: Any, jobs: Any) -> None:
+    """Check who shall make the runs, before anything is started.
+
+    Parameters
+    ----------
+    executor, cluster, jobs
+        As in `crew`.
+
+    Raises
+    ------
+    ArgumentError
+        If a choice is bad, or two exclude each other.
+    """
+    if executor is not None and not isinstance(executor, Executor):
+        raise ArgumentError(f"executor = {executor!r}: expected a concurrent.futures.Executor")
+    if executor is not None and (cluster is not None or jobs is not None):
+        raise ArgumentError("executor, and cluster or jobs: expected one of them; an executor has its own size")
+    if cluster is not None and not (isinstance(cluster, str) and cluster):
+        raise ArgumentError(f"cluster = {cluster!r}: expected the address of a Dask scheduler, or 'local'")
+    if cluster not in (None, "local") and jobs is not None:
+        raise ArgumentError(f"jobs = {jobs}: the cluster at {cluster} has its own size; leave it out")
+    if jobs is not None:
+        ensure_count("jobs", jobs)
+
+
+@contextmanager
+def _pool(count: int) -> Iterator[Crew]:
+    """A process pool of our own, made anew when a worker dies."""
+    pools = [ProcessPool(count)]
+
+    def renew() -> Executor:
+        pools[-1].stop()
+        pools.append(ProcessPool(count))
+        return pools[-1]
+
+    try:
+        yield Crew(pools[0], lambda: count, renew)
+        pools[-1].shutdown()
+    except BaseException:
+        pools[-1].stop()
+        raise
+
+
+@contextmanager
+def _dask(address: str, count: int) -> Iterator[Crew]:
+    """A Dask cluster, by address or of our own."""
+    try:
+        from distributed import Client, LocalCluster
+    except ImportError as error:
+        raise ArgumentError(
+            f"cluster = {address!r}: Dask is not installed; pip install 'flockana[cluster]', or leave cluster out"
+        ) from error
+    own = None
+    try:
+        if address == "local":
+            with interrupts_held(), _single_threaded_children():
+                own = LocalCluster(
+                    n_workers=count,
+                    threads_per_worker=1,
+                    host="127.0.0.1",
+                    dashboard_address="127.0.0.1:0",
+                    silence_logs=50,
+                )
+        try:
+            client = Client(own or address, timeout=_CONNECT, set_as_default=False)
+            client.wait_for_workers(1, timeout=_CONNECT)
+        except (OSError, ValueError, ImportError) as error:  # a timeout is an OSError
+            raise SolverError(
+                f"cluster = {address!r}: no scheduler with a worker answers within {_CONNECT:g} s ({error}); start "
+                "them with `dask scheduler` and `dask worker ADDRESS --nthreads 1`, and give the scheduler's address"
+            ) from error
+        with client:
+            # by default Dask takes two calls that look alike for one and gives the first one's result again
+            yield Crew(client.get_executor(pure=False), lambda: max(1, sum(client.nthreads().values())))
+    finally:
+        if own is not None:
+            own.close()
+
+
+def make_runs(request: Request, jobs: Sequence[Job], hands: Crew) -> Iterator[tuple[Record, ...]]:
+    """Make runs by whoever does it; records come as batches of them are done.
+
+    A run that ends its worker (for want of memory, say) is found by trying those under suspicion one at a time, and
+    recorded as such; all others are made again.
+
+    Parameters
+    ----------
+    request : Request
+        What is asked of each.
+    jobs : sequence of Job
+        Which.
+    hands : Crew
+        Who does it.
+
+    Raises
+    ------
+    SolverError
+        If the executor broke and cannot be renewed, or its workers die one after the other.
+    """
+    waiting, suspects = deque(jobs), deque[Job]()
+    pending: dict[Future[tuple[Record, ...]], tuple[Job, ...]] = {}
+    dead: list[Record] = []  # kept back until a batch is done: only then the fault was theirs
+    size = 1
+    try:
+        while waiting or suspects or pending:
+            for batch in _next_batches(waiting, suspects, len(pending), hands.width(), size):
+                pending[hands.executor.submit(run_batch, request, batch)] = batch
+            done, _ = wait_for(pending, timeout=_TICK, return_when=FIRST_COMPLETED)
+            for future in done:
+                batch = pending.pop(future)
+                try:
+                    records = future.result()
+                except Exception as error:
+                    alone = len(batch) == 1 and not pending
+                    found = _under_suspicion(error, batch, pending, hands)
+                    if not alone:
+                        suspects.extend(found)
+                        break  # what else is done is still pending, or under suspicion
+                    dead.append(Record(batch[0], DIED, "the worker process that made this run ended"))
+                    if len(dead) == _HOPELESS:
+                        raise _hopeless() from error
+                else:
+                    size = _batch_size(records)
+                    yield (*dead, *records)
+                    dead.clear()
+        yield tuple(dead)
+    except BaseException:
+        for future in pending:
+            future.cancel()
+        raise
+
+
+def _next_batches(
+    waiting: deque[Job], suspects: deque[Job], out: int, width: int, size: int
+) -> Iterator[tuple[Job, ...]]:
+    """Batches to send now: a few per worker; one run alone while some are suspected of ending workers."""
+    if suspects:
+        if not out:
+            yield (suspects.popleft(),)
+        return
+    for _ in range(_QUEUED * width - out):
+        if waiting:
+            fair = max(1, len(waiting) // (_QUEUED * width))  # so that all workers end together
+            yield tuple(waiting.popleft() for _ in range(min(size, fair)))
+
+
+def _batch_size(records: tuple[Record, ...]) -> int:
+    """How many runs make a batch of about half a second, by the last ones that were made."""
+    each = sum(one.seconds for one in records) / len(records)
+    return int(min(_LONGEST_BATCH, max(1.0, _BATCH_SECONDS / max(each, 1e-6))))
+
+
+def _under_suspicion(
+    error: BaseException, batch: tuple[Job, ...], pending: dict[Any, tuple[Job, ...]], hands: Crew
+) -> tuple[Job, ...]:
+    """The runs any of which may have ended a worker; raises if it was something else, or nothing can go on."""
+    if type(error).__name__ == "KilledWorker":  # Dask's, after it tried the batch on several workers
+        return batch
+    if isinstance(error, BrokenExecutor) and hands.renew is not None:
+        found = (*batch, *(job for other in pending.values() for job in other))
+        pending.clear()
+        hands.executor = hands.renew()
+        return found
+    if isinstance(error, FlockanaError):
+        raise error
+    raise SolverError(
+        f"the executor failed: {type(error).__name__}: {error}; runs in a store are kept, so mend it and start again"
+    ) from error
+
+
+def _hopeless() -> SolverError:
+    return SolverError(
+        f"{_HOPELESS} worker processes died one after the other: a script that starts an ensemble must do so under "
+        "`if __name__ == '__main__':`; if memory is short, use jobs=1 (--jobs 1)"
+    )

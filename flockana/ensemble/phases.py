@@ -1,0 +1,71 @@
+"""Into which phase a run ended: flocking, fragmentation, collapse, or none of them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flockana.checks import ensure_nonnegative
+from flockana.errors import ArgumentError
+from flockana.theorems import Tolerances
+
+if TYPE_CHECKING:
+    import xarray
+
+PHASES = ("flocking", "fragmentation", "collapse", "other")
+CONTACT = 0.05  # of d
+_NEEDED = ("end_distance", "components", "velocity_mismatch", "deviation_energy")
+
+
+def phases(
+    dataset: xarray.Dataset, *, contact: float = CONTACT, tolerances: Tolerances | None = None
+) -> xarray.DataArray:
+    """Name the phase in which each run of an ensemble ended, from its measures at the end.
+
+    In this order: *collapse*, two agents are closer than `contact` d, which no lattice under pressure is before its
+    links fold; *fragmentation*, the net has several components; *flocking*, it is connected with velocities matched
+    (K̃ ≤ ``tolerances.mismatch``) and links near d (Ẽ ≤ ``tolerances.deviation``), ε₂ and ε₁ of Definition 5 of
+    Olfati-Saber (2006); *other*, connected, but still moving or strained. A phase is of the end time, not of a limit.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        From `ensemble`, with the measures end_distance, components, velocity_mismatch and deviation_energy.
+    contact : float
+        Distance, relative to d, below which agents count as collapsed onto each other.
+    tolerances : Tolerances, optional
+        Its `mismatch` and `deviation`.
+
+    Returns
+    -------
+    xarray.DataArray
+        Codes into `PHASES`, of the dimensions of the runs; -1 where a run did not complete.
+
+    Raises
+    ------
+    ArgumentError
+        If a measure is missing.
+
+    Examples
+    --------
+    >>> import xarray
+    >>> end = {"end_distance": [0.9, 0.9, 0.01], "components": [1.0, 3.0, 1.0]}
+    >>> end |= {"velocity_mismatch": [0.0] * 3, "deviation_energy": [0.001] * 3}
+    >>> runs = xarray.Dataset({name: ("seed", values) for name, values in end.items()})
+    >>> [PHASES[code] for code in phases(runs).values]
+    ['flocking', 'fragmentation', 'collapse']
+    """
+    missing = [name for name in _NEEDED if name not in dataset]
+    if missing:
+        raise ArgumentError(f"the dataset lacks {', '.join(missing)}: call ensemble with these metrics")
+    limits = tolerances or Tolerances()
+    distance, parts, mismatch, deviation = (dataset[name] for name in _NEEDED)
+    settled = (mismatch <= limits.mismatch) & (deviation <= limits.deviation)
+    kinds = [distance < ensure_nonnegative("contact", contact), parts > 1.0, settled]
+    names = ("collapse", "fragmentation", "flocking")
+    codes = np.select([kind.values for kind in kinds], [PHASES.index(name) for name in names], PHASES.index("other"))
+    known = np.isfinite(distance.values) & np.isfinite(parts.values)
+    attributes = {"long_name": "phase at the end", "flag_values": list(range(len(PHASES)))}
+    attributes["flag_meanings"] = " ".join(PHASES)
+    return distance.copy(data=np.where(known, codes, -1).astype(np.int8)).assign_attrs(attributes).rename("phase")

@@ -1,0 +1,225 @@
+"""A file that keeps the runs of ensembles as they arrive, and survives whatever ends the program that writes it.
+
+It is an SQLite file with a write-ahead log: a batch of runs is either in it or not, whenever the program is killed
+(after a loss of power the last batches may be missing, none is torn), and several programs may write to it at once.
+Like every such file it belongs on a local disk: write-ahead logs do not work on network file systems. The runs of a
+cluster are written by the one program that asked for them.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sqlite3
+import time
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from types import TracebackType
+
+from flockana._version import __version__
+from flockana.ensemble.digest import mathematics
+from flockana.ensemble.work import COMPLETE, Record
+from flockana.errors import FileError
+
+FORMAT = 1
+_MARK = 0x666C6F63  # "floc": tells our files from other SQLite files
+_PATIENCE = 60.0  # seconds to wait for another writer
+_AT_ONCE = 500  # keys in one query
+
+_SCHEMA = (
+    "CREATE TABLE IF NOT EXISTS facts (name TEXT PRIMARY KEY, value TEXT NOT NULL)",
+    """CREATE TABLE IF NOT EXISTS runs (
+        key TEXT PRIMARY KEY, scenario TEXT NOT NULL, seed INTEGER NOT NULL, options TEXT NOT NULL,
+        status TEXT NOT NULL, record TEXT NOT NULL
+    ) WITHOUT ROWID""",
+    f"PRAGMA application_id = {_MARK}",
+    f"PRAGMA user_version = {FORMAT}",
+)
+# a run that is there stays; only one that did not complete gives way to one that did
+_INSERT = f"""INSERT INTO runs VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT (key) DO UPDATE
+    SET status = excluded.status, record = excluded.record
+    WHERE runs.status <> '{COMPLETE}' AND excluded.status = '{COMPLETE}'"""
+
+
+class Store:
+    """Runs by key, in a file; a context manager.
+
+    Parameters
+    ----------
+    path : path-like
+        File; made, with its folders, if there is none.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be written, is damaged, is no store, or holds runs of another version of the mathematics.
+        It is left as it was.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from flockana.ensemble.work import Job
+    >>> with tempfile.TemporaryDirectory() as folder, Store(Path(folder) / "runs.sqlite") as store:
+    ...     store.add("pair", {"k1": Record(Job(1), "complete"), "k2": Record(Job(2), "error", "why")})
+    ...     sorted(store.read(["k1", "k2", "k3"])), len(store)
+    (['k1', 'k2'], 2)
+    """
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        self.path = Path(path)
+        _ensure_place(self.path)
+        with self._explained():
+            self._file = sqlite3.connect(self.path, timeout=_PATIENCE, isolation_level=None)
+            try:
+                self._open()
+            except BaseException:
+                self._file.close()
+                raise
+
+    def _open(self) -> None:
+        tables = {name for (name,) in self._file.execute("SELECT name FROM sqlite_master WHERE type = 'table'")}
+        if tables and self._pragma("application_id") != _MARK:
+            raise FileError(f"{self.path} is no store of flockana: choose another file")
+        if self._pragma("user_version") > FORMAT:
+            raise FileError(f"{self.path} is a store of a newer format: update flockana, or choose another file")
+        if tables:
+            self._ensure_whole()
+            self._ensure_version()
+        self._prepare()
+        with self._transaction():  # a second program may be doing the same: nothing is done twice
+            for statement in _SCHEMA:
+                self._file.execute(statement)
+            facts = (("mathematics", mathematics()), ("flockana", __version__))
+            self._file.executemany("INSERT OR IGNORE INTO facts VALUES (?, ?)", facts)
+        self._ensure_version()
+
+    def _pragma(self, name: str) -> int:
+        return int(self._file.execute(f"PRAGMA {name}").fetchone()[0])
+
+    def _prepare(self) -> None:
+        """Switch to a write-ahead log; SQLite does not wait for its turn here, so we do."""
+        deadline = time.monotonic() + _PATIENCE
+        while True:
+            try:
+                self._file.execute("PRAGMA journal_mode = WAL")
+                self._file.execute("PRAGMA synchronous = NORMAL")
+                return
+            except sqlite3.OperationalError as error:
+                if "locked" not in str(error) or time.monotonic() > deadline:
+                    raise
+                time.sleep(0.01)
+
+    def _ensure_whole(self) -> None:
+        found = self._file.execute("PRAGMA quick_check(1)").fetchone()[0]
+        if found != "ok":
+            raise sqlite3.DatabaseError(found)
+
+    def _ensure_version(self) -> None:
+        facts = dict(self._file.execute("SELECT name, value FROM facts"))
+        if facts.get("mathematics") != mathematics():
+            raise FileError(
+                f"{self.path} holds runs of another version of the mathematics ({facts.get('mathematics')}, flockana "
+                f"{facts.get('flockana')}; this is {mathematics()}, flockana {__version__}): choose another file, or "
+                "compute with the flockana, numpy, scipy and numba that wrote it"
+            )
+
+    def __enter__(self) -> Store:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def __len__(self) -> int:
+        with self._explained():
+            return int(self._file.execute("SELECT COUNT(*) FROM runs").fetchone()[0])
+
+    def read(self, keys: Iterable[str]) -> dict[str, Record]:
+        """The runs that are there, by key.
+
+        Parameters
+        ----------
+        keys : iterable of str
+            Which to look for.
+
+        Raises
+        ------
+        FileError
+            If the file is damaged.
+        """
+        wanted, found = list(keys), {}
+        with self._explained():
+            for first in range(0, len(wanted), _AT_ONCE):
+                part = wanted[first : first + _AT_ONCE]
+                marks = ", ".join("?" * len(part))
+                rows = self._file.execute(f"SELECT key, record FROM runs WHERE key IN ({marks})", part)
+                for key, text in rows:
+                    try:
+                        found[key] = Record.from_json(text)
+                    except (ValueError, KeyError, TypeError) as error:
+                        raise sqlite3.DatabaseError(f"run {key[:8]} cannot be read, {error!r}") from error
+        return found
+
+    def add(self, scenario: str, records: Mapping[str, Record]) -> None:
+        """Write runs, all of them or none; a run that is there already stays as it is.
+
+        Parameters
+        ----------
+        scenario : str
+            Whose runs.
+        records : mapping of str to Record
+            By key.
+
+        Raises
+        ------
+        FileError
+            If they cannot be written, such as on a full disk.
+        """
+        rows = [
+            (key, scenario, one.job.seed, json.dumps(dict(one.job.options)), one.status, one.to_json())
+            for key, one in records.items()
+        ]
+        with self._explained(), self._transaction():
+            self._file.executemany(_INSERT, rows)
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+    @contextmanager
+    def _transaction(self) -> Iterator[None]:
+        self._file.execute("BEGIN IMMEDIATE")
+        try:
+            yield
+        except BaseException:
+            if self._file.in_transaction:  # on a full disk SQLite has ended it already
+                self._file.execute("ROLLBACK")
+            raise
+        self._file.execute("COMMIT")
+
+    @contextmanager
+    def _explained(self) -> Iterator[None]:
+        """SQLite's errors, as ours with a remedy."""
+        try:
+            yield
+        except sqlite3.OperationalError as error:
+            raise FileError(
+                f"cannot write {self.path}: {error}; choose a file on a local disk with room that you may write to"
+            ) from error
+        except sqlite3.DatabaseError as error:
+            reason = " ".join(str(error).split())
+            raise FileError(
+                f"{self.path} is damaged or no store of flockana ({reason}); it was left as it is: move it away, or "
+                "choose another file"
+            ) from error
+
+
+def _ensure_place(path: Path) -> None:
+    if path.is_dir():
+        raise FileError(f"{path} is a folder: expected a file name, such as {path / 'runs.sqlite'}")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise FileError(f"cannot make {path.parent}: {error.strerror or error}; choose another folder") from error

@@ -1,0 +1,277 @@
+"""One run of an ensemble, from names and numbers to a plain record; what a worker executes."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, field, replace
+from typing import Any
+
+from flockana.ensemble.digest import mathematics
+from flockana.ensemble.measures import METRICS, measure_named
+from flockana.errors import ArgumentError, SolverError
+from flockana.scenarios import Scenario, scenario
+from flockana.scenarios.scenario import SOURCE
+from flockana.theorems import Tolerances, Verdict, verify
+from flockana.trajectory import Trajectory
+
+Scalar = bool | int | float | str
+COMPLETE, FAILED, ERROR, DIED = "complete", "failed", "error", "died"
+
+
+@dataclass(frozen=True)
+class Job:
+    """One run to make.
+
+    Parameters
+    ----------
+    seed : int
+        Of the random start.
+    options : tuple of (str, scalar)
+        Of the scenario, sorted by name.
+    """
+
+    seed: int
+    options: tuple[tuple[str, Scalar], ...] = ()
+
+
+@dataclass(frozen=True)
+class Request:
+    """What is asked of every run of an ensemble; names and numbers only, so it can be sent to any machine.
+
+    Parameters
+    ----------
+    scenario : str
+        A name of the catalogue, or ``"module:function"``.
+    theorems : tuple of str, optional
+        Which to check; by default all of the scenario's own and what its source reports.
+    metrics : tuple of str
+        Names of measures, or ``"module:function"``.
+    tolerances : Tolerances
+        Thresholds of the verdicts.
+    mathematics : str
+        Version that the runs must be computed by.
+    """
+
+    scenario: str
+    theorems: tuple[str, ...] | None = None
+    metrics: tuple[str, ...] = METRICS
+    tolerances: Tolerances = field(default_factory=Tolerances)
+    mathematics: str = field(default_factory=mathematics)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data, for the key of a run."""
+        return asdict(self)
+
+
+@dataclass(frozen=True)
+class Record:
+    """What an ensemble keeps of one run.
+
+    Parameters
+    ----------
+    job : Job
+        Which run.
+    status : {"complete", "failed", "error", "died"}
+        Complete; ended early by the integrator; raised an error; or ended its worker process.
+    message : str
+        Why, if not complete.
+    verdicts : mapping of str to str
+        Status by theorem.
+    claims : mapping of str to (str, float or None, float or None)
+        Status, margin and error of the margin by ``"theorem:claim"``.
+    metrics : mapping of str to float
+        Measures by name.
+    stats : mapping of str to int
+        Steps and evaluations.
+    seconds : float
+        Wall time of simulating and checking: the one entry that differs from run to run.
+    """
+
+    job: Job
+    status: str
+    message: str = ""
+    verdicts: Mapping[str, str] = field(default_factory=dict)
+    claims: Mapping[str, tuple[str, float | None, float | None]] = field(default_factory=dict)
+    metrics: Mapping[str, float] = field(default_factory=dict)
+    stats: Mapping[str, int] = field(default_factory=dict)
+    seconds: float = 0.0
+
+    def to_json(self) -> str:
+        """As text that gives every number back to the bit (NaN and infinities in Python's spelling)."""
+        return json.dumps(asdict(self), ensure_ascii=False)
+
+    @classmethod
+    def from_json(cls, text: str) -> Record:
+        """Read what `to_json` wrote.
+
+        Parameters
+        ----------
+        text : str
+            JSON.
+
+        Examples
+        --------
+        >>> record = Record(Job(3, (("n", 7),)), "complete", claims={"os-1:i": ("verified", 0.1, None)})
+        >>> Record.from_json(record.to_json()) == record
+        True
+        """
+        data = json.loads(text)
+        job, claims = data.pop("job"), data.pop("claims")
+        options = tuple((name, value) for name, value in job["options"])
+        return cls(Job(job["seed"], options), claims={k: tuple(v) for k, v in claims.items()}, **data)
+
+
+def reference(function: Callable[..., Any]) -> str:
+    """``"module:name"`` of a function that another process can import.
+
+    Parameters
+    ----------
+    function : callable
+        Defined at the top of a module.
+
+    Raises
+    ------
+    ArgumentError
+        If it is not found under its own name, as a lambda or an inner function is not.
+
+    Examples
+    --------
+    >>> reference(run_one)
+    'flockana.ensemble.work:run_one'
+    """
+    name = f"{getattr(function, '__module__', None)}:{getattr(function, '__qualname__', None)}"
+    try:
+        if resolve(name) is function:
+            return name
+    except (ImportError, AttributeError):
+        pass
+    raise ArgumentError(
+        f"{function!r}: other processes cannot import it; expected a function defined at the top of a module"
+    )
+
+
+def resolve(name: str) -> Any:
+    """The function of a ``"module:name"``.
+
+    Parameters
+    ----------
+    name : str
+        As `reference` gave it.
+    """
+    module, _, path = name.partition(":")
+    item: Any = importlib.import_module(module)
+    for part in path.split("."):
+        item = getattr(item, part)
+    return item
+
+
+def run_batch(request: Request, jobs: tuple[Job, ...]) -> tuple[Record, ...]:
+    """Make some runs, one after the other, in this process.
+
+    Parameters
+    ----------
+    request : Request
+        What is asked of each.
+    jobs : tuple of Job
+        Which.
+
+    Raises
+    ------
+    SolverError
+        If this process has other mathematics than the one that asks.
+    KeyboardInterrupt
+        If a run was interrupted.
+    """
+    if mathematics() != request.mathematics:
+        raise SolverError(
+            f"a worker computes with version {mathematics()} of the mathematics, expected {request.mathematics}: "
+            "give all machines the same flockana, Python, numpy, scipy and numba, edit none of it meanwhile, and start "
+            "the workers anew"
+        )
+    return tuple(run_one(request, job) for job in jobs)
+
+
+def run_one(request: Request, job: Job) -> Record:
+    """Make one run; whatever goes wrong becomes part of its record.
+
+    Parameters
+    ----------
+    request : Request
+        What is asked of it.
+    job : Job
+        Which.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If it was interrupted.
+    """
+    started = time.perf_counter()
+    try:
+        item = build(request.scenario, job)
+        run = item.run()
+        if run.status == "interrupted":
+            raise KeyboardInterrupt
+        if run.status != COMPLETE:  # of a part of the run no claim about the whole follows
+            found = Record(job, FAILED, run.message, stats=_stats(run))
+        else:
+            found = _judged(request, job, item, run)
+    except Exception as error:
+        found = Record(job, ERROR, f"{type(error).__name__}: {' '.join(str(error).split())}")
+    return replace(found, seconds=time.perf_counter() - started)
+
+
+def build(name: str, job: Job) -> Scenario:
+    """The scenario of a job.
+
+    Parameters
+    ----------
+    name : str
+        A name of the catalogue, or ``"module:function"``.
+    job : Job
+        Seed and options.
+    """
+    if ":" not in name:
+        return scenario(name, job.seed, **dict(job.options))
+    made = resolve(name)(job.seed, **dict(job.options))
+    if not isinstance(made, Scenario):
+        raise ArgumentError(f"{name} returned {type(made).__name__}: expected a Scenario")
+    return made
+
+
+def _judged(request: Request, job: Job, item: Scenario, run: Trajectory) -> Record:
+    verdicts = _verdicts(request, item, run)
+    claims = {
+        f"{verdict.theorem}:{claim.name}": (claim.status, _number(claim.margin), _number(claim.error))
+        for verdict in verdicts
+        for claim in verdict.claims
+    }
+    metrics = {name: float(_measure(name)(run)) for name in request.metrics}
+    statuses: dict[str, str] = {verdict.theorem: verdict.status for verdict in verdicts}
+    return Record(job, COMPLETE, "", statuses, claims, metrics, _stats(run))
+
+
+def _verdicts(request: Request, item: Scenario, run: Trajectory) -> tuple[Verdict, ...]:
+    tolerances = request.tolerances
+    if request.theorems is None:
+        return item.verify(run, tolerances=tolerances)
+    chosen = [name for name in request.theorems if name != SOURCE]
+    found = [verify(name, run, tolerances=tolerances, subject=item.name) for name in chosen]
+    if SOURCE in request.theorems:
+        found += replace(item, expected={}).verify(run, tolerances=tolerances)
+    return tuple(found)
+
+
+def _measure(name: str) -> Callable[[Trajectory], float]:
+    return resolve(name) if ":" in name else measure_named(name).value
+
+
+def _number(value: Any) -> float | None:
+    return None if value is None else float(value)
+
+
+def _stats(run: Trajectory) -> dict[str, int]:
+    return {name: int(run.stats[name]) for name in ("steps", "evaluations") if name in run.stats}

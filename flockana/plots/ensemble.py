@@ -1,0 +1,313 @@
+"""Ensembles: shares with their intervals, distributions over runs, phase diagrams."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.patches import Rectangle
+from matplotlib.ticker import PercentFormatter
+
+from flockana.errors import ArgumentError, UnknownNameError
+from flockana.plots.style import BLUE, FAINT, GREEN, INK, MUTED, ORANGE, VERMILLION, ensure_axes
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.axes import Axes
+
+_MARKS = "osD^v<>"
+_DODGE = 0.012  # of the axes' width, between curves that share their abscissae
+_MOST = 7  # curves that can be told apart
+_LINE = 105  # characters that fit side by side above the axes
+# colour, hatch: told apart in grey by their lightness and, where that is close, by the hatch
+_PHASES = {
+    "flocking": (GREEN, ""),
+    "fragmentation": (ORANGE, "//"),
+    "collapse": (VERMILLION, "xx"),
+    "other": (FAINT, ".."),
+}
+
+
+def share_against(
+    table: xarray.Dataset,
+    parameter: str,
+    *,
+    claims: Iterable[str] | None = None,
+    of: str = "verified",
+    ax: Axes | None = None,
+    title: str = "",
+) -> Axes:
+    """Draw the share of runs in which claims are verified (or refuted) against a parameter, with interval bars.
+
+    Parameters
+    ----------
+    table : xarray.Dataset
+        From `flockana.ensemble.shares`, with the parameter as its only one.
+    parameter : str
+        Its name; an axis of numbers, or of names.
+    claims : iterable of str, optional
+        Which, at most seven; by default all.
+    of : {"verified", "refuted"}
+        Which share.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+    title : str
+        Above the axes.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    ArgumentError
+        If the table has other parameters, no such claim, or too many claims.
+    """
+    chosen = _ensure_table(table, {parameter}, claims, of)
+    if len(chosen) > _MOST:
+        raise ArgumentError(
+            f"{len(chosen)} claims: expected at most {_MOST} in one picture; choose some by claims=[...]"
+        )
+    axes: Any = ensure_axes(ax)
+    values = table[parameter].values
+    place = values if values.dtype.kind in "iuf" else np.arange(len(values))
+    spread = float(np.ptp(place)) or 1.0
+    for k, claim in enumerate(chosen):
+        part = table.sel(claim=claim, of=of)
+        shift = _DODGE * spread * (k - 0.5 * (len(chosen) - 1))
+        share = part.share.values
+        bars = np.abs(np.stack([share - part.low.values, part.high.values - share]))
+        axes.errorbar(
+            place + shift, share, yerr=bars, marker=_MARKS[k], markersize=4, capsize=2, elinewidth=0.9, label=claim
+        )
+    if place is not values:
+        axes.set_xticks(place, [str(value) for value in values.tolist()])
+    axes.set_xlabel(parameter)
+    axes.set_ylim(-0.03, 1.03)
+    axes.yaxis.set_major_formatter(PercentFormatter(1.0))
+    axes.set_ylabel(f"share of runs {of}, {100 * table.attrs['level']:g} % intervals")
+    _finish(axes, title)
+    return axes  # type: ignore[no-any-return]
+
+
+def share_bars(
+    table: xarray.Dataset, *, claims: Iterable[str] | None = None, ax: Axes | None = None, title: str = ""
+) -> Axes:
+    """Draw for each claim the shares of runs in which it is verified and refuted, with their intervals.
+
+    Parameters
+    ----------
+    table : xarray.Dataset
+        From `flockana.ensemble.shares`, without parameters.
+    claims : iterable of str, optional
+        Which; by default all.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+    title : str
+        Above the axes.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    ArgumentError
+        If the table has parameters, or no such claim.
+    """
+    chosen = _ensure_table(table, set(), claims, "verified")
+    axes: Any = ensure_axes(ax)
+    rows = np.arange(len(chosen))[::-1]
+    for of, colour, mark, shift in (("verified", BLUE, "o", 0.12), ("refuted", VERMILLION, "s", -0.12)):
+        part = table.sel(claim=chosen, of=of)
+        share, low, high = part.share.values, part.low.values, part.high.values
+        known = np.isfinite(share)
+        axes.hlines(rows[known] + shift, low[known], high[known], color=colour, linewidth=1.4)
+        fill = colour if of == "verified" else "white"
+        style = {"color": colour, "markerfacecolor": fill, "markersize": 5, "linestyle": "none"}
+        axes.plot(share[known], rows[known] + shift, mark, label=of, **style)
+    axes.set_yticks(rows, chosen)
+    axes.set_ylim(-0.6, len(chosen) - 0.4)
+    axes.set_xlim(-0.03, 1.03)
+    axes.xaxis.set_major_formatter(PercentFormatter(1.0))
+    axes.set_xlabel(
+        f"share of {_several(table.runs.sel(claim=chosen).values)} runs, {100 * table.attrs['level']:g} % intervals"
+    )
+    _finish(axes, title)
+    return axes  # type: ignore[no-any-return]
+
+
+def distribution(
+    groups: Mapping[str, Any],
+    *,
+    quantity: str,
+    bound: float | None = None,
+    log: bool = False,
+    ax: Axes | None = None,
+    title: str = "",
+) -> Axes:
+    """Draw how a measure is distributed over runs: for each value, the share of runs that stay at or below it.
+
+    A cumulative curve, unlike a histogram, hides nothing in bins and lets groups be compared. Each run is a tick below.
+
+    Parameters
+    ----------
+    groups : mapping of str to array_like
+        One value per run, by the name of its group; NaN is left out.
+    quantity : str
+        What is measured, with its unit, such as ``"terminal δ/d"``.
+    bound : float, optional
+        A threshold to mark.
+    log : bool
+        A logarithmic axis; values that are not positive are left out and counted in the legend.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+    title : str
+        Above the axes.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    ArgumentError
+        If there is nothing to draw.
+    """
+    axes: Any = ensure_axes(ax)
+    drawn = 0
+    for k, (name, values) in enumerate(groups.items()):
+        known = np.sort(np.asarray(values, dtype=np.float64).ravel())
+        known = known[np.isfinite(known)]
+        shown = known[known > 0.0] if log else known
+        if not shown.size:
+            continue
+        below = known.size - shown.size  # they count in the shares, although a logarithmic axis has no place for them
+        note = f", {below} at 0" if below else ""
+        share = (below + np.arange(shown.size + 1)) / known.size
+        (line,) = axes.step(
+            np.concatenate([shown[:1], shown]), share, where="post", label=f"{name} ({known.size} runs{note})"
+        )
+        height = -0.02 - 0.03 * k
+        axes.plot(shown, np.full(shown.size, height), "|", color=line.get_color(), markersize=5, markeredgewidth=0.7)
+        drawn += 1
+    if not drawn:
+        raise ArgumentError(f"{quantity}: no finite value{' above 0' if log else ''} to draw; was the measure taken?")
+    if bound is not None:
+        axes.axvline(bound, color=MUTED, linestyle=":", linewidth=1.2, label=f"{bound:g}")
+    if log:
+        axes.set_xscale("log")
+    axes.set_ylim(-0.04 - 0.03 * len(groups), 1.03)
+    axes.yaxis.set_major_formatter(PercentFormatter(1.0))
+    axes.set_xlabel(quantity)
+    axes.set_ylabel("share of runs at or below")
+    _finish(axes, title)
+    return axes  # type: ignore[no-any-return]
+
+
+def phase_diagram(
+    phase: xarray.DataArray,
+    x: str,
+    y: str,
+    *,
+    ax: Axes | None = None,
+    title: str = "",
+    labels: Sequence[str] = ("", ""),
+) -> Axes:
+    """Draw in which phase runs ended over two parameters: each cell is divided by the shares of its seeds.
+
+    Parameters
+    ----------
+    phase : xarray.DataArray
+        From `flockana.ensemble.phases`, with dimensions x, y and seed.
+    x, y : str
+        Names of the parameters; every value has a cell of one size.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+    title : str
+        Above the axes.
+    labels : (str, str)
+        Of the axes, instead of the parameters' names.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    ArgumentError
+        If the dimensions are others.
+    """
+    if {*phase.dims} != {x, y, "seed"}:
+        raise ArgumentError(f"phase has dimensions {', '.join(map(str, phase.dims))}: expected {x}, {y} and seed")
+    axes: Any = ensure_axes(ax)
+    names = phase.attrs["flag_meanings"].split()
+    codes = phase.transpose(x, y, "seed").values
+    seen: set[str] = set()
+    for column, row in np.ndindex(*codes.shape[:2]):
+        known = codes[column, row][codes[column, row] >= 0]
+        left = column - 0.5
+        for code, count in zip(*np.unique(known, return_counts=True), strict=True):
+            width, name = float(count) / known.size, names[code]
+            colour, hatch = _PHASES[name]
+            label = None if name in seen else name
+            look: dict[str, Any] = {
+                "facecolor": colour,
+                "hatch": hatch,
+                "edgecolor": "white",
+                "linewidth": 0.0,
+                "label": label,
+            }
+            axes.add_patch(Rectangle((left, row - 0.5), width, 1.0, **look))
+            left, seen = left + width, seen | {name}
+    for axis, name, label in ((axes.xaxis, x, labels[0]), (axes.yaxis, y, labels[1])):
+        values = phase[name].values.tolist()
+        axis.set_ticks(range(len(values)), [f"{v:g}" if isinstance(v, int | float) else str(v) for v in values])
+        axis.set_ticks(np.arange(-0.5, len(values)), minor=True)
+        axis.set_label_text(label or name)
+    axes.grid(visible=False)
+    axes.grid(which="minor", color="white", linewidth=2.0)
+    axes.set_axisbelow(False)
+    axes.tick_params(which="both", length=0)
+    axes.set(xlim=(-0.5, codes.shape[0] - 0.5), ylim=(-0.5, codes.shape[1] - 0.5))
+    handles = {text: handle for handle, text in zip(*axes.get_legend_handles_labels(), strict=True)}
+    order = [name for name in names if name in handles]
+    axes.legend([handles[name] for name in order], order, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=len(order))
+    if title:
+        axes.set_title(title, color=INK, pad=26)
+    return axes  # type: ignore[no-any-return]
+
+
+def _ensure_table(table: xarray.Dataset, parameters: set[str], claims: Iterable[str] | None, of: str) -> list[str]:
+    """The claims to draw, of a table of shares over these parameters and no others."""
+    if of not in ("verified", "refuted"):
+        raise ArgumentError(f"of = {of!r}: expected 'verified' or 'refuted'")
+    others = {str(name) for name in table.runs.dims} - {"claim"}
+    if others != parameters:
+        raise ArgumentError(
+            f"the table is over {', '.join(sorted(others)) or 'no parameter'}: expected "
+            f"{', '.join(sorted(parameters)) or 'none'}; select values of the others by .sel(...)"
+        )
+    known = [str(name) for name in table.claim.values]
+    chosen = known if claims is None else list(claims)
+    for name in chosen:
+        if name not in known:
+            raise UnknownNameError("claim", name, known)
+    if not chosen:
+        raise ArgumentError("no claims: expected at least one; were theorems checked?")
+    return chosen
+
+
+def _several(counts: Any) -> str:
+    least, most = int(np.min(counts)), int(np.max(counts))
+    return f"{most}" if least == most else f"{least} to {most}"
+
+
+def _finish(axes: Any, title: str) -> None:
+    """Legend above the axes in as many columns as its texts leave room for, the title above it."""
+    labels = axes.get_legend_handles_labels()[1]
+    columns = max(1, min(4, len(labels), _LINE // (6 + max(len(text) for text in labels))))
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, borderaxespad=0.2, fontsize=8)
+    if title:
+        axes.set_title(title, pad=10 + 14 * -(-len(labels) // columns))

@@ -1,0 +1,228 @@
+from __future__ import annotations
+
+import os
+import sqlite3
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+import tiny_flocks
+
+from flockana.ensemble import Store, ensemble, store
+from flockana.ensemble.work import Job, Record
+from flockana.errors import FileError
+
+HERE = Path(__file__).parent
+CAMPAIGN = """
+import sys, tiny_flocks
+from flockana.ensemble import ensemble
+path, runs, jobs = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
+found = ensemble(tiny_flocks.slow, range(runs), theorems=["source"], jobs=jobs, store=path)
+print(found.order.values.tobytes().hex())
+"""
+
+
+def start(path, runs, log, jobs):
+    paths = [str(HERE), *os.environ.get("PYTHONPATH", "").split(os.pathsep)]
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, paths)), tiny_flocks.LOG: str(log)}
+    command = [sys.executable, "-c", CAMPAIGN, str(path), str(runs), str(jobs)]
+    return subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def begun(log):
+    """(process, seed) of every run that was begun."""
+    return [tuple(map(int, line.split())) for line in log.read_text().splitlines()] if log.exists() else []
+
+
+def seeds_in(path):
+    with sqlite3.connect(path) as file:
+        return sorted(seed for (seed,) in file.execute("SELECT seed FROM runs"))
+
+
+def patiently(condition, what):
+    for _ in range(600):
+        if condition():
+            return
+        time.sleep(0.05)
+    pytest.fail(f"in vain: {what}")
+
+
+def alive(process):
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+def records(count, status="complete"):
+    return {f"key {k}": Record(Job(k), status, metrics={"order": 0.1 + k}) for k in range(count)}
+
+
+def test_killed_at_any_moment_it_goes_on_with_what_is_missing(tmp_path):
+    path, log, runs = tmp_path / "s.sqlite", tmp_path / "log", 40
+    victim = start(path, runs, log, 2)
+    patiently(lambda: path.exists() and len(begun(log)) >= 12 and len(seeds_in(path)) >= 6, "runs in the store")
+    victim.kill()
+    victim.communicate()
+    kept, workers = seeds_in(path), {process for process, _ in begun(log)}
+    assert 6 <= len(kept) < runs
+    assert len(kept) == len(set(kept))
+    if sys.platform == "linux":
+        patiently(lambda: not any(map(alive, workers)), "workers end with their parent")
+    log.unlink()
+    again = start(path, runs, log, 1)
+    out, err = again.communicate(timeout=120)
+    assert again.returncode == 0, err
+    assert seeds_in(path) == list(range(runs))
+    assert sorted(seed for _, seed in begun(log)) == sorted({*range(runs)} - {*kept})
+    assert out.strip() == ensemble(tiny_flocks.trio, range(runs), theorems=[], jobs=1).order.values.tobytes().hex()
+
+
+def test_two_writers_at_once_do_no_harm(tmp_path):
+    path, log = tmp_path / "s.sqlite", tmp_path / "log"
+    both = [start(path, 30, log, 1) for _ in range(2)]
+    ends = [one.communicate(timeout=120) for one in both]
+    assert [one.returncode for one in both] == [0, 0], ends
+    assert ends[0][0] == ends[1][0]
+    assert seeds_in(path) == list(range(30))
+    with Store(path) as kept:
+        assert len(kept) == 30
+
+
+def test_what_is_stored_is_not_computed_again(tmp_path, monkeypatch):
+    path, log = tmp_path / "new" / "s.sqlite", tmp_path / "log"
+    monkeypatch.setenv(tiny_flocks.LOG, str(log))
+
+    def computed(seeds, **options):
+        log.unlink(missing_ok=True)
+        found = ensemble(tiny_flocks.trio, seeds, theorems=["source"], jobs=1, store=path, **options)
+        return [seed for _, seed in begun(log)], found
+
+    assert computed(range(3))[0] == [0, 1, 2]
+    more, wider = computed(range(2, 5))
+    assert more == [3, 4]
+    nothing, whole = computed([4, 0, 2])
+    assert nothing == []
+    assert whole.sel(seed=[2, 4]).identical(wider.sel(seed=[2, 4]))  # the stored time too
+    assert computed(range(2), parameters={"n": 3})[0] == [0, 1]  # an option given is not one left out
+    assert computed(range(2), parameters={"n": [3, 4]})[0] == [0, 1]
+    assert computed([0], metrics=[])[0] == [0]
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+def test_failures_are_kept_until_a_retry(tmp_path, monkeypatch):
+    path, log = tmp_path / "s.sqlite", tmp_path / "log"
+    monkeypatch.setenv(tiny_flocks.LOG, str(log))
+    given = {"theorems": ["source"], "metrics": ["order"], "jobs": 1, "store": path}
+    first = ensemble(tiny_flocks.faulty, range(2, 6), **given)
+    assert first.run.values.tolist() == [0, 2, 1, 0]
+    log.unlink()
+    assert first.identical(ensemble(tiny_flocks.faulty, range(2, 6), **given))
+    assert not log.exists()
+    ensemble(tiny_flocks.faulty, range(2, 6), **given, retry=True)
+    assert [seed for _, seed in begun(log)] == [4]  # 3 raises before it is logged
+    with Store(path) as kept:
+        assert len(kept) == 4
+
+
+def test_a_record_that_is_there_stays_and_a_failure_gives_way(tmp_path):
+    with Store(tmp_path / "s.sqlite") as kept:
+        kept.add("a", records(2))
+        kept.add("a", {**records(3, "error"), "key 0": Record(Job(0), "complete", metrics={"order": 9.0})})
+        assert kept.read(["key 0"])["key 0"].metrics["order"] == 0.1
+        assert {key: one.status for key, one in kept.read(f"key {k}" for k in range(2000)).items()} == {
+            "key 0": "complete",
+            "key 1": "complete",
+            "key 2": "error",
+        }
+        kept.add("a", {"key 2": Record(Job(2), "complete")})
+        assert kept.read(["key 2"])["key 2"].status == "complete"
+
+
+def test_numbers_come_back_to_the_bit(tmp_path):
+    values = {"a": 0.1 + 0.2, "b": float("inf"), "c": -0.0, "d": 5e-324}
+    one = Record(Job(2**62, (("n", 3), ("push", True), ("word", "ö"))), "complete", "", {}, {}, values, {"steps": 3})
+    with Store(tmp_path / "s.sqlite") as kept:
+        kept.add("a", {"k": one})
+    with Store(tmp_path / "s.sqlite") as kept:
+        found = kept.read(["k"])["k"]
+    assert found == one
+    assert [v.hex() for v in found.metrics.values()] == [v.hex() for v in values.values()]
+
+
+@pytest.fixture
+def whole(tmp_path):
+    path = tmp_path / "s.sqlite"
+    with Store(path) as kept:
+        kept.add("a", records(3000))
+    return path
+
+
+def refused(path, message):
+    before = path.read_bytes()
+    with pytest.raises(FileError, match=message):
+        Store(path)
+    assert path.read_bytes() == before
+
+
+def test_another_version_of_the_mathematics_is_refused(whole, monkeypatch):
+    monkeypatch.setattr(store, "mathematics", lambda: "0" * 16)
+    refused(whole, r"another version of the mathematics .*this is 0{16}.*choose another file, or compute with")
+
+
+def test_other_files_are_refused_and_left_alone(whole, tmp_path):
+    with sqlite3.connect(whole) as file:
+        file.execute("PRAGMA user_version = 2")
+    file.close()
+    refused(whole, "newer format: update flockana")
+    other = tmp_path / "other.sqlite"
+    with sqlite3.connect(other) as file:
+        file.execute("CREATE TABLE mine (x)")
+    file.close()
+    refused(other, "is no store of flockana")
+    text = tmp_path / "notes.txt"
+    text.write_text("not a database\n" * 100)
+    refused(text, r"damaged or no store of flockana \(file is not a database\)")
+
+
+def test_a_damaged_store_is_told_and_left_alone(whole):
+    data = bytearray(whole.read_bytes())
+    data[4096 * 3 : -4096 * 3] = b"\xff" * (len(data) - 4096 * 6)
+    whole.write_bytes(data)
+    refused(whole, "is damaged .*it was left as it is: move it away")
+    whole.write_bytes(data[:10000])
+    refused(whole, "is damaged")
+
+
+def test_a_record_that_cannot_be_read_is_told(whole):
+    with sqlite3.connect(whole) as file:
+        file.execute("UPDATE runs SET record = '{' WHERE seed = 7")
+    file.close()
+    with Store(whole) as kept, pytest.raises(FileError, match="run key 7 cannot be read"):
+        kept.read(["key 7"])
+
+
+def test_an_empty_file_is_a_new_store(tmp_path):
+    (tmp_path / "s.sqlite").touch()
+    with Store(tmp_path / "s.sqlite") as kept:
+        assert len(kept) == 0
+
+
+def test_where_nothing_can_be_written_is_told_before_any_work(tmp_path, monkeypatch):
+    (tmp_path / "file").touch()
+    monkeypatch.setenv(tiny_flocks.LOG, str(tmp_path / "log"))
+    for path, message in ((tmp_path, "is a folder"), (tmp_path / "file" / "s.sqlite", "cannot make")):
+        with pytest.raises(FileError, match=message):
+            ensemble(tiny_flocks.trio, [0], jobs=1, store=path)
+    assert not (tmp_path / "log").exists()
+
+
+def test_a_full_disk_is_told_and_nothing_is_torn(whole):
+    with Store(whole) as kept:
+        kept._file.execute("PRAGMA max_page_count = 1")  # SQLite raises it to the present size
+        more = {f"more {k}": one for k, one in enumerate(records(3000).values())}
+        with pytest.raises(FileError, match="full; choose a file on a local disk with room"):
+            kept.add("a", more)
+        assert len(kept) == 3000

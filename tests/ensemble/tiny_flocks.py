@@ -1,0 +1,96 @@
+"""Scenarios of a few milliseconds for ensembles, in a module that worker processes can import."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numba.core import event
+
+from flockana.laws.olfati_saber import Algorithm1
+from flockana.scenarios import Report, Scenario
+from flockana.theorems import Claim
+
+LOG = "FLOCKANA_TEST_LOG"  # names a file that gets a line "pid seed" for every run that is begun
+COMPILED = event.RecordingListener()
+event.register("numba:compile", COMPILED)
+
+
+def _odd(run, tolerances):
+    """Verified on odd seeds, refuted on even ones, vacuous on multiples of five; the seed is read off the clock."""
+    seed = round(float(run.t[0]))
+    status = "vacuous" if seed % 5 == 0 else ("verified" if seed % 2 else "refuted")
+    return Claim("odd", status, margin=seed + tolerances.quasi, error=0.5, detail="")
+
+
+def trio(seed, n=3, speed=0.3, fast=False):
+    if LOG in os.environ:
+        with Path(os.environ[LOG]).open("a") as file:
+            file.write(f"{os.getpid()} {seed}\n")
+    generator = np.random.default_rng(seed)
+    q, p = generator.uniform(0.0, 12.0, (n, 2)), generator.uniform(-speed, speed, (n, 2))
+    span = (float(seed), seed + 0.2)
+    reports = (Report("odd", "the seed is odd", _odd),)
+    options = {"method": "RK4", "dt": 0.1 if fast else 0.05}
+    return Scenario(
+        "trio", "Three agents", "ours", Algorithm1(), q, p, span, seed, {"alpha-flocking": "refuted"}, reports, options
+    )
+
+
+def slow(seed):
+    """As `trio`, after a while."""
+    item = trio(seed)
+    time.sleep(0.03)
+    return item
+
+
+class Bursting(Algorithm1):
+    """Algorithm 1 until t = 4.1, then nothing that is a number."""
+
+    def flow(self, t, q, p):
+        u, rate = super().flow(t, q, p)
+        return (u, rate) if t < 4.1 else (np.full_like(u, np.nan), rate)
+
+
+def faulty(seed):
+    """Raises on 3, cannot be integrated on 4."""
+    if seed == 3:
+        raise ValueError("a bad\nseed")
+    item = trio(seed)
+    return replace(item, law=Bursting()) if seed == 4 else item
+
+
+def deadly(seed):
+    """2 ends its process."""
+    if seed == 2:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return trio(seed)
+
+
+def lethal(seed):
+    """Every seed ends its process."""
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def not_a_scenario(seed):
+    return seed
+
+
+def compilations(run):
+    """Kernels that this process compiled, rather than load them, since it started."""
+    return sum(one.is_start for _, one in COMPILED.buffer)
+
+
+def threads(run):
+    return float(os.environ.get("OPENBLAS_NUM_THREADS", "nan"))
+
+
+def interrupts(run):
+    """Ctrl-C in the run of seed 3."""
+    if run.t[0] == 3.0:
+        raise KeyboardInterrupt
+    return 0.0
