@@ -1,9 +1,11 @@
 """Figures: each function draws what it is given on an Axes, or on a new one, and returns it; it computes nothing."""
 
 from flockana.plots.animation import animate, animation
+from flockana.plots.control import bode, delay_chart, gain_sweep, norms, root_locus
 from flockana.plots.dead_zone import dead_zone_energies, dead_zone_force
 from flockana.plots.film import Film
 from flockana.plots.lattice import barrier, collapse, collapse_brackets, defect_map
+from flockana.plots.minimal import perception
 from flockana.plots.obstacles import obstacles
 from flockana.plots.pair import action, potential
 from flockana.plots.phase import phase_portrait
@@ -39,6 +41,7 @@ __all__ = [
     "animate_mode",
     "animation",
     "barrier",
+    "bode",
     "centre_of_mass",
     "centre_path",
     "clearances",
@@ -49,17 +52,22 @@ __all__ = [
     "dead_zone_energies",
     "dead_zone_force",
     "defect_map",
+    "delay_chart",
     "distances",
     "energy",
     "energy_residual",
+    "gain_sweep",
     "measure",
     "mode_shape",
     "mode_title",
+    "norms",
     "obstacles",
     "panel",
+    "perception",
     "phase_portrait",
     "pole_map",
     "potential",
+    "root_locus",
     "rules",
     "snapshot",
     "speeds",

@@ -8,7 +8,7 @@ comes out as 0, and a double one does not smear over ±√(rounding).
 from __future__ import annotations
 
 from cmath import sqrt
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -47,7 +47,7 @@ class Mode:
     """
 
     eigenvalue: complex
-    shape: npt.NDArray[Any]
+    shape: npt.NDArray[Any] = field(repr=False)
     name: str
 
     @property

@@ -1,0 +1,172 @@
+# ---
+# jupyter:
+#   jupytext:
+#     text_representation:
+#       extension: .py
+#       format_name: percent
+#   kernelspec:
+#     display_name: Python 3
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # Equilibria and linearised stability
+#
+# **Aims.** Find the equilibrium that a flock settles in, linearise about it, and read poles, modes, delay margin and
+# the value of a gain off the linear system, having checked first that it tells the truth.
+#
+# In the frame of the centre of mass Algorithm 2 is $\dot x = v$, $\dot v = -\nabla U_\lambda(x) - (c_2^\gamma I +
+# c_2^\alpha \hat L(x))v$ with $U_\lambda = c_1^\alpha V + c_1^\gamma J$. Near a minimum $x^*$ of $U_\lambda$, where
+# $v = 0$,
+#
+# $$\delta\ddot x + \underbrace{(c_2^\gamma I + c_2^\alpha \hat L)}_{D}\,\delta\dot x
+#   + \underbrace{\nabla^2 U_\lambda(x^*)}_{K}\,\delta x = 0, \qquad (\lambda^2 I + \lambda D + K)\,\nu = 0 .$$
+
+# %%
+import numpy as np
+
+import flockana as fl
+from flockana import lattice, plots, stability
+from flockana.course import grade
+
+law = fl.Algorithm2(target=fl.StaticTarget((0.0, 0.0)))
+rest = fl.find_equilibrium(law, lattice.hexagonal_patch(2, 7.0))
+print(f"{rest.kind}, residual {rest.residual:.1e} of the force scale")
+print(f"its links are off d by {lattice.strain(rest.q, 7.0, 8.4):.1%} at most")
+
+# %% [markdown]
+# `find_equilibrium` minimises $U_\lambda$ with CasADi and IPOPT. The hexagon of 19 is a minimum, a little smaller
+# than the lattice: the γ-agent compresses it.
+#
+# ## Poles and modes
+
+# %%
+flock = fl.linearise(law, rest)
+print("zero modes:", [mode.name for mode in flock.zero_modes], " semisimple:", flock.semisimple)
+print(f"slowest decay rate {flock.decay_rate:.4f}; of the structure alone {flock.structural_decay_rate:.4f}")
+for mode in flock.modes[:6]:
+    print(plots.mode_title(mode))
+_ = plots.pole_map(flock.eigenvalues)
+
+# %% [markdown]
+# The rotation about the γ-agent costs nothing, so the equilibrium is *semi-stable*: what converges is the shape, and
+# the flock ends somewhere on a circle of equilibria. The four slowest modes are the centre of mass, critically damped
+# by our choice $c_2^\gamma = 2\sqrt{c_1^\gamma}$. Then the structure begins:
+
+# %%
+shapes = [mode for mode in flock.modes if "translation" not in mode.name][:3]
+figure, axes = plots.subplots(1, 3, size=(13, 4.2))
+pairs = lattice.links(rest.q, law.alpha.r)
+for ax, mode in zip(axes, shapes, strict=True):
+    plots.mode_shape(rest.q, pairs, mode.shape, ax=ax, title=plots.mode_title(mode))
+
+# %% [markdown]
+# ## Does it tell the truth?
+#
+# Push the flock along its slowest structural mode by $10^{-4}$ and let the *nonlinear* law act. The mismatch
+# $\tilde K$ must fall at twice the mode's decay rate, as it is quadratic in the velocities.
+
+# %%
+slow = shapes[0]
+push = 1e-4 * slow.shape.real
+run = fl.simulate(law, rest.q + push, np.zeros_like(push), (0.0, 4.0), rtol=1e-12, atol=1e-14)
+K = run.metrics()["velocity_mismatch"].values
+peaks = [k for k in range(1, len(K) - 1) if K[k - 1] < K[k] > K[k + 1] and run.t[k] > 0.2]
+measured = -0.5 * np.polyfit(run.t[peaks], np.log(K[peaks]), 1)[0]
+print(f"predicted {slow.decay_rate:.4f}, measured {measured:.4f}")
+
+# %% [markdown]
+# ## A control engineer's objects
+#
+# Everything is a `control.StateSpace`, with named signals.
+
+# %%
+centre = flock.translational
+print(centre.poles())
+system = stability.CentreOfMass(law.gains)
+omega = np.logspace(-1.5, 1.5, 200)
+_ = plots.bode({"q_r to q_c, p_r = dq_r/dt": system.frequency_response(omega)})
+
+# %% [markdown]
+# How much delay in *all* interactions does the flock survive? The characteristic equation
+# $\det(s^2 I + (sD + K)e^{-s\tau}) = 0$ has infinitely many roots; a Chebyshev discretisation finds the rightmost.
+
+# %%
+margin = stability.delay_margin(stability.delay_system(law, rest.q))
+print(margin)
+for share in (0.9, 1.1):
+    root = stability.rightmost_roots(stability.delay_system(law, rest.q), share * margin.delay)[0]
+    print(f"at {share:.1f} of the margin the rightmost root is {root:.3f}")
+
+# %% [markdown]
+# And what does a stronger damping $c_2^\gamma$ buy? Of the structure, ever more decay; of the centre of mass, less
+# beyond critical damping. (A sweep over $c_1^\gamma$ follows the equilibrium, which moves.)
+
+# %%
+sweep = stability.gain_sweep(law, rest.q, "c2_gamma", np.linspace(0.2, 8.0, 25))
+_ = plots.gain_sweep(sweep)
+
+# %% [markdown] tags=["exercise"]
+# ## Exercises
+#
+# **1.** Linearise Algorithm 1 about the exact hexagon of 19 (at rest). Which of its zero modes drift for ever once they
+# are given a velocity? Give the list of names.
+
+# %% tags=["answer"]
+drifting = ...
+
+# %% tags=["solution"]
+free = fl.linearise(fl.Algorithm1(), lattice.hexagonal_patch(2, 7.0))
+drifting = list(free.drifting)
+
+# %% tags=["check"]
+grade(drifting, lambda x: sorted(x) == ["translation x", "translation y"], hint="Linearisation.drifting")
+
+# %% [markdown] tags=["exercise"]
+# **2.** Two agents under Algorithm 1, 7 apart, at rest. The only shape is the distance. From $K$ and $D$ of
+# `linearise`, what is its damping ratio?
+
+# %% tags=["answer"]
+damping_ratio = ...
+
+# %% tags=["solution"]
+pair = fl.linearise(fl.Algorithm1(), [[0.0], [7.0]])
+damping_ratio = pair.modes[0].damping_ratio
+
+# %% tags=["check"]
+grade(damping_ratio, fl.linearise(fl.Algorithm1(), [[0.0], [7.0]]).modes[0].damping_ratio, hint="one mode: .modes[0]")
+
+# %% [markdown] tags=["exercise"]
+# **3.** For which $c_2^\gamma$ does the centre of mass return fastest, with $c_1^\gamma = 1.1$ as it is?
+
+# %% tags=["answer"]
+best = ...
+
+# %% tags=["solution"]
+best = 2 * np.sqrt(1.1)
+
+# %% tags=["check"]
+grade(best, 2.097618, rtol=0.02, hint="a double real pole")
+
+# %% [markdown] tags=["exercise"]
+# **4.** `linearise` refuses a state that is no equilibrium. Try the *exact* hexagon of 19 under `law`: what does it
+# name, relative to the forces of the law? Give it to one digit. (Read the message of the error.)
+
+# %% tags=["answer"]
+residual = ...
+
+# %% tags=["solution"]
+try:
+    fl.linearise(law, lattice.hexagonal_patch(2, 7.0))
+except fl.errors.ArgumentError as error:
+    print(error)
+residual = fl.linearise(law, lattice.hexagonal_patch(2, 7.0), allow_residual=True).residual
+
+# %% tags=["check"]
+grade(
+    residual,
+    fl.linearise(law, lattice.hexagonal_patch(2, 7.0), allow_residual=True).residual,
+    rtol=0.5,
+    hint="fl.linearise(law, lattice.hexagonal_patch(2, 7.0)) says it",
+)
