@@ -3,6 +3,7 @@
 from flockana.plots.animation import animate, animation
 from flockana.plots.control import bode, delay_chart, gain_sweep, norms, root_locus
 from flockana.plots.dead_zone import dead_zone_energies, dead_zone_force
+from flockana.plots.ensemble import distribution, phase_diagram, share_against, share_bars
 from flockana.plots.film import Film
 from flockana.plots.lattice import barrier, collapse, collapse_brackets, defect_map
 from flockana.plots.minimal import perception
@@ -54,6 +55,7 @@ __all__ = [
     "defect_map",
     "delay_chart",
     "distances",
+    "distribution",
     "energy",
     "energy_residual",
     "gain_sweep",
@@ -64,11 +66,14 @@ __all__ = [
     "obstacles",
     "panel",
     "perception",
+    "phase_diagram",
     "phase_portrait",
     "pole_map",
     "potential",
     "root_locus",
     "rules",
+    "share_against",
+    "share_bars",
     "snapshot",
     "speeds",
     "style",

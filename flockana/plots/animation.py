@@ -15,8 +15,7 @@ import numpy as np
 from flockana.checks import FloatArray, ensure_positive
 from flockana.errors import ArgumentError, FileError
 from flockana.laws.law import DiscreteLaw
-from flockana.plots.obstacles import bounds
-from flockana.plots.snapshot import snapshot
+from flockana.plots.snapshot import drawn_law, in_view, snapshot
 from flockana.plots.style import style
 
 if TYPE_CHECKING:
@@ -33,7 +32,7 @@ _SUFFIXES = ".gif", ".mp4"
 def equal_times(trajectory: Trajectory, count: int) -> Trajectory:
     """The run at equally spaced times, between samples by cubics that match values and slopes.
 
-    Of a map, which has no state between its steps, the nearest ones.
+    Of a map, which has no state between its steps, the nearest ones, with all that its memory holds of them.
 
     Parameters
     ----------
@@ -45,20 +44,20 @@ def equal_times(trajectory: Trajectory, count: int) -> Trajectory:
     Returns
     -------
     Trajectory
-        Without its ``extra`` series.
+        Of a continuous law without its ``extra`` series.
     """
     t = trajectory.t
     times = np.linspace(t[0], t[-1], count)
     if isinstance(trajectory.law, DiscreteLaw) or len(t) == 1:
         k = np.searchsorted(0.5 * (t[:-1] + t[1:]), times, side="right")
-        q, p, u, times = trajectory.q[k], trajectory.p[k], trajectory.u[k], t[k]
-    else:
-        from scipy.interpolate import CubicHermiteSpline
+        extra = {name: series[k] for name, series in trajectory.extra.items()}
+        return replace(trajectory, t=t[k], q=trajectory.q[k], p=trajectory.p[k], u=trajectory.u[k], extra=extra)
+    from scipy.interpolate import CubicHermiteSpline
 
-        # an agent that hits an obstacle brakes within less than a sample: both cubics follow it, with no overshoot
-        q = CubicHermiteSpline(t, trajectory.q, trajectory.p)(times)
-        p = CubicHermiteSpline(t, trajectory.p, trajectory.u)(times)
-        u = CubicHermiteSpline(t, trajectory.p, trajectory.u).derivative()(times)
+    # an agent that hits an obstacle brakes within less than a sample: both cubics follow it, with no overshoot
+    q = CubicHermiteSpline(t, trajectory.q, trajectory.p)(times)
+    p = CubicHermiteSpline(t, trajectory.p, trajectory.u)(times)
+    u = CubicHermiteSpline(t, trajectory.p, trajectory.u).derivative()(times)
     return replace(trajectory, t=times, q=q, p=p, u=u, extra={})
 
 
@@ -218,13 +217,7 @@ def frame_count(seconds: float, fps: float) -> int:
 
 def _view(trajectory: Trajectory) -> FloatArray:
     """Two opposite corners of a box about all that the film shows, with a margin."""
-    law = trajectory.law
-    shown = [trajectory.q.reshape(-1, trajectory.m)]
-    if getattr(law, "target", None) is not None:
-        shown.append(np.array([law.target.position(t) for t in trajectory.t.tolist()]))
-    if getattr(law, "obstacles", ()):
-        shown.append(bounds(law.obstacles))
-    points = np.concatenate(shown)
+    points = in_view(drawn_law(trajectory), trajectory)
     low, high = points.min(axis=0), points.max(axis=0)
     margin = 0.04 * float((high - low).max()) or 1.0
     return np.array([low - margin, high + margin])

@@ -96,7 +96,7 @@ def dead_zone_energies(trajectory: Trajectory, *, ax: Axes | None = None) -> Axe
         linestyle="--",
         label="H, neighbours only (printed)",
     )
-    ax.set_xlabel("time")
+    ax.set_xlabel("t (time)")
     ax.set_ylabel("energy (length²/time²)")
     legend_above(ax)
     return ax

@@ -1,8 +1,13 @@
-"""One instant of a flock: agents, velocities, links coloured by strain, the γ-agent, obstacles with β-agents."""
+"""One instant of a flock: agents, velocities, links coloured by strain, the γ-agent, obstacles with β-agents.
+
+A law with a world of its own registers how it is drawn (`draw_sample`) and what a film of it must show (`in_view`);
+snapshots, films and the report then show it so. Of a map that steps another law, that law is drawn.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import singledispatch
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,7 +18,7 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection  # type: ignore[import-u
 from flockana.checks import FloatArray, ensure_finite_scalar, ensure_points
 from flockana.environment.beta import ObstacleField
 from flockana.environment.obstacles import Obstacle
-from flockana.interactions import BetaInteraction
+from flockana.interactions import BetaInteraction, PairInteraction
 from flockana.nets import link_lengths, links
 from flockana.plots.obstacles import bounds
 from flockana.plots.obstacles import obstacles as draw_obstacles
@@ -25,6 +30,7 @@ if TYPE_CHECKING:
     from flockana.trajectory import Trajectory
 
 _ARROW = 0.07  # longest arrow as a share of the axes' width
+_MANY = 4.0  # links per agent beyond which they are drawn thinner; a lattice has 3
 _AT_REST = 1e-9  # speed, relative to the size of the flock per unit of time, below which no arrow is drawn
 
 
@@ -36,9 +42,9 @@ def snapshot(
     velocities: bool = True,
     bar: bool = True,
 ) -> Axes:
-    """Draw the sample of a run nearest to a time, with its links if the law has an interaction range.
+    """Draw the sample of a run nearest to a time, with its links if agents interact within a range.
 
-    Obstacles are drawn, and the β-agents on them, where the law has any.
+    Obstacles are drawn, and the β-agents on them, where the law has any; so is the world of a zone-based law.
 
     Parameters
     ----------
@@ -59,28 +65,93 @@ def snapshot(
     """
     when = trajectory.t[-1] if time is None else ensure_finite_scalar("time", time)
     k = int(np.argmin(np.abs(trajectory.t - when)))
-    pair_law, target = getattr(trajectory.law, "alpha", None), getattr(trajectory.law, "target", None)
+    return draw_sample(drawn_law(trajectory), trajectory, k, ax=ax, velocities=velocities, bar=bar)
+
+
+def drawn_law(trajectory: Trajectory) -> Any:
+    """The law of a run; of a map that steps another law, that one.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The run.
+    """
+    return getattr(trajectory.law, "law", trajectory.law)
+
+
+@singledispatch
+def draw_sample(law: Any, trajectory: Trajectory, k: int, *, ax: Axes | None, velocities: bool, bar: bool) -> Axes:
+    """Draw sample k of a run; ``@draw_sample.register(Law)`` says how a law with a world of its own is drawn.
+
+    Parameters
+    ----------
+    law : Law or DiscreteLaw
+        From `drawn_law`: its type chooses the drawing.
+    trajectory : Trajectory
+        The run.
+    k : int
+        The sample.
+    ax, velocities, bar
+        As for `snapshot`.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    pair, target = pair_interaction(law), getattr(law, "target", None)
     q, t = trajectory.q[k], float(trajectory.t[k])
     return configuration(
         q,
         trajectory.p[k] if velocities else None,
-        d=getattr(pair_law, "d", None),
-        r=getattr(pair_law, "r", None),
+        d=None if pair is None else pair.length,
+        r=None if pair is None else pair.range,
         target=None if target is None else target.position(t),
-        obstacles=getattr(trajectory.law, "obstacles", ()),
-        beta=getattr(trajectory.law, "beta", None),
+        obstacles=getattr(law, "obstacles", ()),
+        beta=getattr(law, "beta", None),
         ax=ax,
         bar=bar,
         title=f"t = {t:.4g}",
     )
 
 
+@singledispatch
+def in_view(law: Any, trajectory: Trajectory) -> FloatArray:
+    """Points that a film of a run must show, shape (N, m); to be registered with `draw_sample`.
+
+    Parameters
+    ----------
+    law : Law or DiscreteLaw
+        From `drawn_law`.
+    trajectory : Trajectory
+        The run.
+    """
+    shown = [trajectory.q.reshape(-1, trajectory.m)]
+    if getattr(law, "target", None) is not None:
+        shown.append(np.array([law.target.position(t) for t in trajectory.t.tolist()]))
+    if getattr(law, "obstacles", ()):
+        shown.append(bounds(law.obstacles))
+    return np.concatenate(shown)
+
+
+def pair_interaction(law: Any) -> PairInteraction | None:
+    """The pair interaction among a law's parameters, if it has one of finite range.
+
+    Parameters
+    ----------
+    law : Law or DiscreteLaw
+        Any law.
+    """
+    found = next((value for value in vars(law).values() if isinstance(value, PairInteraction)), None)
+    return found if found is not None and np.isfinite(found.range) else None
+
+
 def configuration(
     q: Any,
     p: Any = None,
     *,
-    d: float | None = None,
+    d: Any = None,
     r: float | None = None,
+    edges: Any = None,
     target: Any = None,
     obstacles: Sequence[Obstacle] = (),
     beta: BetaInteraction | None = None,
@@ -97,10 +168,13 @@ def configuration(
         Positions, m = 1, 2 or 3.
     p : array_like, shape (n, m), optional
         Velocities; without them agents are dots.
-    d : float, optional
-        Desired distance; without it links are grey.
+    d : float or array_like, shape (M,), optional
+        Desired distance, or that of each of the `edges`; without it links are grey.
     r : float, optional
-        Interaction range; without it no links are drawn.
+        Interaction range; without it (and without `edges`) no links are drawn.
+    edges : array_like of int, shape (M, 2), optional
+        Links to draw in place of those within r, from the first agent to the second; one without its reverse has an
+        arrowhead.
     target : array_like, shape (m,), optional
         Position of the γ-agent.
     obstacles : sequence of Obstacle
@@ -122,8 +196,12 @@ def configuration(
     m = points.shape[1]
     axes: Any = ensure_axes(ax, m=m)
     x = _in_plane(points)
-    if r is not None and len(points) > 1:
-        _links(axes, x, points, d, r, bar)
+    if edges is not None:
+        pairs = np.asarray(edges, dtype=np.int64).reshape(-1, 2)
+        _links(axes, x, points, pairs, d, None, bar)
+        _arrowheads(axes, x, pairs)
+    elif r is not None and len(points) > 1:
+        _links(axes, x, points, links(points, r), d, r, bar)
     size = float(np.clip(900.0 / len(x), 3.0, 26.0))
     axes.scatter(*x.T, s=size, color=INK, linewidths=0, zorder=3, label="agents")
     seen = x
@@ -138,8 +216,7 @@ def configuration(
         draw_obstacles(obstacles, ax=axes, view=seen[:, :m])
         if beta is not None:
             _beta_agents(axes, points, ObstacleField(tuple(obstacles), beta), size)
-    fastest = _arrows(axes, x, p)
-    axes.set_title(title + (f"   longest arrow: {fastest:.3g} length/time" if fastest else ""), fontsize=9)
+    axes.set_title(title + ("" if p is None else velocity_arrows(axes, points, p)), fontsize=9)
     _frame(axes, seen, m)
     return axes  # type: ignore[no-any-return]  # the stubs have no three-dimensional axes
 
@@ -149,22 +226,41 @@ def _in_plane(points: FloatArray) -> FloatArray:
     return np.column_stack([points, np.zeros(len(points))]) if points.shape[1] == 1 else points
 
 
-def _links(ax: Any, x: FloatArray, points: FloatArray, d: float | None, r: float, bar: bool) -> None:
-    pairs = links(points, r)
-    segments = x[pairs]
+def _links(ax: Any, x: FloatArray, points: FloatArray, pairs: Any, d: Any, r: float | None, bar: bool) -> None:
+    """Draw links, coloured by strain up to that of a link about to break, at most that of one twice as long as d.
+
+    Where agents have many, links are thin, and those near d lie above the others.
+    """
     kind: Any = Line3DCollection if x.shape[1] == 3 else LineCollection
-    width = float(np.clip(120.0 / len(points), 0.7, 1.8))
+    few = min(1.0, (_MANY * len(points) / max(1, len(pairs))) ** 0.5)
+    look: dict[str, Any] = {"linewidths": few * float(np.clip(120.0 / len(points), 0.7, 1.8)), "zorder": 2}
     if d is None:
-        ax.add_collection(kind(segments, colors=MUTED, linewidths=width, zorder=2))
+        ax.add_collection(kind(x[pairs], colors=MUTED, **look))
         return
-    strain, limit = (link_lengths(points, pairs) - d) / d, r / d - 1.0
-    lines = kind(segments, cmap=STRAIN, norm=Normalize(-limit, limit), linewidths=width, zorder=2)
-    lines.set_array(strain)
+    strain = (link_lengths(points, pairs) - d) / d
+    order = np.argsort(-np.abs(strain), kind="stable") if few < 1.0 else slice(None)
+    limit = 1.0 if r is None else min(1.0, r / d - 1.0)
+    lines = kind(x[pairs[order]], cmap=STRAIN, norm=Normalize(-limit, limit), **look)
+    lines.set_array(strain[order])
     ax.add_collection(lines)
     if bar:
         label, pad = "strain (length − d)/d", 0.12 if x.shape[1] == 3 else 0.03
-        scale = ax.get_figure().colorbar(lines, ax=ax, extend="min", shrink=0.75, aspect=28, pad=pad, label=label)
+        ends = "min" if limit < 1.0 else "max"
+        scale = ax.get_figure().colorbar(lines, ax=ax, extend=ends, shrink=0.75, aspect=28, pad=pad, label=label)
         scale.outline.set_visible(False)
+
+
+def _arrowheads(ax: Any, x: FloatArray, pairs: Any) -> None:
+    """Mark the direction of the links that go one way, in the middle of each."""
+    both = {tuple(pair) for pair in pairs.tolist()}
+    one_way = np.array([pair for pair in pairs.tolist() if (pair[1], pair[0]) not in both], dtype=np.int64)
+    if one_way.size == 0 or x.shape[1] == 3:
+        return
+    start, end = x[one_way[:, 0]], x[one_way[:, 1]]
+    along = (end - start) / np.maximum(np.linalg.norm(end - start, axis=1, keepdims=True), np.finfo(float).tiny)
+    look = {"angles": "xy", "scale_units": "inches", "scale": 9.0, "units": "inches", "width": 0.02, "pivot": "middle"}
+    heads = {"headwidth": 6.0, "headlength": 5.5, "headaxislength": 5.5, "minlength": 0.0}
+    ax.quiver(*(0.45 * start + 0.55 * end).T, *along.T, color=MUTED, zorder=2.2, **look, **heads)
 
 
 def _beta_agents(ax: Any, points: FloatArray, field: ObstacleField, size: float) -> None:
@@ -179,22 +275,28 @@ def _beta_agents(ax: Any, points: FloatArray, field: ObstacleField, size: float)
     ax.scatter(*ends[:, 1].T, s=0.7 * size, marker="D", label="β-agents", **look)
 
 
-def _arrows(ax: Any, x: FloatArray, p: Any) -> float:
-    """Draw velocities; return the largest speed drawn, 0 if none is worth an arrow."""
-    if p is None:
-        return 0.0
-    v = _in_plane(ensure_points("p", p))
+def velocity_arrows(ax: Any, q: Any, p: Any) -> str:
+    """Draw velocities as arrows, the longest always as long; return what a title says of it, empty if none is drawn.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes
+        Where to draw.
+    q, p : array_like, shape (n, m)
+        Positions and velocities.
+    """
+    x, v = _in_plane(ensure_points("q", q)), _in_plane(ensure_points("p", p))
     fastest = float(np.linalg.norm(v, axis=1).max())
     extent = float(np.ptp(x, axis=0).max()) or 1.0
     if fastest <= _AT_REST * extent:
-        return 0.0
+        return ""
     if x.shape[1] == 3:
         ax.quiver(*x.T, *v.T, length=_ARROW * extent / fastest, color=GREEN, linewidth=0.6, arrow_length_ratio=0.25)
     else:
         ax.quiver(
             *x.T, *v.T, angles="xy", scale_units="width", scale=fastest / _ARROW, width=0.0022, color=GREEN, zorder=2.5
         )
-    return fastest
+    return f"   longest arrow: {fastest:.3g} length/time"
 
 
 def _frame(ax: Any, points: FloatArray, m: int) -> None:

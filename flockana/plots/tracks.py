@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
     from flockana.trajectory import Trajectory
 
+_STILL = 1e-6  # of the flock's extent: a centre that moves by less stands still
+
 
 def trajectories(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     """Draw every agent's path with its end, and the γ-agent's; on a line, positions over time.
@@ -65,8 +67,17 @@ def centre_path(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     axes.scatter(*centre[-1:].T, s=28, color=BLUE, zorder=3)
     target = _target(axes, trajectory)
     _frame(axes, np.vstack([centre, *target]), trajectory.m)
+    _widen(axes, np.vstack([centre, *target]), trajectory)
     legend_above(axes)
     return axes  # type: ignore[no-any-return]  # the stubs have no three-dimensional axes
+
+
+def _widen(ax: Any, points: FloatArray, trajectory: Trajectory) -> None:
+    """A path that is a point but for rounding is shown at the scale of the flock, not at that of the rounding."""
+    size = float(np.ptp(trajectory.q.reshape(-1, trajectory.m), axis=0).max())
+    if trajectory.m > 1 and float(np.ptp(points, axis=0).max()) < _STILL * size:
+        for name, middle in zip("xyz", points[0].tolist(), strict=False):
+            getattr(ax, f"set_{name}lim")(middle - 0.5 * size, middle + 0.5 * size)
 
 
 def _plane(t: FloatArray, x: FloatArray) -> FloatArray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import combinations, product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,6 +16,9 @@ from flockana.environment.zone_world import ZoneWorld
 from flockana.errors import ArgumentError
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.nets import links
+from flockana.plots.obstacles import bounds
+from flockana.plots.obstacles import obstacles as draw_obstacles
+from flockana.plots.snapshot import configuration, draw_sample, in_view, velocity_arrows
 from flockana.plots.style import (
     BLUE,
     FAINT,
@@ -42,11 +46,13 @@ def _law(trajectory: Trajectory) -> ZoneFlocking:
     return trajectory.law
 
 
-def zones(trajectory: Trajectory, time: float | None = None, *, ax: Axes | None = None) -> Axes:
+def zones(
+    trajectory: Trajectory, time: float | None = None, *, ax: Axes | None = None, velocities: bool = False
+) -> Axes:
     """Draw the sample nearest to a time: agents with their obstacle zones, links within a, world, aliens.
 
     In the plane an obstacle zone is a triangle ahead of its agent; in space the heading stands for it. Of the
-    conventional method the circular buffers are drawn instead.
+    conventional method the circular buffers are drawn instead. `snapshot` and films draw runs of ZoneFlocking so.
 
     Parameters
     ----------
@@ -56,6 +62,8 @@ def zones(trajectory: Trajectory, time: float | None = None, *, ax: Axes | None 
         By default the end.
     ax : matplotlib.axes.Axes, optional
         Where to draw; three-dimensional for m = 3.
+    velocities : bool
+        Draw arrows.
 
     Returns
     -------
@@ -73,11 +81,13 @@ def zones(trajectory: Trajectory, time: float | None = None, *, ax: Axes | None 
     k = int(np.argmin(np.abs(trajectory.t - when)))
     q, heading = trajectory.q[k], trajectory.extra["heading"][k]
     axes: Any = ensure_axes(ax, m=m)
-    seen = [q]
+    seen = [q, _corners(law.world, m)]
     if m == 2:
-        seen.append(_world(axes, law.world, buffer=law.obstacle_zone == "buffer"))
+        _world(axes, law.world, buffer=law.obstacle_zone == "buffer")
         if law.obstacle_zone == "triangle":
             _triangles(axes, q, heading, law)
+    else:
+        _space(axes, law.world)
     kind: Any = Line3DCollection if m == 3 else LineCollection
     pairs = links(q, float(np.nextafter(law.radii.reach[2], np.inf)))
     axes.add_collection(kind(q[pairs], colors=MUTED, linewidths=0.8, alpha=0.7, zorder=2))
@@ -88,9 +98,35 @@ def zones(trajectory: Trajectory, time: float | None = None, *, ax: Axes | None 
         aliens = trajectory.extra["alien"][k]
         seen.append(aliens)
         axes.scatter(*aliens.T, s=70, marker="X", color=VERMILLION, edgecolors="white", linewidths=0.6, zorder=4)
-    axes.set_title(f"t = {trajectory.t[k]:.4g}", fontsize=9)
+    fastest = velocity_arrows(axes, q, trajectory.p[k]) if velocities else ""
+    axes.set_title(f"t = {trajectory.t[k]:.4g}{fastest}", fontsize=9)
     frame_space(axes, np.vstack(seen))
     return axes  # type: ignore[no-any-return]  # the stubs have no three-dimensional axes
+
+
+@draw_sample.register(ZoneFlocking)
+def _(law: Any, trajectory: Trajectory, k: int, *, ax: Axes | None, velocities: bool, bar: bool) -> Axes:
+    if trajectory.m > 1:
+        return zones(trajectory, float(trajectory.t[k]), ax=ax, velocities=velocities)
+    p = trajectory.p[k] if velocities else None
+    return configuration(trajectory.q[k], p, r=law.radii.reach[2], ax=ax, title=f"t = {trajectory.t[k]:.4g}")
+
+
+@in_view.register(ZoneFlocking)
+def _(law: Any, trajectory: Trajectory) -> FloatArray:
+    m = trajectory.m
+    aliens = trajectory.extra.get("alien", np.empty((0, m)))
+    return np.vstack([trajectory.q.reshape(-1, m), aliens.reshape(-1, m), _corners(law.world, m)])
+
+
+def _corners(world: ZoneWorld, m: int) -> FloatArray:
+    """Points that must be in view: obstacles and box."""
+    seen = [np.empty((0, m))]
+    for solid in world.obstacles:
+        seen.append(bounds([solid]) if isinstance(solid, Sphere) else np.array(solid.vertices))
+    if world.box is not None:
+        seen += [np.array([world.box.low]), np.array([world.box.high])]
+    return np.vstack(seen)
 
 
 def _triangles(ax: Any, q: FloatArray, heading: FloatArray, law: ZoneFlocking) -> None:
@@ -102,17 +138,14 @@ def _triangles(ax: Any, q: FloatArray, heading: FloatArray, law: ZoneFlocking) -
     ax.add_collection(PolyCollection(list(corners), facecolors=BLUE, edgecolors=BLUE, alpha=0.25, linewidths=0.6))
 
 
-def _world(ax: Any, world: ZoneWorld, *, buffer: bool) -> FloatArray:
-    """Draw obstacles, buffers, territories and box; return points that must be in view."""
-    seen = [np.empty((0, 2))]
+def _world(ax: Any, world: ZoneWorld, *, buffer: bool) -> None:
+    """Draw obstacles, buffers, territories and box."""
     for solid in world.obstacles:
         disc = solid if isinstance(solid, Sphere) else solid.enclosing_circle()
         if isinstance(solid, Sphere):
             ax.add_patch(Circle(disc.centre, disc.radius, facecolor=FAINT, edgecolor=MUTED, linewidth=0.8, zorder=1))
-            seen.append(np.array(disc.centre) + disc.radius * np.array([[-1.0, -1.0], [1.0, 1.0]]))
         else:
             ax.add_patch(Polygon(solid.vertices, facecolor=FAINT, edgecolor=MUTED, linewidth=0.8, zorder=1))
-            seen.append(np.array(solid.vertices))
         if buffer:
             ax.add_patch(Circle(disc.centre, disc.radius, fill=False, edgecolor=PURPLE, linestyle="--", linewidth=1.0))
     for alien in world.aliens:
@@ -124,8 +157,15 @@ def _world(ax: Any, world: ZoneWorld, *, buffer: bool) -> FloatArray:
         low, high = np.array(world.box.low), np.array(world.box.high)
         width, height = (high - low).tolist()
         ax.add_patch(Rectangle(world.box.low, width, height, fill=False, edgecolor=INK, linewidth=1.2))
-        seen += [low[None], high[None]]
-    return np.vstack(seen)
+
+
+def _space(ax: Any, world: ZoneWorld) -> None:
+    """Draw balls and the edges of the box in space."""
+    draw_obstacles(world.obstacles, ax=ax)  # type: ignore[arg-type]  # polygons live in the plane
+    if world.box is not None:
+        corners = list(product(*zip(world.box.low, world.box.high, strict=True)))
+        edges = [pair for pair in combinations(corners, 2) if np.count_nonzero(np.subtract(*pair)) == 1]
+        ax.add_collection(Line3DCollection(edges, colors=INK, linewidths=0.8))
 
 
 def zone_distances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:

@@ -15,6 +15,8 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from flockana import plots
+from flockana.laws.minimal import MinimalFlocking
+from flockana.plots.snapshot import drawn_law, pair_interaction
 from flockana.scenarios.findings import component_counts
 from flockana.trajectory import Trajectory
 
@@ -74,7 +76,9 @@ def flock_pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
     -------
     tuple of Picture
     """
-    linked, blocked = hasattr(trajectory.law, "alpha"), bool(getattr(trajectory.law, "obstacles", ()))
+    law = drawn_law(trajectory)
+    linked = pair_interaction(law) is not None or isinstance(law, MinimalFlocking)
+    blocked = bool(getattr(law, "obstacles", ()))
     drawn = (
         Picture(
             (
@@ -82,7 +86,7 @@ def flock_pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
                 if blocked
                 else "Start, middle and end. "
             )
-            + ("Links join agents closer than r, coloured by strain (length − d)/d. " if linked else "")
+            + ("Links join agents that interact, coloured by strain (length − d)/d. " if linked else "")
             + ("Dotted lines lead to β-agents, the closest points of obstacles within r'. " if blocked else "")
             + "Arrows are velocities, scaled anew in each panel; a star is the γ-agent.",
             _png(_snapshots, trajectory, (13.0, 4.3)),

@@ -288,6 +288,14 @@ class Tracking:
         """
         return next(item for item in self.quantities if item.name.startswith(name))
 
+    def __str__(self) -> str:
+        """One line for each quantity: what it is, predicted, measured."""
+        width = max((len(item.name) for item in self.quantities), default=0)
+        return "\n".join(
+            f"{item.name:<{width}}  predicted {item.predicted:10.6g}  measured {item.measured:10.6g}"
+            for item in self.quantities
+        )
+
 
 def tracking(run: Trajectory) -> Tracking:
     """Compare a run of Algorithm 2, or of the MSN project's map of it, with the linear system of its centre of mass.

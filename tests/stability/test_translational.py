@@ -202,3 +202,10 @@ def test_a_damped_swing_shrinks_by_its_exponential():
     assert found.quantity("period").measured == pytest.approx(pi / 2, rel=1e-4)
     assert found.quantity("first turning").measured == pytest.approx(-2.0 * np.exp(-3.0 * pi / 4), rel=1e-4)
     assert found.centre.damping_ratio == 3.0 / sqrt(25.0)
+
+
+def test_a_comparison_prints_one_line_for_each_quantity():
+    law = Algorithm2(gains=Gains(c1_gamma=1.0, c2_gamma=0.0), target=StaticTarget((5.0,)))
+    text = str(tracking(simulate(law, [[1.0]], [[0.0]], (0.0, 7.0)))).splitlines()
+    assert len(text) == 3
+    assert text[1].split() == ["period", "(time)", "predicted", "6.28319", "measured", "6.28319"]

@@ -1,0 +1,79 @@
+"""How far a linearisation holds, and measured gains beside a Bode plot's."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flockana.plots.style import BLUE, GREEN, INK, MUTED, PURPLE, VERMILLION, ensure_axes, legend_above
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_LOOKS = ((BLUE, "o", "-"), (VERMILLION, "s", "--"), (GREEN, "^", "-."), (PURPLE, "D", ":"))
+
+
+def linear_range(
+    ranges: Mapping[str, tuple[Any, Any, Any]], *, marks: Mapping[str, float] | None = None, ax: Axes | None = None
+) -> Axes:
+    """Draw the deviation from the linear prediction against the perturbation, both logarithmic, with a line of slope 1.
+
+    Parameters
+    ----------
+    ranges : mapping of str to (amplitudes, deviations, net changes)
+        By label: displacement in units of d, deviation over displacement, and where links form or break (filled white).
+    marks : mapping of str to float, optional
+        Amplitudes to point out, by label.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    ax = ensure_axes(ax)
+    for k, (label, (sizes, found, changes)) in enumerate(ranges.items()):
+        colour, marker, dash = _LOOKS[k % len(_LOOKS)]
+        x, y, broken = np.asarray(sizes), np.asarray(found), np.asarray(changes, dtype=bool)
+        ax.plot(x, y, color=colour, linestyle=dash, linewidth=1.2, zorder=2)
+        ax.plot(x[~broken], y[~broken], marker, color=colour, markersize=4.5, linestyle="none", label=label, zorder=3)
+        look: Any = {"color": colour, "markerfacecolor": "white", "markersize": 5.0, "linestyle": "none", "zorder": 3}
+        ax.plot(x[broken], y[broken], marker, **look)
+        if k == 0:
+            guide = y[0] * x / x[0]
+            ax.plot(x, guide, color=MUTED, linestyle="-", linewidth=0.8, label="∝ amplitude", zorder=1)
+    for name, value in (marks or {}).items():
+        ax.axvline(value, color=MUTED, linewidth=0.9, linestyle=":")
+        text: Any = {"xytext": (-3, 4), "textcoords": "offset points", "color": MUTED, "fontsize": 8}
+        ax.annotate(name, (value, 0.0), xycoords=ax.get_xaxis_transform(), rotation=90.0, ha="right", **text)
+    ax.set_xscale("log")
+    ax.set_yscale("log")
+    ax.set_xlabel("largest initial displacement / d")
+    ax.set_ylabel("deviation from the linear motion / displacement")
+    legend_above(ax)
+    return ax
+
+
+def measured_gains(points: Mapping[str, tuple[float, float]], *, ax: Axes | None = None) -> Axes:
+    """Draw measured ratios of sizes as points on a Bode plot's magnitude.
+
+    Parameters
+    ----------
+    points : mapping of str to (frequency, ratio)
+        By label: angular frequency in radians per time unit, and measured size of the flock's path over the γ-agent's.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    ax = ensure_axes(ax)
+    for k, (label, (omega, ratio)) in enumerate(points.items()):
+        shape = _LOOKS[k % len(_LOOKS)][1]
+        height = 20.0 * np.log10(ratio)
+        ax.plot(omega, height, shape, color=INK, markerfacecolor="none", markersize=7.0 + 2.5 * (k % 2), label=label)
+    legend_above(ax)
+    return ax

@@ -1,0 +1,81 @@
+"""A search for a counterexample: the margins that it met, and the least so far."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.ticker import MaxNLocator
+
+from flockana.checks import FloatArray
+from flockana.errors import ArgumentError
+from flockana.plots.style import BLUE, INK, MUTED, VERMILLION, ensure_axes, legend_above
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_WIDE = 1e3  # ratio of the sizes of margins from which on their axis is logarithmic on both sides of 0
+
+
+def search_history(
+    margins: Any, best: Any, *, found: Any = (), label: str = "", ax: Axes | None = None, title: str = ""
+) -> Axes:
+    """Draw a claim's margin in each run of a search, and the least so far; below 0 the claim fails.
+
+    Parameters
+    ----------
+    margins : array_like, shape (evaluations,)
+        Of each run; runs on which nothing is claimed, NaN, are ticks at the foot.
+    best : array_like, shape (evaluations,)
+        Least margin up to each run.
+    found : sequence of int
+        Which runs refute the claim, counted from 0.
+    label : str
+        Name of the claim.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+    title : str
+        Above the axes.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    ArgumentError
+        If the two differ in length, or there is no run.
+    """
+    values, least = (np.asarray(one, dtype=np.float64) for one in (margins, best))
+    if values.ndim != 1 or values.shape != least.shape or not values.size:
+        raise ArgumentError(f"margins {values.shape}, best {least.shape}: expected one number per run in each")
+    axes: Any = ensure_axes(ax)
+    run = np.arange(1, values.size + 1)
+    known = np.isfinite(values)
+    axes.plot(run[known], values[known], "o", color=MUTED, markersize=2.5, label="a run")
+    axes.step(run, least, where="post", color=BLUE, linestyle="-", label="least so far")
+    axes.axhline(0.0, color=INK, linewidth=0.9, linestyle=":", label="fails below")
+    hits = np.asarray(found, dtype=np.int64)
+    if hits.size:
+        look = {"markersize": 9, "markerfacecolor": "none", "markeredgewidth": 1.5, "linestyle": "none"}
+        axes.plot(run[hits], values[hits], "s", color=VERMILLION, label="refuted", **look)
+    if not known.all():
+        foot = axes.get_xaxis_transform()
+        axes.plot(run[~known], np.full((~known).sum(), 0.02), "|", color=MUTED, transform=foot, label="nothing claimed")
+    _scale(axes, values[known])
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    axes.set_xlim(0.5, values.size + 0.5)
+    axes.set_xlabel("run of the search; the first is the scenario's own start")
+    axes.set_ylabel(f"margin of {label}" if label else "margin")
+    axes.yaxis.get_offset_text().set(x=-0.09, ha="center")  # a power of ten, which would lie under the legend
+    legend_above(axes)
+    if title:
+        axes.set_title(title, pad=28)
+    return axes  # type: ignore[no-any-return]
+
+
+def _scale(axes: Any, values: FloatArray) -> None:
+    sizes = np.abs(values[values != 0.0])
+    if sizes.size and sizes.max() > _WIDE * sizes.min():
+        knee = max(float(np.quantile(sizes, 0.1)), 1e-6 * float(sizes.max()))
+        axes.set_yscale("symlog", linthresh=knee)

@@ -1,0 +1,74 @@
+"""The minimal bearing-distance model: who perceives whom, coloured by how far each edge is off its desired length."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flockana.checks import ensure_finite_scalar
+from flockana.errors import ArgumentError
+from flockana.laws.minimal import MinimalFlocking
+from flockana.plots.snapshot import configuration, draw_sample, drawn_law
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from flockana.trajectory import Trajectory
+
+
+def perception(
+    trajectory: Trajectory,
+    time: float | None = None,
+    *,
+    ax: Axes | None = None,
+    velocities: bool = False,
+    bar: bool = True,
+) -> Axes:
+    """Draw the sample nearest to a time with its perception graph, as `snapshot` and films do.
+
+    An edge leads from the agent that is perceived to the one that perceives it, as information does; it has an
+    arrowhead if it goes one way only.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        A run of MinimalFlocking.
+    time : float, optional
+        By default the end.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; three-dimensional for m = 3.
+    velocities : bool
+        Draw arrows.
+    bar : bool
+        Draw the colour bar of (length − ρ)/ρ.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    ArgumentError
+        If it is a run of another law.
+    """
+    law = drawn_law(trajectory)
+    if not isinstance(law, MinimalFlocking):
+        raise ArgumentError(f"law = {trajectory.law!r}: expected a run of MinimalFlocking")
+    when = trajectory.t[-1] if time is None else ensure_finite_scalar("time", time)
+    return _draw(law, trajectory, int(np.argmin(np.abs(trajectory.t - when))), ax=ax, velocities=velocities, bar=bar)
+
+
+@draw_sample.register(MinimalFlocking)
+def _draw(law: Any, trajectory: Trajectory, k: int, *, ax: Axes | None, velocities: bool, bar: bool) -> Axes:
+    q = trajectory.q[k]
+    data = law.edge_data(q)
+    return configuration(
+        q,
+        trajectory.p[k] if velocities else None,
+        d=data.rho,
+        edges=np.column_stack([data.tail, data.head]),
+        ax=ax,
+        bar=bar,
+        title=f"t = {trajectory.t[k]:.4g}",
+    )

@@ -1,0 +1,229 @@
+# ---
+# jupyter:
+#   jupytext:
+#     text_representation:
+#       extension: .py
+#       format_name: percent
+#   kernelspec:
+#     display_name: Python 3
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # Algorithm 2: cohesion, and the γ-agent as a linear system
+#
+# **Aims.** See what the γ-agent adds: a bound on the size of the flock, and a centre of mass that is a linear filter.
+# Reproduce a course project's four simulations, and explain a figure of theirs by a transfer function.
+#
+# Algorithm 2 of Olfati-Saber (2006, section V) adds to Algorithm 1 the pull of a γ-agent with position $q_r$ and
+# velocity $p_r$ on each agent:
+#
+# $$u_i = u_i^\alpha - c_1^\gamma (q_i - q_r) - c_2^\gamma (p_i - p_r).$$
+#
+# ## Two systems in one
+#
+# Let $q_c$, $p_c$ be the mean position and velocity, $x_i = q_i - q_c$ and $v_i = p_i - p_c$. Then the shape $(x, v)$
+# moves as if the γ-agent rested at its centre, and the centre as if it had no neighbours:
+
+# %%
+import numpy as np
+
+import flockana as fl
+from flockana import plots, symbolic
+from flockana.course import grade
+from flockana.equilibria.collapse import relaxed
+from flockana.stability.tracking import response_ratio, tracking
+from flockana.stability.translational import CentreOfMass, predicted_gain
+
+split = symbolic.derive_split(m=2)
+print("exact:", split.holds)
+split
+
+# %% [markdown]
+# ## The shape: energy, hence cohesion
+#
+# The shape dissipates
+#
+# $$H_\lambda = V(x) + \tfrac{\lambda}{2}\sum\|x_i\|^2 + \tfrac12\sum\|v_i\|^2, \quad \lambda = c_1^\gamma, \qquad
+#   \dot H_\lambda = -c_2^\alpha\, v^\top \hat L v - c_2^\gamma \sum\|v_i\|^2 \le 0 .$$
+#
+# All three terms are non-negative, and one agent at distance $R$ from the centre costs $\tfrac{\lambda}{2}R^2$. So
+# $R(t) \le \sqrt{2H_\lambda(t)/c_1^\gamma} \le \sqrt{2H_\lambda(0)/c_1^\gamma}$: no flock of Algorithm 2 fragments
+# without end. That is Theorem 3(i) with its constant.
+
+# %%
+flock = fl.scenario("paper-flocking").run()
+bound = np.sqrt(2.0 * flock.energy() / flock.law.gains.c1_gamma)
+figure, axes = plots.subplots(1, 3, size=(13, 3.6))
+plots.snapshot(flock, ax=axes[0], bar=False)
+plots.measure(flock, "cohesion_radius", ax=axes[1])
+axes[1].plot(flock.t, bound, "k:", label="bound √(2H_λ(t)/c1γ)")
+axes[1].set(yscale="log", ylim=(30.0, 2000.0))
+axes[1].legend()
+plots.energy(flock, ax=axes[2])
+print(fl.verify("os-3", flock).claim("i").detail)
+
+# %% [markdown]
+# The bound is far above $R$ because most of $H_\lambda$ is $V$, which sums over all pairs out of range too.
+#
+# ## The centre: a filter of second order
+#
+# $\ddot q_c = -c_1^\gamma (q_c - q_r) - c_2^\gamma (\dot q_c - p_r)$, exactly, with $\omega_n = \sqrt{c_1^\gamma}$ and
+# $\zeta = c_2^\gamma/(2\sqrt{c_1^\gamma})$. From $q_r$ to $q_c$ the transfer function is
+
+# %%
+symbolic.transfer_function()
+
+# %% [markdown]
+# if $p_r = \dot q_r$. If the γ-agent says $p_r = \kappa\,\dot q_r$ instead, the zero moves:
+
+# %%
+import sympy
+
+symbolic.transfer_function(sympy.Symbol("kappa"))
+
+# %% [markdown]
+# ## An assignment in four cases
+#
+# A course project (`fl.cite(fl.scenario("msn-case1"))`) asks of 100 agents, for each of four settings: snapshots,
+# trajectories, velocities, connectivity and the centre of mass.
+
+
+# %%
+def assignment(case):
+    run = fl.scenario(case).run()
+    axes = plots.subplots(2, 3, size=(13, 7.4))[1]
+    plots.snapshot(run, time=0.0, ax=axes[0, 0], bar=False)
+    plots.snapshot(run, ax=axes[0, 1], bar=False)
+    plots.trajectories(run, ax=axes[0, 2])
+    plots.speeds(run, ax=axes[1, 0])
+    plots.measure(run, "connectivity", ax=axes[1, 1])
+    plots.centre_path(run, ax=axes[1, 2])
+    return run
+
+
+# %% [markdown]
+# **Case 1: Algorithm 1.** It falls apart, and the centre stays where it is.
+
+# %%
+case1 = assignment("msn-case1")
+
+# %% [markdown]
+# **Case 2: a target at rest, no damping** ($c_2^\gamma = 0$). The flock swings through the target, as $\zeta = 0$ says.
+
+# %%
+case2 = assignment("msn-case2")
+period = tracking(case2).quantity("period")
+print(f"period: {period.predicted:.4f} predicted, {period.measured:.4f} measured")
+
+# %% [markdown]
+# **Case 3: a sine.**
+
+# %%
+case3 = assignment("msn-case3")
+
+# %% [markdown]
+# **Case 4: a circle.**
+
+# %%
+case4 = assignment("msn-case4")
+
+# %% [markdown]
+# ## Why is the circle smaller?
+#
+# The project saw that, and held the turning of the γ-agent responsible. The filter knows better (erratum E12). The
+# project moves its γ-agent by iterations of 0.009 time units, but the $p_r$ that it hands over is *per iteration*:
+# $\kappa = 0.009$.
+
+# %%
+gains, circle = case4.law.gains, case4.law.target.target
+omega = 2 * np.pi * circle.frequency
+for kappa in (0.009, 1.0):
+    print(f"p_r = {kappa:5} dq_r/dt: predicted ratio {predicted_gain(gains, omega, factor=kappa):.3f}")
+true = fl.simulate(fl.Algorithm2(case4.law.alpha, gains, circle), case4.q[0], case4.p[0], (0.0, 4.86))
+print(f"measured: {response_ratio(case4)[0]:.3f}, and {response_ratio(true)[0]:.3f} with the true p_r")
+print(tracking(case4))
+
+# %% [markdown]
+# With the true $p_r$ the flock's circle is *larger* than the γ-agent's. The Bode plot shows both, and $\omega$:
+
+# %%
+frequencies = np.geomspace(0.3, 100.0, 200)
+responses = {
+    f"p_r = {kappa:g} dq_r/dt": CentreOfMass(gains, kappa).frequency_response(frequencies) for kappa in (0.009, 1.0)
+}
+axes = plots.bode(responses, marks={"case 4": omega})
+
+# %% [markdown]
+# ## Too strong a pull
+#
+# The same $\lambda$ that holds the flock together presses on every link. Beyond a ratio $c_1^\gamma/c_1^\alpha$ that
+# falls with $n$, agents end in one place, in a strict local minimum of $U_\lambda$ (erratum E11): Theorem 3 promises
+# no lattice. Nineteen agents:
+
+# %%
+alpha = fl.AlphaInteraction()
+figure, axes = plots.subplots(1, 3, size=(13, 4))
+for ax, ratio in zip(axes, (0.05, 0.8, 3.0), strict=True):
+    found = relaxed(alpha, 19, ratio)
+    title = f"c1γ/c1α = {ratio:g}: {found.kind}, closest pair {fl.min_distance(found.q):.3g}"
+    plots.configuration(found.q, d=alpha.d, r=alpha.r, ax=ax, bar=False, title=title)
+
+# %% [markdown] tags=["exercise"]
+# ## Exercises
+#
+# **1.** Case 4 has $c_1^\gamma = 70$. Which $c_2^\gamma$ makes the centre of mass critically damped ($\zeta = 1$)?
+
+# %% tags=["answer"]
+c2_gamma = ...
+
+# %% tags=["solution"]
+c2_gamma = 2 * np.sqrt(70)
+
+# %% tags=["check"]
+grade(c2_gamma, 2 * np.sqrt(70), rtol=1e-3, hint="ζ = c2γ/(2 √c1γ)")
+
+# %% [markdown] tags=["exercise"]
+# **2.** For which $\kappa$ between 0 and 1 would the flock of case 4 follow on a circle of exactly the right size?
+
+# %% tags=["answer"]
+kappa = ...
+
+# %% tags=["solution"]
+from scipy.optimize import brentq
+
+kappa = brentq(lambda k: predicted_gain(gains, omega, factor=k) - 1.0, 0.0, 1.0)
+
+# %% tags=["check"]
+grade(
+    kappa,
+    lambda k: abs(predicted_gain(gains, omega, factor=k) - 1.0) < 1e-3,
+    hint="solve predicted_gain(gains, omega, factor=kappa) = 1",
+)
+
+# %% [markdown] tags=["exercise"]
+# **3.** A γ-agent on a straight line says $p_r = 0$ while it moves at speed 3. How far behind does the centre stay,
+# with $c_1^\gamma = 1.1$ and $c_2^\gamma = 2\sqrt{1.1}$? (Set $\ddot q_c = 0$.)
+
+# %% tags=["answer"]
+lag = ...
+
+# %% tags=["solution"]
+lag = 2 * np.sqrt(1.1) * 3 / 1.1
+
+# %% tags=["check"]
+grade(lag, 2 * np.sqrt(1.1) * 3 / 1.1, rtol=1e-3, hint="c1γ (q_r − q_c) must balance c2γ times the speed")
+
+# %% [markdown] tags=["exercise"]
+# **4.** Do seven agents coincide at $c_1^\gamma/c_1^\alpha = 3$, where nineteen do? Relax them, and answer `True` or
+# `False`.
+
+# %% tags=["answer"]
+coincide = ...
+
+# %% tags=["solution"]
+coincide = bool(fl.min_distance(relaxed(alpha, 7, 3.0).q) < 1e-6)
+
+# %% tags=["check"]
+grade(coincide, False, hint="fl.min_distance(relaxed(alpha, 7, 3.0).q)")

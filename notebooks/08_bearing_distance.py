@@ -1,0 +1,221 @@
+# ---
+# jupyter:
+#   jupytext:
+#     text_representation:
+#       extension: .py
+#       format_name: percent
+#   kernelspec:
+#     display_name: Python 3
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # Bearing-distance flocking, and a theorem that is false as stated
+#
+# **Aims.** Run a law that knows only bearings and distances. Then read its theorem, refute it with a counterexample,
+# and see what can be saved.
+#
+# Jond (2025; `fl.cite(fl.scenario("zone-51"))`) surrounds each agent with zones, $0 < r \le c < a < s$: flockmates
+# up to $c$ repel, those between $r$ and $a$ attract and align, intruders up to $s$ repel. The law is a map from step to
+# step,
+#
+# $$u_i = u_i^{lc} + u_i^{la} + u_i^{ls} + u_i^{ss} + u_i^{oa} + u_i^{ga}, \qquad
+#   v_i \leftarrow v_i + \delta\, u_i, \qquad p_i \leftarrow p_i + \delta\, v_i ,$$
+#
+# with cohesion, alignment, separation (local and strategic), obstacle avoidance and global speed.
+
+# %%
+import numpy as np
+
+import flockana as fl
+from flockana import plots
+from flockana.course import grade
+from flockana.laws.bearing_distance import ZoneFlocking
+from flockana.laws.minimal import MinimalFlocking
+from flockana.laws.perception import edge_vectors
+from flockana.stability import linearise
+from flockana.symbolic import bearing_distance, spanning_trees
+
+hunted = fl.scenario("zone-52").run()
+hunted.window(0.0, 32.0).animate(seconds=4, fps=8)
+
+# %% [markdown]
+# Triangles are the zones in which an agent heeds obstacles, the cross is an alien that hunts within the tinted area.
+# The directed zones let a flock through a gap that the conventional method, a buffer around the whole obstacle,
+# closes:
+
+# %%
+figure, axes = plots.subplots(1, 3, size=(13, 4.2))
+for ax, case, t in zip(axes, ("zone-gap", "zone-gap", "zone-gap-buffer"), (4.0, 10.0, 10.0), strict=True):
+    plots.snapshot(fl.scenario(case).run(), time=t, ax=ax, velocities=False)
+
+# %% [markdown]
+# ## Two forms, and where they part
+#
+# From a bearing $b_{ij}$ and a distance $d_{ij}$ an agent knows $p_j - p_i = d\,b$, and from their rates
+# $v_j - v_i = d\,\dot b + \dot d\,b$ (13). So each behaviour has a form without positions:
+
+# %%
+print("both forms agree:", bearing_distance.derive_equivalence().holds)
+rng = np.random.default_rng(0)
+q, p = rng.uniform(0.0, 10.0, (10, 2)), rng.uniform(0.0, 1.0, (10, 2))
+by_position, by_bearing = (ZoneFlocking(form=form).behaviours(q, p) for form in ("position", "bearing"))
+for name in by_position:
+    print(f"{name:>10}: {np.abs(by_position[name] - by_bearing[name]).max():.1e}")
+
+# %% [markdown]
+# They agree as long as the global speed term is told the agent's own velocity. No bearing tells that; the paper
+# estimates it by (17), which adds up the inputs but forgets the global term itself. After one step the estimate is off
+# by
+
+# %%
+bearing_distance.estimate_gap()
+
+# %% [markdown]
+# and it never recovers (erratum J8):
+
+# %%
+start = fl.scenario("zone-51")
+estimated = fl.simulate(ZoneFlocking(own_velocity="estimated"), start.q0, start.p0, (0.0, 20.0))
+off = np.linalg.norm(estimated.extra["estimate"] - estimated.p, axis=2).mean(axis=1)
+print(f"mean error of the estimate after 1, 5 and 20 s: {off[10]:.2f}, {off[50]:.2f}, {off[200]:.2f} m/s")
+
+# %% [markdown]
+# ## A bound that is a drag
+#
+# To keep $\|v\| \le v^{\max} = 4$ the paper sets $v \leftarrow v^{\max}\tanh(\|v\|/v^{\max})\, v/\|v\|$ in *every* step
+# (10). That shortens a velocity of 3, far from the bound, too (erratum J7). Against full thrust $u^{\max} = 2$ it holds
+# the speed below a fixed point:
+
+# %%
+print(f"3 becomes {bearing_distance.saturation(3, bound=4).evalf(4)} in one step")
+print(f"no speed above {bearing_distance.fastest_under_drag(0.1, 2, 4, digits=5)} lasts; desired are 3")
+printed = fl.scenario("zone-51-printed").run()
+clipped = start.run()
+figure, axes = plots.subplots(1, 2, size=(11, 3.4))
+for ax, run, title in zip(axes, (printed, clipped), ("as printed", "as recommended: a plain clip"), strict=True):
+    plots.zone_speeds(run, ax=ax)
+    ax.annotate(title, (0.97, 0.12), xycoords="axes fraction", ha="right")
+
+# %% [markdown]
+# ## The theorem
+#
+# For its analysis the paper reduces the law to springs and alignment along the edges of a perception graph
+# (`MinimalFlocking`). With $x_e = p_j - p_i$ on edge $e = (j, i)$, by which $i$ perceives $j$, and a desired length
+# $\rho$:
+#
+# > **Theorem 1** (as printed, in our words). If the graph is a spanning tree, then $x \to 0$ and $\dot x \to 0$ from
+# > any initial condition, because the matrix $A_{cl}$ of the edge dynamics is Hurwitz.
+#
+# Here is a tree that never changes, at the start and at the end:
+
+# %%
+tree = fl.scenario("zone-tree").run()
+figure, axes = plots.subplots(1, 2, size=(11, 4))
+plots.snapshot(tree, time=0.0, ax=axes[0], velocities=False, bar=False)
+_ = plots.snapshot(tree, ax=axes[1], velocities=False)
+
+# %%
+verdict = fl.verify("zone-1-printed", tree)
+print(verdict)
+
+# %% [markdown]
+# The counterexample is in the verdict: agents at rest, every edge at its desired length. Check it by hand:
+
+# %%
+rest = np.array(verdict.claim("equilibrium").witness["q"])
+force = tree.law.acceleration(0.0, rest, np.zeros_like(rest))
+lengths = np.linalg.norm(edge_vectors(rest, tree.law.edges), axis=1)
+print(f"edges {lengths.min():.3f} to {lengths.max():.3f} long, largest force {np.abs(force).max():.0e}")
+
+# %% [markdown]
+# $x = 0$ is not even desirable: it means that all agents collide. Where did the proof go wrong? An edge of length
+# $\|x\|$ contributes $s^2 + s + w$ with $w = \mu(1 - \rho/\|x\|)$ to the characteristic polynomial of $A_{cl}$
+# (erratum J2):
+
+# %%
+for ratio in (2.0, 1.0, 0.5):
+    first, second = (complex(root) for root in spanning_trees.frozen_eigenvalues(ratio))
+    print(f"|x| = {ratio:g} ρ: eigenvalues {first:.3f} and {second:.3f}")
+
+# %% [markdown]
+# Hurwitz where edges are too long, singular where they are right, unstable where they are too short. And $A_{cl}$
+# depends on the state: eigenvalues of a frozen matrix prove nothing about a trajectory.
+#
+# ## What is true
+#
+# > **Corrected.** On a frozen rooted out-tree the equilibria are $\|x_e\| = \rho_e$, $\dot x = 0$: a product of
+# > spheres of dimension $(n-1)(m-1)$. At each of them that many eigenvalues vanish, because bearings are free; the
+# > others lie in the open left half-plane, so length and velocity errors near the spheres decay exponentially.
+
+# %%
+print(fl.verify("zone-1-corrected", tree))
+spanning_trees.spacing_spectrum(2).result
+
+# %% [markdown]
+# Linearised in the coordinates of the agents the law has two more zero modes, the translations; and nobody damps the
+# velocity of the root, which all take over:
+
+# %%
+found = linearise(tree.law, rest)
+n, m = rest.shape
+print(f"{len(found.zero_modes)} zero modes = {m} translations + (n - 1)(m - 1) = {(n - 1) * (m - 1)}")
+print("with velocities that persist:", ", ".join(found.drifting), "(the plot counts these eigenvalues twice)")
+figure, ax = plots.subplots(size=(5, 3.6))
+_ = plots.pole_map(found.eigenvalues, ax=ax)
+
+# %% [markdown] tags=["exercise"]
+# ## Exercises
+#
+# **1.** Halve the step to $\delta = 0.05$. Which speed can the printed bound (10) not exceed for long now?
+
+# %% tags=["answer"]
+fastest = ...
+
+# %% tags=["solution"]
+fastest = float(bearing_distance.fastest_under_drag(0.05, 2, 4))
+
+# %% tags=["check"]
+grade(fastest, 1.628, rtol=1e-3, hint="bearing_distance.fastest_under_drag(step, force, bound)")
+
+# %% [markdown] tags=["exercise"]
+# **2.** Two agents: 1 perceives 0 and wants to be 1 away, both at rest, 0.5 apart. What is the acceleration of agent 1
+# along the line from 0 to 1 ($\mu = 1$)?
+
+# %% tags=["answer"]
+push = ...
+
+# %% tags=["solution"]
+pair = MinimalFlocking(edges=[(0, 1)], spacing=1.0)
+push = float(pair.acceleration(0.0, [[0.0], [0.5]], [[0.0], [0.0]])[1, 0])
+
+# %% tags=["check"]
+grade(push, 0.5, hint="μ (1 − ρ/‖x‖)(p_0 − p_1)")
+
+# %% [markdown] tags=["exercise"]
+# **3.** How many zero modes, translations included, has the same law on a tree of 5 agents in space? Count them with
+# `linearise`, with all edges at their desired lengths.
+
+# %% tags=["answer"]
+count = ...
+
+# %% tags=["solution"]
+chain = MinimalFlocking(edges=[(0, 1), (1, 2), (2, 3), (3, 4)], spacing=1.0)
+corners = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [1, 1, 1], [2, 1, 1]], dtype=float)
+count = len(linearise(chain, corners).zero_modes)
+
+# %% tags=["check"]
+grade(count, 11, hint="m translations and (n − 1)(m − 1) free bearings")
+
+# %% [markdown] tags=["exercise"]
+# **4.** With the zones' own law in its letter (`zone-51-printed`), how close do two agents come in 20 s, at the steps?
+
+# %% tags=["answer"]
+least = ...
+
+# %% tags=["solution"]
+least = float(printed.metrics().min_distance.min())
+
+# %% tags=["check"]
+grade(least, 0.0707, rtol=5e-3, hint="printed.metrics().min_distance")

@@ -1,0 +1,183 @@
+"""Laws with a world of their own: snapshots and films show it, and the links of any law that has a range."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.figure import Figure
+from matplotlib.patches import Polygon, Rectangle
+from matplotlib.quiver import Quiver
+from mpl_toolkits.mplot3d.art3d import Line3DCollection
+
+from flockana import plots
+from flockana.environment.obstacles import Sphere
+from flockana.environment.zone_obstacles import Box
+from flockana.environment.zone_world import Alien, ZoneWorld
+from flockana.errors import ArgumentError
+from flockana.laws.bearing_distance import ZoneFlocking
+from flockana.laws.dead_zone import DeadZoneFlocking
+from flockana.laws.law import Law
+from flockana.laws.minimal import MinimalFlocking
+from flockana.laws.olfati_saber import Algorithm1
+from flockana.laws.semi_implicit import SemiImplicitEuler
+from flockana.plots.animation import _view, equal_times
+from flockana.plots.snapshot import draw_sample, in_view
+from flockana.scenarios import scenario
+from flockana.simulate import simulate
+from flockana.trajectory import Trajectory
+
+EDGES = ((0, 1), (1, 2), (2, 1))
+
+
+@pytest.fixture(scope="module")
+def hunted():
+    entry = scenario("zone-52")
+    return simulate(entry.law, entry.q0, entry.p0, (0.0, 5.0))
+
+
+def axes(m=2):
+    return Figure().add_subplot(projection="3d" if m == 3 else None)
+
+
+def of(ax, kind):
+    return [one for one in ax.collections if type(one) is kind]
+
+
+def a_tree(**options):
+    law = MinimalFlocking(edges=EDGES, spacing=(9.0, 2.0, 4.0), **options)
+    q = np.array([[0.0, 0.0], [3.0, 0.0], [3.0, 3.0]])
+    return at_rest(law, q)
+
+
+def at_rest(law, q):
+    q = np.array(q)[None]
+    return Trajectory(np.zeros(1), q, 0.0 * q, 0.0 * q, law)
+
+
+def titled(ax):
+    return ax.get_title(loc="left") + ax.get_title()
+
+
+def test_a_snapshot_of_a_zone_law_shows_its_world(hunted):
+    ax = plots.snapshot(hunted, 2.0, ax=axes())
+    assert [type(patch) for patch in ax.patches] == [Polygon, Polygon, Rectangle]
+    (triangles,) = of(ax, PolyCollection)
+    np.testing.assert_allclose(
+        triangles.get_paths()[3].vertices[0], hunted.q[20, 3] + 3.0 * hunted.extra["heading"][20, 3]
+    )
+    fastest = np.linalg.norm(hunted.p[20], axis=1).max()
+    assert titled(ax) == f"t = 2   longest arrow: {fastest:.3g} length/time"
+    assert len(of(ax, Quiver)) == 1
+    assert not of(plots.snapshot(hunted, ax=axes(), velocities=False), Quiver)
+
+
+def test_a_film_of_a_map_keeps_what_its_memory_holds(hunted):
+    film = equal_times(hunted, 6)
+    np.testing.assert_array_equal(film.t, hunted.t[::10])
+    assert set(film.extra) == set(hunted.extra)
+    for name, series in hunted.extra.items():
+        np.testing.assert_array_equal(film.extra[name], series[::10])
+
+
+def test_the_film_of_a_zone_run_holds_box_and_alien(hunted):
+    film = plots.animation(hunted, seconds=0.2, fps=10)
+    film._func(1)
+    film._draw_was_started = True  # else matplotlib warns of a film that nobody saw
+    (ax,) = film._fig.axes
+    assert [type(patch) for patch in ax.patches] == [Polygon, Polygon, Rectangle]
+    (low_x, high_x), (low_y, high_y) = ax.get_xlim(), ax.get_ylim()
+    assert low_x < 0.0 < 50.0 < high_x
+    assert low_y < 0.0 < 50.0 < high_y
+    np.testing.assert_allclose(ax.collections[-1].get_offsets(), hunted.extra["alien"][-1])
+
+
+def test_in_view_are_all_places_of_an_alien():
+    """Of a flock that stays at the origin, without obstacles or box, only the alien is far away."""
+    law = ZoneFlocking(world=ZoneWorld(aliens=(Alien((40.0, -30.0)),)))
+    run = simulate(law, [[0.0, 0.0], [1.0, 0.0]], np.zeros((2, 2)), (0.0, 0.5))
+    low, high = _view(run)
+    assert high[0] > 40.0
+    assert low[1] < -30.0
+
+
+def test_zones_in_space_and_on_a_line():
+    rng = np.random.default_rng(0)
+    law = ZoneFlocking(world=ZoneWorld((Sphere((20.0,) * 3, 3.0),), Box((0.0,) * 3, (40.0,) * 3)))
+    solid = simulate(law, rng.uniform(1.0, 9.0, (5, 3)), rng.uniform(0.0, 1.0, (5, 3)), (0.0, 0.5))
+    ax = plots.snapshot(solid, ax=axes(3))
+    box = next(one for one in ax.collections if type(one) is Line3DCollection and len(one._segments3d) == 12)
+    lengths = np.linalg.norm(np.diff(np.array(box._segments3d), axis=1)[:, 0], axis=1)
+    np.testing.assert_array_equal(lengths, 40.0)
+    np.testing.assert_allclose(in_view(law, solid).max(axis=0), 40.0)
+    flat = at_rest(ZoneFlocking(), [[0.0], [4.0], [9.5]])
+    (line,) = of(plots.snapshot(flat, ax=axes()), LineCollection)
+    np.testing.assert_array_equal(np.array(line.get_segments())[:, :, 0], [[0.0, 4.0]])  # within a = 5
+
+
+def test_links_of_a_dead_zone_law_and_of_a_map_that_steps_it():
+    law = DeadZoneFlocking()
+    d, r = law.interaction.length, law.interaction.range
+    q = np.array([[0.0, 0.0], [1.2 * d, 0.0], [1.2 * d + 1.001 * r, 0.0]])
+    for one in (law, SemiImplicitEuler(law)):
+        (lines,) = of(plots.snapshot(at_rest(one, q), ax=axes()), LineCollection)
+        np.testing.assert_allclose(lines.get_array(), [0.2])
+        assert lines.norm.vmax == 1.0  # r is more than twice d
+
+
+def test_who_perceives_whom():
+    """(0, 1) goes one way and is 3 long, agent 1 wants 2; 1 and 2 perceive each other, 3 apart, and want 2 and 4."""
+    ax = plots.snapshot(a_tree(), ax=axes(), velocities=False)
+    (lines,) = of(ax, LineCollection)
+    assert [segment[0].tolist() for segment in lines.get_segments()] == [[0.0, 0.0], [3.0, 0.0], [3.0, 3.0]]
+    np.testing.assert_allclose(lines.get_array(), [0.5, -0.25, 0.5])
+    (head,) = of(ax, Quiver)
+    np.testing.assert_allclose([head.U, head.V], [[1.0], [0.0]])
+    np.testing.assert_allclose(head.get_offsets(), [[1.65, 0.0]])
+    step = at_rest(a_tree().law.discrete(0.1), a_tree().q[0])
+    (same,) = of(plots.perception(step, ax=axes()), LineCollection)
+    np.testing.assert_array_equal(same.get_array(), lines.get_array())
+
+
+def test_perception_refuses_other_laws():
+    run = simulate(Algorithm1(), [[0.0, 0.0]], [[1.0, 0.0]], (0.0, 1.0))
+    with pytest.raises(ArgumentError, match="expected a run of MinimalFlocking"):
+        plots.perception(run)
+
+
+def test_of_many_links_the_relaxed_ones_lie_above():
+    q = np.random.default_rng(0).uniform(0.0, 6.0, (12, 2))
+    ax = plots.configuration(q, d=7.0, r=8.4, ax=axes())  # 66 links, 5.5 for each agent
+    (many,) = of(ax, LineCollection)
+    assert np.all(np.diff(np.abs(many.get_array())) <= 0.0)
+    assert many.get_linewidths()[0] == pytest.approx(1.8 * (4.0 * 12 / 66) ** 0.5)
+    lengths = np.linalg.norm(np.diff(np.array(many.get_segments()), axis=1)[:, 0], axis=1)
+    np.testing.assert_allclose(lengths / 7.0 - 1.0, many.get_array())
+
+
+def test_a_centre_that_stands_still_is_not_blown_up_to_its_rounding():
+    run = simulate(Algorithm1(), [[0.0, 0.0], [6.0, 0.0], [3.0, 5.0]], np.zeros((3, 2)), (0.0, 1.0))
+    low, high = plots.centre_path(run, ax=axes()).get_xlim()
+    assert (low + high) / 2 == pytest.approx(3.0)
+    assert high - low == pytest.approx(np.ptp(run.q, axis=(0, 1)).max())
+
+
+def test_a_law_of_ones_own_says_how_it_is_drawn():
+    @dataclass(frozen=True)
+    class Still(Law):
+        def flow(self, t, q, p):
+            return 0.0 * q, float("nan")
+
+    @draw_sample.register(Still)
+    def _(law, trajectory, k, *, ax, velocities, bar):
+        ax.set_title(f"sample {k}")
+        return ax
+
+    run = simulate(Still(), [[0.0, 0.0]], [[1.0, 0.0]], (0.0, 1.0), t_eval=[0.0, 0.5, 1.0])
+    assert plots.snapshot(run, 0.6, ax=axes()).get_title() == "sample 1"
+    film = plots.animation(run, seconds=0.4, fps=10)
+    film._func(3)
+    assert titled(film._fig.axes[0]) == "sample 3"
+    film._draw_was_started = True  # else matplotlib warns of a film that nobody saw
