@@ -70,12 +70,12 @@ def pole_map(poles: Any, *, grid: bool = True, ax: Axes | None = None) -> Axes:
         axes.plot(grows.real, grows.imag, "^", color=VERMILLION, markersize=6.0, label="growing", zorder=3)
     if zeros:
         look = {"color": INK, "markerfacecolor": "none", "markersize": 9.0, "zorder": 4}
-        axes.plot(0.0, 0.0, "o", label=f"zero modes: {zeros}", **look)
+        axes.plot(0.0, 0.0, "o", label=f"zero eigenvalues: {zeros}", **look)
     axes.set_xlabel("Re λ (1/time)")
     axes.set_ylabel("Im λ (rad/time)")
     axes.margins(0.08)
     axes.autoscale_view()
-    height = max(1.08 * float(np.abs(whole.imag).max()), 0.2 * float(np.abs(whole).max()))  # real poles have none
+    height = max(1.2 * float(np.abs(whole.imag).max()), 0.2 * float(np.abs(whole).max()))  # real poles have none
     if height:
         axes.set_ylim(-height, height)
     if grid:

@@ -76,6 +76,8 @@ def _widen(ax: Any, points: FloatArray, trajectory: Trajectory) -> None:
     """A path that is a point but for rounding is shown at the scale of the flock, not at that of the rounding."""
     size = float(np.ptp(trajectory.q.reshape(-1, trajectory.m), axis=0).max())
     if trajectory.m > 1 and float(np.ptp(points, axis=0).max()) < _STILL * size:
+        if trajectory.m == 2:
+            ax.set_aspect("equal", adjustable="box")  # else the limits below are for matplotlib to change
         for name, middle in zip("xyz", points[0].tolist(), strict=False):
             getattr(ax, f"set_{name}lim")(middle - 0.5 * size, middle + 0.5 * size)
 

@@ -31,7 +31,7 @@ def test_poles_are_where_they_are_and_zeros_and_growth_stand_out():
     found = lines(ax)
     np.testing.assert_array_equal(found["eigenvalues"], [[-1.0, 2.0], [-1.0, -2.0], [-4.0, 0.0]])
     np.testing.assert_array_equal(found["growing"], [[0.5, 0.0]])
-    assert "zero modes: 2" in found
+    assert "zero eigenvalues: 2" in found
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("Re λ (1/time)", "Im λ (rad/time)")
     assert "ζ = 0.5" in [text.get_text() for text in ax.texts]
     low, high = ax.get_ylim()
