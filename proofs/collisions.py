@@ -43,12 +43,12 @@ def _energy_falls() -> Iterator[Step]:
     )
 
 
-def at_most(k: z3.ArithRef, text: str, *, budget: z3.ArithRef | None = None) -> Step:
-    """The step that at most k pairs coincide while H(0) is below `budget`, as asserted (k + 1) c1α c*."""
-    below = H0 < ((k + 1) * C1 * C_STAR if budget is None else budget)
+def at_most(k: z3.ArithRef, text: str, *, budget: z3.ArithRef) -> Step:
+    """The step that fewer than k + 1 pairs coincide while H(0) is below `budget`; of whole numbers, at most k."""
+    fewer, below = z3.Not(k + 1 <= TOGETHER), z3.Not(budget <= H0)
     return implication(
         text,
-        TOGETHER < k + 1,  # of whole numbers: N <= k
+        fewer,
         *(*STATE, *ENERGY, k >= 0, below),
         latex=r"N(t)\,c_1^\alpha c^* \le c_1^\alpha V + \lambda J + K = H_\lambda(t) \le H_\lambda(0) < (k+1)\,"
         r"c_1^\alpha c^* \implies N(t) \le k",
@@ -57,7 +57,11 @@ def at_most(k: z3.ArithRef, text: str, *, budget: z3.ArithRef | None = None) -> 
 
 def _instant() -> Iterator[Step]:
     k = z3.Real("k")
-    yield at_most(k, "H(0) < (k + 1) c1α c* leaves N < k + 1 coincident pairs at each time: at most k of them")
+    yield at_most(
+        k,
+        "H(0) < (k + 1) c1α c* leaves N < k + 1 coincident pairs at each time: at most k of them",
+        budget=(k + 1) * C1 * C_STAR,
+    )
     yield implication(
         "k = 0: N < 1 and N is a whole number, so that no two agents ever coincide (Theorem 1(iii), with λ = 0)",
         TOGETHER < 1,

@@ -2,10 +2,28 @@
 
 from __future__ import annotations
 
+from math import sqrt
+
+import numpy as np
+
+from flockana.environment.targets import StaticTarget
+from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.theorems.asymptotics import distinct_pairs, pairs_at_one_instant
+from flockana.theorems.energy import proved
 from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances
 from flockana.trajectory import Trajectory
+
+_UNTIL = 0.03  # by then both pairs have coincided
+
+
+def _enclosed(run: Trajectory) -> str | None:
+    """The id of the proof that encloses the erratum's own run, if this is it."""
+    alpha, gains = AlphaInteraction(a=5e4, b=5e4), Gains(c1_alpha=1.0, c2_alpha=1.0, c1_gamma=0.01, c2_gamma=0.01)
+    start = np.array([[-12.0], [0.0], [30.0]]), np.array([[sqrt(5.6 * alpha.c_star)], [0.0], [0.0]])
+    same = all(np.array_equal(*both) for both in zip(start, (run.q[0], run.p[0]), strict=True))
+    its_own = same and run.law == Algorithm2(alpha, gains, StaticTarget((0.0,))) and run.t[-1] - run.t[0] >= _UNTIL
+    return "distinct-pairs" if its_own else None
 
 
 def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
@@ -15,8 +33,8 @@ def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], l
         return [law], [Claim(name, "vacuous", detail="another law") for name in ("printed", "corrected")]
     c_star = run.law.gains.c1_alpha * run.law.alpha.c_star
     return [law], [
-        distinct_pairs(run, law, tolerances, c_star=c_star, name="printed"),
-        pairs_at_one_instant(run, law, tolerances, c_star=c_star, name="corrected"),
+        distinct_pairs(run, law, tolerances, c_star=c_star, name="printed", proof=_enclosed(run)),
+        pairs_at_one_instant(run, law, tolerances, c_star=c_star, name="corrected", proof=proved(run, "collisions")),
     ]
 
 

@@ -33,6 +33,7 @@ def _implication(alpha: AlphaInteraction) -> Claim:
         margin=least,
         error=0.0,
         witness="ψ_α at 2001 lengths; its sign follows from that of φ_α",
+        proof="collisions",
         detail=f"the implication holds: ψ_α is at least {least:.2g}, and V does not rise",
     )
 
@@ -50,6 +51,7 @@ def _reached(alpha: AlphaInteraction) -> Claim:
         margin=margin,
         error=1e-9,
         witness={"V(n)": energies[0], "V(n + 1)": energies[1], "c*": alpha.c_star},
+        proof="n-max",
         detail=f"with the most links possible ({harborth(n)} at n = {n}), V = {energies[0]:.4g} < c* = "
         f"{alpha.c_star:.4g}; at n = {n + 1}, {energies[1]:.4g}",
     )
@@ -70,6 +72,7 @@ def _none(alpha: AlphaInteraction) -> Claim:
         margin=margin,
         error=1e-9,
         witness={"[largest n of a lattice below c*, least n without any state], by set and dimension": table},
+        proof="n-max",
         detail=f"what lowers V is {shortest:.4g} to {longest:.4g} long, a ratio of {longest / shortest:.4g} < √2; "
         f"no four agents are pairwise such, so by Turán V > c* from n = {n} on",
     )

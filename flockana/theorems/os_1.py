@@ -6,11 +6,11 @@ from math import sqrt
 
 import numpy as np
 
-from flockana.lattice import classify, harborth
+from flockana.lattice import harborth
 from flockana.laws.olfati_saber import Algorithm1
-from flockana.terminal import terminal_state
-from flockana.theorems.asymptotics import below_the_barrier, no_collision, settled, velocities_match
-from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
+from flockana.theorems.asymptotics import below_the_barrier, lattice_limit, no_collision, velocities_match
+from flockana.theorems.energy import proved
+from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances
 from flockana.trajectory import Trajectory
 
 
@@ -48,28 +48,6 @@ def _below_c_star(run: Trajectory) -> Hypothesis:
     return Hypothesis("H(x(0), v(0)) < c*", "met" if energy < c_star else "unmet", c_star - energy, detail)
 
 
-def _lattice(run: Trajectory, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
-    """(i): the limit is an α-lattice. A strained limit refutes it only if it is a strict minimum (open basin)."""
-    end = terminal_state(run.law, run.q[-1], run.p[-1], contact=tolerances.contact)
-    kind = classify(end.strain, lattice=tolerances.lattice, quasi=tolerances.quasi)
-    margin = tolerances.lattice - end.strain
-    status = judge(margin, 0.0, needs)
-    if status != "vacuous" and not settled(end, tolerances):
-        status, kind = "inconclusive", f"{kind}, still moving"
-    elif status == "refuted" and not end.curvature > tolerances.curvature:
-        status = "inconclusive"
-    return Claim(
-        "i",
-        status,
-        computed=end.strain,
-        stated=f"|link - d|/d <= {tolerances.lattice:g} in the limit",
-        margin=margin,
-        error=0.0,
-        witness={"force": end.force, "links": end.links, "curvature": end.curvature},
-        detail=f"limit: {kind}, links {end.shortest:.6g} to {end.longest:.6g}, residual force {end.force:.2g}",
-    )
-
-
 def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
     applies = type(run.law) is Algorithm1
     law = Hypothesis("Algorithm 1 is applied", "met" if applies else "unmet", detail=type(run.law).__name__)
@@ -79,9 +57,9 @@ def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], l
     barrier = below_the_barrier(run, run.law.structural_energy(run.q[0], run.p[0]))
     needs = [law, together]
     return [*needs, energy, barrier], [
-        _lattice(run, needs, tolerances),
+        lattice_limit(run, needs, tolerances, name="i"),
         velocities_match(run, tolerances, needs, name="ii"),
-        no_collision(run, [*needs, energy], tolerances, name="iii"),
+        no_collision(run, [*needs, energy], tolerances, name="iii", proof=proved(run, "collisions")),
         no_collision(run, [*needs, barrier], tolerances, name="iii-barrier"),
     ]
 

@@ -106,8 +106,8 @@ def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], l
         _minimum(end, needs, tolerances),
         velocities_match(run, tolerances, needs, name="iii"),
         distinct_pairs(run, needs[0], tolerances, c_star=c_star, name="iv-printed"),
-        pairs_at_one_instant(run, needs[0], tolerances, c_star=c_star, name="iv-instant"),
-        no_collision(run, [*energy_falls, collision_free], tolerances, name="iv-none"),
+        pairs_at_one_instant(run, needs[0], tolerances, c_star=c_star, name="iv-instant", proof="collisions"),
+        no_collision(run, [*energy_falls, collision_free], tolerances, name="iv-none", proof="collisions"),
         no_collision(run, [*energy_falls, barrier], tolerances, name="iv-barrier"),
     ]
 

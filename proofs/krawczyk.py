@@ -1,0 +1,68 @@
+"""Verified linear algebra on balls: Krawczyk's test for a zero, and a lower bound of the eigenvalues of a matrix.
+
+Floating point only proposes, an inverse or eigenvectors; what is concluded holds whatever it proposed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from flint import arb, arb_mat
+
+
+def column(values: Sequence[arb]) -> arb_mat:
+    """A vector as a matrix of one column."""
+    return arb_mat(len(values), 1, list(values))
+
+
+def midpoints(matrix: arb_mat) -> arb_mat:
+    """The matrix of the balls' middles."""
+    return arb_mat(matrix.nrows(), matrix.ncols(), [entry.mid() for entry in matrix.entries()])
+
+
+def identity(size: int) -> arb_mat:
+    """1 on the diagonal."""
+    return arb_mat(size, size, [int(i == j) for i in range(size) for j in range(size)])
+
+
+def enclose_zero(
+    f: Callable[[Sequence[arb]], Sequence[arb]],
+    slope: Callable[[Sequence[arb]], arb_mat],
+    centre: Sequence[arb],
+    radius: arb,
+) -> list[arb] | None:
+    """Balls that hold the one zero of f in the box of that radius about the centre; None if the test fails.
+
+    Krawczyk: with an enclosure S of f' on the box B and any matrix Y, let K = c - Y f(c) + (1 - Y S)(B - c). If K lies
+    inside B, then f has exactly one zero in B; it is in K, and f' is nowhere singular on B.
+    """
+    box = [x + arb(0, radius) for x in centre]
+    enclosure = slope(box)
+    y = midpoints(midpoints(enclosure).inv())
+    shift = (identity(len(box)) - y * enclosure) * column([arb(0, radius)] * len(box)) - y * column(f(centre))
+    if not all(abs(entry) < radius for entry in shift.entries()):
+        return None
+    return [x + entry for x, entry in zip(centre, shift.entries(), strict=True)]
+
+
+def least_eigenvalue(matrix: arb_mat) -> arb | None:
+    """A number below every eigenvalue of every symmetric matrix within the balls; None unless it is above 0.
+
+    With Q any matrix, here approximate eigenvectors, Gershgorin's discs bound the eigenvalues of QᵀAQ by some g. If
+    g > 0, Q is invertible, and ⟨Qx, A Qx⟩ >= g |x|² >= g |Qx|²/|QᵀQ|: the eigenvalues of A are at least g/|QᵀQ|.
+    """
+    size = matrix.nrows()
+    middle = np.array([[float(entry.mid()) for entry in row] for row in matrix.tolist()])
+    q = arb_mat(size, size, [arb(float(x)) for x in np.linalg.eigh((middle + middle.T) / 2)[1].ravel()])
+    discs = (q.transpose() * matrix * q).tolist()
+    lowest = arb(min((row[i] - _others(row, i)).lower() for i, row in enumerate(discs)))
+    if not lowest > 0:
+        return None
+    length = arb(max(sum(map(abs, row), arb(0)).upper() for row in (q.transpose() * q).tolist()))
+    return (lowest / length).lower()
+
+
+def _others(row: Sequence[arb], i: int) -> arb:
+    """Radius of a disc."""
+    return sum((abs(x) for j, x in enumerate(row) if j != i), arb(0))

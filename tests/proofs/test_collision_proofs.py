@@ -1,0 +1,255 @@
+"""The proofs about collisions hold; what is false, or not certain, of a wrong constant is not called proved."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+pytest.importorskip("z3")  # the extra flockana[proofs]
+pytest.importorskip("flint")
+
+import z3
+from flint import arb, ctx
+
+from flockana.equilibria.barrier import (
+    bound_range,
+    energy_floor,
+    lattice_reach,
+    none_from,
+    turan_pairs,
+)
+from flockana.equilibria.barrier import largest_clique as numeric_clique
+from flockana.interactions import AlphaInteraction
+from flockana.metrics import coincident_pairs
+from flockana.paths import contacts
+from flockana.scenarios import scenario
+from flockana.simulate import simulate
+from flockana.theorems import verify
+from proofs import collisions, distinct_pairs, n_max
+from proofs.distinct_pairs import Start, crossings, free, is_the_scenario, onward, potential
+from proofs.intervals import AlphaParameters, c_star, far_potential
+
+SETS = {
+    ("7", "8.4", "0.1", "0.2", "5", "5"): (23, 14),
+    ("15", "18", "0.1", "0.1", "3", "3"): (26, 16),
+    ("1.9", "2.8", "0.1", "0.4", "7", "9"): (11, 5),
+    ("1.7", "2.5", "0.01", "0.2", "7", "15"): (12, 6),
+}
+
+
+@pytest.fixture(autouse=True)
+def digits():
+    with ctx.workdps(20):
+        yield
+
+
+@pytest.mark.parametrize("module", [collisions, distinct_pairs, n_max], ids=lambda module: module.PROOF.id)
+def test_every_step_holds(module):
+    steps = list(module.PROOF.steps())
+    assert len(steps) >= 8
+    assert [step.text for step in steps if step.holds is not True] == []
+
+
+# at one instant
+
+
+@pytest.mark.parametrize(("factor", "holds"), [(1, True), (2, False)])
+def test_an_energy_for_one_pair_more_lets_one_more_coincide(factor, holds):
+    k = z3.Real("k")
+    budget = (k + factor) * collisions.C1 * collisions.C_STAR
+    assert collisions.at_most(k, "at most k", budget=budget).holds is holds
+
+
+def test_the_gain_counts():
+    k = z3.Real("k")
+    assert collisions.at_most(k, "c* without c1α", budget=(k + 1) * collisions.C_STAR).holds is False
+
+
+def test_without_the_sign_of_the_other_pairs_nothing_follows(monkeypatch):
+    unsigned = tuple(fact for fact in collisions.STATE if not fact.eq(collisions.REST >= 0))
+    assert len(unsigned) == len(collisions.STATE) - 1
+    monkeypatch.setattr(collisions, "STATE", unsigned)
+    k = z3.Real("k")
+    assert collisions.at_most(k, "x", budget=(k + 1) * collisions.C1 * collisions.C_STAR).holds is False
+
+
+def test_a_coincident_state_costs_what_the_proof_says():
+    alpha = AlphaInteraction()
+    q = np.array([[0.0, 0.0], [0.0, 0.0], [0.0, 0.0], [7.0, 0.0]])  # three agents in one place, linked to the fourth
+    assert coincident_pairs(q, 1e-9) == 3
+    assert alpha.potential_energy(q) == pytest.approx(3 * alpha.c_star, rel=1e-12)
+
+
+# one pair after the other
+
+
+def test_the_crossings_of_the_erratum_are_enclosed():
+    found = crossings(Start())
+    case = scenario("three-agents-1d")
+    run = simulate(case.law, case.q0, case.p0, (0.0, 0.03))
+    met = {(c.i, c.j): c.time for c in contacts(run.t, run.q, run.p, run.u, tol=1e-8)}
+    assert set(met) == {(0, 1), (0, 2)}
+    for pair, enclosure in (((0, 1), found.first), ((0, 2), found.second)):
+        assert enclosure.contains(arb(met[pair]))
+        assert float(enclosure.rad()) < 1e-4
+    assert [round(time, 5) for time in met.values()] == [0.00841, 0.02745]
+
+
+def test_the_enclosed_energy_is_that_of_the_run():
+    start = Start()
+    case = scenario("three-agents-1d")
+    assert float(start.energy()) == pytest.approx(float(case.law.structural_energy(case.q0, case.p0)), rel=1e-12)
+    assert round(float(start.energy() / c_star(start.par)), 3) == 1.909
+    assert is_the_scenario(start)
+    assert not is_the_scenario(replace(start, boost="5.7"))
+    assert not is_the_scenario(replace(start, c2_alpha="2"))
+
+
+@pytest.mark.parametrize(
+    ("change", "first", "second"),
+    [
+        ({"boost": "3.9"}, False, False),  # ¼ of it is less than c* - ψ_α(r_α): no way through
+        ({"c2_alpha": "20"}, True, False),  # through the first, with too little left for the second
+        ({"positions": (-12, 0, 15)}, True, None),  # the third within range of the two: not certain, so not claimed
+        ({"slack": "300"}, False, False),
+    ],
+)
+def test_no_crossing_is_claimed_that_is_not_certain(change, first, second):
+    found = crossings(replace(Start(), **change))
+    assert (found.first is not None) is first
+    assert (found.second is not None) is bool(second)
+
+
+def test_agents_out_of_range_move_in_closed_form():
+    start = replace(Start(), c1_gamma="2", c2_gamma="0.5")
+    s, v = free((arb(3), arb(-1)), arb("0.7"), start)
+    time, x = 0.0, np.array([3.0, -1.0])
+    rate = lambda x: np.array([x[1], -2.0 * x[0] - 0.5 * x[1]])  # noqa: E731
+    for _ in range(700):  # Runge's and Kutta's method, an independent witness
+        a = rate(x)
+        b = rate(x + 5e-4 * a)
+        c = rate(x + 5e-4 * b)
+        x, time = x + 1e-3 / 6.0 * (a + 2.0 * b + 2.0 * c + rate(x + 1e-3 * c)), time + 1e-3
+    assert time == pytest.approx(0.7)
+    assert (float(s), float(v)) == pytest.approx(tuple(x), abs=1e-11)
+
+
+def test_a_step_encloses_time_and_energy_of_two_agents_alone():
+    start = replace(Start(), c1_gamma="0.5", c2_gamma="0.3", c2_alpha="40")
+    here = distinct_pairs.Passage(arb(-8), arb(0), potential(arb(-8), start) + 250000)  # w = 1000
+    from flockana.environment.targets import StaticTarget
+    from flockana.interactions import Gains
+    from flockana.laws.olfati_saber import Algorithm2
+
+    gains = Gains(c1_alpha=1.0, c2_alpha=40.0, c1_gamma=0.5, c2_gamma=0.3)
+    law = Algorithm2(AlphaInteraction(a=5e4, b=5e4), gains, StaticTarget((0.0,)))
+    run = simulate(law, [[-8.0], [0.0]], [[1000.0], [0.0]], (0.0, 1e-3), rtol=1e-11, atol=1e-9)
+    x, w = (run.q[-1, 0, 0] - run.q[-1, 1, 0]), run.p[-1, 0, 0] - run.p[-1, 1, 0]
+    pieces = 64
+    for k in range(1, pieces + 1):
+        here = onward(here, arb(-8) + (arb(x) + 8) * k / pieces, start)
+    assert here.time.contains(arb(1e-3))
+    assert float(here.time.rad()) < 2e-5
+    assert (here.energy - potential(here.x, start)).contains(arb(w) ** 2 / 4)
+    assert float(here.energy.rad()) < 1e-2 * float(here.energy.mid())
+
+
+def test_one_long_step_is_wide_enough():
+    start = replace(Start(), c1_gamma="1e-9", c2_gamma="20")  # out of range w = 1000 - 20 (x + 30), nearly
+    here = distinct_pairs.Passage(arb(-30), arb(0), potential(arb(-30), start) + 250000)
+    after = onward(here, arb(-20), start)
+    assert after.time.contains(arb(1.25).log() / 20)
+    assert (after.energy - potential(after.x, start)).contains(arb(400) ** 2)
+
+
+def test_the_pull_of_the_target_is_part_of_the_energy():
+    start = replace(Start(), c1_gamma="900", c2_gamma="1e-9")
+    here = distinct_pairs.Passage(arb(-30), arb(0), potential(arb(-30), start) + 250000)
+    for k in range(1, 201):
+        here = onward(here, arb(-30) + arb(k) / 10, start)
+    x, w = free((arb(-30), arb(1000)), here.time, start)  # the difference moves as one agent does
+    assert x.overlaps(arb(-10))
+    assert w.overlaps(distinct_pairs.speed(here.energy, potential(here.x, start)))
+    assert float(here.time.rad()) < 1e-4
+
+
+def test_the_third_agent_must_be_out_of_range_of_both():
+    start, pace = Start(), (arb(-30), arb(1700))
+    assert distinct_pairs.passage(pace, (arb(0), arb(0)), (arb(20), arb(0)), -20, start)[-1][0].x == -20
+    assert distinct_pairs.passage(pace, (arb(0), arb(0)), (arb(8), arb(0)), -20, start) == []
+    assert distinct_pairs.passage(pace, (arb(0), arb(0)), (arb(-38), arb(0)), -20, start) == []
+
+
+def test_the_two_separate_into_their_difference_and_sum():
+    start = Start()
+    state = distinct_pairs.Passage(arb(10), arb(0), potential(arb(10), start) + 250000)
+    (q, p), (s, v) = distinct_pairs.separate(state, (arb(4), arb(1200)), start)
+    assert [float(x) for x in (q, p, s, v)] == pytest.approx([7.0, 1100.0, -3.0, 100.0])
+
+
+# how large a flock below c* can be
+
+
+@pytest.mark.parametrize(("values", "sizes"), SETS.items(), ids=lambda value: "-".join(map(str, value)))
+def test_the_proved_sizes_are_the_numeric_ones(values, sizes):
+    par, alpha = AlphaParameters(*values), AlphaInteraction(*map(float, values))
+    states, lattices = [step.text for step in n_max.every_state(par)][1], n_max.every_lattice(par).text
+    assert f"for n >= {sizes[0]}" in states
+    assert f"an α-lattice of {sizes[1]} agents has V < c*" in lattices
+    assert (none_from(alpha), lattice_reach(alpha)) == sizes
+    shortest = n_max.shortest_bound(par)
+    assert 0 < bound_range(alpha)[0] - float(shortest) < 1.001 / n_max.PARTS
+    clique = n_max.largest_clique(arb(float(par.r.p) / float(par.r.q)) / arb(float(shortest)))
+    assert clique == numeric_clique(alpha.r / bound_range(alpha)[0], 2)
+    for n in (clique, 9, 20, 31):  # the bound without whole numbers is below Turán's count
+        assert float(n_max.floor_of(n, clique, par)) <= energy_floor(alpha, n) * (1 + 1e-12)
+        assert Fraction(n * n, 2 * clique) - Fraction(n, 2) <= n * (n - 1) // 2 - turan_pairs(n, clique)
+
+
+def test_a_stronger_count_than_turan_is_refuted():
+    assert n_max.missing("as it is").holds is True
+    assert n_max.missing("one pair fewer", bound_to_all=1).holds is False
+
+
+def test_four_points_need_their_root_of_two():
+    assert [step.holds for step in n_max._four_points()] == [True, True, True]
+    assert n_max.short_side("a square's sides are no shorter", z3.Q(49, 100)).holds is False
+    square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
+    lengths = [np.linalg.norm(a - b) for k, a in enumerate(square) for b in square[:k]]
+    assert max(lengths) / min(lengths) == pytest.approx(float(n_max.least_ratio(4)))
+
+
+def test_too_wide_a_range_of_lengths_is_not_decided():
+    wide = AlphaParameters(h="0.9", r=14)  # a ratio above 2
+    assert [step.holds for step in n_max.every_state(wide)][-1] is None
+    assert n_max.largest_clique(arb("1.41")) == 3
+    assert n_max.largest_clique(arb("1.415")) == 5
+    assert n_max.largest_clique(arb(2)) is None
+
+
+def test_the_energies_of_lattices_are_those_of_the_kernels():
+    par, alpha = AlphaParameters(), AlphaInteraction()
+    from flockana.lattice import hexagonal_spiral
+
+    for n in (7, 14, 19):
+        assert float(n_max.lattice_energy(n, par)) == pytest.approx(
+            alpha.potential_energy(hexagonal_spiral(n, 7.0)), rel=1e-12
+        )
+    assert float(far_potential(par)) == pytest.approx(alpha.far_potential, rel=1e-14)
+
+
+# claims that name them
+
+
+def test_claims_name_these_proofs():
+    case = scenario("three-agents-1d")
+    run = simulate(case.law, case.q0, case.p0, (0.0, 0.03))
+    named = {claim.name: claim.proof for claim in verify("E13", run).claims}
+    assert named == {"printed": "distinct-pairs", "corrected": "collisions"}
+    other = simulate(case.law, case.q0, 1.01 * case.p0, (0.0, 0.03))
+    assert verify("E13", other).claim("printed").proof is None
+    names = {claim.name: claim.proof for claim in verify("os-3", run).claims}
+    assert (names["iv-printed"], names["iv-instant"], names["iv-none"]) == (None, "collisions", "collisions")

@@ -1,0 +1,199 @@
+"""Verified equilibria: what is enclosed is what flockana computes; a wrong sign or too small a box proves nothing."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+pytest.importorskip("z3")  # the extra flockana[proofs]
+pytest.importorskip("flint")
+
+from flint import arb, arb_mat, ctx
+
+from flockana.equilibria import find_equilibrium
+from flockana.equilibria.potential import Potential
+from flockana.interactions import AlphaInteraction
+from flockana.lattice import hexagonal_patch, rigidity
+from flockana.laws.olfati_saber import Algorithm1
+from proofs import compressed_patches, krawczyk, unstressed_patches
+from proofs.compressed_patches import LAW, NARROW, RADIUS, computed, curvature, enclose, flock
+from proofs.intervals import AlphaParameters
+
+RNG = np.random.default_rng(6)
+
+
+@pytest.fixture(autouse=True)
+def digits():
+    with ctx.workdps(30):
+        yield
+
+
+@pytest.fixture(scope="module")
+def seven():
+    return computed(1)
+
+
+def floats(matrix):
+    return np.array([[float(x) for x in row] for row in matrix.tolist()])
+
+
+@pytest.mark.parametrize("module", [unstressed_patches, compressed_patches], ids=lambda module: module.PROOF.id)
+def test_every_step_holds(module):
+    steps = list(module.PROOF.steps())
+    assert len(steps) >= 16
+    assert [step.text for step in steps if step.holds is not True] == []
+
+
+# the linear algebra
+
+
+def test_krawczyk_encloses_a_root_and_refuses_what_it_cannot_tell():
+    f = lambda x: [x[0] * x[0] - 2]  # noqa: E731
+    slope = lambda x: arb_mat([[2 * x[0]]])  # noqa: E731
+    (root,) = krawczyk.enclose_zero(f, slope, [arb("1.414")], arb("0.01"))
+    assert root.contains(arb(2).sqrt())
+    assert float(root.rad()) < 1e-4
+    assert krawczyk.enclose_zero(f, slope, [arb("1.414")], arb("1e-5")) is None  # the root is outside
+    assert krawczyk.enclose_zero(f, slope, [arb("1.414")], arb("1.5e-4")) is None  # just outside
+    assert krawczyk.enclose_zero(lambda x: [x[0] * x[0] + 2], slope, [arb("1.414")], arb("0.01")) is None
+    double = lambda x: [x[0] * x[0] - 2 * x[0] + 1]  # noqa: E731
+    assert krawczyk.enclose_zero(double, lambda x: arb_mat([[2 * x[0] - 2]]), [arb("1.001")], arb("0.01")) is None
+
+
+def test_the_least_eigenvalue_is_a_lower_bound_and_a_close_one():
+    for size in (1, 3, 12):
+        q, _ = np.linalg.qr(RNG.normal(size=(size, size)))
+        matrix = q @ np.diag(np.linspace(0.5, 9.0, size)) @ q.T
+        balls = arb_mat([[arb(float(x), 1e-9) for x in row] for row in (matrix + matrix.T) / 2])
+        assert 0.499 < float(krawczyk.least_eigenvalue(balls)) <= 0.5
+    assert krawczyk.least_eigenvalue(arb_mat([[1, 2], [2, 1]])) is None  # -1 and 3
+    assert krawczyk.least_eigenvalue(arb_mat([[1, 1], [1, 1]])) is None  # 0 and 2
+    assert krawczyk.least_eigenvalue(arb_mat([[arb(1, 2), 0], [0, 3]])) is None  # not certain
+    star = lambda x: arb_mat([[1, 0, x], [0, 1, x], [x, x, 1]])  # noqa: E731
+    assert krawczyk.least_eigenvalue(star(arb(0, 0.6))) is None  # 1 - 0.6 √2 at least, but not certain of it
+    assert 0.3 < float(krawczyk.least_eigenvalue(star(arb(0, 0.3)))) <= 1 - 0.3 * 2**0.5
+
+
+# Algorithm 1
+
+
+@pytest.mark.parametrize("rings", [1, 2, 3])
+def test_the_sites_in_whole_numbers_are_the_patch(rings):
+    sites = unstressed_patches.patch(rings)
+    q = 3.5 * np.array([[x, np.sqrt(3.0) * y] for x, y in sites])
+    patch = hexagonal_patch(rings, 7.0)
+    order, other = (np.lexsort(np.round(points, 6).T) for points in (q, patch))
+    assert np.allclose(q[order], patch[other], atol=1e-12)
+    links = unstressed_patches.links_of(sites)
+    assert unstressed_patches.rigidity_matrix(sites, links).rank() == rigidity(q, links).rank
+    assert {unstressed_patches.squared(sites[i], sites[j]) for i, j in links} == {4}
+
+
+def test_without_some_links_the_rank_falls():
+    sites = unstressed_patches.patch(1)
+    links = unstressed_patches.links_of(sites)
+    assert unstressed_patches.rigidity_matrix(sites, links[1:]).rank() == 11  # one link is not needed
+    assert unstressed_patches.rigidity_matrix(sites, links[2:]).rank() == 10
+    assert unstressed_patches.laplacian_rank(7, links[2:]) == 6
+    assert unstressed_patches.laplacian_rank(7, [link for link in links if 0 not in link]) == 5
+
+
+@pytest.mark.parametrize("rings", [1, 2])
+def test_the_stiffness_and_the_least_curvature_are_those_of_the_kernels(rings):
+    par, law = AlphaParameters(), Algorithm1()
+    q = hexagonal_patch(rings, 7.0)
+    eigenvalues = np.linalg.eigvalsh(Potential(law).stiffness(q).toarray())
+    sites = unstressed_patches.patch(rings)
+    least = float(unstressed_patches._least_curvature(sites, unstressed_patches.links_of(sites)))
+    scale = law.gains.c1_alpha * float(unstressed_patches.stiffness(par))
+    assert np.abs(eigenvalues[:3]).max() < 1e-9
+    assert least * scale <= eigenvalues[3] * (1 + 1e-9)
+    assert least * scale == pytest.approx(min(eigenvalues[3], scale), rel=1e-6)
+
+
+def test_a_range_that_reaches_second_neighbours_is_refused():
+    assert unstressed_patches._stiff(AlphaParameters()).holds is True
+    assert unstressed_patches._stiff(AlphaParameters(r="12.2")).holds is False  # √3 d = 12.12…
+    assert unstressed_patches._stiff(AlphaParameters(h="0.9")).holds is True  # d_α before the taper: a_ij = 1
+    z, edge = unstressed_patches.d_alpha(AlphaParameters()), AlphaParameters(h="0.77734")  # d_α/r_α = 0.7773401
+    assert unstressed_patches.off_the_edges(z, edge)
+    assert not unstressed_patches.off_the_edges(z + arb(0, "1e-4"), edge)
+
+
+# Algorithm 2
+
+
+def test_gradient_and_hessian_are_those_of_the_kernels(seven):
+    u = flock(7)
+    q = np.array(seven) + 0.05 * RNG.normal(size=14)
+    potential = Potential(LAW)
+    point = [arb(float(x)) for x in q]
+    centred = q.reshape(7, 2)
+    assert np.allclose(
+        np.array([float(x) for x in u.gradient(point)]),
+        -(potential.force(centred).ravel() - 1.1 * np.tile(centred.mean(axis=0), 7)),
+        atol=1e-9,
+    )
+    step, i = 1e-6, 3
+    ahead, behind = (u.gradient([*point[:i], point[i] + s, *point[i + 1 :]]) for s in (step, -step))
+    slope = [float((a - b) / (2 * step)) for a, b in zip(ahead, behind, strict=True)]
+    assert np.allclose(floats(u.hessian(point))[i], slope, rtol=1e-7, atol=1e-6)
+
+
+def test_the_equilibrium_is_enclosed_and_the_radius_matters(seven):
+    u = flock(7)
+    wide, narrow = (enclose(u, seven, arb(radius)) for radius in (RADIUS, NARROW))
+    assert all(a.overlaps(b) for a, b in zip(wide, narrow, strict=True))
+    assert max(float(abs(x - arb(y)).upper()) for x, y in zip(narrow, seven, strict=True)) < 1e-13
+    assert enclose(u, seven, arb("1e-17")) is None  # nearer than floats can be
+    assert enclose(u, seven, arb("0.01")) is None  # too wide to be certain
+    shifted = [x + 1e-5 for x in seven]
+    assert enclose(u, shifted, arb(RADIUS)) is None  # not within that radius of here
+
+
+def test_what_flockana_finds_from_a_disturbed_start_has_the_enclosed_lengths(seven):
+    found = enclose(flock(7), seven, arb(NARROW))
+    start = hexagonal_patch(1, 7.0) + 0.3 * RNG.normal(size=(7, 2))
+    q = find_equilibrium(LAW, start).q
+    lengths = sorted(np.linalg.norm(a - b) for k, a in enumerate(q) for b in q[:k])[:12]
+    enclosed = sorted(flock(7).lengths(found), key=float)
+    assert all(abs(float(ball) - length) < 1e-10 for ball, length in zip(enclosed, lengths, strict=True))
+
+
+def test_a_wrong_sign_of_the_pull_proves_nothing(seven, monkeypatch):
+    u = flock(7)
+    right = type(u)._pull
+    monkeypatch.setattr(type(u), "_pull", lambda self, s: -right(self, s))
+    assert enclose(u, seven, arb(RADIUS)) is None
+
+
+def test_a_wrong_gain_proves_nothing(seven):
+    assert enclose(replace(flock(7), c1_gamma=arb("1.101")), seven, arb(RADIUS)) is None
+
+
+def test_the_curvature_is_the_least_eigenvalue_off_the_rotation(seven):
+    box = enclose(flock(7), seven, arb(NARROW))
+    eigenvalues = np.sort(np.linalg.eigvalsh(floats(flock(7).hessian([x.mid() for x in box]))))
+    assert abs(eigenvalues[0]) < 1e-9
+    assert float(curvature(flock(7), box)) == pytest.approx(1.1, rel=1e-6)
+    assert eigenvalues[1:3] == pytest.approx([1.1, 1.1])
+    assert float(curvature(flock(7), box, translations=True)) == pytest.approx(eigenvalues[3], rel=1e-6)
+    saddle = replace(flock(7), c1_gamma=arb(-300))
+    assert curvature(saddle, box) is None
+
+
+def test_pairs_at_the_edge_of_the_range_are_not_called_smooth(seven):
+    u = flock(7)
+    assert u.smooth_at([arb(x) for x in seven])
+    stretched = [arb(x) * arb("8.4") / arb("6.98314664627") for x in seven]
+    assert not u.smooth_at([x + arb(0, 1e-3) for x in stretched])
+    knee = arb("2.95")  # about where ‖x‖_σ = h r_α
+    assert flock(2).smooth_at([arb(0), arb(0), knee - 1, arb(0)])
+    assert not flock(2).smooth_at([arb(0), arb(0), knee + arb(0, "0.01"), arb(0)])
+
+
+def test_the_proof_is_of_the_default_law():
+    assert AlphaInteraction() == LAW.alpha
+    assert (LAW.gains.c1_alpha, LAW.gains.c1_gamma) == (30.0, 1.1)
