@@ -6,13 +6,16 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
+from numpy.polynomial import chebyshev
 
 from flockana.checks import FloatArray
 from flockana.integrators import Sample, Tally, has_energy
 from flockana.laws.switched import Pieces, SwitchedLaw
 
-LOOKS = 4  # at how many times within a step a pair is looked for that has left its piece (and may be back)
 _HALVINGS = 60  # of a step, until the switch is bracketed to rounding
+_DEGREE = 12  # of a step's interpolant, at most: LSODA's; DOP853 has 7
+_NODES = chebyshev.chebpts1(2 * _DEGREE + 1)  # so many that a squared distance is its own interpolant
+_TO_SERIES = np.linalg.inv(chebyshev.chebvander(_NODES, 2 * _DEGREE))
 
 
 def located(
@@ -28,8 +31,8 @@ def located(
 ) -> Iterator[Sample]:
     """Step a solver with every pair held in its piece; at the first pair that leaves, stop there and start anew.
 
-    A pair that leaves and comes back between two looks of one step is missed. A pair held at a surface ends the run:
-    its switches would become ever more frequent. `tally.notes` gets the number of switches.
+    None is missed that the step's interpolant makes, however short the visit (`turns`). A pair held at a surface ends
+    the run: its switches would become ever more frequent. `tally.notes` gets the number of switches.
 
     Parameters
     ----------
@@ -107,13 +110,16 @@ def located(
 
 
 def _first_switch(law: SwitchedLaw, pieces: Pieces, course: Any, start: float, end: float, split: Any) -> float | None:
-    """The first time at which a pair is beyond its piece, by looks and halving; None if there is none."""
+    """The first time at which a pair is beyond its piece; None if there is none.
+
+    Between two turns every distance that could reach an edge is monotone: no pair can have left and be back.
+    """
 
     def beyond(t: float) -> bool:
         return bool((law.margins(pieces, split(course(t))[0]).inside < 0.0).any())
 
     low = start
-    for t in np.linspace(start, end, LOOKS + 1)[1:].tolist():
+    for t in [*turns(law, pieces, course, start, end, split), end]:
         if beyond(t):
             high = t
             for _ in range(_HALVINGS):
@@ -124,3 +130,37 @@ def _first_switch(law: SwitchedLaw, pieces: Pieces, course: Any, start: float, e
             return float(high)
         low = t
     return None
+
+
+def turns(law: SwitchedLaw, pieces: Pieces, course: Any, start: float, end: float, split: Any) -> list[float]:
+    """When, within a step, the distance of a pair that could leave its piece stops growing or shrinking, rising.
+
+    The interpolant of every solver is a polynomial, and so are the squares of distances: their turns are roots. Only
+    pairs are asked whose two agents' ways, each bounded by the coefficients of its series, could reach an edge.
+
+    Parameters
+    ----------
+    law : SwitchedLaw
+        What moves the flock.
+    pieces : ndarray of int8
+        Where each pair is held.
+    course : callable
+        The step's interpolant, from times to states.
+    start, end : float
+        The step.
+    split : callable
+        From a state to (q, p).
+    """
+    times = 0.5 * (start + end) + 0.5 * (end - start) * _NODES
+    way = np.stack([split(y)[0] for y in course(times).T])  # (nodes, n, m)
+    series = np.tensordot(_TO_SERIES, way, axes=1)
+    reach = np.sum(np.linalg.norm(series[1:], axis=2), axis=0)  # an agent's way from its mean place, series[0]
+    rows, columns = np.triu_indices(len(reach), 1)
+    near = law.margins(pieces, series[0]).inside <= (reach[rows] + reach[columns]) * (1.0 + 1e-9)
+    found: set[float] = set()
+    for i, j in zip(rows[near].tolist(), columns[near].tolist(), strict=True):
+        squared = _TO_SERIES @ np.sum((way[:, j] - way[:, i]) ** 2, axis=1)
+        roots = chebyshev.chebroots(chebyshev.chebder(chebyshev.chebtrim(squared, 1e-15 * abs(squared).max())))
+        real = roots.real[np.abs(roots.imag) < 1e-6]
+        found.update((0.5 * (start + end) + 0.5 * (end - start) * real[np.abs(real) < 1.0]).tolist())
+    return sorted(t for t in found if start < t < end)

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
+from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
 if TYPE_CHECKING:
-    from flockana.checks import FloatArray
     from flockana.equilibria import Equilibrium
 
 _HELP = """Find an equilibrium near a configuration by IPOPT, and say what kind of critical point it is.
@@ -18,7 +17,8 @@ _HELP = """Find an equilibrium near a configuration by IPOPT, and say what kind 
 SOURCE is a scenario of the catalogue (its law, from the end of its run or from its start), a run that was saved (.nc),
 an equilibrium's file (.json), a CSV of positions, or a builder such as hexagonal-spiral:19 (see flockana lattice
 --help). A CSV and a builder bring no law: it is Algorithm 1 or 2 with its usual parameters, and --d and --r.
-A γ-agent that moves is held where it is at that time.
+A γ-agent that moves is held where it is at that time. A law that a scenario or a run steps by semi-implicit Euler has
+the equilibria that it has without. Under dead-zone flocking the strain is that of contacts, pairs closer than d1.
 
 Exit status: 0 found, 2 bad input, 3 no equilibrium found, 130 interrupted.
 """
@@ -55,23 +55,17 @@ def _equilibrium(
     picture: Annotated[Path | None, typer.Option(metavar="PICTURE", help="PNG, SVG or PDF to draw to.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, and nothing else.")] = False,
 ) -> int:
+    from flockana.commands.flock import read_flock
     from flockana.commands.picture import KINDS, ensure_file, write_picture
-    from flockana.commands.source import ensure_source
     from flockana.equilibria import find_equilibrium
     from flockana.equilibria.record import write_equilibrium
     from flockana.errors import SolverError
-    from flockana.scenarios import scenarios
 
     for path, kinds in ((output, (".json",)), (picture, KINDS)):
         if path is not None:
             ensure_file(path, kinds)
     try:
-        if source in scenarios():
-            _ensure_free(source, time=time, algorithm=algorithm, d=d, r=r)
-            law, q = _of_scenario(source, start, seed)
-        else:
-            ensure_source(source, scenarios())
-            law, q = _of_source(source, algorithm=algorithm, d=d, r=r, time=time)
+        law, q = read_flock(source, start=start, seed=seed, algorithm=algorithm, d=d, r=r, time=time)
         found = find_equilibrium(law, q)
     except SolverError as error:
         typer.echo(f"flockana: {' '.join(str(error).split())}", err=True)
@@ -87,60 +81,6 @@ def _equilibrium(
     return 0
 
 
-def _ensure_free(name: str, **given: object) -> None:
-    from flockana.errors import ArgumentError
-
-    for option, value in given.items():
-        if value is not None:
-            raise ArgumentError(f"--{option} {value}: {name} has a law of its own, and no such choice; leave it out")
-
-
-def _of_scenario(name: str, start: str, seed: int) -> tuple[Any, FloatArray]:
-    from flockana.equilibria.classify import ensure_small
-    from flockana.equilibria.potential import ensure_flock_law
-    from flockana.errors import SolverError
-    from flockana.scenarios import scenario
-
-    item = scenario(name, seed)
-    law = ensure_flock_law(item.law, item.q0.shape[1])
-    ensure_small(*item.q0.shape)
-    if start == "start":
-        return _held(law, item.t_span[0]), item.q0
-    run = item.run()
-    if run.status == "interrupted":
-        raise KeyboardInterrupt
-    if run.status != "complete":
-        raise SolverError(f"the run of {name} {run.status}: {run.message}; use --start start")
-    return _held(law, float(run.t[-1])), run.q[-1]
-
-
-def _of_source(name: str, *, algorithm: int | None, d: float | None, r: float | None, time: float | None) -> Any:
-    """(law, q): the law of the file, or Algorithm 1 or 2 with the user's scale and range."""
-    from flockana.commands.source import read_source
-    from flockana.equilibria.potential import ensure_flock_law
-    from flockana.interactions import AlphaInteraction
-    from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-
-    given = read_source(name, d=d, r=r, time=time)
-    if given.law is not None:
-        _ensure_free(name, algorithm=algorithm, d=d, r=r)
-        return _held(ensure_flock_law(given.law, given.q.shape[1]), given.t), given.q
-    alpha = AlphaInteraction(d=given.d, r=given.r)
-    if algorithm != 2:
-        return Algorithm1(alpha), given.q
-    from flockana.environment.targets import StaticTarget
-
-    return Algorithm2(alpha, target=StaticTarget(given.q.mean(axis=0))), given.q
-
-
-def _held(law: Any, t: float) -> Any:
-    """The law with its γ-agent held where it is at t: the same potential, and one that a file can hold."""
-    from flockana.environment.targets import StaticTarget
-
-    target = getattr(law, "target", None)
-    return law if target is None else replace(law, target=StaticTarget(tuple(target.position(t).tolist())))
-
-
 def summary(found: Equilibrium, name: str) -> dict[str, Any]:
     """What was found, as plain data.
 
@@ -151,6 +91,7 @@ def summary(found: Equilibrium, name: str) -> dict[str, Any]:
     name : str
         What was asked for.
     """
+    from flockana.equilibria.potential import Potential
     from flockana.metrics import coincident_pairs
 
     n, m = found.q.shape
@@ -164,8 +105,8 @@ def summary(found: Equilibrium, name: str) -> dict[str, Any]:
         "energy": found.energy,
         "residual": found.residual,
         "links": len(found.links),
-        "strain": strain if len(found.links) else None,
-        "coincident pairs": coincident_pairs(found.q, 1e-6 * found.law.alpha.d),
+        "strain": None if isnan(strain) else strain,
+        "coincident pairs": coincident_pairs(found.q, 1e-6 * Potential(found.law).pair.length),
         "solver": found.message,
         "rigid modes": found.rigid_modes,
         "soft modes": found.zero_modes,
@@ -177,19 +118,20 @@ def summary(found: Equilibrium, name: str) -> dict[str, Any]:
 
 def _draw(ax: Any, found: Equilibrium, name: str) -> None:
     from flockana import plots
-    from flockana.laws.olfati_saber import Algorithm1
+    from flockana.commands.source import law_scales
+    from flockana.equilibria.potential import Potential
+    from flockana.nets import links
 
-    law = found.law
-    target = None if isinstance(law, Algorithm1) else law.target.position(0.0)
+    law, (d, r) = found.law, law_scales(found.law)
     plots.configuration(
         found.q,
-        d=law.alpha.d,
-        r=law.alpha.r,
-        target=target,
+        d=d,
+        r=r,
+        target=Potential(law).target,
         obstacles=getattr(law, "obstacles", ()),
         beta=getattr(law, "beta", None),
         ax=ax,
-        title=f"{name}: {found.kind}, {len(found.links)} links",
+        title=f"{name}: {found.kind}, {len(links(found.q, r))} links up to {r:.4g}",
     )
 
 
@@ -199,6 +141,8 @@ def _print(found: Equilibrium, name: str, files: tuple[tuple[str, Path | None], 
     from rich.table import Table
     from rich.text import Text
 
+    from flockana.laws.dead_zone import DeadZoneFlocking
+
     facts = summary(found, name)
     console = Console(highlight=False)
     console.print(f"{name}: {found.kind}", style="bold", markup=False)
@@ -206,11 +150,13 @@ def _print(found: Equilibrium, name: str, files: tuple[tuple[str, Path | None], 
     table.add_column(no_wrap=True, style="bright_black")
     table.add_column()
     lowest = ", ".join(f"{value:.4g}" for value in found.hessian_eigenvalues[:_LOWEST])
-    strain = "" if facts["strain"] is None else f", |link − d|/d at most {facts['strain']:.4g}"
+    contacts = isinstance(found.law, DeadZoneFlocking)
+    scale, length = ("a contact's force", "contact − d1|/d1") if contacts else ("c1α b/√ε", "link − d|/d")
+    strain = "" if facts["strain"] is None else f", |{length} at most {facts['strain']:.4g}"
     rows = (
         ("law", f"{facts['law']}, n = {facts['n']}, m = {facts['m']}"),
         ("energy", f"{found.energy:.10g}"),
-        ("residual force", f"{found.residual:.2g} of c1α b/√ε"),
+        ("residual force", f"{found.residual:.2g} of {scale}"),
         ("links", f"{facts['links']}{strain}"),
         ("coincident pairs", str(facts["coincident pairs"])),
         ("solver", found.message),

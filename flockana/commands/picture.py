@@ -10,6 +10,7 @@ from flockana.errors import ArgumentError, FileError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 KINDS = (".png", ".svg", ".pdf")
 _SIZE = (7.2, 5.4)
@@ -60,13 +61,33 @@ def write_picture(draw: Callable[[Axes], object], path: Path, *, m: int) -> None
     FileError
         If it cannot be written.
     """
+    write_figure(lambda figure: draw(figure.add_subplot(projection="3d" if m == 3 else None)), path)
+
+
+def write_figure(draw: Callable[[Figure], object], path: Path, *, size: tuple[float, float] = _SIZE) -> None:
+    """Draw on a new figure and write it as PNG, SVG or PDF, by the file's name.
+
+    Parameters
+    ----------
+    draw : callable
+        Draws on the Figure that it is given.
+    path : Path
+        The file.
+    size : (float, float)
+        Width and height in inches.
+
+    Raises
+    ------
+    FileError
+        If it cannot be written.
+    """
     from matplotlib.figure import Figure
 
     from flockana.plots.style import style
 
     with style():
-        figure = Figure(figsize=_SIZE, layout="constrained")
-        draw(figure.add_subplot(projection="3d" if m == 3 else None))
+        figure = Figure(figsize=size, layout="constrained")
+        draw(figure)
         try:
             figure.savefig(path, dpi=_DPI)
         except OSError as error:

@@ -15,7 +15,7 @@ from flockana.equilibria.potential import Potential, ensure_flock_law, inside_ob
 from flockana.equilibria.program import Program
 from flockana.errors import SolverError, UnknownNameError
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.nets import LinkArray, links
+from flockana.nets import LinkArray, link_lengths, links
 
 METHODS = ("minimise", "root")
 RESIDUAL = 1e-9  # of the force scale: what counts as an equilibrium
@@ -41,7 +41,7 @@ class Equilibrium:
     energy : float
         Potential energy: c1α V, U_λ, or V_α + V_β + V_γ.
     residual : float
-        Largest force on an agent over c1α b/√ε.
+        Largest force on an agent over c1α b/√ε; under dead-zone flocking over a contact's force.
     links : int array, shape (M, 2)
         Pairs closer than r.
     kind : {"minimum", "saddle", "maximum", "degenerate"}
@@ -82,9 +82,13 @@ class Equilibrium:
     message: str
 
     def strain(self) -> float:
-        """Largest |link − d|/d to twelve digits; NaN without links."""
-        lengths = np.linalg.norm(self.q[self.links[:, 1]] - self.q[self.links[:, 0]], axis=1)
-        d = Potential(self.law).pair.length
+        """Largest |link − d|/d to twelve digits; NaN without links.
+
+        Under dead-zone flocking of contacts only, the pairs that repel, with d₁ for d; NaN if no pair does.
+        """
+        pair = Potential(self.law).pair
+        lengths, d = link_lengths(self.q, self.links), pair.length
+        lengths = lengths[lengths < pair.bond_range]
         return round(float(np.abs(lengths - d).max() / d), 12) if lengths.size else float("nan")
 
     @property
@@ -192,7 +196,9 @@ def finish(potential: Potential, q: FloatArray, done: bool, message: str, *, str
     if blocked:
         message = f"{message}, but with an agent inside an obstacle"
     elif done and not success:
-        message = f"{message}, yet the residual force is {residual:.2g} of c1α b/√ε, more than {RESIDUAL:g}"
+        message = (
+            f"{message}, yet the residual force is {residual:.2g} of the law's force scale, more than {RESIDUAL:g}"
+        )
     if strict and not success:
         raise SolverError(
             f"no equilibrium of {type(potential.law).__name__} found: {message} (residual force {residual:.2g}); "

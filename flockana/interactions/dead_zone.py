@@ -150,6 +150,11 @@ class DeadZoneInteraction(PairInteraction):
         return self.d1
 
     @property
+    def bond_range(self) -> float:
+        """d₁: only pairs that repel are in contact; the others within range have no length of their own."""
+        return self.d1
+
+    @property
     def strength(self) -> float:
         """`contact_force`."""
         return self.contact_force

@@ -61,6 +61,11 @@ class PairInteraction(ABC):
         """The distance at which it holds neighbours: the unit of lengths."""
 
     @property
+    def bond_range(self) -> float:
+        """Pairs closer than this are held at `length`: all within range, unless the law says otherwise."""
+        return self.range
+
+    @property
     @abstractmethod
     def strength(self) -> float:
         """The strongest force between two agents, nearly; of a contact, where it is unbounded: the unit of forces."""

@@ -24,9 +24,9 @@ class Margins(NamedTuple):
 class SwitchedLaw(Law):
     """A law made of smooth pieces, one for each pair of agents, that meet in jumps.
 
-    Where `located` is true, `simulate` integrates the pieces held as they are, stops where the first pair leaves its
-    own, and goes on with the next; where a pair is driven back from both sides it holds at the surface (a Filippov
-    sliding mode), which is reported and ends the run.
+    A piece is an interval of the pair's distance. Where `located` is true, `simulate` integrates the pieces held as
+    they are, stops where the first pair leaves its own, and goes on with the next; where a pair is driven back from
+    both sides it holds at the surface (a Filippov sliding mode), which is reported and ends the run.
     """
 
     @property

@@ -10,7 +10,7 @@ from flockana.checks import ensure_positive
 from flockana.interactions import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.semi_implicit import SemiImplicitEuler
-from flockana.metrics import min_distance, velocity_mismatch
+from flockana.metrics import velocity_mismatch
 from flockana.scenarios.findings import finding
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
@@ -27,10 +27,10 @@ _MATCHED = 1e-6  # largest velocity against the mean that counts as consensus: w
 _SAMPLES = 401
 
 
-def _interaction(run: Trajectory) -> DeadZoneInteraction:
+def _law(run: Trajectory) -> DeadZoneFlocking:
     law = dead_zone_law(run)
     assert law is not None
-    return law.interaction
+    return law
 
 
 def _consensus(run: Trajectory, tolerances: Tolerances) -> Claim:
@@ -43,15 +43,15 @@ def _consensus(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 def _together(run: Trajectory, tolerances: Tolerances) -> Claim:
     """One flock in the end."""
-    end = parts(run.q[-1], run.p[-1], _interaction(run).r)
+    end = parts(run.q[-1], run.p[-1], _law(run))
     detail = f"{end.count} component(s) at t = {run.t[-1]:g}"
     return finding("together", 1.5 - end.count, detail, computed=end.count, stated="the agents swarm together")
 
 
 def _safe(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Safe distances all the time: read as the distance below which agents repel."""
-    d1 = _interaction(run).d1
-    least = min(min_distance(q) for q in run.q)
+    d1 = _law(run).interaction.d1
+    least = float(run.metric("min_distance").min())
     detail = f"agents come as near as {least:.3g}, where repulsion begins at d1 = {d1:g}"
     return finding("safe", least - 0.5 * d1, detail, computed=least, stated="safe distances all the time (over d1/2)")
 
@@ -61,7 +61,7 @@ def _lattice(run: Trajectory, tolerances: Tolerances) -> Claim:
     from scipy.spatial import KDTree
 
     nearest = np.asarray(KDTree(run.q[-1]).query(run.q[-1], k=2)[0])[:, 1]
-    d1 = _interaction(run).d1
+    d1 = _law(run).interaction.d1
     spread = float(np.abs(nearest / d1 - 1.0).max())
     detail = (
         f"nearest neighbours are {nearest.min():.4g} to {nearest.max():.4g} apart, {nearest.mean():.4g} in the mean"
@@ -89,6 +89,8 @@ def _scenario(
     *,
     flow: bool = False,
     t_end: float = 200.0,
+    seeds: int = 0,
+    settings: str = "",
 ) -> Scenario:
     generator = np.random.default_rng(seed)
     box, law = ensure_positive("box", box), DeadZoneFlocking(interaction)
@@ -106,6 +108,8 @@ def _scenario(
         _REPORTS,
         options,
         ("li-dead-zone",),
+        seeds,
+        settings,
     )
 
 
@@ -113,15 +117,21 @@ def _default(seed: int = 0, n: int = 50, box: float = 40.0, ramp: float = 0.25) 
     expected: dict[str, Status] = {
         "dead-zone-1-printed": "refuted",
         "dead-zone-1-printed:energy": "refuted",  # cohesion differs from seed to seed: R ends between 13 and 15.4
-        "dead-zone-1-printed:velocity": "verified",
         "dead-zone-1-printed:collision": "verified",
-        "dead-zone-1-corrected": "verified",
-        "source:consensus": "verified",
-        "source:together": "verified",
-        "source:lattice": "verified",
+        "dead-zone-1-corrected:rate": "verified",
+        "dead-zone-1-corrected:distance": "verified",
     }
+    if ensure_positive("box", box) <= 40.0:  # of 100 seeds 100, 84, 18, 0 become one flock at 40, 60, 80, 150 (L4)
+        expected |= {
+            "dead-zone-1-printed:velocity": "verified",
+            "dead-zone-1-corrected": "verified",
+            "source:consensus": "verified",
+            "source:together": "verified",
+            "source:lattice": "verified",
+        }
     title = "Dead zone: 50 agents contract to a lattice of contacts"
-    return _scenario("dead-zone", title, _PRINTED, DeadZoneInteraction(ramp=ramp), seed, n, box, expected)
+    many: dict[str, Any] = {"seeds": 200, "settings": "recommended settings: force ramped"}
+    return _scenario("dead-zone", title, _PRINTED, DeadZoneInteraction(ramp=ramp), seed, n, box, expected, **many)
 
 
 def _wide_lattice(seed: int = 0, n: int = 50, box: float = 40.0, ramp: float = 0.25) -> Scenario:
@@ -162,7 +172,8 @@ def _hard(seed: int = 0, n: int = 50, box: float = 40.0) -> Scenario:
     }
     title = "Dead zone with the printed jumps: contacts chatter"
     source = _PRINTED + " Here without the ramp: the force jumps, as printed."
-    return _scenario("dead-zone-hard", title, source, DeadZoneInteraction(ramp=0.0), seed, n, box, expected)
+    many: dict[str, Any] = {"seeds": 200, "settings": "printed settings: force jumps"}
+    return _scenario("dead-zone-hard", title, source, DeadZoneInteraction(ramp=0.0), seed, n, box, expected, **many)
 
 
 def _flow(seed: int = 0, n: int = 16, box: float = 20.0, ramp: float = 0.25) -> Scenario:

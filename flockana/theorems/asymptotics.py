@@ -7,9 +7,10 @@ from math import floor
 
 import numpy as np
 
+from flockana.lattice import classify
 from flockana.metrics import coincident_pairs
 from flockana.paths import Contact, contacts
-from flockana.terminal import TerminalState
+from flockana.terminal import TerminalState, terminal_state
 from flockana.theorems.theorem import Claim, Hypothesis, HypothesisStatus, Tolerances, judge
 from flockana.trajectory import Trajectory
 
@@ -56,6 +57,40 @@ def settled(end: TerminalState, tolerances: Tolerances) -> bool:
     return end.force <= tolerances.force and end.mismatch <= tolerances.velocity
 
 
+def lattice_limit(run: Trajectory, needs: Iterable[Hypothesis], tolerances: Tolerances, *, name: str) -> Claim:
+    """The limit is an α-lattice. A strained limit refutes it only if it is a strict minimum (open basin).
+
+    Parameters
+    ----------
+    run : Trajectory
+        A run of Algorithm 1 or 2.
+    needs : iterable of Hypothesis
+        Hypotheses of the claim.
+    tolerances : Tolerances
+        `lattice`, `force`, `velocity` and `curvature` are used.
+    name : str
+        Name of the claim.
+    """
+    end = terminal_state(run.law, run.q[-1], run.p[-1], contact=tolerances.contact)
+    kind = classify(end.strain, lattice=tolerances.lattice, quasi=tolerances.quasi)
+    margin = tolerances.lattice - end.strain
+    status = judge(margin, 0.0, needs)
+    if status != "vacuous" and not settled(end, tolerances):
+        status, kind = "inconclusive", f"{kind}, still moving"
+    elif status == "refuted" and not end.curvature > tolerances.curvature:
+        status = "inconclusive"
+    return Claim(
+        name,
+        status,
+        computed=end.strain,
+        stated=f"|link - d|/d <= {tolerances.lattice:g} in the limit",
+        margin=margin,
+        error=0.0,
+        witness={"force": end.force, "links": end.links, "curvature": end.curvature},
+        detail=f"limit: {kind}, links {end.shortest:.6g} to {end.longest:.6g}, residual force {end.force:.2g}",
+    )
+
+
 def met(run: Trajectory, tolerances: Tolerances) -> tuple[Contact, ...]:
     """Pairs that coincide at some time of the run.
 
@@ -90,7 +125,9 @@ def below_the_barrier(run: Trajectory, energy: float) -> Hypothesis:
     return Hypothesis("H(0) < min{V : two agents coincide}", status, bound - energy, detail)
 
 
-def no_collision(run: Trajectory, needs: Iterable[Hypothesis], tolerances: Tolerances, *, name: str) -> Claim:
+def no_collision(
+    run: Trajectory, needs: Iterable[Hypothesis], tolerances: Tolerances, *, name: str, proof: str | None = None
+) -> Claim:
     """No two agents ever coincide: a lower bound of all distances, between samples too, is positive.
 
     Parameters
@@ -103,12 +140,14 @@ def no_collision(run: Trajectory, needs: Iterable[Hypothesis], tolerances: Toler
         `contact` is used, relative to d.
     name : str
         Name of the claim.
+    proof : str, optional
+        Id of the proof that the hypotheses exclude collisions.
     """
     closest = run.closest_approach()
     floor_distance = tolerances.contact * run.law.alpha.d
     # the bound already contains the interpolation error; contact itself is refutation, anything between is unknown
     status = judge(closest.lower - floor_distance, 0.0, needs)
-    if status == "refuted" and closest.distance > floor_distance:
+    if status == "refuted" and closest.distance > floor_distance and not met(run, tolerances):
         status = "inconclusive"
     return Claim(
         name,
@@ -118,12 +157,15 @@ def no_collision(run: Trajectory, needs: Iterable[Hypothesis], tolerances: Toler
         margin=closest.lower,
         error=floor_distance,
         witness={"pair": closest.pair, "time": closest.time},
+        proof=proof,
         detail=f"no collision: no distance falls below {closest.lower:.4g} (agents {closest.pair[0]} and "
         f"{closest.pair[1]} at t = {closest.time:.4g})",
     )
 
 
-def distinct_pairs(run: Trajectory, law: Hypothesis, tolerances: Tolerances, *, c_star: float, name: str) -> Claim:
+def distinct_pairs(
+    run: Trajectory, law: Hypothesis, tolerances: Tolerances, *, c_star: float, name: str, proof: str | None = None
+) -> Claim:
     """As printed: with H(0) < (k+1)c*, at most k distinct pairs collide over the whole run (refuted by E13).
 
     Parameters
@@ -138,6 +180,8 @@ def distinct_pairs(run: Trajectory, law: Hypothesis, tolerances: Tolerances, *, 
         Energy of a coincident pair, gain included.
     name : str
         Name of the claim.
+    proof : str, optional
+        Id of the proof of what this run does.
     """
     energy = float(run.energy()[0])
     k, pairs = floor(energy / c_star), run.n * (run.n - 1) // 2
@@ -152,13 +196,14 @@ def distinct_pairs(run: Trajectory, law: Hypothesis, tolerances: Tolerances, *, 
         margin=float(k - len(found)),
         error=0.0,
         witness=[f"agents {c.i} and {c.j} at t = {c.time:.6g}{' (order changed)' if c.crossed else ''}" for c in found],
+        proof=proof,
         detail=f"as printed: {len(found)} distinct pairs collide, at most {k} may"
         + ("; that is every pair, so nothing is claimed" if bites.status == "unmet" else ""),
     )
 
 
 def pairs_at_one_instant(
-    run: Trajectory, law: Hypothesis, tolerances: Tolerances, *, c_star: float, name: str
+    run: Trajectory, law: Hypothesis, tolerances: Tolerances, *, c_star: float, name: str, proof: str | None = None
 ) -> Claim:
     """Corrected: at any one instant at most ⌊H/c*⌋ pairs coincide.
 
@@ -174,6 +219,8 @@ def pairs_at_one_instant(
         Energy of a coincident pair, gain included.
     name : str
         Name of the claim.
+    proof : str, optional
+        Id of the proof of the bound.
     """
     tol = tolerances.contact * run.law.alpha.d
     together = np.array([coincident_pairs(q, tol) for q in run.q])
@@ -194,6 +241,7 @@ def pairs_at_one_instant(
         margin=margin,
         error=0.0,
         witness={"time": float(run.t[worst]), "coincident": int(together[worst]), "allowed": int(allowed[worst])},
+        proof=proof,
         detail=f"per instant: at most {most} pairs coincide at one time; the energy never allows fewer than "
         f"{int(allowed.min())}",
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.theorems.dead_zone_case import dead_zone_law, hypotheses, no_collision, parts
+from flockana.theorems.dead_zone_case import PROOF, dead_zone_law, hypotheses, no_collision, parts
 from flockana.theorems.energy import balance
 from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
 from flockana.trajectory import Trajectory
@@ -24,6 +24,7 @@ def _rate(run: Trajectory, law: DeadZoneFlocking, needs: list[Hypothesis]) -> Cl
         margin=-float(rate[worst]),
         error=0.0,
         witness={"time": float(run.t[worst])},
+        proof=PROOF,
         detail=f"the saturated energy goes from {run.energy()[0]:.6g} to {run.energy()[-1]:.6g}",
     )
 
@@ -34,9 +35,9 @@ def _balance(run: Trajectory, needs: list[Hypothesis], tolerances: Tolerances) -
     return Claim("balance", "vacuous", detail="the steps of a scheme of first order keep no energy balance")
 
 
-def _components(run: Trajectory, r: float, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
+def _components(run: Trajectory, law: DeadZoneFlocking, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
     """Within each component velocities agree at the end; a finite run cannot refute the limit."""
-    start, end = parts(run.q[0], run.p[0], r), parts(run.q[-1], run.p[-1], r)
+    start, end = parts(run.q[0], run.p[0], law), parts(run.q[-1], run.p[-1], law)
     margin = tolerances.velocity - end.mismatch
     status = judge(margin, 0.0, needs)
     return Claim(
@@ -59,7 +60,7 @@ def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], l
     return needs, [
         _rate(run, law, needs),
         _balance(run, needs, tolerances),
-        _components(run, law.interaction.r, needs, tolerances),
+        _components(run, law, needs, tolerances),
         no_collision(run, bound, needs, name="distance"),
     ]
 

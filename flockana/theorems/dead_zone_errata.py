@@ -12,7 +12,7 @@ from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.metrics import connectivity, min_distance, velocity_mismatch
 from flockana.simulate import simulate
-from flockana.theorems.dead_zone_case import parts
+from flockana.theorems.dead_zone_case import PROOF, parts
 from flockana.theorems.theorem import Claim, Hypothesis, Rigour, Theorem, Tolerances, judge
 
 Found = tuple[list[Hypothesis], list[Claim]]
@@ -75,6 +75,7 @@ def _l2(tolerances: Tolerances) -> Found:
             f"{fall:.4g}",
             computed=fall,
             stated="repulsion below r_b - δ",
+            proof=PROOF,
         ),
         _claim("corrected", -toward, f"with n = q_j - q_i their force is {toward:.4g}: it repels"),
     ]
@@ -97,6 +98,7 @@ def _l3(tolerances: Tolerances) -> Found:
             computed=str(growth),
             stated="φ_z is a bounded, positive definite potential",
             witness="limit of ρ² |f| at 0",
+            proof=PROOF,
             detail="φ_z is a force, and ρ²|φ_z| tends to 2 k_r at 0: it is unbounded",
         ),
         Claim(
@@ -105,6 +107,7 @@ def _l3(tolerances: Tolerances) -> Found:
             "symbolic",
             computed=[str(residual) for residual in found.residuals],
             stated="dψ/dρ = F, and ψ/(-2k_r ln ρ) -> 1",
+            proof=PROOF,
             detail="the potential in closed form, for η > 0 and η = 0, grows only logarithmically at 0, as n ~ ρ",
         ),
     ]
@@ -153,7 +156,7 @@ def _l4(tolerances: Tolerances) -> Found:
 
     law, q, p = _apart()
     run = simulate(law, q, p, (0.0, 10.0))
-    end = parts(run.q[-1], run.p[-1], law.interaction.r)
+    end = parts(run.q[-1], run.p[-1], law)
     near, far = (connected_share(box, seeds=SEEDS) for box in (40.0, 150.0))
     least = float(beta.ppf(0.025, near, SEEDS - near + 1)) if near else 0.0
     most = float(beta.ppf(0.975, far + 1, SEEDS - far)) if far < SEEDS else 1.0
@@ -166,6 +169,7 @@ def _l4(tolerances: Tolerances) -> Found:
             f"they are {radius:.4g} from their centre",
             computed=radius,
             stated="no agent farther than r from the leader",
+            proof=PROOF,
         ),
         _claim(
             "wide-starts",
@@ -196,6 +200,7 @@ def _l5(tolerances: Tolerances) -> Found:
             error=error,
             computed=rise,
             stated="H never rises",
+            proof=PROOF,
         ),
         Claim(
             "corrected",
@@ -203,6 +208,7 @@ def _l5(tolerances: Tolerances) -> Found:
             "symbolic",
             stated="dH̄/dt = -k₂ pᵀL̂p",
             witness=[str(found.residuals) for found in identity],
+            proof=PROOF,
             detail="the identity holds for a generic pair, so for every n, in 1, 2 and 3 dimensions",
         ),
         _claim(
@@ -231,6 +237,7 @@ def _l6(tolerances: Tolerances) -> Found:
             f"head-on at {', '.join(f'{s:g}' for s in speeds)} each, two agents come as near as {meet} and never meet",
             computed=least,
             stated="no collision",
+            proof=PROOF,
         ),
         _claim(
             "bound",
@@ -239,6 +246,7 @@ def _l6(tolerances: Tolerances) -> Found:
             "exponentially with the energy",
             computed=bounds,
             stated="ρ >= 1/(√η sinh(H̄(0)/2k_r + asinh(1/(√η d₁))))",
+            proof=PROOF,
         ),
     ]
 
@@ -255,7 +263,7 @@ def _l7(tolerances: Tolerances) -> Found:
     """Velocities match within components; with hard jumps a held pair chatters, with a ramp it rests."""
     law, q, p = _apart()
     run = simulate(law, q, p, (0.0, 10.0))
-    end, mismatch = parts(run.q[-1], run.p[-1], law.interaction.r), velocity_mismatch(run.p[-1]) / run.n
+    end, mismatch = parts(run.q[-1], run.p[-1], law), velocity_mismatch(run.p[-1]) / run.n
     hard = DeadZoneInteraction(ramp=0.0)
     coarse, fine, ramped = _settle(hard, 0.01), _settle(hard, 0.002), _settle(DeadZoneInteraction(), 0.01)
     held = simulate(DeadZoneFlocking(hard), [[0.0, 0.0], [5.0, 0.0]], np.zeros((2, 2)), (0.0, 200.0))
@@ -299,6 +307,7 @@ def _l8(tolerances: Tolerances) -> Found:
             rigour="symbolic",
             computed=rank,
             stated="all pairs of a flock at distance d",
+            proof=PROOF,
         ),
         _claim(
             "balance-distance",
@@ -313,6 +322,7 @@ def _l8(tolerances: Tolerances) -> Found:
             f"but at r_b - δ = {pair.d1:g}, where repulsion ends, less {pair.d1 - contact:.2g} up the ramp",
             computed=contact,
             stated="r_b - δ",
+            proof=PROOF,
         ),
     ]
 

@@ -195,3 +195,28 @@ def test_a_target_that_no_file_can_hold_is_held_in_place(found, catalogue, monke
     one = found("moved", "--start", "start", "-o", "moved.json")
     assert np.mean(one["q"]) == pytest.approx(7.0)
     assert read_equilibrium(tmp_path / "moved.json").kind == one["kind"] == "minimum"
+
+
+def test_dead_zone_contacts_from_a_scenario_and_from_a_file(call, tmp_path):
+    code, out, err = call("equilibrium", "dead-zone-flow", "-o", "contacts.json", "--picture", "contacts.png")
+    text = " ".join(out.split())
+    assert (code, err) == (0, "")
+    assert "law DeadZoneFlocking, n = 16" in text
+    assert "of a contact's force" in text
+    assert "|contact − d1|/d1 at most 0.0" in text
+    assert (tmp_path / "contacts.png").exists()
+    code, out, err = call("equilibrium", "contacts.json", "--json")
+    again = json.loads(out)
+    assert (code, again["kind"], again["coincident pairs"]) == (0, "minimum", 0)
+    assert 0.0 < again["strain"] < 0.1
+    code, out, err = call("lattice", "contacts.json", "--json")  # measured by its contacts
+    measured = json.loads(out)
+    assert (code, measured["d"], measured["r"]) == (0, 3.5, pytest.approx(4.2))
+    assert measured["kind"] == "quasi-α-lattice"
+
+
+def test_a_law_that_is_stepped_is_found_within_and_jumps_are_refused(call):
+    code, _, err = call("equilibrium", "dead-zone-hard", "--start", "start")
+    assert (code, "ramp = 0: contacts sit where the force jumps" in err) == (2, True)
+    code, out, _ = call("equilibrium", "dead-zone-wide-lattice", "--start", "start", "--json")
+    assert (code, json.loads(out)["law"]) == (0, "DeadZoneFlocking")

@@ -7,6 +7,7 @@ import pytest
 from scipy.optimize import brentq
 from scipy.spatial import KDTree
 
+from flockana.equilibria.record import read_equilibrium, write_equilibrium
 from flockana.equilibria.solve import find_equilibrium
 from flockana.equilibria.terms import pair_term
 from flockana.errors import ArgumentError
@@ -25,6 +26,25 @@ def test_two_agents_rest_where_repulsion_and_the_pull_balance():
     found = find_equilibrium(DeadZoneFlocking(pair), [[0.0, 0.0], [6.0, 1.0]])
     assert np.linalg.norm(found.q[1] - found.q[0]) == pytest.approx(brentq(pair.force, 3.25, 3.5), abs=1e-10)
     assert (found.kind, found.rigid_modes) == ("minimum", 3)
+
+
+def test_strain_is_that_of_contacts():
+    """Three on a line: the ends attract, out of contact 7 apart, and have no length that they are held at."""
+    line = find_equilibrium(DeadZoneFlocking(), [[0.0], [3.4], [6.8]])
+    contact = line.q[1, 0] - line.q[0, 0]
+    assert len(line.links) == 3
+    assert line.strain() == pytest.approx((3.5 - contact) / 3.5, rel=1e-9)
+    assert 0.0 < line.strain() < 1e-3
+    # without k1 nothing draws two agents within the dead zone to contact: there is no strain to tell of
+    loose = find_equilibrium(DeadZoneFlocking(DeadZoneInteraction(k1=0.0)), [[0.0, 0.0], [8.0, 0.0]])
+    assert (len(loose.links), np.isnan(loose.strain())) == (1, True)
+
+
+def test_it_is_written_down_and_read_again(tmp_path):
+    found = find_equilibrium(DeadZoneFlocking(), hexagonal_patch(1, 3.5))
+    write_equilibrium(found, tmp_path / "seven.json")
+    again = read_equilibrium(tmp_path / "seven.json")
+    assert (again.law, again.strain(), again.kind) == (found.law, found.strain(), "minimum")
 
 
 def test_a_hexagon_is_a_strict_minimum_at_the_contact_distance():

@@ -184,7 +184,9 @@ def test_failures_are_clear():
         finish(Potential(Algorithm1()), np.array([[0.0], [6.0]]), True, "claimed")
     with pytest.raises(UnknownNameError, match="did you mean 'root'"):
         find_equilibrium(Algorithm1(), start, method="roots")
-    with pytest.raises(ArgumentError, match="expected Algorithm1, Algorithm2 or Algorithm3"):
+    with pytest.raises(
+        ArgumentError, match="expected Algorithm1, Algorithm2 or Algorithm3, or DeadZoneFlocking: their forces are"
+    ):
         find_equilibrium("Algorithm1", start)
     with pytest.raises(ArgumentError, match="expected n m <= 6000"):
         find_equilibrium(Algorithm1(), np.zeros((4000, 2)))

@@ -12,6 +12,7 @@ from flockana.laws.olfati_saber import Algorithm1
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.serialize import from_data, to_data
 from flockana.simulate import simulate
+from flockana.switched import turns
 
 HARD = DeadZoneInteraction(ramp=0.0)
 
@@ -81,6 +82,44 @@ def test_a_pair_crosses_every_zone_and_each_switch_is_located():
         assert np.sum(np.abs(rho - edge) < 1e-12) == 2  # a sample at each switch
     assert run.p[-1] == pytest.approx(-run.p[0], abs=1e-7)  # a mirror image in time: it leaves as it came
     assert run.closest_approach().distance < 3.5
+
+
+@pytest.mark.parametrize("method", ["DOP853", "RK45", "Radau", "BDF", "LSODA"])
+@pytest.mark.parametrize(("past", "switches"), [(14.9999999, 2), (14.99, 2), (15.0000001, 0)])
+def test_a_pair_that_grazes_the_range_is_not_missed(method, past, switches):
+    """Straight past each other at a least distance of r less 1e-7, for 1.7e-4 of 80 time units, in steps of any length.
+
+    Every solver takes the whole way in a few steps, and at no step's end, nor at fixed shares of it, are they in range.
+    """
+    run = simulate(
+        DeadZoneFlocking(HARD, k2=0.0),
+        [[-400.0, 0.0], [400.0, past]],
+        [[10.0, 0.0], [-10.0, 0.0]],
+        (0.0, 80.0),
+        method=method,
+    )
+    assert (run.status, run.stats["switches"]) == ("complete", switches)
+    assert np.abs(run.energy_residual).max() < 1e-7 * run.energy()[0]
+
+
+def test_the_turns_of_a_distance_are_those_of_its_polynomial():
+    law = DeadZoneFlocking(HARD)
+
+    def course(t, swing=7.5):
+        """Two agents on a line, 8 + 7.5 T_5 apart: five monotone pieces, four turns, within the unit step."""
+        x = 2.0 * np.asarray(t) - 1.0
+        zero = 0.0 * x
+        return np.array([zero, 8.0 + swing * (16.0 * x**5 - 20.0 * x**3 + 5.0 * x), zero, zero])
+
+    def split(y):
+        return y[:2].reshape(2, 1), y[2:].reshape(2, 1)
+
+    held = law.pieces(np.array([[0.0], [8.0]]))
+    found = turns(law, held, course, 0.0, 1.0, split)
+    expected = 0.5 + 0.5 * np.cos(np.pi * np.arange(4, 0, -1) / 5.0)
+    assert np.abs(np.array(found)[:, None] - expected).min(axis=0).max() < 1e-12
+    # 8 ± 4 stays between d1 = 3.5 and d2 = 12.5: nobody asks
+    assert turns(law, held, lambda t: course(t, swing=4.0), 0.0, 1.0, split) == []
 
 
 def test_output_times_do_not_change_a_located_run():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from flockana.errors import ArgumentError
 from flockana.scenarios import scenario
 
 NAMES = ("dead-zone", "dead-zone-wide-lattice", "dead-zone-wide-start", "dead-zone-hard", "dead-zone-flow")
@@ -34,6 +35,18 @@ def test_the_spacing_is_that_of_the_reference(seed):
     claims = {claim.name: claim for claim in item.verify(run)[-1].claims}
     assert claims["lattice"].computed == pytest.approx(3.40, abs=0.01)
     assert claims["consensus"].computed < 1e-9
+
+
+def test_the_box_decides_whether_the_flock_is_one():
+    """Erratum L4. An ensemble over `box` gives the shares: 1.00, 0.84, 0.18 and 0 of 100 seeds at 40, 60, 80, 150."""
+    for seed, box, together in ((0, 60.0, "verified"), (1, 150.0, "refuted")):
+        item = scenario("dead-zone", seed, box=box)
+        assert 0.9 * box < item.q0.max() <= box
+        verdicts = item.verify(item.run())
+        assert [item.surprises(verdict) for verdict in verdicts] == [(), (), ()]
+        assert verdicts[-1].claim("together").status == together
+    with pytest.raises(ArgumentError, match="box = -1: expected a number > 0"):
+        scenario("dead-zone", box=-1.0)
 
 
 def test_hard_jumps_leave_the_mismatch_of_the_erratum():

@@ -1,0 +1,226 @@
+# ---
+# jupyter:
+#   jupytext:
+#     text_representation:
+#       extension: .py
+#       format_name: percent
+#   kernelspec:
+#     display_name: Python 3
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # Dead-zone potentials and discontinuous forces
+#
+# **Aims.** Read a force law that jumps, find its potential and the energy that belongs to it, see what a jump does to
+# an integrator, and sort a printed theorem into what is true, what is false and what can be mended.
+#
+# Li, Yuan and Liu (`fl.cite(fl.theorem("dead-zone-1-printed"))`) let agents repel below $d_1 = r_b-\delta$, attract
+# above $d_2 = r_b+\delta$, and leave each other alone between. Made definite (errata L1, L2), with $\rho =
+# \|q_j-q_i\|$,
+#
+# $$u_i = \sum_{\rho < r} \Bigl[ f(\rho)\,\frac{q_j-q_i}{\sqrt{1+\eta\rho^2}} + k_1 (q_j-q_i) + k_2 (p_j-p_i) \Bigr],
+#   \qquad f = \begin{cases} -(2k_r/\rho^2 + k_\delta) & \rho < d_1 \\ 0 & d_1 \le \rho \le d_2 \\
+#   2k_r/(r_d-\rho)^2 + k_\delta & d_2 < \rho < r \end{cases}$$
+
+# %%
+import numpy as np
+from scipy.integrate import solve_ivp
+
+import flockana as fl
+from flockana import plots, symbolic
+from flockana.course import grade
+
+hard, ramped = fl.DeadZoneInteraction(ramp=0.0), fl.DeadZoneInteraction()
+figure, axes = plots.subplots(1, 2, size=(11, 3.4))
+plots.dead_zone_force(hard, ax=axes[0])
+_ = plots.dead_zone_force(ramped, ax=axes[1])
+
+# %%
+for jump in hard.jumps():
+    print(f"at {jump.where:>2} = {jump.distance:4.1f} the force jumps from {jump.below:8.4f} to {jump.above:.4f}")
+
+# %% [markdown]
+# On the right a *ramp* of width 0.25 takes the place of the jumps beside the dead zone. The one at $r$ stays.
+#
+# ## The potential, in closed form
+#
+# The source calls $f$ a bounded potential (erratum L3). It is a force, unbounded as $1/\rho^2$. Its potential is
+# unbounded too, but only as $-2k_r\ln\rho$, because $q_j - q_i$ is no unit vector:
+
+# %%
+potential = symbolic.dead_zone.derive_potential()
+print("residuals:", potential.residuals)
+potential
+
+# %% [markdown]
+# ## Which energy falls
+#
+# The source sums $\psi$ over *neighbours*. That sum jumps up by $\psi(r)$ whenever a pair comes into range. Hold each
+# pair's potential constant beyond $r$ instead, and the sum over *all* pairs is continuous, with
+#
+# $$\dot{\bar H} = -k_2\, p^\top \hat L\, p \le 0$$
+#
+# across all switches (erratum L5). Sixteen agents:
+
+# %%
+run = fl.scenario("dead-zone-flow").run()
+figure, axes = plots.subplots(1, 2, size=(11, 3.4))
+plots.dead_zone_energies(run.window(0.5, 20.0), ax=axes[0])
+_ = plots.energy_residual(run, ax=axes[1])
+
+# %% [markdown]
+# ## What a jump does to an integrator
+#
+# An adaptive solver believes that the solution is smooth within a step. At a jump its error estimate means nothing: it
+# fails, halves, fails again, and steps over the jump in the end. `fl.simulate` holds every pair in its zone, finds the
+# first pair that leaves, stops there, and starts anew. Two agents fly at each other, turn, and part: six switches.
+
+# %%
+law = fl.DeadZoneFlocking(hard, k2=0.0)
+q0, p0, span = np.array([[0.0, 0.0], [16.0, 0.1]]), np.array([[1.0, 0.0], [-1.0, 0.0]]), (0.0, 30.0)
+
+
+def raw(t, y):
+    q, p = y.reshape(2, 2, 2)
+    return np.concatenate([p.ravel(), law.acceleration(t, q, p).ravel()])
+
+
+exact = fl.simulate(law, q0, p0, span, rtol=1e-12, atol=1e-14).q[-1]
+y0 = np.concatenate([q0.ravel(), p0.ravel()])
+for rtol in (1e-6, 1e-8, 1e-10):
+    stepped = solve_ivp(raw, span, y0, method="DOP853", rtol=rtol, atol=rtol / 100)
+    found = fl.simulate(law, q0, p0, span, rtol=rtol, atol=rtol / 100)
+    off = [abs(q - exact).max() for q in (stepped.y[:4, -1].reshape(2, 2), found.q[-1])]
+    print(f"rtol {rtol:g}: raw {stepped.nfev} evaluations, error {off[0]:.0e}; ", end="")
+    print(f"located {found.stats['evaluations']}, {off[1]:.0e}, {found.stats['switches']} switches")
+
+# %% [markdown]
+# ## Sliding
+#
+# Just above $d_1$ the pull $k_1\rho$ draws two agents together, just below it they repel. Damped, they bounce at $d_1$
+# ever lower, and the switches come ever faster: in the end the pair is *held at the jump*, a sliding mode in Filippov's
+# sense. No solver of smooth pieces gets beyond that point, and the run says so.
+
+# %%
+pair, rest = np.array([[0.0, 0.0], [5.0, 0.0]]), np.zeros((2, 2))
+held = fl.simulate(fl.DeadZoneFlocking(hard), pair, rest, (0.0, 80.0))
+settled = fl.simulate(fl.DeadZoneFlocking(ramped), pair, rest, (0.0, 80.0))
+print(held.message)
+
+figure, axes = plots.subplots(1, 2, size=(11, 3.2))
+for ax in axes:
+    ax.plot(held.t, np.linalg.norm(held.q[:, 1] - held.q[:, 0], axis=1), label="jumps, located")
+    ax.plot(settled.t, np.linalg.norm(settled.q[:, 1] - settled.q[:, 0], axis=1), label="ramp")
+    ax.set(xlabel="t (time)", ylabel="distance (length)")
+axes[0].legend()
+_ = axes[1].set(xlim=(36.0, 50.0), ylim=(3.495, 3.506))
+
+# %% [markdown]
+# With the ramp the force is continuous there, and the pair comes to rest just short of $d_1$. A fixed step sees neither
+# jump nor sliding; it goes on, and chatters (erratum L7):
+
+# %%
+for name in ("chatter", "ramp"):
+    print(fl.verify("L7").claim(name).detail)
+
+# %% [markdown]
+# ## The theorem, printed and corrected
+#
+# Fifty agents in a box of 40, as far as the source says how; and the same in a box of 150:
+
+# %%
+near = fl.scenario("dead-zone").run()
+wide = fl.scenario("dead-zone-wide-start").run()
+print(fl.verify("dead-zone-1-printed", near))
+print(fl.verify("dead-zone-1-printed", wide))
+
+# %% [markdown]
+# The flock that stays one ends a little wider than $r$: at rest, so for good. For the other, a finite run refutes "in
+# the end they are together" only if it is certain that they part. It is: each component conserves its momentum, so
+# its centre moves at constant velocity, and its energy bounds how many of its own pairs can ever be out of range,
+# hence how far an agent gets from that centre. The components that are left at the end never come within $r$ of each
+# other again.
+#
+# Of the theorem three things remain true, and are proved: the energy that falls, velocities that match *within*
+# components (seen here, not proved), and an explicit least distance:
+
+# %%
+print(fl.verify("dead-zone-1-corrected", wide))
+
+# %% [markdown]
+# ## Where contacts sit
+#
+# Not at the balance distance $r_b = 8$, but where repulsion ends, at $d_1 = r_b-\delta = 3.5$ (erratum L8): anywhere in
+# the dead zone $k_1$ still pulls. With fifty agents in range of each other it pulls hard, and squeezes the middle.
+
+# %%
+equilibrium = fl.find_equilibrium(fl.DeadZoneFlocking(), near.q[-1])
+print(f"a {equilibrium.kind}, contacts shorter than d1 by at most {equilibrium.strain():.1%}")
+figure, ax = plots.subplots(size=(6, 5))
+_ = plots.configuration(equilibrium.q, d=ramped.d1, r=1.2 * ramped.d1, ax=ax)
+
+# %% [markdown] tags=["exercise"]
+# ## Exercises
+#
+# **1.** Two agents out of range approach each other head-on at relative speed 2 on a line. By how much does the printed
+# energy, of neighbours, rise at the instant at which they come into range? (Default parameters, without a ramp.)
+
+# %% tags=["answer"]
+rise = ...
+
+# %% tags=["solution"]
+rise = hard.psi(hard.r)  # whatever the speed
+
+# %% tags=["check"]
+grade(rise, hard.far_potential, hint="ψ at r, which fl.DeadZoneInteraction(ramp=0.0).psi knows")
+
+# %% [markdown] tags=["exercise"]
+# **2.** What is the greatest energy $\bar H(0)$ for which the corrected theorem promises that no two agents come closer
+# than 1? (Without a ramp; $\eta = 1$.)
+
+# %% tags=["answer"]
+energy = ...
+
+# %% tags=["solution"]
+energy = 2 * hard.k_r * (np.arcsinh(1.0) - np.arcsinh(1.0 / hard.d1))
+
+# %% tags=["check"]
+grade(energy, lambda H: abs(hard.least_distance(H) - 1.0) < 1e-3, hint="solve 1/sinh(H/2k_r + asinh(1/d₁)) = 1")
+
+# %% [markdown] tags=["exercise"]
+# **3.** Two agents 14 apart leave each other, each at speed $v$, with the default law. At which of the speeds 1, 2,
+# 3, 4 do they part for ever? Give a list.
+
+# %% tags=["answer"]
+parting = ...
+
+
+# %% tags=["solution"]
+def cohesion(v):
+    leaving = fl.simulate(fl.DeadZoneFlocking(), [[0.0], [14.0]], [[-v], [v]], (0.0, 10.0))
+    return fl.verify("dead-zone-1-printed", leaving).claim("cohesion").status
+
+
+parting = [v for v in (1, 2, 3, 4) if cohesion(v) == "refuted"]
+
+# %% tags=["check"]
+grade(parting, [3, 4], hint="verify dead-zone-1-printed on a short run: when is cohesion refuted?")
+
+# %% [markdown] tags=["exercise"]
+# **4.** Let `k1` grow from 0.01 to 0.1. What is the mean distance of an agent to its nearest neighbour, in the
+# equilibrium that `find_equilibrium` reaches from a hexagonal spiral of 50 agents, 3 apart?
+
+# %% tags=["answer"]
+spacing = ...
+
+# %% tags=["solution"]
+from scipy.spatial import KDTree
+
+squeezed = fl.DeadZoneFlocking(fl.DeadZoneInteraction(k1=0.1))
+lattice = fl.find_equilibrium(squeezed, fl.lattice.hexagonal_spiral(50, 3.0)).q
+spacing = KDTree(lattice).query(lattice, k=2)[0][:, 1].mean()
+
+# %% tags=["check"]
+grade(spacing, 2.70, rtol=0.03, hint="scipy's KDTree(q).query(q, k=2) gives each agent's nearest neighbour")
