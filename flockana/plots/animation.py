@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import matplotlib as mpl
 import numpy as np
 
 from flockana.checks import FloatArray, ensure_positive
@@ -155,7 +156,8 @@ def animate(
     writer = PillowWriter(fps=fps) if target.suffix.lower() == ".gif" else FFMpegWriter(fps=fps)  # type: ignore[arg-type]
     partial = target.with_name(f".{target.stem}.{os.getpid()}.partial{target.suffix.lower()}")
     try:
-        with style():
+        # saving a figure asks for a layout anew, and one that fits each frame by itself makes the view tremble
+        with style(), mpl.rc_context({"figure.constrained_layout.use": False}):
             film.save(partial, writer, dpi=_DPI, progress_callback=lambda k, total: progress(k + 1, total))
         os.replace(partial, target)
     except OSError as error:

@@ -141,3 +141,15 @@ def test_an_old_film_survives_a_failed_one(tmp_path, monkeypatch):
         plots.animate(a_run(), path, seconds=0.1, fps=10)
     assert path.read_bytes() == b"old"
     assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_the_axes_hold_still_in_the_file(tmp_path):
+    path = plots.animate(a_run(2), tmp_path / "run.gif", seconds=0.5, fps=10)
+    edges = []
+    with Image.open(path) as film:
+        for k in range(film.n_frames):
+            film.seek(k)
+            dark = np.asarray(film.convert("L")) < 140
+            edges.append((int(np.argmax(dark.sum(axis=0) > 100)), int(np.argmax(dark.sum(axis=1) > 300))))
+    assert len(edges) == 5
+    assert len(set(edges)) == 1  # the spines: left and bottom
