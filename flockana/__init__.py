@@ -42,6 +42,9 @@ if TYPE_CHECKING:
     from flockana.environment.zone_world import ZoneWorld as ZoneWorld
     from flockana.equilibria.solve import Equilibrium as Equilibrium
     from flockana.equilibria.solve import find_equilibrium as find_equilibrium
+    from flockana.falsify import Falsification as Falsification
+    from flockana.falsify import falsify as falsify
+    from flockana.falsify import replay as replay
     from flockana.interactions import AlphaInteraction as AlphaInteraction
     from flockana.interactions import BetaInteraction as BetaInteraction
     from flockana.interactions import DeadZoneInteraction as DeadZoneInteraction
@@ -129,6 +132,7 @@ _BY_MODULE = {
     "theorems": ("theorems", "theorem", "verify", "Verdict", "Tolerances"),
     "scenarios": ("scenarios", "scenario", "Scenario"),
     "ensemble": ("ensemble", "shares", "clopper_pearson"),
+    "falsify": ("falsify", "Falsification", "replay"),
     "plots.animation": ("animate",),
     "references": ("cite",),
 }

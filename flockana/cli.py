@@ -15,13 +15,14 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from flockana._version import __version__
-from flockana.commands import ensemble, equilibrium, lattice, prove
+from flockana.commands import ensemble, equilibrium, falsify, lattice, prove, stability
 from flockana.errors import ArgumentError, FlockanaError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from flockana.report.pages import Page
+    from flockana.report.statistics import StatisticsSection, Survey, Surveyed
     from flockana.report.work import Task
 
 OK, BAD_INPUT, UNEXPECTED, INTERRUPTED = 0, 2, 3, 130
@@ -58,6 +59,15 @@ def _verify(
     report: Annotated[Path, typer.Option(metavar="DIR", help="Folder of the report.")] = Path("report"),
     no_report: Annotated[bool, typer.Option("--no-report", help="Write no report.")] = False,
     json: Annotated[bool, typer.Option("--json", help="Print the verdicts as JSON, and nothing else.")] = False,
+    seeds: Annotated[
+        int | None,
+        typer.Option(
+            min=0,
+            help="From how many seeds to tell shares of runs; 0 for no shares. By default as many as scenarios ask "
+            "for, in a report on the whole catalogue only.",
+            show_default=False,
+        ),
+    ] = None,
     jobs: Annotated[int, typer.Option(min=1, help="Processes; by default the number of cores.", show_default=False)] = (
         os.cpu_count() or 1
     ),
@@ -67,45 +77,51 @@ def _verify(
     Exit status: 0 all as expected, 2 bad input, 3 some verdict differs from the expected, 130 interrupted.
     """
     from flockana.report.build import ensure_directory, verdicts_json, write_report
+    from flockana.report.statistics import Surveyed, gather, surveys
     from flockana.report.work import plan
 
     started = time.perf_counter()
     if on is not None:
         tasks: tuple[Task, ...] = ()
-        _ensure_checkable(name)
+        many: tuple[Survey, ...] = ()
+        _ensure_checkable(name, seeds)
     else:
         tasks = plan(name, seed=seed, figures=not no_report)
+        many = () if no_report and seeds is None else surveys(name, seeds, seed=seed)
     if not no_report:
         ensure_directory(report)
-    pages, code, failure = ([_saved(name, on, not no_report)], OK, None) if on else _perform(tasks, jobs)
+    results, code, failure = ([_saved(name, on, not no_report)], OK, None) if on else _perform((*tasks, *many), jobs)
+    pages = [one for one in results if not isinstance(one, Surveyed)]
+    statistics = gather(many, [one for one in results if isinstance(one, Surveyed)], figures=not no_report)
     if code == OK and any(page.surprises for page in pages):
         code = UNEXPECTED
     seconds, complete = time.perf_counter() - started, code in (OK, UNEXPECTED)
     written = None
     if not no_report and (pages or complete):
-        written = write_report(pages, report, seed=seed, seconds=seconds, complete=complete)
+        written = write_report(pages, report, seed=seed, seconds=seconds, complete=complete, statistics=statistics)
     if json:
-        typer.echo(verdicts_json(pages, seed=seed, seconds=seconds, complete=complete), nl=False)
+        text = verdicts_json(pages, seed=seed, seconds=seconds, complete=complete, statistics=statistics)
+        typer.echo(text, nl=False)
     else:
-        _print_verdicts(pages, seconds, written, in_full=name is not None and name != "errata")
+        _print_verdicts(pages, statistics, seconds, written, in_full=name is not None and name != "errata")
     if failure is not None:
         raise failure
     return code
 
 
-def _perform(tasks: Sequence[Task], jobs: int) -> tuple[list[Page], int, FlockanaError | None]:
+def _perform(tasks: Sequence[Task | Survey], jobs: int) -> tuple[list[Page | Surveyed], int, FlockanaError | None]:
     """Carry tasks out under a progress bar; what was done before an interrupt or an error is kept."""
     from rich.console import Console
 
     from flockana.report.console import progress_bar
     from flockana.report.work import perform
 
-    done: dict[str, Page] = {}
+    done: dict[str, Page | Surveyed] = {}
     code, failure = OK, None
     try:
         with progress_bar(Console(stderr=True), len(tasks), enabled=True) as advance:
-            for page in perform(tasks, jobs=jobs, watch=lambda names: advance(len(done), names)):
-                done[page.name] = page
+            for one in perform(tasks, jobs=jobs, watch=lambda names: advance(len(done), names)):
+                done[one.name] = one
     except KeyboardInterrupt:
         code = INTERRUPTED
     except FlockanaError as error:
@@ -113,11 +129,13 @@ def _perform(tasks: Sequence[Task], jobs: int) -> tuple[list[Page], int, Flockan
     return [done[task.name] for task in tasks if task.name in done], code, failure
 
 
-def _ensure_checkable(name: str | None) -> None:
+def _ensure_checkable(name: str | None, seeds: int | None) -> None:
     from flockana.errors import UnknownNameError
     from flockana.scenarios import scenarios
     from flockana.theorems import theorem, theorems
 
+    if seeds:
+        raise ArgumentError(f"--seeds {seeds}: a saved run has one seed; leave out --seeds or --on")
     if name is None:
         raise ArgumentError("--on FILE needs a NAME: the scenario that was run, or the theorem to check")
     if name not in (*scenarios(), *theorems()):
@@ -145,10 +163,17 @@ def _saved(name: str | None, path: Path, figures: bool) -> Page:
     return page(ScenarioResult(item, run, (verify(name, run, subject=path.name),)), figures=figures)
 
 
-def _print_verdicts(pages: Sequence[Page], seconds: float, written: Path | None, *, in_full: bool) -> None:
+def _print_verdicts(
+    pages: Sequence[Page],
+    statistics: StatisticsSection | None,
+    seconds: float,
+    written: Path | None,
+    *,
+    in_full: bool,
+) -> None:
     from rich.console import Console
 
-    from flockana.report.console import details, summary, verdict_table
+    from flockana.report.console import details, statistics_table, summary, verdict_table
 
     console = Console(highlight=False)
     if in_full:
@@ -159,6 +184,10 @@ def _print_verdicts(pages: Sequence[Page], seconds: float, written: Path | None,
     for page in pages:
         for text in page.surprises:
             console.print(f"  {page.name}: {text}", style="bold red", markup=False)
+    if statistics is not None and (in_full or written is None):
+        console.print(statistics_table(statistics))
+    elif statistics is not None:
+        console.print("shares of runs over many seeds: in the report")
     console.print(summary(pages, seconds), markup=False)
     if written is not None:
         console.print(f"report: {written}", markup=False, soft_wrap=True)
@@ -241,7 +270,7 @@ def _theorems() -> None:
     Console(highlight=False).print(theorem_table())
 
 
-for _command in (lattice, equilibrium, prove, ensemble):
+for _command in (lattice, equilibrium, stability, prove, ensemble, falsify):
     _command.register(app)
 
 

@@ -3,7 +3,9 @@
 from flockana.plots.animation import animate, animation
 from flockana.plots.control import bode, delay_chart, gain_sweep, norms, root_locus
 from flockana.plots.dead_zone import dead_zone_energies, dead_zone_force
+from flockana.plots.decay import linear_range, measured_gains
 from flockana.plots.ensemble import distribution, phase_diagram, share_against, share_bars
+from flockana.plots.falsify import search_history
 from flockana.plots.film import Film
 from flockana.plots.lattice import barrier, collapse, collapse_brackets, defect_map
 from flockana.plots.minimal import perception
@@ -59,7 +61,9 @@ __all__ = [
     "energy",
     "energy_residual",
     "gain_sweep",
+    "linear_range",
     "measure",
+    "measured_gains",
     "mode_shape",
     "mode_title",
     "norms",
@@ -72,6 +76,7 @@ __all__ = [
     "potential",
     "root_locus",
     "rules",
+    "search_history",
     "share_against",
     "share_bars",
     "snapshot",

@@ -14,8 +14,9 @@ from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.paths import contacts
 from flockana.simulate import simulate
 from flockana.theorems import Tolerances, verify
+from flockana.theorems.asymptotics import lattice_limit
 from flockana.theorems.e3 import rhombus_with_double_agent
-from flockana.theorems.os_1 import _disconnected_energy, _lattice
+from flockana.theorems.os_1 import _disconnected_energy
 from flockana.trajectory import Trajectory
 
 LAW1 = Algorithm1()
@@ -103,14 +104,14 @@ class TestTheorem1:
 
     def test_a_strict_minimum_that_is_no_lattice_refutes_the_limit(self):
         run = made_up(LAW1, [rhombus_with_double_agent(7.0)] * 2)
-        claim = _lattice(run, [], Tolerances())
+        claim = lattice_limit(run, [], Tolerances(), name="i")
         assert claim.status == "refuted"
         assert claim.computed == 1.0
         assert claim.witness["curvature"] > 0.03
 
     def test_a_strained_state_that_is_no_equilibrium_refutes_nothing(self):
         run = made_up(LAW1, [hexagonal_patch(1, 6.5)] * 2)
-        assert _lattice(run, [], Tolerances()).status == "inconclusive"
+        assert lattice_limit(run, [], Tolerances(), name="i").status == "inconclusive"
 
     def test_a_crossing_between_samples_refutes_the_collision_bound(self):
         samples = [[[0.0], [7.0]], [[7.0], [0.0]]]
@@ -260,3 +261,35 @@ class TestDefinition5:
         run = made_up(LAW1, [10.0 * q, q, q], t=(0.0, 1.0, 2.0))
         assert verify("alpha-flocking", run).status == "verified"
         assert verify("alpha-flocking", run, tolerances=Tolerances(settle=0.0)).status == "refuted"
+
+
+class TestTheBalance:
+    """What the integrator spoils is told from an identity that is wrong."""
+
+    @staticmethod
+    def run(**options):
+        return simulate(LAW1, [[0.0], [3.0]], [[20.0], [-20.0]], (0.0, 2.0), **options)
+
+    def test_a_rough_integration_refutes_nothing(self):
+        claim = verify("energy", self.run(rtol=1e-5, atol=1e-7)).claim("balance")
+        assert claim.margin < 0.0
+        assert claim.status == "inconclusive"
+
+    def test_a_wrong_identity_stays_wrong_however_tightly_it_is_integrated(self, monkeypatch):
+        right = Algorithm1.flow
+
+        def flow(self, t, q, p):
+            u, rate = right(self, t, q, p)
+            return u, 1.001 * rate
+
+        monkeypatch.setattr(Algorithm1, "flow", flow)
+        run = self.run()
+        claim = verify("energy", run).claim("balance")
+        assert claim.status == "refuted"
+        lost = 1.0 - run.energy()[-1] / run.energy()[0]
+        assert claim.computed == pytest.approx(1e-3 * lost, rel=1e-2)
+
+    def test_a_work_that_the_law_does_not_do_is_not_the_integrators(self):
+        run = self.run(rtol=1e-5, atol=1e-7)
+        forged = replace(run, extra={"work": 0.9 * run.extra["work"]})
+        assert verify("energy", forged).claim("balance").status == "refuted"

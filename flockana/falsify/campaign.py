@@ -1,0 +1,234 @@
+"""Search a scenario's neighbourhood for a run that breaks a claim of a theorem."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from concurrent.futures import Executor
+from contextlib import contextmanager
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from flockana.checks import FloatArray, ensure_count
+from flockana.errors import ArgumentError, UnknownNameError
+from flockana.falsify.evaluate import Evaluation, Problem, units
+from flockana.falsify.falsification import Ending, Falsification
+from flockana.falsify.grade import FAILED, Lead
+from flockana.falsify.search import Search
+from flockana.falsify.space import STATE, part, search_space
+from flockana.scenarios import Scenario
+from flockana.scenarios import scenario as named_scenario
+from flockana.theorems import Claim, Theorem, Tolerances, verify
+from flockana.theorems import theorem as named_theorem
+
+
+def falsify(
+    theorem: str | Theorem,
+    scenario: str | Scenario,
+    *,
+    budget: int,
+    seed: int = 0,
+    claim: str | None = None,
+    vary: Iterable[str] = STATE,
+    region: Any = None,
+    speed: float | None = None,
+    parameters: Mapping[str, tuple[float, float]] | None = None,
+    surrogate: Lead | None = None,
+    tolerances: Tolerances | None = None,
+    deepen: bool = False,
+    executor: Executor | None = None,
+    progress: bool = False,
+) -> Falsification:
+    """Search initial states, and parameters if asked to, for a run that breaks a claim: minimise the claim's margin.
+
+    CMA-ES (restarted with growing populations) in a box about the scenario's start. Where hypotheses are not met the
+    search is led back by how far they are missed; a run that fails counts as worse than any other. That nothing is
+    found proves nothing. The same arguments give the same result, whoever computes it.
+
+    Parameters
+    ----------
+    theorem : str or Theorem
+        A theorem about runs, of the catalogue or your own.
+    scenario : str or Scenario
+        Where the search begins: a name of the catalogue, built with `seed`, or a scenario.
+    budget : int
+        Runs to make at most, the scenario's own start among them.
+    seed : int
+        Of the search, >= 0.
+    claim : str, optional
+        Which claim to break. By default whichever comes nearest, each margin measured by its size at the scenario's
+        own start.
+    vary : iterable of str
+        What of the state is varied: ``"q"``, ``"p"``, both, or none.
+    region : float or (low, high), optional
+        Of the positions: a distance per axis that every agent may be moved by, or two corners of a box for all. By
+        default the box of the scenario's flock, widened by a tenth.
+    speed : float, optional
+        Bound of each component of a velocity; by default twice the largest at the scenario's start, 1 at rest.
+    parameters : mapping of str to (float, float), optional
+        Bounds for numbers of the law, by dotted name, such as ``{"gains.c1_gamma": (0.1, 10.0)}``.
+    surrogate : callable, optional
+        ``surrogate(trajectory, claim) -> float`` in [0, 1], lower the nearer to breaking: it orders runs of equal
+        margins, which counts often have. Some claims have one of ours.
+    tolerances : Tolerances, optional
+        Thresholds of the verdicts.
+    deepen : bool
+        Use up the budget after a counterexample is found, for a worse one.
+    executor : concurrent.futures.Executor, optional
+        Evaluates the runs of a generation side by side; a theorem or a surrogate of your own must be importable there.
+    progress : bool
+        Show a bar with rate, time left and the worst so far, on a terminal.
+
+    Returns
+    -------
+    Falsification
+        On Ctrl-C too, with what was found so far.
+
+    Raises
+    ------
+    ArgumentError
+        On bad input, before anything is searched.
+
+    Examples
+    --------
+    c* excludes a collision, and twice c* does not:
+
+    >>> safe = falsify("collision-energy", "head-on", claim="below", budget=30)
+    >>> safe.found, safe.evaluations, safe.ended
+    (False, 30, 'budget')
+    >>> falsify("collision-energy", "head-on", claim="twice", budget=100).found
+    True
+    """
+    item = named_theorem(theorem) if isinstance(theorem, str) else theorem
+    budget, seed = ensure_count("budget", budget), _ensure_seed(seed)
+    begin = named_scenario(scenario, seed) if isinstance(scenario, str) else scenario
+    _ensure_kinds(item, begin, tolerances, surrogate)
+    space = search_space(begin, vary=vary, region=region, speed=speed, parameters=parameters)
+    problem = Problem(space, theorem, tolerances or Tolerances(), claim, surrogate)
+    problem, first = _at_the_start(problem, begin)
+    record = _Record()
+    record.add(None, first)
+    search = Search(space.start, seed)
+    ended: Ending = "budget"
+    with _bar(budget, f"{item.id} on {begin.name}", enabled=progress) as show:
+        try:
+            while len(record.rows) < budget and (deepen or not record.best.found):
+                points = search.ask()
+                batch, grades = points[: budget - len(record.rows)], []
+                for point, one in zip(batch, (executor.map if executor else map)(problem, batch), strict=True):
+                    grades.append(one.grade)
+                    record.add(point, one)
+                    show(len(record.rows), record.best)
+                    if one.found and not deepen:
+                        break
+                if len(grades) == len(points):
+                    search.tell(grades)
+        except KeyboardInterrupt:
+            ended = "interrupted"
+    if record.best.found and not deepen:
+        ended = "found"
+    case = begin if record.point is None else space.case(record.point)
+    return Falsification(
+        theorem=item.id,
+        claim=record.best.claim or claim or "",
+        case=case,
+        parameters={name: float(part(case.law, name)) for name in space.parameters},
+        verdict=record.best.verdict,
+        **record.columns(record.best.claim or claim or ""),
+        seed=seed,
+        budget=budget,
+        restarts=search.restarts,
+        ended=ended,
+        message=record.message,
+    )
+
+
+def _ensure_seed(seed: Any) -> int:
+    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
+        raise ArgumentError(f"seed = {seed!r}: expected a whole number >= 0")
+    return int(seed)
+
+
+def _ensure_kinds(theorem: Any, scenario: Any, tolerances: Any, surrogate: Any) -> None:
+    if not isinstance(theorem, Theorem):
+        raise ArgumentError(f"theorem = {theorem!r}: expected a name of the catalogue or a Theorem")
+    if theorem.kind != "trajectory":
+        raise ArgumentError(f"{theorem.id} is not about a run: expected a theorem about motion, such as os-1")
+    if not isinstance(scenario, Scenario):
+        raise ArgumentError(f"scenario = {scenario!r}: expected a name of the catalogue or a Scenario")
+    if tolerances is not None and not isinstance(tolerances, Tolerances):
+        raise ArgumentError(f"tolerances = {tolerances!r}: expected flockana.Tolerances(...)")
+    if surrogate is not None and not callable(surrogate):
+        raise ArgumentError(f"surrogate = {surrogate!r}: expected a function of a trajectory and a claim")
+
+
+def _at_the_start(problem: Problem, begin: Scenario) -> tuple[Problem, Evaluation]:
+    """The first evaluation, on the scenario's own start, with units for margins from it; its errors are the user's."""
+    with np.errstate(all="ignore"):
+        run = begin.run()
+        if run.status == "interrupted":
+            raise KeyboardInterrupt
+        if run.status != "complete":
+            return problem, Evaluation(FAILED, message=run.message)
+        verdict = verify(problem.theorem, run, tolerances=problem.tolerances, subject=begin.name)
+        names = [one.name for one in verdict.claims]
+        if problem.claim is not None and problem.claim not in names:
+            raise UnknownNameError("claim", problem.claim, names)
+        problem = replace(problem, scales=units(verdict))
+        return problem, problem.graded(run, verdict)
+
+
+class _Record:
+    """Statuses and margins of all evaluations, and the best of them."""
+
+    def __init__(self) -> None:
+        self.rows: list[dict[str, tuple[str, float]]] = []
+        self.best, self.message = Evaluation(np.inf), ""
+        self.point: FloatArray | None = None  # the scenario's own start
+
+    def add(self, point: FloatArray | None, one: Evaluation) -> None:
+        claims = () if one.verdict is None else one.verdict.claims
+        self.rows.append({c.name: (c.status, _margin(c)) for c in claims})
+        self.message = one.message or self.message
+        if one.grade < self.best.grade:
+            self.best, self.point = one, point
+
+    def columns(self, claim: str) -> dict[str, Any]:
+        """`margins` and `statuses` by claim; of a run that failed there is neither."""
+        names = list(dict.fromkeys(name for row in self.rows for name in row)) or [claim]
+        absent = [("vacuous" if row else "failed", np.nan) for row in self.rows]
+        table = {name: [row.get(name, none) for row, none in zip(self.rows, absent, strict=True)] for name in names}
+        return {
+            "margins": {name: np.array([margin for _, margin in column]) for name, column in table.items()},
+            "statuses": {name: tuple(status for status, _ in column) for name, column in table.items()},
+        }
+
+
+def _margin(claim: Claim) -> float:
+    """NaN where nothing is claimed: a vacuous claim's margin says nothing of it."""
+    return float("nan") if claim.status == "vacuous" or claim.margin is None else float(claim.margin)
+
+
+@contextmanager
+def _bar(total: int, text: str, *, enabled: bool) -> Iterator[Callable[[int, Evaluation], None]]:
+    """A bar with rate, time left and the worst so far, on a terminal; gives a function to call after each run."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    console = Console(stderr=True)
+    if not (enabled and console.is_terminal):
+        yield lambda done, best: None
+        return
+    columns = (BarColumn(24), MofNCompleteColumn(), TextColumn("{task.description}", markup=False))
+    with Progress(*columns, TextColumn("left"), TimeRemainingColumn(), console=console, transient=True) as bar:
+        task = bar.add_task(text, total=total)
+
+        def show(done: int, best: Evaluation) -> None:
+            bar.update(task, completed=done)
+            state = next(one for one in bar.tasks if one.id == task)
+            rate = done / state.elapsed if state.elapsed else 0.0
+            worst = "all failed" if best.verdict is None else f"{best.claim} {best.verdict.claim(best.claim).status}"
+            bar.update(task, description=f"{text}, {rate:.3g}/s, worst: {worst}")
+
+        yield show

@@ -1,0 +1,215 @@
+"""A run that breaks a claim, as a JSON file that anybody can simulate and check again."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+from flockana._version import __version__
+from flockana.checks import FloatArray, ensure_state, ensure_time_span
+from flockana.errors import FileError, FlockanaError
+from flockana.laws.law import DiscreteLaw, Law, ensure_law
+from flockana.serialize import from_data, to_data
+from flockana.simulate import simulate
+from flockana.theorems import Theorem, Tolerances, Verdict, verify
+from flockana.trajectory import Trajectory, to_data_mapping
+
+FORMAT = "flockana-counterexample"
+FORMAT_VERSION = 1
+
+
+@dataclass(frozen=True, eq=False)
+class Counterexample:
+    """All that is needed to see a claim break.
+
+    Parameters
+    ----------
+    theorem, claim : str
+        What breaks.
+    scenario : str
+        Where the search began.
+    law : Law or DiscreteLaw
+        What moves the flock.
+    q0, p0 : ndarray, shape (n, m)
+        The start.
+    t_span : (float, float)
+        Start and end.
+    options : mapping
+        Keyword arguments of `simulate`.
+    tolerances : Tolerances
+        Thresholds of the verdict.
+    margin, error : float
+        Of the claim, as found; NaN if it has none.
+    version : str
+        Of flockana, that found it.
+    """
+
+    theorem: str
+    claim: str
+    scenario: str
+    law: Law | DiscreteLaw
+    q0: FloatArray
+    p0: FloatArray
+    t_span: tuple[float, float]
+    options: Mapping[str, Any] = field(default_factory=dict)
+    tolerances: Tolerances = field(default_factory=Tolerances)
+    margin: float = math.nan
+    error: float = math.nan
+    version: str = __version__
+
+    def run(self) -> Trajectory:
+        """Simulate it.
+
+        Raises
+        ------
+        KeyboardInterrupt
+            If it was interrupted.
+        """
+        run = simulate(self.law, self.q0, self.p0, self.t_span, **self.options)
+        if run.status == "interrupted":
+            raise KeyboardInterrupt
+        return run
+
+    def verify(self, run: Trajectory, *, theorem: Theorem | None = None) -> Verdict:
+        """Check the theorem on a run of it.
+
+        Parameters
+        ----------
+        run : Trajectory
+            What `run` returned.
+        theorem : Theorem, optional
+            The theorem itself, if it is not one of the catalogue.
+        """
+        subject = f"a counterexample from {self.scenario}"
+        return verify(theorem or self.theorem, run, tolerances=self.tolerances, subject=subject)
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write it as JSON; numbers read back exactly, an existing file is replaced only when whole.
+
+        Parameters
+        ----------
+        path : path-like
+            File to write.
+
+        Raises
+        ------
+        FileError
+            If it cannot be written.
+        ArgumentError
+            If the law holds something that has no written form, such as a user's function.
+        """
+        data = {
+            "format": FORMAT,
+            "format_version": FORMAT_VERSION,
+            "flockana_version": self.version,
+            "theorem": self.theorem,
+            "claim": self.claim,
+            "scenario": self.scenario,
+            "margin": self.margin if math.isfinite(self.margin) else None,
+            "error": self.error if math.isfinite(self.error) else None,
+            "law": to_data(self.law),
+            "q0": self.q0.tolist(),
+            "p0": self.p0.tolist(),
+            "t_span": list(self.t_span),
+            "options": to_data_mapping(self.options),
+            "tolerances": asdict(self.tolerances),
+        }
+        text = json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+        target = Path(path)
+        partial = target.parent / f".{target.name}.{os.getpid()}.partial"
+        try:
+            partial.write_text(text, encoding="utf-8")
+            os.replace(partial, target)
+        except OSError as error:
+            raise FileError(f"cannot write {target}: {error.strerror or error}; choose another file") from error
+        finally:
+            with suppress(OSError):  # one that could not be written cannot be removed either
+                partial.unlink(missing_ok=True)
+        return target
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Counterexample:
+        """Read what `save` wrote.
+
+        Parameters
+        ----------
+        path : path-like
+            File to read.
+
+        Raises
+        ------
+        FileError
+            If it cannot be read, is not one of ours, is of another format, or is damaged.
+        """
+        try:
+            data = json.loads(Path(path).read_text(encoding="utf-8"))
+        except OSError as error:
+            raise FileError(f"cannot read {path}: {error.strerror or error}") from error
+        except ValueError as error:
+            raise FileError(f"{path} is no JSON ({error}): expected a file that `flockana falsify -o` wrote") from error
+        if not isinstance(data, dict) or data.get("format") != FORMAT:
+            found = data.get("format") if isinstance(data, dict) else type(data).__name__
+            raise FileError(f"{path} holds no counterexample (format {found!r}, expected {FORMAT!r})")
+        if data.get("format_version") != FORMAT_VERSION:
+            raise FileError(
+                f"{path} is of format {data.get('format_version')!r}, expected {FORMAT_VERSION}: use the flockana that "
+                f"wrote it ({data.get('flockana_version')}), or search again"
+            )
+        try:
+            return cls(
+                theorem=_text(data["theorem"]),
+                claim=_text(data["claim"]),
+                scenario=_text(data["scenario"]),
+                law=ensure_law(from_data(data["law"])),
+                **dict(zip(("q0", "p0"), ensure_state(data["q0"], data["p0"]), strict=True)),
+                t_span=ensure_time_span(data["t_span"]),
+                options={key: from_data(value) for key, value in data["options"].items()},
+                tolerances=Tolerances(**data["tolerances"]),
+                margin=_number(data["margin"]),
+                error=_number(data["error"]),
+                version=_text(data["flockana_version"]),
+            )
+        except (KeyError, TypeError, ValueError, AttributeError, FlockanaError) as error:
+            raise FileError(f"{path} is damaged: {error}; search again with `flockana falsify`") from error
+
+
+def replay(path: str | os.PathLike[str], *, theorem: Theorem | None = None) -> Verdict:
+    """Simulate a counterexample from its file and check its theorem anew.
+
+    Parameters
+    ----------
+    path : path-like
+        A file that `Falsification.save` wrote.
+    theorem : Theorem, optional
+        The theorem itself, if it is not one of the catalogue.
+
+    Returns
+    -------
+    Verdict
+        Whether its claim is refuted again says ``replay(path).claim(name).status``.
+
+    Raises
+    ------
+    FileError
+        If it cannot be read, is not one of ours, is of another format, or is damaged.
+    UnknownNameError
+        If the catalogue has no such theorem.
+    """
+    found = Counterexample.load(path)
+    return found.verify(found.run(), theorem=theorem)
+
+
+def _text(value: Any) -> str:
+    if not isinstance(value, str):
+        raise TypeError(f"{value!r} is no text")
+    return value
+
+
+def _number(value: Any) -> float:
+    return math.nan if value is None else float(value)

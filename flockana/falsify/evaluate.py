@@ -1,0 +1,146 @@
+"""One evaluation of the search: a point to a run, its verdict, and its grade; what a worker executes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from flockana.checks import FloatArray
+from flockana.falsify.grade import FAILED, LEADS, Lead, grade, squash
+from flockana.falsify.space import Space
+from flockana.scenarios import Scenario
+from flockana.theorems import Claim, Theorem, Tolerances, Verdict, verify
+from flockana.trajectory import Trajectory
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """What became of one point.
+
+    Parameters
+    ----------
+    grade : float
+        What the search minimises.
+    claim : str
+        The claim that decided it.
+    verdict : Verdict or None
+        None if the run, or its check, failed.
+    message : str
+        Why it failed.
+    """
+
+    grade: float
+    claim: str = ""
+    verdict: Verdict | None = None
+    message: str = ""
+
+    @property
+    def found(self) -> bool:
+        """Whether the claim is refuted."""
+        return self.verdict is not None and self.verdict.claim(self.claim).status == "refuted"
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """What is evaluated; calling it with a point of the space gives an `Evaluation`, whatever goes wrong.
+
+    Parameters
+    ----------
+    space : Space
+        What the points stand for.
+    theorem : str or Theorem
+        What is checked.
+    tolerances : Tolerances
+        Thresholds.
+    claim : str or None
+        The claim whose grade counts; None for the least grade of all.
+    surrogate : callable or None
+        ``surrogate(trajectory, claim) -> float`` in [0, 1], instead of those of `LEADS`.
+    scales : mapping of str to float
+        Units of the margins by claim, 1 where none is given.
+    """
+
+    space: Space
+    theorem: str | Theorem
+    tolerances: Tolerances
+    claim: str | None = None
+    surrogate: Lead | None = None
+    scales: Mapping[str, float] = field(default_factory=dict)
+
+    def __call__(self, point: FloatArray) -> Evaluation:
+        """Evaluate a point; an error becomes the grade of a failed run.
+
+        Parameters
+        ----------
+        point : ndarray, shape (D,)
+            Of the unit cube.
+
+        Raises
+        ------
+        KeyboardInterrupt
+            If it was interrupted.
+        """
+        try:
+            return self.judged(self.space.case(point))
+        except Exception as error:  # a search must outlive every state that it tries
+            return Evaluation(FAILED, message=f"{type(error).__name__}: {' '.join(str(error).split())}")
+
+    def judged(self, case: Scenario) -> Evaluation:
+        """Run a case and grade its verdict; errors are the caller's.
+
+        Parameters
+        ----------
+        case : Scenario
+            Law, start, span, options.
+
+        Raises
+        ------
+        KeyboardInterrupt
+            If it was interrupted.
+        """
+        with np.errstate(all="ignore"):
+            run = case.run()
+            if run.status == "interrupted":
+                raise KeyboardInterrupt
+            if run.status != "complete":  # of a part of the run no claim about the whole follows
+                return Evaluation(FAILED, message=run.message)
+            return self.graded(run, verify(self.theorem, run, tolerances=self.tolerances, subject=case.name))
+
+    def graded(self, run: Trajectory, verdict: Verdict) -> Evaluation:
+        """Grade a verdict.
+
+        Parameters
+        ----------
+        run : Trajectory
+            A complete run.
+        verdict : Verdict
+            On it.
+        """
+        if self.claim is not None and all(one.name != self.claim for one in verdict.claims):
+            verdict = replace(verdict, claims=(*verdict.claims, Claim(self.claim, "vacuous", detail="not judged")))
+        chosen = [one for one in verdict.claims if self.claim in (None, one.name)]
+        grades = {one.name: self._grade(run, verdict, one) for one in chosen}
+        worst = min(grades, key=grades.__getitem__)
+        return Evaluation(grades[worst], worst, verdict)
+
+    def _grade(self, run: Trajectory, verdict: Verdict, claim: Claim) -> float:
+        lead = self.surrogate or LEADS.get(f"{verdict.theorem}:{claim.name}")
+        aid = 0.0 if lead is None else min(max(float(lead(run, claim)), 0.0), 1.0)
+        value = grade(claim, verdict.hypotheses, scale=self.scales.get(claim.name, 1.0), lead=aid)
+        if self.claim is None and claim.status == "inconclusive":
+            return max(value, 0.0)  # its margin does not decide it, so a lower one must not draw the search
+        return value
+
+
+def units(verdict: Verdict) -> dict[str, float]:
+    """Units of margins: their sizes on a run, so that those of different claims can be compared.
+
+    Parameters
+    ----------
+    verdict : Verdict
+        Of the scenario's own start.
+    """
+    sizes = {c.name: abs(float(c.margin)) for c in verdict.claims if c.margin is not None}
+    return {name: size for name, size in sizes.items() if 0.0 < squash(size) < 1.0}

@@ -1,0 +1,210 @@
+"""What a search for a counterexample found: the worst run, what each claim came to, and the way there."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from flockana.checks import FloatArray
+from flockana.errors import ArgumentError
+from flockana.falsify.counterexample import Counterexample
+from flockana.scenarios import Scenario
+from flockana.theorems import Claim, Verdict
+from flockana.trajectory import Trajectory
+
+Ending = Literal["found", "budget", "interrupted"]
+_WORST_FIRST = ("refuted", "inconclusive", "verified", "vacuous", "failed")
+
+
+@dataclass(frozen=True, eq=False)
+class Falsification:
+    """The outcome of `falsify`.
+
+    Parameters
+    ----------
+    theorem, claim : str
+        What was searched, and the claim that came nearest to breaking.
+    case : Scenario
+        The scenario with the worst state and parameters that were found.
+    parameters : mapping of str to float
+        Those that were varied, with their worst values.
+    verdict : Verdict or None
+        On the worst run; None if every run failed.
+    margins : mapping of str to ndarray, shape (evaluations,)
+        Margin of each claim in each evaluation, the first on the scenario's own start; NaN where nothing is claimed.
+    statuses : mapping of str to tuple of str
+        Status of each claim in each evaluation, ``"failed"`` where the run failed.
+    seed, budget, restarts : int
+        Of the search.
+    ended : {"found", "budget", "interrupted"}
+        Why it ended.
+    message : str
+        Why runs failed, of the last that did.
+    """
+
+    theorem: str
+    claim: str
+    case: Scenario
+    parameters: Mapping[str, float]
+    verdict: Verdict | None
+    margins: Mapping[str, FloatArray]
+    statuses: Mapping[str, tuple[str, ...]]
+    seed: int
+    budget: int
+    restarts: int
+    ended: Ending
+    message: str = ""
+
+    def __repr__(self) -> str:
+        """One line, whatever the number of evaluations."""
+        what = f"{self.theorem}:{self.claim} on {self.scenario}"
+        return f"<Falsification of {what}: {self.status}, margin {self.margin:.4g}, {self.evaluations} evaluations>"
+
+    @property
+    def scenario(self) -> str:
+        """Name of the scenario."""
+        return self.case.name
+
+    @property
+    def q0(self) -> FloatArray:
+        """Positions of the worst start, shape (n, m)."""
+        return self.case.q0
+
+    @property
+    def p0(self) -> FloatArray:
+        """Velocities of the worst start, shape (n, m)."""
+        return self.case.p0
+
+    @property
+    def _worst(self) -> Claim | None:
+        return None if self.verdict is None else self.verdict.claim(self.claim)
+
+    @property
+    def margin(self) -> float:
+        """Margin of the claim on the worst run; NaN if it has none."""
+        return _number(None if self._worst is None else self._worst.margin)
+
+    @property
+    def error(self) -> float:
+        """Numerical error of that margin; NaN if it has none."""
+        return _number(None if self._worst is None else self._worst.error)
+
+    @property
+    def status(self) -> str:
+        """Status of the claim on the worst run, ``"failed"`` if every run failed."""
+        return "failed" if self._worst is None else self._worst.status
+
+    @property
+    def found(self) -> bool:
+        """Whether a run refutes the claim: by more than its numerical error."""
+        return self.status == "refuted"
+
+    @property
+    def evaluations(self) -> int:
+        """How many runs were made."""
+        return len(self.statuses[self.claim])
+
+    @property
+    def failures(self) -> int:
+        """How many of them failed."""
+        return self.statuses[self.claim].count("failed")
+
+    @property
+    def history(self) -> FloatArray:
+        """Least margin of the claim up to each evaluation, shape (evaluations,); NaN before the first that has one."""
+        return self.least(self.claim)
+
+    def least(self, claim: str) -> FloatArray:
+        """Least margin of a claim up to each evaluation, shape (evaluations,).
+
+        Parameters
+        ----------
+        claim : str
+            Its name.
+        """
+        best: FloatArray = np.fmin.accumulate(self.margins[claim])
+        return best
+
+    def refuting(self, claim: str) -> tuple[int, ...]:
+        """Which evaluations refute a claim, counted from 0.
+
+        Parameters
+        ----------
+        claim : str
+            Its name.
+        """
+        return tuple(k for k, status in enumerate(self.statuses[claim]) if status == "refuted")
+
+    @property
+    def broken(self) -> tuple[str, ...]:
+        """Every claim that some run of the search refutes, searched for or not."""
+        return tuple(name for name in self.statuses if self.refuting(name))
+
+    def worst_status(self, claim: str) -> str:
+        """The worst that became of a claim: refuted, else inconclusive, else verified, else vacuous, else failed.
+
+        Parameters
+        ----------
+        claim : str
+            Its name.
+        """
+        return min(self.statuses[claim], key=_WORST_FIRST.index)
+
+    def run(self) -> Trajectory:
+        """Simulate the worst case again."""
+        return self.case.run()
+
+    def counterexample(self) -> Counterexample:
+        """The worst case as a counterexample of its own.
+
+        Raises
+        ------
+        ArgumentError
+            If the claim did not break.
+        """
+        if not self.found:
+            raise ArgumentError(
+                f"{self.theorem}:{self.claim} did not break (worst: {self.status}, margin {self.margin:.4g}): there is "
+                "no counterexample; a larger budget, another seed or a wider region may find one, if there is any"
+            )
+        assert self.verdict is not None
+        case = self.case
+        return Counterexample(
+            theorem=self.theorem,
+            claim=self.claim,
+            scenario=self.scenario,
+            law=case.law,
+            q0=case.q0,
+            p0=case.p0,
+            t_span=case.t_span,
+            options=case.options,
+            tolerances=self.verdict.tolerances,
+            margin=self.margin,
+            error=self.error,
+        )
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write the counterexample as JSON, for `replay`.
+
+        Parameters
+        ----------
+        path : path-like
+            File to write.
+
+        Raises
+        ------
+        ArgumentError
+            If the claim did not break, or the law has no written form.
+        FileError
+            If it cannot be written.
+        """
+        return self.counterexample().save(path)
+
+
+def _number(value: float | None) -> float:
+    return float("nan") if value is None else float(value)

@@ -1,0 +1,66 @@
+"""CMA-ES in the unit cube, restarted with twice the population from a random point whenever it has converged."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from flockana.checks import FloatArray
+
+_SIGMA = 0.2  # of the cube's side: the first generation covers most of it
+_FULL = 100  # dimensions up to which the whole covariance is learned, beyond them its diagonal (sep-CMA-ES)
+
+
+class Search:
+    """Asks for points to evaluate, a generation at a time, and is told their grades (IPOP-CMA-ES).
+
+    Parameters
+    ----------
+    start : ndarray, shape (D,)
+        Where the first run of the optimiser begins, in the unit cube.
+    seed : int
+        Of all its randomness.
+
+    Examples
+    --------
+    >>> search = Search(np.full(3, 0.9), 0)
+    >>> for _ in range(60):
+    ...     points = search.ask()
+    ...     search.tell([float(np.sum((x - 0.3) ** 2)) for x in points])
+    >>> bool(np.abs(points[0] - 0.3).max() < 1e-3), search.restarts
+    (True, 0)
+    """
+
+    def __init__(self, start: FloatArray, seed: int) -> None:
+        self.dimension, self.restarts = len(start), 0
+        self._rng = np.random.default_rng(seed)
+        self._begin(start)
+
+    def _begin(self, mean: FloatArray) -> None:
+        import cmaes
+
+        size = max(2, self.dimension)  # CMA wants two dimensions at least; the second does nothing then
+        mean = np.concatenate([mean, np.full(size - len(mean), 0.5)])
+        population = (4 + int(3.0 * np.log(size))) * 2**self.restarts
+        kind: Any = cmaes.CMA if size <= _FULL else cmaes.SepCMA
+        bounds = np.tile([0.0, 1.0], (size, 1))
+        self._cma = kind(mean, _SIGMA, bounds, seed=int(self._rng.integers(2**31)), population_size=population)
+
+    def ask(self) -> list[FloatArray]:
+        """A generation of points, each of shape (D,)."""
+        self._asked = [self._cma.ask() for _ in range(self._cma.population_size)]
+        return [x[: self.dimension] for x in self._asked]
+
+    def tell(self, grades: list[float]) -> None:
+        """The grades of the generation that was asked for last, all of it.
+
+        Parameters
+        ----------
+        grades : list of float
+            One for each point, in their order; lower is better.
+        """
+        self._cma.tell(list(zip(self._asked, grades, strict=True)))
+        if self._cma.should_stop():
+            self.restarts += 1
+            self._begin(self._rng.uniform(size=self.dimension))

@@ -1,0 +1,202 @@
+"""The bounded space that is searched: states about a scenario's start, and parameters of its law."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from functools import reduce
+from math import log
+from typing import Any
+
+import numpy as np
+
+from flockana.checks import FloatArray, ensure_finite_scalar, ensure_positive
+from flockana.errors import ArgumentError
+from flockana.scenarios import Scenario
+
+STATE = ("q", "p")
+_ROOM = 0.1  # by which the flock's box is widened on every side, of its longest side
+_FASTER = 2.0  # the bound on velocities, over the largest component at the start
+
+
+@dataclass(frozen=True, eq=False)
+class Space:
+    """Points of a unit cube, and the cases that they stand for.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        What is not varied stays as it is here.
+    vary : tuple of str
+        Of the state, what is varied: ``"q"``, ``"p"``, both or none.
+    low, high : ndarray, shape (K,)
+        Bounds of its coordinates, in the order of `vary`.
+    parameters : mapping of str to (float, float)
+        Bounds of the law's parameters by dotted name; the scale is logarithmic where both are positive.
+    """
+
+    scenario: Scenario
+    vary: tuple[str, ...]
+    low: FloatArray
+    high: FloatArray
+    parameters: Mapping[str, tuple[float, float]]
+
+    @property
+    def dimension(self) -> int:
+        """Number of coordinates."""
+        return len(self.low) + len(self.parameters)
+
+    @property
+    def start(self) -> FloatArray:
+        """The point nearest to the scenario's own start, shape (D,)."""
+        state = {"q": self.scenario.q0, "p": self.scenario.p0}
+        x = np.concatenate([np.empty(0), *(state[name].ravel() for name in self.vary)])
+        own = (float(part(self.scenario.law, name)) for name in self.parameters)
+        shares = [_share(value, *ends) for value, ends in zip(own, self.parameters.values(), strict=True)]
+        point: FloatArray = np.clip(np.concatenate([(x - self.low) / (self.high - self.low), shares]), 0.0, 1.0)
+        return point
+
+    def case(self, point: FloatArray) -> Scenario:
+        """The scenario with the state and the parameters of a point.
+
+        Parameters
+        ----------
+        point : ndarray, shape (D,)
+            Of the unit cube.
+
+        Raises
+        ------
+        ArgumentError
+            If the law refuses the parameters.
+        """
+        shape, law, k = self.scenario.q0.shape, self.scenario.law, len(self.low)
+        x = self.low + point[:k] * (self.high - self.low)
+        parts = np.split(x, max(1, len(self.vary)))
+        state: dict[str, Any] = {f"{name}0": values.reshape(shape) for name, values in zip(self.vary, parts)}  # noqa: B905  # no part for no name
+        for share, (name, ends) in zip(point[k:].tolist(), self.parameters.items(), strict=True):
+            law = _with_part(law, name, _value(share, *ends))
+        return replace(self.scenario, law=law, **state)
+
+
+def search_space(
+    scenario: Scenario,
+    *,
+    vary: Iterable[str] = STATE,
+    region: Any = None,
+    speed: float | None = None,
+    parameters: Mapping[str, tuple[float, float]] | None = None,
+) -> Space:
+    """The space about a scenario's start (arguments as in `falsify`).
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Where the search begins.
+    vary : iterable of str
+        ``"q"``, ``"p"``.
+    region : float or (low, high), optional
+        Of the positions.
+    speed : float, optional
+        Largest component of a velocity.
+    parameters : mapping of str to (float, float), optional
+        Bounds by dotted name.
+
+    Raises
+    ------
+    ArgumentError
+        On bad bounds, names that the law does not have, or nothing to vary.
+
+    Examples
+    --------
+    >>> from flockana.scenarios import scenario
+    >>> search_space(scenario("hexagon"), vary=["p"], parameters={"gains.c1_alpha": (1.0, 100.0)}).dimension
+    15
+    """
+    chosen = (vary,) if isinstance(vary, str) else tuple(vary)
+    if not set(chosen) <= set(STATE) or len(set(chosen)) < len(chosen):
+        raise ArgumentError(f"vary = {vary!r}: expected 'q', 'p', both, or () for parameters alone")
+    ranges = {name: _range(scenario.law, name, ends) for name, ends in (parameters or {}).items()}
+    if not chosen and not ranges:
+        raise ArgumentError("nothing is varied: expected vary=('q', 'p') or parameters={'gains.c1_alpha': (1, 50)}")
+    box = {"q": _region(region, scenario.q0), "p": _speeds(speed, scenario.p0)}
+    low, high = (np.concatenate([np.empty(0), *(box[name][k].ravel() for name in chosen)]) for k in (0, 1))
+    return Space(scenario, chosen, low, high, ranges)
+
+
+def part(law: Any, name: str) -> Any:
+    """A parameter of a law by its dotted name.
+
+    Parameters
+    ----------
+    law : Law or DiscreteLaw
+        The law.
+    name : str
+        Such as ``"gains.c1_alpha"``.
+    """
+    return reduce(getattr, name.split("."), law)
+
+
+def _with_part(law: Any, name: str, value: float) -> Any:
+    head, _, rest = name.partition(".")
+    return replace(law, **{head: _with_part(getattr(law, head), rest, value) if rest else value})
+
+
+def _share(value: float, low: float, high: float) -> float:
+    return log(value / low) / log(high / low) if low > 0.0 < value else (value - low) / (high - low)
+
+
+def _value(share: float, low: float, high: float) -> float:
+    value = low * (high / low) ** share if low > 0.0 else low + share * (high - low)
+    return min(max(value, low), high)
+
+
+def _ends(name: str, given: Any) -> tuple[Any, Any]:
+    try:
+        low, high = given
+    except (TypeError, ValueError):
+        raise ArgumentError(f"{name} = {given!r}: expected two bounds (low, high)") from None
+    return low, high
+
+
+def _range(law: Any, name: str, given: Any) -> tuple[float, float]:
+    low, high = (ensure_finite_scalar(name, one) for one in _ends(name, given))
+    if not low < high:
+        raise ArgumentError(f"{name} = ({low:g}, {high:g}): expected low < high")
+    try:
+        _with_part(law, name, float(part(law, name)))
+    except (AttributeError, TypeError, ValueError):
+        raise ArgumentError(
+            f"{name}: {type(law).__name__} has no such number; expected a dotted name, such as gains.c1_alpha"
+        ) from None
+    return low, high
+
+
+def _region(region: Any, q: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Bounds of each coordinate of each agent, shape (n, m)."""
+    if isinstance(region, int | float | np.number):
+        around = ensure_positive("region", region)
+        return q - around, q + around
+    if region is None:
+        low, high = q.min(axis=0), q.max(axis=0)
+        room = _ROOM * float((high - low).max()) or 1.0
+        low, high = low - room, high + room
+    else:
+        low, high = (_corner(end, q.shape[1]) for end in _ends("region", region))
+        if not np.all(low < high):
+            raise ArgumentError(f"region = ({low}, {high}): expected low < high on every axis")
+    return np.broadcast_to(low, q.shape), np.broadcast_to(high, q.shape)
+
+
+def _corner(end: Any, m: int) -> FloatArray:
+    try:
+        corner = np.broadcast_to(np.asarray(end, dtype=np.float64), (m,))
+    except (TypeError, ValueError):
+        raise ArgumentError(f"region = {end!r}: expected a number or {m} of them for each corner") from None
+    if not np.isfinite(corner).all():
+        raise ArgumentError(f"region = {end!r}: expected finite numbers")
+    return corner
+
+
+def _speeds(speed: Any, p: FloatArray) -> tuple[FloatArray, FloatArray]:
+    bound = _FASTER * float(np.abs(p).max()) or 1.0 if speed is None else ensure_positive("speed", speed)
+    return np.full(p.shape, -bound), np.full(p.shape, bound)

@@ -1,0 +1,87 @@
+"""Small starts that keep a claim, or just break it: where a search for counterexamples begins."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from flockana.environment.obstacles import Sphere
+from flockana.environment.targets import StaticTarget
+from flockana.interactions import Gains
+from flockana.laws.algorithm3 import Algorithm3
+from flockana.laws.olfati_saber import Algorithm1
+from flockana.scenarios.scenario import Scenario
+from flockana.theorems.e3 import rhombus_with_double_agent
+from flockana.theorems.theorem import Status
+
+_REFERENCES = ("olfati-saber-2006", "flockana")
+
+
+def _head_on(name: str, apart: float, share: float, expected: dict[str, Status]) -> Callable[[int], Scenario]:
+    """Two agents on a line that approach each other, with a given share of c* as their energy."""
+
+    def build(seed: int = 0) -> Scenario:
+        law, q = Algorithm1(), np.array([[0.0], [apart]])
+        speed = np.sqrt(share * law.gains.c1_alpha * law.alpha.c_star - law.energy(0.0, q, 0.0 * q))  # K = speed²
+        return Scenario(
+            name,
+            f"Two agents head on, with {share:g} c* of energy",
+            f"Ours: two agents on a line, {apart:g} apart, with equal and opposite velocities, H(0) = {share:g} c*, "
+            "Algorithm 1 with the default gains. The start is fixed.",
+            law,
+            q,
+            np.array([[speed], [-speed]]),
+            (0.0, 3.0),
+            seed,
+            {"energy": "verified", **expected},
+            references=_REFERENCES,
+        )
+
+    return build
+
+
+def _five_agents(seed: int = 0) -> Scenario:
+    """Erratum E3: next to the basin of the smallest strained minimum that we know."""
+    law = Algorithm1(gains=Gains(c2_alpha=20.0))
+    q = rhombus_with_double_agent(law.alpha.d)
+    q[4] += (0.0, 0.5)
+    return Scenario(
+        "five-agents",
+        "Five agents: two of them next to one corner of a rhombus",
+        "Ours, on erratum E3: a rhombus of side d = 7 with two agents at one corner, 0.5 apart, at rest, Algorithm 1 "
+        "with c1α = 30, c2α = 20. The two part and all five end as a lattice. The start is fixed.",
+        law,
+        q,
+        np.zeros((5, 2)),
+        (0.0, 40.0),
+        seed,
+        {"energy": "verified", "lattice-limit-printed": "verified"},
+        references=_REFERENCES,
+    )
+
+
+def _beside_a_sphere(seed: int = 0) -> Scenario:
+    return Scenario(
+        "beside-a-sphere",
+        "Two agents pulled together beside a sphere",
+        "Ours, on erratum E2: two agents at rest 16 apart, out of each other's range, the γ-agent between them and a "
+        "sphere of radius 2 beside it, Algorithm 3 with the default gains. The start is fixed.",
+        Algorithm3(target=StaticTarget((2.0, 0.0)), obstacles=(Sphere((2.0, 5.8), 2.0),)),
+        np.array([[-6.0, 0.0], [10.0, 0.0]]),
+        np.zeros((2, 2)),
+        (0.0, 1.0),
+        seed,
+        {"energy": "verified", "energy-printed": "verified"},
+        references=_REFERENCES,
+    )
+
+
+SCENARIOS: dict[str, Callable[..., Scenario]] = {
+    "head-on": _head_on("head-on", 7.0, 0.5, {"collision-energy": "verified", "collision-energy:below": "verified"}),
+    "head-on-collision": _head_on(
+        "head-on-collision", 1.0, 1.2, {"collision-energy:below": "vacuous", "collision-energy:twice": "refuted"}
+    ),
+    "five-agents": _five_agents,
+    "beside-a-sphere": _beside_a_sphere,
+}

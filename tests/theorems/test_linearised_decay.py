@@ -1,0 +1,202 @@
+from __future__ import annotations
+
+from math import exp, sqrt
+
+import numpy as np
+import pytest
+
+from flockana.environment.targets import LinearTarget, StaticTarget
+from flockana.equilibria import find_equilibrium
+from flockana.errors import ArgumentError
+from flockana.interactions import Gains
+from flockana.lattice import hexagonal_patch
+from flockana.laws.dead_zone import DeadZoneFlocking
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.simulate import simulate
+from flockana.stability import decay as module
+from flockana.stability import linearise
+from flockana.stability.decay import LinearRange, decay, decay_table, linear_range, slowest_seen
+from flockana.theorems import Tolerances, verify
+from flockana.trajectory import Trajectory
+
+
+@pytest.fixture(scope="module")
+def hexagon():
+    law = Algorithm1()
+    return linearise(law, find_equilibrium(law, hexagonal_patch(1, 7.0)))
+
+
+@pytest.fixture(scope="module")
+def verdict():
+    return verify("linearised-decay")
+
+
+def test_a_bond_decays_as_its_spring_and_damper_say():
+    """λ² + 2 c2α a λ + 2 k = 0 along the bond: the rate is c2α a, with a the weight of the link at d."""
+    law = Algorithm1()
+    weight = float(law.alpha.adjacency(law.alpha.d_alpha))
+    found = decay(linearise(law, [[0.0], [7.0]]), name="bond")
+    assert found.predicted == pytest.approx(law.gains.c2_alpha * weight, rel=1e-12)
+    assert found.measured == pytest.approx(found.predicted, rel=1e-4)  # O(amplitude)
+    assert (found.name, found.law, found.n, found.m) == ("bond", "Algorithm1", 2, 1)
+
+
+def test_the_slope_of_a_decaying_swing_is_exact():
+    """K̃ = e^(−2σt)(1 + b cos 2ωt) has the slope −2σ over its half periods, however deep it swings."""
+    rate, half = 0.7, 0.25
+    t = np.arange(5 * module._SAMPLES + 1) * half / module._SAMPLES
+    mismatch = np.exp(-2.0 * rate * t) * (1.0 + 0.999 * np.cos(2.0 * np.pi * t / half))
+    np.testing.assert_allclose(module._slopes(mismatch, half), -2.0 * rate, rtol=1e-12)
+
+
+def test_the_mismatch_is_relative_to_the_centre():
+    assert module._mismatch(np.array([[[1.0], [3.0]], [[5.0], [5.0]]])).tolist() == [1.0, 0.0]
+
+
+def test_the_linear_solution_is_the_matrix_exponential(hexagon):
+    from scipy.linalg import expm
+
+    rng = np.random.default_rng(1)
+    dq, dp = rng.standard_normal((2, 7, 2))
+    t = np.linspace(0.0, 0.6, 4)
+    q, p = module._linear(hexagon, dq, dp, t)
+    expected = expm(0.6 * hexagon.A) @ np.concatenate([dq.ravel(), dp.ravel()])
+    np.testing.assert_allclose(np.concatenate([q[-1].ravel(), p[-1].ravel()]), expected, atol=1e-12)
+    np.testing.assert_array_equal(q[0], dq)
+
+
+def test_translations_are_not_what_the_mismatch_sees():
+    law = Algorithm2(target=StaticTarget((0.0, 0.0)))
+    found = linearise(law, find_equilibrium(law, hexagonal_patch(1, 7.0)))
+    assert found.modes[0].name.startswith("translation")
+    mode = slowest_seen(found)
+    assert mode.name == "breathing"
+    assert mode.decay_rate == found.structural_decay_rate
+
+
+def test_a_moving_target_changes_nothing():
+    still, moving = (
+        decay(linearise(law, find_equilibrium(Algorithm2(target=StaticTarget((0.0, 0.0))), hexagonal_patch(1, 7.0))))
+        for law in (
+            Algorithm2(target=StaticTarget((0.0, 0.0))),
+            Algorithm2(target=LinearTarget((0.0, 0.0), (3.0, 1.0))),
+        )
+    )
+    assert moving.measured == pytest.approx(still.measured, rel=1e-5)
+    assert moving.mismatch[-1] < 1e-7 * moving.mismatch[0]
+
+
+def test_random_starts_tend_to_the_slowest_mode(hexagon):
+    found = decay(hexagon, seed=3)
+    assert found.random_measured == pytest.approx(found.random_linear, rel=1e-3)
+    assert found.predicted <= found.random_linear < 1.2 * found.predicted  # others are still there, and faster
+
+
+@pytest.mark.parametrize("gains", [Gains(c2_alpha=0.0), Gains(c2_alpha=1.0)])
+def test_what_does_not_decay_is_refused(gains):
+    found = linearise(Algorithm1(gains=gains), [[0.0], [7.0]])
+    if gains.c2_alpha:
+        assert decay(found).difference < 1e-3
+        return
+    with pytest.raises(ArgumentError, match=r"decay rate .*expected a stable flock"):
+        decay(found)
+
+
+def test_one_agent_has_no_shape():
+    with pytest.raises(ArgumentError, match=r"n = 1: expected a mode of the shape"):
+        slowest_seen(linearise(Algorithm2(target=StaticTarget((0.0,))), [[0.0]]))
+
+
+def test_the_range_of_a_bond(hexagon):
+    found = linear_range(linearise(Algorithm1(), [[0.0], [7.0]]), amplitudes=[1e-4, 2e-4, 0.2])
+    assert found.exponent == pytest.approx(2.0, abs=0.01)
+    # each agent moves by a; the bond stretches by 2 a and breaks at r = 1.2 d
+    assert found.margin == pytest.approx(0.1, rel=1e-9)
+    assert found.net_changes.tolist() == [False, False, True]
+    with pytest.raises(ArgumentError, match="expected rising numbers"):
+        linear_range(hexagon, amplitudes=[0.1, 0.1])
+
+
+def test_limits_are_interpolated():
+    sizes = np.array([1e-3, 1e-2, 1e-1])
+    found = LinearRange("x", sizes, 2.0 * sizes, np.zeros(3, bool), 1.0)
+    assert found.limit(0.01) == pytest.approx(0.005)
+    assert (found.limit(1.0), found.limit(1e-4)) == (0.1, 0.0)
+
+
+def test_the_table_of_the_catalogue(verdict):
+    assert verdict.status == "verified"
+    rows = verdict.claim("decay").computed
+    assert len(rows) == 9
+    assert {one["law"] for one in rows.values()} == {"Algorithm1", "Algorithm2", "Algorithm3"}
+    for name, one in rows.items():
+        assert one["measured"] == pytest.approx(one["predicted"], rel=5e-4), name
+        assert one["error"] < 2e-3 * one["predicted"], name
+    assert rows["hexagon 7, Algorithm 1"]["predicted"] == pytest.approx(1.96374976, rel=1e-8)
+    assert verdict.claim("random").margin > 0.019
+
+
+def test_the_range_ends_where_the_force_bends_not_where_links_break(verdict):
+    claim = verdict.claim("range")
+    alpha = Algorithm1().alpha
+    # σ-norm's slope at d is d/√(1 + ε d²); its argument is 1 at that inverse
+    assert claim.witness["σ₁ bends at"] == pytest.approx(sqrt(1.0 + alpha.eps * 49.0) / 49.0, rel=1e-12)
+    for one in claim.computed.values():
+        assert one["exponent"] == pytest.approx(2.0, abs=0.05)
+        below = one["amplitudes"] < 0.05
+        assert not one["net changes"][below].any()
+        assert one["deviations"][below].max() > 0.05
+        assert one["margin"] > 0.25
+
+
+def test_tight_tolerances_refute_what_they_should(hexagon):
+    """The measured rate is off by the neglected term: at a tolerance below it the claim is not verified."""
+    law = Algorithm1()
+    run = simulate(law, hexagon.q + 0.01, 0.0 * hexagon.q, (0.0, 0.1))
+    found = verify("linearised-decay-terminal", run, tolerances=Tolerances(agreement=1e-9))
+    assert found.claim("decay").status == "inconclusive"
+    assert verify("linearised-decay-terminal", run).status == "verified"
+
+
+def test_the_last_state_counts_and_the_target_is_held():
+    law = Algorithm2(target=LinearTarget((0.0, 0.0), (2.0, 0.0)))
+    q = hexagonal_patch(1, 6.9)
+    run = simulate(law, q, np.tile([2.0, 0.0], (7, 1)), (0.0, 1.0))
+    found = verify("linearised-decay-terminal", run)
+    assert found.status == "verified"
+    assert found.claim("decay").computed["n = 7, last state"]["predicted"] == pytest.approx(3.056333, rel=1e-6)
+
+
+def test_what_cannot_be_linearised_is_vacuous():
+    t, q = np.array([0.0, 1.0]), np.tile([[0.0, 0.0], [9.0, 0.0]], (2, 1, 1))
+    still = np.zeros_like(q)
+    apart = verify("linearised-decay-terminal", Trajectory(t, q, still, still, Algorithm1()))  # no link: nothing decays
+    other = verify("linearised-decay-terminal", Trajectory(t, q, still, still, DeadZoneFlocking()))
+    many = np.zeros((2, 201, 2))
+    large = verify("linearised-decay-terminal", Trajectory(t, many, many, many, Algorithm1()))
+    assert [v.status for v in (apart, other, large)] == ["vacuous"] * 3
+    assert "DeadZoneFlocking has no equilibria" in other.hypotheses[0].detail
+    assert "n = 201: more than 200" in large.hypotheses[0].detail
+
+
+def test_tables_keep_their_names(hexagon):
+    rows = decay_table({"a": hexagon})
+    assert [(row.name, row.mode.name) for row in rows] == [("a", "breathing")]
+    half = np.pi / rows[0].mode.frequency
+    fall = rows[0].mismatch[module._SAMPLES] / rows[0].mismatch[0]
+    assert fall == pytest.approx(exp(-2.0 * rows[0].predicted * half), rel=1e-2)
+
+
+def test_margins_lie_where_roots_cross():
+    verdict = verify("delay-margin")
+    assert verdict.status == "verified"
+    assert verdict.claim("algorithm-2-all").computed["delay"] == pytest.approx(0.0127827452, rel=1e-6)
+    assert all(claim.witness["Re s below"] < 0.0 < claim.witness["Re s above"] for claim in verdict.claims)
+
+
+def test_gains_of_their_own_pay_only_where_the_rotation_counts():
+    verdict = verify("heterogeneous-gains")
+    ratios = {claim.name: claim.witness["ratio"] for claim in verdict.claims}
+    assert ratios["printed"] == pytest.approx(1.208, abs=5e-3)
+    assert 1.0 <= ratios["apart"] < 1.01
+    assert ratios["simplified"] == pytest.approx(1.035, abs=3e-3)
