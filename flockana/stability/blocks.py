@@ -12,6 +12,7 @@ from flockana.equilibria.potential import Potential
 from flockana.equilibria.solve import RESIDUAL
 from flockana.errors import ArgumentError
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.stability.linearise import linearise
 from flockana.terminal import rigid_motions
 
 NEUTRAL = 1e-9  # of the largest stiffness: a rigid motion that meets no more than that is neutral
@@ -154,11 +155,8 @@ def second_order(law: Any, q: Any, *, t: float = 0.0, strict: bool = True) -> Bl
             f"q is no equilibrium: residual force {residual:.2g} of c1α b/√ε, more than {RESIDUAL:g}; "
             "find_equilibrium finds one, and strict=False studies this state all the same"
         )
-    stiffness = law.stiffness(q).toarray()
-    damping = law.gains.c2_alpha * law.alpha.laplacian(q).toarray()
-    if isinstance(law, Algorithm2):
-        damping[np.diag_indices(q.size)] += np.broadcast_to(law.gains.drag, q.shape).ravel()
-    return blocks(stiffness, damping, q)
+    found = linearise(law, q, t=t, allow_residual=True)
+    return blocks(found.stiffness.toarray(), found.damping.toarray(), q)
 
 
 def _kernel(matrix: FloatArray, basis: FloatArray) -> FloatArray:

@@ -1,0 +1,328 @@
+"""Does the linearisation tell the truth? Decay rates and paths that it predicts, against nonlinear runs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from math import ceil, inf, log, pi
+from typing import Any
+
+import numpy as np
+
+from flockana.checks import FloatArray, ensure_positive
+from flockana.errors import ArgumentError
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2, moving_frame
+from flockana.nets import links
+from flockana.simulate import simulate
+from flockana.stability.linearise import Linearisation
+from flockana.stability.modes import Mode
+from flockana.stability.motion import mode_motion
+
+AMPLITUDE = 1e-4  # of d: the first neglected term is as small, relative to the linear one
+_FALL = 1e8  # by which K̃ has fallen when the run ends
+_LATE = 0.6  # of a random start's run that is left out: what is fast has decayed
+_SAMPLES = 24  # per half period
+_FEWEST = 6  # half periods
+_SEEN = 0.1  # share of a mode that is no translation, from which on K̃ sees it
+_RTOL, _ATOL = 1e-10, 1e-12  # velocities fall to about 1e-7; tighter, rounding of the forces stalls the solver
+_SMALL = 3e-3  # deviation up to which the exponent is fitted
+
+
+@dataclass(frozen=True, eq=False)
+class Decay:
+    """How fast one small perturbation of a flock dies out, as predicted and as the nonlinear run shows it.
+
+    Parameters
+    ----------
+    name, law : str
+        Of the equilibrium, and of its law.
+    n, m : int
+        Agents, dimension.
+    mode : Mode
+        The slowest mode that K̃ sees.
+    predicted, measured : float
+        Decay rate: of the mode, and −½ of the slope of log K̃(t), per time unit.
+    error : float
+        Standard deviation of the slope along the run, as a rate.
+    random_linear, random_measured : float
+        Likewise from a random start, late in its run: of the linear system, which has not quite reached the slowest
+        mode there, and of the run.
+    t, mismatch : ndarray, shape (T,)
+        K̃ over time, from the start along the mode.
+    """
+
+    name: str
+    law: str
+    n: int
+    m: int
+    mode: Mode = field(repr=False)
+    predicted: float
+    measured: float
+    error: float
+    random_linear: float
+    random_measured: float
+    t: FloatArray = field(repr=False)
+    mismatch: FloatArray = field(repr=False)
+
+    @property
+    def difference(self) -> float:
+        """Of the measured rate from the predicted one, relative."""
+        return abs(self.measured / self.predicted - 1.0)
+
+    @property
+    def random_difference(self) -> float:
+        """The same from the random start, relative to the linear system's."""
+        return abs(self.random_measured / self.random_linear - 1.0)
+
+
+def slowest_seen(found: Linearisation) -> Mode:
+    """The slowest mode that shows in velocities relative to the centre of mass.
+
+    Parameters
+    ----------
+    found : Linearisation
+        The linearised flock.
+
+    Raises
+    ------
+    ArgumentError
+        If there is none, or it does not decay.
+
+    Examples
+    --------
+    >>> from flockana.stability.linearise import linearise
+    >>> slowest_seen(linearise(Algorithm1(), [[0.0, 0.0], [7.0, 0.0]])).name
+    'breathing'
+    """
+    for mode in found.modes:
+        if float(np.linalg.norm(mode.shape - mode.shape.mean(axis=0))) >= _SEEN:
+            if mode.decay_rate > 0.0:
+                return mode
+            raise ArgumentError(f"mode {mode.name} has decay rate {mode.decay_rate:.3g}: expected a stable flock")
+    raise ArgumentError(f"n = {len(found.q)}: expected a mode of the shape; this flock has none")
+
+
+def decay(found: Linearisation, *, name: str = "", amplitude: float = AMPLITUDE, seed: int = 0) -> Decay:
+    """Run the nonlinear flock from a small perturbation along its slowest mode, and from a random one.
+
+    K̃ falls as exp(−2 σ t), times a function of the mode's half period. The slope is therefore that of sums over half
+    periods, and exact for a pure mode.
+
+    Parameters
+    ----------
+    found : Linearisation
+        The linearised flock, about an equilibrium at which its γ-agent rests or moves steadily.
+    name : str
+        Of the equilibrium.
+    amplitude : float
+        Largest displacement of an agent, in units of the law's d (of the flock's size, where it has none).
+    seed : int
+        Of the random perturbation.
+
+    Raises
+    ------
+    ArgumentError
+        If nothing decays.
+
+    Examples
+    --------
+    >>> from flockana.stability.linearise import linearise
+    >>> pair = decay(linearise(Algorithm1(), [[0.0], [7.0]]))
+    >>> pair.difference < 1e-3
+    True
+    """
+    mode = slowest_seen(found)
+    size = ensure_positive("amplitude", amplitude) * _length(found)
+    half = pi / mode.frequency if mode.frequency else 1.0 / mode.decay_rate
+    count = max(_FEWEST, ceil(log(_FALL) / (2.0 * mode.decay_rate * half)))
+    t = np.linspace(0.0, count * half, count * _SAMPLES + 1)
+    start = mode_motion(found, mode, amplitude=size, samples=2)
+    mismatch = _mismatch(_run(found, start.q[0] - found.q, start.p[0], t)[1])
+    slopes = _slopes(mismatch, half)
+    rng = np.random.default_rng(seed)
+    dq = moving_frame(rng.standard_normal(found.q.shape))
+    dq *= size / float(np.linalg.norm(dq, axis=1).max())
+    late = int(_LATE * t.size)
+    late_linear, late_measured = (
+        float(-0.5 * _slopes(_mismatch(p)[late:], half).mean())
+        for p in (_linear(found, dq, 0.0 * dq, t)[1], _run(found, dq, 0.0 * dq, t)[1])
+    )
+    measured, error = -0.5 * float(slopes.mean()), 0.5 * float(slopes.std())
+    law, (n, m) = type(found.law).__name__, found.q.shape
+    return Decay(
+        name or law, law, n, m, mode, mode.decay_rate, measured, error, late_linear, late_measured, t, mismatch
+    )
+
+
+def decay_table(
+    flocks: Mapping[str, Linearisation], *, amplitude: float = AMPLITUDE, seed: int = 0
+) -> tuple[Decay, ...]:
+    """`decay` of several flocks: a table of predicted and measured rates.
+
+    Parameters
+    ----------
+    flocks : mapping of str to Linearisation
+        By name.
+    amplitude, seed : float, int
+        As for `decay`.
+
+    Examples
+    --------
+    >>> from flockana.stability.linearise import linearise
+    >>> [row.name for row in decay_table({"pair": linearise(Algorithm1(), [[0.0], [7.0]])})]
+    ['pair']
+    """
+    return tuple(decay(one, name=name, amplitude=amplitude, seed=seed) for name, one in flocks.items())
+
+
+@dataclass(frozen=True, eq=False)
+class LinearRange:
+    """How far the linear prediction of the slowest mode holds.
+
+    Parameters
+    ----------
+    name : str
+        Of the equilibrium.
+    amplitudes : ndarray, shape (K,)
+        Largest initial displacement of an agent, in units of d.
+    deviations : ndarray, shape (K,)
+        Largest distance ever between an agent and its linear prediction, over the initial displacement.
+    net_changes : ndarray of bool, shape (K,)
+        Whether a link forms or breaks on the way.
+    margin : float
+        Amplitude at which, to first order, the first link reaches r, forming or breaking; infinite if none can.
+    """
+
+    name: str
+    amplitudes: FloatArray
+    deviations: FloatArray
+    net_changes: Any
+    margin: float
+
+    @property
+    def exponent(self) -> float:
+        """Slope of log(deviation × amplitude) against log(amplitude) where the deviation is below 0.003.
+
+        2 where the first neglected term of the force is quadratic, as it is where V is three times differentiable.
+        """
+        small = self.deviations < _SMALL
+        x, y = np.log(self.amplitudes[small]), np.log(self.amplitudes[small] * self.deviations[small])
+        return float(np.polyfit(x, y, 1)[0]) if small.sum() > 1 else float("nan")
+
+    def limit(self, deviation: float) -> float:
+        """Largest amplitude, in units of d, up to which the deviation stays below a share; interpolated.
+
+        Parameters
+        ----------
+        deviation : float
+            Share of the initial displacement, such as 0.1.
+        """
+        above = np.flatnonzero(self.deviations > ensure_positive("deviation", deviation))
+        if not above.size:
+            return float(self.amplitudes[-1])
+        k = int(above[0])
+        if k == 0:
+            return 0.0
+        pair = slice(k - 1, k + 1)
+        return float(np.exp(np.interp(log(deviation), np.log(self.deviations[pair]), np.log(self.amplitudes[pair]))))
+
+
+def linear_range(
+    found: Linearisation, *, name: str = "", amplitudes: Sequence[float] = tuple(np.geomspace(1e-4, 0.3, 15).tolist())
+) -> LinearRange:
+    """Compare nonlinear runs from perturbations along the slowest mode with its linear motion, as they grow.
+
+    Parameters
+    ----------
+    found : Linearisation
+        The linearised flock.
+    name : str
+        Of the equilibrium.
+    amplitudes : sequence of float
+        Largest displacements, in units of d, rising.
+
+    Raises
+    ------
+    ArgumentError
+        If they do not rise, or nothing decays.
+
+    Examples
+    --------
+    >>> from flockana.stability.linearise import linearise
+    >>> found = linear_range(linearise(Algorithm1(), [[0.0], [7.0]]), amplitudes=[1e-4, 2e-4])
+    >>> round(found.exponent, 1)
+    2.0
+    """
+    levels = np.array([ensure_positive("amplitudes", x) for x in amplitudes])
+    if levels.size == 0 or np.any(np.diff(levels) <= 0.0):
+        raise ArgumentError(f"amplitudes = {amplitudes!r}: expected rising numbers")
+    mode, reach = slowest_seen(found), getattr(getattr(found.law, "alpha", None), "r", inf)
+    deviations, changes = [], []
+    for size in (levels * _length(found)).tolist():
+        line = mode_motion(found, mode, amplitude=size, periods=1.0 + 3.0 * bool(mode.frequency), samples=97)
+        q, _ = _run(found, line.q[0] - found.q, line.p[0], line.t)
+        drift = _off_centre(found, q - line.q)
+        deviations.append(float(np.linalg.norm(drift, axis=2).max()) / size)
+        changes.append(len({links(x, reach).tobytes() for x in q}) > 1 if np.isfinite(reach) else False)
+    return LinearRange(
+        name or type(found.law).__name__, levels, np.array(deviations), np.array(changes), _margin(found, mode, reach)
+    )
+
+
+def _length(found: Linearisation) -> float:
+    """The law's d, else the size of the flock."""
+    own = getattr(getattr(found.law, "alpha", None), "d", None)
+    return float(own) if own else float(np.linalg.norm(found.q - found.q.mean(axis=0), axis=1).max()) or 1.0
+
+
+def _run(found: Linearisation, dq: FloatArray, dp: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Positions and velocities of the nonlinear flock, in the frame that moves with the equilibrium."""
+    start = found.t
+    times = start + t
+    run = simulate(found.law, found.q + dq, found.p + dp, (start, times[-1]), t_eval=times, rtol=_RTOL, atol=_ATOL)
+    return run.q - t[:, None, None] * found.p, run.p - found.p
+
+
+def _linear(found: Linearisation, dq: FloatArray, dp: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """δq, δp of the linear flock at equally spaced times."""
+    from scipy.linalg import expm
+
+    step, state = expm(found.A * (t[1] - t[0])), np.concatenate([dq.ravel(), dp.ravel()])
+    states = np.empty((t.size, state.size))
+    for k in range(t.size):
+        states[k], state = state, step @ state
+    split = states.reshape(t.size, 2, *dq.shape)
+    return split[:, 0], split[:, 1]
+
+
+def _off_centre(found: Linearisation, x: FloatArray) -> FloatArray:
+    """Without the motion of the centre of mass, which nothing holds or which is a system of its own."""
+    free = isinstance(found.law, Algorithm1 | Algorithm2) and found.second_order.split.exact
+    return x - x.mean(axis=1, keepdims=True) if free else x
+
+
+def _mismatch(p: FloatArray) -> FloatArray:
+    """K̃ at every sample."""
+    relative = p - p.mean(axis=1, keepdims=True)
+    found: FloatArray = 0.5 * np.sum(relative**2, axis=(1, 2))
+    return found
+
+
+def _slopes(mismatch: FloatArray, half: float) -> FloatArray:
+    """Slope of the logarithm of sums over half periods, each against the next."""
+    sums = np.convolve(mismatch, np.ones(_SAMPLES), mode="valid")
+    slopes: FloatArray = np.log(sums[_SAMPLES:] / sums[:-_SAMPLES]) / half
+    return slopes
+
+
+def _margin(found: Linearisation, mode: Mode, reach: float) -> float:
+    """Amplitude in units of d at which the first pair comes to the distance r, as its length swings to first order."""
+    if not np.isfinite(reach):
+        return inf
+    i, j = np.triu_indices(len(found.q), 1)
+    delta = found.q[j] - found.q[i]
+    length = np.linalg.norm(delta, axis=1)
+    shape = mode.shape / float(np.linalg.norm(np.real(mode.shape), axis=1).max())
+    rate = np.abs(np.einsum("kc,kc->k", delta / length[:, None], shape[j] - shape[i]))
+    moving = rate > 1e-9
+    return float((np.abs(length - reach)[moving] / rate[moving]).min(initial=inf)) / _length(found)
