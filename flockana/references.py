@@ -45,6 +45,13 @@ BIBLIOGRAPHY = {
   title  = {A Flocking Algorithm for Second-Order Multi-Agent Systems},
   note   = {Conference paper; its theorem is stated without proof}
 }""",
+    "montanari-2025": """@article{montanari2025optimal,
+  author  = {Montanari, Arthur N. and Barioni, Ana Elisa D. and Duan, Chao and Motter, Adilson E.},
+  title   = {Optimal flock formation induced by agent heterogeneity},
+  journal = {Nature Communications},
+  volume  = {16}, year = {2025},
+  doi     = {10.1038/s41467-025-64233-0}
+}""",
     "flockana": """@software{flockana,
   author = {{The flockana developers}},
   title  = {flockana: control-theoretic analysis of flocking},

@@ -102,6 +102,7 @@ THEOREM = (
         source="Montanari, Barioni, Duan, Motter, Optimal flock formation induced by agent heterogeneity",
         kind="fixed",
         check=_designs,
+        references=("montanari-2025", "olfati-saber-2006"),
         expected={
             "heterogeneous-gains:printed": "verified",
             "heterogeneous-gains:apart": "inconclusive",
