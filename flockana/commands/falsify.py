@@ -84,11 +84,9 @@ def _falsify(
     if output is not None and found.found:
         typer.echo(f"counterexample: {found.save(output)}")
     if plot is not None:
-        from flockana.plots.falsify import search_history
+        from flockana.plots.falsify import falsification
 
-        margins, hits = found.margins[found.claim], found.refuting(found.claim)
-        look = {"label": f"{found.theorem}:{found.claim}", "title": f"{found.theorem} on {found.scenario}"}
-        write_picture(lambda ax: search_history(margins, found.history, found=hits, ax=ax, **look), plot, m=2)
+        write_picture(lambda ax: falsification(found, ax=ax), plot, m=2)
         typer.echo(f"picture: {plot}")
     if found.ended == "interrupted":
         return _INTERRUPTED

@@ -5,7 +5,7 @@ from flockana.plots.control import bode, delay_chart, gain_sweep, norms, root_lo
 from flockana.plots.dead_zone import dead_zone_energies, dead_zone_force
 from flockana.plots.decay import linear_range, measured_gains
 from flockana.plots.ensemble import distribution, phase_diagram, share_against, share_bars
-from flockana.plots.falsify import search_history
+from flockana.plots.falsify import falsification, search_history
 from flockana.plots.film import Film
 from flockana.plots.lattice import barrier, collapse, collapse_brackets, defect_map
 from flockana.plots.minimal import perception
@@ -60,6 +60,7 @@ __all__ = [
     "distribution",
     "energy",
     "energy_residual",
+    "falsification",
     "gain_sweep",
     "linear_range",
     "measure",

@@ -14,7 +14,33 @@ from flockana.plots.style import BLUE, INK, MUTED, VERMILLION, ensure_axes, lege
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from flockana.falsify import Falsification
+
 _WIDE = 1e3  # ratio of the sizes of margins from which on their axis is logarithmic on both sides of 0
+
+
+def falsification(found: Falsification, *, ax: Axes | None = None) -> Axes:
+    """Draw how a search went: the margin of its claim in each run, the least so far, and what is refuted.
+
+    Parameters
+    ----------
+    found : flockana.falsify.Falsification
+        What the search found.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    return search_history(
+        found.margins[found.claim],
+        found.history,
+        found=found.refuting(found.claim),
+        label=f"{found.theorem}:{found.claim}",
+        title=f"{found.theorem} on {found.scenario}",
+        ax=ax,
+    )
 
 
 def search_history(

@@ -60,3 +60,8 @@ def test_a_counterexample_is_drawn_as_a_snapshot():
     ax = plots.snapshot(found.run(), 0.0, ax=axes())
     agents = next(c for c in ax.collections if c.get_label() == "agents")
     np.testing.assert_allclose(np.asarray(agents.get_offsets())[:, :1], found.q0, rtol=1e-15)
+    ax = plots.falsification(found, ax=axes())
+    curves = drawn(ax)
+    np.testing.assert_array_equal(curves["least so far"][:, 1], found.history)
+    assert curves["refuted"][:, 0].tolist() == [k + 1 for k in found.refuting("twice")]
+    assert ax.get_ylabel() == "margin of collision-energy:twice"
