@@ -267,11 +267,12 @@ def discrete(
     for first in range(0, steps, law.steps_at_once):
         some = min(law.steps_at_once, steps - first)
         qs, ps, us, series = law.iterate(t_span[0] + first * law.dt, q, p, memory, some)
+        known = np.logical_and(np.isfinite(qs).all(axis=(1, 2)), np.isfinite(ps).all(axis=(1, 2)))
         for k in range(some):
             t = t_span[0] + (first + k + 1) * law.dt
             tally.steps += 1
             tally.evaluations += 1
-            if not _finite(qs[k], ps[k]):
+            if not known[k]:
                 tally.fail(f"the map left the finite numbers at t = {t:g}")
                 return
             yield Sample(t, qs[k], ps[k], us[k], {name: values[k] for name, values in series.items()})

@@ -6,9 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from flockana.checks import ensure_points, ensure_positive
+from flockana.checks import FloatArray, ensure_points, ensure_positive
+from flockana.kernels.instants import least_distances
 from flockana.kernels.neighbours import pair_blocks
 from flockana.nets import components, link_lengths, links
+
+_TREE = 300  # agents from which on a search tree beats all pairs
 
 
 def net_measures(q: Any, d: float, r: float) -> tuple[float, float, float]:
@@ -88,8 +91,7 @@ def cohesion_radius(q: Any) -> float:
     >>> cohesion_radius([[0.0, 0.0], [2.0, 0.0]])
     1.0
     """
-    q = ensure_points("q", q)
-    return float(np.linalg.norm(q - q.mean(axis=0), axis=1).max())
+    return float(cohesion_radii(ensure_points("q", q)[None])[0])
 
 
 def deviation_energy(q: Any, d: float, r: float) -> float:
@@ -128,8 +130,7 @@ def velocity_mismatch(p: Any) -> float:
     >>> velocity_mismatch([[1.0], [3.0]])
     1.0
     """
-    p = ensure_points("p", p)
-    return 0.5 * float(np.sum((p - p.mean(axis=0)) ** 2))
+    return float(spreads(ensure_points("p", p)[None])[0])
 
 
 def inertia(q: Any) -> float:
@@ -145,8 +146,7 @@ def inertia(q: Any) -> float:
     >>> inertia([[0.0], [2.0]])
     1.0
     """
-    q = ensure_points("q", q)
-    return 0.5 * float(np.sum((q - q.mean(axis=0)) ** 2))
+    return float(spreads(ensure_points("q", q)[None])[0])
 
 
 def min_distance(q: Any) -> float:
@@ -162,10 +162,7 @@ def min_distance(q: Any) -> float:
     >>> min_distance([[0.0], [3.0], [3.5]])
     0.5
     """
-    from scipy.spatial import KDTree
-
-    q = ensure_points("q", q)
-    return float("inf") if len(q) == 1 else float(np.asarray(KDTree(q).query(q, k=2)[0])[:, 1].min())
+    return float(min_distances(ensure_points("q", q)[None])[0])
 
 
 def order(p: Any) -> float:
@@ -181,10 +178,7 @@ def order(p: Any) -> float:
     >>> order([[1.0, 0.0], [2.0, 0.0]]), order([[1.0, 0.0], [-2.0, 0.0]])
     (1.0, 0.0)
     """
-    p = ensure_points("p", p)
-    speed = np.linalg.norm(p, axis=1, keepdims=True)
-    headings = np.divide(p, speed, out=np.zeros_like(p), where=speed > 0.0)
-    return float(np.linalg.norm(headings.mean(axis=0)))
+    return float(orders(ensure_points("p", p)[None])[0])
 
 
 def coordination(p: Any) -> float:
@@ -202,12 +196,7 @@ def coordination(p: Any) -> float:
     >>> coordination([[1.0, 0.0], [3.0, 0.0], [0.0, 2.0]])  # cosines 1, 0, 0
     0.3333333333333333
     """
-    p = ensure_points("p", p)
-    speed = np.linalg.norm(p, axis=1)
-    moving = p[speed > 0.0] / speed[speed > 0.0, None]
-    k = len(moving)
-    # |Σ ĥ|² counts every pair twice and every agent once
-    return float("nan") if k < 2 else float((np.sum(moving.sum(axis=0) ** 2) - k) / (k * (k - 1)))
+    return float(coordinations(ensure_points("p", p)[None])[0])
 
 
 def coincident_pairs(q: Any, tol: float) -> int:
@@ -227,3 +216,85 @@ def coincident_pairs(q: Any, tol: float) -> int:
     """
     q = ensure_points("q", q)
     return sum(i.size for i, _ in pair_blocks(q, ensure_positive("tol", tol)))
+
+
+# The same at every instant of a run, unchecked: x has shape (T, n, m), the result (T,).
+
+
+def cohesion_radii(q: FloatArray) -> FloatArray:
+    """`cohesion_radius` over time, unchecked.
+
+    Parameters
+    ----------
+    q : ndarray, shape (T, n, m)
+        Positions.
+    """
+    found: FloatArray = np.linalg.norm(_centred(q), axis=2).max(axis=1)
+    return found
+
+
+def spreads(x: FloatArray) -> FloatArray:
+    """½ Σ‖x_i − x_c‖² over time, unchecked: `inertia` of positions, `velocity_mismatch` of velocities.
+
+    Parameters
+    ----------
+    x : ndarray, shape (T, n, m)
+        Positions or velocities.
+    """
+    found: FloatArray = 0.5 * np.sum(_centred(x) ** 2, axis=(1, 2))
+    return found
+
+
+def min_distances(q: FloatArray) -> FloatArray:
+    """`min_distance` over time, unchecked.
+
+    Parameters
+    ----------
+    q : ndarray, shape (T, n, m)
+        Positions.
+    """
+    from scipy.spatial import KDTree
+
+    if q.shape[1] < _TREE:
+        found: FloatArray = least_distances(q)
+        return found
+    return np.array([np.asarray(KDTree(x).query(x, k=2)[0])[:, 1].min() for x in q])
+
+
+def orders(p: FloatArray) -> FloatArray:
+    """`order` over time, unchecked.
+
+    Parameters
+    ----------
+    p : ndarray, shape (T, n, m)
+        Velocities.
+    """
+    found: FloatArray = np.linalg.norm(_headings(p).mean(axis=1), axis=1)
+    return found
+
+
+def coordinations(p: FloatArray) -> FloatArray:
+    """`coordination` over time, unchecked.
+
+    Parameters
+    ----------
+    p : ndarray, shape (T, n, m)
+        Velocities.
+    """
+    k = np.count_nonzero(np.any(p != 0.0, axis=2), axis=1)
+    # |Σ ĥ|² counts every pair twice and every agent once
+    twice = np.sum(_headings(p).sum(axis=1) ** 2, axis=1) - k
+    found: FloatArray = np.divide(twice, k * (k - 1), out=np.full(len(p), np.nan), where=k > 1)
+    return found
+
+
+def _centred(x: FloatArray) -> FloatArray:
+    centred: FloatArray = x - x.mean(axis=1, keepdims=True)
+    return centred
+
+
+def _headings(p: FloatArray) -> FloatArray:
+    """Directions of motion; 0 of agents at rest."""
+    speed = np.linalg.norm(p, axis=2, keepdims=True)
+    headings: FloatArray = np.divide(p, speed, out=np.zeros_like(p), where=speed > 0.0)
+    return headings

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -17,7 +17,7 @@ from flockana import metrics as measure
 from flockana._version import __version__
 from flockana.checks import FloatArray
 from flockana.clearance import Clearance, clearance
-from flockana.errors import ArgumentError, FileError
+from flockana.errors import ArgumentError, FileError, UnknownNameError
 from flockana.laws.law import ensure_law
 from flockana.paths import ClosestApproach, closest_approach
 from flockana.serialize import from_data, to_data
@@ -129,29 +129,65 @@ class Trajectory:
     def _metrics(self) -> xarray.Dataset:
         import xarray
 
-        n, interaction = self.n, getattr(self.law, "alpha", None)
-        series: dict[str, tuple[str, Any]] = {
-            "cohesion_radius": ("R = max ‖q_i − q_c‖", map(measure.cohesion_radius, self.q)),
-            "velocity_mismatch": ("K̃ = K/n", (measure.velocity_mismatch(p) / n for p in self.p)),
-            "inertia": ("J", map(measure.inertia, self.q)),
-            "min_distance": ("least distance at the samples", map(measure.min_distance, self.q)),
-            "order": ("polar order", map(measure.order, self.p)),
-            "coordination": ("C, mean cosine between velocities", map(measure.coordination, self.p)),
+        texts = {name: text for name, (text, _) in (self._any_flock() | dict(self._own)).items()}
+        data = {name: xarray.Variable("time", self.metric(name), {"long_name": texts[name]}) for name in texts}
+        return xarray.Dataset(data, coords={"time": self.t})
+
+    def metric(self, name: str) -> FloatArray:
+        """One of `metrics` over time, shape (T,), at the cost of that one alone.
+
+        Parameters
+        ----------
+        name : str
+            Its name.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is none of that name for this law.
+        """
+        if name not in self._measured:
+            known = self._any_flock()
+            if name in known:  # else the law is asked, which may cost more
+                values = known[name][1]()
+            elif name in self._own:
+                values = np.fromiter(self._own[name][1], float, len(self.t))
+            else:
+                raise UnknownNameError("metric", name, (*known, *self._own))
+            self._measured[name] = values
+        return self._measured[name]
+
+    def _any_flock(self) -> dict[str, tuple[str, Callable[[], FloatArray]]]:
+        """What is measured of every flock: in words, and a function that does it."""
+        q, p, interaction = self.q, self.p, getattr(self.law, "alpha", None)
+        series: dict[str, tuple[str, Callable[[], FloatArray]]] = {
+            "cohesion_radius": ("R = max ‖q_i − q_c‖", lambda: measure.cohesion_radii(q)),
+            "velocity_mismatch": ("K̃ = K/n", lambda: measure.spreads(p) / self.n),
+            "inertia": ("J", lambda: measure.spreads(q)),
+            "min_distance": ("least distance at the samples", lambda: measure.min_distances(q)),
+            "order": ("polar order", lambda: measure.orders(p)),
+            "coordination": ("C, mean cosine between velocities", lambda: measure.coordinations(p)),
         }
         if interaction is not None:
-            d, r = interaction.d, interaction.r
-            nets = [measure.net_measures(q, d, r) for q in self.q]
             series |= {
-                "connectivity": ("C = rank(L)/(n − 1)", (c for c, _, _ in nets)),
-                "giant_share": ("C*, share of nodes", (share for _, share, _ in nets)),
-                "deviation_energy": ("Ẽ = E/d²", (deviation / d**2 for _, _, deviation in nets)),
+                "connectivity": ("C = rank(L)/(n − 1)", lambda: self._nets[0]),
+                "giant_share": ("C*, share of nodes", lambda: self._nets[1]),
+                "deviation_energy": ("Ẽ = E/d²", lambda: self._nets[2] / interaction.d**2),
             }
-        series |= self.law.measures(self.t, self.q, self.p, self.extra)
-        data = {
-            name: xarray.Variable("time", np.fromiter(values, float, len(self.t)), {"long_name": text})
-            for name, (text, values) in series.items()
-        }
-        return xarray.Dataset(data, coords={"time": self.t})
+        return series
+
+    @cached_property
+    def _measured(self) -> dict[str, FloatArray]:
+        return {}
+
+    @cached_property
+    def _own(self) -> Mapping[str, tuple[str, FloatArray]]:
+        return self.law.measures(self.t, self.q, self.p, self.extra)  # type: ignore[no-any-return]
+
+    @cached_property
+    def _nets(self) -> FloatArray:
+        d, r = self.law.alpha.d, self.law.alpha.r
+        return np.array([measure.net_measures(x, d, r) for x in self.q]).T
 
     def closest_approach(self) -> ClosestApproach:
         """The closest two agents come, between samples too."""

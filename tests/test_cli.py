@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +17,8 @@ from flockana.cli import main
 from flockana.errors import SolverError
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.report.work import plan
-from flockana.scenarios import Scenario
+from flockana.scenarios import Report, Scenario
+from flockana.theorems import Claim
 from flockana.trajectory import Trajectory
 
 COMMAND = [sys.executable, "-c", "from flockana.cli import main; main()"]
@@ -88,10 +90,38 @@ def test_json_is_all_that_is_printed(call, catalogue):
     assert verdicts("there")["verdicts"] == data["verdicts"]
 
 
+def test_shares_over_seeds_are_told_when_asked_for(call):
+    code, out, err = call("verify", "zone-gap", "--seeds", 3)
+    (told,) = verdicts("report")["statistics"]["scenarios"]
+    assert (code, err, told["runs"], told["rows"][0]["verified"]["count"]) == (0, "", 3, 3)
+    assert "zone-gap, 3 seeds" in out
+    assert "Clopper" in Path("report", "index.html").read_text(encoding="utf-8")
+    code, out, _ = call("verify", "zone-gap")
+    assert (code, verdicts("report")["statistics"]) == (0, None)
+
+
+def test_the_whole_catalogue_tells_shares_of_who_asks_for_them(call, catalogue, monkeypatch):
+    scenarios = importlib.import_module("flockana.scenarios.scenario")
+    claim = Claim("apart", "verified")
+    one = replace(tiny("right", "verified")(), reports=(Report("apart", "all apart", lambda *given: claim),), seeds=26)
+    found = {"right": lambda seed=0: replace(one, seed=seed), "wrong": tiny("wrong", "verified")}
+    monkeypatch.setattr(scenarios, "_catalogue", lambda: found)
+    monkeypatch.setattr("flockana.report.work.theorems", lambda: ("energy",))
+    code, out, _ = call("verify", "--jobs", 1)
+    (told,) = verdicts("report")["statistics"]["scenarios"]
+    assert (code, told["scenario"], told["rows"][0]["verified"]["count"]) == (0, "right", 26)
+    assert "shares of runs over many seeds: in the report" in out
+    call("verify", "--jobs", 1, "--seeds", 0)
+    assert verdicts("report")["statistics"] is None
+    _, out, _ = call("verify", "--jobs", 1, "--no-report", "--seeds", 2)
+    assert "right, 2 seeds" in out
+    assert "seeds" not in call("verify", "--jobs", 1, "--no-report")[1]
+
+
 def test_errata_are_all_and_only_the_errata():
     names = [task.name for task in plan("errata") if task.fixed]
     assert {"E1", "E3", "E7", "E8", "E9", "E10"} <= set(names)
-    assert all(name[0] == "E" for name in names)
+    assert all(name[0] in "EJL" for name in names)
     runs = {task.name: task.only for task in plan("errata") if not task.fixed}
     assert runs["collapse"] == ("E11",)
     assert runs["three-agents-1d"] == ("E13",)
@@ -108,6 +138,8 @@ def test_everything_is_every_scenario_with_all_its_verdicts(catalogue):
     [
         (["verify", "colapse"], "unknown scenario or theorem 'colapse'; did you mean 'collapse'?"),
         (["verify", "--seed", "x"], "--seed"),
+        (["verify", "os-1", "--seeds", "2"], "os-1 is no scenario with a source"),
+        (["verify", "zone-51", "--seeds", "2", "--on", "x.nc"], "a saved run has one seed"),
         (["verify", "--seed", "-1"], "--seed"),
         (["verify", "--jobs", "0"], "--jobs"),
         (["verify", "--on", "run.nc"], "--on FILE needs a NAME"),

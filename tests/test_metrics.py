@@ -52,6 +52,26 @@ def test_min_distance():
     assert metrics.min_distance(q) == pytest.approx(np.linalg.norm(q[i] - q[j], axis=1).min(), rel=1e-15)
 
 
+@pytest.mark.parametrize(("n", "m"), [(1, 2), (2, 1), (7, 2), (7, 3), (310, 2)])
+def test_over_time_they_are_what_their_formulas_say(n, m):
+    """Against loops over agents and pairs; 310 agents are searched by a tree."""
+    rng = np.random.default_rng(n)
+    x, p = rng.normal(3.0, 2.0, (3, n, m)), rng.normal(0.0, 1.0, (3, n, m))
+    p[1, 0] = 0.0  # at rest
+    for k in range(3):
+        centred = x[k] - sum(x[k]) / n
+        lengths = [np.linalg.norm(one) for one in centred]
+        assert metrics.cohesion_radii(x)[k] == pytest.approx(max(lengths), rel=1e-13, abs=1e-13)
+        assert metrics.spreads(x)[k] == pytest.approx(0.5 * sum(one**2 for one in lengths), rel=1e-13, abs=1e-13)
+        pairs = [np.linalg.norm(x[k, i] - x[k, j]) for i in range(n) for j in range(i)]
+        assert metrics.min_distances(x)[k] == pytest.approx(min(pairs, default=np.inf), rel=1e-15)
+        heading = [v / np.linalg.norm(v) for v in p[k] if v.any()]
+        assert metrics.orders(p)[k] == pytest.approx(np.linalg.norm(sum(heading, np.zeros(m))) / n, abs=1e-13)
+        cosines = [a @ b for i, a in enumerate(heading) for b in heading[:i]]
+        mean = np.mean(cosines) if cosines else np.nan
+        assert metrics.coordinations(p)[k] == pytest.approx(mean, abs=1e-12, nan_ok=True)
+
+
 def test_order():
     assert metrics.order([[1.0, 0.0], [0.0, 3.0]]) == pytest.approx(np.sqrt(0.5), rel=1e-15)
     assert metrics.order([[2.0, 0.0], [0.0, 0.0]]) == 0.5

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import re
 
 import numpy as np
@@ -50,6 +51,24 @@ def test_metrics_are_the_metrics():
     assert data.giant_share[k] == metrics.giant_share(q, 8.4)
     assert data.deviation_energy[k] == metrics.deviation_energy(q, 7.0, 8.4) / 49.0
     np.testing.assert_array_equal(data.time, RUN.t)
+
+
+def test_one_metric_is_that_of_all_and_costs_no_other(monkeypatch):
+    run = make(t_eval=np.linspace(0.0, 1.0, 11))
+    monkeypatch.setattr(metrics, "net_measures", lambda *given: pytest.fail("a metric that was not asked for"))
+    np.testing.assert_array_equal(run.metric("min_distance"), RUN.metrics().min_distance)
+    np.testing.assert_array_equal(run.metric("coordination"), RUN.metrics().coordination)
+    monkeypatch.undo()
+    for name, series in RUN.metrics().items():
+        np.testing.assert_array_equal(run.metric(name), series)
+    with pytest.raises(ArgumentError, match="unknown metric 'min_distanc'; did you mean 'min_distance'"):
+        run.metric("min_distanc")
+
+
+def test_a_measured_run_crosses_processes():
+    run = make(t_eval=[0.0, 1.0])
+    run.metrics()
+    np.testing.assert_array_equal(pickle.loads(pickle.dumps(run)).metric("inertia"), run.metric("inertia"))
 
 
 def test_min_distance_is_a_bound_of_the_samples():

@@ -153,8 +153,8 @@ def _write(found: xarray.Dataset, path: Path) -> None:
 
 
 def _draw(ax: Any, found: xarray.Dataset, table: xarray.Dataset, axes: list[str]) -> None:
+    from flockana import plots
     from flockana.ensemble import phases
-    from flockana.plots import ensemble as plots
 
     title = found.attrs["scenario"]
     if len(axes) == 2:

@@ -95,7 +95,7 @@ def ensemble(
     FileError
         If the store cannot be written, is damaged, or is of another version.
     SolverError
-        If the executor fails; what was done is in the store.
+        If the executor fails, or the cluster's scheduler is lost; what was done is in the store.
     KeyboardInterrupt
         On Ctrl-C; what was done is in the store.
 

@@ -268,10 +268,18 @@ def _dask(address: str, count: int) -> Iterator[Crew]:
             ) from error
         with client:
             # by default Dask takes two calls that look alike for one and gives the first one's result again
-            yield Crew(client.get_executor(pure=False), lambda: max(1, sum(client.nthreads().values())))
+            yield Crew(client.get_executor(pure=False), lambda: _threads(client))
     finally:
         if own is not None:
             own.close()
+
+
+def _threads(client: Any) -> int:
+    """How many runs a Dask cluster can make at once, now: workers come and go."""
+    try:
+        return max(1, int(sum(client.nthreads().values())))
+    except OSError as error:  # the scheduler is gone
+        raise _failed(error) from error
 
 
 def make_runs(request: Request, jobs: Sequence[Job], hands: Crew) -> Iterator[tuple[Record, ...]]:
@@ -360,9 +368,13 @@ def _under_suspicion(
         return found
     if isinstance(error, FlockanaError):
         raise error
-    raise SolverError(
+    raise _failed(error) from error
+
+
+def _failed(error: BaseException) -> SolverError:
+    return SolverError(
         f"the executor failed: {type(error).__name__}: {error}; runs in a store are kept, so mend it and start again"
-    ) from error
+    )
 
 
 def _hopeless() -> SolverError:

@@ -199,27 +199,46 @@ def zone_forces(q, p, zone, par, c2, u):
     return total
 
 
-@njit(cache=True)
+# rows of pairs are loops over arrays without branches, which the compiler turns into vector instructions: reassoc lets
+# it sum a row's forces in any order, and no check for a zero divisor stands in its way
+@njit(cache=True, error_model="numpy", fastmath={"reassoc"})
 def semi_implicit_steps(q, p, par, c2, dt, steps):
     """`steps` semi-implicit Euler steps of the law: q, p after each of them and the u that was applied."""
     n, m = q.shape
-    all_q, all_p, all_u = np.empty((steps, n, m)), np.empty((steps, n, m)), np.zeros((steps, n, m))
-    x, v, r2 = q.copy(), p.copy(), par[6] * par[6]
+    all_q, all_p, all_u = np.empty((steps, n, m)), np.empty((steps, n, m)), np.empty((steps, n, m))
+    x, v, u = q.T.copy(), p.T.copy(), np.empty((m, n))
+    s2, w, a = np.empty(n), np.empty(n), np.empty(n)
+    eta, k_r2, k_delta, k1, d1, d2, r, r_d = par[0], 2.0 * par[1], par[2], par[3], par[4], par[5], par[6], par[7]
+    steep = 1.0 / par[8] if par[8] > 0.0 else 1e300  # of the ramps
     for step in range(steps):
-        u = all_u[step]
+        u[:] = 0.0
         for i in range(n):
-            for j in range(i + 1, n):
-                s2 = 0.0
-                for c in range(m):
-                    s2 += (x[j, c] - x[i, c]) ** 2
-                if s2 >= r2:
-                    continue
-                w = action(sqrt(s2), par) / sqrt(1.0 + par[0] * s2) + par[3]
-                for c in range(m):
-                    f = w * (x[j, c] - x[i, c]) + c2 * (v[j, c] - v[i, c])
-                    u[i, c] += f
-                    u[j, c] -= f
-        v += dt * u
-        x += dt * v
-        all_q[step], all_p[step] = x, v
+            others = n - i - 1
+            s2[:] = 0.0
+            for c in range(m):
+                x_i, x_j = x[c, i], x[c, i + 1 :]
+                for j in range(others):
+                    d = x_j[j] - x_i
+                    s2[j] += d * d
+            for j in range(others):
+                s = sqrt(s2[j])
+                gap = s if s < d1 else r_d - s
+                gap *= gap
+                share = max(0.0, min(1.0, (s - d2) * steep)) - max(0.0, min(1.0, (d1 - s) * steep))
+                f = share * (k_r2 + k_delta * gap) / (gap * sqrt(1.0 + eta * s2[j])) + k1
+                w[j] = f if s < r else 0.0
+                a[j] = c2 if s < r else 0.0
+            for c in range(m):
+                x_i, x_j, v_i, v_j, u_j = x[c, i], x[c, i + 1 :], v[c, i], v[c, i + 1 :], u[c, i + 1 :]
+                total = 0.0
+                for j in range(others):
+                    f = w[j] * (x_j[j] - x_i) + a[j] * (v_j[j] - v_i)
+                    u_j[j] -= f
+                    total += f
+                u[c, i] += total
+        for i in range(n):
+            for c in range(m):
+                v[c, i] += dt * u[c, i]
+                x[c, i] += dt * v[c, i]
+                all_q[step, i, c], all_p[step, i, c], all_u[step, i, c] = x[c, i], v[c, i], u[c, i]
     return all_q, all_p, all_u

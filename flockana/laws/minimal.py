@@ -352,6 +352,7 @@ class DiscreteMinimalFlocking(DiscreteLaw):
     dt: float = 0.1
 
     references = ("jond-2025",)
+    steps_at_once = 50
 
     def __post_init__(self) -> None:
         if not isinstance(self.law, MinimalFlocking):

@@ -19,6 +19,8 @@ from flockana._version import __version__
 from flockana.errors import FileError
 from flockana.report.lattices import lattice_section
 from flockana.report.pages import FixedPage, FixedResult, Page, ScenarioPage, ScenarioResult, page
+from flockana.report.stability import stability_section
+from flockana.report.statistics import StatisticsSection
 from flockana.report.text import MARKS, deciding_claim, show, tolerance_rows
 
 HTML, JSON = "index.html", "verdicts.json"
@@ -61,6 +63,7 @@ def write_report(
     seed: int = 0,
     seconds: float | None = None,
     complete: bool = True,
+    statistics: StatisticsSection | None = None,
 ) -> Path:
     """Write ``index.html`` and ``verdicts.json``; existing ones are replaced only when the new ones are whole.
 
@@ -76,6 +79,8 @@ def write_report(
         Wall time that it all took.
     complete : bool
         False if something that was asked for is missing; the page then says so.
+    statistics : StatisticsSection, optional
+        Shares over many seeds.
 
     Returns
     -------
@@ -90,11 +95,18 @@ def write_report(
     folder = ensure_directory(directory)
     pages = [page(r) if isinstance(r, ScenarioResult | FixedResult) else r for r in results]
     run = _run_facts(seed, seconds, complete)
-    _write(folder / JSON, verdicts_json(pages, seed=seed, seconds=seconds, complete=complete))
-    return _write(folder / HTML, _html(pages, run))
+    _write(folder / JSON, _json(pages, run, statistics))
+    return _write(folder / HTML, _html(pages, run, statistics))
 
 
-def verdicts_json(pages: Iterable[Page], *, seed: int = 0, seconds: float | None = None, complete: bool = True) -> str:
+def verdicts_json(
+    pages: Iterable[Page],
+    *,
+    seed: int = 0,
+    seconds: float | None = None,
+    complete: bool = True,
+    statistics: StatisticsSection | None = None,
+) -> str:
     """All verdicts as JSON text, with the run that they come from.
 
     Parameters
@@ -107,11 +119,17 @@ def verdicts_json(pages: Iterable[Page], *, seed: int = 0, seconds: float | None
         Wall time that it all took.
     complete : bool
         False if something that was asked for is missing.
+    statistics : StatisticsSection, optional
+        Shares over many seeds.
     """
-    pages = list(pages)
-    data = _run_facts(seed, seconds, complete) | {
+    return _json(list(pages), _run_facts(seed, seconds, complete), statistics)
+
+
+def _json(pages: list[Page], run: dict[str, Any], statistics: StatisticsSection | None) -> str:
+    data = run | {
         "surprises": [text for one in pages for text in one.surprises],
         "verdicts": [finding.to_dict() for one in pages for finding in one.findings],
+        "statistics": None if statistics is None else statistics.to_dict(),
     }
     return json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
@@ -135,7 +153,7 @@ def _version(name: str) -> str:
         return "unknown"
 
 
-def _html(pages: list[Page], run: dict[str, Any]) -> str:
+def _html(pages: list[Page], run: dict[str, Any], statistics: StatisticsSection | None) -> str:
     environment = Environment(
         loader=PackageLoader("flockana.report", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True
     )
@@ -147,6 +165,8 @@ def _html(pages: list[Page], run: dict[str, Any]) -> str:
         scenarios=[one for one in pages if isinstance(one, ScenarioPage)],
         fixed=[one for one in pages if isinstance(one, FixedPage)],
         lattices=lattice_section(pages),
+        statistics=statistics,
+        stability=stability_section(pages),
         counts=[(status, counts[status]) for status in _STATUSES],
         surprises=[text for one in pages for text in one.surprises],
         marks=MARKS,

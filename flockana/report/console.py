@@ -15,6 +15,7 @@ from rich.table import Table
 from rich.text import Text
 
 from flockana.report.pages import Finding, Page, ScenarioPage
+from flockana.report.statistics import StatisticsSection
 from flockana.report.text import MARKS, deciding_claim, show
 from flockana.scenarios import scenario, scenarios
 from flockana.theorems import Verdict, theorem, theorems
@@ -58,6 +59,25 @@ def verdict_table(pages: Iterable[Page]) -> Table:
                 Text("" if claim is None else claim.name, style="bright_black"),
                 _expectation(finding),
             )
+    return table
+
+
+def statistics_table(section: StatisticsSection) -> Table:
+    """A row per claim: in which share of the seeds it is verified, and refuted, in per cent with intervals.
+
+    Parameters
+    ----------
+    section : StatisticsSection
+        What was found.
+    """
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
+    for heading in ("claim", "verified", "refuted"):
+        table.add_column(heading, no_wrap=True, justify="left" if heading == "claim" else "right")
+    for entry in section.entries:
+        left_out = f", {entry.incomplete} incomplete" if entry.incomplete else ""
+        table.add_row(Text.assemble((entry.scenario, "bold"), f", {entry.runs} seeds{left_out}"))
+        for row in entry.rows:
+            table.add_row(Text(f"  {row.claim}"), str(row.verified), str(row.refuted))
     return table
 
 

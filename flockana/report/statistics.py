@@ -2,23 +2,130 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterable
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.ensemble import ensemble, shares
+from flockana import plots
+from flockana.ensemble import shares
+from flockana.ensemble.dataset import to_dataset
+from flockana.ensemble.work import Job, Record, Request, run_batch
 from flockana.errors import ArgumentError
+from flockana.report.figures import Picture, png
 from flockana.scenarios import Scenario, scenario, scenarios
 from flockana.scenarios.scenario import SOURCE
 from flockana.theorems import theorem
 
 if TYPE_CHECKING:
     import xarray
+    from matplotlib.figure import Figure
 
 TEMPLATE = "statistics.html.j2"  # takes `statistics`, the section
+_AT_ONCE = 25  # runs in one survey: a few seconds, so that all processes end together
+
+
+@dataclass(frozen=True)
+class Survey:
+    """Runs of one scenario to make and judge by what its source reports; names and numbers only, so it can be sent.
+
+    Parameters
+    ----------
+    scenario : str
+        Its name.
+    seeds : tuple of int
+        Which runs.
+    """
+
+    scenario: str
+    seeds: tuple[int, ...]
+
+    @property
+    def name(self) -> str:
+        """As progress shows it."""
+        return f"{self.scenario}, seeds {self.seeds[0]} to {self.seeds[-1]}"
+
+
+@dataclass(frozen=True)
+class Surveyed:
+    """A survey that was made.
+
+    Parameters
+    ----------
+    survey : Survey
+        What was asked.
+    records : tuple of Record
+        What was found, one of each seed.
+    """
+
+    survey: Survey
+    records: tuple[Record, ...]
+
+    @property
+    def name(self) -> str:
+        """As progress shows it."""
+        return self.survey.name
+
+
+def surveys(name: str | None, count: int | None, *, seed: int = 0) -> tuple[Survey, ...]:
+    """What to run for the section.
+
+    Parameters
+    ----------
+    name : str, optional
+        A scenario; by default all that ask for statistics.
+    count : int, optional
+        Seeds of each; by default as many as a scenario asks for of the catalogue, none of one scenario by itself.
+    seed : int
+        The first of them.
+
+    Raises
+    ------
+    ArgumentError
+        If a count is given with what is no scenario, or of one whose source reports nothing.
+
+    Examples
+    --------
+    >>> [one.name for one in surveys("zone-51", 30)]
+    ['zone-51, seeds 0 to 24', 'zone-51, seeds 25 to 29']
+    """
+    if name is None:
+        asked = {one: scenario(one, seed).seeds for one in scenarios()}
+        wanted = {one: most if count is None else count for one, most in asked.items() if most}
+    elif not count:
+        return ()
+    elif name not in scenarios() or not scenario(name, seed).reports:
+        raise ArgumentError(
+            f"--seeds {count}: {name} is no scenario with a source that reports something; leave it out"
+        )
+    else:
+        wanted = {name: count}
+    return tuple(
+        Survey(one, tuple(range(first, min(first + _AT_ONCE, seed + most))))
+        for one, most in wanted.items()
+        for first in range(seed, seed + most, _AT_ONCE)
+    )
+
+
+def carry_out(survey: Survey) -> Surveyed:
+    """Make the runs in this process.
+
+    Parameters
+    ----------
+    survey : Survey
+        Which.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If a run was interrupted.
+    """
+    return Surveyed(survey, run_batch(_request(survey.scenario), tuple(Job(seed) for seed in survey.seeds)))
+
+
+def _request(name: str) -> Request:
+    return Request(name, (SOURCE,), ())
 
 
 @dataclass(frozen=True)
@@ -81,6 +188,8 @@ class Entry:
     ----------
     scenario, title : str
         Of the scenario.
+    settings : str
+        Whose they are: printed, recommended, …
     options : str
         Options that were given it, in words; empty if none.
     runs, incomplete : int
@@ -93,6 +202,7 @@ class Entry:
 
     scenario: str
     title: str
+    settings: str
     options: str
     runs: int
     incomplete: int
@@ -110,63 +220,45 @@ class StatisticsSection:
         Confidence of every interval by itself.
     entries : tuple of Entry
         By scenario.
+    picture : Picture, optional
+        All shares.
     """
 
     level: float
     entries: tuple[Entry, ...]
+    picture: Picture | None = None
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data for JSON."""
+        return {"level": self.level, "scenarios": [asdict(one) for one in self.entries]}
 
 
-def statistics(
-    names: Iterable[str],
-    seeds: Iterable[int],
-    *,
-    theorems: Iterable[str] = (SOURCE,),
-    level: float = 0.95,
-    cluster: str | None = None,
-    jobs: int | None = None,
-    store: str | os.PathLike[str] | None = None,
-    progress: bool = False,
-) -> StatisticsSection:
-    """Run scenarios for many seeds and gather the shares of their claims.
+def gather(asked: Sequence[Survey], made: Iterable[Surveyed], *, figures: bool = True) -> StatisticsSection | None:
+    """The section of all scenarios whose surveys were all made; None if there is no such.
 
     Parameters
     ----------
-    names : iterable of str
-        Scenarios of the catalogue.
-    seeds : iterable of int
-        The same for all.
-    theorems : iterable of str
-        Which to check; by default only what the sources report.
-    level : float
-        Confidence of the intervals.
-    cluster, jobs, store, progress
-        As in `flockana.ensemble.ensemble`.
-
-    Raises
-    ------
-    ArgumentError
-        On bad input.
+    asked : sequence of Survey
+        What there was to do.
+    made : iterable of Surveyed
+        What was done of it, in any order.
+    figures : bool
+        Draw the shares.
     """
-    wanted, given, chosen = tuple(names), tuple(seeds), tuple(theorems)
-    return statistics_section(
-        (
-            ensemble(
-                name,
-                given,
-                theorems=chosen,
-                metrics=(),
-                cluster=cluster,
-                jobs=jobs,
-                store=store,
-                progress=progress,
-            )
-            for name in wanted
-        ),
-        level=level,
-    )
+    found = {one.survey: one.records for one in made}
+    whole = []
+    for name in dict.fromkeys(one.scenario for one in asked):
+        parts = [one for one in asked if one.scenario == name]
+        if all(one in found for one in parts):  # half a table is not shown as if it were whole
+            seeds = [seed for one in parts for seed in one.seeds]
+            records = [record for one in parts for record in found[one]]
+            whole.append(to_dataset(_request(name), {}, {}, seeds, records))
+    return statistics_section(whole, figures=figures) if whole else None
 
 
-def statistics_section(datasets: Iterable[xarray.Dataset], *, level: float = 0.95) -> StatisticsSection:
+def statistics_section(
+    datasets: Iterable[xarray.Dataset], *, level: float = 0.95, figures: bool = True
+) -> StatisticsSection:
     """Gather the section from ensembles of scenarios of the catalogue.
 
     Parameters
@@ -175,13 +267,40 @@ def statistics_section(datasets: Iterable[xarray.Dataset], *, level: float = 0.9
         From `flockana.ensemble.ensemble`, each over seeds alone.
     level : float
         Confidence of the intervals.
+    figures : bool
+        Draw the shares.
 
     Raises
     ------
     ArgumentError
         If one is over more than seeds, or not of the catalogue.
     """
-    return StatisticsSection(level, tuple(_entry(one, level) for one in datasets))
+    given = tuple(datasets)
+    entries = tuple(_entry(one, level) for one in given)
+    tables = [shares(one, level=level) for one in given] if figures else []
+    drawn = [table for table in tables if table.claim.size]
+    return StatisticsSection(level, entries, _picture(drawn) if drawn else None)
+
+
+def _picture(tables: Sequence[xarray.Dataset]) -> Picture:
+    import xarray
+
+    named = [
+        table.drop_vars("incomplete").assign_coords(
+            claim=[f"{table.attrs['scenario']}: {claim.partition(':')[2]}" for claim in table.claim.values.tolist()]
+        )
+        for table in tables
+    ]
+    whole = xarray.concat(named, "claim", combine_attrs="override")
+
+    def draw(figure: Figure) -> None:
+        plots.share_bars(whole, ax=figure.subplots())
+
+    text = (
+        "In which share of the seeds each claim is verified (discs) and refuted (squares), with intervals; what is "
+        "missing to 100 % is vacuous or inconclusive. The tables below say what each claim is."
+    )
+    return Picture(text, png(draw, (7.5, 1.1 + 0.19 * whole.claim.size)))
 
 
 def _entry(dataset: xarray.Dataset, level: float) -> Entry:
@@ -197,6 +316,7 @@ def _entry(dataset: xarray.Dataset, level: float) -> Entry:
     return Entry(
         name,
         item.title,
+        item.settings,
         ", ".join(f"{key} = {value}" for key, value in options.items()),
         int(dataset.seed.size),
         int(table.incomplete),

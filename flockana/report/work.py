@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from flockana.ensemble.executors import ProcessPool
 from flockana.errors import ArgumentError, FlockanaError, SolverError, UnknownNameError
 from flockana.report.pages import FixedResult, Page, ScenarioResult, page
+from flockana.report.statistics import Survey, Surveyed, carry_out
 from flockana.scenarios import scenario, scenarios
 from flockana.theorems import theorem, theorems, verify
 
@@ -90,12 +91,12 @@ def plan(name: str | None = None, *, seed: int = 0, figures: bool = True) -> tup
     return (*runs, *fixed)
 
 
-def do(task: Task) -> Page:
+def do(task: Task | Survey) -> Page | Surveyed:
     """Carry out one task in this process.
 
     Parameters
     ----------
-    task : Task
+    task : Task or Survey
         What to do.
 
     Raises
@@ -103,6 +104,8 @@ def do(task: Task) -> Page:
     KeyboardInterrupt
         If the run was interrupted.
     """
+    if isinstance(task, Survey):
+        return carry_out(task)
     if task.fixed:
         return page(FixedResult(theorem(task.name), verify(task.name)))
     item = scenario(task.name, task.seed)
@@ -114,13 +117,13 @@ def do(task: Task) -> Page:
 
 
 def perform(
-    tasks: Sequence[Task], *, jobs: int = 1, watch: Callable[[tuple[str, ...]], None] = lambda names: None
-) -> Iterator[Page]:
-    """Carry out tasks, yielding each page as it is done; on Ctrl-C, stop what runs and raise.
+    tasks: Sequence[Task | Survey], *, jobs: int = 1, watch: Callable[[tuple[str, ...]], None] = lambda names: None
+) -> Iterator[Page | Surveyed]:
+    """Carry out tasks, yielding what each finds as it is done; on Ctrl-C, stop what runs and raise.
 
     Parameters
     ----------
-    tasks : sequence of Task
+    tasks : sequence of Task or Survey
         What to do.
     jobs : int
         Processes at most; 1 works in this one.
@@ -155,7 +158,7 @@ def perform(
         raise
 
 
-def _do_for_parent(task: Task) -> Page:
+def _do_for_parent(task: Task | Survey) -> Page | Surveyed:
     try:
         return do(task)
     except FlockanaError as error:
@@ -163,7 +166,7 @@ def _do_for_parent(task: Task) -> Page:
         raise FlockanaError(f"{task.name}: {error}") from None
 
 
-def _result(future: Future[Page]) -> Page:
+def _result(future: Future[Page | Surveyed]) -> Page | Surveyed:
     try:
         return future.result()
     except BrokenProcessPool as error:

@@ -46,7 +46,7 @@ def _late(run: Trajectory, values: FloatArray, since: float) -> FloatArray:
 
 
 def _distances(run: Trajectory, tolerances: Tolerances) -> Claim:
-    least = run.metrics().min_distance.values
+    least = run.metric("min_distance")
     k = int(np.argmin(least))
     text = f"the least distance is {least[0]:.3g} at the start and {least[k]:.3g} at worst, at t = {run.t[k]:.3g}"
     return finding(
@@ -55,13 +55,13 @@ def _distances(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _coordination(run: Trajectory, tolerances: Tolerances) -> Claim:
-    c = _late(run, run.metrics().coordination.values, 2.0)
+    c = _late(run, run.metric("coordination"), 2.0)
     text = f"from t = 2 on C is {c.min():.4f} or more, and {c[-1]:.4f} at the end"
     return finding("coordination", c.min() - IN_ORDER, text, computed=float(c.min()), stated="1, that is >= 0.99")
 
 
 def _radius(run: Trajectory, tolerances: Tolerances) -> Claim:
-    r = _late(run, run.metrics().cohesion_radius.values, 5.0)
+    r = _late(run, run.metric("cohesion_radius"), 5.0)
     ratio = float(r.max() / r.min())
     text = f"from t = 5 on the cohesive radius lies between {r.min():.3g} and {r.max():.3g}"
     stated = f"stable (by a factor of {tolerances.cohesion:g})"
@@ -113,8 +113,7 @@ def _range(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _contained(run: Trajectory, tolerances: Tolerances) -> Claim:
-    found = run.metrics()
-    wall, solid = float(found.wall_distance.min()), float(found.obstacle_clearance_bound.min())
+    wall, solid = (float(run.metric(name).min()) for name in ("wall_distance", "obstacle_clearance_bound"))
     text = f"the least distance from a wall is {wall:.3g}, from the obstacle {solid:.3g} (negative: beyond, inside)"
     return finding("contained", min(wall, solid), text, computed=(wall, solid), stated="> 0, between the steps too")
 
@@ -295,6 +294,8 @@ def _build(name: str) -> Callable[..., Scenario]:
             _EXPECTED[name],
             reports,
             references=("jond-2025",),
+            seeds=200,
+            settings="printed settings" if name.endswith("printed") else "recommended settings",
         )
 
     return build

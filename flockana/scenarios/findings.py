@@ -65,5 +65,5 @@ def component_counts(run: Trajectory) -> npt.NDArray[np.int64]:
     run : Trajectory
         A run of a law with an interaction range.
     """
-    counts: npt.NDArray[np.int64] = np.rint(run.n - run.metrics().connectivity.values * (run.n - 1)).astype(np.int64)
+    counts: npt.NDArray[np.int64] = np.rint(run.n - run.metric("connectivity") * (run.n - 1)).astype(np.int64)
     return counts

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from itertools import pairwise
 from math import cos, pi, sin, sqrt
+from types import MappingProxyType
 
 import numpy as np
 
@@ -132,7 +133,15 @@ def random_start(seed: int, n: int, m: int) -> tuple[FloatArray, FloatArray]:
 
 
 def _following(
-    name: str, title: str, source: str, *, n: int, end: float, m: int = 2, reports: tuple[Report, ...]
+    name: str,
+    title: str,
+    source: str,
+    *,
+    n: int,
+    end: float,
+    m: int = 2,
+    reports: tuple[Report, ...],
+    more: Mapping[str, Status] = MappingProxyType({}),
 ) -> Callable[[int], Scenario]:
     q_r, p_r = np.zeros(m), np.zeros(m)
     q_r[:2], p_r[0] = (200.0, 30.0), 5.0
@@ -140,7 +149,7 @@ def _following(
 
     def build(seed: int = 0) -> Scenario:
         start = random_start(seed, n, m)
-        return Scenario(name, title, f"{source} {_OURS}", law, *start, (0.0, end), seed, _FLOCKS, reports)
+        return Scenario(name, title, f"{source} {_OURS}", law, *start, (0.0, end), seed, {**_FLOCKS, **more}, reports)
 
     return build
 
@@ -228,6 +237,7 @@ def _hexagon(seed: int = 0) -> Scenario:
             "os-5-terminal:i": "verified",
             "alpha-flocking": "verified",
             "alpha-flocking-strict": "verified",
+            "linearised-decay-terminal": "verified",
         },
         references=("olfati-saber-2006", "flockana"),
     )
@@ -273,6 +283,7 @@ SCENARIOS: dict[str, Callable[..., Scenario]] = {
         n=150,
         end=60.0,
         reports=(_CONNECTED, _LATTICE, _MATCHED),
+        more={"linearised-decay-terminal": "verified"},
     ),
     "paper-dynamic-topology": _following(
         "paper-dynamic-topology",

@@ -66,6 +66,10 @@ class Scenario:
         Keyword arguments of `simulate`.
     references : tuple of str
         Keys of the bibliography.
+    seeds : int
+        From how many seeds the report of the catalogue tells in which share of runs the reports hold; 0 for no shares.
+    settings : str
+        Whose settings they are, beside these shares.
 
     Examples
     --------
@@ -85,6 +89,8 @@ class Scenario:
     reports: tuple[Report, ...] = ()
     options: Mapping[str, Any] = field(default_factory=dict)
     references: tuple[str, ...] = ("olfati-saber-2006",)
+    seeds: int = 0
+    settings: str = ""
 
     @property
     def theorems(self) -> tuple[str, ...]:

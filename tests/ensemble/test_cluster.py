@@ -17,7 +17,7 @@ from flockana.errors import ArgumentError, SolverError
 
 pytest.importorskip("distributed")
 HERE = Path(__file__).parent
-RUNS = 60
+RUNS = 40
 
 
 def started(arguments, environment):
@@ -27,7 +27,7 @@ def started(arguments, environment):
 
 @pytest.fixture(scope="module")
 def cluster(tmp_path_factory):
-    """A scheduler and two worker processes on loopback; gives the address and the file that logs every run begun."""
+    """A scheduler and two worker processes on loopback; gives address, file that logs every run begun, scheduler."""
     folder = tmp_path_factory.mktemp("cluster")
     file, log = folder / "scheduler.json", folder / "log"
     paths = [str(HERE), *os.environ.get("PYTHONPATH", "").split(os.pathsep)]
@@ -42,7 +42,7 @@ def cluster(tmp_path_factory):
             if file.exists() and file.stat().st_size:
                 break
             time.sleep(0.05)
-        yield json.loads(file.read_text())["address"], log
+        yield json.loads(file.read_text())["address"], log, running[0]
     finally:
         for process in running:
             process.kill()
@@ -56,7 +56,7 @@ def begun(log):
 
 def test_a_worker_killed_in_mid_run_loses_nothing(cluster, tmp_path, monkeypatch):
     """Batches of one run each, so that many are out when the worker dies."""
-    address, log = cluster
+    address, log, _ = cluster
     monkeypatch.setattr(executors, "_BATCH_SECONDS", 0.0)
     killed = []
 
@@ -70,13 +70,13 @@ def test_a_worker_killed_in_mid_run_loses_nothing(cluster, tmp_path, monkeypatch
 
     thread = threading.Thread(target=kill)
     thread.start()
-    given = {"theorems": ["source", "alpha-flocking"]}
+    given = {"theorems": ["source"]}
     found = ensemble(tiny_flocks.slow, range(RUNS), **given, cluster=address, store=tmp_path / "s.sqlite")
     thread.join()
     assert len(killed) == 1
     assert {process for process, _ in begun(log)[-5:]} != set(killed)
     assert not found.run.values.any()
-    pool = ensemble(tiny_flocks.slow, range(RUNS), **given, jobs=2)
+    pool = ensemble(tiny_flocks.trio, range(RUNS), **given, jobs=2).assign_attrs(scenario=found.attrs["scenario"])
     assert found.drop_vars("seconds").identical(pool.drop_vars("seconds"))
     with Store(tmp_path / "s.sqlite") as kept:
         assert len(kept) == RUNS
@@ -84,11 +84,30 @@ def test_a_worker_killed_in_mid_run_loses_nothing(cluster, tmp_path, monkeypatch
 
 def test_the_same_runs_are_made_again_when_they_are_asked_for_again(cluster):
     """Dask would by default give the first call's results to the second."""
-    address, log = cluster
+    address, log, _ = cluster
     before = len(begun(log))
     for _ in range(2):
         ensemble(tiny_flocks.trio, [3], theorems=[], metrics=[], cluster=address)
     assert len(begun(log)) == before + 2
+
+
+def test_a_scheduler_lost_in_mid_run_ends_the_ensemble_and_what_was_done_is_kept(cluster, tmp_path, monkeypatch):
+    """The last test that uses the cluster."""
+    address, log, scheduler = cluster
+    monkeypatch.setattr(executors, "_BATCH_SECONDS", 0.0)
+    before = len(begun(log))
+
+    def kill():
+        while len(begun(log)) < before + 12:
+            time.sleep(0.01)
+        scheduler.kill()
+
+    threading.Thread(target=kill, daemon=True).start()
+    given = {"theorems": [], "metrics": [], "store": tmp_path / "s.sqlite"}
+    with pytest.raises(SolverError, match=r"the executor failed: .*runs in a store are kept"):
+        ensemble(tiny_flocks.slow, range(500), cluster=address, **given)
+    with Store(tmp_path / "s.sqlite") as kept:
+        assert 0 < len(kept) < 500
 
 
 def test_no_scheduler_is_told_with_the_remedy(monkeypatch):

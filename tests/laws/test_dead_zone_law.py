@@ -155,6 +155,16 @@ def test_a_wide_dead_zone_leads_straight_out_of_range():
     assert run.q[-1].ravel() == pytest.approx([0.0, 17.0], abs=1e-12)
 
 
+@pytest.mark.parametrize("ramp", [0.0, 0.25])
+def test_semi_implicit_steps_apply_the_force_of_the_law_in_every_zone(ramp):
+    """Pairs from 0.5 to beyond the range on a line; rows of pairs are summed in any order."""
+    law = DeadZoneFlocking(DeadZoneInteraction(ramp=ramp))
+    q = np.column_stack([np.linspace(0.0, 40.0, 81), np.zeros(81)])
+    p = np.random.default_rng(0).normal(0.0, 1.0, q.shape)
+    u = SemiImplicitEuler(law, 0.01).step(0.0, q, p, {})[2]
+    np.testing.assert_allclose(u, law.flow(0.0, q, p)[0], rtol=1e-12, atol=1e-10 * np.abs(u).max())
+
+
 def test_semi_implicit_steps_are_the_scheme():
     q, p = start(5, 10.0)
     for law in (DeadZoneFlocking(HARD), Algorithm1(AlphaInteraction(d=3.0, r=4.0))):

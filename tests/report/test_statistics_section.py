@@ -1,17 +1,27 @@
 from __future__ import annotations
 
+import json
+from dataclasses import replace
+from io import StringIO
+
 import pytest
 from jinja2 import Environment, PackageLoader, StrictUndefined
+from rich.console import Console
 
 from flockana.ensemble import clopper_pearson, ensemble
-from flockana.errors import ArgumentError, UnknownNameError
-from flockana.report.statistics import TEMPLATE, Share, statistics, statistics_section
+from flockana.ensemble.work import Record
+from flockana.errors import ArgumentError
+from flockana.report.build import verdicts_json, write_report
+from flockana.report.console import statistics_table
+from flockana.report.statistics import TEMPLATE, Share, carry_out, gather, statistics_section, surveys
+from flockana.report.work import perform
 from flockana.scenarios import scenario
 
 
 @pytest.fixture(scope="module")
 def section():
-    return statistics(["notebook-algorithm1"], range(3), jobs=1)
+    asked = surveys("notebook-algorithm1", 3)
+    return gather(asked, perform(asked))
 
 
 def test_a_row_counts_what_each_run_says_by_itself(section):
@@ -52,8 +62,67 @@ def test_shares_as_text():
 
 
 def test_bad_input_is_refused():
-    with pytest.raises(UnknownNameError, match="unknown scenario 'zone'"):
-        statistics(["zone"], range(2))
+    with pytest.raises(ArgumentError, match="--seeds 2: os-1 is no scenario with a source that reports something"):
+        surveys("os-1", 2)
+    with pytest.raises(ArgumentError, match="--seeds 2: zone-tree is no scenario with"):
+        surveys("zone-tree", 2)
     wide = ensemble("phase", [0], theorems=[], metrics=[], parameters={"n": [3, 4]}, jobs=1)
     with pytest.raises(ArgumentError, match="an ensemble of phase over n, seed: expected one of a scenario"):
         statistics_section([wide])
+
+
+def test_the_catalogue_asks_for_itself_and_seeds_are_split_among_processes():
+    asked = surveys(None, None, seed=7)
+    names = list(dict.fromkeys(one.scenario for one in asked))
+    assert {"zone-51", "zone-51-printed", "zone-52", "minimal-3d-printed", "dead-zone", "dead-zone-hard"} <= set(names)
+    assert "hexagon" not in names
+    for name in names:
+        seeds = [seed for one in asked if one.scenario == name for seed in one.seeds]
+        assert seeds == list(range(7, 207)) == list(range(7, 7 + scenario(name).seeds))
+        assert scenario(name).settings.startswith(("printed", "recommended"))
+    assert max(len(one.seeds) for one in asked) == 25
+    assert {one.seeds for one in surveys(None, 2)} == {(0, 1)}
+    assert [one.scenario for one in surveys(None, 2)] == names
+    assert surveys(None, 0) == surveys("zone-51", None) == surveys("zone-51", 0) == surveys("os-1", None) == ()
+
+
+def test_surveys_in_any_order_give_what_one_ensemble_gives():
+    asked = surveys("zone-51", 30)
+    made = [carry_out(one) for one in reversed(asked)]
+    (entry,) = gather(asked, made, figures=False).entries
+    whole = ensemble("zone-51", range(30), theorems=["source"], metrics=[], jobs=1)
+    (other,) = statistics_section([whole], figures=False).entries
+    assert (entry.runs, entry.rows, entry.settings) == (30, other.rows, "recommended settings")
+
+
+def test_half_a_scenario_is_left_out():
+    asked = (*surveys("zone-51", 30), *surveys("zone-gap", 2))
+    made = [carry_out(one) for one in asked if one.seeds[0] == 0]
+    assert [one.scenario for one in gather(asked, made, figures=False).entries] == ["zone-gap"]
+    assert gather(asked, made[:1]) is None
+
+
+def test_runs_that_fail_are_counted_and_not_hidden():
+    (asked,) = surveys("zone-gap", 2)
+    done = carry_out(asked)
+    failed = replace(done, records=(done.records[0], Record(done.records[1].job, "error", "ValueError: no")))
+    (entry,) = gather([asked], [failed], figures=False).entries
+    assert (entry.runs, entry.incomplete, entry.rows[0].verified.runs) == (2, 1, 1)
+
+
+def test_the_section_is_in_the_page_in_the_json_and_on_the_terminal(section, tmp_path):
+    page = write_report([], tmp_path, statistics=section).read_text(encoding="utf-8")
+    assert 'href="#statistics"' in page
+    assert section.picture.source in page
+    data = json.loads(verdicts_json([], statistics=section))
+    row = section.entries[0].rows[0]
+    (found,) = data["statistics"]["scenarios"]
+    assert data["statistics"]["level"] == 0.95
+    assert (found["scenario"], found["runs"], found["rows"][0]["claim"]) == ("notebook-algorithm1", 3, "push")
+    assert found["rows"][0]["verified"]["count"] == row.verified.count
+    assert json.loads((tmp_path / "verdicts.json").read_text(encoding="utf-8"))["statistics"] == data["statistics"]
+    assert "Many seeds" not in write_report([], tmp_path).read_text(encoding="utf-8")
+    console = Console(width=80, file=StringIO())
+    console.print(statistics_table(section))
+    assert "notebook-algorithm1, 3 seeds" in console.file.getvalue()
+    assert str(row.verified) in console.file.getvalue()

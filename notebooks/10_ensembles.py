@@ -1,0 +1,143 @@
+# ---
+# jupyter:
+#   jupytext:
+#     text_representation:
+#       extension: .py
+#       format_name: percent
+#   kernelspec:
+#     display_name: Python 3
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # Ensembles and falsification
+#
+# **Aims.** Turn "in our simulations it always worked" into a share with an interval, run campaigns that survive a
+# crash, and search for the start that breaks a claim instead of waiting for it.
+#
+# "Almost every solution converges" is a statement about all initial states. One run verifies nothing; $k$ successes
+# in $N$ runs say that the probability of success lies, with 95 % confidence, in the interval of Clopper and Pearson
+# (1934). Even $N$ of $N$ leaves room: for $N = 60$ down to 0.94.
+
+# %%
+
+import flockana as fl
+from flockana import plots
+from flockana.course import grade
+from flockana.ensemble import phases
+
+for N in (10, 60, 200):
+    low, high = fl.clopper_pearson(N, N)
+    print(f"{N} of {N}: between {low:.3f} and {high:.3f}")
+
+# %% [markdown]
+# ## What a source reports, seed by seed
+#
+# Jond's section 5.1 reports for ten agents that distances stay above 1.5 m, that velocities align within 2 s, that the
+# flock is compact, and that its speed is as desired. Sixty seeds, on all cores:
+
+# %%
+printed = fl.ensemble("zone-51-printed", range(60))
+mended = fl.ensemble("zone-51", range(60))
+figure, axes = plots.subplots(1, 2, size=(12, 3.4))
+plots.share_bars(fl.shares(printed), ax=axes[0], title="as printed")
+_ = plots.share_bars(fl.shares(mended), ax=axes[1], title="as recommended")
+
+# %% [markdown]
+# The result is an `xarray.Dataset`, so everything else is a question to it: how close did they come?
+
+# %%
+print(printed["run"].sizes, sorted(printed.data_vars)[:6], "...")
+print(f"least distance in the runs as printed: median {float(printed['min_distance'].median()):.2f} m")
+print(f"least distance as recommended:         median {float(mended['min_distance'].median()):.2f} m")
+
+# %% [markdown]
+# ## A grid of parameters
+#
+# Where does Algorithm 2 flock, where does it fragment, where does it collapse? The scenario `phase` has the options
+# `ratio` ($c_1^\gamma/c_1^\alpha$), `density` of the start, and `n`:
+
+# %%
+grid = {"ratio": [1e-4, 1e-2, 0.1, 1.0], "density": [0.3, 3.0], "n": [12]}
+runs = fl.ensemble("phase", range(3), parameters=grid, theorems=())
+_ = plots.phase_diagram(phases(runs).sel(n=12), "ratio", "density")
+
+# %% [markdown]
+# Campaigns of thousands of runs want a store: `fl.ensemble(..., store="runs.sqlite")` writes every result as it
+# arrives. Kill it at any moment and call it again: only what is missing is computed. `executor=` takes any
+# `concurrent.futures.Executor`, `cluster=` a Dask scheduler's address; the numbers are the same to the bit.
+#
+# ## Do not wait for the counterexample
+#
+# Random starts rarely hit the bad one. A search that minimises the claim's *margin* does. Theorem 1(iii) excludes a
+# collision below $c^*$; is $c^*$ generous? Ask for a collision with twice the energy, and then below it:
+
+# %%
+broken = fl.falsify("collision-energy", "head-on", claim="twice", budget=100)
+print(broken)
+safe = fl.falsify("collision-energy", "head-on", claim="below", budget=60)
+print(safe)
+_ = plots.falsification(broken)
+
+# %% [markdown]
+# That nothing was found below $c^*$ proves nothing. The proof `collisions` does. Now the printed "almost every solution
+# converges to an α-lattice" (erratum E3), among five agents that may start up to 0.5 from where they are in the
+# scenario:
+
+# %%
+found = fl.falsify("lattice-limit-printed", "five-agents", budget=40, region=0.5, vary="q", seed=1)
+print(found)
+ax = plots.snapshot(found.run(), velocities=False)
+_ = ax.set_title("four places for five agents")
+
+# %% [markdown]
+# A counterexample is a file that anyone can replay: `found.save("e3.json")`, then `fl.replay("e3.json")`, or in a shell
+# `flockana falsify --replay e3.json`.
+
+# %%
+import tempfile
+from pathlib import Path
+
+path = Path(tempfile.mkdtemp()) / "e3.json"
+found.save(path)
+print(fl.replay(path))
+
+# %% [markdown] tags=["exercise"]
+# ## Exercises
+#
+# **1.** You see 198 successes in 200 runs. What is the lower end of the 95 % interval?
+
+# %% tags=["answer"]
+lower = ...
+
+# %% tags=["solution"]
+lower = fl.clopper_pearson(198, 200)[0]
+
+# %% tags=["check"]
+grade(lower, 0.964345, rtol=1e-3, hint="fl.clopper_pearson(successes, runs)")
+
+# %% [markdown] tags=["exercise"]
+# **2.** How many successes without a failure does it take until the lower end exceeds 0.99?
+
+# %% tags=["answer"]
+runs_needed = ...
+
+# %% tags=["solution"]
+runs_needed = next(N for N in range(1, 1000) if fl.clopper_pearson(N, N)[0] > 0.99)
+
+# %% tags=["check"]
+grade(runs_needed, 368, hint="a loop over N; the low end grows with N")
+
+# %% [markdown] tags=["exercise"]
+# **3.** Search for a start of `zone-tree` that breaks the bearing-distance Theorem 1 as printed (`zone-1-printed`).
+# After how many runs is one found?
+
+# %% tags=["answer"]
+evaluations = ...
+
+# %% tags=["solution"]
+evaluations = fl.falsify("zone-1-printed", "zone-tree", budget=20).evaluations
+
+# %% tags=["check"]
+grade(evaluations, 1, hint=".evaluations; the very first run will do")
