@@ -22,8 +22,8 @@ from flockana.nets import links, printed_rank_connectivity
 from flockana.scenarios.findings import component_count, finding
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.simulate import simulate
-from flockana.theorems import Claim, Tolerances
 from flockana.stability.tracking import response_ratio
+from flockana.theorems import Claim, Tolerances
 from flockana.theorems.theorem import Status
 from flockana.trajectory import Trajectory
 

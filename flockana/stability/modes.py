@@ -355,11 +355,11 @@ def _name_kernel(kernel: FloatArray, q: FloatArray) -> tuple[list[str], FloatArr
     """Names and an orthonormal basis of a kernel: rigid motions first, by axis where they can be told apart."""
     names: list[str] = []
     found = np.zeros((q.size, 0))
-    for name, field in _pure_fields(q):
+    for name, flow in _pure_fields(q):
         if name == "breathing":  # of a flock without neighbours it costs nothing, but it is no rigid motion
             continue
-        rest = field - found @ (found.T @ field)
-        inside = np.linalg.norm(field - kernel @ (kernel.T @ field)) <= _NAMED
+        rest = flow - found @ (found.T @ flow)
+        inside = np.linalg.norm(flow - kernel @ (kernel.T @ flow)) <= _NAMED
         if inside and np.linalg.norm(rest) > _NAMED:
             names, found = [*names, name], np.column_stack([found, rest / np.linalg.norm(rest)])
     rigid, unit = rigid_motions(q), translations(*q.shape)
