@@ -9,6 +9,7 @@ from math import nan
 import numpy as np
 
 from flockana import metrics as measure
+from flockana.interactions.pair import pair_interaction
 from flockana.nets import components, link_lengths, links
 from flockana.trajectory import Trajectory
 
@@ -30,6 +31,16 @@ class Measure:
     text: str
     unit: str
     value: Callable[[Trajectory], float]
+
+
+def _in_range(value: Callable[[Trajectory, float], float]) -> Callable[[Trajectory], float]:
+    """Of laws with an interaction range r; NaN of others."""
+
+    def of_run(run: Trajectory) -> float:
+        pair = pair_interaction(run.law)
+        return nan if pair is None else float(value(run, pair.range))
+
+    return of_run
 
 
 def _of_net(value: Callable[[Trajectory, float, float], float]) -> Callable[[Trajectory], float]:
@@ -58,12 +69,12 @@ _MEASURES = {
     "components": Measure(
         "components of the net at the end",
         "1",
-        _of_net(lambda run, d, r: int(components(run.n, links(run.q[-1], r)).max()) + 1),
+        _in_range(lambda run, r: int(components(run.n, links(run.q[-1], r)).max()) + 1),
     ),
     "giant_share": Measure(
         "C* at the end, share of agents in the largest component",
         "1",
-        _of_net(lambda run, d, r: measure.giant_share(run.q[-1], r)),
+        _in_range(lambda run, r: measure.giant_share(run.q[-1], r)),
     ),
     "strain": Measure("terminal δ/d, largest |link − d|/d at the end", "1", _of_net(_strain)),
     "deviation_energy": Measure(

@@ -252,3 +252,16 @@ def ensure_bump_start(h: Any) -> float:
     if not 0.0 < start < 1.0:
         raise ArgumentError(f"h = {start:g}: expected 0 < h < 1; at h = 1 the bump jumps (erratum E10)")
     return start
+
+
+def pair_interaction(law: Any) -> PairInteraction | None:
+    """The pair interaction of finite range among a law's parameters, if it has one.
+
+    Parameters
+    ----------
+    law : Law or DiscreteLaw
+        Any law; of a map that steps another law, that one is asked.
+    """
+    parameters = vars(getattr(law, "law", law)).values()
+    found = next((value for value in parameters if isinstance(value, PairInteraction)), None)
+    return found if found is not None and np.isfinite(found.range) else None

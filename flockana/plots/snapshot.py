@@ -18,7 +18,8 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection  # type: ignore[import-u
 from flockana.checks import FloatArray, ensure_finite_scalar, ensure_points
 from flockana.environment.beta import ObstacleField
 from flockana.environment.obstacles import Obstacle
-from flockana.interactions import BetaInteraction, PairInteraction
+from flockana.interactions import BetaInteraction
+from flockana.interactions.pair import pair_interaction
 from flockana.nets import link_lengths, links
 from flockana.plots.obstacles import bounds
 from flockana.plots.obstacles import obstacles as draw_obstacles
@@ -131,18 +132,6 @@ def in_view(law: Any, trajectory: Trajectory) -> FloatArray:
     if getattr(law, "obstacles", ()):
         shown.append(bounds(law.obstacles))
     return np.concatenate(shown)
-
-
-def pair_interaction(law: Any) -> PairInteraction | None:
-    """The pair interaction among a law's parameters, if it has one of finite range.
-
-    Parameters
-    ----------
-    law : Law or DiscreteLaw
-        Any law.
-    """
-    found = next((value for value in vars(law).values() if isinstance(value, PairInteraction)), None)
-    return found if found is not None and np.isfinite(found.range) else None
 
 
 def configuration(

@@ -15,8 +15,9 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from flockana import plots
+from flockana.interactions.pair import pair_interaction
 from flockana.laws.minimal import MinimalFlocking
-from flockana.plots.snapshot import drawn_law, pair_interaction
+from flockana.plots.snapshot import drawn_law
 from flockana.scenarios.findings import component_counts
 from flockana.trajectory import Trajectory
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from flockana.interactions.pair import pair_interaction
 from flockana.nets import components, links
 from flockana.theorems.theorem import Claim, judge
 from flockana.trajectory import Trajectory
@@ -54,7 +55,9 @@ def component_count(run: Trajectory, k: int = -1) -> int:
     k : int
         Which sample; the last by default.
     """
-    return int(components(run.n, links(run.q[k], run.law.alpha.r)).max()) + 1
+    pair = pair_interaction(run.law)
+    assert pair is not None
+    return int(components(run.n, links(run.q[k], pair.range)).max()) + 1
 
 
 def component_counts(run: Trajectory) -> npt.NDArray[np.int64]:

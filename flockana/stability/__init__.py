@@ -1,6 +1,7 @@
 """Linearised stability: Jacobians, modes, transfer functions, margins, norms and the design of gains."""
 
 from flockana.stability.blocks import Blocks, blocks, second_order
+from flockana.stability.decay import decay, decay_table, linear_range
 from flockana.stability.delay import (
     DelayMargin,
     delay_margin,
@@ -29,6 +30,8 @@ __all__ = [
     "SlowModes",
     "blocks",
     "centre_locus",
+    "decay",
+    "decay_table",
     "delay_margin",
     "delay_system",
     "design_gains",
@@ -37,6 +40,7 @@ __all__ = [
     "gain_sweep",
     "h2_norm",
     "hinf_norm",
+    "linear_range",
     "linearise",
     "margin_sweep",
     "mode_motion",

@@ -40,8 +40,8 @@ def derive_pair_jacobian(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivatio
     """Derive what agent j does to ∂u_i/∂(q, p): c1 (w I + 2 w' ΔΔᵀ) + 2 c2 a' (p_j − p_i) Δᵀ in q_j, c2 a I in p_j.
 
     w is the weight of Δ = q_j − q_i in the force; w' and a' are derivatives in ‖Δ‖². The result is (∂/∂q_j, ∂/∂p_j),
-    side by side; those in q_i, p_i are their negatives, and those of the force on j are the opposite of all: the residuals
-    hold each of them.
+    side by side; those in q_i, p_i are their negatives, and those of the force on j are the opposite of all: the
+    residuals hold each of them.
 
     Parameters
     ----------

@@ -1,0 +1,38 @@
+"""What an ensemble records of the net, for any law with an interaction range."""
+
+from __future__ import annotations
+
+from math import isnan
+
+import pytest
+
+from flockana.ensemble.measures import _MEASURES
+from flockana.interactions.dead_zone import DeadZoneInteraction
+from flockana.interactions.pair import pair_interaction
+from flockana.laws.dead_zone import DeadZoneFlocking
+from flockana.laws.minimal import MinimalFlocking
+from flockana.laws.olfati_saber import Algorithm1
+from flockana.laws.semi_implicit import SemiImplicitEuler
+from flockana.simulate import simulate
+
+
+@pytest.mark.parametrize("law", [DeadZoneFlocking(), SemiImplicitEuler(DeadZoneFlocking(), 0.01)])
+def test_a_dead_zone_flock_has_components_at_its_range_and_no_strain(law):
+    run = simulate(law, [[0.0, 0.0], [5.0, 0.0], [100.0, 0.0]], [[0.0, 0.0]] * 3, (0.0, 0.02))
+    found = {name: one.value(run) for name, one in _MEASURES.items()}
+    assert (found["components"], found["giant_share"]) == (2.0, pytest.approx(2.0 / 3.0))
+    assert isnan(found["strain"])
+    assert pair_interaction(law) == DeadZoneInteraction()
+
+
+def test_links_of_a_lattice_law_are_as_before():
+    run = simulate(Algorithm1(), [[0.0], [7.7], [30.0]], [[0.0]] * 3, (0.0, 0.01), t_eval=[0.0])
+    found = {name: one.value(run) for name, one in _MEASURES.items()}
+    assert (found["components"], found["strain"]) == (2.0, pytest.approx(0.1))
+
+
+def test_a_law_without_a_pair_interaction_has_no_net():
+    law = MinimalFlocking(edges=[(0, 1)], spacing=1.0)
+    assert pair_interaction(law) is None
+    run = simulate(law, [[0.0], [1.0]], [[0.0], [0.0]], (0.0, 0.1))
+    assert isnan(_MEASURES["components"].value(run))
