@@ -8,8 +8,8 @@ from flockana.stability.delay import (
     delay_system,
     rightmost_roots,
     scalar_margin,
-    simulate_delayed,
 )
+from flockana.stability.delayed_run import DelayedRun, simulate_delayed
 from flockana.stability.design import GainDesign, design_gains, gain_problem
 from flockana.stability.linearise import Linearisation, linearise
 from flockana.stability.modes import Mode
@@ -24,6 +24,7 @@ __all__ = [
     "Blocks",
     "CentreOfMass",
     "DelayMargin",
+    "DelayedRun",
     "GainDesign",
     "Linearisation",
     "Mode",

@@ -23,8 +23,8 @@ from flockana.stability.delay import (
     delay_system,
     rightmost_roots,
     scalar_margin,
-    simulate_delayed,
 )
+from flockana.stability.delayed_run import simulate_delayed
 
 ORIGIN = StaticTarget((0.0, 0.0))
 LAW = Algorithm2(target=ORIGIN)

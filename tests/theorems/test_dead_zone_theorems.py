@@ -13,7 +13,7 @@ from flockana.scenarios import scenario
 from flockana.simulate import simulate
 from flockana.theorems import verify
 from flockana.theorems.dead_zone_case import parts
-from flockana.theorems.dead_zone_errata import connected_share
+from flockana.theorems.l1_l4 import connected_share
 
 ERRATA = [f"L{k}" for k in range(1, 9)]
 
