@@ -1,7 +1,7 @@
 """Linearised stability: Jacobians, modes, transfer functions, margins, norms and the design of gains."""
 
 from flockana.stability.blocks import Blocks, blocks, second_order
-from flockana.stability.decay import decay, decay_table, linear_range
+from flockana.stability.decay import decay_table, linear_range
 from flockana.stability.delay import (
     DelayMargin,
     delay_margin,
@@ -31,7 +31,6 @@ __all__ = [
     "SlowModes",
     "blocks",
     "centre_locus",
-    "decay",
     "decay_table",
     "delay_margin",
     "delay_system",
