@@ -150,8 +150,8 @@ def _wide_lattice(seed: int = 0, n: int = 50, box: float = 40.0, ramp: float = 0
 def _wide_start(seed: int = 0, n: int = 50, box: float = 150.0, ramp: float = 0.25) -> Scenario:
     expected: dict[str, Status] = {
         "dead-zone-1-printed": "refuted",
-        "dead-zone-1-corrected": "verified",
-        "dead-zone-1-corrected:components": "verified",
+        "dead-zone-1-corrected:rate": "verified",
+        "dead-zone-1-corrected:distance": "verified",  # whether velocities settle by 800 differs from seed to seed
         "source:consensus": "refuted",
         "source:together": "refuted",
     }
