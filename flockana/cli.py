@@ -1,4 +1,4 @@
-"""The command line: `flockana verify | run | animate | scenarios | theorems`.
+"""The command line: `flockana verify | run | animate | scenarios | theorems`, and what `commands` registers.
 
 Heavy modules are imported inside the commands, so that ``--help`` and ``--version`` answer at once. Exit status: 0 all
 as expected, 2 bad input, 3 some verdict differs from the expected, 130 interrupted.
