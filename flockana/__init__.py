@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from flockana import symbolic as symbolic
     from flockana.ensemble.campaign import ensemble as ensemble
     from flockana.ensemble.dataset import shares as shares
-    from flockana.ensemble.intervals import clopper_pearson as clopper_pearson
     from flockana.environment.capsule import Capsule as Capsule
     from flockana.environment.obstacles import Obstacle as Obstacle
     from flockana.environment.obstacles import Sphere as Sphere
@@ -52,6 +51,7 @@ if TYPE_CHECKING:
     from flockana.interactions import PairInteraction as PairInteraction
     from flockana.interactions import ZoneRadii as ZoneRadii
     from flockana.interactions import ZoneWeights as ZoneWeights
+    from flockana.intervals import clopper_pearson as clopper_pearson
     from flockana.laws.algorithm3 import Algorithm3 as Algorithm3
     from flockana.laws.bearing_distance import ZoneFlocking as ZoneFlocking
     from flockana.laws.dead_zone import DeadZoneFlocking as DeadZoneFlocking
@@ -131,7 +131,8 @@ _BY_MODULE = {
     "stability": ("linearise", "Linearisation", "Mode", "slowest_modes"),
     "theorems": ("theorems", "theorem", "verify", "Verdict", "Tolerances"),
     "scenarios": ("scenarios", "scenario", "Scenario"),
-    "ensemble": ("ensemble", "shares", "clopper_pearson"),
+    "ensemble": ("ensemble", "shares"),
+    "intervals": ("clopper_pearson",),
     "falsify": ("falsify", "Falsification", "replay"),
     "plots.animation": ("animate",),
     "references": ("cite",),

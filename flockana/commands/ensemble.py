@@ -59,7 +59,7 @@ def _ensemble(
 ) -> int:
     from flockana.commands.picture import KINDS, ensure_file, write_picture
     from flockana.ensemble import ensemble, shares
-    from flockana.ensemble.intervals import ensure_level
+    from flockana.intervals import ensure_level
 
     parameters = read_options(options or [])
     axes = [name for name, values in parameters.items() if isinstance(values, list)]

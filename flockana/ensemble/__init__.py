@@ -2,9 +2,9 @@
 
 from flockana.ensemble.campaign import ensemble
 from flockana.ensemble.dataset import STATUSES, shares
-from flockana.ensemble.intervals import clopper_pearson
 from flockana.ensemble.measures import METRICS
 from flockana.ensemble.phases import PHASES, phases
 from flockana.ensemble.store import Store
+from flockana.intervals import clopper_pearson
 
 __all__ = ["METRICS", "PHASES", "STATUSES", "Store", "clopper_pearson", "ensemble", "phases", "shares"]

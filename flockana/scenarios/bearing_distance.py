@@ -22,6 +22,7 @@ from flockana.nets import components, links
 from flockana.scenarios.findings import component_counts, finding
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
+from flockana.theorems.shares import zone_start
 from flockana.theorems.theorem import Status
 from flockana.trajectory import Trajectory
 
@@ -168,12 +169,6 @@ _THROUGH = (Report("passes", "the flock passes a narrow gap beside the obstacle"
 _BARRED = (Report("blocked", "with circular buffer zones none passes", _blocked), _BOUNDS, _CONTAINED)
 
 
-def _at_random(seed: int) -> tuple[FloatArray, FloatArray]:
-    """As printed: positions uniform in (0, 10)², velocities in (0, 1)², component by component."""
-    rng = np.random.default_rng(seed)
-    return rng.uniform(0.0, AREA, (N, 2)), rng.uniform(0.0, 1.0, (N, 2))
-
-
 def _apart(seed: int, least: float = 2.0) -> tuple[FloatArray, FloatArray]:
     """As printed, but drawn until all are more than `least` apart and the net within a is connected."""
     rng = np.random.default_rng(seed)
@@ -203,7 +198,7 @@ _ENTRIES: dict[str, tuple[str, str, ZoneFlocking, _Start, float, tuple[Report, .
         "section 5.1, open plane, by the letter",
         _PRINTED + "a = 5, u^max = 2.",
         ZoneFlocking.printed(_FREE),
-        _at_random,
+        zone_start,
         20.0,
         _OPEN,
     ),
@@ -219,7 +214,7 @@ _ENTRIES: dict[str, tuple[str, str, ZoneFlocking, _Start, float, tuple[Report, .
         "section 5.2, obstacle, box and alien, by the letter",
         _PRINTED + "a = 5, s = 6, w^ss = w^oa = 5, u^max = 2. " + _PLACE,
         ZoneFlocking.printed(_WATCHFUL, world=_WORLD),
-        _at_random,
+        zone_start,
         100.0,
         _CLOSED,
     ),

@@ -157,6 +157,11 @@ class GainDesign:
     eigenvalues_heterogeneous: ComplexArray
     starts: int
 
+    def __repr__(self) -> str:
+        """One line: the arrays are for asking."""
+        rates = f"{self.rate_homogeneous:.4f} alike, {self.rate_heterogeneous:.4f} per agent"
+        return f"<GainDesign of {self.problem.agents} agents: decay rates {rates}, ratio {self.ratio:.3f}>"
+
     @property
     def ratio(self) -> float:
         """How much faster the heterogeneous flock is; a lower bound, as the search need not be global."""

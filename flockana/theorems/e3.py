@@ -11,6 +11,7 @@ from flockana.environment.targets import StaticTarget
 from flockana.equilibria.coincidence import least_with_coincidence
 from flockana.equilibria.record import smallest_strained
 from flockana.gradient_flow import gradient_flow
+from flockana.intervals import clopper_pearson
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.nets import components, links
@@ -62,15 +63,13 @@ def rhombus_with_double_agent(d: float) -> FloatArray:
 
 
 def _shares(law: Algorithm1, tolerances: Tolerances) -> Claim:
-    from scipy.stats import binomtest
-
     rows = {}
     for n in _SIZES:
         limits = [gradient_flow(law, random_disc(n, seed, d=law.alpha.d)) for seed in range(_STARTS)]
         ends = [terminal_state(law, limit.q, 0.0 * limit.q) for limit in limits if limit.converged]
         exact = sum(end.strain <= tolerances.lattice for end in ends)
-        interval = binomtest(exact, len(ends)).proportion_ci(_CONFIDENCE, method="exact")
-        rows[n] = {"exact": exact, "of": len(ends), "share": [float(interval.low), float(interval.high)]}
+        low, high = clopper_pearson(exact, len(ends), level=_CONFIDENCE)
+        rows[n] = {"exact": exact, "of": len(ends), "share": [float(low), float(high)]}
     worst = min(rows.values(), key=lambda row: row["share"][1])  # type: ignore[index]
     margin = worst["share"][1] - 1.0  # type: ignore[index]
     table = ", ".join(f"n = {n}: {row['exact']} of {row['of']}" for n, row in rows.items())

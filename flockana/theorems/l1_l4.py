@@ -9,6 +9,7 @@ import numpy as np
 
 from flockana.checks import FloatArray
 from flockana.interactions.dead_zone import DeadZoneInteraction
+from flockana.intervals import clopper_pearson
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.metrics import connectivity, min_distance
 from flockana.simulate import simulate
@@ -130,14 +131,11 @@ def connected_share(box: float, *, seeds: int, n: int = 50, t_end: float = 60.0)
 
 def _l4(tolerances: Tolerances) -> Found:
     """Connectivity is not implied: a pair, and flocks from wide starts."""
-    from scipy.stats import beta
-
     law, q, p = two_that_part()
     run = simulate(law, q, p, (0.0, 10.0))
     end = parts(run.q[-1], run.p[-1], law)
     near, far = (connected_share(box, seeds=SEEDS) for box in (40.0, 150.0))
-    least = float(beta.ppf(0.025, near, SEEDS - near + 1)) if near else 0.0
-    most = float(beta.ppf(0.975, far + 1, SEEDS - far)) if far < SEEDS else 1.0
+    least, most = float(clopper_pearson(near, SEEDS)[0]), float(clopper_pearson(far, SEEDS)[1])
     radius = 0.5 * min_distance(run.q[-1])
     return [], [
         margin_claim(

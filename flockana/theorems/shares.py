@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from flockana.checks import FloatArray
+from flockana.intervals import clopper_pearson
 from flockana.nets import components, links
 from flockana.theorems.theorem import Claim, judge
 
@@ -27,11 +28,9 @@ def share(holds: Iterable[Any]) -> tuple[int, int, tuple[float, float]]:
     >>> share([True] * 20)[2][1], share([False] * 20)[0]
     (1.0, 0)
     """
-    from scipy.stats import binomtest
-
     found = np.array(list(holds), dtype=bool)
-    interval = binomtest(int(found.sum()), found.size).proportion_ci(CONFIDENCE, method="exact")
-    return int(found.sum()), found.size, (float(interval.low), float(interval.high))
+    low, high = clopper_pearson(found.sum(), found.size, level=CONFIDENCE)
+    return int(found.sum()), found.size, (float(low), float(high))
 
 
 def always(name: str, holds: Iterable[Any], what: str, stated: str, *, witness: Any = None) -> Claim:

@@ -184,3 +184,9 @@ def test_thirty_agents_decay_as_their_own_equilibrium_says(gains, rate):
 def test_refusals(call, error, message):
     with pytest.raises(error, match=message):
         call()
+
+
+def test_a_design_shows_itself_in_one_line():
+    alone = GainProblem(np.zeros((1, 1)), np.zeros((1, 1)), np.zeros((1, 0)), 1)
+    found = repr(design_gains(alone, starts=1))
+    assert found == "<GainDesign of 1 agents: decay rates 2.2361 alike, 2.2361 per agent, ratio 1.000>"
