@@ -62,7 +62,7 @@ def interrupts_hidden() -> Iterator[None]:
 
 @contextmanager
 def interrupts_recognised() -> Iterator[None]:
-    """Make Ctrl-C again what compiled code made of it: where it falls into a call of a kernel, that call has failed.
+    """Make Ctrl-C again what others made of it: a kernel's call fails where it comes, a lock is found in disorder.
 
     Raises
     ------
@@ -88,5 +88,5 @@ def interrupts_recognised() -> Iterator[None]:
 
 def _caused_by_interrupt(error: BaseException | None) -> bool:
     while error is not None and not isinstance(error, KeyboardInterrupt):
-        error = error.__cause__
+        error = error.__cause__ or (None if error.__suppress_context__ else error.__context__)
     return error is not None

@@ -32,7 +32,7 @@ class Proof:
 
     `rigour` is ``"symbolic"``, ``"smt"`` or ``"interval"``, the weakest of its steps: sampling is no proof. `id` is the
     name of the file, with hyphens. `theorems` names the entries of the catalogue that it backs; a run that takes longer
-    than `time_limit` seconds is killed, and nothing is proved.
+    than `time_limit` seconds, its import aside, is killed, and nothing is proved.
     """
 
     id: str

@@ -1,14 +1,15 @@
 from __future__ import annotations
 
+import contextlib
 import signal
 import subprocess
 import sys
 import threading
 
 import pytest
-from programs import posix
+from programs import out_of_a_kernel, posix
 
-from flockana.interrupts import interrupts_held
+from flockana.interrupts import interrupts_held, interrupts_recognised
 
 REPORT = "import signal; print(*(s.name for s in signal.pthread_sigmask(signal.SIG_BLOCK, ())), sep=',')"
 
@@ -127,3 +128,39 @@ if __name__ == "__main__":
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.split("\n") == ["SIGINT", "", ""]
+
+
+def lock_in_disorder():
+    """What `threading` makes of Ctrl-C that comes while a lock is taken again."""
+    with contextlib.ExitStack() as stack:
+        stack.callback(threading.Lock().release)
+        raise KeyboardInterrupt
+
+
+def kernel():
+    raise out_of_a_kernel()
+
+
+@pytest.mark.parametrize("work", [kernel, lock_in_disorder])
+def test_what_others_make_of_ctrl_c_is_ctrl_c_again(work):
+    with pytest.raises(RuntimeError if work is lock_in_disorder else SystemError):
+        work()
+    with pytest.raises(KeyboardInterrupt), interrupts_recognised():
+        work()
+
+
+def handled():
+    try:
+        raise KeyboardInterrupt
+    except KeyboardInterrupt:
+        raise ValueError("another subject") from None
+
+
+def plain():
+    raise ValueError("another subject")
+
+
+@pytest.mark.parametrize("work", [handled, plain])
+def test_other_errors_stay_what_they_are(work):
+    with pytest.raises(ValueError, match="another subject"), interrupts_recognised():
+        work()

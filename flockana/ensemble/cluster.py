@@ -14,7 +14,7 @@ from typing import Any
 
 from flockana.ensemble.processes import single_threaded_children
 from flockana.errors import ArgumentError, SolverError
-from flockana.interrupts import interrupts_held, interrupts_hidden
+from flockana.interrupts import interrupts_held, interrupts_hidden, interrupts_recognised
 
 _CONNECT = 10.0  # seconds to find a scheduler and a worker
 _START = 120.0  # seconds for worker processes of our own to stand
@@ -49,8 +49,11 @@ def connected(address: str, count: int) -> Iterator[tuple[Executor, Callable[[],
         raise ArgumentError(
             f"cluster = {address!r}: Dask is not installed; pip install 'flockana[cluster]', or leave cluster out"
         ) from error
-    own = _own_cluster(count) if address == "local" else None
+    own = None
     try:
+        if address == "local":
+            with interrupts_held(), interrupts_hidden(), single_threaded_children():
+                own = _own_cluster(count)
         client = _found(own or address, address)
         try:
             # by default Dask takes two calls that look alike for one and gives the first one's result again
@@ -63,25 +66,24 @@ def connected(address: str, count: int) -> Iterator[tuple[Executor, Callable[[],
 
 
 def _own_cluster(count: int) -> Any:
-    """Start worker processes on this machine; Ctrl-C waits until they can be ended."""
+    """Start worker processes on this machine."""
     from distributed import LocalCluster
 
     cluster = LocalCluster.__new__(LocalCluster)  # so that there is something to close if the constructor fails
-    with interrupts_held(), interrupts_hidden(), single_threaded_children():
-        try:
-            cluster.__init__(
-                n_workers=count,
-                threads_per_worker=1,
-                host="127.0.0.1",
-                dashboard_address="127.0.0.1:0",
-                silence_logs=50,
-                death_timeout=_START,
-            )
-        except Exception as error:
-            reason = _told(error)
-        else:
-            return cluster
-        _end(cluster)
+    try:
+        cluster.__init__(
+            n_workers=count,
+            threads_per_worker=1,
+            host="127.0.0.1",
+            dashboard_address="127.0.0.1:0",
+            silence_logs=50,
+            death_timeout=_START,
+        )
+        return cluster
+    except Exception as error:
+        reason = _told(error)
+    _end(cluster)
+    del cluster
     gc.collect()
     raise SolverError(
         f"cluster = 'local': its worker processes do not start ({reason}); a script that starts a cluster must do so "
@@ -92,7 +94,8 @@ def _own_cluster(count: int) -> Any:
 def _found(target: Any, address: str) -> Any:
     """A client of a cluster, or of the scheduler at an address, that has a worker."""
     try:
-        return _opened(target)
+        with interrupts_recognised():
+            return _opened(target)
     except Exception as error:
         reason = _told(error)
     gc.collect()  # what is left of a client goes now, when no lock of Dask's is held

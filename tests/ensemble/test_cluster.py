@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import _thread
 import gc
 import json
 import os
@@ -15,7 +14,7 @@ from pathlib import Path
 
 import pytest
 import tiny_flocks
-from programs import posix, program, until
+from programs import ANSWERS_CTRL_C, group, interrupt, posix, program, until
 from tiny_flocks import begun
 
 from flockana.ensemble import Store, cluster, ensemble, executors
@@ -270,7 +269,7 @@ def test_what_a_failure_leaves_is_collected_under_dasks_own_lock(idle, monkeypat
 
 def test_ctrl_c_while_it_connects_leaves_nothing(answering):
     def interrupted(connection):
-        _thread.interrupt_main()
+        signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)
 
     with server(interrupted) as (address, came), nothing_left(), pytest.raises(KeyboardInterrupt):
         ensemble(tiny_flocks.trio, [0], cluster=address)
@@ -299,4 +298,35 @@ def test_worker_processes_that_do_not_start_are_told_with_the_remedy(python, tmp
     broken.chmod(0o755)
     monkeypatch.setattr(spawn, "_python_exe", os.fsencode(broken))
     with nothing_left(), pytest.raises(SolverError, match=r"worker processes do not start .*__main__.*jobs=1"):
+        ensemble(tiny_flocks.trio, [0], cluster="local", jobs=1)
+
+
+def test_ctrl_c_ends_a_cluster_of_ones_own(tmp_path):
+    """A program at work; its worker processes never get the signal."""
+    log = tmp_path / "log"
+    code = (
+        "import sys, tiny_flocks\nfrom flockana.ensemble import ensemble\n"
+        "if __name__ == '__main__':\n    ensemble(tiny_flocks.gated, range(40), cluster='local', jobs=2)\n"
+    )
+    environment = {tiny_flocks.LOG: str(log), tiny_flocks.GATE: str(tmp_path / "gate")}
+    own = {"environment": environment | {"DASK_TEMPORARY_DIRECTORY": str(tmp_path)}, "paths": [HERE, HERE.parent]}
+    with program("-c", ANSWERS_CTRL_C + code, **own) as process:
+        until(lambda: any(seed >= 24 for _, seed in begun(log)), process)
+        interrupt(process)
+        _, err = process.communicate()
+        assert err.strip().endswith("KeyboardInterrupt"), err
+        assert process.returncode == -signal.SIGINT
+        until(lambda: not group(process))
+
+
+def test_ctrl_c_while_a_cluster_of_ones_own_starts_leaves_nothing(answering, monkeypatch):
+    """It comes when the processes are there, and somebody to end them."""
+    start = distributed.LocalCluster.__init__
+
+    def interrupted(self, **options):
+        start(self, **options)
+        signal.raise_signal(signal.SIGINT)
+
+    monkeypatch.setattr(distributed.LocalCluster, "__init__", interrupted)
+    with nothing_left(), pytest.raises(KeyboardInterrupt):
         ensemble(tiny_flocks.trio, [0], cluster="local", jobs=1)
