@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import sqrt
 from typing import Any
 
 import numpy as np
@@ -25,9 +24,9 @@ class GradientLimit:
     q : ndarray, shape (n, m)
         Positions.
     force : float
-        Largest residual force over c1α b/√ε.
+        Largest residual force over the law's `force_scale`.
     time : float
-        Time of the flow that was integrated.
+        Time of the flow that was integrated, in units of d over the force scale.
     converged : bool
         Whether `force` fell below the tolerance.
     """
@@ -66,9 +65,9 @@ def gradient_flow(law: Algorithm1 | Algorithm2, q0: Any, *, tol: float = 1e-11, 
     q0 : array_like, shape (n, m)
         Start.
     tol : float
-        Residual force, relative to c1α b/√ε, at which to stop.
+        Residual force, relative to the law's `force_scale`, at which to stop.
     horizon : float
-        Longest time of the flow, in units of 1/c1α.
+        Longest time of the flow, in units of d over the force scale.
 
     Raises
     ------
@@ -86,17 +85,19 @@ def gradient_flow(law: Algorithm1 | Algorithm2, q0: Any, *, tol: float = 1e-11, 
     q = ensure_points("q0", q0)
     if isinstance(law, Algorithm2):
         ensure_one_gain(law.gains)
-    shape, c1 = q.shape, law.gains.c1_alpha
+    shape, scale = q.shape, law.force_scale
     tol, horizon = ensure_positive("tol", tol), ensure_positive("horizon", horizon)
-    scale = c1 * law.alpha.b / sqrt(law.alpha.eps)
+    if scale == 0.0:
+        return GradientLimit(q, 0.0, 0.0, True)
+    pace = law.alpha.d / scale
     solver = BDF(
-        lambda t, y: structural_force(law, y.reshape(shape)).ravel() / c1,
+        lambda t, y: pace * structural_force(law, y.reshape(shape)).ravel(),
         0.0,
         q.ravel(),
         horizon,
         rtol=1e-6,
         atol=1e-8 * law.alpha.d,
-        jac=lambda t, y: -law.stiffness(y.reshape(shape)).toarray() / c1,
+        jac=lambda t, y: -pace * law.stiffness(y.reshape(shape)).toarray(),
     )
     force = np.inf
     while solver.status == "running" and force > _NEWTON_FROM:

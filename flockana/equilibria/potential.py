@@ -35,7 +35,7 @@ def ensure_flock_law(law: Any, m: int) -> FlockLaw:
     Raises
     ------
     ArgumentError
-        If it is another law, or lives in another dimension.
+        If it is another law, lives in another dimension, or has no force at all.
 
     Examples
     --------
@@ -52,6 +52,8 @@ def ensure_flock_law(law: Any, m: int) -> FlockLaw:
             "ramp = 0: contacts sit where the force jumps and never vanishes; give the interaction a ramp"
         )
     law.check_dimension(m)
+    if law.force_scale == 0.0:
+        raise ArgumentError("c1_alpha = 0: expected a gain > 0; without one no agent is pushed anywhere")
     return law
 
 
@@ -85,8 +87,8 @@ class Potential:
 
     @property
     def force_scale(self) -> float:
-        """c1α b/√ε, the strongest force between two agents, nearly; a contact's force for the dead zone."""
-        return self.gain * self.pair.strength
+        """The law's own: the strongest force between two agents, nearly, and the γ-agent's pull at d."""
+        return self.law.force_scale
 
     @property
     def pair(self) -> PairInteraction:

@@ -22,7 +22,7 @@ AMPLITUDE = 1e-4  # of d: the first neglected term is as small, relative to the 
 _FALL = 1e8  # by which K̃ has fallen when the run ends
 _LATE = 0.6  # of a random start's run that is left out: what is fast has decayed
 _SAMPLES = 24  # per half period
-_FEWEST = 6  # half periods
+_FEWEST, _MOST = 6, 4000  # half periods
 _SEEN = 0.1  # share of a mode that is no translation, from which on K̃ sees it
 _RTOL, _ATOL = 1e-10, 1e-12  # velocities fall to about 1e-7; tighter, rounding of the forces stalls the solver
 _SMALL = 3e-3  # deviation up to which the exponent is fitted
@@ -86,7 +86,7 @@ def slowest_seen(found: Linearisation) -> Mode:
     Raises
     ------
     ArgumentError
-        If there is none, or it does not decay.
+        If there is none, or it does not decay by more than rounding could feign.
 
     Examples
     --------
@@ -96,9 +96,12 @@ def slowest_seen(found: Linearisation) -> Mode:
     """
     for mode in found.modes:
         if float(np.linalg.norm(mode.shape - mode.shape.mean(axis=0))) >= _SEEN:
-            if mode.decay_rate > 0.0:
+            if mode.decays:
                 return mode
-            raise ArgumentError(f"mode {mode.name} has decay rate {mode.decay_rate:.3g}: expected a stable flock")
+            raise ArgumentError(
+                f"mode {mode.name} has decay rate {mode.decay_rate:.3g}, where rounding alone may make "
+                f"{mode.error:.1g}: expected a stable flock"
+            )
     raise ArgumentError(f"n = {len(found.q)}: expected a mode of the shape; this flock has none")
 
 
@@ -122,7 +125,7 @@ def decay(found: Linearisation, *, name: str = "", amplitude: float = AMPLITUDE,
     Raises
     ------
     ArgumentError
-        If nothing decays.
+        If nothing decays, or so slowly that the run would take for ever.
 
     Examples
     --------
@@ -135,6 +138,11 @@ def decay(found: Linearisation, *, name: str = "", amplitude: float = AMPLITUDE,
     size = ensure_positive("amplitude", amplitude) * _length(found)
     half = pi / mode.frequency if mode.frequency else 1.0 / mode.decay_rate
     count = max(_FEWEST, ceil(log(_FALL) / (2.0 * mode.decay_rate * half)))
+    if count > _MOST:
+        raise ArgumentError(
+            f"mode {mode.name} swings {count / 2:.3g} times until K̃ has fallen by {_FALL:g} (damping ratio "
+            f"{mode.damping_ratio:.2g}): expected at most {_MOST // 2} times; take more damping"
+        )
     t = np.linspace(0.0, count * half, count * _SAMPLES + 1)
     start = mode_motion(found, mode, amplitude=size, samples=2)
     mismatch = _mismatch(_run(found, start.q[0] - found.q, start.p[0], t)[1])

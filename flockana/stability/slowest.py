@@ -10,6 +10,7 @@ from flockana.checks import FloatArray, ensure_count
 from flockana.errors import ArgumentError, SolverError
 from flockana.stability.linearise import Linearisation
 from flockana.stability.modes import Mode, SecondOrder
+from flockana.stability.rounding import mode_errors
 
 _SHIFT = 1e-3  # of √(row sum of K): beside zero, where A itself is singular
 _ROUNDS = 3
@@ -81,7 +82,8 @@ def slowest_modes(linearisation: Linearisation, count: int = 12) -> SlowModes:
     for _ in range(_ROUNDS):
         values, vectors, radius = _nearest_zero(problem, min(2 * wanted, free - 2))
         kept = values.imag >= 0.0
-        modes = problem.named(values[kept], vectors[:, kept], problem.rigid_invariant.translational)
+        errors = mode_errors(problem.stiffness, problem.damping, values[kept], vectors[:, kept])
+        modes = problem.named(values[kept], vectors[:, kept], errors, problem.rigid_invariant.translational)
         known = _complete_to(problem, [mode.decay_rate for mode in modes], radius)
         if not modes[count - 1].decay_rate > known or 2 * wanted >= free - 2:
             break

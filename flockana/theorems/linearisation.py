@@ -159,7 +159,7 @@ def _terminal(run: Trajectory) -> tuple[Linearisation | None, str]:
 
 def _check_terminal(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
     found, why = _terminal(run)
-    stable = found is not None and found.decay_rate > 0.0
+    stable = found is not None and bool(found.modes) and found.stable
     given = Hypothesis("an equilibrium near the last state is stable", "met" if stable else "unmet", detail=why)
     if found is None or not stable:
         return [given], [Claim(name, "vacuous", detail="no stable equilibrium to return to") for name in _NAMES]
