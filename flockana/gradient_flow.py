@@ -24,7 +24,7 @@ class GradientLimit:
     q : ndarray, shape (n, m)
         Positions.
     force : float
-        Largest residual force over the law's `force_scale`.
+        Largest residual force over that of the law's `scales`.
     time : float
         Time of the flow that was integrated, in units of d over the force scale.
     converged : bool
@@ -65,7 +65,7 @@ def gradient_flow(law: Algorithm1 | Algorithm2, q0: Any, *, tol: float = 1e-11, 
     q0 : array_like, shape (n, m)
         Start.
     tol : float
-        Residual force, relative to the law's `force_scale`, at which to stop.
+        Residual force, relative to that of the law's `scales`, at which to stop.
     horizon : float
         Longest time of the flow, in units of d over the force scale.
 
@@ -85,10 +85,8 @@ def gradient_flow(law: Algorithm1 | Algorithm2, q0: Any, *, tol: float = 1e-11, 
     q = ensure_points("q0", q0)
     if isinstance(law, Algorithm2):
         ensure_one_gain(law.gains)
-    shape, scale = q.shape, law.force_scale
+    shape, scale = q.shape, law.scales.force
     tol, horizon = ensure_positive("tol", tol), ensure_positive("horizon", horizon)
-    if scale == 0.0:
-        return GradientLimit(q, 0.0, 0.0, True)
     pace = law.alpha.d / scale
     solver = BDF(
         lambda t, y: pace * structural_force(law, y.reshape(shape)).ravel(),

@@ -25,7 +25,7 @@ class TerminalState:
     Attributes
     ----------
     force : float
-        Largest force on an agent in the moving frame at zero relative velocity, over the law's `force_scale`.
+        Largest force on an agent in the moving frame at zero relative velocity, over the force of the law's `scales`.
     mismatch : float
         K̃ = K/n.
     strain : float
@@ -91,7 +91,7 @@ def terminal_state(
     empty = lengths.size == 0
     curvature, error = _curvature(law, q, float(np.linalg.norm(forces)))
     return TerminalState(
-        force=force / law.force_scale if force > 0.0 else 0.0,
+        force=force / law.scales.force,
         mismatch=velocity_mismatch(p) / len(q),
         strain=float("nan") if empty else float(np.abs(lengths - alpha.d).max() / alpha.d),
         shortest=float("nan") if empty else float(lengths.min()),

@@ -35,7 +35,7 @@ def ensure_flock_law(law: Any, m: int) -> FlockLaw:
     Raises
     ------
     ArgumentError
-        If it is another law, lives in another dimension, or has no force at all.
+        If it is another law, or lives in another dimension.
 
     Examples
     --------
@@ -52,8 +52,6 @@ def ensure_flock_law(law: Any, m: int) -> FlockLaw:
             "ramp = 0: contacts sit where the force jumps and never vanishes; give the interaction a ramp"
         )
     law.check_dimension(m)
-    if law.force_scale == 0.0:
-        raise ArgumentError("c1_alpha = 0: expected a gain > 0; without one no agent is pushed anywhere")
     return law
 
 
@@ -87,8 +85,8 @@ class Potential:
 
     @property
     def force_scale(self) -> float:
-        """The law's own: the strongest force between two agents, nearly, and the γ-agent's pull at d."""
-        return self.law.force_scale
+        """The law's own: the strongest force between two agents, nearly; of the dead zone, of a contact."""
+        return self.law.scales.force
 
     @property
     def pair(self) -> PairInteraction:
@@ -147,7 +145,7 @@ class Potential:
             total += weighted(g.c1_gamma, 0.5 * np.sum((q - self.centre) ** 2, axis=1))
         elif isinstance(law, Algorithm3):
             x2 = np.sum((q - self.centre) ** 2, axis=1)
-            total += weighted(g.c1_gamma, x2 / (np.sqrt(1.0 + x2) + 1.0))
+            total += weighted(g.c1_gamma, x2 / (np.sqrt(1.0 + x2 / law.alpha.unit**2) + 1.0))
             total += g.c1_beta * law.obstacle_field.potential_energy(q)
         return total
 

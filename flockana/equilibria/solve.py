@@ -41,7 +41,7 @@ class Equilibrium:
     energy : float
         Potential energy: c1α V, U_λ, or V_α + V_β + V_γ.
     residual : float
-        Largest force on an agent over the law's `force_scale`.
+        Largest force on an agent over that of the law's `scales`.
     links : int array, shape (M, 2)
         Pairs closer than r.
     kind : {"minimum", "saddle", "maximum", "degenerate"}

@@ -260,7 +260,7 @@ def linearise(
     links : array_like, shape (M, 2), optional
         Links whose lengths are outputs; by default those of the equilibrium, or pairs within the law's range.
     force_tolerance : float
-        Largest residual. It is the largest force on an agent over the law's `force_scale` (of a law without: over the
+        Largest residual. It is the largest force on an agent over that of the law's `scales` (of a law without: over the
         largest entry of ∂u/∂q times the size of the flock), or the largest relative velocity over that force times d
         (or size), square root taken, whichever is larger.
     allow_residual : bool
@@ -342,9 +342,8 @@ def _residual(law: Law, t: float, q: FloatArray, p: FloatArray, matrix: csr_arra
     force = law.flow(t, q, p)[0]
     if _moves_with_centre(law):
         force = moving_frame(force)
-    pair, scale = pair_interaction(law), getattr(law, "force_scale", 0.0)
-    length = _length(q) if pair is None else pair.length
-    scale = scale or float(abs(matrix[q.size :, : q.size]).max()) * length
+    length = _length(q) if law.scales is None else law.scales.length
+    scale = float(abs(matrix[q.size :, : q.size]).max()) * length if law.scales is None else law.scales.force
     strongest, fastest = (float(np.linalg.norm(x, axis=1).max()) for x in (force, moving_frame(p)))
     return max(_over(strongest, scale), _over(fastest, sqrt(scale * length)))
 
