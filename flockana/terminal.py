@@ -13,7 +13,7 @@ from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain, 
 from flockana.metrics import coincident_pairs, connectivity, velocity_mismatch
 from flockana.nets import link_lengths, links
 
-_DENSE_LIMIT = 4000  # rows of a Hessian whose whole spectrum is still a matter of seconds
+DENSE_LIMIT = 4000  # rows of a Hessian whose whole spectrum is still a matter of seconds
 _ON_A_LINE = 1e-9  # of the flock's size: what stands off a line by less stands on it, as far as a solver can tell
 _ROUNDINGS = 8.0  # of the places, as stored far from the origin
 
@@ -163,6 +163,6 @@ def relative_curvature(law: Any, q: FloatArray) -> float:
 
 def _curvature(law: Any, q: FloatArray, force: float) -> tuple[float, float]:
     """`relative_curvature` and its error, if that force is left."""
-    if q.size > _DENSE_LIMIT:
+    if q.size > DENSE_LIMIT:
         return float("nan"), float("inf")
     return least_curvature(Landscape(law.stiffness, q, rigid_motions(q), force=force, length=law.alpha.d))

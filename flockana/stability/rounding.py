@@ -27,7 +27,7 @@ def eigen(matrix: FloatArray) -> tuple[ComplexArray, ComplexArray, FloatArray]:
     Parameters
     ----------
     matrix : ndarray, shape (N, N)
-        Any; bring its rows and columns to one unit first, or the largest unit sets the error.
+        Any; its rows and columns are balanced first, so that the units of its states do not set the error.
 
     Examples
     --------
@@ -39,15 +39,17 @@ def eigen(matrix: FloatArray) -> tuple[ComplexArray, ComplexArray, FloatArray]:
     True
     """
     from scipy.linalg import eig
+    from scipy.linalg.lapack import dgebal
 
     if not matrix.size:
         return np.zeros(0, np.complex128), np.zeros((0, 0), np.complex128), np.zeros(0)
-    found: Any = eig(matrix, left=True, right=True)
+    balanced, _, _, units, _ = dgebal(matrix, scale=1)  # by powers of 2: no rounding
+    found: Any = eig(balanced, left=True, right=True)
     values, left, right = (np.asarray(part, dtype=np.complex128) for part in found)
-    size = float(np.linalg.norm(matrix))
+    size = float(np.linalg.norm(balanced))
     with np.errstate(divide="ignore"):
         alone = _ROUNDINGS * EPS * size / np.abs(np.einsum("ij,ij->j", left.conj(), right))
-    return values, right, np.minimum(alone, _together(values, size))
+    return values, units[:, None] * right, np.minimum(alone, _together(values, size))
 
 
 def _together(values: ComplexArray, size: float) -> FloatArray:

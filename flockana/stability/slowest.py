@@ -12,7 +12,7 @@ from flockana.stability.linearise import Linearisation
 from flockana.stability.modes import Mode, SecondOrder
 from flockana.stability.rounding import mode_errors
 
-_SHIFT = 1e-3  # of √(row sum of K): beside zero, where A itself is singular
+_SHIFT = 1e-3  # of the fastest rate: beside zero, where A itself is singular
 _ROUNDS = 3
 _SYMMETRIC = 1e-10  # relative
 _TRIES = (0.25, 0.5, 1.0, 2.0, 4.0)
@@ -134,7 +134,7 @@ def _nearest_zero(problem: SecondOrder, count: int) -> tuple[Any, Any, float]:
     from scipy.sparse import csc_array, eye_array
     from scipy.sparse.linalg import ArpackError, LinearOperator, eigs, splu
 
-    size, shift = problem.q.size, _SHIFT * float(np.sqrt(problem.scale))
+    size, shift = problem.q.size, _SHIFT * problem.pace
     damping = problem.damping + shift * eye_array(size)
     solve = splu(csc_array(problem.stiffness + shift * damping)).solve
     right, left = problem.rigid_invariant.right, problem.rigid_invariant.left
