@@ -1,4 +1,4 @@
-"""The sign of each curvature of a potential at a computed equilibrium, which is known to rounding and a residual force only.
+"""The sign of each curvature of a potential at a computed equilibrium, known to rounding and a residual force only.
 
 Where a force ρ is left and the Hessian has the eigenvalue λ along v, the true critical point lies about ρ/|λ| away, and
 the curvature that counts is the one there. So λ has a sign only if the stiffness keeps half of |λ| within twice that
@@ -135,9 +135,39 @@ class Landscape:
         places = [self.q + step, self.q - step, *self._scaled(reach)]
         return max(abs(float(v @ ((self.stiffness(x) - self.here) @ v))) for x in places)
 
+    @cached_property
+    def distance(self) -> float:
+        """Bound of the way to the minimum beside this point, over all coordinates; infinite where there is none."""
+        values, signs, rounding = self.curvatures()
+        if not values.size:
+            return 0.0
+        return 2.0 * self.force / (float(values[0]) - rounding) if np.all(signs > 0) else float("inf")
+
+    def holds(self, energy: float) -> bool:
+        """Whether a flock here with that kinetic energy stays beside the minimum, if its energy never rises.
+
+        Within a distance R up to which the stiffness keeps half of its least value λ, the potential rises by λR²/4 from
+        the minimum, which is lower than here by no more than ρ²/λ.
+
+        Parameters
+        ----------
+        energy : float
+            ½ Σ‖v_i‖².
+        """
+        if not np.isfinite(self.distance):
+            return False
+        if not self.values.size:
+            return True
+        least = float(self.values[0])
+        reach = 2.0 * float(np.sqrt((energy + self.force**2 / least) / least)) + self.distance
+        return self._keeps(reach, least)
+
     def _keeps_all(self, least: float) -> bool:
-        """Whether no eigenvalue of at least that size can change by half of it, by the norm of the change."""
-        reach = 2.0 * self.force / least
+        """Whether no eigenvalue of at least that size can change by half of it on the way to the critical point."""
+        return self._keeps(2.0 * self.force / least, least)
+
+    def _keeps(self, reach: float, least: float) -> bool:
+        """Whether the stiffness changes by less than half of `least` within `reach`, by the norm of the change."""
         if reach > _REACH * self.length:
             return False
         turned = 8.0 * reach / self.length * self.size  # links turn by as much; lengths are what `_scaled` changes

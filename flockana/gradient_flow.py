@@ -11,6 +11,7 @@ from flockana.checks import FloatArray, ensure_points, ensure_positive
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain, moving_frame
 
 _NEWTON_FROM = 1e-7  # relative force at which Newton's method takes over: a weak bond near r pulls no harder before
+_NEWTON_AGAIN = 0.1  # of the force at which it led astray
 _NEWTON_STEPS = 20
 _NEWTON_REACH = 1e-3  # of d: a step farther than that is no polishing, and might end where a bond lets go at r
 
@@ -97,21 +98,31 @@ def gradient_flow(law: Algorithm1 | Algorithm2, q0: Any, *, tol: float = 1e-11, 
         atol=1e-8 * law.alpha.d,
         jac=lambda t, y: -pace * law.stiffness(y.reshape(shape)).toarray(),
     )
-    force = np.inf
-    while solver.status == "running" and force > _NEWTON_FROM:
+    here, force, level = q, np.inf, _NEWTON_FROM
+    while solver.status == "running":
         solver.step()
-        force = _largest(structural_force(law, solver.y.reshape(shape))) / scale
-    flowed, q = force <= _NEWTON_FROM, solver.y.reshape(shape)
-    start = q
-    for _ in range(_NEWTON_STEPS if flowed else 0):
+        here = solver.y.reshape(shape)
+        force = _largest(structural_force(law, here)) / scale
+        if force <= level:
+            polished, least = _polished(law, here, tol)
+            if _largest(polished - here) <= _NEWTON_REACH * law.alpha.d and least <= tol:
+                return GradientLimit(polished, least, float(solver.t), True)
+            level = _NEWTON_AGAIN * force  # that was another equilibrium: flow on towards this one
+    return GradientLimit(here, force, float(solver.t), False)
+
+
+def _polished(law: Algorithm1 | Algorithm2, q: FloatArray, tol: float) -> tuple[FloatArray, float]:
+    """Where Newton's method leads from q, and the relative force there."""
+    scale = law.scales.force
+    for _ in range(_NEWTON_STEPS):
         residual = structural_force(law, q)
-        force = _largest(residual) / scale
-        if force <= tol:
+        if _largest(residual) <= tol * scale:
             break
         # least squares leaves the rigid motions alone, in which the stiffness is singular
-        q = q + np.linalg.lstsq(law.stiffness(q).toarray(), residual.ravel(), rcond=1e-10)[0].reshape(shape)
-    near = _largest(q - start) <= _NEWTON_REACH * law.alpha.d
-    return GradientLimit(q, force, float(solver.t), flowed and near and force <= tol)
+        q = q + np.linalg.lstsq(law.stiffness(q).toarray(), residual.ravel(), rcond=1e-10)[0].reshape(q.shape)
+        if not np.isfinite(q).all():
+            return q, np.inf
+    return q, _largest(structural_force(law, q)) / scale
 
 
 def _largest(vectors: FloatArray) -> float:

@@ -43,6 +43,9 @@ class TerminalState:
     curvature_error : float
         By how much rounding, and the way that the force left here still is from an equilibrium, may change it; infinite
         where no equilibrium is near.
+    distance : float
+        Bound of the distance to the strict minimum beside this state, over all coordinates, over d; infinite where
+        there is none.
     """
 
     force: float
@@ -55,6 +58,7 @@ class TerminalState:
     connected: bool
     curvature: float
     curvature_error: float
+    distance: float
 
 
 def terminal_state(
@@ -89,7 +93,8 @@ def terminal_state(
     force = float(np.linalg.norm(forces, axis=1).max())
     lengths = link_lengths(q, links(q, alpha.r))
     empty = lengths.size == 0
-    curvature, error = _curvature(law, q, float(np.linalg.norm(forces)))
+    around = surroundings(law, q, force=float(np.linalg.norm(forces)))
+    curvature, error = least_curvature(around) if around else (float("nan"), float("inf"))
     return TerminalState(
         force=force / law.scales.force,
         mismatch=velocity_mismatch(p) / len(q),
@@ -101,6 +106,7 @@ def terminal_state(
         connected=connectivity(q, alpha.r) == 1.0,
         curvature=curvature,
         curvature_error=error,
+        distance=around.distance / alpha.d if around else float("inf"),
     )
 
 
@@ -158,11 +164,28 @@ def relative_curvature(law: Any, q: FloatArray) -> float:
     >>> relative_curvature(Algorithm1(), np.array([[0.0, 0.0], [7.0, 0.0]]))
     1.0
     """
-    return _curvature(law, q, 0.0)[0]
+    around = surroundings(law, q)
+    return least_curvature(around)[0] if around else float("nan")
 
 
-def _curvature(law: Any, q: FloatArray, force: float) -> tuple[float, float]:
-    """`relative_curvature` and its error, if that force is left."""
+def surroundings(law: Any, q: FloatArray, *, force: float = 0.0) -> Landscape | None:
+    """The structural potential about a configuration; None where its Hessian is too large for the whole spectrum.
+
+    Parameters
+    ----------
+    law : Algorithm1 or Algorithm2
+        A law with `stiffness`.
+    q : ndarray, shape (n, m)
+        Positions.
+    force : float
+        What is left of the force, over all coordinates.
+
+    Examples
+    --------
+    >>> around = surroundings(Algorithm1(), np.array([[0.0], [7.0]]))
+    >>> around.holds(1e-3), around.holds(1e3)
+    (True, False)
+    """
     if q.size > DENSE_LIMIT:
-        return float("nan"), float("inf")
-    return least_curvature(Landscape(law.stiffness, q, rigid_motions(q), force=force, length=law.alpha.d))
+        return None
+    return Landscape(law.stiffness, q, rigid_motions(q), force=force, length=law.alpha.d)

@@ -144,7 +144,7 @@ class AlphaInteraction(PairInteraction):
 
     @cached_property
     def strength(self) -> float:
-        """The largest |φ_α(‖x‖_σ)| x/√(1 + εx²) up to r, to 1e-6: below b/√ε, and far below where d is short beside ℓ."""
+        """The largest |φ_α(‖x‖_σ)| x/√(1 + εx²) up to r, to 1e-6: below b/√ε, far below where d is short beside ℓ."""
         lengths = np.linspace(0.0, self.r, _STRENGTH_GRID)
         forces = self.phi_alpha(self.sigma_norm(lengths)) * lengths / np.sqrt(1.0 + self.eps * lengths**2)
         return float(np.abs(forces).max())

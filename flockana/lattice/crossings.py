@@ -138,7 +138,7 @@ class _Exact:
 
 
 def turns_left(q: FloatArray, centre: Any, first: Any, second: Any) -> Any:
-    """Whether the way around `centre` from agent `first` to `second` is a left turn of less than half a circle, exactly.
+    """Whether the way around `centre` from agent `first` to `second` is a left turn of less than a half, exactly.
 
     Parameters
     ----------

@@ -260,9 +260,9 @@ def linearise(
     links : array_like, shape (M, 2), optional
         Links whose lengths are outputs; by default those of the equilibrium, or pairs within the law's range.
     force_tolerance : float
-        Largest residual. It is the largest force on an agent over that of the law's `scales` (of a law without: over the
-        largest entry of ∂u/∂q times the size of the flock), or the largest relative velocity over that force times d
-        (or size), square root taken, whichever is larger.
+        Largest residual. It is the largest force on an agent over that of the law's `scales` (of a law without: over
+        the largest entry of ∂u/∂q times the size of the flock), or the largest relative velocity over that force times
+        the length (or size), square root taken, whichever is larger.
     allow_residual : bool
         Linearise about a state that is no equilibrium as if it stood still.
     zero : float

@@ -18,7 +18,7 @@ import numpy.typing as npt
 from flockana.checks import FloatArray
 from flockana.curvature import EPS
 from flockana.errors import SolverError
-from flockana.stability.rounding import eigen, root_error
+from flockana.stability.rounding import eigen, root_error, slowest_first
 from flockana.terminal import rigid_motions
 
 ZERO = 1e-8  # of the largest row sum: what K does to a motion that costs nothing
@@ -271,10 +271,9 @@ class SecondOrder:
             shape = _normalised(vector, real=complex(value).imag == 0.0)
             near = [name for name, field in fields if abs(np.vdot(field, shape)) >= _PURE]
             modes.append(Mode(complex(value), shape.reshape(self.q.shape), near[0] if near else "", error))
-        modes.sort(key=lambda mode: (mode.decay_rate, mode.frequency))
-        return tuple(
-            mode if mode.name else replace(mode, name=str(k)) for k, mode in enumerate(modes, start=1)
-        )
+        order = slowest_first(np.array([mode.eigenvalue for mode in modes]), np.array([mode.error for mode in modes]))
+        modes = [modes[k] for k in order]
+        return tuple(mode if mode.name else replace(mode, name=str(k)) for k, mode in enumerate(modes, start=1))
 
     def _set_apart(self, kernel: FloatArray, cokernel: FloatArray) -> Invariant:
         """Chains of generalised eigenvectors at 0 from the kernels of K and Kᵀ, and the centre's own motion."""

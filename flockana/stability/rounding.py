@@ -8,6 +8,7 @@ move by (‖ΔA‖/‖A‖)^(1/m) ‖A‖. Of the two estimates the smaller is t
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -109,3 +110,36 @@ def mode_errors(stiffness: Any, damping: Any, values: ComplexArray, shapes: Comp
         slope = abs(complex(v @ (2.0 * value * v + drag)))
         errors[k] = min(push / slope if slope > 0.0 else np.inf, float(np.sqrt(push)))
     return errors
+
+
+def slowest_first(values: ComplexArray, errors: FloatArray) -> list[int]:
+    """Order of eigenvalues by decay rate, then by frequency, then as given; what rounding may have parted is equal.
+
+    Parameters
+    ----------
+    values : complex ndarray, shape (k,)
+        Eigenvalues.
+    errors : ndarray, shape (k,)
+        How far rounding may have moved each.
+
+    Examples
+    --------
+    >>> slowest_first(np.array([-1.0 + 5.0j, -1.0 - 1e-16 + 2.0j, -0.5]), np.full(3, 1e-15))
+    [2, 1, 0]
+    """
+    found: list[int] = []
+    for level in _levels(range(len(values)), -np.real(values), errors):
+        for pair in _levels(level, np.abs(np.imag(values)), errors):
+            found += sorted(pair)
+    return found
+
+
+def _levels(indices: Iterable[int], sizes: FloatArray, errors: FloatArray) -> list[list[int]]:
+    """Indices by rising size, in runs within which each is within the errors of the one before."""
+    levels: list[list[int]] = []
+    for k in sorted(indices, key=lambda k: float(sizes[k])):
+        if levels and sizes[k] - sizes[levels[-1][-1]] <= errors[k] + errors[levels[-1][-1]]:
+            levels[-1].append(k)
+        else:
+            levels.append([k])
+    return levels

@@ -84,7 +84,8 @@ def slowest_modes(linearisation: Linearisation, count: int = 12) -> SlowModes:
         kept = values.imag >= 0.0
         errors = mode_errors(problem.stiffness, problem.damping, values[kept], vectors[:, kept])
         modes = problem.named(values[kept], vectors[:, kept], errors, problem.rigid_invariant.translational)
-        known = _complete_to(problem, [mode.decay_rate for mode in modes], radius)
+        rising = np.maximum.accumulate([mode.decay_rate for mode in modes])  # but for the rounding of equal ones
+        known = _complete_to(problem, rising.tolist(), radius)
         if not modes[count - 1].decay_rate > known or 2 * wanted >= free - 2:
             break
         wanted *= 2

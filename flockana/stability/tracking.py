@@ -251,7 +251,9 @@ def _transient(run: Trajectory, t: FloatArray) -> FloatArray:
     if gains.c1_gamma > 0.0:
         lag, swing = _steady(gains, moving)
         steady = moving.start + moving.velocity * start - lag + (swing * turn).real
-        return _free(gains, t - start, place - steady, speed - moving.velocity - (1j * moving.omega * swing * turn).real)
+        return _free(
+            gains, t - start, place - steady, speed - moving.velocity - (1j * moving.omega * swing * turn).real
+        )
     swing = CentreOfMass(gains, moving.factor).response(moving.omega) * moving.swing
     slip = speed - moving.drift - (1j * moving.omega * swing * turn).real
     since, drag = (t - start)[:, None], gains.c2_gamma
