@@ -216,9 +216,23 @@ class LinearRange:
 
         2 where the first neglected term of the force is quadratic, as it is where V is three times differentiable.
         """
+        return self._fit[0]
+
+    @property
+    def exponent_error(self) -> float:
+        """Standard error of `exponent`; infinite where two points leave none to tell by."""
+        return self._fit[1]
+
+    @property
+    def _fit(self) -> tuple[float, float]:
         small = self.deviations < _SMALL
+        if small.sum() < 2:
+            return float("nan"), inf
         x, y = np.log(self.amplitudes[small]), np.log(self.amplitudes[small] * self.deviations[small])
-        return float(np.polyfit(x, y, 1)[0]) if small.sum() > 1 else float("nan")
+        slope, level = (float(c) for c in np.polyfit(x, y, 1))
+        spread = float(np.sum((x - x.mean()) ** 2))
+        left = float(np.sum((y - level - slope * x) ** 2))
+        return slope, float(np.sqrt(left / (x.size - 2) / spread)) if x.size > 2 else inf
 
     def limit(self, deviation: float) -> float:
         """Largest amplitude, in units of d, up to which the deviation stays below a share; interpolated.
