@@ -188,7 +188,7 @@ class _Crew:
                 if child is not None:
                     child = self._carry_out(unit, child)
         except BaseException as error:
-            pass
+            self.failures.append(error)
             self._queue.drop()
         self._dismiss(child)
 
