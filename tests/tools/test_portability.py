@@ -220,6 +220,8 @@ def test_the_table_has_a_column_for_each_field():
 
 FAKE = f"""
 import json, os, sys
+with open(__file__ + ".starts", "a") as starts:
+    print(os.environ.get("OPENBLAS_CORETYPE"), file=starts)
 print(json.dumps({AVX512!r} | {{"numba": [os.environ.get("NUMBA_CPU_NAME", "znver5"), []]}}), flush=True)
 for line in sys.stdin:
     request = json.loads(line)
@@ -264,8 +266,10 @@ def test_a_child_that_dies_costs_its_entry_alone(fake_worker):
     assert findings.outcomes["generic"]["flock"]["run"] == "complete"
 
 
-def test_an_environment_without_effect_is_left_out(fake_worker, capfd):
-    findings = matrix([Environment(NATIVE), Environment("blas-nehalem", {"OPENBLAS_CORETYPE": "Nehalem"})], ["a", "b"])
+def test_an_environment_without_effect_is_left_out(fake_worker, tmp_path, capfd):
+    nehalem = Environment("blas-nehalem", {"OPENBLAS_CORETYPE": "Nehalem"})
+    findings = matrix([Environment(NATIVE), nehalem], ["a", "b"], jobs=1)
+    assert (tmp_path / "worker.py.starts").read_text().splitlines() == ["None", "Nehalem"]  # tried once, not per entry
     assert list(findings.outcomes) == [NATIVE]
     assert "asked for the core Nehalem" in findings.left_out["blas-nehalem"]
     assert capfd.readouterr().err.count("blas-nehalem is left out") == 1
@@ -287,6 +291,21 @@ def test_a_child_that_does_not_begin_is_bad_input(fake_worker, tmp_path, capsys)
 
 
 # the command
+
+
+def test_what_was_found_before_an_interrupt_is_told(monkeypatch, capsys, fake_worker):
+    def interrupted(units, findings, *, jobs):
+        for unit, status in zip(units, ("verified", "refuted"), strict=False):
+            outcomes = {one.name: verdicts({"E:i": status}) for one in unit.changes}
+            findings.found(unit, {"outcomes": outcomes, "seconds": 1.0})
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(command, "ask_machine", lambda: AVX512 | {"scenarios": ["flock", "other"], "fixed": []})
+    monkeypatch.setattr(command, "carry_out", interrupted)
+    assert command.main(["flock", "--variants", "moved-1"]) == 130
+    printed = capsys.readouterr().out
+    assert "i      moved-1  refuted  verified" in printed
+    assert printed.endswith("interrupted: some was not tried\n")
 
 
 @pytest.mark.parametrize(

@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import signal
 import sys
 import tempfile
 from collections import Counter
@@ -118,11 +119,14 @@ def main(given: Sequence[str] | None = None) -> int:
     what = [one for one in what if one.name in (NATIVE, *chosen)]
     units = plan(options.names or known, [one for one in where if one.name in chosen], what)
     findings = Findings(native, Counter(_variant(unit, one) for unit in units for one in unit.changes))
+    variants = list(findings.planned)
     try:
         carry_out(units, findings, jobs=options.jobs)
     except KeyboardInterrupt:
+        _report(findings, variants, options)
+        sys.stdout.write("interrupted: some was not tried\n")
         return INTERRUPTED
-    return _report(findings, list(findings.planned), options)
+    return _report(findings, variants, options)
 
 
 def _variant(unit: Unit, change: Change) -> str:
@@ -149,4 +153,5 @@ def _report(findings: Findings, variants: Sequence[str], options: argparse.Names
 
 
 if __name__ == "__main__":
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # a time limit is no reason to lose what was found
     sys.exit(main())

@@ -124,7 +124,7 @@ class Findings:
             row
             for variant in variants
             for name, there in sorted(self.outcomes.get(variant, {}).items())
-            if there is not None
+            if there is not None and name in here
             for row in differences(name, variant, there, here[name], share=share)
         ]
 
