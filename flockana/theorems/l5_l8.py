@@ -26,10 +26,12 @@ _WATCHED = 5000  # steps over which a chatter is averaged
 _ROUNDING = 1e3 * EPS  # relative: of figures that take some hundred operations from the numbers given
 
 
-def _measured(law: DeadZoneFlocking, start: Any, span: float, measure: Callable[[Trajectory], float]) -> FloatArray:
+def _measured(
+    law: DeadZoneFlocking, start: tuple[Any, Any], span: float, measure: Callable[[Trajectory], float]
+) -> FloatArray:
     """What is measured of a run from (q, p), and its error by a second run a hundred times as tight."""
     runs = [
-        simulate(law, *start, (0.0, span), rtol=rtol, atol=rtol * law.scales.length * 1e-2)
+        simulate(law, start[0], start[1], (0.0, span), rtol=rtol, atol=rtol * law.scales.length * 1e-2)
         for rtol in (_RTOL, _TIGHTER * _RTOL)
     ]
     first, second = (measure(run) for run in runs)

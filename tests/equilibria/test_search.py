@@ -69,7 +69,8 @@ def test_a_search_reaches_harborths_count_and_finds_each_minimum_once():
     for k, one in enumerate(minima):
         assert not any(congruent(one.q, other.q, tol=1e-4) for other in minima[k + 1 :])
     assert sum(one.count for one in found.found) + len(found.failures) == 30
-    assert [one.equilibrium.energy for one in found.found] == sorted(one.equilibrium.energy for one in found.found)
+    energies = np.array([one.equilibrium.energy for one in found.found])
+    assert np.all(np.diff(energies) > -1e-9 * np.abs(energies).max())  # but for lattices of as many links, which tie
     with ThreadPoolExecutor(1) as executor:
         again = search(LAW, starts, executor=executor)
     assert [one.count for one in again.found] == [one.count for one in found.found]
