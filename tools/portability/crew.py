@@ -175,6 +175,7 @@ class _Crew:
         self._queue, self._listener, self._caches = _Queue(units), listener, caches
         self._telling = threading.Lock()
         self._children: set[Child] = set()
+        self._stopped = False
         self.failures: list[BaseException] = []
 
     def work(self) -> None:
@@ -216,6 +217,8 @@ class _Crew:
         try:
             answer = child.ask(unit)
         except WorkerError as error:
+            if self._stopped:
+                return None
             lost = {"run": str(error), "statuses": {}, "expected": {}}
             answer = {"outcomes": {one.name: lost for one in unit.changes}, "seconds": 0.0}
             self._dismiss(child)
@@ -231,6 +234,7 @@ class _Crew:
 
     def stop(self) -> None:
         """End all children; their threads find nothing more to do."""
+        self._stopped = True
         self._queue.drop()
         for child in list(self._children):
             child.close()
