@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import signal
 import sys
+import threading
+import time
 from collections import Counter
 from pathlib import Path
 
@@ -230,7 +232,7 @@ for line in sys.stdin:
         print("illegal", file=sys.stderr)
         os.kill(os.getpid(), {int(signal.SIGILL)})
     if request["name"] == "endless":
-        os.kill(os.getppid(), {int(signal.SIGINT)})
+        open(__file__ + ".endless", "w").close()
         time.sleep(600)
     status = os.environ.get("NUMBA_CPU_NAME", "native") + os.environ.get("OPENBLAS_CORETYPE", "")
     one = {{"run": "complete", "statuses": {{"E:i": status}}, "expected": {{}}}}
@@ -270,11 +272,26 @@ def test_a_child_that_dies_costs_its_entry_alone(fake_worker):
     assert findings.outcomes["generic"]["flock"]["run"] == "complete"
 
 
-def test_ctrl_c_ends_the_children_and_what_they_did_not_do_is_not_found(fake_worker):
-    units = [Unit(Environment(NATIVE), name, (Change(NATIVE),)) for name in ("flock", "endless")]
+def test_ctrl_c_ends_the_children_and_what_they_did_not_do_is_not_found(fake_worker, tmp_path, monkeypatch):
+    interrupts = []
+
+    class Waiting(threading.Thread):
+        """Whoever waits for it is interrupted, once, when the child is at work."""
+
+        def join(self, timeout=None):
+            while not interrupts:
+                if (tmp_path / "worker.py.endless").exists():
+                    interrupts.append(True)
+                    raise KeyboardInterrupt
+                time.sleep(0.01)
+            super().join(timeout)
+
+    monkeypatch.setattr(crew.threading, "Thread", Waiting)
     findings = Findings(AVX512, Counter())
     with pytest.raises(KeyboardInterrupt):
-        carry_out(units, findings, jobs=1)
+        carry_out(
+            [Unit(Environment(NATIVE), name, (Change(NATIVE),)) for name in ("flock", "endless")], findings, jobs=1
+        )
     assert list(findings.outcomes[NATIVE]) == ["flock"]
 
 
