@@ -13,7 +13,7 @@ from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain, 
 from flockana.metrics import coincident_pairs, connectivity, velocity_mismatch
 from flockana.nets import link_lengths, links
 
-_DENSE_LIMIT = 4000  # rows of a Hessian whose whole spectrum is still a matter of seconds
+DENSE_LIMIT = 4000  # rows of a Hessian whose whole spectrum is still a matter of seconds
 
 
 @dataclass(frozen=True)
@@ -141,7 +141,7 @@ def relative_curvature(law: Any, q: FloatArray) -> float:
     >>> relative_curvature(Algorithm1(), np.array([[0.0, 0.0], [7.0, 0.0]]))
     1.0
     """
-    if q.size > _DENSE_LIMIT:
+    if q.size > DENSE_LIMIT:
         return float("nan")
     rigid = rigid_motions(q)
     free = np.linalg.svd(rigid, full_matrices=True)[0][:, rigid.shape[1] :]
