@@ -199,8 +199,8 @@ def zone_forces(q, p, zone, par, c2, u):
     return total
 
 
-# rows of pairs are loops over arrays without branches, which the compiler turns into vector instructions: no check for a
-# zero divisor stands in its way. The order of every sum is written down, so that all processors give the same bits.
+# rows of pairs are loops over arrays without branches, which the compiler turns into vector instructions: no check for
+# a zero divisor stands in its way. The order of every sum is written down, so that all processors give the same bits.
 @njit(cache=True, error_model="numpy")
 def semi_implicit_steps(q, p, par, c2, dt, steps):
     """`steps` semi-implicit Euler steps of the law: q, p after each of them and the u that was applied."""
