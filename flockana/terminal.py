@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import sqrt
 from typing import Any
 
 import numpy as np
@@ -23,7 +22,7 @@ class TerminalState:
     Attributes
     ----------
     force : float
-        Largest force on an agent in the moving frame at zero relative velocity, over c1α b/√ε.
+        Largest force on an agent in the moving frame at zero relative velocity, over the law's force scale.
     mismatch : float
         K̃ = K/n.
     strain : float
@@ -84,7 +83,7 @@ def terminal_state(
     lengths = link_lengths(q, links(q, alpha.r))
     empty = lengths.size == 0
     return TerminalState(
-        force=float(force) / (law.gains.c1_alpha * alpha.b / sqrt(alpha.eps)),
+        force=float(force) / law.scales.force,
         mismatch=velocity_mismatch(p) / len(q),
         strain=float("nan") if empty else float(np.abs(lengths - alpha.d).max() / alpha.d),
         shortest=float("nan") if empty else float(lengths.min()),
