@@ -27,7 +27,9 @@ def _window(run: Trajectory, tolerances: Tolerances) -> tuple[Hypothesis, Trajec
     return Hypothesis("judged over a window", "met" if long else "unmet", lasts - needed, detail), part
 
 
-def _always(name: str, run: Trajectory, value: FloatArray, bound: float, error: FloatArray, between: FloatArray) -> Claim:
+def _always(
+    name: str, run: Trajectory, value: FloatArray, bound: float, error: FloatArray, between: FloatArray
+) -> Claim:
     """A claim that a quantity stays below a bound: broken at one sample, or kept at all of them and in between."""
     symbol, what = _SYMBOLS[name]
     worst = int(np.argmax(value - error))
@@ -55,7 +57,9 @@ _SYMBOLS = {
 }
 
 
-def _never_more(name: str, run: Trajectory, counts: tuple[FloatArray, FloatArray, float], most: int, what: str) -> Claim:
+def _never_more(
+    name: str, run: Trajectory, counts: tuple[FloatArray, FloatArray, float], most: int, what: str
+) -> Claim:
     """A claim that a number never exceeds a bound, in whole numbers: (at samples at least, at most, between at most)."""
     least, largest, between = counts
     worst = int(np.argmax(least))
@@ -72,7 +76,11 @@ def _never_more(name: str, run: Trajectory, counts: tuple[FloatArray, FloatArray
         error=error,
         witness={"time": float(run.t[worst])},
         detail=f"{what}: {int(least[worst])} at worst, at t = {run.t[worst]:.4g}, where {most} may be"
-        + ("" if error == 0.0 else "; whether there are ever more is open: a pair comes as near to r as this run can tell"),
+        + (
+            ""
+            if error == 0.0
+            else "; whether there are ever more is open: a pair comes as near to r as this run can tell"
+        ),
     )
 
 
