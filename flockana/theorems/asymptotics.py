@@ -10,7 +10,8 @@ from flockana.checks import FloatArray
 from flockana.lattice import classify
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.nets import link_lengths, links
-from flockana.terminal import terminal_state
+from flockana.scales import Scales
+from flockana.terminal import TerminalState, terminal_state
 from flockana.theorems.attraction import Attraction, attraction
 from flockana.theorems.hypotheses import conceded
 from flockana.theorems.limits import Certificate, decay, limit_claim
@@ -67,6 +68,21 @@ def velocities_match(
         witness={"time": float(run.t[-1]), "K̃ at the start": float(series[0])},
         detail=f"velocities match: K̃ goes from {series[0]:.3g} to {series[-1]:.3g} at t = {run.t[-1]:g}",
     )
+
+
+def settled(end: TerminalState, tolerances: Tolerances, scales: Scales) -> bool:
+    """Whether a terminal state is an equilibrium of the structural dynamics within tolerance, attracting or not.
+
+    Parameters
+    ----------
+    end : TerminalState
+        The state.
+    tolerances : Tolerances
+        `force` and `velocity` are used.
+    scales : Scales
+        Of the law.
+    """
+    return end.force <= tolerances.force and end.mismatch <= tolerances.velocity * scales.energy
 
 
 def _strains(run: Trajectory) -> FloatArray:
