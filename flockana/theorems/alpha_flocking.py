@@ -24,7 +24,9 @@ def _window(run: Trajectory, tolerances: Tolerances) -> tuple[Hypothesis, Trajec
     return Hypothesis("judged over a window", "met" if len(part.t) > 1 else "unmet", detail=detail), part
 
 
-def _always(name: str, run: Trajectory, value: FloatArray, bound: float, error: FloatArray, between: FloatArray) -> Claim:
+def _always(
+    name: str, run: Trajectory, value: FloatArray, bound: float, error: FloatArray, between: FloatArray
+) -> Claim:
     """A claim that a quantity stays below a bound: broken at one sample, or kept at all of them and in between."""
     symbol, what = _SYMBOLS[name]
     worst = int(np.argmax(value - error))
@@ -52,8 +54,10 @@ _SYMBOLS = {
 }
 
 
-def _never_more(name: str, run: Trajectory, counts: tuple[FloatArray, FloatArray, float], most: int, what: str) -> Claim:
-    """A claim that a number never exceeds a bound, in whole numbers: (at samples at least, at most, between at most)."""
+def _never_more(
+    name: str, run: Trajectory, counts: tuple[FloatArray, FloatArray, float], most: int, what: str
+) -> Claim:
+    """A claim that a number never exceeds a bound, in whole numbers (at samples at least, at most; between)."""
     least, largest, between = counts
     worst = int(np.argmax(least))
     broken = least[worst] > most
@@ -69,12 +73,16 @@ def _never_more(name: str, run: Trajectory, counts: tuple[FloatArray, FloatArray
         error=error,
         witness={"time": float(run.t[worst])},
         detail=f"{what}: {int(least[worst])} at worst, at t = {run.t[worst]:.4g}, where {most} may be"
-        + ("" if error == 0.0 else "; whether there are ever more is open: a pair comes as near to r as this run can tell"),
+        + (
+            ""
+            if error == 0.0
+            else "; whether there are ever more is open: a pair comes as near to r as this run can tell"
+        ),
     )
 
 
 def _flock(run: Trajectory, tolerances: Tolerances, *, giant: bool) -> Claim:
-    """The net is connected, or keeps a component with more than a share of the agents: by links shorter than r for sure."""
+    """The net is connected, or keeps a component with more than a share of the agents, by links that are certain."""
     between, at = nets_between(run, run.law.alpha.r), nets_at(run, run.law.alpha.r)
     if not giant:
         counts = at.components_least, at.components, float(between.components.max(initial=0.0))

@@ -125,7 +125,7 @@ def lattice_limit(run: Trajectory, needs: Iterable[Hypothesis], tolerances: Tole
         certificate = min(moves, strain, key=lambda each: each.margin)
         margin, error = min(margin, certificate.margin), certificate.error
     status: Status = conceded(judge(margin, error, needs), needs)
-    if status == "refuted" and not held.certificate.margin > 0.0 or status == "verified" and pressed:
+    if (status == "refuted" and not held.certificate.margin > 0.0) or (status == "verified" and pressed):
         status = "inconclusive"
     kind = classify(end.strain, lattice=tolerances.lattice, quasi=tolerances.quasi)
     return Claim(
@@ -144,4 +144,4 @@ def lattice_limit(run: Trajectory, needs: Iterable[Hypothesis], tolerances: Tole
 def _strain_error(run: Trajectory, held: Attraction) -> float:
     """How far strains of the limit may be from those of the last state: two agents move by √2 δ apart at most."""
     rounding = 4.0 * EPS * float(np.abs(run.q[-1]).max())
-    return float(np.sqrt(2.0) * held.distance + rounding) / run.law.alpha.d
+    return float((np.sqrt(2.0) * held.distance + rounding) / run.law.alpha.d)

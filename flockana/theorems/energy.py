@@ -101,7 +101,7 @@ def cancelling(run: Trajectory, since: int = 0) -> FloatArray:
 
 
 def falling_share(run: Trajectory, rate: FloatArray, cancels: FloatArray) -> tuple[FloatArray, float]:
-    """What is left of the magnitude of a rate's terms as a fall, from 1 to −1, and its rounding; 1 where there are none.
+    """What is left of a rate's terms as a fall, as a share of their magnitude, from 1 to −1; and its rounding.
 
     Parameters
     ----------
@@ -178,7 +178,7 @@ def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], l
     if nothing := vacuous([law], ("rate", "balance")):
         return [law], nothing
     rests, honest = [law], [law]
-    if type(run.law) is Algorithm3 or run.law.gains.per_agent and type(run.law) is Algorithm2:
+    if type(run.law) is Algorithm3 or (run.law.gains.per_agent and type(run.law) is Algorithm2):
         rests.append(still(run, told=False))  # outside of the moving frame a moving γ-agent does work
         honest.append(honest_rate(run))
     if type(run.law) is Algorithm3:

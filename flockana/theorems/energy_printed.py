@@ -16,7 +16,7 @@ from flockana.trajectory import Trajectory
 
 
 def _steadily(run: Trajectory, claim: Claim, needs: list[Hypothesis]) -> Claim:
-    """Of a run on which it does not rise: whether its rate, in closed form, is clearly negative wherever anything moves.
+    """Of a run on which it does not rise: whether its rate, in closed form, is negative wherever anything moves.
 
     V_α too much adds c1α ⟨∇V, p⟩ to the rate, which has no sign.
     """

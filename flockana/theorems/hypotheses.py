@@ -25,7 +25,9 @@ def applied(run: Trajectory, name: str, *laws: type) -> Hypothesis:
         Classes of laws.
     """
     law = run.law
-    other = [f"{part} is {type(getattr(law, part)).__name__}" for part, known in _PARTS.items() if _else(law, part, known)]
+    other = [
+        f"{part} is {type(getattr(law, part)).__name__}" for part, known in _PARTS.items() if _else(law, part, known)
+    ]
     exact = type(law) in laws and not other
     detail = ", ".join([type(law).__name__, *(other if type(law) in laws else [])])
     return Hypothesis(f"{name} is applied", "met" if exact else "unmet", detail=detail)

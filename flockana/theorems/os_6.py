@@ -42,7 +42,9 @@ def _condition(run: Trajectory) -> tuple[Hypothesis, int]:
     name = "(n/2)⟨p_c, p_d⟩ <= T from some t0 on (76)"
     if since >= len(run.t) or run.t[-1] - run.t[since] < run.scales.time:
         worst = float(slack[min(since, len(run.t)) - 1])
-        detail = f"it is broken at t = {run.t[broken[-1]] if broken.size else run.t[0]:.4g}, up to the end, by {-worst:.3g}"
+        detail = (
+            f"it is broken at t = {run.t[broken[-1]] if broken.size else run.t[0]:.4g}, up to the end, by {-worst:.3g}"
+        )
         return Hypothesis(name, "unmet", worst, detail), len(run.t) - 1
     share = 100.0 * broken.size / len(run.t)
     before = f"broken at {share:.2g} % of the samples before" if broken.size else "never broken"
@@ -69,10 +71,11 @@ THEOREM = Theorem(
     id="os-6",
     title="Algorithm 3: the energy never rises once the flock's mean velocity allows",
     statement=(
-        "With one c1γ and c2γ for all, a static γ-agent, (q_r, p_r) = (q_d, p_d), and (n/2)⟨p_c, p_d⟩ <= T for t >= t0: dH/dt = -c2α pᵀL̂p + "
-        "c2β ΣΣ b_ik ⟨p_i, p̂_ik - p_i⟩ - 2 c2γ (T - (n/2)⟨p_c, p_d⟩) <= 0 for t >= t0, where H counts every pair once "
-        "(erratum E2). The source leaves unsaid that the agents must be outside the obstacles: inside a sphere the "
-        "second term can be positive. The condition is found at the samples, and holds to the end of the run only."
+        "With one c1γ and c2γ for all agents, a static γ-agent, (q_r, p_r) = (q_d, p_d), and (n/2)⟨p_c, p_d⟩ <= T for "
+        "t >= t0: dH/dt = -c2α pᵀL̂p + c2β ΣΣ b_ik ⟨p_i, p̂_ik - p_i⟩ - 2 c2γ (T - (n/2)⟨p_c, p_d⟩) <= 0 for t >= t0, "
+        "where H counts every pair once (erratum E2). The source leaves unsaid that the agents must be outside the "
+        "obstacles: inside a sphere the second term can be positive. The condition is found at the samples, and holds "
+        "to the end of the run only."
     ),
     source="Olfati-Saber 2006, Theorem 6",
     kind="trajectory",
