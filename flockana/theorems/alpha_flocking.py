@@ -18,13 +18,10 @@ _SHARE = 1e-9  # of an agent: what a share of n agents, as a decimal fraction, m
 
 
 def _window(run: Trajectory, tolerances: Tolerances) -> tuple[Hypothesis, Trajectory]:
-    """The part that is judged: a flock is one over a time, which one instant is not, nor a blink of the law's eye."""
-    start = float(run.t[0] + tolerances.settle * (run.t[-1] - run.t[0]))
-    part = run.window(start, float(run.t[-1]))
-    lasts, needed = float(part.t[-1] - part.t[0]), run.scales.time
-    detail = f"from t = {part.t[0]:.4g} to {part.t[-1]:.4g}, at {len(part.t)} samples; the law's time is {needed:.3g}"
-    long = len(part.t) > 1 and lasts >= needed
-    return Hypothesis("judged over a window", "met" if long else "unmet", lasts - needed, detail), part
+    """The part that is judged: flocking is defined over a time, which one instant is not."""
+    part = run.window(float(run.t[0] + tolerances.settle * (run.t[-1] - run.t[0])), float(run.t[-1]))
+    detail = f"from t = {part.t[0]:.4g} to {part.t[-1]:.4g}, at {len(part.t)} samples"
+    return Hypothesis("judged over a window", "met" if len(part.t) > 1 else "unmet", detail=detail), part
 
 
 def _always(
@@ -60,7 +57,7 @@ _SYMBOLS = {
 def _never_more(
     name: str, run: Trajectory, counts: tuple[FloatArray, FloatArray, float], most: int, what: str
 ) -> Claim:
-    """A claim that a number never exceeds a bound, in whole numbers: (at samples at least, at most, between at most)."""
+    """A claim that a number never exceeds a bound, in whole numbers (at samples at least, at most; between)."""
     least, largest, between = counts
     worst = int(np.argmax(least))
     broken = least[worst] > most
@@ -85,7 +82,7 @@ def _never_more(
 
 
 def _flock(run: Trajectory, tolerances: Tolerances, *, giant: bool) -> Claim:
-    """The net is connected, or keeps a component with more than a share of the agents: by links shorter than r for sure."""
+    """The net is connected, or keeps a component with more than a share of the agents, by links that are certain."""
     between, at = nets_between(run, run.law.alpha.r), nets_at(run, run.law.alpha.r)
     if not giant:
         counts = at.components_least, at.components, float(between.components.max(initial=0.0))
@@ -151,8 +148,8 @@ THEOREM = (
         title="The run is α-flocking (Definition 5)",
         statement=(
             "Over [t0, tf] the net keeps a giant component, the group stays cohesive, Ẽ <= ε₁ and K̃ <= ε₂. The source "
-            "gives no numbers for 'giant', 'cohesive', ε₁, ε₂; those used are in the tolerances. The window must last "
-            "as long as the law's own time."
+            "gives no numbers for 'giant', 'cohesive', ε₁, ε₂; those used are in the tolerances. One "
+            "sample is no window."
         ),
         source="Olfati-Saber 2006, Definition 5",
         kind="trajectory",

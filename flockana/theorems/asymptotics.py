@@ -10,7 +10,8 @@ from flockana.checks import FloatArray
 from flockana.lattice import classify
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.nets import link_lengths, links
-from flockana.terminal import terminal_state
+from flockana.scales import Scales
+from flockana.terminal import TerminalState, terminal_state
 from flockana.theorems.attraction import Attraction, attraction
 from flockana.theorems.hypotheses import conceded
 from flockana.theorems.limits import Certificate, decay, limit_claim
@@ -69,6 +70,21 @@ def velocities_match(
     )
 
 
+def settled(end: TerminalState, tolerances: Tolerances, scales: Scales) -> bool:
+    """Whether a terminal state is an equilibrium of the structural dynamics within tolerance, attracting or not.
+
+    Parameters
+    ----------
+    end : TerminalState
+        The state.
+    tolerances : Tolerances
+        `force` and `velocity` are used.
+    scales : Scales
+        Of the law.
+    """
+    return end.force <= tolerances.force and end.mismatch <= tolerances.velocity * scales.energy
+
+
 def _strains(run: Trajectory) -> FloatArray:
     """Largest |link − d|/d at each sample; 1 without links."""
     d, found = run.law.alpha.d, np.ones(len(run.t))
@@ -109,7 +125,7 @@ def lattice_limit(run: Trajectory, needs: Iterable[Hypothesis], tolerances: Tole
         certificate = min(moves, strain, key=lambda each: each.margin)
         margin, error = min(margin, certificate.margin), certificate.error
     status: Status = conceded(judge(margin, error, needs), needs)
-    if status == "refuted" and not held.certificate.margin > 0.0 or status == "verified" and pressed:
+    if (status == "refuted" and not held.certificate.margin > 0.0) or (status == "verified" and pressed):
         status = "inconclusive"
     kind = classify(end.strain, lattice=tolerances.lattice, quasi=tolerances.quasi)
     return Claim(
@@ -128,4 +144,4 @@ def lattice_limit(run: Trajectory, needs: Iterable[Hypothesis], tolerances: Tole
 def _strain_error(run: Trajectory, held: Attraction) -> float:
     """How far strains of the limit may be from those of the last state: two agents move by √2 δ apart at most."""
     rounding = 4.0 * EPS * float(np.abs(run.q[-1]).max())
-    return float(np.sqrt(2.0) * held.distance + rounding) / run.law.alpha.d
+    return float((np.sqrt(2.0) * held.distance + rounding) / run.law.alpha.d)

@@ -104,12 +104,12 @@ def attraction(law: Algorithm1 | Algorithm2, q: FloatArray, p: FloatArray) -> At
     if not (damped and curvature > 0.0):
         return Attraction(inf, 0.0, inf, curvature)
     force = _force(law, q)
-    distance = 2.0 * force / curvature
+    distance = float(2.0 * force / curvature)
     everywhere = isinstance(law, Algorithm2) and law.gains.c2_gamma > 0.0
     if distance >= gyration(q) or not (everywhere or _joined(law.alpha, q, sqrt(2.0) * distance)):
         return Attraction(inf, 0.0, distance, curvature)
     leaving = barrier(curvature, distance, law.alpha.d * WINDOWS, lambda window: _lipschitz(law, q, window))
-    return Attraction(kinetic(p) + force**2 / curvature, leaving, distance, curvature)
+    return Attraction(float(kinetic(p) + force**2 / curvature), leaving, distance, curvature)
 
 
 def _curvature(law: Algorithm1 | Algorithm2, q: FloatArray) -> float:
@@ -124,7 +124,7 @@ def _curvature(law: Algorithm1 | Algorithm2, q: FloatArray) -> float:
 
 def _force(law: Algorithm1 | Algorithm2, q: FloatArray) -> float:
     """|∇U(x)| over all coordinates, with the rounding of its sums added."""
-    near = np.bincount(links(q, law.alpha.r).ravel(), minlength=1).max()
+    near = float(np.bincount(links(q, law.alpha.r).ravel(), minlength=1).max())
     pull = law.gains.c1_gamma * float(np.abs(q).max()) if isinstance(law, Algorithm2) else 0.0
     terms = law.gains.c1_alpha * law.alpha.b / sqrt(law.alpha.eps) * (near + 1.0) + pull
     return float(np.linalg.norm(structural_force(law, q))) + sqrt(q.size) * 16.0 * _EPS * terms

@@ -59,7 +59,7 @@ def passed(run: Trajectory, tolerances: Tolerances) -> dict[Pair, float]:
 
 
 def near(run: Trajectory, tolerances: Tolerances) -> list[set[Pair]]:
-    """Pairs that may meet, by interval between samples: their paths, allowance included, come within the contact distance.
+    """Pairs that may meet, by interval between samples: their paths, allowance included, come that near.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def near(run: Trajectory, tolerances: Tolerances) -> list[set[Pair]]:
 
 def _noise(run: Trajectory, tolerances: Tolerances) -> float:
     """Distance at which two agents count as coincident, the rounding of their coordinates added."""
-    return tolerances.contact * run.law.alpha.d + ROUNDING * float(np.abs(run.q).max())
+    return float(tolerances.contact * run.law.alpha.d + ROUNDING * np.abs(run.q).max())
 
 
 def below_the_barrier(run: Trajectory, energy: float, error: float) -> Hypothesis:

@@ -73,9 +73,9 @@ THEOREM = Theorem(
     id="os-1",
     title="Algorithm 1: lattice, matched velocities, no collision",
     statement=(
-        "With c1α, c2α > 0, if every solution that starts in the level set H(x, v) <= c is a cohesive dynamic flock, (i) almost "
-        "every solution converges to an equilibrium that is an α-lattice, (ii) velocities match in the moving frame, "
-        "and (iii) if c < c* = ψ_α(0), no two agents ever collide."
+        "With c1α, c2α > 0, if every solution that starts in the level set H(x, v) <= c is a cohesive dynamic flock, "
+        "(i) almost every solution converges to an equilibrium that is an α-lattice, (ii) velocities match in the "
+        "moving frame, and (iii) if c < c* = ψ_α(0), no two agents ever collide."
     ),
     source="Olfati-Saber 2006, Theorem 1",
     kind="trajectory",

@@ -31,7 +31,7 @@ def frame_error(x: FloatArray) -> float:
     >>> frame_error(np.full((2, 1), 1e6)) < 1e-8
     True
     """
-    return (x.shape[-2] + 4) * EPS * float(np.abs(x).max())
+    return float((x.shape[-2] + 4) * EPS * np.abs(x).max())
 
 
 def spread_error(x: FloatArray) -> FloatArray:
