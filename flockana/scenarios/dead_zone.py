@@ -14,7 +14,8 @@ from flockana.metrics import velocity_mismatch
 from flockana.scenarios.findings import finding
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
-from flockana.theorems.dead_zone_case import dead_zone_law, parts
+from flockana.theorems.dead_zone_case import dead_zone_law
+from flockana.theorems.dead_zone_parts import parts
 from flockana.theorems.theorem import Status
 from flockana.trajectory import Trajectory
 

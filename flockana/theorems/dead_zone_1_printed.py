@@ -22,13 +22,18 @@ _CLAIMS = ("cohesion", "energy", "velocity", "collision")
 def _certain_radius(run: Trajectory, end: Parts, radius: float) -> tuple[float, float, str]:
     """(1 - R/r of the limit, its error, how it is known); NaN where nothing is."""
     if end.count > 1:
-        return -end.parting.margin if end.parting.margin > 0.0 else nan, end.parting.error, end.parting.text
+        apart = end.separation
+        return -apart.margin if end.parting else nan, apart.error, apart.text
     (part,), r = end.parts, end.r
     if part.size == 1 or part.hold.certificate.margin > 0.0:
         error = (part.hold.distance + 2.0 * frame_error(run.q[-1:])) / r + 4.0 * EPS
         return 1.0 - radius / r, error, part.hold.certificate.text
     if part.dt is None and part.radius < r:
-        return 1.0 - part.radius / r, 4.0 * EPS, f"{part.bond.text}, and no agent {part.radius:.4g} away from the centre"
+        return (
+            1.0 - part.radius / r,
+            4.0 * EPS,
+            f"{part.bond.text}, and no agent {part.radius:.4g} away from the centre",
+        )
     return nan, EPS, part.hold.certificate.text
 
 
@@ -81,7 +86,6 @@ def _energy(run: Trajectory, law: DeadZoneFlocking, needs: list[Hypothesis]) -> 
 def _one_velocity(run: Trajectory, end: Parts, needs: list[Hypothesis]) -> Claim:
     """K̃ → 0: refuted where parts are certain to part, each at its own velocity for ever."""
     series = run.metric("velocity_mismatch")
-    parting = end.parting.margin > end.parting.error
     one = settling(end) if end.count == 1 else Certificate(-1.0, end.apart.text)
     claim = limit_claim(
         "velocity",
@@ -92,13 +96,11 @@ def _one_velocity(run: Trajectory, end: Parts, needs: list[Hypothesis]) -> Claim
         witness={"time": float(run.t[-1]), "K̃ at the start": float(series[0])},
         detail=f"K̃ goes from {series[0]:.3g} to {series[-1]:.3g} at t = {run.t[-1]:g}",
     )
-    return _refuted(claim, end.parting, needs) if parting else claim
-
-
-def _refuted(claim: Claim, parting: Certificate, needs: list[Hypothesis]) -> Claim:
-    status = judge(-parting.margin, parting.error, needs)
-    detail = f"{claim.detail}; {parting.text} for ever"
-    return replace(claim, status=status, margin=-parting.margin, error=parting.error, proof=PROOF, detail=detail)
+    if not end.parting:
+        return claim
+    margin, error = end.separation.margin, end.separation.error
+    status, detail = judge(-margin, error, needs), f"{claim.detail}: {end.count} parts keep their own for ever"
+    return replace(claim, status=status, margin=-margin, error=error, proof=PROOF, detail=detail)
 
 
 def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from math import inf, log
+from typing import Any
 
 import numpy as np
 
@@ -29,7 +30,7 @@ def dead_zone_law(run: Trajectory) -> DeadZoneFlocking | None:
     run : Trajectory
         The run.
     """
-    law = run.law.law if type(run.law) is SemiImplicitEuler else run.law
+    law: Any = run.law.law if type(run.law) is SemiImplicitEuler else run.law
     exact = type(law) is DeadZoneFlocking and type(law.interaction) is DeadZoneInteraction
     return law if exact else None
 

@@ -161,8 +161,13 @@ class Parts:
         error = (n + 16.0) * EPS * (extent + self.r) + bent
         return float((nearest - self.r - radius[a] - radius[b]).min()) / self.r, error / self.r
 
+    @property
+    def parting(self) -> bool:
+        """Whether it is certain that they part."""
+        return self.separation.margin > self.separation.error
+
     @cached_property
-    def parting(self) -> Certificate:
+    def separation(self) -> Certificate:
         """No two parts ever meet, and their centres have different velocities: the flock grows beyond all bounds.
 
         The margin is the lesser of that of `apart` and of the drift over the square of the law's speed scale.
@@ -206,9 +211,9 @@ def parts(q: FloatArray, p: FloatArray, law: DeadZoneFlocking, dt: float | None 
     Examples
     --------
     >>> law, apart = DeadZoneFlocking(), np.array([[0.0], [16.0]])
-    >>> parts(apart, np.array([[-1.0], [1.0]]), law).parting.margin > 0.0
+    >>> parts(apart, np.array([[-1.0], [1.0]]), law).parting
     True
-    >>> parts(apart, np.array([[1.0], [-1.0]]), law).parting.margin > 0.0
+    >>> parts(apart, np.array([[1.0], [-1.0]]), law).parting
     False
     """
     label = components(len(q), links(q, law.interaction.r))

@@ -13,8 +13,9 @@ from flockana.intervals import clopper_pearson
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.metrics import connectivity, min_distance
 from flockana.simulate import simulate
-from flockana.theorems.dead_zone_case import PROOF, parts
+from flockana.theorems.dead_zone_case import PROOF
 from flockana.theorems.dead_zone_erratum import Found, advance, erratum, margin_claim, two_that_part
+from flockana.theorems.dead_zone_parts import parts
 from flockana.theorems.theorem import Claim, Tolerances
 
 SEEDS = 10  # of each box in L4

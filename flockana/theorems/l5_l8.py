@@ -10,8 +10,9 @@ from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.metrics import velocity_mismatch
 from flockana.simulate import simulate
-from flockana.theorems.dead_zone_case import PROOF, parts
+from flockana.theorems.dead_zone_case import PROOF
 from flockana.theorems.dead_zone_erratum import Found, advance, erratum, margin_claim, two_that_part
+from flockana.theorems.dead_zone_parts import parts
 from flockana.theorems.theorem import Claim, Tolerances
 
 
