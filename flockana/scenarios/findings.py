@@ -51,7 +51,9 @@ def finding(
     'verified'
     """
     if error is None:
-        error = 0.0 if float(2.0 * margin).is_integer() and margin != 0.0 else ROUNDING * max(1.0, abs(margin))
+        counted = margin != 0.0 and float(2.0 * margin).is_integer()
+        size = abs(computed) if isinstance(computed, float | int) else 0.0
+        error = 0.0 if counted else ROUNDING * max(abs(margin), size)
     status = judge(margin, error, [])
     return Claim(name, status, "numeric", computed, stated, margin, error, witness, None, detail)
 
