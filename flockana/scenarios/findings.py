@@ -99,6 +99,17 @@ def in_source_units(scales: Scales, check: Check) -> Check:
     return asked
 
 
+def as_tightly(run: Trajectory) -> dict[str, Any]:
+    """Options of `simulate` for a run beside another one, to be integrated as tightly as that.
+
+    Parameters
+    ----------
+    run : Trajectory
+        The other run; empty for a map, or a fixed step.
+    """
+    return {name: run.stats[name] for name in ("rtol", "atol") if run.stats.get(name) is not None}
+
+
 def component_count(run: Trajectory, k: int = -1) -> int:
     """Number of components of the net at sample k of a run.
 

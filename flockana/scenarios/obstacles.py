@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from math import inf
 from typing import Any
 
@@ -255,7 +256,8 @@ def _entry(
         start = free_start(seed, n, centre, spread, law.obstacles, room=BetaInteraction().d)
         text = f"{source} {_OURS}"
         options = _large(end) if n > 100 else {}
-        return Scenario(name, title, text, law, *start, (0.0, end), seed, expected, (_CLEAR, *reports), options)
+        asked = tuple(replace(one, check=in_source_units(law.scales, one.check)) for one in (_CLEAR, *reports))
+        return Scenario(name, title, text, law, *start, (0.0, end), seed, expected, asked, options)
 
     return name, build
 
