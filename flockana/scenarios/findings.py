@@ -51,7 +51,9 @@ def finding(
     'verified'
     """
     if error is None:
-        error = 0.0 if float(2.0 * margin).is_integer() and margin != 0.0 else ROUNDING * max(1.0, abs(margin))
+        counted = margin != 0.0 and float(2.0 * margin).is_integer()
+        size = abs(computed) if isinstance(computed, float | int) else 0.0
+        error = 0.0 if counted else ROUNDING * max(abs(margin), size)
     status = judge(margin, error, [])
     return Claim(name, status, "numeric", computed, stated, margin, error, witness, None, detail)
 
@@ -95,6 +97,17 @@ def in_source_units(scales: Scales, check: Check) -> Check:
         return check(run if same else rescale(run, length=length, time=time), tolerances)
 
     return asked
+
+
+def as_tightly(run: Trajectory) -> dict[str, Any]:
+    """Options of `simulate` for a run beside another one, to be integrated as tightly as that.
+
+    Parameters
+    ----------
+    run : Trajectory
+        The other run; empty for a map, or a fixed step.
+    """
+    return {name: run.stats[name] for name in ("rtol", "atol") if run.stats.get(name) is not None}
 
 
 def component_count(run: Trajectory, k: int = -1) -> int:

@@ -19,7 +19,8 @@ _SHARE = 1e-9  # of an agent: what a share of n agents, as a decimal fraction, m
 
 def _window(run: Trajectory, tolerances: Tolerances) -> tuple[Hypothesis, Trajectory]:
     """The part that is judged: flocking is defined over a time, which one instant is not."""
-    part = run.window(float(run.t[0] + tolerances.settle * (run.t[-1] - run.t[0])), float(run.t[-1]))
+    start = float(run.t[0] + tolerances.settle * (run.t[-1] - run.t[0]))
+    part = run.remembered(f"window from {start!r}", lambda: run.window(start, float(run.t[-1])))
     detail = f"from t = {part.t[0]:.4g} to {part.t[-1]:.4g}, at {len(part.t)} samples"
     return Hypothesis("judged over a window", "met" if len(part.t) > 1 else "unmet", detail=detail), part
 
@@ -83,7 +84,7 @@ def _never_more(
 
 def _flock(run: Trajectory, tolerances: Tolerances, *, giant: bool) -> Claim:
     """The net is connected, or keeps a component with more than a share of the agents, by links that are certain."""
-    between, at = nets_between(run, run.law.alpha.r), nets_at(run, run.law.alpha.r)
+    between, at = nets_between(run), nets_at(run)
     if not giant:
         counts = at.components_least, at.components, float(between.components.max(initial=0.0))
         return _never_more("flock", run, counts, 1, "components")
@@ -99,9 +100,9 @@ def _common(run: Trajectory, tolerances: Tolerances) -> list[Claim]:
     rounding = 8.0 * EPS * (float(np.abs(run.q).max()) / alpha.d + 1.0)
     error = 2.0 * np.sqrt(deviation) * rounding + rounding**2 + 4.0 * EPS * run.n * deviation
     one_link = 2.0 * (alpha.r / alpha.d - 1.0) ** 2
-    error += one_link * nets_at(run, alpha.r).open_links / (2.0 * nets_at(run, alpha.r).links + 1.0)
-    open_links = nets_between(run, alpha.r)
-    jumps = one_link * open_links.open_links / (2.0 * open_links.links + 1.0)
+    at, during = nets_at(run), nets_between(run)
+    error += one_link * at.open_links / (2.0 * at.links + 1.0)
+    jumps = one_link * during.open_links / (2.0 * during.links + 1.0)
     own = spread_error(run.p) / (run.n * units)
     return [
         _always("deviation", run, deviation, tolerances.deviation, error, _between(deviation, steps=steps) + jumps),

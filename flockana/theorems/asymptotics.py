@@ -12,7 +12,7 @@ from flockana.laws.olfati_saber import Algorithm1
 from flockana.nets import link_lengths, links
 from flockana.scales import Scales
 from flockana.terminal import TerminalState, terminal_state
-from flockana.theorems.attraction import Attraction, attraction
+from flockana.theorems.attraction import Attraction, held
 from flockana.theorems.hypotheses import conceded
 from flockana.theorems.limits import Certificate, decay, limit_claim
 from flockana.theorems.rounding import EPS, frame_error
@@ -115,17 +115,17 @@ def lattice_limit(run: Trajectory, needs: Iterable[Hypothesis], tolerances: Tole
     """
     needs = list(needs)
     end = terminal_state(run.law, run.q[-1], run.p[-1], contact=tolerances.contact)
-    held, margin = attraction(run.law, run.q[-1], run.p[-1]), tolerances.lattice - end.strain
+    caught, margin = held(run), tolerances.lattice - end.strain
     pressed = not isinstance(run.law, Algorithm1) and run.law.gains.c1_gamma > 0.0
-    if held.certificate.margin > 0.0:
-        certificate, error = held.certificate, _strain_error(run, held)
+    if caught.certificate.margin > 0.0:
+        certificate, error = caught.certificate, _strain_error(run, caught)
     else:
         moves, strain = still(run, tolerances), decay(run.t, _strains(run), floor=tolerances.lattice).certificate
         strain = Certificate(strain.margin, f"strain: {strain.text}", strain.error)
         certificate = min(moves, strain, key=lambda each: each.margin)
         margin, error = min(margin, certificate.margin), certificate.error
     status: Status = conceded(judge(margin, error, needs), needs)
-    if (status == "refuted" and not held.certificate.margin > 0.0) or (status == "verified" and pressed):
+    if (status == "refuted" and not caught.certificate.margin > 0.0) or (status == "verified" and pressed):
         status = "inconclusive"
     kind = classify(end.strain, lattice=tolerances.lattice, quasi=tolerances.quasi)
     return Claim(
@@ -141,7 +141,7 @@ def lattice_limit(run: Trajectory, needs: Iterable[Hypothesis], tolerances: Tole
     )
 
 
-def _strain_error(run: Trajectory, held: Attraction) -> float:
+def _strain_error(run: Trajectory, caught: Attraction) -> float:
     """How far strains of the limit may be from those of the last state: two agents move by √2 δ apart at most."""
     rounding = 4.0 * EPS * float(np.abs(run.q[-1]).max())
-    return float((np.sqrt(2.0) * held.distance + rounding) / run.law.alpha.d)
+    return float((np.sqrt(2.0) * caught.distance + rounding) / run.law.alpha.d)

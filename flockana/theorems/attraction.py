@@ -30,6 +30,7 @@ from flockana.laws.olfati_saber import Algorithm1, Algorithm2, moving_frame
 from flockana.nets import LinkArray, components, link_lengths, links
 from flockana.terminal import DENSE_LIMIT, rigid_motions
 from flockana.theorems.limits import Certificate
+from flockana.trajectory import Trajectory
 
 _EPS = float(np.finfo(float).eps)
 WINDOWS = np.geomspace(1e-8, 0.25, 25)  # of d: distances up to which L is taken
@@ -110,6 +111,17 @@ def attraction(law: Algorithm1 | Algorithm2, q: FloatArray, p: FloatArray) -> At
         return Attraction(inf, 0.0, distance, curvature)
     leaving = barrier(curvature, distance, law.alpha.d * WINDOWS, lambda window: _lipschitz(law, q, window))
     return Attraction(float(kinetic(p) + force**2 / curvature), leaving, distance, curvature)
+
+
+def held(run: Trajectory) -> Attraction:
+    """`attraction` of the last state of a run, kept with the run.
+
+    Parameters
+    ----------
+    run : Trajectory
+        A run of Algorithm 1 or 2 with one c1γ and c2γ for all agents.
+    """
+    return run.remembered("attraction at the end", lambda: attraction(run.law, run.q[-1], run.p[-1]))
 
 
 def _curvature(law: Algorithm1 | Algorithm2, q: FloatArray) -> float:

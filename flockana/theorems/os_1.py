@@ -9,7 +9,7 @@ import numpy as np
 from flockana.lattice import harborth
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.theorems.asymptotics import lattice_limit, velocities_match
-from flockana.theorems.attraction import attraction
+from flockana.theorems.attraction import held
 from flockana.theorems.collisions import below_multiple, below_the_barrier, no_collision
 from flockana.theorems.energy import proved
 from flockana.theorems.hypotheses import positive, vacuous, with_alpha_gain
@@ -60,10 +60,9 @@ def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], l
     energy, error = _start(run)
     needs, c_star = [*needs, _stays_together(run)], run.law.gains.c1_alpha * run.law.alpha.c_star
     low, barrier = below_multiple(energy, error, c_star), below_the_barrier(run, energy, error)
-    caught = attraction(run.law, run.q[-1], run.p[-1]).certificate
     return [*needs, low, barrier], [
         lattice_limit(run, needs, tolerances, name="i"),
-        velocities_match(run, tolerances, needs, name="ii", caught=[caught]),
+        velocities_match(run, tolerances, needs, name="ii", caught=[held(run).certificate]),
         no_collision(run, [*needs, low], tolerances, name="iii", proof=proved(run, "collisions")),
         no_collision(run, [*needs, barrier], tolerances, name="iii-barrier"),
     ]

@@ -10,7 +10,7 @@ from flockana.lattice import classify
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.terminal import terminal_state
 from flockana.theorems.asymptotics import velocities_match
-from flockana.theorems.attraction import Attraction, attraction
+from flockana.theorems.attraction import held
 from flockana.theorems.collisions import (
     below_multiple,
     below_the_barrier,
@@ -52,7 +52,7 @@ def _cohesive(run: Trajectory, needs: list[Hypothesis], error: float) -> Claim:
     )
 
 
-def _minimum(run: Trajectory, held: Attraction, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
+def _minimum(run: Trajectory, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
     """(ii): the limit is a local minimum of U_λ, strict but for the rotations; one run cannot refute it."""
     end = terminal_state(run.law, run.q[-1], run.p[-1], contact=tolerances.contact)
     kind = classify(end.strain, lattice=tolerances.lattice, quasi=tolerances.quasi)
@@ -60,7 +60,7 @@ def _minimum(run: Trajectory, held: Attraction, needs: list[Hypothesis], toleran
     return limit_claim(
         "ii",
         needs,
-        [held.certificate],
+        [held(run).certificate],
         computed=end.curvature,
         stated="the flock is caught by a strict local minimum of U_λ (modulo rotations)",
         witness={"force": end.force, "K̃": end.mismatch, "strain": end.strain, "coincident pairs": end.coincident},
@@ -77,11 +77,10 @@ def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], l
     finite = Hypothesis("K(v(0)) and J(x(0)) are finite", "met", detail="every state here is finite")
     needs, repels = [law, gains, finite], positive(run, c1_alpha="c1α")
     error = float(energy_error(run.law, run.q[:1], run.p[:1], run.energy()[:1])[0])
-    held = attraction(run.law, run.q[-1], run.p[-1])
     claims = [
         _cohesive(run, needs, error),
-        _minimum(run, held, needs, tolerances),
-        velocities_match(run, tolerances, needs, name="iii", caught=[held.certificate]),
+        _minimum(run, needs, tolerances),
+        velocities_match(run, tolerances, needs, name="iii", caught=[held(run).certificate]),
     ]
     found = [*needs, consistent(run), repels]  # nothing below needs dq_r/dt = p_r: it is about the moving frame
     if nothing := vacuous([repels], _CLAIMS[3:]):

@@ -81,34 +81,38 @@ class Nets:
     open_links: FloatArray
 
 
-def nets_at(run: Trajectory, r: float) -> Nets:
-    """The net at each sample, but for rounding.
+def nets_at(run: Trajectory) -> Nets:
+    """The net at each sample of a run of a law with an α-interaction, but for rounding.
 
     Parameters
     ----------
     run : Trajectory
         The run.
-    r : float
-        Interaction range.
     """
-    rounding, rows = _rounding(run, r), []
-    for q in run.q:
+    return run.remembered("nets at samples", lambda: _nets_at(run))
+
+
+def _nets_at(run: Trajectory) -> Nets:
+    r, rounding, rows = run.law.alpha.r, _rounding(run), []
+    for k, q in enumerate(run.q):
         pairs = links(q, r + rounding)
-        rows.append(_row(run.n, pairs, link_lengths(q, pairs) < r - rounding))
+        rows.append(_row(run, k, pairs, link_lengths(q, pairs) < r - rounding))
     return _nets(rows)
 
 
-def nets_between(run: Trajectory, r: float) -> Nets:
+def nets_between(run: Trajectory) -> Nets:
     """The net in each interval between samples: what is nearer to r than the motion may bridge is left open.
 
     Parameters
     ----------
     run : Trajectory
-        The run; a map has no state between its steps.
-    r : float
-        Interaction range.
+        A run of a law with an α-interaction; a map has no state between its steps.
     """
-    moves, rounding = not isinstance(run.law, DiscreteLaw), _rounding(run, r)
+    return run.remembered("nets between samples", lambda: _nets_between(run))
+
+
+def _nets_between(run: Trajectory) -> Nets:
+    moves, r, rounding = not isinstance(run.law, DiscreteLaw), run.law.alpha.r, _rounding(run)
     h, speed, force = np.diff(run.t), moves * _motion(run.p), moves * _motion(run.u)
     rows = []
     for k in range(len(run.t) - 1):
@@ -119,21 +123,25 @@ def nets_between(run: Trajectory, r: float) -> Nets:
         low, high = ends.min(axis=0), ends.max(axis=0)
         slack = np.where(low - straight >= 0.5 * r, min(straight, bent), straight) + rounding
         near = low - slack < r
-        rows.append(_row(run.n, pairs[near], (high + slack < r)[near]))
+        rows.append(_row(run, k, pairs[near], (high + slack < r)[near]))
     return _nets(rows)
 
 
-def _rounding(run: Trajectory, r: float) -> float:
+def _rounding(run: Trajectory) -> float:
     """Of a distance of two agents, against r."""
-    return 16.0 * EPS * (float(np.abs(run.q).max()) + r)
+    return float(16.0 * EPS * (np.abs(run.q).max() + run.law.alpha.r))
 
 
-def _row(n: int, pairs: LinkArray, certain: npt.NDArray[np.bool_]) -> tuple[int, ...]:
-    """Numbers of one net, of pairs that may be linked and of which some certainly are."""
-    some, all_of_them = (np.bincount(components(n, chosen)) for chosen in (pairs[certain], pairs))
+def _row(run: Trajectory, k: int, pairs: LinkArray, certain: npt.NDArray[np.bool_]) -> tuple[float, ...]:
+    """Numbers of one net, of pairs that may be linked and of which some certainly are; sample k has it if all are."""
     count = int(certain.sum())
+    if count == len(pairs):
+        parts = run.n - float(run.metric("connectivity")[k]) * (run.n - 1)
+        giant = run.n * float(run.metric("giant_share")[k])
+        return round(parts), round(parts), round(giant), round(giant), count, 0
+    some, all_of_them = (np.bincount(components(run.n, chosen)) for chosen in (pairs[certain], pairs))
     return some.size, all_of_them.size, int(some.max()), int(all_of_them.max()), count, len(pairs) - count
 
 
-def _nets(rows: list[tuple[int, ...]]) -> Nets:
+def _nets(rows: list[tuple[float, ...]]) -> Nets:
     return Nets(*np.array(rows, dtype=np.float64).reshape(-1, 6).T)
