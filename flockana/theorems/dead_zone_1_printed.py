@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from math import nan
 
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.metrics import cohesion_radius
-from flockana.theorems.dead_zone_case import PROOF, at_the_end, dead_zone_law, hypotheses, no_collision, settling
+from flockana.theorems.dead_zone_case import (
+    PROOF,
+    at_the_end,
+    dead_zone_law,
+    hypotheses,
+    no_collision,
+    one_velocity,
+)
 from flockana.theorems.dead_zone_parts import Parts
 from flockana.theorems.dead_zone_range import first_entry
 from flockana.theorems.hypotheses import vacuous
-from flockana.theorems.limits import Certificate, limit_claim
 from flockana.theorems.rounding import EPS, frame_error
 from flockana.theorems.theorem import Claim, Hypothesis, Status, Theorem, Tolerances, judge
 from flockana.trajectory import Trajectory
@@ -83,26 +88,6 @@ def _energy(run: Trajectory, law: DeadZoneFlocking, needs: list[Hypothesis]) -> 
     )
 
 
-def _one_velocity(run: Trajectory, end: Parts, needs: list[Hypothesis]) -> Claim:
-    """K̃ → 0: refuted where parts are certain to part, each at its own velocity for ever."""
-    series = run.metric("velocity_mismatch")
-    one = settling(end) if end.count == 1 else Certificate(-1.0, end.apart.text)
-    claim = limit_claim(
-        "velocity",
-        needs,
-        [one],
-        computed=float(series[-1]),
-        stated="K̃ -> 0",
-        witness={"time": float(run.t[-1]), "K̃ at the start": float(series[0])},
-        detail=f"K̃ goes from {series[0]:.3g} to {series[-1]:.3g} at t = {run.t[-1]:g}",
-    )
-    if not end.parting:
-        return claim
-    margin, error = end.separation.margin, end.separation.error
-    status, detail = judge(-margin, error, needs), f"{claim.detail}: {end.count} parts keep their own for ever"
-    return replace(claim, status=status, margin=-margin, error=error, proof=PROOF, detail=detail)
-
-
 def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
     needs, law = hypotheses(run), dead_zone_law(run)
     nothing = vacuous(needs, _CLAIMS)
@@ -112,7 +97,7 @@ def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], l
     return needs, [
         _cohesion(run, end, needs),
         _energy(run, law, needs),
-        _one_velocity(run, end, needs),
+        one_velocity(run, end, needs, name="velocity"),
         no_collision(run, 0.0, law.scales.length, needs, name="collision"),
     ]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from dataclasses import replace
 from math import inf, log
 from typing import Any
 
@@ -14,12 +14,13 @@ from flockana.laws.law import DiscreteLaw
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.metrics import min_distance
 from flockana.theorems.dead_zone_parts import Parts, parts
-from flockana.theorems.limits import Certificate
+from flockana.theorems.limits import Certificate, limit_claim
 from flockana.theorems.rounding import EPS
 from flockana.theorems.theorem import Claim, Hypothesis, judge
 from flockana.trajectory import Trajectory
 
 PROOF = "dead-zone"
+_BOUND = 1e-9  # relative rounding of the explicit bound: that of H̄(0)/2k_r in an exponent
 
 
 def dead_zone_law(run: Trajectory) -> DeadZoneFlocking | None:
@@ -75,6 +76,37 @@ def settling(end: Parts) -> Certificate:
     return min((*(part.settles for part in end.parts), end.apart), key=lambda one: one.margin)
 
 
+def one_velocity(run: Trajectory, end: Parts, needs: list[Hypothesis], *, name: str) -> Claim:
+    """K̃ → 0: certain of one part that settles, refuted where parts are certain to part, each at its own velocity.
+
+    Parameters
+    ----------
+    run : Trajectory
+        The run.
+    end : Parts
+        Its parts at the end.
+    needs : list of Hypothesis
+        Hypotheses of the claim.
+    name : str
+        Name of the claim.
+    """
+    series = run.metric("velocity_mismatch")
+    claim = limit_claim(
+        name,
+        needs,
+        [settling(end) if end.count == 1 else Certificate(-1.0, end.apart.text)],
+        computed=float(series[-1]),
+        stated="K̃ -> 0: all velocities match",
+        witness={"time": float(run.t[-1]), "K̃ at the start": float(series[0])},
+        detail=f"K̃ goes from {series[0]:.3g} to {series[-1]:.3g} at t = {run.t[-1]:g}",
+    )
+    if not end.parting:
+        return claim
+    margin, error = end.separation.margin, end.separation.error
+    status, detail = judge(-margin, error, needs), f"{claim.detail}: {end.count} parts keep their own for ever"
+    return replace(claim, status=status, margin=-margin, error=error, proof=PROOF, detail=detail)
+
+
 def no_collision(run: Trajectory, bound: float, unit: float, needs: list[Hypothesis], *, name: str) -> Claim:
     """No two agents come closer than a bound: between the samples too, except for a map, which has nothing there.
 
@@ -127,17 +159,3 @@ def _above(least: float, bound: float, unit: float, rounding: float) -> tuple[fl
     if least <= rounding:
         return float("nan"), inf
     return log(least / bound), 4.0 * rounding / least + _BOUND
-
-
-_BOUND = 1e-9  # relative rounding of the explicit bound: that of H̄(0)/2k_r in an exponent
-
-
-def unmet(needs: Iterable[Hypothesis]) -> bool:
-    """Whether a hypothesis does not hold.
-
-    Parameters
-    ----------
-    needs : iterable of Hypothesis
-        Hypotheses of a claim.
-    """
-    return any(need.status == "unmet" for need in needs)

@@ -33,6 +33,17 @@ class Entry:
     unsure: bool
 
 
+def thinned(run: Trajectory) -> bool:
+    """Whether a map had states between those that were kept.
+
+    Parameters
+    ----------
+    run : Trajectory
+        A run of any law; what lies between the samples of a continuous one is its path.
+    """
+    return isinstance(run.law, DiscreteLaw) and bool((np.diff(run.t) > _NEXT * run.law.dt).any())
+
+
 def first_entry(run: Trajectory, r: float) -> Entry:
     """The first pair that comes into range in a run.
 
@@ -62,8 +73,7 @@ def first_entry(run: Trajectory, r: float) -> Entry:
             pair = follow_steps(q, r, noise, was_out, unsure)
             if pair[0] >= 0:
                 return Entry(pair, float(run.t[k]), True)
-        thinned = bool((np.diff(run.t) > _NEXT * run.law.dt).any())
-        return Entry(None, None, thinned or bool(unsure.any()))
+        return Entry(None, None, thinned(run) or bool(unsure.any()))
     states = list(zip(run.q, run.p, run.u, strict=True))
     for k in range(len(run.t) - 1):
         h = float(run.t[k + 1] - run.t[k])
