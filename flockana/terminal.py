@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import sqrt
 from typing import Any
 
 import numpy as np
@@ -13,7 +12,7 @@ from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain, 
 from flockana.metrics import coincident_pairs, connectivity, velocity_mismatch
 from flockana.nets import link_lengths, links
 
-_DENSE_LIMIT = 4000  # rows of a Hessian whose whole spectrum is still a matter of seconds
+DENSE_LIMIT = 4000  # rows of a Hessian whose whole spectrum is still a matter of seconds
 
 
 @dataclass(frozen=True)
@@ -23,7 +22,7 @@ class TerminalState:
     Attributes
     ----------
     force : float
-        Largest force on an agent in the moving frame at zero relative velocity, over c1α b/√ε.
+        Largest force on an agent in the moving frame at zero relative velocity, over the law's force scale.
     mismatch : float
         K̃ = K/n.
     strain : float
@@ -84,7 +83,7 @@ def terminal_state(
     lengths = link_lengths(q, links(q, alpha.r))
     empty = lengths.size == 0
     return TerminalState(
-        force=float(force) / (law.gains.c1_alpha * alpha.b / sqrt(alpha.eps)),
+        force=float(force) / law.scales.force,
         mismatch=velocity_mismatch(p) / len(q),
         strain=float("nan") if empty else float(np.abs(lengths - alpha.d).max() / alpha.d),
         shortest=float("nan") if empty else float(lengths.min()),
@@ -141,7 +140,7 @@ def relative_curvature(law: Any, q: FloatArray) -> float:
     >>> relative_curvature(Algorithm1(), np.array([[0.0, 0.0], [7.0, 0.0]]))
     1.0
     """
-    if q.size > _DENSE_LIMIT:
+    if q.size > DENSE_LIMIT:
         return float("nan")
     rigid = rigid_motions(q)
     free = np.linalg.svd(rigid, full_matrices=True)[0][:, rigid.shape[1] :]

@@ -61,7 +61,7 @@ def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], l
         single = Hypothesis("one c1γ for all agents", "unmet", detail="gains are given per agent")
         return [law, single], [Claim(name, "vacuous", detail=single.detail) for name in _NAMES]
     end = terminal_state(run.law, run.q[-1], run.p[-1], contact=tolerances.contact)
-    at_rest = settled(end, tolerances)
+    at_rest = settled(end, tolerances, run.scales)
     ratio = run.law.gains.c1_gamma / run.law.gains.c1_alpha
     printed = Claim(
         "printed",
