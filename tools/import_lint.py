@@ -28,6 +28,7 @@ STAGES: tuple[tuple[str, ...], ...] = (
     ("integrators",),
     ("switched",),
     ("simulate",),
+    ("curvature",),
     ("terminal", "gradient_flow"),
     ("equilibria",),
     ("stability",),
