@@ -42,7 +42,8 @@ def _shrinks(run: Trajectory, share: float) -> bool:
         return False
     span, again = (float(run.t[0]), float(run.t[-1])), []
     for factor in (1.0, _TIGHTER):
-        rtol, atol = max(factor * run.stats["rtol"], _FINEST), factor * run.stats["atol"]
+        rtol, atol = max(factor * run.stats["rtol"], _FINEST), run.stats["atol"]
+        atol = None if atol is None else factor * atol
         again.append(simulate(run.law, run.q[0], run.p[0], span, method=run.stats["method"], rtol=rtol, atol=atol))
     same, better = (_unbalanced(one) if one.status == "complete" else float("nan") for one in again)
     return same >= _SHRINKS * share >= better
