@@ -17,6 +17,7 @@ Nothing here is a tolerance. The flock's own scales come in through λ, L and th
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from math import inf, sqrt
 
@@ -32,7 +33,7 @@ from flockana.theorems.limits import Certificate
 from flockana.trajectory import Trajectory
 
 _EPS = float(np.finfo(float).eps)
-_WINDOWS = np.geomspace(1e-8, 0.25, 25)  # of d: distances up to which L is taken
+WINDOWS = np.geomspace(1e-8, 0.25, 25)  # of d: distances up to which L is taken
 _POINTS = 49  # of a difference quotient of the curvature over the lengths that a link may take
 _SAFETY = 1.25  # on that quotient: its curve is smooth but for two kinks
 _SYMMETRIC = 1e-9  # of the largest: a rotation that moves the agents by less is no motion, as in `rigid_motions`
@@ -106,11 +107,10 @@ def attraction(law: Algorithm1 | Algorithm2, q: FloatArray, p: FloatArray) -> At
     force = _force(law, q)
     distance = float(2.0 * force / curvature)
     everywhere = isinstance(law, Algorithm2) and law.gains.c2_gamma > 0.0
-    if distance >= _gyration(q) or not (everywhere or _joined(law.alpha, q, sqrt(2.0) * distance)):
+    if distance >= gyration(q) or not (everywhere or _joined(law.alpha, q, sqrt(2.0) * distance)):
         return Attraction(inf, 0.0, distance, curvature)
-    return Attraction(
-        float(_kinetic(p) + force**2 / curvature), _barrier(law, q, curvature, distance), distance, curvature
-    )
+    leaving = barrier(curvature, distance, law.alpha.d * WINDOWS, lambda window: _lipschitz(law, q, window))
+    return Attraction(float(kinetic(p) + force**2 / curvature), leaving, distance, curvature)
 
 
 def held(run: Trajectory) -> Attraction:
@@ -142,14 +142,36 @@ def _force(law: Algorithm1 | Algorithm2, q: FloatArray) -> float:
     return float(np.linalg.norm(structural_force(law, q))) + sqrt(q.size) * 16.0 * _EPS * terms
 
 
-def _kinetic(p: FloatArray) -> float:
-    """K(v), with the rounding of v added."""
+def kinetic(p: FloatArray) -> float:
+    """K(v) = ½ Σ‖p_i − p_c‖², with the rounding of v added.
+
+    Parameters
+    ----------
+    p : ndarray, shape (n, m)
+        Velocities.
+
+    Examples
+    --------
+    >>> 1.0 <= kinetic(np.array([[1.0], [-1.0]])) < 1.0 + 1e-12
+    True
+    """
     rounding = sqrt(p.size) * 8.0 * _EPS * float(np.abs(p).max())
     return 0.5 * (float(np.linalg.norm(moving_frame(p))) + rounding) ** 2
 
 
-def _gyration(q: FloatArray) -> float:
-    """Least size of a unit rotation's motion, over all coordinates; ∞ on a line."""
+def gyration(q: FloatArray) -> float:
+    """Least size of a unit rotation's motion, over all coordinates; ∞ on a line.
+
+    Parameters
+    ----------
+    q : ndarray, shape (n, m)
+        Positions.
+
+    Examples
+    --------
+    >>> gyration(np.array([[-1.0, 0.0], [1.0, 0.0]]))
+    1.4142135623730951
+    """
     x, m = moving_frame(q), q.shape[1]
     turns = []
     for a in range(m):
@@ -167,11 +189,30 @@ def _joined(alpha: AlphaInteraction, q: FloatArray, slack: float) -> bool:
     return reach > 0.0 and not components(len(q), links(q, reach)).any()
 
 
-def _barrier(law: Algorithm1 | Algorithm2, q: FloatArray, curvature: float, distance: float) -> float:
-    """The highest barrier of step 2 over a choice of windows w: a wide one has a large L, a narrow one a small ρ."""
+def barrier(
+    curvature: float, distance: float, windows: Iterable[float], lipschitz_within: Callable[[float], float]
+) -> float:
+    """The highest barrier of step 2 over a choice of windows w: a wide one has a large L, a narrow one a small ρ.
+
+    Parameters
+    ----------
+    curvature : float
+        λ, less its rounding.
+    distance : float
+        δ.
+    windows : iterable of float
+        Distances w.
+    lipschitz_within : callable
+        From w to L.
+
+    Examples
+    --------
+    >>> barrier(2.0, 0.0, [1.0, 3.0], lambda window: 0.0)
+    9.0
+    """
     best = 0.0
-    for window in law.alpha.d * _WINDOWS:
-        lipschitz = _lipschitz(law, q, float(window))
+    for window in windows:
+        lipschitz = lipschitz_within(float(window))
         reach = window - distance
         if lipschitz > 0.0:
             reach = min(reach, 0.5 * curvature / lipschitz)
@@ -192,10 +233,26 @@ def _lipschitz(law: Algorithm1 | Algorithm2, q: FloatArray, window: float) -> fl
     alpha, slack = law.alpha, sqrt(2.0) * window
     pairs = links(q, alpha.r + slack)
     weights = law.gains.c1_alpha * _third(alpha, link_lengths(q, pairs), slack)
-    return sqrt(2.0) * _weight_at_both_ends(len(q), pairs, weights)
+    return sqrt(2.0) * weight_at_both_ends(len(q), pairs, weights)
 
 
-def _weight_at_both_ends(n: int, pairs: LinkArray, weights: FloatArray) -> float:
+def weight_at_both_ends(n: int, pairs: LinkArray, weights: FloatArray) -> float:
+    """The largest sum of the weights at both ends of a link: a bound of the weighted Laplacian's largest eigenvalue.
+
+    Parameters
+    ----------
+    n : int
+        Number of agents.
+    pairs : int array, shape (M, 2)
+        Links.
+    weights : ndarray, shape (M,)
+        Of the links, >= 0.
+
+    Examples
+    --------
+    >>> weight_at_both_ends(3, np.array([[0, 1], [1, 2]]), np.array([1.0, 2.0]))
+    5.0
+    """
     if not len(pairs):
         return 0.0
     ends = np.bincount(pairs.ravel(), weights=np.repeat(weights, 2), minlength=n)
