@@ -15,7 +15,7 @@ PACKAGE = "flockana"
 STAGES: tuple[tuple[str, ...], ...] = (
     ("errors", "_version", "course"),
     ("checks", "references"),
-    ("serialize", "intervals"),
+    ("serialize", "intervals", "scales", "units"),
     ("symbolic", "kernels"),
     ("interactions",),
     ("environment", "nets"),

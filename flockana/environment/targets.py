@@ -7,16 +7,17 @@ a p_r that is not that rate, which is allowed here and reported where a theorem 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import cos, pi, sin
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from flockana.checks import FloatArray, ensure_finite_scalar, ensure_positive, ensure_vector
 from flockana.errors import ArgumentError
+from flockana.units import Powers
 
 _STEP = 1e-5  # of a user's function for dq_r/dt by central difference: error about 1e-10 relative on smooth paths
 
@@ -96,6 +97,8 @@ class StaticTarget(Target):
     q: Any
     p: Any = 0.0
 
+    units: ClassVar[Mapping[str, Powers]] = {"q": (1, 0), "p": (1, -1)}
+
     def __post_init__(self) -> None:
         m = _freeze_vector(self, "q").size
         if np.isscalar(self.p) and self.p == 0:
@@ -131,6 +134,8 @@ class LinearTarget(Target):
 
     q: Any
     p: Any
+
+    units: ClassVar[Mapping[str, Powers]] = {"q": (1, 0), "p": (1, -1)}
 
     def __post_init__(self) -> None:
         _freeze_vector(self, "p", _freeze_vector(self, "q").size)
@@ -173,6 +178,13 @@ class SineTarget(Target):
     frequency: float
     phase: float = 0.0
     axis: int = 1
+
+    units: ClassVar[Mapping[str, Powers]] = {
+        "start": (1, 0),
+        "velocity": (1, -1),
+        "amplitude": (1, 0),
+        "frequency": (0, -1),
+    }
 
     def __post_init__(self) -> None:
         m = _freeze_vector(self, "start").size
@@ -222,6 +234,8 @@ class CircleTarget(Target):
     radius: float
     frequency: float
     phase: float = 0.0
+
+    units: ClassVar[Mapping[str, Powers]] = {"centre": (1, 0), "radius": (1, 0), "frequency": (0, -1)}
 
     def __post_init__(self) -> None:
         if _freeze_vector(self, "centre").size < 2:
@@ -307,6 +321,21 @@ class CallableTarget(Target):
         q, p = self._call(0.0)
         if q.size != p.size:
             raise ArgumentError(f"function(0) gave q_r of {q.size} and p_r of {p.size} components: expected equal")
+
+    def in_units(self, length: float, time: float) -> CallableTarget:
+        """The same path in other units (`flockana.rescale`).
+
+        Parameters
+        ----------
+        length, time : float
+            Factors.
+        """
+
+        def scaled(t: float) -> tuple[FloatArray, FloatArray]:
+            q, p = self._call(t / time)
+            return length * q, length / time * p
+
+        return CallableTarget(scaled)
 
     def _call(self, t: float) -> tuple[FloatArray, FloatArray]:
         try:

@@ -85,7 +85,7 @@ class Potential:
 
     @property
     def force_scale(self) -> float:
-        """c1α b/√ε, the strongest force between two agents, nearly; a contact's force for the dead zone."""
+        """c1α b d/√(1 + εd²), the bound of the force at d; a contact's force for the dead zone."""
         return self.gain * self.pair.strength
 
     @property
@@ -145,7 +145,7 @@ class Potential:
             total += weighted(g.c1_gamma, 0.5 * np.sum((q - self.centre) ** 2, axis=1))
         elif isinstance(law, Algorithm3):
             x2 = np.sum((q - self.centre) ** 2, axis=1)
-            total += weighted(g.c1_gamma, x2 / (np.sqrt(1.0 + x2) + 1.0))
+            total += weighted(g.c1_gamma, x2 / (np.sqrt(1.0 + x2 / law.alpha.unit**2) + 1.0))
             total += g.c1_beta * law.obstacle_field.potential_energy(q)
         return total
 

@@ -63,11 +63,11 @@ def adjacency_beta_slope(s2, par):
 @register_jitable
 def pair_beta_slope(s2, par):
     """d/d(s²) of the weight of q̂_ik − q_i, what the Hessian of ψ_β needs beside the weight itself."""
-    eps, h, d_beta = par[0], par[1], par[2]
+    eps, h, d_beta, area = par[0], par[1], par[2], par[4]
     z, g = sigma_norm(s2, eps), 1.0 + eps * s2
-    s, x = z - d_beta, z / d_beta
+    s, x = (z - d_beta) / area, z / d_beta
     phi = bump(x, h) * (sigma_1(s) - 1.0)
-    slope = bump_slope(x, h) / d_beta * (sigma_1(s) - 1.0) + bump(x, h) / sqrt(1.0 + s * s) ** 3
+    slope = bump_slope(x, h) / d_beta * (sigma_1(s) - 1.0) + bump(x, h) / area / sqrt(1.0 + s * s) ** 3
     return 0.5 * (slope - eps * phi / sqrt(g)) / g
 
 

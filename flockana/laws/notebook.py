@@ -6,8 +6,9 @@ keep their values and only n_ij becomes σ_ε(10 (q_j − q_i)). The force then 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from flockana.errors import ArgumentError
 from flockana.interactions import AlphaInteraction
 from flockana.kernels.neighbours import pair_blocks
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.units import Powers
 
 MIN_DISTANCE, FACTOR = 0.05, 10.0
 
@@ -125,6 +127,8 @@ class PushedAlgorithm1(_Push, Algorithm1):
     min_distance: float = MIN_DISTANCE
     factor: float = FACTOR
 
+    units: ClassVar[Mapping[str, Powers]] = {"min_distance": (1, 0)}
+
     references = ("notebook-r2", "olfati-saber-2006")
 
     def __post_init__(self) -> None:
@@ -162,6 +166,8 @@ class PushedAlgorithm2(_Push, Algorithm2):
 
     min_distance: float = MIN_DISTANCE
     factor: float = FACTOR
+
+    units: ClassVar[Mapping[str, Powers]] = {"min_distance": (1, 0)}
 
     references = ("notebook-r2", "olfati-saber-2006")
 
