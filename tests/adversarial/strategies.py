@@ -36,11 +36,12 @@ def alphas(draw, *, kappa=(1.05, 1.2, sqrt(2.0), 1.7, 2.5)):
     if draw(st.booleans()):
         return AlphaInteraction()
     d = draw(st.sampled_from((7.0, 1.0, 15.0, 0.02, 7e-6, 4e3)))
+    unit = draw(st.sampled_from((1.0, d / 7.0)))
     b = draw(st.sampled_from((5.0, 1.0, 1e-3, 5e4)))
     eps = draw(powers(-3.0, 3.0)) / d**2 if draw(st.booleans()) else 0.1
     h, a = draw(st.sampled_from((0.2, 0.01, 0.5, 0.9, 0.99))), b * draw(st.sampled_from((1.0, 0.5, 0.01)))
     try:
-        return AlphaInteraction(d=d, r=d * draw(st.sampled_from(kappa)), eps=eps, h=h, a=a, b=b)
+        return AlphaInteraction(d=d, r=d * draw(st.sampled_from(kappa)), eps=eps, h=h, a=a, b=b, unit=unit)
     except ArgumentError:  # a σ-norm that floating point cannot resolve
         assume(False)
 

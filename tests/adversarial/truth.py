@@ -1,6 +1,6 @@
 """What is so, from the mathematics alone: nothing here calls the library's formulas, kernels or integrators.
 
-Laws are read as plain parameters (d, r, ε, h, a, b, the gains, the target's numbers).
+Laws are read as plain parameters (d, r, ε, h, a, b, σ₁'s unit of length, the gains, the target's numbers).
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ from math import cos, hypot, isqrt, pi, sqrt
 import mpmath
 import numpy as np
 from scipy.integrate import solve_ivp
-from scipy.linalg import expm
 
 _DIGITS = 30
 
@@ -39,7 +38,7 @@ def adjacency(s, alpha):
 def phi_alpha(s, alpha):
     """φ_α at a length s (not at its σ-norm)."""
     a, b = alpha.a, alpha.b
-    y = sigma(s, alpha.eps) - sigma(alpha.d, alpha.eps) + (b - a) / sqrt(4.0 * a * b)
+    y = (sigma(s, alpha.eps) - sigma(alpha.d, alpha.eps)) / alpha.unit**2 + (b - a) / sqrt(4.0 * a * b)
     return adjacency(s, alpha) * 0.5 * ((a + b) * y / sqrt(1.0 + y * y) + a - b)
 
 
@@ -53,7 +52,7 @@ def psi_alpha(s, alpha):
     """ψ_α at a length s, to 30 digits."""
     with mpmath.workdps(_DIGITS):
         mp = mpmath.mpf
-        d, r, eps, h, a, b = (mp(x) for x in (alpha.d, alpha.r, alpha.eps, alpha.h, alpha.a, alpha.b))
+        d, r, eps, h, a, b, unit = (mp(getattr(alpha, name)) for name in ("d", "r", "eps", "h", "a", "b", "unit"))
 
         def norm(x):
             return x * x / (mpmath.sqrt(1 + eps * x * x) + 1)
@@ -62,13 +61,13 @@ def psi_alpha(s, alpha):
         c = (b - a) / mpmath.sqrt(4 * a * b)
 
         def phi(x):
-            y = x - z_d + c
+            y = (x - z_d) / unit**2 + c
             action = ((a + b) * y / mpmath.sqrt(1 + y * y) + a - b) / 2
             x = x / z_r
             return action if x < h else action * (1 + mpmath.cos(mpmath.pi * (x - h) / (1 - h))) / 2
 
         z = min(z, z_r)
-        turns = [z_d + k * mp(2) ** j for k in (-1, 1) for j in range(-2, 12, 2)]  # where σ₁ bends
+        turns = [z_d + k * unit**2 * mp(2) ** j for k in (-1, 1) for j in range(-2, 12, 2)]  # where σ₁ bends
         inner = [x for x in [h * z_r, *turns] if min(z, z_d) < x < max(z, z_d)]
         return mpmath.quad(phi, sorted([z_d, *inner, z], reverse=z < z_d))
 
@@ -207,9 +206,14 @@ def head_on(law, s0, speed, until):
 def harmonic(law, q, p, times):
     """x(t), v(t) in the moving frame of a flock without pair forces (c1α = c2α = 0) under Algorithm 2: closed form."""
     x, v = (np.asarray(state, float) - np.mean(state, axis=0) for state in (q, p))
-    system = np.array([[0.0, 1.0], [-law.gains.c1_gamma, -law.gains.c2_gamma]])
-    maps = np.array([expm(system * t) for t in times])
-    return (maps[:, k, 0, None, None] * x + maps[:, k, 1, None, None] * v for k in (0, 1))
+    t = np.asarray(times, float)[:, None, None]
+    fast, slow = np.roots([1.0, law.gains.c2_gamma, law.gains.c1_gamma]).astype(complex)
+    if abs(fast - slow) > 1e-7 * abs(fast):
+        grow = (np.exp(fast * t) - np.exp(slow * t)) / (fast - slow)
+        hold = (fast * np.exp(slow * t) - slow * np.exp(fast * t)) / (fast - slow)
+    else:
+        grow, hold = t * np.exp(slow * t), (1.0 - slow * t) * np.exp(slow * t)
+    return (hold * x + grow * v).real, (hold * v - grow * (law.gains.c1_gamma * x + law.gains.c2_gamma * v)).real
 
 
 def flight(q, p, until):
