@@ -9,7 +9,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     import xarray
 
     from flockana.plots.film import Film
+
+_Value = TypeVar("_Value")
 
 FORMAT = "flockana-trajectory"
 FORMAT_VERSION = 1
@@ -216,6 +218,24 @@ class Trajectory:
                 raise UnknownNameError("metric", name, (*known, *self._own))
             self._measured[name] = values
         return self._measured[name]
+
+    def remembered(self, name: str, compute: Callable[[], _Value]) -> _Value:
+        """What was computed from this run before, or is now: kept as long as the run.
+
+        Parameters
+        ----------
+        name : str
+            What it is.
+        compute : callable
+            Gives it.
+        """
+        if name not in self._memory:
+            self._memory[name] = compute()
+        return self._memory[name]  # type: ignore[no-any-return]
+
+    @cached_property
+    def _memory(self) -> dict[str, Any]:
+        return {}
 
     def _any_flock(self) -> dict[str, tuple[str, Callable[[], FloatArray]]]:
         """What is measured of every flock: in words, and a function that does it."""
