@@ -1,4 +1,4 @@
-"""Laws, starts and ways to integrate them: extreme, but valid. Sizes come as pure numbers times the law's own scales."""
+"""Laws, starts and ways to integrate them: extreme, but valid. Sizes are pure numbers times the law's own scales."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from math import sqrt
 
 import numpy as np
 from adversarial import truth
+from adversarial.cases import Case
 from hypothesis import assume
 from hypothesis import strategies as st
 
@@ -31,8 +32,8 @@ def powers(low, high):
 
 
 @st.composite
-def alphas(draw, *, kappa=(1.05, 1.2, sqrt(2.0), 1.7, 2.5)):
-    """A pair law: lengths from micrometres to kilometres, σ-norms from quadratic to linear, bumps from steep to flat."""
+def alphas(draw):
+    """A pair law: micrometres to kilometres, σ-norms from quadratic to linear, bumps from steep to flat."""
     if draw(st.booleans()):
         return AlphaInteraction()
     d = draw(st.sampled_from((7.0, 1.0, 15.0, 0.02, 7e-6, 4e3)))
@@ -41,7 +42,9 @@ def alphas(draw, *, kappa=(1.05, 1.2, sqrt(2.0), 1.7, 2.5)):
     eps = draw(powers(-3.0, 3.0)) / d**2 if draw(st.booleans()) else 0.1
     h, a = draw(st.sampled_from((0.2, 0.01, 0.5, 0.9, 0.99))), b * draw(st.sampled_from((1.0, 0.5, 0.01)))
     try:
-        return AlphaInteraction(d=d, r=d * draw(st.sampled_from(kappa)), eps=eps, h=h, a=a, b=b, unit=unit)
+        return AlphaInteraction(
+            d=d, r=d * draw(st.sampled_from((1.05, 1.2, sqrt(2.0), 1.7, 2.5))), eps=eps, h=h, a=a, b=b, unit=unit
+        )
     except ArgumentError:  # a σ-norm that floating point cannot resolve
         assume(False)
 
@@ -138,3 +141,15 @@ def ways(draw, until, step):
     if draw(st.booleans()):
         return {}
     return {**draw(methods(step)), **draw(samplings(until))}
+
+
+@st.composite
+def flocks(draw):
+    """Any flock of at most five under Algorithm 1 or 2, at rest or fast, any γ-agent, for 10⁻⁷ to 30 law times."""
+    law = draw(pair_laws())
+    time, d = truth.law_time(law), law.alpha.d
+    q, p = draw(starts(d, d / time))
+    if isinstance(law, Algorithm2):
+        law = Algorithm2(law.alpha, law.gains, draw(targets(q.shape[1], d, time)))
+    until = time * draw(powers(-7.0, 1.5))
+    return Case(law, q, p, until, draw(ways(until, min(until, time) / 50.0 + until / 2000.0)))

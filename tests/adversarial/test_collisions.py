@@ -93,7 +93,9 @@ def test_a_near_miss_is_no_collision(law, offset, apart, data):
 
 
 E13_LAW = Algorithm2(
-    AlphaInteraction(a=5e4, b=5e4), Gains(c1_alpha=1.0, c2_alpha=1.0, c1_gamma=0.01, c2_gamma=0.01), StaticTarget((0.0,))
+    AlphaInteraction(a=5e4, b=5e4),
+    Gains(c1_alpha=1.0, c2_alpha=1.0, c1_gamma=0.01, c2_gamma=0.01),
+    StaticTarget((0.0,)),
 )
 
 

@@ -1,4 +1,4 @@
-"""The dead-zone theorem: parting for ever, gliding apart within the dead zone, an energy that jumps, swings undamped."""
+"""The dead-zone theorem: parting for ever, gliding within the dead zone, an energy that jumps, undamped swings."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def test_out_of_range_and_parting(drawn, speed, until, m, data):
 @given(dead_zones(k1=(0.0,)), powers(-6.0, 1.5), st.data())
 def test_leaving_range_fast(drawn, until, data):
     """L4: from within range, but faster than damping and attraction can stop: 2 k₂ r + √(4ψ(r)) is more than enough."""
-    law, L, T = drawn
+    law, _, T = drawn
     start = 0.93 * law.interaction.r
     speed = 2.5 * law.k2 * law.interaction.r + 3.0 * sqrt(climb(law.interaction, start))
     q, p = two(start, speed)
@@ -104,7 +104,7 @@ def test_coming_into_range(drawn, speed, offset, data):
 @given(dead_zones(k1=(0.0,)), powers(-6.0, -0.5), st.booleans(), st.integers(1, 3))
 def test_gliding_to_rest_within_the_dead_zone(drawn, speed, long, m):
     """x'' = −2 k₂ x': velocities match as exp(−2k₂t), closed form; at first nothing can be told."""
-    law, L, T = drawn
+    law, L, _ = drawn
     q, p = two(law.interaction.r_b, speed * 2.0 * law.k2 * L, m)
     case = Case(law, q, p, (45.0 if long else 0.01) / (2.0 * law.k2))
     limit = VERIFIED if long else OPEN if speed > 0.1 else TRUE  # a speed below the threshold counts as none
@@ -116,7 +116,7 @@ def test_gliding_to_rest_within_the_dead_zone(drawn, speed, long, m):
 @effort(0.2)
 @given(dead_zones(k2=(0.0,), k1=(0.0,)), st.floats(0.2, 0.6), st.integers(1, 4))
 def test_an_undamped_pair_swings_for_ever(drawn, share, halves):
-    """k₂ = 0 and less energy than ψ(r): bound for ever, at rest at its turning points alone, where the run is stopped."""
+    """k₂ = 0 and less energy than ψ(r): bound for ever, at rest at its turning points alone, where the run stops."""
     law, L, T = drawn
     pair = law.interaction
     assume(pair.ramp > 0.0)
@@ -155,7 +155,7 @@ def test_what_holds_of_every_flock(drawn, n, m, seed, data):
 
 
 def test_the_bound_of_the_distance_is_the_specifications():
-    """1/(√η sinh(H̄/2k_r + asinh(1/(√η d₁)))), on two agents at rest at d₁, whose energy is k₁d₁²/2 and what k_δ adds."""
+    """1/(√η sinh(H̄/2k_r + asinh(1/(√η d₁)))), on two agents at d₁, where ψ = 0: their H̄ is kinetic alone."""
     law = DeadZoneFlocking(DeadZoneInteraction(k1=0.0, ramp=0.0))
     pair = law.interaction
     q, p = two(pair.d1, 2.0)

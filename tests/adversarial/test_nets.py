@@ -8,7 +8,7 @@ from math import comb, sqrt
 import numpy as np
 import pytest
 from adversarial import truth
-from adversarial.cases import FALSE, OPEN, REFUTED, TRUE, VACUOUS, VERIFIED, Case, claims_of, effort, hold
+from adversarial.cases import FALSE, OPEN, REFUTED, TRUE, VERIFIED, Case, effort, hold
 from adversarial.strategies import powers, seeds
 from hypothesis import given
 from hypothesis import strategies as st
@@ -56,7 +56,9 @@ def animals(draw):
 
 
 @effort(0.75)
-@given(animals(), seeds, powers(-6.0, 4.0), st.sampled_from((0.0, 1.0, 1e3, 1e7)), st.sampled_from((1.05, 1.2, 1.7, 0.0)))
+@given(
+    animals(), seeds, powers(-6.0, 4.0), st.sampled_from((0.0, 1.0, 1e3, 1e7)), st.sampled_from((1.05, 1.2, 1.7, 0.0))
+)
 def test_patches_of_the_triangular_lattice(cells, seed, d, shift, kappa):
     """κ = 0 stands for the limit √3 itself, where the second neighbours are at r to the last bit and do not count."""
     n, links = len(cells), truth.lattice_links(cells)
@@ -96,7 +98,9 @@ def test_lattices_in_space_need_not_be_planar(seed, d, kappa):
 
 
 @effort(0.5)
-@given(seeds, st.integers(2, 12), st.sampled_from((0.8, 1.5, 4.0)), st.integers(1, 3), st.sampled_from((1.0, 1e-6, 1e4)))
+@given(
+    seeds, st.integers(2, 12), st.sampled_from((0.8, 1.5, 4.0)), st.integers(1, 3), st.sampled_from((1.0, 1e-6, 1e4))
+)
 def test_any_net(seed, n, spread, m, d):
     """At random there is no lattice, so nothing is claimed of one; crossings are counted, and the extension holds."""
     rng = np.random.default_rng(seed)
@@ -145,4 +149,4 @@ def test_the_last_state_of_a_run(kappa):
     q = np.array([(a + 0.5 * b, 0.5 * sqrt(3.0) * b) for a, b in [(0, 0), *STEPS]]) * 7.0
     case = Case(law, q, 0.0 * q, 1.0)
     hold("os-5-terminal", case, dict.fromkeys(("i", "i-graph", "ii", "ii-sharp", "iii"), VERIFIED))
-    assert claims_of("os-5-terminal", Case(law, 9.0 * q, 0.0 * q, 1.0).run()).claim("i").status in TRUE | VACUOUS
+    hold("os-5-terminal", Case(law, 9.0 * q, 0.0 * q, 1.0), dict.fromkeys(("i", "i-graph", "ii", "ii-sharp"), TRUE))

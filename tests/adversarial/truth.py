@@ -17,7 +17,7 @@ from scipy.integrate import solve_ivp
 _DIGITS = 30
 
 
-# --- the α-pair law ---------------------------------------------------------------------------------------------------
+# --- the α-pair law -------------------------------------------------------------------------------------------------
 
 
 def sigma(s, eps):
@@ -108,17 +108,16 @@ def law_time(law):
     return 1.0 / sqrt(law.gains.c1_gamma) if law.gains.c1_gamma else 1.0
 
 
-# --- motion of a few agents -------------------------------------------------------------------------------------------
+# --- motion of a few agents -----------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class Motion:
-    """A reference solution in the moving frame: times, positions, velocities, shape (T, n, m); whether it got through."""
+    """A reference solution in the moving frame: times, positions, velocities, shape (T, n, m)."""
 
     t: np.ndarray
     x: np.ndarray
     v: np.ndarray
-    whole: bool
 
     def distance(self, i, j):
         """Of a pair at the reference's own (dense) times."""
@@ -163,7 +162,7 @@ def motion(law, q, p, until):
     done = solve_ivp(rhs, (0.0, until), start, "DOP853", rtol=1e-12, atol=1e-14 * scale, max_step=step)
     y = done.y.T
     shape = (-1, n, m)
-    return Motion(done.t, y[:, : n * m].reshape(shape), y[:, n * m :].reshape(shape), done.status == 0)
+    return Motion(done.t, y[:, : n * m].reshape(shape), y[:, n * m :].reshape(shape))
 
 
 def head_on(law, s0, speed, until):
@@ -227,11 +226,12 @@ def flight(q, p, until):
     return least
 
 
-# --- equilibria of two agents ----------------------------------------------------------------------------------------
+# --- equilibria of two agents ---------------------------------------------------------------------------------------
 
 
 def balanced_length(law):
     """The stable distance of two agents under Algorithm 2: c1α φ_α |n| = −½ c1γ s, by bisection below d."""
+
     def force(s):
         return law.gains.c1_alpha * pull(s, law.alpha) + 0.5 * law.gains.c1_gamma * s
 
@@ -262,7 +262,7 @@ def decay_rate(spring, damping):
     return float(-np.roots([1.0, damping, spring]).real.max())
 
 
-# --- the centre of mass as a filter (E12) ------------------------------------------------------------------------------
+# --- the centre of mass as a filter (E12) ---------------------------------------------------------------------------
 
 
 def filter_gain(c1, c2, omega, factor=1.0):
@@ -270,7 +270,7 @@ def filter_gain(c1, c2, omega, factor=1.0):
     return hypot(c1, factor * omega * c2) / hypot(c1 - omega * omega, omega * c2)
 
 
-# --- nets of lattices, in integers --------------------------------------------------------------------------------------
+# --- nets of lattices, in integers ----------------------------------------------------------------------------------
 
 
 def lattice_links(cells):
