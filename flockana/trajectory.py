@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable, Mapping
-from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -18,6 +17,7 @@ from flockana._version import __version__
 from flockana.checks import FloatArray
 from flockana.clearance import Clearance, clearance
 from flockana.errors import ArgumentError, FileError, UnknownNameError
+from flockana.files import replacing
 from flockana.laws.law import ensure_law
 from flockana.paths import ClosestApproach, closest_approach
 from flockana.scales import Scales
@@ -374,18 +374,8 @@ class Trajectory:
         if "\0" in str(target):  # HDF5 would write to what precedes it
             raise FileError(f"cannot write {str(target)!r}: null byte; choose a file name and folder to write to")
         dataset = self.to_xarray()
-        partial = target.parent / f".{target.name}.{os.getpid()}.partial"
-        try:
+        with replacing(target, remedy="choose a file name and folder to write to") as partial:
             dataset.to_netcdf(partial, engine="h5netcdf")
-            os.replace(partial, target)
-        except (OSError, ValueError) as error:
-            reason = getattr(error, "strerror", None) or error
-            raise FileError(
-                f"cannot write {str(target)!r}: {reason}; choose a file name and folder to write to"
-            ) from error
-        finally:
-            with suppress(OSError, ValueError):  # one that could not be written cannot be removed either
-                partial.unlink(missing_ok=True)
         return target
 
     @classmethod

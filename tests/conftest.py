@@ -6,11 +6,19 @@ With ``--attack N`` it draws N new ones for each test of tests/adversarial, from
 from __future__ import annotations
 
 import secrets
+import signal
 
 import pytest
-from hypothesis import settings
+from hypothesis import HealthCheck, settings
 
-settings.register_profile("flockana", deadline=None, derandomize=True, max_examples=40, database=None)
+settings.register_profile(
+    "flockana",
+    deadline=None,
+    derandomize=True,
+    max_examples=40,
+    database=None,
+    suppress_health_check=[HealthCheck.too_slow],  # the clock of a busy machine
+)
 settings.load_profile("flockana")
 
 
@@ -25,7 +33,8 @@ def pytest_configure(config):
     if examples := config.getoption("attack"):
         if config.option.hypothesis_seed is None:
             config.option.hypothesis_seed = str(secrets.randbelow(2**32))
-        settings.register_profile("attack", deadline=None, max_examples=examples, database=None, print_blob=True)
+        usual = settings.get_profile("flockana")
+        settings.register_profile("attack", usual, max_examples=examples, derandomize=False, print_blob=True)
         settings.load_profile("attack")
 
 
@@ -38,3 +47,11 @@ def pytest_report_header(config):
 def pytest_collection_modifyitems(config, items):
     if not config.getoption("attack"):
         items[:] = [item for item in items if item.get_closest_marker("attack") is None]
+
+
+@pytest.fixture
+def answering():
+    """Ctrl-C is answered here, even if whoever started the tests ignores it, which is inherited."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)

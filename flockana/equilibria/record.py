@@ -13,6 +13,7 @@ import numpy as np
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.solve import Equilibrium, finish
 from flockana.errors import FileError, FlockanaError
+from flockana.files import replacing
 from flockana.serialize import from_data, to_data
 
 _FORMAT = "flockana equilibrium 1"
@@ -45,10 +46,8 @@ def write_equilibrium(found: Equilibrium, path: str | Path) -> None:
         "rigid_modes": found.rigid_modes,
         "hessian_eigenvalues": found.hessian_eigenvalues.tolist(),
     }
-    try:
-        Path(path).write_text(json.dumps(data, indent=1) + "\n")
-    except OSError as error:
-        raise FileError(f"cannot write {path}: {error}") from error
+    with replacing(path) as partial:
+        partial.write_text(json.dumps(data, indent=1) + "\n")
 
 
 def read_equilibrium(path: str | Path) -> Equilibrium:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from hypothesis import settings
+from hypothesis import HealthCheck, settings
 
 from flockana import simulate, verify
 from flockana.errors import ArgumentError
@@ -21,7 +21,8 @@ VERIFIED, REFUTED, VACUOUS = (frozenset({status}) for status in ("verified", "re
 
 def effort(share: float) -> settings:
     """Settings of a test: a share of the profile's examples, 40 in the sample and thousands in an attack."""
-    return settings(max_examples=max(2, round(share * settings.default.max_examples)))
+    picky = [HealthCheck.filter_too_much, HealthCheck.too_slow, HealthCheck.data_too_large]
+    return settings(max_examples=max(2, round(share * settings.default.max_examples)), suppress_health_check=picky)
 
 
 @dataclass(frozen=True)

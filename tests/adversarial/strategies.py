@@ -76,7 +76,7 @@ def targets(m, length, time):
         LinearTarget(here, away),
         RescaledVelocity(LinearTarget(here, away), 0.5),
         SineTarget(here, away, 3.0 * length, f, axis=m - 1),
-        CallableTarget(jittering),
+        CallableTarget(jittering, time),
     ]
     if m > 1:
         some += [CircleTarget(here, 3.0 * length, f), RescaledVelocity(CircleTarget(here, 2.0 * length, f), -1.0)]

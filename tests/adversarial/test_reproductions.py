@@ -51,7 +51,7 @@ def test_an_encounter_is_not_leapt_over():
 @pytest.mark.parametrize("speed", [1.0, 20.0, 300.0])
 def test_coming_into_range_is_not_leapt_over(speed):
     law = DeadZoneFlocking()
-    q, p = [[-60.0, 0.0], [60.0, 0.0]], [[speed, 0.0], [-speed, 0.0]]
+    q, p = [[-60.0, -4.0], [60.0, 4.0]], [[speed, 0.0], [-speed, 0.0]]
     hold("dead-zone-1-printed", Case(law, q, p, 120.0 / speed), {"energy": frozenset({"refuted"})})
 
 
@@ -108,7 +108,10 @@ def test_a_step_far_too_large_refutes_nothing(dt):
     case = Case(law, q, 0.0 * q, 30.0, {"method": "RK4", "dt": dt})
     run = case.run()
     for name in ("os-3", "energy", "collision-energy", "E13"):
-        decides_nothing(name, run)
+        true = ("i", "ii", "iii", "iv-instant", "iv-none", "iv-barrier", "rate", "balance", "below", "corrected")
+        hold(name, case, dict.fromkeys(true, TRUE), run=run, may_refuse=True)
+        if np.abs(run.q).max() > 1e3:
+            decides_nothing(name, run)
 
 
 def test_an_error_larger_than_what_it_measures_verifies_nothing():
@@ -258,8 +261,8 @@ def test_a_smooth_target_is_consistent_in_any_unit_of_time(time):
     def lying(t):
         return honest(t)[0], tuple(0.9 * x for x in honest(t)[1])
 
-    assert consistency(CallableTarget(honest), 3.0 * time, time) == "met"
-    assert consistency(CallableTarget(lying), 3.0 * time, time) == "unmet"
+    assert consistency(CallableTarget(honest, time), 3.0 * time, time) == "met"
+    assert consistency(CallableTarget(lying, time), 3.0 * time, time) == "unmet"
 
 
 def test_without_links_there_is_no_lattice_to_call_one():
@@ -346,9 +349,11 @@ def test_every_theorem_has_an_answer_for_every_law(law, name):
         hold(name, Case(ODD[law], q, STILL, 1.0), {})
 
 
-@pytest.mark.parametrize("bad", [0.0, -1.0, np.nan, np.inf, "1e-6", None])
+@pytest.mark.parametrize("bad", [0.0, -1.0, np.nan, np.inf, "tight", None])
 def test_tolerances_are_checked(bad):
     for field in Tolerances.__dataclass_fields__:
+        if field == "settle" and bad == 0.0:
+            continue  # no transient is left out
         with pytest.raises(ArgumentError, match=field):
             Tolerances(**{field: bad})
 
