@@ -25,7 +25,8 @@ def phases(
 
     In this order: *collapse*, two agents are closer than `contact` d, which no lattice under pressure is before its
     links fold; *fragmentation*, the net has several components; *flocking*, it is connected with velocities matched
-    (slip, K̃ in the law's own scale, ≤ ``tolerances.mismatch``) and links near d (Ẽ ≤ ``tolerances.deviation``), ε₂ and ε₁ of Definition 5 of
+    (slip, K̃ in the law's own scale, ≤ ``tolerances.mismatch``) and links near d (Ẽ ≤ ``tolerances.deviation``), ε₂ and
+    ε₁ of Definition 5 of
     Olfati-Saber (2006); *other*, connected, but still moving or strained. A phase is of the end time, not of a limit.
 
     Parameters

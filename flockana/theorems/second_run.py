@@ -27,7 +27,8 @@ FINEST = 3e-14  # relative tolerance below which the solvers cannot go
 RK4_SECOND = 1e-10  # relative tolerance of the second run of one with a fixed step
 SAME_INPUT = 1e-8  # of the largest input: other machine code evaluates a law to 1e-13, another law does not
 INTERVALS = 6  # that look edited by some sign, and evenly spread ones, which are integrated again
-SLACK = 100.0  # how often the error of integrating an interval, as two tolerances show it, a sample may be off
+SLACK = 100.0  # how often the error of integrating an interval, as two tolerances show it, a sample may be off,
+FLOOR = 300.0  # and how often the relative tolerance, where the two agree by chance or to rounding
 
 Judge = Callable[[Trajectory], Iterable[Claim]]
 
@@ -54,13 +55,14 @@ def corroborated(claims: Sequence[Claim], run: Trajectory, judge_again: Judge) -
     if not any(_open(claim) for claim in claims):
         return tuple(claims)
     if run.status == "failed":
-        return tuple(_undecided(claim, f"the run failed: {run.message}") if _open(claim) else claim for claim in claims)
-    if isinstance(run.law, DiscreteLaw) or len(run.t) == 1:
+        return _all_undecided(claims, f"the run failed: {run.message}")
+    if len(run.t) == 1:
+        return _all_undecided(claims, "one sample shows no motion")
+    if isinstance(run.law, DiscreteLaw):
         return tuple(claims)
     again = second_run(run)
     if again.status != "complete" or len(again.t) != len(run.t):
-        reason = f"a tighter second run ended at t = {again.t[-1]:.6g}: {again.message}"
-        return tuple(_undecided(claim, reason) if _open(claim) else claim for claim in claims)
+        return _all_undecided(claims, f"a tighter second run ended at t = {again.t[-1]:.6g}: {again.message}")
     return tuple(_agreed(one, two) for one, two in zip(claims, judge_again(again), strict=True))
 
 
@@ -70,6 +72,10 @@ def _open(claim: Claim) -> bool:
 
 def _undecided(claim: Claim, reason: str) -> Claim:
     return replace(claim, status="inconclusive", detail=f"{claim.detail}; {reason}".lstrip("; "))
+
+
+def _all_undecided(claims: Sequence[Claim], reason: str) -> tuple[Claim, ...]:
+    return tuple(_undecided(claim, reason) if _open(claim) else claim for claim in claims)
 
 
 def _agreed(one: Claim, two: Claim) -> Claim:
@@ -185,7 +191,7 @@ def _ensure_leads_on(run: Trajectory, k: int) -> None:
     speed = run.scales.speed + float(np.abs(run.p[k]).max())
     for name, unit in (("q", size), ("p", speed)):
         found, again, tight = (getattr(each, name)[at] for each, at in ((run, k + 1), (near, 1), (exact, 1)))
-        allowed = SLACK * (float(np.abs(again - tight).max()) + run.stats.get("rtol", FINEST) * unit)
+        allowed = SLACK * float(np.abs(again - tight).max()) + FLOOR * run.stats.get("rtol", FINEST) * unit
         off = float(np.minimum(np.abs(found - again).max(), np.abs(found - tight).max()))
         if not off <= allowed:
             raise ArgumentError(

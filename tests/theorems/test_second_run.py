@@ -192,3 +192,9 @@ def test_tolerances_are_validated(bad: dict, message: str) -> None:
 def test_verify_takes_tolerances_and_nothing_like_them() -> None:
     with pytest.raises(ArgumentError, match=r"tolerances = \{\}: expected flockana.Tolerances"):
         verify("E8", tolerances={})
+
+
+def test_one_sample_shows_no_motion() -> None:
+    run = oscillation(t_eval=[0.0])
+    claim = verify(returns_to_the_start(0.5), run).claims[0]
+    assert (claim.status, claim.detail) == ("inconclusive", "one sample shows no motion")
