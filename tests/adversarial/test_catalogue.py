@@ -56,9 +56,8 @@ CHANGES = {name: (lambda case, rng, by=by: in_units(case, *by)) for name, by in 
 
 
 def pairs():
-    for name in scenarios():
-        for change in CHANGES:
-            yield pytest.param(name, change, marks=() if QUICK.get(name) == change else pytest.mark.attack)
+    every = [(name, change) for name in scenarios() for change in CHANGES]
+    return [pytest.param(*one, marks=() if QUICK.get(one[0]) == one[1] else pytest.mark.attack) for one in every]
 
 
 @pytest.mark.parametrize(("name", "change"), pairs())
