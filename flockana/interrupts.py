@@ -1,4 +1,4 @@
-"""Ctrl-C, kept for later while something is under way that it must not tear."""
+"""Ctrl-C: kept for later while something is under way that it must not tear, and recognised in any shape."""
 
 from __future__ import annotations
 
@@ -6,11 +6,12 @@ import signal
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from multiprocessing import resource_tracker
 
 
 @contextmanager
-def interrupts_held() -> Iterator[None]:
-    """Keep Ctrl-C for later; processes started meanwhile never see it, not even before they can ignore it.
+def interrupts_held() -> Iterator[list[int]]:
+    """Keep Ctrl-C for later; gives a list that is empty as long as it did not come.
 
     Raises
     ------
@@ -19,20 +20,19 @@ def interrupts_held() -> Iterator[None]:
 
     Examples
     --------
-    >>> with interrupts_held():
-    ...     print("whole")
-    whole
+    >>> with interrupts_held() as came:
+    ...     print("whole", came)
+    whole []
     """
-    # A blocked signal alone would not do: any other thread, such as linear algebra's, takes it for the main one. And
-    # where Ctrl-C is ignored, as in a background job of a shell, it stays ignored.
+    # A blocked signal would not do: any other thread, such as linear algebra's, takes it for the main one. And where
+    # Ctrl-C is ignored, as in a background job of a shell, it stays ignored.
     came: list[int] = []
     before = signal.getsignal(signal.SIGINT)
     ours = callable(before) and threading.current_thread() is threading.main_thread()
     if ours:
         signal.signal(signal.SIGINT, lambda number, frame: came.append(number))
     try:
-        with _blocked():
-            yield
+        yield came
     finally:
         if ours:
             signal.signal(signal.SIGINT, before)
@@ -41,16 +41,52 @@ def interrupts_held() -> Iterator[None]:
 
 
 @contextmanager
-def _blocked() -> Iterator[None]:
-    """This thread, and with it what it starts, does not get the signal."""
+def interrupts_hidden() -> Iterator[None]:
+    """Processes that this thread starts meanwhile never get Ctrl-C, not even before they can ignore it.
+
+    Examples
+    --------
+    >>> with interrupts_hidden():
+    ...     pass
+    """
     if not hasattr(signal, "pthread_sigmask"):  # Windows
         yield
         return
-    from multiprocessing import resource_tracker
-
     resource_tracker.ensure_running()  # it starts with the first process, and then unblocks the signal
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextmanager
+def interrupts_recognised() -> Iterator[None]:
+    """Make Ctrl-C again what compiled code made of it: where it falls into a call of a kernel, that call has failed.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        Instead of an error that it caused.
+
+    Examples
+    --------
+    >>> try:
+    ...     with interrupts_recognised():
+    ...         raise SystemError("returned a result with an exception set") from KeyboardInterrupt()
+    ... except KeyboardInterrupt:
+    ...     print("interrupted")
+    interrupted
+    """
+    try:
+        yield
+    except Exception as error:
+        if _caused_by_interrupt(error):
+            raise KeyboardInterrupt from error
+        raise
+
+
+def _caused_by_interrupt(error: BaseException | None) -> bool:
+    while error is not None and not isinstance(error, KeyboardInterrupt):
+        error = error.__cause__
+    return error is not None

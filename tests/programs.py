@@ -78,6 +78,14 @@ def _state(path):
     return state, of, path.parent.name
 
 
+def out_of_a_kernel():
+    """What numba makes of Ctrl-C now and then."""
+    error = SystemError("CPUDispatcher returned a result with an exception set")
+    error.__cause__ = SystemError("and so did what it called")
+    error.__cause__.__cause__ = KeyboardInterrupt()
+    return error
+
+
 def interrupt(process):
     """Ctrl-C as the terminal does it: the signal goes to the whole group of processes."""
     os.killpg(process.pid, signal.SIGINT)

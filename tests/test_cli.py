@@ -13,7 +13,7 @@ from textwrap import indent
 
 import numpy as np
 import pytest
-from programs import ANSWERS_CTRL_C, CLI, IGNORES_CTRL_C, group, interrupt, posix, program, until
+from programs import ANSWERS_CTRL_C, CLI, IGNORES_CTRL_C, group, interrupt, out_of_a_kernel, posix, program, until
 
 from flockana.cli import main
 from flockana.errors import SolverError
@@ -232,16 +232,17 @@ def test_a_run_of_another_scenario_is_refused(call, catalogue, tmp_path):
     assert "one.nc holds no run of right" in err
 
 
-def test_what_was_done_before_an_interrupt_is_reported(call, catalogue, monkeypatch):
+@pytest.mark.parametrize("error", [KeyboardInterrupt(), out_of_a_kernel()])
+def test_what_was_done_before_an_interrupt_is_reported(error, call, catalogue, monkeypatch):
     work = importlib.import_module("flockana.report.work")
-    do = work.do
+    verify = work.verify
 
-    def interrupted(task):
-        if task.name == "wrong":
-            raise KeyboardInterrupt
-        return do(task)
+    def interrupted(theorem, run, **options):
+        if options["subject"] == "wrong":
+            raise error
+        return verify(theorem, run, **options)
 
-    monkeypatch.setattr(work, "do", interrupted)
+    monkeypatch.setattr(work, "verify", interrupted)
     code, out, err = call("verify", "energy", "--jobs", 1)
     assert code == 130
     assert err == "flockana: interrupted\n"

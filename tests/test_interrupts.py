@@ -118,9 +118,9 @@ def test_processes_started_meanwhile_do_not_get_it_even_the_first_of_all():
     """In a process of its own: multiprocessing starts a helper with the first process, and then unblocks the signal."""
     code = f"""
 import multiprocessing, subprocess, sys
-from flockana.interrupts import interrupts_held
+from flockana.interrupts import interrupts_hidden
 if __name__ == "__main__":
-    with interrupts_held():
+    with interrupts_hidden():
         lock = multiprocessing.get_context("spawn").Lock()
         subprocess.run([sys.executable, "-c", {REPORT!r}])
     subprocess.run([sys.executable, "-c", {REPORT!r}])

@@ -14,7 +14,7 @@ from typing import Any
 
 from flockana.ensemble.processes import single_threaded_children
 from flockana.errors import ArgumentError, SolverError
-from flockana.interrupts import interrupts_held
+from flockana.interrupts import interrupts_held, interrupts_hidden
 
 _CONNECT = 10.0  # seconds to find a scheduler and a worker
 _START = 120.0  # seconds for worker processes of our own to stand
@@ -67,7 +67,7 @@ def _own_cluster(count: int) -> Any:
     from distributed import LocalCluster
 
     cluster = LocalCluster.__new__(LocalCluster)  # so that there is something to close if the constructor fails
-    with interrupts_held(), single_threaded_children():
+    with interrupts_held(), interrupts_hidden(), single_threaded_children():
         try:
             cluster.__init__(
                 n_workers=count,

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from flockana.ensemble.processes import ProcessPool
 from flockana.errors import ArgumentError, FlockanaError, SolverError, UnknownNameError
+from flockana.interrupts import interrupts_recognised
 from flockana.report.pages import FixedResult, Page, ScenarioResult, page
 from flockana.report.statistics import Survey, Surveyed, carry_out
 from flockana.scenarios import scenario, scenarios
@@ -105,16 +106,17 @@ def do(task: Task | Survey) -> Page | Surveyed:
     KeyboardInterrupt
         If the run was interrupted.
     """
-    if isinstance(task, Survey):
-        return carry_out(task)
-    if task.fixed:
-        return page(FixedResult(theorem(task.name), verify(task.name)))
-    item = scenario(task.name, task.seed)
-    run = item.run()
-    if run.status == "interrupted":
-        raise KeyboardInterrupt
-    verdicts = tuple(verify(one, run, subject=item.name) for one in task.only) or item.verify(run)
-    return page(ScenarioResult(item, run, verdicts), figures=task.figures)
+    with interrupts_recognised():
+        if isinstance(task, Survey):
+            return carry_out(task)
+        if task.fixed:
+            return page(FixedResult(theorem(task.name), verify(task.name)))
+        item = scenario(task.name, task.seed)
+        run = item.run()
+        if run.status == "interrupted":
+            raise KeyboardInterrupt
+        verdicts = tuple(verify(one, run, subject=item.name) for one in task.only) or item.verify(run)
+        return page(ScenarioResult(item, run, verdicts), figures=task.figures)
 
 
 def perform(

@@ -8,6 +8,7 @@ import sys
 import numpy as np
 import pytest
 from PIL import Image
+from programs import out_of_a_kernel
 
 from flockana.cli import main
 from flockana.commands.source import builders, read_source
@@ -191,9 +192,10 @@ def test_an_unwritable_picture_is_refused_before_anything_is_measured(call, monk
     assert call("lattice", "line:3", "-o", "it.txt")[0] == 2
 
 
-def test_ctrl_c_is_130(call, monkeypatch):
+@pytest.mark.parametrize("error", [KeyboardInterrupt(), out_of_a_kernel()])
+def test_ctrl_c_is_130(error, call, monkeypatch):
     def interrupted(*arguments, **options):
-        raise KeyboardInterrupt
+        raise error
 
     monkeypatch.setattr(THEOREMS, "verify", interrupted)
     assert call("lattice", "line:3") == (130, "", "flockana: interrupted\n")

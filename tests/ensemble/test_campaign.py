@@ -200,11 +200,10 @@ def test_workers_load_kernels_and_keep_to_one_thread(monkeypatch):
     assert os.environ["OPENBLAS_NUM_THREADS"] == "7"
 
 
-def test_ctrl_c_ends_it_and_keeps_what_was_done(tmp_path):
+@pytest.mark.parametrize("metric", [tiny_flocks.interrupts, tiny_flocks.interrupts_a_kernel])
+def test_ctrl_c_ends_it_and_keeps_what_was_done(metric, tmp_path):
     with pytest.raises(KeyboardInterrupt):
-        ensemble(
-            tiny_flocks.trio, SEEDS, theorems=[], metrics=[tiny_flocks.interrupts], jobs=1, store=tmp_path / "s.sqlite"
-        )
+        ensemble(tiny_flocks.trio, SEEDS, theorems=[], metrics=[metric], jobs=1, store=tmp_path / "s.sqlite")
     with Store(tmp_path / "s.sqlite") as store:
         assert len(store) in (1, 2, 3)  # the seeds before 3, those of its batch apart
 

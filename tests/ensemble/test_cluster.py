@@ -38,7 +38,7 @@ def dask(kind, file, environment, *options):
     """A scheduler or a worker on loopback, with its own folder for its files."""
     command = ["-m", f"distributed.cli.dask_{kind}", "--host", "127.0.0.1", "--scheduler-file", file, *options]
     own = environment | {"DASK_TEMPORARY_DIRECTORY": str(file.parent)}
-    return program(*command, environment=own, paths=[HERE], output=subprocess.DEVNULL)
+    return program(*command, environment=own, paths=[HERE, HERE.parent], output=subprocess.DEVNULL)
 
 
 def scheduler(file, environment):

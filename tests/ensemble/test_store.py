@@ -25,7 +25,7 @@ print(found.order.values.tobytes().hex())
 def start(path, runs, jobs):
     """A campaign of gated runs; its log and its gate lie beside the store."""
     environment = {tiny_flocks.LOG: str(path.with_name("log")), tiny_flocks.GATE: str(path.with_name("gate"))}
-    return program("-c", CAMPAIGN, path, runs, jobs, paths=[HERE], environment=environment)
+    return program("-c", CAMPAIGN, path, runs, jobs, paths=[HERE, HERE.parent], environment=environment)
 
 
 def seeds_in(path):

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 from numba.core import event
+from programs import out_of_a_kernel
 
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.scenarios import Report, Scenario
@@ -100,4 +101,11 @@ def interrupts(run):
     """Ctrl-C in the run of seed 3."""
     if run.t[0] == 3.0:
         raise KeyboardInterrupt
+    return 0.0
+
+
+def interrupts_a_kernel(run):
+    """Ctrl-C in the run of seed 3, within a kernel."""
+    if run.t[0] == 3.0:
+        raise out_of_a_kernel()
     return 0.0

@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import signal
 import sys
+import threading
+import time
 from collections import Counter
 from pathlib import Path
 
@@ -199,6 +201,7 @@ def test_a_run_that_fails_is_one_row():
     here = verdicts({"E": "verified", "E:i": "verified"}, expected={"E": "verified"})
     (row,) = rows(verdicts(run="the worker ended by SIGILL"), here)
     assert (row.claim, row.there, row.here) == ("run", "the worker ended by SIGILL", "complete")
+    assert len(rows(here, verdicts(run="the worker ended by SIGILL"))) == 1
     assert len(rows(verdicts(run="failed"), verdicts(run="failed"))) == 1  # nowhere is it a run
 
 
@@ -219,7 +222,7 @@ def test_the_table_has_a_column_for_each_field():
 # children
 
 FAKE = f"""
-import json, os, sys
+import json, os, sys, time
 with open(__file__ + ".starts", "a") as starts:
     print(os.environ.get("OPENBLAS_CORETYPE"), file=starts)
 print(json.dumps({AVX512!r} | {{"numba": [os.environ.get("NUMBA_CPU_NAME", "znver5"), []]}}), flush=True)
@@ -228,6 +231,9 @@ for line in sys.stdin:
     if request["name"] == "deadly" and "NUMBA_CPU_NAME" in os.environ:
         print("illegal", file=sys.stderr)
         os.kill(os.getpid(), {int(signal.SIGILL)})
+    if request["name"] == "endless":
+        open(__file__ + ".endless", "w").close()
+        time.sleep(600)
     status = os.environ.get("NUMBA_CPU_NAME", "native") + os.environ.get("OPENBLAS_CORETYPE", "")
     one = {{"run": "complete", "statuses": {{"E:i": status}}, "expected": {{}}}}
     print(json.dumps({{"outcomes": dict.fromkeys(request["changes"], one), "seconds": 1.0}}), flush=True)
@@ -264,6 +270,29 @@ def test_a_child_that_dies_costs_its_entry_alone(fake_worker):
     findings = matrix([Environment(NATIVE), generic], ["deadly", "flock"], jobs=1)
     assert findings.outcomes["generic"]["deadly"]["run"] == "the worker ended by SIGILL: illegal"
     assert findings.outcomes["generic"]["flock"]["run"] == "complete"
+
+
+def test_ctrl_c_ends_the_children_and_what_they_did_not_do_is_not_found(fake_worker, tmp_path, monkeypatch):
+    interrupts = []
+
+    class Waiting(threading.Thread):
+        """Whoever waits for it is interrupted, once, when the child is at work."""
+
+        def join(self, timeout=None):
+            while not interrupts:
+                if (tmp_path / "worker.py.endless").exists():
+                    interrupts.append(True)
+                    raise KeyboardInterrupt
+                time.sleep(0.01)
+            super().join(timeout)
+
+    monkeypatch.setattr(crew.threading, "Thread", Waiting)
+    findings = Findings(AVX512, Counter())
+    with pytest.raises(KeyboardInterrupt):
+        carry_out(
+            [Unit(Environment(NATIVE), name, (Change(NATIVE),)) for name in ("flock", "endless")], findings, jobs=1
+        )
+    assert list(findings.outcomes[NATIVE]) == ["flock"]
 
 
 def test_an_environment_without_effect_is_left_out(fake_worker, tmp_path, capfd):

@@ -117,9 +117,13 @@ class Child:
         last = (self._errors.read().strip().splitlines() or ["nothing said"])[-1]
         return WorkerError(f"the worker ended by {how}: {last}")
 
-    def close(self) -> None:
-        """End it at once."""
+    def end(self) -> None:
+        """End it at once; whoever waits for its answer is told so."""
         self._process.kill()
+
+    def close(self) -> None:
+        """End it, and let go of it."""
+        self.end()
         self._process.wait()
         for pipe in (self._process.stdin, self._process.stdout, self._errors):
             if pipe is not None:
@@ -175,6 +179,7 @@ class _Crew:
         self._queue, self._listener, self._caches = _Queue(units), listener, caches
         self._telling = threading.Lock()
         self._children: set[Child] = set()
+        self._stopped = False
         self.failures: list[BaseException] = []
 
     def work(self) -> None:
@@ -216,6 +221,8 @@ class _Crew:
         try:
             answer = child.ask(unit)
         except WorkerError as error:
+            if self._stopped:
+                return None
             lost = {"run": str(error), "statuses": {}, "expected": {}}
             answer = {"outcomes": {one.name: lost for one in unit.changes}, "seconds": 0.0}
             self._dismiss(child)
@@ -230,10 +237,11 @@ class _Crew:
             child.close()
 
     def stop(self) -> None:
-        """End all children; their threads find nothing more to do."""
+        """End all children; their threads let go of them and find nothing more to do."""
+        self._stopped = True
         self._queue.drop()
         for child in list(self._children):
-            child.close()
+            child.end()
 
 
 def carry_out(units: Iterable[Unit], listener: Listener, *, jobs: int) -> None:

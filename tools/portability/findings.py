@@ -55,7 +55,7 @@ def differences(
         yield Row(name, "", "run", variant, there["run"], here["run"], "complete")
     expected = there["expected"] or here["expected"]
     keys = dict.fromkeys([*here["statuses"], *there["statuses"], *expected])
-    for key in keys if there["statuses"] else ():
+    for key in keys if there["statuses"] and here["statuses"] else ():  # the row above says it all
         one, other, wanted = there["statuses"].get(key, MISSING), here["statuses"].get(key, MISSING), expected.get(key)
         theorem, _, claim = key.partition(":")
         # a verdict as a whole follows from its claims: it is told where it is expected
