@@ -163,6 +163,11 @@ class DeadZoneInteraction(PairInteraction):
         return self.d1
 
     @property
+    def surfaces(self) -> tuple[float, ...]:
+        """Both ends of the dead zone, as far as they lie within range, and the range."""
+        return tuple(sorted({self.d1, min(self.d2, self.r), self.r}))
+
+    @property
     def strength(self) -> float:
         """`contact_force`."""
         return self.contact_force

@@ -66,6 +66,11 @@ class PairInteraction(ABC):
         return self.range
 
     @property
+    def surfaces(self) -> tuple[float, ...]:
+        """Distances at which the pair force begins, ends or jumps; the range alone, unless the law says otherwise."""
+        return (self.range,)
+
+    @property
     @abstractmethod
     def strength(self) -> float:
         """The strongest force between two agents, nearly; of a contact, where it is unbounded: the unit of forces."""

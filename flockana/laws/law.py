@@ -10,6 +10,7 @@ import numpy as np
 
 from flockana.checks import FloatArray, ensure_finite_scalar, ensure_fits, ensure_state
 from flockana.errors import ArgumentError
+from flockana.interactions.pair import pair_interaction
 from flockana.scales import Scales
 from flockana.units import Powers
 
@@ -49,6 +50,16 @@ class Law(ABC):
     def scales(self) -> Scales | None:
         """The natural length and time of the law, which thresholds are multiples of; None if it has none of its own."""
         return None
+
+    @property
+    def surfaces(self) -> tuple[float | tuple[float, ...], ...]:
+        """Distances between agents at which a force begins, ends or jumps, each one number or one for every agent.
+
+        Those of the law's pair interaction of finite range, if it has one. An integrator must not step over the region
+        within one unseen (`flockana.encounters`).
+        """
+        pair = pair_interaction(self)
+        return () if pair is None else pair.surfaces
 
     @abstractmethod
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:

@@ -136,6 +136,11 @@ class MinimalFlocking(Law):
         rate = max(float(np.sqrt(np.max(self.mu))), float(heard > 0.0) if self.normalised else heard)
         return Scales(length, 1.0 / rate if rate > 0.0 else 1.0)
 
+    @property
+    def surfaces(self) -> tuple[PerAgent, ...]:
+        """The perception radius of every agent; none on a frozen graph."""
+        return (self.radius,) if self.edges is None else ()
+
     def in_units(self, length: float, time: float) -> MinimalFlocking:
         """The same law in other units (`flockana.rescale`).
 

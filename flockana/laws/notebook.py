@@ -73,6 +73,11 @@ class _Push:
         if self.factor < 1.0:
             raise ArgumentError(f"factor = {self.factor:g}: expected at least 1; a smaller one is no push")
 
+    @property
+    def surfaces(self) -> tuple[Any, ...]:
+        """Those of the law without the push, and where the push begins."""
+        return (self.min_distance, *super().surfaces)  # type: ignore[misc]
+
     def _pushed(
         self, alpha: AlphaInteraction, c1: float, q: FloatArray, p: FloatArray, found: tuple[FloatArray, float]
     ) -> tuple[FloatArray, float]:

@@ -23,6 +23,7 @@ import numpy.typing as npt
 from flockana.theorems.theorem import Claim, Hypothesis, judge
 
 TIME_CONSTANTS = 5.0  # e-foldings: a factor 148
+REBOUND = 3.0  # e-foldings: a factor 20, more than the noise of an integration that has come to rest varies by
 _WINDOWS = 8  # into which the last part of the fall is divided
 _PARTS = (0.5, 0.25, 0.125)  # of the time until the fall ends: what came before it fell does not count
 _ROUNDING = 1e-12  # of a logarithm of two amplitudes, or a ratio of two energies
@@ -80,8 +81,8 @@ class Decay:
 
     @property
     def certificate(self) -> Certificate:
-        """It fell through five time constants, net of what it rose again, and ended below what counts as 0."""
-        margin = min(self.depth, (self.time_constants - self.growth) / TIME_CONSTANTS - 1.0)
+        """It fell through five time constants, ended below what counts as 0, and did not rise on the way."""
+        margin = min(self.depth, self.time_constants / TIME_CONSTANTS - 1.0, 1.0 - self.growth / REBOUND)
         text = f"it falls steadily through {max(self.time_constants, 0.0):.2g} time constants"
         text += f", rises again by {self.growth:.2g}" if self.growth > 1.0 else ""
         below = f" and ends {'below' if self.depth > 0.0 else 'above'} what counts as 0"
