@@ -5,7 +5,8 @@ of ∇²U(x) off the rigid motions, g = ∇U(x), and let ∇²U be Lipschitz wit
 
 1. Off the rigid motions U is strictly convex near x. If |g| is small, it has a minimum x* there, within δ = 2|g|/λ
    of x; ∇U(x*) is orthogonal both to the rigid motions of x* and to the complement of those of x, so it is 0 as long
-   as δ is less than the least radius of gyration (else λ is taken off the translations alone). The curvature at x* is λ - Lδ at least, and U(x) - U(x*) <= |g|²/λ.
+   as δ is less than the least radius of gyration (else λ is taken off the translations alone). The curvature at x* is
+   λ - Lδ at least, and U(x) - U(x*) <= |g|²/λ.
 2. Of the states with the distance ρ from the set of all x* moved rigidly, the nearest of these differs from each by a
    vector that is orthogonal to the rigid motions; so U >= U(x*) + ρ²(½(λ - Lδ) - Lρ/6) there, for ρ + δ <= w, and for
    ρ <= λ/(2L) there is no equilibrium nearer than ρ but x* itself.

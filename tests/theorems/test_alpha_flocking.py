@@ -82,7 +82,7 @@ def test_a_law_without_a_range_is_named():
 
 
 def test_a_share_that_is_reached_exactly_is_not_exceeded():
-    """C* > 0.5: two of four agents are no giant, three are; and 29 of 100 are not more than 0.29, though 0.29·100 < 29."""
+    """C* > 0.5: two of four agents are no giant, three are; 29 of 100 are not more than 0.29, though 0.29·100 < 29."""
     for sizes, giant, status in (((2, 2), 0.5, "refuted"), ((3, 1), 0.5, "verified"), ((29, 71), 0.71, "refuted"),
                                  ((28, 72), 0.71, "verified")):  # fmt: skip
         q = np.concatenate([7.0 * np.arange(sizes[0]), 1e4 + 7.0 * np.arange(sizes[1])])[:, None]

@@ -111,7 +111,7 @@ class TestErratum13:
         assert verify("os-3", e13).claim("iv-printed").status == "refuted"
 
     def test_two_pairs_in_one_step_are_both_found(self, e13):
-        """Sampled so sparsely that both meetings fall between two samples: together they might be, for all that shows."""
+        """Sampled so sparsely that both meetings fall between two samples: they might be together."""
         keep = [0, int(np.searchsorted(e13.t, 0.035)), len(e13.t) - 1]
         sparse = Trajectory(
             e13.t[keep], e13.q[keep], e13.p[keep], e13.u[keep], e13.law, {"work": e13.extra["work"][keep]}

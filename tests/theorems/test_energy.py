@@ -110,7 +110,7 @@ class TestTheSign:
         assert never_rises(replace(run, law=Rising()), []).status == "refuted"
 
     def test_terms_that_cancel_within_their_rounding_decide_nothing(self, monkeypatch):
-        """An agent that moves with the γ-agent's own velocity, told and not kept: ⟨p, p - p_d⟩ is 0 but for rounding."""
+        """An agent that moves with the γ-agent's own velocity, told, not kept: ⟨p, p - p_d⟩ is 0 but for rounding."""
         law = Algorithm3(gains=Gains(c1_gamma=0.0), target=StaticTarget((0.0, 0.0), (0.1, 0.7)), obstacles=())
         run = simulate(law, [[5.0, 5.0]], [[0.1 * (1.0 + 1e-16), 0.7]], (0.0, 0.5))
         assert never_rises(run, []).status == "inconclusive"
@@ -187,7 +187,7 @@ def test_units(name, scaling):
 
 
 class TestThePrintedEnergy:
-    """E2 along a run: V_α twice rises where two agents approach that are too near, and not where they are drawn together."""
+    """E2 along a run: V_α twice rises where two agents too near approach, not where they are drawn together."""
 
     LAW = Algorithm3(target=StaticTarget((2.0, 0.0)), obstacles=(Sphere((2.0, 5.8), 2.0),))
 
