@@ -5,15 +5,19 @@ Beside the state, ∫ dH/dt is integrated as one more variable.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from flockana.checks import FloatArray
-from flockana.errors import ArgumentError
+from flockana.encounters import Encounters, State
 from flockana.laws.law import DiscreteLaw, Law
+from flockana.scales import Scales
+from flockana.stepping import ONE_STEP, Balance, Check, Flow, Frame, Meetings, Moment, Stepper
+
+_FLOOR = 1e-2  # of the relative tolerance: the default absolute one, over the law's scales
 
 
 class Sample(NamedTuple):
@@ -98,6 +102,97 @@ def has_energy(law: Law, t: float, q: FloatArray, p: FloatArray) -> bool:
     return bool(np.isfinite(law.hamiltonian(t, q, p)))
 
 
+class Floor(NamedTuple):
+    """Errors that are always allowed, whatever the state: of a position, a velocity, and the work."""
+
+    length: float
+    speed: float
+    energy: float
+
+
+def error_floor(
+    law: Law, q0: FloatArray, p0: FloatArray, t_span: tuple[float, float], rtol: float, atol: float | None
+) -> Floor:
+    """Absolute tolerances: the same number for all, or by default a hundredth of `rtol` times the law's own scales.
+
+    A law without scales is measured by the extent of its start and by the duration. Work is measured against the energy
+    that it is the change of, not against zero, where it starts.
+
+    Parameters
+    ----------
+    law : Law
+        What moves the flock.
+    q0, p0 : ndarray, shape (n, m)
+        Start.
+    t_span : (float, float)
+        Start and end.
+    rtol : float
+        Relative tolerance.
+    atol : float or None
+        Absolute tolerance, in the state's own units.
+    """
+    scales = law.scales
+    if scales is None:
+        duration = t_span[1] - t_span[0]
+        extent, travel = (float(np.abs(x - x.mean(axis=0)).max()) for x in (q0, p0 * duration))
+        scales = Scales(extent or travel or float(np.abs(p0).max()) * duration or 1.0, duration)
+    share = _FLOOR * rtol
+    floor = (share * scales.length, share * scales.speed, share * len(q0) * scales.energy)
+    length, speed, energy = floor if atol is None else (atol,) * 3
+    start = law.hamiltonian(t_span[0], q0, p0)
+    return Floor(length, speed, max(energy, rtol * abs(start)) if np.isfinite(start) else energy)
+
+
+def stepper(
+    law: Law,
+    flow: Flow,
+    q0: FloatArray,
+    p0: FloatArray,
+    t_span: tuple[float, float],
+    method: str,
+    rtol: float,
+    floor: Floor,
+    tally: Tally,
+) -> Stepper:
+    """One of scipy's solvers at the start of a run, counting evaluations.
+
+    Parameters
+    ----------
+    law : Law
+        What moves the flock.
+    flow : callable
+        What is integrated: its `flow`, or that of a piece.
+    q0, p0 : ndarray, shape (n, m)
+        Start.
+    t_span : (float, float)
+        Start and end.
+    method : str
+        One of scipy's solvers.
+    rtol : float
+        Relative tolerance.
+    floor : Floor
+        Absolute ones.
+    tally : Tally
+        Where evaluations are counted.
+    """
+    frame = Frame.of(t_span[0], q0, p0, energetic=has_energy(law, t_span[0], q0, p0))
+    sizes = (frame.size, frame.size, int(frame.energetic))
+    atol = np.concatenate([np.full(size, value) for size, value in zip(sizes, floor, strict=True)])
+    counted = _counted(flow, tally, raises=method == "LSODA")
+    return Stepper(method, frame, counted, t_span[0], frame.start(q0, p0), t_span[1], rtol=rtol, atol=atol)
+
+
+def _counted(flow: Flow, tally: Tally, *, raises: bool) -> Flow:
+    def counted(t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
+        tally.evaluations += 1
+        u, rate = flow(t, q, p)
+        if raises and not _finite(u):  # LSODA would try to step over it for ever
+            raise FloatingPointError(f"the law's acceleration is not finite at t = {t:g}")
+        return u, rate
+
+    return counted
+
+
 def adaptive(
     law: Law,
     q0: FloatArray,
@@ -105,11 +200,14 @@ def adaptive(
     t_span: tuple[float, float],
     method: str,
     rtol: float,
-    atol: float,
+    floor: Floor,
     keep: FloatArray | None,
     tally: Tally,
 ) -> Iterator[Sample]:
     """Step one of scipy's solvers, as `solve_ivp` does, but so that each step is kept as soon as it is made.
+
+    A step that leaps over an encounter, or (with a method that has no past) breaks the energy's balance by more than
+    `rtol` of it, is made again, and shorter; `tally.notes` gets how many were.
 
     Parameters
     ----------
@@ -121,63 +219,48 @@ def adaptive(
         Start and end.
     method : str
         One of scipy's solvers.
-    rtol, atol : float
-        Its tolerances.
+    rtol : float
+        Relative tolerance.
+    floor : Floor
+        Absolute ones.
     keep : ndarray or None
         Times to keep; every step if None.
     tally : Tally
         Filled in on the way.
     """
-    import scipy.integrate
+    solver = stepper(law, law.flow, q0, p0, t_span, method, rtol, floor, tally)
+    frame, encounters = solver.frame, Encounters.of(law, len(q0))
+    checks: list[Check] = [Meetings(encounters)] if encounters.any else []
+    if frame.energetic and method in ONE_STEP:
+        checks.append(Balance(law, rtol))
 
-    shape, size = q0.shape, q0.size
-    energetic = has_energy(law, t_span[0], q0, p0)
+    def sample(now: Moment) -> Sample:
+        return Sample(now.t, *now.state, {"work": np.array(now.y[-1])} if frame.energetic else {})
 
-    def rhs(t: float, y: FloatArray) -> FloatArray:
-        p = y[size : 2 * size]
-        u, rate = law.flow(t, y[:size].reshape(shape), p.reshape(shape))
-        tally.evaluations += 1
-        if method == "LSODA" and not _finite(u, rate if energetic else 0.0):  # it would try to step over it for ever
-            raise FloatingPointError(f"the law's acceleration is not finite at t = {t:g}")
-        return np.concatenate([p, u.ravel(), [rate] if energetic else []])
+    def between(t: float, y: FloatArray) -> Sample:
+        q, p = frame.state(t, y)
+        return Sample(t, q, p, law.flow(t, q, p)[0], {"work": np.array(y[-1])} if frame.energetic else {})
 
-    def sample(t: float, y: FloatArray) -> Sample:
-        q, p = y[:size].reshape(shape).copy(), y[size : 2 * size].reshape(shape).copy()
-        extra = {"work": np.array(y[-1])} if energetic else {}
-        return Sample(t, q, p, law.flow(t, q, p)[0], extra)
-
-    y0 = np.concatenate([q0.ravel(), p0.ravel(), [0.0] if energetic else []])
-    atols = np.full(y0.size, atol)
-    if energetic:  # the work is measured against the energy it is the change of, not against zero at the start
-        atols[-1] = max(atol, rtol * abs(law.hamiltonian(t_span[0], q0, p0)))
     wanted = 0
     if keep is None or keep[0] == t_span[0]:
         wanted = 1
-        yield sample(t_span[0], y0)
-    if not _finite(
-        *law.flow(t_span[0], q0, p0)[: 2 if energetic else 1]
-    ):  # scipy's first step would look for its length for ever
-        tally.fail(f"the law's acceleration is not finite at the start, t = {t_span[0]:g}")
-        return
-    solver = getattr(scipy.integrate, method)(rhs, t_span[0], y0, t_span[1], rtol=rtol, atol=atols)
-    while solver.status == "running":
-        try:
-            message = solver.step()
-        except (ValueError, FloatingPointError, np.linalg.LinAlgError) as error:  # implicit solvers raise on NaN
-            if isinstance(error, ArgumentError):
-                raise
-            message, solver.status = str(error), "failed"
-        if solver.status == "failed" or not _finite(solver.y):
-            tally.fail(f"{method} gave up at t = {solver.t:g}: {message or 'the state is no longer finite'}")
+        yield start_sample(law, q0, p0, t_span[0])  # not a rounding beside it, as in the frame
+    while not solver.done:
+        if not solver.step(tuple(checks)):
+            tally.fail(solver.message)
             return
         tally.steps += 1
+        tally.notes["redone"] = solver.redone
         if keep is None:
-            yield sample(solver.t, solver.y)
+            yield sample(solver.now)
             continue
-        interpolant = None
-        while wanted < keep.size and keep[wanted] <= solver.t:
-            interpolant = interpolant or solver.dense_output()
-            yield sample(keep[wanted], solver.y if keep[wanted] == solver.t else interpolant(keep[wanted]))
+        course = None
+        while wanted < keep.size and keep[wanted] <= solver.now.t:
+            if keep[wanted] == solver.now.t:
+                yield sample(solver.now)
+            else:
+                course = course or solver.course()
+                yield between(keep[wanted], course(keep[wanted]))
             wanted += 1
 
 
@@ -190,7 +273,10 @@ def rk4(
     keep: FloatArray | None,
     tally: Tally,
 ) -> Iterator[Sample]:
-    """Classical RK4 on (q, p, work); steps are shortened to land on the times to keep.
+    """Classical RK4 on (q, p, work); steps are shortened to land on the times to keep, and to meet every encounter.
+
+    A step that would leap over an encounter is made again, and shorter: dt is the longest step, and what a step does
+    not see is not an error of its order. `tally.notes` gets how many were.
 
     Parameters
     ----------
@@ -207,40 +293,58 @@ def rk4(
     tally : Tally
         Filled in on the way.
     """
-    energetic = has_energy(law, t_span[0], q0, p0)
-    t, q, p, work = t_span[0], q0.copy(), p0.copy(), 0.0
-    u, rate = law.flow(t, q, p)
+    energetic, encounters = has_energy(law, t_span[0], q0, p0), Encounters.of(law, len(q0))
+    t, state, work = t_span[0], State(q0.copy(), p0.copy(), np.empty(0)), 0.0
+    u, rate = law.flow(t, q0, p0)
+    state = state._replace(u=u)
     tally.evaluations += 1
-
-    def sample() -> Sample:
-        return Sample(t, q, p, u, {"work": np.array(work)} if energetic else {})
-
+    tally.notes["redone"] = 0
     for stop in _grid(t_span, dt) if keep is None else keep:
         while t < stop:
             remaining = stop - t
             # a step is split evenly rather than ending on a sliver, which would lose the order for nothing
-            h = remaining / max(1.0, np.ceil(remaining / dt - 1e-9))
-            p2 = p + 0.5 * h * u
-            u2, rate2 = law.flow(t + 0.5 * h, q + 0.5 * h * p, p2)
-            p3 = p + 0.5 * h * u2
-            u3, rate3 = law.flow(t + 0.5 * h, q + 0.5 * h * p2, p3)
-            p4 = p + h * u3
-            u4, rate4 = law.flow(t + h, q + h * p3, p4)
-            q = q + h / 6.0 * (p + 2.0 * (p2 + p3) + p4)
-            p = p + h / 6.0 * (u + 2.0 * (u2 + u3) + u4)
-            work += h / 6.0 * (rate + 2.0 * (rate2 + rate3) + rate4)
-            t = stop if h == remaining else t + h
-            u, rate = law.flow(t, q, p)
-            tally.steps += 1
-            tally.evaluations += 4
-            if not _finite(q, p, u):
-                tally.fail(f"RK4 left the finite numbers at t = {t:g}: reduce dt = {dt:g}")
+            h = remaining / max(1, _steps(t, stop, dt))
+            while True:
+                later, more, rate_there = _rk4_step(law, t, state, rate, h)
+                tally.evaluations += 4
+                share = encounters.share(h, state, later) if encounters.any and _finite(*later) else 1.0
+                if share == 1.0 or t + share * h == t:
+                    break
+                h *= share
+                tally.notes["redone"] += 1
+            if not _finite(*later):
+                tally.fail(f"RK4 left the finite numbers at t = {t + h:g}: reduce dt = {dt:g}")
                 return
-        yield sample()
+            t = stop if h == remaining else t + h
+            state, rate, work = later, rate_there, work + more
+            tally.steps += 1
+        yield Sample(t, *state, {"work": np.array(work)} if energetic else {})
+
+
+def _rk4_step(law: Law, t: float, state: State, rate: float, h: float) -> tuple[State, float, float]:
+    """(the state after a step, the work done on the way, dH/dt at the end)."""
+    q, p, u = state
+    p2 = p + 0.5 * h * u
+    u2, rate2 = law.flow(t + 0.5 * h, q + 0.5 * h * p, p2)
+    p3 = p + 0.5 * h * u2
+    u3, rate3 = law.flow(t + 0.5 * h, q + 0.5 * h * p2, p3)
+    p4 = p + h * u3
+    u4, rate4 = law.flow(t + h, q + h * p3, p4)
+    q = q + h / 6.0 * (p + 2.0 * (p2 + p3) + p4)
+    p = p + h / 6.0 * (u + 2.0 * (u2 + u3) + u4)
+    work = h / 6.0 * (rate + 2.0 * (rate2 + rate3) + rate4)
+    u, rate = law.flow(t + h, q, p)
+    return State(q, p, u), work, rate
+
+
+def _steps(start: float, stop: float, dt: float, rounded: Callable[[float], float] = np.ceil) -> int:
+    """How many steps of dt lie between two times; the times' own rounding makes none more or less."""
+    slack = 4.0 * float(np.spacing(max(abs(start), abs(stop), stop - start)))
+    return int(rounded((stop - start + (slack if rounded is np.floor else -slack)) / dt))
 
 
 def _grid(t_span: tuple[float, float], dt: float) -> Iterator[float]:
-    for k in range(int(np.ceil((t_span[1] - t_span[0]) / dt - 1e-9))):
+    for k in range(_steps(*t_span, dt)):
         yield t_span[0] + k * dt
     yield t_span[1]
 
@@ -263,7 +367,7 @@ def discrete(
     """
     q, p, memory = q0, p0, law.start(q0, p0)
     yield Sample(t_span[0], q, p, np.zeros_like(q), _copied(memory))
-    steps = int(np.floor((t_span[1] - t_span[0]) / law.dt + 1e-9))
+    steps = _steps(*t_span, law.dt, np.floor)
     for first in range(0, steps, law.steps_at_once):
         some = min(law.steps_at_once, steps - first)
         qs, ps, us, series = law.iterate(t_span[0] + first * law.dt, q, p, memory, some)

@@ -14,7 +14,7 @@ import numpy as np
 
 from flockana.checks import FloatArray, ensure_positive, ensure_state, ensure_time_span
 from flockana.errors import ArgumentError, UnknownNameError
-from flockana.integrators import Sample, Tally, adaptive, discrete, nearest, rk4, start_sample
+from flockana.integrators import Sample, Tally, adaptive, discrete, error_floor, nearest, rk4, start_sample
 from flockana.interrupts import interrupts_recognised
 from flockana.laws.law import DiscreteLaw, Law, ensure_law
 from flockana.laws.switched import SwitchedLaw
@@ -34,7 +34,7 @@ def simulate(
     *,
     method: str = "DOP853",
     rtol: float = 1e-8,
-    atol: float = 1e-10,
+    atol: float | None = None,
     dt: float | None = None,
     t_eval: Any = None,
     progress: bool = False,
@@ -54,9 +54,13 @@ def simulate(
         Start and end.
     method : str
         One of scipy's solvers (DOP853, RK45, RK23, Radau, BDF, LSODA), or RK4 with a fixed step.
-    rtol, atol : float
-        Tolerances of the adaptive solvers, relative and in the state's own units. The default is tight enough that
-        energy residuals stay about 1e-6 of the energy turned over in a run; scipy's own 1e-3 is never used.
+    rtol : float
+        Relative tolerance of the adaptive solvers: relative to the state as seen from the mean motion of the start, so
+        that neither the origin nor a common drift matters. The default keeps energy residuals well below 1e-6 of the
+        energy in a run; scipy's own 1e-3 is never used.
+    atol : float, optional
+        Absolute tolerance, in the state's own units; by default a hundredth of `rtol` times the law's own length for
+        positions, and length over time for velocities.
     dt : float, optional
         Step of RK4 (required there, meaningless elsewhere). The last step is shortened to end on time.
     t_eval : array_like, optional
@@ -86,6 +90,7 @@ def simulate(
     law.check_start(q0, p0)
     t_span = ensure_time_span(t_span)
     keep = _check_t_eval(t_eval, t_span)
+    _check_first_call(law, t_span[0], q0, p0)
     tally = Tally()
     if isinstance(law, DiscreteLaw):
         if dt is not None or method != "DOP853":
@@ -99,11 +104,12 @@ def simulate(
         if method == "RK4":
             keep_samples = rk4(law, q0, p0, t_span, _ensure_step("dt", dt, t_span), keep, tally)
         else:
-            tolerances = ensure_positive("rtol", rtol), ensure_positive("atol", atol)
+            rtol, atol = ensure_positive("rtol", rtol), None if atol is None else ensure_positive("atol", atol)
+            how = (t_span, method, rtol, error_floor(law, q0, p0, t_span, rtol, atol), keep, tally)
             if isinstance(law, SwitchedLaw) and law.located:
-                keep_samples = located(law, q0, p0, t_span, method, *tolerances, keep, tally)
+                keep_samples = located(law, q0, p0, *how)
             else:
-                keep_samples = adaptive(law, q0, p0, t_span, method, *tolerances, keep, tally)
+                keep_samples = adaptive(law, q0, p0, *how)
     started = time.perf_counter()
     kept = _collect(keep_samples, t_span, tally, progress)
     if not kept:  # ended before the first time to keep: the start at least is known
@@ -133,6 +139,39 @@ def _check_method(method: str, dt: float | None) -> None:
         raise ArgumentError("dt = None: method RK4 needs a fixed step, such as dt=0.005")
     if method != "RK4" and dt is not None:
         raise ArgumentError(f"dt = {dt!r}: {method} chooses its own steps; give t_eval to choose output times")
+
+
+def _check_first_call(law: Law | DiscreteLaw, t0: float, q0: FloatArray, p0: FloatArray) -> None:
+    """Raise unless the law gives what a law gives: real numbers in the flock's shape, finite where it starts."""
+    name, at = type(law).__name__, f"at the start, t = {t0:g}"
+    found: Any
+    parts: tuple[str, ...]
+    if isinstance(law, DiscreteLaw):
+        memory = {key: np.array(value) for key, value in law.start(q0, p0).items()}
+        found, expected, parts = law.step(t0, q0.copy(), p0.copy(), memory), "(q, p, u, memory)", ("q", "p", "u")
+    else:
+        found, expected, parts = law.flow(t0, q0, p0), "(u, dH/dt)", ("u",)
+    if not isinstance(found, tuple) or len(found) != len(parts) + 1:
+        raise ArgumentError(f"{name} gives {found!r} {at}: expected {expected}")
+    for part, value in zip(parts, found, strict=False):
+        array = np.asarray(value)
+        if array.dtype.kind not in "fiu" or array.shape != q0.shape:
+            kind = f"{array.dtype} of shape {array.shape}"
+            raise ArgumentError(f"{name} gives {part} as {kind} {at}: expected real numbers of shape {q0.shape}")
+    if isinstance(law, DiscreteLaw):
+        return
+    u, rate, energy = np.asarray(found[0]), found[1], law.hamiltonian(t0, q0, p0)
+    if not (finite := np.isfinite(u).all(axis=1)).all():
+        i = int(np.argmin(finite))
+        raise ArgumentError(f"{name} gives u[{i}] = {u[i]} {at}: expected finite accelerations there")
+    for what, number in (("H", energy), ("dH/dt", rate)):
+        if np.ndim(number) != 0 or np.asarray(number).dtype.kind not in "fiu":
+            raise ArgumentError(f"{name} gives {what} = {number!r} {at}: expected a real number, or NaN without energy")
+    if np.isfinite(energy) and not np.isfinite(rate):
+        raise ArgumentError(
+            f"{name} gives H = {energy:g}, but dH/dt = {rate} {at}: expected the rate of that energy, or H = NaN for a "
+            "law without one"
+        )
 
 
 def _check_t_eval(t_eval: Any, t_span: tuple[float, float]) -> FloatArray | None:

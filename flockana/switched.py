@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
 from flockana.checks import FloatArray
-from flockana.integrators import Sample, Tally, has_energy
+from flockana.integrators import Floor, Sample, Tally, stepper
 from flockana.laws.switched import Pieces, SwitchedLaw
+from flockana.stepping import Flow
+
+Way = Callable[[float], FloatArray]
 
 _HALVINGS = 60  # of a step, until the switch is bracketed to rounding
 _DEGREE = 12  # of a step's interpolant, at most: LSODA's; DOP853 has 7
@@ -25,7 +28,7 @@ def located(
     t_span: tuple[float, float],
     method: str,
     rtol: float,
-    atol: float,
+    floor: Floor,
     keep: FloatArray | None,
     tally: Tally,
 ) -> Iterator[Sample]:
@@ -44,53 +47,41 @@ def located(
         Start and end.
     method : str
         One of scipy's solvers.
-    rtol, atol : float
-        Its tolerances.
+    rtol : float
+        Relative tolerance.
+    floor : Floor
+        Absolute ones.
     keep : ndarray or None
         Times to keep; every step and every switch if None.
     tally : Tally
         Filled in on the way.
     """
-    import scipy.integrate
-
-    shape, size = q0.shape, q0.size
     pieces = law.pieces(q0)
-    energetic = has_energy(law, t_span[0], q0, p0)
-
-    def split(y: FloatArray) -> tuple[FloatArray, FloatArray]:
-        return y[:size].reshape(shape), y[size : 2 * size].reshape(shape)
-
-    def sample(t: float, y: FloatArray) -> Sample:
-        q, p = (x.copy() for x in split(y))
-        return Sample(t, q, p, law.piece_flow(pieces, t, q, p)[0], {"work": np.array(y[-1])} if energetic else {})
-
-    def solver_from(t: float, y: FloatArray, held: Pieces) -> Any:
-        def rhs(s: float, x: FloatArray) -> FloatArray:
-            tally.evaluations += 1
-            u, rate = law.piece_flow(held, s, *split(x))
-            return np.concatenate([x[size : 2 * size], u.ravel(), [rate] if energetic else []])
-
-        return getattr(scipy.integrate, method)(rhs, t, y, t_span[1], rtol=rtol, atol=atols)
-
-    y = np.concatenate([q0.ravel(), p0.ravel(), [0.0] if energetic else []])
-    atols = np.full(y.size, atol)
-    if energetic:  # as in `adaptive`
-        atols[-1] = max(atol, rtol * abs(law.hamiltonian(t_span[0], q0, p0)))
+    solver = stepper(law, _held(law, pieces), q0, p0, t_span, method, rtol, floor, tally)
+    frame = solver.frame
     t, wanted, switches = t_span[0], 0, 0
     tally.notes["switches"] = switches
+
+    def sample(t: float, y: FloatArray) -> Sample:
+        q, p = frame.state(t, y)
+        work = {"work": np.array(y[-1])} if frame.energetic else {}
+        return Sample(t, q, p, law.piece_flow(pieces, t, q, p)[0], work)
+
     if keep is None or keep[0] == t:
         wanted = 1
-        yield sample(t, y)
-    solver = solver_from(t, y, pieces)
+        yield sample(t, solver.now.y)._replace(q=q0, p=p0)  # not a rounding beside it, as in the frame
     while t < t_span[1]:
-        message = solver.step()
-        if solver.status == "failed" or not np.isfinite(solver.y).all():
-            tally.fail(f"{method} gave up at t = {solver.t:g}: {message or 'the state is no longer finite'}")
+        if not solver.step(()):
+            tally.fail(solver.message)
             return
         tally.steps += 1
-        course = solver.dense_output()
-        end = _first_switch(law, pieces, course, t, solver.t, split)
-        t, y = (solver.t, solver.y) if end is None else (end, course(end))
+        course, start = solver.course(), t
+
+        def way(s: float, course: Any = course) -> FloatArray:
+            return frame.state(s, course(s))[0]
+
+        end = _first_switch(law, pieces, way, start, solver.now.t)
+        t, y = (solver.now.t, solver.now.y) if end is None else (end, course(end))
         if keep is None:
             yield sample(t, y)
         while keep is not None and wanted < keep.size and keep[wanted] <= t:
@@ -100,26 +91,31 @@ def located(
             continue
         switches += 1
         tally.notes["switches"] = switches
-        before, (q, p) = pieces, split(y)
+        before, (q, p) = pieces, frame.state(t, y)
         pieces = law.crossed(before, law.margins(before, q))
         if reason := law.sliding(before, pieces, t, q, p):
             tally.notes["sliding"] = reason
             tally.fail(f"sliding at t = {t:.6g}: {reason}")
             return
-        solver = solver_from(t, y, pieces)
+        solver.begin(_held(law, pieces), t, y)
 
 
-def _first_switch(law: SwitchedLaw, pieces: Pieces, course: Any, start: float, end: float, split: Any) -> float | None:
+def _held(law: SwitchedLaw, pieces: Pieces) -> Flow:
+    """The flow with every pair held in its piece."""
+    return lambda t, q, p: law.piece_flow(pieces, t, q, p)
+
+
+def _first_switch(law: SwitchedLaw, pieces: Pieces, way: Way, start: float, end: float) -> float | None:
     """The first time at which a pair is beyond its piece; None if there is none.
 
     Between two turns every distance that could reach an edge is monotone: no pair can have left and be back.
     """
 
     def beyond(t: float) -> bool:
-        return bool((law.margins(pieces, split(course(t))[0]).inside < 0.0).any())
+        return bool((law.margins(pieces, way(t)).inside < 0.0).any())
 
     low = start
-    for t in [*turns(law, pieces, course, start, end, split), end]:
+    for t in [*turns(law, pieces, way, start, end), end]:
         if beyond(t):
             high = t
             for _ in range(_HALVINGS):
@@ -132,7 +128,7 @@ def _first_switch(law: SwitchedLaw, pieces: Pieces, course: Any, start: float, e
     return None
 
 
-def turns(law: SwitchedLaw, pieces: Pieces, course: Any, start: float, end: float, split: Any) -> list[float]:
+def turns(law: SwitchedLaw, pieces: Pieces, way: Way, start: float, end: float) -> list[float]:
     """When, within a step, the distance of a pair that could leave its piece stops growing or shrinking, rising.
 
     The interpolant of every solver is a polynomial, and so are the squares of distances: their turns are roots. Only
@@ -144,22 +140,20 @@ def turns(law: SwitchedLaw, pieces: Pieces, course: Any, start: float, end: floa
         What moves the flock.
     pieces : ndarray of int8
         Where each pair is held.
-    course : callable
-        The step's interpolant, from times to states.
+    way : callable
+        The step's interpolant, from a time to positions.
     start, end : float
         The step.
-    split : callable
-        From a state to (q, p).
     """
     times = 0.5 * (start + end) + 0.5 * (end - start) * _NODES
-    way = np.stack([split(y)[0] for y in course(times).T])  # (nodes, n, m)
-    series = np.tensordot(_TO_SERIES, way, axes=1)
+    places = np.stack([way(t) for t in times.tolist()])  # (nodes, n, m)
+    series = np.tensordot(_TO_SERIES, places, axes=1)
     reach = np.sum(np.linalg.norm(series[1:], axis=2), axis=0)  # an agent's way from its mean place, series[0]
     rows, columns = np.triu_indices(len(reach), 1)
     near = law.margins(pieces, series[0]).inside <= (reach[rows] + reach[columns]) * (1.0 + 1e-9)
     found: set[float] = set()
     for i, j in zip(rows[near].tolist(), columns[near].tolist(), strict=True):
-        squared = _TO_SERIES @ np.sum((way[:, j] - way[:, i]) ** 2, axis=1)
+        squared = _TO_SERIES @ np.sum((places[:, j] - places[:, i]) ** 2, axis=1)
         roots = chebyshev.chebroots(chebyshev.chebder(chebyshev.chebtrim(squared, 1e-15 * abs(squared).max())))
         real = roots.real[np.abs(roots.imag) < 1e-6]
         found.update((0.5 * (start + end) + 0.5 * (end - start) * real[np.abs(real) < 1.0]).tolist())

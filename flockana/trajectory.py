@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -20,15 +20,34 @@ from flockana.errors import ArgumentError, FileError, UnknownNameError
 from flockana.files import replacing
 from flockana.laws.law import ensure_law
 from flockana.paths import ClosestApproach, closest_approach
+from flockana.scales import Scales
 from flockana.serialize import from_data, to_data
+from flockana.units import rescale
 
 if TYPE_CHECKING:
     import xarray
 
     from flockana.plots.film import Film
 
+_Value = TypeVar("_Value")
+
 FORMAT = "flockana-trajectory"
 FORMAT_VERSION = 1
+STATUSES = ("complete", "interrupted", "failed")
+
+
+def _frozen_series(name: str, values: Any, samples: int) -> FloatArray:
+    """A read-only view of a series of finite real numbers; the caller's array stays as it was."""
+    array = np.asarray(values)
+    if array.dtype.kind not in "fiu" or array.shape[:1] != (samples,):
+        raise ArgumentError(f"{name}: expected real numbers at {samples} samples, got {array.dtype} {array.shape}")
+    array = np.ascontiguousarray(array, dtype=np.float64).view()
+    bad = ~np.isfinite(array)
+    if bad.any():
+        k = tuple(int(index) for index in np.argwhere(bad)[0])
+        raise ArgumentError(f"{name}[{', '.join(map(str, k))}] = {array[k]}: expected finite numbers ({bad.sum()} bad)")
+    array.setflags(write=False)
+    return array
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +70,12 @@ class Trajectory:
         In words.
     stats : mapping
         Method, tolerances, numbers of steps and evaluations, seconds.
+
+    Raises
+    ------
+    ArgumentError
+        On arrays that do not fit each other, numbers that are not real and finite, times that do not rise, an unknown
+        status, or something that is no law.
     """
 
     t: FloatArray
@@ -64,21 +89,62 @@ class Trajectory:
     stats: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        ensure_law(self.law)
+        if self.status not in STATUSES:
+            raise ArgumentError(f"status = {self.status!r}: expected one of {', '.join(STATUSES)}")
         shape = np.shape(self.q)
         if len(shape) != 3 or np.shape(self.t) != shape[:1] or np.shape(self.p) != shape or np.shape(self.u) != shape:
             raise ArgumentError(
                 f"t {np.shape(self.t)}, q {shape}, p {np.shape(self.p)}, u {np.shape(self.u)}: "
                 "expected shapes (T,), (T, n, m), (T, n, m), (T, n, m)"
             )
+        if 0 in shape or shape[2] > 3:
+            raise ArgumentError(f"q has shape {shape}: expected T >= 1 samples of n >= 1 agents in m = 1, 2 or 3")
         for name in ("t", "q", "p", "u"):
-            array = np.ascontiguousarray(getattr(self, name), dtype=np.float64).view()
-            array.setflags(write=False)  # of the view: the caller's array stays as it was
-            object.__setattr__(self, name, array)
+            object.__setattr__(self, name, _frozen_series(name, getattr(self, name), shape[0]))
+        k = int(np.argmin(np.diff(self.t))) if shape[0] > 1 else 0
+        if shape[0] > 1 and not self.t[k + 1] > self.t[k]:
+            raise ArgumentError(f"t[{k}] = {self.t[k]:g} and t[{k + 1}] = {self.t[k + 1]:g}: expected rising times")
+        extra = {str(key): _frozen_series(f"extra[{key!r}]", x, shape[0]) for key, x in self.extra.items()}
+        object.__setattr__(self, "extra", extra)
 
     def __repr__(self) -> str:
         """One line: arrays of thousands of numbers tell nobody anything."""
         span, law = f"t = {self.t[0]:g} to {self.t[-1]:g}", type(self.law).__name__
         return f"<Trajectory of {self.n} agents, m = {self.m}, {law}, {len(self.t)} samples, {span}, {self.status}>"
+
+    @cached_property
+    def scales(self) -> Scales:
+        """The law's natural length and time; under a law that has none, the flock's extent and the run's duration."""
+        if self.law.scales is not None:
+            return self.law.scales  # type: ignore[no-any-return]
+        extent = float(np.linalg.norm(self.q - self.q.mean(axis=1, keepdims=True), axis=2).max())
+        travel = float(np.linalg.norm(self.q - self.q[0], axis=2).max())
+        return Scales(extent or travel or 1.0, float(self.t[-1] - self.t[0]) or 1.0)
+
+    def in_units(self, length: float, time: float) -> Trajectory:
+        """The same run in other units (`flockana.rescale`).
+
+        Parameters
+        ----------
+        length, time : float
+            Factors.
+        """
+        powers = {"work": (2, -2)} | dict(getattr(self.law, "extra_units", {}))
+        extra = {
+            name: series * length ** powers[name][0] * time ** powers[name][1] if name in powers else series
+            for name, series in self.extra.items()
+        }
+        q, p, u = self.q * length, self.p * (length / time), self.u * (length / time**2)
+        stats = {**self.stats, **({"dt": self.stats["dt"] * time} if "dt" in self.stats else {})}
+        law = rescale(self.law, length=length, time=time)
+        return replace(self, t=self.t * time, q=q, p=p, u=u, law=law, extra=extra, stats=stats)
+
+    @cached_property
+    def _flows(self) -> tuple[FloatArray, FloatArray]:
+        """(u, dH/dt) of the law at the samples."""
+        flows = [self.law.flow(t, q, p) for t, q, p in zip(self.t, self.q, self.p, strict=True)]
+        return np.array([u for u, _ in flows]), np.array([rate for _, rate in flows])
 
     @property
     def n(self) -> int:
@@ -100,11 +166,7 @@ class Trajectory:
 
     def energy_rate(self) -> FloatArray:
         """dH/dt in closed form at each sample, shape (T,)."""
-        return self._energy_rate
-
-    @cached_property
-    def _energy_rate(self) -> FloatArray:
-        return np.array([self.law.flow(t, q, p)[1] for t, q, p in zip(self.t, self.q, self.p, strict=True)])
+        return self._flows[1]
 
     @property
     def energy_residual(self) -> FloatArray:
@@ -156,6 +218,24 @@ class Trajectory:
                 raise UnknownNameError("metric", name, (*known, *self._own))
             self._measured[name] = values
         return self._measured[name]
+
+    def remembered(self, name: str, compute: Callable[[], _Value]) -> _Value:
+        """What was computed from this run before, or is now: kept as long as the run.
+
+        Parameters
+        ----------
+        name : str
+            What it is.
+        compute : callable
+            Gives it.
+        """
+        if name not in self._memory:
+            self._memory[name] = compute()
+        return self._memory[name]  # type: ignore[no-any-return]
+
+    @cached_property
+    def _memory(self) -> dict[str, Any]:
+        return {}
 
     def _any_flock(self) -> dict[str, tuple[str, Callable[[], FloatArray]]]:
         """What is measured of every flock: in words, and a function that does it."""
@@ -341,7 +421,7 @@ class Trajectory:
                 message=str(data.attrs["message"]),
                 stats=json.loads(data.attrs["stats"]),
             )
-        except (KeyError, ValueError, TypeError) as error:
+        except (KeyError, ValueError, TypeError, RecursionError) as error:
             raise FileError(f"{source} is damaged: {error!r}; run the simulation again") from error
 
 

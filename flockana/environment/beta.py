@@ -19,10 +19,11 @@ _PUSHES = 100  # rounds of looking for a free point near an agent that starts in
 _OUTWARD = 1e-6  # how far beyond the surface a push ends, relative to its length
 
 
-class _Kind(NamedTuple):
+class Kind(NamedTuple):
     """All obstacles of one kind, as the compiled sums take them."""
 
     kernels: ObstacleKernels
+    obstacles: tuple[Obstacle, ...]
     pars: FloatArray
     starts: Any
     balls: FloatArray
@@ -58,7 +59,8 @@ class ObstacleField:
     beta: BetaInteraction
 
     @cached_property
-    def _kinds(self) -> tuple[_Kind, ...]:
+    def kinds(self) -> tuple[Kind, ...]:
+        """The obstacles, kind by kind."""
         grouped: dict[int, list[Obstacle]] = {}
         for obstacle in self.obstacles:
             grouped.setdefault(id(obstacle.kernels), []).append(obstacle)
@@ -67,7 +69,7 @@ class ObstacleField:
             pars = [obstacle.par for obstacle in group]
             starts = np.concatenate([[0], np.cumsum([par.size for par in pars])]).astype(np.int64)
             balls = np.array([[*centre, radius] for centre, radius in (obstacle.ball for obstacle in group)])
-            kinds.append(_Kind(group[0].kernels, np.concatenate(pars), starts, balls))
+            kinds.append(Kind(group[0].kernels, tuple(group), np.concatenate(pars), starts, balls))
         return tuple(kinds)
 
     def forces(self, q: FloatArray, p: FloatArray, u: FloatArray, *, stiffness: float, damping: float) -> float:
@@ -88,7 +90,7 @@ class ObstacleField:
             Σ_i Σ_k b_ik ⟨p_i, p̂_ik − p_i⟩, never positive while all agents are outside.
         """
         power, par, reach = 0.0, self.beta.par, self.beta.r
-        for kernels, pars, starts, balls in self._kinds:
+        for kernels, _, pars, starts, balls in self.kinds:
             power += kernels.forces(q, p, pars, starts, balls, par, reach, stiffness, damping, u)
         return power
 
@@ -101,7 +103,7 @@ class ObstacleField:
             Positions.
         """
         total, par, panels, reach = 0.0, self.beta.par, self.beta.panels, self.beta.r
-        for kernels, pars, starts, balls in self._kinds:
+        for kernels, _, pars, starts, balls in self.kinds:
             total += kernels.potential(q, pars, starts, balls, par, panels, reach)
         return total
 

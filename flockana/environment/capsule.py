@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numba.extending import register_jitable
@@ -12,6 +13,7 @@ from flockana.checks import FloatArray, ensure_positive
 from flockana.environment.obstacles import Obstacle, freeze_vector
 from flockana.errors import ArgumentError
 from flockana.kernels.obstacles import lift_obstacle, project_ball, turn_ball
+from flockana.units import Powers
 
 
 @register_jitable
@@ -77,6 +79,8 @@ class Capsule(Obstacle):
     a: Any
     b: Any
     radius: float
+
+    units: ClassVar[Mapping[str, Powers]] = {"a": (1, 0), "b": (1, 0), "radius": (1, 0)}
 
     kernels = _CAPSULE
 

@@ -13,9 +13,10 @@ as it is.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import hypot, inf
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -24,6 +25,7 @@ from numba.extending import register_jitable
 from flockana.checks import FloatArray, ensure_points, ensure_positive, ensure_state, ensure_vector
 from flockana.errors import ArgumentError
 from flockana.kernels.obstacles import ObstacleKernels, lift_obstacle, no_turn, project_ball, turn_ball
+from flockana.units import Powers
 
 
 class BetaAgents(NamedTuple):
@@ -195,6 +197,8 @@ class Sphere(Obstacle):
     centre: Any
     radius: float
 
+    units: ClassVar[Mapping[str, Powers]] = {"centre": (1, 0), "radius": (1, 0)}
+
     kernels = _SPHERE
 
     def __post_init__(self) -> None:
@@ -237,6 +241,8 @@ class Wall(Obstacle):
 
     point: Any
     normal: Any
+
+    units: ClassVar[Mapping[str, Powers]] = {"point": (1, 0)}
 
     kernels = _WALL
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import inf, sqrt
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numba.extending import register_jitable
@@ -13,6 +14,7 @@ from flockana.checks import FloatArray, ensure_points
 from flockana.environment.obstacles import Obstacle
 from flockana.errors import ArgumentError
 from flockana.kernels.obstacles import lift_obstacle, no_turn
+from flockana.units import Powers
 
 
 @register_jitable
@@ -63,6 +65,8 @@ class Polygon(Obstacle):
     """
 
     vertices: Any
+
+    units: ClassVar[Mapping[str, Powers]] = {"vertices": (1, 0)}
 
     kernels = _POLYGON
 

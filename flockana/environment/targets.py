@@ -7,18 +7,20 @@ a p_r that is not that rate, which is allowed here and reported where a theorem 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import cos, pi, sin
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from flockana.checks import FloatArray, ensure_finite_scalar, ensure_positive, ensure_vector
 from flockana.errors import ArgumentError
+from flockana.units import Powers
 
-_STEP = 1e-5  # of a user's function for dq_r/dt by central difference: error about 1e-10 relative on smooth paths
+_STEP = 1e-5  # of the path's own time, for dq_r/dt by central difference: error about 1e-10 relative on smooth paths
+_RESOLVED = 2.0**-26  # of |t|: a shorter step would lose half its digits in the rounding of t
 
 
 class Target(ABC):
@@ -96,6 +98,8 @@ class StaticTarget(Target):
     q: Any
     p: Any = 0.0
 
+    units: ClassVar[Mapping[str, Powers]] = {"q": (1, 0), "p": (1, -1)}
+
     def __post_init__(self) -> None:
         m = _freeze_vector(self, "q").size
         if np.isscalar(self.p) and self.p == 0:
@@ -131,6 +135,8 @@ class LinearTarget(Target):
 
     q: Any
     p: Any
+
+    units: ClassVar[Mapping[str, Powers]] = {"q": (1, 0), "p": (1, -1)}
 
     def __post_init__(self) -> None:
         _freeze_vector(self, "p", _freeze_vector(self, "q").size)
@@ -173,6 +179,13 @@ class SineTarget(Target):
     frequency: float
     phase: float = 0.0
     axis: int = 1
+
+    units: ClassVar[Mapping[str, Powers]] = {
+        "start": (1, 0),
+        "velocity": (1, -1),
+        "amplitude": (1, 0),
+        "frequency": (0, -1),
+    }
 
     def __post_init__(self) -> None:
         m = _freeze_vector(self, "start").size
@@ -222,6 +235,8 @@ class CircleTarget(Target):
     radius: float
     frequency: float
     phase: float = 0.0
+
+    units: ClassVar[Mapping[str, Powers]] = {"centre": (1, 0), "radius": (1, 0), "frequency": (0, -1)}
 
     def __post_init__(self) -> None:
         if _freeze_vector(self, "centre").size < 2:
@@ -286,6 +301,8 @@ class CallableTarget(Target):
     ----------
     function : callable
         ``t -> (q_r, p_r)``, two vectors of m components.
+    time : float
+        In which the path bends, in the user's time unit: dq_r/dt is a difference over 1e-5 of it.
 
     Raises
     ------
@@ -300,13 +317,30 @@ class CallableTarget(Target):
     """
 
     function: Callable[[float], Any]
+    time: float = 1.0
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "time", ensure_positive("time", self.time))
         if not callable(self.function):
             raise ArgumentError(f"function = {self.function!r}: expected a callable t -> (q_r, p_r)")
         q, p = self._call(0.0)
         if q.size != p.size:
             raise ArgumentError(f"function(0) gave q_r of {q.size} and p_r of {p.size} components: expected equal")
+
+    def in_units(self, length: float, time: float) -> CallableTarget:
+        """The same path in other units (`flockana.rescale`).
+
+        Parameters
+        ----------
+        length, time : float
+            Factors.
+        """
+
+        def scaled(t: float) -> tuple[FloatArray, FloatArray]:
+            q, p = self._call(t / time)
+            return length * q, length / time * p
+
+        return CallableTarget(scaled, time * self.time)
 
     def _call(self, t: float) -> tuple[FloatArray, FloatArray]:
         try:
@@ -329,5 +363,5 @@ class CallableTarget(Target):
         t : float
             Time.
         """
-        step = _STEP * max(1.0, abs(t))
+        step = max(_STEP * self.time, _RESOLVED * abs(t))
         return (self.position(t + step) - self.position(t - step)) / (2.0 * step)

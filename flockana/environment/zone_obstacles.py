@@ -6,8 +6,9 @@ Discs and balls are `flockana.environment.obstacles.Sphere`. A `SimplePolygon` n
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from flockana.checks import FloatArray, ensure_points, ensure_vector
 from flockana.environment.obstacles import Sphere
 from flockana.errors import ArgumentError
 from flockana.kernels.zone_obstacles import polygon_clearance, polygon_clearance_on_segments
+from flockana.units import Powers
 
 
 @dataclass(frozen=True)
@@ -39,6 +41,8 @@ class SimplePolygon:
     """
 
     vertices: Any
+
+    units: ClassVar[Mapping[str, Powers]] = {"vertices": (1, 0)}
 
     def __post_init__(self) -> None:
         corners = ensure_points("vertices", self.vertices)
@@ -137,6 +141,8 @@ class Box:
 
     low: Any
     high: Any
+
+    units: ClassVar[Mapping[str, Powers]] = {"low": (1, 0), "high": (1, 0)}
 
     def __post_init__(self) -> None:
         low = ensure_vector("low", self.low)

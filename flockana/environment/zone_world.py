@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from flockana.environment.obstacles import Sphere
 from flockana.environment.zone_obstacles import Box, SimplePolygon, ball_clearance_on_way
 from flockana.errors import ArgumentError
 from flockana.kernels.zones import World
+from flockana.units import Powers
 
 
 @dataclass(frozen=True)
@@ -47,6 +49,8 @@ class Alien:
     _: KW_ONLY
     detection: float = 9.0
     speed: float = 1.5
+
+    units: ClassVar[Mapping[str, Powers]] = {"start": (1, 0), "detection": (1, 0), "speed": (1, -1)}
 
     def __post_init__(self) -> None:
         start = ensure_vector("start", self.start)

@@ -215,7 +215,7 @@ class Program:
             return g.c1_gamma * centred, g.c1_gamma * ca.repmat(ca.MX.eye(m), 1, n)
         slope, blocks = ca.MX.zeros(m, n), ca.MX.zeros(m, m * n)
         if isinstance(law, Algorithm3):
-            terms = [(g.c1_gamma, pull_term(m), ca.DM(self.potential.centre))]
+            terms = [(g.c1_gamma, pull_term(m, law.alpha.unit), ca.DM(self.potential.centre))]
             terms += [(g.c1_beta, obstacle_term(obstacle, law.beta), ca.DM.zeros(m)) for obstacle in law.obstacles]
             for gain, term, origin in terms:
                 one_slope, one_blocks = term.map(n)(q - ca.repmat(origin, 1, n))

@@ -60,7 +60,7 @@ def pair_term(pair: PairInteraction, m: int) -> ca.Function:
         return _compile("pair", list(dead_zone_gradient(delta, pair)), delta)
     if not isinstance(pair, AlphaInteraction):
         raise ArgumentError(f"{pair}: expected AlphaInteraction or DeadZoneInteraction; no other has a symbolic form")
-    parameters = AlphaSymbols(**{name: getattr(pair, name) for name in ("eps", "h", "a", "b", "d", "r")})
+    parameters = AlphaSymbols(**{name: getattr(pair, name) for name in ("eps", "h", "a", "b", "d", "r", "unit")})
     potential = pair_potential(sp.zeros(m, 1), delta, gains=GainSymbols(c1_alpha=1)).subs(EPS, parameters.eps)
     gradient = [sp.diff(potential, x).replace(PHI, lambda z: phi_alpha(z, alpha=parameters)) for x in delta]
     return _compile("pair", gradient, delta)
@@ -90,13 +90,15 @@ def dead_zone_gradient(delta: sp.Matrix, pair: DeadZoneInteraction) -> sp.Matrix
 
 
 @lru_cache(maxsize=64)
-def pull_term(m: int) -> ca.Function:
-    """Gradient and Hessian of √(1 + ‖x‖²) − 1, Algorithm 3's pull to the γ-agent, in x = q_i − q_r.
+def pull_term(m: int, unit: float = 1.0) -> ca.Function:
+    """Gradient and Hessian of ℓ²(√(1 + ‖x‖²/ℓ²) − 1), Algorithm 3's pull to the γ-agent, in x = q_i − q_r.
 
     Parameters
     ----------
     m : int
         Dimension.
+    unit : float
+        ℓ, the length that σ₁ counts in.
 
     Examples
     --------
@@ -104,7 +106,7 @@ def pull_term(m: int) -> ca.Function:
     [0.6, 0.0]
     """
     x = vector("x", m)
-    return _compile("pull", list(sigma_1(x)), x)
+    return _compile("pull", list(unit * sigma_1(x / unit)), x)
 
 
 @lru_cache(maxsize=256)
@@ -131,7 +133,7 @@ def obstacle_term(obstacle: Obstacle, beta: BetaInteraction) -> ca.Function:
     """
     m = obstacle.dimension
     q = vector("q", m)
-    parameters = BetaSymbols(eps=beta.eps, h=beta.h, d=beta.d)
+    parameters = BetaSymbols(eps=beta.eps, h=beta.h, d=beta.d, unit=beta.unit)
     at_rest, (centre, other) = sp.zeros(m, 1), (vector("y", m), vector("a", m))
     if isinstance(obstacle, Wall):
         foot = wall_beta(q, at_rest, centre, other)[0]

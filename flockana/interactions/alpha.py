@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import sqrt
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -16,7 +17,9 @@ from flockana.kernels import alpha as kernel
 from flockana.kernels.lift import lift, lift_scalar
 from flockana.kernels.scalars import bump, clenshaw, phi, phi_integral, sigma_norm
 from flockana.kernels.tables import integral_panels, panel_edges
+from flockana.units import Powers
 
+_STRENGTH_GRID = 2049
 MAX_ASYMMETRY = 1e12  # of repulsion over attraction: beyond it φ(0) = 0 is lost in rounding
 
 _ADJACENCY_ALPHA = lift_scalar(kernel.adjacency_alpha)
@@ -47,6 +50,9 @@ class AlphaInteraction(PairInteraction):
         Where the bump ρ_h begins to fall, 0 < h < 1.
     a, b : float
         Strength of attraction and of repulsion, 0 < a ≤ b.
+    unit : float
+        ℓ > 0, the length that σ₁ counts in. The source's lengths are pure numbers, and its φ takes the square of a
+        length for one: ℓ = 1 is the printed law, and with ℓ the same law in any length unit (`flockana.rescale`).
 
     Attributes
     ----------
@@ -79,11 +85,13 @@ class AlphaInteraction(PairInteraction):
     h: float = 0.2
     a: float = 5.0
     b: float = 5.0
+    unit: float = 1.0
 
     kernels = _ALPHA
+    units: ClassVar[Mapping[str, Powers]] = {"d": (1, 0), "r": (1, 0), "eps": (-2, 0), "unit": (1, 0)}
 
     def __post_init__(self) -> None:
-        for name in ("d", "r", "eps", "a", "b"):
+        for name in ("d", "r", "eps", "a", "b", "unit"):
             object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
         object.__setattr__(self, "h", ensure_bump_start(self.h))
         if self.r <= self.d:
@@ -92,7 +100,7 @@ class AlphaInteraction(PairInteraction):
             raise ArgumentError(f"a = {self.a:g} and b = {self.b:g}: expected a <= b (attraction at most repulsion)")
         if self.b > MAX_ASYMMETRY * self.a:
             raise ArgumentError(f"a = {self.a:g} and b = {self.b:g}: expected b <= {MAX_ASYMMETRY:g} a")
-        ensure_resolved(self.d, self.r, self.eps)
+        ensure_resolved(self.d, self.r, self.eps, self.unit)
 
     @cached_property
     def c(self) -> float:
@@ -134,10 +142,12 @@ class AlphaInteraction(PairInteraction):
         """The desired distance d."""
         return self.d
 
-    @property
+    @cached_property
     def strength(self) -> float:
-        """b/√ε."""
-        return self.b / sqrt(self.eps)
+        """The largest |φ_α(‖x‖_σ)| x/√(1 + εx²) up to r, to 1e-6: below b/√ε, far below where d is short beside ℓ."""
+        lengths = np.linspace(0.0, self.r, _STRENGTH_GRID)
+        forces = self.phi_alpha(self.sigma_norm(lengths)) * lengths / np.sqrt(1.0 + self.eps * lengths**2)
+        return float(np.abs(forces).max())
 
     def energy_at(self, lengths: FloatArray) -> FloatArray:
         """ψ_α(‖x‖_σ) at Euclidean distances x.
@@ -153,20 +163,20 @@ class AlphaInteraction(PairInteraction):
     @cached_property
     def _parts(self) -> tuple[FloatArray, FloatArray]:
         """(par, panels): ψ_α(d_α) = 0 fixes the constants of the closed piece and of the taper."""
-        d_alpha, r_alpha, knee = self.d_alpha, self.r_alpha, self.h * self.r_alpha
-        par = np.array([self.eps, self.h, self.a, self.b, self.c, d_alpha, r_alpha, 0.0, 0.0])
+        d_alpha, r_alpha, knee, area = self.d_alpha, self.r_alpha, self.h * self.r_alpha, self.unit**2
+        par = np.array([self.eps, self.h, self.a, self.b, self.c, d_alpha, r_alpha, 0.0, 0.0, area])
 
         def taper(z: FloatArray) -> FloatArray:
             rho = 0.5 * (1.0 + np.cos(np.pi * (z / r_alpha - self.h) / (1.0 - self.h)))
-            action = np.array([phi(s, self.a, self.b, self.c) for s in z - d_alpha])
+            action = np.array([phi(s, self.a, self.b, self.c) for s in (z - d_alpha) / area])
             tapered: FloatArray = rho * action
             return tapered
 
-        edges = panel_edges(knee, r_alpha, d_alpha - self.c)
+        edges = area * panel_edges(knee / area, r_alpha / area, d_alpha / area - self.c)
         if knee < d_alpha:  # d_α lies on the taper: make it an edge, where ψ vanishes exactly
             edges = np.unique(np.append(edges, d_alpha))
         panels = integral_panels(taper, edges, value_at_right=0.0)
-        at_knee = phi_integral(knee - d_alpha, self.a, self.b, self.c)
+        at_knee = area * phi_integral((knee - d_alpha) / area, self.a, self.b, self.c)
         left_end = clenshaw(knee, panels)
         if knee < d_alpha:
             shift = -clenshaw(d_alpha, panels)
@@ -181,7 +191,7 @@ class AlphaInteraction(PairInteraction):
 
     @property
     def par(self) -> FloatArray:
-        """(ε, h, a, b, c, d_α, r_α, constant of ψ_α where ρ_h = 1, ψ_α(r_α))."""
+        """(ε, h, a, b, c, d_α, r_α, constant of ψ_α where ρ_h = 1, ψ_α(r_α), ℓ²)."""
         return self._parts[0]
 
     @property
@@ -211,14 +221,14 @@ class AlphaInteraction(PairInteraction):
         return evaluate(_BUMP, z, self.h)
 
     def phi(self, s: Any) -> Any:
-        """φ(s) = ½[(a+b) σ₁(s+c) + (a−b)].
+        """φ(s) = ½[(a+b) σ₁(s/ℓ² + c) + (a−b)].
 
         Parameters
         ----------
         s : float or ndarray
             Differences of σ-norms.
         """
-        return evaluate(_PHI, s, self.a, self.b, self.c)
+        return evaluate(_PHI, np.asarray(s, dtype=np.float64) / self.unit**2, self.a, self.b, self.c)
 
     def phi_alpha(self, z: Any) -> Any:
         """φ_α(z) = ρ_h(z/r_α) φ(z − d_α): negative repels.

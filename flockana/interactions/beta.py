@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from flockana.kernels import alpha as kernel
 from flockana.kernels.lift import lift_scalar
 from flockana.kernels.scalars import clenshaw, sigma_norm
 from flockana.kernels.tables import integral_panels, panel_edges
+from flockana.units import Powers
 
 _ADJACENCY_BETA = lift_scalar(kernel.adjacency_beta)
 _PHI_BETA = lift_scalar(kernel.phi_beta)
@@ -35,6 +37,8 @@ class BetaInteraction:
         ε > 0 of the σ-norm.
     h : float
         Where the bump begins to fall, 0 < h < 1.
+    unit : float
+        ℓ > 0, the length that σ₁ counts in; 1 as printed (see `AlphaInteraction`).
 
     Attributes
     ----------
@@ -57,14 +61,17 @@ class BetaInteraction:
     r: float = 5.04
     eps: float = 0.1
     h: float = 0.9
+    unit: float = 1.0
+
+    units: ClassVar[Mapping[str, Powers]] = {"d": (1, 0), "r": (1, 0), "eps": (-2, 0), "unit": (1, 0)}
 
     def __post_init__(self) -> None:
-        for name in ("d", "r", "eps"):
+        for name in ("d", "r", "eps", "unit"):
             object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
         object.__setattr__(self, "h", ensure_bump_start(self.h))
         if self.r <= self.d:
             raise ArgumentError(f"r = {self.r:g} and d = {self.d:g}: expected r > d; the paper takes r' = 1.2 d'")
-        ensure_resolved(self.d, self.r, self.eps)
+        ensure_resolved(self.d, self.r, self.eps, self.unit)
 
     @cached_property
     def d_beta(self) -> float:
@@ -78,22 +85,26 @@ class BetaInteraction:
 
     @cached_property
     def _parts(self) -> tuple[FloatArray, FloatArray]:
-        d_beta, knee = self.d_beta, self.h * self.d_beta
-        par = np.array([self.eps, self.h, d_beta, 0.0])
+        d_beta, knee, area = self.d_beta, self.h * self.d_beta, self.unit**2
+        par = np.array([self.eps, self.h, d_beta, 0.0, area])
 
         def taper(z: FloatArray) -> FloatArray:
             rho = 0.5 * (1.0 + np.cos(np.pi * (z / d_beta - self.h) / (1.0 - self.h)))
-            return rho * ((z - d_beta) / np.sqrt(1.0 + (z - d_beta) ** 2) - 1.0)
+            s = (z - d_beta) / area
+            repulsion: FloatArray = rho * (s / np.sqrt(1.0 + s**2) - 1.0)
+            return repulsion
 
-        panels = integral_panels(taper, panel_edges(knee, d_beta, d_beta), value_at_right=0.0)
-        par[3] = clenshaw(knee, panels) - (sigma_norm((knee - d_beta) ** 2, 1.0) - knee)
+        panels = integral_panels(
+            taper, area * panel_edges(knee / area, d_beta / area, d_beta / area), value_at_right=0.0
+        )
+        par[3] = clenshaw(knee, panels) - (area * sigma_norm(((knee - d_beta) / area) ** 2, 1.0) - knee)
         for array in (par, panels):
             array.setflags(write=False)
         return par, panels
 
     @property
     def par(self) -> FloatArray:
-        """(ε, h, d_β, constant of ψ_β where ρ_h = 1)."""
+        """(ε, h, d_β, constant of ψ_β where ρ_h = 1, ℓ²)."""
         return self._parts[0]
 
     @property
@@ -102,7 +113,7 @@ class BetaInteraction:
         return self._parts[1]
 
     def phi_beta(self, z: Any) -> Any:
-        """φ_β(z) = ρ_h(z/d_β)(σ₁(z − d_β) − 1) ≤ 0.
+        """φ_β(z) = ρ_h(z/d_β)(σ₁((z − d_β)/ℓ²) − 1) ≤ 0.
 
         Parameters
         ----------

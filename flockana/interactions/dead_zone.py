@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import asinh, exp, inf, sinh, sqrt
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from flockana.kernels import dead_zone as kernel
 from flockana.kernels.lift import lift, lift_scalar
 from flockana.kernels.scalars import clenshaw
 from flockana.kernels.tables import integral_panels
+from flockana.units import Powers
 
 _ACTION = lift_scalar(kernel.action)
 _FORCE = lift_scalar(kernel.force)
@@ -100,6 +102,12 @@ class DeadZoneInteraction(PairInteraction):
     ramp: float = 0.25
 
     kernels = _DEAD_ZONE
+    units: ClassVar[Mapping[str, Powers]] = dict.fromkeys(("r", "r_b", "delta", "r_d", "ramp"), (1, 0)) | {
+        "k_r": (2, -2),
+        "k_delta": (0, -2),
+        "eta": (-2, 0),
+        "k1": (0, -2),
+    }
 
     def __post_init__(self) -> None:
         for name in ("r", "r_b", "delta", "r_d", "k_r"):
@@ -153,6 +161,11 @@ class DeadZoneInteraction(PairInteraction):
     def bond_range(self) -> float:
         """d₁: only pairs that repel are in contact; the others within range have no length of their own."""
         return self.d1
+
+    @property
+    def surfaces(self) -> tuple[float, ...]:
+        """Both ends of the dead zone, as far as they lie within range, and the range."""
+        return tuple(sorted({self.d1, min(self.d2, self.r), self.r}))
 
     @property
     def strength(self) -> float:

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
 from functools import cached_property
 from math import sqrt
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from flockana.checks import FloatArray, ensure_finite_scalar
 from flockana.errors import ArgumentError
+from flockana.units import Powers
 
 PER_AGENT = ("c1_gamma", "c2_gamma")
 
@@ -69,8 +71,12 @@ class Gains:
     c1_gamma: Any = 1.1
     c2_gamma: Any = 2.0 * sqrt(1.1)
 
+    units: ClassVar[Mapping[str, Powers]] = {
+        f"c{k}_{name}": (0, k - 3) for name in ("alpha", "beta", "gamma") for k in (1, 2)
+    }
+
     def __post_init__(self) -> None:
-        for name in self.__dataclass_fields__:
+        for name in (field.name for field in fields(self)):
             value = getattr(self, name)
             several = name in PER_AGENT and isinstance(value, list | tuple | np.ndarray) and np.ndim(value) == 1
             if several and len(value) == 0:

@@ -66,6 +66,11 @@ class PairInteraction(ABC):
         return self.range
 
     @property
+    def surfaces(self) -> tuple[float, ...]:
+        """Distances at which the pair force begins, ends or jumps; the range alone, unless the law says otherwise."""
+        return (self.range,)
+
+    @property
     @abstractmethod
     def strength(self) -> float:
         """The strongest force between two agents, nearly; of a contact, where it is unbounded: the unit of forces."""
@@ -224,19 +229,21 @@ class PairInteraction(ABC):
         return coo_array(entries, shape=(n * m, n * m)).tocsr()
 
 
-def ensure_resolved(d: float, r: float, eps: float) -> None:
+def ensure_resolved(d: float, r: float, eps: float, unit: float) -> None:
     """Raise where the parameters are so extreme that d and r have no σ-norms apart from 0, ∞ and each other.
 
     Parameters
     ----------
-    d, r, eps : float
-        Distance, range and ε, all positive.
+    d, r, eps, unit : float
+        Distance, range, ε and the length that σ₁ counts in, all positive.
     """
     near, far = sigma_norm(d * d, eps), sigma_norm(r * r, eps)
-    if not (0.0 < near < far < inf and eps * r * r < inf):
+    area = unit * unit
+    counted = 0.0 < area < inf and near / area > 0.0 and far / area < inf
+    if not (0.0 < near < far < inf and eps * r * r < inf and counted):
         raise ArgumentError(
-            f"d = {d:g}, r = {r:g}, eps = {eps:g}: their σ-norms are {near:g} and {far:g}; "
-            "expected 0 < d_sigma < r_sigma, all finite: choose another length unit"
+            f"d = {d:g}, r = {r:g}, eps = {eps:g}, unit = {unit:g}: their σ-norms are {near:g} and {far:g}; "
+            "expected 0 < d_sigma < r_sigma, all finite: choose another length unit (flockana.rescale)"
         )
 
 

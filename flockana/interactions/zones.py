@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass, fields
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from flockana.checks import FloatArray, ensure_nonnegative, ensure_positive
 from flockana.errors import ArgumentError
+from flockana.units import Powers
 
 PerAgent = float | tuple[float, ...]
 Table = float | tuple[tuple[float, ...], ...]
@@ -64,6 +66,8 @@ class ZoneRadii:
     a: PerAgent
     c: PerAgent | None = None
     s: PerAgent | None = None
+
+    units: ClassVar[Mapping[str, Powers]] = dict.fromkeys("rcas", (1, 0))
 
     @property
     def reach(self) -> tuple[float, float, float]:
@@ -142,6 +146,15 @@ class ZoneWeights:
     obstacle: PerAgent = 5.0
     cohesion_gain: float = 0.25
     alignment_gain: float = 8.0
+
+    units: ClassVar[Mapping[str, Powers]] = {
+        "separation": (0, -2),
+        "speed": (0, -1),
+        "alien": (0, -2),
+        "obstacle": (0, -2),
+        "cohesion_gain": (0, -2),
+        "alignment_gain": (0, -1),
+    }
 
     def __post_init__(self) -> None:
         for name in (*_PAIRS, "alien"):

@@ -41,6 +41,10 @@ class ObstacleKernels:
     braking : callable
         ``braking(q, p, par, beta, reach, by_position, by_velocity)`` adds the derivatives of b_ik (p̂_ik − p_i) of one
         obstacle to every agent's blocks.
+    near : callable
+        ``near(points, reach, allowance, pars, starts, balls, shell, far, agents, bodies)`` fills in which agent, on a
+        path with these control points, may pass the distance `shell` of which obstacle, or go farther than `far` within
+        it, and returns how many there are (`flockana.encounters`).
     turns : bool
         Whether the kind says how p̂ turns as an agent moves; if not, `braking` is right where p = 0 alone.
     """
@@ -50,6 +54,7 @@ class ObstacleKernels:
     agents: Callable[..., None]
     slopes: Callable[..., None]
     braking: Callable[..., None]
+    near: Callable[..., int]
     turns: bool
 
 
@@ -63,11 +68,11 @@ def adjacency_beta_slope(s2, par):
 @register_jitable
 def pair_beta_slope(s2, par):
     """d/d(s²) of the weight of q̂_ik − q_i, what the Hessian of ψ_β needs beside the weight itself."""
-    eps, h, d_beta = par[0], par[1], par[2]
+    eps, h, d_beta, area = par[0], par[1], par[2], par[4]
     z, g = sigma_norm(s2, eps), 1.0 + eps * s2
-    s, x = z - d_beta, z / d_beta
+    s, x = (z - d_beta) / area, z / d_beta
     phi = bump(x, h) * (sigma_1(s) - 1.0)
-    slope = bump_slope(x, h) / d_beta * (sigma_1(s) - 1.0) + bump(x, h) / sqrt(1.0 + s * s) ** 3
+    slope = bump_slope(x, h) / d_beta * (sigma_1(s) - 1.0) + bump(x, h) / area / sqrt(1.0 + s * s) ** 3
     return 0.5 * (slope - eps * phi / sqrt(g)) / g
 
 
@@ -178,7 +183,24 @@ def lift_obstacle(project: Callable[..., float], turn: Callable[..., None] | Non
                     by_position[i, e, c] += b * bend[e] - 2.0 * slope * slip[e] * gap[c]
                 axis[c] = 0.0
 
-    return ObstacleKernels(forces, potential, agents, slopes, braking, turns)
+    @njit(cache=True)
+    def near(points, reach, allowance, pars, starts, balls, shell, far, agents, bodies):
+        count, m = 0, balls.shape[1] - 1
+        here, still, gap, rate = np.empty(m), np.zeros(m), np.empty(m), np.empty(m)
+        for k in range(balls.shape[0]):
+            par = pars[starts[k] : starts[k + 1]]
+            for i in range(points.shape[0]):
+                for c in range(m):
+                    here[c] = points[i, 0, c]
+                if _out_of_reach(here, balls[k], shell + reach[i]):
+                    continue
+                beyond = abs(project(here, still, par, gap, rate) + 0.0 * digest) - shell - allowance[i]
+                if 0.0 <= beyond < reach[i] or (beyond < 0.0 and reach[i] > far):
+                    agents[count], bodies[count] = i, k
+                    count += 1
+        return count
+
+    return ObstacleKernels(forces, potential, agents, slopes, braking, near, turns)
 
 
 @register_jitable

@@ -19,16 +19,15 @@ def _norm(x):
 
 
 @njit(cache=True)
-def control_points(h, q0, p0, u0, q1, p1, u1):
+def bernstein(h, q0, p0, u0, q1, p1, u1):
     """Bernstein control points (n, 6, 3) of every agent's quintic, its reach (n,) and its error allowance (n,).
 
-    The flock's common drift is taken out, which changes no distance between agents. The reach bounds how far an
-    agent then gets from its first point.
-    The allowance is the largest distance between the quintic and the cubic that ignores u: it overestimates the
-    quintic's own error as soon as the samples resolve the motion.
+    The reach bounds how far an agent gets from its first point. The allowance is the largest distance between the
+    quintic and the cubic that ignores u: it overestimates the quintic's own error as soon as the samples resolve the
+    motion, and is included in the reach.
     """
     n, m = q0.shape
-    points, allowance = np.zeros((n, 6, 3)), np.zeros(n)
+    points, reach, allowance = np.zeros((n, 6, 3)), np.zeros(n), np.zeros(n)
     for i in range(n):
         off2, off3 = 0.0, 0.0
         for k in range(m):
@@ -41,16 +40,43 @@ def control_points(h, q0, p0, u0, q1, p1, u1):
             off2 += (points[i, 2, k] - (a + 6.0 * c1 + 3.0 * c2) / 10.0) ** 2
             off3 += (points[i, 3, k] - (3.0 * c1 + 6.0 * c2 + b) / 10.0) ** 2
         allowance[i] = 0.625 * np.sqrt(max(off2, off3))  # 10 t²(1−t)² <= 0.625 weighs the two points that differ
+        reach[i] = _reach(points[i]) + allowance[i]
+    return points, reach, allowance
+
+
+@njit(cache=True)
+def _reach(c):
+    s2 = 0.0
+    for k in range(1, 6):
+        s2 = max(s2, (c[k, 0] - c[0, 0]) ** 2 + (c[k, 1] - c[0, 1]) ** 2 + (c[k, 2] - c[0, 2]) ** 2)
+    return np.sqrt(s2)
+
+
+@njit(cache=True)
+def centred(points, allowance):
+    """Take the flock's common drift out of the control points, in place, and return the reaches that are left.
+
+    No distance between agents changes.
+    """
+    n = points.shape[0]
     reach = np.zeros(n)
     for c in range(1, 6):
-        for k in range(m):
+        for k in range(3):
             drift = 0.0
             for i in range(n):
                 drift += (points[i, c, k] - points[i, 0, k]) / n
             for i in range(n):
                 points[i, c, k] -= drift
-        for i in range(n):
-            reach[i] = max(reach[i], _norm(points[i, c] - points[i, 0]) + allowance[i])
+    for i in range(n):
+        reach[i] = _reach(points[i]) + allowance[i]
+    return reach
+
+
+@njit(cache=True)
+def control_points(h, q0, p0, u0, q1, p1, u1):
+    """`bernstein` without the flock's common drift."""
+    points, _, allowance = bernstein(h, q0, p0, u0, q1, p1, u1)
+    reach = centred(points, allowance)
     return points, reach, allowance
 
 

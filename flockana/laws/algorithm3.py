@@ -17,6 +17,8 @@ from flockana.errors import ArgumentError
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
 from flockana.interactions.gains import weighted
 from flockana.laws.law import Law, block_diagonal
+from flockana.laws.olfati_saber import alpha_scales
+from flockana.scales import Scales
 
 if TYPE_CHECKING:
     from scipy.sparse import sparray
@@ -27,7 +29,7 @@ class Algorithm3(Law):
     """u_i = u_i^α + u_i^β + u_i^γ: Algorithm 1, repulsion from obstacles, a bounded pull to the γ-agent.
 
     u_i^β = c1β Σ_k φ_β(‖q̂_ik−q_i‖_σ) n̂_ik + c2β Σ_k b_ik (p̂_ik − p_i) and
-    u_i^γ = −c1γ σ₁(q_i − q_r) − c2γ (p_i − p_r)   (Olfati-Saber 2006).
+    u_i^γ = −c1γ ℓ σ₁((q_i − q_r)/ℓ) − c2γ (p_i − p_r)   (Olfati-Saber 2006), where ℓ = alpha.unit is 1 as printed.
 
     Parameters
     ----------
@@ -82,6 +84,10 @@ class Algorithm3(Law):
         object.__setattr__(self, "obstacles", obstacles)
         self._check_obstacles(self.target.dimension, "the target has")
 
+    @property
+    def scales(self) -> Scales:  # noqa: D102
+        return alpha_scales(self.alpha, self.gains)
+
     @cached_property
     def obstacle_field(self) -> ObstacleField:
         """The obstacles with their interaction: sums over β-agents."""
@@ -133,7 +139,7 @@ class Algorithm3(Law):
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
         """(u, dH/dt), for every γ-agent, consistent or not, unchecked.
 
-        dH/dt = −c2α pᵀL̂p + c2β ΣΣ b_ik ⟨p_i, p̂_ik − p_i⟩ − c2γ Σ⟨p_i, p_i − p_r⟩ − c1γ Σ⟨σ₁(q_i − q_r), dq_r/dt⟩:
+        dH/dt = −c2α pᵀL̂p + c2β ΣΣ b_ik ⟨p_i, p̂_ik − p_i⟩ − c2γ Σ⟨p_i, p_i − p_r⟩ − c1γ Σ⟨ℓ σ₁((q_i − q_r)/ℓ), dq_r/dt⟩:
         the force knows the p_r that it is told, the potential moves with the true dq_r/dt.
 
         Parameters
@@ -148,7 +154,7 @@ class Algorithm3(Law):
         braking = self.obstacle_field.forces(q, p, u, stiffness=g.c1_beta, damping=g.c2_beta)
         q_r, p_r = self.target.state(t)
         x = q - q_r
-        pull = x / np.sqrt(1.0 + np.einsum("ij,ij->i", x, x))[:, None]
+        pull = x / self._bend(x)[:, None]
         slip = p - p_r
         pulled, rate = g.pull * pull, self.target.rate(t)
         u -= pulled + g.drag * slip
@@ -158,8 +164,13 @@ class Algorithm3(Law):
             drag, carried = g.c2_gamma * float(np.vdot(p, slip)), g.c1_gamma * float(pull.sum(axis=0) @ rate)
         return u, g.c2_beta * braking - g.c2_alpha * dissipation - drag - carried
 
+    def _bend(self, x: FloatArray) -> FloatArray:
+        """√(1 + ‖x_i‖²/ℓ²), by which σ₁ bends the pull of each agent, shape (n,)."""
+        bend: FloatArray = np.sqrt(1.0 + np.einsum("ij,ij->i", x, x) / self.alpha.unit**2)
+        return bend
+
     def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:
-        """H = c1α V + c1β ΣΣ ψ_β + c1γ Σ(√(1 + ‖q_i − q_r‖²) − 1) + ½ Σ‖p_i‖², unchecked.
+        """H = c1α V + c1β ΣΣ ψ_β + c1γ Σ ℓ²(√(1 + ‖q_i − q_r‖²/ℓ²) − 1) + ½ Σ‖p_i‖², unchecked.
 
         V counts every pair once; the slides print both (E2).
 
@@ -172,7 +183,7 @@ class Algorithm3(Law):
         """
         g, x = self.gains, q - self.target.state(t)[0]
         x2 = np.einsum("ij,ij->i", x, x)
-        attraction = weighted(g.c1_gamma, x2 / (np.sqrt(1.0 + x2) + 1.0))  # √(1 + x²) − 1 without its cancellation
+        attraction = weighted(g.c1_gamma, x2 / (self._bend(x) + 1.0))  # √(1 + x²) − 1 without its cancellation
         potential = g.c1_alpha * self.alpha.potential_energy(q) + g.c1_beta * self.obstacle_field.potential_energy(q)
         return potential + attraction + 0.5 * float(np.sum(p * p))
 
@@ -207,7 +218,7 @@ class Algorithm3(Law):
             Positions.
         """
         g, x = self.gains, q - self.target.state(t)[0]
-        root = np.sqrt(1.0 + np.einsum("ij,ij->i", x, x))[:, None, None]
+        root, x = self._bend(x)[:, None, None], x / self.alpha.unit
         pull = np.eye(q.shape[1]) / root - x[:, :, None] * x[:, None, :] / root**3
         drag = np.broadcast_to(np.eye(q.shape[1]), pull.shape)
         return np.reshape(g.pull, (-1, 1, 1)) * pull, np.reshape(g.drag, (-1, 1, 1)) * drag

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass, field
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -18,6 +18,8 @@ from flockana.errors import ArgumentError
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.kernels import zones as compiled
 from flockana.laws.law import DiscreteLaw
+from flockana.scales import Scales
+from flockana.units import Powers
 
 CHOICES: dict[str, tuple[str, ...]] = {
     "form": ("position", "bearing"),
@@ -125,8 +127,22 @@ class ZoneFlocking(DiscreteLaw):
     inside: str = "outward"
     walls: str = "each"
 
+    units: ClassVar[Mapping[str, Powers]] = {
+        "desired_speed": (1, -1),
+        "u_max": (1, -2),
+        "v_max": (1, -1),
+        "dt": (0, 1),
+    }
+
     references = ("jond-2025",)
+    extra_units: ClassVar[Mapping[str, Powers]] = {"estimate": (1, -1), "alien": (1, 0)}
     steps_at_once = 256  # a step of ten agents takes microseconds
+
+    @property
+    def scales(self) -> Scales:
+        """The radius of attraction, and the time to cross it at the greatest speed."""
+        length = self.radii.reach[2]
+        return Scales(length, length / self.v_max)
 
     @classmethod
     def printed(cls, radii: ZoneRadii | None = None, weights: ZoneWeights | None = None, **options: Any) -> Self:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -15,6 +15,8 @@ from flockana.kernels.dead_zone import ATTRACTION, DEAD, OUT, semi_implicit_step
 from flockana.laws.olfati_saber import moving_frame
 from flockana.laws.switched import Margins, Pieces, SwitchedLaw
 from flockana.nets import components, links
+from flockana.scales import Scales
+from flockana.units import Powers
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -58,6 +60,8 @@ class DeadZoneFlocking(SwitchedLaw):
     interaction: DeadZoneInteraction = field(default_factory=DeadZoneInteraction)
     k2: float = 1.0
 
+    units: ClassVar[Mapping[str, Powers]] = {"k2": (0, -1)}
+
     references = ("li-dead-zone",)
 
     def __post_init__(self) -> None:
@@ -67,6 +71,12 @@ class DeadZoneFlocking(SwitchedLaw):
         if gain < 0.0:
             raise ArgumentError(f"k2 = {gain:g}: expected a gain >= 0; a negative one feeds energy in")
         object.__setattr__(self, "k2", gain)
+
+    @property
+    def scales(self) -> Scales:
+        """d₁, and the time in which the force of a contact moves an agent by it."""
+        length = self.interaction.d1
+        return Scales(length, float(np.sqrt(length / self.interaction.contact_force)))
 
     def check_start(self, q: FloatArray, p: FloatArray) -> None:
         """Raise if two agents coincide: their force has no direction and their potential is infinite.

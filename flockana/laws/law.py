@@ -10,6 +10,9 @@ import numpy as np
 
 from flockana.checks import FloatArray, ensure_finite_scalar, ensure_fits, ensure_state
 from flockana.errors import ArgumentError
+from flockana.interactions.pair import pair_interaction
+from flockana.scales import Scales
+from flockana.units import Powers
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array, sparray
@@ -42,6 +45,21 @@ class Law(ABC):
     """
 
     references: ClassVar[tuple[str, ...]] = ()
+
+    @property
+    def scales(self) -> Scales | None:
+        """The natural length and time of the law, which thresholds are multiples of; None if it has none of its own."""
+        return None
+
+    @property
+    def surfaces(self) -> tuple[float | tuple[float, ...], ...]:
+        """Distances between agents at which a force begins, ends or jumps, each one number or one for every agent.
+
+        Those of the law's pair interaction of finite range, if it has one. An integrator must not step over the region
+        within one unseen (`flockana.encounters`).
+        """
+        pair = pair_interaction(self)
+        return () if pair is None else pair.surfaces
 
     @abstractmethod
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
@@ -229,12 +247,19 @@ class DiscreteLaw(ABC):
 
     A subclass is a frozen dataclass with a step `dt` and `step`. Its state may carry more than (q, p): `memory` maps
     names to arrays, is passed along, and is recorded over time in `Trajectory.extra`. A run holds the state at
-    t0 + k dt and the input that brought it there; between its steps a map has no state.
+    t0 + k dt and the input that brought it there; between its steps a map has no state. `extra_units` tells the powers
+    of length and time of what is remembered, where it is no pure number.
     """
 
     references: ClassVar[tuple[str, ...]] = ()
     dt: float
     steps_at_once: ClassVar[int] = 1
+    extra_units: ClassVar[Mapping[str, Powers]] = {}
+
+    @property
+    def scales(self) -> Scales | None:
+        """The natural length and time of the law, which thresholds are multiples of; None if it has none of its own."""
+        return None
 
     @abstractmethod
     def step(

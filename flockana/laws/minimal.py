@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -16,10 +16,13 @@ from flockana.kernels.minimal import edge_forces, perceived_edges
 from flockana.laws.law import DiscreteLaw, Law
 from flockana.laws.perception import Edges, ensure_edges
 from flockana.nets import components
+from flockana.scales import Scales
+from flockana.units import Powers, times
 
 if TYPE_CHECKING:
     from scipy.sparse import sparray
 
+_EQUAL = 1e-14  # relative: products of three numbers that are equal by algebra differ by less
 PerAgent = float | tuple[float, ...]
 PerPair = float | tuple[tuple[float, ...], ...]
 
@@ -126,6 +129,46 @@ class MinimalFlocking(Law):
         self._check_sizes()
         self._check_means()
 
+    @property
+    def scales(self) -> Scales:
+        """The longest desired spacing, or perception radius, and the time of the stiffest spring or of alignment."""
+        length = float(np.max(self.radius if self.spacing is None else self.spacing))
+        heard = float(np.max(self.sigma))
+        rate = max(float(np.sqrt(np.max(self.mu))), float(heard > 0.0) if self.normalised else heard)
+        return Scales(length, 1.0 / rate if rate > 0.0 else 1.0)
+
+    @property
+    def surfaces(self) -> tuple[PerAgent, ...]:
+        """The perception radius of every agent; none on a frozen graph."""
+        return (self.radius,) if self.edges is None else ()
+
+    def in_units(self, length: float, time: float) -> MinimalFlocking:
+        """The same law in other units (`flockana.rescale`).
+
+        Parameters
+        ----------
+        length, time : float
+            Factors.
+
+        Raises
+        ------
+        ArgumentError
+            If time is rescaled and alignment is normalised: its rate is then 1 per time unit, as printed.
+        """
+        if self.normalised and time != 1.0 and np.any(self.sigma):
+            raise ArgumentError(
+                f"time = {time:g}: normalised alignment has the rate 1 per time unit, as printed, and no "
+                "parameter for it; expected time = 1, or a law with normalised=False"
+            )
+        own = {name: getattr(self, name) for name in ("edges", "normalised")}
+        powers = {"radius": length, "spacing": length, "beta": 1.0, "mu": time**-2}
+        powers["sigma"] = 1.0 if self.normalised else 1.0 / time
+        beta = self.beta
+        if beta is None and self.spacing is None:  # the default 1/r_i is that of the unit in which it was given
+            beta = tuple(1.0 / r for r in self.radius) if isinstance(self.radius, tuple) else 1.0 / self.radius
+        values = {"radius": self.radius, "spacing": self.spacing, "beta": beta, "mu": self.mu, "sigma": self.sigma}
+        return MinimalFlocking(**own, **{name: times(value, powers[name]) for name, value in values.items()})
+
     def _check_sizes(self) -> None:
         sizes = {name: len(v) for name in self._tables if isinstance(v := getattr(self, name), tuple)}
         if len(set(sizes.values())) > 1:
@@ -219,11 +262,15 @@ class MinimalFlocking(Law):
 
     @cached_property
     def reciprocal(self) -> bool:
-        """Whether the graph is frozen and every edge has its reverse, of equal μ, spacing and alignment weight."""
+        """Whether the graph is frozen and every edge has its reverse, of equal μ, spacing and alignment weight.
+
+        Equal but for rounding: a spacing β_i r_i |N_i| is a product, and so is all that is given in other units.
+        """
         if self.edges is None:
             return False
-        what = dict(zip(self.edges, zip(*self._frozen[2:], strict=True), strict=True))
-        return all(what.get((i, j)) == value for (j, i), value in what.items())
+        what = dict(zip(self.edges, np.array(self._frozen[2:]).T, strict=True))
+        pairs = [(value, what.get((i, j))) for (j, i), value in what.items()]
+        return all(back is not None and np.allclose(value, back, rtol=_EQUAL, atol=0.0) for value, back in pairs)
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
         """(u, dH/dt), unchecked, with dH/dt = −Σ σ ‖v_i − v_j‖² over links if the law is `reciprocal`, else NaN.
@@ -351,6 +398,8 @@ class DiscreteMinimalFlocking(DiscreteLaw):
     law: MinimalFlocking
     dt: float = 0.1
 
+    units: ClassVar[Mapping[str, Powers]] = {"dt": (0, 1)}
+
     references = ("jond-2025",)
     steps_at_once = 50
 
@@ -358,6 +407,10 @@ class DiscreteMinimalFlocking(DiscreteLaw):
         if not isinstance(self.law, MinimalFlocking):
             raise ArgumentError(f"law = {self.law!r}: expected MinimalFlocking(...)")
         object.__setattr__(self, "dt", ensure_positive("dt", self.dt))
+
+    @property
+    def scales(self) -> Scales | None:  # noqa: D102
+        return self.law.scales
 
     def check_start(self, q: FloatArray, p: FloatArray) -> None:  # noqa: D102
         self.law.check_agents(len(q))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -15,6 +16,8 @@ from flockana.kernels.inplace import advance_alpha, neighbour_lists
 from flockana.kernels.neighbours import pair_list
 from flockana.laws.law import DiscreteLaw
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain
+from flockana.scales import Scales
+from flockana.units import Powers
 
 PRINTED = 1.5  # q + (p + u dt) dt + ½ u dt² = q + p dt + (3/2) u dt² (erratum E9)
 CONSTANT_ACCELERATION = 0.5
@@ -59,6 +62,8 @@ class MSNDiscretisation(DiscreteLaw):
     in_place: bool = True
     position_factor: float = PRINTED
 
+    units: ClassVar[Mapping[str, Powers]] = {"dt": (0, 1)}
+
     references = ("isola-2024", "olfati-saber-2006")
 
     def __post_init__(self) -> None:
@@ -70,6 +75,10 @@ class MSNDiscretisation(DiscreteLaw):
             raise ArgumentError(f"in_place = {self.in_place!r}: expected True or False")
         object.__setattr__(self, "dt", ensure_positive("dt", self.dt))
         object.__setattr__(self, "position_factor", ensure_finite_scalar("position_factor", self.position_factor))
+
+    @property
+    def scales(self) -> Scales | None:  # noqa: D102
+        return self.law.scales
 
     @property
     def alpha(self) -> AlphaInteraction:

@@ -6,8 +6,9 @@ keep their values and only n_ij becomes σ_ε(10 (q_j − q_i)). The force then 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from flockana.errors import ArgumentError
 from flockana.interactions import AlphaInteraction
 from flockana.kernels.neighbours import pair_blocks
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.units import Powers
 
 MIN_DISTANCE, FACTOR = 0.05, 10.0
 
@@ -71,6 +73,11 @@ class _Push:
         if self.factor < 1.0:
             raise ArgumentError(f"factor = {self.factor:g}: expected at least 1; a smaller one is no push")
 
+    @property
+    def surfaces(self) -> tuple[Any, ...]:
+        """Those of the law without the push, and where the push begins."""
+        return (self.min_distance, *super().surfaces)  # type: ignore[misc]
+
     def _pushed(
         self, alpha: AlphaInteraction, c1: float, q: FloatArray, p: FloatArray, found: tuple[FloatArray, float]
     ) -> tuple[FloatArray, float]:
@@ -125,6 +132,8 @@ class PushedAlgorithm1(_Push, Algorithm1):
     min_distance: float = MIN_DISTANCE
     factor: float = FACTOR
 
+    units: ClassVar[Mapping[str, Powers]] = {"min_distance": (1, 0)}
+
     references = ("notebook-r2", "olfati-saber-2006")
 
     def __post_init__(self) -> None:
@@ -162,6 +171,8 @@ class PushedAlgorithm2(_Push, Algorithm2):
 
     min_distance: float = MIN_DISTANCE
     factor: float = FACTOR
+
+    units: ClassVar[Mapping[str, Powers]] = {"min_distance": (1, 0)}
 
     references = ("notebook-r2", "olfati-saber-2006")
 

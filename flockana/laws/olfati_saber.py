@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -13,6 +13,7 @@ from flockana.errors import ArgumentError
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.interactions.gains import weighted
 from flockana.laws.law import Law, block_diagonal
+from flockana.scales import Scales
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array, sparray
@@ -45,6 +46,30 @@ def ensure_one_gain(gains: Gains) -> None:
             "c1_gamma or c2_gamma is given per agent: expected one of each, or the shape does not separate from the "
             "centre of mass; find_equilibrium and the stability functions take both kinds"
         )
+
+
+def alpha_scales(alpha: AlphaInteraction, gains: Gains) -> Scales:
+    """d, and the time in which the law's leading term moves an agent by d: of c1α, or else of c1γ, c2α or c2γ.
+
+    Parameters
+    ----------
+    alpha : AlphaInteraction
+        The pair law.
+    gains : Gains
+        Gains of Algorithm 1, 2 or 3.
+
+    Examples
+    --------
+    >>> alpha_scales(AlphaInteraction(d=4.0, r=5.0), Gains(c1_alpha=0.0, c1_gamma=0.25))
+    Scales(length=4.0, time=2.0)
+    """
+    rates = (
+        np.sqrt(gains.c1_alpha * alpha.strength / alpha.d),
+        np.sqrt(np.max(gains.c1_gamma)),
+        gains.c2_alpha,
+        np.max(gains.c2_gamma),
+    )
+    return Scales(alpha.d, 1.0 / float(next((rate for rate in rates if rate > 0.0), 1.0)))
 
 
 def moving_frame(x: FloatArray) -> FloatArray:
@@ -88,6 +113,10 @@ class Algorithm1(Law):
     def __post_init__(self) -> None:
         _ensure("alpha", self.alpha, AlphaInteraction)
         _ensure("gains", self.gains, Gains)
+
+    @property
+    def scales(self) -> Scales:  # noqa: D102
+        return alpha_scales(self.alpha, replace(self.gains, c1_gamma=0.0, c2_gamma=0.0))
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
         """(u, dH/dt) with dH/dt = −c2α pᵀL̂p, unchecked.
@@ -187,6 +216,10 @@ class Algorithm2(Law):
         _ensure("gains", self.gains, Gains)
         if not isinstance(self.target, Target):
             raise ArgumentError(f"target = {self.target!r}: expected a γ-agent such as StaticTarget((0.0, 0.0))")
+
+    @property
+    def scales(self) -> Scales:  # noqa: D102
+        return alpha_scales(self.alpha, self.gains)
 
     def check_dimension(self, m: int) -> None:
         """Raise unless the γ-agent lives in m dimensions.

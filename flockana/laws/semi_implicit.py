@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import ClassVar
 
 from flockana.checks import FloatArray, ensure_positive
 from flockana.errors import ArgumentError
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.law import DiscreteLaw, Law
+from flockana.scales import Scales
+from flockana.units import Powers
 
 
 @dataclass(frozen=True)
@@ -43,12 +46,18 @@ class SemiImplicitEuler(DiscreteLaw):
     law: Law
     dt: float = 0.01
 
+    units: ClassVar[Mapping[str, Powers]] = {"dt": (0, 1)}
+
     steps_at_once = 200  # of the dead-zone law, whose loop is compiled: 5 µs a step of 50 agents
 
     def __post_init__(self) -> None:
         if not isinstance(self.law, Law):
             raise ArgumentError(f"law = {self.law!r}: expected a continuous law such as DeadZoneFlocking()")
         object.__setattr__(self, "dt", ensure_positive("dt", self.dt))
+
+    @property
+    def scales(self) -> Scales | None:  # noqa: D102
+        return self.law.scales
 
     @property
     def references(self) -> tuple[str, ...]:  # type: ignore[override]  # those of the law that is stepped

@@ -55,7 +55,7 @@ def bump(z: sp.Expr, *, h: sp.Expr = AlphaSymbols.h) -> sp.Expr:
 
 
 def phi(s: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
-    """Return the uneven sigmoid ((a + b) sigma_1(s + c) + (a - b))/2, which vanishes at 0 if a <= b.
+    """Return the uneven sigmoid ((a + b) sigma_1(s/l**2 + c) + (a - b))/2, which vanishes at 0 if a <= b.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def phi(s: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
     >>> phi(sp.Integer(0), alpha=AlphaSymbols(a=1, b=9))
     0
     """
-    return HALF * ((alpha.a + alpha.b) * sigma_1(s + alpha.c) + (alpha.a - alpha.b))
+    return HALF * ((alpha.a + alpha.b) * sigma_1(s / alpha.unit**2 + alpha.c) + (alpha.a - alpha.b))
 
 
 def phi_alpha(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
@@ -109,7 +109,7 @@ def adjacency(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
 
 
 def phi_beta(z: sp.Expr, *, beta: BetaSymbols = BETA) -> sp.Expr:
-    """Return the repulsion rho_h(z/d_beta) (sigma_1(z - d_beta) - 1) of a beta-agent (Olfati-Saber 2006).
+    """Return the repulsion rho_h(z/d_beta) (sigma_1((z - d_beta)/l**2) - 1) of a beta-agent (Olfati-Saber 2006).
 
     Parameters
     ----------
@@ -123,4 +123,4 @@ def phi_beta(z: sp.Expr, *, beta: BetaSymbols = BETA) -> sp.Expr:
     >>> phi_beta(sp.Integer(0), beta=BetaSymbols(eps=1, h=0.9, d=sp.sqrt(3)))
     -1 - sqrt(2)/2
     """
-    return bump(z / beta.d_beta, h=beta.h) * (sigma_1(z - beta.d_beta) - 1)
+    return bump(z / beta.d_beta, h=beta.h) * (sigma_1((z - beta.d_beta) / beta.unit**2) - 1)

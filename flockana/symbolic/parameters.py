@@ -71,6 +71,8 @@ class AlphaSymbols:
         interaction range r > d, both Euclidean lengths. Floats become the decimal fractions they print as.
     c, d_alpha, r_alpha : sympy.Expr, optional
         Computed from the others; give a symbol to keep its name in print.
+    unit : number or sympy.Expr
+        The length l > 0 that sigma_1 counts in, 1 in the source: phi(s) contains sigma_1(s/l**2 + c).
 
     Raises
     ------
@@ -94,10 +96,11 @@ class AlphaSymbols:
     c: sp.Expr = None
     d_alpha: sp.Expr = None
     r_alpha: sp.Expr = None
+    unit: sp.Expr = sp.S.One
 
     def __post_init__(self) -> None:
         _fill(self, ("c", "d_alpha", "r_alpha"))
-        for name in ("eps", "h", "a", "b", "d", "r"):
+        for name in ("eps", "h", "a", "b", "d", "r", "unit"):
             value = getattr(self, name)
             _require(value.is_positive, f"{name} = {value}: expected a number > 0")
         _require((1 - self.h).is_nonnegative, f"h = {self.h}: expected 0 < h <= 1")
@@ -123,6 +126,8 @@ class BetaSymbols:
         eps > 0 of the sigma-norm, plateau 0 < h <= 1 of the bump, distance d' > 0 where the repulsion ends.
     d_beta : sympy.Expr, optional
         Computed from the others; give a symbol to keep its name in print.
+    unit : number or sympy.Expr
+        The length l > 0 that sigma_1 counts in, 1 in the source.
 
     Raises
     ------
@@ -139,10 +144,11 @@ class BetaSymbols:
     h: sp.Expr = _H
     d: sp.Expr = _D_PRIME
     d_beta: sp.Expr = None
+    unit: sp.Expr = sp.S.One
 
     def __post_init__(self) -> None:
         _fill(self, ("d_beta",))
-        for name in ("eps", "h", "d"):
+        for name in ("eps", "h", "d", "unit"):
             value = getattr(self, name)
             _require(value.is_positive, f"{name} = {value}: expected a number > 0")
         _require((1 - self.h).is_nonnegative, f"h = {self.h}: expected 0 < h <= 1")

@@ -101,8 +101,9 @@ def alpha_antiderivative(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
     >>> sp.simplify(sp.diff(alpha_antiderivative(z), z) - phi(z - ALPHA.d_alpha))
     0
     """
-    root = sp.sqrt(1 + (z - alpha.d_alpha + alpha.c) ** 2)
-    return HALF * ((alpha.a + alpha.b) * root + (alpha.a - alpha.b) * z)
+    area = alpha.unit**2
+    root = sp.sqrt(1 + ((z - alpha.d_alpha) / area + alpha.c) ** 2)
+    return HALF * ((alpha.a + alpha.b) * area * root + (alpha.a - alpha.b) * z)
 
 
 def _alpha(alpha: AlphaSymbols) -> _Potential:
@@ -119,10 +120,15 @@ def _alpha(alpha: AlphaSymbols) -> _Potential:
 
 def _beta(beta: BetaSymbols) -> _Potential:
     """Return the pieces that make psi_beta, whose zero is its cut-off."""
+    area = beta.unit**2
+
+    def repulsion(z: sp.Expr) -> sp.Expr:
+        return sigma_1((z - beta.d_beta) / area) - 1
+
     return _Potential(
-        smooth=lambda z: sigma_1(z - beta.d_beta) - 1,
-        tapered=lambda z: taper(z / beta.d_beta, h=beta.h) * (sigma_1(z - beta.d_beta) - 1),
-        closed=lambda z: sp.sqrt(1 + (z - beta.d_beta) ** 2) - z,
+        smooth=repulsion,
+        tapered=lambda z: taper(z / beta.d_beta, h=beta.h) * repulsion(z),
+        closed=lambda z: area * sp.sqrt(1 + ((z - beta.d_beta) / area) ** 2) - z,
         zero=beta.d_beta,
         edge=beta.h * beta.d_beta,
         cutoff=beta.d_beta,

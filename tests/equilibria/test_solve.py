@@ -83,7 +83,8 @@ def test_a_perturbed_saddle_is_found_by_the_root_finder():
 
 @pytest.mark.parametrize(("m", "rigid"), [(1, 1), (2, 3), (3, 6)])
 def test_a_simplex_is_a_minimum_in_every_dimension(m, rigid):
-    found = find_equilibrium(Algorithm1(), 5.5 * np.vstack([np.zeros(m), np.eye(m)]))
+    corners = np.linalg.svd(np.eye(m + 1) - 1.0 / (m + 1))[0][:, :m]  # of a regular simplex of edge √2
+    found = find_equilibrium(Algorithm1(), 6.5 / np.sqrt(2.0) * corners)
     assert (found.kind, found.rigid_modes, found.strain()) == ("minimum", rigid, 0.0)
     assert len(found.links) == m * (m + 1) // 2
 

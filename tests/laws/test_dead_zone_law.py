@@ -107,19 +107,15 @@ def test_the_turns_of_a_distance_are_those_of_its_polynomial():
 
     def course(t, swing=7.5):
         """Two agents on a line, 8 + 7.5 T_5 apart: five monotone pieces, four turns, within the unit step."""
-        x = 2.0 * np.asarray(t) - 1.0
-        zero = 0.0 * x
-        return np.array([zero, 8.0 + swing * (16.0 * x**5 - 20.0 * x**3 + 5.0 * x), zero, zero])
-
-    def split(y):
-        return y[:2].reshape(2, 1), y[2:].reshape(2, 1)
+        x = 2.0 * t - 1.0
+        return np.array([[0.0], [8.0 + swing * (16.0 * x**5 - 20.0 * x**3 + 5.0 * x)]])
 
     held = law.pieces(np.array([[0.0], [8.0]]))
-    found = turns(law, held, course, 0.0, 1.0, split)
+    found = turns(law, held, course, 0.0, 1.0)
     expected = 0.5 + 0.5 * np.cos(np.pi * np.arange(4, 0, -1) / 5.0)
     assert np.abs(np.array(found)[:, None] - expected).min(axis=0).max() < 1e-12
     # 8 ± 4 stays between d1 = 3.5 and d2 = 12.5: nobody asks
-    assert turns(law, held, lambda t: course(t, swing=4.0), 0.0, 1.0, split) == []
+    assert turns(law, held, lambda t: course(t, swing=4.0), 0.0, 1.0) == []
 
 
 def test_output_times_do_not_change_a_located_run():

@@ -22,6 +22,7 @@ from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.simulate import simulate
 from flockana.stability import linearise
+from flockana.units import rescale
 
 HEXAGON = hexagonal_patch(1, 7.0)
 STILL = StaticTarget((1.0, -2.0))
@@ -38,6 +39,11 @@ def pair_force(s):
     rho = 0.5 * (1.0 + np.cos(pi * (z / ALPHA.r_alpha - 0.2) / 0.8))
     x = z - ALPHA.d_alpha
     return rho * 5.0 * x / np.sqrt(1.0 + x * x) * s / np.sqrt(1.0 + 0.1 * s * s), rho
+
+
+def strongest():
+    """The largest pair force, by a search over the lengths."""
+    return max(abs(float(pair_force(s)[0])) for s in np.linspace(0.0, 8.4, 20_001))
 
 
 def dense_reference(q, gains):
@@ -259,11 +265,11 @@ def test_one_agent_has_no_shape():
 
 def test_a_state_that_is_no_equilibrium_is_refused_with_its_residual():
     q = [[0.0, 0.0], [7.5, 0.0]]
-    expected = float(pair_force(7.5)[0]) * sqrt(0.1) / 5.0
+    expected = float(pair_force(7.5)[0]) / strongest()
     with pytest.raises(ArgumentError, match=f"no equilibrium of Algorithm1: its residual is {expected:.3g}, .*1e-09"):
         linearise(Algorithm1(), q)
     found = linearise(Algorithm1(), q, allow_residual=True)
-    assert found.residual == pytest.approx(expected, rel=1e-12)
+    assert found.residual == pytest.approx(expected, rel=1e-6)  # the scale is a grid's greatest value
     assert linearise(Algorithm1(), q, force_tolerance=1.1 * expected).residual == found.residual
     np.testing.assert_array_equal(found.A, Algorithm1().jacobian(0.0, q, np.zeros((2, 2))))
 
@@ -273,7 +279,7 @@ def test_agents_that_move_against_each_other_are_no_equilibrium():
     law = Algorithm1(gains=Gains(c2_alpha=0.0))
     p = np.zeros((7, 2))
     p[0] = [2.0 * 7.0 / 6.0, 0.0]
-    residual = 2.0 / sqrt(30.0 * 5.0 / sqrt(0.1) * 7.0)
+    residual = 2.0 / sqrt(30.0 * strongest() * 7.0)
     with pytest.raises(ArgumentError, match=f"its residual is {residual:.3g}"):
         linearise(law, HEXAGON, p)
 
@@ -332,3 +338,15 @@ def test_a_dense_matrix_that_would_not_fit_is_refused_before_it_is_allocated():
     for name in ("A", "modes", "eigenvalues", "zero_modes", "state_space", "structural"):
         with pytest.raises(ArgumentError, match=r"A of shape \(1000000, 1000000\) would take 8e\+12 bytes.*A_sparse"):
             getattr(found, name)
+
+
+@pytest.mark.parametrize("time", [1e-6, 1.0, 1e6])
+def test_a_motion_that_is_not_steady_is_refused_in_every_unit_of_time(time):
+    """K is 1/time², and beside the ones of A it may be nothing: it is compared with itself."""
+    law, line = (
+        rescale(Algorithm3(target=target), time=time)
+        for target in (CircleTarget((1.0, -2.0), 20.0, frequency=0.1), LinearTarget((1.0, -2.0), (5.0, 1.0)))
+    )
+    with pytest.raises(ArgumentError, match="Jacobian of Algorithm3 changes along the motion"):
+        linearise(law, find_equilibrium(law, HEXAGON))
+    assert linearise(line, find_equilibrium(line, HEXAGON)).residual < 1e-9

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from math import cos, pi, sqrt
 
 import numpy as np
@@ -135,7 +136,9 @@ def test_without_a_pull_the_centre_stays_where_damping_leaves_it():
     assert names(found.zero_modes) == ["translation x", "translation y", "rotation"]
     assert found.semisimple
     assert names(found.modes)[:2] == ["translation x", "translation y"]
-    assert found.modes[0].eigenvalue == -2.0
+    # the pair terms of K and D, up to 1e3, cancel in the sum over agents
+    assert found.modes[0].eigenvalue == pytest.approx(-2.0, abs=7.0 * 1e3 * np.finfo(float).eps)
+    assert abs(found.modes[0].eigenvalue + 2.0) <= found.modes[0].error < 1e-10
 
 
 def test_symmetries_that_are_no_axis_are_named_for_what_they_are():
@@ -161,8 +164,8 @@ def test_every_mode_solves_the_quadratic_problem():
         assert np.abs(residual).max() < 1e-9 * np.abs(K).max()
         assert np.linalg.norm(v.imag) <= np.linalg.norm(v.real)
         assert mode.eigenvalue.imag >= 0.0
-    rates = [mode.decay_rate for mode in found.modes]
-    assert rates == sorted(rates)
+    for slow, fast in itertools.pairwise(found.modes):
+        assert slow.decay_rate <= fast.decay_rate + slow.error + fast.error
     numbers = [(k, mode.name) for k, mode in enumerate(found.modes, start=1) if mode.name.isdigit()]
     assert all(int(name) == k for k, name in numbers)
 
