@@ -295,6 +295,31 @@ def test_ctrl_c_ends_the_children_and_what_they_did_not_do_is_not_found(fake_wor
     assert list(findings.outcomes[NATIVE]) == ["flock"]
 
 
+def test_a_child_that_never_answers_is_ended(fake_worker, tmp_path, monkeypatch):
+    """The limit is over as soon as it is at work on what never ends."""
+    limits = []
+
+    class Limit(threading.Thread):
+        def __init__(self, seconds, end):
+            super().__init__(daemon=True)
+            limits.append(seconds)
+            self.end, self.cancelled = end, threading.Event()
+
+        def run(self):
+            while not self.cancelled.wait(0.01):
+                if (tmp_path / "worker.py.endless").exists():
+                    return self.end()
+
+        def cancel(self):
+            self.cancelled.set()
+
+    monkeypatch.setattr(crew.threading, "Timer", Limit)
+    findings = matrix([Environment(NATIVE)], ["endless", "flock"], jobs=1)
+    assert findings.outcomes[NATIVE]["endless"]["run"] == "the worker ended by SIGKILL: nothing said"
+    assert findings.outcomes[NATIVE]["flock"]["run"] == "complete"
+    assert {*limits} == {1800.0}
+
+
 def test_an_environment_without_effect_is_left_out(fake_worker, tmp_path, capfd):
     nehalem = Environment("blas-nehalem", {"OPENBLAS_CORETYPE": "Nehalem"})
     findings = matrix([Environment(NATIVE), nehalem], ["a", "b"], jobs=1)

@@ -18,6 +18,7 @@ from typing import IO, Any, Protocol
 from .variants import LEVERS, Change, Environment
 
 HERE = Path(__file__).resolve().parent
+_LIMIT = 1800.0  # seconds for one answer: what takes longer hangs
 _ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 
 
@@ -104,7 +105,11 @@ class Child:
 
     def _answer(self) -> dict[str, Any]:
         assert self._process.stdout is not None
+        watch = threading.Timer(_LIMIT, self.end)
+        watch.daemon = True
+        watch.start()
         line = self._process.stdout.readline()
+        watch.cancel()
         if not line:
             raise self._ended()
         answer: dict[str, Any] = json.loads(line)
@@ -204,6 +209,8 @@ class _Crew:
             child = Child(environment, self._caches)
             with self._telling:
                 self._children.add(child)
+                if self._stopped:  # while it began
+                    child.end()
                 reason = self._listener.unfit(environment, child.machine)
         except WorkerError as error:
             reason = str(error)
