@@ -83,8 +83,8 @@ _ = plots.falsification(broken)
 # %% [markdown]
 # That nothing was found below $c^*$ proves nothing. The proof `collisions` does.
 #
-# A counterexample is a file that anyone can replay: `broken.save("twice.json")`, then `fl.replay("twice.json")`, or in a
-# shell `flockana falsify --replay twice.json`.
+# A counterexample is a file that anyone can replay: `broken.save("twice.json")`, then `fl.replay("twice.json")`, or in
+# a shell `flockana falsify --replay twice.json`.
 
 # %%
 import tempfile
