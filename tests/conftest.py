@@ -49,9 +49,9 @@ OPEN = Path(__file__).with_name("open_findings.txt")  # what attacks found and n
 
 
 def pytest_collection_modifyitems(config, items):
-    known = {line for line in OPEN.read_text().splitlines() if line and not line.startswith("#")}
+    known = tuple(line for line in OPEN.read_text().splitlines() if line and not line.startswith("#"))
     for item in items:
-        if item.nodeid in known:
+        if item.nodeid.startswith(known):
             item.add_marker(pytest.mark.xfail(reason="an open finding", strict=False))
     if not config.getoption("attack"):
         items[:] = [item for item in items if item.get_closest_marker("attack") is None]
