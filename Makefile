@@ -1,8 +1,10 @@
-# Everything lives in .venv; each target sets up what it needs. PYTHON chooses the interpreter (3.11 or newer).
+# Everything lives in .venv; each target sets up what it needs. PYTHON chooses the interpreter (3.11 or newer), TESTS
+# what `lowest` and `newest` run, OPTIONS goes to `portability`.
 PYTHON ?= python3
 BIN := .venv/bin
+TESTS ?=
 
-.PHONY: verify test check bench proofs notebooks course clean
+.PHONY: verify test check bench proofs notebooks course portability lowest newest clean
 
 verify: .venv/.installed  ## run the catalogue, check every theorem, write report/index.html
 	$(BIN)/flockana verify
@@ -28,9 +30,32 @@ notebooks: .venv/.dev  ## execute every notebook with its solutions
 course: .venv/.dev  ## write course/student and course/solutions as .ipynb
 	$(BIN)/python tools/course.py
 
-.venv/bin/python:
+portability: .venv/.installed  ## which verdicts change on other machine code, from moved starts, at other tolerances
+	$(BIN)/python -m tools.portability $(OPTIONS)
+
+lowest:  ## the tests with every dependency at its lower bound, in an environment of their own
+	$(call environment,.venv-lowest)
+	$(PYTHON) tools/dependencies.py > .venv-lowest/constraints.txt
+	$(call tested,.venv-lowest,--constraint .venv-lowest/constraints.txt)
+
+newest:  ## the tests with every dependency as new as it is today; PYTHON=python3.13 for another Python
+	$(call environment,.venv-newest)
+	$(call tested,.venv-newest,)
+
+# numba keeps what it compiles beside the sources, for one of its versions: other versions have a folder of their own
+define tested
+	$(1)/bin/python -m pip install --quiet --disable-pip-version-check $(2) --editable '.[test,cluster,proofs]'
+	$(1)/bin/python -m pip list --disable-pip-version-check
+	NUMBA_CACHE_DIR=$(CURDIR)/$(1)/numba $(1)/bin/python -m pytest -n auto -p no:cacheprovider $(TESTS)
+endef
+
+define environment
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "flockana needs Python 3.11 or newer: make PYTHON=python3.12 ...")'
-	$(PYTHON) -m venv .venv
+	$(PYTHON) -m venv --clear $(1)
+endef
+
+.venv/bin/python:
+	$(call environment,.venv)
 
 .venv/.installed: .venv/bin/python pyproject.toml
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
@@ -41,4 +66,4 @@ course: .venv/.dev  ## write course/student and course/solutions as .ipynb
 	touch $@ .venv/.installed
 
 clean:
-	rm -rf .venv report
+	rm -rf .venv .venv-lowest .venv-newest report

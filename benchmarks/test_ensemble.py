@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from flockana.ensemble import ensemble
-from flockana.ensemble.executors import ProcessPool, cores
+from flockana.ensemble.processes import ProcessPool, cores
 from flockana.ensemble.work import Job, Request, run_one
 from flockana.scenarios import scenario
 

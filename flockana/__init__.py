@@ -89,6 +89,7 @@ if TYPE_CHECKING:
     from flockana.theorems.theorem import Tolerances as Tolerances
     from flockana.theorems.theorem import Verdict as Verdict
     from flockana.trajectory import Trajectory as Trajectory
+    from flockana.units import rescale as rescale
 
 _TARGETS = (
     "Target",
@@ -125,6 +126,7 @@ _BY_MODULE = {
     "laws.dead_zone": ("DeadZoneFlocking",),
     "simulate": ("simulate",),
     "trajectory": ("Trajectory",),
+    "units": ("rescale",),
     "metrics": (*_METRICS, "min_distance", "order", "coordination"),
     "nets": ("links", "components", "laplacian"),
     "equilibria": ("find_equilibrium", "Equilibrium"),

@@ -17,6 +17,7 @@ import typer
 from flockana._version import __version__
 from flockana.commands import ensemble, equilibrium, falsify, lattice, prove, stability
 from flockana.errors import ArgumentError, FlockanaError
+from flockana.interrupts import interrupts_recognised
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -292,7 +293,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
         Always, with the exit status.
     """
     try:
-        code = app(args=None if arguments is None else list(arguments), standalone_mode=False)
+        with interrupts_recognised():
+            code = app(args=None if arguments is None else list(arguments), standalone_mode=False)
     except FlockanaError as error:
         _complain(str(error))
         code = BAD_INPUT

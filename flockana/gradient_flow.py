@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import sqrt
 from typing import Any
 
 import numpy as np
@@ -12,6 +11,7 @@ from flockana.checks import FloatArray, ensure_points, ensure_positive
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain, moving_frame
 
 _NEWTON_FROM = 1e-7  # relative force at which Newton's method takes over: a weak bond near r pulls no harder before
+_NEWTON_AGAIN = 0.1  # of the force at which it led astray
 _NEWTON_STEPS = 20
 _NEWTON_REACH = 1e-3  # of d: a step farther than that is no polishing, and might end where a bond lets go at r
 
@@ -25,9 +25,9 @@ class GradientLimit:
     q : ndarray, shape (n, m)
         Positions.
     force : float
-        Largest residual force over c1α b/√ε.
+        Largest residual force over that of the law's `scales`.
     time : float
-        Time of the flow that was integrated.
+        Time of the flow that was integrated, in units of d over the force scale.
     converged : bool
         Whether `force` fell below the tolerance.
     """
@@ -66,9 +66,9 @@ def gradient_flow(law: Algorithm1 | Algorithm2, q0: Any, *, tol: float = 1e-11, 
     q0 : array_like, shape (n, m)
         Start.
     tol : float
-        Residual force, relative to c1α b/√ε, at which to stop.
+        Residual force, relative to that of the law's `scales`, at which to stop.
     horizon : float
-        Longest time of the flow, in units of 1/c1α.
+        Longest time of the flow, in units of d over the force scale.
 
     Raises
     ------
@@ -86,33 +86,43 @@ def gradient_flow(law: Algorithm1 | Algorithm2, q0: Any, *, tol: float = 1e-11, 
     q = ensure_points("q0", q0)
     if isinstance(law, Algorithm2):
         ensure_one_gain(law.gains)
-    shape, c1 = q.shape, law.gains.c1_alpha
+    shape, scale = q.shape, law.scales.force
     tol, horizon = ensure_positive("tol", tol), ensure_positive("horizon", horizon)
-    scale = c1 * law.alpha.b / sqrt(law.alpha.eps)
+    pace = law.alpha.d / scale
     solver = BDF(
-        lambda t, y: structural_force(law, y.reshape(shape)).ravel() / c1,
+        lambda t, y: pace * structural_force(law, y.reshape(shape)).ravel(),
         0.0,
         q.ravel(),
         horizon,
         rtol=1e-6,
         atol=1e-8 * law.alpha.d,
-        jac=lambda t, y: -law.stiffness(y.reshape(shape)).toarray() / c1,
+        jac=lambda t, y: -pace * law.stiffness(y.reshape(shape)).toarray(),
     )
-    force = np.inf
-    while solver.status == "running" and force > _NEWTON_FROM:
+    here, force, level = q, np.inf, _NEWTON_FROM
+    while solver.status == "running":
         solver.step()
-        force = _largest(structural_force(law, solver.y.reshape(shape))) / scale
-    flowed, q = force <= _NEWTON_FROM, solver.y.reshape(shape)
-    start = q
-    for _ in range(_NEWTON_STEPS if flowed else 0):
+        here = solver.y.reshape(shape)
+        force = _largest(structural_force(law, here)) / scale
+        if force <= level:
+            polished, least = _polished(law, here, tol)
+            if _largest(polished - here) <= _NEWTON_REACH * law.alpha.d and least <= tol:
+                return GradientLimit(polished, least, float(solver.t), True)
+            level = _NEWTON_AGAIN * force  # that was another equilibrium: flow on towards this one
+    return GradientLimit(here, force, float(solver.t), False)
+
+
+def _polished(law: Algorithm1 | Algorithm2, q: FloatArray, tol: float) -> tuple[FloatArray, float]:
+    """Where Newton's method leads from q, and the relative force there."""
+    scale = law.scales.force
+    for _ in range(_NEWTON_STEPS):
         residual = structural_force(law, q)
-        force = _largest(residual) / scale
-        if force <= tol:
+        if _largest(residual) <= tol * scale:
             break
         # least squares leaves the rigid motions alone, in which the stiffness is singular
-        q = q + np.linalg.lstsq(law.stiffness(q).toarray(), residual.ravel(), rcond=1e-10)[0].reshape(shape)
-    near = _largest(q - start) <= _NEWTON_REACH * law.alpha.d
-    return GradientLimit(q, force, float(solver.t), flowed and near and force <= tol)
+        q = q + np.linalg.lstsq(law.stiffness(q).toarray(), residual.ravel(), rcond=1e-10)[0].reshape(q.shape)
+        if not np.isfinite(q).all():
+            return q, np.inf
+    return q, _largest(structural_force(law, q)) / scale
 
 
 def _largest(vectors: FloatArray) -> float:

@@ -15,6 +15,7 @@ import numpy as np
 from flockana.checks import FloatArray, ensure_positive, ensure_state, ensure_time_span
 from flockana.errors import ArgumentError, UnknownNameError
 from flockana.integrators import Sample, Tally, adaptive, discrete, error_floor, nearest, rk4, start_sample
+from flockana.interrupts import interrupts_recognised
 from flockana.laws.law import DiscreteLaw, Law, ensure_law
 from flockana.laws.switched import SwitchedLaw
 from flockana.switched import located
@@ -187,9 +188,10 @@ def _collect(samples: Iterator[Sample], t_span: tuple[float, float], tally: Tall
     kept: list[Sample] = []
     with _progress_bar(t_span, enabled=progress) as advance:
         try:
-            for sample in samples:
-                kept.append(sample)
-                advance(sample.t)
+            with interrupts_recognised():
+                for sample in samples:
+                    kept.append(sample)
+                    advance(sample.t)
         except KeyboardInterrupt:
             until = f"the last sample is at t = {kept[-1].t:g}" if kept else "no sample was reached but the start"
             tally.status, tally.message = "interrupted", f"interrupted: {until}"

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import sqrt
 from typing import Any
 
 import numpy as np
 
 from flockana.checks import FloatArray
+from flockana.curvature import EPS, Landscape, least_curvature
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain, moving_frame
 from flockana.metrics import coincident_pairs, connectivity, velocity_mismatch
 from flockana.nets import link_lengths, links
 
-_DENSE_LIMIT = 4000  # rows of a Hessian whose whole spectrum is still a matter of seconds
+DENSE_LIMIT = 4000  # rows of a Hessian whose whole spectrum is still a matter of seconds
+_ON_A_LINE = 1e-9  # of the flock's size: what stands off a line by less stands on it, as far as a solver can tell
+_ROUNDINGS = 8.0  # of the places, as stored far from the origin
 
 
 @dataclass(frozen=True)
@@ -23,7 +25,7 @@ class TerminalState:
     Attributes
     ----------
     force : float
-        Largest force on an agent in the moving frame at zero relative velocity, over c1α b/√ε.
+        Largest force on an agent in the moving frame at zero relative velocity, over the force of the law's `scales`.
     mismatch : float
         K̃ = K/n.
     strain : float
@@ -38,6 +40,12 @@ class TerminalState:
         Whether the net is connected.
     curvature : float
         Smallest Hessian eigenvalue of V (Algorithm 1) or U_λ (Algorithm 2) off the rigid motions, over the largest.
+    curvature_error : float
+        By how much rounding, and the way that the force left here still is from an equilibrium, may change it; infinite
+        where no equilibrium is near.
+    distance : float
+        Bound of the distance to the strict minimum beside this state, over all coordinates, over d; infinite where
+        there is none.
     """
 
     force: float
@@ -49,6 +57,8 @@ class TerminalState:
     coincident: int
     connected: bool
     curvature: float
+    curvature_error: float
+    distance: float
 
 
 def terminal_state(
@@ -79,12 +89,14 @@ def terminal_state(
     if isinstance(law, Algorithm2):
         ensure_one_gain(law.gains)
     alpha = law.alpha
-    still = np.broadcast_to(p.mean(axis=0), p.shape)
-    force = np.linalg.norm(moving_frame(law.flow(0.0, q, np.ascontiguousarray(still))[0]), axis=1).max()
+    forces = _forces(law, q, p)
+    force = float(np.linalg.norm(forces, axis=1).max())
     lengths = link_lengths(q, links(q, alpha.r))
     empty = lengths.size == 0
+    around = surroundings(law, q, force=float(np.linalg.norm(forces)))
+    curvature, error = least_curvature(around) if around else (float("nan"), float("inf"))
     return TerminalState(
-        force=float(force) / (law.gains.c1_alpha * alpha.b / sqrt(alpha.eps)),
+        force=force / law.scales.force,
         mismatch=velocity_mismatch(p) / len(q),
         strain=float("nan") if empty else float(np.abs(lengths - alpha.d).max() / alpha.d),
         shortest=float("nan") if empty else float(lengths.min()),
@@ -92,8 +104,16 @@ def terminal_state(
         links=int(lengths.size),
         coincident=coincident_pairs(q, contact * alpha.d),
         connected=connectivity(q, alpha.r) == 1.0,
-        curvature=relative_curvature(law, q),
+        curvature=curvature,
+        curvature_error=error,
+        distance=around.distance / alpha.d if around else float("inf"),
     )
+
+
+def _forces(law: Any, q: FloatArray, p: FloatArray) -> FloatArray:
+    """Forces in the moving frame at zero relative velocity."""
+    still = np.ascontiguousarray(np.broadcast_to(p.mean(axis=0), p.shape))
+    return moving_frame(law.flow(0.0, q, still)[0])
 
 
 def rigid_motions(q: FloatArray) -> FloatArray:
@@ -102,7 +122,7 @@ def rigid_motions(q: FloatArray) -> FloatArray:
     Parameters
     ----------
     q : ndarray, shape (n, m)
-        Positions; k is less than m(m+1)/2 where they are degenerate (a point, a line in space).
+        Positions, in any unit; k is less than m(m+1)/2 where they are degenerate (a point, a line in space).
 
     Examples
     --------
@@ -111,14 +131,17 @@ def rigid_motions(q: FloatArray) -> FloatArray:
     """
     n, m = q.shape
     x = moving_frame(q)
-    motions = [np.broadcast_to(axis, (n, m)).ravel() for axis in np.eye(m)]
+    size = float(np.linalg.norm(x))
+    motions = [np.broadcast_to(axis, (n, m)).ravel() / np.sqrt(n) for axis in np.eye(m)]
     for a in range(m):
         for b in range(a):
             turn = np.zeros((n, m))
             turn[:, a], turn[:, b] = x[:, b], -x[:, a]
-            motions.append(turn.ravel())
+            motions.append(turn.ravel() / (size or 1.0))
     basis, sizes, _ = np.linalg.svd(np.array(motions).T, full_matrices=False)
-    independent: FloatArray = basis[:, sizes > 1e-9 * sizes.max()]
+    # what stands on a line but for the rounding of its places does not turn about it
+    rounding = EPS * np.sqrt(n) * float(np.abs(q).max()) / size if size > 0.0 else 0.0
+    independent: FloatArray = basis[:, sizes > max(_ON_A_LINE, _ROUNDINGS * rounding)]
     return independent
 
 
@@ -141,12 +164,28 @@ def relative_curvature(law: Any, q: FloatArray) -> float:
     >>> relative_curvature(Algorithm1(), np.array([[0.0, 0.0], [7.0, 0.0]]))
     1.0
     """
-    if q.size > _DENSE_LIMIT:
-        return float("nan")
-    rigid = rigid_motions(q)
-    free = np.linalg.svd(rigid, full_matrices=True)[0][:, rigid.shape[1] :]
-    if free.shape[1] == 0:
-        return float("nan")
-    eigenvalues = np.linalg.eigvalsh(free.T @ (law.stiffness(q) @ free))
-    largest = np.abs(eigenvalues).max()
-    return float(eigenvalues[0] / largest) if largest > 0.0 else 0.0
+    around = surroundings(law, q)
+    return least_curvature(around)[0] if around else float("nan")
+
+
+def surroundings(law: Any, q: FloatArray, *, force: float = 0.0) -> Landscape | None:
+    """The structural potential about a configuration; None where its Hessian is too large for the whole spectrum.
+
+    Parameters
+    ----------
+    law : Algorithm1 or Algorithm2
+        A law with `stiffness`.
+    q : ndarray, shape (n, m)
+        Positions.
+    force : float
+        What is left of the force, over all coordinates.
+
+    Examples
+    --------
+    >>> around = surroundings(Algorithm1(), np.array([[0.0], [7.0]]))
+    >>> around.holds(1e-3), around.holds(1e3)
+    (True, False)
+    """
+    if q.size > DENSE_LIMIT:
+        return None
+    return Landscape(law.stiffness, q, rigid_motions(q), force=force, length=law.alpha.d)

@@ -5,11 +5,10 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable, Mapping
-from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -18,6 +17,7 @@ from flockana._version import __version__
 from flockana.checks import FloatArray
 from flockana.clearance import Clearance, clearance
 from flockana.errors import ArgumentError, FileError, UnknownNameError
+from flockana.files import replacing
 from flockana.laws.law import ensure_law
 from flockana.paths import ClosestApproach, closest_approach
 from flockana.scales import Scales
@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     import xarray
 
     from flockana.plots.film import Film
+
+_Value = TypeVar("_Value")
 
 FORMAT = "flockana-trajectory"
 FORMAT_VERSION = 1
@@ -217,6 +219,24 @@ class Trajectory:
             self._measured[name] = values
         return self._measured[name]
 
+    def remembered(self, name: str, compute: Callable[[], _Value]) -> _Value:
+        """What was computed from this run before, or is now: kept as long as the run.
+
+        Parameters
+        ----------
+        name : str
+            What it is.
+        compute : callable
+            Gives it.
+        """
+        if name not in self._memory:
+            self._memory[name] = compute()
+        return self._memory[name]  # type: ignore[no-any-return]
+
+    @cached_property
+    def _memory(self) -> dict[str, Any]:
+        return {}
+
     def _any_flock(self) -> dict[str, tuple[str, Callable[[], FloatArray]]]:
         """What is measured of every flock: in words, and a function that does it."""
         q, p, interaction = self.q, self.p, getattr(self.law, "alpha", None)
@@ -354,18 +374,8 @@ class Trajectory:
         if "\0" in str(target):  # HDF5 would write to what precedes it
             raise FileError(f"cannot write {str(target)!r}: null byte; choose a file name and folder to write to")
         dataset = self.to_xarray()
-        partial = target.parent / f".{target.name}.{os.getpid()}.partial"
-        try:
+        with replacing(target, remedy="choose a file name and folder to write to") as partial:
             dataset.to_netcdf(partial, engine="h5netcdf")
-            os.replace(partial, target)
-        except (OSError, ValueError) as error:
-            reason = getattr(error, "strerror", None) or error
-            raise FileError(
-                f"cannot write {str(target)!r}: {reason}; choose a file name and folder to write to"
-            ) from error
-        finally:
-            with suppress(OSError, ValueError):  # one that could not be written cannot be removed either
-                partial.unlink(missing_ok=True)
         return target
 
     @classmethod

@@ -82,7 +82,20 @@ def scaled_fields(item: Any, length: float, time: float) -> dict[str, Any]:
 
 
 def times(value: Any, factor: float) -> Any:
-    """A number, or numbers in tuples and arrays, times a factor; None stays None."""
+    """A number, or numbers in tuples and arrays, times a factor; None stays None.
+
+    Parameters
+    ----------
+    value : float, ndarray, tuple or None
+        The numbers.
+    factor : float
+        The factor.
+
+    Examples
+    --------
+    >>> times((1.0, (2.0, None)), 3.0)
+    (3.0, (6.0, None))
+    """
     if value is None:
         return None
     if isinstance(value, tuple | list):

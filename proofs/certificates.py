@@ -10,6 +10,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
+from flockana.files import replacing
 from proofs.run import Outcome
 
 SCHEMA = 1
@@ -68,8 +69,8 @@ def _verdict(outcome: Outcome) -> str:
 def write(outcome: Outcome, folder: Path) -> None:
     """Write a proof's two files: `<id>.md` and `<id>.json`."""
     text = json.dumps(as_data(outcome), indent=1, ensure_ascii=False)
-    (folder / f"{outcome.id}.json").write_text(text + "\n", encoding="utf-8")
-    (folder / f"{outcome.id}.md").write_text(as_markdown(outcome), encoding="utf-8")
+    _write(folder / f"{outcome.id}.json", text + "\n")
+    _write(folder / f"{outcome.id}.md", as_markdown(outcome))
 
 
 def write_index(outcomes: Iterable[Outcome], folder: Path) -> None:
@@ -80,4 +81,9 @@ def write_index(outcomes: Iterable[Outcome], folder: Path) -> None:
         for one in outcomes
     ]
     head = ["# Certificates", "", "| theorem | what exactly is proved | rigour | steps | status | time |"]
-    (folder / "index.md").write_text("\n".join([*head, "|---|---|---|---|---|---|", *rows, ""]), encoding="utf-8")
+    _write(folder / "index.md", "\n".join([*head, "|---|---|---|---|---|---|", *rows, ""]))
+
+
+def _write(path: Path, text: str) -> None:
+    with replacing(path, remedy="choose another folder") as partial:
+        partial.write_text(text, encoding="utf-8")

@@ -11,9 +11,10 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from typing import Any
 
+from flockana.interrupts import interrupts_held, interrupts_hidden
 from proofs.proof import Proof, Step, load
 
-START_LIMIT = 120.0  # seconds to import a proof in, before it has told its own limit
+START_LIMIT = 300.0  # seconds to import a proof in; only then its own limit begins
 LIBRARIES = {"flint": "python-flint", "z3": "z3-solver"}
 _TOLD = ("title", "statement", "hypotheses", "rigour", "theorems", "time_limit")
 
@@ -61,21 +62,24 @@ def check(
 ) -> Iterator[Outcome]:
     """Check the proofs of these ids, so many at a time; yield each outcome as it comes.
 
-    `time_limit` in seconds replaces the proofs' own; `watch` is told what is under way.
+    `time_limit` in seconds replaces the proofs' own, and like these counts from when a proof is imported; `watch` is
+    told what is under way.
     """
     waiting, running = list(wanted), list[_Run]()
     try:
         while waiting or running:
             while waiting and len(running) < jobs:
-                running.append(_Run(waiting.pop(0), package, time_limit))
+                with interrupts_held(), interrupts_hidden():  # no child gets it, and none is missing from the list
+                    running.append(_Run(waiting.pop(0), package, time_limit))
             watch(tuple(run.outcome.id for run in running))
             wait([run.pipe for run in running], max(0.0, min(run.deadline for run in running) - time.monotonic()))
             for run in [run for run in running if run.over()]:
                 running.remove(run)
                 yield run.outcome
     finally:
-        for run in running:
-            run.end()
+        with interrupts_held():
+            for run in running:
+                run.end()
 
 
 class _Run:
@@ -86,14 +90,15 @@ class _Run:
         self.pipe, far_end = context.Pipe(duplex=False)
         self.process: BaseProcess = context.Process(target=_work, args=(name, package, far_end), daemon=True)
         self.outcome, self.limit = Outcome(name), time_limit
-        self.started = time.monotonic()
+        self.started = self.since = time.monotonic()
+        self.allowed = START_LIMIT
         self.process.start()
         far_end.close()
 
     @property
     def deadline(self) -> float:
         """When to kill it."""
-        return self.started + (self.limit or self.outcome.time_limit)
+        return self.since + self.allowed
 
     def over(self) -> bool:
         """Take what was sent; whether the process ended or its time is up, and then the outcome is complete."""
@@ -105,18 +110,17 @@ class _Run:
                     outcome.steps.append(told)
                 elif kind == "proof":
                     vars(outcome).update(told)
+                    self.since, self.allowed = time.monotonic(), self.limit or outcome.time_limit
                 else:
                     outcome.reason = told
                     return self.end()
-        except EOFError:
+        except (EOFError, OSError):  # between two messages, or within one
             self.process.join(5.0)
             outcome.reason = f"its process ended before the proof did (exit code {self.process.exitcode})"
             return self.end()
         if time.monotonic() < self.deadline:
             return False
-        outcome.reason = (
-            f"stopped after {self.limit or outcome.time_limit:g} s, with {len(outcome.steps)} steps checked"
-        )
+        outcome.reason = f"stopped after {self.allowed:g} s, with {len(outcome.steps)} steps checked"
         return self.end()
 
     def end(self) -> bool:

@@ -3,15 +3,17 @@ from __future__ import annotations
 import importlib
 import json
 import os
-import signal
 import subprocess
 import sys
-import time
+from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
 from pathlib import Path
+from textwrap import indent
 
 import numpy as np
 import pytest
+from programs import ANSWERS_CTRL_C, CLI, IGNORES_CTRL_C, group, interrupt, out_of_a_kernel, posix, program, until
 
 from flockana.cli import main
 from flockana.errors import SolverError
@@ -20,8 +22,6 @@ from flockana.report.work import plan
 from flockana.scenarios import Report, Scenario
 from flockana.theorems import Claim
 from flockana.trajectory import Trajectory
-
-COMMAND = [sys.executable, "-c", "from flockana.cli import main; main()"]
 
 
 def tiny(name="tiny", status="refuted"):
@@ -232,16 +232,17 @@ def test_a_run_of_another_scenario_is_refused(call, catalogue, tmp_path):
     assert "one.nc holds no run of right" in err
 
 
-def test_what_was_done_before_an_interrupt_is_reported(call, catalogue, monkeypatch):
+@pytest.mark.parametrize("error", [KeyboardInterrupt(), out_of_a_kernel()])
+def test_what_was_done_before_an_interrupt_is_reported(error, call, catalogue, monkeypatch):
     work = importlib.import_module("flockana.report.work")
-    do = work.do
+    verify = work.verify
 
-    def interrupted(task):
-        if task.name == "wrong":
-            raise KeyboardInterrupt
-        return do(task)
+    def interrupted(theorem, run, **options):
+        if options["subject"] == "wrong":
+            raise error
+        return verify(theorem, run, **options)
 
-    monkeypatch.setattr(work, "do", interrupted)
+    monkeypatch.setattr(work, "verify", interrupted)
     code, out, err = call("verify", "energy", "--jobs", 1)
     assert code == 130
     assert err == "flockana: interrupted\n"
@@ -294,9 +295,8 @@ def test_version_and_help(call):
 
 
 def test_processes_work_in_parallel_and_a_pipe_gets_no_colour(tmp_path):
-    done = subprocess.run(
-        [*COMMAND, "verify", "alpha-flocking", "--on", "x"], capture_output=True, text=True, cwd=tmp_path, timeout=60
-    )
+    command = [sys.executable, "-c", CLI, "verify", "alpha-flocking", "--on", "x"]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
     assert done.returncode == 2
     from flockana.report.work import Task, perform
 
@@ -312,25 +312,63 @@ def test_an_error_in_a_worker_arrives_with_the_name_of_its_task():
         list(perform([Task("nothing", fixed=True), Task("E8", fixed=True)], jobs=2))
 
 
-@pytest.mark.skipif(os.name != "posix", reason="signals to a process group")
-def test_ctrl_c_ends_all_processes_cleanly(tmp_path):
-    command = subprocess.Popen(
-        [*COMMAND, "verify", "--jobs", "2", "--no-report"],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        cwd=tmp_path,
-        start_new_session=True,
-    )
-    time.sleep(4.0)
-    os.killpg(command.pid, signal.SIGINT)
-    _, err = command.communicate(timeout=20)
-    assert command.returncode == 130
-    assert err == "flockana: interrupted\n"
-    for _ in range(50):  # multiprocessing's own helper outlives its parent by a moment
-        try:
-            os.killpg(command.pid, 0)
-        except ProcessLookupError:
-            return
-        time.sleep(0.1)
-    pytest.fail("a process is still running")
+WORKING = """
+import time
+from pathlib import Path
+from flockana.report import work
+
+def endless(task):
+    Path("begun").touch()
+    time.sleep(3600.0)
+
+work.do = endless
+if __name__ == "__main__":
+"""
+
+
+class Broken(ThreadPoolExecutor):
+    """As a process pool whose worker died before the second task was sent."""
+
+    def submit(self, function, /, *arguments):
+        if self._work_queue.qsize() or self._threads:
+            raise BrokenProcessPool("a child process terminated abruptly")
+        return super().submit(function, *arguments)
+
+    def stop(self):
+        self.shutdown()
+
+
+def test_a_worker_that_dies_while_tasks_are_sent_is_told_with_the_remedy(monkeypatch):
+    from flockana.report import work
+
+    monkeypatch.setattr(work, "ProcessPool", Broken)
+    tasks = [work.Task("E8", fixed=True)] * 2
+    with pytest.raises(SolverError, match="a worker process died; if memory is short, try --jobs 1"):
+        list(work.perform(tasks, jobs=2))
+
+
+@posix
+@pytest.mark.parametrize("moment", ["starting", "working"])
+def test_ctrl_c_ends_all_processes_cleanly(moment, tmp_path):
+    """While the first worker is being started, and when one is at work for what would be an hour."""
+    script = tmp_path / "script.py"
+    script.write_text(WORKING + indent(ANSWERS_CTRL_C + CLI, "    "))
+    signs = {"starting": lambda: len(group(command)) >= 3, "working": (tmp_path / "begun").exists}
+    with program(script, "verify", "--jobs", "2", "--no-report", folder=tmp_path) as command:
+        until(signs[moment], command)  # the third process is the first worker: multiprocessing's own helper is another
+        interrupt(command)
+        _, err = command.communicate()
+        assert (command.returncode, err) == (130, "flockana: interrupted\n")
+        until(lambda: not group(command))  # that helper outlives its parent by a moment
+
+
+@posix
+def test_where_ctrl_c_is_ignored_it_stays_ignored(tmp_path):
+    """So a shell starts its background jobs; theirs is not the Ctrl-C that the terminal sends."""
+    store = tmp_path / "s.sqlite"
+    given = ("ensemble", "hexagon", "--jobs", "2", "--seeds", "4", "--theorem", "alpha-flocking", "--store", store)
+    with program("-c", IGNORES_CTRL_C + CLI, *given, folder=tmp_path) as command:
+        until(store.exists, command)
+        interrupt(command)
+        _, err = command.communicate()
+        assert (command.returncode, err) == (0, "")

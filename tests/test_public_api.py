@@ -12,7 +12,7 @@ HEAVY = ("numba", "sympy", "matplotlib", "xarray", "scipy", "numpy", "jinja2", "
 
 
 def python(code: str) -> str:
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     return done.stdout.strip()
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
+from programs import out_of_a_kernel
 
 from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.errors import ArgumentError, UnknownNameError
@@ -218,6 +219,13 @@ def test_an_interrupted_run_is_a_prefix(method):
     for name in ("t", "q", "p", "u"):
         np.testing.assert_array_equal(getattr(run, name), getattr(whole, name)[: len(run.t)])
     np.testing.assert_array_equal(run.extra["work"], whole.extra["work"][: len(run.t)])
+
+
+def test_ctrl_c_within_a_kernel_is_ctrl_c():
+    run = simulate(Oscillator(breaks=1.0, error=out_of_a_kernel()), [[1.0]], [[0.0]], (0.0, 2.0))
+    assert (run.status, 0.0 < run.t[-1] < 1.0) == ("interrupted", True)
+    with pytest.raises(SystemError, match="of its own"):
+        simulate(Oscillator(breaks=1.0, error=SystemError("of its own")), [[1.0]], [[0.0]], (0.0, 2.0))
 
 
 def test_interrupted_before_the_first_time_to_keep():

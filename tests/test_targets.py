@@ -103,3 +103,13 @@ def test_bad_targets(make, message):
 
 def test_a_whole_axis_becomes_an_index():
     assert SineTarget((0.0, 0.0), (0.0, 0.0), 1.0, 0.25, axis=1.0).position(1.0).tolist() == [0.0, 1.0]
+
+
+@pytest.mark.parametrize("time", [1e-6, 1.0, 3600.0])
+def test_the_rate_of_a_users_path_is_as_exact_in_every_unit_of_time(time):
+    target = CallableTarget(lambda t: ((7.0 * np.cos(t / time), 3.0 * t / time), (0.0, 0.0)), time=time)
+    for t in (0.0, 0.4 * time, 50.0 * time):
+        expected = np.array([-7.0 * np.sin(t / time), 3.0]) / time
+        np.testing.assert_allclose(target.rate(t), expected, rtol=0.0, atol=2e-8 / time)
+    with pytest.raises(ArgumentError, match="time = 0: expected a number > 0"):
+        CallableTarget(lambda t: ((t,), (1.0,)), time=0.0)

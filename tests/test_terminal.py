@@ -74,7 +74,7 @@ def test_a_terminal_state_is_measured():
     assert end.mismatch == pytest.approx(1.0 / 3.0)
     alpha = LAW1.alpha
     stress = alpha.phi_alpha(alpha.sigma_norm(7.7)) * 7.7 / np.sqrt(1.0 + 0.1 * 7.7**2)
-    assert end.force == pytest.approx(2.0 * stress / (5.0 / np.sqrt(0.1)), rel=1e-12)
+    assert end.force == pytest.approx(2.0 * stress / alpha.strength, rel=1e-12)
 
 
 def test_without_links_there_is_no_strain():

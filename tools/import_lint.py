@@ -13,8 +13,8 @@ PACKAGE = "flockana"
 
 # Earlier lines may not import later ones; names on one line may not import each other, unless they are the same name.
 STAGES: tuple[tuple[str, ...], ...] = (
-    ("errors", "_version", "course"),
-    ("checks", "references"),
+    ("errors", "_version", "course", "interrupts"),
+    ("checks", "references", "files"),
     ("serialize", "intervals", "scales", "units"),
     ("symbolic", "kernels"),
     ("interactions",),
@@ -29,6 +29,7 @@ STAGES: tuple[tuple[str, ...], ...] = (
     ("integrators",),
     ("switched",),
     ("simulate",),
+    ("curvature",),
     ("terminal", "gradient_flow"),
     ("equilibria",),
     ("stability",),

@@ -13,9 +13,8 @@ from typing import Any
 
 from course import notebook, sources, tags
 from nbclient import NotebookClient
-from nbclient.exceptions import CellExecutionError
 
-_TIMEOUT = 300  # seconds for one cell
+_TIMEOUT = 600  # seconds for one cell, and for a kernel to start
 
 
 def shown(cell: Any) -> str:
@@ -27,13 +26,14 @@ def execute(source: Path) -> tuple[Path, list[str], float]:
     """Run one; return its faults and the seconds it took."""
     started, book = time.perf_counter(), notebook(source, "solutions")
     try:
-        NotebookClient(book, timeout=_TIMEOUT, resources={"metadata": {"path": str(source.parent)}}).execute()
+        place = {"metadata": {"path": str(source.parent)}}
+        NotebookClient(book, timeout=_TIMEOUT, startup_timeout=_TIMEOUT, resources=place).execute()
         faults = [
             f"a check says {shown(c)!r}:\n{c.source}" for c in book.cells if "check" in tags(c) and "✓" not in shown(c)
         ]
         faults += [f"exercise without a check: {source.name}"] * (not any("check" in tags(c) for c in book.cells))
-    except CellExecutionError as error:
-        faults = [str(error)]
+    except Exception as error:  # a cell that fails or takes too long, a kernel that dies or does not start
+        faults = [f"{type(error).__name__}: {error}"]
     return source, faults, time.perf_counter() - started
 
 

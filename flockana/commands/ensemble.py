@@ -144,12 +144,10 @@ def _ensure_drawable(axes: list[str]) -> None:
 
 
 def _write(found: xarray.Dataset, path: Path) -> None:
-    from flockana.errors import FileError
+    from flockana.files import replacing
 
-    try:
-        found.to_netcdf(path, engine="h5netcdf")
-    except OSError as error:
-        raise FileError(f"cannot write {path}: {error.strerror or error}; choose another file") from error
+    with replacing(path) as partial:
+        found.to_netcdf(partial, engine="h5netcdf")
 
 
 def _draw(ax: Any, found: xarray.Dataset, table: xarray.Dataset, axes: list[str]) -> None:

@@ -151,7 +151,7 @@ def _print(found: Equilibrium, name: str, files: tuple[tuple[str, Path | None], 
     table.add_column()
     lowest = ", ".join(f"{value:.4g}" for value in found.hessian_eigenvalues[:_LOWEST])
     contacts = isinstance(found.law, DeadZoneFlocking)
-    scale, length = ("a contact's force", "contact − d1|/d1") if contacts else ("c1α b/√ε", "link − d|/d")
+    scale, length = ("a contact's force", "contact − d1|/d1") if contacts else ("the law's force scale", "link − d|/d")
     strain = "" if facts["strain"] is None else f", |{length} at most {facts['strain']:.4g}"
     rows = (
         ("law", f"{facts['law']}, n = {facts['n']}, m = {facts['m']}"),

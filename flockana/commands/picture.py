@@ -6,7 +6,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from flockana.errors import ArgumentError, FileError
+from flockana.errors import ArgumentError
+from flockana.files import replacing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -88,7 +89,5 @@ def write_figure(draw: Callable[[Figure], object], path: Path, *, size: tuple[fl
     with style():
         figure = Figure(figsize=size, layout="constrained")
         draw(figure)
-        try:
-            figure.savefig(path, dpi=_DPI)
-        except OSError as error:
-            raise FileError(f"cannot write {path}: {error.strerror or error}; choose another file") from error
+        with replacing(path) as partial:
+            figure.savefig(partial, dpi=_DPI)

@@ -15,8 +15,9 @@ import numpy as np
 
 from flockana.ensemble.dataset import RESERVED, job_grid, metric_name, to_dataset
 from flockana.ensemble.digest import run_key
-from flockana.ensemble.executors import cores, crew, ensure_crew, make_runs
+from flockana.ensemble.executors import crew, ensure_crew, make_runs
 from flockana.ensemble.measures import METRICS
+from flockana.ensemble.processes import cores
 from flockana.ensemble.store import Store
 from flockana.ensemble.work import COMPLETE, Job, Request, Scalar, reference, resolve
 from flockana.errors import ArgumentError, UnknownNameError

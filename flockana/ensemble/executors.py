@@ -6,20 +6,16 @@ are done. Nothing is decided by which comes first, so the numbers do not depend 
 
 from __future__ import annotations
 
-import multiprocessing
-import os
-import signal
-import threading
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future
 from concurrent.futures import wait as wait_for
 from contextlib import contextmanager
 from dataclasses import dataclass
-from multiprocessing.connection import wait as wait_for_end
 from typing import Any
 
 from flockana.checks import ensure_count
+from flockana.ensemble.processes import ProcessPool, cores
 from flockana.ensemble.work import DIED, Job, Record, Request, run_batch
 from flockana.errors import ArgumentError, FlockanaError, SolverError
 
@@ -28,14 +24,6 @@ _QUEUED = 2  # batches per worker that are out at once: one at work, one ready
 _BATCH_SECONDS = 0.5  # runs shorter than this travel together
 _LONGEST_BATCH = 256
 _HOPELESS = 3  # workers that died in a row, without one batch done in between
-_CONNECT = 10.0  # seconds to find a scheduler and a worker
-_ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
-
-
-def cores() -> int:
-    """Number of processors that this process may use."""
-    affinity = getattr(os, "sched_getaffinity", None)  # not on macOS and Windows
-    return len(affinity(0)) if affinity else os.cpu_count() or 1
 
 
 class Serial(Executor):
@@ -63,82 +51,6 @@ class Serial(Executor):
         except Exception as error:
             future.set_exception(error)
         return future
-
-
-class ProcessPool(ProcessPoolExecutor):
-    """Spawned processes that never see Ctrl-C, use one thread each, and end when their parent does, however it ends.
-
-    Parameters
-    ----------
-    jobs : int
-        Processes at most.
-    """
-
-    def __init__(self, jobs: int) -> None:
-        # spawned, not forked: a forked child inherits the locks of threads that it does not have
-        context = multiprocessing.get_context("spawn")
-        super().__init__(jobs, mp_context=context, initializer=_begin_worker)
-
-    def submit(self, function: Callable[..., Any], /, *arguments: Any, **options: Any) -> Future[Any]:
-        """Call the function in a process, which is started if there are too few.
-
-        Parameters
-        ----------
-        function : callable
-            What to call.
-        *arguments, **options
-            With what.
-        """
-        with interrupts_held(), _single_threaded_children():
-            return super().submit(function, *arguments, **options)
-
-    def stop(self) -> None:
-        """End all processes at once, with what they are doing."""
-        workers = list((getattr(self, "_processes", None) or {}).values())  # Python 3.14 has a public way
-        self.shutdown(wait=False, cancel_futures=True)
-        for worker in workers:
-            worker.terminate()
-
-
-def _begin_worker() -> None:
-    """Ctrl-C goes to every process of the terminal; the parent alone answers it. And nothing outlives the parent."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True).start()
-
-
-def _end_with(sentinel: int) -> None:
-    wait_for_end([sentinel])
-    os._exit(1)
-
-
-@contextmanager
-def interrupts_held() -> Iterator[None]:
-    """Keep Ctrl-C for later; processes started meanwhile never see it, not even before they can ignore it."""
-    if not hasattr(signal, "pthread_sigmask"):  # Windows
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-@contextmanager
-def _single_threaded_children() -> Iterator[None]:
-    """Processes started meanwhile use one thread for linear algebra: there are as many of them as cores."""
-    before = {name: os.environ.get(name) for name in _ONE_THREAD}
-    os.environ |= dict.fromkeys(_ONE_THREAD, "1")
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                os.environ.pop(name, None)
-            else:
-                os.environ[name] = value
 
 
 @dataclass
@@ -186,8 +98,10 @@ def crew(executor: Executor | None = None, *, cluster: str | None = None, jobs: 
         width = getattr(executor, "_max_workers", None) or cores()
         yield Crew(executor, lambda: width)
     elif cluster is not None:
-        with _dask(cluster, count) as found:
-            yield found
+        from flockana.ensemble.cluster import connected
+
+        with connected(cluster, count) as (workers, threads):
+            yield Crew(workers, threads)
     elif count == 1:
         yield Crew(Serial(), lambda: 1)
     else:
@@ -238,50 +152,6 @@ def _pool(count: int) -> Iterator[Crew]:
         raise
 
 
-@contextmanager
-def _dask(address: str, count: int) -> Iterator[Crew]:
-    """A Dask cluster, by address or of our own."""
-    try:
-        from distributed import Client, LocalCluster
-    except ImportError as error:
-        raise ArgumentError(
-            f"cluster = {address!r}: Dask is not installed; pip install 'flockana[cluster]', or leave cluster out"
-        ) from error
-    own = None
-    try:
-        if address == "local":
-            with interrupts_held(), _single_threaded_children():
-                own = LocalCluster(
-                    n_workers=count,
-                    threads_per_worker=1,
-                    host="127.0.0.1",
-                    dashboard_address="127.0.0.1:0",
-                    silence_logs=50,
-                )
-        try:
-            client = Client(own or address, timeout=_CONNECT, set_as_default=False)
-            client.wait_for_workers(1, timeout=_CONNECT)
-        except (OSError, ValueError, ImportError) as error:  # a timeout is an OSError
-            raise SolverError(
-                f"cluster = {address!r}: no scheduler with a worker answers within {_CONNECT:g} s ({error}); start "
-                "them with `dask scheduler` and `dask worker ADDRESS --nthreads 1`, and give the scheduler's address"
-            ) from error
-        with client:
-            # by default Dask takes two calls that look alike for one and gives the first one's result again
-            yield Crew(client.get_executor(pure=False), lambda: _threads(client))
-    finally:
-        if own is not None:
-            own.close()
-
-
-def _threads(client: Any) -> int:
-    """How many runs a Dask cluster can make at once, now: workers come and go."""
-    try:
-        return max(1, int(sum(client.nthreads().values())))
-    except OSError as error:  # the scheduler is gone
-        raise _failed(error) from error
-
-
 def make_runs(request: Request, jobs: Sequence[Job], hands: Crew) -> Iterator[tuple[Record, ...]]:
     """Make runs by whoever does it; records come as batches of them are done.
 
@@ -309,7 +179,11 @@ def make_runs(request: Request, jobs: Sequence[Job], hands: Crew) -> Iterator[tu
     try:
         while waiting or suspects or pending:
             for batch in _next_batches(waiting, suspects, len(pending), hands.width(), size):
-                pending[hands.executor.submit(run_batch, request, batch)] = batch
+                try:
+                    pending[hands.executor.submit(run_batch, request, batch)] = batch
+                except Exception as error:  # it broke since we last looked: whoever it was, not this batch
+                    suspects.extend(_under_suspicion(error, batch, pending, hands))
+                    break
             done, _ = wait_for(pending, timeout=_TICK, return_when=FIRST_COMPLETED)
             for future in done:
                 batch = pending.pop(future)

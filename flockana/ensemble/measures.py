@@ -83,6 +83,11 @@ _MEASURES = {
     "velocity_mismatch": Measure(
         "K̃ = K/n at the end", "length²/time²", lambda run: measure.velocity_mismatch(run.p[-1]) / run.n
     ),
+    "slip": Measure(
+        "K̃ at the end over the square of the law's speed scale",
+        "1",
+        lambda run: measure.velocity_mismatch(run.p[-1]) / run.n / run.scales.energy,
+    ),
     "cohesion_radius": Measure(
         "R at the end, largest distance from the centre of mass",
         "length",

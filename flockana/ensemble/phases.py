@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 PHASES = ("flocking", "fragmentation", "collapse", "other")
 CONTACT = 0.05  # of d
-_NEEDED = ("end_distance", "components", "velocity_mismatch", "deviation_energy")
+_NEEDED = ("end_distance", "components", "slip", "deviation_energy")
 
 
 def phases(
@@ -25,13 +25,14 @@ def phases(
 
     In this order: *collapse*, two agents are closer than `contact` d, which no lattice under pressure is before its
     links fold; *fragmentation*, the net has several components; *flocking*, it is connected with velocities matched
-    (K̃ ≤ ``tolerances.mismatch``) and links near d (Ẽ ≤ ``tolerances.deviation``), ε₂ and ε₁ of Definition 5 of
+    (slip, K̃ in the law's own scale, ≤ ``tolerances.mismatch``) and links near d (Ẽ ≤ ``tolerances.deviation``), ε₂ and
+    ε₁ of Definition 5 of
     Olfati-Saber (2006); *other*, connected, but still moving or strained. A phase is of the end time, not of a limit.
 
     Parameters
     ----------
     dataset : xarray.Dataset
-        From `ensemble`, with the measures end_distance, components, velocity_mismatch and deviation_energy.
+        From `ensemble`, with the measures end_distance, components, slip and deviation_energy.
     contact : float
         Distance, relative to d, below which agents count as collapsed onto each other.
     tolerances : Tolerances, optional
@@ -51,7 +52,7 @@ def phases(
     --------
     >>> import xarray
     >>> end = {"end_distance": [0.9, 0.9, 0.01], "components": [1.0, 3.0, 1.0]}
-    >>> end |= {"velocity_mismatch": [0.0] * 3, "deviation_energy": [0.001] * 3}
+    >>> end |= {"slip": [0.0] * 3, "deviation_energy": [0.001] * 3}
     >>> runs = xarray.Dataset({name: ("seed", values) for name, values in end.items()})
     >>> [PHASES[code] for code in phases(runs).values]
     ['flocking', 'fragmentation', 'collapse']

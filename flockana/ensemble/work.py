@@ -12,6 +12,7 @@ from typing import Any
 from flockana.ensemble.digest import mathematics
 from flockana.ensemble.measures import METRICS, measure_named
 from flockana.errors import ArgumentError, SolverError
+from flockana.interrupts import interrupts_recognised
 from flockana.scenarios import Scenario, scenario
 from flockana.scenarios.scenario import SOURCE
 from flockana.theorems import Tolerances, Verdict, verify
@@ -211,14 +212,15 @@ def run_one(request: Request, job: Job) -> Record:
     """
     started = time.perf_counter()
     try:
-        item = build(request.scenario, job)
-        run = item.run()
-        if run.status == "interrupted":
-            raise KeyboardInterrupt
-        if run.status != COMPLETE:  # of a part of the run no claim about the whole follows
-            found = Record(job, FAILED, run.message, stats=_stats(run))
-        else:
-            found = _judged(request, job, item, run)
+        with interrupts_recognised():
+            item = build(request.scenario, job)
+            run = item.run()
+            if run.status == "interrupted":
+                raise KeyboardInterrupt
+            if run.status != COMPLETE:  # of a part of the run no claim about the whole follows
+                found = Record(job, FAILED, run.message, stats=_stats(run))
+            else:
+                found = _judged(request, job, item, run)
     except Exception as error:
         found = Record(job, ERROR, f"{type(error).__name__}: {' '.join(str(error).split())}")
     return replace(found, seconds=time.perf_counter() - started)

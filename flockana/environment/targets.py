@@ -19,7 +19,8 @@ from flockana.checks import FloatArray, ensure_finite_scalar, ensure_positive, e
 from flockana.errors import ArgumentError
 from flockana.units import Powers
 
-_STEP = 1e-5  # of a user's function for dq_r/dt by central difference: error about 1e-10 relative on smooth paths
+_STEP = 1e-5  # of the path's own time, for dq_r/dt by central difference: error about 1e-10 relative on smooth paths
+_RESOLVED = 2.0**-26  # of |t|: a shorter step would lose half its digits in the rounding of t
 
 
 class Target(ABC):
@@ -300,6 +301,8 @@ class CallableTarget(Target):
     ----------
     function : callable
         ``t -> (q_r, p_r)``, two vectors of m components.
+    time : float
+        In which the path bends, in the user's time unit: dq_r/dt is a difference over 1e-5 of it.
 
     Raises
     ------
@@ -314,8 +317,10 @@ class CallableTarget(Target):
     """
 
     function: Callable[[float], Any]
+    time: float = 1.0
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "time", ensure_positive("time", self.time))
         if not callable(self.function):
             raise ArgumentError(f"function = {self.function!r}: expected a callable t -> (q_r, p_r)")
         q, p = self._call(0.0)
@@ -335,7 +340,7 @@ class CallableTarget(Target):
             q, p = self._call(t / time)
             return length * q, length / time * p
 
-        return CallableTarget(scaled)
+        return CallableTarget(scaled, time * self.time)
 
     def _call(self, t: float) -> tuple[FloatArray, FloatArray]:
         try:
@@ -358,5 +363,5 @@ class CallableTarget(Target):
         t : float
             Time.
         """
-        step = _STEP * max(1.0, abs(t))
+        step = max(_STEP * self.time, _RESOLVED * abs(t))
         return (self.position(t + step) - self.position(t - step)) / (2.0 * step)

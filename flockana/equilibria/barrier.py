@@ -26,6 +26,7 @@ _LEAST_RATIO = {
     2: {4: sqrt(2.0), 5: 0.5 * (1.0 + sqrt(5.0)), 6: 2.0 * sin(0.4 * pi), 7: 2.0},
     3: {5: sqrt(12.0 / 7.0)},
 }
+_ABOVE = 1e-9  # relative: an upper bound also where the shortest length came out a few ulps too long
 _LARGEST = 2_000  # agents up to which the counts are followed
 
 
@@ -206,7 +207,7 @@ def energy_floor(alpha: AlphaInteraction, n: int, m: int = 2) -> float:
     True
     """
     shortest, longest = bound_range(alpha)
-    clique = largest_clique(longest / shortest if shortest else inf, m)
+    clique = largest_clique((1.0 + _ABOVE) * longest / shortest if shortest else inf, m)
     if clique is None:
         return 0.0
     return alpha.far_potential * (n * (n - 1) // 2 - turan_pairs(n, clique))

@@ -7,12 +7,12 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from flockana.checks import FloatArray
+from flockana.curvature import Landscape, downhill
 from flockana.equilibria.potential import Potential
 from flockana.errors import ArgumentError
 
 EquilibriumKind = Literal["minimum", "saddle", "maximum", "degenerate"]
 
-ZERO = 1e-7  # of the largest eigenvalue; at a residual force of 1e-9 a flat direction shows far less
 MAX_SIZE = 6000  # n m: its whole spectrum takes a minute
 
 
@@ -48,19 +48,43 @@ def ensure_small(n: int, m: int) -> None:
         )
 
 
-def spectrum(potential: Potential, q: FloatArray, *, zero: float = ZERO) -> Spectrum:
-    """Eigenvalues of the Hessian on the complement of the rigid motions that leave the potential unchanged.
-
-    What is zero there is a soft mode: a hinge that bends, a component that drifts.
+def landscape(potential: Potential, q: FloatArray) -> Landscape:
+    """The potential about a configuration, with the force that is left there.
 
     Parameters
     ----------
     potential : Potential
         Whose Hessian.
     q : ndarray, shape (n, m)
-        Positions, an equilibrium.
-    zero : float
-        Eigenvalues this small, relative to the largest in modulus (at least force_scale/d), count as zero.
+        Positions.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> landscape(Potential(Algorithm1()), np.array([[0.0], [7.0]])).values.size
+    1
+    """
+    return Landscape(
+        potential.stiffness,
+        q,
+        potential.symmetries(q),
+        force=float(np.linalg.norm(potential.force(q))),
+        length=potential.pair.length,
+    )
+
+
+def spectrum(potential: Potential, q: FloatArray) -> Spectrum:
+    """Eigenvalues of the Hessian on the complement of the rigid motions that leave the potential unchanged.
+
+    What is zero there is a soft mode: a hinge that bends, a component that drifts; or a direction whose stiffness is
+    no larger than what rounding and the force that is left account for (see `flockana.curvature`).
+
+    Parameters
+    ----------
+    potential : Potential
+        Whose Hessian.
+    q : ndarray, shape (n, m)
+        Positions, an equilibrium; the more force is left, the more counts as zero.
 
     Examples
     --------
@@ -70,15 +94,9 @@ def spectrum(potential: Potential, q: FloatArray, *, zero: float = ZERO) -> Spec
     >>> rigid, index, soft
     (3, 0, 1)
     """
-    rigid = potential.symmetries(q)
-    hessian = potential.stiffness(q).toarray()
-    off = hessian - rigid @ (rigid.T @ hessian)
-    off -= (off @ rigid) @ rigid.T
-    above = 1.0 + 2.0 * float(np.abs(hessian).sum(axis=1).max())  # beyond every eigenvalue: where rigid motions are put
-    values = np.linalg.eigvalsh(0.5 * (off + off.T) + above * (rigid @ rigid.T))[: q.size - rigid.shape[1]]
-    # with all agents out of range the largest eigenvalue is rounding itself: a pair's stiffness is the measure then
-    small = zero * max(float(np.abs(values).max(initial=0.0)), potential.force_scale / potential.pair.length)
-    return Spectrum(values, rigid.shape[1], int(np.sum(values < -small)), int(np.sum(np.abs(values) <= small)))
+    found = landscape(potential, q)
+    values, signs, _ = found.curvatures()
+    return Spectrum(values, found.rigid.shape[1], int(np.sum(signs < 0)), int(np.sum(signs == 0)))
 
 
 def falling(potential: Potential, q: FloatArray) -> FloatArray | None:
@@ -97,9 +115,9 @@ def falling(potential: Potential, q: FloatArray) -> FloatArray | None:
     >>> falling(Potential(Algorithm1()), np.array([[0.0], [7.0]])) is None
     True
     """
-    values, vectors = np.linalg.eigh(potential.stiffness(q).toarray())
-    scale = max(float(np.abs(values).max()), potential.force_scale / potential.pair.length)
-    return None if values[0] >= -ZERO * scale else np.ascontiguousarray(vectors[:, 0].reshape(q.shape))
+    found = landscape(potential, q)
+    signs = found.curvatures().signs
+    return downhill(found) if signs.size and signs[0] < 0 else None
 
 
 def kind_of(found: Spectrum) -> EquilibriumKind:

@@ -19,8 +19,8 @@ from flockana.laws.olfati_saber import Algorithm2
 from flockana.metrics import coincident_pairs, min_distance
 
 CONTACT = 1e-6  # of d: closer than this two agents coincide
-_LOWEST, _FACTOR = 0.01, 1.5  # where the search for the threshold starts, and its steps
-_HIGHEST = 1e3
+_LOWEST, _FACTOR = 6e-3, 1.5  # where the search for the threshold starts, of `natural_ratio`, and its steps
+_RANGE = 1e5  # least and largest ratio that are tried, under and over the first
 _NUDGE = 1e-4  # of d: a symmetric start would be squeezed along its symmetry, past where it is a minimum
 
 
@@ -155,19 +155,36 @@ def collapse_diagram(alpha: AlphaInteraction, sizes: Sequence[int], ratios: Sequ
     return CollapseDiagram(np.array(counts), rising, closest, coincident, tuple(kinds))
 
 
-def threshold(
-    collapses: Callable[[float], bool], *, lowest: float = _LOWEST, factor: float = _FACTOR, halvings: int = 4
-) -> tuple[float, float]:
-    """Bracket the least ratio at which something collapses: raised until it does, then bisected.
+def natural_ratio(alpha: AlphaInteraction) -> float:
+    """c1γ/c1α at which the γ-agent pulls as hard at a distance d as two agents repel each other at most.
 
-    From below, since far above the threshold agents may rest apart again.
+    Parameters
+    ----------
+    alpha : AlphaInteraction
+        The pair law.
+
+    Examples
+    --------
+    >>> round(natural_ratio(AlphaInteraction(a=50.0, b=50.0)) / natural_ratio(AlphaInteraction()), 9)
+    10.0
+    """
+    return alpha.strength / alpha.d
+
+
+def threshold(
+    collapses: Callable[[float], bool], *, lowest: float = 0.01, factor: float = _FACTOR, halvings: int = 4
+) -> tuple[float, float]:
+    """Bracket the least ratio at which something collapses: from one that does not, raised until it does, bisected.
+
+    From below, since far above the threshold agents may rest apart again. Both ends of the bracket have been tried; it
+    stays wider where a try inside it fails (near the threshold a flock settles slowly).
 
     Parameters
     ----------
     collapses : callable
-        ratio -> bool; such as a relaxation by IPOPT, or the dynamics.
+        ratio -> bool; such as a relaxation by IPOPT, or the dynamics. A SolverError counts as no answer.
     lowest : float
-        First ratio.
+        First ratio; lower ones are tried if it collapses.
     factor : float
         Step of the rise, > 1.
     halvings : int
@@ -181,23 +198,40 @@ def threshold(
     Raises
     ------
     SolverError
-        If nothing collapses up to a ratio of 1000.
+        If nothing, or everything, collapses at ratios within a factor of 1e5 of the first.
 
     Examples
     --------
     >>> low, high = threshold(lambda ratio: ratio > 1.0, halvings=10)
     >>> low <= 1.0 < high < 1.001
     True
+    >>> low, high = threshold(lambda ratio: ratio > 1e-4)
+    >>> low <= 1e-4 < high
+    True
     """
-    high = lowest
-    while not collapses(high):
-        high *= factor
-        if high > _HIGHEST:
-            raise SolverError(f"no collapse at ratios up to {high:.3g}: expected one below {_HIGHEST:g}")
-    low = high / factor
-    for _ in range(halvings):
+
+    def seen(ratio: float) -> bool | None:
+        try:
+            return collapses(ratio)
+        except SolverError:
+            return None
+
+    low = lowest
+    while seen(low) is not False:
+        low /= factor
+        if low * _RANGE < lowest:
+            raise SolverError(f"collapse, or no answer, at ratios down to {low:.3g}: expected none at the least")
+    high, doubt = factor * low, False
+    while (found := seen(high)) is not True:
+        doubt = doubt or found is None
+        low, high = low if doubt else high, factor * high
+        if high > _RANGE * lowest:
+            raise SolverError(f"no collapse at ratios up to {high:.3g}: expected one below {_RANGE * lowest:.3g}")
+    for _ in range(0 if doubt else halvings):
         middle = sqrt(low * high)
-        low, high = (low, middle) if collapses(middle) else (middle, high)
+        if (found := seen(middle)) is None:
+            break
+        low, high = (low, middle) if found else (middle, high)
     return low, high
 
 
@@ -220,5 +254,7 @@ def collapse_threshold(alpha: AlphaInteraction, n: int, *, halvings: int = 4) ->
     True
     """
     return threshold(
-        lambda ratio: coincident_pairs(relaxed(alpha, n, ratio).q, CONTACT * alpha.d) > 0, halvings=halvings
+        lambda ratio: coincident_pairs(relaxed(alpha, n, ratio).q, CONTACT * alpha.d) > 0,
+        lowest=_LOWEST * natural_ratio(alpha),
+        halvings=halvings,
     )

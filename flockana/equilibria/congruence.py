@@ -10,6 +10,8 @@ from scipy.spatial.distance import cdist, pdist
 
 from flockana.checks import FloatArray
 
+_FLAT = 1e-6  # of the extent: so near a line or a plane a configuration lies in it
+
 
 def spectrum_of_distances(q: FloatArray) -> FloatArray:
     """All pairwise distances in rising order: equal for congruent configurations, and rarely for others.
@@ -64,11 +66,11 @@ def congruent(first: FloatArray, second: FloatArray, *, tol: float) -> bool:
 def _frame(x: FloatArray) -> list[int]:
     """Up to m agents whose positions about the centre are independent, the farthest first."""
     chosen: list[int] = []
-    rest = x.copy()
+    rest, extent = x.copy(), float(np.linalg.norm(x, axis=1).max())
     for _ in range(min(x.shape)):
         k = int(np.argmax(np.linalg.norm(rest, axis=1)))
         size = float(np.linalg.norm(rest[k]))
-        if size <= 1e-6 * max(1.0, float(np.abs(x).max())):
+        if size <= _FLAT * extent:
             break
         chosen.append(k)
         axis = rest[k] / size

@@ -19,6 +19,8 @@ from flockana.laws.olfati_saber import Algorithm1, Algorithm2, moving_frame
 from flockana.nets import LinkArray
 from flockana.terminal import rigid_motions
 
+_CONCENTRIC = 1e-12  # of unit axes, or of the lengths at hand: what is less is rounding
+
 FlockLaw: TypeAlias = Algorithm1 | Algorithm2 | Algorithm3 | DeadZoneFlocking
 
 
@@ -85,8 +87,8 @@ class Potential:
 
     @property
     def force_scale(self) -> float:
-        """c1α b d/√(1 + εd²), the bound of the force at d; a contact's force for the dead zone."""
-        return self.gain * self.pair.strength
+        """The law's own: the strongest force between two agents, nearly; of the dead zone, of a contact."""
+        return self.law.scales.force
 
     @property
     def pair(self) -> PairInteraction:
@@ -199,7 +201,8 @@ class Potential:
         if not self.pinned:
             return rigid_motions(q)
         x, obstacles = q - self.centre, self.law.obstacles if isinstance(self.law, Algorithm3) else ()
-        turns = [(x @ generator.T).ravel() for generator in _free_rotations(obstacles, self.centre)]
+        free = _free_rotations(obstacles, self.centre, self.pair.length)
+        turns = [(x @ generator.T).ravel() for generator in free]
         if not turns or not np.any(turns):
             return np.zeros((q.size, 0))
         basis, sizes, _ = np.linalg.svd(np.array(turns).T, full_matrices=False)
@@ -221,8 +224,11 @@ def inside_obstacle(law: FlockLaw, q: FloatArray) -> bool:
     return not np.isfinite(q).all() or any(bool(obstacle.contains(q).any()) for obstacle in obstacles)
 
 
-def _free_rotations(obstacles: Sequence[Obstacle], centre: FloatArray) -> list[FloatArray]:
-    """Skew matrices that map every obstacle's axis (its centre from q_r, its normal) to zero: they move none."""
+def _free_rotations(obstacles: Sequence[Obstacle], centre: FloatArray, length: float) -> list[FloatArray]:
+    """Skew matrices that map every obstacle's axis (its centre from q_r, its normal) to zero: they move none.
+
+    A sphere whose centre is within rounding of q_r, beside the law's length, has no axis.
+    """
     m = centre.size
     generators = []
     for a in range(m):
@@ -235,13 +241,14 @@ def _free_rotations(obstacles: Sequence[Obstacle], centre: FloatArray) -> list[F
     axes = []
     for obstacle in obstacles:
         if isinstance(obstacle, Sphere):
-            axes.append(np.asarray(obstacle.centre) - centre)
+            axis = np.asarray(obstacle.centre) - centre
+            off = float(np.linalg.norm(axis))
+            axes.append(axis / off if off > _CONCENTRIC * max(length, float(np.abs(centre).max())) else 0.0 * axis)
         elif isinstance(obstacle, Wall):
             axes.append(np.asarray(obstacle.par[m:]))
         else:
             return []
     moved = np.array([[generator @ axis for axis in axes] for generator in generators]).reshape(len(generators), -1)
     _, sizes, rows = np.linalg.svd(moved.T, full_matrices=True)
-    size = max(1.0, float(np.abs(moved).max()))
-    kept = [k for k in range(len(generators)) if k >= sizes.size or sizes[k] <= 1e-12 * size]
+    kept = [k for k in range(len(generators)) if k >= sizes.size or sizes[k] <= _CONCENTRIC]  # of unit axes
     return [np.tensordot(rows[k], generators, axes=1) for k in kept]

@@ -3,6 +3,8 @@
 The value of ψ_α on its taper is no elementary function, so IPOPT gets the value from the kernels (a CasADi callback,
 exact to 1e-13 c*) and gradient and Hessian from the expressions generated from sympy. Nothing differentiates the
 callback, and the two sources are held against each other at every step of the line search.
+
+CasADi loses Ctrl-C, or takes it for a failed evaluation: so it is held wherever CasADi is at work.
 """
 
 from __future__ import annotations
@@ -16,6 +18,7 @@ import numpy.typing as npt
 from flockana.checks import FloatArray
 from flockana.equilibria.potential import Potential, inside_obstacle
 from flockana.equilibria.terms import obstacle_term, pair_term, pull_term
+from flockana.interrupts import interrupts_held
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.nets import LinkArray
@@ -46,6 +49,28 @@ class _Value(ca.Callback):
         return [self._program.value(np.asarray(arguments[0]).ravel())]
 
 
+class _Watch(ca.Callback):
+    """Asked after every iteration whether to stop: it does when Ctrl-C came, which CasADi would take for a failure."""
+
+    def __init__(self, size: int, gauge: int) -> None:
+        ca.Callback.__init__(self)
+        self._rows = {"x": size, "f": 1, "g": gauge, "lam_x": size, "lam_g": gauge, "lam_p": size * gauge}
+        self.came: list[int] = []
+        self.construct("watch", {})
+
+    def get_n_in(self) -> int:
+        return int(ca.nlpsol_n_out())
+
+    def get_n_out(self) -> int:
+        return 1
+
+    def get_sparsity_in(self, index: int) -> Any:
+        return ca.Sparsity.dense(self._rows[ca.nlpsol_out(index)], 1)
+
+    def eval(self, _: Any) -> list[int]:
+        return [len(self.came)]
+
+
 class Program:
     """Minimise a potential over a fixed list of pairs, rigid motions fixed by linear constraints.
 
@@ -73,6 +98,7 @@ class Program:
     (True, True, 'Solve_Succeeded')
     """
 
+    @interrupts_held()
     def __init__(self, potential: Potential, shape: tuple[int, int], pairs: LinkArray, gauge: int) -> None:
         self.potential, self.shape, self.pairs, self.gauge = potential, shape, pairs, gauge
         self.size = shape[0] * shape[1]
@@ -80,10 +106,11 @@ class Program:
         self.unit = potential.force_scale * self.d
         x, c = ca.MX.sym("x", self.size), ca.MX.sym("c", self.size * gauge)
         slope, hessian = self._derivatives(x)
-        self._callback = _Value(self)  # kept alive: CasADi holds no reference
+        self._callback, self._watch = _Value(self), _Watch(self.size, gauge)  # kept alive: CasADi holds no reference
         value, multiplier, ignored = self._callback(x), ca.MX.sym("lam_f"), ca.MX.sym("lam_g", gauge)
         held = ca.reshape(c, self.size, gauge).T @ x
-        self.derivatives = ca.Function("derivatives", [x], [slope, hessian], ["x"], ["gradient", "hessian"])
+        derivatives = ca.Function("derivatives", [x], [slope, hessian], ["x"], ["gradient", "hessian"])
+        self.derivatives = interrupts_held()(derivatives)
         self._program: Any = {"x": x, "p": c, "f": value, "g": held}
         self._exact = {
             "grad_f": ca.Function("grad_f", [x, c], [value, slope]),
@@ -128,6 +155,18 @@ class Program:
         max_iter : int
             Most iterations.
         """
+        start = q0.ravel() / self.d
+        basis = self.potential.symmetries(q0) if basis is None else basis
+        held = basis.T @ start
+        box = {"lbx": start - reach / self.d, "ubx": start + reach / self.d}
+        with interrupts_held() as self._watch.came:
+            solver = self._solver(tol, max_iter)
+            found = solver(x0=start, p=basis.T.ravel(), lbg=held, ubg=held, **box)
+            stats, x = solver.stats(), np.array(found["x"])
+        return self.d * x.reshape(self.shape), bool(stats["success"]), str(stats["return_status"])
+
+    def _solver(self, tol: float, max_iter: int) -> Any:
+        """IPOPT with these options; made once."""
         if (tol, max_iter) not in self._solvers:
             options: Any = {
                 **_QUIET,
@@ -135,17 +174,10 @@ class Program:
                 "ipopt.tol": tol,
                 "ipopt.max_iter": max_iter,
                 "ipopt.nlp_scaling_method": "none",
+                "iteration_callback": self._watch,
             }
             self._solvers[tol, max_iter] = ca.nlpsol("equilibrium", "ipopt", self._program, options | self._exact)
-        solver = self._solvers[tol, max_iter]
-        start = q0.ravel() / self.d
-        basis = self.potential.symmetries(q0) if basis is None else basis
-        held = basis.T @ start
-        box = {"lbx": start - reach / self.d, "ubx": start + reach / self.d}
-        found = solver(x0=start, p=basis.T.ravel(), lbg=held, ubg=held, **box)
-        stats = solver.stats()
-        q = self.d * np.array(found["x"]).reshape(self.shape)
-        return q, bool(stats["success"]), str(stats["return_status"])
+        return self._solvers[tol, max_iter]
 
     def _derivatives(self, x: Any) -> tuple[Any, Any]:
         """Gradient and upper triangle of the Hessian at x, in the program's units."""

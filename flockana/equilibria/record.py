@@ -13,6 +13,7 @@ import numpy as np
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.solve import Equilibrium, finish
 from flockana.errors import FileError, FlockanaError
+from flockana.files import replacing
 from flockana.serialize import from_data, to_data
 
 _FORMAT = "flockana equilibrium 1"
@@ -45,10 +46,8 @@ def write_equilibrium(found: Equilibrium, path: str | Path) -> None:
         "rigid_modes": found.rigid_modes,
         "hessian_eigenvalues": found.hessian_eigenvalues.tolist(),
     }
-    try:
-        Path(path).write_text(json.dumps(data, indent=1) + "\n")
-    except OSError as error:
-        raise FileError(f"cannot write {path}: {error}") from error
+    with replacing(path) as partial:
+        partial.write_text(json.dumps(data, indent=1) + "\n")
 
 
 def read_equilibrium(path: str | Path) -> Equilibrium:
@@ -82,13 +81,15 @@ def _compare(found: Equilibrium, data: dict[str, Any]) -> None:
     for name, value in exact.items():
         if data[name] != value:
             raise ValueError(f"it claims {name} = {data[name]!r}, but {value!r} is computed")
-    largest = float(np.abs(found.hessian_eigenvalues).max(initial=0.0))
+    potential = Potential(found.law)
+    unit = potential.force_scale * potential.pair.length  # of energies: a lattice may have none but rounding
+    largest = max(float(np.abs(found.hessian_eigenvalues).max(initial=0.0)), unit / potential.pair.length**2)
     claimed = np.array(data["hessian_eigenvalues"], dtype=np.float64)
     if claimed.shape != found.hessian_eigenvalues.shape or np.any(
         np.abs(claimed - found.hessian_eigenvalues) > _AGREE * largest
     ):
         raise ValueError("its Hessian eigenvalues are not those computed from its positions")
-    if not isclose(data["energy"], found.energy, rel_tol=_AGREE):
+    if not isclose(data["energy"], found.energy, rel_tol=_AGREE, abs_tol=_AGREE * unit):
         raise ValueError(f"it claims an energy of {data['energy']}, but {found.energy} is computed")
 
 

@@ -20,6 +20,7 @@ from flockana.metrics import coincident_pairs
 
 SAME = 1e-5  # of d: how closely two equilibria must agree to be one
 _CONTACT = 1e-6  # of d
+_TIE = 1e-14  # of force scale times length, for each pair: lattices of as many links have the same energy
 _LEVEL = 1e-4  # of c1α ψ_α(r_α): energies this close may be those of one equilibrium
 
 
@@ -235,7 +236,7 @@ def distinct(equilibria: Sequence[Equilibrium]) -> tuple[Found, ...]:
         Of one law and one number of agents.
     """
     groups: list[list[Equilibrium]] = []
-    for one in sorted(equilibria, key=lambda each: each.energy):
+    for one in _by_energy(equilibria):
         potential = Potential(one.law)
         for group in reversed(groups):
             if one.energy - group[0].energy > _LEVEL * potential.gain * potential.pair.far_potential:
@@ -248,6 +249,22 @@ def distinct(equilibria: Sequence[Equilibrium]) -> tuple[Found, ...]:
             groups.append([one])
     contact = Potential(equilibria[0].law).pair.length * _CONTACT if equilibria else 1.0
     return tuple(Found(group[0], len(group), coincident_pairs(group[0].q, contact)) for group in groups)
+
+
+def _by_energy(equilibria: Sequence[Equilibrium]) -> list[Equilibrium]:
+    """Lowest energy first; of energies that are equal but for rounding, in the order in which they were found."""
+    if not equilibria:
+        return []
+    potential, n = Potential(equilibria[0].law), len(equilibria[0].q)
+    tie = _TIE * n * n * potential.force_scale * potential.pair.length
+    rising = sorted(range(len(equilibria)), key=lambda k: equilibria[k].energy)
+    ordered: list[list[int]] = []
+    for k in rising:
+        if ordered and equilibria[k].energy - equilibria[ordered[-1][0]].energy <= tie:
+            ordered[-1].append(k)
+        else:
+            ordered.append([k])
+    return [equilibria[k] for equal in ordered for k in sorted(equal)]
 
 
 def _same(first: Equilibrium, second: Equilibrium) -> bool:

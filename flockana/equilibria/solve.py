@@ -41,7 +41,7 @@ class Equilibrium:
     energy : float
         Potential energy: c1α V, U_λ, or V_α + V_β + V_γ.
     residual : float
-        Largest force on an agent over c1α b/√ε; under dead-zone flocking over a contact's force.
+        Largest force on an agent over that of the law's `scales`.
     links : int array, shape (M, 2)
         Pairs closer than r.
     kind : {"minimum", "saddle", "maximum", "degenerate"}
@@ -264,9 +264,11 @@ def _minimise(potential: Potential, q: FloatArray, margin: float, max_iter: int)
             return q, False, status
         if np.abs(q - start).max() > _INSIDE * reach:
             continue
-        if escapes == _ESCAPES or q.size > _SMALL or (downhill := falling(potential, q)) is None:
+        if escapes == _ESCAPES or q.size > _SMALL:
             return q, True, status
-        escapes, q = escapes + 1, q + _NUDGE * potential.pair.length * downhill
+        if (downhill := falling(potential, polished := _polish(potential, q))) is None:
+            return q, True, status
+        escapes, q = escapes + 1, polished + _NUDGE * potential.pair.length * downhill
     return q, False, f"still on the way after {_ROUNDS} boxes of {margin / sqrt(m):.3g}"
 
 

@@ -6,7 +6,6 @@ import json
 import math
 import os
 from collections.abc import Mapping
-from contextlib import suppress
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
@@ -14,6 +13,7 @@ from typing import Any
 from flockana._version import __version__
 from flockana.checks import FloatArray, ensure_state, ensure_time_span
 from flockana.errors import FileError, FlockanaError
+from flockana.files import replacing
 from flockana.laws.law import DiscreteLaw, Law, ensure_law
 from flockana.serialize import from_data, to_data
 from flockana.simulate import simulate
@@ -122,15 +122,8 @@ class Counterexample:
         }
         text = json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
         target = Path(path)
-        partial = target.parent / f".{target.name}.{os.getpid()}.partial"
-        try:
+        with replacing(target) as partial:
             partial.write_text(text, encoding="utf-8")
-            os.replace(partial, target)
-        except OSError as error:
-            raise FileError(f"cannot write {target}: {error.strerror or error}; choose another file") from error
-        finally:
-            with suppress(OSError):  # one that could not be written cannot be removed either
-                partial.unlink(missing_ok=True)
         return target
 
     @classmethod

@@ -10,6 +10,7 @@ import numpy as np
 from flockana.checks import FloatArray
 from flockana.falsify.grade import FAILED, LEADS, Lead, grade, squash
 from flockana.falsify.space import Space
+from flockana.interrupts import interrupts_recognised
 from flockana.scenarios import Scenario
 from flockana.theorems import Claim, Theorem, Tolerances, Verdict, verify
 from flockana.trajectory import Trajectory
@@ -83,7 +84,8 @@ class Problem:
             If it was interrupted.
         """
         try:
-            return self.judged(self.space.case(point))
+            with interrupts_recognised():
+                return self.judged(self.space.case(point))
         except Exception as error:  # a search must outlive every state that it tries
             return Evaluation(FAILED, message=f"{type(error).__name__}: {' '.join(str(error).split())}")
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from flockana.nets import links
 from flockana.theorems import Claim, Hypothesis
-from flockana.theorems.asymptotics import met
+from flockana.theorems.collisions import met
 from flockana.theorems.theorem import Tolerances
 from flockana.trajectory import Trajectory
 

@@ -19,6 +19,7 @@ from flockana.kernels.scalars import bump, clenshaw, phi, phi_integral, sigma_no
 from flockana.kernels.tables import integral_panels, panel_edges
 from flockana.units import Powers
 
+_STRENGTH_GRID = 2049
 MAX_ASYMMETRY = 1e12  # of repulsion over attraction: beyond it φ(0) = 0 is lost in rounding
 
 _ADJACENCY_ALPHA = lift_scalar(kernel.adjacency_alpha)
@@ -141,10 +142,12 @@ class AlphaInteraction(PairInteraction):
         """The desired distance d."""
         return self.d
 
-    @property
+    @cached_property
     def strength(self) -> float:
-        """b d/√(1 + εd²), the bound b of φ_α times ‖n_ij‖ at distance d."""
-        return self.b * self.d / sqrt(1.0 + self.eps * self.d * self.d)
+        """The largest |φ_α(‖x‖_σ)| x/√(1 + εx²) up to r, to 1e-6: below b/√ε, far below where d is short beside ℓ."""
+        lengths = np.linspace(0.0, self.r, _STRENGTH_GRID)
+        forces = self.phi_alpha(self.sigma_norm(lengths)) * lengths / np.sqrt(1.0 + self.eps * lengths**2)
+        return float(np.abs(forces).max())
 
     def energy_at(self, lengths: FloatArray) -> FloatArray:
         """ψ_α(‖x‖_σ) at Euclidean distances x.

@@ -28,6 +28,8 @@ from flockana.kernels.crossings import crossing_blocks, nearest_links
 from flockana.kernels.segments import meet
 from flockana.nets import LinkArray
 
+_ROUNDINGS = 8.0  # of eps: two subtractions and a product on either side
+
 
 def ensure_links(links: Any, n: int) -> LinkArray:
     """Return links as an int32 array (M, 2) of agents 0 … n − 1.
@@ -133,6 +135,32 @@ class _Exact:
             shared = i if i in (g, h) else j
             return _overlap(*(self.point(v) for v in (shared, i + j - shared, g + h - shared)))
         return _meet_in_space(*(self.point(v) for v in (i, j, g, h)))
+
+
+def turns_left(q: FloatArray, centre: Any, first: Any, second: Any) -> Any:
+    """Whether the way around `centre` from agent `first` to `second` is a left turn of less than a half, exactly.
+
+    Parameters
+    ----------
+    q : ndarray, shape (n, 2)
+        Positions.
+    centre, first, second : int array, shape (K,)
+        Agents.
+
+    Examples
+    --------
+    >>> turns_left(np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]]), [0, 0], [1, 1], [2, 3]).tolist()
+    [True, False]
+    """
+    a, b = q[first] - q[centre], q[second] - q[centre]
+    left, right = a[:, 0] * b[:, 1], a[:, 1] * b[:, 0]
+    turns = left > right
+    exact = _Exact(q, np.empty((0, 2), dtype=np.int32))
+    near = np.abs(left - right) <= _ROUNDINGS * np.finfo(np.float64).eps * (np.abs(left) + np.abs(right))
+    for k in np.flatnonzero(near | ~np.isfinite(left - right)):
+        c, i, j = (exact.point(int(agents[k])) for agents in (centre, first, second))
+        turns[k] = _turn(i, j, c, 0, 1) > 0
+    return turns
 
 
 def _common_exponent(q: FloatArray) -> int:

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.checks import FloatArray, ensure_count, ensure_points
-from flockana.lattice.crossings import ensure_links
+from flockana.lattice.crossings import ensure_links, turns_left
 from flockana.lattice.planarity import ensure_plane
 from flockana.nets import LinkArray
 
@@ -93,14 +93,14 @@ def _surrounded(q: FloatArray, links: LinkArray, count: IntArray) -> npt.NDArray
     step = q[other] - q[centre]
     angle = np.arctan2(step[:, 1], step[:, 0])
     order = np.lexsort((angle, centre))
-    centre, other, angle = centre[order], other[order], angle[order]
+    centre, other = centre[order], other[order]
     first = np.cumsum(count) - count
     slot = np.arange(len(centre)) - first[centre]
     following = first[centre] + (slot + 1) % np.maximum(count[centre], 1)
-    gap = np.mod(angle[following] - angle, 2.0 * np.pi)
     codes = np.sort(centre * n + other)
     sought = other * n + other[following]
     place = np.minimum(np.searchsorted(codes, sought), max(len(codes) - 1, 0))
-    closed = (codes[place] == sought) & (gap < np.pi) & (gap > 0.0)
+    closed = codes[place] == sought
+    closed[closed] = turns_left(q, centre[closed], other[closed], other[following][closed])
     interior: npt.NDArray[np.bool_] = (np.bincount(centre[closed], minlength=n) == count) & (count >= 3)
     return interior

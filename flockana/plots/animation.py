@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import tempfile
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,6 +14,7 @@ import numpy as np
 
 from flockana.checks import FloatArray, ensure_positive
 from flockana.errors import ArgumentError, FileError
+from flockana.files import replacing
 from flockana.laws.law import DiscreteLaw
 from flockana.plots.snapshot import drawn_law, in_view, snapshot
 from flockana.plots.style import style
@@ -154,17 +154,9 @@ def animate(
     target = ensure_film(path, seconds=seconds, fps=fps)
     film = animation(trajectory, seconds=seconds, fps=fps, velocities=velocities)
     writer = PillowWriter(fps=fps) if target.suffix.lower() == ".gif" else FFMpegWriter(fps=fps)  # type: ignore[arg-type]
-    partial = target.with_name(f".{target.stem}.{os.getpid()}.partial{target.suffix.lower()}")
-    try:
-        # saving a figure asks for a layout anew, and one that fits each frame by itself makes the view tremble
-        with style(), mpl.rc_context({"figure.constrained_layout.use": False}):
-            film.save(partial, writer, dpi=_DPI, progress_callback=lambda k, total: progress(k + 1, total))
-        os.replace(partial, target)
-    except OSError as error:
-        raise FileError(f"cannot write {target}: {error.strerror or error}; choose another file") from error
-    finally:
-        with suppress(OSError):
-            partial.unlink(missing_ok=True)
+    # saving a figure asks for a layout anew, and one that fits each frame by itself makes the view tremble
+    with replacing(target) as partial, style(), mpl.rc_context({"figure.constrained_layout.use": False}):
+        film.save(partial, writer, dpi=_DPI, progress_callback=lambda k, total: progress(k + 1, total))
     return target
 
 

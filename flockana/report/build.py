@@ -17,6 +17,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from flockana._version import __version__
 from flockana.errors import FileError
+from flockana.files import replacing
 from flockana.report.lattices import lattice_section
 from flockana.report.pages import FixedPage, FixedResult, Page, ScenarioPage, ScenarioResult, page
 from flockana.report.stability import stability_section
@@ -175,12 +176,6 @@ def _html(pages: list[Page], run: dict[str, Any], statistics: StatisticsSection 
 
 
 def _write(path: Path, text: str) -> Path:
-    partial = path.with_name(f".{path.name}.{os.getpid()}.partial")
-    try:
+    with replacing(path, remedy="choose another folder") as partial:
         partial.write_text(text, encoding="utf-8")
-        os.replace(partial, path)
-    except OSError as error:
-        raise FileError(f"cannot write {path}: {error.strerror or error}; choose another folder") from error
-    finally:
-        partial.unlink(missing_ok=True)
     return path

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, wait
+from concurrent.futures import FIRST_COMPLETED, wait
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
 from dataclasses import dataclass
 
-from flockana.ensemble.executors import ProcessPool
+from flockana.ensemble.processes import ProcessPool
 from flockana.errors import ArgumentError, FlockanaError, SolverError, UnknownNameError
+from flockana.interrupts import interrupts_recognised
 from flockana.report.pages import FixedResult, Page, ScenarioResult, page
 from flockana.report.statistics import Survey, Surveyed, carry_out
 from flockana.scenarios import scenario, scenarios
@@ -104,16 +106,17 @@ def do(task: Task | Survey) -> Page | Surveyed:
     KeyboardInterrupt
         If the run was interrupted.
     """
-    if isinstance(task, Survey):
-        return carry_out(task)
-    if task.fixed:
-        return page(FixedResult(theorem(task.name), verify(task.name)))
-    item = scenario(task.name, task.seed)
-    run = item.run()
-    if run.status == "interrupted":
-        raise KeyboardInterrupt
-    verdicts = tuple(verify(one, run, subject=item.name) for one in task.only) or item.verify(run)
-    return page(ScenarioResult(item, run, verdicts), figures=task.figures)
+    with interrupts_recognised():
+        if isinstance(task, Survey):
+            return carry_out(task)
+        if task.fixed:
+            return page(FixedResult(theorem(task.name), verify(task.name)))
+        item = scenario(task.name, task.seed)
+        run = item.run()
+        if run.status == "interrupted":
+            raise KeyboardInterrupt
+        verdicts = tuple(verify(one, run, subject=item.name) for one in task.only) or item.verify(run)
+        return page(ScenarioResult(item, run, verdicts), figures=task.figures)
 
 
 def perform(
@@ -145,12 +148,15 @@ def perform(
         return
     pool = ProcessPool(jobs)
     try:
-        futures = {pool.submit(_do_for_parent, task): task.name for task in tasks}
+        with _explained():
+            futures = {pool.submit(_do_for_parent, task): task.name for task in tasks}
         pending = set(futures)
         while pending:
             done, pending = wait(pending, timeout=_TICK, return_when=FIRST_COMPLETED)
             for future in done:
-                yield _result(future)
+                with _explained():
+                    result = future.result()
+                yield result
             watch(tuple(futures[f] for f in futures if f in pending and f.running())[:jobs])
         pool.shutdown()
     except BaseException:
@@ -166,8 +172,10 @@ def _do_for_parent(task: Task | Survey) -> Page | Surveyed:
         raise FlockanaError(f"{task.name}: {error}") from None
 
 
-def _result(future: Future[Page | Surveyed]) -> Page | Surveyed:
+@contextmanager
+def _explained() -> Iterator[None]:
+    """A pool that broke, which a submission may be the first to meet, as our error with a remedy."""
     try:
-        return future.result()
+        yield
     except BrokenProcessPool as error:
         raise SolverError("a worker process died; if memory is short, try --jobs 1") from error

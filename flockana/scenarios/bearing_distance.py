@@ -9,6 +9,7 @@ a flock passes one that the conventional method, which wraps obstacles in discs,
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -19,7 +20,7 @@ from flockana.environment.zone_world import Alien, ZoneWorld
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.nets import components, links
-from flockana.scenarios.findings import component_counts, finding
+from flockana.scenarios.findings import component_counts, finding, in_source_units
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.shares import zone_start
@@ -29,7 +30,7 @@ from flockana.trajectory import Trajectory
 N, AREA, SPEED = 10, 10.0, 3.0
 SAFE, IN_ORDER = 1.5, 0.99  # m; what counts as C = 1
 _NEAR = 0.05  # a mean speed this close, relative, is "about" the desired one
-_ROUNDING = 1e-12  # a bound that is reached is kept
+_KEPT = 1e-11  # relative: a bound that is reached is kept, but for rounding
 _FREE, _WATCHFUL = ZoneRadii(1.5, c=3.0, a=5.0), ZoneRadii(1.5, c=3.0, a=5.0, s=6.0)
 _STRONG = ZoneWeights(separation=20.0, obstacle=20.0, cohesion_gain=0.5, alignment_gain=4.0)
 _TRIANGLE = SimplePolygon([(8.0, 22.0), (24.0, 24.0), (14.0, 42.0)])
@@ -77,7 +78,7 @@ def _speed(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 def _bounds(run: Trajectory, tolerances: Tolerances) -> Claim:
     speed, force = (float(np.linalg.norm(x, axis=2).max()) for x in (run.p, run.u))
-    margin = min(bound * (1.0 + _ROUNDING) - x for x, bound in ((speed, run.law.v_max), (force, run.law.u_max)))
+    margin = min(1.0 + _KEPT - x / bound for x, bound in ((speed, run.law.v_max), (force, run.law.u_max)))
     text = f"the largest speed is {speed:.4g} of {run.law.v_max:g}, the largest input {force:.4g} of {run.law.u_max:g}"
     return finding("bounds", margin, text, computed=(speed, force), stated=(run.law.v_max, run.law.u_max))
 
@@ -243,7 +244,7 @@ _ENTRIES: dict[str, tuple[str, str, ZoneFlocking, _Start, float, tuple[Report, .
         _BARRED,
     ),
 }
-# what does not depend on the seed, or hardly; shares over seeds are an ensemble's to tell
+# what holds at every seed (all of 400); of the rest the report of the catalogue tells shares of seeds
 _EXPECTED: dict[str, dict[str, Status]] = {
     "zone-51-printed": {
         "source": "refuted",
@@ -253,20 +254,14 @@ _EXPECTED: dict[str, dict[str, Status]] = {
         "source:speed": "refuted",
         "source:bounds": "verified",
     },
-    "zone-51": {"source": "verified"},
+    "zone-51": {"source:distances": "verified", "source:speed": "verified", "source:bounds": "verified"},
     "zone-52-printed": {
         "source": "refuted",
-        "source:distances": "refuted",
         "source:speed": "refuted",
         "source:bounds": "verified",
         "source:contained": "refuted",
     },
-    "zone-52": {
-        "source": "refuted",
-        "source:range": "refuted",
-        "source:bounds": "verified",
-        "source:contained": "verified",
-    },
+    "zone-52": {"source": "refuted", "source:range": "refuted", "source:bounds": "verified"},
     "zone-gap": {"source": "verified"},
     "zone-gap-buffer": {"source": "verified"},
 }
@@ -287,7 +282,7 @@ def _build(name: str) -> Callable[..., Scenario]:
             (0.0, end),
             seed,
             _EXPECTED[name],
-            reports,
+            tuple(replace(one, check=in_source_units(law.scales, one.check)) for one in reports),
             references=("jond-2025",),
             seeds=200,
             settings="printed settings" if name.endswith("printed") else "recommended settings",

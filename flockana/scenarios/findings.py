@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -9,8 +10,14 @@ import numpy.typing as npt
 
 from flockana.interactions.pair import pair_interaction
 from flockana.nets import components, links
-from flockana.theorems.theorem import Claim, judge
+from flockana.scales import Scales
+from flockana.theorems.limits import Certificate, limit_claim
+from flockana.theorems.theorem import Claim, Tolerances, judge
 from flockana.trajectory import Trajectory
+from flockana.units import rescale
+
+Check = Callable[[Trajectory, Tolerances], Claim]
+ROUNDING = 1e-12  # relative, of what a report measures
 
 
 def finding(
@@ -20,10 +27,12 @@ def finding(
     *,
     computed: Any = None,
     stated: Any = None,
-    error: float = 0.0,
+    error: float | None = None,
     witness: Any = None,
 ) -> Claim:
     """A claim that is judged by its margin, without hypotheses.
+
+    A margin half-way between whole numbers is a count against a bound, and exact; any other is off by its rounding.
 
     Parameters
     ----------
@@ -33,16 +42,72 @@ def finding(
         Positive where the source's report agrees with the run.
     computed, stated, witness : object
         As in `Claim`.
-    error : float
-        Error of the margin.
+    error : float, optional
+        Error of the margin; by default that of its rounding, where it is no count.
 
     Examples
     --------
     >>> finding("connected", 0.5, "one component").status
     'verified'
     """
+    if error is None:
+        counted = margin != 0.0 and float(2.0 * margin).is_integer()
+        size = abs(computed) if isinstance(computed, float | int) else 0.0
+        error = 0.0 if counted else ROUNDING * max(abs(margin), size)
     status = judge(margin, error, [])
     return Claim(name, status, "numeric", computed, stated, margin, error, witness, None, detail)
+
+
+def in_the_end(
+    name: str, certificate: Certificate, detail: str, *, computed: Any = None, stated: str = "", witness: Any = None
+) -> Claim:
+    """A report of what a flock comes to: verified by a certificate, and open as long as there is none, never refuted.
+
+    Parameters
+    ----------
+    name, detail : str
+        As in `Claim`.
+    certificate : Certificate
+        What speaks for it.
+    computed, stated, witness : object
+        As in `Claim`.
+
+    Examples
+    --------
+    >>> in_the_end("rests", Certificate(-0.5, "it does not fall"), "it still moves").status
+    'inconclusive'
+    """
+    return limit_claim(name, [], [certificate], computed=computed, stated=stated, witness=witness, detail=detail)
+
+
+def in_source_units(scales: Scales, check: Check) -> Check:
+    """The same report on a run in any units: one that compares with its source's figures is asked in the source's.
+
+    Parameters
+    ----------
+    scales : Scales
+        Of the source's law.
+    check : callable
+        ``check(trajectory, tolerances) -> Claim``.
+    """
+
+    def asked(run: Trajectory, tolerances: Tolerances) -> Claim:
+        length, time = scales.length / run.scales.length, scales.time / run.scales.time
+        same = abs(length - 1.0) < ROUNDING and abs(time - 1.0) < ROUNDING
+        return check(run if same else rescale(run, length=length, time=time), tolerances)
+
+    return asked
+
+
+def as_tightly(run: Trajectory) -> dict[str, Any]:
+    """Options of `simulate` for a run beside another one, to be integrated as tightly as that.
+
+    Parameters
+    ----------
+    run : Trajectory
+        The other run; empty for a map, or a fixed step.
+    """
+    return {name: run.stats[name] for name in ("rtol", "atol") if run.stats.get(name) is not None}
 
 
 def component_count(run: Trajectory, k: int = -1) -> int:

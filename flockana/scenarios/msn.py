@@ -18,8 +18,9 @@ from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.law import DiscreteLaw, Law
 from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.metrics import connectivity, giant_share
 from flockana.nets import links, printed_rank_connectivity
-from flockana.scenarios.findings import component_count, finding
+from flockana.scenarios.findings import as_tightly, component_count, finding, in_source_units
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.simulate import simulate
 from flockana.stability.tracking import response_ratio
@@ -49,7 +50,7 @@ def _rank(run: Trajectory) -> float:
 
 
 def _fragments(run: Trajectory, tolerances: Tolerances) -> Claim:
-    parts, share = component_count(run), float(run.metrics().giant_share[-1])
+    parts, share = component_count(run), giant_share(run.q[-1], run.law.alpha.r)
     detail = f"{parts} components at the end, the largest with {share:.0%} of the agents"
     return finding("fragments", parts - 1.5, detail, computed=parts, stated="more than 1")
 
@@ -61,7 +62,7 @@ def _about(name: str, found: float, stated: float, scatter: float, text: str) ->
 
 
 def _final_rank(run: Trajectory, tolerances: Tolerances) -> Claim:
-    found, true = _rank(run), float(run.metrics().connectivity[-1])
+    found, true = _rank(run), connectivity(run.q[-1], run.law.alpha.r)
     text = f"rank(A)/n with a zero diagonal is {found:.2f}, reported 0.4; C = rank(L)/(n - 1) is {true:.2f}"
     return _about("connectivity", found, 0.4, _SCATTER[50.0], text)
 
@@ -77,7 +78,7 @@ def _unit_gains(run: Trajectory, tolerances: Tolerances) -> Claim:
     was = run.law
     printed = isinstance(was, MSNDiscretisation)
     law = replace(was, law=replace(was.law, gains=slow)) if printed else replace(was, gains=slow)
-    found = _rank(simulate(law, run.q[0], run.p[0], (float(run.t[0]), float(run.t[-1]))))
+    found = _rank(simulate(law, run.q[0], run.p[0], (float(run.t[0]), float(run.t[-1])), **as_tightly(run)))
     text = f"with unit gains rank(A)/n with a zero diagonal is {found:.2f}, reported 0.7"
     return _about("unit-gains", found, 0.7, _SCATTER[1.0], text)
 
@@ -94,7 +95,7 @@ def _top_speed(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 def _last_apart(run: Trajectory) -> float:
     """Iteration of the last sample at which the net is not connected; -1 if it always is."""
-    apart = run.t[run.metrics().connectivity.values < 1.0]
+    apart = run.t[run.metric("connectivity") < 1.0]
     return float(apart[-1]) / DT if apart.size else -1.0
 
 
@@ -143,7 +144,7 @@ def _spikes(run: Trajectory, tolerances: Tolerances) -> Claim:
     own = np.linalg.norm(late.p, axis=2).max(axis=1)
     flock = float(np.linalg.norm(late.p.mean(axis=1), axis=1).mean())
     ratio, k = float(own.max()) / flock, int(np.argmax(own))
-    apart = float((late.metrics().connectivity.values < 1.0).mean())
+    apart = float((late.metric("connectivity") < 1.0).mean())
     text = (
         f"after iteration 50 the fastest agent reaches {ratio:.3g} times the flock's mean speed (t = {late.t[k]:.3g}); "
         f"the net is not connected at {apart:.0%} of those samples"
@@ -248,6 +249,7 @@ def _expected(case: int, *, printed: bool) -> dict[str, Status]:
 def _case(case: int, *, printed: bool) -> Callable[[int], Scenario]:
     side = 50.0 if case <= 2 else 150.0
     continuous = _law(case)
+    reports = tuple(replace(one, check=in_source_units(continuous.scales, one.check)) for one in _REPORTS[case])
     law: Law | DiscreteLaw = MSNDiscretisation(continuous, DT) if printed else continuous
     how = (
         "as the project ran it: agent by agent in place, with its position update (E9), 540 steps of 0.009"
@@ -268,7 +270,7 @@ def _case(case: int, *, printed: bool) -> Callable[[int], Scenario]:
             (0.0, ITERATIONS * DT),
             seed,
             _expected(case, printed=printed),
-            _REPORTS[case],
+            reports,
             references=("isola-2024", "olfati-saber-2006"),
         )
 

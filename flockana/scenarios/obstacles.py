@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -14,9 +16,10 @@ from flockana.environment.obstacles import Obstacle, Sphere
 from flockana.environment.targets import LinearTarget, StaticTarget, Target
 from flockana.interactions import BetaInteraction, Gains
 from flockana.laws.algorithm3 import Algorithm3
-from flockana.scenarios.findings import component_counts, finding
+from flockana.scenarios.findings import ROUNDING, component_counts, finding, in_source_units, in_the_end
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
+from flockana.theorems.limits import Certificate
 from flockana.theorems.theorem import Status
 from flockana.trajectory import Trajectory
 
@@ -80,13 +83,17 @@ def free_start(
 
 
 def _stays_clear(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """No agent enters: by the lower bound of all clearances; one that is inside at a point of its path refutes it."""
     least = run.clearance()
+    rounding = ROUNDING * float(np.abs(run.q).max())
+    margin = least.reached if least.reached < -rounding else least.lower
+    error = rounding if margin > 0.0 or margin == least.reached else inf
     detail = (
         f"agent {least.agent} comes closest, {least.reached:.4g} from obstacles[{least.obstacle}] at "
         f"t = {least.time:.4g}; no agent is closer than {least.lower:.4g} to any at any time"
     )
     witness = {"agent": least.agent, "obstacle": least.obstacle, "time": least.time}
-    return finding("clear", least.lower, detail, computed=least.lower, stated="> 0", witness=witness)
+    return finding("clear", margin, detail, computed=least.lower, stated="> 0", error=error, witness=witness)
 
 
 def _splits(run: Trajectory, tolerances: Tolerances) -> Claim:
@@ -131,7 +138,7 @@ def _gets_past(run: Trajectory, tolerances: Tolerances) -> Claim:
 def _squeezes(run: Trajectory, tolerances: Tolerances) -> Claim:
     through = _passed_between(run)
     detail = f"{through} of {run.n} agents go through the gap, of width 20; the others round the outside of the spheres"
-    return finding("squeezes", through / run.n - 0.5, detail, computed=through, stated="more than half")
+    return finding("squeezes", through - 0.5 * run.n, detail, computed=through, stated="more than half")
 
 
 def blocked(q: FloatArray, target: FloatArray, obstacles: Sequence[Obstacle]) -> FloatArray:
@@ -160,24 +167,35 @@ def blocked(q: FloatArray, target: FloatArray, obstacles: Sequence[Obstacle]) ->
 
 
 def _traps(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """Held back: behind an obstacle at the end, and slower than what counts as a standstill for the last tenth."""
     held = blocked(run.q[-1], run.law.target.position(float(run.t[-1])), run.law.obstacles)
-    slow = np.linalg.norm(run.p[-1], axis=1) < tolerances.agreement
+    last = run.t >= run.t[-1] - 0.1 * (run.t[-1] - run.t[0])
+    limit = tolerances.agreement * run.law.gains.c1_gamma * run.law.alpha.unit / run.law.gains.c2_gamma
+    slow = np.linalg.norm(run.p[last], axis=2).max(axis=0) < limit
     count = int((held & slow).sum())
     detail = (
-        f"at t = {run.t[-1]:g} {count} of {run.n} agents rest (slower than {tolerances.agreement:g}) with an obstacle "
-        "on the straight way to the γ-agent"
+        f"until t = {run.t[-1]:g} {count} of {run.n} agents rest (slower than {limit:.3g}, {tolerances.agreement:g} of "
+        "the speed at which agents near the γ-agent) with an obstacle on the straight way to the γ-agent"
     )
-    return finding("trapped", count - 0.5, detail, computed=count, stated="more than 0")
+    certificate = Certificate(1.0 if count else -1.0, "that is a count" if count else "none does, as yet")
+    return in_the_end("trapped", certificate, detail, computed=count, stated="more than 0")
 
 
 def _rests(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """It comes to rest: hardly any speed is left, and hardly any force on agents at rest where they are.
+
+    With a γ-agent at rest and c2γ > 0 every motion dies out, as H falls by c2γ Σ‖p_i‖² at least; what is open is when.
+    So one instant will do here, of small speeds and forces together: it is no turning point of a swing for ever.
+    """
     law, q, t = run.law, run.q[-1], float(run.t[-1])
-    scale = law.gains.c1_alpha * law.alpha.b / np.sqrt(law.alpha.eps)
-    force = float(np.linalg.norm(law.acceleration(t, q, np.zeros_like(q)), axis=1).max()) / scale
-    speed = float(np.linalg.norm(run.p[-1], axis=1).max())
-    detail = f"at t = {t:g} the largest force is {force:.2g} of c1α b/√ε, the largest speed {speed:.2g}"
-    stated = f"force <= {tolerances.force:g} at rest"
-    return finding("rests", tolerances.force - force, detail, computed=force, stated=stated)
+    force = float(np.linalg.norm(law.acceleration(t, q, np.zeros_like(q)), axis=1).max()) / run.scales.force
+    speed = float(np.linalg.norm(run.p[-1], axis=1).max()) / run.scales.speed
+    left = max(force / tolerances.force, speed / float(np.sqrt(tolerances.velocity)), 1e-300)
+    damped = Certificate(float(np.clip(-np.log(left), -1.0, 1.0)), f"{left:.2g} of what counts as none")
+    none = Certificate(-1.0, "without damping by the γ-agent it may never")
+    detail = f"at t = {t:g} the largest force is {force:.2g} of the law's, the largest speed {speed:.2g}"
+    certificate = damped if law.gains.c2_gamma > 0.0 else none
+    return in_the_end("rests", certificate, detail, computed=force, stated=f"force <= {tolerances.force:g} at rest")
 
 
 def _measured(run: Trajectory) -> tuple[ConstrainedLattice, float, str]:
@@ -199,8 +217,9 @@ def _touches(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 def _constrained(run: Trajectory, tolerances: Tolerances) -> Claim:
     _, strain, detail = _measured(run)
-    margin = tolerances.quasi - strain
-    return finding("constrained-lattice", margin, detail, computed=strain, stated=f"<= {tolerances.quasi:g}")
+    margin = (tolerances.quasi - strain) / tolerances.quasi
+    certificate = Certificate(float(np.clip(margin, -1.0, 1.0)), f"quasi is up to {tolerances.quasi:g}")
+    return in_the_end("constrained-lattice", certificate, detail, computed=strain, stated=f"<= {tolerances.quasi:g}")
 
 
 _CLEAR = Report("clear", "no agent enters an obstacle", _stays_clear)
@@ -237,7 +256,8 @@ def _entry(
         start = free_start(seed, n, centre, spread, law.obstacles, room=BetaInteraction().d)
         text = f"{source} {_OURS}"
         options = _large(end) if n > 100 else {}
-        return Scenario(name, title, text, law, *start, (0.0, end), seed, expected, (_CLEAR, *reports), options)
+        asked = tuple(replace(one, check=in_source_units(law.scales, one.check)) for one in (_CLEAR, *reports))
+        return Scenario(name, title, text, law, *start, (0.0, end), seed, expected, asked, options)
 
     return name, build
 

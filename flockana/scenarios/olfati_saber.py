@@ -13,11 +13,14 @@ from flockana.checks import FloatArray
 from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.metrics import coincident_pairs
+from flockana.metrics import coincident_pairs, deviation_energy, giant_share
 from flockana.nets import components, link_lengths, links
-from flockana.scenarios.findings import component_count, finding
+from flockana.scenarios.findings import ROUNDING, component_count, finding, in_the_end
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
+from flockana.theorems.asymptotics import velocities_match
+from flockana.theorems.attraction import held
+from flockana.theorems.limits import decay
 from flockana.theorems.theorem import Status
 from flockana.trajectory import Trajectory
 
@@ -48,21 +51,19 @@ def _ends_connected(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 def _ends_as_lattice(run: Trajectory, tolerances: Tolerances) -> Claim:
     d, r = run.law.alpha.d, run.law.alpha.r
-    deviation = float(run.metrics().deviation_energy[-1])
+    deviation = deviation_energy(run.q[-1], d, r) / d**2
     lengths = link_lengths(run.q[-1], links(run.q[-1], r))
     detail = (
         f"Ẽ = {deviation:.3g} at the end (a link is off d by {100.0 * sqrt(deviation):.2g} % in root mean square); the "
         f"{lengths.size} links are {lengths.min():.4g} to {lengths.max():.4g} long for d = {d:g}, squeezed inwards"
     )
     margin = tolerances.deviation - deviation
-    return finding("lattice-like", margin, detail, computed=deviation, stated=f"Ẽ <= {tolerances.deviation:g}")
+    stated = f"Ẽ <= {tolerances.deviation:g}"
+    return finding("lattice-like", margin, detail, computed=deviation, stated=stated, error=ROUNDING)
 
 
 def _ends_matched(run: Trajectory, tolerances: Tolerances) -> Claim:
-    first, last = (float(run.metrics().velocity_mismatch[k]) for k in (0, -1))
-    detail = f"velocity mismatch K̃ goes from {first:.3g} to {last:.3g}"
-    margin = tolerances.mismatch - last
-    return finding("matched", margin, detail, computed=last, stated=f"K̃ <= {tolerances.mismatch:g}")
+    return velocities_match(run, tolerances, [], name="matched", caught=[held(run).certificate])
 
 
 def _topology_changes(run: Trajectory, tolerances: Tolerances) -> Claim:
@@ -78,25 +79,38 @@ def _topology_changes(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 def _fragments(run: Trajectory, tolerances: Tolerances) -> Claim:
     parts = component_count(run)
-    share = float(run.metrics().giant_share[-1])
+    share = giant_share(run.q[-1], run.law.alpha.r)
     detail = f"{parts} components at t = {run.t[-1]:g}, the largest with {share:.0%} of the agents"
     return finding("fragments", parts - 1.5, detail, computed=parts, stated="more than 1")
 
 
 def _stays_mismatched(run: Trajectory, tolerances: Tolerances) -> Claim:
-    last = float(run.metrics().velocity_mismatch[-1])
-    margin = last - tolerances.mismatch
-    detail = f"velocity mismatch K̃ is {last:.3g} at t = {run.t[-1]:g}: the fragments move apart"
-    return finding("mismatched", margin, detail, computed=last, stated=f"K̃ > {tolerances.mismatch:g}")
+    """K̃ stays away from 0: in the second half of the run it never falls to a small share of what it was."""
+    series = run.metric("velocity_mismatch")
+    late = series[run.t >= 0.5 * (run.t[0] + run.t[-1])]
+    share = float(late.min() / series[0])
+    detail = (
+        f"velocity mismatch K̃ is {series[-1]:.3g} at t = {run.t[-1]:g}, and never below {share:.2g} of its start in "
+        "the second half: the fragments move apart"
+    )
+    stated = f"K̃ > {tolerances.agreement:g} K̃(0)"
+    margin = share - tolerances.agreement
+    return finding("mismatched", margin, detail, computed=share, stated=stated, error=ROUNDING)
 
 
 def _meets(run: Trajectory, tolerances: Tolerances) -> Claim:
-    q_r, p_r = run.law.target.state(float(run.t[-1]))
-    distance = float(np.linalg.norm(run.q[-1].mean(axis=0) - q_r))
-    speed = float(np.linalg.norm(run.p[-1].mean(axis=0) - p_r))
-    allowed = tolerances.agreement * run.law.alpha.d
-    detail = f"the centre of mass ends {distance:.2g} from the γ-agent, at a relative speed of {speed:.2g}"
-    return finding("meets", allowed - max(distance, speed), detail, computed=distance, stated=f"<= {allowed:g}")
+    """Place and velocity of the centre of mass go to those of the γ-agent, each in the law's own scale."""
+    target = [run.law.target.state(float(t)) for t in run.t]
+    away, slip = (
+        np.linalg.norm(x.mean(axis=1) - np.array([state[k] for state in target]), axis=1) / unit
+        for k, (x, unit) in enumerate(((run.q, run.scales.length), (run.p, run.scales.speed)))
+    )
+    certificate = min(
+        (decay(run.t, off, floor=tolerances.agreement).certificate for off in (away, slip)), key=lambda one: one.margin
+    )
+    detail = f"the centre of mass ends {away[-1]:.2g} d from the γ-agent, at {slip[-1]:.2g} of the law's speed"
+    stated = f"both -> 0 (<= {tolerances.agreement:g})"
+    return in_the_end("meets", certificate, detail, computed=float(away[-1]), stated=stated)
 
 
 def _coincide(run: Trajectory, tolerances: Tolerances) -> Claim:

@@ -15,6 +15,7 @@ from flockana.errors import ArgumentError, UnknownNameError
 from flockana.laws.law import DiscreteLaw, Law
 from flockana.simulate import simulate
 from flockana.theorems import Claim, Tolerances, Verdict, verify
+from flockana.theorems.second_run import corroborated
 from flockana.theorems.theorem import Status
 from flockana.trajectory import Trajectory
 
@@ -119,8 +120,12 @@ class Scenario:
         """
         found = [verify(name, trajectory, tolerances=tolerances, subject=self.name) for name in self.theorems]
         if self.reports:
-            used = tolerances or Tolerances()
-            claims = tuple(report.check(trajectory, used) for report in self.reports)
+            used = Tolerances() if tolerances is None else tolerances
+
+            def judged(run: Trajectory) -> tuple[Claim, ...]:
+                return tuple(report.check(run, used) for report in self.reports)
+
+            claims = corroborated(judged(trajectory), trajectory, judged)
             found.append(Verdict(SOURCE, (), claims, used, self.name))
         return tuple(found)
 

@@ -152,7 +152,7 @@ def second_order(law: Any, q: Any, *, t: float = 0.0, strict: bool = True) -> Bl
         )
     if strict and (residual := Potential(law, t).residual(q)) > RESIDUAL:
         raise ArgumentError(
-            f"q is no equilibrium: residual force {residual:.2g} of c1α b/√ε, more than {RESIDUAL:g}; "
+            f"q is no equilibrium: residual force {residual:.2g} of the law's force scale, more than {RESIDUAL:g}; "
             "find_equilibrium finds one, and strict=False studies this state all the same"
         )
     found = linearise(law, q, t=t, allow_residual=True)

@@ -11,20 +11,23 @@ import numpy as np
 
 from flockana.checks import FloatArray, ensure_positive
 from flockana.errors import ArgumentError
+from flockana.interactions.pair import pair_interaction
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, moving_frame
 from flockana.nets import links
+from flockana.scales import Scales
 from flockana.simulate import simulate
 from flockana.stability.linearise import Linearisation
 from flockana.stability.modes import Mode
 from flockana.stability.motion import mode_motion
+from flockana.units import rescale
 
 AMPLITUDE = 1e-4  # of d: the first neglected term is as small, relative to the linear one
 _FALL = 1e8  # by which K̃ has fallen when the run ends
 _LATE = 0.6  # of a random start's run that is left out: what is fast has decayed
 _SAMPLES = 24  # per half period
-_FEWEST = 6  # half periods
+_FEWEST, _MOST = 6, 4000  # half periods
 _SEEN = 0.1  # share of a mode that is no translation, from which on K̃ sees it
-_RTOL, _ATOL = 1e-10, 1e-12  # velocities fall to about 1e-7; tighter, rounding of the forces stalls the solver
+_RTOL, _ATOL = 1e-10, 1e-13  # velocities fall to 1e-8 in the law's units; tighter, rounding of the forces stalls it
 _SMALL = 3e-3  # deviation up to which the exponent is fitted
 
 
@@ -86,7 +89,7 @@ def slowest_seen(found: Linearisation) -> Mode:
     Raises
     ------
     ArgumentError
-        If there is none, or it does not decay.
+        If there is none, or it does not decay by more than rounding could feign.
 
     Examples
     --------
@@ -96,9 +99,12 @@ def slowest_seen(found: Linearisation) -> Mode:
     """
     for mode in found.modes:
         if float(np.linalg.norm(mode.shape - mode.shape.mean(axis=0))) >= _SEEN:
-            if mode.decay_rate > 0.0:
+            if mode.decays:
                 return mode
-            raise ArgumentError(f"mode {mode.name} has decay rate {mode.decay_rate:.3g}: expected a stable flock")
+            raise ArgumentError(
+                f"mode {mode.name} has decay rate {mode.decay_rate:.3g}, where rounding alone may make "
+                f"{mode.error:.1g}: expected a stable flock"
+            )
     raise ArgumentError(f"n = {len(found.q)}: expected a mode of the shape; this flock has none")
 
 
@@ -115,14 +121,14 @@ def decay(found: Linearisation, *, name: str = "", amplitude: float = AMPLITUDE,
     name : str
         Of the equilibrium.
     amplitude : float
-        Largest displacement of an agent, in units of the law's d (of the flock's size, where it has none).
+        Largest displacement of an agent, in units of the law's length d (of the flock's size, where it has none).
     seed : int
         Of the random perturbation.
 
     Raises
     ------
     ArgumentError
-        If nothing decays.
+        If nothing decays, or so slowly that the run would take for ever.
 
     Examples
     --------
@@ -135,6 +141,11 @@ def decay(found: Linearisation, *, name: str = "", amplitude: float = AMPLITUDE,
     size = ensure_positive("amplitude", amplitude) * _length(found)
     half = pi / mode.frequency if mode.frequency else 1.0 / mode.decay_rate
     count = max(_FEWEST, ceil(log(_FALL) / (2.0 * mode.decay_rate * half)))
+    if count > _MOST:
+        raise ArgumentError(
+            f"mode {mode.name} swings {count / 2:.3g} times until K̃ has fallen by {_FALL:g} (damping ratio "
+            f"{mode.damping_ratio:.2g}): expected at most {_MOST // 2} times; take more damping"
+        )
     t = np.linspace(0.0, count * half, count * _SAMPLES + 1)
     start = mode_motion(found, mode, amplitude=size, samples=2)
     mismatch = _mismatch(_run(found, start.q[0] - found.q, start.p[0], t)[1])
@@ -205,9 +216,23 @@ class LinearRange:
 
         2 where the first neglected term of the force is quadratic, as it is where V is three times differentiable.
         """
+        return self._fit[0]
+
+    @property
+    def exponent_error(self) -> float:
+        """Standard error of `exponent`; infinite where two points leave none to tell by."""
+        return self._fit[1]
+
+    @property
+    def _fit(self) -> tuple[float, float]:
         small = self.deviations < _SMALL
+        if small.sum() < 2:
+            return float("nan"), inf
         x, y = np.log(self.amplitudes[small]), np.log(self.amplitudes[small] * self.deviations[small])
-        return float(np.polyfit(x, y, 1)[0]) if small.sum() > 1 else float("nan")
+        slope, level = (float(c) for c in np.polyfit(x, y, 1))
+        spread = float(np.sum((x - x.mean()) ** 2))
+        left = float(np.sum((y - level - slope * x) ** 2))
+        return slope, float(np.sqrt(left / (x.size - 2) / spread)) if x.size > 2 else inf
 
     def limit(self, deviation: float) -> float:
         """Largest amplitude, in units of d, up to which the deviation stays below a share; interpolated.
@@ -256,7 +281,8 @@ def linear_range(
     levels = np.array([ensure_positive("amplitudes", x) for x in amplitudes])
     if levels.size == 0 or np.any(np.diff(levels) <= 0.0):
         raise ArgumentError(f"amplitudes = {amplitudes!r}: expected rising numbers")
-    mode, reach = slowest_seen(found), getattr(getattr(found.law, "alpha", None), "r", inf)
+    mode, pair = slowest_seen(found), pair_interaction(found.law)
+    reach = inf if pair is None else pair.range
     deviations, changes = [], []
     for size in (levels * _length(found)).tolist():
         line = mode_motion(found, mode, amplitude=size, periods=1.0 + 3.0 * bool(mode.frequency), samples=97)
@@ -270,17 +296,21 @@ def linear_range(
 
 
 def _length(found: Linearisation) -> float:
-    """The law's d, else the size of the flock."""
-    own = getattr(getattr(found.law, "alpha", None), "d", None)
-    return float(own) if own else float(np.linalg.norm(found.q - found.q.mean(axis=0), axis=1).max()) or 1.0
+    """The law's own length, d, else the size of the flock."""
+    own = found.law.scales
+    return own.length if own else float(np.linalg.norm(found.q - found.q.mean(axis=0), axis=1).max()) or 1.0
 
 
 def _run(found: Linearisation, dq: FloatArray, dp: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Positions and velocities of the nonlinear flock, in the frame that moves with the equilibrium."""
-    start = found.t
-    times = start + t
-    run = simulate(found.law, found.q + dq, found.p + dp, (start, times[-1]), t_eval=times, rtol=_RTOL, atol=_ATOL)
-    return run.q - t[:, None, None] * found.p, run.p - found.p
+    """Positions and velocities of the nonlinear flock, in the frame that moves with the equilibrium.
+
+    Integrated in the law's own units, of which the absolute tolerance is a share.
+    """
+    own = found.law.scales or Scales(1.0, 1.0)
+    law = rescale(found.law, length=1.0 / own.length, time=1.0 / own.time)
+    q, p, times = (found.q + dq) / own.length, (found.p + dp) / own.speed, (found.t + t) / own.time
+    run = simulate(law, q, p, (float(times[0]), float(times[-1])), t_eval=times, rtol=_RTOL, atol=_ATOL)
+    return own.length * run.q - t[:, None, None] * found.p, own.speed * run.p - found.p
 
 
 def _linear(found: Linearisation, dq: FloatArray, dp: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:

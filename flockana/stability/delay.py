@@ -14,14 +14,17 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.checks import FloatArray, ensure_count, ensure_positive
+from flockana.curvature import EPS
 from flockana.errors import UnknownNameError
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.stability.blocks import second_order
+from flockana.stability.rounding import eigen
 
 ComplexArray = npt.NDArray[np.complex128]
 
 DELAYED = ("all", "pairs")
 _CHECK = 0.3  # of the smallest estimate: crossings that come so close to it are located exactly
+_ROUNDINGS = 16.0  # of eps times the terms of the characteristic matrix
 _LOWEST = 1e-4  # of the highest frequency at which roots can cross: the sweep begins there
 
 
@@ -71,7 +74,7 @@ class DelayMargin:
     Parameters
     ----------
     delay : float
-        τ*; infinite if no delay does it, 0 if the flock is unstable without one.
+        τ*; infinite if no delay does it, 0 if the flock is not stable without one, by more than rounding.
     frequency : float
         Of the oscillation that then neither grows nor decays, in radians per time unit; NaN where there is none.
     """
@@ -168,13 +171,13 @@ def delay_margin(system: DelaySystem, *, grid: int = 200) -> DelayMargin:
     """
     from scipy.optimize import brentq
 
-    if _unstable(system):
+    if not _stable(system):
         return DelayMargin(0.0, float("nan"))
     top = 1.01 * system.highest
     omegas = np.geomspace(_LOWEST * top, top, ensure_count("grid", grid) + 1)
     spectra = [_phases(system, omega) for omega in omegas.tolist()]
-    levels = np.array([np.abs(z) for z in spectra]) - 1.0
-    step, index = np.nonzero(levels[:-1] * levels[1:] < 0.0)
+    above = np.array([np.abs(z) for z in spectra]) >= 1.0  # a level that is met on the grid is passed on one side of it
+    step, index = np.nonzero(above[:-1] != above[1:])
     guesses = [_angle(spectra[k][i]) / omegas[k] for k, i in zip(step.tolist(), index.tolist(), strict=True)]
     best = DelayMargin(inf, float("nan"))
     for guess, k, i in sorted(zip(guesses, step.tolist(), index.tolist(), strict=True)):
@@ -201,13 +204,16 @@ def _angle(z: complex) -> float:
     return float(np.angle(z)) % (2.0 * pi)
 
 
-def _unstable(system: DelaySystem) -> bool:
-    """Whether a root without delay has a positive real part; the neutral ones are the smallest in modulus."""
+def _stable(system: DelaySystem) -> bool:
+    """Whether every root without delay decays by more than rounding could feign, but for neutral ones.
+
+    These are the smallest; and what is 0 to rounding is one of them, for no delay brings it onto the axis elsewhere.
+    """
     (k0, d0), (k1, d1) = system.prompt, system.late
-    zero, one = np.zeros_like(k0), np.eye(len(k0))
-    roots = np.linalg.eigvals(np.block([[zero, one], [-(k0 + k1), -(d0 + d1)]]))
-    roots = roots[np.argsort(np.abs(roots))][system.neutral :]
-    return bool(roots.real.max(initial=-inf) > 1e-9 * np.abs(roots).max(initial=1.0))
+    roots, _, errors = eigen(np.block([[np.zeros_like(k0), np.eye(len(k0))], [-(k0 + k1), -(d0 + d1)]]))
+    neutral = np.abs(roots) <= errors
+    neutral[np.argsort(np.abs(roots), kind="stable")[: system.neutral]] = True
+    return bool(np.all(roots.real[~neutral] < -errors[~neutral]))
 
 
 def rightmost_roots(system: DelaySystem, delay: float, *, nodes: int = 16, count: int = 6) -> ComplexArray:
@@ -249,11 +255,42 @@ def rightmost_roots(system: DelaySystem, delay: float, *, nodes: int = 16, count
     generator[: 2 * size, : 2 * size] = now
     generator[: 2 * size, -2 * size :] += then
     values = np.linalg.eigvals(generator)
-    small = np.argsort(np.abs(values))[: system.neutral]
-    values = np.delete(values, small)
-    values = values[np.argsort(-values.real, kind="stable")][: ensure_count("count", count)]
-    refined = np.array([_refine(system, complex(s), delay) for s in values])
-    return refined[np.lexsort((-refined.imag, -refined.real.round(12)))]
+    values = np.delete(values, np.argsort(np.abs(values), kind="stable")[: system.neutral])
+    upper = values[values.imag >= 0.0]
+    upper = upper[np.argsort(-upper.real, kind="stable")][: ensure_count("count", count)]
+    refined = np.array([_refine(system, complex(s), delay) for s in upper])
+    refined = refined[np.argsort(-refined.real, kind="stable")]
+    pairs = [(s,) if s.imag == 0.0 else (s, s.conjugate()) for s in refined.tolist()]  # each with its conjugate
+    return np.array([s for pair in pairs for s in pair], dtype=np.complex128)[:count]
+
+
+def root_error(system: DelaySystem, s: complex, delay: float) -> float:
+    """How far a refined root may be from the true one: what the characteristic matrix leaves over, and rounding.
+
+    Parameters
+    ----------
+    system : DelaySystem
+        The linearised flock.
+    s : complex
+        A root, such as one of `rightmost_roots`.
+    delay : float
+        τ.
+
+    Examples
+    --------
+    >>> one = DelaySystem((np.zeros((1, 1)), np.zeros((1, 1))), (np.zeros((1, 1)), np.ones((1, 1))), neutral=1)
+    >>> bool(root_error(one, 1j, 0.5 * pi) < 1e-14)
+    True
+    """
+    (k0, d0), (k1, d1) = system.prompt, system.late
+    u, sizes, vh = np.linalg.svd(system.characteristic(s, delay))
+    late = np.exp(-s * delay)
+    slope = 2.0 * s * np.eye(len(k0)) + d0 + (d1 - delay * (k1 + s * d1)) * late
+    turn = abs(complex(u[:, -1].conj() @ slope @ vh[-1].conj()))
+    size = float(np.linalg.norm(k0) + abs(s) * np.linalg.norm(d0))
+    size += abs(late) * float(np.linalg.norm(k1) + abs(s) * np.linalg.norm(d1)) + abs(s) ** 2
+    push = float(sizes[-1]) + _ROUNDINGS * EPS * size
+    return float(min(push / turn if turn > 0.0 else inf, np.sqrt(push)))
 
 
 def _chebyshev(nodes: int) -> FloatArray:
@@ -282,7 +319,7 @@ def _refine(system: DelaySystem, s: complex, delay: float) -> complex:
         except np.linalg.LinAlgError:
             break
         v, s = v + step[:-1], s + complex(step[-1])
-        if abs(step[-1]) <= 1e-14 * max(1.0, abs(s)):
+        if abs(step[-1]) <= 1e-14 * max(abs(start), 1.0 / delay):
             break
     near = abs(s - start) <= 0.1 * max(abs(start), 1.0 / delay)
     return s if near and np.isfinite(s) else start

@@ -40,7 +40,8 @@ FORMS = ("full", "simplified")
 ROTATIONS = ("apart", "counted")
 _ROUNDS = 200
 _ACTIVE = 40  # eigenvalues with the largest real parts that a step looks at
-_SMALLEST = 1e-8  # trust region at which a search ends, in units of the gains
+_SMALLEST = 2e-9  # trust region at which a search ends, of the interval of gains
+_GAINED = 1e-10  # relative gain of a step that is worth no further one
 _GRID = 10
 
 
@@ -307,7 +308,8 @@ def _homogeneous(problem: GainProblem, low: float, high: float) -> FloatArray:
     best = spread(grid[0][1:])
     for _, a, b in grid:
         simplex = np.array([[a, b], [a - 0.2 * (high - low) / _GRID, b], [a, b + 0.4 * (high - low) / _GRID]])
-        options: Any = {"initial_simplex": np.clip(simplex, low, high), "xatol": 1e-8, "fatol": 1e-10, "maxfev": 200}
+        fine = {"xatol": _SMALLEST * (high - low), "fatol": _GAINED * abs(problem.abscissa(spread((a, b))))}
+        options: Any = {"initial_simplex": np.clip(simplex, low, high), "maxfev": 200, **fine}
         box = [(low, high)] * 2
         found = minimize(_folded(problem, spread), np.array([a, b]), method="Nelder-Mead", bounds=box, options=options)
         best = min(best, spread(found.x), key=problem.abscissa)
@@ -332,7 +334,7 @@ def _descend(problem: GainProblem, gains: FloatArray, low: float, high: float) -
         box = np.column_stack([np.maximum(low, gains - radius), np.minimum(high, gains + radius)])
         plan = linprog(cost, rows, slopes[active] @ gains - values.real[active], bounds=[*box.tolist(), (None, None)])
         promised = value - float(plan.x[-1]) if plan.x is not None else 0.0
-        if plan.x is None or promised <= 1e-10:
+        if plan.x is None or promised <= _GAINED * abs(value):
             break
         trial = np.clip(plan.x[:-1], low, high)
         reached = problem.abscissa(trial)
@@ -341,7 +343,7 @@ def _descend(problem: GainProblem, gains: FloatArray, low: float, high: float) -
             values, slopes = problem.slopes(gains)
         else:
             radius *= 0.4
-        if radius < _SMALLEST:
+        if radius < _SMALLEST * (high - low):
             break
     return gains
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from math import sqrt
+from math import inf, sqrt
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from flockana.checks import FloatArray, ensure_finite_scalar, ensure_fits, ensure_points, ensure_positive, ensure_state
 from flockana.errors import ArgumentError
-from flockana.interactions import PairInteraction
+from flockana.interactions.pair import pair_interaction
 from flockana.lattice.crossings import ensure_links
 from flockana.laws.law import DiscreteLaw, Law
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, moving_frame
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
 RESIDUAL = 1e-9  # of the force scale: what counts as an equilibrium, as in `flockana.equilibria`
-_LATER = 0.7310585786  # time units after which a steady motion must still have the same Jacobian
+_LATER = 0.7310585786  # of the flock's own time: after it a steady motion must still have the same Jacobian
 _STEADY = 1e-9  # relative
 
 
@@ -128,6 +128,11 @@ class Linearisation:
     def decay_rate(self) -> float:
         """Slowest decay rate off the zero modes, per time unit; negative if something grows, NaN without modes."""
         return self.modes[0].decay_rate if self.modes else float("nan")
+
+    @property
+    def stable(self) -> bool:
+        """Whether every mode off the zero modes dies out, by more than rounding could feign; True if there is none."""
+        return all(mode.decays for mode in self.modes)
 
     @property
     def structural_decay_rate(self) -> float:
@@ -255,9 +260,9 @@ def linearise(
     links : array_like, shape (M, 2), optional
         Links whose lengths are outputs; by default those of the equilibrium, or pairs within the law's range.
     force_tolerance : float
-        Largest residual. It is the largest force on an agent over c1α b/√ε (of another law: over the largest entry of
-        ∂u/∂q times the size of the flock), or the largest relative velocity over that force times d (or size), square
-        root taken, whichever is larger.
+        Largest residual. It is the largest force on an agent over that of the law's `scales` (of a law without: over
+        the largest entry of ∂u/∂q times the size of the flock), or the largest relative velocity over that force times
+        the length (or size), square root taken, whichever is larger.
     allow_residual : bool
         Linearise about a state that is no equilibrium as if it stood still.
     zero : float
@@ -337,33 +342,46 @@ def _residual(law: Law, t: float, q: FloatArray, p: FloatArray, matrix: csr_arra
     force = law.flow(t, q, p)[0]
     if _moves_with_centre(law):
         force = moving_frame(force)
-    alpha, gains = getattr(law, "alpha", None), getattr(law, "gains", None)
-    if alpha is not None and gains is not None:
-        scale, length = gains.c1_alpha * alpha.b / sqrt(alpha.eps), alpha.d
-    else:
-        length = float(np.linalg.norm(q - q.mean(axis=0), axis=1).max()) or 1.0
-        scale = float(abs(matrix[q.size :, : q.size]).max()) * length
-    scale = scale or 1.0
+    length = _length(q) if law.scales is None else law.scales.length
+    scale = float(abs(matrix[q.size :, : q.size]).max()) * length if law.scales is None else law.scales.force
     strongest, fastest = (float(np.linalg.norm(x, axis=1).max()) for x in (force, moving_frame(p)))
-    return max(strongest / scale, fastest / sqrt(scale * length))
+    return max(_over(strongest, scale), _over(fastest, sqrt(scale * length)))
+
+
+def _length(q: FloatArray) -> float:
+    """The size of a flock; of one agent alone, how far it is from the origin, if it is."""
+    return float(np.linalg.norm(moving_frame(q), axis=1).max()) or float(np.abs(q).max()) or 1.0
+
+
+def _over(value: float, scale: float) -> float:
+    """A share of a scale; of a scale that is 0 nothing is a share but 0."""
+    return value / scale if scale > 0.0 else (inf if value > 0.0 else 0.0)
 
 
 def _ensure_steady(law: Law, t: float, q: FloatArray, p: FloatArray, matrix: csr_array) -> None:
-    """Raise if the Jacobian changes along the steady motion: the linear system would depend on time."""
+    """Raise if the Jacobian changes along the steady motion: the linear system would depend on time.
+
+    Looked at after a little less than one, ten and a hundred of the flock's own times, that of its stiffest motion.
+    """
     if _moves_with_centre(law):
         return
-    change = abs(law.jacobian(t + _LATER, q + _LATER * p, p, sparse=True) - matrix).max()
-    if change > _STEADY * abs(matrix).max():
-        raise ArgumentError(
-            f"the Jacobian of {type(law).__name__} changes along the motion of this state (by {change:.3g} in "
-            f"{_LATER:.2f} time units): expected a γ-agent that rests or moves steadily, no obstacles where it moves; "
-            "allow_residual=True linearises at the instant"
-        )
+    size = q.size
+    stiff, drag = (float(abs(matrix[size:, part]).max()) for part in (slice(0, size), slice(size, None)))
+    own = 1.0 / max(sqrt(stiff), drag) if stiff or drag else 1.0
+    for later in (_LATER * own, 10.0 * _LATER * own, 100.0 * _LATER * own):
+        moved = law.jacobian(t + later, q + later * p, p, sparse=True) - matrix
+        changes = (abs(moved[size:, part]).max() for part in (slice(0, size), slice(size, None)))
+        if any(change > _STEADY * scale for change, scale in zip(changes, (stiff, drag), strict=True)):
+            raise ArgumentError(
+                f"the Jacobian of {type(law).__name__} changes along the motion of this state (within {later:.2g} "
+                "time units): expected a γ-agent that rests or moves steadily, no obstacles where it moves; "
+                "allow_residual=True linearises at the instant"
+            )
 
 
 def _default_links(law: Law, q: FloatArray) -> LinkArray:
     """Pairs within the range of the law's pair interaction, if it has one."""
-    pair = next((value for value in vars(law).values() if isinstance(value, PairInteraction)), None)
-    if pair is None or not np.isfinite(pair.range):
+    pair = pair_interaction(law)
+    if pair is None:
         return np.zeros((0, 2), dtype=np.int32)
     return links_within(q, pair.range)

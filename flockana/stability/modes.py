@@ -8,7 +8,7 @@ comes out as 0, and a double one does not smear over ±√(rounding).
 from __future__ import annotations
 
 from cmath import sqrt
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -16,12 +16,15 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.checks import FloatArray
+from flockana.curvature import EPS
 from flockana.errors import SolverError
+from flockana.stability.rounding import eigen, root_error, slowest_first
 from flockana.terminal import rigid_motions
 
 ZERO = 1e-8  # of the largest row sum: what K does to a motion that costs nothing
 _SPLIT = 1e-10  # relative: how much of the centre's motion may leak into the shape where the split is called exact
 _PURE = 0.99  # cosine to a rotation or a uniform expansion from which on a mode is named for it
+_ROUNDINGS = 8.0  # of eps √N times the largest row sum, where rows are summed that cancel
 _NAMED = 1e-6  # how far a rigid motion may be from the kernel that it is found in
 
 
@@ -38,22 +41,30 @@ class Mode:
         times, and then turned so that the real part is as large as can be.
     name : str
         "translation x", "rotation", "breathing" where the shape is that, else a number: 1 is the slowest.
+    error : float
+        How far rounding may have moved the eigenvalue.
 
     Examples
     --------
     >>> swing = Mode(-0.3 + 0.4j, np.ones((1, 1)), "1")
-    >>> swing.decay_rate, swing.frequency, swing.natural_frequency, swing.damping_ratio
-    (0.3, 0.4, 0.5, 0.6)
+    >>> swing.decay_rate, swing.frequency, swing.natural_frequency, swing.damping_ratio, swing.decays
+    (0.3, 0.4, 0.5, 0.6, True)
     """
 
     eigenvalue: complex
     shape: npt.NDArray[Any] = field(repr=False)
     name: str
+    error: float = field(default=0.0, repr=False)
 
     @property
     def decay_rate(self) -> float:
         """−Re λ, per time unit; negative if the mode grows."""
         return -self.eigenvalue.real
+
+    @property
+    def decays(self) -> bool:
+        """Whether it dies out, by more than rounding could feign."""
+        return self.decay_rate > self.error
 
     @property
     def frequency(self) -> float:
@@ -72,11 +83,15 @@ class Mode:
 
 
 class Split(NamedTuple):
-    """What the centre of mass feels if it moves by itself, by axis, and how far it is from doing so."""
+    """What the centre of mass feels if it moves by itself, by axis, and how far it is from doing so.
+
+    `errors` are those of stiffness and damping, which remain when the agents' pair terms have cancelled.
+    """
 
     stiffness: FloatArray
     damping: FloatArray
     leak: float
+    errors: tuple[float, float]
 
     @property
     def exact(self) -> bool:
@@ -117,15 +132,16 @@ def split(stiffness: Any, damping: Any, m: int) -> Split:
     (True, False)
     """
     unit = translations(stiffness.shape[0] // m, m)
-    own, leak = [], 0.0
+    own, leak, errors = [], 0.0, []
     for matrix in (stiffness, damping):
         size = float(abs(matrix).max()) or 1.0
+        errors.append(_ROUNDINGS * EPS * sqrt(stiffness.shape[0]).real * float(abs(matrix).sum(axis=1).max()))
         block = unit.T @ (matrix @ unit)
         diagonal = np.diag(block)
         for image in (matrix @ unit, matrix.T @ unit):
             leak = max(leak, float(np.abs(image - unit * diagonal).max()) / size)
         own.append(diagonal)
-    return Split(own[0], own[1], leak)
+    return Split(own[0], own[1], leak, (errors[0], errors[1]))
 
 
 class Invariant(NamedTuple):
@@ -171,6 +187,8 @@ class SecondOrder:
         self.q, self.stiffness, self.damping, self.zero = q, stiffness, damping, zero
         self.scale = float(abs(stiffness).sum(axis=1).max()) or 1.0
         self.damping_scale = float(abs(damping).sum(axis=1).max()) or 1.0
+        fastest = max(sqrt(self.scale).real if abs(stiffness).max() else 0.0, float(abs(damping).sum(axis=1).max()))
+        self.pace = float(2.0 ** np.round(np.log2(fastest))) if fastest else 1.0
 
     @cached_property
     def split(self) -> Split:
@@ -208,9 +226,9 @@ class SecondOrder:
     @cached_property
     def modes(self) -> tuple[Mode, ...]:
         """All modes off the zero modes, slowest first, one for each real eigenvalue or conjugate pair (dense)."""
-        values, vectors = self._others
+        values, vectors, errors = self._others
         kept = values.imag >= 0.0
-        return self.named(values[kept], vectors[:, kept], self.invariant.translational)
+        return self.named(values[kept], vectors[:, kept], errors[kept], self.invariant.translational)
 
     @cached_property
     def eigenvalues(self) -> npt.NDArray[np.complex128]:
@@ -220,15 +238,20 @@ class SecondOrder:
         return ordered
 
     @cached_property
-    def _others(self) -> tuple[npt.NDArray[np.complex128], npt.NDArray[np.complex128]]:
-        """Eigenvalues and displacements of what is not set apart."""
-        left, size = self.invariant.left, self.q.size
-        rest = np.linalg.qr(left, mode="complete")[0][:, left.shape[1] :]  # A maps it into itself
-        image = np.vstack([rest[size:], -(self.stiffness @ rest[:size]) - self.damping @ rest[size:]])
-        values, vectors = np.linalg.eig(rest.T @ image)
-        return values.astype(np.complex128), (rest[:size] @ vectors).astype(np.complex128)
+    def _others(self) -> tuple[npt.NDArray[np.complex128], npt.NDArray[np.complex128], FloatArray]:
+        """Eigenvalues, displacements and rounding errors of what is not set apart.
 
-    def named(self, values: Any, vectors: Any, others: tuple[Mode, ...]) -> tuple[Mode, ...]:
+        Displacements are counted in units of velocity over `pace`, so that A has one unit and no entry is large for
+        the user's choice of a time unit.
+        """
+        left, size, pace = self.invariant.left.copy(), self.q.size, self.pace
+        left[:size] /= pace
+        rest = np.linalg.qr(left, mode="complete")[0][:, left.shape[1] :]  # A maps it into itself
+        push = -(self.stiffness @ rest[:size]) / pace - self.damping @ rest[size:]
+        values, vectors, errors = eigen(rest.T @ np.vstack([pace * rest[size:], push]))
+        return values, (rest[:size] @ vectors).astype(np.complex128), errors
+
+    def named(self, values: Any, vectors: Any, errors: Any, others: tuple[Mode, ...]) -> tuple[Mode, ...]:
         """Modes from eigenvalues and columns of displacements, with `others` among them, in order, named.
 
         Parameters
@@ -237,19 +260,20 @@ class SecondOrder:
             Eigenvalues.
         vectors : complex ndarray, shape (n m, k)
             Displacements.
+        errors : ndarray, shape (k,)
+            How far rounding may have moved each.
         others : tuple of Mode
             Modes that have their names.
         """
         fields = _pure_fields(self.q)
         modes = list(others)
-        for value, vector in zip(values.tolist(), vectors.T, strict=True):
+        for value, vector, error in zip(values.tolist(), vectors.T, np.asarray(errors).tolist(), strict=True):
             shape = _normalised(vector, real=complex(value).imag == 0.0)
             near = [name for name, field in fields if abs(np.vdot(field, shape)) >= _PURE]
-            modes.append(Mode(complex(value), shape.reshape(self.q.shape), near[0] if near else ""))
-        modes.sort(key=lambda mode: (mode.decay_rate, mode.frequency))
-        return tuple(
-            mode if mode.name else Mode(mode.eigenvalue, mode.shape, str(k)) for k, mode in enumerate(modes, start=1)
-        )
+            modes.append(Mode(complex(value), shape.reshape(self.q.shape), near[0] if near else "", error))
+        order = slowest_first(np.array([mode.eigenvalue for mode in modes]), np.array([mode.error for mode in modes]))
+        modes = [modes[k] for k in order]
+        return tuple(mode if mode.name else replace(mode, name=str(k)) for k, mode in enumerate(modes, start=1))
 
     def _set_apart(self, kernel: FloatArray, cokernel: FloatArray) -> Invariant:
         """Chains of generalised eigenvectors at 0 from the kernels of K and Kᵀ, and the centre's own motion."""
@@ -271,16 +295,21 @@ class SecondOrder:
         translational: list[Mode] = []
         if self.split.exact:
             unit = translations(*self.q.shape)
-            free = np.abs(self.split.stiffness) <= self.zero * self.scale
-            slow = np.where(free & (np.abs(self.split.damping) <= small), 0.0, self.split.damping)
+            errors = self.split.errors
+            free = np.abs(self.split.stiffness) <= errors[0]
+            slow = np.where(free & (np.abs(self.split.damping) <= errors[1]), 0.0, self.split.damping)
             fields = [column.reshape(self.q.shape) for column in unit.T]
             labels = [f"translation {axis}" for axis in "xyz"[: len(fields)]]
             for stiff, drag_, name, shape in zip(
                 np.where(free, 0.0, self.split.stiffness).tolist(), slow.tolist(), labels, fields, strict=True
             ):
-                roots = _roots(stiff, drag_)
+                roots = _roots(stiff, drag_, errors)
                 values += roots
-                translational += [Mode(root, shape, name) for root in roots if root != 0.0 and root.imag >= 0.0]
+                translational += [
+                    Mode(root, shape, name, root_error(root, stiff, drag_, errors))
+                    for root in roots
+                    if root != 0.0 and root.imag >= 0.0
+                ]
             alone = free & (slow == 0.0)
             chains += int(alone.sum())
             drifting += [name for name, one in zip(labels, alone, strict=True) if one]
@@ -311,12 +340,12 @@ class SecondOrder:
         return found
 
 
-def _roots(stiffness: float, damping: float) -> list[complex]:
-    """Both roots of λ² + damping λ + stiffness; one at zero comes first, a double one is exactly double."""
+def _roots(stiffness: float, damping: float, errors: tuple[float, float]) -> list[complex]:
+    """Both roots of λ² + damping λ + stiffness; one at zero comes first, a double one to rounding is exactly double."""
     if stiffness == 0.0:
         return [0j, complex(0.0 - damping)]
     square = damping**2 - 4.0 * stiffness
-    spread = sqrt(0.0 if abs(square) <= 1e-12 * damping**2 else square)
+    spread = sqrt(0.0 if abs(square) <= 2.0 * abs(damping) * errors[1] + 4.0 * errors[0] else square)
     far = -0.5 * (damping + spread) if damping >= 0.0 else -0.5 * (damping - spread)
     return [far, stiffness / far]
 

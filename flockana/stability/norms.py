@@ -10,17 +10,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flockana.checks import FloatArray, ensure_count, ensure_positive
+from flockana.curvature import EPS
 from flockana.equilibria.solve import find_equilibrium
 from flockana.errors import SolverError, UnknownNameError
 from flockana.lattice import hexagonal_spiral
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.stability.blocks import Blocks, complement, second_order
+from flockana.stability.rounding import eigen
 
 if TYPE_CHECKING:
     from control import StateSpace
 
 OUTPUTS = ("shape", "deviations")
 _ROUNDS = 30
+_ROUNDINGS = 64.0  # of eps N cond(K): of the solves for K⁺ and for the Gramian
 _IMAGINARY = 1e-9  # of the largest eigenvalue: real parts below that are zero
 
 
@@ -104,7 +107,8 @@ def h2_bounds(flock: Blocks) -> tuple[float, float]:
     """Closed-form bounds of the H₂ norm to the shape: √(tr K⁺/(2 d_max)) and √(tr K⁺/(2 d_min)), K⁺ on shapes.
 
     With noise of intensity 2 D in place of 1 the stationary law is Gibbs's, with covariance K⁻¹; since
-    d_min ≤ D ≤ d_max and covariance grows with the noise, that brackets it. They meet where D is a multiple of 1.
+    d_min ≤ D ≤ d_max and covariance grows with the noise, that brackets it. They meet, but for rounding, where D is a
+    multiple of 1.
 
     Parameters
     ----------
@@ -121,8 +125,12 @@ def h2_bounds(flock: Blocks) -> tuple[float, float]:
     rates = np.linalg.eigvalsh(velocities.T @ flock.damping @ velocities)
     seen = positions.T @ shapes
     trace = float(np.sum(seen * np.linalg.solve(positions.T @ flock.stiffness @ positions, seen)))
-    low, high = (sqrt(trace / (2.0 * float(rate))) if rate > 0.0 else inf for rate in (rates[-1], rates[0]))
-    return low, high
+    # the bracket may be closed: it is opened by what rounding does to K⁺, and to the norm that is compared with it
+    stiff = np.linalg.eigvalsh(positions.T @ flock.stiffness @ positions)
+    spread = _ROUNDINGS * EPS * len(flock.stiffness) * float(stiff[-1] / stiff[0]) if stiff.size else 0.0
+    least = EPS * len(flock.stiffness) * float(rates[-1])
+    low, high = (sqrt(trace / (2.0 * float(rate))) if rate > least else inf for rate in (rates[-1], rates[0]))
+    return low * (1.0 - spread), high * (1.0 + spread)
 
 
 def hinf_norm(system: StateSpace, *, tol: float = 1e-9) -> tuple[float, float]:
@@ -191,8 +199,9 @@ def _gain(a: FloatArray, b: FloatArray, c: FloatArray, omega: float) -> float:
 
 
 def _stable(a: FloatArray) -> bool:
-    values = np.linalg.eigvals(a)
-    return bool(values.real.max() < -1e-12 * np.abs(values).max())
+    """Whether every mode decays by more than rounding could feign."""
+    values, _, errors = eigen(a)
+    return bool(np.all(values.real < -errors))
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,9 @@ from flockana.checks import FloatArray, ensure_count
 from flockana.errors import ArgumentError, SolverError
 from flockana.stability.linearise import Linearisation
 from flockana.stability.modes import Mode, SecondOrder
+from flockana.stability.rounding import mode_errors
 
-_SHIFT = 1e-3  # of √(row sum of K): beside zero, where A itself is singular
+_SHIFT = 1e-3  # of the fastest rate: beside zero, where A itself is singular
 _ROUNDS = 3
 _SYMMETRIC = 1e-10  # relative
 _TRIES = (0.25, 0.5, 1.0, 2.0, 4.0)
@@ -81,8 +82,10 @@ def slowest_modes(linearisation: Linearisation, count: int = 12) -> SlowModes:
     for _ in range(_ROUNDS):
         values, vectors, radius = _nearest_zero(problem, min(2 * wanted, free - 2))
         kept = values.imag >= 0.0
-        modes = problem.named(values[kept], vectors[:, kept], problem.rigid_invariant.translational)
-        known = _complete_to(problem, [mode.decay_rate for mode in modes], radius)
+        errors = mode_errors(problem.stiffness, problem.damping, values[kept], vectors[:, kept])
+        modes = problem.named(values[kept], vectors[:, kept], errors, problem.rigid_invariant.translational)
+        rising = np.maximum.accumulate([mode.decay_rate for mode in modes])  # but for the rounding of equal ones
+        known = _complete_to(problem, rising.tolist(), radius)
         if not modes[count - 1].decay_rate > known or 2 * wanted >= free - 2:
             break
         wanted *= 2
@@ -132,7 +135,7 @@ def _nearest_zero(problem: SecondOrder, count: int) -> tuple[Any, Any, float]:
     from scipy.sparse import csc_array, eye_array
     from scipy.sparse.linalg import ArpackError, LinearOperator, eigs, splu
 
-    size, shift = problem.q.size, _SHIFT * float(np.sqrt(problem.scale))
+    size, shift = problem.q.size, _SHIFT * problem.pace
     damping = problem.damping + shift * eye_array(size)
     solve = splu(csc_array(problem.stiffness + shift * damping)).solve
     right, left = problem.rigid_invariant.right, problem.rigid_invariant.left

@@ -20,6 +20,9 @@ from flockana.trajectory import Trajectory
 
 ComplexArray = npt.NDArray[np.complex128]
 
+_SHORT = 1e-8  # of Δt²: the series' next term is its square over 120
+_WHOLE = 1e-9  # relative: a run that is as long as a period but for rounding is as long as a period
+
 
 def path_and_factor(target: Target | None) -> tuple[Target | None, float]:
     """(the γ-agent's path, the factor of its p_r), unwrapped.
@@ -180,15 +183,23 @@ def centre_path(gains: Gains, target: Target, t: Any, q_c: Any, p_c: Any) -> Flo
     turn = np.exp(1j * moving.omega * times)[:, None]
     steady = moving.start + moving.velocity * times[:, None] - lag + (swing * turn).real
     rate = moving.velocity + (1j * moving.omega * swing * turn[0]).real
-    left, swift = start - steady[0], speed - rate
-    since = (times - times[0])[:, None]
-    decay, root = 0.5 * gains.c2_gamma, np.sqrt(complex(0.25 * gains.c2_gamma**2 - gains.c1_gamma))
+    path: FloatArray = steady + _free(gains, times - times[0], start - steady[0], speed - rate)
+    return path
+
+
+def _free(gains: Gains, since: FloatArray, left: FloatArray, swift: FloatArray) -> FloatArray:
+    """How an offset and a velocity left over die out, x'' = −c1γ x − c2γ x', shape (T, m)."""
+    since = since[:, None]
+    decay, square = 0.5 * gains.c2_gamma, CentreOfMass(gains).discriminant
+    root = np.sqrt(complex(square))
     # e^At of the companion matrix: cosh and sinh(√Δ t)/√Δ, real whatever the sign of Δ; decay ≥ Re √Δ, so no overflow
     rise, fall = np.exp((root - decay) * since), np.exp((-root - decay) * since)
     level = 0.5 * (rise + fall).real
-    slope = ((rise - fall) / (2.0 * root)).real if root != 0.0 else since * np.exp(-decay * since)
-    path: FloatArray = steady + left * level + (swift + decay * left) * slope
-    return path
+    short = np.abs(square) * since**2 < _SHORT  # where rise and fall cancel: sinh x/x by its series
+    series = since * np.exp(-decay * since) * (1.0 + square * since**2 / 6.0)
+    slope = np.where(short, series, ((rise - fall) / (2.0 * (root or 1.0))).real)
+    motion: FloatArray = left * level + (swift + decay * left) * slope
+    return motion
 
 
 def _amplitude(t: FloatArray, x: FloatArray, omega: float) -> tuple[ComplexArray, float]:
@@ -204,21 +215,58 @@ def _swings(run: Trajectory) -> tuple[ComplexArray, ComplexArray, float]:
     path, _ = path_and_factor(getattr(run.law, "target", None))
     if not isinstance(path, SineTarget | CircleTarget):
         raise ArgumentError(f"target = {path!r}: expected a SineTarget or a CircleTarget")
-    period, length = 1.0 / path.frequency, float(run.t[-1] - run.t[0])
-    if length < period:
-        raise ArgumentError(f"the run lasts {length:g}: expected at least one period, {period:g}")
-    window = run.window(run.t[-1] - period * max(1, int(0.5 * length / period)), run.t[-1])
+    if not whole_period(run, path):
+        length = float(run.t[-1] - run.t[0])
+        raise ArgumentError(f"the run lasts {length:g}: expected at least one period, {1.0 / path.frequency:g}")
+    cycles = max(1, int((1.0 + _WHOLE) * 0.5 * float(run.t[-1] - run.t[0]) * path.frequency))
+    window = run.window(run.t[-1] - cycles / path.frequency, run.t[-1])
     omega = 2.0 * pi * path.frequency
     flock, error = _amplitude(window.t, window.q.mean(axis=1), omega)
     agent, _ = _amplitude(window.t, np.array([path.position(t) for t in window.t]), omega)
-    return flock, agent, error
+    feigned, _ = _amplitude(window.t, _transient(run, window.t), omega)
+    return flock, agent, error + float(np.linalg.norm(feigned))
+
+
+def whole_period(run: Trajectory, path: SineTarget | CircleTarget) -> bool:
+    """Whether a run lasts for a period of its γ-agent at least.
+
+    Parameters
+    ----------
+    run : Trajectory
+        The run.
+    path : SineTarget or CircleTarget
+        The γ-agent.
+    """
+    return bool(float(run.t[-1] - run.t[0]) * path.frequency >= 1.0 - _WHOLE)
+
+
+def _transient(run: Trajectory, t: FloatArray) -> FloatArray:
+    """What is still left of the start at these times, in closed form; of the map its flow's.
+
+    Without a pull the place that the centre ends at is arbitrary, and no part of the fit.
+    """
+    moving, gains = motion(run.law.target), run.law.gains
+    start, place, speed = float(run.t[0]), run.q[0].mean(axis=0), run.p[0].mean(axis=0)
+    turn = np.exp(1j * moving.omega * start)
+    if gains.c1_gamma > 0.0:
+        lag, swing = _steady(gains, moving)
+        steady = moving.start + moving.velocity * start - lag + (swing * turn).real
+        return _free(
+            gains, t - start, place - steady, speed - moving.velocity - (1j * moving.omega * swing * turn).real
+        )
+    swing = CentreOfMass(gains, moving.factor).response(moving.omega) * moving.swing
+    slip = speed - moving.drift - (1j * moving.omega * swing * turn).real
+    since, drag = (t - start)[:, None], gains.c2_gamma
+    left: FloatArray = -np.exp(-drag * since) * slip / drag if drag > 0.0 else 0.0 * since * slip
+    return left
 
 
 def response_ratio(run: Trajectory) -> tuple[float, float]:
     """Ratio of the centre of mass's circle or sine to the γ-agent's, over the last whole periods, and its error.
 
     At most half of the run is used, but at least one period: what precedes is transient. The error is the root mean
-    square of what the fit leaves over, relative to the γ-agent's amplitude.
+    square of what the fit leaves over, and the swing that what is left of the start would feign by itself, relative to
+    the γ-agent's amplitude.
 
     Parameters
     ----------
@@ -360,9 +408,12 @@ def _swing(run: Trajectory, centre: CentreOfMass) -> list[Quantity]:
     x, v, a = run.q.mean(axis=1) - target, run.p.mean(axis=1), run.u.mean(axis=1)
     axis = x[0] / (float(np.linalg.norm(x[0])) or 1.0)
     place, speed, slope = x @ axis, v @ axis, a @ axis
-    at_rest = [float(run.t[0])] if abs(speed[0]) <= 1e-12 * max(1.0, float(np.abs(speed).max())) else []
+    at_rest = [float(run.t[0])] if abs(speed[0]) <= 1e-12 * float(np.abs(speed).max()) else []
     turns, places = list(at_rest), [float(place[0])] * len(at_rest)
-    for k in np.flatnonzero(speed[:-1] * speed[1:] < 0.0):
+    ahead = speed > 0.0
+    for k in np.flatnonzero(ahead[:-1] != ahead[1:]):
+        if k == 0 and at_rest:
+            continue
         time, where = _rest(run.t[k : k + 2], place[k : k + 2], speed[k : k + 2], slope[k : k + 2])
         turns.append(time)
         places.append(where)
@@ -383,5 +434,5 @@ def _rest(t: FloatArray, x: FloatArray, v: FloatArray, a: FloatArray) -> tuple[f
     from scipy.optimize import brentq
 
     velocity, place = CubicHermiteSpline(t, v, a), CubicHermiteSpline(t, x, v)
-    time = float(brentq(lambda s: float(velocity(s)), t[0], t[1], xtol=1e-14))
+    time = float(brentq(lambda s: float(velocity(s)), t[0], t[1], xtol=1e-14 * float(t[1] - t[0])))
     return time, float(place(time))

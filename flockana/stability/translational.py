@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.checks import FloatArray, ensure_finite_scalar
+from flockana.curvature import EPS
 from flockana.errors import ArgumentError
 from flockana.interactions import Gains
 from flockana.laws.msn import MSNDiscretisation
@@ -65,18 +66,24 @@ class CentreOfMass:
         return float(self.gains.c2_gamma / (2.0 * self.natural_frequency)) if self.gains.c1_gamma > 0.0 else inf
 
     @property
+    def discriminant(self) -> float:
+        """c2γ²/4 − c1γ; 0 where that is the rounding of c2γ = 2√c1γ, critical damping."""
+        c1, c2 = self.gains.c1_gamma, self.gains.c2_gamma
+        square = float(0.25 * c2 * c2 - c1)
+        return 0.0 if abs(square) <= 4.0 * EPS * c1 else square
+
+    @property
     def poles(self) -> npt.NDArray[np.complex128]:
         """Roots of s² + c2γ s + c1γ, the slower one last; both without cancellation."""
         c1, c2 = self.gains.c1_gamma, self.gains.c2_gamma
-        root = np.sqrt(complex(0.25 * c2 * c2 - c1))
+        root = np.sqrt(complex(self.discriminant))
         far = -(0.5 * c2 + root)
         return np.array([far, c1 / far if root.real > 0.0 else np.conj(far)], dtype=np.complex128)
 
     @property
     def period(self) -> float:
         """2π over the damped frequency √(c1γ − c2γ²/4); infinite where nothing oscillates."""
-        square = self.gains.c1_gamma - 0.25 * self.gains.c2_gamma**2
-        return 2.0 * pi / sqrt(square) if square > 0.0 else inf
+        return 2.0 * pi / sqrt(-self.discriminant) if self.discriminant < 0.0 else inf
 
     def system(self) -> TransferFunction:
         """G(s) as a `control.TransferFunction`."""

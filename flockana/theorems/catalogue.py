@@ -11,6 +11,7 @@ from typing import Any
 from flockana.checks import ensure_points, ensure_positive
 from flockana.errors import ArgumentError, UnknownNameError
 from flockana.simulate import simulate
+from flockana.theorems.second_run import corroborated, ensure_fits
 from flockana.theorems.theorem import Theorem, Tolerances, Verdict
 from flockana.trajectory import Trajectory
 
@@ -104,10 +105,13 @@ def verify(
     -------
     Verdict
 
+    A claim about a run carries the error of its integration: the same start is integrated once more, a hundred times
+    more tightly, and both must agree (`flockana.theorems.second_run`). A failed run verifies nothing.
+
     Raises
     ------
     ArgumentError
-        If what the theorem needs is not given, or something else is.
+        If what the theorem needs is not given, or something else is; if a run's samples are not those of its law.
 
     Examples
     --------
@@ -115,7 +119,9 @@ def verify(
     0.6666666666666666
     """
     item = name if isinstance(name, Theorem) else theorem(name)
-    tolerances = tolerances or Tolerances()
+    used = Tolerances() if tolerances is None else tolerances
+    if not isinstance(used, Tolerances):
+        raise ArgumentError(f"tolerances = {tolerances!r}: expected flockana.Tolerances(...)")
     motion = {"law": law, "q0": q0, "p0": p0, "t_span": t_span}
     still = {"q": q, "d": d, "r": r}
     given = {k for k, v in {"trajectory": trajectory, **motion, **still}.items() if v is not None}
@@ -127,10 +133,16 @@ def verify(
         run = trajectory if trajectory is not None else simulate(law, q0, p0, t_span)
         if not isinstance(run, Trajectory):
             raise ArgumentError(f"trajectory = {run!r}: expected a Trajectory, such as scenario('collapse').run()")
-        subject_data: tuple[Any, ...] = (run,)
-    elif item.kind == "configuration":
+        return _verified_run(item, run, used, subject)
+    subject_data: tuple[Any, ...] = ()
+    if item.kind == "configuration":
         subject_data = (ensure_points("q", q), ensure_positive("d", d), ensure_positive("r", r))
-    else:
-        subject_data = ()
-    hypotheses, claims = item.check(*subject_data, tolerances)
-    return Verdict(item.id, tuple(hypotheses), tuple(claims), tolerances, subject)
+    hypotheses, claims = item.check(*subject_data, used)
+    return Verdict(item.id, tuple(hypotheses), tuple(claims), used, subject)
+
+
+def _verified_run(item: Theorem, run: Trajectory, tolerances: Tolerances, subject: str) -> Verdict:
+    ensure_fits(run)
+    hypotheses, claims = item.check(run, tolerances)
+    agreed = corroborated(tuple(claims), run, lambda again: item.check(again, tolerances)[1])
+    return Verdict(item.id, tuple(hypotheses), agreed, tolerances, subject)

@@ -2,31 +2,28 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.theorems.asymptotics import no_collision
+from flockana.theorems.collisions import below_multiple, no_collision
+from flockana.theorems.hypotheses import vacuous, with_alpha_gain
+from flockana.theorems.rounding import energy_error
 from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances
 from flockana.trajectory import Trajectory
 
-_CLAIMS = {"below": 1.0, "twice": 2.0}
-
-
-def _bounded(energy: float, bound: float, text: str) -> Hypothesis:
-    detail = f"H(0) = {energy:.5g}, {text} = {bound:.5g}"
-    return Hypothesis(f"H(0) < {text}", "met" if energy < bound else "unmet", bound - energy, detail)
+_CLAIMS = {"below": 1, "twice": 2}
 
 
 def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
-    applies = type(run.law) in (Algorithm1, Algorithm2)
-    law = Hypothesis("Algorithm 1 or 2 is applied", "met" if applies else "unmet", detail=type(run.law).__name__)
-    if not applies:
-        return [law], [Claim(name, "vacuous", detail="another law") for name in _CLAIMS]
-    law_of, start = run.law, (run.q[0], run.p[0])
-    moving = type(law_of) is Algorithm1  # the energy of Algorithm 2 is taken in the moving frame already
-    energy = law_of.structural_energy(*start) if moving else float(run.energy()[0])
-    c_star = law_of.gains.c1_alpha * law_of.alpha.c_star
-    bounds = {name: _bounded(energy, k * c_star, "c*" if k == 1.0 else "2 c*") for name, k in _CLAIMS.items()}
-    return [law, *bounds.values()], [
-        no_collision(run, [law, bound], tolerances, name=name) for name, bound in bounds.items()
+    needs = with_alpha_gain(run, "Algorithm 1 or 2", Algorithm1, Algorithm2)
+    if nothing := vacuous(needs, _CLAIMS):
+        return needs, nothing
+    energy = run.law.structural_energy(run.q[0], run.p[0])
+    error = float(energy_error(run.law, run.q[:1], run.p[:1], np.array([energy]))[0])
+    c_star = run.law.gains.c1_alpha * run.law.alpha.c_star
+    bounds = {name: below_multiple(energy, error, c_star, k) for name, k in _CLAIMS.items()}
+    return [*needs, *bounds.values()], [
+        no_collision(run, [*needs, bound], tolerances, name=name) for name, bound in bounds.items()
     ]
 
 

@@ -4,26 +4,29 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.theorems.dead_zone_case import PROOF, dead_zone_law, hypotheses, no_collision, parts
+from flockana.theorems.dead_zone_case import PROOF, at_the_end, dead_zone_law, hypotheses, no_collision, settling
+from flockana.theorems.dead_zone_parts import Parts
 from flockana.theorems.energy import balance
+from flockana.theorems.hypotheses import vacuous
+from flockana.theorems.limits import limit_claim
 from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
 from flockana.trajectory import Trajectory
 
+_CLAIMS = ("rate", "balance", "components", "distance")
 
-def _rate(run: Trajectory, law: DeadZoneFlocking, needs: list[Hypothesis]) -> Claim:
-    """−k₂ pᵀL̂p is a sum of squares: no rounding can change its sign."""
-    rate = np.array([law.flow(float(t), q, p)[1] for t, q, p in zip(run.t, run.q, run.p, strict=True)])
-    worst = int(np.argmax(rate))
-    unmet = any(need.status == "unmet" for need in needs)
+
+def _rate(run: Trajectory, rate: np.ndarray, needs: list[Hypothesis]) -> Claim:
+    """−k₂ pᵀL̂p is a sum of squares: no rounding can change its sign, and samples where it has another are counted."""
+    worst, rising = int(np.argmax(rate)), int(np.sum(~(rate <= 0.0)))
+    margin = float(-rising or 1)
     return Claim(
         "rate",
-        "vacuous" if unmet else "verified" if rate[worst] <= 0.0 else "refuted",
+        judge(margin, 0.0, needs),
         computed=float(rate[worst]),
         stated="dH̄/dt = -k₂ pᵀL̂p <= 0, across all switches",
-        margin=-float(rate[worst]),
+        margin=margin,
         error=0.0,
-        witness={"time": float(run.t[worst])},
+        witness={"time": float(run.t[worst]), "samples at which it is positive": rising},
         proof=PROOF,
         detail=f"the saturated energy goes from {run.energy()[0]:.6g} to {run.energy()[-1]:.6g}",
     )
@@ -35,37 +38,33 @@ def _balance(run: Trajectory, needs: list[Hypothesis], tolerances: Tolerances) -
     return Claim("balance", "vacuous", detail="the steps of a scheme of first order keep no energy balance")
 
 
-def _components(run: Trajectory, law: DeadZoneFlocking, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
-    """Within each component velocities agree at the end; a finite run cannot refute the limit."""
-    start, end = parts(run.q[0], run.p[0], law), parts(run.q[-1], run.p[-1], law)
-    margin = tolerances.velocity - end.mismatch
-    status = judge(margin, 0.0, needs)
-    return Claim(
+def _components(run: Trajectory, end: Parts, needs: list[Hypothesis]) -> Claim:
+    """Within each component velocities match in the end; a finite run cannot refute the limit."""
+    return limit_claim(
         "components",
-        "inconclusive" if status == "refuted" else status,
+        needs,
+        [settling(end)],
         computed=end.mismatch,
-        stated=f"velocities match within each component (K̃ of each <= {tolerances.velocity:g} at the end)",
-        margin=margin,
-        error=0.0,
-        witness={"components": end.count, "K̃ at the start": start.mismatch},
+        stated="velocities match within each component: K̃ of each -> 0",
+        witness={"components": end.count},
         detail=f"at t = {run.t[-1]:g} the largest K̃ of {end.count} component(s) is {end.mismatch:.3g}",
     )
 
 
 def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
     needs, law = hypotheses(run), dead_zone_law(run)
-    if law is None:
-        return needs, [Claim(name, "vacuous", detail="another law") for name in _CLAIMS]
-    bound = law.interaction.least_distance(float(run.energy()[0])) if needs[1].status == "met" else 0.0
+    nothing = vacuous(needs, _CLAIMS)
+    if law is None or nothing:
+        return needs, nothing
+    rate = np.array([law.flow(float(t), q, p)[1] for t, q, p in zip(run.t, run.q, run.p, strict=True)])
+    bound = law.interaction.least_distance(float(run.energy()[0]))
     return needs, [
-        _rate(run, law, needs),
+        _rate(run, rate, needs),
         _balance(run, needs, tolerances),
-        _components(run, law, needs, tolerances),
-        no_collision(run, bound, needs, name="distance"),
+        _components(run, at_the_end(run, law), needs),
+        no_collision(run, bound, law.scales.length, needs, name="distance"),
     ]
 
-
-_CLAIMS = ("rate", "balance", "components", "distance")
 
 THEOREM = Theorem(
     id="dead-zone-1-corrected",

@@ -2,90 +2,105 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from math import inf
-
-import numpy as np
+from math import nan
 
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.metrics import cohesion_radius
-from flockana.theorems.asymptotics import velocities_match
-from flockana.theorems.dead_zone_case import PROOF, Parts, dead_zone_law, hypotheses, no_collision, parts
-from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
+from flockana.theorems.dead_zone_case import (
+    PROOF,
+    at_the_end,
+    dead_zone_law,
+    hypotheses,
+    no_collision,
+    one_velocity,
+)
+from flockana.theorems.dead_zone_parts import Parts
+from flockana.theorems.dead_zone_range import first_entry
+from flockana.theorems.hypotheses import vacuous
+from flockana.theorems.rounding import EPS, frame_error
+from flockana.theorems.theorem import Claim, Hypothesis, Status, Theorem, Tolerances, judge
 from flockana.trajectory import Trajectory
 
-
-def _at_rest(run: Trajectory, law: DeadZoneFlocking, end: Parts, tolerances: Tolerances) -> bool:
-    """Whether the flock is one, with matched velocities and no force: it has ended where it is."""
-    u = law.flow(float(run.t[-1]), run.q[-1], run.p[-1])[0]
-    still = float(np.linalg.norm(u, axis=1).max()) <= tolerances.force * law.interaction.contact_force
-    return end.count == 1 and end.mismatch <= tolerances.velocity and still
+_CLAIMS = ("cohesion", "energy", "velocity", "collision")
 
 
-def _cohesion(
-    run: Trajectory, law: DeadZoneFlocking, end: Parts, needs: list[Hypothesis], tolerances: Tolerances
-) -> Claim:
-    """R ≤ r in the end; a finite run refutes it where parts are certain to part, or a flock at rest is wider."""
-    radius, r = cohesion_radius(run.q[-1]), law.interaction.r
-    margin = -inf if end.parting else r - radius
-    status = judge(margin, 0.0, needs)
-    final = end.parting or _at_rest(run, law, end, tolerances)
+def _certain_radius(run: Trajectory, end: Parts, radius: float) -> tuple[float, float, str]:
+    """(1 - R/r of the limit, its error, how it is known); NaN where nothing is."""
+    if end.count > 1:
+        apart = end.separation
+        return -apart.margin if end.parting else nan, apart.error, apart.text
+    (part,), r = end.parts, end.r
+    if part.size == 1 or part.hold.certificate.margin > 0.0:
+        error = (part.hold.distance + 2.0 * frame_error(run.q[-1:])) / r + 4.0 * EPS
+        return 1.0 - radius / r, error, part.hold.certificate.text
+    if part.dt is None and part.radius < r:
+        return (
+            1.0 - part.radius / r,
+            4.0 * EPS,
+            f"{part.bond.text}, and no agent {part.radius:.4g} away from the centre",
+        )
+    return nan, EPS, part.hold.certificate.text
+
+
+def _cohesion(run: Trajectory, end: Parts, needs: list[Hypothesis]) -> Claim:
+    """R ≤ r in the end: of a flock that is held the limit is known, of one that parts as well."""
+    radius = cohesion_radius(run.q[-1])
+    margin, error, known = _certain_radius(run, end, radius)
     return Claim(
         "cohesion",
-        "inconclusive" if status == "refuted" and not final else status,
+        judge(margin, error, needs),
         computed=radius,
-        stated=f"in the end no agent is farther than r = {r:g} from the leader (read: the centre of mass)",
+        stated=f"in the end no agent is farther than r = {end.r:g} from the leader (read: the centre of mass)",
         margin=margin,
-        error=0.0,
-        witness={"components": end.count, "parting": end.parting, "time": float(run.t[-1])},
-        detail=f"at t = {run.t[-1]:g} there are {end.count} component(s), R = {radius:.4g}"
-        + (", and they part for ever" if end.parting else ""),
+        error=error,
+        witness={"components": end.count, "time": float(run.t[-1])},
+        proof=PROOF if end.count > 1 else None,
+        detail=f"at t = {run.t[-1]:g} there are {end.count} component(s), R = {radius:.4g}; {known}",
     )
 
 
-def _energy(run: Trajectory, needs: list[Hypothesis]) -> Claim:
-    """The energy of neighbours only never rises between samples."""
-    energy = run.metrics().literal_energy.values
-    error = float(np.abs(run.energy_residual).max()) if "work" in run.extra else 1e-9 * float(np.abs(energy).max())
-    rises = np.diff(energy)
-    k = int(np.argmax(rises)) if rises.size else 0
-    rise = float(rises[k]) if rises.size else 0.0
-    unmet = any(need.status == "unmet" for need in needs)
+def _energy(run: Trajectory, law: DeadZoneFlocking, needs: list[Hypothesis]) -> Claim:
+    """The energy of neighbours only never rises: it does by ψ̄(r) > 0 at the very time at which a pair comes into range.
+
+    Otherwise it is H̄ less a constant, or falls by ψ̄(r) as a pair leaves. That no pair comes in is a whole number.
+    """
+    jump, entry = law.interaction.far_potential, first_entry(run, law.interaction.r)
+    enters = entry.pair is not None and jump > 0.0
+    margin = -1.0 if enters else nan if entry.unsure and jump > 0.0 else 1.0
+    status: Status = judge(margin, 0.0, needs)
+    found = "no pair comes into range"
+    if enters:
+        found = f"agents {entry.pair} come into range of each other before t = {entry.time:.6g}: H rises by {jump:.4g}"
+    elif jump == 0.0:
+        found = "the potential of a pair is 0 at r: nothing jumps"
+    elif entry.unsure:
+        found = "between the samples, or but for rounding, a pair may come into range"
     return Claim(
         "energy",
-        "vacuous" if unmet else "refuted" if rise > error else "verified",
-        computed=rise,
+        status,
+        computed=jump if enters else 0.0,
         stated="H, summed over neighbours, never rises",
-        margin=-rise,
-        error=error,
-        witness={"time": float(run.t[min(k + 1, len(run.t) - 1)])},
+        margin=margin,
+        error=0.0,
+        witness={"agents": entry.pair, "time": entry.time},
         proof=PROOF,
-        detail=f"H of neighbours rises by up to {rise:.4g} from one sample to the next",
+        detail=found,
     )
-
-
-def _one_velocity(run: Trajectory, end: Parts, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
-    """K̃ → 0: a finite run refutes it only where parts are certain to part, each at its own velocity for ever."""
-    claim = velocities_match(run, tolerances, needs, name="velocity")
-    if claim.status == "inconclusive" and end.parting:
-        return replace(claim, status="refuted", detail=claim.detail + "; the parts keep their own velocities for ever")
-    return claim
 
 
 def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
     needs, law = hypotheses(run), dead_zone_law(run)
-    if law is None:
-        return needs, [Claim(name, "vacuous", detail="another law") for name in _CLAIMS]
-    end = parts(run.q[-1], run.p[-1], law)
+    nothing = vacuous(needs, _CLAIMS)
+    if law is None or nothing:
+        return needs, nothing
+    end = at_the_end(run, law)
     return needs, [
-        _cohesion(run, law, end, needs, tolerances),
-        _energy(run, needs),
-        _one_velocity(run, end, needs, tolerances),
-        no_collision(run, 0.0, needs, name="collision"),
+        _cohesion(run, end, needs),
+        _energy(run, law, needs),
+        one_velocity(run, end, needs, name="velocity"),
+        no_collision(run, 0.0, law.scales.length, needs, name="collision"),
     ]
 
-
-_CLAIMS = ("cohesion", "energy", "velocity", "collision")
 
 THEOREM = Theorem(
     id="dead-zone-1-printed",

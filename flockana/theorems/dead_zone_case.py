@@ -1,34 +1,39 @@
-"""What the two forms of the dead-zone theorem share: its hypotheses, and how a flock that has come apart goes on."""
+"""What the two forms of the dead-zone theorem share: its law, its hypotheses, its distances and its limits."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from math import floor, inf
+from dataclasses import replace
+from math import inf, log
+from typing import Any
 
 import numpy as np
 
-from flockana.checks import FloatArray
+from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.law import DiscreteLaw
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.metrics import min_distance
-from flockana.nets import components, links
+from flockana.theorems.dead_zone_parts import Parts, parts
+from flockana.theorems.limits import Certificate, limit_claim
+from flockana.theorems.rounding import EPS
 from flockana.theorems.theorem import Claim, Hypothesis, judge
 from flockana.trajectory import Trajectory
 
 PROOF = "dead-zone"
+_BOUND = 1e-9  # relative rounding of the explicit bound: that of H̄(0)/2k_r in an exponent
 
 
 def dead_zone_law(run: Trajectory) -> DeadZoneFlocking | None:
-    """The dead-zone law of a run, of its semi-implicit Euler steps too; None under another law.
+    """The dead-zone law of a run, of its semi-implicit Euler steps too; None under another law, a subclass included.
 
     Parameters
     ----------
     run : Trajectory
         The run.
     """
-    law = run.law.law if isinstance(run.law, SemiImplicitEuler) else run.law
-    return law if isinstance(law, DeadZoneFlocking) else None
+    law: Any = run.law.law if type(run.law) is SemiImplicitEuler else run.law
+    exact = type(law) is DeadZoneFlocking and type(law.interaction) is DeadZoneInteraction
+    return law if exact else None
 
 
 def hypotheses(run: Trajectory) -> list[Hypothesis]:
@@ -46,77 +51,66 @@ def hypotheses(run: Trajectory) -> list[Hypothesis]:
     return [applies, distinct]
 
 
-@dataclass(frozen=True)
-class Parts:
-    """The components of a flock at one instant.
+def at_the_end(run: Trajectory, law: DeadZoneFlocking) -> Parts:
+    """The parts of the flock in the last state of a run, and what is certain of them; kept with the run.
 
     Parameters
     ----------
-    count : int
-        How many.
-    mismatch : float
-        Largest ½ Σ‖p_i − p̄‖² over n_c of a component c with n_c agents.
-    parting : bool
-        Whether there are several and it is certain that each goes its own way: under the flow from here no two of them
-        ever meet again, and every two have different mean velocities, so that they end arbitrarily far apart.
-    """
-
-    count: int
-    mismatch: float
-    parting: bool
-
-
-def parts(q: FloatArray, p: FloatArray, law: DeadZoneFlocking) -> Parts:
-    """Components of the net at r, and whether they are certain to part for ever.
-
-    While no two components meet, each has a centre of constant velocity and an energy H̄ of its own that does not rise.
-    No pair's potential is negative, so at most M = ⌊H̄/ψ̄(r)⌋ of its pairs are ever out of range. If M < n − 1 it stays
-    connected, for a cut leaves at least n − 1 pairs out of range; then the steps in the net from one agent to all
-    others are at most n − 1 + M in number, as each step beyond the first leaves a pair out of range. So nobody gets
-    farther from the centre than B = r (n − 1 + M)/n. Two components never meet if their centres, at constant
-    velocities, never come closer than r + B + B'. Where M ≥ n − 1 nothing is known.
-
-    Parameters
-    ----------
-    q, p : ndarray, shape (n, m)
-        Positions and velocities.
+    run : Trajectory
+        A run of the law, or of its semi-implicit Euler steps.
     law : DeadZoneFlocking
         The law.
-
-    Examples
-    --------
-    >>> law, apart = DeadZoneFlocking(), np.array([[0.0], [16.0]])
-    >>> parts(apart, np.array([[-1.0], [1.0]]), law)
-    Parts(count=2, mismatch=0.0, parting=True)
-    >>> parts(apart, np.array([[1.0], [-1.0]]), law).parting
-    False
     """
-    label = components(len(q), links(q, law.interaction.r))
-    groups = [np.flatnonzero(label == k) for k in range(int(label.max()) + 1)]
-    centre = np.array([q[g].mean(axis=0) for g in groups])
-    velocity = np.array([p[g].mean(axis=0) for g in groups])
-    mismatch = max(0.5 * float(np.sum((p[g] - v) ** 2)) / len(g) for g, v in zip(groups, velocity, strict=True))
-    radius = np.array([_stray(q[g], p[g], law) for g in groups])
-    a, b = np.triu_indices(len(groups), 1)
-    x, v = centre[b] - centre[a], velocity[b] - velocity[a]
-    speed2 = np.sum(v**2, axis=1)
-    turn = np.maximum(0.0, -np.sum(x * v, axis=1)) / np.where(speed2 > 0.0, speed2, 1.0)  # when they are closest
-    nearest = np.linalg.norm(x + turn[:, None] * v, axis=1)
-    away = (speed2 > 0.0) & (nearest > law.interaction.r + radius[a] + radius[b])
-    return Parts(len(groups), mismatch, bool(a.size and away.all()))
+    dt = run.law.dt if isinstance(run.law, DiscreteLaw) else None
+    return run.remembered("dead-zone parts", lambda: parts(run.q[-1], run.p[-1], law, dt))
 
 
-def _stray(q: FloatArray, p: FloatArray, law: DeadZoneFlocking) -> float:
-    """B: a bound, for ever, of how far an agent of a component gets from its centre; inf if it might break up."""
-    n, far = len(q), law.interaction.far_potential
-    if n == 1:
-        return 0.0
-    share = law.hamiltonian(0.0, q, p) / far if far > 0.0 else inf
-    return law.interaction.r * (n - 1 + floor(share)) / n if share < n - 1 else inf
+def settling(end: Parts) -> Certificate:
+    """Velocities match within each part for ever: each settles by itself, and no two of them meet.
+
+    Parameters
+    ----------
+    end : Parts
+        The parts.
+    """
+    return min((*(part.settles for part in end.parts), end.apart), key=lambda one: one.margin)
 
 
-def no_collision(run: Trajectory, bound: float, needs: list[Hypothesis], *, name: str) -> Claim:
+def one_velocity(run: Trajectory, end: Parts, needs: list[Hypothesis], *, name: str) -> Claim:
+    """K̃ → 0: certain of one part that settles, refuted where parts are certain to part, each at its own velocity.
+
+    Parameters
+    ----------
+    run : Trajectory
+        The run.
+    end : Parts
+        Its parts at the end.
+    needs : list of Hypothesis
+        Hypotheses of the claim.
+    name : str
+        Name of the claim.
+    """
+    series = run.metric("velocity_mismatch")
+    claim = limit_claim(
+        name,
+        needs,
+        [settling(end) if end.count == 1 else Certificate(-1.0, end.apart.text)],
+        computed=float(series[-1]),
+        stated="K̃ -> 0: all velocities match",
+        witness={"time": float(run.t[-1]), "K̃ at the start": float(series[0])},
+        detail=f"K̃ goes from {series[0]:.3g} to {series[-1]:.3g} at t = {run.t[-1]:g}",
+    )
+    if not end.parting:
+        return claim
+    margin, error = end.separation.margin, end.separation.error
+    status, detail = judge(-margin, error, needs), f"{claim.detail}: {end.count} parts keep their own for ever"
+    return replace(claim, status=status, margin=-margin, error=error, proof=PROOF, detail=detail)
+
+
+def no_collision(run: Trajectory, bound: float, unit: float, needs: list[Hypothesis], *, name: str) -> Claim:
     """No two agents come closer than a bound: between the samples too, except for a map, which has nothing there.
+
+    The margin is ln(ρ/bound), as a bound may be exponentially small; ρ over the unit where the bound is 0.
 
     Parameters
     ----------
@@ -124,19 +118,23 @@ def no_collision(run: Trajectory, bound: float, needs: list[Hypothesis], *, name
         The run.
     bound : float
         The bound, at least 0.
+    unit : float
+        The law's unit of lengths.
     needs : list of Hypothesis
         Hypotheses of the claim.
     name : str
         Name of the claim.
     """
     if isinstance(run.law, DiscreteLaw) or len(run.t) == 1:
-        series = np.array([min_distance(q) for q in run.q])
+        series = run.metric("min_distance")
         k = int(np.argmin(series))
         least, upper, where, time = float(series[k]), float(series[k]), "at the samples", float(run.t[k])
     else:
         closest = run.closest_approach()
         least, upper, where, time = closest.lower, closest.distance, "ever", closest.time
-    status = judge(least - bound, 0.0, needs)
+    rounding = 4.0 * EPS * float(np.abs(run.q).max())
+    margin, error = _above(least, bound, unit, rounding)
+    status = judge(margin, error, needs)
     if status == "refuted" and upper > bound:  # the lower bound is weak where samples are sparse
         status = "inconclusive"
     return Claim(
@@ -144,9 +142,20 @@ def no_collision(run: Trajectory, bound: float, needs: list[Hypothesis], *, name
         status,
         computed=least,
         stated=f"every distance > {bound:.4g}",
-        margin=least - bound,
-        error=0.0,
+        margin=margin,
+        error=error,
         witness={"time": time},
         proof=PROOF,
         detail=f"no two agents come closer than {least:.4g} {where}; the bound is {bound:.3g}",
     )
+
+
+def _above(least: float, bound: float, unit: float, rounding: float) -> tuple[float, float]:
+    """(margin, error) of a distance against a bound; one agent has none."""
+    if least == inf:
+        return 1.0, EPS
+    if bound == 0.0:
+        return least / unit, rounding / unit + EPS
+    if least <= rounding:
+        return float("nan"), inf
+    return log(least / bound), 4.0 * rounding / least + _BOUND

@@ -15,13 +15,13 @@ Found = tuple[list[Hypothesis], list[Claim]]
 
 
 def margin_claim(
-    name: str, margin: float, detail: str, *, rigour: Rigour = "numeric", error: float = 0.0, **more: Any
+    name: str, margin: float, detail: str, *, error: float, rigour: Rigour = "numeric", **more: Any
 ) -> Claim:
     """A claim judged by its margin alone.
 
     Parameters
     ----------
-    name, margin, detail, rigour, error
+    name, margin, detail, error, rigour
         As in `Claim`.
     **more
         Further fields of `Claim`.

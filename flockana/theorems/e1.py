@@ -6,14 +6,14 @@ import numpy as np
 
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.simulate import simulate
-from flockana.theorems.printed_energy import identity_claim, run_claim, state_claim
+from flockana.theorems.printed_energy import corroborated_run_claim, identity_claim, state_claim
 from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances
 
 
 def _rising_run() -> Claim:
     """Two agents at rest, 8 apart: they fall towards each other, and the printed energy climbs."""
     run = simulate(Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 2.0))
-    return run_claim(run, 0.5 * np.sum(run.p**2, axis=(1, 2)), "two agents")
+    return corroborated_run_claim(run, lambda one: 0.5 * np.sum(one.p**2, axis=(1, 2)), "two agents")
 
 
 def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:

@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
-from flockana.equilibria.collapse import nudged, squeezed, threshold
+from functools import lru_cache
+from itertools import pairwise
+from math import isnan, sqrt
+from typing import Any
+
+from flockana.equilibria.collapse import natural_ratio, nudged, squeezed, threshold
+from flockana.errors import SolverError
 from flockana.gradient_flow import gradient_flow
+from flockana.interactions import AlphaInteraction
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.terminal import terminal_state
-from flockana.theorems.asymptotics import settled
-from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances
+from flockana.metrics import velocity_mismatch
+from flockana.terminal import TerminalState, surroundings, terminal_state
+from flockana.theorems.theorem import Claim, Hypothesis, Status, Theorem, Tolerances, judge
 from flockana.trajectory import Trajectory
 
 _RINGS = (1, 2, 3)  # hexagons of 7, 19 and 37 agents
-_LOWEST, _FACTOR = 0.1, 1.3  # where the search starts, and its steps
+_LOWEST, _FACTOR = 0.06, 1.3  # where the search starts, of `natural_ratio`, and its steps
 _HALVINGS = 3
 _NAMES = ("printed", "minimum", "threshold")
 
@@ -28,9 +35,16 @@ def collapses(law: Algorithm2, rings: int, ratio: float) -> bool:
         Rings of the patch.
     ratio : float
         c1γ/c1α.
+
+    Raises
+    ------
+    SolverError
+        If the gradient flow does not settle.
     """
     pressed = squeezed(law.alpha, ratio)
     limit = gradient_flow(pressed, nudged(hexagonal_patch(rings, law.alpha.d), law.alpha.d))
+    if not limit.converged:
+        raise SolverError(f"at c1γ/c1α = {ratio:.4g} the gradient flow did not settle (force {limit.force:.2g})")
     return terminal_state(pressed, limit.q, 0.0 * limit.q).coincident > 0
 
 
@@ -49,56 +63,104 @@ def collapse_threshold(law: Algorithm2, rings: int) -> tuple[float, float]:
     tuple of float
         (largest ratio seen safe, least ratio seen to collapse).
     """
-    return threshold(lambda ratio: collapses(law, rings, ratio), lowest=_LOWEST, factor=_FACTOR, halvings=_HALVINGS)
+    lowest = _LOWEST * natural_ratio(law.alpha)
+    return threshold(lambda ratio: collapses(law, rings, ratio), lowest=lowest, factor=_FACTOR, halvings=_HALVINGS)
+
+
+def _hypotheses(run: Trajectory) -> list[Hypothesis]:
+    law = run.law
+    if type(law) is not Algorithm2:
+        return [Hypothesis("Algorithm 2 is applied", "unmet", detail=type(law).__name__)]
+    found = [Hypothesis("Algorithm 2 is applied", "met", detail="Algorithm2")]
+    if law.gains.per_agent:
+        return [*found, Hypothesis("one c1γ for all agents", "unmet", detail="gains are given per agent")]
+    least = min(law.gains.c1_alpha, law.gains.c1_gamma)
+    return [*found, Hypothesis("c1α > 0 and c1γ > 0", "met" if least > 0.0 else "unmet", least)]
 
 
 def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
-    applies = type(run.law) is Algorithm2
-    law = Hypothesis("Algorithm 2 is applied", "met" if applies else "unmet", detail=type(run.law).__name__)
-    if not applies:
-        return [law], [Claim(name, "vacuous", detail="another law") for name in _NAMES]
-    if run.law.gains.per_agent:
-        single = Hypothesis("one c1γ for all agents", "unmet", detail="gains are given per agent")
-        return [law, single], [Claim(name, "vacuous", detail=single.detail) for name in _NAMES]
+    hypotheses = _hypotheses(run)
+    if any(h.status == "unmet" for h in hypotheses):
+        return hypotheses, [Claim(name, "vacuous", detail=f"not so: {hypotheses[-1].name}") for name in _NAMES]
     end = terminal_state(run.law, run.q[-1], run.p[-1], contact=tolerances.contact)
-    at_rest = settled(end, tolerances)
+    caught = _caught(run, end, tolerances)
+    return hypotheses, [_printed(run, end, caught, tolerances), _minimum(end, caught, tolerances), _thresholds(run.law)]
+
+
+def _caught(run: Trajectory, end: TerminalState, tolerances: Tolerances) -> bool:
+    """Whether the last state is at rest beside a strict minimum that it has not the energy to leave."""
+    still = end.mismatch <= tolerances.velocity * run.law.scales.energy and end.force <= tolerances.force
+    around = surroundings(run.law, run.q[-1], force=end.force * run.law.scales.force * sqrt(run.n))
+    return bool(still and around is not None and around.holds(velocity_mismatch(run.p[-1])))
+
+
+def _printed(run: Trajectory, end: TerminalState, caught: bool, tolerances: Tolerances) -> Claim:
+    """The strain of the limit; two agents are farther from it by √2 of the distance to the minimum at most."""
+    margin, error = tolerances.quasi - end.strain, sqrt(2.0) * end.distance
     ratio = run.law.gains.c1_gamma / run.law.gains.c1_alpha
-    printed = Claim(
+    at_rest = "" if caught else "; it is not known to rest there"
+    found = "no links" if isnan(end.strain) else f"{end.coincident} coincident pairs; its shortest link is "
+    return Claim(
         "printed",
-        ("refuted" if end.strain > tolerances.quasi else "verified") if at_rest else "inconclusive",
+        judge(margin, error, []) if caught else "inconclusive",
         computed=end.strain,
         stated=f"the limit is a quasi-α-lattice at least: |link - d|/d <= {tolerances.quasi:g}",
-        margin=tolerances.quasi - end.strain,
-        error=end.force,
+        margin=margin,
+        error=error,
         witness={"coincident pairs": end.coincident, "shortest link": end.shortest},
-        detail=f"with c1γ/c1α = {ratio:.3g} the limit has {end.coincident} coincident pairs; its shortest link is "
-        f"{end.shortest:.3g}",
+        detail=f"with c1γ/c1α = {ratio:.3g} the limit has {found}"
+        + ("" if isnan(end.strain) else f"{end.shortest:.3g}")
+        + at_rest,
     )
-    minimum = Claim(
+
+
+def _minimum(end: TerminalState, caught: bool, tolerances: Tolerances) -> Claim:
+    margin, error = end.curvature - tolerances.curvature, end.curvature_error
+    return Claim(
         "minimum",
-        "verified" if at_rest and end.curvature > tolerances.curvature else "inconclusive",
+        "verified" if caught and judge(margin, error, []) == "verified" else "inconclusive",
         computed=end.curvature,
         stated="the limit is a strict local minimum of U_λ off the rotations, so that it attracts an open set",
-        margin=end.curvature - tolerances.curvature,
-        error=0.0,
+        margin=margin,
+        error=error,
         witness={"force": end.force, "K̃": end.mismatch},
         detail=f"least curvature {end.curvature:.3g} of the largest, residual force {end.force:.1g}",
     )
-    return [law], [printed, minimum, _thresholds(run.law)]
+
+
+@lru_cache(maxsize=32)
+def _brackets(alpha: AlphaInteraction) -> dict[int, tuple[float, float]] | str:
+    """Brackets of the ratio by number of agents; or why there are none."""
+    law = squeezed(alpha, natural_ratio(alpha))
+    try:
+        return {len(hexagonal_patch(rings, alpha.d)): collapse_threshold(law, rings) for rings in _RINGS}
+    except SolverError as error:
+        return str(error)
 
 
 def _thresholds(law: Algorithm2) -> Claim:
-    found = {len(hexagonal_patch(rings, law.alpha.d)): collapse_threshold(law, rings) for rings in _RINGS}
-    highs = [high for _, high in found.values()]
-    falling = highs == sorted(highs, reverse=True)
+    """Falling if the brackets lie below each other: their middles differ by more than their widths."""
+    found = _brackets(law.alpha)
+    said: dict[str, Any] = {
+        "stated": "the ratio c1γ/c1α at which a hexagonal patch begins to collapse falls with n",
+        "witness": "hexagonal patches relaxed by gradient flow, ratio bisected",
+    }
+    if isinstance(found, str):
+        return Claim("threshold", "inconclusive", detail=f"no threshold was found: {found}", **said)
+    middles = [sqrt(low * high) for low, high in found.values()]
+    widths = [sqrt(high / low) for low, high in found.values()]
+    falls = [(one / two - 1.0, one / two * (w * v - 1.0)) for (one, w), (two, v) in pairwise(zip(middles, widths))]
+    margin, error = min(falls, key=lambda fall: fall[0] - fall[1])
+    status: Status = judge(margin, error, [])
     table = ", ".join(f"n = {n}: {low:.3g} to {high:.3g}" for n, (low, high) in found.items())
     return Claim(
         "threshold",
-        "verified" if falling else "refuted",
+        status,
         computed={n: list(pair) for n, pair in found.items()},
-        stated="the ratio c1γ/c1α at which a hexagonal patch begins to collapse falls with n",
-        witness="hexagonal patches relaxed by gradient flow, ratio bisected",
+        margin=margin,
+        error=error,
         detail=f"a hexagonal patch collapses from c1γ/c1α on: {table}",
+        **said,
     )
 
 

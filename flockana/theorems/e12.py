@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from math import pi
 
+import numpy as np
+
 from flockana.environment.targets import CircleTarget, SineTarget
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.simulate import simulate
-from flockana.stability.tracking import path_and_factor, response_ratio
+from flockana.stability.tracking import centre_path, motion, path_and_factor, response_ratio, whole_period
 from flockana.stability.translational import predicted_gain
 from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
 from flockana.trajectory import Trajectory
@@ -21,24 +23,41 @@ def _hypotheses(run: Trajectory) -> list[Hypothesis]:
     detail = f"{type(run.law).__name__}{', gains per agent' if not applies and type(run.law) is Algorithm2 else ''}"
     law = Hypothesis("Algorithm 2 is applied, one gain for all", "met" if applies else "unmet", detail=detail)
     path, factor = path_and_factor(run.law.target) if applies else (None, 1.0)
-    swings = isinstance(path, SineTarget | CircleTarget) and run.t[-1] - run.t[0] >= 1.0 / path.frequency
+    swings = isinstance(path, SineTarget | CircleTarget) and whole_period(run, path)
     detail = f"p_r = {factor:.6g} dq_r/dt" if swings else "no circle or sine, or less than a period"
     target = Hypothesis("the γ-agent moves on a circle or a sine", "met" if swings else "unmet", detail=detail)
     wrong = Hypothesis("its p_r is not dq_r/dt", "met" if factor != 1.0 else "unmet", detail=detail)
-    return [law, target, wrong]
+    drag = float(run.law.gains.c2_gamma) if applies else 0.0
+    damped = Hypothesis("c2γ > 0: the start is forgotten", "met" if drag > 0.0 else "unmet", drag)
+    return [law, target, wrong, damped]
 
 
 def _agrees(name: str, found: tuple[float, float], gain: float, tolerances: Tolerances, detail: str) -> Claim:
-    margin = tolerances.agreement - abs(found[0] / gain - 1.0)
+    """Relative to the predicted gain; where that is 0, which is told no velocity and feels no pull, to the γ-agent."""
+    scale = gain or 1.0
+    margin, error = tolerances.agreement - abs(found[0] - gain) / scale, found[1] / scale
     return Claim(
         name,
-        judge(margin, found[1], []),
+        judge(margin, error, []),
         computed=found[0],
         stated=gain,
         margin=margin,
-        error=found[1],
+        error=error,
         detail=f"{detail}: measured ratio {found[0]:.4f}, transfer function {gain:.4f}",
     )
+
+
+def _consistent(run: Trajectory, path: SineTarget | CircleTarget) -> tuple[float, float]:
+    """The ratio of the same flock behind the γ-agent with its true p_r, and its error, that of integration included."""
+    law = replace(run.law, target=path)
+    again = simulate(law, run.q[0], run.p[0], (float(run.t[0]), float(run.t[-1])))
+    ratio, error = response_ratio(again)
+    if law.gains.c1_gamma == 0.0:
+        return ratio, error
+    size = float(np.linalg.norm(motion(path).swing))
+    centre = again.q.mean(axis=1)
+    exact = centre_path(law.gains, path, again.t, centre[0], again.p[0].mean(axis=0))
+    return ratio, error + float(np.abs(centre - exact).max()) / size
 
 
 def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
@@ -49,8 +68,7 @@ def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], l
     path, factor = path_and_factor(law.target)
     assert isinstance(path, SineTarget | CircleTarget)
     omega = 2.0 * pi * path.frequency
-    consistent = simulate(replace(law, target=path), run.q[0], run.p[0], (float(run.t[0]), float(run.t[-1])))
-    handed, true = response_ratio(run), response_ratio(consistent)
+    handed, true = response_ratio(run), _consistent(run, path)
     predicted = predicted_gain(law.gains, omega, factor=factor)
     margin = 1.0 - true[0]
     return hypotheses, [

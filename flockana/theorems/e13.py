@@ -9,8 +9,9 @@ import numpy as np
 from flockana.environment.targets import StaticTarget
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.theorems.asymptotics import distinct_pairs, pairs_at_one_instant
+from flockana.theorems.collisions import distinct_pairs, pairs_at_one_instant
 from flockana.theorems.energy import proved
+from flockana.theorems.hypotheses import vacuous, with_alpha_gain
 from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances
 from flockana.trajectory import Trajectory
 
@@ -27,14 +28,12 @@ def _enclosed(run: Trajectory) -> str | None:
 
 
 def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
-    applies = type(run.law) is Algorithm2
-    law = Hypothesis("Algorithm 2 is applied", "met" if applies else "unmet", detail=type(run.law).__name__)
-    if not applies:
-        return [law], [Claim(name, "vacuous", detail="another law") for name in ("printed", "corrected")]
-    c_star = run.law.gains.c1_alpha * run.law.alpha.c_star
-    return [law], [
-        distinct_pairs(run, law, tolerances, c_star=c_star, name="printed", proof=_enclosed(run)),
-        pairs_at_one_instant(run, law, tolerances, c_star=c_star, name="corrected", proof=proved(run, "collisions")),
+    needs = with_alpha_gain(run, "Algorithm 2", Algorithm2)
+    if nothing := vacuous(needs, ("printed", "corrected")):
+        return needs, nothing
+    return needs, [
+        distinct_pairs(run, needs, tolerances, name="printed", proof=_enclosed(run)),
+        pairs_at_one_instant(run, needs, tolerances, name="corrected", proof=proved(run, "collisions")),
     ]
 
 

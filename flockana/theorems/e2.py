@@ -4,20 +4,25 @@ from __future__ import annotations
 
 import numpy as np
 
+from flockana.checks import FloatArray
 from flockana.environment.obstacles import Sphere
 from flockana.environment.targets import StaticTarget
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.simulate import simulate
-from flockana.theorems.printed_energy import identity_claim, run_claim, state_claim
+from flockana.theorems.printed_energy import corroborated_run_claim, identity_claim, state_claim
 from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances
+from flockana.trajectory import Trajectory
 
 
 def _rising_run() -> Claim:
     """Two agents too close that approach further, a sphere beside them, the γ-agent at rest between them."""
     law = Algorithm3(target=StaticTarget((2.0, 0.0)), obstacles=(Sphere((2.0, 5.8), 2.0),))
     run = simulate(law, [[0.0, 0.0], [4.0, 0.0]], [[5.0, 0.0], [-5.0, 0.0]], (0.0, 1.0))
-    pairs = np.array([law.gains.c1_alpha * law.alpha.potential_energy(q) for q in run.q])
-    return run_claim(run, pairs, "two agents beside a sphere")
+
+    def pairs(one: Trajectory) -> FloatArray:
+        return np.array([law.gains.c1_alpha * law.alpha.potential_energy(q) for q in one.q])
+
+    return corroborated_run_claim(run, pairs, "two agents beside a sphere")
 
 
 def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:

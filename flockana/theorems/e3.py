@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import sqrt
+from typing import Any
 
 import numpy as np
 
@@ -15,11 +16,13 @@ from flockana.intervals import clopper_pearson
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.nets import components, links
-from flockana.terminal import terminal_state
+from flockana.terminal import TerminalState, terminal_state
+from flockana.theorems.attraction import attraction
 from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
 
 _SIZES, _STARTS = (10, 20, 40), 20
 _CONFIDENCE = 0.95
+_ROUNDING = 1e-9  # of the ends of an interval, which are quantiles of a beta distribution
 _STRAINED = (40, 19)  # (n, seed) of a start whose limit holds a strained component of distinct agents
 
 
@@ -75,28 +78,28 @@ def _shares(law: Algorithm1, tolerances: Tolerances) -> Claim:
     table = ", ".join(f"n = {n}: {row['exact']} of {row['of']}" for n, row in rows.items())
     return Claim(
         "share",
-        judge(margin, 0.0, []) if margin < 0.0 else "inconclusive",
+        "refuted" if margin < -_ROUNDING else "inconclusive",  # a sample verifies no share of 1
         computed=rows,
         stated="almost every gradient-flow limit of a random start is an α-lattice (share 1)",
         margin=margin,
-        error=0.0,
+        error=_ROUNDING,
         witness=f"exact Clopper-Pearson intervals of {_CONFIDENCE:.0%}",
         detail=f"exact limits of random starts: {table}; at worst the share is below {worst['share'][1]:.3f}",  # type: ignore[index]
     )
 
 
-def _double_agent(law: Algorithm1, tolerances: Tolerances) -> Claim:
+def _double_agent(law: Algorithm1) -> Claim:
     """The smallest strained minimum we know: a coincident pair, held by the three neighbours that both share."""
     q = rhombus_with_double_agent(law.alpha.d)
-    end = terminal_state(law, q, 0.0 * q)
-    trapped = end.force <= tolerances.force and end.curvature > tolerances.curvature and end.coincident > 0
+    end, held = terminal_state(law, q, 0.0 * q), attraction(law, q, 0.0 * q).certificate
+    trapped = held.margin > held.error and end.coincident > 0
     return Claim(
         "double-agent",
         "refuted" if trapped else "inconclusive",
         computed=end.curvature,
         stated="every strict local minimum of V is an α-lattice of distinct agents",
-        margin=-end.curvature,
-        error=tolerances.curvature,
+        margin=-held.margin,
+        error=held.error,
         witness=q,
         detail=f"n = 5: two agents on one corner of a rhombus are a strict minimum of V (least curvature "
         f"{end.curvature:.3g} of the largest, off rigid motions), with an open basin and a coincident pair",
@@ -111,34 +114,41 @@ def _strained(law: Algorithm1, tolerances: Tolerances) -> Claim:
     ends = [terminal_state(law, part, 0.0 * part) for part in parts]
     worst = max(range(len(parts)), key=lambda k: np.nan_to_num(ends[k].strain))
     end = ends[worst]
-    found = limit.converged and end.strain > tolerances.lattice and end.coincident == 0
+    off = end.strain - tolerances.lattice > limit.force / tolerances.curvature
+    found = limit.converged and off and end.coincident == 0
     return Claim(
         "strained",
         "refuted" if found and end.curvature > -tolerances.curvature else "inconclusive",
         computed=end.strain,
         stated="|link - d|/d = 0 in the limit of every solution but a null set",
         margin=tolerances.lattice - end.strain,
-        error=limit.force,
+        error=limit.force / tolerances.curvature,  # what moves under the residual force gives way by its curvature
         witness={"start": f"random_disc{_STRAINED}", "agents": len(parts[worst]), "links": end.links},
         detail=f"{len(parts[worst])} distinct agents at rest with links of {end.shortest:.4g} to {end.longest:.4g}; "
         f"least curvature {end.curvature:.1g}: not negative",
     )
 
 
+def _off(law: Algorithm1 | Algorithm2, q: FloatArray, end: TerminalState, tolerances: Tolerances) -> dict[str, Any]:
+    """Status, margin and error of "the limit is an α-lattice", at a strict minimum; inconclusive anywhere else."""
+    held, margin = attraction(law, q, 0.0 * q), tolerances.lattice - end.strain
+    error = sqrt(2.0) * held.distance / law.alpha.d + held.certificate.error
+    trapped = held.certificate.margin > held.certificate.error and judge(margin, error, []) == "refuted"
+    return {"status": "refuted" if trapped else "inconclusive", "margin": margin, "error": error}
+
+
 def _smallest(tolerances: Tolerances) -> Claim:
     """The smallest strained minimum of distinct agents that our searches found, verified anew from its file."""
     found = smallest_strained()
-    trapped = found.kind == "minimum" and found.curvature > tolerances.curvature
+    end = terminal_state(found.law, found.q, 0.0 * found.q)
     return Claim(
         "smallest",
-        "refuted" if trapped and found.strain() > tolerances.lattice else "inconclusive",
-        computed={"strain": found.strain(), "curvature": found.curvature, "agents": len(found.q)},
+        **_off(found.law, found.q, end, tolerances),
+        computed={"strain": end.strain, "curvature": found.curvature, "agents": len(found.q)},
         stated="every strict local minimum of V with distinct agents is an α-lattice",
-        margin=-found.curvature,
-        error=tolerances.curvature,
         witness=found.q,
         detail=f"{len(found.q)} distinct agents in a connected strict minimum with {len(found.links)} links, off d by "
-        f"up to {100.0 * found.strain():.2g} %; least curvature {found.curvature:.3g} of the largest. With coincident "
+        f"up to {100.0 * end.strain:.2g} %; least curvature {found.curvature:.3g} of the largest. With coincident "
         f"agents it takes {least_with_coincidence(found.law.alpha)} at least",
     )
 
@@ -150,11 +160,9 @@ def _compressed(tolerances: Tolerances) -> Claim:
     end = terminal_state(law, limit.q, 0.0 * limit.q)
     return Claim(
         "algorithm-2",
-        "refuted" if limit.converged and end.strain > tolerances.lattice else "inconclusive",
+        **_off(law, limit.q, end, tolerances),
         computed=end.strain,
         stated="Algorithm 2 converges to an α-lattice (slides' summary of Theorem 3)",
-        margin=tolerances.lattice - end.strain,
-        error=limit.force,
         witness={"links": [end.shortest, end.longest]},
         detail=f"a hexagon of 7 under Algorithm 2 rests with links of {end.shortest:.5g} to {end.longest:.5g}, not 7",
     )
@@ -164,7 +172,7 @@ def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
     law = Algorithm1()
     return [], [
         _shares(law, tolerances),
-        _double_agent(law, tolerances),
+        _double_agent(law),
         _smallest(tolerances),
         _strained(law, tolerances),
         _compressed(tolerances),

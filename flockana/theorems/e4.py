@@ -7,6 +7,7 @@ import numpy as np
 from flockana.equilibria.barrier import bound_range, collision_barrier, energy_floor, lattice_reach, none_from
 from flockana.interactions import AlphaInteraction
 from flockana.lattice import harborth, hexagonal_spiral
+from flockana.theorems.rounding import EPS
 from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
 
 _SIZES = (3, 7, 10)  # of the barrier that is searched here; the larger ones take longer and change nothing
@@ -21,20 +22,32 @@ _SETS = {
 }
 
 
+def _error(alpha: AlphaInteraction, n: int) -> float:
+    """Of V of n agents: each of its pairs is known to 1e-13 c*, and they are summed."""
+    pairs = n * (n - 1) // 2
+    return pairs * (1e-13 + pairs * EPS) * alpha.c_star
+
+
 def _implication(alpha: AlphaInteraction) -> Claim:
-    """As printed, it is true: every other pair adds at least 0 to the c* of a coincident one."""
-    lengths = np.linspace(0.0, 1.1 * alpha.r, 2001)
-    least = float(np.min(alpha.psi_alpha(alpha.sigma_norm(lengths))))
+    """As printed, it is true: every other pair adds at least 0 to the c* of a coincident one.
+
+    ψ_α has its zero at d_α, so what is looked at is ψ_α/(z − d_α)², which is positive there too, where it is φ_α'/2.
+    """
+    z = alpha.sigma_norm(np.linspace(0.0, 1.1 * alpha.r, 2001))
+    z = z[np.abs(z - alpha.d_alpha) > 1e-3 * alpha.d_alpha]
+    off = (z - alpha.d_alpha) ** 2
+    ratio, error = alpha.psi_alpha(z) / off, 1e-13 * alpha.c_star / float(off.min())
+    least = float(min(ratio.min(), 0.5 * alpha.phi_alpha_slope(alpha.d_alpha)))
     return Claim(
         "printed",
-        "verified" if least >= 0.0 else "refuted",
+        judge(least, error, []),
         computed=least,
         stated="ψ_α >= 0, so that V >= c* where two agents coincide, and c < c* excludes it",
         margin=least,
-        error=0.0,
-        witness="ψ_α at 2001 lengths; its sign follows from that of φ_α",
+        error=error,
+        witness="ψ_α/(z - d_α)² at 2001 lengths; the sign of ψ_α follows from that of φ_α",
         proof="collisions",
-        detail=f"the implication holds: ψ_α is at least {least:.2g}, and V does not rise",
+        detail=f"the implication holds: ψ_α is at least {least:.2g} (z - d_α)², and V does not rise",
     )
 
 
@@ -42,14 +55,14 @@ def _reached(alpha: AlphaInteraction) -> Claim:
     """The largest α-lattice below c*, its energy computed from the configuration and not from the count."""
     n = lattice_reach(alpha) or 0
     energies = [alpha.potential_energy(hexagonal_spiral(size, alpha.d)) for size in (n, n + 1)]
-    margin = min(alpha.c_star - energies[0], energies[1] - alpha.c_star)
+    margin, error = min(alpha.c_star - energies[0], energies[1] - alpha.c_star), _error(alpha, n + 1)
     return Claim(
         "found",
-        judge(margin, 1e-9, []),
+        judge(margin, error, []),
         computed=n,
         stated="the best α-lattices have V < c* for n <= 14 only",
         margin=margin,
-        error=1e-9,
+        error=error,
         witness={"V(n)": energies[0], "V(n + 1)": energies[1], "c*": alpha.c_star},
         proof="n-max",
         detail=f"with the most links possible ({harborth(n)} at n = {n}), V = {energies[0]:.4g} < c* = "
@@ -65,12 +78,12 @@ def _none(alpha: AlphaInteraction) -> Claim:
     table = {name: {m: [lattice_reach(one, m), none_from(one, m)] for m in (1, 2, 3)} for name, one in _SETS.items()}
     return Claim(
         "vacuous",
-        judge(margin, 1e-9, []),
+        judge(margin, _error(alpha, n or 1), []),
         rigour="numeric",
         computed=n,
         stated="for n >= 23 no configuration in the plane has V < c*",
         margin=margin,
-        error=1e-9,
+        error=_error(alpha, n or 1),
         witness={"[largest n of a lattice below c*, least n without any state], by set and dimension": table},
         proof="n-max",
         detail=f"what lowers V is {shortest:.4g} to {longest:.4g} long, a ratio of {longest / shortest:.4g} < √2; "
@@ -82,14 +95,15 @@ def _barrier(alpha: AlphaInteraction) -> Claim:
     """min{V : two agents coincide} by search, above c* as soon as a third of the pairs is out of range."""
     found = {n: collision_barrier(alpha, n, starts=_STARTS) for n in _SIZES}
     margin = min(one.together - alpha.c_star for n, one in found.items() if n > _TRIANGLE)
+    error = 1e-6 * alpha.c_star  # the search ends where the constraint is met to 1e-8 d, at forces of about c*/d
     heights = ", ".join(f"{one.height:.3f} at n = {n}" for n, one in found.items())
     return Claim(
         "barrier",
-        judge(margin, 1e-9, []),
+        judge(margin, error, []),
         computed={n: {"together": one.together, "ground": one.ground} for n, one in found.items()},
         stated="min{V : two agents coincide} > c*: a sharper certificate, and one that grows with min V",
         margin=margin,
-        error=1e-9,
+        error=error,
         witness="minimised from many starts: an upper bound of the minimum, so no proof",
         detail=f"to bring two agents together takes {heights}, from the best lattice (c* = {alpha.c_star:.3f})",
     )

@@ -139,14 +139,14 @@ def _counterexample(name: str, q: FloatArray, sites: tuple[Site, ...], tolerance
     edges = _links(sites)
     witness: Any = kuratowski(len(sites), edges)
     uncrossed, graph = claims["i"], claims["i-graph"]
-    bound = planar_bound(len(sites))
+    bound, planar = planar_bound(len(sites)), is_planar(len(sites), edges)
     return [
         Claim(
             f"printed-{name}",
-            judge(1.0 if is_planar(len(sites), edges) else -1.0, 0.0, []),
+            judge(1.0 if planar else -1.0, 0.0, []),
             computed={"links": len(edges), "bound": bound, "graph": graph.computed},
             stated="the graph is planar",
-            margin=graph.margin,
+            margin=1.0 if planar else -1.0,
             error=0.0,
             witness={"q": q} | (vars(witness) if witness else {}),
             proof=_PROOF,

@@ -12,27 +12,24 @@ def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
     q = [[0.0], [1.0], [2.0]]
     printed, true = printed_rank_connectivity(3, links(q, 1.5)), connectivity(q, 1.5)
     return [], [
-        Claim(
-            "printed",
-            judge(1e-12 - abs(printed - 1.0), 0.0, []),
-            computed=printed,
-            stated=1.0,
-            margin=-abs(printed - 1.0),
-            error=0.0,
-            witness="a path of three agents",
-            detail=f"rank(A)/n of the adjacency matrix is {printed:.4g} on a connected path",
-        ),
-        Claim(
-            "corrected",
-            judge(1e-12 - abs(true - 1.0), 0.0, []),
-            computed=true,
-            stated=1.0,
-            margin=1e-12 - abs(true - 1.0),
-            error=0.0,
-            witness="the same path",
-            detail=f"rank(L)/(n - 1) of the Laplacian is {true:.4g}",
-        ),
+        _rank("printed", printed, 3, f"rank(A)/n of the adjacency matrix is {printed:.4g} on a connected path"),
+        _rank("corrected", true, 2, f"rank(L)/(n - 1) of the Laplacian is {true:.4g}"),
     ]
+
+
+def _rank(name: str, share: float, full: int, detail: str) -> Claim:
+    """Whether the measure is 1, as it must be on a connected net: by the rank it comes from, a whole number."""
+    margin = 0.5 - (full - round(full * share))
+    return Claim(
+        name,
+        judge(margin, 0.0, []),
+        computed=share,
+        stated=1.0,
+        margin=margin,
+        error=0.0,
+        witness="a path of three agents",
+        detail=detail,
+    )
 
 
 THEOREM = Theorem(

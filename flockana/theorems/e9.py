@@ -53,15 +53,15 @@ def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
             )
         )
     measured, swept = _step(PRINTED)
-    margin = rounding - abs(measured - swept)
+    margin = tolerances.agreement * abs(swept) - abs(measured - swept)
     claims.append(
         Claim(
             "excess",
-            judge(margin, 0.0, []),
+            judge(margin, rounding, []),
             computed=measured,
             stated=swept,
             margin=margin,
-            error=0.0,
+            error=rounding,
             witness=f"one agent, u = {swept / _DT**2:g}, dt = {_DT:g}",
             detail=f"one printed step of the map goes {measured:.6g} too far, where u dt² = {swept:.6g}",
         )

@@ -15,6 +15,7 @@ from flockana.theorems.shares import always, mostly, separated_start, zone_start
 from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
 
 _STARTS, _SEEDS, _END = 2000, 20, 20.0
+_SAME, _ROUNDING = 1e-9, 1e-11  # relative: what differs by less is the same; rounding of a few hundred steps
 _SAFE, _IN_ORDER, _FROM = 1.5, 0.99, 2.0  # m; what counts as C = 1; s
 _SOURCE = "Jond, bearing-distance flocking"
 _REFERENCES = ("jond-2025",)
@@ -47,14 +48,15 @@ def _weights_cancel() -> Claim:
     for seed in range(_SEEDS):
         q, p = zone_start(seed)
         one, two = (law.behaviours(q, p) for law in (printed, other))
-        worst = max(worst, *(float(np.abs(one[name] - two[name]).max()) for name in ("cohesion", "alignment")))
+        pairs = [(one[name], two[name]) for name in ("cohesion", "alignment")]
+        worst = max(worst, *(float(np.abs(a - b).max() / np.abs(a).max()) for a, b in pairs))
     return Claim(
         "weights",
-        judge(-(1e-12 - worst), 0.0, []),
+        judge(worst - _SAME, _ROUNDING, []),
         computed=worst,
         stated="w^lc = 0.75 and w^la = 0.25 weigh cohesion against alignment",
-        margin=worst - 1e-12,
-        error=0.0,
+        margin=worst - _SAME,
+        error=_ROUNDING,
         witness={"(w^lc, w^la)": [(0.75, 0.25), (40.0, 7.0)], "starts": _SEEDS},
         detail=f"with weights of 40 and 7 for 0.75 and 0.25 cohesion and alignment stay the same to {worst:.1g}: "
         "uniform weights cancel in (3), (4)",
@@ -147,14 +149,16 @@ def _j12(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
     out, back, after = _inside("outward")
     error, rows = _stand_offs()
     touch, (_, meet) = _at_wall(5.0, 5.0), _head_on(_pair(5.0, 5.0))
+    force, c = 5.0 * _RADII.reach[1], _RADII.reach[1]  # w^oa c and c: what all is compared with
+    off, inwards, near = max(solid, wall) / force, min(out / force, back / force, -after / c), min(touch, meet) / c
     return [], [
         Claim(
             "printed",
-            judge(max(solid, wall), 0.0, []),
+            judge(off, _ROUNDING, []),
             computed={"outward force in an obstacle": solid, "inward force beyond a wall": wall},
             stated="(8) repels an agent from an obstacle and from a wall",
-            margin=max(solid, wall),
-            error=0.0,
+            margin=off,
+            error=_ROUNDING,
             witness={
                 "in an obstacle": (10.5, 0.3),
                 "beyond the wall x = 50": (50.1, 25.0),
@@ -165,32 +169,32 @@ def _j12(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
         ),
         Claim(
             "corrected",
-            judge(min(out, back, -after), 0.0, []),
+            judge(inwards, _ROUNDING, []),
             computed={"outward force in an obstacle": out, "inward force beyond a wall": back},
             stated="with d + c along b - p_i it is pushed out of obstacles and back behind walls",
-            margin=min(out, back, -after),
-            error=0.0,
+            margin=inwards,
+            error=_ROUNDING,
             witness="the same agents",
             detail=f"pushed out by {out:.3g}, back by {back:.3g}: after 3 s the second is {-after:.3g} m inside",
         ),
         Claim(
             "stand-off",
-            judge(1e-6 - error, 0.0, []),
+            judge(1e-6 - error / c, _ROUNDING, []),
             computed={case: pair[1] for case, pair in rows.items()},
             stated={case: pair[0] for case, pair in rows.items()},
-            margin=1e-6 - error,
-            error=0.0,
+            margin=1e-6 - error / c,
+            error=_ROUNDING,
             witness="head on, inputs unbounded, weights that damp the approach",
             detail=f"agents that run head on at a wall, or at each other, stop at c - v^d w^ga/w in {len(rows)} cases "
             f"(off by {error:.1g} m)",
         ),
         Claim(
             "contact",
-            judge(min(touch, meet), 1e-6, []),
+            judge(near, _ROUNDING, []),
             computed={"distance from the wall": touch, "least signed gap of two agents": meet},
             stated="w^oa = w^ls = 5 keep agents off walls and each other",
-            margin=min(touch, meet),
-            error=1e-6,
+            margin=near,
+            error=_ROUNDING,
             witness={"w^ga": 5.0, "w": 5.0, "c": 3.0, "v^d": 3.0, "stand-off": 0.0},
             detail=f"with the printed 5, 5, 3, 3 the stand-off is 0: an agent comes to rest {abs(touch):.1g} m from "
             "the wall, and two that meet head on pass through each other",

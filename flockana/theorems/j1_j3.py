@@ -9,13 +9,19 @@ import numpy as np
 from flockana.checks import FloatArray
 from flockana.intervals import clopper_pearson
 from flockana.laws.minimal import MinimalFlocking
-from flockana.laws.perception import both_ways, edge_vectors, random_out_tree
+from flockana.laws.perception import Edges, both_ways, edge_vectors, random_out_tree
 from flockana.nets import components
 from flockana.simulate import simulate
+from flockana.theorems.limits import limit_claim
 from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
+from flockana.theorems.tree_case import TreeCase, tree_case
+from flockana.theorems.tree_limits import longest_floor, settles
+from flockana.trajectory import Trajectory
 
 _TREES, _MOST, _SEED, _END = 200, 8, 1, 80.0
 _CONFIDENCE = 0.95
+_INTERVAL = 1e-9  # to which the ends of an exact interval are computed
+_EIGENVALUES = 1e-6  # of matrices of 6 rows and entries up to 4000, well apart: 1e-12 of these entries times 100
 _SOURCE = "Jond, bearing-distance flocking, Theorem 1"
 _REFERENCES = ("jond-2025",)
 _TREE_SHAPES = (((0, 1), (1, 2), (2, 3)), ((0, 1), (0, 2), (0, 3)), ((0, 1), (1, 2), (1, 3), (0, 4)))
@@ -53,41 +59,54 @@ def random_forest(count: int, seed: int, *, rho: float = 1.0) -> tuple[MinimalFl
 
 def _j1(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
     law, q, p = random_forest(_TREES, _SEED)
-    edges = law.edges or ()
     run = simulate(law, q, p, (0.0, _END), t_eval=(0.0, _END))
-    tree = components(len(q), np.array(edges, dtype=np.int32))[[i for _, i in edges]]
-    lengths = np.linalg.norm(edge_vectors(run.q[-1], edges), axis=1)
-    rates = np.linalg.norm(edge_vectors(run.p[-1], edges), axis=1)
-    there = np.maximum(np.abs(lengths - 1.0), rates) <= tolerances.lattice
-    right = sum(bool(there[tree == k].all()) for k in range(_TREES))
-    vanished = sum(bool((lengths[tree == k] < 0.5).any()) for k in range(_TREES))
+    lengths = np.linalg.norm(edge_vectors(run.q[-1], law.edges or ()), axis=1)
+    trees = _apart(run)
+    certain = [settles(*tree) for tree in trees]
+    weakest = min(certain, key=lambda one: one.margin)
+    right = sum(one.margin > one.error for one in certain)
+    vanished = sum(not longest_floor(*tree)[0] > 0.0 for tree in trees)
     least, most = map(float, clopper_pearson(right, _TREES, level=_CONFIDENCE))
     none = tuple(map(float, clopper_pearson(vanished, _TREES, level=_CONFIDENCE)))
     case = {"trees": _TREES, "agents": f"2 to {_MOST}", "seed": _SEED, "t": _END}
     return [], [
         Claim(
             "printed",
-            judge(none[1] - 1.0, 0.0, []) if vanished < _TREES else "inconclusive",
-            computed={"trees with an edge below half its spacing": vanished, "interval": list(none)},
+            judge(none[1] - 1.0, _INTERVAL, []) if vanished < _TREES else "inconclusive",
+            computed={"trees whose edges might all vanish": vanished, "interval": list(none)},
             stated="|x_e| -> 0 on every edge of every spanning tree (share 1)",
             margin=none[1] - 1.0,
-            error=0.0,
+            error=_INTERVAL,
             witness=case | {"shortest edge at the end": float(lengths.min())},
-            detail=f"of {_TREES} random directed trees {vanished} have an edge below half its spacing at the end; the "
-            f"shortest is {lengths.min():.8g} αr",
+            detail=f"of {_TREES} random directed trees {_TREES - vanished} keep an edge at a length > 0 for ever; the "
+            f"shortest of all is {lengths.min():.8g} αr at the end",
         ),
-        Claim(
+        limit_claim(
             "corrected",
-            judge(right - _TREES + 0.5, 0.0, []),
+            [],
+            [weakest],
             computed={"trees": right, "interval": [least, most]},
             stated="what converges is | |x_e| - α_i r_i | and the velocity difference, on every edge",
-            margin=right - _TREES + 0.5,
-            error=0.0,
             witness=case | {"largest length error": float(np.abs(lengths - 1.0).max())},
-            detail=f"{right} of {_TREES} random directed trees end with every edge at αr and velocities equal; share "
+            detail=f"{right} of {_TREES} random directed trees go to every edge at αr and equal velocities; share "
             f"{least:.3f} or more ({_CONFIDENCE:.0%}, Clopper-Pearson)",
         ),
     ]
+
+
+def _apart(run: Trajectory) -> list[tuple[TreeCase, FloatArray, FloatArray]]:
+    """Each tree of a forest with its last state: they do not see each other."""
+    edges: Edges = run.law.edges
+    label = components(run.n, np.array(edges, dtype=np.int32))
+    found = []
+    for k in range(int(label.max()) + 1):
+        agents = np.flatnonzero(label == k)
+        own = {int(agent): number for number, agent in enumerate(agents)}
+        law = MinimalFlocking(edges=tuple((own[j], own[i]) for j, i in edges if j in own), spacing=run.law.spacing)
+        case = tree_case(law, len(agents))
+        assert case is not None
+        found.append((case, run.q[-1][agents], run.p[-1][agents]))
+    return found
 
 
 def _two_agents_abscissa(ratio: float) -> float:
@@ -203,11 +222,11 @@ def _j3(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
     return [], [
         Claim(
             "printed",
-            judge(1e-6 - error, 0.0, []),
+            judge(-error, _EIGENVALUES, []),
             computed=error,
             stated="λ² + λ μ_i + γ_i = 0, index by index, for any graph",
             margin=-error,
-            error=0.0,
+            error=_EIGENVALUES,
             witness={"graph": "undirected path of four", "|x|": _PATH_LENGTHS, "α_i r_i": _PATH_SPACING, "μ": 400.0},
             proof="bearing-distance-printed",
             detail=f"on an undirected path the best pairing misses an eigenvalue by {error:.3f}: the matrices do not "
@@ -215,11 +234,11 @@ def _j3(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
         ),
         Claim(
             "hurwitz",
-            judge(-stiffer, 1e-9, []),
+            judge(-stiffer, _EIGENVALUES, []),
             computed=stiffer,
             stated="negative real parts of all eigenvalues, since μ_i and γ_i have positive ones",
             margin=-stiffer,
-            error=1e-9,
+            error=_EIGENVALUES,
             witness={"graph": "the same path, every |x_e| > α_i r_i", "μ": 4000.0, "at μ = 400": abscissa},
             proof="bearing-distance-printed",
             detail=f"with μ = 4000 an eigenvalue has real part {stiffer:.4f}, though every edge is longer than α_i r_i",

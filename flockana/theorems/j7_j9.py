@@ -16,6 +16,8 @@ from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, ju
 from flockana.trajectory import Trajectory
 
 _SEEDS, _END = 20, 20.0
+_SAME = 1e-9  # relative: numbers that differ by less are the same
+_ROUNDING, _INTERVAL = 1e-11, 1e-9  # relative: of a few hundred steps of one agent; of the ends of an exact interval
 _SOURCE = "Jond, bearing-distance flocking"
 _REFERENCES = ("jond-2025",)
 _WATCHFUL = ZoneRadii(1.5, c=3.0, a=5.0, s=6.0)
@@ -54,6 +56,7 @@ def _j7(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
     law = ZoneFlocking(speed_bound="tanh")
     after = law.step(0.0, np.zeros((1, 2)), np.array([[3.0, 0.0]]), law.start(np.zeros((1, 2)), np.array([[3.0, 0.0]])))
     step, bound = float(after[1][0, 0]), dragged_speed(law.dt)
+    off, short = abs(step / (4.0 * tanh(0.75)) - 1.0), bound / law.desired_speed - 1.0
     letter = [_late_speed(run) for run in _runs(ZoneFlocking.printed(own_velocity="measured"))]
     clip = [
         _late_speed(run)
@@ -63,21 +66,21 @@ def _j7(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
     return [], [
         Claim(
             "step",
-            judge(1e-12 - abs(step - 4.0 * tanh(0.75)), 0.0, []),
+            judge(_SAME - off, _ROUNDING, []),
             computed=step,
             stated=4.0 * tanh(0.75),
-            margin=1e-12 - abs(step - 4.0 * tanh(0.75)),
-            error=0.0,
+            margin=_SAME - off,
+            error=_ROUNDING,
             witness="one agent at the desired speed, no input",
             detail=f"applied to the state, (10) makes a speed of 3 into {step:.4g} in every step: a drag",
         ),
         Claim(
             "reachable",
-            judge(bound - law.desired_speed, 1e-9, []),
+            judge(short, _ROUNDING, []),
             computed=bound,
             stated=f"the desired speed {law.desired_speed:g} is below the bound 4, so it can be kept",
-            margin=bound - law.desired_speed,
-            error=1e-9,
+            margin=short,
+            error=_ROUNDING,
             witness={dt: dragged_speed(dt) for dt in (0.1, 0.05, 0.01, 0.001)},
             detail=f"with all inputs within u^max = 2 no speed above {bound:.4f} lasts (steps of 0.1 s); with "
             "finer steps less still",
@@ -105,14 +108,15 @@ def _forms(tolerances: Tolerances) -> Claim:
     for seed in range(_SEEDS):
         q, p = zone_start(seed)
         a, b = (ZoneFlocking(form=form).behaviours(q, p) for form in ("position", "bearing"))
-        worst = max(worst, *(float(np.abs(a[name] - b[name]).max()) for name in a))
+        largest = max(float(np.abs(term).max()) for term in a.values())
+        worst = max(worst, *(float(np.abs(a[name] - b[name]).max()) / largest for name in a))
     return Claim(
         "forms",
-        judge(1e-11 - worst, 0.0, []),
+        judge(_SAME - worst, _ROUNDING, []),
         computed=worst,
         stated="with the true velocity both forms of all six behaviours are equal",
-        margin=1e-11 - worst,
-        error=0.0,
+        margin=_SAME - worst,
+        error=_ROUNDING,
         witness={"starts": _SEEDS},
         detail=f"with the true velocity position and bearing form agree to {worst:.1g}: (12)-(15) are right",
     )
@@ -163,31 +167,31 @@ def _j9(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
     return [], [
         Claim(
             "printed",
-            judge(through, 1e-6, []),
+            judge(through / stand_off, _ROUNDING, []),
             computed=through,
             stated="an agent keeps clear of an alien that it sees",
-            margin=through,
-            error=1e-6,
+            margin=through / stand_off,
+            error=_ROUNDING,
             witness={"alien": (20.0, 0.0), "q(0)": (0.0, 0.0), "p(0)": (3.0, 0.0)},
             detail="N_i^s ends at a_i: nearer than 5 m the alien exerts no force: an agent runs straight through it",
         ),
         Claim(
             "corrected",
-            judge(1e-3 - abs(gap - stand_off), 0.0, []),
+            judge(1e-3 - abs(gap / stand_off - 1.0), _ROUNDING, []),
             computed=gap,
             stated=stand_off,
-            margin=1e-3 - abs(gap - stand_off),
-            error=0.0,
+            margin=1e-3 - abs(gap / stand_off - 1.0),
+            error=_ROUNDING,
             witness="the same agent and alien, 0 < d <= s_i",
             detail=f"with 0 < d <= s_i it stops at {gap:.4f} m, where s - v^d w^ga/w^ss = {stand_off:g}",
         ),
         Claim(
             "flock",
-            "refuted" if interval[1] < 1.0 else "inconclusive",
+            "refuted" if interval[1] < 1.0 - _INTERVAL else "inconclusive",
             computed={"median, printed": float(np.median(annulus)), "median, corrected": float(np.median(disc))},
             stated="the flock keeps more than 1.5 m from an alien that hunts it (share 1)",
             margin=interval[1] - 1.0,
-            error=0.0,
+            error=_INTERVAL,
             witness={"printed": annulus, "corrected": disc},
             detail=f"least distance of ten agents from a hunting alien over {size} seeds: {np.median(annulus):.2f} m "
             f"in the median as printed, {np.median(disc):.2f} m as corrected (larger in {clear} of {size})",

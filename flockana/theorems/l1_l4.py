@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import inf, sqrt
+from math import sqrt
 from typing import Any
 
 import numpy as np
@@ -13,11 +13,15 @@ from flockana.intervals import clopper_pearson
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.metrics import connectivity, min_distance
 from flockana.simulate import simulate
-from flockana.theorems.dead_zone_case import PROOF, parts
+from flockana.theorems.dead_zone_case import PROOF
 from flockana.theorems.dead_zone_erratum import Found, advance, erratum, margin_claim, two_that_part
+from flockana.theorems.dead_zone_parts import parts
 from flockana.theorems.theorem import Claim, Tolerances
 
 SEEDS = 10  # of each box in L4
+_SAME = 1e-9  # relative: two forces that differ by less are the same
+_INTERVAL = 1e-9  # to which the ends of an exact interval are computed
+_ROUNDING = 1e-12  # relative, of a force of three agents: some hundred roundings
 
 
 def _l1(tolerances: Tolerances) -> Found:
@@ -46,9 +50,17 @@ def _l1(tolerances: Tolerances) -> Found:
     off, kept = twist(printed), twist(resolved)
     return [], [
         margin_claim(
-            "printed", 1e-12 - off, f"read by components, turning the axes changes the force by {off:.3g} of itself"
+            "printed",
+            _SAME - off,
+            f"read by components, turning the axes changes the force by {off:.3g} of itself",
+            error=_ROUNDING,
         ),
-        margin_claim("corrected", 1e-12 - kept, f"with f once and n once the force turns with the axes, to {kept:.2g}"),
+        margin_claim(
+            "corrected",
+            _SAME - kept,
+            f"with f once and n once the force turns with the axes, to {kept:.2g}",
+            error=_ROUNDING,
+        ),
     ]
 
 
@@ -57,7 +69,7 @@ def _l2(tolerances: Tolerances) -> Found:
     from scipy.integrate import quad
 
     pair, start = DeadZoneInteraction(k1=0.0), 3.0
-    toward = float(pair.force(start))
+    toward = float(pair.force(start)) / pair.contact_force
     level = float(pair.psi(start))
     # two agents at rest under −F: ½ρ'² = 2(ψ(ρ) − ψ(3)), and with ρ = 3(1 − x²) the integrand is smooth at the start
     fall = quad(lambda x: 3.0 * x / sqrt(pair.psi(start * (1.0 - x * x)) - level), 0.0, 1.0, limit=200)[0]
@@ -67,11 +79,17 @@ def _l2(tolerances: Tolerances) -> Found:
             toward,
             f"with n = q_i - q_j two agents at rest {start:g} apart, nearer than d1, are drawn together and meet after "
             f"{fall:.4g}",
+            error=_ROUNDING,
             computed=fall,
             stated="repulsion below r_b - δ",
             proof=PROOF,
         ),
-        margin_claim("corrected", -toward, f"with n = q_j - q_i their force is {toward:.4g}: it repels"),
+        margin_claim(
+            "corrected",
+            -toward,
+            f"with n = q_j - q_i their force is {toward:.4g} of that of a contact: it repels",
+            error=_ROUNDING,
+        ),
     ]
 
 
@@ -140,9 +158,10 @@ def _l4(tolerances: Tolerances) -> Found:
     return [], [
         margin_claim(
             "printed",
-            law.interaction.r - radius if end.parting else inf,
+            -end.separation.margin,
             f"two agents {q[1, 0]:g} apart that leave each other at {2.0 * p[1, 0]:g} part for ever: at t = 10 "
-            f"they are {radius:.4g} from their centre",
+            f"they are {radius:.4g} from their centre, where {end.separation.text}",
+            error=end.separation.error,
             computed=radius,
             stated="no agent farther than r from the leader",
             proof=PROOF,
@@ -152,6 +171,7 @@ def _l4(tolerances: Tolerances) -> Found:
             least - most,
             f"of {SEEDS} starts in a box of 40 m {near} end connected, of {SEEDS} in one of 150 m {far}: shares of at "
             f"least {least:.2f} and at most {most:.2f} (95 %)",
+            error=_INTERVAL,
             computed=[near, far],
             stated="the share of connected flocks falls with the box",
         ),

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.asymptotics import lattice_limit
+from flockana.theorems.hypotheses import vacuous, with_alpha_gain
 from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances
 from flockana.trajectory import Trajectory
 
 
 def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
-    applies = type(run.law) in (Algorithm1, Algorithm2) and not run.law.gains.per_agent
-    detail = type(run.law).__name__
-    law = Hypothesis("Algorithm 1 or 2, common gains", "met" if applies else "unmet", detail=detail)
-    if not applies:
-        return [law], [Claim("lattice", "vacuous", detail="another law")]
-    return [law], [lattice_limit(run, [law], tolerances, name="lattice")]
+    needs = with_alpha_gain(run, "Algorithm 1 or 2", Algorithm1, Algorithm2)
+    nothing = vacuous(needs, ["lattice"])
+    return needs, nothing or [lattice_limit(run, needs, tolerances, name="lattice")]
 
 
 THEOREM = Theorem(

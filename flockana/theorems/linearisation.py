@@ -11,7 +11,7 @@ from flockana.checks import FloatArray
 from flockana.environment.obstacles import Wall
 from flockana.environment.targets import StaticTarget
 from flockana.equilibria.solve import find_equilibrium
-from flockana.errors import FlockanaError
+from flockana.errors import ArgumentError, FlockanaError
 from flockana.interactions import AlphaInteraction
 from flockana.lattice import hexagonal_patch
 from flockana.laws.algorithm3 import Algorithm3
@@ -107,13 +107,14 @@ def _range(found: Mapping[str, LinearRange], alpha: AlphaInteraction) -> Claim:
     """The deviation's exponent: the first neglected term is quadratic about a lattice."""
     exponents = [one.exponent for one in found.values()]
     margin = _EXPONENT - max(abs(exponent - 2.0) for exponent in exponents)
+    error = max(one.exponent_error for one in found.values())
     bend = sqrt(1.0 + alpha.eps * alpha.d**2) / alpha.d**2  # σ₁'s argument is 1 where ‖q_ij‖_σ is off by 1
     limits = "; ".join(
         f"{name}: 1 % at {one.limit(0.01):.2g} d, 10 % at {one.limit(0.1):.2g} d" for name, one in found.items()
     )
     return Claim(
         "range",
-        judge(margin, 0.0, []),
+        judge(margin, error, []),
         computed={
             name: {
                 "exponent": one.exponent,
@@ -126,7 +127,7 @@ def _range(found: Mapping[str, LinearRange], alpha: AlphaInteraction) -> Claim:
         },
         stated="a run leaves its linear prediction by a distance that grows as the square of the amplitude",
         margin=margin,
-        error=0.0,
+        error=error,
         witness={"σ₁ bends at": bend, "a link reaches r at": {name: one.margin for name, one in found.items()}},
         detail=f"exponents {', '.join(f'{exponent:.3f}' for exponent in exponents)}; deviation of {limits}. σ₁ "
         f"saturates where a link is off by {bend:.2g} d, and that ends the linear range, long before a link reaches r",
@@ -159,11 +160,15 @@ def _terminal(run: Trajectory) -> tuple[Linearisation | None, str]:
 
 def _check_terminal(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
     found, why = _terminal(run)
-    stable = found is not None and found.decay_rate > 0.0
+    stable = found is not None and bool(found.modes) and found.stable
     given = Hypothesis("an equilibrium near the last state is stable", "met" if stable else "unmet", detail=why)
     if found is None or not stable:
         return [given], [Claim(name, "vacuous", detail="no stable equilibrium to return to") for name in _NAMES]
-    return [given], _agreement([decay(found, name=f"n = {run.n}, last state")], tolerances)
+    try:
+        one = decay(found, name=f"n = {run.n}, last state")
+    except ArgumentError as error:  # it has no shape, or hardly any damping
+        return [given], [Claim(name, "inconclusive", detail=f"no rate was measured: {error}") for name in _NAMES]
+    return [given], _agreement([one], tolerances)
 
 
 _NAMES = ("decay", "random")

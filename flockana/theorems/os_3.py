@@ -2,113 +2,98 @@
 
 from __future__ import annotations
 
-from math import floor, sqrt
+from math import inf, sqrt
 
 import numpy as np
 
 from flockana.lattice import classify
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.terminal import TerminalState, terminal_state
-from flockana.theorems.asymptotics import (
+from flockana.terminal import terminal_state
+from flockana.theorems.asymptotics import velocities_match
+from flockana.theorems.attraction import held
+from flockana.theorems.collisions import (
+    below_multiple,
     below_the_barrier,
     distinct_pairs,
     no_collision,
     pairs_at_one_instant,
-    settled,
-    velocities_match,
 )
+from flockana.theorems.gamma_agent import consistent
+from flockana.theorems.hypotheses import applied, one_gain, positive, vacuous
+from flockana.theorems.limits import limit_claim
+from flockana.theorems.rounding import energy_error, frame_error
+from flockana.theorems.sampling import radius_between
 from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
 from flockana.trajectory import Trajectory
 
-
-def _hypotheses(run: Trajectory) -> tuple[list[Hypothesis], Hypothesis]:
-    """(those that the claims need, and the γ-agent's consistency, which they do not)."""
-    applies = type(run.law) is Algorithm2
-    law = Hypothesis("Algorithm 2 is applied", "met" if applies else "unmet", detail=type(run.law).__name__)
-    if not applies:
-        return [law], Hypothesis("dq_r/dt = p_r", "unmet", detail="no γ-agent")
-    gains = run.law.gains
-    if gains.per_agent:
-        single = Hypothesis("one c1γ and one c2γ for all agents", "unmet", detail="gains are given per agent")
-        return [single], Hypothesis("dq_r/dt = p_r", "unmet", detail="no claim is judged")
-    least = min(gains.c1_gamma, gains.c2_gamma)
-    positive = Hypothesis(
-        "c1γ > 0 and c2γ > 0",
-        "met" if least > 0.0 else "unmet",
-        least,
-        f"c1γ = {gains.c1_gamma:g}, c2γ = {gains.c2_gamma:g}",
-    )
-    finite = Hypothesis("K(v(0)) and J(x(0)) are finite", "met", detail="every state here is finite")
-    mismatch = run.law.target.mismatch(run.t[:: max(1, len(run.t) // 50)])
-    consistent = Hypothesis(
-        "dq_r/dt = p_r",
-        "met" if mismatch <= 1e-6 else "unmet",
-        -mismatch,
-        "" if mismatch <= 1e-6 else f"p_r is off by up to {mismatch:.3g}; no claim below needs it (moving frame)",
-    )
-    return [law, positive, finite], consistent
+_CLAIMS = ("i", "ii", "iii", "iv-printed", "iv-instant", "iv-none", "iv-barrier")
 
 
-def _cohesive(run: Trajectory, needs: list[Hypothesis]) -> Claim:
-    """(i) with its explicit bound: ½ c1γ R² <= λ J <= H_λ(t) <= H_λ(0)."""
-    radius = run.metrics().cohesion_radius.values
-    worst, c1_gamma = int(np.argmax(radius)), run.law.gains.c1_gamma
-    bound = sqrt(2.0 * float(run.energy()[0]) / c1_gamma) if c1_gamma > 0.0 else float("inf")
-    margin, error = bound - float(radius[worst]), 1e-9 * float(radius[worst])
+def _cohesive(run: Trajectory, needs: list[Hypothesis], error: float) -> Claim:
+    """(i) with its explicit bound: ½ c1γ R² <= λ J <= H_λ(t) <= H_λ(0), between samples too."""
+    radius, c1_gamma = run.metric("cohesion_radius"), run.law.gains.c1_gamma
+    worst, energy = int(np.argmax(radius)), float(run.energy()[0])
+    largest = float(radius[worst])
+    bound = sqrt(2.0 * energy / c1_gamma) if c1_gamma > 0.0 else inf
+    blur = sqrt(2.0 * error / c1_gamma) if c1_gamma > 0.0 else 0.0  # of the bound, at worst: √(a + e) - √a <= √e
+    off = min(blur, error / (c1_gamma * bound)) if c1_gamma > 0.0 and bound > 0.0 else blur
+    between = float(radius_between(run).max(initial=largest)) - largest if largest < bound else 0.0
+    error = off + sqrt(run.m) * frame_error(run.q) + between
     return Claim(
         "i",
-        judge(margin, error, needs),
-        computed=float(radius[worst]),
+        judge(bound - largest, error, needs),
+        computed=largest,
         stated=f"R <= sqrt(2 H_λ(0)/c1γ) = {bound:.5g}",
-        margin=margin,
+        margin=bound - largest,
         error=error,
         witness={"time": float(run.t[worst])},
         proof="cohesion",
-        detail=f"cohesive: R <= {radius[worst]:.4g}, and H_λ(0) allows {bound:.4g}",
+        detail=f"cohesive: R <= {largest:.4g}, and H_λ(0) allows {bound:.4g}",
     )
 
 
-def _minimum(end: TerminalState, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
-    """(ii): the limit is a local minimum of U_λ, by its Hessian off the rotations; one run cannot refute it."""
-    margin = end.curvature - tolerances.curvature
-    status = judge(margin, 0.0, needs)
-    if status != "vacuous" and (status == "refuted" or not settled(end, tolerances)):
-        status = "inconclusive"
+def _minimum(run: Trajectory, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
+    """(ii): the limit is a local minimum of U_λ, strict but for the rotations; one run cannot refute it."""
+    end = terminal_state(run.law, run.q[-1], run.p[-1], contact=tolerances.contact)
     kind = classify(end.strain, lattice=tolerances.lattice, quasi=tolerances.quasi)
     links = f"links off d by up to {100.0 * end.strain:.2g} %" if end.links else "no links"
-    state = "equilibrium" if settled(end, tolerances) else "not yet an equilibrium"
-    return Claim(
+    return limit_claim(
         "ii",
-        status,
+        needs,
+        [held(run).certificate],
         computed=end.curvature,
-        stated=f"least Hessian eigenvalue of U_λ off the rotations > 0 (over {tolerances.curvature:g} of the largest)",
-        margin=margin,
-        error=0.0,
+        stated="the flock is caught by a strict local minimum of U_λ (modulo rotations)",
         witness={"force": end.force, "K̃": end.mismatch, "strain": end.strain, "coincident pairs": end.coincident},
-        detail=f"limit: {state} (residual force {end.force:.2g}), curvature {end.curvature:.2g}; as a lattice: {kind}, "
-        f"{links}",
+        detail=f"residual force {end.force:.2g}, curvature {end.curvature:.2g}; as a lattice: {kind}, {links}",
     )
 
 
 def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
-    needs, consistent = _hypotheses(run)
-    if needs[0].status == "unmet":
-        names = ("i", "ii", "iii", "iv-printed", "iv-instant", "iv-none", "iv-barrier")
-        return needs, [Claim(name, "vacuous", detail=needs[0].detail) for name in names]
-    end = terminal_state(run.law, run.q[-1], run.p[-1], contact=tolerances.contact)
-    c_star = run.law.gains.c1_alpha * run.law.alpha.c_star
-    k = floor(float(run.energy()[0]) / c_star)
-    collision_free = Hypothesis("H_λ(0) < c* (k = 0)", "met" if k == 0 else "unmet", detail=f"k = {k}")
-    energy_falls = [needs[0]]  # gains >= 0 are enough for (iv)
-    barrier = below_the_barrier(run, float(run.energy()[0]))  # U_λ >= c1α V: a bound of V will do
-    return [*needs, consistent, collision_free, barrier], [
-        _cohesive(run, needs),
-        _minimum(end, needs, tolerances),
-        velocities_match(run, tolerances, needs, name="iii"),
-        distinct_pairs(run, needs[0], tolerances, c_star=c_star, name="iv-printed"),
-        pairs_at_one_instant(run, needs[0], tolerances, c_star=c_star, name="iv-instant", proof="collisions"),
-        no_collision(run, [*energy_falls, collision_free], tolerances, name="iv-none", proof="collisions"),
-        no_collision(run, [*energy_falls, barrier], tolerances, name="iv-barrier"),
+    law = applied(run, "Algorithm 2", Algorithm2)
+    single = one_gain(run) if law.status == "met" else law
+    if nothing := vacuous([single], _CLAIMS):
+        return [single], nothing
+    gains = positive(run, c1_gamma="c1γ", c2_gamma="c2γ")
+    finite = Hypothesis("K(v(0)) and J(x(0)) are finite", "met", detail="every state here is finite")
+    needs, repels = [law, gains, finite], positive(run, c1_alpha="c1α")
+    error = float(energy_error(run.law, run.q[:1], run.p[:1], run.energy()[:1])[0])
+    claims = [
+        _cohesive(run, needs, error),
+        _minimum(run, needs, tolerances),
+        velocities_match(run, tolerances, needs, name="iii", caught=[held(run).certificate]),
+    ]
+    found = [*needs, consistent(run), repels]  # nothing below needs dq_r/dt = p_r: it is about the moving frame
+    if nothing := vacuous([repels], _CLAIMS[3:]):
+        return found, [*claims, *nothing]
+    energy, falls = float(run.energy()[0]), [law, repels]  # gains >= 0 are enough for (iv)
+    none = below_multiple(energy, error, run.law.gains.c1_alpha * run.law.alpha.c_star)
+    barrier = below_the_barrier(run, energy, error)  # U_λ >= c1α V: a bound of V will do
+    return [*found, none, barrier], [
+        *claims,
+        distinct_pairs(run, falls, tolerances, name="iv-printed"),
+        pairs_at_one_instant(run, falls, tolerances, name="iv-instant", proof="collisions"),
+        no_collision(run, [*falls, none], tolerances, name="iv-none", proof="collisions"),
+        no_collision(run, [*falls, barrier], tolerances, name="iv-barrier"),
     ]
 
 

@@ -27,6 +27,8 @@ from flockana.lattice import (
 from flockana.lattice.measure import GUARD
 from flockana.metrics import min_distance
 from flockana.nets import LinkArray, link_lengths
+from flockana.theorems.hypotheses import vacuous
+from flockana.theorems.rounding import EPS
 from flockana.theorems.theorem import Claim, Hypothesis, HypothesisStatus, Theorem, Tolerances, judge
 from flockana.trajectory import Trajectory
 
@@ -41,11 +43,12 @@ CLAIMS = (
     "extension-links",
     "extension-quantitative",
 )
-_LISTED = 1000  # crossings that are listed at most
+_LISTED = 100_000  # crossings that are listed at most; beyond, every count of them says "at least"
 _SHOWN = 10  # and shown as witness
 _WITNESS_LIMIT = 20_000  # links of which a Kuratowski subgraph is still found in about a minute
 _CROSSINGS, _COUNTS = "theorem5-crossings", "theorem5-counts"  # executable proofs
 _ROUNDING = 1e-12  # relative error of a distance of two stored positions near the origin
+_CERTAIN = 64.0 * EPS  # relative difference of two squared lengths that floating point gets the sign of
 
 
 class _Net:
@@ -54,7 +57,8 @@ class _Net:
     def __init__(self, q: FloatArray, d: float, r: float) -> None:
         self.q, self.d, self.r = q, d, r
         self.n, self.m = q.shape
-        self.links: LinkArray = links(q, r)
+        self.rounding = 8.0 * EPS * float(np.abs(q).max()) + _ROUNDING * r  # of a distance
+        self.links: LinkArray = links(q, r, guard=min(0.5, max(GUARD, self.rounding / r)))
         self.lengths = link_lengths(q, self.links)
         self.strain = float(np.abs(self.lengths - d).max() / d) if len(self.links) else float("nan")
         self.closest = min_distance(q)
@@ -65,9 +69,14 @@ class _Net:
         return [[int(v) for v in self.links[k]] for k in pair]
 
     @property
-    def crossing_text(self) -> str:
+    def crossing_count(self) -> int | str:
+        """How many pairs of links cross, or that there are more than are listed."""
         count = len(self.crossings)
-        return f"{'at least ' if count == _LISTED else ''}{count or 'no'} pairs of {len(self.links)} links cross"
+        return f"at least {count}" if count >= _LISTED else count
+
+    @property
+    def crossing_text(self) -> str:
+        return f"{self.crossing_count or 'no'} pairs of {len(self.links)} links cross"
 
 
 def _lattice_hypotheses(net: _Net, tolerances: Tolerances) -> list[Hypothesis]:
@@ -88,22 +97,22 @@ def _dimension(name: str, holds: bool, net: _Net) -> Hypothesis:
 
 def _far_apart(net: _Net, length: float, name: str) -> Hypothesis:
     margin = net.closest - length / sqrt(2.0)
-    met = margin > _ROUNDING * net.r  # what a rounding decides is not taken for met
+    met = margin > net.rounding  # what a rounding decides is not taken for met
     text = f"shortest distance {net.closest:.6g} against {length / sqrt(2.0):.6g}"
     return Hypothesis(f"all pairs are farther apart than {name}", "met" if met else "unmet", margin, text)
 
 
 def _uncrossed(net: _Net, needs: list[Hypothesis], name: str, text: str) -> Claim:
     """No two links cross: exact for the positions as stored; in space only a clearance speaks for the true ones."""
-    count = len(net.crossings)
+    count = net.crossing_count
     if any(h.status == "unmet" for h in needs):
         detail = f"{text}: {net.crossing_text}"
         return Claim(name, "vacuous", computed=count, stated="no crossing", proof=_CROSSINGS, detail=detail)
     if count:
-        margin, error, which, near = -float(count), 0.0, None, ""
+        margin, error, which, near = -float(len(net.crossings)), 0.0, None, ""
     else:
         gap = separation(net.q, net.links, reach=0.5 * net.d)
-        margin, error = gap.distance / net.d, _ROUNDING * (1.0 + float(np.abs(net.q).max()) / net.d)
+        margin, error = gap.distance / net.d, 2.0 * net.rounding / net.d
         which = None if gap.links is None else net.agents(gap.links)
         near = f"; links without a common agent stay {'at least ' if which is None else ''}{gap.distance:.4g} apart"
     return Claim(
@@ -150,7 +159,7 @@ def _bound(
         judge(bound - count + 0.5, 0.0, needs),
         computed=count,
         stated=f"at most {bound} links",
-        margin=float(bound - count),
+        margin=bound - count + 0.5,  # between the numbers that keep it and those that do not
         error=0.0,
         witness=None,
         proof=proof,
@@ -183,34 +192,47 @@ def _unlinked(net: _Net) -> list[int]:
 
 def _quantitative(net: _Net) -> Claim:
     """If two links of lengths at most ℓ cross, some two of their agents are within ℓ/√2 of each other."""
-    found = [_nearest_of_crossing(net, net.links[pair]) for pair in net.crossings]
     name, stated = "extension-quantitative", "of two crossing links of lengths at most ℓ, two agents are within ℓ/√2"
-    if not found:
+    if not len(net.crossings):
         return Claim(name, "vacuous", computed=0, stated=stated, proof=_CROSSINGS, detail="no links cross")
-    failing = [k for k, (holds, _) in enumerate(found) if not holds]
-    worst = failing[0] if failing else min(range(len(found)), key=lambda k: found[k][1])
+    longest, shortest = _of_crossing(net)
+    spare = longest - 2.0 * shortest
+    open_ones = np.flatnonzero(np.abs(spare) <= _CERTAIN * longest)
+    exact = [_holds_exactly(net, net.links[net.crossings[k]]) for k in open_ones]
+    failing = np.concatenate([np.flatnonzero(spare < -_CERTAIN * longest), open_ones[~np.array(exact, dtype=bool)]])
+    slack = np.sqrt(0.5 * longest) - np.sqrt(shortest)
+    worst = int(failing[0]) if failing.size else int(np.argmin(slack))
     return Claim(
         name,
-        "refuted" if failing else "verified",
-        computed=len(found),
+        "refuted" if failing.size else "verified",  # each sign is certain: in whole numbers where floats cannot tell
+        computed=net.crossing_count,
         stated=stated,
-        margin=found[worst][1],
+        margin=0.5 - failing.size,
         error=0.0,
         witness=net.agents(net.crossings[worst]),
         proof=_CROSSINGS,
-        detail=f"{net.crossing_text}; the nearest pairs are within ℓ/√2 by {found[worst][1] / net.d:.3g} d or more",
+        detail=f"{net.crossing_text}; the nearest pairs are within ℓ/√2 by {slack[worst] / net.d:.3g} d or more",
     )
 
 
-def _nearest_of_crossing(net: _Net, two: LinkArray) -> tuple[bool, float]:
-    """Whether two agents of two links are within ℓ/√2, in exact arithmetic, and by how much, in floating point."""
+def _of_crossing(net: _Net) -> tuple[FloatArray, FloatArray]:
+    """Of each two links that cross: the squared length of the longer, and the least squared distance of two agents."""
+    agents = net.links[net.crossings].reshape(-1, 4)
+    squared = [
+        np.where(agents[:, i] == agents[:, j], np.inf, ((net.q[agents[:, i]] - net.q[agents[:, j]]) ** 2).sum(axis=1))
+        for i, j in combinations(range(4), 2)
+    ]
+    return np.maximum(squared[0], squared[-1]), np.min(squared, axis=0)
+
+
+def _holds_exactly(net: _Net, two: LinkArray) -> bool:
+    """Whether two agents of two links are within ℓ/√2, in exact arithmetic."""
 
     def squared(i: Any, j: Any) -> Fraction:
         return sum(((Fraction(a) - Fraction(b)) ** 2 for a, b in zip(net.q[i], net.q[j], strict=True)), Fraction(0))
 
     longest = max(squared(i, j) for i, j in two)
-    shortest = min(squared(i, j) for i, j in combinations(sorted(set(two.ravel().tolist())), 2))
-    return 2 * shortest <= longest, sqrt(longest / 2) - sqrt(shortest)
+    return 2 * min(squared(i, j) for i, j in combinations(sorted(set(two.ravel().tolist())), 2)) <= longest
 
 
 def check(q: FloatArray, d: float, r: float, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
@@ -247,12 +269,11 @@ def check(q: FloatArray, d: float, r: float, tolerances: Tolerances) -> tuple[li
 
 
 def _check_terminal(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
-    alpha = getattr(run.law, "alpha", None)
-    detail = type(run.law).__name__
-    if alpha is None:
-        ranged = Hypothesis("the law has a scale d and a range r", "unmet", detail=detail)
-        return [ranged], [Claim(name, "vacuous", detail="no net") for name in CLAIMS]
-    return check(np.asarray(run.q[-1]), alpha.d, alpha.r, tolerances)
+    has: HypothesisStatus = "met" if hasattr(run.law, "alpha") else "unmet"
+    ranged = Hypothesis("the law has a scale d and a range r", has, detail=type(run.law).__name__)
+    if nothing := vacuous([ranged], CLAIMS):
+        return [ranged], nothing
+    return check(np.asarray(run.q[-1]), run.law.alpha.d, run.law.alpha.r, tolerances)
 
 
 _STATEMENT = (
@@ -262,7 +283,7 @@ _STATEMENT = (
     "Extension to every net: if all pairs are farther apart than r/√2 (or only ℓ/√2, ℓ the longest link), no two "
     "links cross, and in the plane there are at most 3n - 6; if two links of lengths at "
     "most ℓ cross, some two of their agents are within ℓ/√2 of each other. "
-    f"Distances within {GUARD:g} r of r count as r."
+    f"Distances within {GUARD:g} r of r, or within the rounding of the positions, count as r."
 )
 _REFERENCES = ("olfati-saber-2006", "harborth-1974")
 THEOREM = (

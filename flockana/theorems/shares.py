@@ -13,6 +13,7 @@ from flockana.nets import components, links
 from flockana.theorems.theorem import Claim, judge
 
 CONFIDENCE = 0.95
+_ROUNDING = 1e-9  # of the ends of an interval, which are quantiles of a beta distribution
 
 
 def share(holds: Iterable[Any]) -> tuple[int, int, tuple[float, float]]:
@@ -52,11 +53,11 @@ def always(name: str, holds: Iterable[Any], what: str, stated: str, *, witness: 
     count, size, interval = share(holds)
     return Claim(
         name,
-        "refuted" if interval[1] < 1.0 else "inconclusive",
+        "refuted" if interval[1] < 1.0 - _ROUNDING else "inconclusive",
         computed={"holds": count, "of": size, "share": interval},
         stated=stated,
         margin=interval[1] - 1.0,
-        error=0.0,
+        error=_ROUNDING,
         witness=witness,
         detail=f"{what} in {count} of {size} seeds: a share of {interval[1]:.2f} at most ({CONFIDENCE:.0%})",
     )
@@ -83,14 +84,14 @@ def mostly(
         As in `Claim`.
     """
     count, size, interval = share(holds)
-    status = judge(interval[0] - least, 0.0, [])
+    status = judge(interval[0] - least, _ROUNDING, [])
     return Claim(
         name,
-        "inconclusive" if status == "refuted" and interval[1] > least else status,
+        "inconclusive" if status == "refuted" and interval[1] > least - _ROUNDING else status,
         computed={"holds": count, "of": size, "share": interval},
         stated=stated,
         margin=interval[0] - least,
-        error=0.0,
+        error=_ROUNDING,
         witness=witness,
         detail=f"{what} in {count} of {size} seeds: a share of {interval[0]:.2f} at least ({CONFIDENCE:.0%})",
     )

@@ -4,16 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from math import sqrt
 
 import numpy as np
 
 from flockana.checks import FloatArray
+from flockana.kernels.paths import closest_pair, control_points
 from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.perception import Edges, edge_vectors, incidence, is_connected, out_tree_root
 from flockana.stability import linearise
+from flockana.theorems.rounding import EPS
 from flockana.theorems.theorem import Hypothesis
 from flockana.trajectory import Trajectory
+
+_RESOLVED = 1e-9  # of a length between samples: far below the allowance for the path itself
 
 
 @dataclass(frozen=True)
@@ -42,17 +47,39 @@ class TreeCase:
     align: FloatArray
     root: int | None
 
+    @property
+    def barrier(self) -> FloatArray:
+        """½ μ ρ² of each edge: the energy that it takes to press it to length 0."""
+        return 0.5 * self.mu * self.rho**2
+
+    @cached_property
+    def walk(self) -> tuple[tuple[int, int, int], ...]:
+        """(edge, agent nearer to the root, agent farther from it) of all edges, from the root outwards."""
+        near, found = {self.links[0][0] if self.root is None else self.root}, []
+        left = dict(enumerate(self.links))
+        while left:
+            for e, (j, i) in list(left.items()):
+                if j in near or i in near:
+                    found.append((e, j, i) if j in near else (e, i, j))
+                    near |= {j, i}
+                    del left[e]
+        return tuple(found)
+
     def on_manifold(self, q: FloatArray) -> FloatArray:
         """The configuration with the bearings of q and every edge at its desired length; bearings are free.
 
         Parameters
         ----------
         q : ndarray, shape (n, m)
-            Positions, no edge of length 0.
+            Positions; an edge of length 0 gets the bearing of the first axis.
         """
         x = edge_vectors(q, self.links)
-        x = x * (self.rho / np.linalg.norm(x, axis=1))[:, None]
-        placed: FloatArray = np.linalg.pinv(-incidence(self.n, self.links).T) @ x
+        length = np.linalg.norm(x, axis=1, keepdims=True)
+        bearing = np.divide(x, length, out=np.tile(np.eye(q.shape[1])[0], (len(x), 1)), where=length > 0.0)
+        placed: FloatArray = np.array(q, dtype=np.float64)
+        for e, near, far in self.walk:
+            way = self.rho[e] * bearing[e]  # from the head of the edge to its tail
+            placed[far] = placed[near] - way if self.links[e] == (near, far) else placed[near] + way
         return placed
 
     def edge_system(self, q: FloatArray) -> FloatArray:
@@ -68,6 +95,49 @@ class TreeCase:
         twice = np.kron(np.eye(2), T)
         A: FloatArray = twice @ linearise(self.law, q).A @ np.kron(np.eye(2), np.linalg.pinv(T))
         return A
+
+    def lengths(self, q: FloatArray) -> FloatArray:
+        """|x_e| of each edge, shape (..., n − 1).
+
+        Parameters
+        ----------
+        q : ndarray, shape (..., n, m)
+            Positions.
+        """
+        found: FloatArray = np.linalg.norm(edge_vectors(q, self.links), axis=-1)
+        return found
+
+    def energies(self, q: FloatArray, p: FloatArray) -> FloatArray:
+        """V = ½‖x'‖² + ½μ(‖x‖ − ρ)² of each edge, shape (n − 1,). At the root it falls: V' = −a‖x'‖².
+
+        Parameters
+        ----------
+        q, p : ndarray, shape (n, m)
+            A state.
+        """
+        rate = edge_vectors(p, self.links)
+        V: FloatArray = 0.5 * (np.sum(rate * rate, axis=1) + self.mu * (self.lengths(q) - self.rho) ** 2)
+        return V
+
+    def shortest(self, run: Trajectory) -> FloatArray:
+        """A lower bound of the length of each edge over a run, between its samples too, shape (n − 1,).
+
+        Parameters
+        ----------
+        run : Trajectory
+            The run.
+        """
+        at = self.lengths(run.q)
+        least: FloatArray = at.min(axis=0)
+        ends = [(np.array([j], dtype=np.int32), np.array([i], dtype=np.int32)) for j, i in self.links]
+        for k in range(len(run.t) - 1):
+            h = run.t[k + 1] - run.t[k]
+            path = control_points(h, run.q[k], run.p[k], run.u[k], run.q[k + 1], run.p[k + 1], run.u[k + 1])
+            for e, (tail, head) in enumerate(ends):
+                stop = float(min(at[k, e], at[k + 1, e]))
+                if stop > 0.0:
+                    least[e] = min(least[e], closest_pair(*path, tail, head, stop, _RESOLVED * self.rho[e])[0])
+        return least
 
 
 def tree_case(law: MinimalFlocking, n: int) -> TreeCase | None:
@@ -106,7 +176,7 @@ def characteristic_residual(A: FloatArray, factors: Sequence[tuple[float, float]
     >>> characteristic_residual(np.array([[0.0, 1.0], [-2.0, -3.0]]), [(3.0, 2.0)]) < 1e-12
     True
     """
-    radius = 1.0 + max(abs(b) + sqrt(abs(c)) for b, c in factors)  # outside all roots, where nothing cancels
+    radius = 4.0 * max(abs(b) + sqrt(abs(c)) for b, c in factors)  # far outside all roots, where nothing cancels
     points = radius * np.exp(2j * np.pi * np.arange(len(A) + 1) / (len(A) + 1))
     found = np.array([np.linalg.slogdet(s * np.eye(len(A)) - A) for s in points])
     stated = np.array([np.sum([np.log(s * s + b * s + c) for b, c in factors]) for s in points])
@@ -134,25 +204,21 @@ def tree_hypotheses(run: Trajectory) -> tuple[list[Hypothesis], TreeCase | None]
         Hypothesis("the graph never changes", "met" if frozen else "unmet", detail="" if frozen else "perceived"),
         Hypothesis("the graph is a spanning tree", "met" if case else "unmet", detail=kind),
     ]
+    if case is not None:
+        for name, weights in (("μ > 0", case.mu), ("alignment is at work", case.align)):
+            least = float(weights.min())
+            needs.append(Hypothesis(name, "met" if least > 0.0 else "unmet", least))
     return needs, case
 
 
-def root_edges(case: TreeCase, q: FloatArray, p: FloatArray) -> dict[int, tuple[float, float]]:
-    """For each edge from the root, (V, least length that V allows from now on, negative if none).
-
-    V = ½‖x'‖² + ½μ(‖x‖ − ρ)² falls, since nobody moves the root: V' = −a‖x'‖².
+def length_error(case: TreeCase, run: Trajectory) -> float:
+    """Rounding of |x_e|/ρ_e along a run: of positions that far from the origin.
 
     Parameters
     ----------
     case : TreeCase
         The tree.
-    q, p : ndarray, shape (n, m)
-        A state.
+    run : Trajectory
+        The run.
     """
-    x, rate = (edge_vectors(state, case.links) for state in (q, p))
-    V = 0.5 * (np.sum(rate * rate, axis=1) + case.mu * (np.linalg.norm(x, axis=1) - case.rho) ** 2)
-    return {
-        e: (float(V[e]), float(case.rho[e] - sqrt(2.0 * V[e] / case.mu[e])))
-        for e, (j, _) in enumerate(case.links)
-        if j == case.root
-    }
+    return 8.0 * EPS * (1.0 + float(np.abs(run.q).max()) / float(case.rho.min()))

@@ -1,18 +1,17 @@
 from __future__ import annotations
 
 import os
-import signal
-import subprocess
-import sys
-import time
+import sqlite3
+from contextlib import closing
 
 import pytest
 import xarray
 from PIL import Image
+from programs import ANSWERS_CTRL_C, CLI, interrupt, posix, program, until
 
 from flockana.cli import main
 from flockana.commands.ensemble import read_options
-from flockana.ensemble import Store, ensemble, shares
+from flockana.ensemble import ensemble, shares
 from flockana.errors import ArgumentError
 
 
@@ -104,38 +103,34 @@ def test_a_bad_store_is_exit_2_and_left_alone(call, tmp_path):
     assert (tmp_path / "s.sqlite").read_text() == "notes " * 300
 
 
-def test_ctrl_c_leaves_a_store_to_go_on_from(tmp_path):
-    """As the terminal does it: the signal goes to the whole group of processes."""
-    path = tmp_path / "s.sqlite"
-    command = [sys.executable, "-c", "from flockana.cli import main; main()", "ensemble", "hexagon", "--jobs", "2"]
-    options = ["--theorem", "alpha-flocking", "--store", str(path)]
-    process = subprocess.Popen(
-        [*command, "--seeds", "2000", *options],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-    )
+def stored(path):
+    """The records in a store, by seed; none as long as it is being made."""
+    if not path.exists():
+        return {}
     try:
-        kept = 0
-        for _ in range(1200):
-            if path.exists() and kept < 3:
-                with Store(path) as store:
-                    kept = len(store)
-            if kept >= 3:
-                break
-            time.sleep(0.05)
-        os.killpg(process.pid, signal.SIGINT)
-        _, err = process.communicate(timeout=60)
-    finally:
-        process.kill()
-    assert (process.returncode, err.strip()) == (130, "flockana: interrupted")
-    with Store(path) as store:
-        kept = len(store)
-    assert 3 <= kept < 2000
-    code = subprocess.run(
-        [*command, "--seeds", str(kept // 2 + 1), *options], capture_output=True, text=True, timeout=60, check=False
-    )
-    assert code.returncode == 0
-    with Store(path) as store:
-        assert len(store) == kept
+        with closing(sqlite3.connect(path)) as file:
+            return dict(file.execute("SELECT seed, record FROM runs").fetchall())
+    except sqlite3.OperationalError:
+        return {}
+
+
+@posix
+def test_ctrl_c_leaves_a_store_to_go_on_from(tmp_path):
+    """With some runs in the store, and far too many to go."""
+    path = tmp_path / "s.sqlite"
+    command = ("-c", ANSWERS_CTRL_C + CLI, "ensemble", "hexagon", "--jobs", "2")
+    options = ("--theorem", "alpha-flocking", "--store", path)
+    with program(*command, "--seeds", "2000", *options) as running:
+        until(lambda: len(stored(path)) >= 3, running)
+        interrupt(running)
+        _, err = running.communicate()
+    assert (running.returncode, err.strip()) == (130, "flockana: interrupted")
+    kept = stored(path)
+    assert 3 <= len(kept) < 2000
+    asked = range(len(kept) // 2 + 1)
+    with program(*command, "--seeds", len(asked), *options) as again:
+        _, err = again.communicate()
+    assert (again.returncode, err) == (0, "")
+    found = stored(path)
+    assert {*found} == {*kept, *asked}
+    assert {seed: found[seed] for seed in kept} == kept

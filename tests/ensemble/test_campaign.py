@@ -2,8 +2,10 @@ from __future__ import annotations
 
 import json
 import os
+import time
 from collections import deque
 from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 
 import numpy as np
 import pytest
@@ -13,13 +15,15 @@ import xarray
 from flockana.ensemble import METRICS, PHASES, STATUSES, Store, ensemble, executors, phases, shares
 from flockana.ensemble import digest as digests
 from flockana.ensemble.digest import digest_of_sources, mathematics, run_key
-from flockana.ensemble.executors import ProcessPool, Serial, crew
+from flockana.ensemble.executors import Crew, Serial, crew, make_runs
+from flockana.ensemble.processes import ProcessPool
 from flockana.ensemble.work import Job, Request, run_batch
 from flockana.errors import ArgumentError, SolverError, UnknownNameError
 from flockana.scenarios import scenario
 from flockana.theorems import Tolerances, verify
 
 SEEDS = range(6)
+REQUEST = Request("tiny_flocks:trio", ("source",), ())
 
 
 def same(first, second):
@@ -34,11 +38,8 @@ def alone():
 
 @pytest.fixture(scope="module")
 def pool():
-    """Two processes, told to use more threads than they should."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("OPENBLAS_NUM_THREADS", "7")
-        with ProcessPool(2) as executor:
-            yield executor
+    with ProcessPool(2) as executor:
+        yield executor
 
 
 def test_the_numbers_do_not_depend_on_who_computes_them(alone, pool):
@@ -79,7 +80,13 @@ def test_every_entry_is_that_of_a_run_made_by_hand(alone):
     assert float(found.energy_residual) == residual < 0.1
     assert (int(found.steps), int(found.evaluations)) == (run.stats["steps"], run.stats["evaluations"])
     assert (int(found.run), str(found.message.item())) == (0, "")
-    assert 0.0 < float(found.seconds) < 30.0
+
+
+def test_the_seconds_of_runs_are_part_of_the_whole_time():
+    started = time.perf_counter()
+    found = ensemble(tiny_flocks.trio, SEEDS, jobs=1)
+    assert found.seconds.values.min() > 0.0
+    assert found.seconds.values.sum() <= time.perf_counter() - started
 
 
 def test_dimensions_follow_the_parameters_in_their_order(alone):
@@ -144,26 +151,59 @@ def test_workers_that_all_die_end_the_ensemble_with_the_remedy(monkeypatch):
         ensemble(tiny_flocks.lethal, range(9), theorems=[], jobs=2)
 
 
+class Brittle(ThreadPoolExecutor):
+    """Breaks before its fourth batch, which it refuses, as a process pool does whose worker died since one looked."""
+
+    def __init__(self):
+        super().__init__(2)
+        self.sent = 0
+
+    def submit(self, function, /, *arguments, **options):
+        self.sent += 1
+        if self.sent == 4:
+            raise BrokenProcessPool("a child process terminated abruptly")
+        return super().submit(function, *arguments, **options)
+
+
+def test_a_pool_that_is_found_broken_by_sending_to_it_loses_nothing_and_blames_nobody():
+    with Brittle() as broken, ThreadPoolExecutor(2) as fresh:
+        hands = Crew(broken, lambda: 2, renew=lambda: fresh)
+        records = [one for batch in make_runs(REQUEST, [Job(seed) for seed in range(8)], hands) for one in batch]
+    assert hands.executor is fresh
+    assert {one.job.seed: one.status for one in records} == dict.fromkeys(range(8), "complete")
+
+
+def test_an_executor_that_refuses_work_is_told():
+    executor = ThreadPoolExecutor(2)
+    executor.shutdown()
+    with pytest.raises(SolverError, match="the executor failed: RuntimeError: cannot schedule new futures"):
+        ensemble(tiny_flocks.trio, range(4), theorems=[], executor=executor)
+
+
 def test_a_broken_executor_of_the_users_is_told_from_a_bad_run():
     with ProcessPool(1) as executor, pytest.raises(SolverError, match="the executor failed: BrokenProcessPool"):
         ensemble(tiny_flocks.lethal, range(4), theorems=[], executor=executor)
 
 
-def test_workers_load_kernels_and_keep_to_one_thread(pool):
+def test_workers_load_kernels_and_keep_to_one_thread(monkeypatch):
     """What an earlier run compiled comes from numba's cache; the parent's own setting stays."""
+    monkeypatch.setenv("OPENBLAS_NUM_THREADS", "7")
     ensemble(tiny_flocks.trio, [0], jobs=1)
     asked = [tiny_flocks.compilations, tiny_flocks.threads]
-    found = ensemble(tiny_flocks.trio, range(4), metrics=asked, executor=pool)
+    for _ in range(3):  # other processes that compile at the same moment may spoil the cache's index, but not for ever
+        with ProcessPool(2) as pool:
+            found = ensemble(tiny_flocks.trio, range(4), metrics=asked, executor=pool)
+        assert found.threads.values.tolist() == [1.0] * 4
+        if not found.compilations.values.any():
+            break
     assert found.compilations.values.tolist() == [0.0] * 4
-    assert found.threads.values.tolist() == [1.0] * 4
     assert os.environ["OPENBLAS_NUM_THREADS"] == "7"
 
 
-def test_ctrl_c_ends_it_and_keeps_what_was_done(tmp_path):
+@pytest.mark.parametrize("metric", [tiny_flocks.interrupts, tiny_flocks.interrupts_a_kernel])
+def test_ctrl_c_ends_it_and_keeps_what_was_done(metric, tmp_path):
     with pytest.raises(KeyboardInterrupt):
-        ensemble(
-            tiny_flocks.trio, SEEDS, theorems=[], metrics=[tiny_flocks.interrupts], jobs=1, store=tmp_path / "s.sqlite"
-        )
+        ensemble(tiny_flocks.trio, SEEDS, theorems=[], metrics=[metric], jobs=1, store=tmp_path / "s.sqlite")
     with Store(tmp_path / "s.sqlite") as store:
         assert len(store) in (1, 2, 3)  # the seeds before 3, those of its batch apart
 
@@ -206,17 +246,17 @@ def test_keys_differ_wherever_a_number_could():
 def test_phases_in_their_order():
     """Collapse before fragmentation, fragmentation before motion; strained or moving flocks are neither."""
     cases = [
-        ("flocking", 0.9, 1.0, 0.01, 0.01),
+        ("flocking", 0.9, 1.0, 1e-5, 0.01),
         ("fragmentation", 0.9, 2.0, 9.0, 0.01),
         ("collapse", 0.049, 2.0, 0.0, 0.0),
-        ("other", 0.9, 1.0, 0.06, 0.01),
-        ("other", 0.9, 1.0, 0.01, 0.06),
+        ("other", 0.9, 1.0, 2e-4, 0.01),
+        ("other", 0.9, 1.0, 1e-5, 0.06),
     ]
-    names = ("end_distance", "components", "velocity_mismatch", "deviation_energy")
+    names = ("end_distance", "components", "slip", "deviation_energy")
     runs = xarray.Dataset({name: ("seed", [case[k + 1] for case in cases] + [np.nan]) for k, name in enumerate(names)})
     assert phases(runs).values.tolist() == [*(PHASES.index(case[0]) for case in cases), -1]
     assert PHASES[phases(runs, contact=0.04).values[2]] == "fragmentation"
-    assert PHASES[phases(runs, tolerances=Tolerances(mismatch=0.1)).values[3]] == "flocking"
+    assert PHASES[phases(runs, tolerances=Tolerances(mismatch=1e-3)).values[3]] == "flocking"
     with pytest.raises(ArgumentError, match="lacks components"):
         phases(runs.drop_vars("components"))
 

@@ -1,80 +1,111 @@
 from __future__ import annotations
 
+import _thread
+import gc
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
 import threading
-import time
+from contextlib import ExitStack, contextmanager
+from multiprocessing import active_children, spawn
 from pathlib import Path
 
 import pytest
 import tiny_flocks
+from programs import posix, program, until
+from tiny_flocks import begun
 
-from flockana.ensemble import Store, ensemble, executors
+from flockana.ensemble import Store, cluster, ensemble, executors
 from flockana.errors import ArgumentError, SolverError
 
-pytest.importorskip("distributed")
+distributed = pytest.importorskip("distributed")
+pytestmark = posix
 HERE = Path(__file__).parent
 RUNS = 40
 
 
-def started(arguments, environment):
-    command = [sys.executable, "-m", "distributed.cli." + arguments[0], *arguments[1:]]
-    return subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+@pytest.fixture(autouse=True)
+def patient(monkeypatch):
+    """Who is there answers in the end, however busy the machine; the tests of who is not there set limits of theirs."""
+    for limit in ("_CONNECT", "_START", "_ALONE"):
+        monkeypatch.setattr(cluster, limit, 500.0)
 
 
-@pytest.fixture(scope="module")
-def cluster(tmp_path_factory):
-    """A scheduler and two worker processes on loopback; gives address, file that logs every run begun, scheduler."""
-    folder = tmp_path_factory.mktemp("cluster")
-    file, log = folder / "scheduler.json", folder / "log"
-    paths = [str(HERE), *os.environ.get("PYTHONPATH", "").split(os.pathsep)]
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, paths)), tiny_flocks.LOG: str(log)}
-    local = ["--host", "127.0.0.1", "--scheduler-file", str(file)]
-    running = [started(["dask_scheduler", *local, "--port", "0", "--no-dashboard"], environment)]
+def dask(kind, file, environment, *options):
+    """A scheduler or a worker on loopback, with its own folder for its files."""
+    command = ["-m", f"distributed.cli.dask_{kind}", "--host", "127.0.0.1", "--scheduler-file", file, *options]
+    own = environment | {"DASK_TEMPORARY_DIRECTORY": str(file.parent)}
+    return program(*command, environment=own, paths=[HERE, HERE.parent], output=subprocess.DEVNULL)
+
+
+def scheduler(file, environment):
+    return dask("scheduler", file, environment, "--port", "0", "--no-dashboard")
+
+
+def worker(file, environment):
+    return dask("worker", file, environment, "--nthreads", "1", "--no-nanny", "--no-dashboard")
+
+
+@pytest.fixture
+def running(tmp_path):
+    """A scheduler and two worker processes on loopback: its address, the runs begun, the gate of gated ones, itself."""
+    file, log, gate = tmp_path / "scheduler.json", tmp_path / "log", tmp_path / "gate"
+    environment = {tiny_flocks.LOG: str(log), tiny_flocks.GATE: str(gate)}
+    with ExitStack() as stack:
+        master = stack.enter_context(scheduler(file, environment))
+        until(lambda: file.exists() and file.stat().st_size, master)
+        workers = [stack.enter_context(worker(file, environment)) for _ in range(2)]
+        address = json.loads(file.read_text())["address"]
+        with distributed.Client(address, timeout=500.0, set_as_default=False) as client:
+            until(lambda: len(client.nthreads()) == 2, master, *workers)
+        yield address, log, gate, master
+
+
+@contextmanager
+def meanwhile(condition, act, *alive):
+    """Do something in another thread as soon as a condition holds."""
+    given_up, failures = threading.Event(), []
+
+    def watch():
+        try:
+            until(lambda: given_up.is_set() or condition(), *alive)
+            if not given_up.is_set():
+                act()
+        except BaseException as error:
+            failures.append(error)
+
+    thread = threading.Thread(target=watch)
+    thread.start()
     try:
-        for _ in range(2):
-            worker = ["dask_worker", *local, "--nthreads", "1", "--no-nanny", "--no-dashboard"]
-            running.append(started([*worker, "--local-directory", str(folder)], environment))
-        for _ in range(600):
-            if file.exists() and file.stat().st_size:
-                break
-            time.sleep(0.05)
-        yield json.loads(file.read_text())["address"], log, running[0]
+        yield
     finally:
-        for process in running:
-            process.kill()
-        for process in running:
-            process.wait()
+        given_up.set()
+        thread.join()
+    assert failures == []
 
 
-def begun(log):
-    return [tuple(map(int, line.split())) for line in log.read_text().splitlines()] if log.exists() else []
-
-
-def test_a_worker_killed_in_mid_run_loses_nothing(cluster, tmp_path, monkeypatch):
-    """Batches of one run each, so that many are out when the worker dies."""
-    address, log, _ = cluster
+def test_a_worker_killed_in_mid_run_loses_nothing(running, tmp_path, monkeypatch):
+    """Batches of one run each, so that many are out when the worker dies; it is held in one of them."""
+    address, log, gate, _ = running
     monkeypatch.setattr(executors, "_BATCH_SECONDS", 0.0)
     killed = []
 
-    def kill():
-        for _ in range(2400):
-            if len(begun(log)) >= 12 and len({process for process, _ in begun(log)}) == 2:
-                killed.append(begun(log)[-1][0])
-                os.kill(killed[0], signal.SIGKILL)
-                return
-            time.sleep(0.01)
+    def held():
+        return [process for process, seed in begun(log) if seed >= 24]
 
-    thread = threading.Thread(target=kill)
-    thread.start()
+    def kill():
+        killed.append(held()[0])
+        os.kill(killed[0], signal.SIGKILL)
+        gate.touch()
+
     given = {"theorems": ["source"]}
-    found = ensemble(tiny_flocks.slow, range(RUNS), **given, cluster=address, store=tmp_path / "s.sqlite")
-    thread.join()
+    with meanwhile(held, kill):
+        found = ensemble(tiny_flocks.gated, range(RUNS), **given, cluster=address, store=tmp_path / "s.sqlite")
     assert len(killed) == 1
-    assert {process for process, _ in begun(log)[-5:]} != set(killed)
+    assert begun(log)[-1][0] != killed[0]
     assert not found.run.values.any()
     pool = ensemble(tiny_flocks.trio, range(RUNS), **given, jobs=2).assign_attrs(scenario=found.attrs["scenario"])
     assert found.drop_vars("seconds").identical(pool.drop_vars("seconds"))
@@ -82,39 +113,168 @@ def test_a_worker_killed_in_mid_run_loses_nothing(cluster, tmp_path, monkeypatch
         assert len(kept) == RUNS
 
 
-def test_the_same_runs_are_made_again_when_they_are_asked_for_again(cluster):
+def test_the_same_runs_are_made_again_when_they_are_asked_for_again(running):
     """Dask would by default give the first call's results to the second."""
-    address, log, _ = cluster
-    before = len(begun(log))
+    address, log, _, _ = running
     for _ in range(2):
         ensemble(tiny_flocks.trio, [3], theorems=[], metrics=[], cluster=address)
-    assert len(begun(log)) == before + 2
+    assert len(begun(log)) == 2
 
 
-def test_a_scheduler_lost_in_mid_run_ends_the_ensemble_and_what_was_done_is_kept(cluster, tmp_path, monkeypatch):
-    """The last test that uses the cluster."""
-    address, log, scheduler = cluster
+def test_a_scheduler_lost_in_mid_run_ends_the_ensemble_and_what_was_done_is_kept(running, tmp_path, monkeypatch):
+    address, _, _, master = running
     monkeypatch.setattr(executors, "_BATCH_SECONDS", 0.0)
-    before = len(begun(log))
+    monkeypatch.setattr(cluster, "_CONNECT", 20.0)  # after which Dask gives up a scheduler that it has lost
+    path = tmp_path / "s.sqlite"
+
+    def some_are_kept():
+        if not path.exists():
+            return False
+        with Store(path) as store:
+            return len(store)
+
+    given = {"theorems": [], "metrics": [], "store": path}
+    with (
+        meanwhile(some_are_kept, master.kill),
+        pytest.raises(SolverError, match=r"the executor failed: .*runs in a store are kept"),
+    ):
+        ensemble(tiny_flocks.gated, range(RUNS), cluster=address, **given)
+    with Store(path) as kept:
+        assert 0 < len(kept) <= 24
+
+
+def test_a_scheduler_that_falls_silent_ends_the_ensemble(running, monkeypatch):
+    """Stopped, not ended: its connections stay open."""
+    address, log, _, master = running
+    monkeypatch.setattr(cluster, "_ALONE", 5.0)
+    with (
+        meanwhile(lambda: any(seed >= 24 for _, seed in begun(log)), lambda: os.kill(master.pid, signal.SIGSTOP)),
+        pytest.raises(SolverError, match=r"the executor failed: Dask's scheduler does not answer .*are kept"),
+    ):
+        ensemble(tiny_flocks.gated, range(RUNS), theorems=[], metrics=[], cluster=address)
+
+
+def test_a_cluster_whose_workers_are_gone_for_good_is_given_up(running, monkeypatch):
+    address, log, _, _ = running
+    monkeypatch.setattr(cluster, "_ALONE", 5.0)
+    monkeypatch.setattr(executors, "_BATCH_SECONDS", 0.0)
+
+    def both_at_work():
+        return len({process for process, _ in begun(log)}) == 2 and any(seed >= 24 for _, seed in begun(log))
 
     def kill():
-        while len(begun(log)) < before + 12:
-            time.sleep(0.01)
-        scheduler.kill()
+        for process in {process for process, _ in begun(log)}:
+            os.kill(process, signal.SIGKILL)
 
-    threading.Thread(target=kill, daemon=True).start()
-    given = {"theorems": [], "metrics": [], "store": tmp_path / "s.sqlite"}
-    with pytest.raises(SolverError, match=r"the executor failed: .*runs in a store are kept"):
-        ensemble(tiny_flocks.slow, range(500), cluster=address, **given)
-    with Store(tmp_path / "s.sqlite") as kept:
-        assert 0 < len(kept) < 500
+    with (
+        meanwhile(both_at_work, kill),
+        pytest.raises(SolverError, match=r"the cluster has had no worker for 5 s; runs in a store are kept"),
+    ):
+        ensemble(tiny_flocks.gated, range(RUNS), theorems=[], metrics=[], cluster=address)
 
 
-def test_no_scheduler_is_told_with_the_remedy(monkeypatch):
-    monkeypatch.setattr(executors, "_CONNECT", 0.3)
-    for address in ("tcp://127.0.0.1:1", "nowhere-at-all:x"):
-        with pytest.raises(SolverError, match=r"no scheduler with a worker .*dask scheduler"):
+@contextmanager
+def server(answer):
+    """An address on loopback; each connection is handed to `answer`. Gives the connections that came, too."""
+    came = []
+
+    def serve():
+        while True:
+            try:
+                connection, _ = listening.accept()
+            except OSError:
+                return
+            came.append(connection)
+            answer(connection)
+
+    listening = socket.create_server(("127.0.0.1", 0))
+    thread = threading.Thread(target=serve)
+    thread.start()
+    try:
+        yield f"tcp://127.0.0.1:{listening.getsockname()[1]}", came
+    finally:
+        listening.shutdown(socket.SHUT_RDWR)
+        listening.close()
+        thread.join()
+        for connection in came:
+            connection.close()
+
+
+@contextmanager
+def nothing_left():
+    """No thread, no process, no open client: one of these would close itself by chance, at worst under Dask's lock."""
+
+    def now():  # Dask keeps one thread for all that follows
+        return {one for one in threading.enumerate() if "Offload" not in one.name}, {*active_children()}
+
+    before = now()
+    yield
+    assert {one.status for one in gc.get_objects() if isinstance(one, distributed.Client)} <= {"closed"}
+    assert now() == before
+
+
+def silent(connection):
+    pass
+
+
+def closing(connection):
+    connection.close()
+
+
+def of_another_kind(connection):
+    connection.sendall(b"HTTP/1.1 400 Bad Request\r\n\r\n" * 20)
+
+
+@pytest.mark.parametrize("answer", [silent, closing, of_another_kind])
+def test_a_server_that_is_no_scheduler_is_told_with_the_remedy(answer, monkeypatch):
+    monkeypatch.setattr(cluster, "_CONNECT", 0.5)
+    message = r"no scheduler with a worker answers within 0\.5 s \(.+\); .*dask scheduler"
+    with server(answer) as (address, _), nothing_left(), pytest.raises(SolverError, match=message):
+        ensemble(tiny_flocks.trio, [0], cluster=address)
+
+
+@pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nowhere-at-all:x", "no such address", "odd://127.0.0.1:8"])
+def test_no_scheduler_is_told_with_the_remedy(address, monkeypatch):
+    monkeypatch.setattr(cluster, "_CONNECT", 0.5)
+    with nothing_left(), pytest.raises(SolverError, match=r"no scheduler with a worker .*dask scheduler"):
+        ensemble(tiny_flocks.trio, [0], cluster=address)
+
+
+@pytest.fixture
+def idle(tmp_path):
+    """The address of a scheduler whose workers never come."""
+    file = tmp_path / "scheduler.json"
+    with scheduler(file, {}) as master:
+        until(lambda: file.exists() and file.stat().st_size, master)
+        yield json.loads(file.read_text())["address"]
+
+
+def test_workers_that_never_come_are_told_with_the_remedy(idle, monkeypatch):
+    monkeypatch.setattr(cluster, "_CONNECT", 3.0)
+    with nothing_left(), pytest.raises(SolverError, match=r"answers within 3 s \(.*it has no workers\).*dask worker"):
+        ensemble(tiny_flocks.trio, [0], cluster=idle)
+
+
+def test_what_a_failure_leaves_is_collected_under_dasks_own_lock(idle, monkeypatch):
+    """Dask holds this lock when it starts or stops a loop; a client left open would wait for it in its own thread."""
+    monkeypatch.setattr(cluster, "_CONNECT", 0.5)
+    for address in (idle, "tcp://127.0.0.1:1", "nowhere-at-all:x"):
+        with pytest.raises(SolverError):
             ensemble(tiny_flocks.trio, [0], cluster=address)
+    collecting = threading.Thread(target=gc.collect, daemon=True)
+    with distributed.utils.LoopRunner._lock:
+        collecting.start()
+        collecting.join(20.0)
+        assert not collecting.is_alive()
+
+
+def test_ctrl_c_while_it_connects_leaves_nothing(answering):
+    def interrupted(connection):
+        _thread.interrupt_main()
+
+    with server(interrupted) as (address, came), nothing_left(), pytest.raises(KeyboardInterrupt):
+        ensemble(tiny_flocks.trio, [0], cluster=address)
+    assert len(came) == 1
 
 
 def test_without_dask_the_extra_is_named(monkeypatch):
@@ -124,7 +284,19 @@ def test_without_dask_the_extra_is_named(monkeypatch):
 
 
 def test_a_cluster_of_ones_own_starts_and_ends():
-    found = ensemble(tiny_flocks.trio, range(4), theorems=["source"], metrics=[], cluster="local", jobs=1)
+    with nothing_left():
+        found = ensemble(tiny_flocks.trio, range(4), theorems=["source"], metrics=[], cluster="local", jobs=1)
     assert found.drop_vars("seconds").identical(
         ensemble(tiny_flocks.trio, range(4), theorems=["source"], metrics=[], jobs=1).drop_vars("seconds")
     )
+
+
+@pytest.mark.parametrize("python", ["exit 1", "sleep 1000"], ids=["ends", "hangs"])
+def test_worker_processes_that_do_not_start_are_told_with_the_remedy(python, tmp_path, monkeypatch):
+    monkeypatch.setattr(cluster, "_START", 3.0)
+    broken = tmp_path / "python"
+    broken.write_text(f"#!/bin/sh\nexec {python}\n")
+    broken.chmod(0o755)
+    monkeypatch.setattr(spawn, "_python_exe", os.fsencode(broken))
+    with nothing_left(), pytest.raises(SolverError, match=r"worker processes do not start .*__main__.*jobs=1"):
+        ensemble(tiny_flocks.trio, [0], cluster="local", jobs=1)

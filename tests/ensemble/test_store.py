@@ -1,14 +1,12 @@
 from __future__ import annotations
 
-import os
 import sqlite3
-import subprocess
-import sys
-import time
 from pathlib import Path
 
 import pytest
 import tiny_flocks
+from programs import group, posix, program, until
+from tiny_flocks import begun
 
 from flockana.ensemble import Store, ensemble, store
 from flockana.ensemble.work import Job, Record
@@ -19,21 +17,15 @@ CAMPAIGN = """
 import sys, tiny_flocks
 from flockana.ensemble import ensemble
 path, runs, jobs = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
-found = ensemble(tiny_flocks.slow, range(runs), theorems=["source"], jobs=jobs, store=path)
+found = ensemble(tiny_flocks.gated, range(runs), theorems=["source"], jobs=jobs, store=path)
 print(found.order.values.tobytes().hex())
 """
 
 
-def start(path, runs, log, jobs):
-    paths = [str(HERE), *os.environ.get("PYTHONPATH", "").split(os.pathsep)]
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, paths)), tiny_flocks.LOG: str(log)}
-    command = [sys.executable, "-c", CAMPAIGN, str(path), str(runs), str(jobs)]
-    return subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-
-
-def begun(log):
-    """(process, seed) of every run that was begun."""
-    return [tuple(map(int, line.split())) for line in log.read_text().splitlines()] if log.exists() else []
+def start(path, runs, jobs):
+    """A campaign of gated runs; its log and its gate lie beside the store."""
+    environment = {tiny_flocks.LOG: str(path.with_name("log")), tiny_flocks.GATE: str(path.with_name("gate"))}
+    return program("-c", CAMPAIGN, path, runs, jobs, paths=[HERE, HERE.parent], environment=environment)
 
 
 def seeds_in(path):
@@ -41,50 +33,40 @@ def seeds_in(path):
         return sorted(seed for (seed,) in file.execute("SELECT seed FROM runs"))
 
 
-def patiently(condition, what):
-    for _ in range(600):
-        if condition():
-            return
-        time.sleep(0.05)
-    pytest.fail(f"in vain: {what}")
-
-
-def alive(process):
-    try:
-        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
-    except OSError:
-        return False
-
-
 def records(count, status="complete"):
     return {f"key {k}": Record(Job(k), status, metrics={"order": 0.1 + k}) for k in range(count)}
 
 
-def test_killed_at_any_moment_it_goes_on_with_what_is_missing(tmp_path):
-    path, log, runs = tmp_path / "s.sqlite", tmp_path / "log", 40
-    victim = start(path, runs, log, 2)
-    patiently(lambda: path.exists() and len(begun(log)) >= 12 and len(seeds_in(path)) >= 6, "runs in the store")
-    victim.kill()
-    victim.communicate()
-    kept, workers = seeds_in(path), {process for process, _ in begun(log)}
-    assert 6 <= len(kept) < runs
-    assert len(kept) == len(set(kept))
-    if sys.platform == "linux":
-        patiently(lambda: not any(map(alive, workers)), "workers end with their parent")
+@posix
+def test_killed_in_mid_run_it_goes_on_with_what_is_missing(tmp_path):
+    """Both workers are held at the gate, with six runs or more in the store, when their parent is killed."""
+    path, log, gate, runs = tmp_path / "s.sqlite", tmp_path / "log", tmp_path / "gate", 40
+    with start(path, runs, 2) as victim:
+        until(lambda: {seed for _, seed in begun(log)} & {*range(24, runs)} and len(seeds_in(path)) >= 6, victim)
+        victim.kill()
+        until(lambda: not group(victim))  # workers end with their parent, whatever they are at
+    kept = seeds_in(path)
+    assert 6 <= len(kept) == len({*kept}) < runs
+    assert {*kept} <= {seed for _, seed in begun(log)}
     log.unlink()
-    again = start(path, runs, log, 1)
-    out, err = again.communicate(timeout=120)
+    gate.touch()
+    with start(path, runs, 1) as again:
+        out, err = again.communicate()
     assert again.returncode == 0, err
     assert seeds_in(path) == list(range(runs))
     assert sorted(seed for _, seed in begun(log)) == sorted({*range(runs)} - {*kept})
     assert out.strip() == ensemble(tiny_flocks.trio, range(runs), theorems=[], jobs=1).order.values.tobytes().hex()
 
 
+@posix
 def test_two_writers_at_once_do_no_harm(tmp_path):
+    """The gate opens when both are held at it: each of them still has runs to write."""
     path, log = tmp_path / "s.sqlite", tmp_path / "log"
-    both = [start(path, 30, log, 1) for _ in range(2)]
-    ends = [one.communicate(timeout=120) for one in both]
-    assert [one.returncode for one in both] == [0, 0], ends
+    with start(path, 30, 1) as one, start(path, 30, 1) as other:
+        until(lambda: len({process for process, seed in begun(log) if seed >= 24}) == 2, one, other)
+        (tmp_path / "gate").touch()
+        ends = [process.communicate() for process in (one, other)]
+    assert [one.returncode, other.returncode] == [0, 0], ends
     assert ends[0][0] == ends[1][0]
     assert seeds_in(path) == list(range(30))
     with Store(path) as kept:

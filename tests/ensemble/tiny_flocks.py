@@ -10,12 +10,14 @@ from pathlib import Path
 
 import numpy as np
 from numba.core import event
+from programs import out_of_a_kernel
 
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.scenarios import Report, Scenario
 from flockana.theorems import Claim
 
 LOG = "FLOCKANA_TEST_LOG"  # names a file that gets a line "pid seed" for every run that is begun
+GATE = "FLOCKANA_TEST_GATE"  # names a file without which gated runs do not go on
 COMPILED = event.RecordingListener()
 event.register("numba:compile", COMPILED)
 
@@ -41,11 +43,17 @@ def trio(seed, n=3, speed=0.3, fast=False):
     )
 
 
-def slow(seed):
-    """As `trio`, after a while."""
+def gated(seed):
+    """As `trio`, but from 24 on not before the gate is open: who runs one of these is in mid-run for sure."""
     item = trio(seed)
-    time.sleep(0.03)
+    while seed >= 24 and not Path(os.environ[GATE]).exists():
+        time.sleep(0.01)
     return item
+
+
+def begun(log):
+    """(process, seed) of every run that was begun."""
+    return [tuple(map(int, line.split())) for line in log.read_text().splitlines()] if log.exists() else []
 
 
 class Bursting(Algorithm1):
@@ -93,4 +101,11 @@ def interrupts(run):
     """Ctrl-C in the run of seed 3."""
     if run.t[0] == 3.0:
         raise KeyboardInterrupt
+    return 0.0
+
+
+def interrupts_a_kernel(run):
+    """Ctrl-C in the run of seed 3, within a kernel."""
+    if run.t[0] == 3.0:
+        raise out_of_a_kernel()
     return 0.0

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import signal
+
 import numpy as np
 import pytest
 from scipy.optimize import brentq
@@ -81,7 +83,8 @@ def test_a_perturbed_saddle_is_found_by_the_root_finder():
 
 @pytest.mark.parametrize(("m", "rigid"), [(1, 1), (2, 3), (3, 6)])
 def test_a_simplex_is_a_minimum_in_every_dimension(m, rigid):
-    found = find_equilibrium(Algorithm1(), 5.5 * np.vstack([np.zeros(m), np.eye(m)]))
+    corners = np.linalg.svd(np.eye(m + 1) - 1.0 / (m + 1))[0][:, :m]  # of a regular simplex of edge √2
+    found = find_equilibrium(Algorithm1(), 6.5 / np.sqrt(2.0) * corners)
     assert (found.kind, found.rigid_modes, found.strain()) == ("minimum", rigid, 0.0)
     assert len(found.links) == m * (m + 1) // 2
 
@@ -194,6 +197,38 @@ def test_failures_are_clear():
         find_equilibrium(
             Algorithm3(target=StaticTarget((9.0, 0.0)), obstacles=(Sphere((0.0, 0.0), 2.0),)), [[0.5, 0.0]]
         )
+
+
+def test_ctrl_c_stops_the_solver_where_it_is(answering, monkeypatch):
+    """CasADi would take it for an evaluation that failed, or lose it."""
+    start, value, evaluations = 1.3 * hexagonal_patch(2, 7.0), Program.value, []
+
+    def counted(self, x):
+        evaluations.append(x)
+        if len(evaluations) == 2:
+            signal.raise_signal(signal.SIGINT)
+        return value(self, x)
+
+    monkeypatch.setattr(Program, "value", counted)
+    with pytest.raises(KeyboardInterrupt):
+        find_equilibrium(Algorithm1(), start)
+    stopped = len(evaluations)
+    find_equilibrium(Algorithm1(), start)
+    assert 2 * stopped <= len(evaluations) - stopped
+
+
+def test_ctrl_c_while_a_program_is_made_comes_when_it_is_made(answering, monkeypatch):
+    derivatives, made = Program._derivatives, []
+
+    def interrupted(self, x):
+        signal.raise_signal(signal.SIGINT)
+        made.append(derivatives(self, x))
+        return made[0]
+
+    monkeypatch.setattr(Program, "_derivatives", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        find_equilibrium(Algorithm1(), [[0.0], [6.0]])
+    assert len(made) == 1
 
 
 def test_a_failed_nlp_does_not_pass_as_a_result():

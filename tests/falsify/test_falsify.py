@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from programs import out_of_a_kernel
 
 from flockana.environment.targets import StaticTarget
 from flockana.errors import ArgumentError, FileError, UnknownNameError
@@ -357,13 +358,14 @@ class TestTheOutcome:
         assert "r = " in found.message or "r" in found.message
         assert found.verdict is not None
 
-    def test_ctrl_c_returns_the_best_so_far(self):
+    @pytest.mark.parametrize("error", [KeyboardInterrupt(), out_of_a_kernel()])
+    def test_ctrl_c_returns_the_best_so_far(self, error):
         calls = {"n": 0}
 
         def interrupted(run, tolerances):
             calls["n"] += 1
             if calls["n"] == 6:
-                raise KeyboardInterrupt
+                raise error
             return fast(run, tolerances)
 
         found = falsify(replace(OWN, check=interrupted), HEAD_ON, budget=50, vary="p", speed=1.0)

@@ -97,7 +97,7 @@ def test_phi_integral_keeps_its_digits_where_s_is_small():
     assert scalars.phi_slope(0.0, a, b, c) == pytest.approx(slope, rel=1e-15)
 
 
-PAR = np.array([0.1, 0.2, 5.0, 9.0, 4.0 / sqrt(180.0), 14.289915602982238, 18.383093559370867, 0.0, 0.0])
+PAR = np.array([0.1, 0.2, 5.0, 9.0, 4.0 / sqrt(180.0), 14.289915602982238, 18.383093559370867, 0.0, 0.0, 1.0])
 
 
 @pytest.mark.parametrize("z", [0.3, 3.0, 3.9, 8.0, 14.2, 16.0, 18.3])
@@ -124,7 +124,7 @@ def test_pair_alpha_is_phi_times_the_gradient_of_the_sigma_norm():
 
 
 def test_pair_beta_by_hand():
-    par = np.array([1.0, 0.5, 4.0, 0.0])  # ε = 1, h = 0.5, d_β = 4
+    par = np.array([1.0, 0.5, 4.0, 0.0, 1.0])  # ε = 1, h = 0.5, d_β = 4, ℓ = 1
     w, b = law.pair_beta(8.0, par)  # ‖·‖_σ = 2, z/d_β = h: still 1
     assert b == 1.0
     assert w == pytest.approx((-2.0 / sqrt(5.0) - 1.0) / 3.0, rel=1e-15)

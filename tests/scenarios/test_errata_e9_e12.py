@@ -19,7 +19,8 @@ from flockana.stability.tracking import response_ratio
 from flockana.stability.translational import predicted_gain
 from flockana.symbolic.parameters import GainSymbols
 from flockana.symbolic.translational import frequency_gain
-from flockana.theorems import Tolerances, verify
+from flockana.theorems import Tolerances, theorem, verify
+from flockana.units import rescale
 
 OMEGA = 2 * pi * 0.025 / 0.045
 STRONG = scenario("msn-case4").law.gains
@@ -61,7 +62,46 @@ def test_e12_does_not_pass_a_gain_that_is_wrong():
     law = Algorithm2(gains=Gains(c1_gamma=20.0, c2_gamma=9.0), target=CircleTarget((0.0, 0.0), 2.0, 0.5))
     run = simulate(law, [[1.0, 1.0]], [[0.0, 0.0]], (0.0, 20.0))
     mislabelled = replace(run, law=replace(law, target=RescaledVelocity(law.target, 0.25)))
-    assert verify("E12", mislabelled).claim("predicted").status == "refuted"
+    with pytest.raises(ArgumentError, match="of another law"):
+        verify("E12", mislabelled)
+    claims = {claim.name: claim.status for claim in theorem("E12").check(mislabelled, Tolerances())[1]}
+    assert (claims["predicted"], claims["consistent"]) == ("refuted", "verified")
+
+
+@pytest.mark.parametrize("periods", [1.0, 1.1, 2.5])
+def test_e12_knows_what_is_left_of_the_start(periods):
+    """Hardly damped, one agent is still on its own way: the gain is right, the run is too short to show it."""
+    path = CircleTarget((0.0, 0.0), 2.0, 0.5)
+    law = Algorithm2(gains=Gains(c1_gamma=20.0, c2_gamma=0.4), target=RescaledVelocity(path, 0.25))
+    run = simulate(law, [[30.0, 1.0]], [[0.0, 0.0]], (0.0, 2.0 * periods))
+    off = abs(response_ratio(run)[0] / predicted_gain(law.gains, pi, factor=0.25) - 1.0)
+    assert off > 3.0 * Tolerances().agreement
+    claims = verify("E12", run).claims
+    assert [claim.status for claim in claims] == ["inconclusive"] * 3
+    assert claims[0].error > off
+
+
+def test_e12_is_the_same_in_every_unit():
+    path = CircleTarget((0.0, 0.0), 2.0, 0.5)
+    law = Algorithm2(gains=Gains(c1_gamma=20.0, c2_gamma=9.0), target=RescaledVelocity(path, 0.25))
+    run = simulate(law, [[1.0, 1.0]], [[0.0, 0.0]], (0.0, 8.0))
+    here = theorem("E12").check(run, Tolerances())[1]
+    for length, time in ((1e-6, 1e3), (1e3, 1e-3)):
+        there = theorem("E12").check(rescale(run, length=length, time=time), Tolerances())[1]
+        assert [claim.status for claim in there] == [claim.status for claim in here]
+        assert [claim.margin for claim in there] == pytest.approx([claim.margin for claim in here], abs=1e-5)
+
+
+def test_e12_needs_damping_and_something_to_follow():
+    path = CircleTarget((0.0, 0.0), 2.0, 0.5)
+    for gains, factor, status in (
+        (Gains(c1_gamma=pi**2, c2_gamma=0.0), 0.25, "vacuous"),  # in resonance
+        (Gains(c1_gamma=0.0, c2_gamma=0.0), 0.25, "vacuous"),
+        (Gains(c1_gamma=0.0, c2_gamma=2.0), 0.0, "inconclusive"),  # told no velocity, pulled nowhere: it comes to rest
+    ):
+        law = Algorithm2(gains=gains, target=RescaledVelocity(path, factor))
+        verdict = verify("E12", simulate(law, [[1.0, 1.0]], [[0.0, 0.0]], (0.0, 8.0)))
+        assert verdict.claim("predicted").status in (status, "verified")
 
 
 def test_e12_is_vacuous_elsewhere():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from math import cos, pi, sqrt
 
 import numpy as np
@@ -161,8 +162,8 @@ def test_every_mode_solves_the_quadratic_problem():
         assert np.abs(residual).max() < 1e-9 * np.abs(K).max()
         assert np.linalg.norm(v.imag) <= np.linalg.norm(v.real)
         assert mode.eigenvalue.imag >= 0.0
-    rates = [mode.decay_rate for mode in found.modes]
-    assert rates == sorted(rates)
+    for slow, fast in itertools.pairwise(found.modes):
+        assert slow.decay_rate <= fast.decay_rate + slow.error + fast.error
     numbers = [(k, mode.name) for k, mode in enumerate(found.modes, start=1) if mode.name.isdigit()]
     assert all(int(name) == k for k, name in numbers)
 

@@ -187,6 +187,7 @@ def test_tables_keep_their_names(hexagon):
     assert fall == pytest.approx(exp(-2.0 * rows[0].predicted * half), rel=1e-2)
 
 
+@pytest.mark.timeout(1800)  # two minutes and a half on two busy cores
 def test_margins_lie_where_roots_cross():
     verdict = verify("delay-margin")
     assert verdict.status == "verified"

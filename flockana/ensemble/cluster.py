@@ -1,0 +1,172 @@
+"""A Dask cluster, by its address or of our own: every wait has a limit, and what fails is closed before it is told.
+
+A client that is left open closes itself when it is collected, and waits for ever if Dask holds its own lock just then.
+"""
+
+from __future__ import annotations
+
+import gc
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor
+from contextlib import contextmanager, suppress
+from typing import Any
+
+from flockana.ensemble.processes import single_threaded_children
+from flockana.errors import ArgumentError, SolverError
+from flockana.interrupts import interrupts_held, interrupts_hidden
+
+_CONNECT = 10.0  # seconds to find a scheduler and a worker
+_START = 120.0  # seconds for worker processes of our own to stand
+_ALONE = 60.0  # seconds without an answer of the scheduler, or without any worker, until a cluster at work is given up
+_CLOSE = 10.0  # seconds to say goodbye
+_GRACE = 1.0  # seconds more for Dask to say itself what is wrong
+_LOOK = 0.05  # seconds between looks for a first worker
+
+
+@contextmanager
+def connected(address: str, count: int) -> Iterator[tuple[Executor, Callable[[], int]]]:
+    """The executor of a cluster, and a function that tells how many runs it can make at once, now.
+
+    Parameters
+    ----------
+    address : str
+        Of a Dask scheduler, or ``"local"`` to start a cluster, which ends at the end.
+    count : int
+        Worker processes to start, with ``"local"``.
+
+    Raises
+    ------
+    ArgumentError
+        If Dask is not installed.
+    SolverError
+        If there is no scheduler at the address, it has no workers, or they cannot be started; and from the function, if
+        the scheduler or all workers are lost.
+    """
+    try:
+        import distributed  # noqa: F401
+    except ImportError as error:
+        raise ArgumentError(
+            f"cluster = {address!r}: Dask is not installed; pip install 'flockana[cluster]', or leave cluster out"
+        ) from error
+    own = _own_cluster(count) if address == "local" else None
+    try:
+        client = _found(own or address, address)
+        try:
+            # by default Dask takes two calls that look alike for one and gives the first one's result again
+            yield client.get_executor(pure=False), _Width(client)
+        finally:
+            _end(client)
+    finally:
+        if own is not None:
+            _end(own)
+
+
+def _own_cluster(count: int) -> Any:
+    """Start worker processes on this machine; Ctrl-C waits until they can be ended."""
+    from distributed import LocalCluster
+
+    cluster = LocalCluster.__new__(LocalCluster)  # so that there is something to close if the constructor fails
+    with interrupts_held(), interrupts_hidden(), single_threaded_children():
+        try:
+            cluster.__init__(
+                n_workers=count,
+                threads_per_worker=1,
+                host="127.0.0.1",
+                dashboard_address="127.0.0.1:0",
+                silence_logs=50,
+                death_timeout=_START,
+            )
+        except Exception as error:
+            reason = _told(error)
+        else:
+            return cluster
+        _end(cluster)
+    gc.collect()
+    raise SolverError(
+        f"cluster = 'local': its worker processes do not start ({reason}); a script that starts a cluster must do so "
+        "under `if __name__ == '__main__':`; or use jobs=1 (--jobs 1)"
+    )
+
+
+def _found(target: Any, address: str) -> Any:
+    """A client of a cluster, or of the scheduler at an address, that has a worker."""
+    try:
+        return _opened(target)
+    except Exception as error:
+        reason = _told(error)
+    gc.collect()  # what is left of a client goes now, when no lock of Dask's is held
+    raise SolverError(
+        f"cluster = {address!r}: no scheduler with a worker answers within {_CONNECT:g} s ({reason}); start "
+        "them with `dask scheduler` and `dask worker ADDRESS --nthreads 1`, and give the scheduler's address"
+    )
+
+
+def _opened(target: Any) -> Any:
+    """The client; if there is none within the limit, or no worker, it has been closed."""
+    from distributed import Client
+
+    class LimitedClient(Client):  # type: ignore[misc]
+        def start(self, **options: Any) -> None:
+            try:
+                # its own limit does not hold for a server that takes the call and says nothing
+                super().start(callback_timeout=_CONNECT + _GRACE, **options)
+            except BaseException:  # of a constructor that fails nobody else has the client
+                _end(self)
+                raise
+
+    client = LimitedClient(target, timeout=_CONNECT, set_as_default=False)
+    try:
+        deadline = time.monotonic() + _CONNECT
+        while not _threads(client, _CONNECT):
+            if time.monotonic() > deadline:
+                raise TimeoutError("it has no workers")
+            time.sleep(_LOOK)
+    except BaseException:
+        _end(client)
+        raise
+    return client
+
+
+def _threads(client: Any, limit: float) -> int:
+    """How many runs the cluster can make at once, now: workers come and go."""
+    return int(sum(client.sync(client.scheduler.ncores, callback_timeout=limit).values()))
+
+
+class _Width:
+    """How many runs the cluster can make at once, as long as there is a cluster."""
+
+    def __init__(self, client: Any) -> None:
+        self.client, self.seen = client, time.monotonic()
+
+    def __call__(self) -> int:
+        try:
+            found = _threads(self.client, _ALONE)
+        except Exception as error:  # whatever Dask makes of a scheduler that is gone
+            raise SolverError(
+                f"the executor failed: Dask's scheduler does not answer ({_told(error)}); runs in a store are kept, so "
+                "mend it and start again"
+            ) from error
+        now = time.monotonic()
+        if found:
+            self.seen = now
+        elif now - self.seen > _ALONE:
+            raise SolverError(
+                f"the executor failed: the cluster has had no worker for {_ALONE:g} s; runs in a store are kept, so "
+                "start workers and go on"
+            )
+        return max(1, found)
+
+
+def _end(one: Any) -> None:
+    """Close a client or a cluster, also one whose constructor failed, and the thread that it started."""
+    with interrupts_held():
+        with suppress(Exception):  # there is nobody left to answer
+            one.close(timeout=_CLOSE)
+        with suppress(AttributeError):  # it failed before it had one
+            one._loop_runner.stop()
+
+
+def _told(error: BaseException) -> str:
+    text = str(error) or "no answer" * isinstance(error, TimeoutError)
+    return " ".join(f"{type(error).__name__}: {text}".split())

@@ -1,0 +1,91 @@
+"""Worker processes of our own: they never see Ctrl-C, use one thread each, and never outlive the program."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ProcessPoolExecutor
+from contextlib import contextmanager
+from multiprocessing.connection import wait as wait_for_end
+from typing import Any
+
+from flockana.interrupts import interrupts_held, interrupts_hidden
+
+_END = 10.0  # seconds in which killed processes are gone
+_ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+
+
+def cores() -> int:
+    """Number of processors that this process may use."""
+    affinity = getattr(os, "sched_getaffinity", None)  # not on macOS and Windows
+    return len(affinity(0)) if affinity else os.cpu_count() or 1
+
+
+class ProcessPool(ProcessPoolExecutor):
+    """Spawned processes that never see Ctrl-C, use one thread each, and end when their parent does, however it ends.
+
+    Parameters
+    ----------
+    jobs : int
+        Processes at most.
+    """
+
+    def __init__(self, jobs: int) -> None:
+        # spawned, not forked: a forked child inherits the locks of threads that it does not have
+        context = multiprocessing.get_context("spawn")
+        super().__init__(jobs, mp_context=context, initializer=_begin_worker)
+
+    def submit(self, function: Callable[..., Any], /, *arguments: Any, **options: Any) -> Future[Any]:
+        """Call the function in a process, which is started if there are too few.
+
+        Parameters
+        ----------
+        function : callable
+            What to call.
+        *arguments, **options
+            With what.
+        """
+        with interrupts_held(), interrupts_hidden(), single_threaded_children():
+            return super().submit(function, *arguments, **options)
+
+    def stop(self) -> None:
+        """End all processes at once, with what they are doing, and wait until they are gone."""
+        with interrupts_held():  # a second Ctrl-C must not leave half of them
+            workers = list((getattr(self, "_processes", None) or {}).values())  # Python 3.14 has a public way
+            manager = getattr(self, "_executor_manager_thread", None)
+            self.shutdown(wait=False, cancel_futures=True)
+            for worker in workers:
+                worker.kill()  # one that is stopped would not hear a mere request
+            if manager is not None:
+                manager.join(_END)
+
+
+def _begin_worker() -> None:
+    """Ctrl-C goes to every process of the terminal; the parent alone answers it. And nothing outlives the parent."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True).start()
+
+
+def _end_with(sentinel: int) -> None:
+    wait_for_end([sentinel])
+    os._exit(1)
+
+
+@contextmanager
+def single_threaded_children() -> Iterator[None]:
+    """Processes started meanwhile use one thread for linear algebra: there are as many of them as cores."""
+    before = {name: os.environ.get(name) for name in _ONE_THREAD}
+    os.environ |= dict.fromkeys(_ONE_THREAD, "1")
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value

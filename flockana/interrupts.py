@@ -1,0 +1,92 @@
+"""Ctrl-C: kept for later while something is under way that it must not tear, and recognised in any shape."""
+
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from multiprocessing import resource_tracker
+
+
+@contextmanager
+def interrupts_held() -> Iterator[list[int]]:
+    """Keep Ctrl-C for later; gives a list that is empty as long as it did not come.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        At the end, if Ctrl-C came meanwhile.
+
+    Examples
+    --------
+    >>> with interrupts_held() as came:
+    ...     print("whole", came)
+    whole []
+    """
+    # A blocked signal would not do: any other thread, such as linear algebra's, takes it for the main one. And where
+    # Ctrl-C is ignored, as in a background job of a shell, it stays ignored.
+    came: list[int] = []
+    before = signal.getsignal(signal.SIGINT)
+    ours = callable(before) and threading.current_thread() is threading.main_thread()
+    if ours:
+        signal.signal(signal.SIGINT, lambda number, frame: came.append(number))
+    try:
+        yield came
+    finally:
+        if ours:
+            signal.signal(signal.SIGINT, before)
+        if came:
+            signal.raise_signal(signal.SIGINT)
+
+
+@contextmanager
+def interrupts_hidden() -> Iterator[None]:
+    """Processes that this thread starts meanwhile never get Ctrl-C, not even before they can ignore it.
+
+    Examples
+    --------
+    >>> with interrupts_hidden():
+    ...     pass
+    """
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    resource_tracker.ensure_running()  # it starts with the first process, and then unblocks the signal
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextmanager
+def interrupts_recognised() -> Iterator[None]:
+    """Make Ctrl-C again what compiled code made of it: where it falls into a call of a kernel, that call has failed.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        Instead of an error that it caused.
+
+    Examples
+    --------
+    >>> try:
+    ...     with interrupts_recognised():
+    ...         raise SystemError("returned a result with an exception set") from KeyboardInterrupt()
+    ... except KeyboardInterrupt:
+    ...     print("interrupted")
+    interrupted
+    """
+    try:
+        yield
+    except Exception as error:
+        if _caused_by_interrupt(error):
+            raise KeyboardInterrupt from error
+        raise
+
+
+def _caused_by_interrupt(error: BaseException | None) -> bool:
+    while error is not None and not isinstance(error, KeyboardInterrupt):
+        error = error.__cause__
+    return error is not None

@@ -1,0 +1,137 @@
+"""Who comes into range of whom *between* samples: the sign of ρ² - r² along quintics through (q, p, u).
+
+The squared distance of two agents on their quintics is a polynomial of degree 10. Its Bernstein coefficients bound it,
+and those of its derivative tell that it rises or falls, on pieces that are halved until one of the two is decided.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from flockana.kernels.paths import control_points
+
+NEVER, UNSURE, ENTERS = 0, 1, 2
+_DEPTH = 30  # halvings of an interval: a visit that is shorter is left open
+_WIGGLE = 10.0  # slope of what the path may be off the quintic, in its size over the interval
+_CHOOSE = np.array([1.0, 5.0, 10.0, 10.0, 5.0, 1.0])
+_CHOOSE_10 = np.array([1.0, 10.0, 45.0, 120.0, 210.0, 252.0, 210.0, 120.0, 45.0, 10.0, 1.0])
+
+
+@njit(cache=True)
+def _squared(points, i, j, r, out):
+    """Bernstein coefficients of ρ² - r² of two quintics."""
+    for k in range(11):
+        out[k] = 0.0
+    for a in range(6):
+        for b in range(6):
+            dot = 0.0
+            for x in range(3):
+                dot += (points[j, a, x] - points[i, a, x]) * (points[j, b, x] - points[i, b, x])
+            out[a + b] += _CHOOSE[a] * _CHOOSE[b] / _CHOOSE_10[a + b] * dot
+    for k in range(11):
+        out[k] -= r * r
+
+
+@njit(cache=True)
+def _halve(stack, top):
+    """The left half of the polynomial stack[top] goes on top of it, the right half remains in place."""
+    c = stack[top]
+    for level in range(11):
+        stack[top + 1, level] = c[0]
+        for k in range(10 - level):
+            c[k] = 0.5 * (c[k] + c[k + 1])
+
+
+@njit(cache=True)
+def _slopes(c):
+    """Least and largest difference of neighbouring coefficients: a tenth of the slope over the piece."""
+    least, most = np.inf, -np.inf
+    for k in range(10):
+        least, most = min(least, c[k + 1] - c[k]), max(most, c[k + 1] - c[k])
+    return least, most
+
+
+@njit(cache=True)
+def _follow(stack, widths, band, was_out):
+    """(was out of range, what is known of entries) along the polynomial stack[0], within a band of what is certain."""
+    known = NEVER
+    widths[0], top = 1.0, 0
+    while top >= 0:
+        c, width = stack[top], widths[top]
+        least, most = c.min(), c.max()
+        slopes = _slopes(c)
+        if least > band:
+            was_out, top = True, top - 1
+        elif most < -band:
+            if was_out:
+                return was_out, ENTERS
+            top -= 1
+        elif slopes[0] * 10.0 > _WIGGLE * band * width:  # it rises: from within the range, if it was
+            if was_out and c[0] < -band:
+                return was_out, ENTERS
+            was_out = was_out or c[10] > band
+            top -= 1
+        elif slopes[1] * 10.0 < -_WIGGLE * band * width and (c[0] > band or was_out) and c[10] < -band:
+            return True, ENTERS
+        elif width < 2.0**-_DEPTH or (least >= -band and most <= band):
+            was_out = was_out or c[0] > band or c[10] > band
+            known, top = UNSURE, top - 1
+        else:
+            _halve(stack, top)
+            widths[top] = widths[top + 1] = 0.5 * width
+            top += 1
+    return was_out, known
+
+
+@njit(cache=True)
+def follow_pairs(h, q0, p0, u0, q1, p1, u1, r, noise, was_out, unsure):
+    """Go on by one interval with every pair: the first that comes into range for certain, or (-1, -1).
+
+    `was_out` and `unsure` are flags of all pairs in lexicographic order; `noise` is the rounding of a distance.
+    """
+    n = q0.shape[0]
+    points, reach, allowance = control_points(h, q0, p0, u0, q1, p1, u1)
+    stack, widths, k = np.empty((_DEPTH + 3, 11)), np.empty(_DEPTH + 3), -1
+    for i in range(n):
+        for j in range(i + 1, n):
+            k += 1
+            s2 = 0.0
+            for x in range(3):
+                s2 += (points[j, 0, x] - points[i, 0, x]) ** 2
+            s, way = np.sqrt(s2), reach[i] + reach[j] + noise
+            if s - way > r:
+                was_out[k] = True
+                continue
+            if s + way < r and not was_out[k]:
+                continue
+            slack = allowance[i] + allowance[j] + noise
+            _squared(points, i, j, r, stack[0])
+            was_out[k], known = _follow(stack, widths, (4.0 * r + slack) * slack, was_out[k])
+            if known == ENTERS:
+                return i, j
+            if known == UNSURE:
+                unsure[k] = True
+    return -1, -1
+
+
+@njit(cache=True)
+def follow_steps(q, r, noise, was_out, unsure):
+    """As `follow_pairs` for one state of a map: the first pair that was out of range and is in it, or (-1, -1)."""
+    n, m = q.shape
+    k = -1
+    for i in range(n):
+        for j in range(i + 1, n):
+            k += 1
+            s2 = 0.0
+            for c in range(m):
+                s2 += (q[j, c] - q[i, c]) ** 2
+            s = np.sqrt(s2)
+            if s > r + noise:
+                was_out[k] = True
+            elif s < r - noise:
+                if was_out[k]:
+                    return i, j
+            else:
+                unsure[k] = True
+    return -1, -1

@@ -1,0 +1,145 @@
+"""How far rounding may have moved an eigenvalue: what a rate is compared with before it is called a decay.
+
+An eigenvalue λ of A with unit left and right eigenvectors y, x moves by |Δλ| ≤ ‖ΔA‖/|yᴴx| to first order, and LAPACK's
+eigenvalues are those of some A + ΔA with ‖ΔA‖ a small multiple of eps ‖A‖. The linearised flock is not normal, so
+1/|yᴴx| is no formality: where two modes coalesce (critical damping) it is infinite, and m eigenvalues that are one
+move by (‖ΔA‖/‖A‖)^(1/m) ‖A‖. Of the two estimates the smaller is taken.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.checks import FloatArray
+from flockana.curvature import EPS
+
+ComplexArray = npt.NDArray[np.complex128]
+
+_ROUNDINGS = 16.0  # of eps ‖A‖, in the entries of A and in LAPACK
+
+
+def eigen(matrix: FloatArray) -> tuple[ComplexArray, ComplexArray, FloatArray]:
+    """(eigenvalues, right eigenvectors, how far rounding may have moved each eigenvalue) of a square matrix.
+
+    Parameters
+    ----------
+    matrix : ndarray, shape (N, N)
+        Any; its rows and columns are balanced first, so that the units of its states do not set the error.
+
+    Examples
+    --------
+    >>> values, _, errors = eigen(np.array([[0.0, 1.0], [-1.0, 0.0]]))
+    >>> bool(np.all(np.abs(values.real) <= errors) and errors.max() < 1e-13)
+    True
+    >>> double = eigen(np.array([[1.0, 1.0], [0.0, 1.0]]))[2]
+    >>> bool(1e-8 < double.min() and double.max() < 1e-6)
+    True
+    """
+    from scipy.linalg import eig
+    from scipy.linalg.lapack import dgebal
+
+    if not matrix.size:
+        return np.zeros(0, np.complex128), np.zeros((0, 0), np.complex128), np.zeros(0)
+    balanced, _, _, units, _ = dgebal(matrix, scale=1)  # by powers of 2: no rounding
+    found: Any = eig(balanced, left=True, right=True)
+    values, left, right = (np.asarray(part, dtype=np.complex128) for part in found)
+    size = float(np.linalg.norm(balanced))
+    with np.errstate(divide="ignore"):
+        alone = _ROUNDINGS * EPS * size / np.abs(np.einsum("ij,ij->j", left.conj(), right))
+    return values, units[:, None] * right, np.minimum(alone, _together(values, size))
+
+
+def _together(values: ComplexArray, size: float) -> FloatArray:
+    """Largest move of each eigenvalue as one of the m that lie as near to each other as m coalesced ones would."""
+    apart = np.sort(np.abs(values[:, None] - values[None, :]), axis=1)
+    moves = size * (_ROUNDINGS * EPS) ** (1.0 / np.arange(1.0, values.size + 1.0))
+    # the least m for which no more than m eigenvalues are within reach of the moves of m
+    fits = np.array([[np.sum(row <= 2.0 * move) <= m for m, move in enumerate(moves, 1)] for row in apart])
+    found: FloatArray = moves[np.argmax(fits, axis=1)]
+    return found
+
+
+def root_error(value: complex, stiffness: float, damping: float, errors: tuple[float, float]) -> float:
+    """How far a root of λ² + damping λ + stiffness moves, of which the coefficients are known to errors only.
+
+    Parameters
+    ----------
+    value : complex
+        The root.
+    stiffness, damping : float
+        Coefficients.
+    errors : tuple of float
+        Of stiffness and damping.
+
+    Examples
+    --------
+    >>> root_error(-1.0, 2.0, 3.0, (1e-12, 0.0)), root_error(-1.0, 1.0, 2.0, (1e-12, 0.0))
+    (1e-12, 1e-06)
+    """
+    push, slope = errors[0] + abs(value) * errors[1], abs(2.0 * value + damping)
+    double = float(np.sqrt(push))
+    return min(push / slope, double) if slope > 0.0 else double
+
+
+def mode_errors(stiffness: Any, damping: Any, values: ComplexArray, shapes: ComplexArray) -> FloatArray:
+    """How far rounding and what a search left over may have moved roots λ of (λ² + λD + K) v = 0, D and K symmetric.
+
+    To first order by ‖(λ² + λD + K) v‖/|vᵀ(2λ + D) v|, for vᵀ is then the left eigenvector; of a double root by the
+    square root of the push.
+
+    Parameters
+    ----------
+    stiffness, damping : sparse array, shape (N, N)
+        K and D.
+    values : complex ndarray, shape (k,)
+        Roots.
+    shapes : complex ndarray, shape (N, k)
+        Their vectors.
+    """
+    rows = [float(abs(matrix).sum(axis=1).max()) for matrix in (stiffness, damping)]
+    errors = np.empty(len(values))
+    for k, value in enumerate(values.tolist()):
+        v = shapes[:, k] / np.linalg.norm(shapes[:, k])
+        drag = damping @ v
+        left_over = float(np.linalg.norm(value * value * v + value * drag + stiffness @ v))
+        push = left_over + _ROUNDINGS * EPS * (rows[0] + abs(value) * rows[1] + abs(value) ** 2)
+        slope = abs(complex(v @ (2.0 * value * v + drag)))
+        errors[k] = min(push / slope if slope > 0.0 else np.inf, float(np.sqrt(push)))
+    return errors
+
+
+def slowest_first(values: ComplexArray, errors: FloatArray) -> list[int]:
+    """Order of eigenvalues by decay rate, then by frequency, then as given; what rounding may have parted is equal.
+
+    Parameters
+    ----------
+    values : complex ndarray, shape (k,)
+        Eigenvalues.
+    errors : ndarray, shape (k,)
+        How far rounding may have moved each.
+
+    Examples
+    --------
+    >>> slowest_first(np.array([-1.0 + 5.0j, -1.0 - 1e-16 + 2.0j, -0.5]), np.full(3, 1e-15))
+    [2, 1, 0]
+    """
+    found: list[int] = []
+    for level in _levels(range(len(values)), -np.real(values), errors):
+        for pair in _levels(level, np.abs(np.imag(values)), errors):
+            found += sorted(pair)
+    return found
+
+
+def _levels(indices: Iterable[int], sizes: FloatArray, errors: FloatArray) -> list[list[int]]:
+    """Indices by rising size, in runs within which each is within the errors of the one before."""
+    levels: list[list[int]] = []
+    for k in sorted(indices, key=lambda k: float(sizes[k])):
+        if levels and sizes[k] - sizes[levels[-1][-1]] <= errors[k] + errors[levels[-1][-1]]:
+            levels[-1].append(k)
+        else:
+            levels.append([k])
+    return levels

@@ -1,0 +1,198 @@
+"""What a finite run can say of a limit: certificates, each with a margin, and the claim that the best of them makes.
+
+A claim about t → ∞ is verified only by a certificate, and a run that has none leaves it open: no run is long enough
+to refute a limit. (What is certain for ever, such as parts that part, is its theorem's own to say.) There are two
+kinds:
+
+* a state that is caught in an attracting equilibrium (`flockana.theorems.attraction`), which says it all at one
+  instant and without a tolerance;
+* `Decay`: a quantity that falls steadily, through several time constants, until it is below what counts as 0, and
+  stays there. One instant never will do: not the turning point of an oscillation, and no start from rest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from math import e, inf, log
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.theorems.theorem import Claim, Hypothesis, judge
+
+TIME_CONSTANTS = 5.0  # e-foldings: a factor 148
+REBOUND = 3.0  # e-foldings: a factor 20, more than the noise of an integration that has come to rest varies by
+_WINDOWS = 8  # into which the last part of the fall is divided
+_PARTS = (0.5, 0.25, 0.125)  # of the time until the fall ends: what came before it fell does not count
+_ROUNDING = 1e-12  # of a logarithm of two amplitudes, or a ratio of two energies
+_LEAST = 1e-300  # below it an amplitude is 0
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """What speaks for a limit, as a number: it holds if the margin is positive.
+
+    Attributes
+    ----------
+    margin : float
+        Between -1 and 1, so that how far one run exceeds what is asked does not count.
+    text : str
+        In words.
+    error : float
+        Rounding of the margin.
+    """
+
+    margin: float
+    text: str
+    error: float = _ROUNDING
+
+
+@dataclass(frozen=True)
+class Decay:
+    """How a series that should go to 0 falls.
+
+    Attributes
+    ----------
+    time_constants : float
+        E-foldings over the last part of the fall, at the pace of its slowest eighth; negative where it rises there.
+    depth : float
+        E-foldings by which it ends below what counts as 0; negative while above.
+    growth : float
+        E-foldings by which it has risen again from its least.
+    level : float
+        Largest value in the last eighth of the time.
+
+    Notes
+    -----
+    The envelope, the largest value in each of eight equal windows, is what falls: a mode that swings does not look
+    like one that decays wherever the run is cut. A power (T - t)^k that happens to end at its zero T falls by
+    7 k log(8/7) < k at the pace of its slowest window, so that k > 5 would be needed to deceive; a beat has k = 1.
+    A decay like t^(-k) falls by less than k log 2 over the last half. A constant, and what grows, do not fall. A
+    plateau above the floor keeps `depth` negative; one below it counts as 0, which is what the floor is for: there an
+    integration ends in its own noise, so the fall is measured down to e times that plateau.
+    """
+
+    time_constants: float
+    depth: float
+    growth: float
+    level: float
+
+    @property
+    def certificate(self) -> Certificate:
+        """It fell through five time constants, ended below what counts as 0, and did not rise on the way."""
+        margin = min(self.depth, self.time_constants / TIME_CONSTANTS - 1.0, 1.0 - self.growth / REBOUND)
+        text = f"it falls steadily through {max(self.time_constants, 0.0):.2g} time constants"
+        text += f", rises again by {self.growth:.2g}" if self.growth > 1.0 else ""
+        below = f" and ends {'below' if self.depth > 0.0 else 'above'} what counts as 0"
+        return Certificate(float(np.clip(margin, -1.0, 1.0)), text + below)
+
+
+def decay(t: npt.ArrayLike, amplitude: npt.ArrayLike, *, floor: float) -> Decay:
+    """Measure how a series falls towards 0.
+
+    Parameters
+    ----------
+    t : array_like, shape (T,)
+        Rising times.
+    amplitude : array_like, shape (T,)
+        What should vanish, >= 0, to its first power: a speed, not its square. Add its numerical error to it.
+    floor : float
+        What counts as 0, > 0, in the unit of the series.
+
+    Returns
+    -------
+    Decay
+        Of a series with a value that is not finite, one that certifies nothing.
+
+    Examples
+    --------
+    >>> t = np.linspace(0.0, 40.0, 400)
+    >>> decay(t, np.exp(-t), floor=1e-6).certificate.margin > 0.0
+    True
+    >>> decay(t, np.abs(np.cos(t)), floor=1e-6).certificate.margin > 0.0
+    False
+    """
+    times, values = np.asarray(t, dtype=np.float64), np.asarray(amplitude, dtype=np.float64)
+    if not np.isfinite(values).all():
+        return Decay(-inf, -inf, 0.0, float("nan"))
+    values = np.maximum(values, _LEAST)
+    start, end = float(times[0]), float(times[-1])
+    level = float(np.nanmax(_envelope(times, values, end - (end - start) / _WINDOWS, end)))
+    least = float(np.nanmin(_envelope(times, values, start, end)))
+    fall = _fall(times, values, e * level)
+    return Decay(fall, log(floor / level), max(0.0, log(level / least)), level)
+
+
+def _fall(t: npt.NDArray[np.float64], values: npt.NDArray[np.float64], until: float) -> float:
+    """E-foldings of the fall to a level, at the pace of its slowest window, over the part of it that shows most."""
+    above = np.flatnonzero(values > until)
+    if above.size == 0:  # it was never seen to fall
+        return 0.0
+    start, end = float(t[0]), float(t[above[-1]])
+    found = [-inf]
+    for part in _PARTS:
+        windows = _envelope(t, values, end - part * (end - start), end)
+        if np.isfinite(windows).all():
+            found.append((_WINDOWS - 1) * float(np.log(windows[:-1] / windows[1:]).min()))
+    return max(found)
+
+
+def _envelope(
+    t: npt.NDArray[np.float64], values: npt.NDArray[np.float64], start: float, end: float
+) -> npt.NDArray[np.float64]:
+    """The largest value in each of `_WINDOWS` equal windows; NaN in one that holds no sample."""
+    edges = np.linspace(start, end, _WINDOWS + 1)
+    found = np.full(_WINDOWS, np.nan)
+    for k in range(_WINDOWS):
+        inside = values[(t >= edges[k]) & (t <= edges[k + 1])]
+        if inside.size:
+            found[k] = inside.max()
+    return found
+
+
+def limit_claim(
+    name: str,
+    needs: Iterable[Hypothesis],
+    certificates: Iterable[Certificate],
+    *,
+    computed: Any,
+    stated: str,
+    witness: Any = None,
+    proof: str | None = None,
+    detail: str,
+) -> Claim:
+    """A claim about a limit, by its best certificate: verified, or open.
+
+    Parameters
+    ----------
+    name : str
+        Name of the claim.
+    needs : iterable of Hypothesis
+        Hypotheses of the claim.
+    certificates : iterable of Certificate
+        Each of them would do.
+    computed, stated, witness, proof : object
+        As in `Claim`.
+    detail : str
+        As in `Claim`; what the best certificate says is added.
+
+    Examples
+    --------
+    >>> limit_claim("i", [], [Certificate(-1.0, "it does not fall")], computed=1.0, stated="0", detail="x").status
+    'inconclusive'
+    """
+    best = max(certificates, key=lambda one: one.margin if one.margin == one.margin else -inf)
+    status = judge(best.margin, best.error, needs)
+    return Claim(
+        name,
+        "inconclusive" if status == "refuted" else status,
+        computed=computed,
+        stated=stated,
+        margin=best.margin,
+        error=best.error,
+        witness=witness,
+        proof=proof,
+        detail=f"{detail}; {best.text}",
+    )

@@ -1,0 +1,88 @@
+"""How far rounding can move what a verdict compares: bounds from the number of terms and their magnitudes.
+
+A sum of k numbers in floating point is off by at most about k ε times the sum of their magnitudes, and a difference
+of two numbers by ε times the larger of the two. Nothing here says how far the integration is off: that a second,
+tighter run tells.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import Any
+
+import numpy as np
+
+from flockana.checks import FloatArray
+
+EPS = float(np.finfo(float).eps)
+_POTENTIAL = 1e-13  # of c*: to which ψ_α is known (`AlphaInteraction.psi_alpha`), and ψ_β of its own largest value
+
+
+def frame_error(x: FloatArray) -> float:
+    """Bound of the rounding of each coordinate of x_i − x_c, x_c a mean of n numbers.
+
+    Parameters
+    ----------
+    x : ndarray, shape (..., n, m)
+        Positions or velocities, at one instant or several.
+
+    Examples
+    --------
+    >>> frame_error(np.full((2, 1), 1e6)) < 1e-8
+    True
+    """
+    return float((x.shape[-2] + 4) * EPS * np.abs(x).max())
+
+
+def spread_error(x: FloatArray) -> FloatArray:
+    """Bound of the rounding of ½ Σ‖x_i − x_c‖², by instant.
+
+    Parameters
+    ----------
+    x : ndarray, shape (T, n, m)
+        Positions or velocities.
+
+    Examples
+    --------
+    >>> x = np.array([[[1e6], [1e6 + 1.0]]])
+    >>> bool(0.0 < spread_error(x)[0] < 1e-8)
+    True
+    """
+    size, off = x.shape[1] * x.shape[2], frame_error(x)
+    norm = np.linalg.norm((x - x.mean(axis=1, keepdims=True)).reshape(len(x), size), axis=1)
+    error: FloatArray = (size + 4) * EPS * norm**2 + sqrt(size) * off * norm + size * off**2
+    return error
+
+
+def energy_error(law: Any, q: FloatArray, p: FloatArray, energy: FloatArray) -> FloatArray:
+    """Bound of the rounding of the energy of Algorithm 1, 2 or 3, by instant: all its terms are >= 0.
+
+    Parameters
+    ----------
+    law : Algorithm1, Algorithm2 or Algorithm3
+        The law.
+    q, p : ndarray, shape (T, n, m)
+        Positions and velocities.
+    energy : ndarray, shape (T,)
+        The energy there.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> q = np.array([[[0.0], [8.0]]])
+    >>> bool(energy_error(Algorithm1(), q, 0.0 * q, np.array([20.0]))[0] < 1e-9)
+    True
+    """
+    n, m = q.shape[1:]
+    alpha, gains, pairs = law.alpha, law.gains, n * (n - 1) // 2
+    pull = float(np.max(gains.c1_gamma)) if hasattr(law, "target") else 0.0
+    reach = float(np.abs(q).max())
+    if pull:
+        reach += float(np.abs(law.target.position(0.0)).max())
+    error = gains.c1_alpha * pairs * (_POTENTIAL * alpha.c_star + 8.0 * EPS * alpha.b * (alpha.r_alpha + reach))
+    error += pull * (n + 8) * EPS * reach**2
+    for _ in getattr(law, "obstacles", ()):
+        most = float(law.beta.psi_beta(0.0)) + 2.0 * reach
+        error += gains.c1_beta * n * (_POTENTIAL + 16.0 * EPS) * most
+    bound: FloatArray = error + (pairs + n * m + 8) * EPS * np.abs(energy) + 2.0 * spread_error(p)
+    return bound

@@ -1,0 +1,147 @@
+"""What a flock may do between two samples: bounds from speeds and accelerations at both ends of each interval.
+
+A distance between two agents of relative speed at most w and relative acceleration at most c exceeds what it is at the
+nearer end by w h/2 at most in an interval h, and the larger of both ends by h²/8 of its second derivative, which is
+w²/ℓ + c at most where the distance is ℓ. Speeds and accelerations inside an interval are taken to be no more than twice
+the larger of those at its ends: true of every run whose samples resolve its motion.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.checks import FloatArray
+from flockana.laws.law import DiscreteLaw
+from flockana.nets import LinkArray, components, link_lengths, links
+from flockana.theorems.rounding import EPS
+from flockana.trajectory import Trajectory
+
+_INSIDE = 2.0  # speeds and accelerations inside an interval, over those at its ends
+
+
+def _motion(x: FloatArray) -> FloatArray:
+    """Largest ‖x_i − x_c‖ over each interval between samples, shape (T − 1,)."""
+    size = np.linalg.norm(x - x.mean(axis=1, keepdims=True), axis=2).max(axis=1)
+    most: FloatArray = _INSIDE * np.maximum(size[:-1], size[1:])
+    return most
+
+
+def radius_between(run: Trajectory) -> FloatArray:
+    """An upper bound of the cohesion radius over each interval between samples, shape (T − 1,).
+
+    Parameters
+    ----------
+    run : Trajectory
+        The run; a map has no state between its steps.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> from flockana.simulate import simulate
+    >>> run = simulate(Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 1.0))
+    >>> bool((radius_between(run) >= 0.5 * 7.0).all())
+    True
+    """
+    radius = run.metric("cohesion_radius")
+    ends = np.maximum(radius[:-1], radius[1:])
+    if isinstance(run.law, DiscreteLaw):
+        return ends
+    h, speed, force = np.diff(run.t), _motion(run.p), _motion(run.u)
+    straight = 0.5 * speed * h
+    with np.errstate(divide="ignore", invalid="ignore"):
+        bent = h**2 / 8.0 * (speed**2 / (ends - straight) + force)
+    bound: FloatArray = ends + np.where((ends > 2.0 * straight) & (bent < straight), bent, straight)
+    return bound
+
+
+@dataclass(frozen=True)
+class Nets:
+    """What is certain of the net at samples, or throughout the intervals between them; one number for each.
+
+    Attributes
+    ----------
+    components, components_least : ndarray
+        Number of components at most, and at least: without and with the pairs of which it is open.
+    giant, giant_most : ndarray
+        Agents in the largest component at least, and at most.
+    links : ndarray
+        Pairs that are linked for certain.
+    open_links : ndarray
+        Pairs of which it is open, at r but for rounding or for what they may do between samples.
+    """
+
+    components: FloatArray
+    components_least: FloatArray
+    giant: FloatArray
+    giant_most: FloatArray
+    links: FloatArray
+    open_links: FloatArray
+
+
+def nets_at(run: Trajectory) -> Nets:
+    """The net at each sample of a run of a law with an α-interaction, but for rounding.
+
+    Parameters
+    ----------
+    run : Trajectory
+        The run.
+    """
+    return run.remembered("nets at samples", lambda: _nets_at(run))
+
+
+def _nets_at(run: Trajectory) -> Nets:
+    r, rounding, rows = run.law.alpha.r, _rounding(run), []
+    for k, q in enumerate(run.q):
+        pairs = links(q, r + rounding)
+        rows.append(_row(run, k, pairs, link_lengths(q, pairs) < r - rounding))
+    return _nets(rows)
+
+
+def nets_between(run: Trajectory) -> Nets:
+    """The net in each interval between samples: what is nearer to r than the motion may bridge is left open.
+
+    Parameters
+    ----------
+    run : Trajectory
+        A run of a law with an α-interaction; a map has no state between its steps.
+    """
+    return run.remembered("nets between samples", lambda: _nets_between(run))
+
+
+def _nets_between(run: Trajectory) -> Nets:
+    moves, r, rounding = not isinstance(run.law, DiscreteLaw), run.law.alpha.r, _rounding(run)
+    h, speed, force = np.diff(run.t), moves * _motion(run.p), moves * _motion(run.u)
+    rows = []
+    for k in range(len(run.t) - 1):
+        straight = float(speed[k] * h[k])  # two agents: twice the speed, for half the time
+        bent = float(h[k] ** 2 / 8.0 * (8.0 * speed[k] ** 2 / r + 2.0 * force[k]))
+        pairs = links(run.q[k], r + 4.0 * straight + 2.0 * rounding)
+        ends = np.stack([link_lengths(run.q[k], pairs), link_lengths(run.q[k + 1], pairs)])
+        low, high = ends.min(axis=0), ends.max(axis=0)
+        slack = np.where(low - straight >= 0.5 * r, min(straight, bent), straight) + rounding
+        near = low - slack < r
+        rows.append(_row(run, k, pairs[near], (high + slack < r)[near]))
+    return _nets(rows)
+
+
+def _rounding(run: Trajectory) -> float:
+    """Of a distance of two agents, against r."""
+    return float(16.0 * EPS * (np.abs(run.q).max() + run.law.alpha.r))
+
+
+def _row(run: Trajectory, k: int, pairs: LinkArray, certain: npt.NDArray[np.bool_]) -> tuple[float, ...]:
+    """Numbers of one net, of pairs that may be linked and of which some certainly are; sample k has it if all are."""
+    count = int(certain.sum())
+    if count == len(pairs):
+        parts = run.n - float(run.metric("connectivity")[k]) * (run.n - 1)
+        giant = run.n * float(run.metric("giant_share")[k])
+        return round(parts), round(parts), round(giant), round(giant), count, 0
+    some, all_of_them = (np.bincount(components(run.n, chosen)) for chosen in (pairs[certain], pairs))
+    return some.size, all_of_them.size, int(some.max()), int(all_of_them.max()), count, len(pairs) - count
+
+
+def _nets(rows: list[tuple[float, ...]]) -> Nets:
+    return Nets(*np.array(rows, dtype=np.float64).reshape(-1, 6).T)

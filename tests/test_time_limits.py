@@ -1,0 +1,56 @@
+"""A test that hangs fails in time and takes no other with it, in compiled code too, with and without xdist."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from programs import posix
+
+pytestmark = posix
+CONFIGURATION = Path(__file__).parents[1] / "pyproject.toml"
+HANGING = """
+import signal, time
+from pathlib import Path
+
+def test_hangs():
+    {}
+    time.sleep(3600.0)
+
+def test_after():
+    Path("after").touch()
+"""
+
+
+def outcome(folder, body, *options):
+    """What pytest says of a test that hangs, by our configuration but with shorter limits."""
+    (folder / "test_hanging.py").write_text(HANGING.format(body))
+    command = [sys.executable, "-m", "pytest", "-c", CONFIGURATION, "--rootdir", folder, "-p", "no:cacheprovider"]
+    limits = ["-o", "timeout=3", "-o", "faulthandler_timeout=9"]
+    return subprocess.run([*command, *limits, *options, folder], capture_output=True, text=True, cwd=folder)
+
+
+@pytest.mark.parametrize("options", [["-p", "no:xdist"], ["-n", "1"]], ids=["alone", "xdist"])
+def test_a_test_that_waits_fails_and_the_others_go_on(options, tmp_path):
+    done = outcome(tmp_path, "pass", *options)
+    assert "test_hangs - Failed: Timeout (>3.0s)" in done.stdout
+    assert (tmp_path / "after").exists()
+
+
+@pytest.mark.parametrize("options", [["-p", "no:xdist"], ["-n", "1"]], ids=["alone", "xdist"])
+def test_a_test_that_does_not_hear_the_signal_ends_with_its_process(options, tmp_path):
+    """As in compiled code. xdist starts another process for the rest."""
+    done = outcome(tmp_path, "signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGALRM})", *options)
+    assert done.returncode == 1
+    assert "in test_hangs" in done.stderr
+    assert (tmp_path / "after").exists() == ("-n" in options)
+
+
+def test_no_mark_gives_more_time_than_the_process_has(pytestconfig, request):
+    longest = float(pytestconfig.getini("faulthandler_timeout"))
+    limits = [float(pytestconfig.getini("timeout"))]
+    limits += [mark.args[0] for item in request.session.items for mark in item.iter_markers("timeout")]
+    assert 0.0 < max(limits) < longest
+    assert pytestconfig.getini("faulthandler_exit_on_timeout")

@@ -1,0 +1,35 @@
+"""Runs that no integrator made, judged by a theorem's own check: `verify` refuses them, and that is tested elsewhere."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flockana.theorems import Tolerances, Verdict, theorem
+from flockana.trajectory import Trajectory
+
+
+def made_up(law, q, p=None, t=None, u=None):
+    """A run with samples as given; paths between them by the accelerations given, or 0."""
+    q = np.array(q, dtype=float)
+    p = np.zeros_like(q) if p is None else np.array(p, dtype=float)
+    u = np.zeros_like(q) if u is None else np.array(u, dtype=float)
+    t = np.arange(float(len(q))) if t is None else np.array(t, dtype=float)
+    return Trajectory(t, q, p, u, law, {"work": np.zeros(len(q))})
+
+
+def judged(name, run, tolerances=None):
+    """What the theorem's check says of this one run, without a second."""
+    used = tolerances or Tolerances()
+    hypotheses, claims = theorem(name).check(run, used)
+    return Verdict(name, tuple(hypotheses), tuple(claims), used)
+
+
+def statuses(verdict):
+    """Status by claim."""
+    return {claim.name: claim.status for claim in verdict.claims}
+
+
+def hypothesis(verdict, part):
+    """The hypothesis whose name holds this."""
+    (found,) = [one for one in verdict.hypotheses if part in one.name]
+    return found

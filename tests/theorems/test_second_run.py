@@ -1,0 +1,200 @@
+"""A verdict does not hang on how finely a run was integrated, nor is it given of a run that failed or was edited."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+
+import flockana as fl
+from flockana.errors import ArgumentError
+from flockana.laws.semi_implicit import SemiImplicitEuler
+from flockana.theorems import Claim, Theorem, Tolerances, verify
+from flockana.theorems.second_run import corroborated, second_run
+from flockana.theorems.theorem import judge
+from flockana.trajectory import Trajectory
+
+SPRING = fl.Algorithm2(
+    gains=fl.Gains(c1_alpha=0.0, c2_alpha=0.0, c1_gamma=1.0, c2_gamma=0.0), target=fl.StaticTarget((0.0,))
+)
+PAIR = ([[0.0, 0.0], [8.0, 0.5]], [[0.0, 0.0], [0.0, 1.0]])
+
+
+def returns_to_the_start(bound: float) -> Theorem:
+    """After one period a harmonic oscillator is at its start: true of the law for every bound > 0."""
+
+    def check(run: Trajectory, tolerances: Tolerances) -> tuple[list, list[Claim]]:
+        margin = bound - abs(float(run.q[-1, 0, 0] - run.q[0, 0, 0]))
+        return [], [Claim("back", judge(margin, 1e-14, []), margin=margin, error=1e-14)]
+
+    return Theorem(
+        "ours",
+        "back after a period",
+        "A statement that is long enough to be read by a person.",
+        "ours",
+        "trajectory",
+        check,
+    )
+
+
+def oscillation(**how: object) -> Trajectory:
+    return fl.simulate(SPRING, [[1.0]], [[0.0]], (0.0, 2.0 * np.pi), **how)
+
+
+@pytest.mark.parametrize("bound", [1e-2, 1e-4, 1e-6, 1e-9])
+@pytest.mark.parametrize(
+    "how", [{"method": "RK4", "dt": 0.3}, {"rtol": 1e-4, "atol": 1e-6}, {}, {"method": "RK23", "rtol": 1e-3}]
+)
+def test_a_true_claim_is_never_refuted_by_the_integrator(bound: float, how: dict) -> None:
+    run = oscillation(**how)
+    error = abs(float(run.q[-1, 0, 0]) - 1.0)
+    status = verify(returns_to_the_start(bound), run).status
+    assert status in ("verified", "inconclusive")
+    if error < 0.2 * bound:
+        assert status == "verified"
+
+
+def test_the_error_that_is_shown_holds_the_error_of_the_run() -> None:
+    run = oscillation(method="RK4", dt=0.3)
+    claim = verify(returns_to_the_start(0.5), run).claims[0]
+    assert claim.status == "verified"
+    assert claim.error == pytest.approx(2.0 * abs(float(run.q[-1, 0, 0]) - 1.0), rel=1e-3)
+    assert claim.error > 1e-6
+
+
+def test_a_failed_run_decides_nothing() -> None:
+    run = replace(oscillation(), status="failed", message="gave up at t = 3")
+    claim = verify(returns_to_the_start(0.5), run).claims[0]
+    assert claim.status == "inconclusive"
+    assert "the run failed: gave up at t = 3" in claim.detail
+    assert (
+        verify("energy", replace(fl.simulate(fl.Algorithm1(), *PAIR, (0.0, 1.0)), status="failed")).status
+        == "inconclusive"
+    )
+
+
+def test_claims_that_are_proved_are_left_alone() -> None:
+    run = replace(oscillation(), status="failed")
+    claims = (Claim("a", "verified", "symbolic"), Claim("b", "vacuous"), Claim("c", "inconclusive"))
+    assert corroborated(claims, run, lambda again: pytest.fail("asked again")) == claims
+
+
+def test_a_claim_that_only_one_of_the_two_runs_makes_is_inconclusive() -> None:
+    run = oscillation()
+    flips = [Claim("a", "verified", margin=1.0, error=0.1)], [Claim("a", "refuted", margin=-1.0, error=0.1)]
+    for one, two in (flips, flips[::-1]):
+        assert corroborated(one, run, lambda again, two=two: two)[0].status == "inconclusive"
+    near = corroborated(
+        [Claim("a", "verified", margin=1.0, error=0.1)], run, lambda again: [Claim("a", "verified", margin=1.95)]
+    )
+    assert (near[0].status, near[0].error) == ("inconclusive", pytest.approx(2.0))
+
+
+def test_the_second_run_is_a_hundred_times_tighter_and_is_made_once() -> None:
+    run = oscillation(rtol=1e-6, atol=1e-9)
+    again = second_run(run)
+    assert again.stats["rtol"] == pytest.approx(1e-8)
+    assert again.stats["atol"] == pytest.approx(1e-11)
+    assert np.array_equal(again.t, run.t)
+    assert second_run(run) is again
+    exact = np.cos(run.t)
+    assert np.abs(again.q[:, 0, 0] - exact).max() < 0.1 * np.abs(run.q[:, 0, 0] - exact).max()
+
+
+@dataclass(frozen=True)
+class Pushed(fl.Algorithm1):
+    """Algorithm 1 that a wind blows: another law, though it is a subclass."""
+
+    def flow(self, t, q, p):
+        u, rate = super().flow(t, q, p)
+        return u + 1e-3, rate
+
+
+EDITS = {
+    "an input": lambda run: replace(run, u=np.where(np.arange(len(run.t))[:, None, None] == 5, 1.001 * run.u, run.u)),
+    "a position": lambda run: replace(run, q=run.q + (np.arange(len(run.t)) == 5)[:, None, None] * 1e-4),
+    "a velocity": lambda run: replace(
+        run, p=run.p + (np.arange(len(run.t)) == 5)[:, None, None] * np.array([[1e-3], [0.0]])
+    ),
+    "the law": lambda run: replace(run, law=Pushed()),
+    "its gains": lambda run: replace(run, law=fl.Algorithm1(gains=fl.Gains(c1_alpha=30.001))),
+    "the clock": lambda run: replace(run, t=1.01 * run.t),
+}
+
+
+@pytest.mark.parametrize("edit", EDITS.values(), ids=EDITS)
+@pytest.mark.parametrize("how", [{}, {"t_eval": np.linspace(0.0, 2.0, 30)}, {"method": "RK4", "dt": 0.02}])
+def test_an_edited_run_is_refused(edit, how: dict) -> None:
+    run = fl.simulate(fl.Algorithm1(), *PAIR, (0.0, 2.0), **how)
+    verify("energy", run)
+    with pytest.raises(ArgumentError, match="was it edited, or is it of another law"):
+        verify("energy", edit(run))
+
+
+def test_a_state_from_elsewhere_is_refused_even_with_its_own_input() -> None:
+    run = fl.simulate(fl.Algorithm1(), *PAIR, (0.0, 2.0))
+    other = fl.simulate(fl.Algorithm1(), [[0.0, 0.0], [8.01, 0.5]], PAIR[1], (0.0, 2.0), t_eval=run.t)
+    mixed = {
+        name: np.where(np.arange(len(run.t))[:, None, None] < 6, getattr(run, name), getattr(other, name))
+        for name in "qpu"
+    }
+    with pytest.raises(ArgumentError, match=r"is off by .* from where Algorithm1 leads"):
+        verify("energy", replace(run, **mixed))
+
+
+def test_an_edited_map_is_refused() -> None:
+    run = fl.simulate(SemiImplicitEuler(fl.DeadZoneFlocking(), dt=0.02), *PAIR, (0.0, 2.0))
+    verify("dead-zone-1-printed", run)
+    with pytest.raises(ArgumentError, match="is not where a step of SemiImplicitEuler leads"):
+        verify("dead-zone-1-printed", replace(run, q=run.q + (np.arange(len(run.t)) == 1)[:, None, None] * 1e-3))
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"t": [0.0, 2.0, 1.0]}, r"t\[1\] = 2 and t\[2\] = 1: expected rising times"),
+        ({"t": [0.0, np.nan, 1.0]}, r"t\[1\] = nan: expected finite numbers"),
+        ({"q": np.full((3, 1, 1), np.inf)}, r"q\[0, 0, 0\] = inf: expected finite numbers \(3 bad\)"),
+        ({"u": np.full((3, 1, 1), np.nan)}, r"u\[0, 0, 0\] = nan"),
+        ({"p": np.zeros((3, 1, 1), complex)}, "p: expected real numbers at 3 samples, got complex128"),
+        ({"q": np.array([[["1"]]] * 3)}, "q: expected real numbers"),
+        ({"extra": {"work": [0.0, np.nan, 0.0]}}, r"extra\['work'\]\[1\] = nan"),
+        ({"extra": {"work": [0.0]}}, "expected real numbers at 3 samples"),
+        ({"status": "finished"}, "status = 'finished': expected one of complete, interrupted, failed"),
+        ({"law": None}, "law = None: expected a law"),
+        ({"law": fl.Algorithm1}, "did you forget the parentheses"),
+    ],
+)
+def test_a_trajectory_holds_real_finite_numbers_at_rising_times(change: dict, message: str) -> None:
+    zeros = np.zeros((3, 1, 1))
+    given = {"t": [0.0, 1.0, 2.0], "q": zeros, "p": zeros, "u": zeros, "law": fl.Algorithm1()}
+    with pytest.raises(ArgumentError, match=message):
+        Trajectory(**(given | change))
+
+
+@pytest.mark.parametrize(
+    ("bad", "message"),
+    [
+        ({"energy": 0.0}, r"tolerances.energy = 0: expected a number > 0"),
+        ({"force": float("nan")}, r"tolerances.force = nan"),
+        ({"settle": 1.0}, r"tolerances.settle = 1: expected a share below 1"),
+        ({"giant": 2.0}, r"tolerances.giant = 2: expected a share below 1"),
+        ({"contact": "x"}, r"tolerances.contact = 'x'"),
+        ({"settle": -0.1}, r"tolerances.settle = -0.1: expected a number >= 0"),
+    ],
+)
+def test_tolerances_are_validated(bad: dict, message: str) -> None:
+    with pytest.raises(ArgumentError, match=message):
+        Tolerances(**bad)
+
+
+def test_verify_takes_tolerances_and_nothing_like_them() -> None:
+    with pytest.raises(ArgumentError, match=r"tolerances = \{\}: expected flockana.Tolerances"):
+        verify("E8", tolerances={})
+
+
+def test_one_sample_shows_no_motion() -> None:
+    run = oscillation(t_eval=[0.0])
+    claim = verify(returns_to_the_start(0.5), run).claims[0]
+    assert (claim.status, claim.detail) == ("inconclusive", "one sample shows no motion")

@@ -1,0 +1,26 @@
+"""The lower bounds of the dependencies, as pip is told them."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools"))
+import dependencies  # tools/ is no package
+
+
+def test_every_direct_dependency_is_held_at_its_bound():
+    found = dependencies.lowest()
+    assert all(line.count("==") == 1 for line in found)
+    names = [line.partition("==")[0] for line in found]
+    assert {"numpy", "numba", "casadi", "pytest", "z3-solver"} <= set(names)
+    assert len(set(names)) == len(names)
+
+
+def test_a_requirement_without_a_lower_bound_cannot_be_tested():
+    with pytest.raises(ValueError, match=r"'numpy' in pyproject\.toml: expected NAME>=VERSION"):
+        dependencies.pinned(["numpy"])
+    with pytest.raises(ValueError, match="expected NAME>=VERSION"):
+        dependencies.pinned(["numpy>=2.0,<3"])

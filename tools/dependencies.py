@@ -1,0 +1,43 @@
+"""Lower bounds of the dependencies as constraints for pip: `python tools/dependencies.py > lowest.txt`.
+
+`>=x` becomes `==x` for all that flockana needs and for what its tests need. What these need in their turn is left to
+pip, which takes the newest: so it is with a user whose lock file is old.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+import tomllib
+from collections.abc import Iterable
+from pathlib import Path
+
+PROJECT = Path(__file__).resolve().parent.parent / "pyproject.toml"
+EXTRAS = ("test", "cluster", "proofs")  # what the test suite runs on; linters and notebooks are no part of it
+_BOUND = re.compile(r"^([A-Za-z0-9._-]+)>=([0-9.]+)$")
+
+
+def pinned(requirements: Iterable[str]) -> list[str]:
+    """Each requirement ``name>=x`` as ``name==x``.
+
+    >>> pinned(["numpy>=2.0"])
+    ['numpy==2.0']
+    """
+    found = []
+    for text in requirements:
+        match = _BOUND.match(text)
+        if match is None:
+            raise ValueError(f"{text!r} in pyproject.toml: expected NAME>=VERSION, so that the bound can be tested")
+        found.append("{}=={}".format(*match.groups()))
+    return found
+
+
+def lowest(path: Path = PROJECT) -> list[str]:
+    """The constraints that hold every direct dependency at its lower bound."""
+    project = tomllib.loads(path.read_text())["project"]
+    extras = project["optional-dependencies"]
+    return pinned([*project["dependencies"], *(one for name in EXTRAS for one in extras[name])])
+
+
+if __name__ == "__main__":
+    sys.stdout.write("".join(f"{line}\n" for line in lowest()))
