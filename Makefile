@@ -4,13 +4,16 @@ PYTHON ?= python3
 BIN := .venv/bin
 TESTS ?=
 
-.PHONY: verify test check bench proofs notebooks course portability lowest newest clean
+.PHONY: verify test attack check bench proofs notebooks course portability lowest newest clean
 
 verify: .venv/.installed  ## run the catalogue, check every theorem, write report/index.html
 	$(BIN)/flockana verify
 
 test: .venv/.dev  ## the whole test suite
 	$(BIN)/python -m pytest -n auto
+
+attack: .venv/.dev  ## attack the verdicts with thousands of new cases, for hours; ATTACK=N examples a test
+	$(BIN)/python -m pytest tests/adversarial --attack=$(or $(ATTACK),2000) -n 2
 
 check: .venv/.dev  ## format, lint, types, import direction
 	$(BIN)/ruff format --check .

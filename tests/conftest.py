@@ -1,7 +1,11 @@
-"""Shared settings: hypothesis runs the same examples every time, and never judges by the clock."""
+"""Shared settings: hypothesis runs the same examples every time, and never judges by the clock.
+
+With ``--attack N`` it draws N new ones for each test of tests/adversarial, from a seed that is printed.
+"""
 
 from __future__ import annotations
 
+import secrets
 import signal
 
 import pytest
@@ -16,6 +20,33 @@ settings.register_profile(
     suppress_health_check=[HealthCheck.too_slow],  # the clock of a busy machine
 )
 settings.load_profile("flockana")
+
+
+def pytest_addoption(parser):
+    text = "attack the verdicts: N new examples for each test of tests/adversarial, and its long tests too"
+    parser.addoption("--attack", type=int, default=0, metavar="N", help=text)
+
+
+@pytest.hookimpl(tryfirst=True)  # before hypothesis reads its seed
+def pytest_configure(config):
+    config.addinivalue_line("markers", "attack: takes minutes; only with --attack")
+    if examples := config.getoption("attack"):
+        if config.option.hypothesis_seed is None:
+            config.option.hypothesis_seed = str(secrets.randbelow(2**32))
+        usual = settings.get_profile("flockana")
+        settings.register_profile("attack", usual, max_examples=examples, derandomize=False, print_blob=True)
+        settings.load_profile("attack")
+
+
+def pytest_report_header(config):
+    if examples := config.getoption("attack"):
+        return f"attack: {examples} examples a test, --hypothesis-seed={config.option.hypothesis_seed}"
+    return None
+
+
+def pytest_collection_modifyitems(config, items):
+    if not config.getoption("attack"):
+        items[:] = [item for item in items if item.get_closest_marker("attack") is None]
 
 
 @pytest.fixture

@@ -1,0 +1,77 @@
+"""The catalogue's expected statuses, claim by claim, in other units, places, orders and at other tolerances."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from adversarial.cases import Case
+from adversarial.transforms import UNITS, UnchangedError, in_units, later, renumbered, rigid
+
+from flockana.errors import ArgumentError
+from flockana.laws.law import DiscreteLaw
+from flockana.scenarios import scenario, scenarios
+
+QUICK = {  # one change each in the sample; every change of every scenario in the attack
+    "head-on": "micrometres and milliseconds",
+    "head-on-collision": "kilometres and hours",
+    "five-agents": "turned and moved",
+    "zone-tree": "powers of two",
+    "zone-path": "renumbered",
+    "three-agents-1d": "powers of two",
+    "notebook-algorithm2": "kilometres and hours",
+    "phase": "micrometres and milliseconds",
+    "paper-fragmentation": "half the tolerance",
+    "dead-zone-wide-start": "kilometres and hours",
+    "minimal-2d": "micrometres and milliseconds",
+}
+
+
+def tighter(factor):
+    def change(case, rng):
+        if isinstance(case.law, DiscreteLaw):
+            raise UnchangedError("a map has no tolerance")
+        return replace(case, options={**case.options, "rtol": factor * case.options.get("rtol", 1e-8)})
+
+    return change
+
+
+def turn_and_move(case, rng):
+    m = np.shape(case.q0)[1]
+    if isinstance(case.law, DiscreteLaw):
+        raise UnchangedError("a map may know its place")
+    return rigid(case, np.linalg.qr(rng.normal(size=(m, m)))[0], 20.0 * rng.normal(size=m))
+
+
+CHANGES = {name: (lambda case, rng, by=by: in_units(case, *by)) for name, by in UNITS.items()} | {
+    "turned and moved": turn_and_move,
+    "moved": lambda case, rng: rigid(case, np.eye(np.shape(case.q0)[1]), 20.0 * rng.normal(size=np.shape(case.q0)[1])),
+    "renumbered": lambda case, rng: renumbered(case, rng.permutation(len(case.q0))),
+    "later": lambda case, rng: later(case, 1000.0),
+    "half the tolerance": tighter(0.5),
+    "twice the tolerance": tighter(2.0),
+    "a hundredth of the tolerance": tighter(0.01),
+}
+
+
+def pairs():
+    every = [(name, change) for name in scenarios() for change in CHANGES]
+    return [pytest.param(*one, marks=() if QUICK.get(one[0]) == one[1] else pytest.mark.attack) for one in every]
+
+
+@pytest.mark.parametrize(("name", "change"), pairs())
+def test_expected_statuses(name, change):
+    entry = scenario(name)
+    start, end = entry.t_span
+    case = Case(entry.law, entry.q0, entry.p0, end - start, entry.options, start)
+    try:
+        other = CHANGES[change](case, np.random.default_rng(len(name)))
+    except (UnchangedError, ArgumentError, TypeError) as why:
+        pytest.skip(str(why))
+    span = (other.since, other.since + other.until)
+    changed = replace(
+        entry, law=other.law, q0=np.asarray(other.q0), p0=np.asarray(other.p0), t_span=span, options=other.options
+    )
+    lines = [line for verdict in changed.verify(changed.run()) for line in changed.surprises(verdict)]
+    assert lines == []

@@ -1,0 +1,24 @@
+"""Every theorem is attacked, and oracles call none of the library's formulas."""
+
+from __future__ import annotations
+
+import ast
+from importlib import import_module
+from pathlib import Path
+
+from flockana import theorems
+
+HERE = Path(__file__).parent
+FILES = ("collisions", "limits", "energy", "nets", "dead_zone", "trees", "following", "fixed")
+
+
+def test_every_theorem_has_planted_truths():
+    covered = {name for file in FILES for name in import_module(f"adversarial.test_{file}").THEOREMS}
+    assert covered == set(theorems())
+
+
+def test_the_truth_is_written_from_the_mathematics():
+    tree = ast.parse((HERE / "truth.py").read_text(encoding="utf-8"))
+    modules = {n.module or "" for n in ast.walk(tree) if isinstance(n, ast.ImportFrom)}
+    modules |= {alias.name for n in ast.walk(tree) if isinstance(n, ast.Import) for alias in n.names}
+    assert not {name for name in modules if name.split(".")[0] == "flockana"}

@@ -1,0 +1,370 @@
+"""What once went wrong, one case each, as it was reported: a verdict that was false, a run that should not count."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+from adversarial.cases import FALSE, OPEN, TRUE, VERIFIED, Case, hold
+
+from flockana import Tolerances, Trajectory, theorem, theorems, verify
+from flockana.environment.targets import (
+    CallableTarget,
+    CircleTarget,
+    LinearTarget,
+    RescaledVelocity,
+    StaticTarget,
+    Target,
+)
+from flockana.errors import ArgumentError, FileError
+from flockana.interactions import AlphaInteraction, DeadZoneInteraction, Gains
+from flockana.laws.algorithm3 import Algorithm3
+from flockana.laws.dead_zone import DeadZoneFlocking
+from flockana.laws.minimal import MinimalFlocking
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.scenarios import scenario
+
+ORIGIN = StaticTarget((0.0, 0.0))
+APART, STILL = np.array([[0.0, 0.0], [8.0, 0.0]]), np.zeros((2, 2))
+ON_RUNS = [name for name in theorems() if theorem(name).kind == "trajectory"]
+decided = {"verified", "refuted"}
+
+
+def decides_nothing(name, run):
+    """No claim by computation is decided, or the run is refused in words."""
+    try:
+        verdict = verify(name, run)
+    except ArgumentError:
+        return
+    assert [(c.name, c.status) for c in verdict.claims if c.rigour == "numeric" and c.status in decided] == []
+
+
+# --- encounters -----------------------------------------------------------------------------------------------------
+
+
+def test_an_encounter_is_not_leapt_over():
+    """Two agents 200 apart that meet within c*: they bounce, and were seen to cross in one step."""
+    hold("collision-energy", Case(Algorithm1(), [[0.0], [200.0]], [[15.0], [-15.0]], 14.0), {"below": VERIFIED})
+
+
+@pytest.mark.parametrize("speed", [1.0, 20.0, 300.0])
+def test_coming_into_range_is_not_leapt_over(speed):
+    law = DeadZoneFlocking()
+    q, p = [[-60.0, -4.0], [60.0, 4.0]], [[speed, 0.0], [-speed, 0.0]]
+    hold("dead-zone-1-printed", Case(law, q, p, 120.0 / speed), {"energy": frozenset({"refuted"})})
+
+
+@pytest.mark.parametrize("samples", [2, 3, 7, 50])
+def test_the_least_distance_is_a_bound_between_samples_too(samples):
+    """Past each other at 0.5 in straight flight, out of range but for an instant that few samples see."""
+    law = Algorithm1(AlphaInteraction(d=0.1, r=0.12))
+    q, p = [[-30.0, 0.0], [30.0, 0.5]], [[3.0, 0.0], [-3.0, 0.0]]
+    run = Case(law, q, p, 20.0, {"t_eval": np.linspace(0.0, 20.0, samples)}).run()
+    assert run.min_distance() <= 0.5 + 1e-9
+
+
+# --- limits judged from an instant ----------------------------------------------------------------------------------
+
+
+def test_the_turning_point_of_an_undamped_oscillator_is_no_limit():
+    law = Algorithm1(gains=Gains(c2_alpha=0.0))
+    q = np.array([[0.0, 0.0], [7.05, 0.0]])
+    run = Case(law, q, STILL, 3.0).run()
+    k = 1 + int(np.argmin(np.abs(run.p[1:]).max(axis=(1, 2))))
+    hold("os-1", Case(law, q, STILL, float(run.t[k])), {"ii": FALSE, "i": FALSE})
+
+
+@pytest.mark.parametrize("until", [1e-7, 1e-3])
+def test_a_moment_after_the_start_nothing_has_settled(until):
+    law = Algorithm2(target=ORIGIN)
+    rng = np.random.default_rng(3)
+    q = rng.uniform(-10.0, 10.0, (6, 2))
+    hold("os-3", Case(law, q, 0.0 * q, until), {"ii": OPEN, "iii": OPEN})
+
+
+@pytest.mark.parametrize("until", [0.05, 1.0])
+def test_two_agents_that_part_for_ever_are_not_cohesive(until):
+    q, p = [[-7.0, 0.0], [7.0, 0.0]], [[-12.0, 0.0], [12.0, 0.0]]
+    hold("dead-zone-1-printed", Case(DeadZoneFlocking(), q, p, until), {"cohesion": FALSE, "velocity": FALSE})
+
+
+@pytest.mark.parametrize("name", ["alpha-flocking", "alpha-flocking-strict", "os-1", "os-3", "E13", "collision-energy"])
+def test_one_sample_decides_no_claim_about_a_run(name):
+    law = Algorithm1() if name != "os-3" and name != "E13" else Algorithm2(target=ORIGIN)
+    run = Case(law, [[0.0, 0.0], [6.0, 0.0]], [[0.0, 0.0], [-1.0, 0.0]], 5.0, {"t_eval": [0.0]}).run()
+    moving = {"i", "ii", "iii", "giant", "cohesive", "deviation", "mismatch", "flock", "below", "twice", "iv-none"}
+    assert {c.name: c.status for c in verify(name, run).claims if c.name in moving and c.status in decided} == {}
+
+
+# --- runs that failed, blew up or are not the law's -----------------------------------------------------------------
+
+
+@pytest.mark.parametrize("dt", [0.1, 0.5, 3.0])
+def test_a_step_far_too_large_refutes_nothing(dt):
+    """R = 4.9e5 where H_λ(0) allows 1: the integrator's, not the law's."""
+    law = Algorithm2(target=ORIGIN)
+    q = np.random.default_rng(0).uniform(-9.0, 9.0, (8, 2))
+    case = Case(law, q, 0.0 * q, 30.0, {"method": "RK4", "dt": dt})
+    run = case.run()
+    for name in ("os-3", "energy", "collision-energy", "E13"):
+        true = ("i", "ii", "iii", "iv-instant", "iv-none", "iv-barrier", "rate", "balance", "below", "corrected")
+        hold(name, case, dict.fromkeys(true, TRUE), run=run, may_refuse=True)
+        if np.abs(run.q).max() > 1e3:
+            decides_nothing(name, run)
+
+
+def test_an_error_larger_than_what_it_measures_verifies_nothing():
+    """An energy that rises by 5.4 and is off by 211 is not seen to fall."""
+    law = DeadZoneFlocking()
+    q = np.random.default_rng(1).uniform(0.0, 12.0, (6, 2))
+    case = Case(law, q, 0.0 * q, 20.0, {"method": "RK4", "dt": 0.5})
+    hold("dead-zone-1-printed", case, {"energy": FALSE}, may_refuse=True)
+    hold("dead-zone-1-corrected", case, {"rate": TRUE, "balance": TRUE, "distance": TRUE}, may_refuse=True)
+
+
+@pytest.mark.parametrize("samples", [1, 5])
+@pytest.mark.parametrize("name", ON_RUNS)
+def test_a_failed_run_verifies_nothing(name, samples):
+    for law in (Algorithm1(), Algorithm2(target=ORIGIN), Algorithm3(target=ORIGIN), DeadZoneFlocking()):
+        run = Case(law, APART, STILL, 1.0, {"t_eval": np.linspace(0.0, 1.0, 5)[:samples]}).run()
+        decides_nothing(name, replace(run, status="failed", message="gave up"))
+
+
+def edits(run):
+    yield "position", replace(run, q=run.q + 1e-3 * (np.arange(len(run.t)) == 2)[:, None, None])
+    yield "velocity", replace(run, p=run.p * 1.01)
+    yield "input", replace(run, u=run.u * 1.01)
+    yield "time", replace(run, t=run.t * 1.01)
+    yield "law", replace(run, law=replace(run.law, gains=Gains(c1_alpha=31.0)))
+    yield "left out and put elsewhere", replace(run, q=np.roll(run.q, 1, axis=0), p=np.roll(run.p, 1, axis=0))
+
+
+@pytest.mark.parametrize("kind", ["position", "velocity", "input", "time", "law", "left out and put elsewhere"])
+@pytest.mark.parametrize("name", ["energy", "os-1", "collision-energy", "alpha-flocking", "lattice-limit-printed"])
+def test_an_edited_run_is_refused(name, kind):
+    run = Case(Algorithm1(), APART, [[0.3, 0.0], [0.0, 0.4]], 3.0).run()
+    with pytest.raises(ArgumentError, match=r"."):
+        verify(name, dict(edits(run))[kind])
+
+
+@pytest.mark.parametrize("field", ["t", "q", "p", "u"])
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+def test_no_run_holds_what_is_no_number(field, bad, tmp_path):
+    run = Case(Algorithm1(), APART, STILL, 1.0).run()
+    array = np.array(getattr(run, field))
+    array.flat[-1] = bad
+    with pytest.raises(ArgumentError):
+        replace(run, **{field: array})
+    path = run.save(tmp_path / "run.nc")
+    import h5py
+
+    with h5py.File(path, "r+") as file:
+        name = "time" if field == "t" else field
+        stored = file[name][...]
+        stored.flat[-1] = bad
+        file[name][...] = stored
+    with pytest.raises((FileError, ArgumentError)):
+        Trajectory.load(path)
+
+
+def test_time_runs_forwards():
+    run = Case(Algorithm1(), APART, STILL, 1.0).run()
+    for t in (run.t[::-1], np.zeros_like(run.t)):
+        with pytest.raises(ArgumentError):
+            replace(run, t=t)
+
+
+# --- hypotheses -----------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Pushed1(Algorithm1):
+    def flow(self, t, q, p):
+        return super().flow(t, q, p)[0] + 1.0, 1.0
+
+
+@dataclass(frozen=True)
+class Pushed2(Algorithm2):
+    def flow(self, t, q, p):
+        return 2.0 * super().flow(t, q, p)[0], 1.0
+
+
+@dataclass(frozen=True)
+class Pushed3(Algorithm3):
+    def flow(self, t, q, p):
+        return 2.0 * super().flow(t, q, p)[0], 1.0
+
+
+@dataclass(frozen=True)
+class PushedDeadZone(DeadZoneFlocking):
+    def flow(self, t, q, p):
+        return -super().flow(t, q, p)[0], 1.0
+
+
+@dataclass(frozen=True)
+class PushedMinimal(MinimalFlocking):
+    def flow(self, t, q, p):
+        return -super().flow(t, q, p)[0], 1.0
+
+
+PUSHED = {
+    Pushed1(): ("os-1", "energy", "collision-energy", "lattice-limit-printed", "linearised-decay-terminal"),
+    Pushed2(target=ORIGIN): ("os-3", "E11", "E12", "E13", "energy", "collision-energy", "linearised-decay-terminal"),
+    Pushed3(target=ORIGIN): ("os-6", "energy", "energy-printed", "linearised-decay-terminal"),
+    PushedDeadZone(): ("dead-zone-1-printed", "dead-zone-1-corrected"),
+    PushedMinimal(edges=((0, 1),), spacing=7.0): ("zone-1-printed", "zone-1-corrected"),
+}
+
+
+@pytest.mark.parametrize(("law", "name"), [(law, name) for law, names in PUSHED.items() for name in names])
+def test_a_law_with_another_force_is_another_law(law, name):
+    for claim in hold(name, Case(law, APART, STILL, 0.5), {}).claims:
+        assert claim.status == "vacuous", claim
+
+
+@dataclass(frozen=True)
+class Boastful(Target):
+    """A γ-agent at rest that says it moves, and says that this is its rate."""
+
+    def position(self, t):
+        return np.zeros(2)
+
+    def rate(self, t):
+        return np.array([5.0, 0.0])
+
+    def state(self, t):
+        return np.zeros(2), np.array([5.0, 0.0])
+
+
+def consistency(target, until=2.0, time=1.0):
+    gains = Gains(30.0 / time**2, 10.0 / time, c1_gamma=1.1 / time**2, c2_gamma=2.0 / time)
+    run = Case(Algorithm2(gains=gains, target=target), APART, STILL, until).run()
+    return next(h.status for h in verify("os-3", run).hypotheses if "dq_r/dt" in h.name)
+
+
+def test_what_a_target_declares_of_itself_is_checked():
+    assert consistency(Boastful()) == "unmet"
+    assert consistency(CallableTarget(lambda t: ((np.sin(40.0 * t), 0.0), (0.0, 0.0)))) == "unmet"
+    assert consistency(LinearTarget((0.0, 0.0), (3.0, 0.0))) == "met"
+    assert consistency(RescaledVelocity(CircleTarget((0.0, 0.0), 3.0, 0.2), 0.5)) == "unmet"
+
+
+@pytest.mark.parametrize("time", [1e-6, 1.0, 1e6])
+def test_a_smooth_target_is_consistent_in_any_unit_of_time(time):
+    """Differences over 10⁻⁵ max(1, |t|) time units see a swing of a microsecond as noise."""
+    w = 2.0 / time
+
+    def honest(t):
+        return (np.sin(w * t), np.cos(w * t)), (w * np.cos(w * t), -w * np.sin(w * t))
+
+    def lying(t):
+        return honest(t)[0], tuple(0.9 * x for x in honest(t)[1])
+
+    assert consistency(CallableTarget(honest, time), 3.0 * time, time) == "met"
+    assert consistency(CallableTarget(lying, time), 3.0 * time, time) == "unmet"
+
+
+def test_without_links_there_is_no_lattice_to_call_one():
+    """E11: at rest, out of range, nothing pulls: `the limit is a quasi-α-lattice` has nothing to stand on."""
+    law = Algorithm2(gains=Gains(c1_gamma=0.0), target=ORIGIN)
+    far = np.array([[0.0, 0.0], [30.0, 0.0]])
+    hold("E11", Case(law, far, STILL, 5.0), {"printed": OPEN, "threshold": TRUE})
+
+
+@pytest.mark.attack
+@pytest.mark.parametrize("strength", [5e4, 5.0, 0.01])
+def test_the_search_for_a_threshold_says_when_it_found_none(strength):
+    """So weak that every ratio collapses, or so strong that none does: the search's own floor is no threshold."""
+    alpha = AlphaInteraction(a=strength, b=strength)
+    law = Algorithm2(alpha, Gains(1.0, 1.0, 0.0, 0.0, 0.01, 0.01), ORIGIN)
+    claim = hold("E11", Case(law, APART, STILL, 0.02), {"printed": OPEN}).claim("threshold")
+    if claim.status == "verified":
+        lows = [low for low, _ in claim.computed.values()]
+        assert min(lows) > 0.0
+        assert len(set(map(tuple, claim.computed.values()))) > 1, claim
+
+
+def test_a_transient_of_one_period_refutes_no_transfer_function():
+    """E12 after 1.1 periods from a start far off: what has not died out is not the filter's."""
+    entry = scenario("msn-case4")
+    path = entry.law.target
+    period = 1.0 / (path.target if isinstance(path, RescaledVelocity) else path).frequency
+    case = Case(entry.law, entry.q0, entry.p0, 1.1 * period)
+    hold("E12", case, {"predicted": TRUE, "consistent": TRUE, "printed": FALSE})
+
+
+def test_a_tree_at_its_own_equilibrium_is_not_refuted():
+    for seed in range(4):
+        entry = scenario("zone-tree", seed=seed)
+        end = entry.run()
+        names = ("lengths", "velocities", "spectrum", "exponential", "root-edge")
+        hold("zone-1-corrected", Case(entry.law, end.q[-1], 0.0 * end.p[-1], 20.0), dict.fromkeys(names, TRUE))
+
+
+# --- units ----------------------------------------------------------------------------------------------------------
+
+
+def test_micrometres_are_not_at_rest_after_a_hundredth_of_a_second():
+    law = Algorithm2(AlphaInteraction(d=7e-6, r=8.4e-6, unit=1e-6, eps=1e11), target=ORIGIN)
+    q = 1e-6 * np.random.default_rng(3).uniform(-10.0, 10.0, (6, 2))
+    hold("os-3", Case(law, q, 0.0 * q, 0.01), {"ii": OPEN, "iii": OPEN})
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e-3, 1e3, 1e-6])
+def test_the_dead_zone_reads_alike_in_metres_and_millimetres(unit):
+    pair = DeadZoneInteraction(r=15.0 * unit, r_b=8.0 * unit, delta=4.5 * unit, r_d=40.0 * unit, ramp=0.25 * unit,
+                               k_r=200.0 * unit**2, eta=1.0 / unit**2)  # fmt: skip
+    q, p = unit * np.array([[-4.0, 0.0], [4.0, 0.0]]), unit * np.array([[0.0, 0.0], [0.02, 0.0]])
+    for until, limit in ((0.5, OPEN), (60.0, TRUE)):
+        case = Case(DeadZoneFlocking(pair), q, p, until)
+        hold("dead-zone-1-printed", case, {"velocity": limit, "collision": TRUE})
+
+
+# --- crashes and arguments ------------------------------------------------------------------------------------------
+
+ODD = {
+    "c1α = 0": Algorithm1(gains=Gains(c1_alpha=0.0)),
+    "c1α = 0 under a γ-agent": Algorithm2(gains=Gains(c1_alpha=0.0), target=ORIGIN),
+    "all gains 0": Algorithm2(gains=Gains(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), target=ORIGIN),
+    "per agent": Algorithm2(gains=Gains(c1_gamma=(1.0, 2.0), c2_gamma=(1.0, 0.0)), target=ORIGIN),
+    "a = b = 5e4": Algorithm2(AlphaInteraction(a=5e4, b=5e4), Gains(1.0, 1.0, 0.0, 0.0, 0.01, 0.01), ORIGIN),
+    "no α": DeadZoneFlocking(),
+    "a tree": MinimalFlocking(edges=((0, 1),), spacing=1.0),
+    "perceived": MinimalFlocking(),
+    "a map": MinimalFlocking().discrete(0.1),
+    "no obstacles": Algorithm3(gains=Gains(c1_alpha=0.0), target=ORIGIN),
+}
+SLOW = {(law, "E11") for law in ODD if ODD[law].__class__ is Algorithm2}
+
+
+@pytest.mark.parametrize(
+    ("law", "name"),
+    [pytest.param(x, n, marks=pytest.mark.attack if (x, n) in SLOW else ()) for x in ODD for n in ON_RUNS],
+)
+def test_every_theorem_has_an_answer_for_every_law(law, name):
+    for q in (APART, 3.0 * APART, 0.0 * APART):
+        if "no α" in law and not q.any():
+            continue  # coincident agents are refused at the start there
+        hold(name, Case(ODD[law], q, STILL, 1.0), {})
+
+
+@pytest.mark.parametrize("bad", [0.0, -1.0, np.nan, np.inf, "tight", None])
+def test_tolerances_are_checked(bad):
+    for field in Tolerances.__dataclass_fields__:
+        if field == "settle" and bad == 0.0:
+            continue  # no transient is left out
+        with pytest.raises(ArgumentError, match=field):
+            Tolerances(**{field: bad})
+
+
+@pytest.mark.parametrize("bad", [{}, {"energy": 1e-3}, 1e-6, "tight", ()])
+def test_tolerances_of_another_kind_are_not_ignored(bad):
+    with pytest.raises(ArgumentError, match="tolerances"):
+        verify("E8", tolerances=bad)
+
+
+def test_a_share_is_a_share():
+    for field in ("giant", "settle"):
+        with pytest.raises(ArgumentError, match=field):
+            Tolerances(**{field: 1.5})

@@ -1,0 +1,139 @@
+"""The bearing-distance theorem on frozen trees: springs in closed form, equilibria to the last bit, collisions."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from adversarial.cases import FALSE, OPEN, REFUTED, TRUE, VACUOUS, VERIFIED, Case, effort, hold
+from adversarial.strategies import powers, seeds, ways
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from flockana.laws.minimal import MinimalFlocking
+from flockana.laws.perception import both_ways, random_out_tree
+
+THEOREMS = ("zone-1-printed", "zone-1-corrected")
+CORRECTED = dict.fromkeys(
+    ("lengths", "velocities", "spectrum", "exponential", "root-edge", "energy", "no-collision"), TRUE
+)
+PRINTED = {"equilibrium": REFUTED, "edges": FALSE, "velocities": TRUE, "hurwitz": TRUE | FALSE}
+exactly = st.just(0.0)
+scales = st.sampled_from((1.0, 2.0, 1e-6, 1e4))
+
+
+def placed(edges, lengths, rng, m):
+    """Positions with each edge at its length, at random bearings."""
+    q = np.zeros((1 + max(max(edge) for edge in edges), m))
+    for (j, i), length in zip(edges, lengths, strict=True):
+        axis = rng.normal(size=m)
+        q[i] = q[j] + length * axis / np.linalg.norm(axis)
+    return q
+
+
+@st.composite
+def trees(draw, *, directed=True, off=exactly, sigma=1.0):
+    """(law, q, ρ, generator) of a random tree with every edge near its desired length, in any unit of length."""
+    n, m, rho, mu = (
+        draw(st.integers(2, 6)),
+        draw(st.integers(1, 3)),
+        draw(scales),
+        draw(st.sampled_from((1.0, 0.2, 5.0))),
+    )
+    rng = np.random.default_rng(draw(seeds))
+    edges = random_out_tree(n, rng)
+    lengths = rho * (1.0 + draw(off) * rng.uniform(-1.0, 1.0, n - 1))
+    q = placed(edges, lengths, rng, m)
+    law = MinimalFlocking(
+        edges=edges if directed else both_ways(edges), spacing=rho, mu=mu, sigma=sigma, normalised=directed
+    )
+    return law, q, rho, rng
+
+
+@effort(0.4)
+@given(trees(), powers(-9.0, 1.5), st.sampled_from((0.0, 1.0, 1e3)), st.data())
+def test_at_its_own_equilibrium(drawn, until, drift, data):
+    """Every edge at its length, all with one velocity: nothing moves but by rounding, whose sign is no news."""
+    law, q, rho, _ = drawn
+    p = np.full(q.shape, drift * rho)
+    case = Case(law, q, p, until, data.draw(ways(until, until / 100.0)))
+    hold("zone-1-corrected", case, CORRECTED)
+    hold("zone-1-printed", case, PRINTED)
+
+
+@effort(0.4)
+@given(trees(off=powers(-8.0, -0.4)), powers(-8.0, -0.4), st.sampled_from((1e-6, 0.01, 3.0, 60.0)), st.data())
+def test_near_the_manifold(drawn, speed, until, data):
+    law, q, rho, rng = drawn
+    case = Case(law, q, speed * rho * rng.normal(size=q.shape), until, data.draw(ways(until, until / 1000.0)))
+    hold("zone-1-corrected", case, CORRECTED)
+    hold("zone-1-printed", case, PRINTED)
+
+
+@effort(0.2)
+@given(trees(off=st.just(0.2)), st.booleans())
+def test_edges_take_their_lengths(drawn, long):
+    """y'' + y' + μy = 0 along each edge: settled after 150 slowest times, however deep the tree; not after 0.01."""
+    law, q, _, _ = drawn
+    slowest = min(0.5, float(np.min(law.mu)))
+    case = Case(law, q, 0.0 * q, (150.0 if long else 0.01) / slowest)
+    limit = VERIFIED if long else OPEN
+    hold("zone-1-corrected", case, CORRECTED | {"lengths": limit, "velocities": limit, "spectrum": VERIFIED})
+    inside = (
+        np.linalg.norm(q[[i for _, i in law.edges]] - q[[j for j, _ in law.edges]], axis=1).min() < 0.99 * law.spacing
+    )
+    hurwitz = REFUTED if inside else TRUE | FALSE
+    hold(
+        "zone-1-printed", case, PRINTED | {"edges": REFUTED if long else FALSE, "velocities": limit, "hurwitz": hurwitz}
+    )
+
+
+@effort(0.2)
+@given(trees(directed=False, off=powers(-8.0, -0.7)), powers(-8.0, -0.7), powers(-7.0, 1.5), st.data())
+def test_reciprocal_trees(drawn, speed, until, data):
+    """H falls; below μρ²/2 no edge vanishes."""
+    law, q, rho, rng = drawn
+    case = Case(law, q, speed * rho * rng.normal(size=q.shape), until, data.draw(ways(until, until / 1000.0)))
+    hold("zone-1-corrected", case, CORRECTED)
+    hold("zone-1-printed", case, dict.fromkeys(("edges", "velocities", "hurwitz"), VACUOUS))
+
+
+@effort(0.2)
+@given(trees(off=st.just(0.1), sigma=0.0), st.integers(1, 6))
+def test_without_alignment_it_swings_for_ever(drawn, halves):
+    """y'' + μy = 0 on the edges of the root, from rest: at rest again, for an instant, after each half period."""
+    law, q, _, _ = drawn
+    case = Case(law, q, 0.0 * q, halves * np.pi / np.sqrt(law.mu))
+    hold("zone-1-corrected", case, dict.fromkeys(CORRECTED, OPEN))
+    hold("zone-1-printed", case, PRINTED | {"velocities": FALSE})
+
+
+@effort(0.15)
+@given(trees(off=st.just(0.1)), st.integers(2, 6))
+def test_hardly_aligned_it_has_not_settled(drawn, halves):
+    """A weight of 10⁻⁴ on the velocity difference, at a turning point."""
+    law, q, _, _ = drawn
+    weak = MinimalFlocking(edges=law.edges, spacing=law.spacing, mu=1.0, sigma=1e-4, normalised=False)
+    assume(len(q) == 2)
+    case = Case(weak, q, 0.0 * q, halves * np.pi)
+    hold("zone-1-corrected", case, CORRECTED | {"velocities": OPEN, "lengths": OPEN})
+
+
+@pytest.mark.parametrize("m", [1, 2, 3])
+def test_linked_agents_at_one_place(m):
+    """No bearing, no spring, no spectrum; and no crash."""
+    law = MinimalFlocking(edges=((0, 1), (1, 2)), spacing=1.0)
+    q = np.zeros((3, m))
+    q[2, 0] = 1.0
+    case = Case(law, q, 0.0 * q, 1.0)
+    hold("zone-1-corrected", case, CORRECTED)
+    hold("zone-1-printed", case, {"edges": TRUE | FALSE, "velocities": TRUE | FALSE, "hurwitz": TRUE | FALSE})
+
+
+@pytest.mark.parametrize("sized", [1.0, 1e-6, 1e5])
+@pytest.mark.parametrize("speed", [0.5, 0.99, 1.01, 4.0])
+def test_the_root_edge_bound(speed, sized):
+    """V(0) = ½ speed² against ½μρ²: below it the edge never vanishes, above it the theorem says nothing."""
+    law = MinimalFlocking(edges=((0, 1),), spacing=sized)
+    case = Case(law, [[0.0], [sized]], [[0.0], [-speed * sized]], 8.0)
+    bound = VERIFIED if speed < 0.9 else TRUE if speed < 1.0 else OPEN
+    hold("zone-1-corrected", case, CORRECTED | {"root-edge": bound})
