@@ -19,9 +19,11 @@ from flockana.checks import FloatArray, ensure_points
 from flockana.environment.beta import ObstacleField
 from flockana.environment.obstacles import Obstacle
 from flockana.interactions import AlphaInteraction, BetaInteraction
+from flockana.kernels.paths import bernstein
 from flockana.nets import link_lengths, links
 
-RELATIVE_TOL = 1e-9  # of the halving, relative to the largest coordinate
+RELATIVE_TOL = 1e-9  # of the halving, relative to the extent of the motion
+ROUNDING = 2.0**-50  # of the coordinates
 _DEPTH = 40  # halvings: below any resolved motion
 _MOST = 100_000  # parts open at once: beyond it the bound stays as weak as it is
 _CHUNK = 50_000  # agent-intervals handled at once
@@ -35,9 +37,10 @@ class Clearance:
     Attributes
     ----------
     lower : float
-        Lower bound of every agent's signed distance from every obstacle at every time; ∞ without obstacles.
+        Lower bound of every agent's signed distance from every obstacle at every time, given the integrator's accuracy
+        and steps that resolve the motion (`flockana.kernels.paths`); ∞ without obstacles.
     reached : float
-        Least signed distance reached on the interpolated paths (an upper bound up to interpolation error).
+        Least signed distance reached on the interpolated paths: an estimate from above.
     time : float
         When it was reached.
     agent, obstacle : int
@@ -54,11 +57,18 @@ class Clearance:
     lower_by_obstacle: FloatArray
 
 
-def clearance(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, obstacles: Sequence[Obstacle]) -> Clearance:
+def clearance(
+    t: FloatArray,
+    q: FloatArray,
+    p: FloatArray,
+    u: FloatArray,
+    obstacles: Sequence[Obstacle],
+    slack: FloatArray | None = None,
+) -> Clearance:
     """Bound the clearance of all agents from all obstacles over all times, from samples of a run.
 
-    The bound subtracts an allowance for each path's interpolation error (as `flockana.paths` does), so it is weak,
-    never wrong by much, where samples are too sparse to resolve the motion.
+    The bound subtracts an allowance for each path's own error (`flockana.kernels.paths`), so it is weak where samples
+    are too sparse to resolve the motion.
 
     Parameters
     ----------
@@ -68,6 +78,8 @@ def clearance(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, obstac
         Positions, velocities, accelerations.
     obstacles : sequence of Obstacle
         Convex solids.
+    slack : ndarray, shape (T - 1, n), optional
+        What else the paths may be off by.
 
     Returns
     -------
@@ -85,12 +97,17 @@ def clearance(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, obstac
     """
     n, m = q.shape[1:]
     found = [_Least(t, obstacle.clearance(q.reshape(-1, m)).reshape(len(t), n)) for obstacle in obstacles]
-    tol, rows = RELATIVE_TOL * float(np.abs(q).max()), max(1, _CHUNK // n)
+    extent, rows = float(np.ptp(q.reshape(-1, m), axis=0).max()), max(1, _CHUNK // n)
+    tol = max(RELATIVE_TOL * extent, ROUNDING * float(np.abs(q).max()))
     for first in range(0, len(t) - 1 if obstacles else 0, rows):
         part = slice(first, min(first + rows, len(t) - 1))
         after = slice(part.start + 1, part.stop + 1)
         h = (t[after] - t[part])[:, None, None]
-        points, allowance = _control_points(h, q[part], p[part], u[part], q[after], p[after], u[after])
+        ends = (x.reshape(-1, m) for k in (part, after) for x in (q[k], h * p[k], h * h * u[k]))
+        curves, _, off = bernstein(1.0, *ends)
+        points, allowance = curves[:, :, :m].reshape(-1, n, 6, m), off.reshape(-1, n)
+        if slack is not None:
+            allowance = allowance + slack[part]
         reach = [np.linalg.norm(points - points[:, :, end], axis=3).max(axis=2) + allowance for end in (_FIRST, _LAST)]
         for obstacle, least in zip(obstacles, found, strict=True):
             near = np.maximum(least.at_samples[part] - reach[0], least.at_samples[after] - reach[1]) < least.lower
@@ -127,16 +144,6 @@ class _Least:
         if bound.value < self.reached:
             k, self.agent = int(interval[bound.curve]), int(agent[bound.curve])
             self.reached, self.time = bound.value, float(t[k] + bound.parameter * (t[k + 1] - t[k]))
-
-
-def _control_points(h: Any, q0: Any, p0: Any, u0: Any, q1: Any, p1: Any, u1: Any) -> tuple[FloatArray, FloatArray]:
-    """Bernstein points (k, n, 6, m) of the quintics, and the allowance (k, n): their distance from the cubics."""
-    inner = q0 + 2.0 * h * p0 / 5.0 + h * h * u0 / 20.0, q1 - 2.0 * h * p1 / 5.0 + h * h * u1 / 20.0
-    points = np.stack([q0, q0 + h * p0 / 5.0, *inner, q1 - h * p1 / 5.0, q1], axis=2)
-    c1, c2 = q0 + h * p0 / 3.0, q1 - h * p1 / 3.0
-    cubic = (q0 + 6.0 * c1 + 3.0 * c2) / 10.0, (3.0 * c1 + 6.0 * c2 + q1) / 10.0
-    off = [np.linalg.norm(a - b, axis=2) for a, b in zip(inner, cubic, strict=True)]
-    return points, 0.625 * np.maximum(*off)  # 10 t²(1−t)² <= 0.625 weighs the two points that differ
 
 
 def _refine(obstacle: Obstacle, curves: FloatArray, allowance: FloatArray, best: float, tol: float) -> _Bound:

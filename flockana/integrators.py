@@ -21,13 +21,14 @@ _FLOOR = 1e-2  # of the relative tolerance: the default absolute one, over the l
 
 
 class Sample(NamedTuple):
-    """One instant that is kept."""
+    """One instant of a run: a sample, or if it is not `wanted` a step that the integrator made between samples."""
 
     t: float
     q: FloatArray
     p: FloatArray
     u: FloatArray
     extra: dict[str, FloatArray]
+    wanted: bool = True
 
 
 @dataclass
@@ -251,17 +252,14 @@ def adaptive(
             return
         tally.steps += 1
         tally.notes["redone"] = solver.redone
-        if keep is None:
-            yield sample(solver.now)
-            continue
-        course = None
-        while wanted < keep.size and keep[wanted] <= solver.now.t:
-            if keep[wanted] == solver.now.t:
-                yield sample(solver.now)
-            else:
-                course = course or solver.course()
-                yield between(keep[wanted], course(keep[wanted]))
+        own, course = sample(solver.now), None
+        while keep is not None and wanted < keep.size and keep[wanted] < own.t:
+            course = course or solver.course()
+            yield between(keep[wanted], course(keep[wanted]))
             wanted += 1
+        asked = keep is None or (wanted < keep.size and keep[wanted] == own.t)
+        wanted += int(asked)
+        yield own._replace(wanted=asked)
 
 
 def rk4(
@@ -303,7 +301,7 @@ def rk4(
         while t < stop:
             remaining = stop - t
             # a step is split evenly rather than ending on a sliver, which would lose the order for nothing
-            h = remaining / max(1, _steps(t, stop, dt))
+            h = remaining / max(1, count_steps(t, stop, dt))
             while True:
                 later, more, rate_there = _rk4_step(law, t, state, rate, h)
                 tally.evaluations += 4
@@ -318,6 +316,8 @@ def rk4(
             t = stop if h == remaining else t + h
             state, rate, work = later, rate_there, work + more
             tally.steps += 1
+            if t < stop:
+                yield Sample(t, *state, {}, wanted=False)
         yield Sample(t, *state, {"work": np.array(work)} if energetic else {})
 
 
@@ -337,14 +337,29 @@ def _rk4_step(law: Law, t: float, state: State, rate: float, h: float) -> tuple[
     return State(q, p, u), work, rate
 
 
-def _steps(start: float, stop: float, dt: float, rounded: Callable[[float], float] = np.ceil) -> int:
-    """How many steps of dt lie between two times; the times' own rounding makes none more or less."""
+def count_steps(start: float, stop: float, dt: float, rounded: Callable[[float], float] = np.ceil) -> int:
+    """How many steps of dt it takes between two times; the times' own rounding makes none more or less.
+
+    Parameters
+    ----------
+    start, stop : float
+        The times.
+    dt : float
+        The step.
+    rounded : callable
+        `numpy.ceil` counts a step that is cut short, `numpy.floor` does not.
+
+    Examples
+    --------
+    >>> count_steps(0.0, 0.3, 0.1), count_steps(1e6, 1e6 + 0.3, 0.1), count_steps(0.0, 0.31, 0.1)
+    (3, 3, 4)
+    """
     slack = 4.0 * float(np.spacing(max(abs(start), abs(stop), stop - start)))
     return int(rounded((stop - start + (slack if rounded is np.floor else -slack)) / dt))
 
 
 def _grid(t_span: tuple[float, float], dt: float) -> Iterator[float]:
-    for k in range(_steps(*t_span, dt)):
+    for k in range(count_steps(*t_span, dt)):
         yield t_span[0] + k * dt
     yield t_span[1]
 
@@ -367,7 +382,7 @@ def discrete(
     """
     q, p, memory = q0, p0, law.start(q0, p0)
     yield Sample(t_span[0], q, p, np.zeros_like(q), _copied(memory))
-    steps = _steps(*t_span, law.dt, np.floor)
+    steps = count_steps(*t_span, law.dt, np.floor)
     for first in range(0, steps, law.steps_at_once):
         some = min(law.steps_at_once, steps - first)
         qs, ps, us, series = law.iterate(t_span[0] + first * law.dt, q, p, memory, some)

@@ -1,4 +1,9 @@
-"""Closest approaches along sampled paths, between the samples too."""
+"""Closest approaches, contacts and the cohesion radius along sampled paths, between the samples too.
+
+What is bounded are the motions themselves, given the integrator's accuracy at the samples, wherever the samples resolve
+them (`flockana.kernels.paths` says when that is): those of the solver's own steps do, samples of one's own choice need
+not. So a run keeps the steps between its samples (`flockana.between`).
+"""
 
 from __future__ import annotations
 
@@ -8,8 +13,8 @@ import numpy as np
 
 from flockana.checks import FloatArray
 from flockana.kernels.neighbours import pair_blocks
-from flockana.kernels.paths import closest_pair, control_points, touching_pairs
-from flockana.metrics import min_distance
+from flockana.kernels.paths import bernstein, closest_pair, control_points, farthest, touching_pairs
+from flockana.metrics import cohesion_radii, min_distance
 
 ROUNDING = 2.0**-50  # of the coordinates: a smaller distance is lost in their rounding and counts as 0
 RELATIVE_TOL = 1e-6  # of the subdivision: far below the interpolation allowance of any real run
@@ -22,9 +27,10 @@ class ClosestApproach:
     Attributes
     ----------
     lower : float
-        Lower bound of every pair's distance at every time of the run.
+        Lower bound of every pair's distance at every time of the run, given the integrator's accuracy and samples that
+        resolve the motion.
     distance : float
-        Distance that was reached on the interpolated path (an upper bound up to interpolation error).
+        Distance that was reached on the interpolated path: an estimate from above.
     time : float
         When.
     pair : tuple of int
@@ -40,11 +46,13 @@ class ClosestApproach:
     lower_by_interval: FloatArray
 
 
-def closest_approach(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray) -> ClosestApproach:
+def closest_approach(
+    t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, slack: FloatArray | None = None
+) -> ClosestApproach:
     """Bound all pair distances from below over all times, from samples of position, velocity and acceleration.
 
-    Paths are quintic between samples; the bound subtracts an allowance for each path's interpolation error, so it
-    is weak, never wrong by much, where samples are too sparse to resolve the motion.
+    Paths are quintic between samples; the bound subtracts an allowance for each path's own error, so it is weak where
+    samples are too sparse to resolve the motion.
 
     Parameters
     ----------
@@ -52,6 +60,8 @@ def closest_approach(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray)
         Sample times, rising.
     q, p, u : ndarray, shape (T, n, m)
         Positions, velocities, accelerations.
+    slack : ndarray, shape (T - 1, n), optional
+        What else the paths may be off by.
 
     Examples
     --------
@@ -73,6 +83,8 @@ def closest_approach(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray)
     for k in range(len(t) - 1):
         h = t[k + 1] - t[k]
         points, reach, allowance = control_points(h, q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1])
+        if slack is not None:
+            reach, allowance = reach + slack[k], allowance + slack[k]
         stop = float(min(at_samples[k], at_samples[k + 1]))
         noise = ROUNDING * float(np.abs(q[k]).max())
         bounds[k] = stop if stop > noise else 0.0
@@ -93,10 +105,48 @@ def closest_approach(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray)
 
 def _pair_at(q: FloatArray, distance: float) -> tuple[int, int]:
     """A pair at the given least distance of a configuration."""
-    for i, j in pair_blocks(q, np.nextafter(distance * (1.0 + 1e-12) + 1e-300, np.inf)):
+    for i, j in pair_blocks(q, np.nextafter(distance * (1.0 + 1e-12), np.inf)):
         if i.size:
             return int(min(i[0], j[0])), int(max(i[0], j[0]))
     return -1, -1
+
+
+def cohesion_bound(
+    t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, slack: FloatArray | None = None
+) -> FloatArray:
+    """Upper bound of the cohesion radius max_i ‖q_i − q_c‖ over each interval between samples, its ends included.
+
+    Parameters
+    ----------
+    t : ndarray, shape (T,)
+        Sample times, rising.
+    q, p, u : ndarray, shape (T, n, m)
+        Positions, velocities, accelerations.
+    slack : ndarray, shape (T - 1, n), optional
+        What else the paths may be off by.
+
+    Returns
+    -------
+    ndarray, shape (T - 1,)
+
+    Examples
+    --------
+    Two agents that swing out and back between the samples, q = ± t (1 − t):
+
+    >>> q, p = np.zeros((2, 2, 1)), np.array([[[1.0], [-1.0]], [[-1.0], [1.0]]])
+    >>> u = np.array([[[-2.0], [2.0]]] * 2)
+    >>> round(float(cohesion_bound(np.array([0.0, 1.0]), q, p, u)[0]), 6)
+    0.25
+    """
+    radii, bounds = cohesion_radii(q), np.empty(len(t) - 1)
+    for k in range(len(t) - 1):
+        points, _, allowance = bernstein(t[k + 1] - t[k], q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1])
+        if slack is not None:
+            allowance = allowance + slack[k]
+        floor = float(max(radii[k], radii[k + 1]))
+        noise = ROUNDING * float(np.abs(q[k : k + 2]).max())
+        bounds[k] = farthest(points, allowance, floor, max(RELATIVE_TOL * floor, noise))[0]
+    return bounds
 
 
 @dataclass(frozen=True)

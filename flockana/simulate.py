@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from flockana.between import Between, Recorder
 from flockana.checks import FloatArray, ensure_positive, ensure_state, ensure_time_span
 from flockana.errors import ArgumentError, UnknownNameError
 from flockana.integrators import Sample, Tally, adaptive, discrete, error_floor, nearest, rk4, start_sample
@@ -64,7 +65,8 @@ def simulate(
     dt : float, optional
         Step of RK4 (required there, meaningless elsewhere). The last step is shortened to end on time.
     t_eval : array_like, optional
-        Rising times at which to keep the state; by default every step that the integrator takes.
+        Rising times at which to keep the state; by default every step that the integrator takes. Bounds at all times,
+        such as `Trajectory.min_distance`, rest on the steps in either case.
     progress : bool
         Show a progress bar on the terminal.
 
@@ -111,7 +113,7 @@ def simulate(
             else:
                 keep_samples = adaptive(law, q0, p0, *how)
     started = time.perf_counter()
-    kept = _collect(keep_samples, t_span, tally, progress)
+    kept, between = _collect(keep_samples, t_span, tally, progress)
     if not kept:  # ended before the first time to keep: the start at least is known
         kept = [start_sample(law, q0, p0, t_span[0])]
     extra = {key: np.stack([s.extra[key] for s in kept]) for key in kept[0].extra}
@@ -122,7 +124,8 @@ def simulate(
         stats |= {"rtol": rtol, "atol": atol}
     stats["seconds"] = time.perf_counter() - started
     q, p, u = (np.stack([getattr(s, name) for s in kept]) for name in ("q", "p", "u"))
-    return Trajectory(np.array([s.t for s in kept]), q, p, u, law, extra, tally.status, tally.message, stats)
+    t = np.array([s.t for s in kept])
+    return Trajectory(t, q, p, u, law, extra, tally.status, tally.message, stats, between)
 
 
 def _ensure_step(name: str, dt: Any, t_span: tuple[float, float]) -> float:
@@ -187,19 +190,24 @@ def _check_t_eval(t_eval: Any, t_span: tuple[float, float]) -> FloatArray | None
     return times
 
 
-def _collect(samples: Iterator[Sample], t_span: tuple[float, float], tally: Tally, progress: bool) -> list[Sample]:
-    """Drain the integrator; on Ctrl-C keep what there is."""
+def _collect(
+    samples: Iterator[Sample], t_span: tuple[float, float], tally: Tally, progress: bool
+) -> tuple[list[Sample], Between | None]:
+    """Drain the integrator: the samples, and its steps between them; on Ctrl-C keep what there is."""
     kept: list[Sample] = []
+    recorder = Recorder()
     with _progress_bar(t_span, enabled=progress) as advance:
         try:
             with interrupts_recognised():
                 for sample in samples:
-                    kept.append(sample)
+                    if sample.wanted:
+                        kept.append(sample)
+                    recorder.add(sample.t, sample.q, sample.p, sample.u, sample=sample.wanted)
                     advance(sample.t)
         except KeyboardInterrupt:
             until = f"the last sample is at t = {kept[-1].t:g}" if kept else "no sample was reached but the start"
             tally.status, tally.message = "interrupted", f"interrupted: {until}"
-    return kept
+    return kept, recorder.between()
 
 
 class _progress_bar:  # noqa: N801  # reads as the context manager it is

@@ -21,8 +21,8 @@ Flow = Callable[[float, FloatArray, FloatArray], tuple[FloatArray, float]]
 
 ONE_STEP = ("DOP853", "RK45", "RK23", "Radau")  # without a past: what they do next hangs on the state alone
 _ROUNDINGS = 64  # of the time: a step of so few is not made again
-_FALLS = 0.2  # of a residual when the step is halved twice: what falls less is not the integrator's to mend
-_BALANCED = 0.1  # of the relative tolerance: residual of the energy's balance that a step may leave, over |H|
+_HALVINGS, _FALLS = 4, 0.04  # a residual that so many halvings leave above so much is not the integrator's to mend
+_BALANCED = 0.05  # of the relative tolerance: residual of the energy's balance that a step may leave, over |H|
 _PATIENCE = 4  # steps in a row that halving did not mend, after which none is halved any more
 
 
@@ -178,7 +178,7 @@ class Balance:
     law : Law
         With an energy.
     rtol : float
-        Relative tolerance of the run; a tenth of it, times the largest |H| so far, is what a step may be off by.
+        Relative tolerance of the run; a twentieth of it, times the largest |H| so far, is what a step may be off by.
     """
 
     def __init__(self, law: Law, rtol: float) -> None:
@@ -202,7 +202,7 @@ class Balance:
         residual = abs(last - first - float(after.y[-1] - before.y[-1]))
         largest = max(self._largest, abs(first), abs(last))
         off, tried = residual > self.share_of_energy * largest, self._tried
-        if off and (len(tried) < 2 or residual <= _FALLS * tried[-2]):
+        if off and (len(tried) < _HALVINGS or residual <= _FALLS * max(tried[: 1 - _HALVINGS])):
             self._known, self._tried = (before.t, first), [*tried, residual]
             return 0.5
         if tried:

@@ -82,11 +82,12 @@ def located(
 
         end = _first_switch(law, pieces, way, start, solver.now.t)
         t, y = (solver.now.t, solver.now.y) if end is None else (end, course(end))
-        if keep is None:
-            yield sample(t, y)
-        while keep is not None and wanted < keep.size and keep[wanted] <= t:
+        while keep is not None and wanted < keep.size and keep[wanted] < t:
             yield sample(keep[wanted], course(keep[wanted]))
             wanted += 1
+        asked = keep is None or (wanted < keep.size and keep[wanted] == t)
+        wanted += int(asked)
+        yield sample(t, y)._replace(wanted=asked)
         if end is None:
             continue
         switches += 1

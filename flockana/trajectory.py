@@ -14,12 +14,13 @@ import numpy as np
 
 from flockana import metrics as measure
 from flockana._version import __version__
+from flockana.between import Between, Course, merged
 from flockana.checks import FloatArray
 from flockana.clearance import Clearance, clearance
 from flockana.errors import ArgumentError, FileError, UnknownNameError
 from flockana.files import replacing
 from flockana.laws.law import ensure_law
-from flockana.paths import ClosestApproach, closest_approach
+from flockana.paths import ClosestApproach, closest_approach, cohesion_bound
 from flockana.scales import Scales
 from flockana.serialize import from_data, to_data
 from flockana.units import rescale
@@ -33,6 +34,7 @@ _Value = TypeVar("_Value")
 
 FORMAT = "flockana-trajectory"
 FORMAT_VERSION = 1
+_BETWEEN = {"t": ("step",), "slack": ("interval", "agent")} | dict.fromkeys("qpu", ("step", "agent", "axis"))
 STATUSES = ("complete", "interrupted", "failed")
 
 
@@ -48,6 +50,13 @@ def _frozen_series(name: str, values: Any, samples: int) -> FloatArray:
         raise ArgumentError(f"{name}[{', '.join(map(str, k))}] = {array[k]}: expected finite numbers ({bad.sum()} bad)")
     array.setflags(write=False)
     return array
+
+
+def _read_between(data: xarray.Dataset) -> Between | None:
+    """The steps between the samples in what was read from a file."""
+    if "between_t" not in data:
+        return None
+    return Between(**{name: np.array(data[f"between_{name}"]) for name in _BETWEEN if f"between_{name}" in data})
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,6 +79,9 @@ class Trajectory:
         In words.
     stats : mapping
         Method, tolerances, numbers of steps and evaluations, seconds.
+    between : Between, optional
+        The solver's own steps between the samples, from which bounds at all times are made; None if the samples are
+        all there is.
 
     Raises
     ------
@@ -87,6 +99,7 @@ class Trajectory:
     status: str = "complete"
     message: str = ""
     stats: Mapping[str, Any] = field(default_factory=dict)
+    between: Between | None = None
 
     def __post_init__(self) -> None:
         ensure_law(self.law)
@@ -107,6 +120,8 @@ class Trajectory:
             raise ArgumentError(f"t[{k}] = {self.t[k]:g} and t[{k + 1}] = {self.t[k + 1]:g}: expected rising times")
         extra = {str(key): _frozen_series(f"extra[{key!r}]", x, shape[0]) for key, x in self.extra.items()}
         object.__setattr__(self, "extra", extra)
+        if self.between is not None:
+            self.between.check_fits(self.t, self.q)
 
     def __repr__(self) -> str:
         """One line: arrays of thousands of numbers tell nobody anything."""
@@ -137,8 +152,8 @@ class Trajectory:
         }
         q, p, u = self.q * length, self.p * (length / time), self.u * (length / time**2)
         stats = {**self.stats, **({"dt": self.stats["dt"] * time} if "dt" in self.stats else {})}
-        law = rescale(self.law, length=length, time=time)
-        return replace(self, t=self.t * time, q=q, p=p, u=u, law=law, extra=extra, stats=stats)
+        law, between = (rescale(x, length=length, time=time) for x in (self.law, self.between))
+        return replace(self, t=self.t * time, q=q, p=p, u=u, law=law, extra=extra, stats=stats, between=between)
 
     @cached_property
     def _flows(self) -> tuple[FloatArray, FloatArray]:
@@ -269,17 +284,38 @@ class Trajectory:
         d, r = self.law.alpha.d, self.law.alpha.r
         return np.array([measure.net_measures(x, d, r) for x in self.q]).T
 
+    @cached_property
+    def path(self) -> Course:
+        """The samples and the solver's own steps between them, in order of time: what bounds at all times rest on."""
+        return merged(self.t, self.q, self.p, self.u, self.between)
+
     def closest_approach(self) -> ClosestApproach:
-        """The closest two agents come, between samples too."""
+        """The closest two agents come, between samples too; intervals are those between samples."""
         return self._closest
 
     @cached_property
     def _closest(self) -> ClosestApproach:
-        return closest_approach(self.t, self.q, self.p, self.u)
+        found = closest_approach(*self.path)
+        if self.between is None:
+            return found
+        first = np.searchsorted(self.path.t, self.t[:-1])
+        return replace(found, lower_by_interval=np.minimum.reduceat(found.lower_by_interval, first))
 
     def min_distance(self) -> float:
-        """A lower bound of every distance between two agents at every time of the run."""
+        """A lower bound of every distance between two agents at every time of the run.
+
+        It holds given the integrator's accuracy, on steps that resolve the motion (`flockana.kernels.paths`).
+        """
         return self._closest.lower
+
+    def cohesion_bound(self) -> float:
+        """An upper bound of the cohesion radius max ‖q_i − q_c‖ at every time of the run, under the same conditions."""
+        return self._cohesion_bound
+
+    @cached_property
+    def _cohesion_bound(self) -> float:
+        bounds = cohesion_bound(*self.path)
+        return float(bounds.max()) if bounds.size else measure.cohesion_radius(self.q[0])
 
     def clearance(self) -> Clearance:
         """How close any agent comes to any obstacle of the law, between samples too; infinite without obstacles."""
@@ -287,7 +323,8 @@ class Trajectory:
 
     @cached_property
     def _clearance(self) -> Clearance:
-        return clearance(self.t, self.q, self.p, self.u, getattr(self.law, "obstacles", ()))
+        *path, slack = self.path
+        return clearance(*path, getattr(self.law, "obstacles", ()), slack)
 
     def animate(self, *, seconds: float = 10.0, fps: float = 15.0, velocities: bool = False) -> Film:
         """The run as a film: a notebook shows it, ``.save(path)`` writes GIF or MP4.
@@ -330,7 +367,10 @@ class Trajectory:
         extra = {name: series[keep] for name, series in self.extra.items()}
         if "work" in extra:
             extra["work"] = extra["work"] - extra["work"][0]
-        return replace(self, t=self.t[keep], q=self.q[keep], p=self.p[keep], u=self.u[keep], extra=extra)
+        between = None if self.between is None else self.between.within(self.t, self.t[keep])
+        return replace(
+            self, t=self.t[keep], q=self.q[keep], p=self.p[keep], u=self.u[keep], extra=extra, between=between
+        )
 
     def to_xarray(self) -> xarray.Dataset:
         """The run as an `xarray.Dataset` with dimensions time, agent and axis; the law is in the attributes."""
@@ -339,6 +379,9 @@ class Trajectory:
         dims = ("time", "agent", "axis")
         data: dict[str, Any] = {"q": (dims, self.q), "p": (dims, self.p), "u": (dims, self.u)}
         data |= {f"extra_{k}": (("time", *(f"{k}_{a}" for a in range(v.ndim - 1))), v) for k, v in self.extra.items()}
+        if self.between is not None:
+            kept = vars(self.between)
+            data |= {f"between_{k}": (_BETWEEN[k], kept[k]) for k in _BETWEEN if kept[k] is not None}
         coords = {"time": self.t, "agent": np.arange(self.n), "axis": list("xyz"[: self.m])}
         attrs = {
             "format": FORMAT,
@@ -420,6 +463,7 @@ class Trajectory:
                 status=str(data.attrs["status"]),
                 message=str(data.attrs["message"]),
                 stats=json.loads(data.attrs["stats"]),
+                between=_read_between(data),
             )
         except (KeyError, ValueError, TypeError, RecursionError) as error:
             raise FileError(f"{source} is damaged: {error!r}; run the simulation again") from error

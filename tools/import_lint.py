@@ -22,7 +22,7 @@ STAGES: tuple[tuple[str, ...], ...] = (
     ("lattice",),
     ("laws",),
     ("metrics", "clearance", "reynolds", "encounters"),
-    ("paths",),
+    ("paths", "between"),
     ("trajectory",),
     ("predicates",),
     ("stepping",),

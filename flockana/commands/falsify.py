@@ -133,7 +133,7 @@ def _replay(path: Path) -> int:
     from flockana.report.console import details
 
     found = Counterexample.load(path)
-    verdict = found.verify(found.run())
+    verdict = found.check()
     status = next((one.status for one in verdict.claims if one.name == found.claim), "not judged")
     Console(highlight=False).print(details(verdict))
     again = "it breaks again" if status == "refuted" else f"it does not break here: {status}"

@@ -19,7 +19,7 @@ from flockana.falsify.search import Search
 from flockana.falsify.space import STATE, part, search_space
 from flockana.scenarios import Scenario
 from flockana.scenarios import scenario as named_scenario
-from flockana.theorems import Claim, Theorem, Tolerances, verify
+from flockana.theorems import Claim, Theorem, Tolerances
 from flockana.theorems import theorem as named_theorem
 
 
@@ -171,7 +171,7 @@ def _at_the_start(problem: Problem, begin: Scenario) -> tuple[Problem, Evaluatio
             raise KeyboardInterrupt
         if run.status != "complete":
             return problem, Evaluation(FAILED, message=run.message)
-        verdict = verify(problem.theorem, run, tolerances=problem.tolerances, subject=begin.name)
+        verdict = problem.verdict(begin, run)
         names = [one.name for one in verdict.claims]
         if problem.claim is not None and problem.claim not in names:
             raise UnknownNameError("claim", problem.claim, names)

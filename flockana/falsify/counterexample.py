@@ -13,6 +13,7 @@ from typing import Any
 from flockana._version import __version__
 from flockana.checks import FloatArray, ensure_state, ensure_time_span
 from flockana.errors import FileError, FlockanaError
+from flockana.falsify.confirm import confirmed
 from flockana.files import replacing
 from flockana.laws.law import DiscreteLaw, Law, ensure_law
 from flockana.serialize import from_data, to_data
@@ -88,6 +89,26 @@ class Counterexample:
         """
         subject = f"a counterexample from {self.scenario}"
         return verify(theorem or self.theorem, run, tolerances=self.tolerances, subject=subject)
+
+    def check(self, *, theorem: Theorem | None = None) -> Verdict:
+        """Simulate it and check its theorem; what is refuted, a run at a thousandth of the tolerance refutes too.
+
+        Parameters
+        ----------
+        theorem : Theorem, optional
+            The theorem itself, if it is not one of the catalogue.
+
+        Raises
+        ------
+        KeyboardInterrupt
+            If it was interrupted.
+        """
+
+        def judge(run: Trajectory) -> Verdict:
+            return self.verify(run, theorem=theorem)
+
+        start = {"law": self.law, "q0": self.q0, "p0": self.p0, "t_span": self.t_span, "options": self.options}
+        return confirmed(judge(self.run()), judge, **start)
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write it as JSON; numbers read back exactly, an existing file is replaced only when whole.
@@ -194,8 +215,7 @@ def replay(path: str | os.PathLike[str], *, theorem: Theorem | None = None) -> V
     UnknownNameError
         If the catalogue has no such theorem.
     """
-    found = Counterexample.load(path)
-    return found.verify(found.run(), theorem=theorem)
+    return Counterexample.load(path).check(theorem=theorem)
 
 
 def _text(value: Any) -> str:

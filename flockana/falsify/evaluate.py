@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from flockana.checks import FloatArray
+from flockana.falsify.confirm import confirmed
 from flockana.falsify.grade import FAILED, LEADS, Lead, grade, squash
 from flockana.falsify.space import Space
 from flockana.interrupts import interrupts_recognised
@@ -108,7 +109,24 @@ class Problem:
                 raise KeyboardInterrupt
             if run.status != "complete":  # of a part of the run no claim about the whole follows
                 return Evaluation(FAILED, message=run.message)
-            return self.graded(run, verify(self.theorem, run, tolerances=self.tolerances, subject=case.name))
+            return self.graded(run, self.verdict(case, run))
+
+    def verdict(self, case: Scenario, run: Trajectory) -> Verdict:
+        """The verdict on a run of a case; what it refutes, a much finer run refutes too.
+
+        Parameters
+        ----------
+        case : Scenario
+            Law, start, span, options.
+        run : Trajectory
+            A complete run of it.
+        """
+
+        def judge(one: Trajectory) -> Verdict:
+            return verify(self.theorem, one, tolerances=self.tolerances, subject=case.name)
+
+        start = {"law": case.law, "q0": case.q0, "p0": case.p0, "t_span": case.t_span, "options": case.options}
+        return confirmed(judge(run), judge, **start)
 
     def graded(self, run: Trajectory, verdict: Verdict) -> Evaluation:
         """Grade a verdict.

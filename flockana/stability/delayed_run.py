@@ -8,7 +8,9 @@ from typing import Any
 import numpy as np
 
 from flockana.checks import FloatArray, ensure_count, ensure_positive, ensure_state, ensure_time_span
+from flockana.encounters import Encounters, State
 from flockana.errors import ArgumentError, UnknownNameError
+from flockana.integrators import count_steps
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.stability.delay import DELAYED
 
@@ -60,7 +62,8 @@ def simulate_delayed(
     Raises
     ------
     ArgumentError
-        On bad arguments.
+        On bad arguments; on the way, if a step leaps over an encounter (`flockana.encounters`): steps divide the delay,
+        so that one cannot be made shorter, and the error names how many it takes.
 
     Examples
     --------
@@ -83,10 +86,21 @@ def simulate_delayed(
     t0, t1 = ensure_time_span(t_span)
     delay, steps = ensure_positive("delay", delay), ensure_count("steps", steps)
     h = delay / steps
-    total = int(np.ceil((t1 - t0) / h - 1e-9))
+    total = count_steps(t0, t1, h)
     past = np.arange(-steps, 1)[:, None, None] * h
     qs, ps, us = (np.empty((steps + 1 + total, *q.shape)) for _ in range(3))
     qs[: steps + 1], ps[: steps + 1], us[:steps] = q + past * p, p, 0.0
+    encounters = Encounters.of(law, len(q))
+
+    def check_step(k: int, arriving: FloatArray) -> None:
+        """Raise if the flock leaps over an encounter between two steps, whether it is heard of already or not."""
+        before, after = State(qs[k], ps[k], us[k]), State(qs[k + 1], ps[k + 1], arriving)
+        share = encounters.share(h, before, after)
+        if share < 1.0:
+            raise ArgumentError(
+                f"steps = {steps} per delay: agents come into range and out again, or go too far there, within the "
+                f"step from t = {t0 + (k - steps) * h:.6g}; expected steps >= {int(np.ceil(steps / share))}"
+            )
 
     def push(t: float, q: FloatArray, p: FloatArray, q_old: FloatArray, p_old: FloatArray) -> FloatArray:
         if delayed == "all":
@@ -98,6 +112,8 @@ def simulate_delayed(
             heard -= own.pull * (q - q_r) + own.drag * (p - p_r)
         return heard
 
+    for k in range(steps):
+        check_step(k, us[0])  # the flock moved freely before the start
     us[steps] = push(t0, q, p, qs[0], ps[0])
     for k in range(steps, steps + total):
         t, old = t0 + (k - steps) * h, k - steps
@@ -112,4 +128,5 @@ def simulate_delayed(
         qs[k + 1] = q + h * p + h * h / 6 * (k1 + k2 + k3)
         ps[k + 1] = p + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
         us[k + 1] = push(t + h, qs[k + 1], ps[k + 1], qs[old + 1], ps[old + 1])
+        check_step(k, us[k + 1])
     return DelayedRun(t0 + h * np.arange(total + 1.0), qs[steps:], ps[steps:], delay)

@@ -34,7 +34,7 @@ def met(run: Trajectory, tolerances: Tolerances) -> tuple[Contact, ...]:
     tolerances : Tolerances
         `contact` is used, relative to d.
     """
-    return contacts(run.t, run.q, run.p, run.u, tol=tolerances.contact * run.law.alpha.d)
+    return contacts(*run.path[:4], tol=tolerances.contact * run.law.alpha.d)
 
 
 def passed(run: Trajectory, tolerances: Tolerances) -> dict[Pair, float]:
@@ -49,7 +49,7 @@ def passed(run: Trajectory, tolerances: Tolerances) -> dict[Pair, float]:
     """
     found, noise = {}, _noise(run, tolerances)
     for contact in met(run, tolerances):
-        apart = run.q[:, contact.j] - run.q[:, contact.i]
+        apart = run.path.q[:, contact.j] - run.path.q[:, contact.i]
         moving = np.flatnonzero((apart != 0.0).any(axis=0))
         if moving.size == 1:
             depth = float(min(apart[:, moving[0]].max(), -apart[:, moving[0]].min()))
@@ -71,14 +71,15 @@ def near(run: Trajectory, tolerances: Tolerances) -> list[set[Pair]]:
     noise = _noise(run, tolerances)
     lower = run.closest_approach().lower_by_interval
     found: list[set[Pair]] = [set() for _ in lower]
-    for k in np.flatnonzero(lower <= noise):
-        state = (x[s] for s in (k, k + 1) for x in (run.q, run.p, run.u))
-        points, reach, allowance = control_points(run.t[k + 1] - run.t[k], *state)
-        within = noise + 2.0 * float(allowance.max())
-        for i, j in pair_blocks(run.q[k], within + 2.0 * float(reach.max())):
+    t, *states, slack = run.path
+    of_sample = np.searchsorted(run.t, t[:-1], side="right") - 1
+    for k in np.flatnonzero(lower[of_sample] <= noise):
+        points, reach, allowance = control_points(t[k + 1] - t[k], *(x[s] for s in (k, k + 1) for x in states))
+        within = noise + 2.0 * float((allowance if slack is None else allowance + slack[k]).max())
+        for i, j in pair_blocks(states[0][k], within + 2.0 * float(reach.max())):
             at = np.empty(i.size)
             touching_pairs(points, reach, i, j, within, at)
-            found[k] |= {(int(min(i[h], j[h])), int(max(i[h], j[h]))) for h in np.flatnonzero(at >= 0.0)}
+            found[of_sample[k]] |= {(int(min(i[h], j[h])), int(max(i[h], j[h]))) for h in np.flatnonzero(at >= 0.0)}
     return found
 
 

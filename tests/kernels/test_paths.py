@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from math import comb
+
 import numpy as np
 import pytest
 
-from flockana.paths import closest_approach, contacts
+from flockana.kernels.paths import ALLOWED, bernstein
+from flockana.metrics import cohesion_radii
+from flockana.paths import closest_approach, cohesion_bound, contacts
 
 
 def sampled(t, *motions):
@@ -173,3 +177,93 @@ def test_lasting_contact_is_reported_once_from_the_start():
     q = np.zeros((4, 2, 1))
     (contact,) = contacts(np.arange(4.0), q, 0 * q, 0 * q, tol=1e-9)
     assert (contact.time, contact.crossed) == (0.0, False)
+
+
+def truncated(theta, degree):
+    """(t − θ)₊^degree with its first two derivatives."""
+    return tuple(
+        lambda t, k=k: np.maximum(np.asarray(t, dtype=float) - theta, 0.0) ** (degree - k)
+        * (1.0, float(degree), float(degree * (degree - 1)))[k]
+        for k in range(3)
+    )
+
+
+def quintic_of(motion):
+    """(control points, allowance) of a motion on [0, 1] in m dimensions."""
+    ends = [np.atleast_2d([f(t) for f in motion[k]]) for t in (0.0, 1.0) for k in range(3)]
+    points, _, allowance = bernstein(1.0, *ends)
+    return points[0, :, : ends[0].shape[1]], float(allowance[0])
+
+
+S = np.linspace(0.0, 1.0, 801)
+BASIS = np.array([comb(5, k) * S**k * (1.0 - S) ** (5 - k) for k in range(6)]).T
+RAISE = np.array([[0.1, 0.6, 0.3, 0.0], [0.0, 0.3, 0.6, 0.1]])  # of a cubic to degree five: its two inner points
+
+
+@pytest.mark.parametrize("degree", range(3, 11))
+def test_the_allowance_bounds_the_error_of_every_truncated_power(degree):
+    """What its proof rests on: L2 and L3 are never negative, and 0.35 (L2 + L3) is never below the error."""
+    for theta in np.linspace(0.0, 0.99, 100):
+        f = truncated(theta, degree)
+        points, allowance = quintic_of(tuple((g,) for g in f))
+        cubic = np.array([f[0](0.0), f[0](0.0) + f[1](0.0) / 3.0, f[0](1.0) - f[1](1.0) / 3.0, f[0](1.0)])
+        off = points[2:4, 0] - RAISE @ cubic
+        assert off.min() >= -1e-15
+        assert allowance == pytest.approx(ALLOWED * off.sum(), rel=1e-9, abs=1e-15)
+        assert np.abs(BASIS @ points[:, 0] - f[0](S)).max() <= allowance + 1e-15
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_the_allowance_bounds_the_error_of_motions_with_kinks_of_one_sign(seed):
+    """In the plane, a cubic plus truncated powers whose weights have one sign in each coordinate."""
+    rng = np.random.default_rng(seed)
+    degree, kinks = int(rng.integers(3, 11)), rng.uniform(0.0, 1.0, (2, 5))
+    weights, cubic = rng.uniform(0.0, 3.0, (2, 5)) * rng.choice([-1.0, 1.0], (2, 1)), rng.normal(0.0, 5.0, (2, 4))
+
+    def coordinate(c, k):
+        smooth = np.polynomial.Polynomial(cubic[c]).deriv(k)
+        powers = [truncated(theta, degree)[k] for theta in kinks[c]]
+        return lambda t: smooth(t) + sum(w * f(t) for w, f in zip(weights[c], powers, strict=True))
+
+    motion = tuple(tuple(coordinate(c, k) for c in range(2)) for k in range(3))
+    points, allowance = quintic_of(motion)
+    error = np.linalg.norm(BASIS @ points - np.array([f(S) for f in motion[0]]).T, axis=1).max()
+    assert error <= allowance + 1e-14
+
+
+class TestCohesion:
+    def test_out_and_back_between_two_samples(self):
+        """One agent stays, the other goes out from 1 to 2 and back: the centre lies halfway."""
+        q, p, u = sampled(T01, polynomial(0.0), polynomial(1.0, 4.0, -4.0))  # 1 at both ends, 2 between
+        (bound,) = cohesion_bound(T01, q, p, u)
+        assert 1.0 <= bound <= 1.0 + 2e-6
+        assert cohesion_radii(q).tolist() == [0.5, 0.5]
+
+    def test_a_still_flock_has_its_own_radius(self):
+        q = np.array([[[0.0, 0.0], [6.0, 0.0], [3.0, 4.0]]] * 3)
+        bound = cohesion_bound(np.array([0.0, 1.0, 5.0]), q, 0 * q, 0 * q)
+        np.testing.assert_allclose(bound, cohesion_radii(q)[0], rtol=2e-6)
+        assert (bound >= cohesion_radii(q)[0]).all()
+
+    @pytest.mark.parametrize("per_turn", [3, 7, 25, 100])
+    @pytest.mark.parametrize("seed", range(3))
+    def test_above_the_true_radius_of_circular_motions(self, seed, per_turn):
+        rng = np.random.default_rng(seed)
+        motions = [circle(rng.uniform(0.5, 3.0), rng.uniform(-1.0, 1.0), rng.uniform(0, 6), rng.normal(0, 2, 2)) for _ in range(4)]
+        t, fine = np.linspace(0.0, 2 * np.pi, per_turn + 1), np.linspace(0.0, 2 * np.pi, 20_001)
+        bound = cohesion_bound(t, *sampled(t, *motions))
+        truth = cohesion_radii(sampled(fine, *motions)[0])
+        for k in range(per_turn):
+            assert truth[(fine >= t[k]) & (fine <= t[k + 1])].max() <= bound[k]
+        if per_turn == 100:
+            assert bound.max() == pytest.approx(truth.max(), rel=1e-4)
+
+    def test_a_common_drift_does_not_count(self):
+        q, p, u = sampled(T01, polynomial(0.0, 1e3), polynomial(2.0, 1e3))
+        assert cohesion_bound(T01, q, p, u)[0] == pytest.approx(1.0, rel=2e-6)
+
+    def test_slack_is_added(self):
+        q = np.array([[[0.0], [2.0]]] * 2)
+        slack = np.array([[0.25, 0.5]])
+        assert cohesion_bound(T01, q, 0 * q, 0 * q, slack)[0] == pytest.approx(1.0 + 0.5 + 0.375, rel=2e-6)
+        assert closest_approach(T01, q, 0 * q, 0 * q, slack).lower == pytest.approx(2.0 - 0.75, rel=2e-6)
