@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import asinh, sinh, sqrt
 
 import numpy as np
-from adversarial.cases import FALSE, OPEN, REFUTED, TRUE, VERIFIED, Case, effort, hold
+from adversarial.cases import FALSE, REFUTED, TRUE, VERIFIED, Case, effort, hold
 from adversarial.strategies import powers, samplings, seeds, ways
 from hypothesis import assume, given
 from hypothesis import strategies as st
@@ -103,14 +103,30 @@ def test_coming_into_range(drawn, speed, offset, data):
 @effort(0.2)
 @given(dead_zones(k1=(0.0,)), powers(-6.0, -0.5), st.booleans(), st.integers(1, 3))
 def test_gliding_to_rest_within_the_dead_zone(drawn, speed, long, m):
-    """x'' = −2 k₂ x': velocities match as exp(−2k₂t), closed form; at first nothing can be told."""
+    """x'' = −2 k₂ x': velocities match as exp(−2k₂t), closed form."""
     law, L, _ = drawn
     q, p = two(law.interaction.r_b, speed * 2.0 * law.k2 * L, m)
     case = Case(law, q, p, (45.0 if long else 0.01) / (2.0 * law.k2))
-    limit = VERIFIED if long else OPEN if speed > 0.1 else TRUE  # a speed below the threshold counts as none
+    limit = VERIFIED if long else TRUE
     rest = {"cohesion": TRUE, "energy": TRUE, "collision": TRUE}
     hold("dead-zone-1-printed", case, {"velocity": limit, **rest})
     hold("dead-zone-1-corrected", case, CORRECTED | {"components": limit, "rate": TRUE})
+
+
+@effort(0.3)
+@given(st.floats(6.0, 16.0), st.sampled_from((-1e-3, 1e-3, 0.5, 2.0)), st.sampled_from((1.0, 1e-6, 1e3)))
+def test_a_glide_that_ends_just_out_of_range(constants, after, L):
+    """Nothing attracts (r_b + δ >= r, k₁ = 0): gliding out of range after so many time constants they part for ever.
+
+    Until then everything decays as if it were settling, and afterwards a speed of e^-constants never changes again.
+    """
+    pair = DeadZoneInteraction(r=15.0 * L, r_b=12.0 * L, delta=4.5 * L, r_d=40.0 * L, k_r=60.0 * L**2, k1=0.0, eta=0.0)
+    law, start = DeadZoneFlocking(pair, 0.5), 9.0 * L
+    rate = (pair.r - start) / -np.expm1(-constants)  # s' = rate e^-t, s(constants) = r
+    q, p = two(start, rate)
+    case = Case(law, q, p, constants + after)
+    hold("dead-zone-1-printed", case, {"cohesion": FALSE, "energy": TRUE, "collision": TRUE})
+    hold("dead-zone-1-corrected", case, CORRECTED)
 
 
 @effort(0.2)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from adversarial.cases import FALSE, OPEN, REFUTED, TRUE, VACUOUS, VERIFIED, Case, effort, hold
 from adversarial.strategies import powers, seeds, ways
-from hypothesis import assume, given
+from hypothesis import given
 from hypothesis import strategies as st
 
 from flockana.laws.minimal import MinimalFlocking
@@ -72,11 +72,11 @@ def test_near_the_manifold(drawn, speed, until, data):
 @effort(0.2)
 @given(trees(off=st.just(0.2)), st.booleans())
 def test_edges_take_their_lengths(drawn, long):
-    """y'' + y' + μy = 0 along each edge: settled after 150 slowest times, however deep the tree; not after 0.01."""
+    """y'' + y' + μy = 0 along each edge: settled after 150 slowest times, however deep the tree."""
     law, q, _, _ = drawn
     slowest = min(0.5, float(np.min(law.mu)))
     case = Case(law, q, 0.0 * q, (150.0 if long else 0.01) / slowest)
-    limit = VERIFIED if long else OPEN
+    limit = VERIFIED if long else TRUE
     hold("zone-1-corrected", case, CORRECTED | {"lengths": limit, "velocities": limit, "spectrum": VERIFIED})
     inside = (
         np.linalg.norm(q[[i for _, i in law.edges]] - q[[j for j, _ in law.edges]], axis=1).min() < 0.99 * law.spacing
@@ -105,17 +105,6 @@ def test_without_alignment_it_swings_for_ever(drawn, halves):
     case = Case(law, q, 0.0 * q, halves * np.pi / np.sqrt(law.mu))
     hold("zone-1-corrected", case, dict.fromkeys(CORRECTED, OPEN))
     hold("zone-1-printed", case, PRINTED | {"velocities": FALSE})
-
-
-@effort(0.15)
-@given(trees(off=st.just(0.1)), st.integers(2, 6))
-def test_hardly_aligned_it_has_not_settled(drawn, halves):
-    """A weight of 10⁻⁴ on the velocity difference, at a turning point."""
-    law, q, _, _ = drawn
-    weak = MinimalFlocking(edges=law.edges, spacing=law.spacing, mu=1.0, sigma=1e-4, normalised=False)
-    assume(len(q) == 2)
-    case = Case(weak, q, 0.0 * q, halves * np.pi)
-    hold("zone-1-corrected", case, CORRECTED | {"velocities": OPEN, "lengths": OPEN})
 
 
 @pytest.mark.parametrize("m", [1, 2, 3])
