@@ -27,6 +27,7 @@ from flockana.checks import FloatArray
 EPS = float(np.finfo(np.float64).eps)
 _ROUNDING = 8.0  # of eps √N ‖H‖: eigenvalues of a symmetric matrix come out to a few eps ‖H‖
 _REACH = 0.05  # of the law's length: a critical point farther off than that is another one
+_FREE = 1e-6  # what is left of a unit shift off the rigid motions, if it is one of them
 _GROUP = 2.0  # eigenvalues within this factor are tried together
 
 
@@ -53,6 +54,8 @@ class Landscape:
         What is left of the force, Euclidean norm over all agents.
     length : float
         The law's own length: neighbours are about as far apart.
+    unit : float
+        The law's own force, of whose terms what is left was taken: it is known to their rounding.
 
     Examples
     --------
@@ -61,7 +64,7 @@ class Landscape:
     >>> from scipy.sparse import csr_array
     >>> spring = Landscape(
     ...     lambda q: csr_array([[3.0, -3.0], [-3.0, 3.0]]),
-    ...     np.array([[0.0], [1.0]]), np.full((2, 1), 0.5**0.5), force=0.0, length=1.0
+    ...     np.array([[0.0], [1.0]]), np.full((2, 1), 0.5**0.5), force=0.0, length=1.0, unit=3.0
     ... )
     >>> spring.curvatures().values.round(12).tolist(), spring.curvatures().signs.tolist()
     ([6.0], [1])
@@ -75,12 +78,13 @@ class Landscape:
         *,
         force: float,
         length: float,
+        unit: float,
     ) -> None:
         self.stiffness, self.q, self.rigid, self.length = stiffness, q, rigid, length
         self.here = stiffness(q)
         self.size = _row_sum(self.here)
-        self.rounding = _ROUNDING * EPS * float(np.sqrt(q.size)) * self.size
-        self.force = force + self.rounding * length  # a length is subtracted to a few eps, and its force as well
+        self.rounding = _ROUNDING * EPS * float(np.sqrt(q.size)) * max(self.size, unit / length)
+        self.force = force + self.rounding * length  # what a few eps of a length or of a force amount to
         hessian = self.here.toarray()
         off = hessian - rigid @ (rigid.T @ hessian)
         off -= (off @ rigid) @ rigid.T
@@ -132,7 +136,7 @@ class Landscape:
             return float("inf")
         v = self.vectors[:, k]
         step = reach * v.reshape(self.q.shape)
-        places = [self.q + step, self.q - step, *self._scaled(reach)]
+        places = [self.q + step, self.q - step, *self._around(reach)]
         return max(abs(float(v @ ((self.stiffness(x) - self.here) @ v))) for x in places)
 
     @cached_property
@@ -170,14 +174,21 @@ class Landscape:
         """Whether the stiffness changes by less than half of `least` within `reach`, by the norm of the change."""
         if reach > _REACH * self.length:
             return False
-        turned = 8.0 * reach / self.length * self.size  # links turn by as much; lengths are what `_scaled` changes
-        return turned + max(_row_sum(self.stiffness(x) - self.here) for x in self._scaled(reach)) <= 0.5 * least
+        turned = 8.0 * reach / self.length * self.size  # links turn by as much; lengths are what `_around` changes
+        return turned + max(_row_sum(self.stiffness(x) - self.here) for x in self._around(reach)) <= 0.5 * least
 
-    def _scaled(self, reach: float) -> list[FloatArray]:
-        """The flock blown up and shrunk: every distance above half of `length` by √2 `reach` at least, as links may."""
-        factor = np.sqrt(8.0) * reach / self.length
+    def _around(self, reach: float) -> list[FloatArray]:
+        """The flock blown up, shrunk, and shifted if its place matters.
+
+        Every distance above half of `length` changes by √2 `reach` at least, as those of links may.
+        """
+        (n, m), factor = self.q.shape, np.sqrt(8.0) * reach / self.length
         centre = self.q.mean(axis=0)
-        return [centre + (1.0 + sign * factor) * (self.q - centre) for sign in (1.0, -1.0)]
+        places = [centre + (1.0 + sign * factor) * (self.q - centre) for sign in (1.0, -1.0)]
+        shifts = np.tile(np.eye(m), (n, 1))
+        if np.abs(shifts - self.rigid @ (self.rigid.T @ shifts)).max() > _FREE:
+            places += [self.q + sign * reach * axis for axis in np.eye(m) for sign in (1.0, -1.0)]
+        return places
 
 
 def least_curvature(found: Landscape) -> tuple[float, float]:

@@ -17,7 +17,7 @@ shortens no step.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -126,7 +126,7 @@ class Encounters:
             return share
         reach = centred(points, allowance)
         if len(reach) <= _DENSE:
-            return min(share, share_of_all(points, reach, allowance, self.radii, self.far))
+            return float(min(share, share_of_all(points, reach, allowance, self.radii, self.far)))
         search = (float(self.radii.max()) + 2.0 * float(reach.max() + allowance.max())) * (1.0 + 1e-9)
         for i, j in pair_blocks(before.q, search):
             share = share_of_pairs(points, reach, allowance, self.radii, self.far, i, j, share)
@@ -189,7 +189,8 @@ def _point(curve: FloatArray, s: float) -> FloatArray:
     """The point of a Bézier curve (degree + 1, m) at s."""
     while len(curve) > 1:
         curve = curve[:-1] + s * (curve[1:] - curve[:-1])
-    return curve[0]
+    point: FloatArray = curve[0]
+    return point
 
 
 def _clearance(obstacle: Obstacle, q: FloatArray) -> FloatArray:

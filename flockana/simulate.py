@@ -105,9 +105,11 @@ def simulate(
             keep_samples = rk4(law, q0, p0, t_span, _ensure_step("dt", dt, t_span), keep, tally)
         else:
             rtol, atol = ensure_positive("rtol", rtol), None if atol is None else ensure_positive("atol", atol)
-            integrate = located if isinstance(law, SwitchedLaw) and law.located else adaptive
-            floor = error_floor(law, q0, p0, t_span, rtol, atol)
-            keep_samples = integrate(law, q0, p0, t_span, method, rtol, floor, keep, tally)
+            how = (t_span, method, rtol, error_floor(law, q0, p0, t_span, rtol, atol), keep, tally)
+            if isinstance(law, SwitchedLaw) and law.located:
+                keep_samples = located(law, q0, p0, *how)
+            else:
+                keep_samples = adaptive(law, q0, p0, *how)
     started = time.perf_counter()
     kept = _collect(keep_samples, t_span, tally, progress)
     if not kept:  # ended before the first time to keep: the start at least is known
@@ -142,6 +144,8 @@ def _check_method(method: str, dt: float | None) -> None:
 def _check_first_call(law: Law | DiscreteLaw, t0: float, q0: FloatArray, p0: FloatArray) -> None:
     """Raise unless the law gives what a law gives: real numbers in the flock's shape, finite where it starts."""
     name, at = type(law).__name__, f"at the start, t = {t0:g}"
+    found: Any
+    parts: tuple[str, ...]
     if isinstance(law, DiscreteLaw):
         memory = {key: np.array(value) for key, value in law.start(q0, p0).items()}
         found, expected, parts = law.step(t0, q0.copy(), p0.copy(), memory), "(q, p, u, memory)", ("q", "p", "u")

@@ -188,4 +188,5 @@ def surroundings(law: Any, q: FloatArray, *, force: float = 0.0) -> Landscape | 
     """
     if q.size > DENSE_LIMIT:
         return None
-    return Landscape(law.stiffness, q, rigid_motions(q), force=force, length=law.alpha.d)
+    own = law.scales
+    return Landscape(law.stiffness, q, rigid_motions(q), force=force, length=own.length, unit=own.force)

@@ -70,6 +70,7 @@ def landscape(potential: Potential, q: FloatArray) -> Landscape:
         potential.symmetries(q),
         force=float(np.linalg.norm(potential.force(q))),
         length=potential.pair.length,
+        unit=potential.force_scale,
     )
 
 

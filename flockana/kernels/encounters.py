@@ -48,7 +48,7 @@ def _ahead(points, i, j, s, far):
 
 @njit(cache=True)
 def _visit(points, i, j, edge, far, stack, spans):
-    """Share of the step at which a pair that starts beyond `edge` is well within it for the first time; 1 if it ends so.
+    """Share of the step at which a pair that starts beyond `edge` is first well within it; 1 if it ends so.
 
     Well within is at its closest approach, or as soon as it has gone `far` there.
     """

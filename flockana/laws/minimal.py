@@ -22,6 +22,7 @@ from flockana.units import Powers, times
 if TYPE_CHECKING:
     from scipy.sparse import sparray
 
+_EQUAL = 1e-14  # relative: products of three numbers that are equal by algebra differ by less
 PerAgent = float | tuple[float, ...]
 PerPair = float | tuple[tuple[float, ...], ...]
 
@@ -261,11 +262,15 @@ class MinimalFlocking(Law):
 
     @cached_property
     def reciprocal(self) -> bool:
-        """Whether the graph is frozen and every edge has its reverse, of equal μ, spacing and alignment weight."""
+        """Whether the graph is frozen and every edge has its reverse, of equal μ, spacing and alignment weight.
+
+        Equal but for rounding: a spacing β_i r_i |N_i| is a product, and so is all that is given in other units.
+        """
         if self.edges is None:
             return False
-        what = dict(zip(self.edges, zip(*self._frozen[2:], strict=True), strict=True))
-        return all(what.get((i, j)) == value for (j, i), value in what.items())
+        what = dict(zip(self.edges, np.array(self._frozen[2:]).T, strict=True))
+        pairs = [(value, what.get((i, j))) for (j, i), value in what.items()]
+        return all(back is not None and np.allclose(value, back, rtol=_EQUAL, atol=0.0) for value, back in pairs)
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
         """(u, dH/dt), unchecked, with dH/dt = −Σ σ ‖v_i − v_j‖² over links if the law is `reciprocal`, else NaN.

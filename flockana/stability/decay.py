@@ -14,12 +14,10 @@ from flockana.errors import ArgumentError
 from flockana.interactions.pair import pair_interaction
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, moving_frame
 from flockana.nets import links
-from flockana.scales import Scales
 from flockana.simulate import simulate
 from flockana.stability.linearise import Linearisation
 from flockana.stability.modes import Mode
 from flockana.stability.motion import mode_motion
-from flockana.units import rescale
 
 AMPLITUDE = 1e-4  # of d: the first neglected term is as small, relative to the linear one
 _FALL = 1e8  # by which K̃ has fallen when the run ends
@@ -27,7 +25,7 @@ _LATE = 0.6  # of a random start's run that is left out: what is fast has decaye
 _SAMPLES = 24  # per half period
 _FEWEST, _MOST = 6, 4000  # half periods
 _SEEN = 0.1  # share of a mode that is no translation, from which on K̃ sees it
-_RTOL, _ATOL = 1e-10, 1e-13  # velocities fall to 1e-8 in the law's units; tighter, rounding of the forces stalls it
+_RTOL = 1e-11  # and 1e-13 of the law's speed, of which 1e-8 is left at the end; tighter, rounding of forces stalls it
 _SMALL = 3e-3  # deviation up to which the exponent is fitted
 
 
@@ -302,15 +300,11 @@ def _length(found: Linearisation) -> float:
 
 
 def _run(found: Linearisation, dq: FloatArray, dp: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Positions and velocities of the nonlinear flock, in the frame that moves with the equilibrium.
-
-    Integrated in the law's own units, of which the absolute tolerance is a share.
-    """
-    own = found.law.scales or Scales(1.0, 1.0)
-    law = rescale(found.law, length=1.0 / own.length, time=1.0 / own.time)
-    q, p, times = (found.q + dq) / own.length, (found.p + dp) / own.speed, (found.t + t) / own.time
-    run = simulate(law, q, p, (float(times[0]), float(times[-1])), t_eval=times, rtol=_RTOL, atol=_ATOL)
-    return own.length * run.q - t[:, None, None] * found.p, own.speed * run.p - found.p
+    """Positions and velocities of the nonlinear flock, in the frame that moves with the equilibrium."""
+    times = found.t + t
+    span = float(times[0]), float(times[-1])
+    run = simulate(found.law, found.q + dq, found.p + dp, span, t_eval=times, rtol=_RTOL)
+    return run.q - t[:, None, None] * found.p, run.p - found.p
 
 
 def _linear(found: Linearisation, dq: FloatArray, dp: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:

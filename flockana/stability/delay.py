@@ -173,6 +173,8 @@ def delay_margin(system: DelaySystem, *, grid: int = 200) -> DelayMargin:
 
     if not _stable(system):
         return DelayMargin(0.0, float("nan"))
+    if system.highest == 0.0:
+        return DelayMargin(inf, float("nan"))
     top = 1.01 * system.highest
     omegas = np.geomspace(_LOWEST * top, top, ensure_count("grid", grid) + 1)
     spectra = [_phases(system, omega) for omega in omegas.tolist()]

@@ -2,8 +2,8 @@
 
 An eigenvalue λ of A with unit left and right eigenvectors y, x moves by |Δλ| ≤ ‖ΔA‖/|yᴴx| to first order, and LAPACK's
 eigenvalues are those of some A + ΔA with ‖ΔA‖ a small multiple of eps ‖A‖. The linearised flock is not normal, so
-1/|yᴴx| is no formality: where two modes coalesce (critical damping) it is infinite, and m eigenvalues that are one
-move by (‖ΔA‖/‖A‖)^(1/m) ‖A‖. Of the two estimates the smaller is taken.
+1/|yᴴx| is no formality. Where m modes coalesce (critical damping: 2) they move by (‖ΔA‖/‖A‖)^(1/m) ‖A‖; as a rule they
+come out as far apart as that, with eigenvectors that say so, and where they come out equal the power is taken itself.
 """
 
 from __future__ import annotations
@@ -54,12 +54,13 @@ def eigen(matrix: FloatArray) -> tuple[ComplexArray, ComplexArray, FloatArray]:
 
 
 def _together(values: ComplexArray, size: float) -> FloatArray:
-    """Largest move of each eigenvalue as one of the m that lie as near to each other as m coalesced ones would."""
-    apart = np.sort(np.abs(values[:, None] - values[None, :]), axis=1)
-    moves = size * (_ROUNDINGS * EPS) ** (1.0 / np.arange(1.0, values.size + 1.0))
-    # the least m for which no more than m eigenvalues are within reach of the moves of m
-    fits = np.array([[np.sum(row <= 2.0 * move) <= m for m, move in enumerate(moves, 1)] for row in apart])
-    found: FloatArray = moves[np.argmax(fits, axis=1)]
+    """Largest move of each eigenvalue as one of m that coincide; infinite of one that stands alone.
+
+    Of coalesced roots that came out apart the eigenvectors tell; where they came out exactly equal, yᴴx may be 0.
+    """
+    tight = _ROUNDINGS * EPS
+    same = np.sum(np.abs(values[:, None] - values[None, :]) <= 2.0 * tight * size, axis=1)
+    found: FloatArray = np.where(same > 1, size * tight ** (1.0 / same), np.inf)
     return found
 
 

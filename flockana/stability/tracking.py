@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import pi
+from math import inf, pi
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,7 @@ from flockana.trajectory import Trajectory
 
 ComplexArray = npt.NDArray[np.complex128]
 
+_SAMPLES, _APART = 8, 1e-2  # least number of samples of a fit of four unknowns, and least ratio of its singular values
 _SHORT = 1e-8  # of Δt²: the series' next term is its square over 120
 _WHOLE = 1e-9  # relative: a run that is as long as a period but for rounding is as long as a period
 
@@ -203,11 +204,17 @@ def _free(gains: Gains, since: FloatArray, left: FloatArray, swift: FloatArray) 
 
 
 def _amplitude(t: FloatArray, x: FloatArray, omega: float) -> tuple[ComplexArray, float]:
-    """(complex amplitude at ω, its error): least squares of A cos ωt + B sin ωt + C + D t on each coordinate of x."""
-    basis = np.column_stack([np.cos(omega * t), np.sin(omega * t), np.ones_like(t), t])
-    fit = np.linalg.lstsq(basis, x, rcond=None)[0]
+    """(complex amplitude at ω, its error): least squares of A cos ωt + B sin ωt + C + D t on each coordinate of x.
+
+    The error is infinite where there are hardly more samples than unknowns, or where they cannot tell these apart.
+    """
+    since = (t - t.mean()) / max(float(np.ptp(t)), float(np.finfo(np.float64).tiny))
+    basis = np.column_stack([np.cos(omega * t), np.sin(omega * t), np.ones_like(t), since])
+    fit, _, _, sizes = np.linalg.lstsq(basis, x, rcond=None)
     residual = x - basis @ fit
-    return fit[0] - 1j * fit[1], float(np.sqrt(np.mean(np.sum(residual**2, axis=1))))
+    told = t.size >= _SAMPLES and sizes[-1] > _APART * sizes[0]
+    error = float(np.sqrt(np.mean(np.sum(residual**2, axis=1)))) if told else inf
+    return fit[0] - 1j * fit[1], error
 
 
 def _swings(run: Trajectory) -> tuple[ComplexArray, ComplexArray, float]:

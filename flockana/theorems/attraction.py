@@ -5,7 +5,8 @@ of ∇²U(x) off the rigid motions, g = ∇U(x), and let ∇²U be Lipschitz wit
 
 1. Off the rigid motions U is strictly convex near x. If |g| is small, it has a minimum x* there, within δ = 2|g|/λ
    of x; ∇U(x*) is orthogonal both to the rigid motions of x* and to the complement of those of x, so it is 0 as long
-   as δ is less than the least radius of gyration. The curvature at x* is λ - Lδ at least, and U(x) - U(x*) <= |g|²/λ.
+   as δ is less than the least radius of gyration (else λ is taken off the translations alone). The curvature at x* is
+   λ - Lδ at least, and U(x) - U(x*) <= |g|²/λ.
 2. Of the states with the distance ρ from the set of all x* moved rigidly, the nearest of these differs from each by a
    vector that is orthogonal to the rigid motions; so U >= U(x*) + ρ²(½(λ - Lδ) - Lρ/6) there, for ρ + δ <= w, and for
    ρ <= λ/(2L) there is no equilibrium nearer than ρ but x* itself.
@@ -100,14 +101,16 @@ def attraction(law: Algorithm1 | Algorithm2, q: FloatArray, p: FloatArray) -> At
         return Attraction(0.0, inf, 0.0, inf)
     if q.size > DENSE_LIMIT:
         return unknown
-    damped = law.gains.c2_alpha > 0.0 or (isinstance(law, Algorithm2) and law.gains.c2_gamma > 0.0)
-    curvature = _curvature(law, q)
-    if not (damped and curvature > 0.0):
-        return Attraction(inf, 0.0, inf, curvature)
-    force = _force(law, q)
-    distance = float(2.0 * force / curvature)
     everywhere = isinstance(law, Algorithm2) and law.gains.c2_gamma > 0.0
-    if distance >= gyration(q) or not (everywhere or _joined(law.alpha, q, sqrt(2.0) * distance)):
+    if not (everywhere or law.gains.c2_alpha > 0.0):
+        return unknown
+    force = _force(law, q)
+    curvature = _curvature(law, q, rigid_motions(q))
+    distance = float(2.0 * force / curvature) if curvature > 0.0 else inf
+    if distance >= gyration(q):  # there is no turning to speak of: all agents are at one place
+        curvature = _curvature(law, q, _shifts(q))
+        distance = float(2.0 * force / curvature) if curvature > 0.0 else inf
+    if distance == inf or not (everywhere or _joined(law.alpha, q, sqrt(2.0) * distance)):
         return Attraction(inf, 0.0, distance, curvature)
     leaving = barrier(curvature, distance, law.alpha.d * WINDOWS, lambda window: _lipschitz(law, q, window))
     return Attraction(float(kinetic(p) + force**2 / curvature), leaving, distance, curvature)
@@ -124,9 +127,15 @@ def held(run: Trajectory) -> Attraction:
     return run.remembered("attraction at the end", lambda: attraction(run.law, run.q[-1], run.p[-1]))
 
 
-def _curvature(law: Algorithm1 | Algorithm2, q: FloatArray) -> float:
-    """λ less its rounding, which is that of a symmetric eigenvalue problem: some N ε of the largest."""
-    rigid = rigid_motions(q)
+def _shifts(q: FloatArray) -> FloatArray:
+    """Orthonormal basis of the translations, shape (n m, m)."""
+    n, m = q.shape
+    basis: FloatArray = np.tile(np.eye(m), (n, 1)) / sqrt(n)
+    return basis
+
+
+def _curvature(law: Algorithm1 | Algorithm2, q: FloatArray, rigid: FloatArray) -> float:
+    """λ off some rigid motions, less its rounding: of a symmetric eigenvalue problem, some N ε of the largest."""
     free = np.linalg.svd(rigid, full_matrices=True)[0][:, rigid.shape[1] :]
     if free.shape[1] == 0:
         return float("nan")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 from itertools import pairwise
-from math import isnan, sqrt
+from math import isnan, log, sqrt
 from typing import Any
 
 from flockana.equilibria.collapse import natural_ratio, nudged, squeezed, threshold
@@ -139,7 +139,7 @@ def _brackets(alpha: AlphaInteraction) -> dict[int, tuple[float, float]] | str:
 
 
 def _thresholds(law: Algorithm2) -> Claim:
-    """Falling if the brackets lie below each other: their middles differ by more than their widths."""
+    """Falling if the brackets lie below each other: their middles differ by more than their widths, as logarithms."""
     found = _brackets(law.alpha)
     said: dict[str, Any] = {
         "stated": "the ratio c1γ/c1α at which a hexagonal patch begins to collapse falls with n",
@@ -147,9 +147,9 @@ def _thresholds(law: Algorithm2) -> Claim:
     }
     if isinstance(found, str):
         return Claim("threshold", "inconclusive", detail=f"no threshold was found: {found}", **said)
-    middles = [sqrt(low * high) for low, high in found.values()]
-    widths = [sqrt(high / low) for low, high in found.values()]
-    falls = [(one / two - 1.0, one / two * (w * v - 1.0)) for (one, w), (two, v) in pairwise(zip(middles, widths))]
+    spans = [(log(low), log(high)) for low, high in found.values()]
+    # from the middle of one bracket to that of the next, and half of both widths
+    falls = [(0.5 * (a + b - c - d), 0.5 * (b - a + d - c)) for (a, b), (c, d) in pairwise(spans)]
     margin, error = min(falls, key=lambda fall: fall[0] - fall[1])
     status: Status = judge(margin, error, [])
     table = ", ".join(f"n = {n}: {low:.3g} to {high:.3g}" for n, (low, high) in found.items())

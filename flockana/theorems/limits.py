@@ -26,6 +26,8 @@ TIME_CONSTANTS = 5.0  # e-foldings: a factor 148
 REBOUND = 3.0  # e-foldings: a factor 20, more than the noise of an integration that has come to rest varies by
 _WINDOWS = 8  # into which the last part of the fall is divided
 _PARTS = (0.5, 0.25, 0.125)  # of the time until the fall ends: what came before it fell does not count
+_UNEVEN = 4.0  # times the slowest window's pace: what a swing, or several modes, may make of a steady fall
+_CUTS = 4  # levels down to which the fall is measured
 _ROUNDING = 1e-12  # of a logarithm of two amplitudes, or a ratio of two energies
 _LEAST = 1e-300  # below it an amplitude is 0
 
@@ -56,7 +58,8 @@ class Decay:
     Attributes
     ----------
     time_constants : float
-        E-foldings over the last part of the fall, at the pace of its slowest eighth; negative where it rises there.
+        E-foldings over the last part of the fall, at most four times what its slowest eighth makes of them; negative
+        where it rises there.
     depth : float
         E-foldings by which it ends below what counts as 0; negative while above.
     growth : float
@@ -67,11 +70,11 @@ class Decay:
     Notes
     -----
     The envelope, the largest value in each of eight equal windows, is what falls: a mode that swings does not look
-    like one that decays wherever the run is cut. A power (T - t)^k that happens to end at its zero T falls by
-    7 k log(8/7) < k at the pace of its slowest window, so that k > 5 would be needed to deceive; a beat has k = 1.
-    A decay like t^(-k) falls by less than k log 2 over the last half. A constant, and what grows, do not fall. A
-    plateau above the floor keeps `depth` negative; one below it counts as 0, which is what the floor is for: there an
-    integration ends in its own noise, so the fall is measured down to e times that plateau.
+    like one that decays wherever the run is cut. A power (T - t)^k that happens to end at its zero T falls by k log 8,
+    so that k > 2 would be needed to deceive; a turning point or the node of a beat has k = 1. A decay like t^(-k)
+    falls by less than k log 2 over the last half. A constant, and what grows, do not fall. A plateau above the floor
+    keeps `depth` negative; one below it counts as 0, which is what the floor is for: there an integration ends in its
+    own noise, so the fall is measured down to several levels between the floor and that noise, and the best counts.
     """
 
     time_constants: float
@@ -82,7 +85,7 @@ class Decay:
     @property
     def certificate(self) -> Certificate:
         """It fell through five time constants, ended below what counts as 0, and did not rise on the way."""
-        margin = min(self.depth, self.time_constants / TIME_CONSTANTS - 1.0, 1.0 - self.growth / REBOUND)
+        margin = min(self.depth, self.time_constants - TIME_CONSTANTS, REBOUND - self.growth)  # all in e-foldings
         text = f"it falls steadily through {max(self.time_constants, 0.0):.2g} time constants"
         text += f", rises again by {self.growth:.2g}" if self.growth > 1.0 else ""
         below = f" and ends {'below' if self.depth > 0.0 else 'above'} what counts as 0"
@@ -121,12 +124,13 @@ def decay(t: npt.ArrayLike, amplitude: npt.ArrayLike, *, floor: float) -> Decay:
     start, end = float(times[0]), float(times[-1])
     level = float(np.nanmax(_envelope(times, values, end - (end - start) / _WINDOWS, end)))
     least = float(np.nanmin(_envelope(times, values, start, end)))
-    fall = _fall(times, values, e * level)
+    cuts = np.geomspace(e * level, max(floor, e * level), _CUTS)
+    fall = max(_fall(times, values, float(cut)) for cut in cuts)
     return Decay(fall, log(floor / level), max(0.0, log(level / least)), level)
 
 
 def _fall(t: npt.NDArray[np.float64], values: npt.NDArray[np.float64], until: float) -> float:
-    """E-foldings of the fall to a level, at the pace of its slowest window, over the part of it that shows most."""
+    """E-foldings of the fall to a level, in windows of which none lags far behind, over the part that shows most."""
     above = np.flatnonzero(values > until)
     if above.size == 0:  # it was never seen to fall
         return 0.0
@@ -135,7 +139,8 @@ def _fall(t: npt.NDArray[np.float64], values: npt.NDArray[np.float64], until: fl
     for part in _PARTS:
         windows = _envelope(t, values, end - part * (end - start), end)
         if np.isfinite(windows).all():
-            found.append((_WINDOWS - 1) * float(np.log(windows[:-1] / windows[1:]).min()))
+            falls = np.log(windows[:-1] / windows[1:])
+            found.append(float(min(falls.sum(), _UNEVEN * falls.size * falls.min())))
     return max(found)
 
 

@@ -79,10 +79,11 @@ def energy_error(law: Any, q: FloatArray, p: FloatArray, energy: FloatArray) -> 
     reach = float(np.abs(q).max())
     if pull:
         reach += float(np.abs(law.target.position(0.0)).max())
-    error = gains.c1_alpha * pairs * (_POTENTIAL * alpha.c_star + 8.0 * EPS * alpha.b * (alpha.r_alpha + reach))
+    steepest = alpha.b / sqrt(alpha.eps)  # force of a pair: how much its potential moves with its distance
+    error = gains.c1_alpha * pairs * (_POTENTIAL * alpha.c_star + 8.0 * EPS * steepest * (alpha.r + reach))
     error += pull * (n + 8) * EPS * reach**2
     for _ in getattr(law, "obstacles", ()):
-        most = float(law.beta.psi_beta(0.0)) + 2.0 * reach
-        error += gains.c1_beta * n * (_POTENTIAL + 16.0 * EPS) * most
+        most, steepest = float(law.beta.psi_beta(0.0)), 2.0 / sqrt(law.beta.eps)
+        error += gains.c1_beta * n * (_POTENTIAL * most + 16.0 * EPS * steepest * (law.beta.r + reach))
     bound: FloatArray = error + (pairs + n * m + 8) * EPS * np.abs(energy) + 2.0 * spread_error(p)
     return bound

@@ -8,7 +8,7 @@ the larger of those at its ends: true of every run whose samples resolve its mot
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 import numpy.typing as npt
@@ -106,15 +106,16 @@ def nets_between(run: Trajectory) -> Nets:
     Parameters
     ----------
     run : Trajectory
-        A run of a law with an α-interaction; a map has no state between its steps.
+        A run of a law with an α-interaction; a map has no state between its steps, so of each the first end is taken.
     """
     return run.remembered("nets between samples", lambda: _nets_between(run))
 
 
 def _nets_between(run: Trajectory) -> Nets:
-    moves, r, rounding = not isinstance(run.law, DiscreteLaw), run.law.alpha.r, _rounding(run)
-    h, speed, force = np.diff(run.t), moves * _motion(run.p), moves * _motion(run.u)
-    rows = []
+    if isinstance(run.law, DiscreteLaw):
+        return Nets(*(getattr(nets_at(run), field.name)[:-1] for field in fields(Nets)))
+    r, rounding, rows = run.law.alpha.r, _rounding(run), []
+    h, speed, force = np.diff(run.t), _motion(run.p), _motion(run.u)
     for k in range(len(run.t) - 1):
         straight = float(speed[k] * h[k])  # two agents: twice the speed, for half the time
         bent = float(h[k] ** 2 / 8.0 * (8.0 * speed[k] ** 2 / r + 2.0 * force[k]))

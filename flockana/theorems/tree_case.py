@@ -66,7 +66,7 @@ class TreeCase:
         return tuple(found)
 
     def on_manifold(self, q: FloatArray) -> FloatArray:
-        """The configuration with the bearings of q and every edge at its desired length; bearings are free.
+        """A configuration with the bearings of q and every edge at its desired length, about the origin.
 
         Parameters
         ----------
@@ -76,7 +76,7 @@ class TreeCase:
         x = edge_vectors(q, self.links)
         length = np.linalg.norm(x, axis=1, keepdims=True)
         bearing = np.divide(x, length, out=np.tile(np.eye(q.shape[1])[0], (len(x), 1)), where=length > 0.0)
-        placed: FloatArray = np.array(q, dtype=np.float64)
+        placed: FloatArray = np.zeros_like(x, shape=q.shape)
         for e, near, far in self.walk:
             way = self.rho[e] * bearing[e]  # from the head of the edge to its tail
             placed[far] = placed[near] - way if self.links[e] == (near, far) else placed[near] + way

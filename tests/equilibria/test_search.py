@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -69,7 +70,8 @@ def test_a_search_reaches_harborths_count_and_finds_each_minimum_once():
     for k, one in enumerate(minima):
         assert not any(congruent(one.q, other.q, tol=1e-4) for other in minima[k + 1 :])
     assert sum(one.count for one in found.found) + len(found.failures) == 30
-    assert [one.equilibrium.energy for one in found.found] == sorted(one.equilibrium.energy for one in found.found)
+    energies = np.array([one.equilibrium.energy for one in found.found])
+    assert np.all(np.diff(energies) > -1e-9 * np.abs(energies).max())  # but for lattices of as many links, which tie
     with ThreadPoolExecutor(1) as executor:
         again = search(LAW, starts, executor=executor)
     assert [one.count for one in again.found] == [one.count for one in found.found]
@@ -176,3 +178,40 @@ def test_collapse_by_equilibria():
         collapse_diagram(AlphaInteraction(), [7], [1.0, 0.5])
     with pytest.raises(SolverError, match="no collapse"):
         threshold(lambda ratio: False)
+
+
+@pytest.mark.parametrize("length", [1e-9, 1e-6, 1.0, 1e6])
+def test_congruence_has_no_unit(length):
+    q = hexagonal_spiral(7, 7.0)
+    q[3] += [0.4, -0.2]
+    turned = length * (q[::-1] @ np.array([[0.6, -0.8], [0.8, 0.6]]) + 3.0)
+    assert congruent(length * q, turned, tol=1e-9 * length)
+    turned[2, 0] += 1e-3 * length
+    assert not congruent(length * q, turned, tol=1e-6 * length)
+
+
+def test_equal_energies_are_ranked_as_found():
+    """Lattices of eight with as many links have one energy, and which of them rounds below the other is no rank."""
+    one = find_equilibrium(LAW, hexagonal_spiral(8, 7.0))
+    corner = np.vstack([hexagonal_spiral(7, 7.0), 7.0 * np.array([[1.5, -np.sqrt(0.75)]])])
+    other = find_equilibrium(LAW, corner)
+    assert one.energy == pytest.approx(other.energy, rel=1e-12)
+    shift = 1e-12 * one.energy
+    for first, second in ((one, other), (other, one)):
+        for off in (-shift, 0.0, shift):
+            found = distinct([replace(first, energy=first.energy + off), second])
+            assert found[0].equilibrium.q is first.q
+    lower = replace(other, energy=one.energy - 1e-6)
+    assert distinct([one, lower])[0].equilibrium is lower
+
+
+def test_a_lattice_without_energy_reads_back(tmp_path):
+    """A bond of length d has the energy 0, to rounding: relative to itself no other machine would agree."""
+    bond = find_equilibrium(LAW, [[0.0], [6.9]])
+    assert abs(bond.energy) < 1e-12
+    for energy in (0.0, 1e-13, -1e-28):
+        write_equilibrium(replace(bond, energy=energy), tmp_path / "bond.json")
+        assert read_equilibrium(tmp_path / "bond.json").kind == "minimum"
+    write_equilibrium(replace(bond, energy=1.0), tmp_path / "bond.json")
+    with pytest.raises(FileError, match="claims an energy"):
+        read_equilibrium(tmp_path / "bond.json")

@@ -9,11 +9,14 @@ from flockana.errors import ArgumentError
 from flockana.lattice import (
     classify,
     coordination,
+    crossings,
     defects,
     edge_length_error,
     hexagonal_patch,
     is_alpha_lattice,
+    is_planar,
     links,
+    rigidity,
     square,
     strain,
     triangular,
@@ -94,3 +97,30 @@ def test_a_triangle_that_does_not_go_around_is_not_interior():
     """All neighbours on one side, linked in a row and across: the gap behind is more than half a turn."""
     q = [[0.0, 0.0], [1.0, -0.8], [1.0, 0.0], [1.0, 0.8]]
     assert not defects(q, [[0, 1], [0, 2], [0, 3], [1, 2], [2, 3], [1, 3]]).interior[0]
+
+
+@pytest.mark.parametrize("tilt", np.linspace(0.0, 3.0, 13))
+def test_a_triangle_folded_onto_its_agent_does_not_surround_it(tilt):
+    """Of three neighbours two stand opposite each other to the last bit: the half turn between them is no triangle."""
+    along = np.array([np.cos(tilt), np.sin(tilt)])
+    across = np.array([-along[1], along[0]])
+    q = np.array([0.0 * along, along, -along, across])
+    links_ = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]]
+    assert not defects(q, links_).interior[0]
+    for off, around in ((-1e-9, True), (1e-9, False)):
+        bent = q.copy()
+        bent[2] += off * across
+        assert defects(bent, links_).interior[0] == around
+
+
+@pytest.mark.parametrize("length", [1e-150, 1e-6, 1.0, 1e3, 1e9, 1e150])
+def test_measures_know_no_unit_of_length(length):
+    for q, planar, rank in ((hexagonal_patch(2, D), True, 35), (square(4, 5, D), True, 31)):
+        there = length * q
+        pairs = links(there, length * R)
+        np.testing.assert_array_equal(pairs, links(q, R))
+        assert is_alpha_lattice(there, length * D, length * R)
+        assert not is_alpha_lattice(there, length * D * (1.0 + 1e-8), length * R)
+        assert (is_planar(len(q), pairs), len(crossings(there, pairs))) == (planar, 0)
+        assert defects(there, pairs).counts == defects(q, pairs).counts
+        assert rigidity(there, pairs).rank == rigidity(there, pairs, dense=False).rank == rank

@@ -17,6 +17,7 @@ from flockana.laws.olfati_saber import Algorithm2
 from flockana.simulate import simulate
 from flockana.stability.blocks import second_order
 from flockana.stability.design import GainProblem, design_gains, gain_problem
+from flockana.stability.linearise import linearise
 
 ALPHA, GAINS, ORIGIN = AlphaInteraction(), Gains(), StaticTarget((0.0, 0.0))
 Q = hexagonal_spiral(7, 7.0)
@@ -144,9 +145,7 @@ def test_thirty_agents_frozen():
             assert own.abscissa(np.repeat(pair, 30)) > own.abscissa(best)
 
 
-@pytest.mark.parametrize(
-    ("gains", "rate"), [(ALIKE, 1.740136), (CRITICAL, 2.236068), (COUNTED, 2.0641), (APART, 2.147), (OWN, 2.2488)]
-)
+@pytest.mark.parametrize(("gains", "rate"), [(ALIKE, 1.740136), (COUNTED, 2.0641), (APART, 2.147), (OWN, 2.2488)])
 def test_thirty_agents_decay_as_their_own_equilibrium_says(gains, rate):
     """Nonlinear runs started in the slowest mode; rotation neutral, gains per agent gain 0.6 % over critical ones."""
     law = Algorithm2(target=ORIGIN, gains=Gains(c1_gamma=gains[:30], c2_gamma=gains[30:]))
@@ -164,6 +163,24 @@ def test_thirty_agents_decay_as_their_own_equilibrium_says(gains, rate):
     share = np.abs(state @ left[:, slowest].conj())  # the mode's own coordinate, which no other mode touches
     slope = -np.log(share[1] / share[0])
     assert slope == pytest.approx(-values[slowest].real, rel=1e-4)
+
+
+def test_critical_gains_decay_as_the_double_root_of_the_centre():
+    """−√5 twice: left and right eigenvectors are orthogonal, and what any machine makes of them is rounding.
+
+    The slowest motion is known: all agents alike, with −√5 of their displacement as velocity. It holds the shape.
+    """
+    law = Algorithm2(target=ORIGIN, gains=Gains(c1_gamma=CRITICAL[:30], c2_gamma=CRITICAL[30:]))
+    q = hexagonal_spiral(30, 7.0)
+    found = find_equilibrium(law, q - q.mean(axis=0))
+    slowest = linearise(law, found).modes[:4]
+    assert {mode.name for mode in slowest} == {"translation x", "translation y"}
+    assert [mode.eigenvalue for mode in slowest] == [pytest.approx(-sqrt(5.0), rel=1e-11)] * 4
+    assert all(mode.decays for mode in slowest)
+    step = np.tile([1e-3, 0.0], (30, 1))
+    run = simulate(law, found.q + step, -sqrt(5.0) * step, (0.0, 2.0), t_eval=[1.0, 2.0], rtol=1e-11, atol=1e-14)
+    centre = run.q.mean(axis=1)[:, 0] - found.q.mean(axis=0)[0]
+    assert -np.log(centre[1] / centre[0]) == pytest.approx(sqrt(5.0), rel=1e-4)
 
 
 @pytest.mark.parametrize(

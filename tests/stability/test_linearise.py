@@ -22,6 +22,7 @@ from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.simulate import simulate
 from flockana.stability import linearise
+from flockana.units import rescale
 
 HEXAGON = hexagonal_patch(1, 7.0)
 STILL = StaticTarget((1.0, -2.0))
@@ -337,3 +338,15 @@ def test_a_dense_matrix_that_would_not_fit_is_refused_before_it_is_allocated():
     for name in ("A", "modes", "eigenvalues", "zero_modes", "state_space", "structural"):
         with pytest.raises(ArgumentError, match=r"A of shape \(1000000, 1000000\) would take 8e\+12 bytes.*A_sparse"):
             getattr(found, name)
+
+
+@pytest.mark.parametrize("time", [1e-6, 1.0, 1e6])
+def test_a_motion_that_is_not_steady_is_refused_in_every_unit_of_time(time):
+    """K is 1/time², and beside the ones of A it may be nothing: it is compared with itself."""
+    law, line = (
+        rescale(Algorithm3(target=target), time=time)
+        for target in (CircleTarget((1.0, -2.0), 20.0, frequency=0.1), LinearTarget((1.0, -2.0), (5.0, 1.0)))
+    )
+    with pytest.raises(ArgumentError, match="Jacobian of Algorithm3 changes along the motion"):
+        linearise(law, find_equilibrium(law, HEXAGON))
+    assert linearise(line, find_equilibrium(line, HEXAGON)).residual < 1e-9

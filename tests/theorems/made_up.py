@@ -1,4 +1,4 @@
-"""Runs that no integrator made, judged by a theorem's own check: `verify` refuses them, and that is tested elsewhere."""
+"""Runs that no integrator made, judged by a theorem's own check: `verify` refuses them, as other tests hold."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import numpy as np
 
 from flockana.theorems import Tolerances, Verdict, theorem
 from flockana.trajectory import Trajectory
+from flockana.units import rescale
 
 
 def made_up(law, q, p=None, t=None, u=None):
@@ -22,6 +23,16 @@ def judged(name, run, tolerances=None):
     used = tolerances or Tolerances()
     hypotheses, claims = theorem(name).check(run, used)
     return Verdict(name, tuple(hypotheses), tuple(claims), used)
+
+
+SCALINGS = [(1e-6, 1.0), (1e3, 1e-3), (25.4, 60.0)]
+
+
+def same_in_all_units(name, run, scaling):
+    """Fail if a theorem's check says anything else of the same run in other units."""
+    one, two = judged(name, run), judged(name, rescale(run, length=scaling[0], time=scaling[1]))
+    assert statuses(one) == statuses(two)
+    assert [h.status for h in one.hypotheses] == [h.status for h in two.hypotheses]
 
 
 def statuses(verdict):

@@ -37,7 +37,7 @@ def test_j1_every_tree_ends_at_its_spacing_and_none_at_zero(verdicts):
     assert claim.computed["trees"] == 200
     # 200 of 200: the exact lower end is (α/2)^(1/200)
     assert claim.computed["interval"][0] == pytest.approx(0.025 ** (1 / 200))
-    assert verdicts["J1"].claim("printed").computed["trees with an edge below half its spacing"] == 0
+    assert verdicts["J1"].claim("printed").computed["trees whose edges might all vanish"] == 0
 
 
 def test_j1_the_forest_is_made_of_trees():

@@ -18,6 +18,7 @@ from flockana.stability import linearise
 from flockana.stability.decay import LinearRange, decay, decay_table, linear_range, slowest_seen
 from flockana.theorems import Tolerances, verify
 from flockana.trajectory import Trajectory
+from flockana.units import rescale
 
 
 @pytest.fixture(scope="module")
@@ -92,19 +93,43 @@ def test_random_starts_tend_to_the_slowest_mode(hexagon):
     assert found.predicted <= found.random_linear < 1.2 * found.predicted  # others are still there, and faster
 
 
-@pytest.mark.parametrize("gains", [Gains(c2_alpha=0.0), Gains(c2_alpha=1.0)])
-def test_what_does_not_decay_is_refused(gains):
-    found = linearise(Algorithm1(gains=gains), [[0.0], [7.0]])
-    if gains.c2_alpha:
-        assert decay(found).difference < 1e-3
-        return
-    with pytest.raises(ArgumentError, match=r"decay rate .*expected a stable flock"):
+@pytest.mark.parametrize("n", [2, 3, 6])
+@pytest.mark.parametrize("time", [1e-3, 1.0, 1e3])
+def test_what_does_not_decay_is_refused(n, time):
+    """A chain without damping: its rates are rounding, of either sign, which is no decay in any unit of time."""
+    law = rescale(Algorithm1(gains=Gains(c2_alpha=0.0)), time=time)
+    found = linearise(law, 7.0 * np.arange(float(n))[:, None])
+    assert not found.stable
+    assert all(abs(mode.decay_rate) <= mode.error < 1e-10 * mode.frequency for mode in found.modes)
+    with pytest.raises(ArgumentError, match=r"decay rate .*rounding alone may make .*expected a stable flock"):
         decay(found)
 
 
+def test_what_hardly_decays_is_refused_before_memory_runs_out():
+    found = linearise(Algorithm1(gains=Gains(c2_alpha=1e-9)), [[0.0], [7.0]])
+    assert found.stable  # the rate is a millionth of a millionth of the frequency, and yet far above rounding
+    with pytest.raises(ArgumentError, match=r"mode breathing swings .* times until .*expected at most 2000 times"):
+        decay(found)
+    run = simulate(found.law, [[0.0], [7.001]], [[0.0], [0.0]], (0.0, 0.5))
+    verdict = verify("linearised-decay-terminal", run)
+    assert (verdict.status, verdict.hypotheses[0].status) == ("inconclusive", "met")
+    assert decay(linearise(Algorithm1(gains=Gains(c2_alpha=1.0)), [[0.0], [7.0]])).difference < 1e-3
+
+
+def test_a_rate_within_rounding_is_no_stable_flock():
+    """The terminal theorem asks for a stable equilibrium: without damping there is none, on no processor."""
+    law = Algorithm1(gains=Gains(c2_alpha=0.0))
+    verdict = verify("linearised-decay-terminal", law=law, q0=[[0.0], [7.001]], p0=[[0.0], [0.0]], t_span=(0.0, 0.5))
+    assert (verdict.status, verdict.hypotheses[0].status) == ("vacuous", "unmet")
+
+
 def test_one_agent_has_no_shape():
+    law = Algorithm2(target=StaticTarget((0.0,)))
     with pytest.raises(ArgumentError, match=r"n = 1: expected a mode of the shape"):
-        slowest_seen(linearise(Algorithm2(target=StaticTarget((0.0,))), [[0.0]]))
+        slowest_seen(linearise(law, [[0.0]]))
+    verdict = verify("linearised-decay-terminal", law=law, q0=[[0.1]], p0=[[0.0]], t_span=(0.0, 1.0))
+    assert verdict.status == "inconclusive"
+    assert "expected a mode of the shape" in verdict.claim("decay").detail
 
 
 def test_the_range_of_a_bond(hexagon):
@@ -168,12 +193,13 @@ def test_the_last_state_counts_and_the_target_is_held():
 
 
 def test_what_cannot_be_linearised_is_vacuous():
-    t, q = np.array([0.0, 1.0]), np.tile([[0.0, 0.0], [9.0, 0.0]], (2, 1, 1))
-    still = np.zeros_like(q)
-    apart = verify("linearised-decay-terminal", Trajectory(t, q, still, still, Algorithm1()))  # no link: nothing decays
-    other = verify("linearised-decay-terminal", Trajectory(t, q, still, still, DeadZoneFlocking()))
+    q = [[0.0, 0.0], [9.0, 0.0]]
+    apart, other = (
+        verify("linearised-decay-terminal", law=law, q0=q, p0=np.zeros((2, 2)), t_span=(0.0, 0.1))
+        for law in (Algorithm1(), DeadZoneFlocking())  # the first has no link: nothing decays
+    )
     many = np.zeros((2, 201, 2))
-    large = verify("linearised-decay-terminal", Trajectory(t, many, many, many, Algorithm1()))
+    large = verify("linearised-decay-terminal", Trajectory(np.array([0.0, 1.0]), many, many, many, Algorithm1()))
     assert [v.status for v in (apart, other, large)] == ["vacuous"] * 3
     assert "DeadZoneFlocking has no equilibria" in other.hypotheses[0].detail
     assert "n = 201: more than 200" in large.hypotheses[0].detail

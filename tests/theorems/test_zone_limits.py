@@ -1,0 +1,269 @@
+"""Planted truths of the bearing-distance theorem on trees: verdicts are right, or open, at all sizes, in all units.
+
+What is true or false of a start is known by algebra here; sizes go from far above to far below the numerical error.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+
+from flockana.laws.minimal import MinimalFlocking
+from flockana.laws.perception import both_ways, edge_vectors, random_out_tree
+from flockana.simulate import simulate
+from flockana.theorems import verify
+from flockana.theorems.tree_case import tree_case
+from flockana.theorems.tree_limits import edge_shares, settles
+from flockana.theorems.tree_spectrum import tree_spectrum
+from flockana.units import rescale
+
+TREE = ((0, 1), (1, 2), (1, 3), (0, 4))
+PAIR = ((0, 1),)
+UNITS = [
+    (1.0, 1.0),
+    (1e6, 1.0),
+    (1e-3, 1.0),
+    (1.0, 1e3),
+    (1e-3, 1e-3),
+]  # metres to micrometres, kilometres; seconds to ms
+SIZES = [1e-1, 1e-3, 1e-6, 1e-9, 1e-12, 1e-15]
+
+
+def statuses(name, run):
+    return {claim.name: claim.status for claim in verify(name, run).claims}
+
+
+def oriented(law, n, seed=0, m=2, far=0.0):
+    """A point of the manifold of equilibria, the root far from the origin if asked to."""
+    q = np.random.default_rng(seed).uniform(-1.0, 1.0, (n, m))
+    q[0] = far
+    return tree_case(law, n).on_manifold(q)
+
+
+def random_state(case, rng, m, energy):
+    """A state with at most a share of the barrier in each edge: lengths off by up to √share ρ, rates alike."""
+    x = rng.normal(size=(len(case.links), m))
+    x /= np.linalg.norm(x, axis=1, keepdims=True)
+    angle, share = rng.uniform(0.0, 2.0 * np.pi, len(x)), np.sqrt(energy * rng.uniform(0.2, 0.9, len(x)))
+    lengths = case.rho * (1.0 + share * np.cos(angle))
+    rates = rng.normal(size=x.shape)
+    rates *= (np.sqrt(case.mu) * case.rho * share * np.abs(np.sin(angle)) / np.linalg.norm(rates, axis=1))[:, None]
+    T = np.linalg.pinv(np.array([[(v == j) - (v == i) for v in range(case.n)] for j, i in case.links], float))
+    return T @ (x * lengths[:, None]), T @ rates
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_no_edge_ever_has_more_energy_than_the_certificate_allows(seed):
+    """The bound V̂ of each edge holds on, and what it feels of its parent, along a run that ends at rest."""
+    rng = np.random.default_rng(seed)
+    n, m = int(rng.integers(3, 6)), int(rng.integers(1, 4))
+    law = MinimalFlocking(
+        edges=random_out_tree(n, rng),
+        spacing=tuple(rng.uniform(0.5, 2.0, n)),
+        mu=rng.uniform(0.3, 3.0, (n, n)),
+        sigma=rng.uniform(0.5, 2.0, (n, n)),
+        normalised=False,
+    )
+    case = tree_case(law, n)
+    q, p = random_state(case, rng, m, 10.0 ** rng.uniform(-12.0, -4.0))
+    shares = edge_shares(case, q, p)
+    first = [e for e, (j, _) in enumerate(case.links) if j == case.root]
+    run = simulate(law, q, p, (0.0, 60.0), t_eval=np.linspace(0.0, 60.0, 600), rtol=1e-11, atol=1e-14)
+    found = np.array([case.energies(x, v) for x, v in zip(run.q, run.p, strict=True)]).max(axis=0) / case.barrier
+    assert (found <= shares * (1.0 + 1e-6) + 1e-20).all()
+    assert found[first] == pytest.approx(shares[first], rel=1e-6)  # at the root nothing is felt
+    if shares.max() < 1.0:
+        assert settles(case, q, p).margin > 0.0
+        assert np.abs(case.lengths(run.q[-1]) / case.rho - 1.0).max() < 1e-2 * np.sqrt(found.max())
+
+
+@pytest.mark.parametrize(("length", "time"), UNITS)
+@pytest.mark.parametrize("end", [1e-3, 0.5, 90.0])
+def test_an_edge_with_too_little_energy_to_vanish_takes_its_length(length, time, end):
+    """V(0) < ½μρ² at the root: certain from the first instant on; and the printed limit is false from then on."""
+    law = MinimalFlocking(edges=PAIR, spacing=2.0, mu=3.0, sigma=0.5, normalised=False)
+    law = rescale(law, length=length, time=time)
+    q, p = np.array([[0.0, 0.0], [2.9, 0.3]]), np.array([[0.0, 0.0], [0.2, -0.4]])
+    run = simulate(law, length * q, length / time * p, (0.0, time * end))
+    corrected, printed = statuses("zone-1-corrected", run), statuses("zone-1-printed", run)
+    assert corrected["lengths"] == corrected["velocities"] == corrected["spectrum"] == "verified"
+    assert corrected["root-edge"] == "verified"
+    assert corrected["exponential"] == ("verified" if end == 90.0 else "inconclusive")
+    assert (printed["edges"], printed["velocities"], printed["equilibrium"]) == ("refuted", "verified", "refuted")
+
+
+@pytest.mark.parametrize("off", [*SIZES, 0.0])
+@pytest.mark.parametrize("inside", [True, False])
+def test_the_barrier_is_sharp_but_for_rounding(off, inside):
+    """V(0) next to ½μρ²: below it the limit is certain, above it nothing is known, at it neither is said."""
+    rate = np.sqrt((1.0 - off) if inside else (1.0 + off))  # ½ rate² against ½ μ ρ² with μ = ρ = 1
+    run = simulate(
+        MinimalFlocking(edges=PAIR, spacing=1.0), [[0.0, 0.0], [1.0, 0.0]], [[0, 0], [-rate, 0.3]], (0.0, 1e-9)
+    )
+    run_2 = simulate(
+        MinimalFlocking(edges=PAIR, spacing=1.0), [[0.0, 0.0], [1.0, 0.0]], [[0, 0], [0, rate]], (0.0, 1e-12)
+    )
+    assert statuses("zone-1-corrected", run)["lengths"] in ("inconclusive", "verified")
+    status = statuses("zone-1-corrected", run_2)["lengths"]
+    if off >= 1e-9:
+        assert status == ("verified" if inside else "inconclusive")
+    assert status != "refuted"
+
+
+@pytest.mark.parametrize(("length", "time"), UNITS)
+@pytest.mark.parametrize("far", [0.0, 1e3, 1e6])
+@pytest.mark.parametrize("directed", [True, False])
+def test_at_its_own_equilibrium_nothing_is_refuted(length, time, far, directed):
+    """Here the corrected theorem is true, with every margin as small as rounding; -5e-33 refuted it once."""
+    edges = TREE if directed else both_ways(TREE)
+    law = rescale(MinimalFlocking(edges=edges, spacing=1.5, normalised=False), length=length, time=time)
+    q = oriented(law, 5, far=length * far)
+    run = simulate(law, q, 0.0 * q, (0.0, 20.0 * time))
+    corrected = statuses("zone-1-corrected", run)
+    assert "refuted" not in corrected.values()
+    assert corrected["lengths"] == corrected["velocities"] == corrected["spectrum"] == "verified"
+    printed = statuses("zone-1-printed", run)
+    assert printed.get("edges") == ("refuted" if directed else "vacuous")
+    assert printed["hurwitz"] != "verified"
+
+
+@pytest.mark.parametrize("amplitude", SIZES)
+@pytest.mark.parametrize("directed", [True, False])
+def test_near_its_equilibrium_nothing_is_refuted_either(amplitude, directed):
+    law = MinimalFlocking(edges=TREE if directed else both_ways(TREE), spacing=1.5, normalised=False)
+    q, rng = oriented(law, 5), np.random.default_rng(1)
+    run = simulate(law, q + amplitude * rng.normal(size=q.shape), amplitude * rng.normal(size=q.shape), (0.0, 40.0))
+    corrected = statuses("zone-1-corrected", run)
+    assert "refuted" not in corrected.values()
+    if amplitude <= 1e-3:
+        assert corrected["lengths"] == corrected["velocities"] == "verified"
+
+
+@pytest.mark.parametrize("stretch", [0.5, 0.9, 1.0 - 1e-6, 1.0 + 1e-6, 1.4])
+def test_a_bound_that_is_attained_is_kept(stretch):
+    """At rest and pressed, |x| is at ρ - √(2V(0)/μ) at the start: the margin of the bound itself is 0 there."""
+    law = MinimalFlocking(edges=PAIR, spacing=1.0, mu=4.0)
+    run = simulate(law, [[0.0], [stretch]], [[0.0], [0.0]], (0.0, 20.0))
+    assert statuses("zone-1-corrected", run)["root-edge"] in ("verified", "inconclusive")
+    if abs(stretch - 1.0) > 1e-3:
+        assert statuses("zone-1-corrected", run)["root-edge"] == "verified"
+    both = MinimalFlocking(edges=both_ways(PAIR), spacing=1.0, mu=4.0, normalised=False)
+    found = statuses("zone-1-corrected", simulate(both, [[0.0], [stretch]], [[0.0], [0.0]], (0.0, 20.0)))
+    assert found["no-collision"] in ("verified", "inconclusive")
+    if abs(stretch - 1.0) > 1e-3:
+        assert found["no-collision"] == found["energy"] == "verified"
+
+
+@pytest.mark.parametrize("off", [0.5, *SIZES])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_hurwitz_is_decided_by_the_shortest_edge(off, sign):
+    """Leaving fast, an edge is longer than desired throughout, or shorter at the start: A_cl is Hurwitz, or is not."""
+    law = MinimalFlocking(edges=PAIR, spacing=1.0)
+    run = simulate(law, [[0.0, 0.0], [1.0 + sign * off, 0.0]], [[0.0, 0.0], [1.0, 0.0]], (0.0, 0.5))
+    right, wrong = ("verified", "refuted") if sign > 0.0 else ("refuted", "verified")
+    status = statuses("zone-1-printed", run)["hurwitz"]
+    assert status != wrong
+    if off >= 1e-6:
+        assert status == right
+
+
+def test_a_passage_between_two_samples_is_not_missed():
+    """Both samples find the edge too long, but in between it is not: A_cl is not Hurwitz throughout."""
+    law = MinimalFlocking(edges=PAIR, spacing=1.0, mu=1e-3)
+    start = [[0.0, 0.0], [3.0, 0.2]], [[0.0, 0.0], [-6.0, 0.0]]
+    run = simulate(law, *start, (0.0, 1.2), t_eval=[0.0, 1.2])
+    assert (np.linalg.norm(edge_vectors(run.q, PAIR), axis=2) > 1.0).all()
+    assert statuses("zone-1-printed", run)["hurwitz"] in ("inconclusive", "refuted")
+
+
+@pytest.mark.parametrize("n", [3, 20, 40])
+def test_the_spectrum_of_a_chain_is_right_though_its_eigenvalues_cannot_be_computed(n):
+    """Equal edges make one Jordan block of n - 1 rows: computed eigenvalues scatter, here to positive real parts."""
+    law = MinimalFlocking(edges=tuple((k, k + 1) for k in range(n - 1)), spacing=1.0, mu=4.0)
+    case, q = tree_case(law, n), oriented(law, n)
+    found = tree_spectrum(case, q)
+    assert (found.zeros, found.slowest) == (n - 1, pytest.approx(0.5))
+    assert found.margin > found.error
+    if n == 40:
+        assert np.sort(np.linalg.eigvals(case.edge_system(q)).real)[-n] > -0.4  # not -0.5: what eigenvalues would say
+
+
+def test_a_wrong_spectrum_is_told():
+    """μ of one edge read 1e-4 too large: another polynomial. A triangle taken for a path: one zero less."""
+    law = MinimalFlocking(edges=TREE, spacing=1.0)
+    case, q = tree_case(law, 5), oriented(law, 5)
+    assert tree_spectrum(case, q).margin > 0.0
+    case.mu[2] *= 1.0001
+    assert tree_spectrum(case, q).margin < 0.0
+    path, triangle = (
+        MinimalFlocking(edges=both_ways(links), spacing=1.0, normalised=False)
+        for links in (((0, 1), (1, 2)), ((0, 1), (1, 2), (0, 2)))
+    )
+    case, q = tree_case(path, 3), np.array([[0.0, 0.0], [1.0, 0.0], [0.5, np.sqrt(0.75)]])
+    assert tree_spectrum(case, q).margin > 0.0
+    assert tree_spectrum(replace(case, law=triangle), q).margin < 0.0
+
+
+@pytest.mark.parametrize("name", ["zone-1-printed", "zone-1-corrected"])
+@pytest.mark.parametrize("m", [1, 2])
+def test_coincident_linked_agents_have_no_bearing_and_make_no_crash(name, m):
+    law = MinimalFlocking(edges=TREE, spacing=1.0)
+    q = oriented(law, 5, m=m)
+    q[1] = q[0]
+    found = statuses(name, simulate(law, q, np.ones((5, m)), (0.0, 1.0)))
+    assert "verified" not in {found.get("hurwitz"), found.get("edges")}
+    assert found.get("lengths", "inconclusive") == "inconclusive"  # from x = 0 at rest an edge need not go anywhere
+    all_at_one = simulate(law, np.zeros((5, m)), np.zeros((5, m)), (0.0, 1.0))
+    assert "verified" not in {statuses(name, all_at_one).get(k) for k in ("hurwitz", "edges", "lengths", "velocities")}
+
+
+def test_what_is_no_tree_with_springs_and_damping_is_none_of_its_business():
+    q, p = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]), np.zeros((3, 2))
+    laws = [
+        MinimalFlocking(edges=((0, 1), (1, 2)), spacing=1.0, mu=0.0),
+        MinimalFlocking(edges=((0, 1), (1, 2)), spacing=1.0, sigma=0.0),
+        MinimalFlocking(edges=((0, 1),), spacing=1.0),
+        MinimalFlocking(),
+    ]
+    for law in laws:
+        for name in ("zone-1-printed", "zone-1-corrected"):
+            assert verify(name, simulate(law, q, p, (0.0, 1.0))).status == "vacuous"
+    alone = simulate(MinimalFlocking(), [[0.0, 0.0]], [[1.0, 0.0]], (0.0, 1.0))
+    assert verify("zone-1-printed", alone).status == verify("zone-1-corrected", alone).status == "vacuous"
+
+
+@dataclass(frozen=True)
+class Pushed(MinimalFlocking):
+    """The minimal law with a wind: another law, though it is a subclass."""
+
+    def flow(self, t, q, p):
+        u, rate = super().flow(t, q, p)
+        return u + 1e-3, rate
+
+
+def test_a_subclass_is_another_law():
+    law = Pushed(edges=PAIR, spacing=1.0)
+    run = simulate(law, [[0.0], [2.0]], [[0.0], [0.0]], (0.0, 1.0))
+    for name in ("zone-1-printed", "zone-1-corrected"):
+        assert verify(name, run).status == "vacuous"
+
+
+def test_forces_that_are_mutual_but_for_rounding_are_mutual():
+    """β_i r_i |N_i| of neighbours agree by algebra, in any unit, and differ in their last digits."""
+    law = MinimalFlocking((3.0, 0.1), beta=(0.1, 3.0), edges=both_ways(PAIR), normalised=False)
+    assert 3.0 * 0.1 != 0.1 * 3.0 or law.reciprocal
+    for length in (1.0, 1e-3, 7.0, 1e6):
+        assert rescale(law, length=length).reciprocal
+    assert not MinimalFlocking((3.0, 0.1), beta=(0.1, 3.001), edges=both_ways(PAIR), normalised=False).reciprocal
+
+
+@pytest.mark.parametrize(("length", "time"), UNITS[1:])
+@pytest.mark.parametrize("directed", [True, False])
+def test_verdicts_are_the_same_in_all_units(length, time, directed):
+    edges, rng = TREE if directed else both_ways(TREE), np.random.default_rng(5)
+    law = MinimalFlocking(edges=edges, spacing=1.5, sigma=0.8, normalised=False)
+    run = simulate(law, rng.uniform(-2.0, 2.0, (5, 2)), rng.uniform(-1.0, 1.0, (5, 2)), (0.0, 60.0))
+    for name in ("zone-1-printed", "zone-1-corrected"):
+        assert statuses(name, rescale(run, length=length, time=time)) == statuses(name, run)
