@@ -153,4 +153,4 @@ def test_a_law_without_position_gains_takes_its_time_from_the_others() -> None:
     target = fl.StaticTarget((0.0,))
     assert fl.Algorithm2(alpha, fl.Gains(c1_alpha=0.0, c1_gamma=[0.0, 4.0]), target).scales == Scales(7.0, 0.5)
     strong = fl.Algorithm1(alpha, fl.Gains(c1_alpha=2.0)).scales
-    assert strong.force == pytest.approx(2.0 * 5.0 * 7.0 / np.sqrt(1.0 + 0.1 * 49.0))
+    assert strong.force == pytest.approx(2.0 * alpha.strength)

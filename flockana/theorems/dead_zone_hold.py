@@ -100,7 +100,8 @@ def hold(law: DeadZoneFlocking, q: FloatArray, p: FloatArray, dt: float | None =
         return _NOTHING
     force = _force(law, q, stiffest)
     distance = 2.0 * force / curvature
-    if distance >= gyration(q) or components(len(q), links(q, law.interaction.r - sqrt(2.0) * distance)).any():
+    nearer = law.interaction.r - sqrt(2.0) * distance  # links shorter than this are links at the minimum too
+    if distance >= gyration(q) or nearer <= 0.0 or components(len(q), links(q, nearer)).any():
         return _NOTHING
     room = _CLEAR * _nearest_kink(law, q) / sqrt(2.0)
     windows = [*(w for w in law.interaction.d1 * WINDOWS if w < room), room]
