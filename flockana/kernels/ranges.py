@@ -14,6 +14,7 @@ from flockana.kernels.paths import control_points
 NEVER, UNSURE, ENTERS = 0, 1, 2
 _DEPTH = 30  # halvings of an interval: a visit that is shorter is left open
 _WIGGLE = 10.0  # slope of what the path may be off the quintic, in its size over the interval
+_ROUNDING = 2.0**-46  # of the largest coefficient: some dozen roundings in each
 _CHOOSE = np.array([1.0, 5.0, 10.0, 10.0, 5.0, 1.0])
 _CHOOSE_10 = np.array([1.0, 10.0, 45.0, 120.0, 210.0, 252.0, 210.0, 120.0, 45.0, 10.0, 1.0])
 
@@ -107,7 +108,8 @@ def follow_pairs(h, q0, p0, u0, q1, p1, u1, r, noise, was_out, unsure):
                 continue
             slack = allowance[i] + allowance[j] + noise
             _squared(points, i, j, r, stack[0])
-            was_out[k], known = _follow(stack, widths, (4.0 * r + slack) * slack, was_out[k])
+            band = (4.0 * r + slack) * slack + _ROUNDING * np.abs(stack[0]).max()
+            was_out[k], known = _follow(stack, widths, band, was_out[k])
             if known == ENTERS:
                 return i, j
             if known == UNSURE:

@@ -238,7 +238,7 @@ def linearise(
     links: Any = None,
     force_tolerance: float = RESIDUAL,
     allow_residual: bool = False,
-    zero: float = ZERO,
+    zero: float | None = None,
 ) -> Linearisation:
     """Linearise a law about an equilibrium, in the frame that moves with it.
 
@@ -265,8 +265,9 @@ def linearise(
         the length (or size), square root taken, whichever is larger.
     allow_residual : bool
         Linearise about a state that is no equilibrium as if it stood still.
-    zero : float
-        See `Linearisation`.
+    zero : float, optional
+        See `Linearisation`; by default 1e-8, or what takes in the soft modes that an `Equilibrium` tells of (a link
+        that lets go at r is as stiff as the solver left it).
 
     Returns
     -------
@@ -294,8 +295,10 @@ def linearise(
     if p is None:
         p = np.zeros_like(q) if target is None else np.tile(target.rate(t), (len(q), 1))
     q, p = ensure_state(q, p)
-    tolerance, zero = ensure_positive("force_tolerance", force_tolerance), ensure_positive("zero", zero)
+    tolerance = ensure_positive("force_tolerance", force_tolerance)
+    zero = None if zero is None else ensure_positive("zero", zero)
     matrix = _finite_jacobian(law, t, q, p)
+    zero = _softest(equilibrium, matrix) if zero is None else zero
     residual = _residual(law, t, q, p, matrix)
     if not residual <= tolerance and not allow_residual:
         raise ArgumentError(
@@ -311,6 +314,16 @@ def linearise(
     for array in (q, p):
         array.setflags(write=False)
     return Linearisation(law, q, p, t, residual, found, matrix, zero)
+
+
+def _softest(equilibrium: Any, matrix: csr_array) -> float:
+    """What counts as zero: twice the stiffest of an equilibrium's soft modes, if that is beyond the usual."""
+    sizes = np.sort(np.abs(getattr(equilibrium, "hessian_eigenvalues", np.zeros(0))))
+    soft, half = getattr(equilibrium, "zero_modes", 0), matrix.shape[0] // 2
+    row = float(abs(matrix[half:, :half]).sum(axis=1).max())
+    if soft == 0 or row == 0.0 or (soft < sizes.size and 2.0 * sizes[soft - 1] >= sizes[soft]):
+        return ZERO
+    return max(ZERO, 2.0 * float(sizes[soft - 1]) / row)
 
 
 def _finite_jacobian(law: Law, t: float, q: FloatArray, p: FloatArray) -> csr_array:

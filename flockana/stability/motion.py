@@ -63,7 +63,9 @@ def mode_motion(
     periods, samples = ensure_positive("periods", periods), ensure_count("samples", samples)
     if amplitude is None:
         extent = float(np.ptp(q, axis=0).max())
-        amplitude = _SHARE * (extent / max(1.0, len(q) ** (1.0 / q.shape[1]) - 1.0) or 1.0)
+        own = linearisation.law.scales
+        alone = own.length if own else 1.0  # of one agent, which has no extent
+        amplitude = _SHARE * (extent / max(1.0, len(q) ** (1.0 / q.shape[1]) - 1.0) or alone)
     value = mode.eigenvalue or 2j * pi
     swings = value.imag != 0.0
     length = 2.0 * pi / abs(value.imag) if swings else _CREEP / abs(value)

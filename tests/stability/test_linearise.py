@@ -13,6 +13,8 @@ from scipy.linalg import expm
 from flockana.environment.obstacles import Sphere, Wall
 from flockana.environment.targets import CircleTarget, LinearTarget, StaticTarget
 from flockana.equilibria import find_equilibrium
+from flockana.equilibria.potential import Potential
+from flockana.equilibria.solve import finish
 from flockana.errors import ArgumentError
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_patch
@@ -350,3 +352,14 @@ def test_a_motion_that_is_not_steady_is_refused_in_every_unit_of_time(time):
     with pytest.raises(ArgumentError, match="Jacobian of Algorithm3 changes along the motion"):
         linearise(law, find_equilibrium(law, HEXAGON))
     assert linearise(line, find_equilibrium(line, HEXAGON)).residual < 1e-9
+
+
+@pytest.mark.parametrize("gap", [3e-6, 1e-7, 1e-8, -1e-8])
+def test_a_link_that_lets_go_at_r_is_a_soft_mode_as_the_equilibrium_says(gap):
+    """Two coincident pairs at distance r, from which side the solver came: four directions fall, and no fifth."""
+    x = 8.4 * (1.0 - gap)
+    found = finish(Potential(Algorithm1()), np.array([[0.0, 0.0], [0.0, 0.0], [x, 0.0], [x, 0.0]]), True, "given")
+    flock = linearise(Algorithm1(), found)
+    assert (found.index, found.zero_modes) == (4, 1)
+    assert sum(mode.name.startswith("soft") for mode in flock.zero_modes) == 1
+    assert sum(mode.decay_rate < 0.0 for mode in flock.modes) == 4

@@ -92,4 +92,4 @@ def test_e6_counts():
     verdict = verify("E6")
     assert verdict.claim("printed").witness == {"n": [1, 2]}
     assert verdict.claim("corrected").witness == {"n with 3n - 6 links": [3]}
-    assert verdict.claim("corrected").margin == 0.0
+    assert verdict.claim("corrected").margin == 0.5

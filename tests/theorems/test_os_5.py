@@ -24,9 +24,10 @@ from flockana.lattice import (
     square,
     triangular,
 )
+from flockana.laws.law import Law
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.simulate import simulate
-from flockana.theorems import Tolerances, verify
+from flockana.theorems import Tolerances, os_5, verify
 from flockana.theorems.os_5 import CLAIMS
 
 D, R = 7.0, 8.4
@@ -106,15 +107,15 @@ def test_ii_needs_three_agents_and_says_so():
     assert (verdict.claim("ii").status, verdict.claim("ii").computed, verdict.claim("ii").margin) == (
         "vacuous",
         1,
-        -1.0,
+        -0.5,
     )
     assert verdict.claim("ii-sharp").status == "verified"
 
 
 def test_margins_are_the_distances_from_the_bounds():
     verdict = verify("os-5", q=hexagonal_spiral(20, D), d=D, r=R)
-    assert verdict.claim("ii").margin == 54 - harborth(20)
-    assert verdict.claim("ii-sharp").margin == 0.0
+    assert verdict.claim("ii").margin == 54 - harborth(20) + 0.5
+    assert verdict.claim("ii-sharp").margin == 0.5
     by_name = {h.name: h.margin for h in verdict.hypotheses}
     assert by_name["κ = r/d > 1"] == pytest.approx(0.2)
     assert by_name["all pairs are farther apart than r/√2"] == pytest.approx(7.0 - 8.4 / np.sqrt(2.0))
@@ -137,7 +138,8 @@ def test_a_square_with_its_diagonals_is_the_limit_case_of_the_quantitative_form(
     verdict = verify("os-5", q=square(2, 2, D), d=D, r=1.5 * D)
     claim = verdict.claim("extension-quantitative")
     assert statuses(verdict) == expected(extension_quantitative="verified")
-    assert claim.margin == pytest.approx(0.0, abs=1e-14)
+    assert claim.margin == 0.5
+    assert "within ℓ/√2 by" in claim.detail
     assert sorted(map(sorted, claim.witness)) == [[0, 3], [1, 2]]
     assert verdict.claim("i").computed == 1
 
@@ -157,13 +159,53 @@ def test_kappa_below_one():
     assert [h.name for h in verdict.hypotheses if h.status == "unmet"][:2] == ["κ = r/d > 1", "q is an α-lattice"]
 
 
-def test_a_collapsed_flock_lists_no_more_crossings_than_it_must():
-    q = np.random.default_rng(0).normal(size=(60, 2))
-    verdict = verify("os-5", q=q, d=D, r=R)
-    assert verdict.claim("i").computed == 1000
-    assert verdict.claim("extension").detail.endswith("at least 1000 pairs of 1770 links cross")
+def test_the_crossings_of_a_collapsed_flock_are_counted_in_full():
+    q = np.random.default_rng(0).normal(size=(40, 2))
+    verdict, count = verify("os-5", q=q, d=D, r=R), len(crossings(q, links(q, R)))
+    assert count > 10_000
+    for name in ("i", "extension", "extension-lengths", "extension-quantitative"):
+        assert verdict.claim(name).computed == count
+    assert verdict.claim("extension").detail.endswith(f"{count} pairs of 780 links cross")
     assert verdict.claim("extension-quantitative").status == "verified"
     assert verdict.claim("iii").status == "vacuous"
+
+
+def test_more_crossings_than_are_listed_are_said_to_be_at_least_so_many(monkeypatch):
+    monkeypatch.setattr(os_5, "_LISTED", 100)
+    verdict = verify("os-5", q=np.random.default_rng(0).normal(size=(40, 2)), d=D, r=R)
+    for name in ("i", "extension", "extension-quantitative"):
+        assert verdict.claim(name).computed == "at least 100"
+    assert "at least 100 pairs of 780 links cross" in verdict.claim("i").detail
+
+
+@given(st.integers(0, 2**32 - 1), st.sampled_from([1, 2, 3]))
+def test_the_quantitative_form_is_decided_as_by_fractions(seed, m):
+    """Every pair of links that cross, of nets on a grid where ℓ = √2 times the least distance happens often."""
+    rng = np.random.default_rng(seed)
+    q = rng.integers(0, 4, (9, m)) * D / 3.0
+    net = os_5._Net(q, D, R)
+    longest, shortest = os_5._of_crossing(net)
+    exact = [os_5._holds_exactly(net, net.links[pair]) for pair in net.crossings]
+    assert all(exact)
+    assert (longest - 2.0 * shortest >= -1e-12 * longest).all()
+
+
+@pytest.mark.parametrize("offset", [0.0, 1e3, 1e6])
+@pytest.mark.parametrize("name", ["square", "triangular"])
+def test_at_the_largest_ratio_far_from_the_origin(name, offset):
+    """Second neighbours stand at r but for the rounding of their places: they are no links, wherever the lattice is."""
+    q = {"square": square(4, 4, D), "triangular": triangular(16, D)}[name] + offset
+    found = statuses(verify("os-5", q=q, d=D, r=D * max_ratio(name)))
+    assert "refuted" not in found.values()
+    assert found["i"] == "verified"
+
+
+@pytest.mark.parametrize("length", [1e-6, 1.0, 1e3])
+def test_units_change_no_verdict(length):
+    rng = np.random.default_rng(5)
+    for q in (hexagonal_spiral(19, D), D * rng.uniform(0.0, 3.0, (12, 2)), fcc(2, 2, 2, D), line(5, D)):
+        one, two = verify("os-5", q=q, d=D, r=R), verify("os-5", q=q * length, d=D * length, r=R * length)
+        assert statuses(one) == statuses(two)
 
 
 @given(st.integers(0, 2**32 - 1), st.sampled_from([1, 2, 3]), st.floats(0.3, 1.3))
@@ -207,19 +249,20 @@ class TestTerminal:
         q0 = hexagonal_spiral(7, D) + rng.uniform(-0.3, 0.3, (7, 2))
         run = simulate(Algorithm1(), q0, np.zeros_like(q0), (0.0, 20.0))
         assert statuses(verify("os-5-terminal", run)) == PLANE
+        assert verify("os-5-terminal", run).claim("i").error > 0.0
         still = verify("os-5", q=run.q[-1], d=D, r=R)
         assert statuses(still) == PLANE
         early = statuses(verify("os-5-terminal", run.window(0.0, 0.01)))
         assert early == expected(extension="verified", extension_lengths="verified", extension_links="verified")
 
     def test_a_law_without_a_range(self):
-        from flockana.trajectory import Trajectory
-
-        class Free:
+        class Free(Law):
             """No interaction."""
 
-        q = np.zeros((1, 2, 2))
-        verdict = verify("os-5-terminal", Trajectory(np.zeros(1), q, q, q, Free()))
+            def flow(self, t, q, p):
+                return np.zeros_like(q), float("nan")
+
+        verdict = verify("os-5-terminal", simulate(Free(), np.zeros((2, 2)), np.ones((2, 2)), (0.0, 1.0)))
         assert statuses(verdict) == expected()
         assert verdict.hypotheses[0].detail == "Free"
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from made_up import judged
 
 from flockana.environment.obstacles import Sphere, Wall
 from flockana.environment.targets import LinearTarget, RescaledVelocity, StaticTarget, Target
@@ -74,13 +75,41 @@ def test_a_condition_broken_at_the_end_makes_it_vacuous() -> None:
     verdict = verify("os-6", run)
     assert condition_76(run)[-1] < 0.0
     assert _hypothesis(verdict, "(76)").status == "unmet"
-    assert "broken at the end" in _hypothesis(verdict, "(76)").detail
+    assert "up to the end" in _hypothesis(verdict, "(76)").detail
     assert _hypothesis(verdict, "static").status == "met"
-    assert "p_d = [-2.0, 0.0] though q_r does not move" in _hypothesis(verdict, "static").detail
+    assert "p_r = [-2.0, 0.0] though q_r does not move" in _hypothesis(verdict, "static").detail
     assert verdict.status == "vacuous"
     energy = verify("energy", run)
     assert energy.claim("rate").status == "vacuous"
     assert energy.claim("balance").status == "verified"
+
+
+def test_a_condition_that_holds_at_the_last_sample_alone_makes_it_vacuous() -> None:
+    """One instant is no "from some t0 on": an agent that comes from behind, cut just after it is as fast as p_d."""
+    law = Algorithm3(target=StaticTarget((300.0, 0.0), (2.0, 0.0)))
+    run = simulate(law, [[-9.0, 0.0]], [[1.9, 0.0]], (0.0, 2.0), t_eval=np.linspace(0.0, 2.0, 400))
+    k = int(np.flatnonzero(condition_76(run) < 0.0)[-1]) + 1
+    assert 0 < k < 399
+    short = run.window(0.0, float(run.t[k]))
+    assert condition_76(short)[-1] >= 0.0
+    assert _hypothesis(judged("os-6", short), "(76)").status == "unmet"
+    assert _hypothesis(judged("os-6", run), "(76)").status == "met"
+
+
+def test_gains_per_agent_are_outside_the_theorem() -> None:
+    """Condition (76) adds up ⟨p_i, p_d⟩ with one c2γ for all."""
+    run = _run(StaticTarget((30.0, 0.0)), c2_gamma=[1.0] * 6 + [3.0] * 6)
+    verdict = verify("os-6", run)
+    assert verdict.status == "vacuous"
+    assert _hypothesis(verdict, "one c1γ and one c2γ").status == "unmet"
+
+
+def test_a_condition_that_rounding_decides_is_assumed() -> None:
+    """All agents at p_d, to the last bit: T = (n/2)⟨p_c, p_d⟩."""
+    law = Algorithm3(gains=Gains(c1_gamma=0.0), target=StaticTarget((0.0, 0.0), (0.1, 0.7)))
+    run = simulate(law, [[5.0, 5.0]], [[0.1, 0.7]], (0.0, 2.0))
+    assert _hypothesis(judged("os-6", run), "(76)").status == "assumed"
+    assert judged("os-6", run).claim("rate").status != "refuted"
 
 
 @pytest.mark.parametrize(
@@ -144,6 +173,16 @@ def test_a_law_that_feeds_energy_in_is_refuted(static: Trajectory) -> None:
     assert never_rises(replace(static, law=mutant), []).status == "refuted"
     wrong = replace(static, extra={"work": 0.99 * static.extra["work"]})
     assert balance(wrong, [], Tolerances()).status == "refuted"
+
+
+def test_an_obstacle_that_is_grazed_within_the_paths_error_is_left_open() -> None:
+    from made_up import made_up
+
+    law = Algorithm3(target=StaticTarget((20.0, 0.0)), obstacles=(Sphere((0.0, 0.0), 3.0),))
+    grazing = made_up(law, [[[-4.0, 3.0]], [[4.0, 3.0]]], [[[8.0, 0.0]]] * 2, t=(0.0, 1.0))
+    assert _hypothesis(judged("os-6", grazing), "obstacle").status == "assumed"
+    inside = made_up(law, [[[-4.0, 2.9]], [[4.0, 2.9]]], [[[8.0, 0.0]]] * 2, t=(0.0, 1.0))
+    assert _hypothesis(judged("os-6", inside), "obstacle").status == "unmet"
 
 
 def test_a_flock_at_rest_at_its_target_verifies() -> None:

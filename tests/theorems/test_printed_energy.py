@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.simulate import simulate
 from flockana.theorems.printed_energy import identity_claim, run_claim
+from flockana.theorems.theorem import Hypothesis
 
 
 @pytest.fixture(scope="module")
@@ -26,8 +29,30 @@ def test_an_energy_that_falls_is_not_refuted(run):
 
 
 def test_a_true_energy_that_rises_proves_nothing(run):
-    backwards = run.__class__(run.t, run.q[::-1], run.p[::-1], run.u[::-1], run.law, run.extra)
+    backwards = replace(run, q=run.q[::-1], p=run.p[::-1], u=run.u[::-1])
     assert run_claim(backwards, np.zeros(len(run.t)), "two agents").status == "inconclusive"
+
+
+def test_a_rise_from_any_sample_on_counts(run):
+    """An excess that falls first and then climbs: above its start it never is."""
+    excess = np.where(run.t < 1.0, -5.0 * run.t, -5.0 + 30.0 * (run.t - 1.0))
+    claim = run_claim(run, np.minimum(excess, -0.1), "two agents")
+    assert claim.status == "refuted"
+
+
+@pytest.mark.parametrize("size", [1e-3, 1e3])
+def test_a_rise_within_the_error_of_the_balance_is_left_open(run, size):
+    """An energy rise of 5.4 with an error of 211 was called verified elsewhere: here neither verdict is given."""
+    rough = replace(run, extra={"work": run.extra["work"] + size * np.sin(run.t)})
+    excess = 0.3 * size * run.t + (run.energy()[0] - run.energy())
+    claim = run_claim(rough, excess, "two agents")
+    assert claim.error > claim.computed > 0.0
+    assert claim.status == "inconclusive"
+
+
+def test_an_unmet_hypothesis_makes_it_vacuous(run):
+    unmet = Hypothesis("the γ-agent is at rest", "unmet")
+    assert run_claim(run, 10.0 * (run.energy()[0] - run.energy()), "two agents", [unmet]).status == "vacuous"
 
 
 def test_an_identity_is_judged_by_its_residual():
