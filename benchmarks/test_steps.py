@@ -1,4 +1,4 @@
-"""What it costs to leap over no encounter and to keep the energy's balance: the same runs with and without the checks."""
+"""What it costs to leap over no encounter and to keep the energy's balance: runs with and without the checks."""
 
 from __future__ import annotations
 

@@ -191,7 +191,9 @@ class TestRefusals:
     def test_times_that_are_not_between_samples(self, times):
         steps = np.zeros((2, 3, 2))
         with pytest.raises(ArgumentError, match="expected times between those of the samples"):
-            Trajectory(np.array([0.0, 1.0]), steps, steps, steps, LAW, between=Between(np.array(times), steps, steps, steps))
+            Trajectory(
+                np.array([0.0, 1.0]), steps, steps, steps, LAW, between=Between(np.array(times), steps, steps, steps)
+            )
 
     def test_replaced_samples_need_other_steps(self, runs):
         _, ends, _ = runs

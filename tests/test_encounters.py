@@ -65,7 +65,7 @@ class TestPairsInOneStep:
         assert PAIR.share(*flight([[0.0, 0.0], [200.0, offset]], [[150.0, 0.0], [-150.0, 0.0]])) == 1.0
 
     def test_of_two_visits_in_one_step_the_first_is_met(self):
-        """The distance is 5 + 400 (t − 0.3)² (t − 0.8)² on [0, 1]: in range twice, out of it at both ends and between."""
+        """The distance is 5 + 400 (t − 0.3)² (t − 0.8)² on [0, 1]: in range twice, not at the ends nor between."""
         root = np.polynomial.Polynomial([-0.3, 1.0]) * np.polynomial.Polynomial([-0.8, 1.0])
         distance, ends = 5.0 + 400.0 * root**2, [1.0]
         assert min(distance(0.0), distance(1.0), distance(0.55)) > R
@@ -87,7 +87,7 @@ class TestPairsInOneStep:
         assert PAIR.share(*flight([[0.0], [8.5]], [[-1e6], [1e6]])) == 1.0
 
     def test_whoever_meets_first_among_many_decides(self):
-        """Still agents on a grid with gaps wider than r, and two that fly along it; beyond 400 agents pairs are searched."""
+        """Still agents on a grid with gaps wider than r, and two that fly along it; beyond 400 pairs are searched."""
         for side in (5, 25):
             grid = 20.0 * np.stack(np.meshgrid(np.arange(side), np.arange(side)), -1).reshape(-1, 2)
             assert (len(grid) + 2 > _DENSE) == (side == 25)
@@ -108,7 +108,7 @@ class TestPairsInOneStep:
         assert near < 1.0  # in range of the second all the time, and within 1 of the first in between
 
     def test_inner_surfaces_are_met_too(self):
-        """From the dead zone into the repulsion and out again: a chord of 2 √(3.5² − 3.4²) = 1.7 at a distance of 3.4."""
+        """From the dead zone into the repulsion and out: a chord of 2 √(3.5² − 3.4²) = 1.7 at a distance of 3.4."""
         law = DeadZoneFlocking()
         assert law.surfaces == (3.5, 12.5, 15.0)
         share = Encounters.of(law, 2).share(*flight([[0.0, 0.0], [0.87, 3.4]], [[1.74, 0.0], [0.0, 0.0]]))
@@ -226,14 +226,16 @@ class TestRuns:
         """Seen from a frame at 1e3 per unit time, the same steps, and the same motion to the rounding of 1e5."""
         q0, p0 = np.array([[0.0, 0.0], [200.0, 5.0]]), np.array([[15.0, 0.0], [-15.0, 0.0]])
         still = simulate(DAMPED, q0, p0, (0.0, 14.0))
-        boosted = simulate(DAMPED, q0 + [1e5, 0.0], p0 + [0.0, 1e3], (0.0, 14.0))
+        boosted = simulate(DAMPED, np.add(q0, [1e5, 0.0]), np.add(p0, [0.0, 1e3]), (0.0, 14.0))
         assert abs(boosted.stats["steps"] - still.stats["steps"]) <= 2
         np.testing.assert_allclose(boosted.p[-1] - [0.0, 1e3], still.p[-1], atol=1e-6)
 
     def test_obstacles_hit_at_speed(self):
         """The sphere throws the agent off its line; a leap would leave it there."""
         law = Algorithm3(
-            target=StaticTarget((0.0, 0.0)), gains=Gains(c1_gamma=0.0, c2_gamma=0.0), obstacles=[Sphere((300.0, 0.5), 0.5)]
+            target=StaticTarget((0.0, 0.0)),
+            gains=Gains(c1_gamma=0.0, c2_gamma=0.0),
+            obstacles=[Sphere((300.0, 0.5), 0.5)],
         )
         start = [[0.0, 0.0]], [[100.0, 0.0]]
         exact = simulate(law, *start, (0.0, 6.0), rtol=1e-12, t_eval=[6.0])
@@ -320,7 +322,7 @@ class TestBalance:
         assert off.max() <= 0.05 * 1e-6 * np.abs(run.energy()).max() * (1.0 + 1e-9)
 
     def test_a_wrong_identity_is_no_reason_to_crawl(self):
-        """A rate that is not the energy's leaves the same residual at any step: it is given up, and seen all the same."""
+        """A rate that is not the energy's leaves the same residual at any step: given up, and seen all the same."""
 
         class Wrong(Algorithm1):
             def flow(self, t, q, p):

@@ -182,8 +182,10 @@ def test_lasting_contact_is_reported_once_from_the_start():
 def truncated(theta, degree):
     """(t − θ)₊^degree with its first two derivatives."""
     return tuple(
-        lambda t, k=k: np.maximum(np.asarray(t, dtype=float) - theta, 0.0) ** (degree - k)
-        * (1.0, float(degree), float(degree * (degree - 1)))[k]
+        lambda t, k=k: (
+            np.maximum(np.asarray(t, dtype=float) - theta, 0.0) ** (degree - k)
+            * (1.0, float(degree), float(degree * (degree - 1)))[k]
+        )
         for k in range(3)
     )
 
@@ -249,7 +251,8 @@ class TestCohesion:
     @pytest.mark.parametrize("seed", range(3))
     def test_above_the_true_radius_of_circular_motions(self, seed, per_turn):
         rng = np.random.default_rng(seed)
-        motions = [circle(rng.uniform(0.5, 3.0), rng.uniform(-1.0, 1.0), rng.uniform(0, 6), rng.normal(0, 2, 2)) for _ in range(4)]
+        draw = rng.uniform
+        motions = [circle(draw(0.5, 3.0), draw(-1.0, 1.0), draw(0, 6), rng.normal(0, 2, 2)) for _ in range(4)]
         t, fine = np.linspace(0.0, 2 * np.pi, per_turn + 1), np.linspace(0.0, 2 * np.pi, 20_001)
         bound = cohesion_bound(t, *sampled(t, *motions))
         truth = cohesion_radii(sampled(fine, *motions)[0])

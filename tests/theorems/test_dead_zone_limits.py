@@ -84,7 +84,7 @@ def test_without_damping_nothing_matches(units):
 @pytest.mark.parametrize("beyond", [s * sign for s in SIZES for sign in (1.0, -1.0)])
 @pytest.mark.parametrize("end", [3.0, 30.0])
 def test_a_pair_that_creeps_to_the_edge_of_its_range(beyond, end):
-    """With k1 = 0 in a dead zone that ends beyond r, ρ(t) = 10 + v(1 - exp(-2t)): it stays in range, or leaves for ever.
+    """With k1 = 0 in a dead zone that ends beyond r, ρ(t) = 10 + v(1 - exp(-2t)): it stays, or leaves for ever.
 
     Leaving, it keeps a velocity of twice the excess, below all noise in the end; staying, it loses it all.
     """
@@ -182,13 +182,13 @@ def test_the_step_of_a_map_may_be_too_long_for_its_contacts():
     assert hold(LAW, q, 0.0 * q, 0.9 * limit).certificate.margin <= 0.0  # stable, but without the room that is asked
     start = q + np.array([[-1e-9], [1e-9]])
     for factor, grows in ((0.9, False), (1.1, True)):
-        x, v = LAW.semi_implicit(start, 0.0 * q, factor * limit, 40)[:2]
+        v = LAW.semi_implicit(start, 0.0 * q, factor * limit, 40)[1]
         assert (np.abs(v[-1]).max() > 1e-8) is grows
 
 
 @pytest.mark.parametrize("dt", [0.002, 0.02])
 def test_a_map_that_chatters_is_not_taken_to_rest(dt):
-    """With the printed jumps the flow comes to rest, but its steps do not: at no instant do they look as if they did."""
+    """With the printed jumps the flow comes to rest, but its steps do not: at no instant do they look so."""
     law = SemiImplicitEuler(DeadZoneFlocking(DeadZoneInteraction(ramp=0.0)), dt)
     q, p = small_flock(0)
     run = simulate(law, q, p, (0.0, 60.0))
