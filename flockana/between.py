@@ -56,11 +56,13 @@ class Between:
     slack: FloatArray | None = None
 
     def __post_init__(self) -> None:
+        flock = (len(self.t), *np.shape(self.q)[1:])
         for name in ("t", "q", "p", "u", *(() if self.slack is None else ("slack",))):
             array = np.ascontiguousarray(getattr(self, name), dtype=np.float64).view()
-            expected = {"t": self.t, "slack": self.slack}.get(name, self.q)
-            if array.shape != np.shape(expected) or (name in "qpu" and array.shape[:1] != np.shape(self.t)):
-                raise ArgumentError(f"between.{name} has shape {array.shape}: expected {len(self.t)} steps of one flock")
+            if name in "qpu" and array.shape != flock:
+                raise ArgumentError(
+                    f"between.{name} has shape {array.shape}: expected {len(self.t)} steps of one flock"
+                )
             if not np.isfinite(array).all():
                 raise ArgumentError(f"between.{name}: expected finite numbers")
             array.setflags(write=False)
@@ -115,9 +117,7 @@ class Between:
             Factors.
         """
         slack = None if self.slack is None else self.slack * length
-        return Between(
-            self.t * time, self.q * length, self.p * (length / time), self.u * (length / time**2), slack
-        )
+        return Between(self.t * time, self.q * length, self.p * (length / time), self.u * (length / time**2), slack)
 
 
 def merged(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, between: Between | None) -> Course:
@@ -135,8 +135,11 @@ def merged(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, between: 
     if between is None:
         return Course(t, q, p, u, None)
     order = np.argsort(np.concatenate([t, between.t]))
-    pairs = ((t, between.t), (q, between.q), (p, between.p), (u, between.u))
-    return Course(*(np.concatenate(pair)[order] for pair in pairs), between.slack)
+
+    def both(samples: FloatArray, steps: FloatArray) -> FloatArray:
+        return np.concatenate([samples, steps])[order]
+
+    return Course(both(t, between.t), both(q, between.q), both(p, between.p), both(u, between.u), between.slack)
 
 
 class Recorder:

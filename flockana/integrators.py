@@ -18,6 +18,9 @@ from flockana.scales import Scales
 from flockana.stepping import ONE_STEP, Balance, Check, Flow, Frame, Meetings, Moment, Stepper
 
 _FLOOR = 1e-2  # of the relative tolerance: the default absolute one, over the law's scales
+FINEST = 3e-14  # relative tolerance below which the solvers cannot go
+_ROUNDINGS = 4.0  # of the largest coordinate, at that tolerance: what a force makes of rounded places is noise
+_COARSER = 0.25  # power of the tolerance by which more is allowed: runs at two tolerances differ, and so tell the error
 
 
 class Sample(NamedTuple):
@@ -117,7 +120,8 @@ def error_floor(
     """Absolute tolerances: the same number for all, or by default a hundredth of `rtol` times the law's own scales.
 
     A law without scales is measured by the extent of its start and by the duration. Work is measured against the energy
-    that it is the change of, not against zero, where it starts.
+    that it is the change of, not against zero, where it starts. Far from the origin places are known to their rounding
+    only, and forces to what it makes of them: nothing below that can be asked for.
 
     Parameters
     ----------
@@ -140,6 +144,10 @@ def error_floor(
     share = _FLOOR * rtol
     floor = (share * scales.length, share * scales.speed, share * len(q0) * scales.energy)
     length, speed, energy = floor if atol is None else (atol,) * 3
+    reach = float(np.abs(q0).max() + np.abs(p0.mean(axis=0)).max() * (t_span[1] - t_span[0]))
+    blur = _ROUNDINGS * (rtol / FINEST) ** _COARSER * float(np.spacing(reach)) / scales.length
+    length, speed = max(length, blur * scales.length), max(speed, blur * scales.speed)
+    energy = max(energy, blur * len(q0) * scales.energy)
     start = law.hamiltonian(t_span[0], q0, p0)
     return Floor(length, speed, max(energy, rtol * abs(start)) if np.isfinite(start) else energy)
 
@@ -233,7 +241,7 @@ def adaptive(
     frame, encounters = solver.frame, Encounters.of(law, len(q0))
     checks: list[Check] = [Meetings(encounters)] if encounters.any else []
     if frame.energetic and method in ONE_STEP:
-        checks.append(Balance(law, rtol))
+        checks.append(Balance(law, rtol, floor.energy))
 
     def sample(now: Moment) -> Sample:
         return Sample(now.t, *now.state, {"work": np.array(now.y[-1])} if frame.energetic else {})

@@ -179,10 +179,12 @@ class Balance:
         With an energy.
     rtol : float
         Relative tolerance of the run; a twentieth of it, times the largest |H| so far, is what a step may be off by.
+    floor : float
+        Energy of which the same share is allowed in any case.
     """
 
-    def __init__(self, law: Law, rtol: float) -> None:
-        self.law, self.share_of_energy = law, _BALANCED * rtol
+    def __init__(self, law: Law, rtol: float, floor: float) -> None:
+        self.law, self.share_of_energy, self.floor = law, _BALANCED * rtol, _BALANCED * floor
         self._known, self._largest = (np.nan, 0.0), 0.0  # (time, H) where the step began; the largest |H|
         self._tried: list[float] = []  # residuals of the steps from here that were halved
         self._in_vain = 0  # steps in a row for which halving did nothing
@@ -201,7 +203,7 @@ class Balance:
         last = self._energy(after)
         residual = abs(last - first - float(after.y[-1] - before.y[-1]))
         largest = max(self._largest, abs(first), abs(last))
-        off, tried = residual > self.share_of_energy * largest, self._tried
+        off, tried = residual > max(self.share_of_energy * largest, self.floor), self._tried
         if off and (len(tried) < _HALVINGS or residual <= _FALLS * max(tried[: 1 - _HALVINGS])):
             self._known, self._tried = (before.t, first), [*tried, residual]
             return 0.5

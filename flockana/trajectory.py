@@ -323,8 +323,8 @@ class Trajectory:
 
     @cached_property
     def _clearance(self) -> Clearance:
-        *path, slack = self.path
-        return clearance(*path, getattr(self.law, "obstacles", ()), slack)
+        path, obstacles = self.path, getattr(self.law, "obstacles", ())
+        return clearance(path.t, path.q, path.p, path.u, obstacles, path.slack)
 
     def animate(self, *, seconds: float = 10.0, fps: float = 15.0, velocities: bool = False) -> Film:
         """The run as a film: a notebook shows it, ``.save(path)`` writes GIF or MP4.

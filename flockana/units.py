@@ -17,7 +17,7 @@ _Any = TypeVar("_Any")
 
 
 def rescale(item: _Any, *, length: float = 1.0, time: float = 1.0) -> _Any:
-    """The same law, target, obstacle, interaction or run in other units.
+    """The same law, target, obstacle, interaction, run or scenario in other units.
 
     A length ℓ becomes ``length * ℓ``, a time t becomes ``time * t``, a speed v becomes ``length / time * v``, and so
     on: metres to millimetres is ``length=1000``. Nothing that is measured in its own scales changes.
@@ -25,7 +25,7 @@ def rescale(item: _Any, *, length: float = 1.0, time: float = 1.0) -> _Any:
     Parameters
     ----------
     item : object
-        A frozen parameter object or a run; each class names the powers of its parameters in ``units``.
+        A frozen parameter object, a run or a scenario; each class names the powers of its parameters in ``units``.
     length, time : float
         Units before, in units after; > 0.
 

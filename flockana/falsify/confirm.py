@@ -4,29 +4,44 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, Protocol
 
 from flockana.checks import FloatArray
+from flockana.integrators import FINEST
 from flockana.laws.law import DiscreteLaw, Law
 from flockana.simulate import simulate
 from flockana.theorems import Verdict
 from flockana.trajectory import Trajectory
 
 THOUSANDTH = 1e-3  # of a run's tolerances
-FINEST = 3e-14  # relative tolerance below which the solvers cannot go
 _DEFAULT = 1e-8  # the relative tolerance of `simulate`; for want of its own, that of a fixed step too
 
 
-def confirmed(
-    verdict: Verdict,
-    judge: Callable[[Trajectory], Verdict],
-    *,
-    law: Law | DiscreteLaw,
-    q0: FloatArray,
-    p0: FloatArray,
-    t_span: tuple[float, float],
-    options: Mapping[str, Any],
-) -> Verdict:
+class Case(Protocol):
+    """What can be run again: a scenario or a counterexample."""
+
+    @property
+    def law(self) -> Law | DiscreteLaw:
+        """What moves the flock."""
+
+    @property
+    def q0(self) -> FloatArray:
+        """Initial positions, shape (n, m)."""
+
+    @property
+    def p0(self) -> FloatArray:
+        """Initial velocities, shape (n, m)."""
+
+    @property
+    def t_span(self) -> tuple[float, float]:
+        """Start and end."""
+
+    @property
+    def options(self) -> Mapping[str, Any]:
+        """Keyword arguments of `simulate`."""
+
+
+def confirmed(verdict: Verdict, judge: Callable[[Trajectory], Verdict], case: Case) -> Verdict:
     """A verdict whose refuted claims a run at a thousandth of the tolerance refutes too; the others are inconclusive.
 
     A map has no tolerance: its verdict stays as it is.
@@ -37,23 +52,17 @@ def confirmed(
         On a run of this start.
     judge : callable
         From a run to its verdict.
-    law : Law or DiscreteLaw
-        What moves the flock.
-    q0, p0 : ndarray, shape (n, m)
-        The start.
-    t_span : (float, float)
-        Start and end.
-    options : mapping
-        Keyword arguments of `simulate`.
+    case : Case
+        What the run was of.
 
     Raises
     ------
     KeyboardInterrupt
         If it was interrupted.
     """
-    if isinstance(law, DiscreteLaw) or all(claim.status != "refuted" for claim in verdict.claims):
+    if isinstance(case.law, DiscreteLaw) or all(claim.status != "refuted" for claim in verdict.claims):
         return verdict
-    run = simulate(law, q0, p0, t_span, **tighter(options))
+    run = simulate(case.law, case.q0, case.p0, case.t_span, **tighter(case.options))
     if run.status == "interrupted":
         raise KeyboardInterrupt
     found = {claim.name: claim.status for claim in judge(run).claims} if run.status == "complete" else {}

@@ -107,8 +107,7 @@ class Counterexample:
         def judge(run: Trajectory) -> Verdict:
             return self.verify(run, theorem=theorem)
 
-        start = {"law": self.law, "q0": self.q0, "p0": self.p0, "t_span": self.t_span, "options": self.options}
-        return confirmed(judge(self.run()), judge, **start)
+        return confirmed(judge(self.run()), judge, self)
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write it as JSON; numbers read back exactly, an existing file is replaced only when whole.

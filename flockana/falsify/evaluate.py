@@ -125,8 +125,7 @@ class Problem:
         def judge(one: Trajectory) -> Verdict:
             return verify(self.theorem, one, tolerances=self.tolerances, subject=case.name)
 
-        start = {"law": case.law, "q0": case.q0, "p0": case.p0, "t_span": case.t_span, "options": case.options}
-        return confirmed(judge(run), judge, **start)
+        return confirmed(judge(run), judge, case)
 
     def graded(self, run: Trajectory, verdict: Verdict) -> Evaluation:
         """Grade a verdict.

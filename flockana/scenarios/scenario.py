@@ -6,7 +6,7 @@ import importlib
 import inspect
 import pkgutil
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import Any
 
@@ -18,6 +18,7 @@ from flockana.theorems import Claim, Tolerances, Verdict, verify
 from flockana.theorems.second_run import corroborated
 from flockana.theorems.theorem import Status
 from flockana.trajectory import Trajectory
+from flockana.units import rescale, times
 
 SOURCE = "source"  # the id under which a source's own report is judged
 
@@ -128,6 +129,28 @@ class Scenario:
             claims = corroborated(judged(trajectory), trajectory, judged)
             found.append(Verdict(SOURCE, (), claims, used, self.name))
         return tuple(found)
+
+    def in_units(self, length: float, time: float) -> Scenario:
+        """The same in other units (`flockana.rescale`), without the reports: a source's are in its own units.
+
+        Parameters
+        ----------
+        length, time : float
+            Factors.
+        """
+        factors = {"t_eval": time, "dt": time, "atol": length}
+        return replace(
+            self,
+            law=rescale(self.law, length=length, time=time),
+            q0=self.q0 * length,
+            p0=self.p0 * (length / time),
+            t_span=times(self.t_span, time),
+            options={
+                key: times(value, factors[key]) if key in factors else value for key, value in self.options.items()
+            },
+            expected={key: status for key, status in self.expected.items() if key.split(":")[0] != SOURCE},
+            reports=(),
+        )
 
     def surprises(self, verdict: Verdict) -> tuple[str, ...]:
         """What in a verdict differs from the expected, one line each; empty if nothing does.

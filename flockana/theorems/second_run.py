@@ -15,6 +15,7 @@ import numpy as np
 
 from flockana.checks import FloatArray
 from flockana.errors import ArgumentError, FlockanaError
+from flockana.integrators import FINEST
 from flockana.laws.law import DiscreteLaw
 from flockana.laws.switched import SwitchedLaw
 from flockana.simulate import simulate
@@ -23,7 +24,6 @@ from flockana.trajectory import Trajectory
 
 TIGHTER = 1e-2  # the second run's tolerances over the first's
 DOUBT = 2.0  # times what two runs differ by: all of the first's error, if the second's is at most half as large
-FINEST = 3e-14  # relative tolerance below which the solvers cannot go
 RK4_SECOND = 1e-10  # relative tolerance of the second run of one with a fixed step
 SAME_INPUT = 1e-8  # of the largest input: other machine code evaluates a law to 1e-13, another law does not
 INTERVALS = 6  # that look edited by some sign, and evenly spread ones, which are integrated again

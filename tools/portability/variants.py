@@ -8,6 +8,8 @@ from typing import Any
 
 NATIVE = "native"
 DRAWS = 5
+# Units of length and time, in the entry's own: micrometres and milliseconds, kilometres and minutes, and odd ones.
+UNITS: dict[str, tuple[float, float]] = {"small": (1e6, 1e3), "large": (1e-3, 1.0 / 60.0), "odd": (2.54, 0.37)}
 # What chooses machine code, or block sizes, from outside; a child has these from its environment alone.
 LEVERS = (
     *("OPENBLAS_CORETYPE", "OPENBLAS_L2_SIZE", "GLIBC_TUNABLES", "NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES"),
@@ -57,6 +59,8 @@ class Change:
         Which start moved by a relative 1e-13; 0 for the entry's own.
     solver, thresholds, definitions : float
         Factors: of the solver's tolerances, of thresholds that stand for zero, of those that are part of a claim.
+    length, time : float
+        Factors of all numbers that are lengths, or times.
     """
 
     name: str
@@ -64,11 +68,13 @@ class Change:
     solver: float = 1.0
     thresholds: float = 1.0
     definitions: float = 1.0
+    length: float = 1.0
+    time: float = 1.0
 
     @property
-    def run(self) -> tuple[int, float]:
+    def run(self) -> tuple[float, ...]:
         """Changes with the same of this share a run."""
-        return self.draw, self.solver
+        return self.draw, self.solver, self.length, self.time
 
     def request(self) -> dict[str, Any]:
         """As a worker is asked for it."""
@@ -116,7 +122,7 @@ def _without(features: Sequence[str]) -> dict[str, str]:
 
 
 def changes(draws: int = DRAWS) -> list[Change]:
-    """Every change of an entry: nothing, moved starts, the solver's tolerances and thresholds halved and doubled.
+    """Every change of an entry: nothing, other tolerances and thresholds, other units, moved starts.
 
     Parameters
     ----------
@@ -129,6 +135,7 @@ def changes(draws: int = DRAWS) -> list[Change]:
         found.append(Change(f"definitions-{label}", definitions=factor))
     for label, factor in (("halved", 0.5), ("doubled", 2.0)):
         found.append(Change(f"solver-{label}", solver=factor))
+    found += [Change(f"units-{label}", length=length, time=time) for label, (length, time) in UNITS.items()]
     return found + [Change(f"moved-{draw}", draw=draw) for draw in range(1, draws + 1)]
 
 

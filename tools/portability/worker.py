@@ -27,7 +27,8 @@ import numpy as np
 import scipy.linalg  # noqa: F401 - loads scipy's own OpenBLAS
 from numba.core.registry import cpu_target
 
-from flockana import Scenario, Tolerances, Trajectory, Verdict, scenario, scenarios, theorem, theorems, verify
+from flockana import Scenario, Tolerances, Trajectory, Verdict, rescale, scenario, scenarios, theorem, theorems, verify
+from flockana.errors import ArgumentError
 from flockana.laws.law import DiscreteLaw
 
 MOVED = 1e-13  # relative: what rounding does to a start that is written down elsewhere
@@ -101,6 +102,14 @@ def resolved(item: Scenario, factor: float) -> Scenario | None:
     return replace(item, options={**item.options, **{k: factor * item.options.get(k, v) for k, v in knobs.items()}})
 
 
+def in_units(item: Scenario, length: float, time: float) -> Scenario:
+    """The same in other units; of length alone where the law has a rate that is printed as a number."""
+    try:
+        return rescale(item, length=length, time=time)
+    except ArgumentError:
+        return rescale(item, length=length)
+
+
 def scaled(thresholds: float, definitions: float) -> Tolerances:
     """Thresholds that stand for zero, and those that are part of a claim, times factors."""
     kinds = dict.fromkeys(DEFINITIONS, definitions) | dict.fromkeys(FIXED, 1.0)
@@ -125,13 +134,17 @@ def unbalanced(run: Trajectory) -> float | None:
 
 
 @lru_cache(maxsize=1)
-def _run(name: str, draw: int, solver: float) -> tuple[Scenario, Trajectory] | None:
+def _run(name: str, draw: int, solver: float, length: float, time: float) -> tuple[Scenario, Trajectory] | None:
     item = moved(scenario(name), draw) if draw else scenario(name)
+    if (length, time) != (1.0, 1.0):
+        item = in_units(item, length, time)
     again = item if solver == 1.0 else resolved(item, solver)
     return None if again is None else (again, again.run())
 
 
-def outcome(name: str, *, draw: int, solver: float, thresholds: float, definitions: float) -> dict[str, Any] | None:
+def outcome(
+    name: str, *, draw: int, solver: float, thresholds: float, definitions: float, length: float, time: float
+) -> dict[str, Any] | None:
     """Run and verify one entry with one change; None if the change means nothing there.
 
     Parameters
@@ -142,14 +155,16 @@ def outcome(name: str, *, draw: int, solver: float, thresholds: float, definitio
         Which moved start; 0 for its own.
     solver, thresholds, definitions : float
         Factors of the solver's tolerances, of thresholds that stand for zero, and of those that are part of a claim.
+    length, time : float
+        Factors of all lengths and times.
     """
     tolerances = scaled(thresholds, definitions)
     if name not in scenarios():
-        if draw or solver != 1.0:
+        if (draw, solver, length, time) != (0, 1.0, 1.0, 1.0):
             return None
         alone = statuses([verify(name, tolerances=tolerances)])
         return {"run": "complete", "statuses": alone, "expected": dict(theorem(name).expected)}
-    done = _run(name, draw, solver)
+    done = _run(name, draw, solver, length, time)
     if done is None:
         return None
     item, run = done
