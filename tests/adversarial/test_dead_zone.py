@@ -97,10 +97,11 @@ def test_coming_into_range(drawn, speed, offset, data):
     pair = law.interaction
     s, b = 3.0 * pair.r, offset * pair.r
     q, p = two(s, -speed * L / T, 2, b)
-    until = 2.0 * s / (speed * L / T)
+    until = 1.25 * s / (speed * L / T)  # it comes into range before 0.86 of s over its speed
     case = Case(law, q, p, until, data.draw(samplings(until)))
     gain = climb(pair, pair.r_b)  # ψ(r) − ψ(r_b) <= ψ(r)
-    clear = not case.options and gain > 1e-3 * (0.5 * speed * L / T) ** 2
+    apart = offset > 0.0 or (speed * L / T) ** 2 < 80.0 * pair.k_r  # head on, ρ >= d₁ exp(-H̄/2k_r), H̄ = speed²/4
+    clear = not case.options and apart and gain > 1e-3 * (0.5 * speed * L / T) ** 2
     both(case, {"energy": REFUTED if clear else FALSE, "collision": TRUE}, CORRECTED)
 
 
