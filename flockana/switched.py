@@ -60,6 +60,7 @@ def located(
     solver = stepper(law, _held(law, pieces), q0, p0, t_span, method, rtol, floor, tally)
     frame = solver.frame
     t, wanted, switches = t_span[0], 0, 0
+    beside: Sample | None = None
     tally.notes["switches"] = switches
 
     def sample(t: float, y: FloatArray) -> Sample:
@@ -82,6 +83,10 @@ def located(
 
         end = _first_switch(law, pieces, way, start, solver.now.t)
         t, y = (solver.now.t, solver.now.y) if end is None else (end, course(end))
+        coming = keep[wanted] if keep is not None and wanted < keep.size else t
+        if beside is not None and beside.t < min(coming, t):
+            yield beside
+        beside = None
         while keep is not None and wanted < keep.size and keep[wanted] < t:
             yield sample(keep[wanted], course(keep[wanted]))
             wanted += 1
@@ -99,6 +104,13 @@ def located(
             tally.fail(f"sliding at t = {t:.6g}: {reason}")
             return
         solver.begin(_held(law, pieces), t, y)
+        beside = _beside(sample(t, y))
+
+
+def _beside(switch: Sample) -> Sample:
+    """The path goes on from a switch with the other side's input: a knot next to it, apart in any unit of time."""
+    gap = 4.0 * float(np.spacing(abs(switch.t)))
+    return switch._replace(t=switch.t + gap, q=switch.q + gap * switch.p, wanted=False)
 
 
 def _held(law: SwitchedLaw, pieces: Pieces) -> Flow:

@@ -23,7 +23,7 @@ class Entry:
     pair : tuple of int, optional
         Two agents that were out of range for certain, and then in it.
     time : float, optional
-        The end of the first interval between samples in which some do.
+        The end of the first interval between steps in which some do.
     unsure : bool
         Whether there are others of which it cannot be told, at r but for rounding or between samples too sparse.
     """
@@ -50,8 +50,8 @@ def first_entry(run: Trajectory, r: float) -> Entry:
     Parameters
     ----------
     run : Trajectory
-        The run; between two samples its path is the quintic through their positions, velocities and accelerations, but
-        for an allowance.
+        The run; between two of its steps its path is the quintic through their positions, velocities and accelerations,
+        but for an allowance.
     r : float
         Interaction range, open.
 
@@ -74,10 +74,12 @@ def first_entry(run: Trajectory, r: float) -> Entry:
             if pair[0] >= 0:
                 return Entry(pair, float(run.t[k]), True)
         return Entry(None, None, thinned(run) or bool(unsure.any()))
-    states = list(zip(run.q, run.p, run.u, strict=True))
-    for k in range(len(run.t) - 1):
-        h = float(run.t[k + 1] - run.t[k])
-        pair = follow_pairs(h, *states[k], *states[k + 1], r, noise, was_out, unsure)
+    t, q, p, u, slack = run.path  # its own steps too: an input that jumps at a switch has its other value beside it
+    noise += 2.0 * float(slack.max()) if slack is not None else 0.0
+    for k in range(len(t) - 1):
+        pair = follow_pairs(
+            float(t[k + 1] - t[k]), q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1], r, noise, was_out, unsure
+        )
         if pair[0] >= 0:
-            return Entry(pair, float(run.t[k + 1]), True)
+            return Entry(pair, float(t[k + 1]), True)
     return Entry(None, None, bool(unsure.any()))

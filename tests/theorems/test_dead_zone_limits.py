@@ -65,7 +65,7 @@ def test_the_energy_that_breaks_a_pair_up_is_sharp_but_for_rounding(excess):
     """Without damping the two part if and only if H̄ > ψ̄(r); with it nothing is known from H̄ alone above that."""
     pair = DeadZoneFlocking(k2=1e-3)
     speed = np.sqrt((1.0 + excess) * FAR - LAW.interaction.psi(CONTACT))
-    run = simulate(pair, [[0.0], [CONTACT]], [[-speed], [speed]], (0.0, 1e-6))
+    run = simulate(pair, [[0.0], [CONTACT]], [[-speed], [speed]], (0.0, 1e-9))  # damping takes 4e-12 of H̄
     status = statuses("dead-zone-1-printed", run)["velocity"]
     assert status in ("verified", "inconclusive")
     if abs(excess) >= 1e-9:
@@ -126,23 +126,34 @@ def test_two_agents_that_pass_at_the_edge_of_their_range(offset):
     assert statuses("dead-zone-1-printed", run)["velocity"] == ("refuted" if found.parting else "inconclusive")
 
 
+def shaken_hexagon(seed):
+    """Seven agents in contact, a stiff cluster: shaken this little they come to rest as they were."""
+    rng, turn = np.random.default_rng(seed), np.arange(6) * np.pi / 3.0
+    q = CONTACT * np.vstack([np.zeros(2), np.column_stack([np.cos(turn), np.sin(turn)])])
+    return q + rng.uniform(-1e-3, 1e-3, q.shape), rng.uniform(-1e-2, 1e-2, q.shape)
+
+
+@pytest.mark.parametrize("start", [small_flock, shaken_hexagon])
 @pytest.mark.parametrize("seed", range(6))
-def test_what_is_certain_at_one_instant_comes_true(seed):
-    """Wherever along a run a flock is held, or bound, it ends as was said: its radius, and one velocity."""
-    q, p = small_flock(seed)
+def test_what_is_certain_at_one_instant_comes_true(seed, start):
+    """Wherever along a run a flock is held, or bound, it ends as was said: its radius, and one velocity.
+
+    When, if ever, eight agents from anywhere come to be held is their own: some dwell at saddles for ten minutes.
+    """
+    q, p = start(seed)
     run = simulate(LAW, q, p, (0.0, 150.0), t_eval=np.linspace(0.0, 150.0, 61))
-    end = cohesion_radius(run.q[-1])
+    end, integrated = cohesion_radius(run.q[-1]), 1e-7  # places are as good as rtol = 1e-8 of some ten metres
     held = [hold(LAW, x, v) for x, v in zip(run.q, run.p, strict=True)]
     bound = [parts(x, v, LAW) for x, v in zip(run.q, run.p, strict=True)]
     for k in range(60):
         if held[k].certificate.margin > 0.0:
-            assert abs(cohesion_radius(run.q[k]) - end) <= held[k].distance + 1e-7
+            assert abs(cohesion_radius(run.q[k]) - end) <= held[k].distance + integrated
             assert run.metric("velocity_mismatch")[-1] < max(1e-12, run.metric("velocity_mismatch")[k])
             assert held[k + 1].certificate.margin > 0.0 or held[k + 1].excess < held[k].barrier
         if bound[k].count == 1 and bound[k].parts[0].radius < np.inf:
-            assert max(map(cohesion_radius, run.q[k:])) <= bound[k].parts[0].radius
+            assert max(map(cohesion_radius, run.q[k:])) <= bound[k].parts[0].radius + integrated
             assert all(parts(x, v, LAW).count == 1 for x, v in zip(run.q[k:], run.p[k:], strict=True))
-    assert any(one.certificate.margin > 0.0 for one in held)
+    assert start is small_flock or held[-1].certificate.margin > 0.9
 
 
 def test_a_saddle_holds_nothing():
@@ -183,7 +194,7 @@ def test_the_step_of_a_map_may_be_too_long_for_its_contacts():
     start = q + np.array([[-1e-9], [1e-9]])
     for factor, grows in ((0.9, False), (1.1, True)):
         v = LAW.semi_implicit(start, 0.0 * q, factor * limit, 40)[1]
-        assert (np.abs(v[-1]).max() > 1e-8) is grows
+        assert bool(np.abs(v[-1]).max() > 1e-8) is grows
 
 
 @pytest.mark.parametrize("dt", [0.002, 0.02])
@@ -304,14 +315,14 @@ def test_steps_of_a_subclass_are_its_own():
     assert run.p[-1] == pytest.approx(np.full((2, 2), 1e-3), rel=1e-12)
 
 
-@pytest.mark.parametrize("end", [0.0, 1.0])
-def test_one_agent_is_a_flock(end):
+def test_one_agent_is_a_flock():
     run = simulate(LAW, [[1.0, 2.0]], [[3.0, 4.0]], (0.0, 1.0))
-    if end == 0.0:
-        run = run.window(0.0, 0.0)
     printed = statuses("dead-zone-1-printed", run)
     assert (printed["cohesion"], printed["velocity"], printed["collision"]) == ("verified",) * 3
     assert statuses("dead-zone-1-corrected", run)["components"] == "verified"
+    one_sample = run.window(0.0, 0.0)  # shows no motion, by which its samples could be told to be the law's
+    for name in ("dead-zone-1-printed", "dead-zone-1-corrected"):
+        assert not {"verified", "refuted"} & set(statuses(name, one_sample).values())
 
 
 def test_one_sample_shows_nothing_of_what_happens():
