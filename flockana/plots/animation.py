@@ -33,7 +33,8 @@ _SUFFIXES = ".gif", ".mp4"
 def equal_times(trajectory: Trajectory, count: int) -> Trajectory:
     """The run at equally spaced times, between samples by cubics that match values and slopes.
 
-    Of a map, which has no state between its steps, the nearest ones, with all that its memory holds of them.
+    Of a map, which has no state between its steps, the nearest ones, with all that its memory holds of them, each once:
+    fewer than asked for where it has fewer. So of a run of one sample, that sample.
 
     Parameters
     ----------
@@ -50,7 +51,7 @@ def equal_times(trajectory: Trajectory, count: int) -> Trajectory:
     t = trajectory.t
     times = np.linspace(t[0], t[-1], count)
     if isinstance(trajectory.law, DiscreteLaw) or len(t) == 1:
-        k = np.searchsorted(0.5 * (t[:-1] + t[1:]), times, side="right")
+        k = np.unique(np.searchsorted(0.5 * (t[:-1] + t[1:]), times, side="right"))
         extra = {name: series[k] for name, series in trajectory.extra.items()}
         return replace(trajectory, t=t[k], q=trajectory.q[k], p=trajectory.p[k], u=trajectory.u[k], extra=extra)
     from scipy.interpolate import CubicHermiteSpline
@@ -93,6 +94,7 @@ def animation(
 
     frames = frame_count(seconds, fps)
     film, view = equal_times(trajectory, frames), _view(trajectory)
+    times = np.linspace(trajectory.t[0], trajectory.t[-1], frames)  # of a map, some frames may show the same step
     # outside the style, whose layout engine would fit each frame anew and make the view tremble
     figure = Figure(figsize=_size(view), dpi=_DPI)
     FigureCanvasAgg(figure)
@@ -105,7 +107,7 @@ def animation(
     def draw(k: int) -> list[Any]:
         with style():
             ax.clear()
-            snapshot(film, float(film.t[k]), ax=ax, velocities=velocities, bar=False)
+            snapshot(film, float(times[k]), ax=ax, velocities=velocities, bar=False)
         _hold(ax, view)
         return []
 

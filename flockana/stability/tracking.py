@@ -412,16 +412,18 @@ def _ratio(run: Trajectory, centre: CentreOfMass, moving: Motion) -> list[Quanti
 def _swing(run: Trajectory, centre: CentreOfMass) -> list[Quantity]:
     """Turning points along the line through the start and the target: where they are, and how long between two."""
     target = run.law.target.position(0.0)
-    x, v, a = run.q.mean(axis=1) - target, run.p.mean(axis=1), run.u.mean(axis=1)
+    t, *states, _ = run.path  # its own steps too: samples of one's own choice may miss a turn
+    x, v, a = (series.mean(axis=1) for series in states)
+    x = x - target
     axis = x[0] / (float(np.linalg.norm(x[0])) or 1.0)
     place, speed, slope = x @ axis, v @ axis, a @ axis
-    at_rest = [float(run.t[0])] if abs(speed[0]) <= 1e-12 * float(np.abs(speed).max()) else []
+    at_rest = [float(t[0])] if abs(speed[0]) <= 1e-12 * float(np.abs(speed).max()) else []
     turns, places = list(at_rest), [float(place[0])] * len(at_rest)
     ahead = speed > 0.0
     for k in np.flatnonzero(ahead[:-1] != ahead[1:]):
         if k == 0 and at_rest:
             continue
-        time, where = _rest(run.t[k : k + 2], place[k : k + 2], speed[k : k + 2], slope[k : k + 2])
+        time, where = _rest(t[k : k + 2], place[k : k + 2], speed[k : k + 2], slope[k : k + 2])
         turns.append(time)
         places.append(where)
     if len(turns) < 2:
@@ -436,10 +438,11 @@ def _swing(run: Trajectory, centre: CentreOfMass) -> list[Quantity]:
 
 
 def _rest(t: FloatArray, x: FloatArray, v: FloatArray, a: FloatArray) -> tuple[float, float]:
-    """Time and place between two samples at which the velocity vanishes, by its Hermite cubic."""
-    from scipy.interpolate import CubicHermiteSpline
+    """Time and place between two steps at which the velocity vanishes, on the quintic through x, v and a."""
+    from scipy.interpolate import BPoly
     from scipy.optimize import brentq
 
-    velocity, place = CubicHermiteSpline(t, v, a), CubicHermiteSpline(t, x, v)
+    place = BPoly.from_derivatives(t, np.column_stack([x, v, a]))
+    velocity = place.derivative()
     time = float(brentq(lambda s: float(velocity(s)), t[0], t[1], xtol=1e-14 * float(t[1] - t[0])))
     return time, float(place(time))

@@ -56,7 +56,17 @@ def test_of_a_map_the_nearest_steps_are_shown():
 
 def test_a_run_of_one_sample_is_a_film_of_one_picture():
     run = a_run().window(0.0, 0.0)
-    assert equal_times(run, 3).t.tolist() == [0.0, 0.0, 0.0]
+    assert equal_times(run, 3).t.tolist() == [0.0]
+
+
+def test_a_film_may_have_more_frames_than_a_map_has_steps(tmp_path):
+    run = simulate(Halving(), [[8.0]], [[0.0]], (0.0, 1.0))
+    assert equal_times(run, 9).t.tolist() == [0.0, 0.5, 1.0]
+    path = plots.animate(run, tmp_path / "film.gif", seconds=0.9, fps=10)
+    with Image.open(path) as film:
+        shown = [film.seek(k) or film.info["duration"] for k in range(film.n_frames)]
+    assert sum(shown) == 900  # pictures that are the same are written as one that lasts
+    assert len(shown) == 3
 
 
 @pytest.mark.parametrize("m", [1, 2, 3])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.spatial import KDTree
 
 from flockana.errors import ArgumentError
 from flockana.scenarios import scenario
@@ -50,7 +51,11 @@ def test_the_box_decides_whether_the_flock_is_one():
 
 
 def test_hard_jumps_leave_the_mismatch_of_the_erratum():
-    item = scenario("dead-zone-hard")
-    claims = {claim.name: claim for claim in item.verify(item.run())[-1].claims}
-    assert 0.1 < claims["consensus"].computed < 0.8
-    assert claims["lattice"].computed == pytest.approx(3.5, abs=0.01)
+    """Erratum L7: contacts chatter, and velocities stay off the mean by 0.1 to 0.7; how, step by step, is chaos."""
+    run = scenario("dead-zone-hard").run()
+    off = np.linalg.norm(run.p - run.p.mean(axis=1, keepdims=True), axis=2).max(axis=1)
+    late = off[len(off) // 2 :]
+    assert late.min() > 0.1  # it never comes to rest (0.45 to 0.98 at eight seeds)
+    assert 0.4 < np.median(late) < 0.8  # 0.65 to 0.69
+    nearest = KDTree(run.q[-1]).query(run.q[-1], k=2)[0][:, 1]
+    assert np.median(nearest) == pytest.approx(3.5, abs=0.01)  # of the mean, one pair that is pressed in takes 0.07
