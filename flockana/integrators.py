@@ -187,19 +187,32 @@ def stepper(
     frame = Frame.of(t_span[0], q0, p0, energetic=has_energy(law, t_span[0], q0, p0))
     sizes = (frame.size, frame.size, int(frame.energetic))
     atol = np.concatenate([np.full(size, value) for size, value in zip(sizes, floor, strict=True)])
-    counted = _counted(flow, tally, raises=method == "LSODA")
-    return Stepper(method, frame, counted, t_span[0], frame.start(q0, p0), t_span[1], rtol=rtol, atol=atol)
+    return Stepper(
+        method, frame, counted(flow, tally, method), t_span[0], frame.start(q0, p0), t_span[1], rtol=rtol, atol=atol
+    )
 
 
-def _counted(flow: Flow, tally: Tally, *, raises: bool) -> Flow:
-    def counted(t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
+def counted(flow: Flow, tally: Tally, method: str) -> Flow:
+    """A flow that counts its evaluations, and stops a solver that would not notice that it is no longer finite.
+
+    Parameters
+    ----------
+    flow : callable
+        ``flow(t, q, p) -> (u, dH/dt)``.
+    tally : Tally
+        Where they are counted.
+    method : str
+        The solver.
+    """
+
+    def evaluated(t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
         tally.evaluations += 1
         u, rate = flow(t, q, p)
-        if raises and not _finite(u):  # LSODA would try to step over it for ever
+        if method == "LSODA" and not _finite(u):  # LSODA would try to step over it for ever
             raise FloatingPointError(f"the law's acceleration is not finite at t = {t:g}")
         return u, rate
 
-    return counted
+    return evaluated
 
 
 def adaptive(

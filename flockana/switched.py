@@ -9,7 +9,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from flockana.checks import FloatArray
-from flockana.integrators import Floor, Sample, Tally, stepper
+from flockana.integrators import Floor, Sample, Tally, counted, stepper
 from flockana.laws.switched import Pieces, SwitchedLaw
 from flockana.stepping import Flow
 
@@ -103,7 +103,7 @@ def located(
             tally.notes["sliding"] = reason
             tally.fail(f"sliding at t = {t:.6g}: {reason}")
             return
-        solver.begin(_held(law, pieces), t, y)
+        solver.begin(counted(_held(law, pieces), tally, method), t, y)
         beside = _beside(sample(t, y))
 
 

@@ -242,3 +242,11 @@ def test_bad_parameters_are_named():
         DeadZoneFlocking(AlphaInteraction())
     with pytest.raises(ArgumentError, match="expected a continuous law"):
         SemiImplicitEuler(SemiImplicitEuler(DeadZoneFlocking()))
+
+
+def test_evaluations_are_counted_after_a_switch_too():
+    """Each step of DOP853 takes eleven at least."""
+    law = DeadZoneFlocking(DeadZoneInteraction(ramp=0.0))
+    run = simulate(law, [[0.0, 0.0], [16.0, 0.0]], [[4.0, 0.0], [-4.0, 0.0]], (0.0, 2.0))
+    assert run.stats["switches"] > 0
+    assert run.stats["evaluations"] >= 11 * run.stats["steps"]
