@@ -23,6 +23,7 @@ ONE_STEP = ("DOP853", "RK45", "RK23", "Radau")  # without a past: what they do n
 _ROUNDINGS = 64  # of the time: a step of so few is not made again
 _HALVINGS, _FALLS = 4, 0.04  # a residual that so many halvings leave above so much is not the integrator's to mend
 _BALANCED = 0.05  # of the relative tolerance: residual of the energy's balance that a step may leave, over |H|
+_HELPS = 0.25  # of the residual, a halving: across a kink of the force it leaves an eighth, of a wrong rate one half
 _PATIENCE = 4  # steps in a row that halving did not mend, after which none is halved any more
 
 
@@ -208,7 +209,8 @@ class Balance:
             self._known, self._tried = (before.t, first), [*tried, residual]
             return 0.5
         if tried:
-            self._in_vain = self._in_vain + 1 if off else 0
+            helped = residual <= tried[0] * _HELPS ** len(tried)
+            self._in_vain = 0 if helped else self._in_vain + 1
         self._known, self._largest, self._tried = (after.t, last), largest, []
         return 1.0
 
