@@ -67,7 +67,7 @@ def pair_force_error(alpha: AlphaInteraction) -> float:
 
     Examples
     --------
-    >>> pair_force_error(AlphaInteraction(d=7.0, r=8.4)) < 1e-13
+    >>> pair_force_error(AlphaInteraction(d=7.0, r=8.4)) < 1e-12
     True
     >>> pair_force_error(AlphaInteraction(d=7e-6, r=8.4e-6)) < 1e-29
     True

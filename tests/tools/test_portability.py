@@ -108,7 +108,7 @@ def test_changes_that_share_a_run_are_asked_of_it_together():
     units = command.plan(["a", "b"], [Environment("generic")], changes(2))
     runs = [(unit.environment.name, unit.name, len(unit.changes)) for unit in units]
     own = [("native", "a", 5), ("native", "b", 5)]  # own start: unchanged, thresholds and definitions, each twice
-    one_each = [("native", name, 1) for _ in range(4) for name in ("a", "b")]  # solver twice, two draws
+    one_each = [("native", name, 1) for _ in range(7) for name in ("a", "b")]  # solver twice, three units, two draws
     assert runs == [*own, *one_each, ("generic", "a", 1), ("generic", "b", 1)]
     assert units[0].changes[0].name == NATIVE
 
@@ -307,7 +307,8 @@ def test_a_child_that_never_answers_is_ended(fake_worker, tmp_path, monkeypatch)
 
         def run(self):
             while not self.cancelled.wait(0.01):
-                if (tmp_path / "worker.py.endless").exists():
+                if (mark := tmp_path / "worker.py.endless").exists():
+                    mark.unlink()  # the next child's limit is not over
                     return self.end()
 
         def cancel(self):
