@@ -79,8 +79,8 @@ def energy_error(law: Any, q: FloatArray, p: FloatArray, energy: FloatArray) -> 
     reach = float(np.abs(q).max())
     if pull:
         reach += float(np.abs(law.target.position(0.0)).max())
-    steepest = alpha.b / sqrt(alpha.eps)  # force of a pair: how much its potential moves with its distance
-    error = gains.c1_alpha * pairs * (_POTENTIAL * alpha.c_star + 8.0 * EPS * steepest * (alpha.r + reach))
+    moved = 9.0 * EPS * alpha.strength * (alpha.r + reach)  # a pair's potential, by the rounding of its distance
+    error = gains.c1_alpha * pairs * (_POTENTIAL * alpha.c_star + moved)
     error += pull * (n + 8) * EPS * reach**2
     for _ in getattr(law, "obstacles", ()):
         most, steepest = float(law.beta.psi_beta(0.0)), 2.0 / sqrt(law.beta.eps)
