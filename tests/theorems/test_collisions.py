@@ -62,7 +62,7 @@ class TestTwoAgents:
 
     @pytest.mark.parametrize("off", [1e-12, 1e-11, 1e-10])
     def test_at_the_top_the_law_turns_them_back_whatever_the_integrator_does(self, off):
-        """H(0) = (1 − off) c*, by less than the energy is off along the run: that they change places refutes nothing."""
+        """H(0) = (1 − off) c*, by less than the run is off in energy: that they change places refutes nothing."""
         run = head_on(1.0 - off, law=Algorithm1(gains=Gains(c1_alpha=1.0, c2_alpha=0.0)), times=10.0)
         found = statuses(verify("collision-energy", run))
         assert "refuted" not in found.values()
