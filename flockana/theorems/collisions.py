@@ -182,7 +182,7 @@ def _spare(run: Trajectory, pair: Pair, needs: Iterable[Hypothesis]) -> float:
     apart = (run.q[:, pair[1]] - run.q[:, pair[0]]).sum(axis=1)  # on a line: the other components are 0
     before = max(int(np.argmax(apart * np.sign(apart[0]) < 0.0)) - 1, 0)
     energy = run.law.structural_energy(run.q[before], run.p[before])
-    return min(*met_by, abs(energy - run.law.gains.c1_alpha * run.law.alpha.c_star), float("inf"))
+    return float(min(*met_by, abs(energy - run.law.gains.c1_alpha * run.law.alpha.c_star), float("inf")))
 
 
 def _count(margin: float, decided: bool, needs: Iterable[Hypothesis]) -> Status:
