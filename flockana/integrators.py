@@ -19,7 +19,7 @@ from flockana.stepping import ONE_STEP, Balance, Check, Flow, Frame, Meetings, M
 
 _FLOOR = 1e-2  # of the relative tolerance: the default absolute one, over the law's scales
 FINEST = 3e-14  # relative tolerance below which the solvers cannot go
-_ROUNDINGS = 4.0  # of the largest coordinate, at that tolerance: what a force makes of rounded places is noise
+_ROUNDINGS = 1.0  # of the largest coordinate, at that tolerance: what a force makes of rounded places is noise
 _COARSER = 0.25  # power of the tolerance by which more is allowed: runs at two tolerances differ, and so tell the error
 
 
@@ -270,6 +270,9 @@ def adaptive(
         yield own._replace(wanted=asked)
 
 
+_GROWTH = 8.0  # times its last length may a step grow, and by so much it is shortened at once
+
+
 def rk4(
     law: Law,
     q0: FloatArray,
@@ -304,29 +307,28 @@ def rk4(
     u, rate = law.flow(t, q0, p0)
     state = state._replace(u=u)
     tally.evaluations += 1
-    tally.notes["redone"] = 0
-    for stop in _grid(t_span, dt) if keep is None else keep:
+    tally.notes["redone"], taken = 0, np.inf
+    for stop, wanted in _stops(t_span, dt, keep):
         while t < stop:
             remaining = stop - t
-            # a step is split evenly rather than ending on a sliver, which would lose the order for nothing
-            h = remaining / max(1, count_steps(t, stop, dt))
+            h = remaining if remaining <= _GROWTH * taken else _GROWTH * taken
             while True:
                 later, more, rate_there = _rk4_step(law, t, state, rate, h)
                 tally.evaluations += 4
                 share = encounters.share(h, state, later) if encounters.any and _finite(*later) else 1.0
                 if share == 1.0 or t + share * h == t:
                     break
-                h *= share
+                h *= max(share, 1.0 / _GROWTH)  # what a step that is far too long foresees is no measure of the next
                 tally.notes["redone"] += 1
             if not _finite(*later):
                 tally.fail(f"RK4 left the finite numbers at t = {t + h:g}: reduce dt = {dt:g}")
                 return
-            t = stop if h == remaining else t + h
+            t, taken = (stop, np.inf) if h == remaining else (t + h, h)
             state, rate, work = later, rate_there, work + more
             tally.steps += 1
             if t < stop:
                 yield Sample(t, *state, {}, wanted=False)
-        yield Sample(t, *state, {"work": np.array(work)} if energetic else {})
+        yield Sample(t, *state, {"work": np.array(work)} if energetic else {}, wanted=wanted)
 
 
 def _rk4_step(law: Law, t: float, state: State, rate: float, h: float) -> tuple[State, float, float]:
@@ -366,10 +368,20 @@ def count_steps(start: float, stop: float, dt: float, rounded: Callable[[float],
     return int(rounded((stop - start + (slack if rounded is np.floor else -slack)) / dt))
 
 
-def _grid(t_span: tuple[float, float], dt: float) -> Iterator[float]:
-    for k in range(count_steps(*t_span, dt)):
-        yield t_span[0] + k * dt
-    yield t_span[1]
+def _stops(t_span: tuple[float, float], dt: float, keep: FloatArray | None) -> Iterator[tuple[float, bool]]:
+    """Where steps of at most dt end, and whether a sample is wanted there.
+
+    The way to a time to keep is split evenly: a last step that is a sliver would lose the order for nothing.
+    """
+    if keep is None:
+        yield from ((t_span[0] + k * dt, True) for k in range(count_steps(*t_span, dt)))
+        yield t_span[1], True
+        return
+    t = t_span[0]
+    for stop in keep.tolist():
+        yield from ((one, False) for one in np.linspace(t, stop, max(1, count_steps(t, stop, dt)) + 1)[1:-1].tolist())
+        yield stop, True
+        t = stop
 
 
 def discrete(

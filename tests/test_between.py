@@ -25,7 +25,7 @@ LAW = Algorithm2(gains=Gains(c1_gamma=4.0, c2_gamma=0.2), target=StaticTarget((0
 ENDS = (0.0, 6.0)
 
 
-def start(n=8, seed=0):
+def start(n=8, seed=7):
     rng = np.random.default_rng(seed)
     return rng.uniform(-20.0, 20.0, (n, 2)), rng.normal(0.0, 3.0, (n, 2))
 
@@ -64,14 +64,16 @@ class TestBounds:
         np.testing.assert_allclose(run.path.u, u, rtol=1e-12)
 
     def test_clearance_between_samples(self):
-        law = Algorithm3(target=StaticTarget((60.0, 0.0)), obstacles=[Sphere((30.0, 0.3), 3.0)])
+        law = Algorithm3(target=StaticTarget((60.0, 0.0)), obstacles=[Sphere((4.0, 9.0), 3.0)])
         every, ends = (simulate(law, [[0.0, 0.0]], [[9.0, 0.0]], (0.0, 8.0), t_eval=t) for t in (None, (0.0, 8.0)))
         assert ends.clearance().lower == pytest.approx(every.clearance().lower, rel=1e-6)
-        assert ends.clearance().lower < 10.0
+        assert ends.clearance().lower < 0.9 * min(np.linalg.norm(q[0] - [4.0, 9.0]) - 3.0 for q in ends.q)
         assert ends.clearance().time == pytest.approx(every.clearance().time, rel=1e-6)
 
     def test_a_crossing_between_two_samples_is_found(self):
-        ends = simulate(Algorithm1(), [[0.0], [200.0]], [[40.0], [-40.0]], (0.0, 5.0), t_eval=(0.0, 5.0))
+        ends = simulate(
+            Algorithm1(gains=Gains(c2_alpha=0.0)), [[0.0], [200.0]], [[60.0], [-60.0]], (0.0, 5.0), t_eval=(0.0, 5.0)
+        )
         assert ends.min_distance() == 0.0
 
 
@@ -111,7 +113,7 @@ class TestKeeping:
                     raise KeyboardInterrupt
                 return super().flow(t, q, p)
 
-        run = simulate(Stops(), *start(4), (0.0, 4.0), t_eval=[0.5, 1.0, 3.0])
+        run = simulate(Stops(), *start(4), (0.0, 4.0), t_eval=[0.5, 1.0, 3.0], method="RK4", dt=0.1)
         assert (run.status, run.t.tolist()) == ("interrupted", [0.5, 1.0])
         assert run.between.t[0] > 0.5
         assert run.between.t[-1] < 1.0

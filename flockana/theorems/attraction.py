@@ -31,6 +31,7 @@ from flockana.laws.olfati_saber import Algorithm1, Algorithm2, moving_frame
 from flockana.nets import LinkArray, components, link_lengths, links
 from flockana.terminal import DENSE_LIMIT, rigid_motions
 from flockana.theorems.limits import Certificate
+from flockana.theorems.rounding import pair_force_error
 from flockana.trajectory import Trajectory
 
 _EPS = float(np.finfo(float).eps)
@@ -147,8 +148,8 @@ def _force(law: Algorithm1 | Algorithm2, q: FloatArray) -> float:
     """|∇U(x)| over all coordinates, with the rounding of its sums added."""
     near = float(np.bincount(links(q, law.alpha.r).ravel(), minlength=1).max())
     pull = law.gains.c1_gamma * float(np.abs(q).max()) if isinstance(law, Algorithm2) else 0.0
-    terms = law.gains.c1_alpha * law.alpha.b / sqrt(law.alpha.eps) * (near + 1.0) + pull
-    return float(np.linalg.norm(structural_force(law, q))) + sqrt(q.size) * 16.0 * _EPS * terms
+    rounding = law.gains.c1_alpha * pair_force_error(law.alpha) * (near + 1.0) + 16.0 * _EPS * pull
+    return float(np.linalg.norm(structural_force(law, q))) + sqrt(q.size) * rounding
 
 
 def kinetic(p: FloatArray) -> float:

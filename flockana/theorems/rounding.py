@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from flockana.checks import FloatArray
+from flockana.interactions import AlphaInteraction
 
 EPS = float(np.finfo(float).eps)
 _POTENTIAL = 1e-13  # of c*: to which ψ_α is known (`AlphaInteraction.psi_alpha`), and ψ_β of its own largest value
@@ -54,6 +55,28 @@ def spread_error(x: FloatArray) -> FloatArray:
     return error
 
 
+def pair_force_error(alpha: AlphaInteraction) -> float:
+    """Bound of the rounding of φ_α(‖x‖_σ) x/√(1 + εx²), c1α left out, at any distance up to r.
+
+    φ loses nothing to cancellation, but its argument (‖x‖_σ − d_α)/ℓ² does: by a few ε of both terms, times its slope.
+
+    Parameters
+    ----------
+    alpha : AlphaInteraction
+        The pair law.
+
+    Examples
+    --------
+    >>> pair_force_error(AlphaInteraction(d=7.0, r=8.4)) < 1e-13
+    True
+    >>> pair_force_error(AlphaInteraction(d=7e-6, r=8.4e-6)) < 1e-29
+    True
+    """
+    argument = (alpha.r_alpha + alpha.d_alpha) / alpha.unit**2
+    longest = alpha.r / sqrt(1.0 + alpha.eps * alpha.r**2)
+    return 4.0 * EPS * (0.5 * (alpha.a + alpha.b) * argument * longest + alpha.strength)
+
+
 def energy_error(law: Any, q: FloatArray, p: FloatArray, energy: FloatArray) -> FloatArray:
     """Bound of the rounding of the energy of Algorithm 1, 2 or 3, by instant: all its terms are >= 0.
 
@@ -79,8 +102,8 @@ def energy_error(law: Any, q: FloatArray, p: FloatArray, energy: FloatArray) -> 
     reach = float(np.abs(q).max())
     if pull:
         reach += float(np.abs(law.target.position(0.0)).max())
-    moved = 9.0 * EPS * alpha.strength * (alpha.r + reach)  # a pair's potential, by the rounding of its distance
-    error = gains.c1_alpha * pairs * (_POTENTIAL * alpha.c_star + moved)
+    steepest = 1.01 * alpha.strength  # force of a pair: how much its potential moves with its distance
+    error = gains.c1_alpha * pairs * (_POTENTIAL * alpha.c_star + 8.0 * EPS * steepest * (alpha.r + reach))
     error += pull * (n + 8) * EPS * reach**2
     for _ in getattr(law, "obstacles", ()):
         most, steepest = float(law.beta.psi_beta(0.0)), 2.0 / sqrt(law.beta.eps)
