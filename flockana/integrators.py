@@ -283,6 +283,9 @@ def adaptive(
         yield own._replace(wanted=asked)
 
 
+_GROWTH = 8.0  # times its last length may a step grow, and by so much it is shortened at once
+
+
 def rk4(
     law: Law,
     q0: FloatArray,
@@ -317,22 +320,23 @@ def rk4(
     u, rate = law.flow(t, q0, p0)
     state = state._replace(u=u)
     tally.evaluations += 1
-    tally.notes["redone"] = 0
+    tally.notes["redone"], taken = 0, np.inf
     for stop, wanted in _stops(t_span, dt, keep):
         while t < stop:
-            remaining = h = stop - t
+            remaining = stop - t
+            h = remaining if remaining <= _GROWTH * taken else _GROWTH * taken
             while True:
                 later, more, rate_there = _rk4_step(law, t, state, rate, h)
                 tally.evaluations += 4
                 share = encounters.share(h, state, later) if encounters.any and _finite(*later) else 1.0
                 if share == 1.0 or t + share * h == t:
                     break
-                h *= share
+                h *= max(share, 1.0 / _GROWTH)  # what a step that is far too long foresees is no measure of the next
                 tally.notes["redone"] += 1
             if not _finite(*later):
                 tally.fail(f"RK4 left the finite numbers at t = {t + h:g}: reduce dt = {dt:g}")
                 return
-            t = stop if h == remaining else t + h
+            t, taken = (stop, np.inf) if h == remaining else (t + h, h)
             state, rate, work = later, rate_there, work + more
             tally.steps += 1
             if t < stop:

@@ -89,3 +89,13 @@ def out_of_a_kernel():
 def interrupt(process):
     """Ctrl-C as the terminal does it: the signal goes to the whole group of processes."""
     os.killpg(process.pid, signal.SIGINT)
+
+
+class Starts:
+    """Numbers the starts of runs in the order in which they come: second runs of a start do not count."""
+
+    def __init__(self):
+        self.seen = {}
+
+    def number(self, run):
+        return self.seen.setdefault((run.q[0].tobytes(), run.p[0].tobytes()), len(self.seen))

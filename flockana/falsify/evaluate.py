@@ -9,7 +9,7 @@ import numpy as np
 
 from flockana.checks import FloatArray
 from flockana.falsify.confirm import confirmed
-from flockana.falsify.grade import FAILED, LEADS, Lead, grade, squash
+from flockana.falsify.grade import FAILED, LEADS, LIMITS, Lead, grade, squash
 from flockana.falsify.space import Space
 from flockana.interrupts import interrupts_recognised
 from flockana.scenarios import Scenario
@@ -145,9 +145,11 @@ class Problem:
         return Evaluation(grades[worst], worst, verdict)
 
     def _grade(self, run: Trajectory, verdict: Verdict, claim: Claim) -> float:
-        lead = self.surrogate or LEADS.get(f"{verdict.theorem}:{claim.name}")
+        label = f"{verdict.theorem}:{claim.name}"
+        lead = self.surrogate or LEADS.get(label)
         aid = 0.0 if lead is None else min(max(float(lead(run, claim)), 0.0), 1.0)
-        value = grade(claim, verdict.hypotheses, scale=self.scales.get(claim.name, 1.0), lead=aid)
+        unit = self.scales.get(claim.name, 1.0)
+        value = grade(claim, verdict.hypotheses, scale=unit, lead=aid, limit=label in LIMITS)
         if self.claim is None and claim.status == "inconclusive":
             return max(value, 0.0)  # its margin does not decide it, so a lower one must not draw the search
         return value

@@ -39,7 +39,9 @@ def squash(x: float) -> float:
     return x / (1.0 + abs(x)) if isfinite(x) else (1.0 if x > 0.0 else -1.0)
 
 
-def grade(claim: Claim, hypotheses: Iterable[Hypothesis], *, scale: float = 1.0, lead: float = 0.0) -> float:
+def grade(
+    claim: Claim, hypotheses: Iterable[Hypothesis], *, scale: float = 1.0, lead: float = 0.0, limit: bool = False
+) -> float:
     """The grade of one claim on one run.
 
     Parameters
@@ -52,6 +54,9 @@ def grade(claim: Claim, hypotheses: Iterable[Hypothesis], *, scale: float = 1.0,
         Unit of the margin, > 0.
     lead : float
         A surrogate's value in [0, 1]; see `LEADS`.
+    limit : bool
+        Whether it is about a limit. Until one is certain that is none, its margin says how well the limit is known, not
+        how near the claim is to breaking: then the surrogate alone counts.
 
     Examples
     --------
@@ -64,6 +69,8 @@ def grade(claim: Claim, hypotheses: Iterable[Hypothesis], *, scale: float = 1.0,
         return _VACUOUS + missing(hypotheses) + _LEAD * lead
     if claim.status == "refuted":
         return _REFUTED + (squash(margin / scale) if margin < 0.0 else 0.0)
+    if limit:
+        return lead
     if isnan(margin):
         return (1.0 if claim.status == "verified" else 0.0) + _LEAD * lead
     return squash(margin / scale) + _LEAD * lead
@@ -151,3 +158,4 @@ LEADS: Mapping[str, Lead] = {
     "os-1:i": strained,
     "lattice-limit-printed:lattice": strained,
 }
+LIMITS = frozenset({"os-1:i", "lattice-limit-printed:lattice"})  # claims about limits that a run may refute

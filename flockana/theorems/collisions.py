@@ -156,11 +156,7 @@ def no_collision(
         margin = -certain[pair]
     error = noise if len(run.t) > 1 else float("inf")  # one instant excludes nothing
     text = f"no distance falls below {closest.lower:.4g}" if margin >= 0.0 else f"they pass by {-margin:.4g}"
-    # at the very energy of a collision the integrator may lift a pair over the top that the law turns back below it
-    spare = min(
-        (need.margin for need in needs if need.status == "met" and need.margin is not None), default=float("inf")
-    )
-    if margin < 0.0 and "work" in run.extra and spare <= float(np.abs(run.energy_residual).max()):
+    if margin < 0.0 and "work" in run.extra and _spare(run, pair, needs) <= float(np.abs(run.energy_residual).max()):
         error = float("inf")
     return Claim(
         name,
@@ -174,6 +170,19 @@ def no_collision(
         detail=f"no collision: {text} (agents {pair[0]} and {pair[1]}; the closest approach is at t = "
         f"{closest.time:.4g})",
     )
+
+
+def _spare(run: Trajectory, pair: Pair, needs: Iterable[Hypothesis]) -> float:
+    """Energy by which a meeting, and the hypotheses, are decided; 0 on a line where nothing is certain.
+
+    A pair meets at no less than c*, and the energy never rises. So at the last sample before the meeting it is above c*
+    by more than it is off, or the integrator may have lifted the pair over a top that turns it back in truth.
+    """
+    met_by = [need.margin for need in needs if need.status == "met" and need.margin is not None]
+    apart = (run.q[:, pair[1]] - run.q[:, pair[0]]).sum(axis=1)  # on a line: the other components are 0
+    before = max(int(np.argmax(apart * np.sign(apart[0]) < 0.0)) - 1, 0)
+    energy = run.law.structural_energy(run.q[before], run.p[before])
+    return float(min(*met_by, abs(energy - run.law.gains.c1_alpha * run.law.alpha.c_star), float("inf")))
 
 
 def _count(margin: float, decided: bool, needs: Iterable[Hypothesis]) -> Status:

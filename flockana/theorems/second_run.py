@@ -29,6 +29,7 @@ SAME_INPUT = 1e-8  # of the largest input: other machine code evaluates a law to
 INTERVALS = 6  # that look edited by some sign, and evenly spread ones, which are integrated again
 SLACK = 100.0  # how often the error of integrating an interval, as two tolerances show it, a sample may be off,
 FLOOR = 300.0  # and how often the relative tolerance, where the two agree by chance or to rounding
+_LOW_ORDER = ("RK23", "RK45")  # methods that take many times the steps of DOP853 to a tight tolerance
 
 Judge = Callable[[Trajectory], Iterable[Claim]]
 
@@ -110,7 +111,7 @@ def _integrated(run: Trajectory, first: int, stop: int, factor: float, *, own_st
     how: dict[str, Any] = {"method": "DOP853", "rtol": RK4_SECOND}
     if "rtol" in stats:
         method = stats.get("method", "DOP853")
-        how = {"method": "DOP853" if method == "RK23" else method, "rtol": max(factor * stats["rtol"], FINEST)}
+        how = {"method": "DOP853" if method in _LOW_ORDER else method, "rtol": max(factor * stats["rtol"], FINEST)}
         how["atol"] = None if stats.get("atol") is None else factor * stats["atol"]
     elif own_step and "dt" in stats:
         how = {"method": "RK4", "dt": stats["dt"]}

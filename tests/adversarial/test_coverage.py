@@ -9,7 +9,16 @@ from pathlib import Path
 from flockana import theorems
 
 HERE = Path(__file__).parent
-FILES = ("collisions", "limits", "energy", "nets", "dead_zone", "trees", "following", "fixed")
+FILES = (
+    "planted_collisions",
+    "planted_limits",
+    "planted_energy",
+    "planted_nets",
+    "dead_zone",
+    "trees",
+    "following",
+    "fixed",
+)
 
 
 def test_every_theorem_has_planted_truths():

@@ -19,6 +19,7 @@ from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 THEOREMS = ("collision-energy", "os-1", "os-3", "E13")
 far_off = st.sampled_from((0.3, 0.6, 0.9, 1.1, 1.5, 1.9, 3.0))  # H/c*, decided by far
 next_to = st.tuples(st.sampled_from((-1.0, 1.0)), powers(-15.5, -2.0)).map(lambda sx: 1.0 + sx[0] * sx[1])
+BLURRED = 1e-10  # of c*: the rounding of H(0) at worst, 300 d apart
 
 
 @st.composite
@@ -49,7 +50,8 @@ def verdicts_on(case):
     meets = None
     if not safe:
         meets = truth.head_on(law, s0, float(np.ptp(case.p0)), case.until) is not None
-    below = (VERIFIED if clear else TRUE) if safe else (VACUOUS if clear else OPEN)
+    open_but_true = abs(share - 1.0) < BLURRED and not meets  # rounding decides the hypothesis; what follows is so
+    below = (VERIFIED if clear else TRUE) if safe else VACUOUS if clear else TRUE if open_but_true else OPEN
     if safe:
         twice = TRUE
     elif share > 2.0 or not meets or abs(share - 1.0) < 1e-6:
@@ -57,7 +59,7 @@ def verdicts_on(case):
     else:
         twice = REFUTED if clear and len(case.q0[0]) == 1 and share < 1.95 else FALSE
     yield "collision-energy", {"below": below, "twice": twice}
-    never = TRUE if safe else OPEN
+    never = TRUE if safe or open_but_true else OPEN
     if isinstance(law, Algorithm1):
         yield "os-1", {"iii": never, "iii-barrier": never}
     else:

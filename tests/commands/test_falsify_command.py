@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 from PIL import Image
+from programs import Starts
 
 from flockana.cli import main
 from flockana.commands.falsify import _known_false, read_ranges
@@ -34,7 +35,8 @@ def test_a_false_claim_is_found_written_drawn_and_replayed(call, tmp_path):
     code, out, err = call(*TWICE, "-o", "new/c.json", "--plot", "new/c.png")
     assert (code, err) == (0, "")
     rows = {line.split()[0]: line.split()[1:] for line in out.splitlines() if line.split()[:1]}
-    assert rows["twice"][:4] == ["4.839", "0", "✗", "refuted"]
+    assert (rows["twice"][0], *rows["twice"][2:4]) == ("4.839", "✗", "refuted")
+    assert float(rows["twice"][1]) < 0.0
     assert rows["below"][2:4] == ["✓", "verified"]
     assert "found: twice is broken, and it is known to be false" in out
     assert "counterexample: new/c.json" in out
@@ -76,13 +78,12 @@ def test_a_true_claim_that_breaks_is_3(call, monkeypatch):
 
 
 def test_ctrl_c_is_130_with_the_best_so_far(call, monkeypatch):
-    verify, calls = evaluate.verify, {"n": 0}
+    verify, starts = evaluate.verify, Starts()
 
-    def interrupted(*arguments, **options):
-        calls["n"] += 1
-        if calls["n"] == 4:
+    def interrupted(theorem, run, **options):
+        if starts.number(run) == 4:
             raise KeyboardInterrupt
-        return verify(*arguments, **options)
+        return verify(theorem, run, **options)
 
     monkeypatch.setattr(evaluate, "verify", interrupted)
     code, out, err = call("collision-energy", "--on", "head-on", "--claim", "below", "--budget", 30)

@@ -9,19 +9,20 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from programs import out_of_a_kernel
+from programs import Starts, out_of_a_kernel
 
 from flockana.environment.targets import StaticTarget
 from flockana.errors import ArgumentError, FileError, UnknownNameError
 from flockana.falsify import Counterexample, falsify, replay
 from flockana.falsify.evaluate import Problem, units
-from flockana.falsify.grade import FAILED, LEADS, bridge, grade, missing, pairs_apart, squash, strained
+from flockana.falsify.grade import FAILED, LEADS, LIMITS, bridge, grade, missing, pairs_apart, squash, strained
 from flockana.falsify.search import Search
 from flockana.falsify.space import part, search_space
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.scenarios import scenario
 from flockana.simulate import simulate
 from flockana.theorems import Claim, Hypothesis, Theorem, Tolerances, Verdict, theorem, verify
+from flockana.theorems.attraction import held
 from flockana.theorems.theorem import judge
 from flockana.trajectory import Trajectory
 
@@ -65,14 +66,16 @@ class TestFindsWhatIsFalse:
         for q in run.q:
             pairs.append(run.law.gains.c1_alpha * run.law.alpha.potential_energy(q))
         printed = run.energy() + np.array(pairs)
-        assert printed.max() - printed[0] == pytest.approx(-found.margin, rel=1e-9)
+        above = printed - np.minimum.accumulate(printed)  # the least that it was before
+        assert above.max() == pytest.approx(-found.margin, rel=1e-9)
         assert np.diff(run.energy()).max() <= found.error
 
     def test_e3_a_limit_of_algorithm_1_that_is_no_lattice(self):
-        found = falsify("lattice-limit-printed", "five-agents", budget=40, region=0.5, vary="q", seed=1)
+        found = falsify("lattice-limit-printed", "five-agents", budget=100, region=0.5, vary="q", seed=1)
         assert found.statuses["lattice"][0] == "verified"
         assert found.found
         assert found.evaluations > 1
+        assert held(found.run()).certificate.margin > 0.0  # for ever
         end = found.run().q[-1]
         assert np.linalg.norm(end[0] - end[4]) < 1e-6  # two agents have become one
         assert found.margin == pytest.approx(-1.0, abs=1e-5)
@@ -85,7 +88,7 @@ class TestFindsWhatIsFalse:
 
     def test_e13_two_pairs_meet_where_energy_pays_for_one(self):
         found = falsify("E13", THREE_AT_REST, claim="printed", budget=100, speed=2500.0, seed=2)
-        assert found.margins["printed"][0] == 0.0
+        assert found.margins["printed"][0] > 0.0
         assert found.found
         verdict = verify("E13", found.run())
         assert len(verdict.claim("printed").witness) > int(verdict.claim("printed").stated.split()[2])
@@ -122,7 +125,8 @@ class TestDoesNotBreakWhatIsTrue:
         assert len(judged) > 5  # it was tested, not only vacuous
 
     def test_a_balance_that_only_the_integrator_spoils_is_not_broken(self):
-        found = falsify("energy", "three-agents-1d", claim="balance", budget=8)
+        coarse = replace(scenario("three-agents-1d"), options={"method": "RK4", "dt": 1e-4})
+        found = falsify("energy", coarse, claim="balance", budget=8)
         assert found.margin < 0.0
         assert found.status == "inconclusive"
 
@@ -151,6 +155,14 @@ class TestGrades:
         assert grade(Claim("i", "inconclusive", margin=float("nan")), []) == 0.0
         assert (squash(float("-inf")), squash(0.0)) == (-1.0, 0.0)
         assert missing([Hypothesis("a", "assumed", -1.0), Hypothesis("b", "unmet", float("nan"))]) == 1.0
+
+    def test_how_well_a_limit_is_known_does_not_draw_the_search(self):
+        """A flock that parts for ever has the margin −1 of no certificate: it is no nearer to a strained limit."""
+        parts, settles = Claim("i", "inconclusive", margin=-1.0), Claim("i", "verified", margin=1e-6)
+        assert grade(settles, [], lead=0.9, limit=True) < grade(parts, [], lead=0.99, limit=True)
+        assert grade(Claim("i", "refuted", margin=-1.0), [], lead=1.0, limit=True) == -2.5
+        assert grade(Claim("i", "vacuous"), [], limit=True) == 2.0
+        assert set(LEADS) >= LIMITS
 
     def test_a_surrogate_never_outweighs_a_count(self):
         for k in range(30):
@@ -292,7 +304,7 @@ class TestTheOutcome:
         margins = collision.margins["twice"]
         assert len(margins) == collision.evaluations == len(collision.statuses["below"])
         np.testing.assert_array_equal(collision.history, np.fmin.accumulate(margins))
-        assert collision.history[-1] == collision.margin == 0.0
+        assert collision.history[-1] == collision.margin < 0.0
         assert margins[0] == verify("collision-energy", HEAD_ON.run()).claim("twice").margin
         assert collision.refuting("twice") == (collision.evaluations - 1,)
         assert (collision.broken, collision.scenario, collision.parameters) == (("twice",), "head-on", {})
@@ -337,12 +349,11 @@ class TestTheOutcome:
         assert found.found
         assert found.q0[0, 0] < 1.0
 
-    def test_runs_that_fail_are_counted_and_end_nothing(self, monkeypatch):
-        calls = {"n": 0}
+    def test_runs_that_fail_are_counted_and_end_nothing(self):
+        starts = Starts()
 
         def broken(run, tolerances):
-            calls["n"] += 1
-            if calls["n"] % 3 == 2:
+            if starts.number(run) % 3 == 1:
                 raise np.linalg.LinAlgError("no\nluck")
             return fast(run, tolerances)
 
@@ -360,11 +371,10 @@ class TestTheOutcome:
 
     @pytest.mark.parametrize("error", [KeyboardInterrupt(), out_of_a_kernel()])
     def test_ctrl_c_returns_the_best_so_far(self, error):
-        calls = {"n": 0}
+        starts = Starts()
 
         def interrupted(run, tolerances):
-            calls["n"] += 1
-            if calls["n"] == 6:
+            if starts.number(run) == 5:
                 raise error
             return fast(run, tolerances)
 
@@ -410,7 +420,7 @@ class TestTheFile:
 
     def test_options_of_the_run_and_tolerances_are_kept(self, tmp_path):
         case = replace(HEAD_ON, options={"rtol": 1e-6, "t_eval": np.linspace(0.0, 3.0, 200)})
-        tolerances = Tolerances(contact=0.5)
+        tolerances = Tolerances(contact=1e-3)
         found = falsify("collision-energy", case, claim="twice", budget=40, tolerances=tolerances)
         again = Counterexample.load(found.save(tmp_path / "c.json"))
         assert again.tolerances == tolerances
@@ -490,7 +500,7 @@ class TestTheClaimsForTheSearch:
     def test_the_bound_is_judged_by_the_energy_in_the_moving_frame(self):
         law, c_star = HEAD_ON.law, 30.0 * HEAD_ON.law.alpha.c_star
         boosted = simulate(law, HEAD_ON.q0, HEAD_ON.p0 + 100.0, (0.0, 0.1))
-        (_, below, twice) = verify("collision-energy", boosted).hypotheses
+        (*_, below, twice) = verify("collision-energy", boosted).hypotheses
         assert below.margin == pytest.approx(0.5 * c_star, rel=1e-9)
         assert twice.margin == pytest.approx(1.5 * c_star, rel=1e-9)
 

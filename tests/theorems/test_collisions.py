@@ -29,7 +29,7 @@ def e13():
     return simulate(E13_LAW, *E13_START, (0.0, 0.05))
 
 
-def head_on(share, m=1, *, aside=0.0, tilt=0.0, apart=7.0, law=None):
+def head_on(share, m=1, *, aside=0.0, tilt=0.0, apart=7.0, law=None, times=3.0):
     """Two agents that approach each other with a share of c* as their energy, the second one a little aside."""
     law = law or Algorithm1(gains=Gains(c2_alpha=0.0))
     q = np.zeros((2, m))
@@ -42,7 +42,7 @@ def head_on(share, m=1, *, aside=0.0, tilt=0.0, apart=7.0, law=None):
         turn = np.eye(m)
         turn[:2, :2] = [[np.cos(tilt), -np.sin(tilt)], [np.sin(tilt), np.cos(tilt)]]
         q, p = q @ turn.T, p @ turn.T
-    return simulate(law, q, p, (0.0, 3.0 * apart / speed))
+    return simulate(law, q, p, (0.0, times * apart / speed))
 
 
 class TestTwoAgents:
@@ -59,6 +59,20 @@ class TestTwoAgents:
         """On one axis they change places for certain, whatever the dimension."""
         found = statuses(verify("collision-energy", head_on(share, m)))
         assert found == {"below": "vacuous", "twice": "refuted"}
+
+    @pytest.mark.parametrize("off", [1e-12, 1e-11, 1e-10])
+    def test_at_the_top_the_law_turns_them_back_whatever_the_integrator_does(self, off):
+        """H(0) = (1 − off) c*, by less than the run is off in energy: that they change places refutes nothing."""
+        run = head_on(1.0 - off, law=Algorithm1(gains=Gains(c1_alpha=1.0, c2_alpha=0.0)), times=10.0)
+        found = statuses(verify("collision-energy", run))
+        assert "refuted" not in found.values()
+
+    @pytest.mark.parametrize("share", [0.9, 1.1, 1.6])
+    def test_a_law_whose_forces_are_far_below_b_over_root_eps(self, share):
+        """Lengths short beside ℓ: the potential's rounding goes by the forces that there are, and decides nothing."""
+        alpha = AlphaInteraction(d=7e-6, r=7.35e-6)
+        found = statuses(verify("collision-energy", head_on(share, apart=7e-6, law=Algorithm1(alpha))))
+        assert found["below"] == ("verified" if share < 1.0 else "vacuous")
 
     @pytest.mark.parametrize("aside", [1e-12, 1e-9, 1e-7])
     def test_a_near_miss_is_no_collision(self, aside):
