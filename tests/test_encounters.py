@@ -215,6 +215,13 @@ class TestRuns:
         exact = simulate(DAMPED, *HEAD_ON, (0.0, 14.0), rtol=1e-12, t_eval=[14.0])
         np.testing.assert_allclose(fine.p[-1], exact.p[-1], atol=1e-3)  # of a force that is once differentiable
 
+    @pytest.mark.parametrize("dt", [1.0, 14.0])
+    def test_rk4_finds_the_step_that_an_encounter_allows_in_a_few(self, dt):
+        """A step far too long throws agents far apart: what it foresees is no measure of the step to take."""
+        run = simulate(DAMPED, [[0.0], [8.0]], [[1500.0], [-1500.0]], (0.0, 14.0), method="RK4", dt=dt)
+        assert run.status == "complete"
+        assert run.stats["steps"] + run.stats["redone"] < 50
+
     def test_rk4_keeps_its_times_to_keep(self):
         times = np.linspace(0.0, 14.0, 8)
         run = simulate(DAMPED, *HEAD_ON, (0.0, 14.0), method="RK4", dt=2.0, t_eval=times)

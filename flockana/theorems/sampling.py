@@ -1,9 +1,9 @@
-"""What a flock may do between two samples: bounds from speeds and accelerations at both ends of each interval.
+"""What a flock may do between two samples: bounds from the paths through the solver's own steps (`Trajectory.path`).
 
 A distance between two agents of relative speed at most w and relative acceleration at most c exceeds what it is at the
 nearer end by w h/2 at most in an interval h, and the larger of both ends by h²/8 of its second derivative, which is
-w²/ℓ + c at most where the distance is ℓ. Speeds and accelerations inside an interval are taken to be no more than twice
-the larger of those at its ends: true of every run whose samples resolve its motion.
+w²/ℓ + c at most where the distance is ℓ. Control polygons of the paths bound speeds and accelerations on them, and the
+allowance for the paths' own error (`flockana.kernels.paths`) is added.
 """
 
 from __future__ import annotations
@@ -14,18 +14,32 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.checks import FloatArray
+from flockana.kernels.paths import bernstein
 from flockana.laws.law import DiscreteLaw
 from flockana.nets import LinkArray, components, link_lengths, links
+from flockana.paths import cohesion_bound
 from flockana.theorems.rounding import EPS
 from flockana.trajectory import Trajectory
 
-_INSIDE = 2.0  # speeds and accelerations inside an interval, over those at its ends
+
+def _motion(run: Trajectory) -> FloatArray:
+    """Largest ‖p_i − p_c‖ and ‖u_i − u_c‖ on the paths, and how far these may be off, shape (3, T − 1)."""
+    path = run.path
+    found = np.empty((3, len(path.t) - 1))
+    for k, h in enumerate(np.diff(path.t).tolist()):
+        ends = (x[k + side] for side in (0, 1) for x in (path.q, path.p, path.u))
+        points, _, allowance = bernstein(h, *ends)
+        legs = 5.0 / h * np.diff(points - points.mean(axis=0), axis=1)
+        sizes = [np.linalg.norm(x, axis=2).max() for x in (legs, 4.0 / h * np.diff(legs, axis=1))]
+        found[:, k] = *sizes, (allowance if path.slack is None else allowance + path.slack[k]).max()
+    return _by_interval(run, found)
 
 
-def _motion(x: FloatArray) -> FloatArray:
-    """Largest ‖x_i − x_c‖ over each interval between samples, shape (T − 1,)."""
-    size = np.linalg.norm(x - x.mean(axis=1, keepdims=True), axis=2).max(axis=1)
-    most: FloatArray = _INSIDE * np.maximum(size[:-1], size[1:])
+def _by_interval(run: Trajectory, found: FloatArray) -> FloatArray:
+    """The largest of numbers of the path's intervals, shape (..., S), in each interval between samples."""
+    if run.between is None:
+        return found
+    most: FloatArray = np.maximum.reduceat(found, np.searchsorted(run.path.t, run.t[:-1]), axis=-1)
     return most
 
 
@@ -42,19 +56,14 @@ def radius_between(run: Trajectory) -> FloatArray:
     >>> from flockana.laws.olfati_saber import Algorithm1
     >>> from flockana.simulate import simulate
     >>> run = simulate(Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 1.0))
-    >>> bool((radius_between(run) >= 0.5 * 7.0).all())
+    >>> bool(4.0 <= radius_between(run).max() < 4.0 + 1e-4)
     True
     """
-    radius = run.metric("cohesion_radius")
-    ends = np.maximum(radius[:-1], radius[1:])
     if isinstance(run.law, DiscreteLaw):
+        radius = run.metric("cohesion_radius")
+        ends: FloatArray = np.maximum(radius[:-1], radius[1:])
         return ends
-    h, speed, force = np.diff(run.t), _motion(run.p), _motion(run.u)
-    straight = 0.5 * speed * h
-    with np.errstate(divide="ignore", invalid="ignore"):
-        bent = h**2 / 8.0 * (speed**2 / (ends - straight) + force)
-    bound: FloatArray = ends + np.where((ends > 2.0 * straight) & (bent < straight), bent, straight)
-    return bound
+    return run.remembered("cohesion between samples", lambda: _by_interval(run, cohesion_bound(*run.path)))
 
 
 @dataclass(frozen=True)
@@ -115,14 +124,15 @@ def _nets_between(run: Trajectory) -> Nets:
     if isinstance(run.law, DiscreteLaw):
         return Nets(*(getattr(nets_at(run), field.name)[:-1] for field in fields(Nets)))
     r, rounding, rows = run.law.alpha.r, _rounding(run), []
-    h, speed, force = np.diff(run.t), _motion(run.p), _motion(run.u)
+    h, (speed, force, off) = np.diff(run.t), _motion(run)
     for k in range(len(run.t) - 1):
         straight = float(speed[k] * h[k])  # two agents: twice the speed, for half the time
         bent = float(h[k] ** 2 / 8.0 * (8.0 * speed[k] ** 2 / r + 2.0 * force[k]))
-        pairs = links(run.q[k], r + 4.0 * straight + 2.0 * rounding)
+        error = 2.0 * float(off[k]) + rounding
+        pairs = links(run.q[k], r + 4.0 * straight + 2.0 * error)
         ends = np.stack([link_lengths(run.q[k], pairs), link_lengths(run.q[k + 1], pairs)])
         low, high = ends.min(axis=0), ends.max(axis=0)
-        slack = np.where(low - straight >= 0.5 * r, min(straight, bent), straight) + rounding
+        slack = np.where(low - straight >= 0.5 * r, min(straight, bent), straight) + error
         near = low - slack < r
         rows.append(_row(run, k, pairs[near], (high + slack < r)[near]))
     return _nets(rows)

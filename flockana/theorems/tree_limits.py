@@ -46,7 +46,7 @@ def edge_shares(case: TreeCase, q: FloatArray, p: FloatArray) -> FloatArray:
     >>> chain = tree_case(MinimalFlocking(edges=((0, 1), (1, 2)), spacing=1.0), 3)
     >>> q = np.array([[0.0], [0.5], [1.5]])
     >>> edge_shares(chain, q, 0.0 * q).round(3).tolist()
-    [0.25, 3.75]
+    [0.25, 3.5]
     """
     if case.root is None:
         off = float(spread_error(p[None])[0]) + float(case.mu @ _stretch_error(case, q))

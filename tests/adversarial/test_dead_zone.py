@@ -15,6 +15,7 @@ from scipy.integrate import quad, solve_ivp
 from flockana.interactions import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
 
+THEOREMS = ("dead-zone-1-printed", "dead-zone-1-corrected")
 CORRECTED = dict.fromkeys(("rate", "balance", "components", "distance"), TRUE)
 
 
