@@ -55,7 +55,7 @@ CHANGES = {
     "numbers": lambda case, rng: renumbered(case, rng.permutation(len(case.q0))),
     "clock": lambda case, rng: later(case, 50.0 * truth.law_time(case.law) * rng.normal()),
     "output": lambda case, rng: replace(case, options={"t_eval": np.linspace(0.0, case.until, rng.integers(2, 300))}),
-    "method": lambda case, rng: replace(case, options={"method": ["RK45", "LSODA"][rng.integers(2)]}),
+    "method": lambda case, rng: replace(case, options={"method": ["RK45", "LSODA"][rng.integers(2)], "rtol": 1e-6}),
     "half": lambda case, rng: replace(case, options={"rtol": 0.5e-8}),
     "double": lambda case, rng: replace(case, options={"rtol": 2e-8}),
     "hundredth": lambda case, rng: replace(case, options={"rtol": 1e-10}),
