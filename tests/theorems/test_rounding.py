@@ -1,0 +1,97 @@
+"""Bounds of rounding, held against numbers of fifty digits."""
+
+from __future__ import annotations
+
+import mpmath
+import numpy as np
+import pytest
+
+from flockana.interactions import AlphaInteraction, Gains
+from flockana.laws.olfati_saber import Algorithm1
+from flockana.theorems.rounding import energy_error, frame_error, pair_force_error, spread_error
+
+PAIRS = [
+    AlphaInteraction(d=7.0, r=8.4),
+    AlphaInteraction(d=7.0, r=8.4, a=1.0, b=9.0, h=0.9),
+    AlphaInteraction(d=7e-6, r=8.4e-6),
+    AlphaInteraction(d=7e-6, r=8.4e-6, a=1.0, b=9.0),
+    AlphaInteraction(d=3e3, r=4e3, eps=0.7),
+    AlphaInteraction(d=0.3, r=0.9, eps=5.0, unit=0.02),
+]
+
+
+def exact_force(pair, x):
+    """φ_α(‖x‖_σ) x/√(1 + εx²) of a stored length x, as the definitions have it."""
+    with mpmath.workdps(50):
+        eps, a, b, h, area = (mpmath.mpf(each) for each in (pair.eps, pair.a, pair.b, pair.h, pair.unit**2))
+
+        def norm(s):
+            return (mpmath.sqrt(1 + eps * mpmath.mpf(s) ** 2) - 1) / eps
+
+        z, d_alpha, r_alpha, c = norm(x), norm(pair.d), norm(pair.r), (b - a) / mpmath.sqrt(4 * a * b)
+        s = (z - d_alpha) / area + c
+        phi = ((a + b) * s / mpmath.sqrt(1 + s**2) + a - b) / 2
+        share = z / r_alpha
+        bump = mpmath.mpf(1) if share < h else (1 + mpmath.cos(mpmath.pi * (share - h) / (1 - h))) / 2
+        return bump * phi * mpmath.mpf(x) / mpmath.sqrt(1 + eps * mpmath.mpf(x) ** 2)
+
+
+@pytest.mark.parametrize("pair", PAIRS)
+def test_the_force_of_a_pair_is_as_exact_as_is_said_and_not_much_better(pair):
+    lengths = np.concatenate([np.linspace(0.02, 0.999, 300) * pair.r, pair.d * (1.0 + np.linspace(-1e-6, 1e-6, 41))])
+    off = []
+    for x in lengths.tolist():
+        q = np.array([[0.0], [x]])
+        force = Algorithm1(pair, Gains(c1_alpha=1.0, c2_alpha=0.0)).flow(0.0, q, 0.0 * q)[0][0, 0]
+        off.append(abs(float(force - exact_force(pair, x))))
+    assert max(off) <= pair_force_error(pair)
+    assert max(off) >= 1e-3 * pair_force_error(pair)
+
+
+@pytest.mark.parametrize("pair", PAIRS)
+def test_the_energy_of_a_flock_is_as_exact_as_is_said(pair):
+    """Far from the origin too: against the same flock with its places and potential in fifty digits."""
+    rng, law = np.random.default_rng(0), Algorithm1(pair)
+    for far in (0.0, 1e4):
+        q = pair.d * (far + rng.uniform(0.0, 2.0, (5, 2)))
+        p = law.scales.speed * rng.normal(size=(5, 2))
+        energy = law.structural_energy(q, p)
+        with mpmath.workdps(50):
+            v = [[mpmath.mpf(x) for x in row] for row in p.tolist()]
+            mean = [sum(column) / 5 for column in zip(*v, strict=True)]
+            exact = sum((x - c) ** 2 for row in v for x, c in zip(row, mean, strict=True)) / 2
+            for i in range(5):
+                for j in range(i):
+                    gap = [mpmath.mpf(a) - mpmath.mpf(b) for a, b in zip(q[i].tolist(), q[j].tolist(), strict=True)]
+                    exact += law.gains.c1_alpha * potential(pair, mpmath.sqrt(sum(x * x for x in gap)))
+        bound = energy_error(law, q[None], p[None], np.array([energy]))[0]
+        assert abs(float(energy - exact)) <= bound
+        assert bound <= 1e-6 * abs(energy)
+
+
+def potential(pair, x):
+    """ψ_α(‖x‖_σ): the work from distance d to x."""
+    with mpmath.workdps(30):
+        ends = sorted({mpmath.mpf(pair.d), min(x, mpmath.mpf(pair.r))})
+        if len(ends) < 2:
+            return mpmath.mpf(0)
+        knee = mpmath.sqrt((1 + pair.eps * pair.h * mpmath.mpf(pair.r_alpha)) ** 2 - 1) / mpmath.sqrt(pair.eps)
+        knots = sorted({*ends, *(one for one in (knee,) if ends[0] < one < ends[1])})
+        sign = 1 if x > pair.d else -1
+        return sign * mpmath.quad(lambda s: exact_force(pair, s), knots)
+
+
+def test_the_frame_and_the_spread():
+    rng = np.random.default_rng(1)
+    for far in (1.0, 1e8):
+        x = far + rng.normal(size=(4, 6, 2))
+        with mpmath.workdps(50):
+            for k, states in enumerate(x.tolist()):
+                rows = [[mpmath.mpf(value) for value in row] for row in states]
+                mean = [sum(column) / 6 for column in zip(*rows, strict=True)]
+                own = x[k] - x[k].mean(axis=0)
+                exact = [[value - c for value, c in zip(row, mean, strict=True)] for row in rows]
+                worst = max(abs(float(own[i, c] - exact[i][c])) for i in range(6) for c in range(2))
+                assert worst <= frame_error(x)
+                half = sum(value**2 for row in exact for value in row) / 2
+                assert abs(float(0.5 * np.sum(own * own) - half)) <= spread_error(x)[k]
