@@ -350,3 +350,20 @@ class TestBalance:
             DeadZoneFlocking(hard, k2=0.0), [[-400.0, 0.0], [400.0, 14.9]], [[10.0, 0.0], [-10.0, 0.0]], (0.0, 80.0)
         )
         assert (run.status, run.stats["switches"]) == ("complete", 2)
+
+
+class TestFarAway:
+    """Places a billion away are known to 1e-7: nobody can be asked to integrate more finely than that."""
+
+    Q = np.array([[0.0, 0.0], [9.0, 0.0], [4.5, 7.2]])
+
+    @pytest.mark.parametrize("far", [1e3, 1e6, 1e9])
+    def test_it_takes_no_more_steps_there(self, far):
+        here, there = (simulate(DeadZoneFlocking(), x + self.Q, np.ones((3, 2)), (0.0, 20.0)) for x in (0.0, far))
+        assert there.stats["steps"] <= 1.5 * here.stats["steps"]
+
+    def test_a_second_tolerance_still_makes_another_run(self):
+        """Or two runs would agree for no better reason than that both are as rough as the places are."""
+        q = 1e9 + self.Q
+        one, two = (simulate(DeadZoneFlocking(), q, np.ones((3, 2)), (0.0, 20.0), rtol=rtol) for rtol in (1e-8, 1e-10))
+        assert one.stats["steps"] < two.stats["steps"]
