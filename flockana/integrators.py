@@ -17,7 +17,7 @@ from flockana.laws.law import DiscreteLaw, Law
 from flockana.scales import Scales
 from flockana.stepping import ONE_STEP, Balance, Check, Flow, Frame, Meetings, Moment, Stepper
 
-_FLOOR = 1e-2  # of the relative tolerance: the default absolute one, over the law's scales
+FLOOR = 1e-2  # of the relative tolerance: the default absolute one, over the law's scales
 FINEST = 3e-14  # relative tolerance below which the solvers cannot go
 _ROUNDINGS = 1.0  # of the largest coordinate, at that tolerance: what a force makes of rounded places is noise
 _COARSER = 0.25  # power of the tolerance by which more is allowed: runs at two tolerances differ, and so tell the error
@@ -141,7 +141,7 @@ def error_floor(
         duration = t_span[1] - t_span[0]
         extent, travel = (float(np.abs(x - x.mean(axis=0)).max()) for x in (q0, p0 * duration))
         scales = Scales(extent or travel or float(np.abs(p0).max()) * duration or 1.0, duration)
-    share = _FLOOR * rtol
+    share = FLOOR * rtol
     floor = (share * scales.length, share * scales.speed, share * len(q0) * scales.energy)
     length, speed, energy = floor if atol is None else (atol,) * 3
     reach = float(np.abs(q0).max() + np.abs(p0.mean(axis=0)).max() * (t_span[1] - t_span[0]))

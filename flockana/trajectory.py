@@ -23,7 +23,7 @@ from flockana.laws.law import ensure_law
 from flockana.paths import ClosestApproach, closest_approach, cohesion_bound
 from flockana.scales import Scales
 from flockana.serialize import from_data, to_data
-from flockana.units import rescale
+from flockana.units import rescale, times
 
 if TYPE_CHECKING:
     import xarray
@@ -151,7 +151,8 @@ class Trajectory:
             for name, series in self.extra.items()
         }
         q, p, u = self.q * length, self.p * (length / time), self.u * (length / time**2)
-        stats = {**self.stats, **({"dt": self.stats["dt"] * time} if "dt" in self.stats else {})}
+        units = {"dt": time, "atol": length}  # an absolute tolerance is in the state's own units: places first
+        stats = {key: times(value, units[key]) if key in units else value for key, value in self.stats.items()}
         law, between = (rescale(x, length=length, time=time) for x in (self.law, self.between))
         return replace(self, t=self.t * time, q=q, p=p, u=u, law=law, extra=extra, stats=stats, between=between)
 

@@ -131,7 +131,7 @@ class Scenario:
         return tuple(found)
 
     def in_units(self, length: float, time: float) -> Scenario:
-        """The same in other units (`flockana.rescale`), without the reports: a source's are in its own units.
+        """The same in other units (`flockana.rescale`); reports ask in their source's own units.
 
         Parameters
         ----------
@@ -148,8 +148,6 @@ class Scenario:
             options={
                 key: times(value, factors[key]) if key in factors else value for key, value in self.options.items()
             },
-            expected={key: status for key, status in self.expected.items() if key.split(":")[0] != SOURCE},
-            reports=(),
         )
 
     def surprises(self, verdict: Verdict) -> tuple[str, ...]:

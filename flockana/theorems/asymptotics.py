@@ -7,6 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from flockana.checks import FloatArray
+from flockana.integrators import FLOOR
 from flockana.lattice import classify
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.nets import link_lengths, links
@@ -19,6 +20,16 @@ from flockana.theorems.rounding import EPS, frame_error
 from flockana.theorems.theorem import Claim, Hypothesis, Status, Tolerances, judge
 from flockana.trajectory import Trajectory
 
+_NOISE = 10.0  # times the absolute tolerance
+
+
+def _stirred(run: Trajectory, scale: float) -> float:
+    """What an integrator leaves moving in a flock at rest: some of its absolute tolerances; a map leaves nothing."""
+    if "rtol" not in run.stats:
+        return 0.0
+    given = run.stats.get("atol")
+    return _NOISE * float(FLOOR * run.stats["rtol"] * scale if given is None else given)
+
 
 def still(run: Trajectory, tolerances: Tolerances) -> Certificate:
     """Whether all relative motion dies out: the root mean square of the relative velocities decays to what counts as 0.
@@ -30,7 +41,7 @@ def still(run: Trajectory, tolerances: Tolerances) -> Certificate:
     tolerances : Tolerances
         `velocity` is used.
     """
-    speed = np.sqrt(run.metric("velocity_mismatch")) + frame_error(run.p)
+    speed = np.sqrt(run.metric("velocity_mismatch")) + frame_error(run.p) + _stirred(run, run.scales.speed)
     found = decay(run.t, speed, floor=float(np.sqrt(tolerances.velocity)) * run.scales.speed).certificate
     return Certificate(found.margin, f"√K̃: {found.text}", found.error)
 
@@ -120,7 +131,8 @@ def lattice_limit(run: Trajectory, needs: Iterable[Hypothesis], tolerances: Tole
     if caught.certificate.margin > 0.0:
         certificate, error = caught.certificate, _strain_error(run, caught)
     else:
-        moves, strain = still(run, tolerances), decay(run.t, _strains(run), floor=tolerances.lattice).certificate
+        strains = _strains(run) + _stirred(run, run.scales.length) / run.law.alpha.d
+        moves, strain = still(run, tolerances), decay(run.t, strains, floor=tolerances.lattice).certificate
         strain = Certificate(strain.margin, f"strain: {strain.text}", strain.error)
         certificate = min(moves, strain, key=lambda each: each.margin)
         margin, error = min(margin, certificate.margin), certificate.error

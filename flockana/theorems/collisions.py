@@ -178,7 +178,8 @@ def _spare(run: Trajectory, pair: Pair, needs: Iterable[Hypothesis]) -> float:
     A pair meets at no less than c*, and the energy never rises. So at the last sample before the meeting it is above c*
     by more than it is off, or the integrator may have lifted the pair over a top that turns it back in truth.
     """
-    met_by = [need.margin for need in needs if need.status == "met" and need.margin is not None]
+    energies = (need for need in needs if need.name.startswith("H(0)") and need.status == "met")
+    met_by = [need.margin for need in energies if need.margin is not None]
     apart = (run.q[:, pair[1]] - run.q[:, pair[0]]).sum(axis=1)  # on a line: the other components are 0
     before = max(int(np.argmax(apart * np.sign(apart[0]) < 0.0)) - 1, 0)
     energy = run.law.structural_energy(run.q[before], run.p[before])

@@ -9,10 +9,12 @@ allowance for the paths' own error (`flockana.kernels.paths`) is added.
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from flockana.between import Course
 from flockana.checks import FloatArray
 from flockana.kernels.paths import bernstein
 from flockana.laws.law import DiscreteLaw
@@ -124,18 +126,39 @@ def _nets_between(run: Trajectory) -> Nets:
     if isinstance(run.law, DiscreteLaw):
         return Nets(*(getattr(nets_at(run), field.name)[:-1] for field in fields(Nets)))
     r, rounding, rows = run.law.alpha.r, _rounding(run), []
-    h, (speed, force, off) = np.diff(run.t), _motion(run)
+    h, (speed, force, off), path = np.diff(run.t), _motion(run), run.path
+    first = np.searchsorted(path.t, run.t)
     for k in range(len(run.t) - 1):
-        straight = float(speed[k] * h[k])  # two agents: twice the speed, for half the time
-        bent = float(h[k] ** 2 / 8.0 * (8.0 * speed[k] ** 2 / r + 2.0 * force[k]))
         error = 2.0 * float(off[k]) + rounding
-        pairs = links(run.q[k], r + 4.0 * straight + 2.0 * error)
+        pairs = links(run.q[k], r + 4.0 * float(speed[k] * h[k]) + 2.0 * error)
         ends = np.stack([link_lengths(run.q[k], pairs), link_lengths(run.q[k + 1], pairs)])
         low, high = ends.min(axis=0), ends.max(axis=0)
-        slack = np.where(low - straight >= 0.5 * r, min(straight, bent), straight) + error
+        slack = _slack(low, r, h[k], 2.0 * speed[k], 2.0 * force[k]) + error
+        if (unsure := (low - slack < r) & (high + slack >= r)).any():  # those two do not move as fast as the fastest
+            own = _relative(path, range(first[k], first[k + 1]), pairs[unsure])
+            slack[unsure] = np.minimum(slack[unsure], _slack(low[unsure], r, h[k], *own) + error)
         near = low - slack < r
         rows.append(_row(run, k, pairs[near], (high + slack < r)[near]))
     return _nets(rows)
+
+
+def _slack(low: FloatArray, r: float, h: float, speed: Any, force: Any) -> FloatArray:
+    """How far a distance, `low` at the nearer end, may go beyond its ends, at relative speeds and accelerations."""
+    straight, bent = 0.5 * speed * h, h**2 / 8.0 * (2.0 * speed**2 / r + force)
+    slack: FloatArray = np.where(low - straight >= 0.5 * r, np.minimum(straight, bent), straight)
+    return slack
+
+
+def _relative(path: Course, steps: range, pairs: LinkArray) -> tuple[FloatArray, FloatArray]:
+    """Largest relative speed and acceleration of some pairs on their paths over some steps."""
+    speed, force = np.zeros((2, len(pairs)))
+    for k in steps:
+        h = float(path.t[k + 1] - path.t[k])
+        points = bernstein(h, *(x[k + side] for side in (0, 1) for x in (path.q, path.p, path.u)))[0]
+        legs = 5.0 / h * np.diff(points[pairs[:, 1]] - points[pairs[:, 0]], axis=1)
+        speed = np.maximum(speed, np.linalg.norm(legs, axis=2).max(axis=1))
+        force = np.maximum(force, np.linalg.norm(4.0 / h * np.diff(legs, axis=1), axis=2).max(axis=1))
+    return speed, force
 
 
 def _rounding(run: Trajectory) -> float:
