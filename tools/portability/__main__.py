@@ -37,6 +37,7 @@ def arguments() -> argparse.ArgumentParser:
     parser.add_argument(
         "--residual", type=float, metavar="SHARE", help="share of its tolerance that the energy balance may use"
     )
+    parser.add_argument("--no-verdicts", action="store_true", help="make the runs alone, for their balance of energy")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="processes (default: cores)")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write all outcomes there")
     return parser
@@ -106,7 +107,7 @@ def main(given: Sequence[str] | None = None) -> int:
         known = [*native["scenarios"], *native["fixed"]]
         ensure_sound(options, known)
         where, notices = environments(native)
-        what = changes(options.draws)
+        what = changes(options.draws, verdicts=not options.no_verdicts)
         chosen = choose([one.name for one in what] + [one.name for one in where], options.variants or ())
     except (WorkerError, ValueError) as error:
         sys.stderr.write(f"portability: {error}\n")

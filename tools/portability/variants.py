@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 NATIVE = "native"
@@ -61,6 +61,8 @@ class Change:
         Factors: of the solver's tolerances, of thresholds that stand for zero, of those that are part of a claim.
     length, time : float
         Factors of all numbers that are lengths, or times.
+    verdicts : bool
+        Whether the runs are judged.
     """
 
     name: str
@@ -70,6 +72,7 @@ class Change:
     definitions: float = 1.0
     length: float = 1.0
     time: float = 1.0
+    verdicts: bool = True
 
     @property
     def run(self) -> tuple[float, ...]:
@@ -121,13 +124,15 @@ def _without(features: Sequence[str]) -> dict[str, str]:
     return {"NPY_DISABLE_CPU_FEATURES": " ".join(features)} if features else {}
 
 
-def changes(draws: int = DRAWS) -> list[Change]:
+def changes(draws: int = DRAWS, *, verdicts: bool = True) -> list[Change]:
     """Every change of an entry: nothing, other tolerances and thresholds, other units, moved starts.
 
     Parameters
     ----------
     draws : int
         Number of moved starts.
+    verdicts : bool
+        Whether runs are judged; else they are made for their balance of energy alone.
     """
     found = [Change(NATIVE)]
     for label, factor in (("halved", 0.5), ("doubled", 2.0)):
@@ -136,7 +141,8 @@ def changes(draws: int = DRAWS) -> list[Change]:
     for label, factor in (("halved", 0.5), ("doubled", 2.0)):
         found.append(Change(f"solver-{label}", solver=factor))
     found += [Change(f"units-{label}", length=length, time=time) for label, (length, time) in UNITS.items()]
-    return found + [Change(f"moved-{draw}", draw=draw) for draw in range(1, draws + 1)]
+    found += [Change(f"moved-{draw}", draw=draw) for draw in range(1, draws + 1)]
+    return [replace(one, verdicts=verdicts) for one in found]
 
 
 def no_effect(environment: Environment, native: Mapping[str, Any], here: Mapping[str, Any]) -> str:
