@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from math import inf
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -229,7 +230,8 @@ _RESTS = Report("rests", "the group comes to rest in an equilibrium among the ob
 _TOUCHES = Report("in-touch", "it rests against obstacles; how near it is to a constrained α-lattice", _touches)
 _LATTICE = Report("constrained-lattice", "it rests as a quasi constrained α-lattice", _constrained)
 _TRAPPED = Report("trapped", "the obstacle holds agents back from the γ-agent (Fig. 9)", _traps)
-_STATIC: dict[str, Status] = {"energy": "verified", "os-6": "verified", "os-6:rate": "verified", "source": "verified"}
+_DESCENDS: dict[str, Status] = {"energy": "verified", "os-6": "verified", "os-6:rate": "verified"}
+_STATIC: dict[str, Status] = {**_DESCENDS, "source": "verified"}
 _MOVING: dict[str, Status] = {"energy": "verified", "energy:rate": "vacuous", "os-6": "vacuous"}
 
 
@@ -256,6 +258,7 @@ def _entry(
     expected: Mapping[str, Status],
     reports: tuple[Report, ...],
     spread: float = 50.0,
+    shipped: Mapping[str, Status] = MappingProxyType({}),
 ) -> tuple[str, Callable[[int], Scenario]]:
     law = Algorithm3(gains=GAINS, target=target, obstacles=tuple(obstacles))
 
@@ -264,7 +267,8 @@ def _entry(
         text = f"{source} {_OURS}"
         options = _large(end) if n > 100 else {}
         asked = tuple(replace(one, check=in_source_units(law.scales, one.check)) for one in (_CLEAR, *reports))
-        return Scenario(name, title, text, law, *start, (0.0, end), seed, expected, asked, options)
+        span = (0.0, end)
+        return Scenario(name, title, text, law, *start, span, seed, expected, asked, options, shipped=shipped)
 
     return name, build
 
@@ -343,7 +347,8 @@ SCENARIOS: dict[str, Callable[..., Scenario]] = dict(
             n=40,
             spread=25.0,
             end=150.0,
-            expected=_STATIC,
+            expected={**_DESCENDS, **_reported("clear")},
+            shipped={"source": "verified"},
             reports=(_RESTS, _TOUCHES),
         ),
         _entry(
@@ -356,7 +361,8 @@ SCENARIOS: dict[str, Callable[..., Scenario]] = dict(
             n=30,
             spread=15.0,
             end=100.0,
-            expected=_STATIC,
+            expected={"energy": "verified", **_reported("clear")},
+            shipped={"os-6": "verified", "os-6:rate": "verified"},  # of some starts condition (76) is broken
             reports=(),
         ),
         _entry(
@@ -369,7 +375,8 @@ SCENARIOS: dict[str, Callable[..., Scenario]] = dict(
             n=30,
             spread=15.0,
             end=100.0,
-            expected={**_MOVING, "source": "verified"},
+            expected={"energy": "verified", "energy:rate": "vacuous", "source": "verified"},
+            shipped={"os-6": "vacuous"},  # of some starts (76) is open
             reports=(),
         ),
     ]

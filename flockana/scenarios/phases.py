@@ -34,7 +34,7 @@ def _phase(seed: int = 0, ratio: float = 0.01, density: float = 0.3, n: int = 40
         generator.uniform(-1.0, 1.0, (n, 2)),
         (0.0, _END),
         seed,
-        {"energy": "verified", "os-3:i": "verified", "os-3:iii": "verified"},  # (ii), rest, may take longer
+        {"energy": "verified", "os-3:i": "verified"},  # rest, (ii) and (iii), may take longer
         references=("olfati-saber-2006", "flockana"),
     )
 
