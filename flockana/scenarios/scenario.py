@@ -127,16 +127,28 @@ class Scenario:
         tolerances : Tolerances, optional
             Thresholds.
         """
-        found = [verify(name, trajectory, tolerances=tolerances, subject=self.name) for name in self.theorems]
-        if self.reports:
-            used = Tolerances() if tolerances is None else tolerances
+        found = tuple(verify(name, trajectory, tolerances=tolerances, subject=self.name) for name in self.theorems)
+        return found + self.reported(trajectory, tolerances=tolerances)
 
-            def judged(run: Trajectory) -> tuple[Claim, ...]:
-                return tuple(report.check(run, used) for report in self.reports)
+    def reported(self, trajectory: Trajectory, *, tolerances: Tolerances | None = None) -> tuple[Verdict, ...]:
+        """Check what the source reports, as one verdict; none if it reports nothing.
 
-            claims = corroborated(judged(trajectory), trajectory, judged)
-            found.append(Verdict(SOURCE, (), claims, used, self.name))
-        return tuple(found)
+        Parameters
+        ----------
+        trajectory : Trajectory
+            What `run` returned, or a saved copy of it.
+        tolerances : Tolerances, optional
+            Thresholds.
+        """
+        if not self.reports:
+            return ()
+        used = Tolerances() if tolerances is None else tolerances
+
+        def judged(run: Trajectory) -> tuple[Claim, ...]:
+            return tuple(report.check(run, used) for report in self.reports)
+
+        claims = corroborated(judged(trajectory), trajectory, judged)
+        return (Verdict(SOURCE, (), claims, used, self.name),)
 
     def in_units(self, length: float, time: float) -> Scenario:
         """The same in other units (`flockana.rescale`); reports ask in their source's own units.
