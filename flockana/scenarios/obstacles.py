@@ -135,13 +135,17 @@ def _passed_between(run: Trajectory) -> int:
 def _gets_past(run: Trajectory, tolerances: Tolerances) -> Claim:
     x = run.q[-1, :, 0]
     detail = f"{int((x > 175.0).sum())} of {run.n} agents are beyond both spheres, the last one at x = {x.min():.4g}"
-    return finding("past", float(x.min()) - 175.0, detail, computed=float(x.min()), stated="x > 175 for all")
+    margin = float(
+        np.clip(x.min() - 175.0, -25.0, 25.0)
+    )  # a radius of the spheres is enough: how far agents get varies
+    return finding("past", margin, detail, computed=float(x.min()), stated="x > 175 for all")
 
 
 def _squeezes(run: Trajectory, tolerances: Tolerances) -> Claim:
     through = _passed_between(run)
     detail = f"{through} of {run.n} agents go through the gap, of width 20; the others round the outside of the spheres"
-    return finding("squeezes", through - 0.5 * run.n, detail, computed=through, stated="more than half")
+    margin = float(np.clip(through - 0.5 * run.n, -0.1 * run.n, 0.1 * run.n))  # a tenth is enough: the number varies
+    return finding("squeezes", margin, detail, computed=through, stated="more than half")
 
 
 def blocked(q: FloatArray, target: FloatArray, obstacles: Sequence[Obstacle]) -> FloatArray:

@@ -335,7 +335,8 @@ def _mismatch(p: FloatArray) -> FloatArray:
 def _slopes(mismatch: FloatArray, half: float) -> FloatArray:
     """Slope of the logarithm of sums over half periods, each against the next."""
     sums = np.convolve(mismatch, np.ones(_SAMPLES), mode="valid")
-    slopes: FloatArray = np.log(sums[_SAMPLES:] / sums[:-_SAMPLES]) / half
+    with np.errstate(divide="ignore", invalid="ignore"):  # where all has come to rest there is no slope
+        slopes: FloatArray = np.log(sums[_SAMPLES:] / sums[:-_SAMPLES]) / half
     return slopes
 
 
