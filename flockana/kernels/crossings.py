@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
+from flockana.kernels.compiling import njit
 from flockana.kernels.segments import between, cross, foot
 
 FloatArray = npt.NDArray[np.float64]

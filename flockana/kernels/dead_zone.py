@@ -10,9 +10,9 @@ from __future__ import annotations
 from math import inf, log, log1p, sqrt
 
 import numpy as np
-from numba import njit
 from numba.extending import register_jitable
 
+from flockana.kernels.compiling import njit
 from flockana.kernels.scalars import clenshaw
 
 REPULSION, DEAD, ATTRACTION, OUT = 0, 1, 2, 3

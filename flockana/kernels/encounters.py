@@ -7,8 +7,8 @@ allowances are those of `control_points`.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from flockana.kernels.compiling import njit
 from flockana.kernels.paths import _DEPTH, _first_touch, _hull_bound
 
 _SLACK = 1.1  # a step that is too long by less than this is not worth another

@@ -9,9 +9,9 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 from flockana.kernels.alpha import pair_alpha
+from flockana.kernels.compiling import njit
 from flockana.kernels.lift import source_digest
 
 

@@ -15,7 +15,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numba import njit
+
+from flockana.kernels.compiling import njit
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
+from flockana.kernels.compiling import njit
 from flockana.kernels.neighbours import FloatArray, pair_blocks
 
 

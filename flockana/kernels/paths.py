@@ -15,7 +15,8 @@ every (t − θ)₊ᵏ⁻¹ are ≥ 0; and of each of these the bound holds (tes
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from flockana.kernels.compiling import njit
 
 ALLOWED = 0.35  # of ‖L2‖ + ‖L3‖: the largest quotient of a single truncated power is 0.3453
 _DEPTH = 48  # halvings of an interval: below rounding of the time itself

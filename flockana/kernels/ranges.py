@@ -7,8 +7,8 @@ and those of its derivative tell that it rises or falls, on pieces that are halv
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from flockana.kernels.compiling import njit
 from flockana.kernels.paths import control_points
 
 NEVER, UNSURE, ENTERS = 0, 1, 2

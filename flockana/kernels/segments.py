@@ -7,7 +7,8 @@ and are handed back as UNSURE where it does not.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from flockana.kernels.compiling import njit
 
 UNSURE = 2
 _TURN = 3.5 * 2.0**-53  # Shewchuk's bounds are (3 + 16u)u and (7 + 56u)u; the rest is slack for subnormal products

@@ -10,7 +10,8 @@ from __future__ import annotations
 from math import inf, sqrt
 
 import numpy as np
-from numba import njit
+
+from flockana.kernels.compiling import njit
 
 
 @njit(cache=True)
