@@ -1,8 +1,13 @@
 """numba's `njit` with a cache on disk that any number of processes may fill at once.
 
-numba numbers the files of what it compiled, and enters the numbers in an index. Two processes that compile at once may
-take the same number for two functions: then the index of the one names the code of the other, and what is loaded later
-is another function. Here a file is named for what is in it, and is written before the index.
+What numba compiles it numbers, from one on in each process, in two places:
+
+- The files of a function, by an index. Two processes that compile at once may take one number for two signatures: then
+  the index of the one names the code of the other, and what is loaded later is another function. Here a file is named
+  for what is in it, and is written before the index.
+- The symbols of the machine code. Two closures of one name that two processes compiled may get one symbol. A third that
+  loads both gives the second the constants of the first, and if it lacks one, every call fails ("'descr' is NULL").
+  Here the name of a closure says what it closes over.
 """
 
 from __future__ import annotations
@@ -13,6 +18,7 @@ from typing import Any
 
 import numba
 from numba.core.caching import FunctionCache, IndexDataCacheFile
+from numba.core.serialize import dumps
 
 
 class _NamedByContent(IndexDataCacheFile):
@@ -35,6 +41,14 @@ class _Cache(FunctionCache):
         self._cache_file = _NamedByContent(own._cache_path, base, own._source_stamp)
 
 
+def _named_for_its_cells(function: Callable[..., Any]) -> Callable[..., Any]:
+    """The same function, whose qualified name (and with it symbol and index) no other closure of its code shares."""
+    if function.__closure__:
+        cells = dumps(tuple(cell.cell_contents for cell in function.__closure__))
+        function.__qualname__ += f".{hashlib.sha256(cells).hexdigest()[:16]}"
+    return function
+
+
 def njit(*, cache: bool = False, **options: Any) -> Callable[[Callable[..., Any]], Any]:
     """`numba.njit`, whose cache may be filled by several processes at once.
 
@@ -55,9 +69,10 @@ def njit(*, cache: bool = False, **options: Any) -> Callable[[Callable[..., Any]
     """
 
     def compiled(function: Callable[..., Any]) -> Any:
-        made = numba.njit(**options)(function)
-        if cache:
-            made._cache = _Cache(function)
+        if not cache:
+            return numba.njit(**options)(function)
+        made = numba.njit(**options)(_named_for_its_cells(function))
+        made._cache = _Cache(function)
         return made
 
     return compiled
