@@ -297,10 +297,22 @@ class Trajectory:
     @cached_property
     def _closest(self) -> ClosestApproach:
         found = closest_approach(*self.path)
+        return replace(found, lower_by_interval=self.over_intervals(np.minimum, found.lower_by_interval))
+
+    def over_intervals(self, reduce: np.ufunc, values: FloatArray) -> FloatArray:
+        """Numbers of the path's intervals, shape (..., S), to one for each interval between samples.
+
+        Parameters
+        ----------
+        reduce : ufunc
+            `numpy.maximum`, `numpy.minimum`.
+        values : ndarray
+            In the order of `path`.
+        """
         if self.between is None:
-            return found
-        first = np.searchsorted(self.path.t, self.t[:-1])
-        return replace(found, lower_by_interval=np.minimum.reduceat(found.lower_by_interval, first))
+            return values
+        found: FloatArray = reduce.reduceat(values, np.searchsorted(self.path.t, self.t[:-1]), axis=-1)
+        return found
 
     def min_distance(self) -> float:
         """A lower bound of every distance between two agents at every time of the run.
@@ -311,12 +323,13 @@ class Trajectory:
 
     def cohesion_bound(self) -> float:
         """An upper bound of the cohesion radius max ‖q_i − q_c‖ at every time of the run, under the same conditions."""
-        return self._cohesion_bound
+        bounds = self.cohesion_bounds
+        return float(bounds.max()) if bounds.size else measure.cohesion_radius(self.q[0])
 
     @cached_property
-    def _cohesion_bound(self) -> float:
-        bounds = cohesion_bound(*self.path)
-        return float(bounds.max()) if bounds.size else measure.cohesion_radius(self.q[0])
+    def cohesion_bounds(self) -> FloatArray:
+        """That of each interval between samples, shape (T − 1,)."""
+        return self.over_intervals(np.maximum, cohesion_bound(*self.path))
 
     def clearance(self) -> Clearance:
         """How close any agent comes to any obstacle of the law, between samples too; infinite without obstacles."""

@@ -91,8 +91,8 @@ def attraction(law: Algorithm1 | Algorithm2, q: FloatArray, p: FloatArray) -> At
 
     Examples
     --------
-    >>> q = np.array([[0.0, 0.0], [7.01, 0.0]])
-    >>> attraction(Algorithm1(), q, 0.0 * q).certificate.margin > 0.97
+    >>> q = np.array([[0.0, 0.0], [7.001, 0.0]])
+    >>> attraction(Algorithm1(), q, 0.0 * q).certificate.margin > 0.99
     True
     >>> attraction(Algorithm1(), q, np.array([[9.0, 0.0], [-9.0, 0.0]])).certificate.margin
     -1.0

@@ -19,7 +19,6 @@ from flockana.checks import FloatArray
 from flockana.kernels.paths import bernstein
 from flockana.laws.law import DiscreteLaw
 from flockana.nets import LinkArray, components, link_lengths, links
-from flockana.paths import cohesion_bound
 from flockana.theorems.rounding import EPS
 from flockana.trajectory import Trajectory
 
@@ -34,15 +33,7 @@ def _motion(run: Trajectory) -> FloatArray:
         legs = 5.0 / h * np.diff(points - points.mean(axis=0), axis=1)
         sizes = [np.linalg.norm(x, axis=2).max() for x in (legs, 4.0 / h * np.diff(legs, axis=1))]
         found[:, k] = *sizes, (allowance if path.slack is None else allowance + path.slack[k]).max()
-    return _by_interval(run, found)
-
-
-def _by_interval(run: Trajectory, found: FloatArray) -> FloatArray:
-    """The largest of numbers of the path's intervals, shape (..., S), in each interval between samples."""
-    if run.between is None:
-        return found
-    most: FloatArray = np.maximum.reduceat(found, np.searchsorted(run.path.t, run.t[:-1]), axis=-1)
-    return most
+    return run.over_intervals(np.maximum, found)
 
 
 def radius_between(run: Trajectory) -> FloatArray:
@@ -65,7 +56,7 @@ def radius_between(run: Trajectory) -> FloatArray:
         radius = run.metric("cohesion_radius")
         ends: FloatArray = np.maximum(radius[:-1], radius[1:])
         return ends
-    return run.remembered("cohesion between samples", lambda: _by_interval(run, cohesion_bound(*run.path)))
+    return run.cohesion_bounds
 
 
 @dataclass(frozen=True)

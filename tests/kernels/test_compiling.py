@@ -45,7 +45,7 @@ assert {k: many.MADE[k](100) for k in order} == {k: 100 + k for k in range(12)}
 
 
 def saved_at_once(kind, folder):
-    """What is loaded after "b" was saved by one while another, at the same index, was about to write the code of "a"."""
+    """What is loaded after "b" was saved by one while another, at the same index, was writing the code of "a"."""
     one, two = (kind(str(folder), "kernel", "stamp") for _ in range(2))
     two._load_index = dict  # it looked before the other saved
     write = one._save_data

@@ -98,8 +98,9 @@ def resolved(item: Scenario, factor: float) -> Scenario | None:
     """The same at other tolerances of the solver (or another fixed step); None for a map, whose step is its law."""
     if isinstance(item.law, DiscreteLaw):
         return None
-    knobs = {"dt": None} if item.options.get("method") == "RK4" else {"rtol": 1e-8, "atol": 1e-10}
-    return replace(item, options={**item.options, **{k: factor * item.options.get(k, v) for k, v in knobs.items()}})
+    given = {"dt": item.options["dt"]} if item.options.get("method") == "RK4" else {"rtol": 1e-8, **item.options}
+    knobs = {name: factor * given[name] for name in ("dt", "rtol", "atol") if given.get(name) is not None}
+    return replace(item, options={**item.options, **knobs})
 
 
 def in_units(item: Scenario, length: float, time: float) -> Scenario:
