@@ -119,17 +119,18 @@ class TestKeeping:
         assert run.between.t[-1] < 1.0
 
 
-class TestBoundedMemory:
-    @pytest.fixture(scope="class")
-    def thinned(self, runs):
-        every, _, _ = runs
-        recorder = Recorder(most=3 * every.q[0].size * len(every.t) // 5)
-        for k in range(len(every.t)):
-            sample = k in (0, len(every.t) // 2, len(every.t) - 1)
-            recorder.add(float(every.t[k]), every.q[k], every.p[k], every.u[k], sample=sample)
-        keep = [0, len(every.t) // 2, len(every.t) - 1]
-        return merged(every.t[keep], every.q[keep], every.p[keep], every.u[keep], recorder.between())
+@pytest.fixture(scope="module")
+def thinned(runs):
+    every, _, _ = runs
+    recorder = Recorder(most=3 * every.q[0].size * len(every.t) // 5)
+    for k in range(len(every.t)):
+        sample = k in (0, len(every.t) // 2, len(every.t) - 1)
+        recorder.add(float(every.t[k]), every.q[k], every.p[k], every.u[k], sample=sample)
+    keep = [0, len(every.t) // 2, len(every.t) - 1]
+    return merged(every.t[keep], every.q[keep], every.p[keep], every.u[keep], recorder.between())
 
+
+class TestBoundedMemory:
     def test_no_more_is_kept_than_allowed(self, runs, thinned):
         every, _, _ = runs
         assert len(every.t) // 12 < len(thinned.t) - 3 <= len(every.t) // 5

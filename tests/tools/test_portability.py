@@ -124,7 +124,7 @@ def test_a_start_is_moved_by_so_much_of_each_value():
 
 
 def test_the_solver_is_changed_where_it_has_a_tolerance():
-    assert worker.resolved(scenario("hexagon"), 0.5).options == {"rtol": 5e-9, "atol": 5e-11}
+    assert worker.resolved(scenario("hexagon"), 0.5).options == {"rtol": 5e-9}
     large = worker.resolved(scenario("paper-split-rejoin"), 2.0).options
     assert (large["rtol"], large["atol"]) == (2e-7, 2e-9)
     assert len(large["t_eval"]) > 100
