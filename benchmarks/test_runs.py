@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from flockana.dynamics.simulate import simulate
 from flockana.laws.olfati_saber import Algorithm1
-from flockana.paths import closest_approach
+from flockana.measures.path_bounds import closest_approach
 from flockana.scenarios import scenario
-from flockana.simulate import simulate
 
 from .conftest import best
 from .test_kernels import flock

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from flockana.encounters import Encounters
+from flockana.dynamics.encounters import Encounters
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.stepping import Balance
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.scenarios import scenario
-from flockana.simulate import simulate
-from flockana.stepping import Balance
 
 from .conftest import best
 from .test_kernels import flock

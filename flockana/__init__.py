@@ -13,14 +13,17 @@ from typing import TYPE_CHECKING, Any
 from flockana._version import __version__
 
 if TYPE_CHECKING:
-    from flockana import errors as errors
     from flockana import lattice as lattice
-    from flockana import metrics as metrics
     from flockana import plots as plots
-    from flockana import predicates as predicates
-    from flockana import reynolds as reynolds
     from flockana import stability as stability
     from flockana import symbolic as symbolic
+    from flockana.base import errors as errors
+    from flockana.base.binomial import clopper_pearson as clopper_pearson
+    from flockana.base.references import cite as cite
+    from flockana.base.units import rescale as rescale
+    from flockana.dynamics import predicates as predicates
+    from flockana.dynamics.simulate import simulate as simulate
+    from flockana.dynamics.trajectory import Trajectory as Trajectory
     from flockana.ensemble.campaign import ensemble as ensemble
     from flockana.ensemble.dataset import shares as shares
     from flockana.environment.capsule import Capsule as Capsule
@@ -51,7 +54,6 @@ if TYPE_CHECKING:
     from flockana.interactions import PairInteraction as PairInteraction
     from flockana.interactions import ZoneRadii as ZoneRadii
     from flockana.interactions import ZoneWeights as ZoneWeights
-    from flockana.intervals import clopper_pearson as clopper_pearson
     from flockana.laws.algorithm3 import Algorithm3 as Algorithm3
     from flockana.laws.bearing_distance import ZoneFlocking as ZoneFlocking
     from flockana.laws.dead_zone import DeadZoneFlocking as DeadZoneFlocking
@@ -61,24 +63,24 @@ if TYPE_CHECKING:
     from flockana.laws.minimal import MinimalFlocking as MinimalFlocking
     from flockana.laws.olfati_saber import Algorithm1 as Algorithm1
     from flockana.laws.olfati_saber import Algorithm2 as Algorithm2
-    from flockana.metrics import cohesion_radius as cohesion_radius
-    from flockana.metrics import connectivity as connectivity
-    from flockana.metrics import coordination as coordination
-    from flockana.metrics import deviation_energy as deviation_energy
-    from flockana.metrics import giant_share as giant_share
-    from flockana.metrics import inertia as inertia
-    from flockana.metrics import min_distance as min_distance
-    from flockana.metrics import order as order
-    from flockana.metrics import velocity_mismatch as velocity_mismatch
-    from flockana.nets import components as components
-    from flockana.nets import laplacian as laplacian
-    from flockana.nets import links as links
+    from flockana.measures import metrics as metrics
+    from flockana.measures import reynolds as reynolds
+    from flockana.measures.metrics import cohesion_radius as cohesion_radius
+    from flockana.measures.metrics import connectivity as connectivity
+    from flockana.measures.metrics import coordination as coordination
+    from flockana.measures.metrics import deviation_energy as deviation_energy
+    from flockana.measures.metrics import giant_share as giant_share
+    from flockana.measures.metrics import inertia as inertia
+    from flockana.measures.metrics import min_distance as min_distance
+    from flockana.measures.metrics import order as order
+    from flockana.measures.metrics import velocity_mismatch as velocity_mismatch
+    from flockana.measures.nets import components as components
+    from flockana.measures.nets import laplacian as laplacian
+    from flockana.measures.nets import links as links
     from flockana.plots.animation import animate as animate
-    from flockana.references import cite as cite
     from flockana.scenarios.scenario import Scenario as Scenario
     from flockana.scenarios.scenario import scenario as scenario
     from flockana.scenarios.scenario import scenarios as scenarios
-    from flockana.simulate import simulate as simulate
     from flockana.stability.linearise import Linearisation as Linearisation
     from flockana.stability.linearise import linearise as linearise
     from flockana.stability.modes import Mode as Mode
@@ -88,8 +90,6 @@ if TYPE_CHECKING:
     from flockana.theorems.catalogue import verify as verify
     from flockana.theorems.theorem import Tolerances as Tolerances
     from flockana.theorems.theorem import Verdict as Verdict
-    from flockana.trajectory import Trajectory as Trajectory
-    from flockana.units import rescale as rescale
 
 _TARGETS = (
     "Target",
@@ -124,31 +124,40 @@ _BY_MODULE = {
     "laws.bearing_distance": ("ZoneFlocking",),
     "laws.minimal": ("MinimalFlocking", "DiscreteMinimalFlocking"),
     "laws.dead_zone": ("DeadZoneFlocking",),
-    "simulate": ("simulate",),
-    "trajectory": ("Trajectory",),
-    "units": ("rescale",),
-    "metrics": (*_METRICS, "min_distance", "order", "coordination"),
-    "nets": ("links", "components", "laplacian"),
+    "dynamics.simulate": ("simulate",),
+    "dynamics.trajectory": ("Trajectory",),
+    "base.units": ("rescale",),
+    "measures.metrics": (*_METRICS, "min_distance", "order", "coordination"),
+    "measures.nets": ("links", "components", "laplacian"),
     "equilibria": ("find_equilibrium", "Equilibrium"),
     "stability": ("linearise", "Linearisation", "Mode", "slowest_modes"),
     "theorems": ("theorems", "theorem", "verify", "Verdict", "Tolerances"),
     "scenarios": ("scenarios", "scenario", "Scenario"),
     "ensemble": ("ensemble", "shares"),
-    "intervals": ("clopper_pearson",),
+    "base.binomial": ("clopper_pearson",),
     "falsify": ("falsify", "Falsification", "replay"),
     "plots.animation": ("animate",),
-    "references": ("cite",),
+    "base.references": ("cite",),
 }
 _HOME = {name: module for module, names in _BY_MODULE.items() for name in names}
 
-_SUBMODULES = ("errors", "lattice", "metrics", "plots", "predicates", "reynolds", "stability", "symbolic")
+_SUBMODULES = {
+    "errors": "base.errors",
+    "lattice": "lattice",
+    "metrics": "measures.metrics",
+    "plots": "plots",
+    "predicates": "dynamics.predicates",
+    "reynolds": "measures.reynolds",
+    "stability": "stability",
+    "symbolic": "symbolic",
+}
 
 __all__ = ["__version__", *_SUBMODULES, *_HOME]  # all of them strings, from the table above
 
 
 def __getattr__(name: str) -> Any:
     if name in _SUBMODULES:
-        return import_module(f"flockana.{name}")
+        return import_module(f"flockana.{_SUBMODULES[name]}")
     if name not in _HOME:
         raise AttributeError(f"module 'flockana' has no attribute {name!r}")
     return globals().setdefault(name, getattr(import_module(f"flockana.{_HOME[name]}"), name))

@@ -33,7 +33,7 @@ from flockana import plots
 from flockana.course import grade
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.laws.minimal import MinimalFlocking
-from flockana.laws.perception import edge_vectors
+from flockana.measures.perception import edge_vectors
 from flockana.stability import linearise
 from flockana.symbolic import bearing_distance, spanning_trees
 

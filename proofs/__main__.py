@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 
-from flockana.cli import main
+from flockana.cli.main import main
 
 if __name__ == "__main__":
     main(["prove", *sys.argv[1:]])

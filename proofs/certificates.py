@@ -10,7 +10,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from flockana.files import replacing
+from flockana.base.files import replacing
 from proofs.run import Outcome
 
 SCHEMA = 1

@@ -11,7 +11,7 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from typing import Any
 
-from flockana.interrupts import interrupts_held, interrupts_hidden
+from flockana.base.interrupts import interrupts_held, interrupts_hidden
 from proofs.proof import Proof, Step, load
 
 START_LIMIT = 300.0  # seconds to import a proof in; only then its own limit begins

@@ -20,7 +20,7 @@ if hasattr(signal, "pthread_sigmask"):
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
 """
 IGNORES_CTRL_C = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)\n"
-CLI = "from flockana.cli import main\nmain()\n"
+CLI = "from flockana.cli.main import main\nmain()\n"
 posix = pytest.mark.skipif(os.name != "posix", reason="signals to a process group")
 
 

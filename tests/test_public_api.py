@@ -23,7 +23,7 @@ def test_importing_flockana_loads_nothing_heavy():
 def test_the_command_line_answers_help_without_loading_numerics():
     code = f"""
 import sys
-from flockana.cli import main
+from flockana.cli.main import main
 try:
     main(["--version"])
 except SystemExit as end:
@@ -41,17 +41,17 @@ def test_every_public_name_resolves(name):
 
 def test_functions_win_over_modules_of_the_same_name_whatever_was_imported_first():
     code = """
-import flockana.simulate, flockana.scenarios, flockana.theorems
+import flockana.dynamics.simulate, flockana.scenarios, flockana.theorems
 from flockana import simulate, scenarios, theorems
 print(*(type(x).__name__ for x in (simulate, scenarios, theorems, flockana.simulate)))
 """
     assert python(code) == "function function function function"
     assert isinstance(flockana.simulate, FunctionType)
-    assert isinstance(sys.modules["flockana.simulate"], ModuleType)
+    assert isinstance(sys.modules["flockana.dynamics.simulate"], ModuleType)
 
 
 def test_submodules_are_still_reachable():
-    assert python("import flockana.nets; print(flockana.nets.__name__)") == "flockana.nets"
+    assert python("import flockana.nets; print(flockana.nets.__name__)") == "flockana.measures.nets"
 
 
 def test_a_name_that_does_not_exist_is_an_attribute_error():

@@ -13,24 +13,15 @@ PACKAGE = "flockana"
 
 # Earlier lines may not import later ones; names on one line may not import each other, unless they are the same name.
 STAGES: tuple[tuple[str, ...], ...] = (
-    ("errors", "_version", "course", "interrupts"),
-    ("checks", "references", "files"),
-    ("serialize", "intervals", "scales", "units"),
+    ("_version", "course"),
+    ("base",),
     ("symbolic", "kernels"),
     ("interactions",),
-    ("environment", "nets"),
+    ("environment",),
+    ("measures",),
     ("lattice",),
     ("laws",),
-    ("metrics", "clearance", "reynolds", "encounters"),
-    ("paths", "between"),
-    ("trajectory",),
-    ("predicates",),
-    ("stepping",),
-    ("integrators",),
-    ("switched",),
-    ("simulate",),
-    ("curvature",),
-    ("terminal", "gradient_flow"),
+    ("dynamics",),
     ("equilibria",),
     ("stability",),
     ("theorems",),
@@ -39,11 +30,10 @@ STAGES: tuple[tuple[str, ...], ...] = (
     ("falsify",),
     ("plots",),
     ("report",),
-    ("commands",),
     ("cli",),
 )
 # The one door that opens upwards, when it is called and not before: `trajectory.animate()` is what a notebook says.
-DOORS = {("trajectory", "flockana.plots.film")}
+DOORS = {("dynamics", "flockana.plots.film")}
 STAGE = {name: k for k, names in enumerate(STAGES) for name in names}
 
 

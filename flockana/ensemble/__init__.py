@@ -1,10 +1,10 @@
 """Ensembles: many runs of a scenario, over seeds and options, verified, counted, and kept."""
 
+from flockana.base.binomial import clopper_pearson
 from flockana.ensemble.campaign import ensemble
 from flockana.ensemble.dataset import STATUSES, shares
 from flockana.ensemble.measures import METRICS
 from flockana.ensemble.phases import PHASES, phases
 from flockana.ensemble.store import Store
-from flockana.intervals import clopper_pearson
 
 __all__ = ["METRICS", "PHASES", "STATUSES", "Store", "clopper_pearson", "ensemble", "phases", "shares"]

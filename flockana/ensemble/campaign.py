@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.dynamics.trajectory import Trajectory
 from flockana.ensemble.dataset import RESERVED, job_grid, metric_name, to_dataset
 from flockana.ensemble.digest import run_key
 from flockana.ensemble.executors import crew, ensure_crew, make_runs
@@ -20,12 +22,10 @@ from flockana.ensemble.measures import METRICS
 from flockana.ensemble.processes import cores
 from flockana.ensemble.store import Store
 from flockana.ensemble.work import COMPLETE, Job, Request, Scalar, reference, resolve
-from flockana.errors import ArgumentError, UnknownNameError
 from flockana.scenarios import Scenario, scenarios
 from flockana.scenarios import scenario as named_scenario
 from flockana.scenarios.scenario import SOURCE
 from flockana.theorems import Tolerances, theorem, theorems
-from flockana.trajectory import Trajectory
 
 if TYPE_CHECKING:
     import xarray

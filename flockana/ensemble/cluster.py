@@ -12,9 +12,9 @@ from concurrent.futures import Executor
 from contextlib import contextmanager, suppress
 from typing import Any
 
+from flockana.base.errors import ArgumentError, SolverError
+from flockana.base.interrupts import interrupts_held, interrupts_hidden, interrupts_recognised
 from flockana.ensemble.processes import single_threaded_children
-from flockana.errors import ArgumentError, SolverError
-from flockana.interrupts import interrupts_held, interrupts_hidden, interrupts_recognised
 
 _CONNECT = 10.0  # seconds to find a scheduler and a worker
 _START = 120.0  # seconds for worker processes of our own to stand

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flockana._version import __version__
+from flockana.base.binomial import clopper_pearson, ensure_level
+from flockana.base.errors import ArgumentError
 from flockana.ensemble.measures import measure_named
 from flockana.ensemble.work import COMPLETE, DIED, ERROR, FAILED, Job, Record, Request, Scalar
-from flockana.errors import ArgumentError
-from flockana.intervals import clopper_pearson, ensure_level
 
 if TYPE_CHECKING:
     import xarray

@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any
 
 _LIBRARIES = ("numpy", "scipy", "numba")
-_SILENT = ("plots", "report", "commands", "cli", "falsify", "ensemble", "references", "_version", "__init__")
+_SILENT = ("plots", "report", "cli", "falsify", "ensemble", "base/references.py", "_version.py", "__init__.py")
 _ENSEMBLE = ("ensemble/work.py", "ensemble/measures.py")  # of the ensemble, what makes a record
 
 
@@ -41,8 +41,7 @@ def _sources(root: Path) -> list[Path]:
     """The package's modules and data that decide numbers."""
     files = (p for p in root.rglob("*") if p.suffix in (".py", ".json") and "__pycache__" not in p.parts)
     parts = ((p, p.relative_to(root)) for p in files)
-    silent = {*_SILENT}
-    return sorted(p for p, r in parts if r.as_posix() in _ENSEMBLE or not silent & {r.parts[0], r.parts[0][:-3]})
+    return sorted(p for p, r in parts if r.as_posix() in _ENSEMBLE or not {r.parts[0], r.as_posix()} & {*_SILENT})
 
 
 def digest_of_sources(sources: Mapping[str, bytes]) -> str:

@@ -14,10 +14,10 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
-from flockana.checks import ensure_count
+from flockana.base.checks import ensure_count
+from flockana.base.errors import ArgumentError, FlockanaError, SolverError
 from flockana.ensemble.processes import ProcessPool, cores
 from flockana.ensemble.work import DIED, Job, Record, Request, run_batch
-from flockana.errors import ArgumentError, FlockanaError, SolverError
 
 _TICK = 0.5  # seconds between looks around
 _QUEUED = 2  # batches per worker that are out at once: one at work, one ready

@@ -8,10 +8,10 @@ from math import nan
 
 import numpy as np
 
-from flockana import metrics as measure
+from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions.pair import pair_interaction
-from flockana.nets import components, link_lengths, links
-from flockana.trajectory import Trajectory
+from flockana.measures import metrics as measure
+from flockana.measures.nets import components, link_lengths, links
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flockana.checks import ensure_nonnegative
-from flockana.errors import ArgumentError
+from flockana.base.checks import ensure_nonnegative
+from flockana.base.errors import ArgumentError
 from flockana.theorems import Tolerances
 
 if TYPE_CHECKING:

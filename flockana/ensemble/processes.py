@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from multiprocessing.connection import wait as wait_for_end
 from typing import Any
 
-from flockana.interrupts import interrupts_held, interrupts_hidden
+from flockana.base.interrupts import interrupts_held, interrupts_hidden
 
 _END = 10.0  # seconds in which killed processes are gone
 _ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")

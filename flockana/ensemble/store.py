@@ -18,9 +18,9 @@ from pathlib import Path
 from types import TracebackType
 
 from flockana._version import __version__
+from flockana.base.errors import FileError
 from flockana.ensemble.digest import mathematics
 from flockana.ensemble.work import COMPLETE, Record
-from flockana.errors import FileError
 
 FORMAT = 1
 _MARK = 0x666C6F63  # "floc": tells our files from other SQLite files

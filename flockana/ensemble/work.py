@@ -9,14 +9,14 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
+from flockana.base.errors import ArgumentError, SolverError
+from flockana.base.interrupts import interrupts_recognised
+from flockana.dynamics.trajectory import Trajectory
 from flockana.ensemble.digest import mathematics
 from flockana.ensemble.measures import METRICS, measure_named
-from flockana.errors import ArgumentError, SolverError
-from flockana.interrupts import interrupts_recognised
 from flockana.scenarios import Scenario, scenario
 from flockana.scenarios.scenario import SOURCE
 from flockana.theorems import Tolerances, Verdict, verify
-from flockana.trajectory import Trajectory
 
 Scalar = bool | int | float | str
 COMPLETE, FAILED, ERROR, DIED = "complete", "failed", "error", "died"

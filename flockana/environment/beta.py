@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.checks import FloatArray
+from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError
 from flockana.environment.obstacles import Obstacle
-from flockana.errors import ArgumentError
 from flockana.interactions import BetaInteraction
 from flockana.kernels.obstacles import ObstacleKernels
 

@@ -9,11 +9,11 @@ from typing import Any, ClassVar
 import numpy as np
 from numba.extending import register_jitable
 
-from flockana.checks import FloatArray, ensure_positive
+from flockana.base.checks import FloatArray, ensure_positive
+from flockana.base.errors import ArgumentError
+from flockana.base.units import Powers
 from flockana.environment.obstacles import Obstacle, freeze_vector
-from flockana.errors import ArgumentError
 from flockana.kernels.obstacles import lift_obstacle, project_ball, turn_ball
-from flockana.units import Powers
 
 
 @register_jitable

@@ -10,11 +10,11 @@ from typing import Any, ClassVar
 import numpy as np
 from numba.extending import register_jitable
 
-from flockana.checks import FloatArray, ensure_points
+from flockana.base.checks import FloatArray, ensure_points
+from flockana.base.errors import ArgumentError
+from flockana.base.units import Powers
 from flockana.environment.obstacles import Obstacle
-from flockana.errors import ArgumentError
 from flockana.kernels.obstacles import lift_obstacle, no_turn
-from flockana.units import Powers
 
 
 @register_jitable

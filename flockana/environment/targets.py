@@ -15,9 +15,9 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from flockana.checks import FloatArray, ensure_finite_scalar, ensure_positive, ensure_vector
-from flockana.errors import ArgumentError
-from flockana.units import Powers
+from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive, ensure_vector
+from flockana.base.errors import ArgumentError
+from flockana.base.units import Powers
 
 _STEP = 1e-5  # of the path's own time, for dq_r/dt by central difference: error about 1e-10 relative on smooth paths
 _RESOLVED = 2.0**-26  # of |t|: a shorter step would lose half its digits in the rounding of t

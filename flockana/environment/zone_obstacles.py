@@ -12,11 +12,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.checks import FloatArray, ensure_points, ensure_vector
+from flockana.base.checks import FloatArray, ensure_points, ensure_vector
+from flockana.base.errors import ArgumentError
+from flockana.base.units import Powers
 from flockana.environment.obstacles import Sphere
-from flockana.errors import ArgumentError
 from flockana.kernels.zone_obstacles import polygon_clearance, polygon_clearance_on_segments
-from flockana.units import Powers
 
 
 @dataclass(frozen=True)

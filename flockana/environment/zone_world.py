@@ -8,12 +8,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.checks import FloatArray, ensure_positive, ensure_vector
+from flockana.base.checks import FloatArray, ensure_positive, ensure_vector
+from flockana.base.errors import ArgumentError
+from flockana.base.units import Powers
 from flockana.environment.obstacles import Sphere
 from flockana.environment.zone_obstacles import Box, SimplePolygon, ball_clearance_on_way
-from flockana.errors import ArgumentError
 from flockana.kernels.zones import World
-from flockana.units import Powers
 
 
 @dataclass(frozen=True)

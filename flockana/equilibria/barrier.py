@@ -10,7 +10,7 @@ from math import ceil, floor, inf, isfinite, pi, sin, sqrt
 
 import numpy as np
 
-from flockana.checks import FloatArray, ensure_count
+from flockana.base.checks import FloatArray, ensure_count
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.program import Program
 from flockana.equilibria.search import lattice_starts, random_starts

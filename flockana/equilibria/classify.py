@@ -6,10 +6,10 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from flockana.checks import FloatArray
-from flockana.curvature import Landscape, downhill
+from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError
+from flockana.equilibria.curvature import Landscape, downhill
 from flockana.equilibria.potential import Potential
-from flockana.errors import ArgumentError
 
 EquilibriumKind = Literal["minimum", "saddle", "maximum", "degenerate"]
 
@@ -78,7 +78,7 @@ def spectrum(potential: Potential, q: FloatArray) -> Spectrum:
     """Eigenvalues of the Hessian on the complement of the rigid motions that leave the potential unchanged.
 
     What is zero there is a soft mode: a hinge that bends, a component that drifts; or a direction whose stiffness is
-    no larger than what rounding and the force that is left account for (see `flockana.curvature`).
+    no larger than what rounding and the force that is left account for (see `flockana.equilibria.curvature`).
 
     Parameters
     ----------

@@ -6,7 +6,7 @@ from math import ceil
 
 import numpy as np
 
-from flockana.checks import FloatArray
+from flockana.base.checks import FloatArray
 from flockana.interactions import AlphaInteraction
 from flockana.symbolic.pair import ensure_dimension
 

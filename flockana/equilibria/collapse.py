@@ -9,14 +9,14 @@ from math import sqrt
 import numpy as np
 import numpy.typing as npt
 
-from flockana.checks import FloatArray, ensure_count, ensure_positive
+from flockana.base.checks import FloatArray, ensure_count, ensure_positive
+from flockana.base.errors import ArgumentError, SolverError
 from flockana.environment.targets import StaticTarget
 from flockana.equilibria.solve import Equilibrium, find_equilibrium
-from flockana.errors import ArgumentError, SolverError
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_spiral
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.metrics import coincident_pairs, min_distance
+from flockana.measures.metrics import coincident_pairs, min_distance
 
 CONTACT = 1e-6  # of d: closer than this two agents coincide
 _LOWEST, _FACTOR = 6e-3, 1.5  # where the search for the threshold starts, of `natural_ratio`, and its steps

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.spatial import KDTree
 from scipy.spatial.distance import cdist, pdist
 
-from flockana.checks import FloatArray
+from flockana.base.checks import FloatArray
 
 _FLAT = 1e-6  # of the extent: so near a line or a plane a configuration lies in it
 

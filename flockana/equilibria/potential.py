@@ -8,16 +8,16 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from flockana.checks import FloatArray
+from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError
 from flockana.environment.obstacles import Obstacle, Sphere, Wall
-from flockana.errors import ArgumentError
+from flockana.equilibria.terminal import rigid_motions
 from flockana.interactions.gains import weighted
 from flockana.interactions.pair import PairInteraction
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, moving_frame
-from flockana.nets import LinkArray
-from flockana.terminal import rigid_motions
+from flockana.measures.nets import LinkArray
 
 _CONCENTRIC = 1e-12  # of unit axes, or of the lengths at hand: what is less is rounding
 

@@ -15,13 +15,13 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from flockana.checks import FloatArray
+from flockana.base.checks import FloatArray
+from flockana.base.interrupts import interrupts_held
 from flockana.equilibria.potential import Potential, inside_obstacle
 from flockana.equilibria.terms import obstacle_term, pair_term, pull_term
-from flockana.interrupts import interrupts_held
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.nets import LinkArray
+from flockana.measures.nets import LinkArray
 
 # the box is there to keep steps short, and is seldom active at the end: a barrier of almost nothing
 _BOX = {"ipopt.mu_init": 1e-6, "ipopt.bound_push": 1e-8, "ipopt.bound_frac": 1e-8, "ipopt.bound_relax_factor": 0.0}

@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from flockana.base.errors import FileError, FlockanaError
+from flockana.base.files import replacing
+from flockana.base.serialize import from_data, to_data
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.solve import Equilibrium, finish
-from flockana.errors import FileError, FlockanaError
-from flockana.files import replacing
-from flockana.serialize import from_data, to_data
 
 _FORMAT = "flockana equilibrium 1"
 _AGREE = 1e-6  # relative: eigenvalues written on one machine and computed on another

@@ -11,12 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from flockana.checks import FloatArray, ensure_points, ensure_positive
+from flockana.base.checks import FloatArray, ensure_points, ensure_positive
+from flockana.base.errors import ArgumentError, SolverError, UnknownNameError
 from flockana.equilibria.congruence import congruent
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.solve import METHODS, Equilibrium, find_equilibrium
-from flockana.errors import ArgumentError, SolverError, UnknownNameError
-from flockana.metrics import coincident_pairs
+from flockana.measures.metrics import coincident_pairs
 
 SAME = 1e-5  # of d: how closely two equilibria must agree to be one
 _CONTACT = 1e-6  # of d

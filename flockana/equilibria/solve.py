@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from flockana.checks import FloatArray, ensure_finite_scalar, ensure_points, ensure_positive
+from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_points, ensure_positive
+from flockana.base.errors import SolverError, UnknownNameError
 from flockana.equilibria.classify import EquilibriumKind, ensure_small, falling, kind_of, spectrum
 from flockana.equilibria.potential import Potential, ensure_flock_law, inside_obstacle
 from flockana.equilibria.program import Program
-from flockana.errors import SolverError, UnknownNameError
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.nets import LinkArray, link_lengths, links
+from flockana.measures.nets import LinkArray, link_lengths, links
 
 METHODS = ("minimise", "root")
 RESIDUAL = 1e-9  # of the force scale: what counts as an equilibrium

@@ -12,9 +12,9 @@ from typing import Any
 import casadi as ca
 import sympy as sp
 
+from flockana.base.errors import ArgumentError
 from flockana.environment.obstacles import Obstacle, Sphere, Wall
 from flockana.equilibria.translate import to_casadi
-from flockana.errors import ArgumentError
 from flockana.interactions import AlphaInteraction, BetaInteraction, DeadZoneInteraction, PairInteraction
 from flockana.symbolic import dead_zone as dead
 from flockana.symbolic.functions import phi_alpha, phi_beta

@@ -9,7 +9,7 @@ from typing import Any
 import casadi as ca
 import sympy as sp
 
-from flockana.errors import ArgumentError
+from flockana.base.errors import ArgumentError
 
 _UNARY: dict[Any, Callable[[Any], Any]] = {
     sp.cos: ca.cos,

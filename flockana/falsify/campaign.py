@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from flockana.checks import FloatArray, ensure_count
-from flockana.errors import ArgumentError, UnknownNameError
+from flockana.base.checks import FloatArray, ensure_count
+from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.falsify.evaluate import Evaluation, Problem, units
 from flockana.falsify.falsification import Ending, Falsification
 from flockana.falsify.grade import FAILED, Lead

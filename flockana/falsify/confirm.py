@@ -6,12 +6,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any, Protocol
 
-from flockana.checks import FloatArray
-from flockana.integrators import FINEST
+from flockana.base.checks import FloatArray
+from flockana.dynamics.integrators import FINEST
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.law import DiscreteLaw, Law
-from flockana.simulate import simulate
 from flockana.theorems import Verdict
-from flockana.trajectory import Trajectory
 
 THOUSANDTH = 1e-3  # of a run's tolerances
 _DEFAULT = 1e-8  # the relative tolerance of `simulate`; for want of its own, that of a fixed step too

@@ -11,15 +11,15 @@ from pathlib import Path
 from typing import Any
 
 from flockana._version import __version__
-from flockana.checks import FloatArray, ensure_state, ensure_time_span
-from flockana.errors import FileError, FlockanaError
+from flockana.base.checks import FloatArray, ensure_state, ensure_time_span
+from flockana.base.errors import FileError, FlockanaError
+from flockana.base.files import replacing
+from flockana.base.serialize import from_data, to_data
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.trajectory import Trajectory, to_data_mapping
 from flockana.falsify.confirm import confirmed
-from flockana.files import replacing
 from flockana.laws.law import DiscreteLaw, Law, ensure_law
-from flockana.serialize import from_data, to_data
-from flockana.simulate import simulate
 from flockana.theorems import Theorem, Tolerances, Verdict, verify
-from flockana.trajectory import Trajectory, to_data_mapping
 
 FORMAT = "flockana-counterexample"
 FORMAT_VERSION = 1

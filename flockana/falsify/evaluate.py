@@ -7,14 +7,14 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from flockana.checks import FloatArray
+from flockana.base.checks import FloatArray
+from flockana.base.interrupts import interrupts_recognised
+from flockana.dynamics.trajectory import Trajectory
 from flockana.falsify.confirm import confirmed
 from flockana.falsify.grade import FAILED, LEADS, LIMITS, Lead, grade, squash
 from flockana.falsify.space import Space
-from flockana.interrupts import interrupts_recognised
 from flockana.scenarios import Scenario
 from flockana.theorems import Claim, Theorem, Tolerances, Verdict, verify
-from flockana.trajectory import Trajectory
 
 
 @dataclass(frozen=True)

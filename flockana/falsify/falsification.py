@@ -10,12 +10,12 @@ from typing import Literal
 
 import numpy as np
 
-from flockana.checks import FloatArray
-from flockana.errors import ArgumentError
+from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError
+from flockana.dynamics.trajectory import Trajectory
 from flockana.falsify.counterexample import Counterexample
 from flockana.scenarios import Scenario
 from flockana.theorems import Claim, Verdict
-from flockana.trajectory import Trajectory
 
 Ending = Literal["found", "budget", "interrupted"]
 _WORST_FIRST = ("refuted", "inconclusive", "verified", "vacuous", "failed")

@@ -11,11 +11,11 @@ from math import isfinite, isnan
 
 import numpy as np
 
-from flockana.nets import links
+from flockana.dynamics.trajectory import Trajectory
+from flockana.measures.nets import links
 from flockana.theorems import Claim, Hypothesis
-from flockana.theorems.collisions import met
+from flockana.theorems.olfati_saber.collisions import met
 from flockana.theorems.theorem import Tolerances
-from flockana.trajectory import Trajectory
 
 Lead = Callable[[Trajectory, Claim], float]
 FAILED = 1000.0

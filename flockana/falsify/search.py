@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.checks import FloatArray
+from flockana.base.checks import FloatArray
 
 _SIGMA = 0.2  # of the cube's side: the first generation covers most of it
 _FULL = 100  # dimensions up to which the whole covariance is learned, beyond them its diagonal (sep-CMA-ES)

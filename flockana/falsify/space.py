@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from flockana.checks import FloatArray, ensure_finite_scalar, ensure_positive
-from flockana.errors import ArgumentError
+from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive
+from flockana.base.errors import ArgumentError
 from flockana.scenarios import Scenario
 
 STATE = ("q", "p")

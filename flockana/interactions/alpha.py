@@ -10,14 +10,14 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.checks import FloatArray, ensure_positive
-from flockana.errors import ArgumentError
+from flockana.base.checks import FloatArray, ensure_positive
+from flockana.base.errors import ArgumentError
+from flockana.base.units import Powers
 from flockana.interactions.pair import PairInteraction, ensure_bump_start, ensure_resolved, evaluate
 from flockana.kernels import alpha as kernel
 from flockana.kernels.lift import lift, lift_scalar
 from flockana.kernels.scalars import bump, clenshaw, phi, phi_integral, sigma_norm
 from flockana.kernels.tables import integral_panels, panel_edges
-from flockana.units import Powers
 
 _STRENGTH_GRID = 2049
 MAX_ASYMMETRY = 1e12  # of repulsion over attraction: beyond it φ(0) = 0 is lost in rounding

@@ -9,14 +9,14 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.checks import FloatArray, ensure_positive
-from flockana.errors import ArgumentError
+from flockana.base.checks import FloatArray, ensure_positive
+from flockana.base.errors import ArgumentError
+from flockana.base.units import Powers
 from flockana.interactions.pair import ensure_bump_start, ensure_resolved, evaluate
 from flockana.kernels import alpha as kernel
 from flockana.kernels.lift import lift_scalar
 from flockana.kernels.scalars import clenshaw, sigma_norm
 from flockana.kernels.tables import integral_panels, panel_edges
-from flockana.units import Powers
 
 _ADJACENCY_BETA = lift_scalar(kernel.adjacency_beta)
 _PHI_BETA = lift_scalar(kernel.phi_beta)

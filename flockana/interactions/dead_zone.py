@@ -10,14 +10,14 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from flockana.checks import FloatArray, ensure_finite_scalar, ensure_positive
-from flockana.errors import ArgumentError
+from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive
+from flockana.base.errors import ArgumentError
+from flockana.base.units import Powers
 from flockana.interactions.pair import PairInteraction, evaluate
 from flockana.kernels import dead_zone as kernel
 from flockana.kernels.lift import lift, lift_scalar
 from flockana.kernels.scalars import clenshaw
 from flockana.kernels.tables import integral_panels
-from flockana.units import Powers
 
 _ACTION = lift_scalar(kernel.action)
 _FORCE = lift_scalar(kernel.force)

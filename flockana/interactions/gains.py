@@ -10,9 +10,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.checks import FloatArray, ensure_finite_scalar
-from flockana.errors import ArgumentError
-from flockana.units import Powers
+from flockana.base.checks import FloatArray, ensure_finite_scalar
+from flockana.base.errors import ArgumentError
+from flockana.base.units import Powers
 
 PER_AGENT = ("c1_gamma", "c2_gamma")
 

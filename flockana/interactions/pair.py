@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.checks import FloatArray, ensure_finite_scalar
-from flockana.errors import ArgumentError
+from flockana.base.checks import FloatArray, ensure_finite_scalar
+from flockana.base.errors import ArgumentError
 from flockana.kernels.lift import PairKernels
 from flockana.kernels.neighbours import pair_blocks
 from flockana.kernels.scalars import sigma_norm

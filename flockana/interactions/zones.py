@@ -8,9 +8,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.checks import FloatArray, ensure_nonnegative, ensure_positive
-from flockana.errors import ArgumentError
-from flockana.units import Powers
+from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_positive
+from flockana.base.errors import ArgumentError
+from flockana.base.units import Powers
 
 PerAgent = float | tuple[float, ...]
 Table = float | tuple[tuple[float, ...], ...]
@@ -135,7 +135,7 @@ class ZoneWeights:
     --------
     >>> ZoneWeights(cohesion=[[0.0, 0.0], [1.0, 0.0]])
     Traceback (most recent call last):
-    flockana.errors.ArgumentError: cohesion[0] sums to zero: its mean is not defined; switch cohesion off ...
+    flockana.base.errors.ArgumentError: cohesion[0] sums to zero: its mean is not defined; switch cohesion off ...
     """
 
     separation: Table = 5.0

@@ -44,7 +44,7 @@ class ObstacleKernels:
     near : callable
         ``near(points, reach, allowance, pars, starts, balls, shell, far, agents, bodies)`` fills in which agent, on a
         path with these control points, may pass the distance `shell` of which obstacle, or go farther than `far` within
-        it, and returns how many there are (`flockana.encounters`).
+        it, and returns how many there are (`flockana.dynamics.encounters`).
     turns : bool
         Whether the kind says how p̂ turns as an agent moves; if not, `braking` is right where p = 0 alone.
     """

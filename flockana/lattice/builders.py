@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from flockana.checks import FloatArray, ensure_count, ensure_positive
-from flockana.errors import UnknownNameError
+from flockana.base.checks import FloatArray, ensure_count, ensure_positive
+from flockana.base.errors import UnknownNameError
 
 _STEPS = np.array(
     [(1.0, 0.0), (0.5, 0.75**0.5), (-0.5, 0.75**0.5), (-1.0, 0.0), (-0.5, -(0.75**0.5)), (0.5, -(0.75**0.5))]

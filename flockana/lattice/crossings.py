@@ -22,11 +22,11 @@ from typing import Any
 
 import numpy as np
 
-from flockana.checks import FloatArray, ensure_points, ensure_positive
-from flockana.errors import ArgumentError
+from flockana.base.checks import FloatArray, ensure_points, ensure_positive
+from flockana.base.errors import ArgumentError
 from flockana.kernels.crossings import crossing_blocks, nearest_links
 from flockana.kernels.segments import meet
-from flockana.nets import LinkArray
+from flockana.measures.nets import LinkArray
 
 _ROUNDINGS = 8.0  # of eps: two subtractions and a product on either side
 

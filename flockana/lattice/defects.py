@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.checks import FloatArray, ensure_count, ensure_points
+from flockana.base.checks import FloatArray, ensure_count, ensure_points
 from flockana.lattice.crossings import ensure_links, turns_left
 from flockana.lattice.planarity import ensure_plane
-from flockana.nets import LinkArray
+from flockana.measures.nets import LinkArray
 
 IntArray = npt.NDArray[np.int64]
 

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from flockana import nets
-from flockana.checks import ensure_nonnegative, ensure_points, ensure_positive
-from flockana.errors import ArgumentError
-from flockana.nets import LinkArray, link_lengths
+from flockana.base.checks import ensure_nonnegative, ensure_points, ensure_positive
+from flockana.base.errors import ArgumentError
+from flockana.measures import nets
+from flockana.measures.nets import LinkArray, link_lengths
 
 GUARD = 1e-12  # relative: above the rounding of lattices of up to 1e6 agents near the origin
 
@@ -20,7 +20,7 @@ def links(q: Any, r: float, *, guard: float = GUARD) -> LinkArray:
 
     The neighbour relation is strict, so a pattern may be used up to the very ratio at which second neighbours stand at
     distance r. In floating point they may then stand an ulp closer: here ‖q_j − q_i‖ >= r (1 − guard) counts as r.
-    `flockana.nets.links`, which the laws use, compares what is stored: it is this function with guard = 0.
+    `flockana.measures.nets.links`, which the laws use, compares what is stored: it is this function with guard = 0.
 
     Parameters
     ----------

@@ -8,10 +8,10 @@ from typing import Any, Literal
 
 import numpy as np
 
-from flockana.checks import ensure_count
-from flockana.errors import ArgumentError
+from flockana.base.checks import ensure_count
+from flockana.base.errors import ArgumentError
 from flockana.lattice.crossings import ensure_links
-from flockana.nets import LinkArray
+from flockana.measures.nets import LinkArray
 
 
 def harborth(n: int) -> int:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.checks import FloatArray, ensure_points, ensure_positive
-from flockana.errors import SolverError
+from flockana.base.checks import FloatArray, ensure_points, ensure_positive
+from flockana.base.errors import SolverError
 from flockana.lattice.crossings import ensure_links
 
 if TYPE_CHECKING:

@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.checks import FloatArray, ensure_points
+from flockana.base.checks import FloatArray, ensure_points
+from flockana.base.errors import ArgumentError
+from flockana.base.scales import Scales
 from flockana.environment.beta import ObstacleField, check_free
 from flockana.environment.obstacles import Obstacle
 from flockana.environment.targets import Target
-from flockana.errors import ArgumentError
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
 from flockana.interactions.gains import weighted
 from flockana.laws.law import Law, block_diagonal
 from flockana.laws.olfati_saber import alpha_scales
-from flockana.scales import Scales
 
 if TYPE_CHECKING:
     from scipy.sparse import sparray

@@ -12,14 +12,14 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from flockana.checks import FloatArray, ensure_positive, ensure_state
+from flockana.base.checks import FloatArray, ensure_positive, ensure_state
+from flockana.base.errors import ArgumentError
+from flockana.base.scales import Scales
+from flockana.base.units import Powers
 from flockana.environment.zone_world import ZoneWorld
-from flockana.errors import ArgumentError
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.kernels import zones as compiled
 from flockana.laws.law import DiscreteLaw
-from flockana.scales import Scales
-from flockana.units import Powers
 
 CHOICES: dict[str, tuple[str, ...]] = {
     "form": ("position", "bearing"),

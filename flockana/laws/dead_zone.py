@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from flockana.checks import FloatArray, ensure_finite_scalar, ensure_points, ensure_state
-from flockana.errors import ArgumentError
+from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_points, ensure_state
+from flockana.base.errors import ArgumentError
+from flockana.base.scales import Scales
+from flockana.base.units import Powers
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.kernels.dead_zone import ATTRACTION, DEAD, OUT, semi_implicit_steps, zone_forces, zone_margins, zones
 from flockana.laws.olfati_saber import moving_frame
 from flockana.laws.switched import Margins, Pieces, SwitchedLaw
-from flockana.nets import components, links
-from flockana.scales import Scales
-from flockana.units import Powers
+from flockana.measures.nets import components, links
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array

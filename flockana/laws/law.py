@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from flockana.checks import FloatArray, ensure_finite_scalar, ensure_fits, ensure_state
-from flockana.errors import ArgumentError
+from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_fits, ensure_state
+from flockana.base.errors import ArgumentError
+from flockana.base.scales import Scales
+from flockana.base.units import Powers
 from flockana.interactions.pair import pair_interaction
-from flockana.scales import Scales
-from flockana.units import Powers
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array, sparray
@@ -56,7 +56,7 @@ class Law(ABC):
         """Distances between agents at which a force begins, ends or jumps, each one number or one for every agent.
 
         Those of the law's pair interaction of finite range, if it has one. An integrator must not step over the region
-        within one unseen (`flockana.encounters`).
+        within one unseen (`flockana.dynamics.encounters`).
         """
         pair = pair_interaction(self)
         return () if pair is None else pair.surfaces

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from flockana.checks import FloatArray, ensure_nonnegative, ensure_points, ensure_positive
-from flockana.errors import ArgumentError
+from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_points, ensure_positive
+from flockana.base.errors import ArgumentError
+from flockana.base.scales import Scales
+from flockana.base.units import Powers, times
 from flockana.kernels.minimal import edge_forces, perceived_edges
 from flockana.laws.law import DiscreteLaw, Law
-from flockana.laws.perception import Edges, ensure_edges
-from flockana.nets import components
-from flockana.scales import Scales
-from flockana.units import Powers, times
+from flockana.measures.nets import components
+from flockana.measures.perception import Edges, ensure_edges
 
 if TYPE_CHECKING:
     from scipy.sparse import sparray

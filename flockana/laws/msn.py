@@ -8,16 +8,16 @@ from typing import ClassVar
 
 import numpy as np
 
-from flockana.checks import FloatArray, ensure_finite_scalar, ensure_positive
+from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive
+from flockana.base.errors import ArgumentError
+from flockana.base.scales import Scales
+from flockana.base.units import Powers
 from flockana.environment.targets import Target
-from flockana.errors import ArgumentError
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.kernels.inplace import advance_alpha, neighbour_lists
 from flockana.kernels.neighbours import pair_list
 from flockana.laws.law import DiscreteLaw
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain
-from flockana.scales import Scales
-from flockana.units import Powers
 
 PRINTED = 1.5  # q + (p + u dt) dt + ½ u dt² = q + p dt + (3/2) u dt² (erratum E9)
 CONSTANT_ACCELERATION = 0.5

@@ -12,12 +12,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.checks import FloatArray, ensure_positive
-from flockana.errors import ArgumentError
+from flockana.base.checks import FloatArray, ensure_positive
+from flockana.base.errors import ArgumentError
+from flockana.base.units import Powers
 from flockana.interactions import AlphaInteraction
 from flockana.kernels.neighbours import pair_blocks
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.units import Powers
 
 MIN_DISTANCE, FACTOR = 0.05, 10.0
 

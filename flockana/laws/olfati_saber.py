@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from flockana.checks import FloatArray, ensure_points, ensure_state
+from flockana.base.checks import FloatArray, ensure_points, ensure_state
+from flockana.base.errors import ArgumentError
+from flockana.base.scales import Scales
 from flockana.environment.targets import Target
-from flockana.errors import ArgumentError
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.interactions.gains import weighted
 from flockana.laws.law import Law, block_diagonal
-from flockana.scales import Scales
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array, sparray

@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar, TypeGuard
 
-from flockana.checks import FloatArray, ensure_positive
-from flockana.errors import ArgumentError
+from flockana.base.checks import FloatArray, ensure_positive
+from flockana.base.errors import ArgumentError
+from flockana.base.scales import Scales
+from flockana.base.units import Powers
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.law import DiscreteLaw, Law
-from flockana.scales import Scales
-from flockana.units import Powers
 
 
 @dataclass(frozen=True)

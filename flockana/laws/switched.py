@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from flockana.checks import FloatArray
+from flockana.base.checks import FloatArray
 from flockana.laws.law import Law
 
 Pieces = npt.NDArray[np.int8]

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 import matplotlib as mpl
 import numpy as np
 
-from flockana.checks import FloatArray, ensure_positive
-from flockana.errors import ArgumentError, FileError
-from flockana.files import replacing
+from flockana.base.checks import FloatArray, ensure_positive
+from flockana.base.errors import ArgumentError, FileError
+from flockana.base.files import replacing
 from flockana.laws.law import DiscreteLaw
 from flockana.plots.snapshot import drawn_law, in_view, snapshot
 from flockana.plots.style import style
@@ -22,7 +22,7 @@ from flockana.plots.style import style
 if TYPE_CHECKING:
     from matplotlib.animation import FuncAnimation
 
-    from flockana.trajectory import Trajectory
+    from flockana.dynamics.trajectory import Trajectory
 
 _DPI = 100
 _WIDTH, _LEAST, _MOST = 8.0, 3.2, 7.0  # inches: of the film, and between what its height lies

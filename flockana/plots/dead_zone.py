@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flockana.errors import ArgumentError
+from flockana.base.errors import ArgumentError
 from flockana.plots.style import BLUE, MUTED, VERMILLION, ensure_axes, legend_above
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from flockana.dynamics.trajectory import Trajectory
     from flockana.interactions import DeadZoneInteraction
-    from flockana.trajectory import Trajectory
 
 _SAMPLES = 300
 

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import PercentFormatter
 
-from flockana.errors import ArgumentError, UnknownNameError
+from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.plots.style import BLUE, FAINT, GREEN, INK, MUTED, ORANGE, VERMILLION, ensure_axes
 
 if TYPE_CHECKING:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
-from flockana.checks import FloatArray
-from flockana.errors import ArgumentError
+from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError
 from flockana.plots.style import BLUE, INK, MUTED, VERMILLION, ensure_axes, legend_above
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from flockana.plots.animation import animate, animation, frame_count
 
 if TYPE_CHECKING:
-    from flockana.trajectory import Trajectory
+    from flockana.dynamics.trajectory import Trajectory
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.checks import ensure_finite_scalar
-from flockana.errors import ArgumentError
+from flockana.base.checks import ensure_finite_scalar
+from flockana.base.errors import ArgumentError
 from flockana.laws.minimal import MinimalFlocking
 from flockana.plots.snapshot import configuration, draw_sample, drawn_law
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from flockana.trajectory import Trajectory
+    from flockana.dynamics.trajectory import Trajectory
 
 
 def perception(

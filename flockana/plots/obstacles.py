@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.patches import Polygon
 
-from flockana.checks import FloatArray
+from flockana.base.checks import FloatArray
 from flockana.environment.obstacles import Obstacle
 from flockana.plots.style import FAINT, MUTED, ensure_axes
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.errors import ArgumentError
+from flockana.base.errors import ArgumentError
 from flockana.plots.style import BLUE, FAINT, INK, ensure_axes, hairline
 
 if TYPE_CHECKING:

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.collections import LineCollection
 
-from flockana.checks import FloatArray, ensure_points
-from flockana.errors import ArgumentError
+from flockana.base.checks import FloatArray, ensure_points
+from flockana.base.errors import ArgumentError
+from flockana.measures.reynolds import Reynolds
 from flockana.plots.style import BLUE, FAINT, GREEN, INK, VERMILLION, ensure_axes, frame_space, legend_above
-from flockana.reynolds import Reynolds
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,7 +24,7 @@ def rules(parts: Reynolds, q: Any, *, ax: Axes | None = None) -> Axes:
     Parameters
     ----------
     parts : Reynolds
-        What `flockana.reynolds.reynolds` found.
+        What `flockana.measures.reynolds.reynolds` found.
     q : array_like, shape (n, 2)
         The positions that it was given.
     ax : matplotlib.axes.Axes, optional

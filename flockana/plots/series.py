@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.ticker import FormatStrFormatter, MaxNLocator, NullFormatter
 
-from flockana.errors import UnknownNameError
+from flockana.base.errors import UnknownNameError
 from flockana.laws.law import DiscreteLaw
 from flockana.plots.style import BLUE, GREEN, INK, MUTED, PURPLE, VERMILLION, ensure_axes, hairline, legend_above, style
 from flockana.scenarios.findings import component_counts
@@ -15,7 +15,7 @@ from flockana.scenarios.findings import component_counts
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from flockana.trajectory import Trajectory
+    from flockana.dynamics.trajectory import Trajectory
 
 # name in Trajectory.metrics(), label, logarithmic
 MEASURES = {

@@ -15,12 +15,12 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 from mpl_toolkits.mplot3d.art3d import Line3DCollection  # type: ignore[import-untyped]
 
-from flockana.checks import FloatArray, ensure_finite_scalar, ensure_points
+from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_points
 from flockana.environment.beta import ObstacleField
 from flockana.environment.obstacles import Obstacle
 from flockana.interactions import BetaInteraction
 from flockana.interactions.pair import pair_interaction
-from flockana.nets import link_lengths, links
+from flockana.measures.nets import link_lengths, links
 from flockana.plots.obstacles import bounds
 from flockana.plots.obstacles import obstacles as draw_obstacles
 from flockana.plots.style import GREEN, INK, MUTED, PURPLE, STRAIN, VERMILLION, ensure_axes, frame_space
@@ -28,7 +28,7 @@ from flockana.plots.style import GREEN, INK, MUTED, PURPLE, STRAIN, VERMILLION, 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from flockana.trajectory import Trajectory
+    from flockana.dynamics.trajectory import Trajectory
 
 _ARROW = 0.07  # longest arrow as a share of the axes' width
 _MANY = 4.0  # links per agent beyond which they are drawn thinner; a lattice has 3

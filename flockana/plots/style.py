@@ -11,7 +11,7 @@ from cycler import cycler
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.ticker import MaxNLocator
 
-from flockana.checks import FloatArray
+from flockana.base.checks import FloatArray
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

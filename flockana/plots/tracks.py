@@ -8,13 +8,13 @@ import numpy as np
 from matplotlib.collections import LineCollection
 from mpl_toolkits.mplot3d.art3d import Line3DCollection  # type: ignore[import-untyped]
 
-from flockana.checks import FloatArray
+from flockana.base.checks import FloatArray
 from flockana.plots.style import BLUE, INK, MUTED, VERMILLION, ensure_axes, frame_space, hairline, legend_above
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from flockana.trajectory import Trajectory
+    from flockana.dynamics.trajectory import Trajectory
 
 _STILL = 1e-6  # of the flock's extent: a centre that moves by less stands still
 

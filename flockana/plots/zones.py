@@ -10,12 +10,12 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.patches import Circle, Polygon, Rectangle
 from mpl_toolkits.mplot3d.art3d import Line3DCollection  # type: ignore[import-untyped]
 
-from flockana.checks import FloatArray, ensure_finite_scalar
+from flockana.base.checks import FloatArray, ensure_finite_scalar
+from flockana.base.errors import ArgumentError
 from flockana.environment.obstacles import Sphere
 from flockana.environment.zone_world import ZoneWorld
-from flockana.errors import ArgumentError
 from flockana.laws.bearing_distance import ZoneFlocking
-from flockana.nets import links
+from flockana.measures.nets import links
 from flockana.plots.obstacles import bounds
 from flockana.plots.obstacles import obstacles as draw_obstacles
 from flockana.plots.snapshot import configuration, draw_sample, in_view, velocity_arrows
@@ -37,7 +37,7 @@ from flockana.plots.style import (
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from flockana.trajectory import Trajectory
+    from flockana.dynamics.trajectory import Trajectory
 
 
 def _law(trajectory: Trajectory) -> ZoneFlocking:

@@ -16,8 +16,8 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from flockana._version import __version__
-from flockana.errors import FileError
-from flockana.files import replacing
+from flockana.base.errors import FileError
+from flockana.base.files import replacing
 from flockana.report.lattices import lattice_section
 from flockana.report.pages import FixedPage, FixedResult, Page, ScenarioPage, ScenarioResult, page
 from flockana.report.stability import stability_section

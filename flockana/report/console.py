@@ -14,12 +14,12 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 from rich.text import Text
 
+from flockana.dynamics.trajectory import Trajectory
 from flockana.report.pages import Finding, Page, ScenarioPage
 from flockana.report.statistics import StatisticsSection
 from flockana.report.text import MARKS, deciding_claim, show
 from flockana.scenarios import scenario, scenarios
 from flockana.theorems import Verdict, theorem, theorems
-from flockana.trajectory import Trajectory
 
 _COLOURS = {"verified": "green", "refuted": "dark_orange3", "vacuous": "bright_black", "inconclusive": "yellow"}
 

@@ -15,11 +15,11 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from flockana import plots
+from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions.pair import pair_interaction
 from flockana.laws.minimal import MinimalFlocking
 from flockana.plots.snapshot import drawn_law
 from flockana.scenarios.findings import component_counts
-from flockana.trajectory import Trajectory
 
 _DPI = 125
 

@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from flockana.dynamics.trajectory import Trajectory
 from flockana.report.figures import Picture, pictures
 from flockana.report.text import parameters
 from flockana.scenarios import Scenario
 from flockana.scenarios.scenario import SOURCE, differences
 from flockana.theorems import Theorem, Verdict, theorem
 from flockana.theorems.theorem import Status
-from flockana.trajectory import Trajectory
 
 
 @dataclass(frozen=True)

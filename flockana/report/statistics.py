@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flockana import plots
+from flockana.base.errors import ArgumentError
 from flockana.ensemble import shares
 from flockana.ensemble.dataset import to_dataset
 from flockana.ensemble.work import Job, Record, Request, run_batch
-from flockana.errors import ArgumentError
 from flockana.report.figures import Picture, png
 from flockana.scenarios import Scenario, scenario, scenarios
 from flockana.scenarios.scenario import SOURCE

@@ -8,9 +8,9 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
 
+from flockana.base.errors import ArgumentError, FlockanaError, SolverError, UnknownNameError
+from flockana.base.interrupts import interrupts_recognised
 from flockana.ensemble.processes import ProcessPool
-from flockana.errors import ArgumentError, FlockanaError, SolverError, UnknownNameError
-from flockana.interrupts import interrupts_recognised
 from flockana.report.pages import FixedResult, Page, ScenarioResult, page
 from flockana.report.statistics import Survey, Surveyed, carry_out
 from flockana.scenarios import scenario, scenarios

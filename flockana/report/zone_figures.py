@@ -5,10 +5,10 @@ from __future__ import annotations
 from matplotlib.figure import Figure
 
 from flockana import plots
+from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.report.figures import Picture, png
 from flockana.scenarios.findings import component_counts
-from flockana.trajectory import Trajectory
 
 LAWS = (ZoneFlocking,)
 

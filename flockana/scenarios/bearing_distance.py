@@ -14,18 +14,18 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from flockana.checks import FloatArray
+from flockana.base.checks import FloatArray
+from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.zone_obstacles import Box, SimplePolygon
 from flockana.environment.zone_world import Alien, ZoneWorld
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
-from flockana.nets import components, links
+from flockana.measures.nets import components, links
 from flockana.scenarios.findings import component_counts, finding, in_source_units
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.shares import zone_start
 from flockana.theorems.theorem import Status
-from flockana.trajectory import Trajectory
 
 N, AREA, SPEED = 10, 10.0, 3.0
 SAFE, IN_ORDER = 1.5, 0.99  # m; what counts as C = 1

@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from flockana.checks import ensure_positive
+from flockana.base.checks import ensure_positive
+from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.law import DiscreteLaw
@@ -14,11 +15,10 @@ from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.scenarios.findings import finding
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
-from flockana.theorems.dead_zone_case import at_the_end, dead_zone_law, one_velocity
-from flockana.theorems.dead_zone_range import thinned
+from flockana.theorems.dead_zone.case import at_the_end, dead_zone_law, one_velocity
+from flockana.theorems.dead_zone.range_limits import thinned
 from flockana.theorems.rounding import EPS
 from flockana.theorems.theorem import Status
-from flockana.trajectory import Trajectory
 
 _PRINTED = (
     "Li, Yuan and Liu, section V: n = 50, r = 15, δ = 4.5, k_δ = 1.3, no more. Ours: r_b = 8, so that the flock fits "

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from flockana.base.scales import Scales
+from flockana.base.units import rescale
+from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions.pair import pair_interaction
-from flockana.nets import components, links
-from flockana.scales import Scales
+from flockana.measures.nets import components, links
 from flockana.theorems.limits import Certificate, limit_claim
 from flockana.theorems.theorem import Claim, Tolerances, judge
-from flockana.trajectory import Trajectory
-from flockana.units import rescale
 
 Check = Callable[[Trajectory, Tolerances], Claim]
 ROUNDING = 1e-12  # relative, of what a report measures

@@ -12,15 +12,15 @@ from dataclasses import replace
 
 import numpy as np
 
+from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.minimal import MinimalFlocking
-from flockana.laws.perception import both_ways, random_out_tree
-from flockana.metrics import coordination
+from flockana.measures.metrics import coordination
+from flockana.measures.perception import both_ways, random_out_tree
 from flockana.scenarios.findings import finding, in_source_units
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
-from flockana.theorems.j11 import ALIGNED, DT, DURATION, LONGER, RECOMMENDED, minimal_start
+from flockana.theorems.bearing_distance.j11 import ALIGNED, DT, DURATION, LONGER, RECOMMENDED, minimal_start
 from flockana.theorems.theorem import Status
-from flockana.trajectory import Trajectory
 
 _SETTLED = 0.1  # largest relative change of a distance over the last tenth of the run that counts as at rest
 _REFERENCES = ("jond-2025",)

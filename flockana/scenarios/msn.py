@@ -13,20 +13,20 @@ from math import sqrt
 
 import numpy as np
 
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import CircleTarget, RescaledVelocity, SineTarget, StaticTarget
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.law import DiscreteLaw, Law
 from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.metrics import connectivity, giant_share
-from flockana.nets import links, printed_rank_connectivity
+from flockana.measures.metrics import connectivity, giant_share
+from flockana.measures.nets import links, printed_rank_connectivity
 from flockana.scenarios.findings import as_tightly, component_count, finding, in_source_units
 from flockana.scenarios.scenario import Report, Scenario
-from flockana.simulate import simulate
 from flockana.stability.tracking import response_ratio
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.theorem import Status
-from flockana.trajectory import Trajectory
 
 DT, ITERATIONS = 0.009, 540
 _ALPHA = AlphaInteraction(d=15.0, r=18.0, eps=0.1, h=0.1, a=3.0, b=3.0)

@@ -6,18 +6,18 @@ from typing import Any
 
 import numpy as np
 
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import StaticTarget
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.notebook import MIN_DISTANCE, PushedAlgorithm1, PushedAlgorithm2
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.paths import contacts
+from flockana.measures.path_bounds import contacts
 from flockana.scenarios.findings import ROUNDING, as_tightly, finding, in_source_units, in_the_end
 from flockana.scenarios.scenario import Report, Scenario
-from flockana.simulate import simulate
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.limits import Certificate
 from flockana.theorems.theorem import Status
-from flockana.trajectory import Trajectory
 
 _FOLLOWS = 0.01  # ‖u_γ‖ in the notebook's units that counts as following
 _UNIT = {"c1_alpha": 1.0, "c2_alpha": 1.0}

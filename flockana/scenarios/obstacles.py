@@ -10,19 +10,19 @@ from typing import Any
 
 import numpy as np
 
-from flockana.checks import FloatArray
-from flockana.clearance import ConstrainedLattice, constrained_lattice
+from flockana.base.checks import FloatArray
+from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.capsule import Capsule
 from flockana.environment.obstacles import Obstacle, Sphere
 from flockana.environment.targets import LinearTarget, StaticTarget, Target
 from flockana.interactions import BetaInteraction, Gains
 from flockana.laws.algorithm3 import Algorithm3
+from flockana.measures.clearance import ConstrainedLattice, constrained_lattice
 from flockana.scenarios.findings import ROUNDING, component_counts, finding, in_source_units, in_the_end
 from flockana.scenarios.scenario import SOURCE, Report, Scenario
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.limits import Certificate
 from flockana.theorems.theorem import Status
-from flockana.trajectory import Trajectory
 
 # The pull on an agent saturates at c1γ, so that it nears the γ-agent at c1γ/c2γ at most. With Algorithm 2's 1.1 and
 # 2√1.1 that is 0.5: a flock of spread 50 would need some 300 time units to gather. With c1γ = 30 agents coincide.

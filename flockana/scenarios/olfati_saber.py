@@ -9,20 +9,20 @@ from types import MappingProxyType
 
 import numpy as np
 
-from flockana.checks import FloatArray
+from flockana.base.checks import FloatArray
+from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.metrics import coincident_pairs, deviation_energy, giant_share
-from flockana.nets import components, link_lengths, links
+from flockana.measures.metrics import coincident_pairs, deviation_energy, giant_share
+from flockana.measures.nets import components, link_lengths, links
 from flockana.scenarios.findings import ROUNDING, component_count, finding, in_the_end
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.asymptotics import velocities_match
-from flockana.theorems.attraction import held
 from flockana.theorems.limits import decay
+from flockana.theorems.olfati_saber.attraction import held
 from flockana.theorems.theorem import Status
-from flockana.trajectory import Trajectory
 
 _OURS = (
     "The gains are not printed and are ours (c1α = 30, c2α = 2√30, c1γ = 1.1, c2γ = 2√1.1), as are the seed and the "

@@ -6,7 +6,7 @@ from math import sqrt
 
 import numpy as np
 
-from flockana.checks import ensure_count, ensure_nonnegative, ensure_positive
+from flockana.base.checks import ensure_count, ensure_nonnegative, ensure_positive
 from flockana.environment.targets import StaticTarget
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm2

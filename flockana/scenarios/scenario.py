@@ -10,15 +10,15 @@ from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import Any
 
-from flockana.checks import FloatArray
-from flockana.errors import ArgumentError, UnknownNameError
+from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.base.units import rescale, times
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.law import DiscreteLaw, Law
-from flockana.simulate import simulate
 from flockana.theorems import Claim, Tolerances, Verdict, verify
 from flockana.theorems.second_run import corroborated
 from flockana.theorems.theorem import Status
-from flockana.trajectory import Trajectory
-from flockana.units import rescale, times
 
 SOURCE = "source"  # the id under which a source's own report is judged
 

@@ -12,7 +12,7 @@ from flockana.interactions import Gains
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.scenarios.scenario import Scenario
-from flockana.theorems.e3 import rhombus_with_double_agent
+from flockana.theorems.slides.e03 import rhombus_with_double_agent
 from flockana.theorems.theorem import Status
 
 _REFERENCES = ("olfati-saber-2006", "flockana")

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from flockana.checks import FloatArray, ensure_points
+from flockana.base.checks import FloatArray, ensure_points
+from flockana.base.errors import ArgumentError
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.solve import RESIDUAL
-from flockana.errors import ArgumentError
+from flockana.equilibria.terminal import rigid_motions
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.stability.linearise import linearise
-from flockana.terminal import rigid_motions
 
 NEUTRAL = 1e-9  # of the largest stiffness: a rigid motion that meets no more than that is neutral
 MOST = 2000  # rows of a dense matrix of the second order; its state space has twice as many

@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from flockana.checks import FloatArray, ensure_positive
-from flockana.errors import ArgumentError
+from flockana.base.checks import FloatArray, ensure_positive
+from flockana.base.errors import ArgumentError
+from flockana.dynamics.simulate import simulate
 from flockana.interactions.pair import pair_interaction
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, moving_frame
-from flockana.nets import links
-from flockana.simulate import simulate
+from flockana.measures.nets import links
 from flockana.stability.linearise import Linearisation
 from flockana.stability.modes import Mode
 from flockana.stability.motion import mode_motion

@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.checks import FloatArray, ensure_count, ensure_positive
-from flockana.curvature import EPS
-from flockana.errors import UnknownNameError
+from flockana.base.checks import FloatArray, ensure_count, ensure_positive
+from flockana.base.errors import UnknownNameError
+from flockana.equilibria.curvature import EPS
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.stability.blocks import second_order
 from flockana.stability.rounding import eigen

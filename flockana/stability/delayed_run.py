@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from flockana.checks import FloatArray, ensure_count, ensure_positive, ensure_state, ensure_time_span
-from flockana.encounters import Encounters, State
-from flockana.errors import ArgumentError, UnknownNameError
-from flockana.integrators import count_steps
+from flockana.base.checks import FloatArray, ensure_count, ensure_positive, ensure_state, ensure_time_span
+from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.dynamics.encounters import Encounters, State
+from flockana.dynamics.integrators import count_steps
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.stability.delay import DELAYED
 
@@ -62,8 +62,8 @@ def simulate_delayed(
     Raises
     ------
     ArgumentError
-        On bad arguments; on the way, if a step leaps over an encounter (`flockana.encounters`): steps divide the delay,
-        so that one cannot be made shorter, and the error names how many it takes.
+        On bad arguments; on the way, if a step leaps over an encounter (`flockana.dynamics.encounters`): steps divide
+        the delay, so that one cannot be made shorter, and the error names how many it takes.
 
     Examples
     --------

@@ -27,12 +27,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.checks import FloatArray, ensure_count, ensure_nonnegative, ensure_points
-from flockana.errors import ArgumentError, UnknownNameError
+from flockana.base.checks import FloatArray, ensure_count, ensure_nonnegative, ensure_points
+from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.equilibria.terminal import rigid_motions
 from flockana.interactions import Gains
 from flockana.interactions.alpha import AlphaInteraction
 from flockana.stability.blocks import complement
-from flockana.terminal import rigid_motions
 
 ComplexArray = npt.NDArray[np.complex128]
 

@@ -10,14 +10,21 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.checks import FloatArray, ensure_finite_scalar, ensure_fits, ensure_points, ensure_positive, ensure_state
-from flockana.errors import ArgumentError
+from flockana.base.checks import (
+    FloatArray,
+    ensure_finite_scalar,
+    ensure_fits,
+    ensure_points,
+    ensure_positive,
+    ensure_state,
+)
+from flockana.base.errors import ArgumentError
 from flockana.interactions.pair import pair_interaction
 from flockana.lattice.crossings import ensure_links
 from flockana.laws.law import DiscreteLaw, Law
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, moving_frame
-from flockana.nets import LinkArray
-from flockana.nets import links as links_within
+from flockana.measures.nets import LinkArray
+from flockana.measures.nets import links as links_within
 from flockana.stability.modes import ZERO, Mode, SecondOrder
 
 if TYPE_CHECKING:

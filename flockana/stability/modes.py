@@ -15,11 +15,11 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from flockana.checks import FloatArray
-from flockana.curvature import EPS
-from flockana.errors import SolverError
+from flockana.base.checks import FloatArray
+from flockana.base.errors import SolverError
+from flockana.equilibria.curvature import EPS
+from flockana.equilibria.terminal import rigid_motions
 from flockana.stability.rounding import eigen, root_error, slowest_first
-from flockana.terminal import rigid_motions
 
 ZERO = 1e-8  # of the largest row sum: what K does to a motion that costs nothing
 _SPLIT = 1e-10  # relative: how much of the centre's motion may leak into the shape where the split is called exact

@@ -6,11 +6,11 @@ from math import pi
 
 import numpy as np
 
-from flockana.checks import ensure_count, ensure_positive
-from flockana.errors import ArgumentError
+from flockana.base.checks import ensure_count, ensure_positive
+from flockana.base.errors import ArgumentError
+from flockana.dynamics.trajectory import Trajectory
 from flockana.stability.linearise import Linearisation
 from flockana.stability.modes import Mode
-from flockana.trajectory import Trajectory
 
 _SHARE = 0.3  # of the mean distance between agents (a square's side for each): largest displacement
 _CREEP = 4.0  # time constants of a mode that does not swing

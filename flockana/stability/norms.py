@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.checks import FloatArray, ensure_count, ensure_positive
-from flockana.curvature import EPS
+from flockana.base.checks import FloatArray, ensure_count, ensure_positive
+from flockana.base.errors import SolverError, UnknownNameError
+from flockana.equilibria.curvature import EPS
 from flockana.equilibria.solve import find_equilibrium
-from flockana.errors import SolverError, UnknownNameError
 from flockana.lattice import hexagonal_spiral
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.stability.blocks import Blocks, complement, second_order

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.checks import FloatArray
-from flockana.curvature import EPS
+from flockana.base.checks import FloatArray
+from flockana.equilibria.curvature import EPS
 
 ComplexArray = npt.NDArray[np.complex128]
 

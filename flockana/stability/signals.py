@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.checks import FloatArray, ensure_fits
-from flockana.errors import ArgumentError
+from flockana.base.checks import FloatArray, ensure_fits
+from flockana.base.errors import ArgumentError
 from flockana.lattice.rigidity import rigidity_matrix
 from flockana.stability.modes import translations
 

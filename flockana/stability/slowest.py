@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.checks import FloatArray, ensure_count
-from flockana.errors import ArgumentError, SolverError
+from flockana.base.checks import FloatArray, ensure_count
+from flockana.base.errors import ArgumentError, SolverError
 from flockana.stability.linearise import Linearisation
 from flockana.stability.modes import Mode, SecondOrder
 from flockana.stability.rounding import mode_errors

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.checks import FloatArray, ensure_nonnegative, ensure_points
+from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_points
+from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.equilibria.solve import find_equilibrium
-from flockana.errors import ArgumentError, UnknownNameError
 from flockana.interactions import Gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain
 from flockana.stability.blocks import second_order

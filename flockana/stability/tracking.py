@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.checks import FloatArray, ensure_vector
+from flockana.base.checks import FloatArray, ensure_vector
+from flockana.base.errors import ArgumentError
+from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import CircleTarget, LinearTarget, RescaledVelocity, SineTarget, StaticTarget, Target
-from flockana.errors import ArgumentError
 from flockana.interactions import Gains
 from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.stability.translational import CentreOfMass, map_gain
-from flockana.trajectory import Trajectory
 
 ComplexArray = npt.NDArray[np.complex128]
 
@@ -287,7 +287,7 @@ def response_ratio(run: Trajectory) -> tuple[float, float]:
 
     Examples
     --------
-    >>> from flockana.simulate import simulate
+    >>> from flockana.dynamics.simulate import simulate
     >>> law = Algorithm2(gains=Gains(c1_gamma=4.0, c2_gamma=4.0), target=CircleTarget((0.0, 0.0), 1.0, 0.25))
     >>> ratio, error = response_ratio(simulate(law, [[1.0, 0.0]], [[0.0, 0.0]], (0.0, 30.0)))
     >>> bool(abs(ratio - abs(CentreOfMass(law.gains).response(0.5 * pi))) < 1e-6)
@@ -370,7 +370,7 @@ def tracking(run: Trajectory) -> Tracking:
 
     Examples
     --------
-    >>> from flockana.simulate import simulate
+    >>> from flockana.dynamics.simulate import simulate
     >>> law = Algorithm2(gains=Gains(c1_gamma=1.0, c2_gamma=0.0), target=StaticTarget((5.0,)))
     >>> found = tracking(simulate(law, [[1.0]], [[0.0]], (0.0, 7.0)))
     >>> [round(x, 4) for x in (found.quantity("period").predicted, found.quantity("period").measured)]

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.checks import FloatArray, ensure_finite_scalar
-from flockana.curvature import EPS
-from flockana.errors import ArgumentError
+from flockana.base.checks import FloatArray, ensure_finite_scalar
+from flockana.base.errors import ArgumentError
+from flockana.equilibria.curvature import EPS
 from flockana.interactions import Gains
 from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.olfati_saber import Algorithm2, ensure_one_gain

@@ -13,7 +13,7 @@ from itertools import combinations
 
 import sympy as sp
 
-from flockana.errors import ArgumentError, UnknownNameError
+from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.symbolic import sums
 from flockana.symbolic.derivation import Step, latex_steps
 from flockana.symbolic.functions import HALF

@@ -15,8 +15,8 @@ import numpy as np
 import numpy.typing as npt
 import sympy as sp
 
-from flockana.checks import ensure_state, ensure_vector
-from flockana.errors import ArgumentError
+from flockana.base.checks import ensure_state, ensure_vector
+from flockana.base.errors import ArgumentError
 from flockana.symbolic.concrete import ConcreteFlock
 from flockana.symbolic.functions import adjacency, phi_alpha
 from flockana.symbolic.norms import EPS

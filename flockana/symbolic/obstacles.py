@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import sympy as sp
 from sympy.core.function import UndefinedFunction
 
-from flockana.errors import UnknownNameError
+from flockana.base.errors import UnknownNameError
 from flockana.symbolic.derivation import Derivation, Step
 from flockana.symbolic.functions import HALF
 from flockana.symbolic.norms import EPS, sigma_norm, sigma_norm_gradient

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import sympy as sp
 from sympy.core.function import UndefinedFunction
 
-from flockana.errors import ArgumentError
+from flockana.base.errors import ArgumentError
 from flockana.symbolic.norms import sigma_norm, sigma_norm_gradient
 from flockana.symbolic.parameters import GAINS, GainSymbols
 

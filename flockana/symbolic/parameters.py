@@ -7,7 +7,7 @@ from typing import Any
 
 import sympy as sp
 
-from flockana.errors import ArgumentError
+from flockana.base.errors import ArgumentError
 from flockana.symbolic.norms import EPS, sigma_norm
 
 _H, _A, _B, _D, _R, _D_PRIME = sp.symbols("h a b d r d'", positive=True)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from flockana.errors import ArgumentError
+from flockana.base.errors import ArgumentError
 from flockana.symbolic.derivation import Derivation, Step
 from flockana.symbolic.functions import HALF, phi, taper
 from flockana.symbolic.norms import sigma_1

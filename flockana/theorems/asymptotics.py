@@ -6,19 +6,19 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from flockana.checks import FloatArray
-from flockana.integrators import FLOOR
+from flockana.base.checks import FloatArray
+from flockana.base.scales import Scales
+from flockana.dynamics.integrators import FLOOR
+from flockana.dynamics.trajectory import Trajectory
+from flockana.equilibria.terminal import TerminalState, terminal_state
 from flockana.lattice import classify
 from flockana.laws.olfati_saber import Algorithm1
-from flockana.nets import link_lengths, links
-from flockana.scales import Scales
-from flockana.terminal import TerminalState, terminal_state
-from flockana.theorems.attraction import Attraction, held
+from flockana.measures.nets import link_lengths, links
 from flockana.theorems.hypotheses import conceded
 from flockana.theorems.limits import Certificate, decay, limit_claim
+from flockana.theorems.olfati_saber.attraction import Attraction, held
 from flockana.theorems.rounding import EPS, frame_error
 from flockana.theorems.theorem import Claim, Hypothesis, Status, Tolerances, judge
-from flockana.trajectory import Trajectory
 
 _NOISE = 10.0  # times the absolute tolerance
 

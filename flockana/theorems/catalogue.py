@@ -8,20 +8,20 @@ import re
 from functools import cache
 from typing import Any
 
-from flockana.checks import ensure_points, ensure_positive
-from flockana.errors import ArgumentError, UnknownNameError
-from flockana.simulate import simulate
+from flockana.base.checks import ensure_points, ensure_positive
+from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.trajectory import Trajectory
 from flockana.theorems.second_run import corroborated, ensure_fits
 from flockana.theorems.theorem import Theorem, Tolerances, Verdict
-from flockana.trajectory import Trajectory
 
 
 @cache
 def _catalogue() -> dict[str, Theorem]:
     package = importlib.import_module("flockana.theorems")
     found: dict[str, Theorem] = {}
-    for info in pkgutil.iter_modules(package.__path__):
-        item = getattr(importlib.import_module(f"flockana.theorems.{info.name}"), "THEOREM", None)
+    for info in pkgutil.walk_packages(package.__path__, "flockana.theorems."):
+        item = getattr(importlib.import_module(info.name), "THEOREM", None)
         for one in item if isinstance(item, tuple) else (item,):
             if isinstance(one, Theorem):
                 found[one.id] = one

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
+from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
 from flockana.theorems.theorem import Claim, Hypothesis, Status
-from flockana.trajectory import Trajectory
 
 _PARTS = {"alpha": AlphaInteraction, "beta": BetaInteraction, "gains": Gains}
 

@@ -4,8 +4,8 @@ A claim about t → ∞ is verified only by a certificate, and a run that has no
 to refute a limit. (What is certain for ever, such as parts that part, is its theorem's own to say.) There are two
 kinds:
 
-* a state that is caught in an attracting equilibrium (`flockana.theorems.attraction`), which says it all at one
-  instant and without a tolerance;
+* a state that is caught in an attracting equilibrium (`flockana.theorems.olfati_saber.attraction`), which says it all
+  at one instant and without a tolerance;
 * `Decay`: a quantity that falls steadily, through several time constants, until it is below what counts as 0, and
   stays there. One instant never will do: not the turning point of an oscillation, and no start from rest.
 """

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.checks import FloatArray
+from flockana.base.checks import FloatArray
 from flockana.interactions import AlphaInteraction
 
 EPS = float(np.finfo(float).eps)

@@ -14,13 +14,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.between import Course
-from flockana.checks import FloatArray
+from flockana.base.checks import FloatArray
+from flockana.dynamics.between import Course
+from flockana.dynamics.trajectory import Trajectory
 from flockana.kernels.paths import bernstein
 from flockana.laws.law import DiscreteLaw
-from flockana.nets import LinkArray, components, link_lengths, links
+from flockana.measures.nets import LinkArray, components, link_lengths, links
 from flockana.theorems.rounding import EPS
-from flockana.trajectory import Trajectory
 
 
 def _motion(run: Trajectory) -> FloatArray:
@@ -47,7 +47,7 @@ def radius_between(run: Trajectory) -> FloatArray:
     Examples
     --------
     >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> from flockana.simulate import simulate
+    >>> from flockana.dynamics.simulate import simulate
     >>> run = simulate(Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 1.0))
     >>> bool(4.0 <= radius_between(run).max() < 4.0 + 1e-4)
     True

@@ -13,14 +13,14 @@ from typing import Any
 
 import numpy as np
 
-from flockana.checks import FloatArray
-from flockana.errors import ArgumentError, FlockanaError
-from flockana.integrators import FINEST
+from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError, FlockanaError
+from flockana.dynamics.integrators import FINEST
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.law import DiscreteLaw
 from flockana.laws.switched import SwitchedLaw
-from flockana.simulate import simulate
 from flockana.theorems.theorem import Claim, judge
-from flockana.trajectory import Trajectory
 
 TIGHTER = 1e-2  # the second run's tolerances over the first's
 DOUBT = 2.0  # times what two runs differ by: all of the first's error, if the second's is at most half as large

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from flockana.checks import FloatArray
-from flockana.intervals import clopper_pearson
-from flockana.nets import components, links
+from flockana.base.binomial import clopper_pearson
+from flockana.base.checks import FloatArray
+from flockana.measures.nets import components, links
 from flockana.theorems.theorem import Claim, judge
 
 CONFIDENCE = 0.95
@@ -130,7 +130,7 @@ def separated_start(seed: int, n: int = 10, *, least: float = 2.0, reach: float 
 
     Examples
     --------
-    >>> from flockana.metrics import min_distance
+    >>> from flockana.measures.metrics import min_distance
     >>> min_distance(separated_start(0)[0]) > 2.0
     True
     """

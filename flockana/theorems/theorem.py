@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass, field, fields
 from typing import Any, Literal
 
-from flockana.checks import ensure_nonnegative, ensure_positive
-from flockana.errors import ArgumentError
+from flockana.base.checks import ensure_nonnegative, ensure_positive
+from flockana.base.errors import ArgumentError
 
 Status = Literal["verified", "refuted", "vacuous", "inconclusive"]
 Rigour = Literal["symbolic", "smt", "interval", "numeric"]

@@ -10,7 +10,7 @@ import numpy as np
 from hypothesis import HealthCheck, settings
 
 from flockana import simulate, verify
-from flockana.errors import ArgumentError
+from flockana.base.errors import ArgumentError
 
 TRUE = frozenset({"verified", "inconclusive", "vacuous"})
 FALSE = frozenset({"refuted", "inconclusive", "vacuous"})

@@ -10,6 +10,7 @@ from adversarial.cases import Case
 from hypothesis import assume
 from hypothesis import strategies as st
 
+from flockana.base.errors import ArgumentError
 from flockana.environment.targets import (
     CallableTarget,
     CircleTarget,
@@ -18,7 +19,6 @@ from flockana.environment.targets import (
     SineTarget,
     StaticTarget,
 )
-from flockana.errors import ArgumentError
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 

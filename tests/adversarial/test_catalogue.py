@@ -9,7 +9,7 @@ import pytest
 from adversarial.cases import Case
 from adversarial.transforms import UNITS, UnchangedError, in_units, later, renumbered, rigid
 
-from flockana.errors import ArgumentError
+from flockana.base.errors import ArgumentError
 from flockana.laws.law import DiscreteLaw
 from flockana.scenarios import scenario, scenarios
 

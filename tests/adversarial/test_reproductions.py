@@ -9,6 +9,7 @@ import pytest
 from adversarial.cases import FALSE, OPEN, TRUE, VERIFIED, Case, hold
 
 from flockana import Tolerances, Trajectory, theorem, theorems, verify
+from flockana.base.errors import ArgumentError, FileError
 from flockana.environment.targets import (
     CallableTarget,
     CircleTarget,
@@ -17,7 +18,6 @@ from flockana.environment.targets import (
     StaticTarget,
     Target,
 )
-from flockana.errors import ArgumentError, FileError
 from flockana.interactions import AlphaInteraction, DeadZoneInteraction, Gains
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.dead_zone import DeadZoneFlocking

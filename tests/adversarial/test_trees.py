@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flockana.laws.minimal import MinimalFlocking
-from flockana.laws.perception import both_ways, random_out_tree
+from flockana.measures.perception import both_ways, random_out_tree
 
 THEOREMS = ("zone-1-printed", "zone-1-corrected")
 CORRECTED = dict.fromkeys(

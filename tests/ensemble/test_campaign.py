@@ -12,13 +12,13 @@ import pytest
 import tiny_flocks
 import xarray
 
+from flockana.base.errors import ArgumentError, SolverError, UnknownNameError
 from flockana.ensemble import METRICS, PHASES, STATUSES, Store, ensemble, executors, phases, shares
 from flockana.ensemble import digest as digests
 from flockana.ensemble.digest import digest_of_sources, mathematics, run_key
 from flockana.ensemble.executors import Crew, Serial, crew, make_runs
 from flockana.ensemble.processes import ProcessPool
 from flockana.ensemble.work import Job, Request, run_batch
-from flockana.errors import ArgumentError, SolverError, UnknownNameError
 from flockana.scenarios import scenario
 from flockana.theorems import Tolerances, verify
 

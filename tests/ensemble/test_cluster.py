@@ -17,8 +17,8 @@ import tiny_flocks
 from programs import ANSWERS_CTRL_C, group, interrupt, posix, program, until
 from tiny_flocks import begun
 
+from flockana.base.errors import ArgumentError, SolverError
 from flockana.ensemble import Store, cluster, ensemble, executors
-from flockana.errors import ArgumentError, SolverError
 
 distributed = pytest.importorskip("distributed")
 pytestmark = posix

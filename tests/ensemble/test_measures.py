@@ -6,6 +6,7 @@ from math import isnan
 
 import pytest
 
+from flockana.dynamics.simulate import simulate
 from flockana.ensemble.measures import _MEASURES
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.interactions.pair import pair_interaction
@@ -13,7 +14,6 @@ from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.laws.semi_implicit import SemiImplicitEuler
-from flockana.simulate import simulate
 
 
 @pytest.mark.parametrize("law", [DeadZoneFlocking(), SemiImplicitEuler(DeadZoneFlocking(), 0.01)])

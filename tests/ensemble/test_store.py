@@ -8,9 +8,9 @@ import tiny_flocks
 from programs import group, posix, program, until
 from tiny_flocks import begun
 
+from flockana.base.errors import FileError
 from flockana.ensemble import Store, ensemble, store
 from flockana.ensemble.work import Job, Record
-from flockana.errors import FileError
 
 HERE = Path(__file__).parent
 CAMPAIGN = """

@@ -13,14 +13,14 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from numba.extending import register_jitable
 
+from flockana.base.errors import ArgumentError
+from flockana.base.serialize import from_data, to_data
 from flockana.environment.beta import ObstacleField, check_free
 from flockana.environment.capsule import Capsule
 from flockana.environment.obstacles import Obstacle, Sphere, Wall
 from flockana.environment.polygon import Polygon
-from flockana.errors import ArgumentError
 from flockana.interactions import BetaInteraction
 from flockana.kernels.obstacles import lift_obstacle
-from flockana.serialize import from_data, to_data
 
 SQUARE = Polygon([(-1.0, -1.0), (2.0, -1.0), (2.0, 2.0), (-1.0, 2.0)])
 PLANE = (

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 import shapely
 
+from flockana.base.errors import ArgumentError
 from flockana.environment.obstacles import Sphere
 from flockana.environment.zone_obstacles import Box, SimplePolygon, ball_clearance_on_way
 from flockana.environment.zone_world import Alien, ZoneWorld
-from flockana.errors import ArgumentError
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
 

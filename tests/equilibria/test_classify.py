@@ -8,8 +8,8 @@ import pytest
 from flockana.environment.targets import StaticTarget
 from flockana.equilibria.classify import spectrum
 from flockana.equilibria.potential import Potential
+from flockana.equilibria.terminal import rigid_motions
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.terminal import rigid_motions
 
 
 @pytest.mark.parametrize("law", [Algorithm1(), Algorithm2(target=StaticTarget((0.0, 0.0)))])

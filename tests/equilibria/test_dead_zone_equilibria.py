@@ -7,10 +7,10 @@ import pytest
 from scipy.optimize import brentq
 from scipy.spatial import KDTree
 
+from flockana.base.errors import ArgumentError
 from flockana.equilibria.record import read_equilibrium, write_equilibrium
 from flockana.equilibria.solve import find_equilibrium
 from flockana.equilibria.terms import pair_term
-from flockana.errors import ArgumentError
 from flockana.interactions import BetaInteraction, DeadZoneInteraction
 from flockana.lattice import hexagonal_patch, hexagonal_spiral
 from flockana.laws.dead_zone import DeadZoneFlocking

@@ -9,18 +9,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from flockana.base.errors import ArgumentError, FileError, SolverError
 from flockana.equilibria.coincidence import _trace, least_with_coincidence
 from flockana.equilibria.collapse import CollapseDiagram, collapse_diagram, collapse_threshold, threshold
 from flockana.equilibria.congruence import congruent
 from flockana.equilibria.record import read_equilibrium, smallest_strained, write_equilibrium
 from flockana.equilibria.search import distinct, lattice_starts, random_starts, search
 from flockana.equilibria.solve import find_equilibrium
-from flockana.errors import ArgumentError, FileError, SolverError
 from flockana.interactions import AlphaInteraction
 from flockana.lattice import harborth, hexagonal_spiral
 from flockana.laws.olfati_saber import Algorithm1
-from flockana.nets import links
-from flockana.theorems.e3 import rhombus_with_double_agent
+from flockana.measures.nets import links
+from flockana.theorems.slides.e03 import rhombus_with_double_agent
 
 LAW = Algorithm1()
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from flockana.base.errors import ArgumentError, SolverError, UnknownNameError
 from flockana.environment.obstacles import Sphere, Wall
 from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.equilibria import find_equilibrium
@@ -16,7 +17,6 @@ from flockana.equilibria.classify import Spectrum, kind_of, spectrum
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.program import Program
 from flockana.equilibria.solve import all_pairs, finish
-from flockana.errors import ArgumentError, SolverError, UnknownNameError
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import harborth, hexagonal_patch, hexagonal_spiral
 from flockana.laws.algorithm3 import Algorithm3

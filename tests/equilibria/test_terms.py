@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from flockana.base.errors import ArgumentError
 from flockana.environment.beta import ObstacleField
 from flockana.environment.capsule import Capsule
 from flockana.environment.obstacles import Sphere, Wall
@@ -16,7 +17,6 @@ from flockana.equilibria.program import Program
 from flockana.equilibria.solve import all_pairs
 from flockana.equilibria.terms import obstacle_term, pair_term
 from flockana.equilibria.translate import to_casadi
-from flockana.errors import ArgumentError
 from flockana.interactions import AlphaInteraction, BetaInteraction
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2

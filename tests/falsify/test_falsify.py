@@ -11,8 +11,10 @@ import numpy as np
 import pytest
 from programs import Starts, out_of_a_kernel
 
+from flockana.base.errors import ArgumentError, FileError, UnknownNameError
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import StaticTarget
-from flockana.errors import ArgumentError, FileError, UnknownNameError
 from flockana.falsify import Counterexample, falsify, replay
 from flockana.falsify.evaluate import Problem, units
 from flockana.falsify.grade import FAILED, LEADS, LIMITS, bridge, grade, missing, pairs_apart, squash, strained
@@ -20,11 +22,9 @@ from flockana.falsify.search import Search
 from flockana.falsify.space import part, search_space
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.scenarios import scenario
-from flockana.simulate import simulate
 from flockana.theorems import Claim, Hypothesis, Theorem, Tolerances, Verdict, theorem, verify
-from flockana.theorems.attraction import held
+from flockana.theorems.olfati_saber.attraction import held
 from flockana.theorems.theorem import judge
-from flockana.trajectory import Trajectory
 
 HEAD_ON = scenario("head-on")
 THREE_AT_REST = replace(scenario("three-agents-1d"), p0=np.zeros((3, 1)))

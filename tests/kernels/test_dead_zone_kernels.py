@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from flockana.errors import ArgumentError
+from flockana.base.errors import ArgumentError
 from flockana.interactions import DeadZoneInteraction
 from flockana.kernels.dead_zone import semi_implicit_steps, zone_forces, zone_margins, zones
 

@@ -7,8 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from flockana import nets
-from flockana.errors import ArgumentError, UnknownNameError
+from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.lattice import (
     bcc,
     fcc,
@@ -25,8 +24,9 @@ from flockana.lattice import (
     square,
     triangular,
 )
-from flockana.metrics import min_distance
-from flockana.nets import link_lengths
+from flockana.measures import nets
+from flockana.measures.metrics import min_distance
+from flockana.measures.nets import link_lengths
 
 D = 7.0
 # each with a block large enough that its middle agents have all first and second neighbours, and few enough to pair all

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flockana.errors import ArgumentError
+from flockana.base.errors import ArgumentError
 from flockana.kernels.crossings import grid
 from flockana.lattice import bcc, crossings, fcc, links, separation, simple_cubic, square, triangular
 

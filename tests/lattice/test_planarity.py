@@ -8,7 +8,7 @@ import networkx
 import numpy as np
 import pytest
 
-from flockana.errors import ArgumentError
+from flockana.base.errors import ArgumentError
 from flockana.lattice import (
     fcc,
     hexagonal_patch,

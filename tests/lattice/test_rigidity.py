@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from flockana.errors import SolverError
+from flockana.base.errors import SolverError
 from flockana.lattice import (
     Rigidity,
     fcc,

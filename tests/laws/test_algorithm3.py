@@ -11,6 +11,9 @@ import pytest
 import sympy as sp
 
 from flockana import symbolic
+from flockana.base.errors import ArgumentError
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.capsule import Capsule
 from flockana.environment.obstacles import Obstacle, Sphere, Wall
 from flockana.environment.polygon import Polygon
@@ -23,13 +26,10 @@ from flockana.environment.targets import (
     StaticTarget,
     Target,
 )
-from flockana.errors import ArgumentError
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1
-from flockana.simulate import simulate
 from flockana.symbolic.obstacles import sphere_beta, wall_beta
-from flockana.trajectory import Trajectory
 
 GAINS = Gains(c1_alpha=2.0, c2_alpha=0.3, c1_beta=7.0, c2_beta=1.1, c1_gamma=0.9, c2_gamma=0.4)
 BETA = BetaInteraction(d=2.0, r=2.4, eps=0.2)

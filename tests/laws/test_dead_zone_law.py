@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from flockana.errors import ArgumentError
+from flockana.base.errors import ArgumentError
+from flockana.base.serialize import from_data, to_data
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.switches import turns
 from flockana.interactions import AlphaInteraction, DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.laws.semi_implicit import SemiImplicitEuler
-from flockana.paths import closest_approach
-from flockana.serialize import from_data, to_data
-from flockana.simulate import simulate
-from flockana.switched import turns
+from flockana.measures.path_bounds import closest_approach
 
 HARD = DeadZoneInteraction(ramp=0.0)
 

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
+from flockana.base.errors import ArgumentError
 from flockana.environment.capsule import Capsule
 from flockana.environment.obstacles import Sphere, Wall, _onto_sphere
 from flockana.environment.polygon import Polygon
 from flockana.environment.targets import LinearTarget, StaticTarget
-from flockana.errors import ArgumentError
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
 from flockana.interactions.alpha import kernel
 from flockana.kernels.lift import lift

@@ -9,10 +9,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from flockana.errors import ArgumentError
+from flockana.base.errors import ArgumentError
+from flockana.base.serialize import from_data, to_data
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.trajectory import Trajectory
 from flockana.kernels.minimal import perceived_edges
 from flockana.laws.minimal import DiscreteMinimalFlocking, MinimalFlocking
-from flockana.laws.perception import (
+from flockana.measures.perception import (
     both_ways,
     edge_vectors,
     ensure_edges,
@@ -21,9 +24,6 @@ from flockana.laws.perception import (
     random_out_tree,
     receivers,
 )
-from flockana.serialize import from_data, to_data
-from flockana.simulate import simulate
-from flockana.trajectory import Trajectory
 
 R, BETA = (1.5, 3.0, 2.2, 4.0, 0.4), (0.5, 0.2, 0.9, 0.3, 1.0)
 TREE = ((0, 1), (1, 2), (1, 3), (0, 4))

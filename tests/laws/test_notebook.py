@@ -7,8 +7,8 @@ from math import sqrt
 import numpy as np
 import pytest
 
+from flockana.base.errors import ArgumentError
 from flockana.environment.targets import StaticTarget
-from flockana.errors import ArgumentError
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.notebook import PushedAlgorithm1, PushedAlgorithm2, extra_push
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2

@@ -7,8 +7,8 @@ import re
 import numpy as np
 import pytest
 
+from flockana.base.errors import ArgumentError
 from flockana.environment.targets import LinearTarget, StaticTarget
-from flockana.errors import ArgumentError
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.law import DiscreteLaw, Law, ensure_law
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, moving_frame

@@ -8,16 +8,16 @@ from math import tanh
 import numpy as np
 import pytest
 
+from flockana.base.errors import ArgumentError
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.zone_obstacles import Box, SimplePolygon
 from flockana.environment.zone_world import Alien, ZoneWorld
-from flockana.errors import ArgumentError
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import CHOICES, ZoneFlocking
 from flockana.laws.law import DiscreteLaw
-from flockana.metrics import coordination
-from flockana.simulate import simulate
+from flockana.measures.metrics import coordination
 from flockana.symbolic import bearing_distance as symbolic
-from flockana.trajectory import Trajectory
 
 RADII = ZoneRadii(1.5, c=3.0, a=5.0, s=6.0)
 BLOCK = SimplePolygon([(20.0, 20.0), (30.0, 18.0), (28.0, 31.0)])

@@ -10,15 +10,15 @@ from PIL import Image
 
 import flockana
 from flockana import plots
+from flockana.base.errors import ArgumentError, FileError
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.obstacles import Sphere
 from flockana.environment.targets import StaticTarget
-from flockana.errors import ArgumentError, FileError
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.law import DiscreteLaw
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.plots.animation import _size, _view, ensure_film, equal_times
-from flockana.simulate import simulate
-from flockana.trajectory import Trajectory
 
 
 @dataclass(frozen=True)

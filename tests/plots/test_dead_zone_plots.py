@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from flockana import plots
-from flockana.errors import ArgumentError
+from flockana.base.errors import ArgumentError
+from flockana.dynamics.simulate import simulate
 from flockana.interactions import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.olfati_saber import Algorithm1
-from flockana.simulate import simulate
 
 
 def dots(ax):

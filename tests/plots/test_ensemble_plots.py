@@ -6,8 +6,8 @@ import xarray
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
+from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.ensemble import PHASES
-from flockana.errors import ArgumentError, UnknownNameError
 from flockana.plots import ensemble as plots
 from flockana.plots.style import GREEN, ORANGE, VERMILLION
 

@@ -5,7 +5,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from flockana import plots
-from flockana.errors import ArgumentError
+from flockana.base.errors import ArgumentError
 from flockana.falsify import falsify
 from flockana.plots.falsify import search_history
 from flockana.scenarios import scenario

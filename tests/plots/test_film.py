@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 from PIL import Image
 
+from flockana.base.errors import ArgumentError
+from flockana.dynamics.simulate import simulate
 from flockana.environment.targets import StaticTarget
-from flockana.errors import ArgumentError
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.simulate import simulate
 
 
 @pytest.fixture(scope="module")

@@ -10,19 +10,19 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon as Outline
 
 from flockana import plots
+from flockana.base.errors import ArgumentError
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.capsule import Capsule
 from flockana.environment.obstacles import Sphere, Wall
 from flockana.environment.polygon import Polygon
 from flockana.environment.targets import StaticTarget
-from flockana.errors import ArgumentError
 from flockana.interactions import BetaInteraction
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1
+from flockana.measures.reynolds import reynolds
 from flockana.plots.obstacles import bounds
 from flockana.report.figures import _middle, pictures
-from flockana.reynolds import reynolds
-from flockana.simulate import simulate
-from flockana.trajectory import Trajectory
 
 
 @pytest.fixture(autouse=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from flockana.errors import ArgumentError
+from flockana.base.errors import ArgumentError
 from flockana.plots.phase import phase_portrait
 
 

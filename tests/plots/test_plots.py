@@ -9,12 +9,12 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
 from flockana import plots
+from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.dynamics.simulate import simulate
 from flockana.environment.targets import LinearTarget, StaticTarget
-from flockana.errors import ArgumentError, UnknownNameError
 from flockana.interactions import AlphaInteraction
 from flockana.laws.law import DiscreteLaw, Law
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.simulate import simulate
 
 
 @dataclass(frozen=True)

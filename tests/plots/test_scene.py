@@ -13,10 +13,12 @@ from matplotlib.quiver import Quiver
 from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
 from flockana import plots
+from flockana.base.errors import ArgumentError
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.obstacles import Sphere
 from flockana.environment.zone_obstacles import Box
 from flockana.environment.zone_world import Alien, ZoneWorld
-from flockana.errors import ArgumentError
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.law import Law
@@ -26,8 +28,6 @@ from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.plots.animation import _view, equal_times
 from flockana.plots.snapshot import draw_sample, in_view
 from flockana.scenarios import scenario
-from flockana.simulate import simulate
-from flockana.trajectory import Trajectory
 
 EDGES = ((0, 1), (1, 2), (2, 1))
 

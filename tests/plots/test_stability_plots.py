@@ -10,7 +10,7 @@ from matplotlib.quiver import Quiver
 from PIL import Image
 
 from flockana import plots
-from flockana.errors import ArgumentError
+from flockana.base.errors import ArgumentError
 from flockana.lattice import hexagonal_patch, links
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.stability import Mode, linearise, mode_motion

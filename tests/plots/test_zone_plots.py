@@ -9,15 +9,15 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon, Rectangle
 
 from flockana import plots
+from flockana.base.errors import ArgumentError
+from flockana.dynamics.simulate import simulate
 from flockana.environment.obstacles import Sphere
 from flockana.environment.zone_obstacles import Box
 from flockana.environment.zone_world import ZoneWorld
-from flockana.errors import ArgumentError
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.report.figures import pictures
 from flockana.scenarios import scenario
-from flockana.simulate import simulate
 
 
 @pytest.fixture(scope="module")

@@ -12,9 +12,9 @@ pytest.importorskip("z3")  # the extra flockana[proofs]
 import sympy as sp
 
 from flockana.laws.minimal import MinimalFlocking
-from flockana.laws.perception import both_ways
+from flockana.measures.perception import both_ways
 from flockana.symbolic.spanning_trees import S, tree_characteristic
-from flockana.theorems.j1_j3 import path_matrices
+from flockana.theorems.bearing_distance.j01_j03 import path_matrices
 from proofs import bearing_distance, bearing_distance_printed
 
 

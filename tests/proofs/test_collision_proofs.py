@@ -14,6 +14,7 @@ pytest.importorskip("flint")
 import z3
 from flint import arb, ctx
 
+from flockana.dynamics.simulate import simulate
 from flockana.equilibria.barrier import (
     bound_range,
     energy_floor,
@@ -23,10 +24,9 @@ from flockana.equilibria.barrier import (
 )
 from flockana.equilibria.barrier import largest_clique as numeric_clique
 from flockana.interactions import AlphaInteraction
-from flockana.metrics import coincident_pairs
-from flockana.paths import contacts
+from flockana.measures.metrics import coincident_pairs
+from flockana.measures.path_bounds import contacts
 from flockana.scenarios import scenario
-from flockana.simulate import simulate
 from flockana.theorems import verify
 from proofs import collisions, distinct_pairs, n_max
 from proofs.distinct_pairs import Start, crossings, free, is_the_scenario, onward, potential

@@ -69,7 +69,7 @@ def test_the_bounds_of_the_parting_pair_are_the_laws():
 
 
 def test_a_pair_that_parts_at_12_parts_for_ever_and_one_at_1_does_not():
-    from flockana.simulate import simulate
+    from flockana.dynamics.simulate import simulate
 
     for speed, parted in ((12.0, True), (1.0, False)):
         p = [[-speed / 2, 0.0], [speed / 2, 0.0]]

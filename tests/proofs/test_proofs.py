@@ -86,7 +86,7 @@ def test_a_claim_on_a_run_names_the_proof_that_covers_it(theorem, run, expected)
 
 
 def short(law, q, p):
-    from flockana.simulate import simulate
+    from flockana.dynamics.simulate import simulate
 
     return simulate(law, q, p, (0.0, 0.5))
 

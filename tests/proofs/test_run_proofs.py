@@ -14,7 +14,7 @@ from textwrap import indent
 import pytest
 from programs import ANSWERS_CTRL_C, CLI, group, interrupt, posix, program, until
 
-from flockana.cli import main
+from flockana.cli.main import main
 from proofs import certificates, proof, run
 from proofs.proof import Step
 from proofs.run import Outcome, check
@@ -236,7 +236,7 @@ def test_bad_input_is_2_before_any_work(prove, tmp_path):
 
 
 def test_outside_a_checkout_is_one_line_and_2(prove, monkeypatch):
-    from flockana.commands import prove as command
+    from flockana.cli import prove as command
 
     monkeypatch.setattr(command, "__file__", str(Path.cwd() / "site-packages" / "flockana" / "commands" / "prove.py"))
     code, out, err = prove("holds")

@@ -16,7 +16,8 @@ import sympy as sp
 import z3
 
 from flockana.lattice import crossings, hexagonal_spiral, links
-from flockana.theorems import e5, verify
+from flockana.theorems import verify
+from flockana.theorems.slides import e05 as e5
 from proofs import nonplanar_fcc, theorem5_counts, theorem5_crossings
 from proofs.proof import names
 

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from flockana.base.errors import FileError
 from flockana.environment.targets import CallableTarget, StaticTarget
-from flockana.errors import FileError
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.report.build import ensure_directory, verdicts_json, write_report
 from flockana.report.pages import FixedResult, ScenarioPage, ScenarioResult, page

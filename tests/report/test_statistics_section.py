@@ -8,9 +8,9 @@ import pytest
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from rich.console import Console
 
+from flockana.base.errors import ArgumentError
 from flockana.ensemble import clopper_pearson, ensemble
 from flockana.ensemble.work import Record
-from flockana.errors import ArgumentError
 from flockana.report.build import verdicts_json, write_report
 from flockana.report.console import statistics_table
 from flockana.report.statistics import TEMPLATE, Share, carry_out, gather, statistics_section, surveys

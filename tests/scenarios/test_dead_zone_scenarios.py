@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial import KDTree
 
-from flockana.errors import ArgumentError
+from flockana.base.errors import ArgumentError
 from flockana.scenarios import scenario
 
 NAMES = ("dead-zone", "dead-zone-wide-lattice", "dead-zone-wide-start", "dead-zone-hard", "dead-zone-flow")

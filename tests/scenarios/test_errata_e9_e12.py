@@ -8,19 +8,19 @@ from math import pi
 import numpy as np
 import pytest
 
+from flockana.base.errors import ArgumentError
+from flockana.base.units import rescale
+from flockana.dynamics.simulate import simulate
 from flockana.environment.targets import CircleTarget, RescaledVelocity, SineTarget, StaticTarget
-from flockana.errors import ArgumentError
 from flockana.interactions import Gains
 from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.scenarios import scenario
-from flockana.simulate import simulate
 from flockana.stability.tracking import response_ratio
 from flockana.stability.translational import predicted_gain
 from flockana.symbolic.parameters import GainSymbols
 from flockana.symbolic.translational import frequency_gain
 from flockana.theorems import Tolerances, theorem, verify
-from flockana.units import rescale
 
 OMEGA = 2 * pi * 0.025 / 0.045
 STRONG = scenario("msn-case4").law.gains

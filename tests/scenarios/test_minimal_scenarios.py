@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from flockana.laws.minimal import DiscreteMinimalFlocking, MinimalFlocking
-from flockana.laws.perception import both_ways, out_tree_root
+from flockana.measures.perception import both_ways, out_tree_root
 from flockana.scenarios import scenario, scenarios
 
 OWN = ["minimal-2d", "minimal-2d-printed", "minimal-3d", "minimal-3d-printed", "zone-tree", "zone-path"]

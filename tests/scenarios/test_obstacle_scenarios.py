@@ -7,16 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from flockana.base.errors import ArgumentError
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.obstacles import Sphere
 from flockana.environment.targets import StaticTarget
-from flockana.errors import ArgumentError
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.scenarios import scenario, scenarios
 from flockana.scenarios.findings import component_counts
 from flockana.scenarios.obstacles import GAINS, SCENARIOS, blocked, free_start
-from flockana.simulate import simulate
 from flockana.theorems import Tolerances, verify
-from flockana.trajectory import Trajectory
 
 FINDS = Tolerances()
 

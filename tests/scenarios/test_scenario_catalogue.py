@@ -8,12 +8,12 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 
-from flockana.errors import ArgumentError
+from flockana.base.errors import ArgumentError
+from flockana.base.units import rescale
 from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.notebook import PushedAlgorithm1, PushedAlgorithm2
 from flockana.scenarios import scenario, scenarios
 from flockana.theorems import Tolerances, theorems
-from flockana.units import rescale
 
 OWN = [
     *("paper-flocking", "paper-dynamic-topology", "paper-fragmentation", "paper-rendezvous-3d"),

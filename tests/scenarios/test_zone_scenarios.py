@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flockana.nets import components, links
+from flockana.dynamics.simulate import simulate
+from flockana.measures.nets import components, links
 from flockana.scenarios import scenario, scenarios
 from flockana.scenarios.bearing_distance import SCENARIOS, passed
 from flockana.scenarios.findings import component_counts
-from flockana.simulate import simulate
 
 SHORT = ("zone-51", "zone-51-printed", "zone-gap", "zone-gap-buffer")
 

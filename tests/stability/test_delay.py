@@ -10,13 +10,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.special import lambertw
 
+from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.dynamics.simulate import simulate
 from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.equilibria import find_equilibrium
-from flockana.errors import ArgumentError, UnknownNameError
 from flockana.interactions import Gains
 from flockana.lattice import hexagonal_spiral
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.simulate import simulate
 from flockana.stability.delay import (
     DelaySystem,
     delay_margin,

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from scipy.linalg import eig
 
+from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.dynamics.simulate import simulate
 from flockana.environment.targets import StaticTarget
 from flockana.equilibria import find_equilibrium
-from flockana.errors import ArgumentError, UnknownNameError
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_spiral
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.simulate import simulate
 from flockana.stability.blocks import second_order
 from flockana.stability.design import GainProblem, design_gains, gain_problem
 from flockana.stability.linearise import linearise

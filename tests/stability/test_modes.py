@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_array
 
+from flockana.base.errors import ArgumentError
 from flockana.environment.obstacles import Sphere, Wall
 from flockana.environment.targets import StaticTarget
 from flockana.equilibria import find_equilibrium
-from flockana.errors import ArgumentError
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_patch
 from flockana.laws.algorithm3 import Algorithm3

@@ -10,9 +10,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.environment.targets import StaticTarget
 from flockana.equilibria import find_equilibrium
-from flockana.errors import ArgumentError, UnknownNameError
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_spiral
 from flockana.laws.algorithm3 import Algorithm3

@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
+from flockana.base.units import rescale
 from flockana.environment.targets import StaticTarget
 from flockana.equilibria import find_equilibrium
 from flockana.interactions import Gains
@@ -25,7 +26,6 @@ from flockana.stability.rounding import eigen, slowest_first
 from flockana.stability.sweeps import gain_sweep
 from flockana.stability.tracking import centre_path
 from flockana.stability.translational import CentreOfMass
-from flockana.units import rescale
 
 UNITS = [(1e-6, 1.0), (1e3, 1.0), (1.0, 1e-3), (1.0, 1e3), (1e-6, 1e-3)]
 ORIGIN = StaticTarget((0.0, 0.0))

@@ -8,9 +8,9 @@ import control
 import numpy as np
 import pytest
 
+from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.environment.targets import StaticTarget
 from flockana.equilibria import find_equilibrium
-from flockana.errors import ArgumentError, UnknownNameError
 from flockana.interactions import Gains
 from flockana.lattice import hexagonal_spiral
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2

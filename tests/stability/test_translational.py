@@ -11,6 +11,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from flockana.base.errors import ArgumentError
+from flockana.dynamics.simulate import simulate
 from flockana.environment.targets import (
     CallableTarget,
     CircleTarget,
@@ -19,12 +21,10 @@ from flockana.environment.targets import (
     SineTarget,
     StaticTarget,
 )
-from flockana.errors import ArgumentError
 from flockana.interactions import Gains
 from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.scenarios import scenario
-from flockana.simulate import simulate
 from flockana.stability.tracking import centre_path, motion, response_ratio, steady_error, tracking
 from flockana.stability.translational import CentreOfMass, map_gain, map_system, predicted_gain
 from flockana.symbolic.parameters import GainSymbols

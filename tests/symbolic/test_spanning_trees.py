@@ -9,7 +9,7 @@ import pytest
 import sympy as sp
 
 from flockana.laws.minimal import MinimalFlocking
-from flockana.laws.perception import incidence, random_out_tree, receivers
+from flockana.measures.perception import incidence, random_out_tree, receivers
 from flockana.symbolic.spanning_trees import (
     MU,
     RHO,
@@ -24,7 +24,7 @@ from flockana.symbolic.spanning_trees import (
     symmetric_part,
     tree_characteristic,
 )
-from flockana.theorems.tree_case import tree_case
+from flockana.theorems.bearing_distance.tree_case import tree_case
 
 CHAIN, STAR, MIXED = ((0, 1), (1, 2), (2, 3)), ((0, 1), (0, 2), (0, 3)), ((0, 1), (1, 2), (1, 3), (0, 4))
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from flockana.errors import ArgumentError, UnknownNameError
+from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.symbolic import AlphaSymbols, ConcreteFlock, GainSymbols, NumericLaw, numeric_law, psi_alpha
 
 PAPER = AlphaSymbols(eps=0.1, h=0.2, a=5, b=5, d=7, r=8.4)

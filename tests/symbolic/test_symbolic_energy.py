@@ -7,7 +7,7 @@ import math
 import pytest
 import sympy as sp
 
-from flockana.errors import ArgumentError
+from flockana.base.errors import ArgumentError
 from flockana.symbolic import (
     GAINS,
     ConcreteFlock,

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from flockana.base.errors import ArgumentError
 from flockana.environment.obstacles import Sphere, Wall
 from flockana.environment.targets import StaticTarget
-from flockana.errors import ArgumentError
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2

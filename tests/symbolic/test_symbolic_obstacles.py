@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 import sympy as sp
 
-from flockana.errors import ArgumentError
+from flockana.base.errors import ArgumentError
 from flockana.symbolic import GAINS, GainSymbols, algorithm1_identity, norms, obstacles, pair, sums, theorem6
 from flockana.symbolic.obstacles import KINDS, GenericObstacle, derive_braking, derive_envelope, sphere_beta, wall_beta
 from flockana.symbolic.theorem6 import (

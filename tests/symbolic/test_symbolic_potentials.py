@@ -6,7 +6,7 @@ import mpmath
 import pytest
 import sympy as sp
 
-from flockana.errors import ArgumentError
+from flockana.base.errors import ArgumentError
 from flockana.symbolic import (
     AlphaSymbols,
     BetaSymbols,

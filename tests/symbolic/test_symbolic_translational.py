@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 import sympy as sp
 
-from flockana.errors import ArgumentError
+from flockana.base.errors import ArgumentError
 from flockana.symbolic import GAINS, GainSymbols, damping_ratio, frequency_gain, natural_frequency, transfer_function
 from flockana.symbolic.translational import OMEGA, S
 

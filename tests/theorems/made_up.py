@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from flockana.base.units import rescale
+from flockana.dynamics.trajectory import Trajectory
 from flockana.theorems import Tolerances, Verdict, theorem
-from flockana.trajectory import Trajectory
-from flockana.units import rescale
 
 
 def made_up(law, q, p=None, t=None, u=None):

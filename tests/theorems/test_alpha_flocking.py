@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 from made_up import SCALINGS, judged, made_up, same_in_all_units, statuses
 
 import flockana as fl
+from flockana.dynamics.simulate import simulate
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm1
-from flockana.metrics import cohesion_radius, net_measures
-from flockana.simulate import simulate
+from flockana.measures.metrics import cohesion_radius, net_measures
 from flockana.theorems import Tolerances, verify
 from flockana.theorems.sampling import nets_at, nets_between, radius_between
 

@@ -10,12 +10,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import flockana as fl
+from flockana.base.units import rescale
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_patch, hexagonal_spiral
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.theorems.attraction import _lipschitz, attraction
-from flockana.theorems.e3 import rhombus_with_double_agent
-from flockana.units import rescale
+from flockana.theorems.olfati_saber.attraction import _lipschitz, attraction
+from flockana.theorems.slides.e03 import rhombus_with_double_agent
 
 LAW1 = Algorithm1()
 LAW2 = Algorithm2(target=fl.StaticTarget((0.0, 0.0)))
@@ -126,7 +126,7 @@ def test_one_agent_has_no_relative_motion():
 
 
 def test_a_flock_too_large_for_a_dense_hessian_is_left_open(monkeypatch):
-    monkeypatch.setattr(sys.modules["flockana.theorems.attraction"], "DENSE_LIMIT", 12)
+    monkeypatch.setattr(sys.modules["flockana.theorems.olfati_saber.attraction"], "DENSE_LIMIT", 12)
     assert margin(LAW1, hexagonal_patch(1, 7.0)) == -1.0
 
 

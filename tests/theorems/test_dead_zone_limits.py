@@ -10,16 +10,16 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
+from flockana.base.units import rescale
+from flockana.dynamics.simulate import simulate
 from flockana.interactions import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.semi_implicit import SemiImplicitEuler
-from flockana.metrics import cohesion_radius
-from flockana.simulate import simulate
+from flockana.measures.metrics import cohesion_radius
 from flockana.theorems import verify
-from flockana.theorems.dead_zone_hold import hold
-from flockana.theorems.dead_zone_parts import parts
-from flockana.theorems.dead_zone_range import first_entry
-from flockana.units import rescale
+from flockana.theorems.dead_zone.hold import hold
+from flockana.theorems.dead_zone.parting import parts
+from flockana.theorems.dead_zone.range_limits import first_entry
 
 UNITS = [(1.0, 1.0), (1e6, 1.0), (1e-3, 1.0), (1.0, 1e3), (1e-3, 1e-3)]  # metres to µm, km; seconds to ms, ks
 SIZES = [1e-1, 1e-3, 1e-6, 1e-9, 1e-12, 1e-15]

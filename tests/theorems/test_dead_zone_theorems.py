@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from flockana.dynamics.simulate import simulate
 from flockana.interactions import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.scenarios import scenario
-from flockana.simulate import simulate
 from flockana.theorems import verify
-from flockana.theorems.dead_zone_parts import parts
-from flockana.theorems.l1_l4 import connected_share
+from flockana.theorems.dead_zone.l01_l04 import connected_share
+from flockana.theorems.dead_zone.parting import parts
 
 ERRATA = [f"L{k}" for k in range(1, 9)]
 

@@ -5,19 +5,19 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from flockana.base.errors import SolverError
+from flockana.base.units import rescale
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import StaticTarget
 from flockana.equilibria.collapse import natural_ratio, threshold
-from flockana.errors import SolverError
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.simulate import simulate
 from flockana.theorems import Tolerances, theorem, verify
-from flockana.theorems import e11 as module
-from flockana.theorems.e11 import collapse_threshold
+from flockana.theorems.slides import e11 as module
+from flockana.theorems.slides.e11 import collapse_threshold
 from flockana.theorems.theorem import Claim
-from flockana.trajectory import Trajectory
-from flockana.units import rescale
 
 ORIGIN = StaticTarget((0.0, 0.0))
 LAW = Algorithm2(target=ORIGIN)

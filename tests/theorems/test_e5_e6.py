@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from flockana.lattice import crossings, harborth, links
-from flockana.metrics import min_distance
+from flockana.measures.metrics import min_distance
 from flockana.theorems import verify
-from flockana.theorems.e5 import _EIGHT, _STAR, _links, fcc_eight, fcc_star, fragments, non_planar_fragments
-from flockana.theorems.e6 import link_counts
+from flockana.theorems.slides.e05 import _EIGHT, _STAR, _links, fcc_eight, fcc_star, fragments, non_planar_fragments
+from flockana.theorems.slides.e06 import link_counts
 
 D, R = 7.0, 8.4
 
@@ -78,7 +78,7 @@ def test_all_fragments_of_six_are_planar(e5):
 
 
 def test_the_counter_of_non_planar_fragments_sees_them(monkeypatch):
-    module = sys.modules["flockana.theorems.e5"]
+    module = sys.modules["flockana.theorems.slides.e05"]
     monkeypatch.setattr(module, "fragments", lambda size: iter([_EIGHT, _EIGHT[::-1]]))
     assert non_planar_fragments(8) == (2, 2)
 

@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 from made_up import SCALINGS, hypothesis, judged, same_in_all_units, statuses
 
+from flockana.dynamics.simulate import simulate
 from flockana.environment.obstacles import Sphere
 from flockana.environment.targets import StaticTarget, Target
 from flockana.interactions import Gains
 from flockana.lattice import hexagonal_patch
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.simulate import simulate
 from flockana.theorems import Tolerances, verify
-from flockana.theorems.energy import balance, never_rises
+from flockana.theorems.olfati_saber.energy import balance, never_rises
 
 LAW = Algorithm1()
 

@@ -11,8 +11,8 @@ from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.scenarios.scenario import differences
 from flockana.theorems import theorem, theorems, verify
-from flockana.theorems.e3 import random_disc, rhombus_with_double_agent
-from flockana.theorems.e11 import collapses
+from flockana.theorems.slides.e03 import random_disc, rhombus_with_double_agent
+from flockana.theorems.slides.e11 import collapses
 
 
 @pytest.fixture(scope="module")

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from made_up import SCALINGS
 
+from flockana.base.units import rescale
+from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import (
     CallableTarget,
     CircleTarget,
@@ -15,9 +17,7 @@ from flockana.environment.targets import (
     StaticTarget,
 )
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.theorems.gamma_agent import consistent, honest_rate, slip, still
-from flockana.trajectory import Trajectory
-from flockana.units import rescale
+from flockana.theorems.olfati_saber.gamma_agent import consistent, honest_rate, slip, still
 
 HERE, AWAY = (3.0, 1.0), (2.0, -1.0)
 

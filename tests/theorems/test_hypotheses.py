@@ -11,12 +11,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import flockana as fl
+from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.hypotheses import applied, below, conceded, one_gain, positive, vacuous, with_alpha_gain
 from flockana.theorems.rounding import energy_error, frame_error, spread_error
 from flockana.theorems.theorem import Hypothesis
-from flockana.trajectory import Trajectory
 
 getcontext().prec = 60
 

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from scipy.stats import beta
 
-from flockana.metrics import min_distance
-from flockana.nets import components, links
+from flockana.measures.metrics import min_distance
+from flockana.measures.nets import components, links
 from flockana.scenarios.scenario import differences
 from flockana.theorems import theorem, verify
-from flockana.theorems.j1_j3 import path_matrices, random_forest
-from flockana.theorems.j7_j9 import dragged_speed
-from flockana.theorems.j11 import minimal_start
+from flockana.theorems.bearing_distance.j01_j03 import path_matrices, random_forest
+from flockana.theorems.bearing_distance.j07_j09 import dragged_speed
+from flockana.theorems.bearing_distance.j11 import minimal_start
 from flockana.theorems.shares import always, mostly, separated_start, share, zone_start
 
 NAMES = [f"J{k}" for k in range(1, 13)]

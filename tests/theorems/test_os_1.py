@@ -9,14 +9,14 @@ import pytest
 from made_up import SCALINGS, hypothesis, judged, made_up, same_in_all_units, statuses
 
 import flockana as fl
+from flockana.dynamics.simulate import simulate
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_patch, hexagonal_spiral
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.simulate import simulate
 from flockana.theorems import Tolerances, verify
 from flockana.theorems.asymptotics import lattice_limit
-from flockana.theorems.e3 import rhombus_with_double_agent
-from flockana.theorems.os_1 import _disconnected_energy
+from flockana.theorems.olfati_saber.os_1 import _disconnected_energy
+from flockana.theorems.slides.e03 import rhombus_with_double_agent
 from flockana.theorems.theorem import Hypothesis
 
 LAW = Algorithm1()

@@ -9,12 +9,12 @@ import pytest
 from made_up import SCALINGS, hypothesis, judged, made_up, same_in_all_units, statuses
 
 import flockana as fl
+from flockana.base.errors import ArgumentError
+from flockana.dynamics.simulate import simulate
 from flockana.environment.targets import CallableTarget, LinearTarget, RescaledVelocity, StaticTarget
-from flockana.errors import ArgumentError
 from flockana.interactions import Gains
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.simulate import simulate
 from flockana.theorems import Tolerances, verify
 
 LAW = Algorithm2(target=LinearTarget((20.0, 0.0), (1.0, 0.0)))

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from flockana.dynamics.simulate import simulate
 from flockana.lattice import (
     bcc,
     crossings,
@@ -26,9 +27,9 @@ from flockana.lattice import (
 )
 from flockana.laws.law import Law
 from flockana.laws.olfati_saber import Algorithm1
-from flockana.simulate import simulate
-from flockana.theorems import Tolerances, os_5, verify
-from flockana.theorems.os_5 import CLAIMS
+from flockana.theorems import Tolerances, verify
+from flockana.theorems.olfati_saber import os_5
+from flockana.theorems.olfati_saber.os_5 import CLAIMS
 
 D, R = 7.0, 8.4
 
@@ -234,7 +235,7 @@ def test_the_threshold_of_the_extension_is_sharp():
 def test_in_space_only_a_clearance_above_rounding_is_believed():
     """Two links of 7 within 1e-14 of each other: nobody knows whether they cross."""
     q = D * np.array([[-0.5, 0.0, 0.0], [0.5, 0.0, 0.0], [0.0, -0.5, 1e-14], [0.0, 0.5, 1e-14]])
-    from flockana.theorems.os_5 import _Net, _uncrossed
+    from flockana.theorems.olfati_saber.os_5 import _Net, _uncrossed
 
     net = _Net(q, D, R)
     assert len(net.crossings) == 0

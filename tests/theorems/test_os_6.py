@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 from made_up import judged
 
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.obstacles import Sphere, Wall
 from flockana.environment.targets import LinearTarget, RescaledVelocity, StaticTarget, Target
 from flockana.interactions import Gains
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.simulate import simulate
 from flockana.theorems import verify
-from flockana.theorems.os_6 import condition_76
-from flockana.trajectory import Trajectory
+from flockana.theorems.olfati_saber.os_6 import condition_76
 
 OBSTACLES = (Sphere((3.0, 2.0), 2.0), Wall((0.0, -14.0), (0.0, 1.0)))
 
@@ -167,7 +167,7 @@ def test_a_law_that_feeds_energy_in_is_refuted(static: Trajectory) -> None:
 
     law = static.law
     mutant = Rising(law.alpha, law.gains, law.target, law.beta, law.obstacles)
-    from flockana.theorems.energy import balance, never_rises
+    from flockana.theorems.olfati_saber.energy import balance, never_rises
     from flockana.theorems.theorem import Tolerances
 
     assert never_rises(replace(static, law=mutant), []).status == "refuted"

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from flockana.dynamics.simulate import simulate
 from flockana.laws.olfati_saber import Algorithm1
-from flockana.simulate import simulate
-from flockana.theorems.printed_energy import identity_claim, run_claim
+from flockana.theorems.slides.claims_on_energy import identity_claim, run_claim
 from flockana.theorems.theorem import Hypothesis
 
 

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 import flockana as fl
-from flockana.errors import ArgumentError
+from flockana.base.errors import ArgumentError
+from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.theorems import Claim, Theorem, Tolerances, verify
 from flockana.theorems.second_run import corroborated, second_run
 from flockana.theorems.theorem import judge
-from flockana.trajectory import Trajectory
 
 SPRING = fl.Algorithm2(
     gains=fl.Gains(c1_alpha=0.0, c2_alpha=0.0, c1_gamma=1.0, c2_gamma=0.0), target=fl.StaticTarget((0.0,))

@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 
-from flockana.errors import ArgumentError, UnknownNameError
+from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.scenarios.scenario import differences
 from flockana.theorems import Claim, Hypothesis, Theorem, Tolerances, Verdict, theorem, theorems, verify

@@ -10,14 +10,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
+from flockana.base.units import rescale
+from flockana.dynamics.simulate import simulate
 from flockana.laws.minimal import MinimalFlocking
-from flockana.laws.perception import both_ways, edge_vectors, random_out_tree
-from flockana.simulate import simulate
+from flockana.measures.perception import both_ways, edge_vectors, random_out_tree
 from flockana.theorems import verify
-from flockana.theorems.tree_case import tree_case
-from flockana.theorems.tree_limits import edge_shares, settles
-from flockana.theorems.tree_spectrum import tree_spectrum
-from flockana.units import rescale
+from flockana.theorems.bearing_distance.tree_case import tree_case
+from flockana.theorems.bearing_distance.tree_limits import edge_shares, settles
+from flockana.theorems.bearing_distance.tree_spectrum import tree_spectrum
 
 TREE = ((0, 1), (1, 2), (1, 3), (0, 4))
 PAIR = ((0, 1),)

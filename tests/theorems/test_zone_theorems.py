@@ -8,14 +8,14 @@ from math import sqrt
 import numpy as np
 import pytest
 
+from flockana.dynamics.simulate import simulate
 from flockana.environment.targets import StaticTarget
 from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.laws.perception import both_ways, edge_vectors, random_out_tree
-from flockana.simulate import simulate
+from flockana.measures.perception import both_ways, edge_vectors, random_out_tree
 from flockana.theorems import Tolerances, theorem, verify
-from flockana.theorems.tree_case import characteristic_residual, tree_case
-from flockana.theorems.tree_limits import edge_shares
+from flockana.theorems.bearing_distance.tree_case import characteristic_residual, tree_case
+from flockana.theorems.bearing_distance.tree_limits import edge_shares
 
 TREE = ((0, 1), (1, 2), (1, 3), (0, 4))
 CORRECTED = ("lengths", "velocities", "spectrum", "exponential", "root-edge", "energy", "no-collision")

@@ -28,7 +28,7 @@ import scipy.linalg  # noqa: F401 - loads scipy's own OpenBLAS
 from numba.core.registry import cpu_target
 
 from flockana import Scenario, Tolerances, Trajectory, Verdict, rescale, scenario, scenarios, theorem, theorems, verify
-from flockana.errors import ArgumentError
+from flockana.base.errors import ArgumentError
 from flockana.laws.law import DiscreteLaw
 
 MOVED = 1e-13  # relative: what rounding does to a start that is written down elsewhere

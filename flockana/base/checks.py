@@ -1,0 +1,256 @@
+"""Checks at the boundary: every public entry point validates its arguments here, before any work starts."""
+
+from __future__ import annotations
+
+import math
+import os
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.base.errors import ArgumentError
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def ensure_finite_scalar(name: str, value: Any) -> float:
+    """Return `value` as a finite float.
+
+    Parameters
+    ----------
+    name : str
+        The argument's name, for the message.
+    value : object
+        What the caller gave.
+
+    Raises
+    ------
+    ArgumentError
+        If it is not one finite real number.
+
+    Examples
+    --------
+    >>> ensure_finite_scalar("d", 7)
+    7.0
+    """
+    try:
+        number = float(value)
+    except (TypeError, ValueError, OverflowError):
+        raise ArgumentError(f"{name} = {value!r}: expected one real number") from None
+    if not np.isfinite(number):
+        raise ArgumentError(f"{name} = {number}: expected a finite number")
+    return number
+
+
+def ensure_positive(name: str, value: Any) -> float:
+    """Return `value` as a finite float > 0 (arguments and errors as `ensure_finite_scalar`).
+
+    Parameters
+    ----------
+    name : str
+        The argument's name, for the message.
+    value : object
+        What the caller gave.
+    """
+    number = ensure_finite_scalar(name, value)
+    if number <= 0.0:
+        raise ArgumentError(f"{name} = {number:g}: expected a number > 0")
+    return number
+
+
+def ensure_nonnegative(name: str, value: Any) -> float:
+    """Return `value` as a finite float >= 0 (arguments and errors as `ensure_finite_scalar`).
+
+    Parameters
+    ----------
+    name : str
+        The argument's name, for the message.
+    value : object
+        What the caller gave.
+    """
+    number = ensure_finite_scalar(name, value)
+    if number < 0.0:
+        raise ArgumentError(f"{name} = {number:g}: expected a number >= 0")
+    return number
+
+
+def _real_array(value: Any) -> FloatArray:
+    """A contiguous float64 array; a complex one is refused rather than cut to its real part."""
+    array = np.asarray(value)
+    if array.dtype.kind == "c":
+        raise TypeError("complex numbers")
+    return np.asarray(array, dtype=np.float64, order="C")
+
+
+def ensure_points(name: str, value: Any) -> FloatArray:
+    """Return an (n, m) float64 array of n >= 1 points in m = 1, 2 or 3 dimensions.
+
+    Parameters
+    ----------
+    name : str
+        The argument's name, for the message.
+    value : array_like, shape (n, m)
+        Positions or velocities.
+
+    Raises
+    ------
+    ArgumentError
+        On a wrong shape, a non-numeric dtype, or a NaN or infinity (the first bad agent is named).
+
+    Examples
+    --------
+    >>> ensure_points("q", [[0, 0], [1, 0]]).shape
+    (2, 2)
+    """
+    try:
+        points = _real_array(value)
+    except (TypeError, ValueError, OverflowError):
+        raise ArgumentError(f"{name}: expected numbers in an (n, m) array, got {type(value).__name__}") from None
+    if points.ndim != 2:
+        raise ArgumentError(
+            f"{name} has shape {points.shape}: expected (n, m), one row per agent; "
+            "for agents on a line use a column, q[:, None]"
+        )
+    if points.shape[0] < 1:
+        raise ArgumentError(f"{name} has no agents (shape {points.shape}): expected n >= 1")
+    if points.shape[1] not in (1, 2, 3):
+        raise ArgumentError(f"{name} has shape {points.shape}: expected m = 1, 2 or 3 columns, one per dimension")
+    bad = ~np.isfinite(points).all(axis=1)
+    if bad.any():
+        agent = int(np.argmax(bad))
+        raise ArgumentError(f"{name}[{agent}] = {points[agent]}: expected finite numbers ({int(bad.sum())} bad agents)")
+    return points
+
+
+def ensure_state(q: Any, p: Any) -> tuple[FloatArray, FloatArray]:
+    """Return positions and velocities of equal shape (n, m).
+
+    Parameters
+    ----------
+    q, p : array_like, shape (n, m)
+        Positions and velocities.
+
+    Raises
+    ------
+    ArgumentError
+        If either is bad by itself or their shapes differ.
+
+    Examples
+    --------
+    >>> q, p = ensure_state([[0.0, 1.0]], [[0.0, 0.0]])
+    """
+    q = ensure_points("q", q)
+    p = ensure_points("p", p)
+    if q.shape != p.shape:
+        raise ArgumentError(f"q has shape {q.shape} but p has shape {p.shape}: expected equal shapes (n, m)")
+    return q, p
+
+
+def ensure_vector(name: str, value: Any, m: int | None = None) -> FloatArray:
+    """Return a finite float64 vector, of m components if `m` is given.
+
+    Parameters
+    ----------
+    name : str
+        The argument's name, for the message.
+    value : array_like, shape (m,)
+        The vector.
+    m : int, optional
+        The dimension expected.
+
+    Examples
+    --------
+    >>> ensure_vector("q", (150, 30), 2).tolist()
+    [150.0, 30.0]
+    """
+    try:
+        vector = _real_array(value)
+    except (TypeError, ValueError, OverflowError):
+        raise ArgumentError(f"{name} = {value!r}: expected a vector of numbers") from None
+    if vector.ndim != 1 or vector.size not in (1, 2, 3):
+        raise ArgumentError(f"{name} has shape {vector.shape}: expected a vector of 1, 2 or 3 components")
+    if m is not None and vector.size != m:
+        raise ArgumentError(f"{name} has {vector.size} components: expected {m}, the dimension of the flock")
+    if not np.isfinite(vector).all():
+        raise ArgumentError(f"{name} = {vector}: expected finite numbers")
+    return vector
+
+
+def ensure_fits(name: str, shape: tuple[int, ...], remedy: str) -> None:
+    """Raise before an array of floats is allocated that would take more than half of the machine's memory.
+
+    Parameters
+    ----------
+    name : str
+        The array's name, for the message.
+    shape : tuple of int
+        Its shape.
+    remedy : str
+        What to do instead.
+
+    Raises
+    ------
+    ArgumentError
+        If it does not fit.
+
+    Examples
+    --------
+    >>> ensure_fits("A", (600, 600), "sparse=True")
+    """
+    size = 8 * math.prod(shape)
+    if not hasattr(os, "sysconf"):
+        return  # a system that does not tell; the allocation itself may fail
+    memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    if 2 * size > memory:
+        raise ArgumentError(
+            f"{name} of shape {shape} would take {size:.3g} bytes, more than half of this machine's {memory:.3g}: "
+            f"{remedy}"
+        )
+
+
+def ensure_time_span(t_span: Any) -> tuple[float, float]:
+    """Return (t0, t1) with t0 < t1, both finite.
+
+    Parameters
+    ----------
+    t_span : sequence of two floats
+        Start and end.
+
+    Examples
+    --------
+    >>> ensure_time_span((0, 5))
+    (0.0, 5.0)
+    """
+    try:
+        t0, t1 = (float(t) for t in t_span)
+    except (TypeError, ValueError, OverflowError):
+        raise ArgumentError(f"t_span = {t_span!r}: expected two numbers (t0, t1)") from None
+    if not (np.isfinite(t0) and np.isfinite(t1) and t0 < t1):
+        raise ArgumentError(f"t_span = ({t0:g}, {t1:g}): expected finite t0 < t1")
+    return t0, t1
+
+
+def ensure_count(name: str, value: Any) -> int:
+    """Return `value` as a whole number >= 1.
+
+    Parameters
+    ----------
+    name : str
+        The argument's name, for the message.
+    value : object
+        What the caller gave.
+
+    Raises
+    ------
+    ArgumentError
+        If it is no whole number >= 1.
+
+    Examples
+    --------
+    >>> ensure_count("n", 7)
+    7
+    """
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 1:
+        raise ArgumentError(f"{name} = {value!r}: expected a whole number >= 1")
+    return int(value)

@@ -1,0 +1,113 @@
+"""A law and positions to start from: of a scenario, a file, or a builder with the user's scale and range."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from flockana.base.checks import FloatArray
+
+
+def read_flock(
+    source: str,
+    *,
+    start: str = "end",
+    seed: int = 0,
+    algorithm: int | None = None,
+    d: float | None = None,
+    r: float | None = None,
+    time: float | None = None,
+) -> tuple[Any, FloatArray]:
+    """(law, q): the law of a scenario or a file, or Algorithm 1 or 2; a γ-agent is held where it is.
+
+    Parameters
+    ----------
+    source : str
+        A scenario, a file, or a builder with its size.
+    start : {"end", "start"}
+        Of a scenario: the end of its run, or its start.
+    seed : int
+        Of a scenario's random start.
+    algorithm : int, optional
+        1 or 2, where no law comes with the positions; by default 1.
+    d, r, time : float, optional
+        As for `read_source`.
+
+    Raises
+    ------
+    ArgumentError, FileError
+        On a bad source, or an option that it does not leave open.
+    SolverError
+        If a scenario's run fails.
+
+    Examples
+    --------
+    >>> law, q = read_flock("line:3", d=2.0)
+    >>> type(law).__name__, law.alpha.d, q.ravel().tolist()
+    ('Algorithm1', 2.0, [0.0, 2.0, 4.0])
+    """
+    from flockana.cli.source import ensure_source
+    from flockana.scenarios import scenarios
+
+    if source in scenarios():
+        _ensure_free(source, time=time, algorithm=algorithm, d=d, r=r)
+        return _of_scenario(source, start, seed)
+    ensure_source(source, scenarios())
+    law, q = _of_source(source, algorithm=algorithm, d=d, r=r, time=time)
+    return law, q
+
+
+def _ensure_free(name: str, **given: object) -> None:
+    from flockana.base.errors import ArgumentError
+
+    for option, value in given.items():
+        if value is not None:
+            raise ArgumentError(f"--{option} {value}: {name} has a law of its own, and no such choice; leave it out")
+
+
+def _of_scenario(name: str, start: str, seed: int) -> tuple[Any, FloatArray]:
+    from flockana.base.errors import SolverError
+    from flockana.cli.source import stepped_law
+    from flockana.equilibria.classify import ensure_small
+    from flockana.equilibria.potential import ensure_flock_law
+    from flockana.scenarios import scenario
+
+    item = scenario(name, seed)
+    law = ensure_flock_law(stepped_law(item.law), item.q0.shape[1])
+    ensure_small(*item.q0.shape)
+    if start == "start":
+        return _held(law, item.t_span[0]), item.q0
+    run = item.run()
+    if run.status == "interrupted":
+        raise KeyboardInterrupt
+    if run.status != "complete":
+        raise SolverError(f"the run of {name} {run.status}: {run.message}; use --start start")
+    return _held(law, float(run.t[-1])), run.q[-1]
+
+
+def _of_source(name: str, *, algorithm: int | None, d: float | None, r: float | None, time: float | None) -> Any:
+    """The law of the file, or Algorithm 1 or 2 with the user's scale and range; positions."""
+    from flockana.cli.source import read_source
+    from flockana.equilibria.potential import ensure_flock_law
+    from flockana.interactions import AlphaInteraction
+    from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+
+    given = read_source(name, d=d, r=r, time=time)
+    if given.law is not None:
+        _ensure_free(name, algorithm=algorithm, d=d, r=r)
+        return _held(ensure_flock_law(given.law, given.q.shape[1]), given.t), given.q
+    alpha = AlphaInteraction(d=given.d, r=given.r)
+    if algorithm != 2:
+        return Algorithm1(alpha), given.q
+    from flockana.environment.targets import StaticTarget
+
+    return Algorithm2(alpha, target=StaticTarget(given.q.mean(axis=0))), given.q
+
+
+def _held(law: Any, t: float) -> Any:
+    """The law with its γ-agent held where it is at t: the same potential, and one that a file can hold."""
+    from flockana.environment.targets import StaticTarget
+
+    target = getattr(law, "target", None)
+    return law if target is None else replace(law, target=StaticTarget(tuple(target.position(t).tolist())))

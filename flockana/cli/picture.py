@@ -1,0 +1,93 @@
+"""Write one drawing to a file that the user names."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from flockana.base.errors import ArgumentError
+from flockana.base.files import replacing
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+KINDS = (".png", ".svg", ".pdf")
+_SIZE = (7.2, 5.4)
+_DPI = 160
+
+
+def ensure_file(path: Path, kinds: tuple[str, ...]) -> Path:
+    """Return the path if a file of such a kind can be written there; before any work whose result it should hold.
+
+    Parameters
+    ----------
+    path : Path
+        What the user gave.
+    kinds : tuple of str
+        Suffixes, with their dot.
+
+    Raises
+    ------
+    ArgumentError
+        If it is a folder or has another suffix.
+    FileError
+        If its folder cannot be made or written to.
+    """
+    from flockana.report.build import ensure_directory
+
+    if path.is_dir():
+        raise ArgumentError(f"{path} is a folder: expected a file name, such as {path / ('it' + kinds[0])}")
+    if path.suffix.lower() not in kinds:
+        raise ArgumentError(f"{path}: expected a file name that ends in {' or '.join(kinds)}")
+    ensure_directory(path.parent)
+    return path
+
+
+def write_picture(draw: Callable[[Axes], object], path: Path, *, m: int) -> None:
+    """Draw on new axes and write them as PNG, SVG or PDF, by the file's name.
+
+    Parameters
+    ----------
+    draw : callable
+        Draws on the Axes that it is given.
+    path : Path
+        The file.
+    m : int
+        Dimension; three-dimensional axes for m = 3.
+
+    Raises
+    ------
+    FileError
+        If it cannot be written.
+    """
+    write_figure(lambda figure: draw(figure.add_subplot(projection="3d" if m == 3 else None)), path)
+
+
+def write_figure(draw: Callable[[Figure], object], path: Path, *, size: tuple[float, float] = _SIZE) -> None:
+    """Draw on a new figure and write it as PNG, SVG or PDF, by the file's name.
+
+    Parameters
+    ----------
+    draw : callable
+        Draws on the Figure that it is given.
+    path : Path
+        The file.
+    size : (float, float)
+        Width and height in inches.
+
+    Raises
+    ------
+    FileError
+        If it cannot be written.
+    """
+    from matplotlib.figure import Figure
+
+    from flockana.plots.style import style
+
+    with style():
+        figure = Figure(figsize=size, layout="constrained")
+        draw(figure)
+        with replacing(path) as partial:
+            figure.savefig(partial, dpi=_DPI)

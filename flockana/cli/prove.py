@@ -1,0 +1,127 @@
+"""`flockana prove`: check the executable proofs of a checkout, and write certificates."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.cli.options import OK, UNEXPECTED
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+_HELP = """Check the executable proofs, print what each proves, and write certificates (Markdown with LaTeX, and JSON).
+
+A proof whose steps all hold is `proved`. One with a step that does not hold is `FAILED`. One that takes too long, lacks
+a library or cannot tell is `unknown`, which is not `false`, and fails the run too.
+
+Exit status: 0 all proved, 2 bad input, 3 some proof failed or is unknown, 130 interrupted.
+"""
+_COLOURS = {"proved": "green", "FAILED": "bold red", "unknown": "yellow"}
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command to the command line.
+
+    Parameters
+    ----------
+    app : typer.Typer
+        Of flockana.
+    """
+    app.command("prove", help=_HELP)(_prove)
+
+
+def _prove(
+    wanted: Annotated[list[str] | None, typer.Argument(metavar="[ID]...", help="Proofs; by default all.")] = None,
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="DIR", help="Folder of the certificates.")] = Path(
+        "certificates"
+    ),
+    jobs: Annotated[int, typer.Option(min=1, help="Processes; by default the number of cores.", show_default=False)] = (
+        os.cpu_count() or 1
+    ),
+    time_limit: Annotated[
+        float | None, typer.Option(min=0.0, metavar="SECONDS", help="For each proof, instead of its own limit.")
+    ] = None,
+) -> int:
+    from rich.console import Console
+
+    from flockana.report.build import ensure_directory
+    from flockana.report.console import progress_bar
+
+    proof, run, certificates = (_module(name) for name in ("proof", "run", "certificates"))
+    known = proof.names()
+    for name in wanted or ():
+        if name not in known:
+            raise UnknownNameError("proof", name, known)
+    chosen = tuple(dict.fromkeys(wanted or known))
+    folder, started = ensure_directory(output), time.perf_counter()
+    outcomes: list[Any] = []
+    with progress_bar(Console(stderr=True), len(chosen), enabled=True) as advance:
+        for outcome in run.check(
+            chosen, jobs=jobs, time_limit=time_limit, watch=lambda under_way: advance(len(outcomes), under_way)
+        ):
+            certificates.write(outcome, folder)
+            outcomes.append(outcome)
+    outcomes.sort(key=lambda outcome: chosen.index(outcome.id))
+    certificates.write_index(outcomes, folder)
+    _print(outcomes, time.perf_counter() - started, folder)
+    return OK if all(outcome.status == "proved" for outcome in outcomes) else UNEXPECTED
+
+
+def _module(name: str) -> Any:
+    """A module of the checkout's `proofs`, which is no part of the installed package."""
+    for root in (Path(__file__).parents[2], Path.cwd()):
+        if (root / "proofs" / "proof.py").is_file():
+            if str(root) not in sys.path:
+                sys.path.insert(0, str(root))
+            return importlib.import_module(f"proofs.{name}")
+    raise ArgumentError(
+        "the proofs are not installed with flockana: clone its repository and run `flockana prove` in that folder"
+    )
+
+
+def _status(outcome: Any) -> str:
+    return "FAILED" if outcome.status == "failed" else str(outcome.status)
+
+
+def _print(outcomes: Sequence[Any], seconds: float, folder: Path) -> None:
+    from rich.console import Console
+
+    console = Console(highlight=False)
+    console.print(_table(outcomes))
+    for outcome in outcomes:
+        for objection in outcome.objections():
+            console.print(f"  {outcome.id}: {objection}", style=_COLOURS[_status(outcome)], markup=False)
+    proved, steps = sum(o.status == "proved" for o in outcomes), sum(len(o.steps) for o in outcomes)
+    console.print(f"{proved} of {len(outcomes)} proved, {steps} steps, in {seconds:.0f} s", markup=False)
+    console.print(f"certificates: {folder}", markup=False, soft_wrap=True)
+
+
+def _table(outcomes: Sequence[Any]) -> Table:
+    from rich import box
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
+    table.add_column("theorem, and what exactly is proved", ratio=1)
+    for heading in ("rigour", "steps", "status", "time"):
+        table.add_column(heading, no_wrap=True, justify="right" if heading in ("steps", "time") else "left")
+    for outcome in outcomes:
+        table.add_row(
+            Text.assemble(
+                (outcome.id, "bold"), f" · {outcome.title}" * bool(outcome.title), f"\n{outcome.statement}\n"
+            ),
+            outcome.rigour,
+            str(len(outcome.steps)),
+            Text(_status(outcome), style=_COLOURS[_status(outcome)]),
+            f"{outcome.seconds:.1f} s",
+        )
+    return table

@@ -1,0 +1,276 @@
+"""Where positions come from: a saved run, a CSV, an equilibrium's file, or a builder such as ``square:4x5``."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import isfinite, prod
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from flockana import lattice
+from flockana.base.checks import FloatArray, ensure_positive
+from flockana.base.errors import ArgumentError, FileError, UnknownNameError
+
+D, KAPPA = 7.0, 1.2  # where neither the user nor a law says
+_MOST = 10**6  # agents that a builder makes at most
+_FILES = (".nc", ".csv", ".json")
+_BUILDERS: dict[str, tuple[Callable[..., FloatArray], str]] = {
+    "line": (lattice.line, "N"),
+    "triangular": (lattice.triangular, "N"),
+    "hexagonal-spiral": (lattice.hexagonal_spiral, "N"),
+    "hexagonal-patch": (lattice.hexagonal_patch, "RINGS"),
+    "square": (lattice.square, "ROWSxCOLS"),
+    "honeycomb": (lattice.honeycomb, "ROWSxCOLS"),
+    "simple-cubic": (lattice.simple_cubic, "NXxNYxNZ"),
+    "fcc": (lattice.fcc, "NXxNYxNZ"),
+    "hcp": (lattice.hcp, "NXxNYxNZ"),
+    "bcc": (lattice.bcc, "NXxNYxNZ"),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Source:
+    """Positions, with the scale and the range that they are to be measured with.
+
+    Attributes
+    ----------
+    name : str
+        What was asked for.
+    q : ndarray, shape (n, m)
+        Positions.
+    d, r : float
+        Scale and interaction range.
+    law : object or None
+        The law that came with the positions.
+    t : float
+        When they were taken.
+    max_ratio : float or None
+        Of a builder: largest κ at which its pattern is an α-lattice.
+    """
+
+    name: str
+    q: FloatArray
+    d: float
+    r: float
+    law: Any = None
+    t: float = 0.0
+    max_ratio: float | None = None
+
+
+def read_source(name: str, *, d: float | None = None, r: float | None = None, time: float | None = None) -> Source:
+    """Read or build a configuration.
+
+    Parameters
+    ----------
+    name : str
+        A file (.nc, .json; any other that exists is read as CSV) or a builder with its size.
+    d, r : float, optional
+        Scale and range; by default the law's, else d = 7 and r = 1.2 d. A builder's agents stand d apart.
+    time : float, optional
+        Of a run: the sample nearest to it; by default the last.
+
+    Raises
+    ------
+    FileError
+        If a file is missing or holds no positions.
+    ArgumentError
+        On an unknown builder, a bad size, scale or time.
+
+    Examples
+    --------
+    >>> read_source("hexagonal-spiral:7").q.shape, read_source("square:2x2", d=2.0).r
+    ((7, 2), 2.4)
+    """
+    path = Path(name)
+    d, r = (None if v is None else ensure_positive(key, v) for key, v in (("--d", d), ("--r", r)))
+    if path.suffix == ".nc":
+        return _scaled(name, *_sample(path, time), d=d, r=r)
+    if time is not None:
+        raise ArgumentError(f"--time {time:g}: {name} is no saved run (.nc) and has no time; leave it out")
+    if path.suffix == ".json":
+        from flockana.equilibria.record import read_equilibrium
+
+        found = read_equilibrium(path)
+        return _scaled(name, found.q, found.law, 0.0, d=d, r=r)
+    if path.suffix in _FILES or path.exists():
+        return _scaled(name, read_csv(path), None, 0.0, d=d, r=r)
+    ensure_source(name)
+    scale = D if d is None else d
+    q, ratio = build(name, scale)
+    return Source(name, q, scale, KAPPA * scale if r is None else r, max_ratio=ratio)
+
+
+def _scaled(name: str, q: FloatArray, law: Any, t: float, *, d: float | None, r: float | None) -> Source:
+    """A range that is not given keeps the law's ratio to the scale."""
+    law = stepped_law(law)
+    own_d, own_r = law_scales(law)
+    scale = own_d if d is None else d
+    if r is None:
+        r = own_r if d is None else own_r / own_d * d
+    return Source(name, np.ascontiguousarray(q), scale, r, law, t)
+
+
+def stepped_law(law: Any) -> Any:
+    """The law that semi-implicit Euler steps; any other law as it is.
+
+    Parameters
+    ----------
+    law : object
+        A law, or None.
+
+    Examples
+    --------
+    >>> stepped_law(None) is None
+    True
+    """
+    from flockana.laws.semi_implicit import SemiImplicitEuler
+
+    return law.law if isinstance(law, SemiImplicitEuler) else law
+
+
+def law_scales(law: Any) -> tuple[float, float]:
+    """Scale and range to measure a law's lattices with: (d, r), and of the dead-zone law d₁ and 1.2 d₁.
+
+    Its contacts sit at d₁ (erratum L8); most pairs within its range have no length that they are held at.
+
+    Parameters
+    ----------
+    law : object
+        A law, or None for the usual scale.
+
+    Examples
+    --------
+    >>> from flockana.laws.dead_zone import DeadZoneFlocking
+    >>> law_scales(DeadZoneFlocking())
+    (3.5, 4.2)
+    """
+    from flockana.laws.dead_zone import DeadZoneFlocking
+
+    if isinstance(law, DeadZoneFlocking):
+        return law.interaction.d1, KAPPA * law.interaction.d1
+    alpha = getattr(law, "alpha", None)
+    return getattr(alpha, "d", D), getattr(alpha, "r", KAPPA * D)
+
+
+def _sample(path: Path, time: float | None) -> tuple[FloatArray, Any, float]:
+    from flockana.dynamics.trajectory import Trajectory
+
+    run = Trajectory.load(path)
+    first, last = float(run.t[0]), float(run.t[-1])
+    if time is not None and not first <= time <= last:
+        raise ArgumentError(f"--time {time:g}: expected a time of the run, {first:g} to {last:g}")
+    k = -1 if time is None else int(np.argmin(np.abs(run.t - time)))
+    return run.q[k], run.law, float(run.t[k])
+
+
+def ensure_source(name: str, more: tuple[str, ...] = ()) -> None:
+    """Raise on a name that can be neither a file nor a builder, before anything is read.
+
+    Parameters
+    ----------
+    name : str
+        What the user gave.
+    more : tuple of str
+        Other names that would have done, to suggest.
+
+    Raises
+    ------
+    UnknownNameError
+        With the nearest name.
+
+    Examples
+    --------
+    >>> ensure_source("line:3")
+    """
+    path, builder = Path(name), name.partition(":")[0]
+    if path.suffix not in _FILES and builder not in _BUILDERS and not path.exists():
+        raise UnknownNameError("scenario, file or builder" if more else "file or builder", builder, (*more, *_BUILDERS))
+
+
+def builders() -> tuple[str, ...]:
+    """Every builder with the form of its size.
+
+    Examples
+    --------
+    >>> builders()[0]
+    'line:N'
+    """
+    return tuple(f"{name}:{form}" for name, (_, form) in _BUILDERS.items())
+
+
+def build(text: str, d: float) -> tuple[FloatArray, float]:
+    """Positions of a builder such as ``fcc:2x2x2``, and the largest κ at which they are an α-lattice.
+
+    Parameters
+    ----------
+    text : str
+        Its name, which must exist, a colon, its size.
+    d : float
+        Distance between neighbours.
+
+    Raises
+    ------
+    ArgumentError
+        If the size is no size, or a million agents are exceeded.
+
+    Examples
+    --------
+    >>> build("line:3", 7.0)
+    (array([[ 0.], [ 7.], [14.]]), 2.0)
+    """
+    name, _, size = text.partition(":")
+    function, form = _BUILDERS[name]
+    parts = size.split("x")
+    if len(parts) != len(form.split("x")) or not all(p.isascii() and p.isdigit() and len(p) <= 9 for p in parts):
+        raise ArgumentError(f"{text!r}: expected {name}:{form}, with whole numbers")
+    counts = [int(p) for p in parts]
+    if (3 * counts[0] ** 2 if form == "RINGS" else prod(counts)) > _MOST:
+        raise ArgumentError(f"{text!r}: expected a size of at most {_MOST} agents")
+    return function(*counts, d), lattice.max_ratio(name.replace("-", "_"))
+
+
+def read_csv(path: Path) -> FloatArray:
+    """Positions from a CSV: a row for each agent, one to three columns, a header or none.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Raises
+    ------
+    FileError
+        If it is missing or no text, or if a row is ragged or holds something that is no finite number.
+    """
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as file:
+            lines = [(k, row) for k, row in enumerate(csv.reader(file), 1) if any(cell.strip() for cell in row)]
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise FileError(f"cannot read {path}: {reason}; expected a CSV of positions") from error
+    if lines and not any(_is_number(cell) for cell in lines[0][1]):
+        lines = lines[1:]
+    if not lines:
+        raise FileError(f"{path} holds no positions: expected a row of 1 to 3 numbers for each agent")
+    columns = len(lines[0][1])
+    if columns > 3:
+        raise FileError(f"{path} has {columns} columns: expected 1 to 3, the coordinates of an agent")
+    for k, row in lines:
+        if len(row) != columns:
+            raise FileError(f"{path}, line {k}: {len(row)} values, expected {columns} as in the first row")
+        bad = next((cell for cell in row if not (_is_number(cell) and isfinite(float(cell)))), None)
+        if bad is not None:
+            raise FileError(f"{path}, line {k}: {bad!r}, expected finite numbers with commas between them")
+    return np.array([[float(cell) for cell in row] for _, row in lines])
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

@@ -1,0 +1,178 @@
+"""`flockana verify`: run scenarios, check theorems, print the verdicts, write the report."""
+
+from __future__ import annotations
+
+import os
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from flockana.base.errors import ArgumentError, FlockanaError
+from flockana.cli.options import BAD_INPUT, INTERRUPTED, OK, UNEXPECTED, Seed
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from flockana.report.pages import Page
+    from flockana.report.statistics import StatisticsSection, Survey, Surveyed
+    from flockana.report.work import Task
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command to the command line.
+
+    Parameters
+    ----------
+    app : typer.Typer
+        Of flockana.
+    """
+    app.command("verify")(_verify)
+
+
+def _verify(
+    name: Annotated[
+        str | None,
+        typer.Argument(help="A scenario, a theorem, or 'errata'; by default the whole catalogue.", metavar="[NAME]"),
+    ] = None,
+    seed: Seed = 0,
+    on: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Check a saved run instead of simulating; NAME says what to check."),
+    ] = None,
+    report: Annotated[Path, typer.Option(metavar="DIR", help="Folder of the report.")] = Path("report"),
+    no_report: Annotated[bool, typer.Option("--no-report", help="Write no report.")] = False,
+    json: Annotated[bool, typer.Option("--json", help="Print the verdicts as JSON, and nothing else.")] = False,
+    seeds: Annotated[
+        int | None,
+        typer.Option(
+            min=0,
+            help="From how many seeds to tell shares of runs; 0 for no shares. By default as many as scenarios ask "
+            "for, in a report on the whole catalogue only.",
+            show_default=False,
+        ),
+    ] = None,
+    jobs: Annotated[int, typer.Option(min=1, help="Processes; by default the number of cores.", show_default=False)] = (
+        os.cpu_count() or 1
+    ),
+) -> int:
+    """Run scenarios, check theorems, print the verdicts, write a report.
+
+    Exit status: 0 all as expected, 2 bad input, 3 some verdict differs from the expected, 130 interrupted.
+    """
+    from flockana.report.build import ensure_directory, verdicts_json, write_report
+    from flockana.report.statistics import Surveyed, gather, surveys
+    from flockana.report.work import plan
+
+    started = time.perf_counter()
+    if on is not None:
+        tasks: tuple[Task, ...] = ()
+        many: tuple[Survey, ...] = ()
+        _ensure_checkable(name, seeds)
+    else:
+        tasks = plan(name, seed=seed, figures=not no_report)
+        many = () if no_report and seeds is None else surveys(name, seeds, seed=seed)
+    if not no_report:
+        ensure_directory(report)
+    results, code, failure = ([_saved(name, on, not no_report)], OK, None) if on else _perform((*tasks, *many), jobs)
+    pages = [one for one in results if not isinstance(one, Surveyed)]
+    statistics = gather(many, [one for one in results if isinstance(one, Surveyed)], figures=not no_report)
+    if code == OK and any(page.surprises for page in pages):
+        code = UNEXPECTED
+    seconds, complete = time.perf_counter() - started, code in (OK, UNEXPECTED)
+    written = None
+    if not no_report and (pages or complete):
+        written = write_report(pages, report, seed=seed, seconds=seconds, complete=complete, statistics=statistics)
+    if json:
+        text = verdicts_json(pages, seed=seed, seconds=seconds, complete=complete, statistics=statistics)
+        typer.echo(text, nl=False)
+    else:
+        _print_verdicts(pages, statistics, seconds, written, in_full=name is not None and name != "errata")
+    if failure is not None:
+        raise failure
+    return code
+
+
+def _perform(tasks: Sequence[Task | Survey], jobs: int) -> tuple[list[Page | Surveyed], int, FlockanaError | None]:
+    """Carry tasks out under a progress bar; what was done before an interrupt or an error is kept."""
+    from rich.console import Console
+
+    from flockana.report.console import progress_bar
+    from flockana.report.work import perform
+
+    done: dict[str, Page | Surveyed] = {}
+    code, failure = OK, None
+    try:
+        with progress_bar(Console(stderr=True), len(tasks), enabled=True) as advance:
+            for one in perform(tasks, jobs=jobs, watch=lambda names: advance(len(done), names)):
+                done[one.name] = one
+    except KeyboardInterrupt:
+        code = INTERRUPTED
+    except FlockanaError as error:
+        code, failure = BAD_INPUT, error
+    return [done[task.name] for task in tasks if task.name in done], code, failure
+
+
+def _ensure_checkable(name: str | None, seeds: int | None) -> None:
+    from flockana.base.errors import UnknownNameError
+    from flockana.scenarios import scenarios
+    from flockana.theorems import theorem, theorems
+
+    if seeds:
+        raise ArgumentError(f"--seeds {seeds}: a saved run has one seed; leave out --seeds or --on")
+    if name is None:
+        raise ArgumentError("--on FILE needs a NAME: the scenario that was run, or the theorem to check")
+    if name not in (*scenarios(), *theorems()):
+        raise UnknownNameError("scenario or theorem", name, (*scenarios(), *theorems()))
+    if name in theorems() and theorem(name).kind != "trajectory":
+        raise ArgumentError(f"{name} is not about a run: expected a theorem about motion, such as os-1")
+
+
+def _saved(name: str | None, path: Path, figures: bool) -> Page:
+    """Check a saved run, as one of its scenario or against one theorem."""
+    from flockana.dynamics.trajectory import Trajectory
+    from flockana.report.pages import ScenarioResult, page
+    from flockana.scenarios import Scenario, scenario, scenarios
+    from flockana.theorems import verify
+
+    run = Trajectory.load(path)
+    assert name is not None  # checked before
+    if name in scenarios():
+        item = scenario(name)
+        if type(item.law) is not type(run.law) or item.q0.shape != run.q[0].shape:
+            raise ArgumentError(f"{path} holds no run of {name}: its law or its number of agents differs")
+        return page(ScenarioResult(item, run, item.verify(run)), figures=figures)
+    span = (float(run.t[0]), float(run.t[-1]))
+    item = Scenario(path.name, "A saved run", f"Read from {path.name}.", run.law, run.q[0], run.p[0], span)
+    return page(ScenarioResult(item, run, (verify(name, run, subject=path.name),)), figures=figures)
+
+
+def _print_verdicts(
+    pages: Sequence[Page],
+    statistics: StatisticsSection | None,
+    seconds: float,
+    written: Path | None,
+    *,
+    in_full: bool,
+) -> None:
+    from rich.console import Console
+
+    from flockana.report.console import details, statistics_table, summary, verdict_table
+
+    console = Console(highlight=False)
+    if in_full:
+        for page in pages:
+            for finding in page.findings:
+                console.print(details(finding.verdict))
+    console.print(verdict_table(pages))
+    for page in pages:
+        for text in page.surprises:
+            console.print(f"  {page.name}: {text}", style="bold red", markup=False)
+    if statistics is not None and (in_full or written is None):
+        console.print(statistics_table(statistics))
+    elif statistics is not None:
+        console.print("shares of runs over many seeds: in the report")
+    console.print(summary(pages, seconds), markup=False)
+    if written is not None:
+        console.print(f"report: {written}", markup=False, soft_wrap=True)

@@ -1,0 +1,1 @@
+"""From a law and a start to a run: steps, switches, encounters, the trajectory."""

@@ -1,0 +1,198 @@
+"""No encounter leapt over: how much of a step may be taken so that each meeting of two agents is met by an evaluation.
+
+Forces of finite range are exactly zero beyond it, so an integrator whose evaluations all lie beyond it sees nothing to
+resolve: it may step from before a collision to after it, with an estimated error, and an energy residual, of zero. A
+step is therefore looked at once it is made. If no pair that it treats as free came into range on the paths it made,
+its paths are those of the full law, and it stands. Where one did, the step is to be made again, and to end with that
+pair in range: at the closest approach, or as soon as the two have gone `SHARE` of the law's length within the range.
+A pair in range from the start may go as far in a step. The same holds of agents and obstacles, and of each distance at
+which a law's force begins, ends or jumps (`Law.surfaces`).
+
+Paths are the quintics that match position, velocity and acceleration at both ends of the step, ranges are widened by
+the allowance for their error (`flockana.kernels.paths`), and a first contact is found by halving control polygons:
+what is missed is less than the integrator's own error makes of a path. Relative ways count, so a flock's common motion
+shortens no step.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.environment.beta import ObstacleField
+from flockana.environment.obstacles import Obstacle
+from flockana.kernels.encounters import share_of_all, share_of_pairs
+from flockana.kernels.neighbours import pair_blocks
+from flockana.kernels.paths import bernstein, centred
+from flockana.laws.law import Law
+
+SHARE = 0.5  # of the law's length: as far may two agents go within each other's range between two evaluations
+_DENSE = 400  # agents up to which all pairs are looked at rather than searched
+_SLACK = 1.1  # a step that is too long by less than this is not worth another
+_MARCHES = 60  # towards an obstacle, each as far as it is away
+_TOUCH = 1e-6  # of the range: so near counts as in range
+_LOOKS = 16  # along the way within an obstacle's range, for the closest approach
+
+
+class State(NamedTuple):
+    """Where the agents are, how they move and what moves them, each of shape (n, m)."""
+
+    q: FloatArray
+    p: FloatArray
+    u: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Encounters:
+    """What the agents of a law may run into.
+
+    Parameters
+    ----------
+    radii : ndarray, shape (n, K)
+        Distances at which each agent begins or ceases to feel another, rising.
+    far : float
+        How far two agents may go within them in one step.
+    bodies : ObstacleField or None
+        The law's obstacles.
+    shell, skirt : float
+        Distance from an obstacle's surface at which its force begins, and how far an agent may go within it.
+    """
+
+    radii: FloatArray
+    far: float
+    bodies: ObstacleField | None = None
+    shell: float = 0.0
+    skirt: float = 0.0
+
+    @classmethod
+    def of(cls, law: Law, n: int) -> Encounters:
+        """Those of a law.
+
+        Parameters
+        ----------
+        law : Law
+            Its `surfaces` and obstacles are asked for.
+        n : int
+            Number of agents.
+
+        Examples
+        --------
+        >>> from flockana.laws.olfati_saber import Algorithm1
+        >>> found = Encounters.of(Algorithm1(), 2)
+        >>> found.radii.tolist(), found.far
+        ([[8.4], [8.4]], 3.5)
+        """
+        surfaces = [np.broadcast_to(np.asarray(one, dtype=np.float64), (n,)) for one in law.surfaces]
+        radii = np.sort(np.array(surfaces).reshape(len(surfaces), n).T, axis=1)
+        length = min(np.inf if law.scales is None else law.scales.length, radii[:, -1].min() if surfaces else np.inf)
+        obstacles, beta = tuple(getattr(law, "obstacles", ())), getattr(law, "beta", None)
+        if not obstacles or beta is None:
+            return cls(np.ascontiguousarray(radii), SHARE * length)
+        bodies = ObstacleField(obstacles, beta)
+        return cls(np.ascontiguousarray(radii), SHARE * length, bodies, beta.r, SHARE * beta.d)
+
+    @property
+    def any(self) -> bool:
+        """Whether there is anything to run into."""
+        return self.radii.size > 0 or self.bodies is not None
+
+    def share(self, h: float, before: State, after: State) -> float:
+        """How much of a step may be taken, 1 if it stands.
+
+        Parameters
+        ----------
+        h : float
+            Length of the step.
+        before, after : State
+            At its ends.
+
+        Examples
+        --------
+        Two agents, 200 apart, that pass through each other within one step:
+
+        >>> from flockana.laws.olfati_saber import Algorithm1
+        >>> still, p = np.zeros((2, 1)), np.array([[15.0], [-15.0]])
+        >>> before, after = (State(np.array(q), p, still) for q in ([[0.0], [200.0]], [[210.0], [-10.0]]))
+        >>> h = 14.0 * Encounters.of(Algorithm1(), 2).share(14.0, before, after)
+        >>> 200.0 - 8.4 < 30.0 * h < 200.0 - 4.8
+        True
+        """
+        points, reach, allowance = bernstein(h, *before, *after)
+        share = 1.0 if self.bodies is None else self._share_of_bodies(self.bodies, points, reach, allowance)
+        if not self.radii.size or len(reach) == 1:
+            return share
+        reach = centred(points, allowance)
+        if len(reach) <= _DENSE:
+            return float(min(share, share_of_all(points, reach, allowance, self.radii, self.far)))
+        search = (float(self.radii.max()) + 2.0 * float(reach.max() + allowance.max())) * (1.0 + 1e-9)
+        for i, j in pair_blocks(before.q, search):
+            share = share_of_pairs(points, reach, allowance, self.radii, self.far, i, j, share)
+        return share
+
+    def _share_of_bodies(
+        self, field: ObstacleField, points: FloatArray, reach: FloatArray, allowance: FloatArray
+    ) -> float:
+        """The share of the step that the obstacles allow."""
+        share, m = 1.0, field.obstacles[0].dimension
+        for kind in field.kinds:
+            agents, bodies = np.empty((2, len(points) * len(kind.balls)), np.int64)
+            band = (self.shell, self.skirt, agents, bodies)
+            count = kind.kernels.near(points, reach, allowance, kind.pars, kind.starts, kind.balls, *band)
+            for k in np.unique(bodies[:count]).tolist():
+                some = agents[:count][bodies[:count] == k]
+                curves, edge = np.ascontiguousarray(points[some, :, :m]), self.shell + allowance[some]
+                share = min(share, _share_of_body(kind.obstacles[k], curves, reach[some], edge, self.skirt))
+        return share
+
+
+def _share_of_body(obstacle: Obstacle, curves: FloatArray, reach: FloatArray, edge: FloatArray, far: float) -> float:
+    """The share of the step that one obstacle allows the agents on some curves (k, 6, m)."""
+    gap = np.abs(_clearance(obstacle, curves[:, 0])) - edge
+    way = np.linalg.norm(curves - curves[:, :1], axis=2).max(axis=1)
+    too_far = (gap < 0.0) & (way > _SLACK * far)
+    share = float((far / way[too_far]).min(initial=1.0))
+    may_meet = (gap >= 0.0) & (gap < reach)
+    # who comes in and has not gone too far by the end is met by the evaluation there
+    may_meet &= (way > far) | (np.abs(_clearance(obstacle, curves[:, 5])) >= edge)
+    for curve, limit in zip(curves[may_meet], edge[may_meet].tolist(), strict=True):
+        share = min(share, _visit(obstacle, curve, limit, far))
+    return share
+
+
+def _visit(obstacle: Obstacle, curve: FloatArray, edge: float, far: float) -> float:
+    """As `kernels.encounters._visit`: when an agent is well within `edge` of an obstacle; 1 if it never is, or ends so.
+
+    The distance from an obstacle changes by no more than the way: as far as it is beyond the edge may be gone safely.
+    """
+    legs = 5.0 * np.diff(curve, axis=0)
+    fastest, s = float(np.linalg.norm(legs, axis=1).max()), 0.0
+    if fastest == 0.0:
+        return 1.0
+    for _ in range(_MARCHES):
+        gap = abs(float(_clearance(obstacle, _point(curve, s)[None])[0])) - edge
+        if gap <= _TOUCH * edge:
+            break
+        s += gap / fastest
+        if s >= 1.0:
+            return 1.0
+    speed = float(np.linalg.norm(_point(legs, s)))
+    looks = np.linspace(s, min(1.0, s + far / speed) if speed > 0.0 else 1.0, _LOOKS)
+    distance = np.abs(_clearance(obstacle, np.array([_point(curve, look) for look in looks])))
+    stop = float(looks[int(np.argmin(distance))])
+    return 1.0 if s + _SLACK * (stop - s) >= 1.0 or stop <= s else stop
+
+
+def _point(curve: FloatArray, s: float) -> FloatArray:
+    """The point of a Bézier curve (degree + 1, m) at s."""
+    while len(curve) > 1:
+        curve = curve[:-1] + s * (curve[1:] - curve[:-1])
+    point: FloatArray = curve[0]
+    return point
+
+
+def _clearance(obstacle: Obstacle, q: FloatArray) -> FloatArray:
+    q = np.ascontiguousarray(q)
+    return obstacle._project(q, np.zeros_like(q))[2]

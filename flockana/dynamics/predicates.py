@@ -1,0 +1,65 @@
+"""The source's words for groups, as functions of a run: cohesive, quasi-flock, flock, dynamic flock.
+
+A run is known at its samples; between them only distances are bounded (`Trajectory.closest_approach`). Links may come
+and go between samples, so predicates about nets speak of the sampled times.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.base.checks import ensure_positive
+from flockana.dynamics.trajectory import Trajectory
+
+BoolArray = npt.NDArray[np.bool_]
+
+
+def is_flock(trajectory: Trajectory) -> BoolArray:
+    """At which samples the net G(q) is connected, shape (T,).
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        A run of a law with an interaction range.
+    """
+    result: BoolArray = trajectory.metrics().connectivity.values == 1.0
+    return result
+
+
+def is_quasi_flock(trajectory: Trajectory, *, share: float = 0.5) -> BoolArray:
+    """At which samples a giant component holds more than `share` of the agents, shape (T,).
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        A run of a law with an interaction range.
+    share : float
+        What counts as giant; the source gives no number.
+    """
+    result: BoolArray = trajectory.metrics().giant_share.values > share
+    return result
+
+
+def is_cohesive(trajectory: Trajectory, radius: float) -> bool:
+    """Whether all agents stay within `radius` of the centre of mass at all samples.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        A run.
+    radius : float
+        In the unit of q.
+    """
+    return bool(trajectory.metrics().cohesion_radius.max() <= ensure_positive("radius", radius))
+
+
+def is_dynamic_flock(trajectory: Trajectory) -> bool:
+    """Whether the net is connected at every sample of the run (cut one with `Trajectory.window`).
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        A run of a law with an interaction range.
+    """
+    return bool(is_flock(trajectory).all())

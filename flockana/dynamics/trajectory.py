@@ -1,0 +1,499 @@
+"""A run as frozen data: times, states, inputs, the law that made it; to xarray and to a file and back."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+
+from flockana._version import __version__
+from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError, FileError, UnknownNameError
+from flockana.base.files import replacing
+from flockana.base.scales import Scales
+from flockana.base.serialize import from_data, to_data
+from flockana.base.units import rescale, times
+from flockana.dynamics.between import Between, Course, merged
+from flockana.laws.law import ensure_law
+from flockana.measures import metrics as measure
+from flockana.measures.clearance import Clearance, clearance
+from flockana.measures.path_bounds import ClosestApproach, closest_approach, cohesion_bound
+
+if TYPE_CHECKING:
+    import xarray
+
+    from flockana.plots.film import Film
+
+_Value = TypeVar("_Value")
+
+FORMAT = "flockana-trajectory"
+FORMAT_VERSION = 1
+_BETWEEN = {"t": ("step",), "slack": ("interval", "agent")} | dict.fromkeys("qpu", ("step", "agent", "axis"))
+STATUSES = ("complete", "interrupted", "failed")
+
+
+def _frozen_series(name: str, values: Any, samples: int) -> FloatArray:
+    """A read-only view of a series of finite real numbers; the caller's array stays as it was."""
+    array = np.asarray(values)
+    if array.dtype.kind not in "fiu" or array.shape[:1] != (samples,):
+        raise ArgumentError(f"{name}: expected real numbers at {samples} samples, got {array.dtype} {array.shape}")
+    array = np.ascontiguousarray(array, dtype=np.float64).view()
+    bad = ~np.isfinite(array)
+    if bad.any():
+        k = tuple(int(index) for index in np.argwhere(bad)[0])
+        raise ArgumentError(f"{name}[{', '.join(map(str, k))}] = {array[k]}: expected finite numbers ({bad.sum()} bad)")
+    array.setflags(write=False)
+    return array
+
+
+def _read_between(data: xarray.Dataset) -> Between | None:
+    """The steps between the samples in what was read from a file."""
+    if "between_t" not in data:
+        return None
+    return Between(**{name: np.array(data[f"between_{name}"]) for name in _BETWEEN if f"between_{name}" in data})
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """A sampled run.
+
+    Parameters
+    ----------
+    t : ndarray, shape (T,)
+        Sample times.
+    q, p, u : ndarray, shape (T, n, m)
+        Positions, velocities, accelerations at the samples.
+    law : object
+        The law that was integrated.
+    extra : mapping of str to ndarray
+        Further series over time; ``"work"`` is ∫ dH/dt from the start, where the law has an energy.
+    status : {"complete", "interrupted", "failed"}
+        How the run ended.
+    message : str
+        In words.
+    stats : mapping
+        Method, tolerances, numbers of steps and evaluations, seconds.
+    between : Between, optional
+        The solver's own steps between the samples, from which bounds at all times are made; None if the samples are
+        all there is.
+
+    Raises
+    ------
+    ArgumentError
+        On arrays that do not fit each other, numbers that are not real and finite, times that do not rise, an unknown
+        status, or something that is no law.
+    """
+
+    t: FloatArray
+    q: FloatArray
+    p: FloatArray
+    u: FloatArray
+    law: Any
+    extra: Mapping[str, FloatArray] = field(default_factory=dict)
+    status: str = "complete"
+    message: str = ""
+    stats: Mapping[str, Any] = field(default_factory=dict)
+    between: Between | None = None
+
+    def __post_init__(self) -> None:
+        ensure_law(self.law)
+        if self.status not in STATUSES:
+            raise ArgumentError(f"status = {self.status!r}: expected one of {', '.join(STATUSES)}")
+        shape = np.shape(self.q)
+        if len(shape) != 3 or np.shape(self.t) != shape[:1] or np.shape(self.p) != shape or np.shape(self.u) != shape:
+            raise ArgumentError(
+                f"t {np.shape(self.t)}, q {shape}, p {np.shape(self.p)}, u {np.shape(self.u)}: "
+                "expected shapes (T,), (T, n, m), (T, n, m), (T, n, m)"
+            )
+        if 0 in shape or shape[2] > 3:
+            raise ArgumentError(f"q has shape {shape}: expected T >= 1 samples of n >= 1 agents in m = 1, 2 or 3")
+        for name in ("t", "q", "p", "u"):
+            object.__setattr__(self, name, _frozen_series(name, getattr(self, name), shape[0]))
+        k = int(np.argmin(np.diff(self.t))) if shape[0] > 1 else 0
+        if shape[0] > 1 and not self.t[k + 1] > self.t[k]:
+            raise ArgumentError(f"t[{k}] = {self.t[k]:g} and t[{k + 1}] = {self.t[k + 1]:g}: expected rising times")
+        extra = {str(key): _frozen_series(f"extra[{key!r}]", x, shape[0]) for key, x in self.extra.items()}
+        object.__setattr__(self, "extra", extra)
+        if self.between is not None:
+            self.between.check_fits(self.t, self.q)
+
+    def __repr__(self) -> str:
+        """One line: arrays of thousands of numbers tell nobody anything."""
+        span, law = f"t = {self.t[0]:g} to {self.t[-1]:g}", type(self.law).__name__
+        return f"<Trajectory of {self.n} agents, m = {self.m}, {law}, {len(self.t)} samples, {span}, {self.status}>"
+
+    @cached_property
+    def scales(self) -> Scales:
+        """The law's natural length and time; under a law that has none, the flock's extent and the run's duration."""
+        if self.law.scales is not None:
+            return self.law.scales  # type: ignore[no-any-return]
+        extent = float(np.linalg.norm(self.q - self.q.mean(axis=1, keepdims=True), axis=2).max())
+        travel = float(np.linalg.norm(self.q - self.q[0], axis=2).max())
+        return Scales(extent or travel or 1.0, float(self.t[-1] - self.t[0]) or 1.0)
+
+    def in_units(self, length: float, time: float) -> Trajectory:
+        """The same run in other units (`flockana.rescale`).
+
+        Parameters
+        ----------
+        length, time : float
+            Factors.
+        """
+        powers = {"work": (2, -2)} | dict(getattr(self.law, "extra_units", {}))
+        extra = {
+            name: series * length ** powers[name][0] * time ** powers[name][1] if name in powers else series
+            for name, series in self.extra.items()
+        }
+        q, p, u = self.q * length, self.p * (length / time), self.u * (length / time**2)
+        units = {"dt": time, "atol": length}  # an absolute tolerance is in the state's own units: places first
+        stats = {key: times(value, units[key]) if key in units else value for key, value in self.stats.items()}
+        law, between = (rescale(x, length=length, time=time) for x in (self.law, self.between))
+        return replace(self, t=self.t * time, q=q, p=p, u=u, law=law, extra=extra, stats=stats, between=between)
+
+    @cached_property
+    def _flows(self) -> tuple[FloatArray, FloatArray]:
+        """(u, dH/dt) of the law at the samples."""
+        flows = [self.law.flow(t, q, p) for t, q, p in zip(self.t, self.q, self.p, strict=True)]
+        return np.array([u for u, _ in flows]), np.array([rate for _, rate in flows])
+
+    @property
+    def n(self) -> int:
+        """Number of agents."""
+        return int(self.q.shape[1])
+
+    @property
+    def m(self) -> int:
+        """Dimension of space."""
+        return int(self.q.shape[2])
+
+    def energy(self) -> FloatArray:
+        """The law's energy H at each sample, shape (T,)."""
+        return self._energy
+
+    @cached_property
+    def _energy(self) -> FloatArray:
+        return np.array([self.law.hamiltonian(t, q, p) for t, q, p in zip(self.t, self.q, self.p, strict=True)])
+
+    def energy_rate(self) -> FloatArray:
+        """dH/dt in closed form at each sample, shape (T,)."""
+        return self._flows[1]
+
+    @property
+    def energy_residual(self) -> FloatArray:
+        """H(t) − H(0) − ∫ dH/dt, shape (T,): what the integration got wrong, measured by the energy identity.
+
+        Raises
+        ------
+        ArgumentError
+            If the run carries no ``extra["work"]`` (its law has no energy).
+        """
+        if "work" not in self.extra:
+            raise ArgumentError("this run has no energy balance: its law has no energy")
+        energy = self.energy()
+        residual: FloatArray = energy - energy[0] - self.extra["work"]
+        return residual
+
+    def metrics(self) -> xarray.Dataset:
+        """C, R, Ẽ, K̃ and their companions, and the law's own `measures`, over time: a Dataset of dimension ``time``."""
+        return self._metrics
+
+    @cached_property
+    def _metrics(self) -> xarray.Dataset:
+        import xarray
+
+        texts = {name: text for name, (text, _) in (self._any_flock() | dict(self._own)).items()}
+        data = {name: xarray.Variable("time", self.metric(name), {"long_name": texts[name]}) for name in texts}
+        return xarray.Dataset(data, coords={"time": self.t})
+
+    def metric(self, name: str) -> FloatArray:
+        """One of `metrics` over time, shape (T,), at the cost of that one alone.
+
+        Parameters
+        ----------
+        name : str
+            Its name.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is none of that name for this law.
+        """
+        if name not in self._measured:
+            known = self._any_flock()
+            if name in known:  # else the law is asked, which may cost more
+                values = known[name][1]()
+            elif name in self._own:
+                values = np.fromiter(self._own[name][1], float, len(self.t))
+            else:
+                raise UnknownNameError("metric", name, (*known, *self._own))
+            self._measured[name] = values
+        return self._measured[name]
+
+    def remembered(self, name: str, compute: Callable[[], _Value]) -> _Value:
+        """What was computed from this run before, or is now: kept as long as the run.
+
+        Parameters
+        ----------
+        name : str
+            What it is.
+        compute : callable
+            Gives it.
+        """
+        if name not in self._memory:
+            self._memory[name] = compute()
+        return self._memory[name]  # type: ignore[no-any-return]
+
+    @cached_property
+    def _memory(self) -> dict[str, Any]:
+        return {}
+
+    def _any_flock(self) -> dict[str, tuple[str, Callable[[], FloatArray]]]:
+        """What is measured of every flock: in words, and a function that does it."""
+        q, p, interaction = self.q, self.p, getattr(self.law, "alpha", None)
+        series: dict[str, tuple[str, Callable[[], FloatArray]]] = {
+            "cohesion_radius": ("R = max ‖q_i − q_c‖", lambda: measure.cohesion_radii(q)),
+            "velocity_mismatch": ("K̃ = K/n", lambda: measure.spreads(p) / self.n),
+            "inertia": ("J", lambda: measure.spreads(q)),
+            "min_distance": ("least distance at the samples", lambda: measure.min_distances(q)),
+            "order": ("polar order", lambda: measure.orders(p)),
+            "coordination": ("C, mean cosine between velocities", lambda: measure.coordinations(p)),
+        }
+        if interaction is not None:
+            series |= {
+                "connectivity": ("C = rank(L)/(n − 1)", lambda: self._nets[0]),
+                "giant_share": ("C*, share of nodes", lambda: self._nets[1]),
+                "deviation_energy": ("Ẽ = E/d²", lambda: self._nets[2] / interaction.d**2),
+            }
+        return series
+
+    @cached_property
+    def _measured(self) -> dict[str, FloatArray]:
+        return {}
+
+    @cached_property
+    def _own(self) -> Mapping[str, tuple[str, FloatArray]]:
+        return self.law.measures(self.t, self.q, self.p, self.extra)  # type: ignore[no-any-return]
+
+    @cached_property
+    def _nets(self) -> FloatArray:
+        d, r = self.law.alpha.d, self.law.alpha.r
+        return np.array([measure.net_measures(x, d, r) for x in self.q]).T
+
+    @cached_property
+    def path(self) -> Course:
+        """The samples and the solver's own steps between them, in order of time: what bounds at all times rest on."""
+        return merged(self.t, self.q, self.p, self.u, self.between)
+
+    def closest_approach(self) -> ClosestApproach:
+        """The closest two agents come, between samples too; intervals are those between samples."""
+        return self._closest
+
+    @cached_property
+    def _closest(self) -> ClosestApproach:
+        found = closest_approach(*self.path)
+        return replace(found, lower_by_interval=self.over_intervals(np.minimum, found.lower_by_interval))
+
+    def over_intervals(self, reduce: np.ufunc, values: FloatArray) -> FloatArray:
+        """Numbers of the path's intervals, shape (..., S), to one for each interval between samples.
+
+        Parameters
+        ----------
+        reduce : ufunc
+            `numpy.maximum`, `numpy.minimum`.
+        values : ndarray
+            In the order of `path`.
+        """
+        if self.between is None:
+            return values
+        found: FloatArray = reduce.reduceat(values, np.searchsorted(self.path.t, self.t[:-1]), axis=-1)
+        return found
+
+    def min_distance(self) -> float:
+        """A lower bound of every distance between two agents at every time of the run.
+
+        It holds given the integrator's accuracy, on steps that resolve the motion (`flockana.kernels.paths`).
+        """
+        return self._closest.lower
+
+    def cohesion_bound(self) -> float:
+        """An upper bound of the cohesion radius max ‖q_i − q_c‖ at every time of the run, under the same conditions."""
+        bounds = self.cohesion_bounds
+        return float(bounds.max()) if bounds.size else measure.cohesion_radius(self.q[0])
+
+    @cached_property
+    def cohesion_bounds(self) -> FloatArray:
+        """That of each interval between samples, shape (T − 1,)."""
+        return self.over_intervals(np.maximum, cohesion_bound(*self.path))
+
+    def clearance(self) -> Clearance:
+        """How close any agent comes to any obstacle of the law, between samples too; infinite without obstacles."""
+        return self._clearance
+
+    @cached_property
+    def _clearance(self) -> Clearance:
+        path, obstacles = self.path, getattr(self.law, "obstacles", ())
+        return clearance(path.t, path.q, path.p, path.u, obstacles, path.slack)
+
+    def animate(self, *, seconds: float = 10.0, fps: float = 15.0, velocities: bool = False) -> Film:
+        """The run as a film: a notebook shows it, ``.save(path)`` writes GIF or MP4.
+
+        Parameters
+        ----------
+        seconds : float
+            Length of the film.
+        fps : float
+            Frames per second.
+        velocities : bool
+            Draw arrows.
+
+        Returns
+        -------
+        flockana.plots.Film
+        """
+        from flockana.plots.film import Film
+
+        return Film(self, seconds, fps, velocities)
+
+    def window(self, start: float, end: float) -> Trajectory:
+        """The samples with start ≤ t ≤ end, as a run of their own.
+
+        Parameters
+        ----------
+        start, end : float
+            Times.
+
+        Raises
+        ------
+        ArgumentError
+            If no sample lies between them.
+        """
+        keep = (self.t >= start) & (self.t <= end)
+        if not keep.any():
+            raise ArgumentError(
+                f"no sample between {start:g} and {end:g}: the run spans {self.t[0]:g} to {self.t[-1]:g}"
+            )
+        extra = {name: series[keep] for name, series in self.extra.items()}
+        if "work" in extra:
+            extra["work"] = extra["work"] - extra["work"][0]
+        between = None if self.between is None else self.between.within(self.t, self.t[keep])
+        return replace(
+            self, t=self.t[keep], q=self.q[keep], p=self.p[keep], u=self.u[keep], extra=extra, between=between
+        )
+
+    def to_xarray(self) -> xarray.Dataset:
+        """The run as an `xarray.Dataset` with dimensions time, agent and axis; the law is in the attributes."""
+        import xarray
+
+        dims = ("time", "agent", "axis")
+        data: dict[str, Any] = {"q": (dims, self.q), "p": (dims, self.p), "u": (dims, self.u)}
+        data |= {f"extra_{k}": (("time", *(f"{k}_{a}" for a in range(v.ndim - 1))), v) for k, v in self.extra.items()}
+        if self.between is not None:
+            kept = vars(self.between)
+            data |= {f"between_{k}": (_BETWEEN[k], kept[k]) for k in _BETWEEN if kept[k] is not None}
+        coords = {"time": self.t, "agent": np.arange(self.n), "axis": list("xyz"[: self.m])}
+        attrs = {
+            "format": FORMAT,
+            "format_version": FORMAT_VERSION,
+            "flockana_version": __version__,
+            "law": json.dumps(to_data(self.law)),
+            "status": self.status,
+            "message": self.message,
+            "stats": json.dumps(to_data_mapping(self.stats)),
+        }
+        return xarray.Dataset(data, coords, attrs)
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write the run, law and parameters included, as netCDF-4; an existing file is replaced only when whole.
+
+        Parameters
+        ----------
+        path : path-like
+            File to write.
+
+        Returns
+        -------
+        pathlib.Path
+
+        Raises
+        ------
+        FileError
+            If it cannot be written.
+        ArgumentError
+            If the law holds something that has no written form, such as a user's function.
+        """
+        target = Path(path)
+        if "\0" in str(target):  # HDF5 would write to what precedes it
+            raise FileError(f"cannot write {str(target)!r}: null byte; choose a file name and folder to write to")
+        dataset = self.to_xarray()
+        with replacing(target, remedy="choose a file name and folder to write to") as partial:
+            dataset.to_netcdf(partial, engine="h5netcdf")
+        return target
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Trajectory:
+        """Read what `save` wrote.
+
+        Parameters
+        ----------
+        path : path-like
+            File to read.
+
+        Raises
+        ------
+        FileError
+            If the file is missing, is no netCDF, is not one of ours, is of a newer format, or is damaged.
+        """
+        import xarray
+
+        source = Path(path)
+        if not source.is_file():
+            raise FileError(f"no file {source}: expected one written by Trajectory.save")
+        try:
+            with xarray.open_dataset(source, engine="h5netcdf") as dataset:
+                data = dataset.load()
+        except Exception as error:  # h5py raises many kinds on damaged bytes
+            raise FileError(f"cannot read {source} as netCDF-4: {error}; was it written by Trajectory.save?") from error
+        if data.attrs.get("format") != FORMAT:
+            raise FileError(
+                f"{source} holds no flockana run (format {data.attrs.get('format')!r}, expected {FORMAT!r})"
+            )
+        try:
+            version = int(data.attrs["format_version"])
+            if version > FORMAT_VERSION:
+                raise FileError(f"{source} is of format {version}, newer than {FORMAT_VERSION}: update flockana")
+            return cls(
+                t=np.array(data["time"]),
+                q=np.array(data["q"]),
+                p=np.array(data["p"]),
+                u=np.array(data["u"]),
+                law=ensure_law(from_data(json.loads(data.attrs["law"]))),
+                extra={str(k)[6:]: np.array(v) for k, v in data.data_vars.items() if str(k).startswith("extra_")},
+                status=str(data.attrs["status"]),
+                message=str(data.attrs["message"]),
+                stats=json.loads(data.attrs["stats"]),
+                between=_read_between(data),
+            )
+        except (KeyError, ValueError, TypeError, RecursionError) as error:
+            raise FileError(f"{source} is damaged: {error!r}; run the simulation again") from error
+
+
+def to_data_mapping(stats: Mapping[str, Any]) -> dict[str, Any]:
+    """Plain data of a mapping with text keys.
+
+    Parameters
+    ----------
+    stats : mapping
+        Numbers, strings and sequences of them by name.
+
+    Examples
+    --------
+    >>> to_data_mapping({"steps": np.int64(3)})
+    {'steps': 3}
+    """
+    return {key: to_data(value) for key, value in stats.items()}

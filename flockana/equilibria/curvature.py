@@ -1,0 +1,235 @@
+"""The sign of each curvature of a potential at a computed equilibrium, known to rounding and a residual force only.
+
+Where a force ρ is left and the Hessian has the eigenvalue λ along v, the true critical point lies about ρ/|λ| away, and
+the curvature that counts is the one there. So λ has a sign only if the stiffness keeps half of |λ| within twice that
+distance,
+
+    |vᵀ(H(q′) − H(q)) v| ≤ |λ|/2 for q′ up to δ = 2ρ/|λ| from q,
+
+and counts as zero otherwise. If L is the Lipschitz constant of H along v, that reads |λ| ≥ √(4Lρ): the threshold is
+the root of the residual times the law's own third derivative. It is stricter than λ² > 2Lρ, under which Newton's and
+Kantorovich's theorem puts one critical point of that very sign next to q. A root is what is needed: where a link lets
+go at r the force vanishes as (r − x)², so a solver that has taken it down to ρ stops √ρ short of r and finds a
+stiffness of that size, of either side's sign. No number with a unit enters, and none that fits one law only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.base.checks import FloatArray
+
+EPS = float(np.finfo(np.float64).eps)
+_ROUNDING = 8.0  # of eps √N ‖H‖: eigenvalues of a symmetric matrix come out to a few eps ‖H‖
+_REACH = 0.05  # of the law's length: a critical point farther off than that is another one
+_FREE = 1e-6  # what is left of a unit shift off the rigid motions, if it is one of them
+_GROUP = 2.0  # eigenvalues within this factor are tried together
+
+
+class Curvatures(NamedTuple):
+    """Eigenvalues of a Hessian off the rigid motions, rising, the sign of each, and the rounding error of all."""
+
+    values: FloatArray
+    signs: npt.NDArray[np.int64]
+    rounding: float
+
+
+class Landscape:
+    """A potential about one configuration: its Hessian off the rigid motions, and how it changes nearby.
+
+    Parameters
+    ----------
+    stiffness : callable
+        q -> the Hessian, sparse, in the order of ``q.ravel()``.
+    q : ndarray, shape (n, m)
+        Positions.
+    rigid : ndarray, shape (n m, k)
+        Orthonormal basis of the rigid motions that leave the potential unchanged.
+    force : float
+        What is left of the force, Euclidean norm over all agents.
+    length : float
+        The law's own length: neighbours are about as far apart.
+    unit : float
+        The law's own force, of whose terms what is left was taken: it is known to their rounding.
+
+    Examples
+    --------
+    A spring of stiffness 3 between two agents on a line, of which the sum is free:
+
+    >>> from scipy.sparse import csr_array
+    >>> spring = Landscape(
+    ...     lambda q: csr_array([[3.0, -3.0], [-3.0, 3.0]]),
+    ...     np.array([[0.0], [1.0]]), np.full((2, 1), 0.5**0.5), force=0.0, length=1.0, unit=3.0
+    ... )
+    >>> spring.curvatures().values.round(12).tolist(), spring.curvatures().signs.tolist()
+    ([6.0], [1])
+    """
+
+    def __init__(
+        self,
+        stiffness: Callable[[FloatArray], Any],
+        q: FloatArray,
+        rigid: FloatArray,
+        *,
+        force: float,
+        length: float,
+        unit: float,
+    ) -> None:
+        self.stiffness, self.q, self.rigid, self.length = stiffness, q, rigid, length
+        self.here = stiffness(q)
+        self.size = _row_sum(self.here)
+        self.rounding = _ROUNDING * EPS * float(np.sqrt(q.size)) * max(self.size, unit / length)
+        self.force = force + self.rounding * length  # what a few eps of a length or of a force amount to
+        hessian = self.here.toarray()
+        off = hessian - rigid @ (rigid.T @ hessian)
+        off -= (off @ rigid) @ rigid.T
+        above = 2.0 * self.size or 1.0  # beyond every eigenvalue: where the rigid motions are put
+        self._matrix = 0.5 * (off + off.T) + above * (rigid @ rigid.T)
+
+    @cached_property
+    def values(self) -> FloatArray:
+        """Eigenvalues off the rigid motions, rising; exact zeros where nothing is stiff."""
+        count = self.q.size - self.rigid.shape[1]
+        values: FloatArray = np.linalg.eigvalsh(self._matrix)[:count] if self.size else np.zeros(count)
+        return values
+
+    @cached_property
+    def vectors(self) -> FloatArray:
+        """Their eigenvectors, as columns."""
+        vectors: FloatArray = np.linalg.eigh(self._matrix)[1][:, : self.values.size]
+        return vectors
+
+    def curvatures(self) -> Curvatures:
+        """The eigenvalues with their signs: 0 where the residual force or rounding leaves none."""
+        sizes = np.abs(self.values)
+        decided = np.zeros(sizes.size, dtype=bool)
+        left = np.flatnonzero(sizes > self.rounding)
+        if left.size and self._keeps_all(float(sizes[left].min())):
+            decided[left], left = True, left[:0]
+        while left.size:
+            group = left[sizes[left] > sizes[left].max() / _GROUP]
+            if 2.0 * self.force / float(sizes[group].min()) > _REACH * self.length:
+                break  # and all smaller ones with it
+            if self._keeps_all(float(sizes[group].min())):
+                decided[group] = True
+            else:
+                decided[group] = [self.change(int(k)) <= 0.5 * sizes[k] for k in group]
+            left = np.setdiff1d(left, group)
+        signs = np.where(decided, np.sign(self.values), 0.0).astype(np.int64)
+        return Curvatures(self.values, signs, self.rounding)
+
+    def change(self, k: int) -> float:
+        """By how much eigenvalue k changes on the way to the critical point; infinite if that is not near.
+
+        Parameters
+        ----------
+        k : int
+            Which, from the least.
+        """
+        reach = 2.0 * self.force / max(abs(float(self.values[k])), self.rounding or np.inf)
+        if not reach <= _REACH * self.length:
+            return float("inf")
+        v = self.vectors[:, k]
+        step = reach * v.reshape(self.q.shape)
+        places = [self.q + step, self.q - step, *self._around(reach)]
+        return max(abs(float(v @ ((self.stiffness(x) - self.here) @ v))) for x in places)
+
+    @cached_property
+    def distance(self) -> float:
+        """Bound of the way to the minimum beside this point, over all coordinates; infinite where there is none."""
+        values, signs, rounding = self.curvatures()
+        if not values.size:
+            return 0.0
+        return 2.0 * self.force / (float(values[0]) - rounding) if np.all(signs > 0) else float("inf")
+
+    def holds(self, energy: float) -> bool:
+        """Whether a flock here with that kinetic energy stays beside the minimum, if its energy never rises.
+
+        Within a distance R up to which the stiffness keeps half of its least value λ, the potential rises by λR²/4 from
+        the minimum, which is lower than here by no more than ρ²/λ.
+
+        Parameters
+        ----------
+        energy : float
+            ½ Σ‖v_i‖².
+        """
+        if not np.isfinite(self.distance):
+            return False
+        if not self.values.size:
+            return True
+        least = float(self.values[0])
+        reach = 2.0 * float(np.sqrt((energy + self.force**2 / least) / least)) + self.distance
+        return self._keeps(reach, least)
+
+    def _keeps_all(self, least: float) -> bool:
+        """Whether no eigenvalue of at least that size can change by half of it on the way to the critical point."""
+        return self._keeps(2.0 * self.force / least, least)
+
+    def _keeps(self, reach: float, least: float) -> bool:
+        """Whether the stiffness changes by less than half of `least` within `reach`, by the norm of the change."""
+        if reach > _REACH * self.length:
+            return False
+        turned = 8.0 * reach / self.length * self.size  # links turn by as much; lengths are what `_around` changes
+        return turned + max(_row_sum(self.stiffness(x) - self.here) for x in self._around(reach)) <= 0.5 * least
+
+    def _around(self, reach: float) -> list[FloatArray]:
+        """The flock blown up, shrunk, and shifted if its place matters.
+
+        Every distance above half of `length` changes by √2 `reach` at least, as those of links may.
+        """
+        (n, m), factor = self.q.shape, np.sqrt(8.0) * reach / self.length
+        centre = self.q.mean(axis=0)
+        places = [centre + (1.0 + sign * factor) * (self.q - centre) for sign in (1.0, -1.0)]
+        shifts = np.tile(np.eye(m), (n, 1))
+        if np.abs(shifts - self.rigid @ (self.rigid.T @ shifts)).max() > _FREE:
+            places += [self.q + sign * reach * axis for axis in np.eye(m) for sign in (1.0, -1.0)]
+        return places
+
+
+def least_curvature(found: Landscape) -> tuple[float, float]:
+    """The smallest curvature over the largest in modulus, and its error from rounding and the residual force.
+
+    Parameters
+    ----------
+    found : Landscape
+        About a configuration.
+
+    Returns
+    -------
+    tuple of float
+        (NaN, ∞) where there is nothing but rigid motions; (0, 0) where nothing is stiff at all.
+    """
+    values = found.values
+    if not values.size:
+        return float("nan"), float("inf")
+    largest = float(np.abs(values).max())
+    if largest <= found.rounding:
+        return 0.0, 0.0
+    return float(values[0]) / largest, min((found.change(0) + 2.0 * found.rounding) / largest, float("inf"))
+
+
+def downhill(found: Landscape) -> FloatArray:
+    """The direction (n, m), of unit length, in which the potential falls most steeply to second order.
+
+    The same on every machine, in an eigenspace of several dimensions too: what a fixed vector has in it.
+
+    Parameters
+    ----------
+    found : Landscape
+        About a configuration where the least curvature is negative.
+    """
+    near = found.values <= found.values[0] + 1e-6 * abs(found.values[0])
+    basis = found.vectors[:, near]
+    fixed = np.random.default_rng(0).standard_normal(found.q.size)
+    direction = basis @ (basis.T @ fixed)
+    return np.ascontiguousarray((direction / np.linalg.norm(direction)).reshape(found.q.shape))
+
+
+def _row_sum(matrix: Any) -> float:
+    """Largest row sum of absolute values, which bounds the spectral norm of a symmetric matrix."""
+    return float(abs(matrix).sum(axis=1).max()) if matrix.shape[0] else 0.0

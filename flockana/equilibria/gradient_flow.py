@@ -1,0 +1,129 @@
+"""The gradient flow q' = −∇U of a law's structural potential, followed to its limit: an equilibrium downhill."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import FloatArray, ensure_points, ensure_positive
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain, moving_frame
+
+_NEWTON_FROM = 1e-7  # relative force at which Newton's method takes over: a weak bond near r pulls no harder before
+_NEWTON_AGAIN = 0.1  # of the force at which it led astray
+_NEWTON_STEPS = 20
+_NEWTON_REACH = 1e-3  # of d: a step farther than that is no polishing, and might end where a bond lets go at r
+
+
+@dataclass(frozen=True)
+class GradientLimit:
+    """Where the gradient flow ends.
+
+    Attributes
+    ----------
+    q : ndarray, shape (n, m)
+        Positions.
+    force : float
+        Largest residual force over that of the law's `scales`.
+    time : float
+        Time of the flow that was integrated, in units of d over the force scale.
+    converged : bool
+        Whether `force` fell below the tolerance.
+    """
+
+    q: FloatArray
+    force: float
+    time: float
+    converged: bool
+
+
+def structural_force(law: Algorithm1 | Algorithm2, q: FloatArray) -> FloatArray:
+    """−∇V(q) of Algorithm 1, −∇U_λ of Algorithm 2 in the moving frame, shape (n, m).
+
+    Parameters
+    ----------
+    law : Algorithm1 or Algorithm2
+        The law.
+    q : ndarray, shape (n, m)
+        Positions.
+
+    Examples
+    --------
+    >>> structural_force(Algorithm1(), np.array([[0.0], [7.0]])).ravel().tolist()
+    [0.0, 0.0]
+    """
+    return moving_frame(law.flow(0.0, q, np.zeros_like(q))[0])
+
+
+def gradient_flow(law: Algorithm1 | Algorithm2, q0: Any, *, tol: float = 1e-11, horizon: float = 1e4) -> GradientLimit:
+    """Follow q' = −∇U from q0 until the force vanishes; the last digits by Newton's method.
+
+    Parameters
+    ----------
+    law : Algorithm1 or Algorithm2
+        The law whose potential is descended.
+    q0 : array_like, shape (n, m)
+        Start.
+    tol : float
+        Residual force, relative to that of the law's `scales`, at which to stop.
+    horizon : float
+        Longest time of the flow, in units of d over the force scale.
+
+    Raises
+    ------
+    ArgumentError
+        With per-agent gains, under which the force does not vanish in a moving frame.
+
+    Examples
+    --------
+    >>> limit = gradient_flow(Algorithm1(), [[0.0, 0.0], [6.0, 0.0]])
+    >>> bool(abs(limit.q[1, 0] - limit.q[0, 0] - 7.0) < 1e-9)
+    True
+    """
+    from scipy.integrate import BDF
+
+    q = ensure_points("q0", q0)
+    if isinstance(law, Algorithm2):
+        ensure_one_gain(law.gains)
+    shape, scale = q.shape, law.scales.force
+    tol, horizon = ensure_positive("tol", tol), ensure_positive("horizon", horizon)
+    pace = law.alpha.d / scale
+    solver = BDF(
+        lambda t, y: pace * structural_force(law, y.reshape(shape)).ravel(),
+        0.0,
+        q.ravel(),
+        horizon,
+        rtol=1e-6,
+        atol=1e-8 * law.alpha.d,
+        jac=lambda t, y: -pace * law.stiffness(y.reshape(shape)).toarray(),
+    )
+    here, force, level = q, np.inf, _NEWTON_FROM
+    while solver.status == "running":
+        solver.step()
+        here = solver.y.reshape(shape)
+        force = _largest(structural_force(law, here)) / scale
+        if force <= level:
+            polished, least = _polished(law, here, tol)
+            if _largest(polished - here) <= _NEWTON_REACH * law.alpha.d and least <= tol:
+                return GradientLimit(polished, least, float(solver.t), True)
+            level = _NEWTON_AGAIN * force  # that was another equilibrium: flow on towards this one
+    return GradientLimit(here, force, float(solver.t), False)
+
+
+def _polished(law: Algorithm1 | Algorithm2, q: FloatArray, tol: float) -> tuple[FloatArray, float]:
+    """Where Newton's method leads from q, and the relative force there."""
+    scale = law.scales.force
+    for _ in range(_NEWTON_STEPS):
+        residual = structural_force(law, q)
+        if _largest(residual) <= tol * scale:
+            break
+        # least squares leaves the rigid motions alone, in which the stiffness is singular
+        q = q + np.linalg.lstsq(law.stiffness(q).toarray(), residual.ravel(), rcond=1e-10)[0].reshape(q.shape)
+        if not np.isfinite(q).all():
+            return q, np.inf
+    return q, _largest(structural_force(law, q)) / scale
+
+
+def _largest(vectors: FloatArray) -> float:
+    return float(np.linalg.norm(vectors, axis=1).max())

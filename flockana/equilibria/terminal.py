@@ -1,0 +1,192 @@
+"""Where a run ended: is it an equilibrium, is it a lattice, is it a minimum?"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.equilibria.curvature import EPS, Landscape, least_curvature
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain, moving_frame
+from flockana.measures.metrics import coincident_pairs, connectivity, velocity_mismatch
+from flockana.measures.nets import link_lengths, links
+
+DENSE_LIMIT = 4000  # rows of a Hessian whose whole spectrum is still a matter of seconds
+_ON_A_LINE = 1e-9  # of the flock's size: what stands off a line by less stands on it, as far as a solver can tell
+_ROUNDINGS = 8.0  # of the places, as stored far from the origin
+
+
+@dataclass(frozen=True)
+class TerminalState:
+    """The geometry and the second-order character of a configuration under Algorithm 1 or 2.
+
+    Attributes
+    ----------
+    force : float
+        Largest force on an agent in the moving frame at zero relative velocity, over the force of the law's `scales`.
+    mismatch : float
+        K̃ = K/n.
+    strain : float
+        Largest |link − d|/d, NaN without links.
+    shortest, longest : float
+        Link lengths, NaN without links.
+    links : int
+        Number of links.
+    coincident : int
+        Number of pairs closer than 1e-9 d.
+    connected : bool
+        Whether the net is connected.
+    curvature : float
+        Smallest Hessian eigenvalue of V (Algorithm 1) or U_λ (Algorithm 2) off the rigid motions, over the largest.
+    curvature_error : float
+        By how much rounding, and the way that the force left here still is from an equilibrium, may change it; infinite
+        where no equilibrium is near.
+    distance : float
+        Bound of the distance to the strict minimum beside this state, over all coordinates, over d; infinite where
+        there is none.
+    """
+
+    force: float
+    mismatch: float
+    strain: float
+    shortest: float
+    longest: float
+    links: int
+    coincident: int
+    connected: bool
+    curvature: float
+    curvature_error: float
+    distance: float
+
+
+def terminal_state(
+    law: Algorithm1 | Algorithm2, q: FloatArray, p: FloatArray, *, contact: float = 1e-9
+) -> TerminalState:
+    """Measure a state: residual force, link lengths, Hessian off the rigid motions.
+
+    Parameters
+    ----------
+    law : Algorithm1 or Algorithm2
+        The law.
+    q, p : ndarray, shape (n, m)
+        Positions and velocities.
+    contact : float
+        Distance, relative to d, at which two agents count as coincident.
+
+    Raises
+    ------
+    ArgumentError
+        With per-agent gains, under which there is no moving frame to measure forces in.
+
+    Examples
+    --------
+    >>> at_rest = terminal_state(Algorithm1(), np.array([[0.0, 0.0], [7.0, 0.0]]), np.zeros((2, 2)))
+    >>> at_rest.strain, at_rest.force, at_rest.connected
+    (0.0, 0.0, True)
+    """
+    if isinstance(law, Algorithm2):
+        ensure_one_gain(law.gains)
+    alpha = law.alpha
+    forces = _forces(law, q, p)
+    force = float(np.linalg.norm(forces, axis=1).max())
+    lengths = link_lengths(q, links(q, alpha.r))
+    empty = lengths.size == 0
+    around = surroundings(law, q, force=float(np.linalg.norm(forces)))
+    curvature, error = least_curvature(around) if around else (float("nan"), float("inf"))
+    return TerminalState(
+        force=force / law.scales.force,
+        mismatch=velocity_mismatch(p) / len(q),
+        strain=float("nan") if empty else float(np.abs(lengths - alpha.d).max() / alpha.d),
+        shortest=float("nan") if empty else float(lengths.min()),
+        longest=float("nan") if empty else float(lengths.max()),
+        links=int(lengths.size),
+        coincident=coincident_pairs(q, contact * alpha.d),
+        connected=connectivity(q, alpha.r) == 1.0,
+        curvature=curvature,
+        curvature_error=error,
+        distance=around.distance / alpha.d if around else float("inf"),
+    )
+
+
+def _forces(law: Any, q: FloatArray, p: FloatArray) -> FloatArray:
+    """Forces in the moving frame at zero relative velocity."""
+    still = np.ascontiguousarray(np.broadcast_to(p.mean(axis=0), p.shape))
+    return moving_frame(law.flow(0.0, q, still)[0])
+
+
+def rigid_motions(q: FloatArray) -> FloatArray:
+    """Orthonormal basis of the infinitesimal translations and rotations of a configuration, shape (n m, k).
+
+    Parameters
+    ----------
+    q : ndarray, shape (n, m)
+        Positions, in any unit; k is less than m(m+1)/2 where they are degenerate (a point, a line in space).
+
+    Examples
+    --------
+    >>> rigid_motions(np.array([[0.0, 0.0], [1.0, 0.0]])).shape
+    (4, 3)
+    """
+    n, m = q.shape
+    x = moving_frame(q)
+    size = float(np.linalg.norm(x))
+    motions = [np.broadcast_to(axis, (n, m)).ravel() / np.sqrt(n) for axis in np.eye(m)]
+    for a in range(m):
+        for b in range(a):
+            turn = np.zeros((n, m))
+            turn[:, a], turn[:, b] = x[:, b], -x[:, a]
+            motions.append(turn.ravel() / (size or 1.0))
+    basis, sizes, _ = np.linalg.svd(np.array(motions).T, full_matrices=False)
+    # what stands on a line but for the rounding of its places does not turn about it
+    rounding = EPS * np.sqrt(n) * float(np.abs(q).max()) / size if size > 0.0 else 0.0
+    independent: FloatArray = basis[:, sizes > max(_ON_A_LINE, _ROUNDINGS * rounding)]
+    return independent
+
+
+def relative_curvature(law: Any, q: FloatArray) -> float:
+    """Smallest eigenvalue of the law's stiffness off the rigid motions, over the largest in modulus.
+
+    NaN where there is nothing but rigid motions, or where the matrix is too large for its whole spectrum.
+
+    Parameters
+    ----------
+    law : Algorithm1 or Algorithm2
+        A law with `stiffness`.
+    q : ndarray, shape (n, m)
+        Positions.
+
+    Examples
+    --------
+    A bond of length d resists stretching:
+
+    >>> relative_curvature(Algorithm1(), np.array([[0.0, 0.0], [7.0, 0.0]]))
+    1.0
+    """
+    around = surroundings(law, q)
+    return least_curvature(around)[0] if around else float("nan")
+
+
+def surroundings(law: Any, q: FloatArray, *, force: float = 0.0) -> Landscape | None:
+    """The structural potential about a configuration; None where its Hessian is too large for the whole spectrum.
+
+    Parameters
+    ----------
+    law : Algorithm1 or Algorithm2
+        A law with `stiffness`.
+    q : ndarray, shape (n, m)
+        Positions.
+    force : float
+        What is left of the force, over all coordinates.
+
+    Examples
+    --------
+    >>> around = surroundings(Algorithm1(), np.array([[0.0], [7.0]]))
+    >>> around.holds(1e-3), around.holds(1e3)
+    (True, False)
+    """
+    if q.size > DENSE_LIMIT:
+        return None
+    own = law.scales
+    return Landscape(law.stiffness, q, rigid_motions(q), force=force, length=own.length, unit=own.force)

@@ -1,0 +1,1 @@
+"""Numbers of one instant or of a path: nets, metrics, distances, clearances, Reynolds' rules, perception."""

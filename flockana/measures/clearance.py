@@ -1,0 +1,246 @@
+"""How close a run comes to obstacles, between its samples too, and how far a state is from a constrained α-lattice.
+
+Between two samples a path is the quintic that matches position, velocity and acceleration at both ends; in Bernstein
+form it stays in the convex hull of its control points. The signed distance from a convex solid is convex, so it lies
+above its tangent plane at any point: over the hull that plane is least at a control point, which bounds the clearance
+from below. Halving an interval makes the bound as tight as one likes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import inf
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from flockana.base.checks import FloatArray, ensure_points
+from flockana.environment.beta import ObstacleField
+from flockana.environment.obstacles import Obstacle
+from flockana.interactions import AlphaInteraction, BetaInteraction
+from flockana.kernels.paths import bernstein
+from flockana.measures.nets import link_lengths, links
+
+RELATIVE_TOL = 1e-9  # of the halving, relative to the extent of the motion
+ROUNDING = 2.0**-50  # of the coordinates
+_DEPTH = 40  # halvings: below any resolved motion
+_MOST = 100_000  # parts open at once: beyond it the bound stays as weak as it is
+_CHUNK = 50_000  # agent-intervals handled at once
+_FIRST, _LAST = slice(0, 1), slice(5, 6)  # control points
+
+
+@dataclass(frozen=True, eq=False)
+class Clearance:
+    """The least clearance of a run.
+
+    Attributes
+    ----------
+    lower : float
+        Lower bound of every agent's signed distance from every obstacle at every time, given the integrator's accuracy
+        and steps that resolve the motion (`flockana.kernels.paths`); ∞ without obstacles.
+    reached : float
+        Least signed distance reached on the interpolated paths: an estimate from above.
+    time : float
+        When it was reached.
+    agent, obstacle : int
+        By which agent, at which obstacle; -1 without obstacles.
+    lower_by_obstacle : ndarray, shape (K,)
+        The lower bound for each obstacle.
+    """
+
+    lower: float
+    reached: float
+    time: float
+    agent: int
+    obstacle: int
+    lower_by_obstacle: FloatArray
+
+
+def clearance(
+    t: FloatArray,
+    q: FloatArray,
+    p: FloatArray,
+    u: FloatArray,
+    obstacles: Sequence[Obstacle],
+    slack: FloatArray | None = None,
+) -> Clearance:
+    """Bound the clearance of all agents from all obstacles over all times, from samples of a run.
+
+    The bound subtracts an allowance for each path's own error (`flockana.kernels.paths`), so it is weak where samples
+    are too sparse to resolve the motion.
+
+    Parameters
+    ----------
+    t : ndarray, shape (T,)
+        Sample times, rising.
+    q, p, u : ndarray, shape (T, n, m)
+        Positions, velocities, accelerations.
+    obstacles : sequence of Obstacle
+        Convex solids.
+    slack : ndarray, shape (T - 1, n), optional
+        What else the paths may be off by.
+
+    Returns
+    -------
+    Clearance
+
+    Examples
+    --------
+    An agent that grazes the unit disc halfway between two samples:
+
+    >>> from flockana.environment.obstacles import Sphere
+    >>> q, p = np.array([[[-2.0, 1.5]], [[2.0, 1.5]]]), np.array([[[4.0, 0.0]]] * 2)
+    >>> found = clearance(np.array([0.0, 1.0]), q, p, 0.0 * p, [Sphere((0.0, 0.0), 1.0)])
+    >>> round(found.lower, 6), round(found.reached, 6), found.time
+    (0.5, 0.5, 0.5)
+    """
+    n, m = q.shape[1:]
+    found = [_Least(t, obstacle.clearance(q.reshape(-1, m)).reshape(len(t), n)) for obstacle in obstacles]
+    extent, rows = float(np.ptp(q.reshape(-1, m), axis=0).max()), max(1, _CHUNK // n)
+    tol = max(RELATIVE_TOL * extent, ROUNDING * float(np.abs(q).max()))
+    for first in range(0, len(t) - 1 if obstacles else 0, rows):
+        part = slice(first, min(first + rows, len(t) - 1))
+        after = slice(part.start + 1, part.stop + 1)
+        h = (t[after] - t[part])[:, None, None]
+        ends = (x.reshape(-1, m) for k in (part, after) for x in (q[k], h * p[k], h * h * u[k]))
+        curves, _, off = bernstein(1.0, *ends)
+        points, allowance = curves[:, :, :m].reshape(-1, n, 6, m), off.reshape(-1, n)
+        if slack is not None:
+            allowance = allowance + slack[part]
+        reach = [np.linalg.norm(points - points[:, :, end], axis=3).max(axis=2) + allowance for end in (_FIRST, _LAST)]
+        for obstacle, least in zip(obstacles, found, strict=True):
+            near = np.maximum(least.at_samples[part] - reach[0], least.at_samples[after] - reach[1]) < least.lower
+            row, agent = np.nonzero(near)
+            bound = _refine(obstacle, points[row, agent], allowance[row, agent], least.lower, tol)
+            least.update(bound, t, row + part.start, agent)
+    k = min(range(len(found)), key=lambda each: found[each].reached, default=-1)
+    bounds = np.array([least.lower for least in found])
+    if k < 0:
+        return Clearance(inf, inf, float(t[0]), -1, -1, bounds)
+    return Clearance(float(bounds.min()), found[k].reached, found[k].time, found[k].agent, k, bounds)
+
+
+class _Bound(NamedTuple):
+    """Of some curves: a lower bound, the least value found, its parameter, and which curve it was on."""
+
+    lower: float
+    value: float
+    parameter: float
+    curve: int
+
+
+class _Least:
+    """The least clearance from one obstacle, so far; it begins with the samples."""
+
+    def __init__(self, t: FloatArray, at_samples: FloatArray) -> None:
+        k, self.agent = divmod(int(np.argmin(at_samples)), at_samples.shape[1])
+        self.at_samples, self.time = at_samples, float(t[k])
+        self.lower = self.reached = float(at_samples[k, self.agent])
+
+    def update(self, bound: _Bound, t: FloatArray, interval: Any, agent: Any) -> None:
+        """Take in what was found on some agents' intervals."""
+        self.lower = min(self.lower, bound.lower)
+        if bound.value < self.reached:
+            k, self.agent = int(interval[bound.curve]), int(agent[bound.curve])
+            self.reached, self.time = bound.value, float(t[k] + bound.parameter * (t[k + 1] - t[k]))
+
+
+def _refine(obstacle: Obstacle, curves: FloatArray, allowance: FloatArray, best: float, tol: float) -> _Bound:
+    """Bound the clearance along curves by halving; the bound is `best` if nothing lower is possible."""
+    proven, value, where, which = best, inf, 0.0, -1
+    source, start, width = np.arange(len(curves)), np.zeros(len(curves)), 1.0
+    for depth in range(_DEPTH):
+        if not len(curves):
+            break
+        left, right = _halves(curves)
+        middle = np.ascontiguousarray(left[:, 5])
+        here, bound = _at_once(obstacle, curves, middle, tol)
+        bound -= allowance
+        lowest = int(np.argmin(here))
+        if here[lowest] < value:
+            value, which = float(here[lowest]), int(source[lowest])
+            where = float(start[lowest]) + 0.5 * width
+        # on the paths, without their allowance, an open part may still hold a point lower than any seen
+        open_ = (bound < proven) & (bound + allowance < min(value, best) - tol)
+        if depth == _DEPTH - 1 or np.count_nonzero(open_) > _MOST:
+            open_[:] = False  # their bounds hold as they are
+        proven = min(proven, float(bound[~open_].min(initial=inf)))
+        curves, allowance = np.concatenate([left[open_], right[open_]]), np.tile(allowance[open_], 2)
+        start = np.concatenate([start[open_], start[open_] + 0.5 * width])
+        source, width = np.tile(source[open_], 2), 0.5 * width
+    return _Bound(proven, value, where, which)
+
+
+def _at_once(obstacle: Obstacle, curves: FloatArray, middle: FloatArray, tol: float) -> tuple[FloatArray, FloatArray]:
+    """(signed distance at a point of each curve's hull, lower bound of it over the hull), without halving."""
+    gap, _, here = obstacle._project(middle, np.zeros_like(middle))
+    hull = curves - middle[:, None, :]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        outward = -gap / here[:, None]  # the gradient of the signed distance, inside too
+    plane = np.einsum("km,kcm->kc", outward, hull).min(axis=1)
+    plane[~np.isfinite(plane) | (np.abs(here) <= tol)] = -inf  # no direction there: only the distance bounds
+    return here, here + np.maximum(plane, -np.linalg.norm(hull, axis=2).max(axis=1))
+
+
+def _halves(curves: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """De Casteljau: control points of both halves of every curve."""
+    levels = [curves]
+    for _ in range(5):
+        levels.append(0.5 * (levels[-1][:, :-1] + levels[-1][:, 1:]))
+    left = np.stack([level[:, 0] for level in levels], axis=1)
+    right = np.stack([level[:, -1] for level in reversed(levels)], axis=1)
+    return left, right
+
+
+@dataclass(frozen=True)
+class ConstrainedLattice:
+    """How far a configuration is from a constrained α-lattice: all links d long, all β-agents at d'.
+
+    Attributes
+    ----------
+    alpha_error : float
+        Largest |‖q_j − q_i‖ − d| over links; NaN without links.
+    beta_error : float
+        Largest |‖q̂_ik − q_i‖ − d'| over β-neighbours (within r'); NaN without any.
+    links, beta_links : int
+        How many there are of each.
+    """
+
+    alpha_error: float
+    beta_error: float
+    links: int
+    beta_links: int
+
+
+def constrained_lattice(
+    q: Any, obstacles: Sequence[Obstacle], *, alpha: AlphaInteraction, beta: BetaInteraction
+) -> ConstrainedLattice:
+    """Measure a configuration against a constrained α-lattice (Olfati-Saber 2006).
+
+    The repulsion ends at d' but N_i^β at r': an agent between the two is a neighbour that nothing pulls to d'.
+
+    Parameters
+    ----------
+    q : array_like, shape (n, m)
+        Positions.
+    obstacles : sequence of Obstacle
+        Of the same dimension.
+    alpha : AlphaInteraction
+        d and r.
+    beta : BetaInteraction
+        d' and r'.
+
+    Examples
+    --------
+    >>> from flockana.environment.obstacles import Wall
+    >>> wall = Wall((0.0, 0.0), (0.0, 1.0))
+    >>> found = constrained_lattice([[0.0, 4.2], [7.0, 4.7]], [wall], alpha=AlphaInteraction(), beta=BetaInteraction())
+    >>> round(found.alpha_error, 6), round(found.beta_error, 6), found.links, found.beta_links
+    (0.017834, 0.5, 1, 2)
+    """
+    q = ensure_points("q", q)
+    excess = np.abs(link_lengths(q, links(q, alpha.r)) - alpha.d)
+    slack = np.abs(ObstacleField(tuple(obstacles), beta).links(q, np.zeros_like(q)).distance - beta.d)
+    alpha_error, beta_error = (float(x.max()) if x.size else float("nan") for x in (excess, slack))
+    return ConstrainedLattice(alpha_error, beta_error, excess.size, slack.size)

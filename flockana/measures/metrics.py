@@ -1,0 +1,300 @@
+"""Measures of one instant of a flock: the quantities of Olfati-Saber (2006), section on what constitutes flocking."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import FloatArray, ensure_points, ensure_positive
+from flockana.kernels.instants import least_distances
+from flockana.kernels.neighbours import pair_blocks
+from flockana.measures.nets import components, link_lengths, links
+
+_TREE = 300  # agents from which on a search tree beats all pairs
+
+
+def net_measures(q: Any, d: float, r: float) -> tuple[float, float, float]:
+    """(C, C*, E) of one net: `connectivity`, `giant_share` and `deviation_energy` for one neighbour search.
+
+    Parameters
+    ----------
+    q : array_like, shape (n, m)
+        Positions.
+    d, r : float
+        Desired distance and interaction range.
+
+    Examples
+    --------
+    >>> net_measures([[0.0], [3.0], [9.0]], d=3.0, r=4.0)
+    (0.5, 0.6666666666666666, 0.0)
+    """
+    q = ensure_points("q", q)
+    n, pairs = len(q), links(q, r)
+    sizes = np.bincount(components(n, pairs))
+    excess = link_lengths(q, pairs) - ensure_positive("d", d)
+    deviation = float(2.0 * np.sum(excess**2) / (2 * excess.size + 1))
+    return (1.0 if n == 1 else (n - sizes.size) / (n - 1)), float(sizes.max()) / n, deviation
+
+
+def connectivity(q: Any, r: float) -> float:
+    """Relative connectivity C = rank(L)/(n − 1) = (n − number of components)/(n − 1); 1 for a single agent.
+
+    Parameters
+    ----------
+    q : array_like, shape (n, m)
+        Positions.
+    r : float
+        Interaction range.
+
+    Returns
+    -------
+    float
+        1 if and only if the net is connected.
+
+    Examples
+    --------
+    >>> connectivity([[0.0], [1.0], [9.0]], 2.0)
+    0.5
+    """
+    return net_measures(q, r, r)[0]
+
+
+def giant_share(q: Any, r: float) -> float:
+    """C*: the share of *nodes* in the largest component (E7: the slides print a share of edges and mean this).
+
+    Parameters
+    ----------
+    q : array_like, shape (n, m)
+        Positions.
+    r : float
+        Interaction range.
+
+    Examples
+    --------
+    >>> giant_share([[0.0], [1.0], [9.0], [20.0]], 2.0)
+    0.5
+    """
+    return net_measures(q, r, r)[1]
+
+
+def cohesion_radius(q: Any) -> float:
+    """R = max_i ‖q_i − q_c‖ about the centre of mass.
+
+    Parameters
+    ----------
+    q : array_like, shape (n, m)
+        Positions.
+
+    Examples
+    --------
+    >>> cohesion_radius([[0.0, 0.0], [2.0, 0.0]])
+    1.0
+    """
+    return float(cohesion_radii(ensure_points("q", q)[None])[0])
+
+
+def deviation_energy(q: Any, d: float, r: float) -> float:
+    """E(q) = Σ over ordered neighbour pairs of (‖q_j − q_i‖ − d)², divided by |E| + 1 (ordered count).
+
+    Parameters
+    ----------
+    q : array_like, shape (n, m)
+        Positions.
+    d, r : float
+        Desired distance and interaction range.
+
+    Returns
+    -------
+    float
+        At most δ² on a quasi-lattice of uncertainty δ.
+
+    Examples
+    --------
+    >>> deviation_energy([[0.0], [3.0]], d=2.0, r=4.0)  # two ordered pairs: 2·1/(2 + 1)
+    0.6666666666666666
+    """
+    return net_measures(q, d, r)[2]
+
+
+def velocity_mismatch(p: Any) -> float:
+    """K = ½ Σ‖p_i − p_c‖².
+
+    Parameters
+    ----------
+    p : array_like, shape (n, m)
+        Velocities.
+
+    Examples
+    --------
+    >>> velocity_mismatch([[1.0], [3.0]])
+    1.0
+    """
+    return float(spreads(ensure_points("p", p)[None])[0])
+
+
+def inertia(q: Any) -> float:
+    """J = ½ Σ‖q_i − q_c‖².
+
+    Parameters
+    ----------
+    q : array_like, shape (n, m)
+        Positions.
+
+    Examples
+    --------
+    >>> inertia([[0.0], [2.0]])
+    1.0
+    """
+    return float(spreads(ensure_points("q", q)[None])[0])
+
+
+def min_distance(q: Any) -> float:
+    """Least distance between two agents, ∞ for one agent.
+
+    Parameters
+    ----------
+    q : array_like, shape (n, m)
+        Positions.
+
+    Examples
+    --------
+    >>> min_distance([[0.0], [3.0], [3.5]])
+    0.5
+    """
+    return float(min_distances(ensure_points("q", q)[None])[0])
+
+
+def order(p: Any) -> float:
+    """Polar order ‖Σ p_i/‖p_i‖‖/n: 1 when all move the same way; agents at rest count as 0.
+
+    Parameters
+    ----------
+    p : array_like, shape (n, m)
+        Velocities.
+
+    Examples
+    --------
+    >>> order([[1.0, 0.0], [2.0, 0.0]]), order([[1.0, 0.0], [-2.0, 0.0]])
+    (1.0, 0.0)
+    """
+    return float(orders(ensure_points("p", p)[None])[0])
+
+
+def coordination(p: Any) -> float:
+    """C of Jond: the mean over all pairs of the cosine between their velocities; agents at rest are left out.
+
+    NaN if fewer than two agents move.
+
+    Parameters
+    ----------
+    p : array_like, shape (n, m)
+        Velocities.
+
+    Examples
+    --------
+    >>> coordination([[1.0, 0.0], [3.0, 0.0], [0.0, 2.0]])  # cosines 1, 0, 0
+    0.3333333333333333
+    """
+    return float(coordinations(ensure_points("p", p)[None])[0])
+
+
+def coincident_pairs(q: Any, tol: float) -> int:
+    """Number of unordered pairs closer than `tol`.
+
+    Parameters
+    ----------
+    q : array_like, shape (n, m)
+        Positions.
+    tol : float
+        Distance below which two agents count as coincident.
+
+    Examples
+    --------
+    >>> coincident_pairs([[0.0], [0.0], [0.0], [1.0]], 1e-9)
+    3
+    """
+    q = ensure_points("q", q)
+    return sum(i.size for i, _ in pair_blocks(q, ensure_positive("tol", tol)))
+
+
+# The same at every instant of a run, unchecked: x has shape (T, n, m), the result (T,).
+
+
+def cohesion_radii(q: FloatArray) -> FloatArray:
+    """`cohesion_radius` over time, unchecked.
+
+    Parameters
+    ----------
+    q : ndarray, shape (T, n, m)
+        Positions.
+    """
+    found: FloatArray = np.linalg.norm(_centred(q), axis=2).max(axis=1)
+    return found
+
+
+def spreads(x: FloatArray) -> FloatArray:
+    """½ Σ‖x_i − x_c‖² over time, unchecked: `inertia` of positions, `velocity_mismatch` of velocities.
+
+    Parameters
+    ----------
+    x : ndarray, shape (T, n, m)
+        Positions or velocities.
+    """
+    found: FloatArray = 0.5 * np.sum(_centred(x) ** 2, axis=(1, 2))
+    return found
+
+
+def min_distances(q: FloatArray) -> FloatArray:
+    """`min_distance` over time, unchecked.
+
+    Parameters
+    ----------
+    q : ndarray, shape (T, n, m)
+        Positions.
+    """
+    from scipy.spatial import KDTree
+
+    if q.shape[1] < _TREE:
+        found: FloatArray = least_distances(q)
+        return found
+    return np.array([np.asarray(KDTree(x).query(x, k=2)[0])[:, 1].min() for x in q])
+
+
+def orders(p: FloatArray) -> FloatArray:
+    """`order` over time, unchecked.
+
+    Parameters
+    ----------
+    p : ndarray, shape (T, n, m)
+        Velocities.
+    """
+    found: FloatArray = np.linalg.norm(_headings(p).mean(axis=1), axis=1)
+    return found
+
+
+def coordinations(p: FloatArray) -> FloatArray:
+    """`coordination` over time, unchecked.
+
+    Parameters
+    ----------
+    p : ndarray, shape (T, n, m)
+        Velocities.
+    """
+    k = np.count_nonzero(np.any(p != 0.0, axis=2), axis=1)
+    # |Σ ĥ|² counts every pair twice and every agent once
+    twice = np.sum(_headings(p).sum(axis=1) ** 2, axis=1) - k
+    found: FloatArray = np.divide(twice, k * (k - 1), out=np.full(len(p), np.nan), where=k > 1)
+    return found
+
+
+def _centred(x: FloatArray) -> FloatArray:
+    centred: FloatArray = x - x.mean(axis=1, keepdims=True)
+    return centred
+
+
+def _headings(p: FloatArray) -> FloatArray:
+    """Directions of motion; 0 of agents at rest."""
+    speed = np.linalg.norm(p, axis=2, keepdims=True)
+    headings: FloatArray = np.divide(p, speed, out=np.zeros_like(p), where=speed > 0.0)
+    return headings

@@ -1,0 +1,156 @@
+"""Neighbour graphs of a configuration: links, components, Laplacian, in time and memory linear in the links.
+
+N_i holds j ≠ i with ‖q_j − q_i‖ < r (strict). The paper's |E| counts ordered pairs (i, j) and (j, i); a *link* here
+is an unordered pair, so |E| is twice the number of links.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.base.checks import FloatArray, ensure_points, ensure_positive
+from flockana.kernels.neighbours import pair_list
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
+
+LinkArray = npt.NDArray[np.int32]
+
+
+def links(q: Any, r: float) -> LinkArray:
+    """Unordered pairs closer than r, each once with i < j, sorted.
+
+    Parameters
+    ----------
+    q : array_like, shape (n, m)
+        Positions.
+    r : float
+        Interaction range; strict.
+
+    Returns
+    -------
+    int32 array, shape (M, 2)
+
+    Examples
+    --------
+    >>> links([[0.0], [1.0], [2.5]], 1.2).tolist()
+    [[0, 1]]
+    """
+    return np.column_stack(pair_list(ensure_points("q", q), ensure_positive("r", r)))
+
+
+def link_lengths(q: FloatArray, pairs: LinkArray) -> FloatArray:
+    """Euclidean length of each link.
+
+    Parameters
+    ----------
+    q : ndarray, shape (n, m)
+        Positions.
+    pairs : int array, shape (M, 2)
+        Links.
+
+    Examples
+    --------
+    >>> link_lengths(np.array([[0.0, 0.0], [3.0, 4.0]]), np.array([[0, 1]], dtype=np.int32)).tolist()
+    [5.0]
+    """
+    lengths: FloatArray = np.linalg.norm(q[pairs[:, 1]] - q[pairs[:, 0]], axis=1)
+    return lengths
+
+
+def components(n: int, pairs: LinkArray) -> npt.NDArray[np.int32]:
+    """Label of the connected component of each of n agents; labels count from 0.
+
+    Parameters
+    ----------
+    n : int
+        Number of agents.
+    pairs : int array, shape (M, 2)
+        Links.
+
+    Examples
+    --------
+    >>> components(3, links([[0.0], [1.0], [9.0]], 2.0)).tolist()
+    [0, 0, 1]
+    """
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
+    labels: npt.NDArray[np.int32] = connected_components(graph, directed=False)[1]
+    return labels
+
+
+def laplacian(n: int, pairs: LinkArray, weights: FloatArray | None = None) -> csr_array:
+    """Graph Laplacian L = Δ(A) − A, sparse.
+
+    Parameters
+    ----------
+    n : int
+        Number of agents.
+    pairs : int array, shape (M, 2)
+        Links.
+    weights : ndarray, shape (M,), optional
+        a_ij of each link; 1 by default.
+
+    Examples
+    --------
+    >>> laplacian(2, np.array([[0, 1]], dtype=np.int32)).toarray().tolist()
+    [[1.0, -1.0], [-1.0, 1.0]]
+    """
+    from scipy.sparse import coo_array, diags_array
+
+    a = np.ones(len(pairs)) if weights is None else weights
+    half = coo_array((a, (pairs[:, 0], pairs[:, 1])), shape=(n, n))
+    adjacency = (half + half.T).tocsr()
+    return (diags_array(adjacency.sum(axis=1)) - adjacency).tocsr()
+
+
+def printed_edge_share(n: int, pairs: LinkArray) -> float:
+    """The slides' C* = |E(Γ*)|/|E(G)| as printed: share of *links* in the largest component (erratum E7).
+
+    With isolated agents it is 1 whenever only one component has links, which is why the slides' own example (0.96
+    for components of 1, 1, 1, 1, 96) needs the share of nodes, `metrics.giant_share`.
+
+    Parameters
+    ----------
+    n : int
+        Number of agents.
+    pairs : int array, shape (M, 2)
+        Links; with none the share is NaN.
+
+    Examples
+    --------
+    >>> printed_edge_share(3, np.array([[0, 1]], dtype=np.int32))
+    1.0
+    """
+    if len(pairs) == 0:
+        return float("nan")
+    labels = components(n, pairs)
+    giant = int(np.argmax(np.bincount(labels)))
+    return float(np.mean(labels[pairs[:, 0]] == giant))
+
+
+def printed_rank_connectivity(n: int, pairs: LinkArray) -> float:
+    """The MSN project's C = rank(A)/n of the adjacency matrix, as printed (erratum E8); dense, for small n.
+
+    Parameters
+    ----------
+    n : int
+        Number of agents.
+    pairs : int array, shape (M, 2)
+        Links.
+
+    Examples
+    --------
+    A path of three agents is connected, yet:
+
+    >>> round(printed_rank_connectivity(3, np.array([[0, 1], [1, 2]], dtype=np.int32)), 3)
+    0.667
+    """
+    adjacency = np.zeros((n, n))
+    adjacency[pairs[:, 0], pairs[:, 1]] = adjacency[pairs[:, 1], pairs[:, 0]] = 1.0
+    return float(np.linalg.matrix_rank(adjacency)) / n

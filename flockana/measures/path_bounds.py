@@ -1,0 +1,205 @@
+"""Closest approaches, contacts and the cohesion radius along sampled paths, between the samples too.
+
+What is bounded are the motions themselves, given the integrator's accuracy at the samples, wherever the samples resolve
+them (`flockana.kernels.paths` says when that is): those of the solver's own steps do, samples of one's own choice need
+not. So a run keeps the steps between its samples (`flockana.dynamics.between`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.kernels.neighbours import pair_blocks
+from flockana.kernels.paths import bernstein, closest_pair, control_points, farthest, touching_pairs
+from flockana.measures.metrics import cohesion_radii, min_distance
+
+ROUNDING = 2.0**-50  # of the coordinates: a smaller distance is lost in their rounding and counts as 0
+RELATIVE_TOL = 1e-6  # of the subdivision: far below the interpolation allowance of any real run
+
+
+@dataclass(frozen=True, eq=False)
+class ClosestApproach:
+    """The closest two agents come over a run.
+
+    Attributes
+    ----------
+    lower : float
+        Lower bound of every pair's distance at every time of the run, given the integrator's accuracy and samples that
+        resolve the motion.
+    distance : float
+        Distance that was reached on the interpolated path: an estimate from above.
+    time : float
+        When.
+    pair : tuple of int
+        Which two agents; (-1, -1) if there is but one.
+    lower_by_interval : ndarray, shape (T - 1,)
+        The lower bound for each interval between samples.
+    """
+
+    lower: float
+    distance: float
+    time: float
+    pair: tuple[int, int]
+    lower_by_interval: FloatArray
+
+
+def closest_approach(
+    t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, slack: FloatArray | None = None
+) -> ClosestApproach:
+    """Bound all pair distances from below over all times, from samples of position, velocity and acceleration.
+
+    Paths are quintic between samples; the bound subtracts an allowance for each path's own error, so it is weak where
+    samples are too sparse to resolve the motion.
+
+    Parameters
+    ----------
+    t : ndarray, shape (T,)
+        Sample times, rising.
+    q, p, u : ndarray, shape (T, n, m)
+        Positions, velocities, accelerations.
+    slack : ndarray, shape (T - 1, n), optional
+        What else the paths may be off by.
+
+    Examples
+    --------
+    Two agents that pass each other between the samples, in one dimension:
+
+    >>> q = np.array([[[0.0], [1.0]], [[1.0], [0.0]]])
+    >>> p = np.array([[[1.0], [-1.0]]] * 2)
+    >>> closest_approach(np.array([0.0, 1.0]), q, p, 0.0 * p).lower
+    0.0
+    """
+    lower, reached, when, pair = np.inf, np.inf, float(t[0]), (-1, -1)
+    bounds = np.full(len(t) - 1, np.inf)
+    at_samples = np.array([min_distance(x) for x in q])
+    if q.shape[1] == 1:
+        return ClosestApproach(np.inf, np.inf, when, pair, bounds)
+    k = int(np.argmin(at_samples))
+    lower = reached = float(at_samples[k])
+    when, pair = float(t[k]), _pair_at(q[k], reached)
+    for k in range(len(t) - 1):
+        h = t[k + 1] - t[k]
+        points, reach, allowance = control_points(h, q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1])
+        if slack is not None:
+            reach, allowance = reach + slack[k], allowance + slack[k]
+        stop = float(min(at_samples[k], at_samples[k + 1]))
+        noise = ROUNDING * float(np.abs(q[k]).max())
+        bounds[k] = stop if stop > noise else 0.0
+        if bounds[k] == 0.0:
+            lower = 0.0
+            continue
+        for i, j in pair_blocks(q[k], (stop + 2.0 * float(reach.max())) * (1.0 + 1e-9)):
+            tol = max(RELATIVE_TOL * bounds[k], noise)
+            low, distance, at, a, b = closest_pair(points, reach, allowance, i, j, bounds[k], tol)
+            if a < 0:
+                continue
+            bounds[k] = low
+            if low < lower:
+                lower, when, pair = low, float(t[k] + at * h), (int(min(a, b)), int(max(a, b)))
+            reached = min(reached, distance)
+    return ClosestApproach(lower, reached, when, pair, bounds)
+
+
+def _pair_at(q: FloatArray, distance: float) -> tuple[int, int]:
+    """A pair at the given least distance of a configuration."""
+    for i, j in pair_blocks(q, np.nextafter(distance * (1.0 + 1e-12), np.inf)):
+        if i.size:
+            return int(min(i[0], j[0])), int(max(i[0], j[0]))
+    return -1, -1
+
+
+def cohesion_bound(
+    t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, slack: FloatArray | None = None
+) -> FloatArray:
+    """Upper bound of the cohesion radius max_i ‖q_i − q_c‖ over each interval between samples, its ends included.
+
+    Parameters
+    ----------
+    t : ndarray, shape (T,)
+        Sample times, rising.
+    q, p, u : ndarray, shape (T, n, m)
+        Positions, velocities, accelerations.
+    slack : ndarray, shape (T - 1, n), optional
+        What else the paths may be off by.
+
+    Returns
+    -------
+    ndarray, shape (T - 1,)
+
+    Examples
+    --------
+    Two agents that swing out and back between the samples, q = ± t (1 − t):
+
+    >>> q, p = np.zeros((2, 2, 1)), np.array([[[1.0], [-1.0]], [[-1.0], [1.0]]])
+    >>> u = np.array([[[-2.0], [2.0]]] * 2)
+    >>> round(float(cohesion_bound(np.array([0.0, 1.0]), q, p, u)[0]), 6)
+    0.25
+    """
+    radii, bounds = cohesion_radii(q), np.empty(len(t) - 1)
+    for k in range(len(t) - 1):
+        points, _, allowance = bernstein(t[k + 1] - t[k], q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1])
+        if slack is not None:
+            allowance = allowance + slack[k]
+        floor = float(max(radii[k], radii[k + 1]))
+        noise = ROUNDING * float(np.abs(q[k : k + 2]).max())
+        bounds[k] = farthest(points, allowance, floor, max(RELATIVE_TOL * floor, noise))[0]
+    return bounds
+
+
+@dataclass(frozen=True)
+class Contact:
+    """Two agents within the contact tolerance of each other at a time.
+
+    Attributes
+    ----------
+    i, j : int
+        The agents, i < j.
+    time : float
+        First time at which they are within the tolerance.
+    crossed : bool
+        True if their order on the line changed between two samples (m = 1): then they certainly met.
+    """
+
+    i: int
+    j: int
+    time: float
+    crossed: bool
+
+
+def contacts(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, *, tol: float) -> tuple[Contact, ...]:
+    """Pairs that come within `tol` of each other, each with its first time, in order of time.
+
+    Parameters
+    ----------
+    t : ndarray, shape (T,)
+        Sample times, rising.
+    q, p, u : ndarray, shape (T, n, m)
+        Positions, velocities, accelerations.
+    tol : float
+        Distance that counts as contact.
+
+    Examples
+    --------
+    >>> q = np.array([[[0.0], [1.0]], [[1.0], [0.0]]])
+    >>> p = np.array([[[1.0], [-1.0]]] * 2)
+    >>> (contact,) = contacts(np.array([0.0, 1.0]), q, p, 0.0 * p, tol=1e-9)
+    >>> contact.i, contact.j, contact.crossed, abs(contact.time - 0.5) < 1e-9
+    (0, 1, True, True)
+    """
+    found: dict[tuple[int, int], Contact] = {}
+    for k in range(len(t) - 1):
+        h = t[k + 1] - t[k]
+        points, reach, _ = control_points(h, q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1])
+        for i, j in pair_blocks(q[k], tol + 2.0 * float(reach.max())):
+            at = np.empty(i.size)
+            touching_pairs(points, reach, i, j, tol, at)
+            for hit in np.flatnonzero(at >= 0.0):
+                a, b = sorted((int(i[hit]), int(j[hit])))
+                if (a, b) not in found:
+                    before, after = q[k, b] - q[k, a], q[k + 1, b] - q[k + 1, a]
+                    crossed = q.shape[2] == 1 and bool(before[0] * after[0] < 0.0)
+                    found[a, b] = Contact(a, b, float(t[k] + at[hit] * h), crossed)
+    return tuple(sorted(found.values(), key=lambda c: (c.time, c.i, c.j)))

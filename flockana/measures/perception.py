@@ -1,0 +1,189 @@
+"""Directed perception graphs: an edge (j, i) says that i perceives j; trees, matrices, random trees."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError
+from flockana.measures.nets import components
+
+Edges = tuple[tuple[int, int], ...]
+
+
+def ensure_edges(edges: Any) -> Edges:
+    """Return directed edges (j, i) as a tuple of pairs.
+
+    Parameters
+    ----------
+    edges : iterable of (int, int)
+        Edge (j, i) carries information from agent j to agent i: i perceives j.
+
+    Raises
+    ------
+    ArgumentError
+        If one is no pair of two different agents >= 0, comes twice, or there is none.
+
+    Examples
+    --------
+    >>> ensure_edges([[0, 1], [1, 2]])
+    ((0, 1), (1, 2))
+    """
+    given = list(edges) if isinstance(edges, Iterable) else []
+    if not given:
+        raise ArgumentError(f"edges = {edges!r}: expected pairs (j, i), such as ((0, 1), (1, 2)): 1 perceives 0")
+    found: dict[tuple[int, int], None] = {}
+    for k, edge in enumerate(given):
+        pair = np.asarray(edge)
+        if pair.shape != (2,) or pair.dtype.kind not in "iu" or pair.min() < 0 or pair[0] == pair[1]:
+            raise ArgumentError(f"edges[{k}] = {edge!r}: expected two different agents (j, i), counted from 0")
+        one = int(pair[0]), int(pair[1])
+        if one in found:
+            raise ArgumentError(f"edges[{k}] = {one}: expected each edge once; for both directions give (j, i), (i, j)")
+        found[one] = None
+    return tuple(found)
+
+
+def both_ways(links: Iterable[tuple[int, int]]) -> Edges:
+    """The directed edges of an undirected graph: each link in both directions.
+
+    Parameters
+    ----------
+    links : iterable of (int, int)
+        Unordered pairs.
+
+    Examples
+    --------
+    >>> both_ways([(0, 1)])
+    ((0, 1), (1, 0))
+    """
+    return ensure_edges([pair for i, j in links for pair in ((i, j), (j, i))])
+
+
+def random_out_tree(n: int, rng: np.random.Generator) -> Edges:
+    """A random rooted out-tree: agent 0 is the root, and each other perceives one that comes before it.
+
+    Parameters
+    ----------
+    n : int
+        Number of agents, at least 2.
+    rng : numpy.random.Generator
+        Draws the parents.
+
+    Examples
+    --------
+    >>> random_out_tree(2, np.random.default_rng(0))
+    ((0, 1),)
+    """
+    return ensure_edges([(int(rng.integers(i)), i) for i in range(1, n)])
+
+
+def out_tree_root(n: int, edges: Edges) -> int | None:
+    """The root of a rooted out-tree, or None if the graph is none: the root must reach every agent.
+
+    Information flows along edges, so the root perceives nobody and all others are reached from it. (The paper calls
+    "root" a node that all others reach: against its own direction of edges that would be the opposite tree.)
+
+    Parameters
+    ----------
+    n : int
+        Number of agents.
+    edges : tuple of (int, int)
+        Directed edges (j, i).
+
+    Examples
+    --------
+    >>> out_tree_root(3, ((0, 1), (0, 2))), out_tree_root(3, ((1, 0), (2, 0)))
+    (0, None)
+    """
+    seen = np.bincount([i for _, i in edges], minlength=n)
+    if len(edges) != n - 1 or seen.max() > 1 or not is_connected(n, edges):
+        return None  # n − 1 edges, each to another agent, connected: no room for a cycle
+    return int(np.argmin(seen))
+
+
+def is_connected(n: int, edges: Edges) -> bool:
+    """Whether the graph is connected when directions are forgotten.
+
+    Parameters
+    ----------
+    n : int
+        Number of agents.
+    edges : tuple of (int, int)
+        Directed edges.
+
+    Examples
+    --------
+    >>> is_connected(3, ((0, 1),))
+    False
+    """
+    return int(components(n, np.array(edges, dtype=np.int32).reshape(-1, 2)).max()) == 0
+
+
+def incidence(n: int, edges: Edges) -> FloatArray:
+    """D of the paper, shape (n, M): +1 where the agent receives along the edge, −1 where it sends.
+
+    Parameters
+    ----------
+    n : int
+        Number of agents.
+    edges : tuple of (int, int)
+        Directed edges (j, i).
+
+    Examples
+    --------
+    >>> incidence(2, ((0, 1),)).tolist()
+    [[-1.0], [1.0]]
+    """
+    D, index = np.zeros((n, len(edges))), np.arange(len(edges))
+    sender, receiver = _columns(edges)
+    D[receiver, index], D[sender, index] = 1.0, -1.0
+    return D
+
+
+def receivers(n: int, edges: Edges) -> FloatArray:
+    """D_in, shape (n, M): what is left of D if only those who receive are kept. The loop holds D_in Dᵀ, not D Dᵀ.
+
+    Parameters
+    ----------
+    n : int
+        Number of agents.
+    edges : tuple of (int, int)
+        Directed edges (j, i).
+
+    Examples
+    --------
+    >>> receivers(2, ((0, 1),)).tolist()
+    [[0.0], [1.0]]
+    """
+    heads: FloatArray = np.maximum(incidence(n, edges), 0.0)
+    return heads
+
+
+def edge_vectors(q: FloatArray, edges: Edges) -> FloatArray:
+    """x_e = q_j − q_i of each edge (j, i), shape (..., M, m): x = (−Dᵀ ⊗ I) q.
+
+    Parameters
+    ----------
+    q : ndarray, shape (..., n, m)
+        Positions, or velocities for the rates.
+    edges : tuple of (int, int)
+        Directed edges.
+
+    Examples
+    --------
+    >>> edge_vectors(np.array([[0.0], [3.0]]), ((0, 1),)).tolist()
+    [[-3.0]]
+    """
+    sender, receiver = _columns(edges)
+    x: FloatArray = q[..., sender, :] - q[..., receiver, :]
+    return x
+
+
+def _columns(edges: Edges) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+    pairs = np.array(edges, dtype=np.int64)
+    return pairs[:, 0], pairs[:, 1]

@@ -1,0 +1,224 @@
+"""A run of the minimal model on a frozen tree, seen by its edges: what both readings of Theorem 1 need."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import sqrt
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.dynamics.trajectory import Trajectory
+from flockana.kernels.paths import closest_pair, control_points
+from flockana.laws.minimal import MinimalFlocking
+from flockana.measures.perception import Edges, edge_vectors, incidence, is_connected, out_tree_root
+from flockana.stability import linearise
+from flockana.theorems.rounding import EPS
+from flockana.theorems.theorem import Hypothesis
+
+_RESOLVED = 1e-9  # of a length between samples: far below the allowance for the path itself
+
+
+@dataclass(frozen=True)
+class TreeCase:
+    """A run on a frozen tree, by its edges.
+
+    Parameters
+    ----------
+    law : MinimalFlocking
+        The law.
+    n : int
+        Number of agents.
+    links : tuple of (int, int)
+        Its n − 1 edges; of an undirected tree, each link in one direction.
+    rho, mu, align : ndarray, shape (n - 1,)
+        Desired length, weight of the spring, weight of the velocity difference, of each.
+    root : int or None
+        The root of a directed tree.
+    """
+
+    law: MinimalFlocking
+    n: int
+    links: Edges
+    rho: FloatArray
+    mu: FloatArray
+    align: FloatArray
+    root: int | None
+
+    @property
+    def barrier(self) -> FloatArray:
+        """½ μ ρ² of each edge: the energy that it takes to press it to length 0."""
+        return 0.5 * self.mu * self.rho**2
+
+    @cached_property
+    def walk(self) -> tuple[tuple[int, int, int], ...]:
+        """(edge, agent nearer to the root, agent farther from it) of all edges, from the root outwards."""
+        near, found = {self.links[0][0] if self.root is None else self.root}, []
+        left = dict(enumerate(self.links))
+        while left:
+            for e, (j, i) in list(left.items()):
+                if j in near or i in near:
+                    found.append((e, j, i) if j in near else (e, i, j))
+                    near |= {j, i}
+                    del left[e]
+        return tuple(found)
+
+    def on_manifold(self, q: FloatArray) -> FloatArray:
+        """A configuration with the bearings of q and every edge at its desired length, about the origin.
+
+        Parameters
+        ----------
+        q : ndarray, shape (n, m)
+            Positions; an edge of length 0 gets the bearing of the first axis.
+        """
+        x = edge_vectors(q, self.links)
+        length = np.linalg.norm(x, axis=1, keepdims=True)
+        bearing = np.divide(x, length, out=np.tile(np.eye(q.shape[1])[0], (len(x), 1)), where=length > 0.0)
+        placed: FloatArray = np.zeros_like(x, shape=q.shape)
+        for e, near, far in self.walk:
+            way = self.rho[e] * bearing[e]  # from the head of the edge to its tail
+            placed[far] = placed[near] - way if self.links[e] == (near, far) else placed[near] + way
+        return placed
+
+    def edge_system(self, q: FloatArray) -> FloatArray:
+        """A of the edge dynamics (x, x') at an equilibrium: T A T⁺ with T = −Dᵀ ⊗ I, since u depends on edges alone.
+
+        Parameters
+        ----------
+        q : ndarray, shape (n, m)
+            Positions.
+        """
+        m = q.shape[1]
+        T = np.kron(-incidence(self.n, self.links).T, np.eye(m))
+        twice = np.kron(np.eye(2), T)
+        A: FloatArray = twice @ linearise(self.law, q).A @ np.kron(np.eye(2), np.linalg.pinv(T))
+        return A
+
+    def lengths(self, q: FloatArray) -> FloatArray:
+        """|x_e| of each edge, shape (..., n − 1).
+
+        Parameters
+        ----------
+        q : ndarray, shape (..., n, m)
+            Positions.
+        """
+        found: FloatArray = np.linalg.norm(edge_vectors(q, self.links), axis=-1)
+        return found
+
+    def energies(self, q: FloatArray, p: FloatArray) -> FloatArray:
+        """V = ½‖x'‖² + ½μ(‖x‖ − ρ)² of each edge, shape (n − 1,). At the root it falls: V' = −a‖x'‖².
+
+        Parameters
+        ----------
+        q, p : ndarray, shape (n, m)
+            A state.
+        """
+        rate = edge_vectors(p, self.links)
+        V: FloatArray = 0.5 * (np.sum(rate * rate, axis=1) + self.mu * (self.lengths(q) - self.rho) ** 2)
+        return V
+
+    def shortest(self, run: Trajectory) -> FloatArray:
+        """A lower bound of the length of each edge over a run, between its samples too, shape (n − 1,).
+
+        Parameters
+        ----------
+        run : Trajectory
+            The run.
+        """
+        at = self.lengths(run.q)
+        least: FloatArray = at.min(axis=0)
+        ends = [(np.array([j], dtype=np.int32), np.array([i], dtype=np.int32)) for j, i in self.links]
+        for k in range(len(run.t) - 1):
+            h = run.t[k + 1] - run.t[k]
+            path = control_points(h, run.q[k], run.p[k], run.u[k], run.q[k + 1], run.p[k + 1], run.u[k + 1])
+            for e, (tail, head) in enumerate(ends):
+                stop = float(min(at[k, e], at[k + 1, e]))
+                if stop > 0.0:
+                    least[e] = min(least[e], closest_pair(*path, tail, head, stop, _RESOLVED * self.rho[e])[0])
+        return least
+
+
+def tree_case(law: MinimalFlocking, n: int) -> TreeCase | None:
+    """The edges of a law on a frozen tree, directed from a root or undirected; None if its graph is no tree.
+
+    Parameters
+    ----------
+    law : MinimalFlocking
+        The law.
+    n : int
+        Number of agents.
+    """
+    if law.edges is None:
+        return None
+    root = out_tree_root(n, law.edges)
+    links = law.edges if root is not None else tuple((j, i) for j, i in law.edges if j < i)
+    if root is None and not (law.reciprocal and len(links) == n - 1 and is_connected(n, links)):
+        return None
+    where = [law.edges.index(link) for link in links]
+    _, _, mu, rho, align = law.edge_data(np.empty((n, 1)))
+    return TreeCase(law, n, links, rho[where], mu[where], align[where], root)
+
+
+def characteristic_residual(A: FloatArray, factors: Sequence[tuple[float, float]]) -> float:
+    """Largest relative difference between det(sI − A) and Π (s² + b s + c), at as many points as decide a polynomial.
+
+    Parameters
+    ----------
+    A : ndarray, shape (2k, 2k)
+        A matrix.
+    factors : sequence of k pairs (b, c)
+        Quadratic factors.
+
+    Examples
+    --------
+    >>> characteristic_residual(np.array([[0.0, 1.0], [-2.0, -3.0]]), [(3.0, 2.0)]) < 1e-12
+    True
+    """
+    radius = 4.0 * max(abs(b) + sqrt(abs(c)) for b, c in factors)  # far outside all roots, where nothing cancels
+    points = radius * np.exp(2j * np.pi * np.arange(len(A) + 1) / (len(A) + 1))
+    found = np.array([np.linalg.slogdet(s * np.eye(len(A)) - A) for s in points])
+    stated = np.array([np.sum([np.log(s * s + b * s + c) for b, c in factors]) for s in points])
+    return float(np.abs(found[:, 0] * np.exp(found[:, 1] - stated) - 1.0).max())
+
+
+def tree_hypotheses(run: Trajectory) -> tuple[list[Hypothesis], TreeCase | None]:
+    """Hypotheses that both readings of the theorem share, and the tree if there is one.
+
+    Parameters
+    ----------
+    run : Trajectory
+        The run.
+    """
+    applies = type(run.law) is MinimalFlocking
+    needs = [Hypothesis("the minimal law is applied", "met" if applies else "unmet", detail=type(run.law).__name__)]
+    if not applies:
+        return needs, None
+    law, case = run.law, tree_case(run.law, run.n)
+    frozen = law.edges is not None
+    kind = "no frozen graph" if not frozen else "neither a rooted out-tree nor a reciprocal undirected tree"
+    if case is not None:
+        kind = "an undirected tree" if case.root is None else f"an out-tree from agent {case.root}, which reaches all"
+    needs += [
+        Hypothesis("the graph never changes", "met" if frozen else "unmet", detail="" if frozen else "perceived"),
+        Hypothesis("the graph is a spanning tree", "met" if case else "unmet", detail=kind),
+    ]
+    if case is not None:
+        for name, weights in (("μ > 0", case.mu), ("alignment is at work", case.align)):
+            least = float(weights.min())
+            needs.append(Hypothesis(name, "met" if least > 0.0 else "unmet", least))
+    return needs, case
+
+
+def length_error(case: TreeCase, run: Trajectory) -> float:
+    """Rounding of |x_e|/ρ_e along a run: of positions that far from the origin.
+
+    Parameters
+    ----------
+    case : TreeCase
+        The tree.
+    run : Trajectory
+        The run.
+    """
+    return 8.0 * EPS * (1.0 + float(np.abs(run.q).max()) / float(case.rho.min()))

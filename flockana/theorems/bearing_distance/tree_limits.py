@@ -1,0 +1,109 @@
+"""What is certain for ever of a flock on a frozen tree, from one state: a certificate of the limit in Theorem 1.
+
+*Undirected, reciprocal forces.* H never rises. While H < ½μρ² on every edge, no edge comes to length 0; then velocities
+match and every |x_e| goes to ρ_e, by LaSalle's principle, as on a tree nothing else is at rest.
+
+*Directed.* An edge obeys x'' = -g(x) - a x' + w, |g| = μ|y| with y = |x| - ρ, where w is the acceleration of its
+parent, 0 at the root. Let V = ½|x'|² + ½μy², and W, P, Y the integrals of |w|², |x'|², y² from now on for ever.
+
+1. V' = -a|x'|² + x'·w <= -½a|x'|² + |w|²/2a. So V never exceeds V̂ = V + W/2a, and P <= 2V̂/a.
+2. Let V̂ = θ² ½μρ² with θ < 1: then |y| <= θρ and |x| >= (1 - θ)ρ > 0 for ever. With z = y (x·x')/|x|, |z| <= V̂/√μ
+   and z' <= κ|x'|² - μy² + a|y||x'| + |y||w|, κ = max(1, θ/(1 - θ)). So μY <= 4V̂/√μ + 2(κ + a²/μ)P + 2W/μ.
+3. The children feel w = g(x) + a x': their W is at most 2(μ·μY + a²P).
+
+So, from the root outwards, all these integrals are finite if θ < 1 on every edge; and as x, x' and their derivatives
+are bounded, every |x_e| goes to ρ_e and every x_e' to 0 (Barbalat's lemma). Bearings are free.
+"""
+
+from __future__ import annotations
+
+from math import inf, sqrt
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.theorems.bearing_distance.tree_case import TreeCase
+from flockana.theorems.limits import Certificate
+from flockana.theorems.rounding import EPS, spread_error
+
+_ERROR = 1e-12  # of a share: all roundings in it are taken outwards
+
+
+def edge_shares(case: TreeCase, q: FloatArray, p: FloatArray) -> FloatArray:
+    """V̂/(½μρ²) of each edge, shape (n − 1,): below 1 it never comes to length 0; ∞ where nothing is known.
+
+    Parameters
+    ----------
+    case : TreeCase
+        A tree with μ, a > 0.
+    q, p : ndarray, shape (n, m)
+        A state.
+
+    Examples
+    --------
+    >>> from flockana.laws.minimal import MinimalFlocking
+    >>> from flockana.theorems.bearing_distance.tree_case import tree_case
+    >>> chain = tree_case(MinimalFlocking(edges=((0, 1), (1, 2)), spacing=1.0), 3)
+    >>> q = np.array([[0.0], [0.5], [1.5]])
+    >>> edge_shares(chain, q, 0.0 * q).round(3).tolist()
+    [0.25, 3.5]
+    """
+    if case.root is None:
+        off = float(spread_error(p[None])[0]) + float(case.mu @ _stretch_error(case, q))
+        energy: float = case.law.hamiltonian(0.0, q, p) + off
+        return energy * (1.0 + case.n**2 * EPS) / case.barrier
+    return _directed(case, q, p)
+
+
+def _stretch_error(case: TreeCase, q: FloatArray) -> FloatArray:
+    """Rounding of ½y² of each edge."""
+    lengths = case.lengths(q)
+    off = 4.0 * EPS * (lengths + case.rho)
+    error: FloatArray = (np.abs(lengths - case.rho) + off) * off
+    return error
+
+
+def _directed(case: TreeCase, q: FloatArray, p: FloatArray) -> FloatArray:
+    start = case.energies(q, p) * (1.0 + 16.0 * EPS) + case.mu * _stretch_error(case, q)
+    shares, felt = np.full(len(case.links), inf), {case.root: 0.0}
+    for e, parent, child in case.walk:
+        W, mu, a = felt[parent], float(case.mu[e]), float(case.align[e])
+        most = float(start[e]) + W / (2.0 * a)
+        shares[e] = most / case.barrier[e]
+        felt[child] = inf
+        if shares[e] < 1.0:
+            theta = sqrt(shares[e])
+            P, bend = 2.0 * most / a, max(1.0, theta / (1.0 - theta))
+            stretch = 4.0 * most / sqrt(mu) + 2.0 * (bend + a * a / mu) * P + 2.0 * W / mu
+            felt[child] = 2.0 * (mu * stretch + a * a * P)
+    return shares
+
+
+def settles(case: TreeCase, q: FloatArray, p: FloatArray) -> Certificate:
+    """Every edge goes to its desired length and every velocity difference to 0, from this state on.
+
+    Parameters
+    ----------
+    case : TreeCase
+        A tree with μ, a > 0.
+    q, p : ndarray, shape (n, m)
+        A state.
+    """
+    share = float(edge_shares(case, q, p).max())
+    never = "no edge can ever shrink to 0 from here" if share < 1.0 else "an edge might still shrink to 0"
+    text = f"{never}: the energy that one may get is {share:.2g} of what that takes"
+    return Certificate(max(-1.0, 1.0 - share), text, _ERROR)
+
+
+def longest_floor(case: TreeCase, q: FloatArray, p: FloatArray) -> tuple[float, float]:
+    """(least |x|/ρ that the safest edge keeps for ever, its error); at most 0 where none is known to.
+
+    Parameters
+    ----------
+    case : TreeCase
+        A tree with μ, a > 0.
+    q, p : ndarray, shape (n, m)
+        A state.
+    """
+    share = float(edge_shares(case, q, p).min())
+    return (1.0 - sqrt(share) if share < 4.0 else -1.0), sqrt(_ERROR)

@@ -1,0 +1,103 @@
+"""The spectrum of the minimal model on a frozen tree, at equilibrium: what of it a computation can decide."""
+
+from __future__ import annotations
+
+from math import nan, sqrt
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.base.checks import FloatArray
+from flockana.theorems.bearing_distance.tree_case import TreeCase, characteristic_residual
+from flockana.theorems.rounding import EPS
+
+POLYNOMIAL = 1e-6  # largest relative difference of two characteristic polynomials that counts as none
+_CLEAR = 1e3  # times its rounding, from which on a number is not 0
+
+
+class Spectrum(NamedTuple):
+    """What was found, and by how much (positive: as stated), relative to what would count as another spectrum."""
+
+    zeros: int
+    slowest: float
+    residual: float
+    margin: float
+    error: float
+
+
+def tree_spectrum(case: TreeCase, q: FloatArray) -> Spectrum:
+    """The spectrum of the law linearised at a point of the manifold, with the rate of its slowest mode but 0.
+
+    Times are counted in 1/√μ of the stiffest spring, so that nothing depends on their unit.
+
+    Parameters
+    ----------
+    case : TreeCase
+        The tree, μ, a > 0.
+    q : ndarray, shape (n, m)
+        Positions, every edge at its desired length.
+    """
+    return _undirected(case, q) if case.root is None else _directed(case, q)
+
+
+def _directed(case: TreeCase, q: FloatArray) -> Spectrum:
+    """Edge by edge the roots of s² + a s + μ once and {0, -a} m − 1 times: the polynomial, and the kernel's dimension.
+
+    Eigenvalues are not computed: those of a chain of equal edges are defective, and rounding would spread them.
+    """
+    m, unit = q.shape[1], 1.0 / sqrt(float(case.mu.max()))
+    A = _in_units_of(case.edge_system(q), unit)
+    springs = [(float(a) * unit, float(mu) * unit**2) for a, mu in zip(case.align, case.mu, strict=True)]
+    residual = characteristic_residual(A, springs + [(a, 0.0) for a, _ in springs for _ in range(m - 1)])
+    singular = np.linalg.svd(A, compute_uv=False)[::-1]
+    zeros, kernel, rounding = _kernel(singular, (case.n - 1) * (m - 1))
+    slowest = min(0.5 * (a - sqrt(max(a * a - 4.0 * mu, 0.0))) for a, mu in springs) / unit
+    return Spectrum(zeros, slowest, residual, min(1.0 - residual / POLYNOMIAL, kernel), max(rounding, _off(len(A))))
+
+
+def _undirected(case: TreeCase, q: FloatArray) -> Spectrum:
+    """K = −∂u/∂q and C = −∂u/∂p are symmetric, so that s² + γs + κ = 0 with κ, γ >= 0 the quotients of a mode.
+
+    All roots but 0 have negative real parts, and 0 is semisimple, if C is positive off the translations; then 0 has the
+    multiplicity of the kernel of K, less translations.
+    """
+    m, unit = q.shape[1], 1.0 / sqrt(float(case.mu.max()))
+    jacobian = np.asarray(case.law.jacobian(0.0, q, np.zeros_like(q)))[q.size :]
+    K, C = -jacobian[:, : q.size] * unit**2, -jacobian[:, q.size :] * unit
+    rigid, damped = np.linalg.eigvalsh(0.5 * (K + K.T)), np.linalg.eigvalsh(0.5 * (C + C.T))
+    zeros, kernel, rounding = _kernel(rigid, (case.n - 1) * (m - 1) + m)
+    _, still, blur = _kernel(damped, m)
+    A = case.edge_system(q)
+    moving = np.sort(np.linalg.eigvals(A).real)[: len(A) - (case.n - 1) * (m - 1)]
+    skew = float(max(np.abs(K - K.T).max(), np.abs(C - C.T).max() / max(np.abs(C).max(), EPS)))
+    return Spectrum(zeros - m, -float(moving.max()), 0.0, min(kernel, still), max(rounding, blur) + skew)
+
+
+def _in_units_of(A: FloatArray, unit: float) -> FloatArray:
+    """A of (x, x') with times in a unit."""
+    half = len(A) // 2
+    scale = np.concatenate([np.ones(half), np.full(half, unit)])
+    scaled: FloatArray = A * (scale[:, None] * unit) / scale[None, :]
+    return scaled
+
+
+def _kernel(values: npt.NDArray[np.floating[Any]], expected: int) -> tuple[int, float, float]:
+    """(number of zeros, margin, rounding) among rising eigen- or singular values that should be zero or positive.
+
+    The margin is the least of the others over the largest, negative if there are other zeros than expected, NaN if it
+    is not clear which are.
+    """
+    largest = float(np.abs(values).max())
+    rounding = 64.0 * len(values) * EPS
+    zero, clear = np.abs(values) <= rounding * largest, np.abs(values) >= _CLEAR * rounding * largest
+    if not (zero | clear).all():
+        return int(zero.sum()), nan, rounding
+    if int(zero.sum()) != expected or values[0] < -rounding * largest:
+        return int(zero.sum()), -1.0, rounding
+    return expected, float(values[expected] / largest) if expected < len(values) else 1.0, rounding
+
+
+def _off(size: int) -> float:
+    """Rounding of a determinant far outside the spectrum, over what would count as another polynomial."""
+    return 64.0 * size**2 * EPS / POLYNOMIAL

@@ -1,0 +1,85 @@
+"""Whether two agents of a run come into range of each other: between the samples too, or not to be told."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flockana.dynamics.trajectory import Trajectory
+from flockana.kernels.ranges import follow_pairs, follow_steps
+from flockana.laws.law import DiscreteLaw
+from flockana.theorems.rounding import EPS
+
+_NEXT = 1.5  # steps: samples of a map that are farther apart have states between them that were not kept
+
+
+@dataclass(frozen=True)
+class Entry:
+    """What is known of pairs that come into range.
+
+    Parameters
+    ----------
+    pair : tuple of int, optional
+        Two agents that were out of range for certain, and then in it.
+    time : float, optional
+        The end of the first interval between steps in which some do.
+    unsure : bool
+        Whether there are others of which it cannot be told, at r but for rounding or between samples too sparse.
+    """
+
+    pair: tuple[int, int] | None
+    time: float | None
+    unsure: bool
+
+
+def thinned(run: Trajectory) -> bool:
+    """Whether a map had states between those that were kept.
+
+    Parameters
+    ----------
+    run : Trajectory
+        A run of any law; what lies between the samples of a continuous one is its path.
+    """
+    return isinstance(run.law, DiscreteLaw) and bool((np.diff(run.t) > _NEXT * run.law.dt).any())
+
+
+def first_entry(run: Trajectory, r: float) -> Entry:
+    """The first pair that comes into range in a run.
+
+    Parameters
+    ----------
+    run : Trajectory
+        The run; between two of its steps its path is the quintic through their positions, velocities and accelerations,
+        but for an allowance.
+    r : float
+        Interaction range, open.
+
+    Examples
+    --------
+    >>> from flockana.laws.dead_zone import DeadZoneFlocking
+    >>> from flockana.dynamics.simulate import simulate
+    >>> run = simulate(DeadZoneFlocking(), [[0.0], [16.0]], [[1.0], [-1.0]], (0.0, 2.0))
+    >>> first_entry(run, 15.0).pair
+    (0, 1)
+    """
+    if len(run.t) == 1:  # nothing was seen to happen
+        return Entry(None, None, True)
+    pairs = run.n * (run.n - 1) // 2
+    was_out, unsure = np.zeros(pairs, dtype=np.bool_), np.zeros(pairs, dtype=np.bool_)
+    noise = 16.0 * EPS * (float(np.abs(run.q).max()) + r)
+    if isinstance(run.law, DiscreteLaw):
+        for k, q in enumerate(run.q):
+            pair = follow_steps(q, r, noise, was_out, unsure)
+            if pair[0] >= 0:
+                return Entry(pair, float(run.t[k]), True)
+        return Entry(None, None, thinned(run) or bool(unsure.any()))
+    t, q, p, u, slack = run.path  # its own steps too: an input that jumps at a switch has its other value beside it
+    noise += 2.0 * float(slack.max()) if slack is not None else 0.0
+    for k in range(len(t) - 1):
+        pair = follow_pairs(
+            float(t[k + 1] - t[k]), q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1], r, noise, was_out, unsure
+        )
+        if pair[0] >= 0:
+            return Entry(pair, float(t[k + 1]), True)
+    return Entry(None, None, bool(unsure.any()))

@@ -1,0 +1,118 @@
+"""Theorem 1 of the dead-zone paper as printed: one flock within r, an energy that falls, one velocity, no collision."""
+
+from __future__ import annotations
+
+from math import nan
+
+from flockana.dynamics.trajectory import Trajectory
+from flockana.laws.dead_zone import DeadZoneFlocking
+from flockana.measures.metrics import cohesion_radius
+from flockana.theorems.dead_zone.case import (
+    PROOF,
+    at_the_end,
+    dead_zone_law,
+    hypotheses,
+    no_collision,
+    one_velocity,
+)
+from flockana.theorems.dead_zone.parting import Parts
+from flockana.theorems.dead_zone.range_limits import first_entry
+from flockana.theorems.hypotheses import vacuous
+from flockana.theorems.rounding import EPS, frame_error
+from flockana.theorems.theorem import Claim, Hypothesis, Status, Theorem, Tolerances, judge
+
+_CLAIMS = ("cohesion", "energy", "velocity", "collision")
+
+
+def _certain_radius(run: Trajectory, end: Parts, radius: float) -> tuple[float, float, str]:
+    """(1 - R/r of the limit, its error, how it is known); NaN where nothing is."""
+    if end.count > 1:
+        apart = end.separation
+        return -apart.margin if end.parting else nan, apart.error, apart.text
+    (part,), r = end.parts, end.r
+    if part.size == 1 or part.hold.certificate.margin > 0.0:
+        error = (part.hold.distance + 2.0 * frame_error(run.q[-1:])) / r + 4.0 * EPS
+        return 1.0 - radius / r, error, part.hold.certificate.text
+    if part.dt is None and part.radius < r:
+        return (
+            1.0 - part.radius / r,
+            4.0 * EPS,
+            f"{part.bond.text}, and no agent {part.radius:.4g} away from the centre",
+        )
+    return nan, EPS, part.hold.certificate.text
+
+
+def _cohesion(run: Trajectory, end: Parts, needs: list[Hypothesis]) -> Claim:
+    """R ≤ r in the end: of a flock that is held the limit is known, of one that parts as well."""
+    radius = cohesion_radius(run.q[-1])
+    margin, error, known = _certain_radius(run, end, radius)
+    return Claim(
+        "cohesion",
+        judge(margin, error, needs),
+        computed=radius,
+        stated=f"in the end no agent is farther than r = {end.r:g} from the leader (read: the centre of mass)",
+        margin=margin,
+        error=error,
+        witness={"components": end.count, "time": float(run.t[-1])},
+        proof=PROOF if end.count > 1 else None,
+        detail=f"at t = {run.t[-1]:g} there are {end.count} component(s), R = {radius:.4g}; {known}",
+    )
+
+
+def _energy(run: Trajectory, law: DeadZoneFlocking, needs: list[Hypothesis]) -> Claim:
+    """The energy of neighbours only never rises: it does by ψ̄(r) > 0 at the very time at which a pair comes into range.
+
+    Otherwise it is H̄ less a constant, or falls by ψ̄(r) as a pair leaves. That no pair comes in is a whole number.
+    """
+    jump, entry = law.interaction.far_potential, first_entry(run, law.interaction.r)
+    enters = entry.pair is not None and jump > 0.0
+    margin = -1.0 if enters else nan if entry.unsure and jump > 0.0 else 1.0
+    status: Status = judge(margin, 0.0, needs)
+    found = "no pair comes into range"
+    if enters:
+        found = f"agents {entry.pair} come into range of each other before t = {entry.time:.6g}: H rises by {jump:.4g}"
+    elif jump == 0.0:
+        found = "the potential of a pair is 0 at r: nothing jumps"
+    elif entry.unsure:
+        found = "between the samples, or but for rounding, a pair may come into range"
+    return Claim(
+        "energy",
+        status,
+        computed=jump if enters else 0.0,
+        stated="H, summed over neighbours, never rises",
+        margin=margin,
+        error=0.0,
+        witness={"agents": entry.pair, "time": entry.time},
+        proof=PROOF,
+        detail=found,
+    )
+
+
+def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+    needs, law = hypotheses(run), dead_zone_law(run)
+    nothing = vacuous(needs, _CLAIMS)
+    if law is None or nothing:
+        return needs, nothing
+    end = at_the_end(run, law)
+    return needs, [
+        _cohesion(run, end, needs),
+        _energy(run, law, needs),
+        one_velocity(run, end, needs, name="velocity"),
+        no_collision(run, 0.0, law.scales.length, needs, name="collision"),
+    ]
+
+
+THEOREM = Theorem(
+    id="dead-zone-1-printed",
+    title="Dead-zone flocking as printed: cohesion, falling energy, one velocity, no collision",
+    statement=(
+        "From finite initial energy, agents form cohesive flocks with no agent farther than r from its virtual leader; "
+        "the energy does not rise, the flock ends in a local minimum and velocities match; no two agents collide. No "
+        "leader appears in the law: its centre of mass is taken instead. Connectivity is not implied (L4), the energy "
+        "of neighbours jumps (L5), velocities match within components only (L7); the last claim is true (L6)."
+    ),
+    source="Li, Yuan and Liu, Theorem 1 (its proof is omitted there)",
+    kind="trajectory",
+    check=_check,
+    references=("li-dead-zone",),
+)

@@ -1,0 +1,1 @@
+"""What the linearisation predicts of a run."""

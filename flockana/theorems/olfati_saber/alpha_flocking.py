@@ -1,0 +1,167 @@
+"""Definition 5 of Olfati-Saber (2006), α-flocking, plain and strict, as two checkable statements."""
+
+from __future__ import annotations
+
+from math import floor, inf
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.dynamics.trajectory import Trajectory
+from flockana.laws.law import DiscreteLaw
+from flockana.theorems.hypotheses import vacuous
+from flockana.theorems.rounding import EPS, frame_error, spread_error
+from flockana.theorems.sampling import nets_at, nets_between, radius_between
+from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
+
+_SHARE = 1e-9  # of an agent: what a share of n agents, as a decimal fraction, may be off by
+
+
+def _window(run: Trajectory, tolerances: Tolerances) -> tuple[Hypothesis, Trajectory]:
+    """The part that is judged: flocking is defined over a time, which one instant is not."""
+    start = float(run.t[0] + tolerances.settle * (run.t[-1] - run.t[0]))
+    part = run.remembered(f"window from {start!r}", lambda: run.window(start, float(run.t[-1])))
+    detail = f"from t = {part.t[0]:.4g} to {part.t[-1]:.4g}, at {len(part.t)} samples"
+    return Hypothesis("judged over a window", "met" if len(part.t) > 1 else "unmet", detail=detail), part
+
+
+def _always(
+    name: str, run: Trajectory, value: FloatArray, bound: float, error: FloatArray, between: FloatArray
+) -> Claim:
+    """A claim that a quantity stays below a bound: broken at one sample, or kept at all of them and in between."""
+    symbol, what = _SYMBOLS[name]
+    worst = int(np.argmax(value - error))
+    if not value[worst] - error[worst] > bound:
+        worst = int(np.argmax(value + error))
+        between = np.maximum(between - value[worst], 0.0)
+        error = error + float(between.max(initial=0.0))
+    margin = bound - float(value[worst])
+    return Claim(
+        name,
+        judge(margin, float(error[worst]), []),
+        computed=float(value[worst]),
+        stated=f"{symbol} <= {bound:.4g}",
+        margin=margin,
+        error=float(error[worst]),
+        witness={"time": float(run.t[worst])},
+        detail=f"{what} {symbol}: {value[worst]:.4g} at worst, at t = {run.t[worst]:.4g}",
+    )
+
+
+_SYMBOLS = {
+    "cohesive": ("R", "cohesion radius"),
+    "deviation": ("Ẽ", "deviation energy"),
+    "mismatch": ("K̃", "velocity mismatch, over the law's speed²,"),
+}
+
+
+def _never_more(
+    name: str, run: Trajectory, counts: tuple[FloatArray, FloatArray, float], most: int, what: str
+) -> Claim:
+    """A claim that a number never exceeds a bound, in whole numbers (at samples at least, at most; between)."""
+    least, largest, between = counts
+    worst = int(np.argmax(least))
+    broken = least[worst] > most
+    worst = worst if broken else int(np.argmax(largest))
+    margin = most + 0.5 - (float(least[worst]) if broken else max(float(largest[worst]), between))
+    error = 0.0 if broken or margin > 0.0 else inf
+    return Claim(
+        name,
+        judge(margin, error, []),
+        computed=int(least[worst]),
+        stated=f"at most {most}",
+        margin=margin,
+        error=error,
+        witness={"time": float(run.t[worst])},
+        detail=f"{what}: {int(least[worst])} at worst, at t = {run.t[worst]:.4g}, where {most} may be"
+        + (
+            ""
+            if error == 0.0
+            else "; whether there are ever more is open: a pair comes as near to r as this run can tell"
+        ),
+    )
+
+
+def _flock(run: Trajectory, tolerances: Tolerances, *, giant: bool) -> Claim:
+    """The net is connected, or keeps a component with more than a share of the agents, by links that are certain."""
+    between, at = nets_between(run), nets_at(run)
+    if not giant:
+        counts = at.components_least, at.components, float(between.components.max(initial=0.0))
+        return _never_more("flock", run, counts, 1, "components")
+    fewest = floor(tolerances.giant * run.n + _SHARE) + 1  # agents that are more than the share
+    counts = run.n - at.giant_most, run.n - at.giant, float(run.n - between.giant.min(initial=run.n))
+    return _never_more("giant", run, counts, run.n - fewest, "agents outside the giant component")
+
+
+def _common(run: Trajectory, tolerances: Tolerances) -> list[Claim]:
+    """Ẽ <= ε₁ and K̃ <= ε₂; a link that may come or go between samples, or by rounding, adds (r − d)² to Ẽ."""
+    alpha, units, steps = run.law.alpha, run.scales.energy, isinstance(run.law, DiscreteLaw)
+    deviation, mismatch = run.metric("deviation_energy"), run.metric("velocity_mismatch") / units
+    rounding = 8.0 * EPS * (float(np.abs(run.q).max()) / alpha.d + 1.0)
+    error = 2.0 * np.sqrt(deviation) * rounding + rounding**2 + 4.0 * EPS * run.n * deviation
+    one_link = 2.0 * (alpha.r / alpha.d - 1.0) ** 2
+    at, during = nets_at(run), nets_between(run)
+    error += one_link * at.open_links / (2.0 * at.links + 1.0)
+    jumps = one_link * during.open_links / (2.0 * during.links + 1.0)
+    own = spread_error(run.p) / (run.n * units)
+    return [
+        _always("deviation", run, deviation, tolerances.deviation, error, _between(deviation, steps=steps) + jumps),
+        _always("mismatch", run, mismatch, tolerances.mismatch, own, _between(mismatch, steps=steps)),
+    ]
+
+
+def _between(value: FloatArray, *, steps: bool) -> FloatArray:
+    """What a smooth series may reach between samples: beyond the larger end by half of what the ends differ."""
+    ends = np.maximum(value[:-1], value[1:])
+    between: FloatArray = ends if steps else ends + 0.5 * np.abs(np.diff(value))
+    return between
+
+
+def _cohesive(run: Trajectory, tolerances: Tolerances) -> Claim:
+    radius = run.metric("cohesion_radius")
+    error = np.full(len(run.t), 4.0 * frame_error(run.q))
+    return _always("cohesive", run, radius, tolerances.cohesion * float(radius[0]), error, radius_between(run))
+
+
+def _judged(run: Trajectory, tolerances: Tolerances, *, strict: bool) -> tuple[list[Hypothesis], list[Claim]]:
+    names = ("flock", "deviation", "mismatch") if strict else ("giant", "cohesive", "deviation", "mismatch")
+    has = getattr(run.law, "alpha", None) is not None
+    law = Hypothesis("the law has a scale d and a range r", "met" if has else "unmet", detail=type(run.law).__name__)
+    window, part = _window(run, tolerances)
+    needs = [law, window]
+    if nothing := vacuous(needs, names):
+        return needs, nothing
+    first = [_flock(part, tolerances, giant=not strict), *([] if strict else [_cohesive(part, tolerances)])]
+    return needs, [*first, *_common(part, tolerances)]
+
+
+def _plain(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+    return _judged(run, tolerances, strict=False)
+
+
+def _strict(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+    return _judged(run, tolerances, strict=True)
+
+
+THEOREM = (
+    Theorem(
+        id="alpha-flocking",
+        title="The run is α-flocking (Definition 5)",
+        statement=(
+            "Over [t0, tf] the net keeps a giant component, the group stays cohesive, Ẽ <= ε₁ and K̃ <= ε₂. The source "
+            "gives no numbers for 'giant', 'cohesive', ε₁, ε₂; those used are in the tolerances. One "
+            "sample is no window."
+        ),
+        source="Olfati-Saber 2006, Definition 5",
+        kind="trajectory",
+        check=_plain,
+    ),
+    Theorem(
+        id="alpha-flocking-strict",
+        title="The run is strictly α-flocking (Definition 5)",
+        statement="Over [t0, tf] the net is connected, Ẽ <= ε₁ and K̃ <= ε₂.",
+        source="Olfati-Saber 2006, Definition 5, strict form",
+        kind="trajectory",
+        check=_strict,
+    ),
+)

@@ -1,0 +1,205 @@
+"""The energy identities that the theorems rest on, checked along a run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.dynamics.trajectory import Trajectory
+from flockana.environment.obstacles import Sphere, Wall
+from flockana.laws.algorithm3 import Algorithm3
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.theorems.hypotheses import applied, conceded, vacuous
+from flockana.theorems.olfati_saber.gamma_agent import honest_rate, still
+from flockana.theorems.rounding import EPS, energy_error
+from flockana.theorems.theorem import Claim, Hypothesis, HypothesisStatus, Theorem, Tolerances, judge
+
+
+def proved(run: Trajectory, proof: str = "energy-identities") -> str | None:
+    """The id of the proof of this law's energy identity, which knows walls, spheres and gains common to all agents.
+
+    Parameters
+    ----------
+    run : Trajectory
+        A run of Algorithm 1, 2 or 3.
+    proof : str
+        The id.
+    """
+    known = all(type(obstacle) in (Sphere, Wall) for obstacle in getattr(run.law, "obstacles", ()))
+    return proof if known and not run.law.gains.per_agent else None
+
+
+def _rounding(run: Trajectory) -> float:
+    """Of the energy, at worst over the run."""
+    known = isinstance(run.law, Algorithm1 | Algorithm2 | Algorithm3)
+    largest = float(np.abs(run.energy()).max())
+    own = float(energy_error(run.law, run.q, run.p, run.energy()).max()) if known else run.n**2 * EPS * largest
+    return own + int(run.stats.get("steps", len(run.t))) * EPS * float(np.abs(run.extra["work"]).max())
+
+
+def balance(run: Trajectory, needs: Iterable[Hypothesis], tolerances: Tolerances, *, proof: str | None = None) -> Claim:
+    """H(t) − H(0) agrees with the integral of the closed-form rate: the identity is right.
+
+    What the integration spoils is not the identity's: a second, tighter run tells the two apart (`verify` makes it).
+
+    Parameters
+    ----------
+    run : Trajectory
+        A run of a law with an energy.
+    needs : iterable of Hypothesis
+        Hypotheses of the claim.
+    tolerances : Tolerances
+        `energy` is used.
+    proof : str, optional
+        Id of the proof of the identity.
+    """
+    needs, energy, residual = list(needs), run.energy(), run.energy_residual
+    worst, largest = int(np.argmax(np.abs(residual))), float(np.abs(energy).max())
+    share = float(np.abs(residual[worst])) / (largest or 1.0)
+    error = 2.0 * _rounding(run) / (largest or 1.0) + EPS
+    course = "falls" if energy[-1] <= energy[0] else "rises"
+    return Claim(
+        "balance",
+        conceded(judge(tolerances.energy - share, error, needs), needs),
+        computed=share,
+        stated=f"H(t) - H(0) = integral of dH/dt, to {tolerances.energy:g} of the largest |H|",
+        margin=tolerances.energy - share,
+        error=error,
+        witness={"time": float(run.t[worst]), "residual": float(residual[worst])},
+        proof=proof,
+        detail=f"H {course} from {energy[0]:.6g} to {energy[-1]:.6g}; the balance is off by {share:.2g} of it at most",
+    )
+
+
+def cancelling(run: Trajectory, since: int = 0) -> FloatArray:
+    """Magnitude of those terms of dH/dt that are differences, and may cancel, at each sample from one on.
+
+    They are c2β ΣΣ b ⟨p_i, p̂_ik − p_i⟩, of β-agents no faster than their agent, c2γ Σ⟨p_i, p_i − p_r⟩, and the work
+    of a γ-agent that moves. The others, −c2α pᵀL̂p and −c2γ‖v‖², are sums of squares.
+
+    Parameters
+    ----------
+    run : Trajectory
+        A run of Algorithm 1, 2 or 3.
+    since : int
+        Index of the first sample that counts.
+    """
+    law, p, size = run.law, run.p[since:], np.zeros(len(run.t) - since)
+    if isinstance(law, Algorithm1) or (isinstance(law, Algorithm2) and not law.gains.per_agent):
+        return size
+    q, speed = run.q[since:], np.linalg.norm(p, axis=2)
+    for k, t in enumerate(run.t[since:]):
+        (q_r, p_r), rate = law.target.state(float(t)), law.target.rate(float(t))
+        away = np.linalg.norm(q[k] - q_r, axis=1)
+        size[k] = np.max(law.gains.c2_gamma) * float(speed[k] @ (speed[k] + np.linalg.norm(p_r)))
+        size[k] += np.max(law.gains.c1_gamma) * float(np.linalg.norm(rate)) * float(away.sum())
+    braking = law.gains.c2_beta * 2.0 * len(law.obstacles) if isinstance(law, Algorithm3) else 0.0
+    total: FloatArray = size + braking * np.sum(speed**2, axis=1)
+    return total
+
+
+def falling_share(run: Trajectory, rate: FloatArray, cancels: FloatArray) -> tuple[FloatArray, float]:
+    """What is left of a rate's terms as a fall, as a share of their magnitude, from 1 to −1; and its rounding.
+
+    Parameters
+    ----------
+    run : Trajectory
+        The run.
+    rate : ndarray, shape (T,)
+        The rate of an energy.
+    cancels : ndarray, shape (T,)
+        Magnitude of those of its terms that may have either sign.
+    """
+    size = np.abs(rate) + 2.0 * cancels
+    share = np.divide(-rate, size, out=np.ones_like(rate), where=size > 0.0)
+    return share, (run.n**2 + 64) * EPS
+
+
+def never_rises(run: Trajectory, needs: Iterable[Hypothesis], *, since: int = 0, proof: str | None = None) -> Claim:
+    """dH/dt ≤ 0 at every sample from one on, by the closed form: its margin is what is left of its terms' magnitude.
+
+    A sum of terms of one sign keeps it in floating point, so that Algorithms 1 and 2 have the margin 1 at every state;
+    where terms may cancel (`cancelling`), the rest is held against their rounding. Where nothing moves, or nothing
+    damps, the rate is 0 without any term, and the claim holds.
+
+    Parameters
+    ----------
+    run : Trajectory
+        A run of a law with an energy.
+    needs : iterable of Hypothesis
+        Hypotheses of the claim.
+    since : int
+        Index of the first sample that counts.
+    proof : str, optional
+        Id of the proof of the sign.
+    """
+    needs, rate = list(needs), run.energy_rate()[since:]
+    share, error = falling_share(run, rate, cancelling(run, since))
+    worst, highest = int(np.argmin(share)), float(rate.max())
+    margin = float(share[worst])
+    return Claim(
+        "rate",
+        conceded(judge(margin, error, needs), needs),
+        computed=highest,
+        stated="dH/dt <= 0" if since == 0 else f"dH/dt <= 0 for t >= {run.t[since]:.6g}",
+        margin=margin,
+        error=error,
+        witness={"time": float(run.t[since + worst])},
+        proof=proof,
+        detail=f"the closed-form rate is at most {highest:.3g} from t = {run.t[since]:.4g} on; what falls is at least "
+        f"{margin:.2g} of the magnitude of its terms",
+    )
+
+
+def stays_outside(run: Trajectory) -> Hypothesis:
+    """No agent enters an obstacle, between samples either: inside a sphere ⟨p_i, p̂_ik − p_i⟩ may be positive.
+
+    Parameters
+    ----------
+    run : Trajectory
+        A run of Algorithm 3.
+    """
+    name, least = "no agent enters an obstacle", run.clearance()
+    if not run.law.obstacles:
+        return Hypothesis(name, "met", detail="there is none")
+    rounding = 64.0 * EPS * float(np.abs(run.q).max())
+    where = f"(agent {least.agent} at obstacles[{least.obstacle}], t = {least.time:.4g})"
+    if least.lower > rounding:
+        return Hypothesis(name, "met", least.lower, f"clearance at least {least.lower:.4g} {where}")
+    status: HypothesisStatus = "unmet" if least.reached < -rounding else "assumed"
+    text = f"clearance {least.reached:.4g} {where}, and {least.lower:.4g} at least"
+    return Hypothesis(name, status, least.lower if status == "assumed" else least.reached, text)
+
+
+def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+    law = applied(run, "Algorithm 1, 2 or 3", Algorithm1, Algorithm2, Algorithm3)
+    if nothing := vacuous([law], ("rate", "balance")):
+        return [law], nothing
+    rests, honest = [law], [law]
+    if type(run.law) is Algorithm3 or (run.law.gains.per_agent and type(run.law) is Algorithm2):
+        rests.append(still(run, told=False))  # outside of the moving frame a moving γ-agent does work
+        honest.append(honest_rate(run))
+    if type(run.law) is Algorithm3:
+        rests.append(stays_outside(run))
+    proof = proved(run)
+    return [*rests, *honest[1:]], [
+        never_rises(run, rests, proof=proof),
+        balance(run, honest, tolerances, proof=proof),
+    ]
+
+
+THEOREM = Theorem(
+    id="energy",
+    title="Energy identities of Algorithms 1, 2 and 3",
+    statement=(
+        "dH/dt = -c2α pᵀL̂p under Algorithm 1, dH_λ/dt = -c2γ‖v‖² - c2α vᵀL̂v in the moving frame under Algorithm 2, "
+        "and the form of Theorem 6, with the work of a moving γ-agent, under Algorithm 3: the closed form agrees with "
+        "the energy of the integrated run. It is never positive under Algorithms 1 and 2, nor under Algorithm 3 with "
+        "a γ-agent at rest and all agents outside the obstacles."
+    ),
+    source="Olfati-Saber 2006, proofs of Theorems 1, 3 and 6",
+    kind="trajectory",
+    check=_check,
+)

@@ -1,0 +1,150 @@
+"""What the γ-agent really does during a run, by looking at its positions, between the samples too.
+
+A target declares its own velocity and rate, and may be wrong about either. Here the difference of its positions over
+each interval between samples is held against the integral of what it declares, and rest means that no position seen
+differs. What only a function knows cannot be seen everywhere: for one of a user's own, rest that was seen is assumed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import sqrt
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.dynamics.trajectory import Trajectory
+from flockana.environment.targets import CircleTarget, LinearTarget, RescaledVelocity, SineTarget, StaticTarget, Target
+from flockana.theorems.rounding import EPS
+from flockana.theorems.theorem import Hypothesis, HypothesisStatus
+
+_CLOSED_FORMS = (StaticTarget, LinearTarget, SineTarget, CircleTarget)
+_NODES = np.array([-sqrt(0.6), 0.0, sqrt(0.6)])  # Gauss-Legendre, exact up to degree five
+_WEIGHTS = np.array([5.0, 8.0, 5.0]) / 18.0
+_CONSISTENT = 1e-6  # of the law's speed: what a source's own rounding of a velocity may amount to
+
+
+def _known(target: Target) -> bool:
+    """Whether the path is given by a formula of ours, whose samples tell all."""
+    return type(target) in _CLOSED_FORMS or (type(target) is RescaledVelocity and _known(target.target))
+
+
+def _between(t: FloatArray) -> FloatArray:
+    """Gauss nodes of both halves of every interval, shape (T − 1, 2, 3)."""
+    middle, half = 0.5 * (t[:-1] + t[1:]), 0.25 * np.diff(t)
+    halves = np.stack([middle - half, middle + half], axis=1)
+    nodes: FloatArray = halves[:, :, None] + half[:, None, None] * _NODES
+    return nodes
+
+
+def still(run: Trajectory, *, told: bool) -> Hypothesis:
+    """That the γ-agent rests during the whole run.
+
+    Parameters
+    ----------
+    run : Trajectory
+        A run of a law with a γ-agent.
+    told : bool
+        Whether p_r may be any constant, as Theorem 6 has it; else it must be 0 too, and no work is done.
+    """
+    target = run.law.target
+    times = np.concatenate([run.t, _between(run.t).ravel()])
+    states = [target.state(float(time)) for time in times]
+    q_r, p_r = (np.array([state[part] for state in states]) for part in (0, 1))
+    speed = run.scales.speed
+    off = float(np.abs(q_r - q_r[0]).max()), float(np.abs(p_r - (p_r[0] if told else 0.0)).max())
+    moves = off[0] > 4.0 * EPS * float(np.abs(q_r).max()) or off[1] > 4.0 * EPS * max(float(np.abs(p_r).max()), speed)
+    status: HypothesisStatus = "unmet" if moves else "met" if _known(target) else "assumed"
+    return Hypothesis(
+        "the γ-agent is static" if told else "the γ-agent is at rest, p_r = 0",
+        status,
+        -max(off[0] / run.scales.length, off[1] / speed),
+        _rest(moves, told, p_r[0]) + ("" if status != "assumed" else f", as seen at {times.size} times"),
+    )
+
+
+def _rest(moves: bool, told: bool, p_r: FloatArray) -> str:
+    if moves:
+        outside = "it moves, which is outside the theorem"
+        return outside if told else "it moves, or says so: it does work on the flock, of either sign"
+    though = " though q_r does not move, as printed" if p_r.any() else ""
+    return f"q_r is fixed, p_r = {p_r.tolist()}{though}"
+
+
+@dataclass(frozen=True)
+class Slip:
+    """How far a declared velocity is from the one that the positions show, at worst over the intervals of a run.
+
+    Attributes
+    ----------
+    off : float
+        Largest mean difference over an interval.
+    error : float
+        Of the quadrature, and rounding.
+    """
+
+    off: float
+    error: float
+
+
+def slip(run: Trajectory, velocity: Callable[[float], FloatArray]) -> Slip:
+    """Hold a declared velocity against the differences of the γ-agent's positions over the intervals of a run.
+
+    Parameters
+    ----------
+    run : Trajectory
+        A run of a law with a γ-agent.
+    velocity : callable
+        The velocity at a time.
+    """
+    target, h = run.law.target, np.diff(run.t)
+    if h.size == 0:
+        return Slip(0.0, float("inf"))
+    q_r = np.array([target.state(float(time))[0] for time in run.t])
+    nodes = _between(run.t)
+    coarse = (0.5 * (run.t[:-1] + run.t[1:]))[:, None] + 0.5 * h[:, None] * _NODES
+    fine, rough = _mean(velocity, nodes).mean(axis=1), _mean(velocity, coarse)
+    off = np.linalg.norm(np.diff(q_r, axis=0) / h[:, None] - fine, axis=1)
+    rounding = 4.0 * EPS * np.abs(q_r).max() / h + 8.0 * EPS * np.abs(fine).max()
+    error = np.linalg.norm(fine - rough, axis=1) + rounding
+    worst = int(np.argmax(off - error))
+    return Slip(float(off[worst]), float(error[worst]))
+
+
+def _mean(velocity: Callable[[float], FloatArray], nodes: FloatArray) -> FloatArray:
+    """Mean of a velocity over intervals by its Gauss nodes, which are the last axis."""
+    values = np.array([velocity(float(time)) for time in nodes.ravel()]).reshape(*nodes.shape, -1)
+    mean: FloatArray = np.einsum("...kc,k->...c", values, _WEIGHTS)
+    return mean
+
+
+def consistent(run: Trajectory) -> Hypothesis:
+    """dq_r/dt = p_r: what the γ-agent tells the flock is what it does.
+
+    Parameters
+    ----------
+    run : Trajectory
+        A run of a law with a γ-agent.
+    """
+    return _agrees(run, "dq_r/dt = p_r", "p_r", lambda t: run.law.target.state(t)[1])
+
+
+def honest_rate(run: Trajectory) -> Hypothesis:
+    """That the target's declared rate is that of its positions: the closed form of dH/dt takes it from there.
+
+    Parameters
+    ----------
+    run : Trajectory
+        A run of a law with a γ-agent.
+    """
+    return _agrees(run, "the γ-agent's declared rate is dq_r/dt", "the rate", run.law.target.rate)
+
+
+def _agrees(run: Trajectory, name: str, what: str, velocity: Callable[[float], FloatArray]) -> Hypothesis:
+    found, allowed = slip(run, velocity), _CONSISTENT * run.scales.speed
+    if found.off + found.error <= allowed:
+        return Hypothesis(name, "met", -found.off)
+    if found.off - found.error <= allowed:
+        return Hypothesis(name, "assumed", -found.off, "the samples are too sparse to tell")
+    return Hypothesis(name, "unmet", -found.off, f"{what} is off by up to {found.off:.3g}")

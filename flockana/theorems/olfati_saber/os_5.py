@@ -1,0 +1,308 @@
+"""Theorem 5 of Olfati-Saber (2006): the nets of α-lattices are planar and not complete; and what holds of every net.
+
+Checked on a configuration (``"os-5"``) or on the last state of a run (``"os-5-terminal"``).
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import combinations
+from math import sqrt
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.dynamics.trajectory import Trajectory
+from flockana.lattice import (
+    classify,
+    crossings,
+    harborth,
+    is_complete,
+    is_planar,
+    kuratowski,
+    links,
+    planar_bound,
+    separation,
+)
+from flockana.lattice.measure import GUARD
+from flockana.measures.metrics import min_distance
+from flockana.measures.nets import LinkArray, link_lengths
+from flockana.theorems.hypotheses import vacuous
+from flockana.theorems.rounding import EPS
+from flockana.theorems.theorem import Claim, Hypothesis, HypothesisStatus, Theorem, Tolerances, judge
+
+CLAIMS = (
+    "i",
+    "i-graph",
+    "ii",
+    "ii-sharp",
+    "iii",
+    "extension",
+    "extension-lengths",
+    "extension-links",
+    "extension-quantitative",
+)
+_LISTED = 100_000  # crossings that are listed at most; beyond, every count of them says "at least"
+_SHOWN = 10  # and shown as witness
+_WITNESS_LIMIT = 20_000  # links of which a Kuratowski subgraph is still found in about a minute
+_CROSSINGS, _COUNTS = "theorem5-crossings", "theorem5-counts"  # executable proofs
+_ROUNDING = 1e-12  # relative error of a distance of two stored positions near the origin
+_CERTAIN = 64.0 * EPS  # relative difference of two squared lengths that floating point gets the sign of
+
+
+class _Net:
+    """The measures of one configuration that several claims share."""
+
+    def __init__(self, q: FloatArray, d: float, r: float) -> None:
+        self.q, self.d, self.r = q, d, r
+        self.n, self.m = q.shape
+        self.rounding = 8.0 * EPS * float(np.abs(q).max()) + _ROUNDING * r  # of a distance
+        self.links: LinkArray = links(q, r, guard=min(0.5, max(GUARD, self.rounding / r)))
+        self.lengths = link_lengths(q, self.links)
+        self.strain = float(np.abs(self.lengths - d).max() / d) if len(self.links) else float("nan")
+        self.closest = min_distance(q)
+        self.crossings = crossings(q, self.links, limit=_LISTED)
+
+    def agents(self, pair: Any) -> list[list[int]]:
+        """The agents of two links."""
+        return [[int(v) for v in self.links[k]] for k in pair]
+
+    @property
+    def crossing_count(self) -> int | str:
+        """How many pairs of links cross, or that there are more than are listed."""
+        count = len(self.crossings)
+        return f"at least {count}" if count >= _LISTED else count
+
+    @property
+    def crossing_text(self) -> str:
+        return f"{self.crossing_count or 'no'} pairs of {len(self.links)} links cross"
+
+
+def _lattice_hypotheses(net: _Net, tolerances: Tolerances) -> list[Hypothesis]:
+    apart, kappa = net.closest / net.d - tolerances.contact, net.r / net.d
+    kind = classify(net.strain, lattice=tolerances.lattice, quasi=tolerances.quasi)
+    exact: HypothesisStatus = "met" if kind == "α-lattice" else "unmet"
+    text = f"{kind}: δ/d = {net.strain:.3g}" if len(net.links) else "there are no links"
+    return [
+        Hypothesis("distinct positions", "met" if apart > 0.0 else "unmet", apart, f"shortest {net.closest:.6g}"),
+        Hypothesis("κ = r/d > 1", "met" if kappa > 1.0 else "unmet", kappa - 1.0, f"κ = {kappa:.6g}"),
+        Hypothesis("q is an α-lattice", exact, tolerances.lattice - net.strain, text),
+    ]
+
+
+def _dimension(name: str, holds: bool, net: _Net) -> Hypothesis:
+    return Hypothesis(name, "met" if holds else "unmet", detail=f"m = {net.m}, n = {net.n}")
+
+
+def _far_apart(net: _Net, length: float, name: str) -> Hypothesis:
+    margin = net.closest - length / sqrt(2.0)
+    met = margin > net.rounding  # what a rounding decides is not taken for met
+    text = f"shortest distance {net.closest:.6g} against {length / sqrt(2.0):.6g}"
+    return Hypothesis(f"all pairs are farther apart than {name}", "met" if met else "unmet", margin, text)
+
+
+def _uncrossed(net: _Net, needs: list[Hypothesis], name: str, text: str) -> Claim:
+    """No two links cross: exact for the positions as stored; in space only a clearance speaks for the true ones."""
+    count = net.crossing_count
+    if any(h.status == "unmet" for h in needs):
+        detail = f"{text}: {net.crossing_text}"
+        return Claim(name, "vacuous", computed=count, stated="no crossing", proof=_CROSSINGS, detail=detail)
+    if count:
+        margin, error, which, near = -float(len(net.crossings)), 0.0, None, ""
+    else:
+        gap = separation(net.q, net.links, reach=0.5 * net.d)
+        margin, error = gap.distance / net.d, 2.0 * net.rounding / net.d
+        which = None if gap.links is None else net.agents(gap.links)
+        near = f"; links without a common agent stay {'at least ' if which is None else ''}{gap.distance:.4g} apart"
+    return Claim(
+        name,
+        judge(margin, error, needs),
+        computed=count,
+        stated="no crossing",
+        margin=margin,
+        error=error,
+        witness={"crossing": [net.agents(p) for p in net.crossings[:_SHOWN]]} if count else {"nearest": which},
+        proof=_CROSSINGS,
+        detail=f"{text}: {net.crossing_text}{near}",
+    )
+
+
+def _graph(net: _Net, needs: list[Hypothesis]) -> Claim:
+    """As printed, (i) calls the graph planar: so it is where a drawing without crossings lies in the plane."""
+    drawn = net.m < 3 and len(net.crossings) == 0 and net.closest > 0.0
+    planar = drawn or is_planar(net.n, net.links)
+    witness = None
+    if not planar and len(net.links) <= _WITNESS_LIMIT:
+        witness = kuratowski(net.n, net.links)
+    bound = planar_bound(net.n)
+    found = "" if witness is None else f", which holds a subdivided {witness.kind} of {len(witness.links)} links"
+    return Claim(
+        "i-graph",
+        judge(1.0 if planar else -1.0, 0.0, needs),
+        computed="planar" if planar else "not planar",
+        stated="the graph of the net is planar (as printed)",
+        margin=1.0 if planar else -1.0,
+        error=0.0,
+        witness=None if witness is None else vars(witness),
+        detail=f"the graph of {len(net.links)} links on {net.n} agents is {'' if planar else 'not '}planar{found}; "
+        f"a planar one has at most {bound}",
+    )
+
+
+def _bound(
+    net: _Net, needs: list[Hypothesis], name: str, bound: int, text: str, *, proof: str | None = _COUNTS
+) -> Claim:
+    count = len(net.links)
+    return Claim(
+        name,
+        judge(bound - count + 0.5, 0.0, needs),
+        computed=count,
+        stated=f"at most {bound} links",
+        margin=bound - count + 0.5,  # between the numbers that keep it and those that do not
+        error=0.0,
+        witness=None,
+        proof=proof,
+        detail=f"{count} links, {text} = {bound} (Harborth's number is {harborth(net.n)})",
+    )
+
+
+def _incomplete(net: _Net, needs: list[Hypothesis]) -> Claim:
+    missing = net.n * (net.n - 1) // 2 - len(net.links)
+    return Claim(
+        "iii",
+        judge(-0.5 if is_complete(net.n, net.links) else 0.5, 0.0, needs),
+        computed=missing,
+        stated="at least one pair is not linked",
+        margin=float(missing) - 0.5,
+        error=0.0,
+        witness=_unlinked(net) if missing else None,
+        proof=_COUNTS,
+        detail=f"not complete: {missing} pairs of {net.n} agents are not linked",
+    )
+
+
+def _unlinked(net: _Net) -> list[int]:
+    """Some pair that is not linked: an agent with too few neighbours, and one that it lacks."""
+    count = np.bincount(net.links.ravel(), minlength=net.n)
+    i = int(np.argmin(count))
+    near = net.links[(net.links == i).any(axis=1)].ravel()
+    return [i, int(np.setdiff1d(np.arange(net.n), np.append(near, i))[0])]
+
+
+def _quantitative(net: _Net) -> Claim:
+    """If two links of lengths at most ℓ cross, some two of their agents are within ℓ/√2 of each other."""
+    name, stated = "extension-quantitative", "of two crossing links of lengths at most ℓ, two agents are within ℓ/√2"
+    if not len(net.crossings):
+        return Claim(name, "vacuous", computed=0, stated=stated, proof=_CROSSINGS, detail="no links cross")
+    longest, shortest = _of_crossing(net)
+    spare = longest - 2.0 * shortest
+    open_ones = np.flatnonzero(np.abs(spare) <= _CERTAIN * longest)
+    exact = [_holds_exactly(net, net.links[net.crossings[k]]) for k in open_ones]
+    failing = np.concatenate([np.flatnonzero(spare < -_CERTAIN * longest), open_ones[~np.array(exact, dtype=bool)]])
+    slack = np.sqrt(0.5 * longest) - np.sqrt(shortest)
+    worst = int(failing[0]) if failing.size else int(np.argmin(slack))
+    return Claim(
+        name,
+        "refuted" if failing.size else "verified",  # each sign is certain: in whole numbers where floats cannot tell
+        computed=net.crossing_count,
+        stated=stated,
+        margin=0.5 - failing.size,
+        error=0.0,
+        witness=net.agents(net.crossings[worst]),
+        proof=_CROSSINGS,
+        detail=f"{net.crossing_text}; the nearest pairs are within ℓ/√2 by {slack[worst] / net.d:.3g} d or more",
+    )
+
+
+def _of_crossing(net: _Net) -> tuple[FloatArray, FloatArray]:
+    """Of each two links that cross: the squared length of the longer, and the least squared distance of two agents."""
+    agents = net.links[net.crossings].reshape(-1, 4)
+    squared = [
+        np.where(agents[:, i] == agents[:, j], np.inf, ((net.q[agents[:, i]] - net.q[agents[:, j]]) ** 2).sum(axis=1))
+        for i, j in combinations(range(4), 2)
+    ]
+    return np.maximum(squared[0], squared[-1]), np.min(squared, axis=0)
+
+
+def _holds_exactly(net: _Net, two: LinkArray) -> bool:
+    """Whether two agents of two links are within ℓ/√2, in exact arithmetic."""
+
+    def squared(i: Any, j: Any) -> Fraction:
+        return sum(((Fraction(a) - Fraction(b)) ** 2 for a, b in zip(net.q[i], net.q[j], strict=True)), Fraction(0))
+
+    longest = max(squared(i, j) for i, j in two)
+    return 2 * min(squared(i, j) for i, j in combinations(sorted(set(two.ravel().tolist())), 2)) <= longest
+
+
+def check(q: FloatArray, d: float, r: float, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+    """Hypotheses and claims of Theorem 5, and of its extension, on a configuration.
+
+    Parameters
+    ----------
+    q : ndarray, shape (n, m)
+        Positions.
+    d, r : float
+        Scale and interaction range.
+    tolerances : Tolerances
+        `contact`, `lattice` and `quasi` are used.
+    """
+    net = _Net(q, d, r)
+    lattice = _lattice_hypotheses(net, tolerances)
+    wide = _dimension("m = 2 or 3", net.m > 1, net)
+    plane, many = _dimension("m = 2", net.m == 2, net), _dimension("n >= 3", net.n >= 3, net)
+    more, far = _dimension("n > m + 1", net.n > net.m + 1, net), _far_apart(net, net.r, "r/√2")
+    longest = float(net.lengths.max(initial=0.0))
+    loose = _far_apart(net, longest, "ℓ/√2, ℓ the longest link")
+    printed = 3 * net.n - 6
+    return [*lattice, wide, plane, many, more, far, loose], [
+        _uncrossed(net, [*lattice, wide], "i", "edges of an α-lattice do not cross"),
+        _graph(net, [*lattice, wide]),
+        _bound(net, [*lattice, plane, many], "ii", printed, "3n - 6"),
+        _bound(net, [*lattice, plane], "ii-sharp", harborth(net.n), "floor(3n - sqrt(12n - 3))", proof=None),  # cited
+        _incomplete(net, [*lattice, more]),
+        _uncrossed(net, [far], "extension", "links of pairs farther apart than r/√2 do not cross"),
+        _uncrossed(net, [loose], "extension-lengths", "links of pairs farther apart than ℓ/√2 do not cross"),
+        _bound(net, [loose, plane, many], "extension-links", printed, "3n - 6"),
+        _quantitative(net),
+    ]
+
+
+def _check_terminal(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+    has: HypothesisStatus = "met" if hasattr(run.law, "alpha") else "unmet"
+    ranged = Hypothesis("the law has a scale d and a range r", has, detail=type(run.law).__name__)
+    if nothing := vacuous([ranged], CLAIMS):
+        return [ranged], nothing
+    return check(np.asarray(run.q[-1]), run.law.alpha.d, run.law.alpha.r, tolerances)
+
+
+_STATEMENT = (
+    "Of an α-lattice of scale d and ratio κ > 1 with distinct positions: (i) no two edges cross, for m = 2 and 3 (and, "
+    "as printed, the graph is planar: true of m = 2, false of m = 3, erratum E5); (ii) for m = 2 and n >= 3 there are "
+    "at most 3n - 6 links, and sharply ⌊3n - √(12n - 3)⌋ (Harborth); (iii) with n > m + 1 agents it is not complete. "
+    "Extension to every net: if all pairs are farther apart than r/√2 (or only ℓ/√2, ℓ the longest link), no two "
+    "links cross, and in the plane there are at most 3n - 6; if two links of lengths at "
+    "most ℓ cross, some two of their agents are within ℓ/√2 of each other. "
+    f"Distances within {GUARD:g} r of r, or within the rounding of the positions, count as r."
+)
+_REFERENCES = ("olfati-saber-2006", "harborth-1974")
+THEOREM = (
+    Theorem(
+        id="os-5",
+        title="α-lattices: no crossing, few links, not complete",
+        statement=_STATEMENT,
+        source="Olfati-Saber 2006, Theorem 5; the extension is flockana's",
+        kind="configuration",
+        check=check,
+        references=_REFERENCES,
+    ),
+    Theorem(
+        id="os-5-terminal",
+        title="Theorem 5 on the last state of a run",
+        statement=f"Checked on the last state of a run. {_STATEMENT}",
+        source="Olfati-Saber 2006, Theorem 5; the extension is flockana's",
+        kind="trajectory",
+        check=_check_terminal,
+        references=_REFERENCES,
+    ),
+)

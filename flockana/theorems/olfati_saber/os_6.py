@@ -1,0 +1,83 @@
+"""Theorem 6 of Olfati-Saber (2006): under Algorithm 3 with a static γ-agent the energy stops rising."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.dynamics.trajectory import Trajectory
+from flockana.laws.algorithm3 import Algorithm3
+from flockana.theorems.hypotheses import applied, one_gain, vacuous
+from flockana.theorems.olfati_saber.energy import balance, never_rises, proved, stays_outside
+from flockana.theorems.olfati_saber.gamma_agent import honest_rate, still
+from flockana.theorems.rounding import EPS
+from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances
+
+
+def condition_76(run: Trajectory) -> FloatArray:
+    """T(t) − (n/2) ⟨p_c(t), p_r(t)⟩ at each sample, shape (T,): condition (76) holds where it is not negative.
+
+    Parameters
+    ----------
+    run : Trajectory
+        A run of Algorithm 3.
+    """
+    told = np.array([run.law.target.state(t)[1] for t in run.t])
+    kinetic = 0.5 * np.sum(run.p**2, axis=(1, 2))
+    slack: FloatArray = kinetic - 0.5 * np.einsum("tim,tm->t", run.p, told)
+    return slack
+
+
+def _condition(run: Trajectory) -> tuple[Hypothesis, int]:
+    """(76), and the first sample from which it holds to the end; the last one if it does for less than the law's time.
+
+    One instant at the end is no "from some t0 on". Where rounding decides, it is assumed to hold.
+    """
+    slack = condition_76(run)
+    told = np.array([np.linalg.norm(run.law.target.state(float(t))[1]) for t in run.t])
+    terms = 0.5 * np.sum(run.p**2, axis=(1, 2)) + 0.5 * told * np.linalg.norm(run.p, axis=2).sum(axis=1)
+    rounding = np.where(told > 0.0, (run.n + 8) * EPS * terms, 0.0)
+    broken = np.flatnonzero(slack < -rounding)
+    since = 0 if broken.size == 0 else int(broken[-1]) + 1
+    name = "(n/2)⟨p_c, p_d⟩ <= T from some t0 on (76)"
+    if since >= len(run.t) or run.t[-1] - run.t[since] < run.scales.time:
+        worst = float(slack[min(since, len(run.t)) - 1])
+        detail = (
+            f"it is broken at t = {run.t[broken[-1]] if broken.size else run.t[0]:.4g}, up to the end, by {-worst:.3g}"
+        )
+        return Hypothesis(name, "unmet", worst, detail), len(run.t) - 1
+    share = 100.0 * broken.size / len(run.t)
+    before = f"broken at {share:.2g} % of the samples before" if broken.size else "never broken"
+    sure = bool((slack >= rounding)[since:].all())
+    detail = f"t0 = {run.t[since]:.6g}, {before}; seen at samples, to the end of this run"
+    return Hypothesis(name, "met" if sure else "assumed", float(slack[since:].min()), detail), since
+
+
+def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+    law = applied(run, "Algorithm 3", Algorithm3)
+    single = one_gain(run) if law.status == "met" else law
+    if nothing := vacuous([single], ("rate", "balance")):
+        return [single], nothing
+    condition, since = _condition(run)
+    needs = [law, single, still(run, told=True), condition, stays_outside(run)]
+    honest, proof = honest_rate(run), proved(run, "theorem6")
+    return [*needs, honest], [
+        never_rises(run, needs, since=since, proof=proof),
+        balance(run, [*needs, honest], tolerances, proof=proof),
+    ]
+
+
+THEOREM = Theorem(
+    id="os-6",
+    title="Algorithm 3: the energy never rises once the flock's mean velocity allows",
+    statement=(
+        "With one c1γ and c2γ for all agents, a static γ-agent, (q_r, p_r) = (q_d, p_d), and (n/2)⟨p_c, p_d⟩ <= T for "
+        "t >= t0: dH/dt = -c2α pᵀL̂p + c2β ΣΣ b_ik ⟨p_i, p̂_ik - p_i⟩ - 2 c2γ (T - (n/2)⟨p_c, p_d⟩) <= 0 for t >= t0, "
+        "where H counts every pair once (erratum E2). The source leaves unsaid that the agents must be outside the "
+        "obstacles: inside a sphere the second term can be positive. The condition is found at the samples, and holds "
+        "to the end of the run only."
+    ),
+    source="Olfati-Saber 2006, Theorem 6",
+    kind="trajectory",
+    check=_check,
+)

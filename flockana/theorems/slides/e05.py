@@ -1,0 +1,208 @@
+"""Erratum E5: in space, edges of an α-lattice do not cross, and yet its graph need not be planar."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations, product
+from math import sqrt
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.lattice import is_planar, kuratowski, planar_bound
+from flockana.theorems.olfati_saber.os_5 import check
+from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
+
+_D, _R = 7.0, 8.4
+Site = tuple[int, int, int]
+
+# Face-centred cubic sites are the whole points of even coordinate sum; neighbours are √2 apart.
+_STEPS: tuple[Site, ...] = tuple((x, y, z) for x, y, z in product((-1, 0, 1), repeat=3) if x * x + y * y + z * z == 2)
+_STAR: tuple[Site, ...] = ((0, 0, 0), *_STEPS)
+_EIGHT: tuple[Site, ...] = (
+    (0, 0, 0),
+    (1, 0, 1),
+    (2, 1, 1),
+    (1, 1, 0),
+    (2, 2, 0),
+    (2, 1, -1),
+    (1, 0, -1),
+    (2, 0, 0),
+)
+_FRAGMENT = 6
+_PROOF = "nonplanar-fcc"
+
+
+def fcc_star(d: float) -> FloatArray:
+    """A site of the face-centred cubic lattice and its twelve neighbours.
+
+    Parameters
+    ----------
+    d : float
+        Distance between neighbours.
+
+    Examples
+    --------
+    >>> fcc_star(7.0).shape
+    (13, 3)
+    """
+    return d / sqrt(2.0) * np.array(_STAR, dtype=float)
+
+
+def fcc_eight(d: float) -> FloatArray:
+    """Eight sites of the face-centred cubic lattice with 17 links and no drawing in the plane.
+
+    Parameters
+    ----------
+    d : float
+        Distance between neighbours.
+
+    Examples
+    --------
+    >>> fcc_eight(7.0).shape
+    (8, 3)
+    """
+    return d / sqrt(2.0) * np.array(_EIGHT, dtype=float)
+
+
+def _add(site: Site, step: Site) -> Site:
+    return site[0] + step[0], site[1] + step[1], site[2] + step[2]
+
+
+def fragments(size: int) -> Iterator[tuple[Site, ...]]:
+    """Every connected set of `size` face-centred cubic sites, once up to translation (Redelmeier 1981).
+
+    Parameters
+    ----------
+    size : int
+        Number of sites.
+
+    Examples
+    --------
+    >>> [sum(1 for _ in fragments(k)) for k in (1, 2, 3)]
+    [1, 6, 50]
+    """
+    origin: Site = (0, 0, 0)
+
+    def grow(chosen: list[Site], untried: list[Site], seen: set[Site]) -> Iterator[tuple[Site, ...]]:
+        for k, site in enumerate(untried):
+            grown = [*chosen, site]
+            if len(grown) == size:
+                yield tuple(grown)
+                continue
+            fresh = [s for s in (_add(site, step) for step in _STEPS) if s > origin and s not in seen]
+            yield from grow(grown, untried[k + 1 :] + fresh, seen | set(fresh))
+
+    return grow([], [origin], {origin})  # the least site of each set is the origin
+
+
+def _links(sites: tuple[Site, ...]) -> tuple[tuple[int, int], ...]:
+    steps = set(_STEPS)
+    return tuple(
+        (i, j)
+        for (i, a), (j, b) in combinations(enumerate(sites), 2)
+        if (b[0] - a[0], b[1] - a[1], b[2] - a[2]) in steps
+    )
+
+
+def non_planar_fragments(size: int) -> tuple[int, int]:
+    """How many fragments of that size there are, and how many of them are not planar; exact, in whole numbers.
+
+    Parameters
+    ----------
+    size : int
+        Number of sites.
+
+    Examples
+    --------
+    >>> non_planar_fragments(4)
+    (475, 0)
+    """
+    known: dict[tuple[tuple[int, int], ...], bool] = {}
+    total = bad = 0
+    for sites in fragments(size):
+        total += 1
+        edges = _links(sites)
+        if len(edges) < 9:  # K3,3 has nine links, K5 ten
+            continue
+        if edges not in known:
+            known[edges] = is_planar(size, edges)
+        bad += not known[edges]
+    return total, bad
+
+
+def _counterexample(name: str, q: FloatArray, sites: tuple[Site, ...], tolerances: Tolerances) -> list[Claim]:
+    """Edges do not cross, by the theorem's own check; the graph is not planar, by its links as whole numbers."""
+    _, found = check(q, _D, _R, tolerances)
+    claims = {claim.name: claim for claim in found}
+    edges = _links(sites)
+    witness: Any = kuratowski(len(sites), edges)
+    uncrossed, graph = claims["i"], claims["i-graph"]
+    bound, planar = planar_bound(len(sites)), is_planar(len(sites), edges)
+    return [
+        Claim(
+            f"printed-{name}",
+            judge(1.0 if planar else -1.0, 0.0, []),
+            computed={"links": len(edges), "bound": bound, "graph": graph.computed},
+            stated="the graph is planar",
+            margin=1.0 if planar else -1.0,
+            error=0.0,
+            witness={"q": q} | (vars(witness) if witness else {}),
+            proof=_PROOF,
+            detail=f"{len(sites)} face-centred cubic sites: {graph.detail}",
+        ),
+        Claim(
+            f"uncrossed-{name}",
+            uncrossed.status,
+            computed=uncrossed.computed,
+            stated=uncrossed.stated,
+            margin=uncrossed.margin,
+            error=uncrossed.error,
+            witness=uncrossed.witness,
+            proof=_PROOF,
+            detail=f"in space its edges do not cross: {uncrossed.detail}",
+        ),
+    ]
+
+
+def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+    total, bad = non_planar_fragments(_FRAGMENT)
+    return [], [
+        *_counterexample("13", fcc_star(_D), _STAR, tolerances),
+        *_counterexample("8", fcc_eight(_D), _EIGHT, tolerances),
+        Claim(
+            "six",
+            judge(0.5 - bad, 0.0, []),
+            computed={"fragments": total, "not planar": bad},
+            stated="every fragment of six sites is planar",
+            margin=0.5 - bad,
+            error=0.0,
+            witness="every connected fragment, up to translation",
+            proof=_PROOF,
+            detail=f"all {total} connected fragments of {_FRAGMENT} sites were tested: {bad} are not planar",
+        ),
+    ]
+
+
+THEOREM = Theorem(
+    id="E5",
+    title="α-lattices in space need not have planar graphs",
+    statement=(
+        "Theorem 5(i) is printed as: the graph is planar for m = 2, 3. In space only the edges do not cross. A face-"
+        "centred cubic site and its twelve neighbours have 36 links, more than 3n - 6 = 33; eight sites with 17 links "
+        "are not planar either. All fragments of six sites are."
+    ),
+    source="Lecture slides, Theorem 5",
+    kind="fixed",
+    check=_check,
+    references=("geschwender-2016", "olfati-saber-2006"),
+    expected={
+        "E5": "refuted",
+        "E5:printed-13": "refuted",
+        "E5:uncrossed-13": "verified",
+        "E5:printed-8": "refuted",
+        "E5:uncrossed-8": "verified",
+        "E5:six": "verified",
+    },
+)

@@ -1,0 +1,178 @@
+"""Erratum E11: Algorithm 2 yields a lattice only while c1γ/c1α is small."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from itertools import pairwise
+from math import isnan, log, sqrt
+from typing import Any
+
+from flockana.base.errors import SolverError
+from flockana.dynamics.trajectory import Trajectory
+from flockana.equilibria.collapse import natural_ratio, nudged, squeezed, threshold
+from flockana.equilibria.gradient_flow import gradient_flow
+from flockana.equilibria.terminal import TerminalState, surroundings, terminal_state
+from flockana.interactions import AlphaInteraction
+from flockana.lattice import hexagonal_patch
+from flockana.laws.olfati_saber import Algorithm2
+from flockana.measures.metrics import velocity_mismatch
+from flockana.theorems.theorem import Claim, Hypothesis, Status, Theorem, Tolerances, judge
+
+_RINGS = (1, 2, 3)  # hexagons of 7, 19 and 37 agents
+_LOWEST, _FACTOR = 0.06, 1.3  # where the search starts, of `natural_ratio`, and its steps
+_HALVINGS = 3
+_NAMES = ("printed", "minimum", "threshold")
+
+
+def collapses(law: Algorithm2, rings: int, ratio: float) -> bool:
+    """Whether a hexagonal patch, slightly disturbed, flows to coincident agents at this c1γ/c1α.
+
+    Parameters
+    ----------
+    law : Algorithm2
+        Its pair law is used; gains and target are set here.
+    rings : int
+        Rings of the patch.
+    ratio : float
+        c1γ/c1α.
+
+    Raises
+    ------
+    SolverError
+        If the gradient flow does not settle.
+    """
+    pressed = squeezed(law.alpha, ratio)
+    limit = gradient_flow(pressed, nudged(hexagonal_patch(rings, law.alpha.d), law.alpha.d))
+    if not limit.converged:
+        raise SolverError(f"at c1γ/c1α = {ratio:.4g} the gradient flow did not settle (force {limit.force:.2g})")
+    return terminal_state(pressed, limit.q, 0.0 * limit.q).coincident > 0
+
+
+def collapse_threshold(law: Algorithm2, rings: int) -> tuple[float, float]:
+    """Bracket the least ratio c1γ/c1α at which the gradient flow of a hexagonal patch collapses.
+
+    Parameters
+    ----------
+    law : Algorithm2
+        Its pair law is used.
+    rings : int
+        Rings of the patch.
+
+    Returns
+    -------
+    tuple of float
+        (largest ratio seen safe, least ratio seen to collapse).
+    """
+    lowest = _LOWEST * natural_ratio(law.alpha)
+    return threshold(lambda ratio: collapses(law, rings, ratio), lowest=lowest, factor=_FACTOR, halvings=_HALVINGS)
+
+
+def _hypotheses(run: Trajectory) -> list[Hypothesis]:
+    law = run.law
+    if type(law) is not Algorithm2:
+        return [Hypothesis("Algorithm 2 is applied", "unmet", detail=type(law).__name__)]
+    found = [Hypothesis("Algorithm 2 is applied", "met", detail="Algorithm2")]
+    if law.gains.per_agent:
+        return [*found, Hypothesis("one c1γ for all agents", "unmet", detail="gains are given per agent")]
+    least = min(law.gains.c1_alpha, law.gains.c1_gamma)
+    return [*found, Hypothesis("c1α > 0 and c1γ > 0", "met" if least > 0.0 else "unmet", least)]
+
+
+def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+    hypotheses = _hypotheses(run)
+    if any(h.status == "unmet" for h in hypotheses):
+        return hypotheses, [Claim(name, "vacuous", detail=f"not so: {hypotheses[-1].name}") for name in _NAMES]
+    end = terminal_state(run.law, run.q[-1], run.p[-1], contact=tolerances.contact)
+    caught = _caught(run, end, tolerances)
+    return hypotheses, [_printed(run, end, caught, tolerances), _minimum(end, caught, tolerances), _thresholds(run.law)]
+
+
+def _caught(run: Trajectory, end: TerminalState, tolerances: Tolerances) -> bool:
+    """Whether the last state is at rest beside a strict minimum that it has not the energy to leave."""
+    still = end.mismatch <= tolerances.velocity * run.law.scales.energy and end.force <= tolerances.force
+    around = surroundings(run.law, run.q[-1], force=end.force * run.law.scales.force * sqrt(run.n))
+    return bool(still and around is not None and around.holds(velocity_mismatch(run.p[-1])))
+
+
+def _printed(run: Trajectory, end: TerminalState, caught: bool, tolerances: Tolerances) -> Claim:
+    """The strain of the limit; two agents are farther from it by √2 of the distance to the minimum at most."""
+    margin, error = tolerances.quasi - end.strain, sqrt(2.0) * end.distance
+    ratio = run.law.gains.c1_gamma / run.law.gains.c1_alpha
+    at_rest = "" if caught else "; it is not known to rest there"
+    found = "no links" if isnan(end.strain) else f"{end.coincident} coincident pairs; its shortest link is "
+    return Claim(
+        "printed",
+        judge(margin, error, []) if caught else "inconclusive",
+        computed=end.strain,
+        stated=f"the limit is a quasi-α-lattice at least: |link - d|/d <= {tolerances.quasi:g}",
+        margin=margin,
+        error=error,
+        witness={"coincident pairs": end.coincident, "shortest link": end.shortest},
+        detail=f"with c1γ/c1α = {ratio:.3g} the limit has {found}"
+        + ("" if isnan(end.strain) else f"{end.shortest:.3g}")
+        + at_rest,
+    )
+
+
+def _minimum(end: TerminalState, caught: bool, tolerances: Tolerances) -> Claim:
+    margin, error = end.curvature - tolerances.curvature, end.curvature_error
+    return Claim(
+        "minimum",
+        "verified" if caught and judge(margin, error, []) == "verified" else "inconclusive",
+        computed=end.curvature,
+        stated="the limit is a strict local minimum of U_λ off the rotations, so that it attracts an open set",
+        margin=margin,
+        error=error,
+        witness={"force": end.force, "K̃": end.mismatch},
+        detail=f"least curvature {end.curvature:.3g} of the largest, residual force {end.force:.1g}",
+    )
+
+
+@lru_cache(maxsize=32)
+def _brackets(alpha: AlphaInteraction) -> dict[int, tuple[float, float]] | str:
+    """Brackets of the ratio by number of agents; or why there are none."""
+    law = squeezed(alpha, natural_ratio(alpha))
+    try:
+        return {len(hexagonal_patch(rings, alpha.d)): collapse_threshold(law, rings) for rings in _RINGS}
+    except SolverError as error:
+        return str(error)
+
+
+def _thresholds(law: Algorithm2) -> Claim:
+    """Falling if the brackets lie below each other: their middles differ by more than their widths, as logarithms."""
+    found = _brackets(law.alpha)
+    said: dict[str, Any] = {
+        "stated": "the ratio c1γ/c1α at which a hexagonal patch begins to collapse falls with n",
+        "witness": "hexagonal patches relaxed by gradient flow, ratio bisected",
+    }
+    if isinstance(found, str):
+        return Claim("threshold", "inconclusive", detail=f"no threshold was found: {found}", **said)
+    spans = [(log(low), log(high)) for low, high in found.values()]
+    # from the middle of one bracket to that of the next, and half of both widths
+    falls = [(0.5 * (a + b - c - d), 0.5 * (b - a + d - c)) for (a, b), (c, d) in pairwise(spans)]
+    margin, error = min(falls, key=lambda fall: fall[0] - fall[1])
+    status: Status = judge(margin, error, [])
+    table = ", ".join(f"n = {n}: {low:.3g} to {high:.3g}" for n, (low, high) in found.items())
+    return Claim(
+        "threshold",
+        status,
+        computed={n: list(pair) for n, pair in found.items()},
+        margin=margin,
+        error=error,
+        detail=f"a hexagonal patch collapses from c1γ/c1α on: {table}",
+        **said,
+    )
+
+
+THEOREM = Theorem(
+    id="E11",
+    title="Algorithm 2 collapses when c1γ/c1α is too large",
+    statement=(
+        "The sources take Algorithm 2 to yield a lattice. The γ-agent presses on every link: beyond a ratio c1γ/c1α "
+        "that falls with n, agents coincide for good, in a strict local minimum of U_λ."
+    ),
+    source="slides, summary of Theorem 3; both student projects",
+    kind="trajectory",
+    check=_check,
+    references=("geschwender-2016", "isola-2024", "notebook-r2"),
+)

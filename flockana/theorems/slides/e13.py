@@ -1,0 +1,51 @@
+"""Erratum E13: energy bounds the pairs that coincide at one instant, not over time."""
+
+from __future__ import annotations
+
+from math import sqrt
+
+import numpy as np
+
+from flockana.dynamics.trajectory import Trajectory
+from flockana.environment.targets import StaticTarget
+from flockana.interactions import AlphaInteraction, Gains
+from flockana.laws.olfati_saber import Algorithm2
+from flockana.theorems.hypotheses import vacuous, with_alpha_gain
+from flockana.theorems.olfati_saber.collisions import distinct_pairs, pairs_at_one_instant
+from flockana.theorems.olfati_saber.energy import proved
+from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances
+
+_UNTIL = 0.03  # by then both pairs have coincided
+
+
+def _enclosed(run: Trajectory) -> str | None:
+    """The id of the proof that encloses the erratum's own run, if this is it."""
+    alpha, gains = AlphaInteraction(a=5e4, b=5e4), Gains(c1_alpha=1.0, c2_alpha=1.0, c1_gamma=0.01, c2_gamma=0.01)
+    start = np.array([[-12.0], [0.0], [30.0]]), np.array([[sqrt(5.6 * alpha.c_star)], [0.0], [0.0]])
+    same = all(np.array_equal(*both) for both in zip(start, (run.q[0], run.p[0]), strict=True))
+    its_own = same and run.law == Algorithm2(alpha, gains, StaticTarget((0.0,))) and run.t[-1] - run.t[0] >= _UNTIL
+    return "distinct-pairs" if its_own else None
+
+
+def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+    needs = with_alpha_gain(run, "Algorithm 2", Algorithm2)
+    if nothing := vacuous(needs, ("printed", "corrected")):
+        return needs, nothing
+    return needs, [
+        distinct_pairs(run, needs, tolerances, name="printed", proof=_enclosed(run)),
+        pairs_at_one_instant(run, needs, tolerances, name="corrected", proof=proved(run, "collisions")),
+    ]
+
+
+THEOREM = Theorem(
+    id="E13",
+    title="At most k pairs collide at one instant, not in all",
+    statement=(
+        "Theorem 3(iv) says that with H_λ(0) < (k+1) c* at most k distinct pairs could collide. Energy bounds only the "
+        "pairs that coincide at the same instant; one agent can run through several others, one after the other."
+    ),
+    source="slides, Theorem 3(iv)",
+    kind="trajectory",
+    check=_check,
+    references=("geschwender-2016", "olfati-saber-2006"),
+)

@@ -1,0 +1,53 @@
+"""The energy of Algorithm 3 as the slides print it, along a run: erratum E2 says that it can rise."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from flockana.dynamics.trajectory import Trajectory
+from flockana.laws.algorithm3 import Algorithm3
+from flockana.theorems.hypotheses import applied, conceded, vacuous
+from flockana.theorems.olfati_saber.energy import cancelling, falling_share, stays_outside
+from flockana.theorems.olfati_saber.gamma_agent import still
+from flockana.theorems.slides.claims_on_energy import run_claim
+from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
+
+
+def _steadily(run: Trajectory, claim: Claim, needs: list[Hypothesis]) -> Claim:
+    """Of a run on which it does not rise: whether its rate, in closed form, is negative wherever anything moves.
+
+    V_α too much adds c1α ⟨∇V, p⟩ to the rate, which has no sign.
+    """
+    forces = [run.law.alpha.forces(q, 0.0 * q, stiffness=run.law.gains.c1_alpha, damping=0.0)[0] for q in run.q]
+    power = np.array([float(np.vdot(u, p)) for u, p in zip(forces, run.p, strict=True)])
+    turned = np.linalg.norm(forces, axis=2) * np.linalg.norm(run.p, axis=2)
+    share, error = falling_share(run, run.energy_rate() - power, cancelling(run) + turned.sum(axis=1))
+    margin = float(share.min())
+    status = conceded(judge(margin, error, needs), needs)
+    return replace(claim, status=status if status != "refuted" else "inconclusive", margin=margin, error=error)
+
+
+def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+    law = applied(run, "Algorithm 3", Algorithm3)
+    if nothing := vacuous([law], ["printed-run"]):
+        return [law], nothing
+    needs = [law, still(run, told=False), stays_outside(run)]
+    pairs = np.array([run.law.gains.c1_alpha * run.law.alpha.potential_energy(q) for q in run.q])
+    claim = run_claim(run, pairs, f"{run.n} agents", needs)
+    return needs, [_steadily(run, claim, needs) if claim.status == "inconclusive" else claim]
+
+
+THEOREM = Theorem(
+    id="energy-printed",
+    title="The energy of Algorithm 3 as printed never rises",
+    statement=(
+        "With a γ-agent at rest and all agents outside the obstacles, H with V_α = Σ_i Σ_(j≠i) ψ_α never rises. False "
+        "(E2): the sum counts every pair twice, and what it has too much has no sign."
+    ),
+    source="slides, Algorithm 3",
+    kind="trajectory",
+    check=_check,
+    references=("geschwender-2016", "olfati-saber-2006"),
+)

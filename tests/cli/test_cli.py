@@ -1,0 +1,374 @@
+from __future__ import annotations
+
+import importlib
+import json
+import os
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import replace
+from pathlib import Path
+from textwrap import indent
+
+import numpy as np
+import pytest
+from programs import ANSWERS_CTRL_C, CLI, IGNORES_CTRL_C, group, interrupt, out_of_a_kernel, posix, program, until
+
+from flockana.base.errors import SolverError
+from flockana.cli.main import main
+from flockana.dynamics.trajectory import Trajectory
+from flockana.laws.olfati_saber import Algorithm1
+from flockana.report.work import plan
+from flockana.scenarios import Report, Scenario
+from flockana.theorems import Claim
+
+
+def tiny(name="tiny", status="refuted"):
+    def build(seed=0):
+        q = np.array([[0.0], [7.5 + seed]])
+        span = (0.0, 0.5)
+        expected = {"energy": status}
+        return Scenario(name, "Two agents on a line", "ours", Algorithm1(), q, 0.0 * q, span, seed, expected)
+
+    return build
+
+
+def verdicts(folder):
+    return json.loads(Path(folder, "verdicts.json").read_text(encoding="utf-8"))
+
+
+@pytest.fixture
+def catalogue(monkeypatch):
+    """A catalogue of two small scenarios: one meets its expectation, the other does not."""
+    found = {"right": tiny("right", "verified"), "wrong": tiny("wrong", "refuted")}
+    monkeypatch.setattr(importlib.import_module("flockana.scenarios.scenario"), "_catalogue", lambda: found)
+
+
+@pytest.fixture
+def call(capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+    def run(*arguments):
+        with pytest.raises(SystemExit) as end:
+            main([str(a) for a in arguments])
+        out = capsys.readouterr()
+        return end.value.code, out.out, out.err
+
+    return run
+
+
+def test_as_expected_is_0_and_a_surprise_is_3(call, catalogue):
+    code, out, err = call("verify", "right", "--no-report")
+    assert (code, err) == (0, "")
+    assert "all as expected" in out
+    code, out, err = call("verify", "wrong", "--no-report")
+    assert code == 3
+    assert "wrong: energy is verified, expected refuted" in out
+
+
+def test_a_theorem_runs_every_scenario_that_names_it(call, catalogue):
+    code, out, _ = call("verify", "energy", "--jobs", 1)
+    assert code == 3
+    assert "2 verdicts" in out
+    assert os.path.getsize("report/index.html") > 10_000
+    assert [v["subject"] for v in verdicts("report")["verdicts"]] == ["right", "wrong"]
+
+
+def test_a_fixed_theorem_runs_by_itself(call):
+    code, out, err = call("verify", "E8", "--no-report")
+    assert (code, err) == (0, "")
+    assert "rank(A)/n" in out
+    assert "1 verdict in" in out
+    assert not os.path.exists("report")
+
+
+def test_json_is_all_that_is_printed(call, catalogue):
+    code, out, err = call("verify", "right", "--json", "--seed", 1, "--report", "there")
+    data = json.loads(out)
+    assert (code, err, data["seed"], data["verdicts"][0]["status"]) == (0, "", 1, "verified")
+    assert verdicts("there")["verdicts"] == data["verdicts"]
+
+
+def test_shares_over_seeds_are_told_when_asked_for(call):
+    code, out, err = call("verify", "zone-gap", "--seeds", 3)
+    (told,) = verdicts("report")["statistics"]["scenarios"]
+    assert (code, err, told["runs"], told["rows"][0]["verified"]["count"]) == (0, "", 3, 3)
+    assert "zone-gap, 3 seeds" in out
+    assert "Clopper" in Path("report", "index.html").read_text(encoding="utf-8")
+    code, out, _ = call("verify", "zone-gap")
+    assert (code, verdicts("report")["statistics"]) == (0, None)
+
+
+def test_the_whole_catalogue_tells_shares_of_who_asks_for_them(call, catalogue, monkeypatch):
+    scenarios = importlib.import_module("flockana.scenarios.scenario")
+    claim = Claim("apart", "verified")
+    one = replace(tiny("right", "verified")(), reports=(Report("apart", "all apart", lambda *given: claim),), seeds=26)
+    found = {"right": lambda seed=0: replace(one, seed=seed), "wrong": tiny("wrong", "verified")}
+    monkeypatch.setattr(scenarios, "_catalogue", lambda: found)
+    monkeypatch.setattr("flockana.report.work.theorems", lambda: ("energy",))
+    code, out, _ = call("verify", "--jobs", 1)
+    (told,) = verdicts("report")["statistics"]["scenarios"]
+    assert (code, told["scenario"], told["rows"][0]["verified"]["count"]) == (0, "right", 26)
+    assert "shares of runs over many seeds: in the report" in out
+    call("verify", "--jobs", 1, "--seeds", 0)
+    assert verdicts("report")["statistics"] is None
+    _, out, _ = call("verify", "--jobs", 1, "--no-report", "--seeds", 2)
+    assert "right, 2 seeds" in out
+    assert "seeds" not in call("verify", "--jobs", 1, "--no-report")[1]
+
+
+def test_errata_are_all_and_only_the_errata():
+    names = [task.name for task in plan("errata") if task.fixed]
+    assert {"E1", "E3", "E7", "E8", "E9", "E10"} <= set(names)
+    assert all(name[0] in "EJL" for name in names)
+    runs = {task.name: task.only for task in plan("errata") if not task.fixed}
+    assert runs["collapse"] == ("E11",)
+    assert runs["three-agents-1d"] == ("E13",)
+
+
+def test_everything_is_every_scenario_with_all_its_verdicts(catalogue):
+    tasks = plan()
+    assert [(t.name, t.only) for t in tasks if not t.fixed] == [("right", ()), ("wrong", ())]
+    assert "E1" in [t.name for t in tasks if t.fixed]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["verify", "colapse"], "unknown scenario or theorem 'colapse'; did you mean 'collapse'?"),
+        (["verify", "--seed", "x"], "--seed"),
+        (["verify", "os-1", "--seeds", "2"], "os-1 is no scenario with a source"),
+        (["verify", "zone-51", "--seeds", "2", "--on", "x.nc"], "a saved run has one seed"),
+        (["verify", "--seed", "-1"], "--seed"),
+        (["verify", "--jobs", "0"], "--jobs"),
+        (["verify", "--on", "run.nc"], "--on FILE needs a NAME"),
+        (["verify", "os-1", "--on", "none.nc"], "no file none.nc"),
+        (["verify", "E8", "--on", "none.nc"], "E8 is not about a run"),
+        (["verify", "nothing", "--on", "none.nc"], "unknown scenario or theorem 'nothing'"),
+        (["run", "hexagon"], "--output"),
+        (["run", "hexagn", "-o", "x.nc"], "unknown scenario 'hexagn'; did you mean 'hexagon'?"),
+        (["run", "hexagon", "-o", "."], ". is a folder"),
+        (["animate", "hexagon"], "--output"),
+        (["animate", "hexagn", "-o", "x.gif"], "unknown scenario 'hexagn'; did you mean 'hexagon'?"),
+        (["animate", "hexagon", "-o", "x.png"], "expected a file name that ends in .gif or .mp4"),
+        (["animate", "hexagon", "-o", "x.gif", "--seconds", "0"], "seconds = 0: expected a number > 0"),
+        (["flock"], "No such command 'flock'"),
+        (["verify", "--colour"], "--colour"),
+    ],
+)
+def test_bad_input_is_2_and_one_line(call, arguments, message):
+    code, out, err = call(*arguments)
+    assert (code, out) == (2, "")
+    assert err.startswith("flockana: ")
+    assert err.count("\n") == 1
+    assert message in err
+
+
+def test_an_unwritable_report_is_refused_before_anything_runs(call, monkeypatch, tmp_path):
+    (tmp_path / "report").write_text("a file")
+    monkeypatch.setattr("flockana.report.work.do", lambda task: pytest.fail("it ran"))
+    code, _, err = call("verify", "hexagon")
+    assert code == 2
+    assert "cannot write to report: there is a file of that name" in err
+
+
+def test_an_unwritable_output_is_refused_before_the_run(call, monkeypatch, tmp_path):
+    (tmp_path / "below").write_text("a file")
+    monkeypatch.setattr(Scenario, "run", lambda *a, **k: pytest.fail("it ran"))
+    code, _, err = call("run", "hexagon", "-o", "below/run.nc")
+    assert code == 2
+    assert "cannot write to below" in err
+
+
+def test_an_unwritable_film_is_refused_before_the_run(call, monkeypatch, tmp_path):
+    (tmp_path / "below").write_text("a file")
+    monkeypatch.setattr(Scenario, "run", lambda *a, **k: pytest.fail("it ran"))
+    monkeypatch.setattr("matplotlib.animation.FFMpegWriter.isAvailable", classmethod(lambda cls: False))
+    for name, message in (("below/x.gif", "cannot write to below"), ("x.mp4", "needs the program ffmpeg")):
+        code, _, err = call("animate", "hexagon", "-o", name)
+        assert (code, message in err) == (2, True)
+
+
+def test_animate_writes_a_film(call, catalogue, monkeypatch, tmp_path):
+    from dataclasses import replace
+
+    from PIL import Image
+
+    film = ("animate", "right", "-o", "new/film.gif", "--seconds", 0.3, "--fps", 10)
+    code, out, err = call(*film)
+    assert (code, err) == (0, "")
+    assert "written: new/film.gif" in out
+    with Image.open(tmp_path / "new" / "film.gif") as image:
+        assert image.n_frames == 3
+    whole = Scenario.run
+    for status, expected in (("failed", 3), ("interrupted", 130)):
+        monkeypatch.setattr(Scenario, "run", lambda self, s=status, **k: replace(whole(self), status=s))
+        assert call(*film)[0] == expected
+
+
+def test_run_saves_and_verify_reads_it_back(call, catalogue, tmp_path):
+    code, out, err = call("run", "right", "-o", "new/run.nc", "--seed", 1)
+    assert (code, err) == (0, "")
+    assert "saved: new/run.nc" in out
+    assert "energy H" in out
+    saved = Trajectory.load(tmp_path / "new" / "run.nc")
+    assert saved.q[0, 1, 0] == 8.5
+    assert call("verify", "energy", "--on", "new/run.nc")[0] == 0  # nothing is expected of a saved run by itself
+    assert call("verify", "right", "--on", "new/run.nc", "--no-report")[0] == 0
+    assert call("verify", "wrong", "--on", "new/run.nc", "--no-report")[0] == 3
+    assert "run.nc" in Path("report/index.html").read_text(encoding="utf-8")
+
+
+def test_a_run_of_another_scenario_is_refused(call, catalogue, tmp_path):
+    call("run", "right", "-o", "run.nc")
+    run = Trajectory.load(tmp_path / "run.nc")
+    np.testing.assert_equal(run.n, 2)
+    from dataclasses import replace
+
+    replace(run, q=run.q[:, :1], p=run.p[:, :1], u=run.u[:, :1], extra={}).save(tmp_path / "one.nc")
+    code, _, err = call("verify", "right", "--on", "one.nc")
+    assert code == 2
+    assert "one.nc holds no run of right" in err
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt(), out_of_a_kernel()])
+def test_what_was_done_before_an_interrupt_is_reported(error, call, catalogue, monkeypatch):
+    work = importlib.import_module("flockana.report.work")
+    verify = work.verify
+
+    def interrupted(theorem, run, **options):
+        if options["subject"] == "wrong":
+            raise error
+        return verify(theorem, run, **options)
+
+    monkeypatch.setattr(work, "verify", interrupted)
+    code, out, err = call("verify", "energy", "--jobs", 1)
+    assert code == 130
+    assert err == "flockana: interrupted\n"
+    assert "1 verdict in" in out
+    data = verdicts("report")
+    assert (data["complete"], len(data["verdicts"])) == (False, 1)
+
+
+def test_what_was_done_before_an_error_is_reported(call, catalogue, monkeypatch):
+    work = importlib.import_module("flockana.report.work")
+    do = work.do
+
+    def failing(task):
+        if task.name == "wrong":
+            raise SolverError("it gave up")
+        return do(task)
+
+    monkeypatch.setattr(work, "do", failing)
+    code, _, err = call("verify", "energy", "--jobs", 1)
+    assert (code, err) == (2, "flockana: it gave up\n")
+    assert len(verdicts("report")["verdicts"]) == 1
+
+
+def test_an_interrupted_run_is_saved(call, catalogue, monkeypatch, tmp_path):
+    from dataclasses import replace
+
+    whole = Scenario.run
+    monkeypatch.setattr(Scenario, "run", lambda self, **k: replace(whole(self), status="interrupted"))
+    code, _, _ = call("run", "right", "-o", "run.nc")
+    assert code == 130
+    assert Trajectory.load(tmp_path / "run.nc").status == "interrupted"
+
+
+def test_lists_fit_in_80_columns(call):
+    for name in ("scenarios", "theorems"):
+        code, out, err = call(name)
+        assert (code, err) == (0, "")
+        assert max(map(len, out.splitlines())) <= 80
+        assert "\x1b" not in out
+        assert "…" not in out
+    assert "paper-flocking" in call("scenarios")[1]
+    assert "E13" in call("theorems")[1]
+
+
+def test_version_and_help(call):
+    assert call("--version")[1].startswith("flockana 0")
+    assert call("--help")[0] == 0
+    code, out, _ = call()
+    assert (code, "verify" in out) == (0, True)
+
+
+def test_processes_work_in_parallel_and_a_pipe_gets_no_colour(tmp_path):
+    command = [sys.executable, "-c", CLI, "verify", "alpha-flocking", "--on", "x"]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
+    assert done.returncode == 2
+    from flockana.report.work import Task, perform
+
+    tasks = [Task("E8", fixed=True), Task("E10", fixed=True)]
+    assert sorted(page.name for page in perform(tasks, jobs=2)) == ["E10", "E8"]
+
+
+def test_an_error_in_a_worker_arrives_with_the_name_of_its_task():
+    from flockana.base.errors import FlockanaError
+    from flockana.report.work import Task, perform
+
+    with pytest.raises(FlockanaError, match="nothing: unknown theorem 'nothing'"):
+        list(perform([Task("nothing", fixed=True), Task("E8", fixed=True)], jobs=2))
+
+
+WORKING = """
+import time
+from pathlib import Path
+from flockana.report import work
+
+def endless(task):
+    Path("begun").touch()
+    time.sleep(3600.0)
+
+work.do = endless
+if __name__ == "__main__":
+"""
+
+
+class Broken(ThreadPoolExecutor):
+    """As a process pool whose worker died before the second task was sent."""
+
+    def submit(self, function, /, *arguments):
+        if self._work_queue.qsize() or self._threads:
+            raise BrokenProcessPool("a child process terminated abruptly")
+        return super().submit(function, *arguments)
+
+    def stop(self):
+        self.shutdown()
+
+
+def test_a_worker_that_dies_while_tasks_are_sent_is_told_with_the_remedy(monkeypatch):
+    from flockana.report import work
+
+    monkeypatch.setattr(work, "ProcessPool", Broken)
+    tasks = [work.Task("E8", fixed=True)] * 2
+    with pytest.raises(SolverError, match="a worker process died; if memory is short, try --jobs 1"):
+        list(work.perform(tasks, jobs=2))
+
+
+@posix
+@pytest.mark.parametrize("moment", ["starting", "working"])
+def test_ctrl_c_ends_all_processes_cleanly(moment, tmp_path):
+    """While the first worker is being started, and when one is at work for what would be an hour."""
+    script = tmp_path / "script.py"
+    script.write_text(WORKING + indent(ANSWERS_CTRL_C + CLI, "    "))
+    signs = {"starting": lambda: len(group(command)) >= 3, "working": (tmp_path / "begun").exists}
+    with program(script, "verify", "--jobs", "2", "--no-report", folder=tmp_path) as command:
+        until(signs[moment], command)  # the third process is the first worker: multiprocessing's own helper is another
+        interrupt(command)
+        _, err = command.communicate()
+        assert (command.returncode, err) == (130, "flockana: interrupted\n")
+        until(lambda: not group(command))  # that helper outlives its parent by a moment
+
+
+@posix
+def test_where_ctrl_c_is_ignored_it_stays_ignored(tmp_path):
+    """So a shell starts its background jobs; theirs is not the Ctrl-C that the terminal sends."""
+    store = tmp_path / "s.sqlite"
+    given = ("ensemble", "hexagon", "--jobs", "2", "--seeds", "4", "--theorem", "alpha-flocking", "--store", store)
+    with program("-c", IGNORES_CTRL_C + CLI, *given, folder=tmp_path) as command:
+        until(store.exists, command)
+        interrupt(command)
+        _, err = command.communicate()
+        assert (command.returncode, err) == (0, "")

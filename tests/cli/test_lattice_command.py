@@ -1,0 +1,230 @@
+from __future__ import annotations
+
+import importlib
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from PIL import Image
+from programs import out_of_a_kernel
+
+from flockana.cli.main import main
+from flockana.cli.source import builders, read_source
+from flockana.dynamics.trajectory import Trajectory
+from flockana.interactions import AlphaInteraction
+from flockana.lattice import links
+from flockana.laws.olfati_saber import Algorithm1
+
+THEOREMS = importlib.import_module("flockana.theorems")  # flockana.theorems itself is a function
+
+
+@pytest.fixture
+def call(capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+    def run(*arguments):
+        with pytest.raises(SystemExit) as end:
+            main([str(a) for a in arguments])
+        out = capsys.readouterr()
+        return end.value.code, out.out, out.err
+
+    return run
+
+
+@pytest.fixture
+def measured(call):
+    def run(*arguments):
+        code, out, err = call("lattice", *arguments, "--json")
+        assert (code, err) == (0, "")
+        return json.loads(out)
+
+    return run
+
+
+@pytest.fixture
+def saved(tmp_path):
+    """Two agents that part: 5, 6 and 8 apart, under a law with d = 5 and r = 7."""
+    q = np.array([[[0.0, 0.0], [x, 0.0]] for x in (5.0, 6.0, 8.0)])
+    law = Algorithm1(AlphaInteraction(d=5.0, r=7.0))
+    Trajectory(np.array([0.0, 1.0, 2.0]), q, 0.0 * q, 0.0 * q, law).save(tmp_path / "run.nc")
+
+
+def test_a_hexagon_of_19_is_measured_exactly(measured):
+    found = measured("hexagonal-spiral:19")
+    assert (found["n"], found["m"], found["links"], found["harborth"], found["planar bound"]) == (19, 2, 42, 42, 51)
+    assert (found["kind"], found["edge-length error"], found["deviation energy"]) == ("α-lattice", 0.0, 0.0)
+    assert (found["shortest link"], found["longest link"], found["d"]) == (7.0, 7.0, 7.0)
+    assert found["r"] == pytest.approx(8.4)
+    assert found["coordination"] == {"3": 6, "4": 6, "6": 7}
+    assert found["defects"] == {"interior": 7, "interior coordination": {"6": 7}, "charge": 0}
+    rigid = found["rigidity"]  # 2n − 3 = 35 independent links of 42
+    assert (rigid["rank"], rigid["flexes"], rigid["self_stresses"]) == (35, 0, 7)
+    assert (found["crossings"], found["planar graph"], found["kuratowski"]) == (0, True, None)
+    assert (found["complete"], found["components"], found["verdict"]["status"]) == (False, 1, "verified")
+
+
+def test_a_block_of_fcc_has_no_crossing_but_no_planar_graph(measured):
+    found = measured("fcc:2x2x2")
+    assert (found["n"], found["m"], found["crossings"], found["planar graph"]) == (32, 3, 0, False)
+    assert found["kuratowski"]["kind"] in ("K5", "K3,3")
+    assert found["kuratowski"]["links"] >= 9
+    assert (found["harborth"], found["defects"]) == (None, None)
+    assert found["verdict"]["status"] == "refuted"
+
+
+def test_a_square_bends_and_its_diagonals_cross_once_they_are_links(call, measured):
+    sides = measured("square:2x2")
+    assert (sides["links"], sides["rigidity"]["flexes"], sides["crossings"]) == (4, 1, 0)
+    all_six = measured("square:2x2", "--r", 10)
+    assert (all_six["links"], all_six["crossings"], all_six["complete"], all_six["kind"]) == (6, 1, True, "neither")
+    assert all_six["edge-length error"] == pytest.approx(7.0 * (np.sqrt(2.0) - 1.0))
+    out = " ".join(call("lattice", "square:2x2")[1].split())
+    assert "1 flex; rank 4, 0 self-stresses" in out
+    assert "up to κ = 1.4142" in out
+    assert "none; each decided exactly" in out
+    assert "0 of 7 interior agents without six neighbours, charge 0" in " ".join(
+        call("lattice", "hexagonal-spiral:19")[1].split()
+    )
+
+
+def test_a_seven_fold_defect_is_counted(call, tmp_path):
+    angle = np.arange(7) * 2.0 * np.pi / 7.0
+    ring = np.column_stack([np.cos(angle), np.sin(angle)]) * 7.5
+    np.savetxt(tmp_path / "seven.csv", np.vstack([[0.0, 0.0], ring]), delimiter=",", header="x,y")
+    code, out, _ = call("lattice", "seven.csv")
+    assert code == 0
+    assert "1 of 1 interior agents without six neighbours, charge -1" in " ".join(out.split())
+    assert "3: 7, 7: 1" in out
+
+
+def test_a_run_gives_scale_range_and_the_sample_asked_for(measured, saved):
+    last = measured("run.nc")
+    assert (last["d"], last["r"], last["time"], last["links"], last["least distance"]) == (5.0, 7.0, 2.0, 0, 8.0)
+    assert (last["kind"], last["edge-length error"], last["components"]) == ("neither", None, 2)
+    middle = measured("run.nc", "--time", 0.9)
+    assert (middle["time"], middle["edge-length error"]) == (1.0, 1.0)
+    assert measured("run.nc", "--d", 10)["r"] == 14.0  # the law's ratio is kept
+    assert measured("run.nc", "--r", 9)["links"] == 1
+
+
+@pytest.mark.parametrize("text", ["x,y\n0,0\n7,0\n", "0,0\n\n7,0\n", "\ufeff0, 0\n7, 0\n", "# x,y\n0,0\n7,0"])
+def test_a_csv_is_read_with_and_without_a_header(measured, tmp_path, text):
+    (tmp_path / "two.csv").write_text(text, encoding="utf-8")
+    assert (measured("two.csv")["n"], measured("two.csv")["longest link"]) == (2, 7.0)
+
+
+def test_every_builder_is_an_alpha_lattice_at_its_largest_ratio_and_the_scale_is_heeded():
+    for form in builders():
+        name, size = form.split(":")
+        given = read_source(f"{name}:" + "x".join("2" for _ in size.split("x")), d=3.0)
+        lengths = [np.linalg.norm(given.q[i] - given.q[j]) for i, j in links(given.q, 3.0 * given.max_ratio)]
+        np.testing.assert_allclose(lengths, 3.0, rtol=1e-12, err_msg=name)
+        assert given.r == pytest.approx(3.6)
+
+
+def test_one_agent_and_no_links_are_no_error(measured):
+    one = measured("line:1", "-o", "one.png")
+    assert (one["links"], one["least distance"], one["kind"], one["components"]) == (0, None, "neither", 1)
+
+
+@pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
+def test_a_picture_is_written_where_it_is_asked_for(call, tmp_path, suffix):
+    code, out, err = call("lattice", "bcc:1x1x1" if suffix == "png" else "line:4", "-o", f"new/it.{suffix}")
+    path = tmp_path / "new" / f"it.{suffix}"
+    assert (code, err) == (0, "")
+    assert f"picture: new/it.{suffix}" in out
+    if suffix == "png":
+        assert np.ptp(np.asarray(Image.open(path).convert("L"))) > 200
+    else:
+        assert path.read_bytes()[:5] in (b"%PDF-", b"<?xml")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["none.csv"], "cannot read none.csv: No such file"),
+        (["none.nc"], "no file none.nc"),
+        (["none.json"], "none.json holds no equilibrium"),
+        (["ragged.csv"], "ragged.csv, line 3: 1 values, expected 2"),
+        (["nan.csv"], "nan.csv, line 2: 'nan', expected finite numbers"),
+        (["word.csv"], "word.csv, line 2: 'far', expected finite numbers"),
+        (["empty.csv"], "empty.csv holds no positions"),
+        (["four.csv"], "four.csv has 4 columns: expected 1 to 3"),
+        (["bytes.csv"], "cannot read bytes.csv"),
+        (["squares:2x2"], "unknown file or builder 'squares'; did you mean 'square'?"),
+        (["square:2"], "'square:2': expected square:ROWSxCOLS"),
+        (["fcc"], "'fcc': expected fcc:NXxNYxNZ"),
+        (["square:2x-2"], "'square:2x-2': expected square:ROWSxCOLS"),
+        (["line:0"], "n = 0: expected a whole number >= 1"),
+        (["hexagonal-patch:9999"], "at most 1000000 agents"),
+        (["line:3", "--time", "1"], "line:3 is no saved run (.nc)"),
+        (["run.nc", "--time", "3"], "--time 3: expected a time of the run, 0 to 2"),
+        (["line:3", "--d", "0"], "--d = 0: expected a number > 0"),
+        (["line:3", "--r", "nan"], "--r = nan: expected a finite number"),
+        (["line:3", "-o", "it.bmp"], "it.bmp: expected a file name that ends in .png or .svg or .pdf"),
+        (["line:3", "-o", "."], ". is a folder"),
+        (["line:3", "-o", "word.csv/it.png"], "cannot write to word.csv"),
+        ([], "SOURCE"),
+    ],
+)
+def test_bad_input_is_2_and_one_line(call, saved, tmp_path, arguments, message):
+    texts = {
+        "ragged": "x,y\n0,0\n1\n",
+        "nan": "0,0\n1,nan\n",
+        "word": "0,0\n1,far\n",
+        "empty": "x,y\n",
+        "four": "1,2,3,4",
+    }
+    for name, text in texts.items():
+        (tmp_path / f"{name}.csv").write_text(text)
+    (tmp_path / "bytes.csv").write_bytes(bytes(range(128, 256)))
+    code, out, err = call("lattice", *arguments)
+    assert (code, out) == (2, "")
+    assert err.startswith("flockana: ")
+    assert err.count("\n") == 1
+    assert message in err
+
+
+def test_an_unwritable_picture_is_refused_before_anything_is_measured(call, monkeypatch, tmp_path):
+    monkeypatch.setattr(THEOREMS, "verify", lambda *a, **k: pytest.fail("it measured"))
+    assert call("lattice", "line:3", "-o", "it.txt")[0] == 2
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt(), out_of_a_kernel()])
+def test_ctrl_c_is_130(error, call, monkeypatch):
+    def interrupted(*arguments, **options):
+        raise error
+
+    monkeypatch.setattr(THEOREMS, "verify", interrupted)
+    assert call("lattice", "line:3") == (130, "", "flockana: interrupted\n")
+
+
+def test_what_cannot_be_decided_is_said(call, monkeypatch):
+    from flockana.base.errors import SolverError
+
+    def undecided(*arguments):
+        raise SolverError("a zero pivot")
+
+    monkeypatch.setattr("flockana.lattice.rigidity", undecided)
+    code, out, _ = call("lattice", "line:3")
+    assert (code, "undecided: a zero pivot" in out) == (0, True)
+
+
+def test_the_table_fits_in_80_columns_and_help_lists_the_builders(call):
+    code, out, _ = call("lattice", "fcc:2x2x2")
+    assert code == 0
+    assert max(map(len, out.splitlines())) <= 80
+    assert "\x1b" not in out
+    shown = call("lattice", "--help")[1]
+    assert all(form.split(":")[0] + ":" in shown for form in builders())
+
+
+def test_the_commands_load_nothing_heavy():
+    code = (
+        "import sys, flockana.commands.lattice, flockana.commands.equilibrium; "
+        "print([m for m in ('numpy', 'scipy', 'matplotlib', 'casadi', 'rich.table') if m in sys.modules][:4])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert not {"numpy", "scipy", "matplotlib", "casadi"} & set(eval(done.stdout))

@@ -1,0 +1,140 @@
+from __future__ import annotations
+
+import json
+from math import sqrt
+
+import pytest
+
+from flockana.cli.main import main
+from flockana.environment.targets import StaticTarget
+from flockana.equilibria import find_equilibrium
+from flockana.lattice import hexagonal_patch
+from flockana.laws.olfati_saber import Algorithm2
+from flockana.stability import linearise
+from flockana.stability.delay import scalar_margin
+
+
+@pytest.fixture
+def call(capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+    def run(*arguments):
+        with pytest.raises(SystemExit) as end:
+            main(["stability", *(str(a) for a in arguments)])
+        out = capsys.readouterr()
+        return end.value.code, out.out, out.err
+
+    return run
+
+
+@pytest.fixture
+def found(call):
+    def run(*arguments):
+        code, out, err = call(*arguments, "--json")
+        assert (code, err) == (0, "")
+        return json.loads(out)
+
+    return run
+
+
+def test_seven_agents_of_algorithm_1(found):
+    one = found("hexagonal-patch:1", "--modes", 3)
+    assert (one["law"], one["n"], one["m"], one["links"]) == ("Algorithm1", 7, 2, 12)
+    assert one["zero modes"] == ["translation x", "translation y", "rotation"]
+    assert one["drifting"] == ["translation x", "translation y"]
+    assert one["centre poles"] is None
+    assert one["splits into shape and centre"]
+    assert one["spectral abscissa"] == pytest.approx(-1.96374976, rel=1e-8)
+    assert [mode["name"] for mode in one["modes"]] == ["breathing", "2", "3"]
+    assert one["modes"][0]["eigenvalue"] == pytest.approx([-1.96374976, 21.04250479], rel=1e-8)
+    assert one["modes"][0]["damping ratio"] == pytest.approx(1.96374976 / abs(-1.96374976 + 21.04250479j), rel=1e-8)
+
+
+def test_algorithm_2_has_the_poles_of_its_centre(found):
+    one = found("hexagonal-patch:1", "--law", 2)
+    assert one["zero modes"] == ["rotation"]
+    assert one["drifting"] == []
+    assert [re for re, _ in one["centre poles"]] == pytest.approx([-sqrt(1.1)] * 2, rel=1e-9)
+    law = Algorithm2(target=StaticTarget((0.0, 0.0)))
+    modes = linearise(law, find_equilibrium(law, hexagonal_patch(1, 7.0))).modes
+    rates = [mode.decay_rate for mode in modes[:8]]
+    assert [mode["decay rate"] for mode in one["modes"]] == pytest.approx(rates, rel=1e-9)
+
+
+def test_margins_and_norms_of_a_pair(found):
+    """On a line two agents are one oscillator y'' = −2k y − 2c y' with y = x₁ − x₀, and its norms are closed forms."""
+    one = found("line:2", "--delay", "--norms")
+    rate, omega = one["modes"][0]["decay rate"], one["modes"][0]["frequency"]
+    stiffness, damping = rate**2 + omega**2, 2.0 * rate
+    margin = scalar_margin(stiffness, damping)
+    for kind in ("all", "pairs"):
+        assert one[f"delay margin, {kind}"]["delay"] == pytest.approx(margin.delay, rel=1e-9)
+        assert one[f"delay margin, {kind}"]["frequency"] == pytest.approx(margin.frequency, rel=1e-9)
+    assert one["H2"] == pytest.approx(1.0 / sqrt(2.0 * damping * stiffness), rel=1e-9)
+    assert one["Hinf"] == pytest.approx(1.0 / (damping * sqrt(stiffness - 0.25 * damping**2)), rel=1e-8)
+
+
+def test_what_is_printed(call):
+    code, out, err = call("hexagonal-patch:1", "--law", 2, "--delay", "--norms")
+    text = " ".join(out.split())
+    assert (code, err) == (0, "")
+    assert "hexagonal-patch:1: stable off its zero modes" in text
+    assert "zero modes rotation (all)" in text
+    assert "centre's poles -1.0488, -1.0488" in text
+    assert "spectral abscissa -1.04881 per time unit" in text
+    assert "all terms delayed: 0.012783, then a swing at 22.01 rad" in text
+    assert "H2 0.041828 time^(3/2)" in text
+    assert "breathing 3.0563 21.358 0.1417" in text
+
+
+def test_a_large_flock_is_not_made_dense(found, monkeypatch):
+    from flockana.cli import stability
+
+    whole = found("hexagonal-spiral:30", "--modes", 3)
+    monkeypatch.setattr(stability, "_DENSE", 10)
+    one = found("hexagonal-spiral:30", "--modes", 3)
+    assert one["zero modes sought"] == "rigid motions only"
+    assert one["zero modes"] == whole["zero modes"]
+    assert one["spectral abscissa"] == pytest.approx(whole["spectral abscissa"], rel=1e-7)
+
+
+def test_a_scenario_is_linearised_where_it_ends(found):
+    one = found("hexagon", "--modes", 1)
+    assert (one["law"], one["links"]) == ("Algorithm1", 12)
+    assert one["spectral abscissa"] == pytest.approx(-1.96374976, rel=1e-7)
+
+
+@pytest.mark.parametrize("arguments", [("hexagonal-patch:1", "--law", 2), ("fcc:1x1x1",), ("line:3", "--law", 2)])
+def test_pictures(call, tmp_path, arguments):
+    code, out, err = call(*arguments, "--plot", "poles.png")
+    assert (code, err) == (0, "")
+    assert "picture: poles.png" in out
+    assert (tmp_path / "poles.png").read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
+
+
+def test_a_state_as_given(call, found, tmp_path):
+    """Ends pushed together: without --as-given the flock relaxes; with it, the pressed pair is unstable sideways."""
+    (tmp_path / "pair.csv").write_text("0,0\n6.5,0\n")
+    relaxed, given = found("pair.csv"), found("pair.csv", "--as-given")
+    assert relaxed["residual"] < 1e-9 < given["residual"]
+    assert relaxed["spectral abscissa"] < 0.0 < given["spectral abscissa"]
+    assert "pair.csv: unstable" in " ".join(call("pair.csv", "--as-given")[1].split())
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("nosuch",), "unknown scenario, file or builder 'nosuch'"),
+        (("hexagon", "--law", 1), "hexagon has a law of its own"),
+        (("hexagonal-patch:1", "--plot", "poles.txt"), "expected a file name that ends in .png or .svg or .pdf"),
+        (("zone-51",), "ZoneFlocking"),
+        (("hexagonal-patch:1", "--law", 3), "--law"),
+        (("line:3", "--delay", "--modes", 0), "--modes"),
+    ],
+)
+def test_bad_input_is_one_line(call, arguments, said):
+    code, out, err = call(*arguments)
+    assert (code, out) == (2, "")
+    assert err.startswith("flockana: ")
+    assert err.count("\n") == 1
+    assert said in err

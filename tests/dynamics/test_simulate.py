@@ -1,0 +1,378 @@
+"""Integration: orders, exact solutions, every method, and runs that end early with nothing lost."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from programs import out_of_a_kernel
+
+from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.dynamics.simulate import ADAPTIVE, METHODS, simulate
+from flockana.environment.targets import LinearTarget, StaticTarget
+from flockana.interactions import Gains
+from flockana.laws.law import DiscreteLaw, Law
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+
+LAW = Algorithm2(gains=Gains(c1_alpha=3.0, c2_alpha=1.0), target=LinearTarget((5.0, 0.0), (1.0, 0.5)))
+
+
+def start(n=6, m=2, seed=0, spread=12.0):
+    rng = np.random.default_rng(seed)
+    return rng.uniform(0.0, spread, (n, m)), rng.normal(0.0, 1.0, (n, m))
+
+
+@dataclass(frozen=True)
+class Oscillator(Law):
+    """q'' = −q, smooth for ever, with its energy; from `breaks` on it returns `bad`."""
+
+    breaks: float = np.inf
+    bad: float = np.nan
+    error: type[BaseException] | None = None
+
+    def flow(self, t, q, p):
+        if t >= self.breaks:
+            if self.error is not None:
+                raise self.error
+            return np.full_like(q, self.bad), 0.0
+        return -q, 0.0
+
+    def hamiltonian(self, t, q, p):
+        return 0.5 * float(np.sum(q * q) + np.sum(p * p))
+
+
+@dataclass(frozen=True)
+class Counter(DiscreteLaw):
+    """q grows by one a step; remembers how often it stepped, changing its own array in place."""
+
+    dt: float = 0.25
+    fails_at: float = np.inf
+    error: type[BaseException] | None = None
+
+    def start(self, q, p):
+        return {"count": np.zeros(1)}
+
+    def step(self, t, q, p, memory):
+        if t >= self.fails_at:
+            if self.error is not None:
+                raise self.error
+            return q * np.nan, p, 0 * q, memory
+        memory["count"] += 1.0
+        return q + 1.0, p, np.full_like(q, t), memory
+
+
+def kwargs(method):
+    return {"method": method, "dt": 0.01} if method == "RK4" else {"method": method}
+
+
+def test_rk4_is_of_fourth_order_on_a_linear_problem():
+    """Halving the step divides the error by 16."""
+    errors = []
+    for dt in (0.1, 0.05, 0.025):
+        run = simulate(Oscillator(), [[1.0]], [[0.0]], (0.0, 3.0), method="RK4", dt=dt, t_eval=[3.0])
+        errors.append(np.hypot(run.q[-1, 0, 0] - np.cos(3.0), run.p[-1, 0, 0] + np.sin(3.0)))
+    assert errors[0] / errors[1] == pytest.approx(16.0, rel=0.1)
+    assert errors[1] / errors[2] == pytest.approx(16.0, rel=0.1)
+
+
+def test_rk4_is_of_fourth_order_on_a_smooth_flock():
+    """Against DOP853 at rtol 1e-12; all agents stay within h r_α of each other, where φ_α is smooth."""
+    from flockana.interactions import AlphaInteraction
+
+    law = Algorithm2(AlphaInteraction(d=5.0, r=60.0, h=0.9), LAW.gains, LAW.target)
+    q0, p0 = start(5, spread=6.0)
+    exact = simulate(law, q0, p0, (0.0, 1.0), rtol=1e-12, atol=1e-13, t_eval=[1.0])
+    runs = [simulate(law, q0, p0, (0.0, 1.0), method="RK4", dt=dt, t_eval=[1.0]) for dt in (0.01, 0.005, 0.0025)]
+    errors = [np.abs(run.q[-1] - exact.q[-1]).max() for run in runs]
+    works = [abs(run.extra["work"][-1] - exact.extra["work"][-1]) for run in runs]
+    for e in (errors, works):
+        assert 13.0 < e[0] / e[1] < 19.0
+        assert 13.0 < e[1] / e[2] < 19.0
+
+
+def test_rk4_lands_on_times_off_its_grid():
+    times = np.array([0.0, 0.013, 0.5, 0.5037, 1.999, 2.0])
+    run = simulate(Oscillator(), [[1.0]], [[0.0]], (0.0, 2.0), method="RK4", dt=0.01, t_eval=times)
+    np.testing.assert_array_equal(run.t, times)
+    np.testing.assert_allclose(run.q[:, 0, 0], np.cos(times), atol=2e-10)
+    np.testing.assert_allclose(run.p[:, 0, 0], -np.sin(times), atol=2e-10)
+    np.testing.assert_allclose(run.u[:, 0, 0], -np.cos(times), atol=2e-10)
+
+
+@pytest.mark.parametrize(("dt", "steps"), [(0.3, 4), (0.25, 4), (5.0, 1), (0.1, 10)])
+def test_rk4_steps(dt, steps):
+    run = simulate(Oscillator(), [[1.0]], [[0.0]], (-1.0, 0.0), method="RK4", dt=dt)
+    assert run.stats["steps"] == steps
+    assert run.stats["evaluations"] == 4 * steps + 1
+    assert (run.t[0], run.t[-1], len(run.t)) == (-1.0, 0.0, steps + 1)
+    assert run.stats["dt"] == dt
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_every_method_agrees(method):
+    """Tolerances 1e-8: global errors of 1e-5 for the low orders (RK23, and the stiff ones)."""
+    q0, p0 = start(4)
+    exact = simulate(LAW, q0, p0, (0.0, 1.0), rtol=1e-12, atol=1e-13, t_eval=[0.4, 1.0])
+    run = simulate(LAW, q0, p0, (0.0, 1.0), t_eval=[0.4, 1.0], **kwargs(method))
+    assert (run.status, run.message) == ("complete", "reached the end of the time span")
+    assert run.stats["method"] == method
+    assert run.stats["evaluations"] > 0
+    np.testing.assert_allclose(run.q, exact.q, atol=1e-5)
+    np.testing.assert_allclose(run.p, exact.p, atol=1e-5)
+    np.testing.assert_allclose(run.extra["work"], exact.extra["work"], atol=1e-4)
+
+
+@pytest.mark.parametrize("method", ["DOP853", "RK4"])
+@pytest.mark.parametrize("target", [StaticTarget((3.0, 1.0)), LinearTarget((3.0, 1.0), (1.0, -2.0))])
+def test_one_agent_follows_the_closed_form(method, target):
+    """e = q − q_r obeys e'' + c2 e' + c1 e = 0: underdamped, to 1e-7."""
+    c1, c2 = 2.0, 1.0
+    law = Algorithm2(gains=Gains(c1_gamma=c1, c2_gamma=c2), target=target)
+    q0, p0 = np.array([[0.0, 5.0]]), np.array([[1.0, 0.0]])
+    t = np.linspace(0.0, 6.0, 25)
+    run = simulate(law, q0, p0, (0.0, 6.0), t_eval=t, **kwargs(method))
+    e0, v0 = q0[0] - target.position(0.0), p0[0] - target.rate(0.0)
+    w = np.sqrt(c1 - c2 * c2 / 4)
+    e = np.exp(-c2 * t / 2)[:, None] * (np.cos(w * t)[:, None] * e0 + np.sin(w * t)[:, None] * (v0 + c2 / 2 * e0) / w)
+    path = np.array([target.position(x) for x in t])
+    np.testing.assert_allclose(run.q[:, 0], path + e, atol=1e-7)
+
+
+def test_algorithm_1_conserves_momentum_and_balances_energy():
+    law = Algorithm1(gains=Gains(c1_alpha=30.0, c2_alpha=5.0))
+    q0, p0 = start(30, spread=25.0)
+    run = simulate(law, q0, p0, (0.0, 3.0))
+    momentum = run.p.sum(axis=1)
+    np.testing.assert_allclose(momentum, np.broadcast_to(momentum[0], momentum.shape), atol=1e-10)
+    energy = run.energy()
+    assert energy[-1] < energy[0] - 10.0
+    assert np.all(np.diff(run.extra["work"]) <= 0.0)
+    assert np.abs(run.energy_residual).max() <= 1e-6 * energy[0]
+
+
+def test_the_clock_may_start_anywhere():
+    near = simulate(Algorithm1(), *start(4), (0.0, 1.0), t_eval=[1.0])
+    far = simulate(Algorithm1(), *start(4), (1e6, 1e6 + 1.0), t_eval=[1e6 + 1.0])
+    np.testing.assert_allclose(far.q, near.q, atol=1e-6)
+
+
+@pytest.mark.parametrize("method", ["DOP853", "RK4"])
+def test_t_eval_takes_both_ends_or_neither(method):
+    for times in ([0.0], [1.0], [0.0, 1.0], [0.37], np.linspace(0, 1, 50)):
+        run = simulate(Oscillator(), [[1.0]], [[0.0]], (0.0, 1.0), t_eval=times, **kwargs(method))
+        np.testing.assert_array_equal(run.t, times)
+        np.testing.assert_allclose(run.q[:, 0, 0], np.cos(times), atol=1e-7)
+    assert simulate(Oscillator(), [[1.0]], [[0.0]], (0.0, 1.0), t_eval=0.5).t.tolist() == [0.5]
+
+
+@pytest.mark.parametrize("method", [*ADAPTIVE, "RK4"])
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+@pytest.mark.filterwarnings("ignore")
+def test_a_law_that_breaks_loses_nothing(method, bad):
+    whole = simulate(Oscillator(), [[1.0]], [[0.0]], (0.0, 1.0), **kwargs(method))
+    run = simulate(Oscillator(breaks=0.5, bad=bad), [[1.0]], [[0.0]], (0.0, 1.0), **kwargs(method))
+    assert run.status == "failed"
+    assert re.search(r"gave up at t = |left the finite numbers at t = 0\.5", run.message)
+    assert len(run.t) > 1
+    assert run.t[-1] <= 0.5
+    assert np.isfinite(run.q).all()
+    shared = min(len(run.t), np.searchsorted(whole.t, 0.2))
+    np.testing.assert_array_equal(run.q[:shared], whole.q[:shared])
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.filterwarnings("ignore")
+def test_a_law_that_breaks_before_the_first_time_to_keep(method):
+    run = simulate(Oscillator(breaks=0.5), [[1.0]], [[2.0]], (0.0, 1.0), t_eval=[0.9], **kwargs(method))
+    assert (run.status, run.t.tolist(), run.q.tolist(), run.p.tolist()) == ("failed", [0.0], [[[1.0]]], [[[2.0]]])
+
+
+@dataclass(frozen=True)
+class Returns(Law):
+    """Returns what it is told to, and says that it has an energy."""
+
+    found: object
+    energy: object = 1.0
+
+    def flow(self, t, q, p):
+        return self.found
+
+    def hamiltonian(self, t, q, p):
+        return self.energy
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+def test_a_law_broken_from_the_start_is_named(method, bad):
+    message = f"Oscillator gives u[1] = [{bad}] at the start, t = 3: expected finite accelerations there"
+    law = Oscillator(breaks=0.0, bad=np.array([[0.0], [bad]]))
+    with pytest.raises(ArgumentError, match=re.escape(message)):
+        simulate(law, [[1.0], [2.0]], [[0.0], [0.0]], (3.0, 4.0), **kwargs(method))
+
+
+@pytest.mark.parametrize(
+    ("found", "energy", "message"),
+    [
+        (None, 1.0, "Returns gives None at the start, t = 0: expected (u, dH/dt)"),
+        (np.zeros((1, 2)), 1.0, "Returns gives array([[0., 0.]]) at the start, t = 0: expected (u, dH/dt)"),
+        ((None, 0.0), 1.0, "gives u as object of shape ()"),
+        ((np.zeros((2, 1)), 0.0), 1.0, "gives u as float64 of shape (2, 1) at the start, t = 0: expected real numbers"),
+        ((np.zeros((1, 2), complex), 0.0), 1.0, "gives u as complex128 of shape (1, 2)"),
+        ((np.zeros((1, 2)), None), 1.0, "gives dH/dt = None at the start"),
+        ((np.zeros((1, 2)), 1j), 1.0, "gives dH/dt = 1j at the start"),
+        ((np.zeros((1, 2)), np.zeros(2)), 1.0, "gives dH/dt = array([0., 0.])"),
+        ((np.zeros((1, 2)), np.nan), 1.0, "gives H = 1, but dH/dt = nan at the start, t = 0: expected the rate of"),
+        ((np.zeros((1, 2)), np.inf), 1.0, "gives H = 1, but dH/dt = inf"),
+        ((np.zeros((1, 2)), 0.0), 2j, "gives H = 2j at the start"),
+        ((np.zeros((1, 2)), 0.0), None, "gives H = None at the start"),
+    ],
+)
+def test_what_is_no_law_of_motion_is_named_before_the_run(found, energy, message):
+    for method in ("DOP853", "RK4"):
+        with pytest.raises(ArgumentError, match=re.escape(message)):
+            simulate(Returns(found, energy), [[0.0, 0.0]], [[0.0, 0.0]], (0.0, 1.0), **kwargs(method))
+
+
+def test_what_is_no_map_is_named_before_the_run():
+    class Flat(Counter):
+        def step(self, t, q, p, memory):
+            return q.ravel(), p, q, memory
+
+    class Short(Counter):
+        def step(self, t, q, p, memory):
+            return q, p
+
+    with pytest.raises(ArgumentError, match=re.escape("Flat gives q as float64 of shape (1,) at the start, t = 0")):
+        simulate(Flat(), [[0.0]], [[0.0]], (0.0, 1.0))
+    with pytest.raises(ArgumentError, match=r"expected \(q, p, u, memory\)"):
+        simulate(Short(), [[0.0]], [[0.0]], (0.0, 1.0))
+
+
+def test_rk4_notices_a_state_that_is_lost_while_forces_are_not():
+    """NaN positions have no neighbours: Algorithm 1's forces are then 0, and finite."""
+
+    class Gap(Law):
+        def flow(self, t, q, p):
+            return (np.full_like(q, np.nan) if 0.42 < t < 0.48 else np.zeros_like(q)), 0.0
+
+    run = simulate(Gap(), [[0.0]], [[1.0]], (0.0, 1.0), method="RK4", dt=0.1)
+    assert run.status == "failed"
+    assert run.t[-1] == pytest.approx(0.4)
+
+
+@pytest.mark.parametrize("method", ["DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA", "RK4"])
+def test_an_interrupted_run_is_a_prefix(method):
+    whole = simulate(Oscillator(), [[1.0]], [[0.0]], (0.0, 2.0), **kwargs(method))
+    law = Oscillator(breaks=1.0, error=KeyboardInterrupt)
+    run = simulate(law, [[1.0]], [[0.0]], (0.0, 2.0), **kwargs(method))
+    assert run.status == "interrupted"
+    assert run.message == f"interrupted: the last sample is at t = {run.t[-1]:g}"
+    assert 1 < len(run.t) < len(whole.t)
+    for name in ("t", "q", "p", "u"):
+        np.testing.assert_array_equal(getattr(run, name), getattr(whole, name)[: len(run.t)])
+    np.testing.assert_array_equal(run.extra["work"], whole.extra["work"][: len(run.t)])
+
+
+def test_ctrl_c_within_a_kernel_is_ctrl_c():
+    run = simulate(Oscillator(breaks=1.0, error=out_of_a_kernel()), [[1.0]], [[0.0]], (0.0, 2.0))
+    assert (run.status, 0.0 < run.t[-1] < 1.0) == ("interrupted", True)
+    with pytest.raises(SystemError, match="of its own"):
+        simulate(Oscillator(breaks=1.0, error=SystemError("of its own")), [[1.0]], [[0.0]], (0.0, 2.0))
+
+
+def test_interrupted_before_the_first_time_to_keep():
+    law = Oscillator(breaks=1.0, error=KeyboardInterrupt)
+    run = simulate(law, [[1.0]], [[0.0]], (0.0, 2.0), t_eval=[1.5])
+    assert (run.status, run.t.tolist()) == ("interrupted", [0.0])
+    assert run.message == "interrupted: no sample was reached but the start"
+
+
+def test_discrete_steps_and_memory():
+    run = simulate(Counter(), [[0.0]], [[5.0]], (1.0, 2.0))
+    assert run.t.tolist() == [1.0, 1.25, 1.5, 1.75, 2.0]
+    assert run.q.ravel().tolist() == [0.0, 1.0, 2.0, 3.0, 4.0]
+    assert run.u.ravel().tolist() == [0.0, 1.0, 1.25, 1.5, 1.75]
+    assert run.extra["count"].ravel().tolist() == [0.0, 1.0, 2.0, 3.0, 4.0]
+    assert (run.stats["method"], run.stats["dt"], run.stats["steps"]) == ("discrete", 0.25, 4)
+    assert "work" not in run.extra
+
+
+def test_discrete_keeps_the_nearest_steps():
+    run = simulate(Counter(), [[0.0]], [[0.0]], (0.0, 2.0), t_eval=[0.0, 0.3, 0.32, 1.0, 1.9])
+    assert run.t.tolist() == [0.0, 0.25, 1.0, 2.0]
+    short = simulate(Counter(dt=0.6), [[0.0]], [[0.0]], (0.0, 1.0), t_eval=[1.0])
+    assert short.t.tolist() == [0.0]  # the map never comes near t = 1
+
+
+def test_discrete_runs_that_end_early():
+    failed = simulate(Counter(fails_at=0.5), [[0.0]], [[0.0]], (0.0, 2.0))
+    assert (failed.status, failed.t.tolist()) == ("failed", [0.0, 0.25, 0.5])
+    assert failed.message == "the map left the finite numbers at t = 0.75"
+    stopped = simulate(Counter(fails_at=0.5, error=KeyboardInterrupt), [[0.0]], [[0.0]], (0.0, 2.0))
+    assert (stopped.status, stopped.t.tolist()) == ("interrupted", [0.0, 0.25, 0.5])
+
+
+def test_a_law_without_energy_has_no_balance():
+    class Drift(Law):
+        def flow(self, t, q, p):
+            return np.zeros_like(q), float("nan")
+
+    for options in ({}, {"method": "RK4", "dt": 0.1}):
+        run = simulate(Drift(), [[0.0]], [[1.0]], (0.0, 1.0), **options)
+        assert run.status == "complete"
+        assert dict(run.extra) == {}
+        with pytest.raises(ArgumentError, match="no energy balance: its law has no energy"):
+            _ = run.energy_residual
+
+
+def test_the_progress_bar_changes_nothing(capsys):
+    quiet = simulate(LAW, *start(), (0.0, 0.5))
+    shown = simulate(LAW, *start(), (0.0, 0.5), progress=True)
+    np.testing.assert_array_equal(shown.q, quiet.q)
+
+
+def test_the_start_is_not_changed():
+    q0, p0 = start()
+    before = q0.copy()
+    run = simulate(LAW, q0, p0, (0.0, 0.2), method="RK4", dt=0.05)
+    np.testing.assert_array_equal(q0, before)
+    assert q0.flags.writeable
+    np.testing.assert_array_equal(run.q[0], before)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"t_span": (1.0, 0.0)}, "t_span = (1, 0): expected finite t0 < t1"),
+        ({"method": "RK4"}, "dt = None: method RK4 needs a fixed step, such as dt=0.005"),
+        ({"method": "RK4", "dt": -1.0}, "dt = -1: expected a number > 0"),
+        ({"method": "RK4", "dt": 1e-3, "t_span": (1e16, 1e16 + 8)}, "too small to change t = 1e+16"),
+        ({"dt": 0.1}, "dt = 0.1: DOP853 chooses its own steps; give t_eval to choose output times"),
+        ({"rtol": 0.0}, "rtol = 0: expected a number > 0"),
+        ({"atol": np.nan}, "atol = nan: expected a finite number"),
+        ({"t_eval": []}, "t_eval = []: expected rising times within t_span"),
+        ({"t_eval": [0.5, 0.5]}, "expected rising times within t_span"),
+        ({"t_eval": [-0.1, 0.5]}, "expected rising times within t_span"),
+        ({"t_eval": [0.5, 1.1]}, "expected rising times within t_span"),
+        ({"t_eval": [np.nan]}, "expected rising times within t_span"),
+        ({"t_eval": "abc"}, "t_eval = 'abc': expected rising times within t_span"),
+        ({"t_eval": [[0.1, 0.2]]}, "expected rising times within t_span"),
+        ({"law": Algorithm1}, "did you forget the parentheses?"),
+        ({"q0": [[0.0]]}, "q has shape (1, 1) but p has shape (1, 2)"),
+        ({"q0": [[0.0]], "p0": [[0.0]]}, "the target has 2 components but the agents have 1"),
+        ({"law": Counter(), "dt": 0.1}, "a discrete law brings its own step: expected neither dt nor method"),
+        ({"law": Counter(), "method": "RK45"}, "a discrete law brings its own step"),
+        ({"law": Counter(dt=0.0)}, "law.dt = 0: expected a number > 0"),
+    ],
+)
+def test_refusals(options, message):
+    arguments = {"law": LAW, "q0": [[0.0, 0.0]], "p0": [[0.0, 0.0]], "t_span": (0.0, 1.0)} | options
+    with pytest.raises(ArgumentError, match=re.escape(message)):
+        simulate(**arguments)
+
+
+def test_an_unknown_method_is_named():
+    with pytest.raises(UnknownNameError, match=re.escape("unknown method 'RK5'; did you mean 'RK")):
+        simulate(LAW, [[0.0, 0.0]], [[0.0, 0.0]], (0.0, 1.0), method="RK5")

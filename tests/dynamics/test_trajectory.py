@@ -1,0 +1,234 @@
+"""Runs as data: derived series by hand, files there and back, and files that are not ours."""
+
+from __future__ import annotations
+
+import pickle
+import re
+
+import numpy as np
+import pytest
+import xarray
+
+from flockana.base.errors import ArgumentError, FileError
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.trajectory import Trajectory
+from flockana.environment.targets import CallableTarget, CircleTarget
+from flockana.interactions import Gains
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.measures import metrics
+
+
+def make(n=5, m=2, **options):
+    rng = np.random.default_rng(n)
+    law = Algorithm2(target=CircleTarget((3.0, 1.0, 0.0)[:m], 5.0, 0.1), gains=Gains(c1_gamma=0.3))
+    return simulate(law, rng.uniform(0, 12, (n, m)), rng.normal(0, 1, (n, m)), (0.0, 1.0), **options)
+
+
+RUN = make(t_eval=np.linspace(0.0, 1.0, 11))
+
+
+def test_series():
+    for k in (0, 5, 10):
+        t, q, p = RUN.t[k], RUN.q[k], RUN.p[k]
+        assert RUN.energy()[k] == RUN.law.energy(t, q, p)
+        assert RUN.energy_rate()[k] == RUN.law.energy_rate(t, q, p)
+        np.testing.assert_array_equal(RUN.u[k], RUN.law.acceleration(t, q, p))
+    expected = RUN.energy() - RUN.energy()[0] - RUN.extra["work"]
+    np.testing.assert_array_equal(RUN.energy_residual, expected)
+    assert np.abs(RUN.energy_residual).max() <= 1e-6 * RUN.energy()[0]
+    assert (RUN.n, RUN.m) == (5, 2)
+
+
+def test_metrics_are_the_metrics():
+    data, k = RUN.metrics(), 7
+    q, p = RUN.q[k], RUN.p[k]
+    assert data.cohesion_radius[k] == metrics.cohesion_radius(q)
+    assert data.velocity_mismatch[k] == metrics.velocity_mismatch(p) / 5
+    assert data.inertia[k] == metrics.inertia(q)
+    assert data.min_distance[k] == metrics.min_distance(q)
+    assert data.order[k] == metrics.order(p)
+    assert data.connectivity[k] == metrics.connectivity(q, 8.4)
+    assert data.giant_share[k] == metrics.giant_share(q, 8.4)
+    assert data.deviation_energy[k] == metrics.deviation_energy(q, 7.0, 8.4) / 49.0
+    np.testing.assert_array_equal(data.time, RUN.t)
+
+
+def test_one_metric_is_that_of_all_and_costs_no_other(monkeypatch):
+    run = make(t_eval=np.linspace(0.0, 1.0, 11))
+    monkeypatch.setattr(metrics, "net_measures", lambda *given: pytest.fail("a metric that was not asked for"))
+    np.testing.assert_array_equal(run.metric("min_distance"), RUN.metrics().min_distance)
+    np.testing.assert_array_equal(run.metric("coordination"), RUN.metrics().coordination)
+    monkeypatch.undo()
+    for name, series in RUN.metrics().items():
+        np.testing.assert_array_equal(run.metric(name), series)
+    with pytest.raises(ArgumentError, match="unknown metric 'min_distanc'; did you mean 'min_distance'"):
+        run.metric("min_distanc")
+
+
+def test_a_measured_run_crosses_processes():
+    run = make(t_eval=[0.0, 1.0])
+    run.metrics()
+    np.testing.assert_array_equal(pickle.loads(pickle.dumps(run)).metric("inertia"), run.metric("inertia"))
+
+
+def test_min_distance_is_a_bound_of_the_samples():
+    assert RUN.min_distance() == RUN.closest_approach().lower <= float(RUN.metrics().min_distance.min())
+
+
+def test_window():
+    part = RUN.window(0.25, 0.75)
+    np.testing.assert_allclose(part.t, [0.3, 0.4, 0.5, 0.6, 0.7])
+    assert part.extra["work"][0] == 0.0
+    np.testing.assert_allclose(part.energy_residual, RUN.energy_residual[3:8] - RUN.energy_residual[3], atol=1e-10)
+    with pytest.raises(ArgumentError, match=re.escape("no sample between 5 and 6: the run spans 0 to 1")):
+        RUN.window(5.0, 6.0)
+
+
+def test_arrays_are_frozen_and_the_callers_are_not():
+    q = np.zeros((2, 3, 1))
+    run = Trajectory(np.array([0.0, 1.0]), q, q, q, Algorithm1())
+    with pytest.raises(ValueError, match="read-only"):
+        run.q[0] = 1.0
+    assert q.flags.writeable
+    assert run != Trajectory(run.t, q, q, q, run.law)  # compared by identity, without a broadcast
+
+
+@pytest.mark.parametrize("shapes", [((3,), (2, 4, 1)), ((2,), (2, 4)), ((2, 1), (2, 4, 1))])
+def test_shapes_must_fit(shapes):
+    t, q = (np.zeros(s) for s in shapes)
+    with pytest.raises(ArgumentError, match=re.escape("expected shapes (T,), (T, n, m), (T, n, m), (T, n, m)")):
+        Trajectory(t, q, q, q, Algorithm1())
+
+
+@pytest.mark.parametrize(("n", "m"), [(1, 1), (4, 1), (5, 2), (3, 3)])
+def test_round_trip_is_exact(tmp_path, n, m):
+    law = Algorithm1() if m == 1 else None
+    run = make(n, m) if law is None else simulate(law, np.arange(n)[:, None] * 7.1, np.ones((n, 1)), (0.0, 1.0))
+    path = run.save(tmp_path / "run.nc")
+    again = Trajectory.load(path)
+    for name in ("t", "q", "p", "u"):
+        np.testing.assert_array_equal(getattr(again, name), getattr(run, name))
+    np.testing.assert_array_equal(again.extra["work"], run.extra["work"])
+    assert again.law == run.law
+    assert (again.status, again.message) == (run.status, run.message)
+    assert dict(again.stats) == dict(run.stats)
+    np.testing.assert_array_equal(again.energy(), run.energy())
+    assert again.min_distance() == run.min_distance()
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_other_tools_can_read_it(tmp_path):
+    data = xarray.open_dataset(RUN.save(tmp_path / "run.nc"), engine="h5netcdf")
+    assert data.q.dims == ("time", "agent", "axis")
+    assert data.axis.values.tolist() == ["x", "y"]
+    assert data.attrs["format"] == "flockana-trajectory"
+    data.close()
+
+
+def test_a_save_that_fails_keeps_the_old_file(tmp_path, monkeypatch):
+    path = RUN.save(tmp_path / "run.nc")
+    before = path.read_bytes()
+
+    def full(self, partial, **options):
+        partial.write_bytes(b"half")
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(xarray.Dataset, "to_netcdf", full)
+    with pytest.raises(FileError, match="No space left on device; choose a file name and folder"):
+        RUN.save(path)
+    assert path.read_bytes() == before
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_the_old_file_is_replaced_in_one_move(tmp_path, monkeypatch):
+    path = RUN.save(tmp_path / "run.nc")
+    before = path.read_bytes()
+
+    def refuse(source, target):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr("flockana.dynamics.trajectory.os.replace", refuse)
+    with pytest.raises(FileError, match="Permission denied; choose a file name and folder"):
+        RUN.window(0.0, 0.5).save(path)
+    assert path.read_bytes() == before
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_places_that_cannot_be_written(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # names without a folder must leave nothing behind here
+    (tmp_path / "file").write_text("x")
+    for path in (tmp_path / "none" / "run.nc", tmp_path / "file" / "run.nc", tmp_path, "", "a\0b"):
+        with pytest.raises(FileError, match=r"cannot write .*choose a file name and folder to write to"):
+            RUN.save(path)
+    assert [p.name for p in tmp_path.iterdir()] == ["file"]
+
+
+def test_a_users_function_is_refused_before_anything_is_written(tmp_path):
+    law = Algorithm2(target=CallableTarget(lambda t: ((0.0,), (0.0,))))
+    run = simulate(law, [[0.0]], [[0.0]], (0.0, 0.1))
+    with pytest.raises(ArgumentError, match="a user's function has no such form"):
+        run.save(tmp_path / "run.nc")
+    assert list(tmp_path.iterdir()) == []
+
+
+def tampered(path, **attributes):
+    data = RUN.to_xarray()
+    for name, value in attributes.items():
+        if value is None:
+            del data.attrs[name]
+        else:
+            data.attrs[name] = value
+    data.to_netcdf(path, engine="h5netcdf")
+
+
+@pytest.mark.parametrize(
+    ("attributes", "message"),
+    [
+        ({"format": None}, "holds no flockana run (format None, expected 'flockana-trajectory')"),
+        ({"format": "other"}, "holds no flockana run (format 'other'"),
+        ({"format_version": 2}, "is of format 2, newer than 1: update flockana"),
+        ({"format_version": None}, "is damaged: KeyError('format_version'); run the simulation again"),
+        ({"format_version": "x"}, "is damaged"),
+        ({"law": None}, "is damaged"),
+        ({"law": "{"}, "is damaged"),
+        ({"law": "null"}, "expected a law"),
+        ({"law": '{"type": "flockana.interactions:Gains"}'}, "expected a law"),
+        ({"law": '{"type": "flockana.laws.olfati_saber:Algorithm9"}'}, "cannot rebuild"),
+        ({"law": '{"type": "my.laws:Mine"}'}, "the file needs my.laws:Mine, which is not part of flockana"),
+        ({"stats": "x"}, "is damaged"),
+        ({"status": None}, "is damaged"),
+    ],
+)
+def test_files_with_other_contents(tmp_path, attributes, message):
+    path = tmp_path / "run.nc"
+    tampered(path, **attributes)
+    with pytest.raises(FileError, match=re.escape(message)):
+        Trajectory.load(path)
+
+
+def test_files_that_are_missing_foreign_or_broken(tmp_path):
+    whole = RUN.save(tmp_path / "run.nc").read_bytes()
+    with pytest.raises(FileError, match=r"no file .*nowhere.nc: expected one written by Trajectory.save"):
+        Trajectory.load(tmp_path / "nowhere.nc")
+    with pytest.raises(FileError, match="no file"):
+        Trajectory.load(tmp_path)
+    broken = tmp_path / "broken.nc"
+    for content in (b"", b"not a netCDF file", whole[:100], whole[: len(whole) // 2], whole[:-10]):
+        broken.write_bytes(content)
+        with pytest.raises(FileError, match=r"cannot read .*broken.nc as netCDF-4"):
+            Trajectory.load(broken)
+    xarray.Dataset({"x": ("k", [1.0])}).to_netcdf(broken, engine="h5netcdf")
+    with pytest.raises(FileError, match="holds no flockana run"):
+        Trajectory.load(broken)
+
+
+def test_a_file_without_its_velocities(tmp_path):
+    path = tmp_path / "run.nc"
+    RUN.to_xarray().drop_vars("p").to_netcdf(path, engine="h5netcdf")
+    with pytest.raises(FileError, match="is damaged: KeyError"):
+        Trajectory.load(path)
+
+
+def test_a_run_shows_itself_in_one_line():
+    run = simulate(Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 1.0), t_eval=[0.0, 1.0])
+    assert repr(run) == "<Trajectory of 2 agents, m = 1, Algorithm1, 2 samples, t = 0 to 1, complete>"
