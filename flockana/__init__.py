@@ -57,7 +57,7 @@ if TYPE_CHECKING:
     from flockana.laws.algorithm3 import Algorithm3 as Algorithm3
     from flockana.laws.bearing_distance import ZoneFlocking as ZoneFlocking
     from flockana.laws.dead_zone import DeadZoneFlocking as DeadZoneFlocking
-    from flockana.laws.law import DiscreteLaw as DiscreteLaw
+    from flockana.laws.discrete import DiscreteLaw as DiscreteLaw
     from flockana.laws.law import Law as Law
     from flockana.laws.minimal import DiscreteMinimalFlocking as DiscreteMinimalFlocking
     from flockana.laws.minimal import MinimalFlocking as MinimalFlocking
@@ -118,7 +118,8 @@ _BY_MODULE = {
     "environment.zone_obstacles": ("Box", "SimplePolygon"),
     "environment.zone_world": ("Alien", "ZoneWorld"),
     "interactions": _INTERACTIONS,
-    "laws.law": ("Law", "DiscreteLaw"),
+    "laws.law": ("Law",),
+    "laws.discrete": ("DiscreteLaw",),
     "laws.olfati_saber": ("Algorithm1", "Algorithm2"),
     "laws.algorithm3": ("Algorithm3",),
     "laws.bearing_distance": ("ZoneFlocking",),

@@ -130,8 +130,8 @@ def _draw(ax: Any, found: Equilibrium, name: str) -> None:
         d=d,
         r=r,
         target=Potential(law).target,
-        obstacles=getattr(law, "obstacles", ()),
-        beta=getattr(law, "beta", None),
+        obstacles=law.obstacles,
+        beta=None if law.obstacle_field is None else law.obstacle_field.beta,
         ax=ax,
         title=f"{name}: {found.kind}, {len(links(found.q, r))} links up to {r:.4g}",
     )

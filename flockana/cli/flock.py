@@ -109,5 +109,5 @@ def _held(law: Any, t: float) -> Any:
     """The law with its γ-agent held where it is at t: the same potential, and one that a file can hold."""
     from flockana.environment.targets import StaticTarget
 
-    target = getattr(law, "target", None)
+    target = law.target
     return law if target is None else replace(law, target=StaticTarget(tuple(target.position(t).tolist())))

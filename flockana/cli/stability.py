@@ -117,14 +117,13 @@ def summary(found: Linearisation, slow: Iterable[Mode], name: str) -> dict[str, 
     name : str
         What was asked for.
     """
-    from flockana.laws.olfati_saber import Algorithm2
     from flockana.stability.translational import CentreOfMass
 
     slow, (n, m) = tuple(slow), found.q.shape
     whole = found.q.size <= _DENSE
     invariant = found.second_order.invariant if whole else found.second_order.rigid_invariant
-    law = found.law
-    centre = CentreOfMass(law.gains) if type(law) is Algorithm2 and not law.gains.per_agent else None
+    law: Any = found.law
+    centre = CentreOfMass(law.gains) if _follows(law) else None
     poles = None if centre is None else [[pole.real, pole.imag] for pole in centre.poles.tolist()]
     return {
         "source": name,
@@ -193,13 +192,12 @@ def _draw(figure: Any, found: Linearisation, slow: tuple[Mode, ...]) -> None:
     import numpy as np
 
     from flockana import plots
-    from flockana.laws.olfati_saber import Algorithm2
     from flockana.stability.translational import CentreOfMass
 
     law: Any = found.law
     space = "3d" if found.q.shape[1] == 3 else None
-    follows = type(law) is Algorithm2 and not law.gains.per_agent
-    target = law.target.position(found.t) if hasattr(law, "target") else None
+    follows = _follows(law)
+    target = None if law.target is None else law.target.position(found.t)
     known = found.modes if found.q.size <= _DENSE else slow
     inner = [mode for mode in known if not mode.name.startswith("translation")] or list(known)
     halves = figure.subfigures(1, 2)
@@ -283,3 +281,8 @@ def _modes(slow: tuple[Mode, ...]) -> Table:
     for mode in slow:
         table.add_row(mode.name, f"{mode.decay_rate:.5g}", f"{mode.frequency:.5g}", f"{mode.damping_ratio:.4g}")
     return table
+
+
+def _follows(law: Any) -> bool:
+    """Whether the centre of mass follows a γ-agent by a linear equation of its own."""
+    return law.target is not None and law.splits

@@ -88,11 +88,10 @@ class Encounters:
         surfaces = [np.broadcast_to(np.asarray(one, dtype=np.float64), (n,)) for one in law.surfaces]
         radii = np.sort(np.array(surfaces).reshape(len(surfaces), n).T, axis=1)
         length = min(np.inf if law.scales is None else law.scales.length, radii[:, -1].min() if surfaces else np.inf)
-        obstacles, beta = tuple(getattr(law, "obstacles", ())), getattr(law, "beta", None)
-        if not obstacles or beta is None:
+        bodies = law.obstacle_field
+        if bodies is None or not bodies.obstacles:
             return cls(np.ascontiguousarray(radii), SHARE * length)
-        bodies = ObstacleField(obstacles, beta)
-        return cls(np.ascontiguousarray(radii), SHARE * length, bodies, beta.r, SHARE * beta.d)
+        return cls(np.ascontiguousarray(radii), SHARE * length, bodies, bodies.beta.r, SHARE * bodies.beta.d)
 
     @property
     def any(self) -> bool:

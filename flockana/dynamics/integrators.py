@@ -15,7 +15,8 @@ from flockana.base.checks import FloatArray
 from flockana.base.scales import Scales
 from flockana.dynamics.encounters import Encounters, State
 from flockana.dynamics.stepping import ONE_STEP, Balance, Check, Flow, Frame, Meetings, Moment, Stepper
-from flockana.laws.law import DiscreteLaw, Law
+from flockana.laws.discrete import DiscreteLaw
+from flockana.laws.law import Law
 
 FLOOR = 1e-2  # of the relative tolerance: the default absolute one, over the law's scales
 FINEST = 3e-14  # relative tolerance below which the solvers cannot go

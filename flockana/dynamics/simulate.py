@@ -19,7 +19,8 @@ from flockana.dynamics.between import Between, Recorder
 from flockana.dynamics.integrators import Sample, Tally, adaptive, discrete, error_floor, nearest, rk4, start_sample
 from flockana.dynamics.switches import located
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.law import DiscreteLaw, Law, ensure_law
+from flockana.laws.discrete import DiscreteLaw, ensure_law
+from flockana.laws.law import Law
 from flockana.laws.switched import SwitchedLaw
 
 ADAPTIVE = ("DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA")

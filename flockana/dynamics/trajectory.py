@@ -20,7 +20,7 @@ from flockana.base.scales import Scales
 from flockana.base.serialize import from_data, to_data
 from flockana.base.units import rescale, times
 from flockana.dynamics.between import Between, Course, merged
-from flockana.laws.law import ensure_law
+from flockana.laws.discrete import ensure_law
 from flockana.measures import metrics as measure
 from flockana.measures.clearance import Clearance, clearance
 from flockana.measures.path_bounds import ClosestApproach, closest_approach, cohesion_bound
@@ -255,7 +255,7 @@ class Trajectory:
 
     def _any_flock(self) -> dict[str, tuple[str, Callable[[], FloatArray]]]:
         """What is measured of every flock: in words, and a function that does it."""
-        q, p, interaction = self.q, self.p, getattr(self.law, "alpha", None)
+        q, p, lattice = self.q, self.p, self.law.lattice
         series: dict[str, tuple[str, Callable[[], FloatArray]]] = {
             "cohesion_radius": ("R = max ‖q_i − q_c‖", lambda: measure.cohesion_radii(q)),
             "velocity_mismatch": ("K̃ = K/n", lambda: measure.spreads(p) / self.n),
@@ -264,11 +264,11 @@ class Trajectory:
             "order": ("polar order", lambda: measure.orders(p)),
             "coordination": ("C, mean cosine between velocities", lambda: measure.coordinations(p)),
         }
-        if interaction is not None:
+        if lattice is not None:
             series |= {
                 "connectivity": ("C = rank(L)/(n − 1)", lambda: self._nets[0]),
                 "giant_share": ("C*, share of nodes", lambda: self._nets[1]),
-                "deviation_energy": ("Ẽ = E/d²", lambda: self._nets[2] / interaction.d**2),
+                "deviation_energy": ("Ẽ = E/d²", lambda: self._nets[2] / lattice[0] ** 2),
             }
         return series
 
@@ -282,8 +282,7 @@ class Trajectory:
 
     @cached_property
     def _nets(self) -> FloatArray:
-        d, r = self.law.alpha.d, self.law.alpha.r
-        return np.array([measure.net_measures(x, d, r) for x in self.q]).T
+        return np.array([measure.net_measures(x, *self.law.lattice) for x in self.q]).T
 
     @cached_property
     def path(self) -> Course:
@@ -337,7 +336,7 @@ class Trajectory:
 
     @cached_property
     def _clearance(self) -> Clearance:
-        path, obstacles = self.path, getattr(self.law, "obstacles", ())
+        path, obstacles = self.path, self.law.obstacles
         return clearance(path.t, path.q, path.p, path.u, obstacles, path.slack)
 
     def animate(self, *, seconds: float = 10.0, fps: float = 15.0, velocities: bool = False) -> Film:

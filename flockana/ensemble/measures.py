@@ -9,7 +9,6 @@ from math import nan
 import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory
-from flockana.interactions.pair import pair_interaction
 from flockana.measures import metrics as measure
 from flockana.measures.nets import components, link_lengths, links
 
@@ -37,7 +36,7 @@ def _in_range(value: Callable[[Trajectory, float], float]) -> Callable[[Trajecto
     """Of laws with an interaction range r; NaN of others."""
 
     def of_run(run: Trajectory) -> float:
-        pair = pair_interaction(run.law)
+        pair = run.law.pair
         return nan if pair is None else float(value(run, pair.range))
 
     return of_run
@@ -47,8 +46,7 @@ def _of_net(value: Callable[[Trajectory, float, float], float]) -> Callable[[Tra
     """Of laws with a lattice scale d and an interaction range r; NaN of others."""
 
     def of_run(run: Trajectory) -> float:
-        alpha = getattr(run.law, "alpha", None)
-        return nan if alpha is None else float(value(run, alpha.d, alpha.r))
+        return nan if run.law.lattice is None else float(value(run, *run.law.lattice))
 
     return of_run
 

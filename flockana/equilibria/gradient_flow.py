@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_points, ensure_positive
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain, moving_frame
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain
+from flockana.measures.frame import moving_frame
 
 _NEWTON_FROM = 1e-7  # relative force at which Newton's method takes over: a weak bond near r pulls no harder before
 _NEWTON_AGAIN = 0.1  # of the force at which it led astray
@@ -88,14 +89,14 @@ def gradient_flow(law: Algorithm1 | Algorithm2, q0: Any, *, tol: float = 1e-11, 
         ensure_one_gain(law.gains)
     shape, scale = q.shape, law.scales.force
     tol, horizon = ensure_positive("tol", tol), ensure_positive("horizon", horizon)
-    pace = law.alpha.d / scale
+    pace = law.alpha.length / scale
     solver = BDF(
         lambda t, y: pace * structural_force(law, y.reshape(shape)).ravel(),
         0.0,
         q.ravel(),
         horizon,
         rtol=1e-6,
-        atol=1e-8 * law.alpha.d,
+        atol=1e-8 * law.alpha.length,
         jac=lambda t, y: -pace * law.stiffness(y.reshape(shape)).toarray(),
     )
     here, force, level = q, np.inf, _NEWTON_FROM
@@ -105,7 +106,7 @@ def gradient_flow(law: Algorithm1 | Algorithm2, q0: Any, *, tol: float = 1e-11, 
         force = _largest(structural_force(law, here)) / scale
         if force <= level:
             polished, least = _polished(law, here, tol)
-            if _largest(polished - here) <= _NEWTON_REACH * law.alpha.d and least <= tol:
+            if _largest(polished - here) <= _NEWTON_REACH * law.alpha.length and least <= tol:
                 return GradientLimit(polished, least, float(solver.t), True)
             level = _NEWTON_AGAIN * force  # that was another equilibrium: flow on towards this one
     return GradientLimit(here, force, float(solver.t), False)

@@ -1,10 +1,10 @@
-"""The potential whose equilibria are sought, for Algorithms 1, 2 and 3: value, force, stiffness, symmetries."""
+"""The potential whose equilibria are sought, of a law that is a sum of terms: value, force, stiffness, symmetries."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 
@@ -12,20 +12,20 @@ from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.environment.obstacles import Obstacle, Sphere, Wall
 from flockana.equilibria.terminal import rigid_motions
-from flockana.interactions.gains import weighted
 from flockana.interactions.pair import PairInteraction
-from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2, moving_frame
+from flockana.laws.law import Law
+from flockana.laws.sum_of_terms import SumOfTerms
+from flockana.laws.terms.navigation import Navigation
+from flockana.laws.terms.pairs import PairTerm
+from flockana.laws.terms.term import Term
+from flockana.measures.frame import moving_frame
 from flockana.measures.nets import LinkArray
 
 _CONCENTRIC = 1e-12  # of unit axes, or of the lengths at hand: what is less is rounding
 
-FlockLaw: TypeAlias = Algorithm1 | Algorithm2 | Algorithm3 | DeadZoneFlocking
 
-
-def ensure_flock_law(law: Any, m: int) -> FlockLaw:
-    """Return the law if it is Algorithm 1, 2 or 3, or dead-zone flocking with a ramp, in m dimensions.
+def ensure_flock_law(law: Any, m: int) -> SumOfTerms:
+    """Return the law if it is a sum of terms whose forces are gradients, without jumps, in m dimensions.
 
     Parameters
     ----------
@@ -37,19 +37,20 @@ def ensure_flock_law(law: Any, m: int) -> FlockLaw:
     Raises
     ------
     ArgumentError
-        If it is another law, or lives in another dimension.
+        If it is another law, has no pair term, or lives in another dimension.
 
     Examples
     --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
     >>> ensure_flock_law(Algorithm1(), 2) == Algorithm1()
     True
     """
-    if not isinstance(law, FlockLaw):
+    if not (isinstance(law, SumOfTerms) and law.conservative and law.term(PairTerm)):
         raise ArgumentError(
-            f"law = {law!r}: expected Algorithm1, Algorithm2 or Algorithm3, or DeadZoneFlocking: their forces are "
-            "gradients"
+            f"law = {law!r}: expected a sum of a pair term and others whose forces are gradients, such as Algorithm1, "
+            "Algorithm2, Algorithm3 or DeadZoneFlocking"
         )
-    if isinstance(law, DeadZoneFlocking) and law.located:
+    if law.located:
         raise ArgumentError(
             "ramp = 0: contacts sit where the force jumps and never vanishes; give the interaction a ramp"
         )
@@ -59,55 +60,61 @@ def ensure_flock_law(law: Any, m: int) -> FlockLaw:
 
 @dataclass(frozen=True)
 class Potential:
-    """V (Algorithm 1, dead zone), U_λ in the moving frame (Algorithm 2), V_α + V_β + V_γ (Algorithm 3) at one time.
-
-    Under Algorithm 2 with per-agent gains the γ-agent's pull fixes the flock in space, as under Algorithm 3:
-    c1α V + ½ Σ c1γ_i ‖q_i − q_r‖².
+    """Σ U^T over the terms of a law at one time: V (Algorithm 1, dead zone), U_λ in the moving frame (Algorithm 2),
+    V_α + V_β + V_γ (Algorithm 3), c1α V + ½ Σ c1γ_i ‖q_i − q_r‖² (Algorithm 2 with per-agent gains).
 
     Parameters
     ----------
-    law : Algorithm1, Algorithm2, Algorithm3 or DeadZoneFlocking
-        The law.
+    law : SumOfTerms
+        The law, from `ensure_flock_law`.
     t : float
         When: a γ-agent may move.
 
     Examples
     --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
     >>> Potential(Algorithm1()).force(np.array([[0.0], [7.0]])).ravel().tolist()
     [0.0, 0.0]
     """
 
-    law: FlockLaw
+    law: SumOfTerms
     t: float = 0.0
 
     @property
     def pinned(self) -> bool:
-        """Whether it knows where the flock is, so that a translation changes it."""
-        return isinstance(self.law, Algorithm3) or (isinstance(self.law, Algorithm2) and self.law.gains.per_agent)
+        """Whether a translation of the flock changes it."""
+        return not self.law.splits
 
     @property
     def force_scale(self) -> float:
-        """The law's own: the strongest force between two agents, nearly; of the dead zone, of a contact."""
-        return self.law.scales.force
+        """That of the law's scales; of a law without scales, that of its pairs."""
+        own = self.law.scales
+        return self.gain * self.pair.strength if own is None else own.force
+
+    @property
+    def pairs(self) -> PairTerm:
+        """The pair term."""
+        return self.law.term(PairTerm)  # type: ignore[return-value]  # ensured
 
     @property
     def pair(self) -> PairInteraction:
         """The pair law among agents."""
-        return self.law.interaction if isinstance(self.law, DeadZoneFlocking) else self.law.alpha
+        return self.pairs.pair
 
     @property
     def gain(self) -> float:
-        """What its potential is multiplied by, c1α; 1 for the dead zone, which carries its own."""
-        return 1.0 if isinstance(self.law, DeadZoneFlocking) else self.law.gains.c1_alpha
+        """What its potential is multiplied by: c1α; 1 for the dead zone, which carries its own."""
+        return self.pairs.stiffness
+
+    @property
+    def others(self) -> tuple[Term, ...]:
+        """All terms but the pair term."""
+        return tuple(term for term in self.law.terms if term is not self.pairs)
 
     @property
     def target(self) -> FloatArray | None:
         """q_r(t), None under a law without γ-agent."""
-        return (
-            None
-            if isinstance(self.law, Algorithm1 | DeadZoneFlocking)
-            else np.asarray(self.law.target.state(self.t)[0], dtype=float)
-        )
+        return None if self.law.target is None else np.asarray(self.law.target.state(self.t)[0], dtype=float)
 
     @property
     def centre(self) -> FloatArray:
@@ -136,20 +143,9 @@ class Potential:
         pairs : int array, shape (M, 2)
             Pairs, all those within range among them.
         """
-        law, lengths = self.law, np.linalg.norm(q[pairs[:, 1]] - q[pairs[:, 0]], axis=1)
+        lengths = np.linalg.norm(q[pairs[:, 1]] - q[pairs[:, 0]], axis=1)
         total = self.gain * float(np.sum(self.pair.energy_at(lengths) - self.pair.far_potential))
-        if isinstance(law, DeadZoneFlocking):
-            return total
-        g = law.gains
-        if isinstance(law, Algorithm2) and not self.pinned:
-            total += 0.5 * g.c1_gamma * float(np.sum(moving_frame(q) ** 2))
-        elif isinstance(law, Algorithm2):
-            total += weighted(g.c1_gamma, 0.5 * np.sum((q - self.centre) ** 2, axis=1))
-        elif isinstance(law, Algorithm3):
-            x2 = np.sum((q - self.centre) ** 2, axis=1)
-            total += weighted(g.c1_gamma, x2 / (np.sqrt(1.0 + x2 / law.alpha.unit**2) + 1.0))
-            total += g.c1_beta * law.obstacle_field.potential_energy(q)
-        return total
+        return total + sum(term.energy(self.t, q) for term in self.others)
 
     def force(self, q: FloatArray) -> FloatArray:
         """Its negative gradient by the law's own kernels, shape (n, m).
@@ -159,13 +155,14 @@ class Potential:
         q : ndarray, shape (n, m)
             Positions.
         """
+        push = self.law.flow(self.t, q, np.zeros_like(q))[0]
         if not self.pinned:
-            return moving_frame(self.law.flow(self.t, q, np.zeros_like(q))[0])
-        assert isinstance(self.law, Algorithm2 | Algorithm3)
-        p_r = np.broadcast_to(self.law.target.state(self.t)[1], q.shape)  # at this velocity the γ-agent does not pull
-        still = np.zeros_like(q)
-        push: FloatArray = self.law.flow(self.t, q, still)[0] - self.law.gains.drag * p_r
-        return push
+            return moving_frame(push)
+        if (pull := self.law.term(Navigation)) is None:
+            return push
+        p_r = np.broadcast_to(pull.target.state(self.t)[1], q.shape)  # at this velocity the γ-agent does not drag
+        still: FloatArray = push - pull.gains.drag * p_r
+        return still
 
     def residual(self, q: FloatArray) -> float:
         """Largest force on an agent over `force_scale`.
@@ -185,13 +182,12 @@ class Potential:
         q : ndarray, shape (n, m)
             Positions.
         """
-        return self.law.stiffness(q, self.t) if isinstance(self.law, Algorithm3) else self.law.stiffness(q)
+        return self.law.stiffness(q, self.t)
 
     def symmetries(self, q: FloatArray) -> FloatArray:
         """Orthonormal basis (n m, k) of the rigid motions that leave it unchanged.
 
-        All of them under Algorithms 1 and 2 and the dead zone; under Algorithm 3 the rotations about the γ-agent that
-        move no obstacle, and those about it under Algorithm 2 with per-agent gains.
+        All of them where shape and centre move apart; else the rotations about the γ-agent that move no obstacle.
 
         Parameters
         ----------
@@ -200,8 +196,10 @@ class Potential:
         """
         if not self.pinned:
             return rigid_motions(q)
-        x, obstacles = q - self.centre, self.law.obstacles if isinstance(self.law, Algorithm3) else ()
-        free = _free_rotations(obstacles, self.centre, self.pair.length)
+        if self.target is None or any(term.invariance == "none" for term in self.law.terms):
+            return np.zeros((q.size, 0))
+        x = q - self.centre
+        free = _free_rotations(self.law.obstacles, self.centre, self.pair.length)
         turns = [(x @ generator.T).ravel() for generator in free]
         if not turns or not np.any(turns):
             return np.zeros((q.size, 0))
@@ -210,18 +208,17 @@ class Potential:
         return independent
 
 
-def inside_obstacle(law: FlockLaw, q: FloatArray) -> bool:
-    """Whether an agent is inside an obstacle of Algorithm 3, where ψ_β falls again and means nothing.
+def inside_obstacle(law: Law, q: FloatArray) -> bool:
+    """Whether an agent is inside an obstacle, where ψ_β falls again and means nothing.
 
     Parameters
     ----------
-    law : Algorithm1, Algorithm2 or Algorithm3
+    law : Law
         The law.
     q : ndarray, shape (n, m)
         Positions.
     """
-    obstacles = law.obstacles if isinstance(law, Algorithm3) else ()
-    return not np.isfinite(q).all() or any(bool(obstacle.contains(q).any()) for obstacle in obstacles)
+    return not np.isfinite(q).all() or any(bool(obstacle.contains(q).any()) for obstacle in law.obstacles)
 
 
 def _free_rotations(obstacles: Sequence[Obstacle], centre: FloatArray, length: float) -> list[FloatArray]:

@@ -18,9 +18,7 @@ import numpy.typing as npt
 from flockana.base.checks import FloatArray
 from flockana.base.interrupts import interrupts_held
 from flockana.equilibria.potential import Potential, inside_obstacle
-from flockana.equilibria.terms import obstacle_term, pair_term, pull_term
-from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.olfati_saber import Algorithm2
+from flockana.equilibria.terms import has_form, own_derivatives, pair_term
 from flockana.measures.nets import LinkArray
 
 # the box is there to keep steps short, and is seldom active at the end: a barrier of almost nothing
@@ -47,6 +45,35 @@ class _Value(ca.Callback):
 
     def eval(self, arguments: Any) -> list[float]:
         return [self._program.value(np.asarray(arguments[0]).ravel())]
+
+
+class _Derivatives(ca.Callback):
+    """Gradient and upper triangle of the Hessian from the law's kernels, where there is no formula to generate them."""
+
+    def __init__(self, program: Program, rows: Any, columns: Any) -> None:
+        ca.Callback.__init__(self)
+        self._program, self._at = program, (rows, columns)
+        self._pattern = ca.Sparsity.triplet(program.size, program.size, rows.tolist(), columns.tolist())
+        self.construct("derivatives", {})
+
+    def get_n_in(self) -> int:
+        return 1
+
+    def get_n_out(self) -> int:
+        return 2
+
+    def get_sparsity_in(self, _: int) -> Any:
+        return ca.Sparsity.dense(self._program.size, 1)
+
+    def get_sparsity_out(self, index: int) -> Any:
+        return self._pattern if index else ca.Sparsity.dense(self._program.size, 1)
+
+    def eval(self, arguments: Any) -> list[Any]:
+        program = self._program
+        q = program.d * np.asarray(arguments[0]).reshape(program.shape)
+        slope = -program.potential.force(q).ravel() * (program.d / program.unit)
+        entries = np.asarray(program.potential.stiffness(q)[self._at]).ravel() * (program.d**2 / program.unit)
+        return [ca.DM(slope), ca.DM(self._pattern, entries)]
 
 
 class _Watch(ca.Callback):
@@ -182,6 +209,10 @@ class Program:
     def _derivatives(self, x: Any) -> tuple[Any, Any]:
         """Gradient and upper triangle of the Hessian at x, in the program's units."""
         (n, m), (i, j) = self.shape, self.pairs.T
+        rows, columns, scatter = _scatter(n, m, i, j)
+        if not has_form(self.potential.pair, self.potential.others):
+            self._kernels = _Derivatives(self, rows, columns)  # kept alive, as above
+            return self._kernels(x)  # type: ignore[no-any-return]
         gain = self.potential.gain
         q = self.d * ca.reshape(x, m, n)
         slope, blocks = ca.MX.zeros(m, n), []
@@ -195,31 +226,17 @@ class Program:
         own_slope, own_blocks = self._own(q)
         slope = slope + own_slope
         blocks.append(ca.vec(own_blocks))
-        rows, columns, scatter = _scatter(n, m, i, j)
         pattern = ca.Sparsity.triplet(n * m, n * m, rows.tolist(), columns.tolist())
         hessian = ca.MX(pattern, scatter @ ca.vertcat(*blocks))
         return ca.vec(slope) * (self.d / self.unit), hessian * (self.d**2 / self.unit)
 
     def _own(self, q: Any) -> tuple[Any, Any]:
         """Gradient (m, n) and Hessian blocks (m, m n) of what depends on one agent alone."""
-        (n, m), law = self.shape, self.potential.law
-        if not isinstance(law, Algorithm2 | Algorithm3):
-            return ca.MX.zeros(m, n), ca.MX.zeros(m, m * n)
-        g = law.gains
-        if isinstance(law, Algorithm2) and self.potential.pinned:
-            pull = ca.DM(np.broadcast_to(g.pull.T if np.ndim(g.pull) else g.pull, (m, n)))
-            own = ca.DM(np.kron(np.broadcast_to(np.ravel(g.pull), n), np.eye(m)))
-            return pull * (q - ca.repmat(ca.DM(self.potential.centre), 1, n)), ca.MX(own)
-        if isinstance(law, Algorithm2):  # J about the centre that the gauge holds: the same value, a diagonal Hessian
-            centred = q - ca.sum2(q) / n
-            return g.c1_gamma * centred, g.c1_gamma * ca.repmat(ca.MX.eye(m), 1, n)
+        n, m = self.shape
         slope, blocks = ca.MX.zeros(m, n), ca.MX.zeros(m, m * n)
-        if isinstance(law, Algorithm3):
-            terms = [(g.c1_gamma, pull_term(m, law.alpha.unit), ca.DM(self.potential.centre))]
-            terms += [(g.c1_beta, obstacle_term(obstacle, law.beta), ca.DM.zeros(m)) for obstacle in law.obstacles]
-            for gain, term, origin in terms:
-                one_slope, one_blocks = term.map(n)(q - ca.repmat(origin, 1, n))
-                slope, blocks = slope + gain * one_slope, blocks + gain * one_blocks
+        for term in self.potential.others:
+            for own_slope, own_blocks in own_derivatives(term, self.potential.t, q):
+                slope, blocks = slope + own_slope, blocks + own_blocks
         return slope, blocks
 
 

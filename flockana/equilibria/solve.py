@@ -14,7 +14,7 @@ from flockana.base.errors import SolverError, UnknownNameError
 from flockana.equilibria.classify import EquilibriumKind, ensure_small, falling, kind_of, spectrum
 from flockana.equilibria.potential import Potential, ensure_flock_law, inside_obstacle
 from flockana.equilibria.program import Program
-from flockana.laws.olfati_saber import Algorithm2
+from flockana.laws.terms.navigation import Navigation
 from flockana.measures.nets import LinkArray, link_lengths, links
 
 METHODS = ("minimise", "root")
@@ -223,8 +223,9 @@ def finish(potential: Potential, q: FloatArray, done: bool, message: str, *, str
 
 
 def _fixed_in_space(potential: Potential) -> bool:
-    """Whether the potential knows where the flock is, and the target acts through it (Algorithm 3)."""
-    return potential.pinned or (isinstance(potential.law, Algorithm2) and potential.law.gains.c1_gamma == 0.0)
+    """Whether the target acts through the potential, or not at all."""
+    pull = potential.law.term(Navigation)
+    return potential.pinned or (pull is not None and pull.gains.c1_gamma == 0.0)
 
 
 def all_pairs(n: int) -> LinkArray:

@@ -9,7 +9,8 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.equilibria.curvature import EPS, Landscape, least_curvature
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain, moving_frame
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain
+from flockana.measures.frame import moving_frame
 from flockana.measures.metrics import coincident_pairs, connectivity, velocity_mismatch
 from flockana.measures.nets import link_lengths, links
 
@@ -91,22 +92,22 @@ def terminal_state(
     alpha = law.alpha
     forces = _forces(law, q, p)
     force = float(np.linalg.norm(forces, axis=1).max())
-    lengths = link_lengths(q, links(q, alpha.r))
+    lengths = link_lengths(q, links(q, alpha.range))
     empty = lengths.size == 0
     around = surroundings(law, q, force=float(np.linalg.norm(forces)))
     curvature, error = least_curvature(around) if around else (float("nan"), float("inf"))
     return TerminalState(
         force=force / law.scales.force,
         mismatch=velocity_mismatch(p) / len(q),
-        strain=float("nan") if empty else float(np.abs(lengths - alpha.d).max() / alpha.d),
+        strain=float("nan") if empty else float(np.abs(lengths - alpha.length).max() / alpha.length),
         shortest=float("nan") if empty else float(lengths.min()),
         longest=float("nan") if empty else float(lengths.max()),
         links=int(lengths.size),
-        coincident=coincident_pairs(q, contact * alpha.d),
-        connected=connectivity(q, alpha.r) == 1.0,
+        coincident=coincident_pairs(q, contact * alpha.length),
+        connected=connectivity(q, alpha.range) == 1.0,
         curvature=curvature,
         curvature_error=error,
-        distance=around.distance / alpha.d if around else float("inf"),
+        distance=around.distance / alpha.length if around else float("inf"),
     )
 
 

@@ -6,16 +6,21 @@ and so are the Hessians that CasADi derives from them.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from typing import Any
 
 import casadi as ca
+import numpy as np
 import sympy as sp
 
 from flockana.base.errors import ArgumentError
 from flockana.environment.obstacles import Obstacle, Sphere, Wall
 from flockana.equilibria.translate import to_casadi
 from flockana.interactions import AlphaInteraction, BetaInteraction, DeadZoneInteraction, PairInteraction
+from flockana.laws.terms.navigation import Navigation
+from flockana.laws.terms.obstacles import ObstacleTerm
+from flockana.laws.terms.term import Term
 from flockana.symbolic import dead_zone as dead
 from flockana.symbolic.functions import phi_alpha, phi_beta
 from flockana.symbolic.norms import EPS, sigma_1, sigma_norm
@@ -87,6 +92,53 @@ def dead_zone_gradient(delta: sp.Matrix, pair: DeadZoneInteraction) -> sp.Matrix
     weight = dead.force(dead.RHO, ramp=sp.Float(pair.ramp)) / dead.RHO
     numbers = {s: getattr(pair, names[s.name]) for s in weight.free_symbols if s.name in names}
     return weight.subs(numbers).subs(dead.RHO, rho) * delta
+
+
+def has_form(pair: PairInteraction, others: Iterable[Term]) -> bool:
+    """Whether gradient and Hessian of a potential can be generated; else they are computed by the law's own kernels.
+
+    Parameters
+    ----------
+    pair : PairInteraction
+        The pair law.
+    others : iterable of Term
+        All other terms of the law.
+
+    Examples
+    --------
+    >>> has_form(AlphaInteraction(), ())
+    True
+    """
+    known = isinstance(pair, AlphaInteraction | DeadZoneInteraction)
+    return known and all(isinstance(term, Navigation | ObstacleTerm) for term in others)
+
+
+def own_derivatives(term: Term, t: float, q: Any) -> Iterator[tuple[Any, Any]]:
+    """Gradient (m, n) and Hessian blocks (m, m n) of a term in which an agent depends on itself alone, piece by piece.
+
+    Parameters
+    ----------
+    term : Navigation or ObstacleTerm
+        The term.
+    t : float
+        When.
+    q : casadi.MX, shape (m, n)
+        Positions.
+    """
+    m, n = q.shape
+    if isinstance(term, ObstacleTerm):
+        for obstacle in term.field.obstacles:
+            slope, blocks = obstacle_term(obstacle, term.field.beta).map(n)(q)
+            yield term.stiffness * slope, term.stiffness * blocks
+    elif isinstance(term, Navigation):
+        gains = np.broadcast_to(np.ravel(term.gains.pull), n)
+        if term.moving:  # J about the centre that the gauge holds: the same value, a diagonal Hessian
+            x = q - ca.repmat(ca.sum2(q) / n, 1, n)
+        else:
+            x = q - ca.repmat(ca.DM(np.asarray(term.target.state(t)[0], dtype=float)), 1, n)
+        slope, blocks = (x, ca.repmat(ca.MX.eye(m), 1, n)) if term.unit is None else pull_term(m, term.unit).map(n)(x)
+        by_agent = ca.DM(np.tile(gains, (m, 1)))
+        yield by_agent * slope, ca.DM(np.tile(np.repeat(gains, m), (m, 1))) * blocks
 
 
 @lru_cache(maxsize=64)

@@ -10,7 +10,8 @@ from flockana.base.checks import FloatArray
 from flockana.dynamics.integrators import FINEST
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.law import DiscreteLaw, Law
+from flockana.laws.discrete import DiscreteLaw
+from flockana.laws.law import Law
 from flockana.theorems import Verdict
 
 THOUSANDTH = 1e-3  # of a run's tolerances

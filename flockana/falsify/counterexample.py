@@ -18,7 +18,8 @@ from flockana.base.serialize import from_data, to_data
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory, to_data_mapping
 from flockana.falsify.confirm import confirmed
-from flockana.laws.law import DiscreteLaw, Law, ensure_law
+from flockana.laws.discrete import DiscreteLaw, ensure_law
+from flockana.laws.law import Law
 from flockana.theorems import Theorem, Tolerances, Verdict, verify
 
 FORMAT = "flockana-counterexample"

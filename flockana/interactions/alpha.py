@@ -142,6 +142,11 @@ class AlphaInteraction(PairInteraction):
         """The desired distance d."""
         return self.d
 
+    @property
+    def bend_length(self) -> float:
+        """ℓ, in which all of σ₁ counts."""
+        return self.unit
+
     @cached_property
     def strength(self) -> float:
         """The largest |φ_α(‖x‖_σ)| x/√(1 + εx²) up to r, to 1e-6: below b/√ε, far below where d is short beside ℓ."""

@@ -61,6 +61,16 @@ class PairInteraction(ABC):
         """The distance at which it holds neighbours: the unit of lengths."""
 
     @property
+    def bend_length(self) -> float:
+        """ℓ that a bounded pull σ₁(x/ℓ) to a γ-agent counts in; `length`, unless the law says otherwise."""
+        return self.length
+
+    @property
+    def lattice(self) -> tuple[float, float] | None:
+        """(d, r) if every neighbour within range is held at d, so that lattices may be asked for; else None."""
+        return (self.length, self.range) if self.bond_range == self.range else None
+
+    @property
     def bond_range(self) -> float:
         """Pairs closer than this are held at `length`: all within range, unless the law says otherwise."""
         return self.range
@@ -95,7 +105,9 @@ class PairInteraction(ABC):
     def panels(self) -> FloatArray:
         """Chebyshev panels of the potential, or an empty (0, 0) array where it is in closed form."""
 
-    def forces(self, q: FloatArray, p: FloatArray, *, stiffness: float, damping: float) -> tuple[FloatArray, float]:
+    def forces(
+        self, q: FloatArray, p: FloatArray, *, stiffness: float, damping: float, out: FloatArray | None = None
+    ) -> tuple[FloatArray, float]:
         """Pair accelerations and their dissipation, unchecked (the integrators' inner loop).
 
         Parameters
@@ -104,6 +116,8 @@ class PairInteraction(ABC):
             Positions and velocities.
         stiffness, damping : float
             Gains c1 of the gradient term and c2 of the velocity-consensus term.
+        out : ndarray, shape (n, m), optional
+            Accelerations to add to, in place.
 
         Returns
         -------
@@ -112,7 +126,7 @@ class PairInteraction(ABC):
         dissipation : float
             pᵀL̂p = ½ Σ over ordered pairs of a_ij ‖p_j − p_i‖².
         """
-        u = np.zeros_like(q)
+        u = np.zeros_like(q) if out is None else out
         dissipation = 0.0
         for i, j in pair_blocks(q, self.range):
             dissipation += self.kernels.forces(q, p, i, j, self.par, stiffness, damping, u)
@@ -259,16 +273,3 @@ def ensure_bump_start(h: Any) -> float:
     if not 0.0 < start < 1.0:
         raise ArgumentError(f"h = {start:g}: expected 0 < h < 1; at h = 1 the bump jumps (erratum E10)")
     return start
-
-
-def pair_interaction(law: Any) -> PairInteraction | None:
-    """The pair interaction of finite range among a law's parameters, if it has one.
-
-    Parameters
-    ----------
-    law : Law or DiscreteLaw
-        Any law; of a map that steps another law, that one is asked.
-    """
-    parameters = vars(getattr(law, "law", law)).values()
-    found = next((value for value in parameters if isinstance(value, PairInteraction)), None)
-    return found if found is not None and np.isfinite(found.range) else None

@@ -19,7 +19,7 @@ from flockana.base.units import Powers
 from flockana.environment.zone_world import ZoneWorld
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.kernels import zones as compiled
-from flockana.laws.law import DiscreteLaw
+from flockana.laws.discrete import DiscreteLaw
 
 CHOICES: dict[str, tuple[str, ...]] = {
     "form": ("position", "bearing"),

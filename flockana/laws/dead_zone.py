@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar
+from functools import cached_property
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -14,18 +15,17 @@ from flockana.base.scales import Scales
 from flockana.base.units import Powers
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.kernels.dead_zone import ATTRACTION, DEAD, OUT, semi_implicit_steps, zone_forces, zone_margins, zones
-from flockana.laws.olfati_saber import moving_frame
+from flockana.laws.sum_of_terms import SumOfTerms
 from flockana.laws.switched import Margins, Pieces, SwitchedLaw
+from flockana.laws.terms.pairs import PairTerm
+from flockana.laws.terms.term import Term
 from flockana.measures.nets import components, links
-
-if TYPE_CHECKING:
-    from scipy.sparse import csr_array
 
 SLIDES = 1e-6  # of d1: a pair driven back from both sides that swings no farther than this counts as held
 
 
 @dataclass(frozen=True)
-class DeadZoneFlocking(SwitchedLaw):
+class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
     """u_i = Σ_{j∈N_i} [f(ρ_ij) n_ij + k₁ (q_j − q_i) + k₂ (p_j − p_i)], eq. (9) made definite (errata L1, L2).
 
     N_i are the agents closer than r, a_ij = 1 for them. No leader appears; momentum is conserved, and energy is
@@ -108,30 +108,15 @@ class DeadZoneFlocking(SwitchedLaw):
         _ensure_apart(q)
         return self.flow(t, q, p)[0]
 
-    def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """(u, dH̄/dt) with dH̄/dt = −k₂ pᵀL̂p across all switches, unchecked.
+    @cached_property
+    def terms(self) -> tuple[Term, ...]:
+        """H̄ = ½ Σ‖p_i − p̄‖² + Σ_{i<j} ψ(min(ρ_ij, r)), the saturated energy (erratum L5), falls by k₂ pᵀL̂p."""
+        return (PairTerm(self.interaction, 1.0, self.k2),)
 
-        Parameters
-        ----------
-        t : float
-            Time (the law does not depend on it).
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
-        """
-        u, dissipation = self.interaction.forces(q, p, stiffness=1.0, damping=self.k2)
-        return u, -self.k2 * dissipation
-
-    def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:
-        """H̄ = ½ Σ‖p_i − p̄‖² + Σ_{i<j} ψ(min(ρ_ij, r)), the saturated energy, unchecked (erratum L5).
-
-        Parameters
-        ----------
-        t : float
-            Time (H̄ does not depend on it).
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
-        """
-        return self.interaction.potential_energy(q) + 0.5 * float(np.sum(moving_frame(p) ** 2))
+    @property
+    def moving(self) -> bool:
+        """Its energy is that in the frame of the centre of mass."""
+        return True
 
     def literal_energy(self, q: Any, p: Any) -> float:
         """The energy of neighbours only: it jumps by ψ(r) whenever a pair comes into range (erratum L5).
@@ -146,29 +131,19 @@ class DeadZoneFlocking(SwitchedLaw):
         apart = n * (n - 1) // 2 - len(links(q, self.interaction.r))
         return self.hamiltonian(0.0, q, p) - apart * self.interaction.far_potential
 
-    def stiffness(self, q: Any) -> csr_array:
+    def stiffness(self, q: Any, t: float = 0.0) -> Any:
         """Hessian of Σ ψ̄ off the switches, in the order of ``q.ravel()``, sparse.
 
         Parameters
         ----------
         q : array_like, shape (n, m)
             Positions.
+        t : float
+            Time (it does not depend on it).
         """
         q = ensure_points("q", q)
         _ensure_apart(q)
-        return self.interaction.hessian(q)
-
-    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[csr_array, csr_array]:
-        """(∂u/∂q, ∂u/∂p) off the switches, where a_ij is constant: (−∇²Σψ̄, −k₂ L̂), sparse, unchecked.
-
-        Parameters
-        ----------
-        t : float
-            Time (the law does not depend on it).
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
-        """
-        return self.interaction.jacobian(q, p, stiffness=1.0, damping=self.k2)
+        return super().stiffness(q, t)
 
     def measures(
         self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]

@@ -1,21 +1,25 @@
-"""What a law of motion is: a continuous feedback u(t, q, p) for q' = p, p' = u, or a map from step to step."""
+"""What a law of motion is and has, and the continuous ones: a feedback u(t, q, p) for q' = p, p' = u."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_fits, ensure_state
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
-from flockana.base.units import Powers
-from flockana.interactions.pair import pair_interaction
+from flockana.interactions.pair import PairInteraction
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array, sparray
+
+    from flockana.environment.beta import ObstacleField
+    from flockana.environment.obstacles import Obstacle
+    from flockana.environment.targets import Target
+    from flockana.laws.terms.term import Term
 
 
 def block_diagonal(blocks: FloatArray) -> csr_array:
@@ -37,14 +41,95 @@ def block_diagonal(blocks: FloatArray) -> csr_array:
     return bsr_array((blocks, np.arange(n), np.arange(n + 1)), shape=(n * m, n * m)).tocsr()
 
 
-class Law(ABC):
-    """A continuous law; a subclass is a frozen dataclass with `flow` and, if it has an energy, `hamiltonian`.
+_Term = TypeVar("_Term", bound="Term")
+_LACKING: Mapping[str, Any] = {"target": None, "obstacles": (), "obstacle_field": None}
 
-    `flow` and `hamiltonian` are the unchecked inner loop of the integrators; `acceleration`, `energy` and
-    `energy_rate` are the validated public face of the same functions.
+
+def _pair_among(parameters: Iterable[Any]) -> PairInteraction | None:
+    """The first pair interaction of finite range, of a law that is stepped too."""
+    for value in parameters:
+        found = value.pair if isinstance(value, LawOfMotion) else value
+        if isinstance(found, PairInteraction):
+            return found if np.isfinite(found.range) else None
+    return None
+
+
+class LawOfMotion(ABC):  # noqa: B024  # each of its two kinds has an abstract method of its own
+    """What continuous laws and maps have in common, and what the rest of the library may ask any of them for.
+
+    A law has what its parameters are named for; what it lacks is None or empty, so that nobody need ask for its class.
+
+    Attributes
+    ----------
+    pair : PairInteraction or None
+        The pair interaction of finite range among its parameters, whatever their names.
+    target : Target or None
+        The γ-agent.
+    obstacles : tuple of Obstacle
+        What agents keep off.
+    obstacle_field : ObstacleField or None
+        How they do.
     """
 
     references: ClassVar[tuple[str, ...]] = ()
+
+    if TYPE_CHECKING:
+        pair: PairInteraction | None
+        target: Target | None
+        obstacles: tuple[Obstacle, ...]
+
+        @property
+        def obstacle_field(self) -> ObstacleField | None: ...  # noqa: D102
+
+    else:  # a class attribute would be the default of a field of that name
+
+        def __getattr__(self, name: str) -> Any:
+            if name == "pair":
+                return _pair_among(vars(self).values())
+            if name in _LACKING:
+                own = self.continuous
+                return _LACKING[name] if own is None or own is self else getattr(own, name)
+            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}", name=name, obj=self)
+
+    @property
+    def continuous(self) -> Law | None:
+        """The law itself if it is continuous, of a map the law that it steps, if it steps one."""
+        return None
+
+    @property
+    def terms(self) -> tuple[Term, ...]:
+        """The summands of a law that is a sum of terms; none of another."""
+        return ()
+
+    def term(self, kind: type[_Term]) -> _Term | None:
+        """The first term of a kind, None if there is none.
+
+        Parameters
+        ----------
+        kind : type
+            Such as `Navigation`.
+        """
+        return next((term for term in self.terms if isinstance(term, kind)), None)
+
+    @property
+    def conservative(self) -> bool:
+        """Whether it is known that the force at rest is minus the gradient of the energy: of sums of such terms."""
+        return False
+
+    @property
+    def splits(self) -> bool:
+        """Whether shape and centre of mass are known to move apart: forces cancel, but for one linear pull on all."""
+        return False
+
+    @property
+    def located(self) -> bool:
+        """Whether the force jumps, so that every switch must be located."""
+        return False
+
+    @property
+    def lattice(self) -> tuple[float, float] | None:
+        """(d, r) if the pair interaction holds every neighbour within r at d, so that α-lattices may be asked for."""
+        return None if self.pair is None else self.pair.lattice
 
     @property
     def scales(self) -> Scales | None:
@@ -58,23 +143,10 @@ class Law(ABC):
         Those of the law's pair interaction of finite range, if it has one. An integrator must not step over the region
         within one unseen (`flockana.dynamics.encounters`).
         """
-        pair = pair_interaction(self)
-        return () if pair is None else pair.surfaces
-
-    @abstractmethod
-    def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """Acceleration u of shape (n, m) and dH/dt in closed form (NaN for a law without energy), unchecked.
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        q, p : ndarray, shape (n, m)
-            Finite positions and velocities.
-        """
+        return () if self.pair is None else self.pair.surfaces
 
     def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:
-        """The energy whose rate `flow` returns, unchecked; NaN for a law without one.
+        """The energy whose rate `Law.flow` returns, unchecked; NaN for a law without one.
 
         Parameters
         ----------
@@ -133,6 +205,31 @@ class Law(ABC):
             By name, what it is in words and its values.
         """
         return {}
+
+
+class Law(LawOfMotion):
+    """A continuous law; a subclass is a frozen dataclass with `flow` and, if it has an energy, `hamiltonian`.
+
+    `flow` and `hamiltonian` are the unchecked inner loop of the integrators; `acceleration`, `energy` and
+    `energy_rate` are the validated public face of the same functions.
+    """
+
+    @property
+    def continuous(self) -> Law:
+        """The law itself."""
+        return self
+
+    @abstractmethod
+    def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
+        """Acceleration u of shape (n, m) and dH/dt in closed form (NaN for a law without energy), unchecked.
+
+        Parameters
+        ----------
+        t : float
+            Time.
+        q, p : ndarray, shape (n, m)
+            Finite positions and velocities.
+        """
 
     def _checked(self, t: Any, q: Any, p: Any) -> tuple[float, FloatArray, FloatArray]:
         q, p = ensure_state(q, p)
@@ -240,147 +337,3 @@ class Law(ABC):
         whole: Any = csr_array(block_array([[None, eye_array(q.size)], [by_position, by_velocity]], format="csr"))
         matrix: FloatArray | csr_array = whole if sparse else whole.toarray()
         return matrix
-
-
-class DiscreteLaw(ABC):
-    """A law that is a map from one step to the next, and not the time-discretisation of anything else.
-
-    A subclass is a frozen dataclass with a step `dt` and `step`. Its state may carry more than (q, p): `memory` maps
-    names to arrays, is passed along, and is recorded over time in `Trajectory.extra`. A run holds the state at
-    t0 + k dt and the input that brought it there; between its steps a map has no state. `extra_units` tells the powers
-    of length and time of what is remembered, where it is no pure number.
-    """
-
-    references: ClassVar[tuple[str, ...]] = ()
-    dt: float
-    steps_at_once: ClassVar[int] = 1
-    extra_units: ClassVar[Mapping[str, Powers]] = {}
-
-    @property
-    def scales(self) -> Scales | None:
-        """The natural length and time of the law, which thresholds are multiples of; None if it has none of its own."""
-        return None
-
-    @abstractmethod
-    def step(
-        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
-    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
-        """One step from t to t + dt: (next q, next p, the input u that was applied, next memory), unchecked.
-
-        Parameters
-        ----------
-        t : float
-            Time at the start of the step.
-        q, p : ndarray, shape (n, m)
-            Positions and velocities; not to be changed in place.
-        memory : mapping of str to ndarray
-            What else the law remembers.
-        """
-
-    def iterate(
-        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray], steps: int
-    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
-        """`steps` steps at once: what `step` returns after each of them, stacked along a first axis, unchecked.
-
-        `simulate` asks for `steps_at_once` steps at a time. A law whose step costs less than a call from Python
-        overrides both; it must give what `step` gives, to the bit.
-
-        Parameters
-        ----------
-        t : float
-            Time at the start of the first step.
-        q, p : ndarray, shape (n, m)
-            Positions and velocities; not to be changed in place.
-        memory : mapping of str to ndarray
-            What else the law remembers.
-        steps : int
-            How many, at least 1.
-        """
-        states, memories = [], []
-        for k in range(steps):
-            q, p, u, memory = self.step(t + k * self.dt, q, p, memory)
-            states.append((q, p, u))
-            memories.append({name: np.array(value) for name, value in memory.items()})
-        stacked = [np.stack(series) for series in zip(*states, strict=True)]
-        series = {name: np.stack([each[name] for each in memories]) for name in memory}
-        return stacked[0], stacked[1], stacked[2], series
-
-    def start(self, q: FloatArray, p: FloatArray) -> Mapping[str, FloatArray]:
-        """The memory before the first step; empty by default.
-
-        Parameters
-        ----------
-        q, p : ndarray, shape (n, m)
-            Initial positions and velocities.
-        """
-        return {}
-
-    def measures(
-        self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
-    ) -> Mapping[str, tuple[str, FloatArray]]:
-        """What is worth measuring of a run of this law, beside what is of any flock: `Trajectory.metrics` shows it.
-
-        Parameters
-        ----------
-        t : ndarray, shape (T,)
-            Sample times.
-        q, p : ndarray, shape (T, n, m)
-            Positions and velocities at the samples.
-        extra : mapping of str to ndarray
-            Further series of the run.
-
-        Returns
-        -------
-        mapping of str to (str, ndarray of shape (T,))
-            By name, what it is in words and its values.
-        """
-        return {}
-
-    def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:
-        """NaN: a map has no energy unless the subclass says so.
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
-        """
-        return float("nan")
-
-    def check_dimension(self, m: int) -> None:  # noqa: B027  # nothing to check unless a subclass says so
-        """Raise if the law does not live in m dimensions.
-
-        Parameters
-        ----------
-        m : int
-            Dimension of the flock.
-        """
-
-    def check_start(self, q: FloatArray, p: FloatArray) -> None:  # noqa: B027  # as `check_dimension`
-        """Raise if the law must not be started from this state.
-
-        Parameters
-        ----------
-        q, p : ndarray, shape (n, m)
-            Initial positions and velocities.
-        """
-
-
-def ensure_law(law: Any) -> Law | DiscreteLaw:
-    """Return `law` if it is one.
-
-    Parameters
-    ----------
-    law : object
-        What the caller gave.
-
-    Raises
-    ------
-    ArgumentError
-        If it is neither a `Law` nor a `DiscreteLaw`; a class instead of an instance is named as such.
-    """
-    if isinstance(law, Law | DiscreteLaw):
-        return law
-    hint = "; did you forget the parentheses?" if isinstance(law, type) else ""
-    raise ArgumentError(f"law = {law!r}: expected a law such as Algorithm2(target=StaticTarget((0, 0))){hint}")

@@ -15,7 +15,8 @@ from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers, times
 from flockana.kernels.minimal import edge_forces, perceived_edges
-from flockana.laws.law import DiscreteLaw, Law
+from flockana.laws.discrete import DiscreteLaw
+from flockana.laws.law import Law
 from flockana.measures.nets import components
 from flockana.measures.perception import Edges, ensure_edges
 
@@ -407,18 +408,6 @@ class DiscreteMinimalFlocking(DiscreteLaw):
         if not isinstance(self.law, MinimalFlocking):
             raise ArgumentError(f"law = {self.law!r}: expected MinimalFlocking(...)")
         object.__setattr__(self, "dt", ensure_positive("dt", self.dt))
-
-    @property
-    def scales(self) -> Scales | None:  # noqa: D102
-        return self.law.scales
-
-    def check_start(self, q: FloatArray, p: FloatArray) -> None:  # noqa: D102
-        self.law.check_agents(len(q))
-
-    def measures(  # noqa: D102
-        self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
-    ) -> Mapping[str, tuple[str, FloatArray]]:
-        return self.law.measures(t, q, p, extra)
 
     def step(
         self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]

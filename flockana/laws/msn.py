@@ -10,13 +10,11 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive
 from flockana.base.errors import ArgumentError
-from flockana.base.scales import Scales
 from flockana.base.units import Powers
-from flockana.environment.targets import Target
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.kernels.inplace import advance_alpha, neighbour_lists
 from flockana.kernels.neighbours import pair_list
-from flockana.laws.law import DiscreteLaw
+from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain
 
 PRINTED = 1.5  # q + (p + u dt) dt + ½ u dt² = q + p dt + (3/2) u dt² (erratum E9)
@@ -69,7 +67,11 @@ class MSNDiscretisation(DiscreteLaw):
     def __post_init__(self) -> None:
         if type(self.law) not in (Algorithm1, Algorithm2):
             raise ArgumentError(f"law = {self.law!r}: expected Algorithm1(...) or Algorithm2(...) itself")
-        if isinstance(self.law, Algorithm2):
+        if not isinstance(self.law.alpha, AlphaInteraction):
+            raise ArgumentError(
+                f"law = {self.law!r}: expected AlphaInteraction(...), whose sums the iteration has compiled"
+            )
+        if self.target is not None:
             ensure_one_gain(self.law.gains)
         if not isinstance(self.in_place, bool):
             raise ArgumentError(f"in_place = {self.in_place!r}: expected True or False")
@@ -77,26 +79,14 @@ class MSNDiscretisation(DiscreteLaw):
         object.__setattr__(self, "position_factor", ensure_finite_scalar("position_factor", self.position_factor))
 
     @property
-    def scales(self) -> Scales | None:  # noqa: D102
-        return self.law.scales
-
-    @property
     def alpha(self) -> AlphaInteraction:
         """The pair law."""
-        return self.law.alpha
+        return self.law.alpha  # type: ignore[return-value]  # checked when made
 
     @property
     def gains(self) -> Gains:
         """The gains."""
         return self.law.gains
-
-    @property
-    def target(self) -> Target | None:
-        """The γ-agent; None for Algorithm 1."""
-        return self.law.target if isinstance(self.law, Algorithm2) else None
-
-    def check_dimension(self, m: int) -> None:  # noqa: D102
-        self.law.check_dimension(m)
 
     def step(
         self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
@@ -15,9 +16,10 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_positive
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
-from flockana.interactions import AlphaInteraction
+from flockana.interactions import AlphaInteraction, Gains
 from flockana.kernels.neighbours import pair_blocks
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.laws.terms.term import Term
 
 MIN_DISTANCE, FACTOR = 0.05, 10.0
 
@@ -61,32 +63,42 @@ def extra_push(alpha: AlphaInteraction, q: FloatArray, *, min_distance: float, f
     return f
 
 
-class _Push:
-    """The two parameters' checks and the change of (u, dH/dt), shared by the two laws."""
+@dataclass(frozen=True)
+class PushTerm(Term):
+    """What the push adds to the gradient of the pairs: no gradient itself, as energy is not counted of it.
 
+    Parameters
+    ----------
+    alpha : AlphaInteraction
+        The pair law.
+    stiffness : float
+        c1α.
+    min_distance : float
+        Distance below which a pair is pushed.
+    factor : float
+        By what q_j − q_i is multiplied there.
+
+    Examples
+    --------
+    >>> u, q = np.zeros((2, 1)), np.array([[0.0], [0.04]])
+    >>> PushTerm(AlphaInteraction(), 1.0, 0.05, 10.0).act(0.0, q, 0.0 * q, u), bool(u[0, 0] < 0.0)
+    (0.0, True)
+    """
+
+    alpha: AlphaInteraction
+    stiffness: float
     min_distance: float
     factor: float
 
-    def _check(self) -> None:
-        for name in ("min_distance", "factor"):
-            object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
-        if self.factor < 1.0:
-            raise ArgumentError(f"factor = {self.factor:g}: expected at least 1; a smaller one is no push")
+    conservative = False
 
-    @property
-    def surfaces(self) -> tuple[Any, ...]:
-        """Those of the law without the push, and where the push begins."""
-        return (self.min_distance, *super().surfaces)  # type: ignore[misc]
+    def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
+        f = self.stiffness * extra_push(self.alpha, q, min_distance=self.min_distance, factor=self.factor)
+        u += f
+        return float(np.sum(f * p))  # the same in the moving frame, for the pushes cancel
 
-    def _pushed(
-        self, alpha: AlphaInteraction, c1: float, q: FloatArray, p: FloatArray, found: tuple[FloatArray, float]
-    ) -> tuple[FloatArray, float]:
-        f = c1 * extra_push(alpha, q, min_distance=self.min_distance, factor=self.factor)
-        # Σ⟨f_i, p_i⟩ is the same in the moving frame, for the pushes cancel
-        return found[0] + f, found[1] + float(np.sum(f * p))
-
-    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> Any:
-        """Those of the law without the push; raise where it acts.
+    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Zero where it does not act; raise where it does.
 
         Parameters
         ----------
@@ -100,7 +112,41 @@ class _Push:
                 f"agents are closer than min_distance = {self.min_distance:g}: expected them farther apart, where the "
                 "push does not act; it has no derivatives here"
             )
-        return super().derivatives(t, q, p)  # type: ignore[misc]
+        nothing = np.zeros((*q.shape, q.shape[1]))
+        return nothing, nothing
+
+    def hessian(self, t: float, q: FloatArray) -> FloatArray:  # noqa: D102
+        return np.zeros((*q.shape, q.shape[1]))
+
+
+class _Push:
+    """The two parameters' checks and the further term, shared by the two laws."""
+
+    alpha: AlphaInteraction
+    gains: Gains
+    min_distance: float
+    factor: float
+
+    def _check(self) -> None:
+        if not isinstance(self.alpha, AlphaInteraction):
+            raise ArgumentError(
+                f"alpha = {self.alpha!r}: expected AlphaInteraction(...), whose action the push multiplies"
+            )
+        for name in ("min_distance", "factor"):
+            object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
+        if self.factor < 1.0:
+            raise ArgumentError(f"factor = {self.factor:g}: expected at least 1; a smaller one is no push")
+
+    @property
+    def surfaces(self) -> tuple[Any, ...]:
+        """Those of the law without the push, and where the push begins."""
+        return (self.min_distance, *super().surfaces)  # type: ignore[misc]
+
+    @cached_property
+    def terms(self) -> tuple[Term, ...]:
+        """Those of the law without the push, and the push."""
+        push = PushTerm(self.alpha, self.gains.c1_alpha, self.min_distance, self.factor)
+        return (*super().terms, push)  # type: ignore[misc]
 
 
 @dataclass(frozen=True)
@@ -140,9 +186,6 @@ class PushedAlgorithm1(_Push, Algorithm1):
         super().__post_init__()
         self._check()
 
-    def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
-        return self._pushed(self.alpha, self.gains.c1_alpha, q, p, super().flow(t, q, p))
-
 
 @dataclass(frozen=True)
 class PushedAlgorithm2(_Push, Algorithm2):
@@ -179,6 +222,3 @@ class PushedAlgorithm2(_Push, Algorithm2):
     def __post_init__(self) -> None:
         super().__post_init__()
         self._check()
-
-    def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
-        return self._pushed(self.alpha, self.gains.c1_alpha, q, p, super().flow(t, q, p))

@@ -8,11 +8,11 @@ from typing import ClassVar, TypeGuard
 
 from flockana.base.checks import FloatArray, ensure_positive
 from flockana.base.errors import ArgumentError
-from flockana.base.scales import Scales
 from flockana.base.units import Powers
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.laws.law import DiscreteLaw, Law
+from flockana.laws.discrete import DiscreteLaw
+from flockana.laws.law import Law
 
 
 @dataclass(frozen=True)
@@ -55,10 +55,6 @@ class SemiImplicitEuler(DiscreteLaw):
         if not isinstance(self.law, Law):
             raise ArgumentError(f"law = {self.law!r}: expected a continuous law such as DeadZoneFlocking()")
         object.__setattr__(self, "dt", ensure_positive("dt", self.dt))
-
-    @property
-    def scales(self) -> Scales | None:  # noqa: D102
-        return self.law.scales
 
     @property
     def references(self) -> tuple[str, ...]:  # type: ignore[override]  # those of the law that is stepped
@@ -117,42 +113,6 @@ class SemiImplicitEuler(DiscreteLaw):
             Positions and velocities.
         """
         return self.law.hamiltonian(t, q, p)
-
-    def check_dimension(self, m: int) -> None:
-        """Raise if the law does not live in m dimensions.
-
-        Parameters
-        ----------
-        m : int
-            Dimension of the flock.
-        """
-        self.law.check_dimension(m)
-
-    def check_start(self, q: FloatArray, p: FloatArray) -> None:
-        """Raise if the law must not be started from this state.
-
-        Parameters
-        ----------
-        q, p : ndarray, shape (n, m)
-            Initial positions and velocities.
-        """
-        self.law.check_start(q, p)
-
-    def measures(
-        self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
-    ) -> Mapping[str, tuple[str, FloatArray]]:
-        """What the law that is stepped measures.
-
-        Parameters
-        ----------
-        t : ndarray, shape (T,)
-            Sample times.
-        q, p : ndarray, shape (T, n, m)
-            Positions and velocities.
-        extra : mapping of str to ndarray
-            Further series of the run.
-        """
-        return self.law.measures(t, q, p, extra)
 
 
 def _is_compiled(law: Law) -> TypeGuard[DeadZoneFlocking]:

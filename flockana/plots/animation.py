@@ -15,7 +15,7 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_positive
 from flockana.base.errors import ArgumentError, FileError
 from flockana.base.files import replacing
-from flockana.laws.law import DiscreteLaw
+from flockana.laws.discrete import DiscreteLaw
 from flockana.plots.snapshot import drawn_law, in_view, snapshot
 from flockana.plots.style import style
 

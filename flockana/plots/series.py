@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.ticker import FormatStrFormatter, MaxNLocator, NullFormatter
 
 from flockana.base.errors import UnknownNameError
-from flockana.laws.law import DiscreteLaw
+from flockana.laws.discrete import DiscreteLaw
 from flockana.plots.style import BLUE, GREEN, INK, MUTED, PURPLE, VERMILLION, ensure_axes, hairline, legend_above, style
 from flockana.scenarios.findings import component_counts
 
@@ -168,10 +168,10 @@ def distances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     if len(t) > 1 and not isinstance(trajectory.law, DiscreteLaw):
         bound = trajectory.closest_approach().lower_by_interval
         ax.stairs(bound, t, baseline=None, color=VERMILLION, linestyle="--", linewidth=1.0, label="lower bound between")
-    pair_law = getattr(trajectory.law, "alpha", None)
-    for name, colour, dash in (("d", GREEN, ":"), ("r", PURPLE, "-.")):
-        if hasattr(pair_law, name):
-            ax.axhline(getattr(pair_law, name), color=colour, linestyle=dash, linewidth=1.1, label=name)
+    for name, length, colour, dash in zip(
+        "dr", trajectory.law.lattice or (), (GREEN, PURPLE), (":", "-."), strict=False
+    ):
+        ax.axhline(length, color=colour, linestyle=dash, linewidth=1.1, label=name)
     ax.set_ylim(bottom=0.0)
     legend_above(ax)
     return _frame(ax, trajectory, label)
@@ -223,7 +223,7 @@ def clearances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     """
     ax = ensure_axes(ax)
     label = "least clearance (length)"
-    solids = getattr(trajectory.law, "obstacles", ())
+    solids = trajectory.law.obstacles
     if not solids:
         return _empty(ax, label, "there are no obstacles")
     t, q = trajectory.t, trajectory.q
@@ -234,8 +234,8 @@ def clearances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
         ax.plot(t, least, color=BLUE, linestyle="-", linewidth=width, alpha=alpha, label=name)
     bound = trajectory.clearance().lower
     ax.axhline(bound, color=VERMILLION, linestyle="--", linewidth=1.1, label="lower bound for all times")
-    beta = getattr(trajectory.law, "beta", None)
-    if beta is not None:
+    if (field := trajectory.law.obstacle_field) is not None:
+        beta = field.beta
         ax.axhline(beta.d, color=GREEN, linestyle=":", linewidth=1.1, label="d'")
         ax.set_ylim(min(0.0, bound), max(6.0 * beta.d, 1.5 * bound))
     ax.axhline(0.0, color=INK, linewidth=0.8, linestyle="-")
@@ -258,7 +258,7 @@ def speeds(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     matplotlib.axes.Axes
     """
     ax = ensure_axes(ax)
-    t, target = trajectory.t, getattr(trajectory.law, "target", None)
+    t, target = trajectory.t, trajectory.law.target
     speed = np.linalg.norm(trajectory.p, axis=2)
     width, alpha = hairline(trajectory.n)
     ax.plot(t, speed, color=BLUE, linestyle="-", linewidth=width, alpha=alpha)
@@ -288,7 +288,7 @@ def centre_of_mass(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     matplotlib.axes.Axes
     """
     ax = ensure_axes(ax)
-    t, centre, target = trajectory.t, trajectory.q.mean(axis=1), getattr(trajectory.law, "target", None)
+    t, centre, target = trajectory.t, trajectory.q.mean(axis=1), trajectory.law.target
     for k, colour in zip(range(trajectory.m), (BLUE, GREEN, PURPLE), strict=False):
         ax.plot(t, centre[:, k], color=colour, linestyle="-", linewidth=1.8, label=f"{'xyz'[k]} of the centre")
     if target is not None:

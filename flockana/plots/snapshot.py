@@ -19,7 +19,6 @@ from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_points
 from flockana.environment.beta import ObstacleField
 from flockana.environment.obstacles import Obstacle
 from flockana.interactions import BetaInteraction
-from flockana.interactions.pair import pair_interaction
 from flockana.measures.nets import link_lengths, links
 from flockana.plots.obstacles import bounds
 from flockana.plots.obstacles import obstacles as draw_obstacles
@@ -77,7 +76,7 @@ def drawn_law(trajectory: Trajectory) -> Any:
     trajectory : Trajectory
         The run.
     """
-    return getattr(trajectory.law, "law", trajectory.law)
+    return trajectory.law.continuous or trajectory.law
 
 
 @singledispatch
@@ -99,7 +98,7 @@ def draw_sample(law: Any, trajectory: Trajectory, k: int, *, ax: Axes | None, ve
     -------
     matplotlib.axes.Axes
     """
-    pair, target = pair_interaction(law), getattr(law, "target", None)
+    pair, target = law.pair, law.target
     q, t = trajectory.q[k], float(trajectory.t[k])
     return configuration(
         q,
@@ -107,8 +106,8 @@ def draw_sample(law: Any, trajectory: Trajectory, k: int, *, ax: Axes | None, ve
         d=None if pair is None else pair.length,
         r=None if pair is None else pair.range,
         target=None if target is None else target.position(t),
-        obstacles=getattr(law, "obstacles", ()),
-        beta=getattr(law, "beta", None),
+        obstacles=law.obstacles,
+        beta=None if law.obstacle_field is None else law.obstacle_field.beta,
         ax=ax,
         bar=bar,
         title=f"t = {t:.4g}",
@@ -127,9 +126,9 @@ def in_view(law: Any, trajectory: Trajectory) -> FloatArray:
         The run.
     """
     shown = [trajectory.q.reshape(-1, trajectory.m)]
-    if getattr(law, "target", None) is not None:
+    if law.target is not None:
         shown.append(np.array([law.target.position(t) for t in trajectory.t.tolist()]))
-    if getattr(law, "obstacles", ()):
+    if law.obstacles:
         shown.append(bounds(law.obstacles))
     return np.concatenate(shown)
 

@@ -89,7 +89,7 @@ def _plane(t: FloatArray, x: FloatArray) -> FloatArray:
 
 def _target(ax: Any, trajectory: Trajectory) -> tuple[FloatArray, ...]:
     """Draw the γ-agent's path, if there is one, and return it."""
-    target = getattr(trajectory.law, "target", None)
+    target = trajectory.law.target
     if target is None:
         return ()
     path = _plane(trajectory.t, np.array([target.position(t) for t in trajectory.t.tolist()]))

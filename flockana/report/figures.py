@@ -16,7 +16,6 @@ from PIL import Image
 
 from flockana import plots
 from flockana.dynamics.trajectory import Trajectory
-from flockana.interactions.pair import pair_interaction
 from flockana.laws.minimal import MinimalFlocking
 from flockana.plots.snapshot import drawn_law
 from flockana.scenarios.findings import component_counts
@@ -78,8 +77,8 @@ def flock_pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
     tuple of Picture
     """
     law = drawn_law(trajectory)
-    linked = pair_interaction(law) is not None or isinstance(law, MinimalFlocking)
-    blocked = bool(getattr(law, "obstacles", ()))
+    linked = law.pair is not None or isinstance(law, MinimalFlocking)
+    blocked = bool(law.obstacles)
     drawn = (
         Picture(
             (
@@ -157,7 +156,7 @@ def _snapshots(figure: Figure, run: Trajectory) -> None:
 
 def _middle(run: Trajectory) -> int:
     """The sample halfway in time; among obstacles the one where a flock, once connected, is most split."""
-    if getattr(run.law, "obstacles", ()):
+    if run.law.obstacles:
         counts = component_counts(run)
         since = int(np.argmax(counts == 1))
         if counts[since] == 1 and counts[since:].max() > 1:

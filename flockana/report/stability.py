@@ -134,7 +134,7 @@ def _flocks() -> tuple[Picture, ...]:
     """Poles and the three slowest modes of the shape of 19 agents, under both algorithms."""
     pictures = []
     for law in (Algorithm1(), Algorithm2(target=StaticTarget((0.0, 0.0)))):
-        flock = linearise(law, find_equilibrium(law, hexagonal_patch(2, law.alpha.d)))
+        flock = linearise(law, find_equilibrium(law, hexagonal_patch(2, law.alpha.length)))
         kind = f"Algorithm {type(law).__name__[-1]}"
         zero = ", ".join(mode.name for mode in flock.zero_modes)
         text = (
@@ -181,7 +181,7 @@ def _bode(found: Sequence[tuple[str, Verdict]]) -> Picture | None:
         if verdict.theorem != "E12" or name not in scenarios():
             continue
         law: Any = scenario(name).law
-        path, factor = path_and_factor(getattr(law, "target", None))
+        path, factor = path_and_factor(law.target)
         claims = {claim.name: claim for claim in verdict.claims}
         if not isinstance(path, SineTarget | CircleTarget) or claims["predicted"].computed is None:
             continue

@@ -10,7 +10,7 @@ from flockana.base.checks import ensure_positive
 from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.laws.law import DiscreteLaw
+from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.scenarios.findings import finding
 from flockana.scenarios.scenario import Report, Scenario

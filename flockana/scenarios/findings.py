@@ -11,7 +11,6 @@ import numpy.typing as npt
 from flockana.base.scales import Scales
 from flockana.base.units import rescale
 from flockana.dynamics.trajectory import Trajectory
-from flockana.interactions.pair import pair_interaction
 from flockana.measures.nets import components, links
 from flockana.theorems.limits import Certificate, limit_claim
 from flockana.theorems.theorem import Claim, Tolerances, judge
@@ -120,7 +119,7 @@ def component_count(run: Trajectory, k: int = -1) -> int:
     k : int
         Which sample; the last by default.
     """
-    pair = pair_interaction(run.law)
+    pair = run.law.pair
     assert pair is not None
     return int(components(run.n, links(run.q[k], pair.range)).max()) + 1
 

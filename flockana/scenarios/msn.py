@@ -17,7 +17,8 @@ from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import CircleTarget, RescaledVelocity, SineTarget, StaticTarget
 from flockana.interactions import AlphaInteraction, Gains
-from flockana.laws.law import DiscreteLaw, Law
+from flockana.laws.discrete import DiscreteLaw
+from flockana.laws.law import Law
 from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.measures.metrics import connectivity, giant_share

@@ -37,7 +37,7 @@ def _integrator(law: Algorithm1 | Algorithm2) -> dict[str, Any]:
 def _other(run: Trajectory) -> Trajectory:
     """The same start with the push switched on, or off."""
     law = run.law
-    shared = {"alpha": law.alpha, "gains": law.gains} | ({"target": law.target} if hasattr(law, "target") else {})
+    shared = {"alpha": law.alpha, "gains": law.gains} | ({} if law.target is None else {"target": law.target})
     other = _SWITCH[type(law)](**shared)
     how = _integrator(other) or as_tightly(run)
     return simulate(other, run.q[0], run.p[0], (float(run.t[0]), float(run.t[-1])), **how)

@@ -15,7 +15,8 @@ from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.units import rescale, times
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.law import DiscreteLaw, Law
+from flockana.laws.discrete import DiscreteLaw
+from flockana.laws.law import Law
 from flockana.theorems import Claim, Tolerances, Verdict, verify
 from flockana.theorems.second_run import corroborated
 from flockana.theorems.theorem import Status

@@ -10,7 +10,7 @@ from flockana.environment.obstacles import Sphere
 from flockana.environment.targets import StaticTarget
 from flockana.interactions import Gains
 from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.olfati_saber import Algorithm1
+from flockana.laws.olfati_saber import Algorithm1, paper_pair
 from flockana.scenarios.scenario import Scenario
 from flockana.theorems.slides.e03 import rhombus_with_double_agent
 from flockana.theorems.theorem import Status
@@ -23,7 +23,7 @@ def _head_on(name: str, apart: float, share: float, expected: dict[str, Status])
 
     def build(seed: int = 0) -> Scenario:
         law, q = Algorithm1(), np.array([[0.0], [apart]])
-        speed = np.sqrt(share * law.gains.c1_alpha * law.alpha.c_star - law.energy(0.0, q, 0.0 * q))  # K = speed²
+        speed = np.sqrt(share * law.gains.c1_alpha * paper_pair(law).c_star - law.energy(0.0, q, 0.0 * q))  # K = speed²
         return Scenario(
             name,
             f"Two agents head on, with {share:g} c* of energy",
@@ -44,7 +44,7 @@ def _head_on(name: str, apart: float, share: float, expected: dict[str, Status])
 def _five_agents(seed: int = 0) -> Scenario:
     """Erratum E3: next to the basin of the smallest strained minimum that we know."""
     law = Algorithm1(gains=Gains(c2_alpha=20.0))
-    q = rhombus_with_double_agent(law.alpha.d)
+    q = rhombus_with_double_agent(law.alpha.length)
     q[4] += (0.0, 0.5)
     return Scenario(
         "five-agents",

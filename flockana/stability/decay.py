@@ -12,8 +12,8 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_positive
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.simulate import simulate
-from flockana.interactions.pair import pair_interaction
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2, moving_frame
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.measures.frame import moving_frame
 from flockana.measures.nets import links
 from flockana.stability.linearise import Linearisation
 from flockana.stability.modes import Mode
@@ -279,7 +279,7 @@ def linear_range(
     levels = np.array([ensure_positive("amplitudes", x) for x in amplitudes])
     if levels.size == 0 or np.any(np.diff(levels) <= 0.0):
         raise ArgumentError(f"amplitudes = {amplitudes!r}: expected rising numbers")
-    mode, pair = slowest_seen(found), pair_interaction(found.law)
+    mode, pair = slowest_seen(found), found.law.pair
     reach = inf if pair is None else pair.range
     deviations, changes = [], []
     for size in (levels * _length(found)).tolist():

@@ -19,10 +19,10 @@ from flockana.base.checks import (
     ensure_state,
 )
 from flockana.base.errors import ArgumentError
-from flockana.interactions.pair import pair_interaction
 from flockana.lattice.crossings import ensure_links
-from flockana.laws.law import DiscreteLaw, Law
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2, moving_frame
+from flockana.laws.discrete import DiscreteLaw
+from flockana.laws.law import Law
+from flockana.measures.frame import moving_frame
 from flockana.measures.nets import LinkArray
 from flockana.measures.nets import links as links_within
 from flockana.stability.modes import ZERO, Mode, SecondOrder
@@ -298,7 +298,7 @@ def linearise(
     q = ensure_points("equilibrium", getattr(equilibrium, "q", equilibrium))
     law.check_dimension(q.shape[1])
     t = ensure_finite_scalar("t", t)
-    target = getattr(law, "target", None)
+    target = law.target
     if p is None:
         p = np.zeros_like(q) if target is None else np.tile(target.rate(t), (len(q), 1))
     q, p = ensure_state(q, p)
@@ -352,15 +352,10 @@ def _finite_jacobian(law: Law, t: float, q: FloatArray, p: FloatArray) -> csr_ar
     )
 
 
-def _moves_with_centre(law: Law) -> bool:
-    """Whether the shape is autonomous and the centre linear: Algorithm 1, and 2 with one gain for all."""
-    return isinstance(law, Algorithm1) or (isinstance(law, Algorithm2) and not law.gains.per_agent)
-
-
 def _residual(law: Law, t: float, q: FloatArray, p: FloatArray, matrix: csr_array) -> float:
     """Largest force and relative velocity, over the law's own scales."""
     force = law.flow(t, q, p)[0]
-    if _moves_with_centre(law):
+    if law.splits:
         force = moving_frame(force)
     length = _length(q) if law.scales is None else law.scales.length
     scale = float(abs(matrix[q.size :, : q.size]).max()) * length if law.scales is None else law.scales.force
@@ -383,7 +378,7 @@ def _ensure_steady(law: Law, t: float, q: FloatArray, p: FloatArray, matrix: csr
 
     Looked at after a little less than one, ten and a hundred of the flock's own times, that of its stiffest motion.
     """
-    if _moves_with_centre(law):
+    if law.splits:
         return
     size = q.size
     stiff, drag = (float(abs(matrix[size:, part]).max()) for part in (slice(0, size), slice(size, None)))
@@ -401,7 +396,7 @@ def _ensure_steady(law: Law, t: float, q: FloatArray, p: FloatArray, matrix: csr
 
 def _default_links(law: Law, q: FloatArray) -> LinkArray:
     """Pairs within the range of the law's pair interaction, if it has one."""
-    pair = pair_interaction(law)
+    pair = law.pair
     if pair is None:
         return np.zeros((0, 2), dtype=np.int32)
     return links_within(q, pair.range)

@@ -9,6 +9,7 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_fits
 from flockana.base.errors import ArgumentError
 from flockana.lattice.rigidity import rigidity_matrix
+from flockana.laws.terms.navigation import Navigation
 from flockana.stability.modes import translations
 
 if TYPE_CHECKING:
@@ -42,9 +43,9 @@ def _vector(name: str, m: int) -> list[str]:
 def _target_inputs(found: Linearisation) -> tuple[FloatArray, list[str]]:
     """Columns of ∂u/∂(q_r, p_r) and their names; none for a law without a γ-agent."""
     size, m = found.q.size, found.q.shape[1]
-    if not hasattr(found.law, "target_derivatives"):
+    if (pull := found.law.term(Navigation)) is None:
         return np.zeros((size, 0)), []
-    by_position, by_velocity = found.law.target_derivatives(found.t, found.q)
+    by_position, by_velocity = pull.target_derivatives(found.t, found.q)
     return np.hstack([by_position.reshape(size, m), by_velocity.reshape(size, m)]), _vector("qr", m) + _vector("pr", m)
 
 

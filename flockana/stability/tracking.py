@@ -219,7 +219,7 @@ def _amplitude(t: FloatArray, x: FloatArray, omega: float) -> tuple[ComplexArray
 
 def _swings(run: Trajectory) -> tuple[ComplexArray, ComplexArray, float]:
     """Complex amplitudes of the flock and the γ-agent over the last whole periods, and the error of the fit."""
-    path, _ = path_and_factor(getattr(run.law, "target", None))
+    path, _ = path_and_factor(run.law.target)
     if not isinstance(path, SineTarget | CircleTarget):
         raise ArgumentError(f"target = {path!r}: expected a SineTarget or a CircleTarget")
     if not whole_period(run, path):

@@ -85,7 +85,7 @@ def with_alpha_gain(run: Trajectory, name: str, *laws: type) -> list[Hypothesis]
     law = applied(run, name, *laws)
     if law.status == "unmet":
         return [law]
-    single = [one_gain(run)] if hasattr(run.law, "target") else []
+    single = [one_gain(run)] if run.law.target is not None else []
     return [law, *single, positive(run, c1_alpha="c1α")]
 
 

@@ -32,7 +32,7 @@ def _delays(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
     claims = []
     for law in (Algorithm1(), Algorithm2(target=StaticTarget((0.0, 0.0)))):
         kind = type(law).__name__[-1]
-        q = find_equilibrium(law, hexagonal_patch(1, law.alpha.d)).q
+        q = find_equilibrium(law, hexagonal_patch(1, law.alpha.length)).q
         for delayed in ("all", "pairs"):
             system = delay_system(law, q, delayed=delayed)
             found = delay_margin(system)

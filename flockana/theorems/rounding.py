@@ -98,14 +98,14 @@ def energy_error(law: Any, q: FloatArray, p: FloatArray, energy: FloatArray) -> 
     """
     n, m = q.shape[1:]
     alpha, gains, pairs = law.alpha, law.gains, n * (n - 1) // 2
-    pull = float(np.max(gains.c1_gamma)) if hasattr(law, "target") else 0.0
+    pull = float(np.max(gains.c1_gamma)) if law.target is not None else 0.0
     reach = float(np.abs(q).max())
     if pull:
         reach += float(np.abs(law.target.position(0.0)).max())
     steepest = 1.01 * alpha.strength  # force of a pair: how much its potential moves with its distance
     error = gains.c1_alpha * pairs * (_POTENTIAL * alpha.c_star + 8.0 * EPS * steepest * (alpha.r + reach))
     error += pull * (n + 8) * EPS * reach**2
-    for _ in getattr(law, "obstacles", ()):
+    for _ in law.obstacles:
         most, steepest = float(law.beta.psi_beta(0.0)), 2.0 / sqrt(law.beta.eps)
         error += gains.c1_beta * n * (_POTENTIAL * most + 16.0 * EPS * steepest * (law.beta.r + reach))
     bound: FloatArray = error + (pairs + n * m + 8) * EPS * np.abs(energy) + 2.0 * spread_error(p)

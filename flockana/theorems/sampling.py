@@ -18,7 +18,7 @@ from flockana.base.checks import FloatArray
 from flockana.dynamics.between import Course
 from flockana.dynamics.trajectory import Trajectory
 from flockana.kernels.paths import bernstein
-from flockana.laws.law import DiscreteLaw
+from flockana.laws.discrete import DiscreteLaw
 from flockana.measures.nets import LinkArray, components, link_lengths, links
 from flockana.theorems.rounding import EPS
 
@@ -95,7 +95,7 @@ def nets_at(run: Trajectory) -> Nets:
 
 
 def _nets_at(run: Trajectory) -> Nets:
-    r, rounding, rows = run.law.alpha.r, _rounding(run), []
+    r, rounding, rows = run.law.lattice[1], _rounding(run), []
     for k, q in enumerate(run.q):
         pairs = links(q, r + rounding)
         rows.append(_row(run, k, pairs, link_lengths(q, pairs) < r - rounding))
@@ -116,7 +116,7 @@ def nets_between(run: Trajectory) -> Nets:
 def _nets_between(run: Trajectory) -> Nets:
     if isinstance(run.law, DiscreteLaw):
         return Nets(*(getattr(nets_at(run), field.name)[:-1] for field in fields(Nets)))
-    r, rounding, rows = run.law.alpha.r, _rounding(run), []
+    r, rounding, rows = run.law.lattice[1], _rounding(run), []
     h, (speed, force, off), path = np.diff(run.t), _motion(run), run.path
     first = np.searchsorted(path.t, run.t)
     for k in range(len(run.t) - 1):
@@ -154,7 +154,7 @@ def _relative(path: Course, steps: range, pairs: LinkArray) -> tuple[FloatArray,
 
 def _rounding(run: Trajectory) -> float:
     """Of a distance of two agents, against r."""
-    return float(16.0 * EPS * (np.abs(run.q).max() + run.law.alpha.r))
+    return float(16.0 * EPS * (np.abs(run.q).max() + run.law.lattice[1]))
 
 
 def _row(run: Trajectory, k: int, pairs: LinkArray, certain: npt.NDArray[np.bool_]) -> tuple[float, ...]:

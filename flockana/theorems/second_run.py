@@ -18,7 +18,7 @@ from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.dynamics.integrators import FINEST
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.law import DiscreteLaw
+from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.switched import SwitchedLaw
 from flockana.theorems.theorem import Claim, judge
 

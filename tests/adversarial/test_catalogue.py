@@ -10,7 +10,7 @@ from adversarial.cases import Case
 from adversarial.transforms import UNITS, UnchangedError, in_units, later, renumbered, rigid
 
 from flockana.base.errors import ArgumentError
-from flockana.laws.law import DiscreteLaw
+from flockana.laws.discrete import DiscreteLaw
 from flockana.scenarios import scenario, scenarios
 
 QUICK = {  # one change each in the sample; every change of every scenario in the attack

@@ -15,7 +15,7 @@ from flockana.environment.capsule import Capsule
 from flockana.environment.polygon import Polygon
 from flockana.environment.targets import CallableTarget, RescaledVelocity, SineTarget
 from flockana.equilibria.terms import obstacle_term, pair_term, pull_term
-from flockana.laws.law import DiscreteLaw
+from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.notebook import PushedAlgorithm2
 from flockana.scenarios import scenario, scenarios

@@ -9,7 +9,6 @@ import pytest
 from flockana.dynamics.simulate import simulate
 from flockana.ensemble.measures import _MEASURES
 from flockana.interactions.dead_zone import DeadZoneInteraction
-from flockana.interactions.pair import pair_interaction
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.olfati_saber import Algorithm1
@@ -22,7 +21,7 @@ def test_a_dead_zone_flock_has_components_at_its_range_and_no_strain(law):
     found = {name: one.value(run) for name, one in _MEASURES.items()}
     assert (found["components"], found["giant_share"]) == (2.0, pytest.approx(2.0 / 3.0))
     assert isnan(found["strain"])
-    assert pair_interaction(law) == DeadZoneInteraction()
+    assert law.pair == DeadZoneInteraction()
 
 
 def test_links_of_a_lattice_law_are_as_before():
@@ -33,6 +32,6 @@ def test_links_of_a_lattice_law_are_as_before():
 
 def test_a_law_without_a_pair_interaction_has_no_net():
     law = MinimalFlocking(edges=[(0, 1)], spacing=1.0)
-    assert pair_interaction(law) is None
+    assert law.pair is None
     run = simulate(law, [[0.0], [1.0]], [[0.0], [0.0]], (0.0, 0.1))
     assert isnan(_MEASURES["components"].value(run))

@@ -188,7 +188,7 @@ def test_failures_are_clear():
     with pytest.raises(UnknownNameError, match="did you mean 'root'"):
         find_equilibrium(Algorithm1(), start, method="roots")
     with pytest.raises(
-        ArgumentError, match="expected Algorithm1, Algorithm2 or Algorithm3, or DeadZoneFlocking: their forces are"
+        ArgumentError, match="expected a sum of a pair term and others whose forces are gradients, such as Algorithm1"
     ):
         find_equilibrium("Algorithm1", start)
     with pytest.raises(ArgumentError, match="expected n m <= 6000"):

@@ -15,7 +15,7 @@ from flockana.environment.zone_obstacles import Box, SimplePolygon
 from flockana.environment.zone_world import Alien, ZoneWorld
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import CHOICES, ZoneFlocking
-from flockana.laws.law import DiscreteLaw
+from flockana.laws.discrete import DiscreteLaw
 from flockana.measures.metrics import coordination
 from flockana.symbolic import bearing_distance as symbolic
 

@@ -16,7 +16,7 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.obstacles import Sphere
 from flockana.environment.targets import StaticTarget
 from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.law import DiscreteLaw
+from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.plots.animation import _size, _view, ensure_film, equal_times
 

@@ -13,7 +13,8 @@ from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.dynamics.simulate import simulate
 from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.interactions import AlphaInteraction
-from flockana.laws.law import DiscreteLaw, Law
+from flockana.laws.discrete import DiscreteLaw
+from flockana.laws.law import Law
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 
 

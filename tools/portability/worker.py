@@ -29,7 +29,7 @@ from numba.core.registry import cpu_target
 
 from flockana import Scenario, Tolerances, Trajectory, Verdict, rescale, scenario, scenarios, theorem, theorems, verify
 from flockana.base.errors import ArgumentError
-from flockana.laws.law import DiscreteLaw
+from flockana.laws.discrete import DiscreteLaw
 
 MOVED = 1e-13  # relative: what rounding does to a start that is written down elsewhere
 # These do not stand for zero: they are part of what is claimed (a quasi-α-lattice *is* one within δ = 0.1 d).

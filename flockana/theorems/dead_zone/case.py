@@ -11,7 +11,7 @@ import numpy as np
 from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.laws.law import DiscreteLaw
+from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.measures.metrics import min_distance
 from flockana.theorems.dead_zone.parting import Parts, parts

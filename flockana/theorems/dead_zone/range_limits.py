@@ -8,7 +8,7 @@ import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory
 from flockana.kernels.ranges import follow_pairs, follow_steps
-from flockana.laws.law import DiscreteLaw
+from flockana.laws.discrete import DiscreteLaw
 from flockana.theorems.rounding import EPS
 
 _NEXT = 1.5  # steps: samples of a map that are farther apart have states between them that were not kept

@@ -147,7 +147,7 @@ def _terminal(run: Trajectory) -> tuple[Linearisation | None, str]:
         return None, f"{type(law).__name__} has no equilibria that are sought here"
     if run.n > _MOST:
         return None, f"n = {run.n}: more than {_MOST}"
-    target = getattr(law, "target", None)
+    target = law.target
     held: Any = law
     if target is not None:
         held = replace(held, target=StaticTarget(target.position(float(run.t[-1]))))

@@ -8,11 +8,11 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.law import DiscreteLaw
+from flockana.laws.discrete import DiscreteLaw
 from flockana.theorems.hypotheses import vacuous
 from flockana.theorems.rounding import EPS, frame_error, spread_error
 from flockana.theorems.sampling import nets_at, nets_between, radius_between
-from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
+from flockana.theorems.theorem import Claim, Hypothesis, HypothesisStatus, Theorem, Tolerances, judge
 
 _SHARE = 1e-9  # of an agent: what a share of n agents, as a decimal fraction, may be off by
 
@@ -95,11 +95,11 @@ def _flock(run: Trajectory, tolerances: Tolerances, *, giant: bool) -> Claim:
 
 def _common(run: Trajectory, tolerances: Tolerances) -> list[Claim]:
     """Ẽ <= ε₁ and K̃ <= ε₂; a link that may come or go between samples, or by rounding, adds (r − d)² to Ẽ."""
-    alpha, units, steps = run.law.alpha, run.scales.energy, isinstance(run.law, DiscreteLaw)
+    (d, r), units, steps = run.law.lattice, run.scales.energy, isinstance(run.law, DiscreteLaw)
     deviation, mismatch = run.metric("deviation_energy"), run.metric("velocity_mismatch") / units
-    rounding = 8.0 * EPS * (float(np.abs(run.q).max()) / alpha.d + 1.0)
+    rounding = 8.0 * EPS * (float(np.abs(run.q).max()) / d + 1.0)
     error = 2.0 * np.sqrt(deviation) * rounding + rounding**2 + 4.0 * EPS * run.n * deviation
-    one_link = 2.0 * (alpha.r / alpha.d - 1.0) ** 2
+    one_link = 2.0 * (r / d - 1.0) ** 2
     at, during = nets_at(run), nets_between(run)
     error += one_link * at.open_links / (2.0 * at.links + 1.0)
     jumps = one_link * during.open_links / (2.0 * during.links + 1.0)
@@ -125,8 +125,8 @@ def _cohesive(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 def _judged(run: Trajectory, tolerances: Tolerances, *, strict: bool) -> tuple[list[Hypothesis], list[Claim]]:
     names = ("flock", "deviation", "mismatch") if strict else ("giant", "cohesive", "deviation", "mismatch")
-    has = getattr(run.law, "alpha", None) is not None
-    law = Hypothesis("the law has a scale d and a range r", "met" if has else "unmet", detail=type(run.law).__name__)
+    has: HypothesisStatus = "unmet" if run.law.lattice is None else "met"
+    law = Hypothesis("the law has a scale d and a range r", has, detail=type(run.law).__name__)
     window, part = _window(run, tolerances)
     needs = [law, window]
     if nothing := vacuous(needs, names):

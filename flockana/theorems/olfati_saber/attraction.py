@@ -29,7 +29,8 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.equilibria.gradient_flow import structural_force
 from flockana.equilibria.terminal import DENSE_LIMIT, rigid_motions
 from flockana.interactions import AlphaInteraction
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2, moving_frame
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2, paper_pair
+from flockana.measures.frame import moving_frame
 from flockana.measures.nets import LinkArray, components, link_lengths, links
 from flockana.theorems.limits import Certificate
 from flockana.theorems.rounding import pair_force_error
@@ -111,9 +112,9 @@ def attraction(law: Algorithm1 | Algorithm2, q: FloatArray, p: FloatArray) -> At
     if distance >= gyration(q):  # there is no turning to speak of: all agents are at one place
         curvature = _curvature(law, q, _shifts(q))
         distance = float(2.0 * force / curvature) if curvature > 0.0 else inf
-    if distance == inf or not (everywhere or _joined(law.alpha, q, sqrt(2.0) * distance)):
+    if distance == inf or not (everywhere or _joined(paper_pair(law), q, sqrt(2.0) * distance)):
         return Attraction(inf, 0.0, distance, curvature)
-    leaving = barrier(curvature, distance, law.alpha.d * WINDOWS, lambda window: _lipschitz(law, q, window))
+    leaving = barrier(curvature, distance, law.alpha.length * WINDOWS, lambda window: _lipschitz(law, q, window))
     return Attraction(float(kinetic(p) + force**2 / curvature), leaving, distance, curvature)
 
 
@@ -146,9 +147,9 @@ def _curvature(law: Algorithm1 | Algorithm2, q: FloatArray, rigid: FloatArray) -
 
 def _force(law: Algorithm1 | Algorithm2, q: FloatArray) -> float:
     """|∇U(x)| over all coordinates, with the rounding of its sums added."""
-    near = float(np.bincount(links(q, law.alpha.r).ravel(), minlength=1).max())
+    near = float(np.bincount(links(q, law.alpha.range).ravel(), minlength=1).max())
     pull = law.gains.c1_gamma * float(np.abs(q).max()) if isinstance(law, Algorithm2) else 0.0
-    rounding = law.gains.c1_alpha * pair_force_error(law.alpha) * (near + 1.0) + 16.0 * _EPS * pull
+    rounding = law.gains.c1_alpha * pair_force_error(paper_pair(law)) * (near + 1.0) + 16.0 * _EPS * pull
     return float(np.linalg.norm(structural_force(law, q))) + sqrt(q.size) * rounding
 
 
@@ -240,7 +241,7 @@ def _lipschitz(law: Algorithm1 | Algorithm2, q: FloatArray, window: float) -> fl
     L <= √2 max Σ T |b_j - b_i|² over unit b: the largest eigenvalue of the Laplacian weighted by T, which is at most
     the largest sum of the weights at both ends of a link.
     """
-    alpha, slack = law.alpha, sqrt(2.0) * window
+    alpha, slack = paper_pair(law), sqrt(2.0) * window
     pairs = links(q, alpha.r + slack)
     weights = law.gains.c1_alpha * _third(alpha, link_lengths(q, pairs), slack)
     return sqrt(2.0) * weight_at_both_ends(len(q), pairs, weights)

@@ -27,7 +27,7 @@ def proved(run: Trajectory, proof: str = "energy-identities") -> str | None:
     proof : str
         The id.
     """
-    known = all(type(obstacle) in (Sphere, Wall) for obstacle in getattr(run.law, "obstacles", ()))
+    known = all(type(obstacle) in (Sphere, Wall) for obstacle in run.law.obstacles)
     return proof if known and not run.law.gains.per_agent else None
 
 

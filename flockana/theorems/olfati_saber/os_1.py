@@ -8,7 +8,7 @@ import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory
 from flockana.lattice import harborth
-from flockana.laws.olfati_saber import Algorithm1
+from flockana.laws.olfati_saber import Algorithm1, paper_pair
 from flockana.theorems.asymptotics import lattice_limit, velocities_match
 from flockana.theorems.hypotheses import positive, vacuous, with_alpha_gain
 from flockana.theorems.olfati_saber.attraction import held
@@ -25,7 +25,7 @@ def _disconnected_energy(law: Algorithm1, n: int, m: int) -> float:
 
     ∞ where that lattice does not exist (κ too large) or n = 1.
     """
-    if n < 2 or law.alpha.kappa >= (2.0 if m == 1 else sqrt(3.0)):
+    if n < 2 or paper_pair(law).kappa >= (2.0 if m == 1 else sqrt(3.0)):
         return float("inf")
     bonds = n - 2 if m == 1 else harborth(n - 1)
     return law.gains.c1_alpha * law.alpha.far_potential * (n * (n - 1) // 2 - bonds)

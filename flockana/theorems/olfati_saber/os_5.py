@@ -269,11 +269,12 @@ def check(q: FloatArray, d: float, r: float, tolerances: Tolerances) -> tuple[li
 
 
 def _check_terminal(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
-    has: HypothesisStatus = "met" if hasattr(run.law, "alpha") else "unmet"
+    has: HypothesisStatus = "unmet" if run.law.lattice is None else "met"
     ranged = Hypothesis("the law has a scale d and a range r", has, detail=type(run.law).__name__)
     if nothing := vacuous([ranged], CLAIMS):
         return [ranged], nothing
-    return check(np.asarray(run.q[-1]), run.law.alpha.d, run.law.alpha.r, tolerances)
+    d, r = run.law.lattice
+    return check(np.asarray(run.q[-1]), d, r, tolerances)
 
 
 _STATEMENT = (

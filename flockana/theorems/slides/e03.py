@@ -68,7 +68,7 @@ def rhombus_with_double_agent(d: float) -> FloatArray:
 def _shares(law: Algorithm1, tolerances: Tolerances) -> Claim:
     rows = {}
     for n in _SIZES:
-        limits = [gradient_flow(law, random_disc(n, seed, d=law.alpha.d)) for seed in range(_STARTS)]
+        limits = [gradient_flow(law, random_disc(n, seed, d=law.alpha.length)) for seed in range(_STARTS)]
         ends = [terminal_state(law, limit.q, 0.0 * limit.q) for limit in limits if limit.converged]
         exact = sum(end.strain <= tolerances.lattice for end in ends)
         low, high = clopper_pearson(exact, len(ends), level=_CONFIDENCE)
@@ -90,7 +90,7 @@ def _shares(law: Algorithm1, tolerances: Tolerances) -> Claim:
 
 def _double_agent(law: Algorithm1) -> Claim:
     """The smallest strained minimum we know: a coincident pair, held by the three neighbours that both share."""
-    q = rhombus_with_double_agent(law.alpha.d)
+    q = rhombus_with_double_agent(law.alpha.length)
     end, held = terminal_state(law, q, 0.0 * q), attraction(law, q, 0.0 * q).certificate
     trapped = held.margin > held.error and end.coincident > 0
     return Claim(
@@ -108,8 +108,8 @@ def _double_agent(law: Algorithm1) -> Claim:
 
 def _strained(law: Algorithm1, tolerances: Tolerances) -> Claim:
     """A limit of distinct agents whose links differ from d, with no direction in which V falls."""
-    limit = gradient_flow(law, random_disc(*_STRAINED, d=law.alpha.d))
-    labels = components(len(limit.q), links(limit.q, law.alpha.r))
+    limit = gradient_flow(law, random_disc(*_STRAINED, d=law.alpha.length))
+    labels = components(len(limit.q), links(limit.q, law.alpha.range))
     parts = [np.ascontiguousarray(limit.q[labels == label]) for label in range(labels.max() + 1)]
     ends = [terminal_state(law, part, 0.0 * part) for part in parts]
     worst = max(range(len(parts)), key=lambda k: np.nan_to_num(ends[k].strain))
@@ -132,7 +132,7 @@ def _strained(law: Algorithm1, tolerances: Tolerances) -> Claim:
 def _off(law: Algorithm1 | Algorithm2, q: FloatArray, end: TerminalState, tolerances: Tolerances) -> dict[str, Any]:
     """Status, margin and error of "the limit is an α-lattice", at a strict minimum; inconclusive anywhere else."""
     held, margin = attraction(law, q, 0.0 * q), tolerances.lattice - end.strain
-    error = sqrt(2.0) * held.distance / law.alpha.d + held.certificate.error
+    error = sqrt(2.0) * held.distance / law.alpha.length + held.certificate.error
     trapped = held.certificate.margin > held.certificate.error and judge(margin, error, []) == "refuted"
     return {"status": "refuted" if trapped else "inconclusive", "margin": margin, "error": error}
 
@@ -156,7 +156,7 @@ def _smallest(tolerances: Tolerances) -> Claim:
 def _compressed(tolerances: Tolerances) -> Claim:
     """Algorithm 2: λJ presses on every link."""
     law = Algorithm2(target=StaticTarget((0.0, 0.0)))
-    limit = gradient_flow(law, hexagonal_patch(1, law.alpha.d))
+    limit = gradient_flow(law, hexagonal_patch(1, law.alpha.length))
     end = terminal_state(law, limit.q, 0.0 * limit.q)
     return Claim(
         "algorithm-2",

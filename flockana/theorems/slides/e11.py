@@ -14,7 +14,7 @@ from flockana.equilibria.gradient_flow import gradient_flow
 from flockana.equilibria.terminal import TerminalState, surroundings, terminal_state
 from flockana.interactions import AlphaInteraction
 from flockana.lattice import hexagonal_patch
-from flockana.laws.olfati_saber import Algorithm2
+from flockana.laws.olfati_saber import Algorithm2, paper_pair
 from flockana.measures.metrics import velocity_mismatch
 from flockana.theorems.theorem import Claim, Hypothesis, Status, Theorem, Tolerances, judge
 
@@ -41,8 +41,8 @@ def collapses(law: Algorithm2, rings: int, ratio: float) -> bool:
     SolverError
         If the gradient flow does not settle.
     """
-    pressed = squeezed(law.alpha, ratio)
-    limit = gradient_flow(pressed, nudged(hexagonal_patch(rings, law.alpha.d), law.alpha.d))
+    pressed = squeezed(paper_pair(law), ratio)
+    limit = gradient_flow(pressed, nudged(hexagonal_patch(rings, law.alpha.length), law.alpha.length))
     if not limit.converged:
         raise SolverError(f"at c1γ/c1α = {ratio:.4g} the gradient flow did not settle (force {limit.force:.2g})")
     return terminal_state(pressed, limit.q, 0.0 * limit.q).coincident > 0
@@ -63,7 +63,7 @@ def collapse_threshold(law: Algorithm2, rings: int) -> tuple[float, float]:
     tuple of float
         (largest ratio seen safe, least ratio seen to collapse).
     """
-    lowest = _LOWEST * natural_ratio(law.alpha)
+    lowest = _LOWEST * natural_ratio(paper_pair(law))
     return threshold(lambda ratio: collapses(law, rings, ratio), lowest=lowest, factor=_FACTOR, halvings=_HALVINGS)
 
 

@@ -1,0 +1,126 @@
+"""Laws that are maps from step to step."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Mapping
+from typing import ClassVar
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError
+from flockana.base.scales import Scales
+from flockana.base.units import Powers
+from flockana.laws.law import Law, LawOfMotion
+
+
+class DiscreteLaw(LawOfMotion):
+    """A law that is a map from one step to the next, and not the time-discretisation of anything else.
+
+    A subclass is a frozen dataclass with a step `dt` and `step`. Its state may carry more than (q, p): `memory` maps
+    names to arrays, is passed along, and is recorded over time in `Trajectory.extra`. A run holds the state at
+    t0 + k dt and the input that brought it there; between its steps a map has no state. `extra_units` tells the powers
+    of length and time of what is remembered, where it is no pure number.
+    """
+
+    dt: float
+    steps_at_once: ClassVar[int] = 1
+    extra_units: ClassVar[Mapping[str, Powers]] = {}
+
+    @property
+    def continuous(self) -> Law | None:
+        """The law that is stepped, where the map steps one: its parameter `law`."""
+        own = vars(self).get("law")
+        return own if isinstance(own, Law) else None
+
+    @property
+    def scales(self) -> Scales | None:
+        """Those of the law that is stepped."""
+        return None if self.continuous is None else self.continuous.scales
+
+    def check_dimension(self, m: int) -> None:  # noqa: D102
+        if self.continuous is not None:
+            self.continuous.check_dimension(m)
+
+    def check_start(self, q: FloatArray, p: FloatArray) -> None:  # noqa: D102
+        if self.continuous is not None:
+            self.continuous.check_start(q, p)
+
+    def measures(  # noqa: D102
+        self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
+    ) -> Mapping[str, tuple[str, FloatArray]]:
+        return {} if self.continuous is None else self.continuous.measures(t, q, p, extra)
+
+    @abstractmethod
+    def step(
+        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
+    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
+        """One step from t to t + dt: (next q, next p, the input u that was applied, next memory), unchecked.
+
+        Parameters
+        ----------
+        t : float
+            Time at the start of the step.
+        q, p : ndarray, shape (n, m)
+            Positions and velocities; not to be changed in place.
+        memory : mapping of str to ndarray
+            What else the law remembers.
+        """
+
+    def iterate(
+        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray], steps: int
+    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
+        """`steps` steps at once: what `step` returns after each of them, stacked along a first axis, unchecked.
+
+        `simulate` asks for `steps_at_once` steps at a time. A law whose step costs less than a call from Python
+        overrides both; it must give what `step` gives, to the bit.
+
+        Parameters
+        ----------
+        t : float
+            Time at the start of the first step.
+        q, p : ndarray, shape (n, m)
+            Positions and velocities; not to be changed in place.
+        memory : mapping of str to ndarray
+            What else the law remembers.
+        steps : int
+            How many, at least 1.
+        """
+        states, memories = [], []
+        for k in range(steps):
+            q, p, u, memory = self.step(t + k * self.dt, q, p, memory)
+            states.append((q, p, u))
+            memories.append({name: np.array(value) for name, value in memory.items()})
+        stacked = [np.stack(series) for series in zip(*states, strict=True)]
+        series = {name: np.stack([each[name] for each in memories]) for name in memory}
+        return stacked[0], stacked[1], stacked[2], series
+
+    def start(self, q: FloatArray, p: FloatArray) -> Mapping[str, FloatArray]:
+        """The memory before the first step; empty by default.
+
+        Parameters
+        ----------
+        q, p : ndarray, shape (n, m)
+            Initial positions and velocities.
+        """
+        return {}
+
+
+def ensure_law(law: Any) -> Law | DiscreteLaw:
+    """Return `law` if it is one.
+
+    Parameters
+    ----------
+    law : object
+        What the caller gave.
+
+    Raises
+    ------
+    ArgumentError
+        If it is no `Law` and no `DiscreteLaw`; a class instead of an instance is named as such.
+    """
+    if isinstance(law, Law | DiscreteLaw):
+        return law
+    hint = "; did you forget the parentheses?" if isinstance(law, type) else ""
+    raise ArgumentError(f"law = {law!r}: expected a law such as Algorithm2(target=StaticTarget((0, 0))){hint}")

@@ -1,0 +1,103 @@
+"""Laws that are sums of terms: force, power, energy and derivatives come from the terms, one by one."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flockana.base.checks import FloatArray, ensure_points
+from flockana.laws.law import Law, block_diagonal
+from flockana.laws.terms.term import Term
+from flockana.measures.frame import moving_frame
+
+if TYPE_CHECKING:
+    from scipy.sparse import sparray
+
+
+class SumOfTerms(Law):
+    """u = Σ u^T over `terms`, with the energy H = Σ U^T + ½ Σ‖p_i‖² (½ Σ‖v_i‖² in the moving frame if a term asks).
+
+    A subclass is a frozen dataclass of validated parameters with `terms`, a cached property.
+    """
+
+    @property
+    @abstractmethod
+    def terms(self) -> tuple[Term, ...]:
+        """The summands, in the order in which they are added."""
+
+    @property
+    def moving(self) -> bool:
+        """Whether the energy is that in the frame of the centre of mass."""
+        return any(term.moving for term in self.terms)
+
+    @property
+    def conservative(self) -> bool:  # noqa: D102
+        return all(term.conservative for term in self.terms)
+
+    @property
+    def splits(self) -> bool:  # noqa: D102
+        return all(term.invariance == "rigid motions" for term in self.terms)
+
+    def check_dimension(self, m: int) -> None:  # noqa: D102
+        for term in self.terms:
+            term.check_dimension(m)
+
+    def check_agents(self, n: int) -> None:  # noqa: D102
+        for term in self.terms:
+            term.check_agents(n)
+
+    def check_start(self, q: FloatArray, p: FloatArray) -> None:  # noqa: D102
+        super().check_start(q, p)
+        for term in self.terms:
+            term.check_start(q)
+
+    def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
+        u, rate = np.zeros_like(q), 0.0
+        for term in self.terms:
+            rate += term.act(t, q, p, u)
+        return u, rate
+
+    def potential_energy(self, t: float, q: FloatArray) -> float:
+        """Σ U^T, unchecked.
+
+        Parameters
+        ----------
+        t : float
+            Time.
+        q : ndarray, shape (n, m)
+            Positions.
+        """
+        return float(sum(term.energy(t, q) for term in self.terms))
+
+    def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:  # noqa: D102
+        v = moving_frame(p) if self.moving else p
+        return self.potential_energy(t, q) + 0.5 * float(np.sum(v * v))
+
+    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[sparray, sparray]:  # noqa: D102
+        by_position, by_velocity = zip(*(term.derivatives(t, q, p) for term in self.terms), strict=True)
+        return _assembled(by_position), _assembled(by_velocity)
+
+    def stiffness(self, q: Any, t: float = 0.0) -> Any:
+        """Hessian of the potential energy, in the order of ``q.ravel()``, sparse.
+
+        Parameters
+        ----------
+        q : array_like, shape (n, m)
+            Positions.
+        t : float
+            When: a γ-agent may move.
+        """
+        q = ensure_points("q", q)
+        self.check_dimension(q.shape[1])
+        self.check_agents(len(q))
+        return _assembled([term.hessian(t, q) for term in self.terms])
+
+
+def _assembled(parts: Any) -> Any:
+    """The sum of sparse matrices and of blocks that agents feel of themselves alone."""
+    matrices, blocks = ([x for x in parts if isinstance(x, np.ndarray) == own] for own in (False, True))
+    if blocks:
+        matrices.append(block_diagonal(sum(blocks[1:], blocks[0])))
+    return sum(matrices[1:], matrices[0]).tocsr()

@@ -1,0 +1,122 @@
+"""The γ-term: the pull of every agent to the γ-agent, linear (Algorithm 2) or bounded (Algorithm 3)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError
+from flockana.environment.targets import Target
+from flockana.interactions.gains import Gains, weighted
+from flockana.laws.terms.term import Invariance, Term
+from flockana.measures.frame import moving_frame
+
+
+@dataclass(frozen=True)
+class Navigation(Term):
+    """u_i^γ = −c1γ ℓ σ₁((q_i − q_r)/ℓ) − c2γ (p_i − p_r); without ℓ linear, −c1γ (q_i − q_r) − c2γ (p_i − p_r).
+
+    A linear pull with one gain for all moves the shape of a flock and its centre apart, for every target, consistent or
+    not. Its energy is then that of the shape, c1γ J(x) = ½ c1γ Σ‖x_i‖² in the moving frame. Else it is
+    Σ c1γ_i ℓ² (√(1 + ‖q_i − q_r‖²/ℓ²) − 1), whose limit for a long ℓ is ½ Σ c1γ_i ‖q_i − q_r‖². The force knows the p_r
+    that it is told, this potential moves with the true dq_r/dt.
+
+    Parameters
+    ----------
+    target : Target
+        The γ-agent.
+    gains : Gains
+        c1_gamma and c2_gamma are used.
+    unit : float, optional
+        ℓ, the length that σ₁ counts in; None for the linear pull.
+
+    Examples
+    --------
+    >>> from flockana.environment.targets import StaticTarget
+    >>> term, u = Navigation(StaticTarget((3.0,)), Gains(c1_gamma=2.0)), np.zeros((1, 1))
+    >>> term.act(0.0, np.zeros((1, 1)), np.zeros((1, 1)), u), u.tolist(), term.moving
+    (-0.0, [[6.0]], True)
+    """
+
+    target: Target
+    gains: Gains
+    unit: float | None = None
+
+    @property
+    def moving(self) -> bool:  # noqa: D102
+        return self.unit is None and not self.gains.per_agent
+
+    @property
+    def invariance(self) -> Invariance:  # noqa: D102
+        return "rigid motions" if self.moving else "rotations about the target"
+
+    def check_dimension(self, m: int) -> None:  # noqa: D102
+        if self.target.dimension != m:
+            raise ArgumentError(
+                f"the target has {self.target.dimension} components but the agents have {m}: expected equal dimensions"
+            )
+
+    def check_agents(self, n: int) -> None:  # noqa: D102
+        self.gains.check_agents(n)
+
+    def _bend(self, x: FloatArray) -> FloatArray:
+        """√(1 + ‖x_i‖²/ℓ²), by which σ₁ bends the pull of each agent, shape (n,); 1 for the linear pull."""
+        if self.unit is None:
+            return np.ones(len(x))
+        bend: FloatArray = np.sqrt(1.0 + np.einsum("ij,ij->i", x, x) / self.unit**2)
+        return bend
+
+    def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
+        g, (q_r, p_r) = self.gains, self.target.state(t)
+        x, slip = q - q_r, p - p_r
+        pull = x if self.unit is None else x / self._bend(x)[:, None]
+        pulled = g.pull * pull
+        u -= pulled + g.drag * slip
+        if self.moving:
+            v = moving_frame(p)
+            return float(-g.c2_gamma * np.sum(v * v))
+        if g.per_agent:
+            return -float(np.vdot(g.drag * p, slip)) - float(pulled.sum(axis=0) @ self.target.rate(t))
+        carried = pull.sum(axis=0) @ self.target.rate(t)
+        return float(-g.c2_gamma * np.vdot(p, slip) - g.c1_gamma * carried)
+
+    def energy(self, t: float, q: FloatArray) -> float:  # noqa: D102
+        x = moving_frame(q) if self.moving else q - self.target.state(t)[0]
+        x2 = np.einsum("ij,ij->i", x, x)
+        return weighted(self.gains.c1_gamma, x2 / (self._bend(x) + 1.0))  # √(1 + x²) − 1 without its cancellation
+
+    def target_derivatives(self, t: float, q: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """(∂u_i/∂q_r, ∂u_i/∂p_r), two arrays of blocks (n, m, m): c1γ times the derivative of σ₁, and c2γ I.
+
+        Parameters
+        ----------
+        t : float
+            Time.
+        q : ndarray, shape (n, m)
+            Positions.
+        """
+        pull = np.broadcast_to(np.eye(q.shape[1]), (*q.shape, q.shape[1]))
+        drag = pull
+        if self.unit is not None:
+            x = q - self.target.state(t)[0]
+            root, x = self._bend(x)[:, None, None], x / self.unit
+            pull = np.eye(q.shape[1]) / root - x[:, :, None] * x[:, None, :] / root**3
+        return np.reshape(self.gains.pull, (-1, 1, 1)) * pull, np.reshape(self.gains.drag, (-1, 1, 1)) * drag
+
+    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray]:  # noqa: D102
+        pull, drag = self.target_derivatives(t, q)
+        return -pull, -drag
+
+    def hessian(self, t: float, q: FloatArray) -> FloatArray:
+        """Second derivative of `energy`, on deviations x where it is that of the shape.
+
+        Parameters
+        ----------
+        t : float
+            Time.
+        q : ndarray, shape (n, m)
+            Positions.
+        """
+        return self.target_derivatives(t, q)[0]

@@ -1,0 +1,85 @@
+"""The β-term: repulsion from obstacles and damping of what moves towards them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError
+from flockana.environment.beta import ObstacleField, check_free
+from flockana.laws.terms.term import Invariance, Term
+
+
+@dataclass(frozen=True)
+class ObstacleTerm(Term):
+    """u_i^β = c1β Σ_k φ_β n̂_ik + c2β Σ_k b_ik (p̂_ik − p_i), with the energy c1β ΣΣ ψ_β.
+
+    Parameters
+    ----------
+    field : ObstacleField
+        The obstacles with their interaction.
+    stiffness, damping : float
+        Gains c1β and c2β.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from flockana.environment.obstacles import Wall
+    >>> from flockana.interactions import BetaInteraction
+    >>> term = ObstacleTerm(ObstacleField((Wall((0.0, 0.0), (0.0, 1.0)),), BetaInteraction()), 1.0, 1.0)
+    >>> term.energy(0.0, np.array([[0.0, 9.0]])) == 0.0 < term.energy(0.0, np.array([[0.0, 2.0]]))
+    True
+    """
+
+    field: ObstacleField
+    stiffness: float
+    damping: float
+
+    @property
+    def invariance(self) -> Invariance:
+        """Rotations, of those about the target, that move no obstacle."""
+        return "rotations about the target" if self.field.obstacles else "rigid motions"
+
+    def check_dimension(self, m: int) -> None:  # noqa: D102
+        self.ensure_dimension(m, "the agents have")
+
+    def ensure_dimension(self, m: int, whose: str) -> None:
+        """Raise unless every obstacle lives in m dimensions.
+
+        Parameters
+        ----------
+        m : int
+            Expected.
+        whose : str
+            Of whom, for the message.
+        """
+        for k, obstacle in enumerate(self.field.obstacles):
+            if obstacle.dimension != m:
+                raise ArgumentError(
+                    f"obstacles[{k}] = {obstacle} has {obstacle.dimension} components but {whose} {m}: "
+                    "expected equal dimensions"
+                )
+
+    def check_start(self, q: FloatArray) -> None:
+        """Raise if an agent starts inside or on an obstacle.
+
+        Parameters
+        ----------
+        q : ndarray, shape (n, m)
+            Initial positions.
+        """
+        check_free(q, self.field.obstacles)
+
+    def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
+        return self.damping * self.field.forces(q, p, u, stiffness=self.stiffness, damping=self.damping)
+
+    def energy(self, t: float, q: FloatArray) -> float:  # noqa: D102
+        return self.stiffness * self.field.potential_energy(q)
+
+    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray]:  # noqa: D102
+        by_position, by_velocity = self.field.braking_blocks(q, p)
+        return self.damping * by_position - self.stiffness * self.field.hessian_blocks(q), self.damping * by_velocity
+
+    def hessian(self, t: float, q: FloatArray) -> FloatArray:  # noqa: D102
+        blocks: FloatArray = self.stiffness * self.field.hessian_blocks(q)
+        return blocks

@@ -1,0 +1,108 @@
+"""What a summand of a law gives: its force and power, its share of the energy, and their derivatives."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import Any, ClassVar, Literal
+
+from flockana.base.checks import FloatArray
+
+Invariance = Literal["rigid motions", "rotations about the target", "none"]
+
+
+class Term(ABC):
+    """A summand u^T of u = Σ u^T, where what it gives is unchecked: the law checks once for all.
+
+    A derivative is either a sparse matrix (n m, n m) in the order of ``q.ravel()``, or an array of blocks (n, m, m),
+    where an agent feels of the others nothing.
+    """
+
+    conservative: ClassVar[bool] = True
+    """Whether the force at rest is minus the gradient of `energy`."""
+
+    @property
+    def invariance(self) -> Invariance:
+        """What leaves the energy unchanged; rigid motions, as of everything that depends on distances alone."""
+        return "rigid motions"
+
+    @property
+    def moving(self) -> bool:
+        """Whether its energy and its power are those in the frame that moves with the flock's centre of mass."""
+        return False
+
+    @abstractmethod
+    def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:
+        """Add the force to u in place and return what the term adds to dH/dt.
+
+        Parameters
+        ----------
+        t : float
+            Time.
+        q, p : ndarray, shape (n, m)
+            Positions and velocities.
+        u : ndarray, shape (n, m)
+            Accelerations to add to.
+        """
+
+    def energy(self, t: float, q: FloatArray) -> float:
+        """Its potential energy; 0 for a term without one.
+
+        Parameters
+        ----------
+        t : float
+            Time.
+        q : ndarray, shape (n, m)
+            Positions.
+        """
+        return 0.0
+
+    @abstractmethod
+    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[Any, Any]:
+        """(∂u/∂q, ∂u/∂p) of its force.
+
+        Parameters
+        ----------
+        t : float
+            Time.
+        q, p : ndarray, shape (n, m)
+            Positions and velocities.
+        """
+
+    @abstractmethod
+    def hessian(self, t: float, q: FloatArray) -> Any:
+        """Second derivative of `energy`.
+
+        Parameters
+        ----------
+        t : float
+            Time.
+        q : ndarray, shape (n, m)
+            Positions.
+        """
+
+    def check_dimension(self, m: int) -> None:  # noqa: B027  # nothing to check unless a term says so
+        """Raise if the term does not live in m dimensions.
+
+        Parameters
+        ----------
+        m : int
+            Dimension of the flock.
+        """
+
+    def check_agents(self, n: int) -> None:  # noqa: B027  # as `check_dimension`
+        """Raise if the term is not for n agents.
+
+        Parameters
+        ----------
+        n : int
+            Number of agents.
+        """
+
+    def check_start(self, q: FloatArray) -> None:  # noqa: B027  # as `check_dimension`
+        """Raise if the term forbids a start from these positions.
+
+        Parameters
+        ----------
+        q : ndarray, shape (n, m)
+            Initial positions.
+        """
