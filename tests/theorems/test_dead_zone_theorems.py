@@ -12,7 +12,7 @@ from flockana.laws.olfati_saber import Algorithm1
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.scenarios import scenario
 from flockana.theorems import verify
-from flockana.theorems.dead_zone.l01_l04 import connected_share
+from flockana.theorems.dead_zone.l04 import connected_count
 from flockana.theorems.dead_zone.parting import parts
 
 ERRATA = [f"L{k}" for k in range(1, 9)]
@@ -170,5 +170,5 @@ def test_errata_figures():
 
 
 def test_share_of_connected_flocks_falls_with_the_box():
-    near, far = (connected_share(box, seeds=4, n=20, t_end=20.0) for box in (15.0, 150.0))
+    near, far = (connected_count(box, seeds=4, n=20, t_end=20.0) for box in (15.0, 150.0))
     assert (near, far) == (4, 0)

@@ -12,10 +12,12 @@ from flockana.measures.metrics import min_distance
 from flockana.measures.nets import components, links
 from flockana.scenarios.scenario import differences
 from flockana.theorems import theorem, verify
-from flockana.theorems.bearing_distance.j01_j03 import path_matrices, random_forest
-from flockana.theorems.bearing_distance.j07_j09 import dragged_speed
+from flockana.theorems.bearing_distance.j01 import random_forest
+from flockana.theorems.bearing_distance.j03 import path_matrices
+from flockana.theorems.bearing_distance.j07 import dragged_speed
 from flockana.theorems.bearing_distance.j11 import minimal_start
-from flockana.theorems.shares import always, mostly, separated_start, share, zone_start
+from flockana.theorems.bearing_distance.random_starts import separated_start, zone_start
+from flockana.theorems.shares import always, mostly, share
 
 NAMES = [f"J{k}" for k in range(1, 13)]
 
