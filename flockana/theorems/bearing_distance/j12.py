@@ -115,7 +115,7 @@ def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
             margin=1e-6 - error / c,
             error=_ROUNDING,
             witness="head on, inputs unbounded, weights that damp the approach",
-            detail=f"agents that run head on at a wall, or at each other, stop at c - v^d w^ga/w in "
+            detail="agents that run head on at a wall, or at each other, stop at c - v^d w^ga/w in "
             f"{len(stand_offs)} cases (off by {error:.1g} m)",
         ),
         Claim(

@@ -16,7 +16,7 @@ from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.theorems import Tolerances, theorem, verify
 from flockana.theorems.slides import e11 as module
-from flockana.theorems.slides.e11 import collapse_threshold
+from flockana.theorems.slides.e11 import collapse_threshold, collapses
 from flockana.theorems.theorem import Claim
 
 ORIGIN = StaticTarget((0.0, 0.0))
@@ -97,6 +97,12 @@ def test_the_threshold_scales_with_the_force():
         assert 3.5 < low < high < 4.5
 
 
+def test_a_hexagon_collapses_between_three_and_five_times_the_gain():
+    assert not collapses(LAW, 1, 3.0)
+    assert collapses(LAW, 1, 5.0)
+    assert len(hexagonal_patch(1, 7.0)) == 7
+
+
 @pytest.mark.parametrize(
     ("found", "status"),
     [
@@ -118,11 +124,11 @@ def test_both_ends_of_a_bracket_have_been_tried():
     for lowest in (1e-3, 1.0, 50.0):
         tried = {}
 
-        def collapses(ratio, tried=tried):
+        def collapsing(ratio, tried=tried):
             tried[ratio] = ratio > 0.7
             return tried[ratio]
 
-        low, high = threshold(collapses, lowest=lowest, factor=1.3)
+        low, high = threshold(collapsing, lowest=lowest, factor=1.3)
         assert tried[low] is False
         assert tried[high] is True
         assert high / low < 1.02

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
-from made_up import SCALINGS, hypothesis, judged, made_up, same_in_all_units, statuses
+from theorems.made_up import SCALINGS, hypothesis, judged, made_up, same_in_all_units, statuses
 
 import flockana as fl
 from flockana.dynamics.simulate import simulate

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from made_up import SCALINGS
+from theorems.made_up import SCALINGS
 
 from flockana.base.units import rescale
 from flockana.dynamics.trajectory import Trajectory

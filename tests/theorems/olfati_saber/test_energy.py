@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from made_up import SCALINGS, hypothesis, judged, same_in_all_units, statuses
+from theorems.made_up import SCALINGS, hypothesis, judged, same_in_all_units, statuses
 
 from flockana.dynamics.simulate import simulate
 from flockana.environment.obstacles import Sphere

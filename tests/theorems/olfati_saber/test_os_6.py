@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from made_up import judged
+from theorems.made_up import judged
 
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
@@ -176,7 +176,7 @@ def test_a_law_that_feeds_energy_in_is_refuted(static: Trajectory) -> None:
 
 
 def test_an_obstacle_that_is_grazed_within_the_paths_error_is_left_open() -> None:
-    from made_up import made_up
+    from theorems.made_up import made_up
 
     law = Algorithm3(target=StaticTarget((20.0, 0.0)), obstacles=(Sphere((0.0, 0.0), 3.0),))
     grazing = made_up(law, [[[-4.0, 3.0]], [[4.0, 3.0]]], [[[8.0, 0.0]]] * 2, t=(0.0, 1.0))

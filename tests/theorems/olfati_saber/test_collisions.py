@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from made_up import SCALINGS, judged, made_up, same_in_all_units, statuses
+from theorems.made_up import SCALINGS, judged, made_up, same_in_all_units, statuses
 
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory

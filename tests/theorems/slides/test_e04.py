@@ -25,8 +25,8 @@ from flockana.theorems import verify
 ALPHA = AlphaInteraction()
 
 
-def test_the_figures_of_the_erratum():
-    verdict = verify("E4")
+def test_the_figures_of_the_erratum(verdict_of):
+    verdict = verdict_of("E4")
     assert verdict.status == "verified"
     assert (verdict.claim("found").computed, verdict.claim("vacuous").computed) == (14, 23)
     barrier = verdict.claim("barrier").computed

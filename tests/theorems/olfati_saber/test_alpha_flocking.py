@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from made_up import SCALINGS, judged, made_up, same_in_all_units, statuses
+from theorems.made_up import SCALINGS, judged, made_up, same_in_all_units, statuses
 
 import flockana as fl
 from flockana.dynamics.simulate import simulate
