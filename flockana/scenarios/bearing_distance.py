@@ -24,7 +24,7 @@ from flockana.measures.nets import components, links
 from flockana.scenarios.findings import component_counts, finding, in_source_units
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
-from flockana.theorems.shares import zone_start
+from flockana.theorems.bearing_distance.random_starts import zone_start
 from flockana.theorems.theorem import Status
 
 N, AREA, SPEED = 10, 10.0, 3.0

@@ -8,8 +8,6 @@ from typing import Any
 import numpy as np
 
 from flockana.base.binomial import clopper_pearson
-from flockana.base.checks import FloatArray
-from flockana.measures.nets import components, links
 from flockana.theorems.theorem import Claim, judge
 
 CONFIDENCE = 0.95
@@ -95,50 +93,3 @@ def mostly(
         witness=witness,
         detail=f"{what} in {count} of {size} seeds: a share of {interval[0]:.2f} at least ({CONFIDENCE:.0%})",
     )
-
-
-def zone_start(seed: int, n: int = 10) -> tuple[FloatArray, FloatArray]:
-    """The random start of section 5.1 of the bearing-distance paper: q in (0, 10)² m, p in (0, 1)² m/s by component.
-
-    Parameters
-    ----------
-    seed : int
-        Of the generator.
-    n : int
-        Number of agents.
-
-    Examples
-    --------
-    >>> zone_start(0)[0].shape
-    (10, 2)
-    """
-    rng = np.random.default_rng(seed)
-    return rng.uniform(0.0, 10.0, (n, 2)), rng.uniform(0.0, 1.0, (n, 2))
-
-
-def separated_start(seed: int, n: int = 10, *, least: float = 2.0, reach: float = 5.0) -> tuple[FloatArray, FloatArray]:
-    """As `zone_start`, drawn agent by agent until no two are closer than `least`, and the net within `reach` connected.
-
-    Parameters
-    ----------
-    seed : int
-        Of the generator.
-    n : int
-        Number of agents.
-    least, reach : float
-        Least distance and range of the net, in m.
-
-    Examples
-    --------
-    >>> from flockana.measures.metrics import min_distance
-    >>> min_distance(separated_start(0)[0]) > 2.0
-    True
-    """
-    rng = np.random.default_rng(seed)
-    while True:
-        q = rng.uniform(0.0, 10.0, (1, 2))
-        for x in rng.uniform(0.0, 10.0, (100 * n, 2)):
-            if len(q) < n and np.linalg.norm(q - x, axis=1).min() > least:
-                q = np.vstack([q, x])
-        if len(q) == n and not components(n, links(q, reach)).any():
-            return q, rng.uniform(0.0, 1.0, (n, 2))

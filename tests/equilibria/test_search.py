@@ -173,7 +173,7 @@ def test_collapse_by_equilibria():
     assert diagram.closest[1, 1] == 0.0
     assert (diagram.coincident[:, 0] == 0).all()
     low, high = collapse_threshold(AlphaInteraction(), 7, halvings=2)
-    assert 3.0 < low < high < 5.0  # as the gradient flow has it: tests/theorems/test_errata.py
+    assert 3.0 < low < high < 5.0  # as the gradient flow has it: tests/theorems/slides/test_e11.py
     with pytest.raises(ArgumentError, match="expected rising"):
         collapse_diagram(AlphaInteraction(), [7], [1.0, 0.5])
     with pytest.raises(SolverError, match="no collapse"):

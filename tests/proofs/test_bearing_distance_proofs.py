@@ -14,7 +14,7 @@ import sympy as sp
 from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import both_ways
 from flockana.symbolic.spanning_trees import S, tree_characteristic
-from flockana.theorems.bearing_distance.j01_j03 import path_matrices
+from flockana.theorems.bearing_distance.j03 import path_matrices
 from proofs import bearing_distance, bearing_distance_printed
 
 

@@ -42,7 +42,7 @@ def minimal_start(m: int, seed: int) -> tuple[FloatArray, FloatArray]:
 
 
 def perceived_components(law: MinimalFlocking, q: FloatArray) -> int:
-    """Number of components of the perception graph, directions forgotten.
+    """Number of components of the undirected graph of who perceives whom.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def perceived_components(law: MinimalFlocking, q: FloatArray) -> int:
 
 
 def _ends(law: MinimalFlocking, m: int, duration: float, seeds: int) -> FloatArray:
-    """Row by seed: coordination, components, least distance, at the end."""
+    """Coordination, number of components and least distance at the end of a run, one row for each seed."""
     rows = []
     for seed in range(seeds):
         run = simulate(law.discrete(DT), *minimal_start(m, seed), (0.0, duration), t_eval=(0.0, duration))

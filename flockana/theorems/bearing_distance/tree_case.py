@@ -55,15 +55,15 @@ class TreeCase:
     @cached_property
     def walk(self) -> tuple[tuple[int, int, int], ...]:
         """(edge, agent nearer to the root, agent farther from it) of all edges, from the root outwards."""
-        near, found = {self.links[0][0] if self.root is None else self.root}, []
+        near, outwards = {self.links[0][0] if self.root is None else self.root}, []
         left = dict(enumerate(self.links))
         while left:
             for e, (j, i) in list(left.items()):
                 if j in near or i in near:
-                    found.append((e, j, i) if j in near else (e, i, j))
+                    outwards.append((e, j, i) if j in near else (e, i, j))
                     near |= {j, i}
                     del left[e]
-        return tuple(found)
+        return tuple(outwards)
 
     def on_manifold(self, q: FloatArray) -> FloatArray:
         """A configuration with the bearings of q and every edge at its desired length, about the origin.
@@ -104,8 +104,8 @@ class TreeCase:
         q : ndarray, shape (..., n, m)
             Positions.
         """
-        found: FloatArray = np.linalg.norm(edge_vectors(q, self.links), axis=-1)
-        return found
+        lengths: FloatArray = np.linalg.norm(edge_vectors(q, self.links), axis=-1)
+        return lengths
 
     def energies(self, q: FloatArray, p: FloatArray) -> FloatArray:
         """V = ½‖x'‖² + ½μ(‖x‖ − ρ)² of each edge, shape (n − 1,). At the root it falls: V' = −a‖x'‖².
@@ -178,9 +178,9 @@ def characteristic_residual(A: FloatArray, factors: Sequence[tuple[float, float]
     """
     radius = 4.0 * max(abs(b) + sqrt(abs(c)) for b, c in factors)  # far outside all roots, where nothing cancels
     points = radius * np.exp(2j * np.pi * np.arange(len(A) + 1) / (len(A) + 1))
-    found = np.array([np.linalg.slogdet(s * np.eye(len(A)) - A) for s in points])
+    determinants = np.array([np.linalg.slogdet(s * np.eye(len(A)) - A) for s in points])
     stated = np.array([np.sum([np.log(s * s + b * s + c) for b, c in factors]) for s in points])
-    return float(np.abs(found[:, 0] * np.exp(found[:, 1] - stated) - 1.0).max())
+    return float(np.abs(determinants[:, 0] * np.exp(determinants[:, 1] - stated) - 1.0).max())
 
 
 def tree_hypotheses(run: Trajectory) -> tuple[list[Hypothesis], TreeCase | None]:

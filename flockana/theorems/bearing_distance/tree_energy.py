@@ -73,9 +73,9 @@ def root_claim(case: TreeCase, run: Trajectory, needs: list[Hypothesis], toleran
     if not least > float(case.barrier.min()) * rounding**2:
         return Claim("root-edge", "inconclusive", detail="an edge from the root starts at its desired length, at rest")
 
-    def relative(one: Trajectory) -> FloatArray:
+    def relative(trajectory: Trajectory) -> FloatArray:
         """V/V(0) of these edges, over time."""
-        series = [case.energies(q, p)[edges] / start[edges] for q, p in zip(one.q, one.p, strict=True)]
+        series = [case.energies(q, p)[edges] / start[edges] for q, p in zip(trajectory.q, trajectory.p, strict=True)]
         return np.array(series)
 
     rises = float(np.diff(relative(run), axis=0).max(initial=0.0))
@@ -131,7 +131,9 @@ def energy_claim(case: TreeCase, run: Trajectory, needs: list[Hypothesis], toler
     error = _energy_error(case, run) / largest if largest > 0.0 else inf
     margin = tolerances.energy - residual / largest if largest > 0.0 else nan
     if margin < 0.0:
-        error += 4.0 * (_noise(run, Trajectory.energy) + _noise(run, lambda one: one.extra["work"])) / largest
+        error += (
+            4.0 * (_noise(run, Trajectory.energy) + _noise(run, lambda trajectory: trajectory.extra["work"])) / largest
+        )
     return Claim(
         "energy",
         judge(margin if rate <= 0.0 else -1.0, error, needs),
@@ -169,7 +171,11 @@ def edge_claim(case: TreeCase, run: Trajectory, needs: list[Hypothesis], toleran
     error = 4.0 * _amplitude_error(case, run, start, edges) + 64.0 * EPS
     margin = nan if slack < 0.0 and not broken else slack
     if margin < 0.0:
-        error += 4.0 * _noise(run, lambda one: case.lengths(one.q)) * sqrt(float(case.mu.max()) / (2.0 * start))
+        error += (
+            4.0
+            * _noise(run, lambda trajectory: case.lengths(trajectory.q))
+            * sqrt(float(case.mu.max()) / (2.0 * start))
+        )
     return Claim(
         "no-collision",
         judge(margin, error, [*needs, small]),

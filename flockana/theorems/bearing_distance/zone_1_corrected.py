@@ -57,21 +57,25 @@ def _velocities(case: TreeCase, run: Trajectory, caught: Certificate, needs: lis
 
 def _spectrum(case: TreeCase, run: Trajectory, needs: list[Hypothesis]) -> Claim:
     """At the point of M next to the end of the run: the factors edge by edge, and the zero modes."""
-    m, found = run.m, tree_spectrum(case, case.on_manifold(run.q[-1]))
+    m, spectrum = run.m, tree_spectrum(case, case.on_manifold(run.q[-1]))
     expected, factors = (case.n - 1) * (m - 1), "roots with negative real parts beside"
     if case.root is not None:
-        factors = f"Π (s² + a s + μ_e)(s² + a s)^{m - 1}, off by {found.residual:.1g}"
+        factors = f"Π (s² + a s + μ_e)(s² + a s)^{m - 1}, off by {spectrum.residual:.1g}"
     return Claim(
         "spectrum",
-        judge(found.margin, found.error, needs),
-        computed={"zero modes": found.zeros, "slowest other": -found.slowest, "polynomial error": found.residual},
+        judge(spectrum.margin, spectrum.error, needs),
+        computed={
+            "zero modes": spectrum.zeros,
+            "slowest other": -spectrum.slowest,
+            "polynomial error": spectrum.residual,
+        },
         stated=f"a semisimple zero of multiplicity (n - 1)(m - 1) = {expected}, and {factors}",
-        margin=found.margin,
-        error=found.error,
+        margin=spectrum.margin,
+        error=spectrum.error,
         witness="the law linearised in edge coordinates, at the end's bearings and the desired lengths",
         proof=_PROOF,
-        detail=f"zero has a kernel of dimension {found.zeros}, that of the manifold of equilibria; the rest decays at "
-        f"{found.slowest:.4g} or faster; {factors}",
+        detail=f"zero has a kernel of dimension {spectrum.zeros}, that of the manifold of equilibria; the rest decays "
+        f"at {spectrum.slowest:.4g} or faster; {factors}",
     )
 
 

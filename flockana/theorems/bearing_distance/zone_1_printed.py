@@ -57,11 +57,11 @@ def _edges_vanish(case: TreeCase, run: Trajectory, needs: list[Hypothesis]) -> C
 
 def _abscissa(case: TreeCase, lengths: np.ndarray) -> float:
     """Largest real part of the roots of s² + a s + w_e over all edges, w_e = μ (1 − ρ/‖x_e‖): those of A_cl (J3)."""
-    found = -inf
+    abscissa = -inf
     for length, rho, mu, a in zip(lengths, case.rho, case.mu, case.align, strict=True):
         w = mu * (1.0 - rho / length) if length > 0.0 else -inf
-        found = max(found, 0.5 * (sqrt(max(a * a - 4.0 * w, 0.0)) - a))
-    return found
+        abscissa = max(abscissa, 0.5 * (sqrt(max(a * a - 4.0 * w, 0.0)) - a))
+    return abscissa
 
 
 def _hurwitz(case: TreeCase, run: Trajectory, needs: list[Hypothesis]) -> Claim:

@@ -36,19 +36,19 @@ def _pair(tolerances: Tolerances) -> Claim:
     start = np.array([[0.0, 0.0], [_RHO + _STRETCH, 0.0]])
     run = simulate(law, start, 0.0 * start, (0.0, times[-1]), t_eval=times, **_TIGHT)
     y = np.linalg.norm(edge_vectors(run.q, ((0, 1),))[:, 0], axis=1) - _RHO
-    found = float(np.diff(_crossings(run.t, y)).mean())
+    measured = float(np.diff(_crossings(run.t, y)).mean())
     amplitude = float(np.abs(y[-400:]).max())
-    worst = max(abs(found / period - 1.0), abs(amplitude / _STRETCH - 1.0))
+    worst = max(abs(measured / period - 1.0), abs(amplitude / _STRETCH - 1.0))
     margin = tolerances.agreement - worst
     return Claim(
         "alone",
         judge(margin, _MEASURED, []),
-        computed={"period": found, "amplitude at the end": amplitude},
+        computed={"period": measured, "amplitude at the end": amplitude},
         stated={"period": period, "amplitude": _STRETCH},
         margin=margin,
         error=_MEASURED,
         witness={"q(0)": start.tolist(), "p(0)": "0"},
-        detail=f"two agents swing about ρ with period {found:.5g} = 2π/sqrt(2μ), and after {_PERIODS} periods by "
+        detail=f"two agents swing about ρ with period {measured:.5g} = 2π/sqrt(2μ), and after {_PERIODS} periods by "
         f"{amplitude:.4g} still, as at the start",
     )
 
@@ -87,17 +87,17 @@ def _resonance(tolerances: Tolerances) -> Claim:
     times = np.linspace(0.0, end, 400 * _PERIODS + 1)
     run = simulate(law, start, 0.0 * start, (0.0, end), t_eval=times, **_TIGHT)
     y = np.abs(edge_vectors(run.q, law.edges or ())[:, 1, 0]) - _RHO
-    found, stated = float(np.abs(y[-400:]).max()) / a, 0.5 * omega * (end - 0.5 * pi / omega)
-    margin = tolerances.agreement - abs(found / stated - 1.0)
+    ratio, stated = float(np.abs(y[-400:]).max()) / a, 0.5 * omega * (end - 0.5 * pi / omega)
+    margin = tolerances.agreement - abs(ratio / stated - 1.0)
     return Claim(
         "chain",
         judge(margin, _MEASURED, []),
-        computed=found,
+        computed=ratio,
         stated=stated,
         margin=margin,
         error=_MEASURED,
         witness={"q(0)": start.tolist(), "edges": law.edges},
-        detail=f"on a directed chain the second edge swings {found:.4g} times as far as the first after {_PERIODS} "
+        detail=f"on a directed chain the second edge swings {ratio:.4g} times as far as the first after {_PERIODS} "
         f"periods, and ever farther: resonance, ω t/2 = {stated:.4g}",
     )
 

@@ -73,7 +73,7 @@ def settling(end: Parts) -> Certificate:
     end : Parts
         The parts.
     """
-    return min((*(part.settles for part in end.parts), end.apart), key=lambda one: one.margin)
+    return min((*(part.settles for part in end.parts), end.apart), key=lambda certificate: certificate.margin)
 
 
 def one_velocity(run: Trajectory, end: Parts, needs: list[Hypothesis], *, name: str) -> Claim:

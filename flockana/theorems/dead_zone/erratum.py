@@ -1,4 +1,4 @@
-"""What the errata of the dead-zone paper share: how a claim is judged and an erratum put, and two of their cases."""
+"""What the errata of the dead-zone paper share: claims judged by a margin, the theorem of an erratum, two set-ups."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from flockana.base.checks import FloatArray
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.theorems.theorem import Claim, Hypothesis, Rigour, Status, Theorem, Tolerances, judge
 
-Found = tuple[list[Hypothesis], list[Claim]]
+CheckResult = tuple[list[Hypothesis], list[Claim]]
 
 
 def margin_claim(
@@ -44,7 +44,7 @@ def erratum(
     Parameters
     ----------
     number : int
-        Which.
+        Number of the erratum, 1 to 8.
     title, statement : str
         As in `Theorem`.
     source : str
@@ -62,15 +62,15 @@ def erratum(
     return Theorem(key, title, statement, where, "fixed", check, ("li-dead-zone",), {key: whole, **expected})
 
 
-def two_that_part() -> tuple[DeadZoneFlocking, FloatArray, FloatArray]:
-    """Two agents 14 m apart that leave each other at 12 m/s: the law, q and p."""
+def parting_pair() -> tuple[DeadZoneFlocking, FloatArray, FloatArray]:
+    """(law, q, p) of two agents 14 m apart that leave each other at 12 m/s."""
     return DeadZoneFlocking(), np.array([[0.0, 0.0], [14.0, 0.0]]), np.array([[-6.0, 0.0], [6.0, 0.0]])
 
 
 def advance(
     law: DeadZoneFlocking, q: FloatArray, p: FloatArray, dt: float, t_end: float
 ) -> tuple[FloatArray, FloatArray]:
-    """The state at t_end after semi-implicit Euler steps, of which only the last is kept.
+    """Positions and velocities at t_end, by semi-implicit Euler steps of which only the last is kept.
 
     Parameters
     ----------

@@ -68,13 +68,13 @@ def _energy(run: Trajectory, law: DeadZoneFlocking, needs: list[Hypothesis]) -> 
     enters = entry.pair is not None and jump > 0.0
     margin = -1.0 if enters else nan if entry.unsure and jump > 0.0 else 1.0
     status: Status = judge(margin, 0.0, needs)
-    found = "no pair comes into range"
+    detail = "no pair comes into range"
     if enters:
-        found = f"agents {entry.pair} come into range of each other before t = {entry.time:.6g}: H rises by {jump:.4g}"
+        detail = f"agents {entry.pair} come into range of each other before t = {entry.time:.6g}: H rises by {jump:.4g}"
     elif jump == 0.0:
-        found = "the potential of a pair is 0 at r: nothing jumps"
+        detail = "the potential of a pair is 0 at r: nothing jumps"
     elif entry.unsure:
-        found = "between the samples, or but for rounding, a pair may come into range"
+        detail = "between the samples, or but for rounding, a pair may come into range"
     return Claim(
         "energy",
         status,
@@ -84,7 +84,7 @@ def _energy(run: Trajectory, law: DeadZoneFlocking, needs: list[Hypothesis]) -> 
         error=0.0,
         witness={"agents": entry.pair, "time": entry.time},
         proof=PROOF,
-        detail=found,
+        detail=detail,
     )
 
 

@@ -1,0 +1,117 @@
+"""Erratum J1: on a directed tree edges converge to their desired lengths, not to zero as Theorem 1 says."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flockana.base.binomial import clopper_pearson
+from flockana.base.checks import FloatArray
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.trajectory import Trajectory
+from flockana.laws.minimal import MinimalFlocking
+from flockana.measures.nets import components
+from flockana.measures.perception import Edges, edge_vectors, random_out_tree
+from flockana.theorems.bearing_distance.tree_case import TreeCase, tree_case
+from flockana.theorems.bearing_distance.tree_limits import longest_floor, settles
+from flockana.theorems.limits import limit_claim
+from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
+
+_TREES, _MOST_AGENTS, _SEED, _END = 200, 8, 1, 80.0  # agents of a tree at most; s
+_CONFIDENCE = 0.95
+_INTERVAL = 1e-9  # to which the ends of an exact interval are computed
+
+
+def random_forest(count: int, seed: int, *, rho: float = 1.0) -> tuple[MinimalFlocking, FloatArray, FloatArray]:
+    """(law, q, p) of many random out-trees of 2 to 8 agents, none of which sees another: one run moves them all.
+
+    Parameters
+    ----------
+    count : int
+        Number of trees.
+    seed : int
+        Of the trees and their states: positions in a box of 4 ρ, velocities up to ρ in each component.
+    rho : float
+        Desired spacing.
+
+    Examples
+    --------
+    >>> law, q, p = random_forest(3, 0)
+    >>> len(law.edges) == len(q) - 3
+    True
+    """
+    rng = np.random.default_rng(seed)
+    edges: list[tuple[int, int]] = []
+    agents = 0
+    for _ in range(count):
+        n = int(rng.integers(2, _MOST_AGENTS + 1))
+        edges += [(j + agents, i + agents) for j, i in random_out_tree(n, rng)]
+        agents += n
+    q, p = rng.uniform(0.0, 4.0 * rho, (agents, 2)), rng.uniform(-rho, rho, (agents, 2))
+    return MinimalFlocking(edges=tuple(edges), spacing=rho), q, p
+
+
+def _trees(run: Trajectory) -> list[tuple[TreeCase, FloatArray, FloatArray]]:
+    """Each tree of a forest, with its positions and velocities at the end of the run."""
+    edges: Edges = run.law.edges
+    label = components(run.n, np.array(edges, dtype=np.int32))
+    trees = []
+    for k in range(int(label.max()) + 1):
+        agents = np.flatnonzero(label == k)
+        own = {int(agent): number for number, agent in enumerate(agents)}
+        law = MinimalFlocking(edges=tuple((own[j], own[i]) for j, i in edges if j in own), spacing=run.law.spacing)
+        case = tree_case(law, len(agents))
+        assert case is not None
+        trees.append((case, run.q[-1][agents], run.p[-1][agents]))
+    return trees
+
+
+def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+    law, q, p = random_forest(_TREES, _SEED)
+    run = simulate(law, q, p, (0.0, _END), t_eval=(0.0, _END))
+    lengths = np.linalg.norm(edge_vectors(run.q[-1], law.edges or ()), axis=1)
+    trees = _trees(run)
+    certificates = [settles(*tree) for tree in trees]
+    weakest = min(certificates, key=lambda certificate: certificate.margin)
+    settled = sum(certificate.margin > certificate.error for certificate in certificates)
+    vanished = sum(not longest_floor(*tree)[0] > 0.0 for tree in trees)
+    least, most = map(float, clopper_pearson(settled, _TREES, level=_CONFIDENCE))
+    low, high = map(float, clopper_pearson(vanished, _TREES, level=_CONFIDENCE))
+    case = {"trees": _TREES, "agents": f"2 to {_MOST_AGENTS}", "seed": _SEED, "t": _END}
+    return [], [
+        Claim(
+            "printed",
+            judge(high - 1.0, _INTERVAL, []) if vanished < _TREES else "inconclusive",
+            computed={"trees whose edges might all vanish": vanished, "interval": [low, high]},
+            stated="|x_e| -> 0 on every edge of every spanning tree (share 1)",
+            margin=high - 1.0,
+            error=_INTERVAL,
+            witness=case | {"shortest edge at the end": float(lengths.min())},
+            detail=f"of {_TREES} random directed trees {_TREES - vanished} keep an edge at a length > 0 for ever; the "
+            f"shortest of all is {lengths.min():.8g} αr at the end",
+        ),
+        limit_claim(
+            "corrected",
+            [],
+            [weakest],
+            computed={"trees": settled, "interval": [least, most]},
+            stated="what converges is | |x_e| - α_i r_i | and the velocity difference, on every edge",
+            witness=case | {"largest length error": float(np.abs(lengths - 1.0).max())},
+            detail=f"{settled} of {_TREES} random directed trees go to every edge at αr and equal velocities; share "
+            f"{least:.3f} or more ({_CONFIDENCE:.0%}, Clopper-Pearson)",
+        ),
+    ]
+
+
+THEOREM = Theorem(
+    id="J1",
+    title="Edges converge to their desired lengths, not to zero",
+    statement=(
+        "Theorem 1 lets the edge vectors x and their rates converge to zero. x = 0 is collision and contradicts "
+        "the goal (27); what converges is the length error | |x_e| - α_i r_i | and the velocity difference."
+    ),
+    source="Jond, bearing-distance flocking, Theorem 1, (36)",
+    kind="fixed",
+    check=_check,
+    references=("jond-2025",),
+    expected={"J1": "refuted", "J1:printed": "refuted", "J1:corrected": "verified"},
+)

@@ -1,0 +1,88 @@
+"""Erratum J2: the matrix A_cl of Theorem 1 is Hurwitz only while every edge is longer than desired."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flockana.laws.minimal import MinimalFlocking
+from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances
+
+
+def _two_agents_abscissa(ratio: float) -> float:
+    """Largest real part of an eigenvalue of the law's Jacobian in the child of two agents, at this multiple of ρ."""
+    law = MinimalFlocking(edges=((0, 1),), spacing=1.0)
+    A = law.jacobian(0.0, np.array([[0.0, 0.0], [ratio, 0.0]]), np.zeros((2, 2)))
+    child = [2, 3, 6, 7]
+    return float(np.linalg.eigvals(np.asarray(A)[np.ix_(child, child)]).real.max())
+
+
+def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+    import sympy as sp
+
+    from flockana.symbolic.spanning_trees import frozen_eigenvalues, symmetric_part
+
+    eigenvalues = {ratio: frozen_eigenvalues(sp.Rational(ratio)) for ratio in ("1/2", "1", "2")}
+    abscissas = {ratio: sp.re(values[0]) for ratio, values in eigenvalues.items()}
+    measured = _two_agents_abscissa(0.5)
+    five_children = symmetric_part(5)
+    return [], [
+        Claim(
+            "hurwitz",
+            "refuted" if abscissas["1/2"].is_positive else "verified",
+            "symbolic",
+            computed={ratio: [str(value) for value in values] for ratio, values in eigenvalues.items()},
+            stated="A_cl is Hurwitz, whatever the edges' lengths",
+            margin=-float(abscissas["1/2"]),
+            error=0.0,
+            witness={"|x|/αr": 0.5, "largest real part of the law's Jacobian there": measured},
+            proof="bearing-distance-printed",
+            detail=f"two agents at half the spacing: eigenvalue {float(abscissas['1/2']):.3f}, unstable (the law's own "
+            f"Jacobian: {measured:.3f}); at the spacing {abscissas['1']}, singular",
+        ),
+        Claim(
+            "outside",
+            "verified" if abscissas["2"].is_negative and abscissas["1"] == 0 else "refuted",
+            "symbolic",
+            computed=float(abscissas["2"]),
+            stated="Hurwitz if and only if |x_e| > α_i r_i on every edge",
+            margin=-float(abscissas["2"]),
+            error=0.0,
+            witness={"|x|/αr": [1, 2], "real parts": [0.0, float(abscissas["2"])]},
+            proof="bearing-distance",
+            detail=f"at twice the spacing the real parts are {float(abscissas['2']):g}: negative",
+        ),
+        Claim(
+            "positive-definite",
+            "refuted" if five_children.holds and five_children.result.is_negative else "inconclusive",
+            "symbolic",
+            computed=str(five_children.result),
+            stated="the edge matrices of a spanning tree are positive definite",
+            margin=float(five_children.result),
+            error=0.0,
+            witness="root -> a -> five children, unit weights",
+            proof="bearing-distance-printed",
+            detail=f"the symmetric part of DᵀD_in has least eigenvalue 1 - √k/2 for a node of k children: "
+            f"{float(five_children.result):.4f} for five",
+        ),
+    ]
+
+
+THEOREM = Theorem(
+    id="J2",
+    title="A_cl is Hurwitz only outside the desired spacing",
+    statement=(
+        "The proof takes the edge matrices for positive definite, A_cl for Hurwitz. W^s = diag(μ(1 - αr/|x|)) is "
+        "negative inside the desired spacing and zero at it: A_cl is Hurwitz if and only if |x_e| > α_i r_i on "
+        "every edge. DᵀD_in is not positive definite once a node has five children."
+    ),
+    source="Jond, bearing-distance flocking, Theorem 1, proof",
+    kind="fixed",
+    check=_check,
+    references=("jond-2025",),
+    expected={
+        "J2": "refuted",
+        "J2:hurwitz": "refuted",
+        "J2:outside": "verified",
+        "J2:positive-definite": "refuted",
+    },
+)

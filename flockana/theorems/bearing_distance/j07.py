@@ -1,0 +1,113 @@
+"""Erratum J7: the velocity bound (10), applied to the state in every step, is a drag below the desired speed."""
+
+from __future__ import annotations
+
+from math import tanh
+
+import numpy as np
+
+from flockana.dynamics.trajectory import Trajectory
+from flockana.laws.bearing_distance import ZoneFlocking
+from flockana.theorems.bearing_distance.random_starts import runs_from_random_starts
+from flockana.theorems.shares import always, mostly
+from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
+
+_SAME, _ROUNDING = 1e-9, 1e-11  # relative: numbers that differ by less are the same; of a few hundred steps
+
+
+def dragged_speed(dt: float, *, u_max: float = 2.0, v_max: float = 4.0) -> float:
+    """The largest speed that full thrust holds against (10): the fixed point of v -> v^max tanh((v + dt u^max)/v^max).
+
+    Parameters
+    ----------
+    dt : float
+        Step.
+    u_max, v_max : float
+        Bounds of input and speed.
+
+    Examples
+    --------
+    >>> round(dragged_speed(0.1), 4), round(dragged_speed(0.001), 3)
+    (2.0083, 0.457)
+    """
+    from scipy.optimize import brentq
+
+    return float(brentq(lambda v: v_max * tanh((v + dt * u_max) / v_max) - v, 1e-6, v_max, xtol=1e-14))
+
+
+def _late_speed(run: Trajectory) -> float:
+    """Mean speed of all agents over the second half of a run."""
+    return float(np.linalg.norm(run.p[len(run.t) // 2 :], axis=2).mean())
+
+
+def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+    law = ZoneFlocking(speed_bound="tanh")
+    after = law.step(0.0, np.zeros((1, 2)), np.array([[3.0, 0.0]]), law.start(np.zeros((1, 2)), np.array([[3.0, 0.0]])))
+    step, bound = float(after[1][0, 0]), dragged_speed(law.dt)
+    off, shortfall = abs(step / (4.0 * tanh(0.75)) - 1.0), bound / law.desired_speed - 1.0
+    printed = [_late_speed(run) for run in runs_from_random_starts(ZoneFlocking.printed(own_velocity="measured"))]
+    clipped = [
+        _late_speed(run)
+        for run in runs_from_random_starts(
+            ZoneFlocking.printed(own_velocity="measured", order="synchronous", speed_bound="clip")
+        )
+    ]
+    near = 0.05 * law.desired_speed
+    return [], [
+        Claim(
+            "step",
+            judge(_SAME - off, _ROUNDING, []),
+            computed=step,
+            stated=4.0 * tanh(0.75),
+            margin=_SAME - off,
+            error=_ROUNDING,
+            witness="one agent at the desired speed, no input",
+            detail=f"applied to the state, (10) makes a speed of 3 into {step:.4g} in every step: a drag",
+        ),
+        Claim(
+            "reachable",
+            judge(shortfall, _ROUNDING, []),
+            computed=bound,
+            stated=f"the desired speed {law.desired_speed:g} is below the bound 4, so it can be kept",
+            margin=shortfall,
+            error=_ROUNDING,
+            witness={dt: dragged_speed(dt) for dt in (0.1, 0.05, 0.01, 0.001)},
+            detail=f"with all inputs within u^max = 2 no speed above {bound:.4f} lasts (steps of 0.1 s); with "
+            "finer steps less still",
+        ),
+        always(
+            "speed",
+            [abs(v - law.desired_speed) <= near for v in printed],
+            "with (10) on the state the mean speed is about 3",
+            "mean speed about 3 m/s",
+            witness={"mean speed over seeds": float(np.mean(printed))},
+        ),
+        mostly(
+            "clip",
+            [abs(v - law.desired_speed) <= near for v in clipped],
+            "with v min(1, v^max/|v|) it is about 3",
+            "a plain clip lets the flock keep 3 m/s",
+            witness={"mean speed over seeds": float(np.mean(clipped))},
+        ),
+    ]
+
+
+THEOREM = Theorem(
+    id="J7",
+    title="The velocity bound is a drag",
+    statement=(
+        "(10) passes the velocity through v^max tanh(|v|/v^max) in every step. That is a drag: 3 m/s become 2.54, "
+        "and with |u| <= 2 no speed above 2.01 lasts, so that v^d = 3 is out of reach. A plain clip is meant."
+    ),
+    source="Jond, bearing-distance flocking, (10)",
+    kind="fixed",
+    check=_check,
+    references=("jond-2025",),
+    expected={
+        "J7": "refuted",
+        "J7:step": "verified",
+        "J7:reachable": "refuted",
+        "J7:speed": "refuted",
+        "J7:clip": "verified",
+    },
+)

@@ -1,0 +1,81 @@
+"""Erratum J8: the velocity estimate (17) of the bearing form drifts away from the velocity, and the flock disperses."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flockana.laws.bearing_distance import ZoneFlocking
+from flockana.measures.nets import components, links
+from flockana.theorems.bearing_distance.random_starts import SEEDS, runs_from_random_starts, zone_start
+from flockana.theorems.shares import always, mostly
+from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
+
+_SAME, _ROUNDING = 1e-9, 1e-11  # relative: forces that differ by less are the same; their rounding
+
+
+def _forms(tolerances: Tolerances) -> Claim:
+    """With the true velocity, the position and the bearing form of each of the six behaviours are equal."""
+    worst = 0.0
+    for seed in range(SEEDS):
+        q, p = zone_start(seed)
+        position, bearing = (ZoneFlocking(form=form).behaviours(q, p) for form in ("position", "bearing"))
+        largest = max(float(np.abs(term).max()) for term in position.values())
+        worst = max(worst, *(float(np.abs(position[name] - bearing[name]).max()) / largest for name in position))
+    return Claim(
+        "forms",
+        judge(_SAME - worst, _ROUNDING, []),
+        computed=worst,
+        stated="with the true velocity both forms of all six behaviours are equal",
+        margin=_SAME - worst,
+        error=_ROUNDING,
+        witness={"starts": SEEDS},
+        detail=f"with the true velocity position and bearing form agree to {worst:.1g}: (12)-(15) are right",
+    )
+
+
+def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+    estimated, measured = (
+        runs_from_random_starts(ZoneFlocking(own_velocity=name)) for name in ("estimated", "measured")
+    )
+    drift = [float(np.linalg.norm(run.extra["estimate"][-1] - run.p[-1], axis=1).mean()) for run in estimated]
+    flocks = [int(components(run.n, links(run.q[-1], 5.0)).max()) + 1 for run in estimated]
+    connected = [not components(run.n, links(run.q[-1], 5.0)).any() for run in measured]
+    return [], [
+        _forms(tolerances),
+        always(
+            "equivalent",
+            [error < 0.1 for error in drift],
+            "with (17) the estimate is within 0.1 m/s of the velocity after 20 s",
+            "the estimate (17) makes the bearing form equivalent (Remark 3)",
+            witness={"mean error of the estimate, by seed": drift},
+        ),
+        always(
+            "holds-together",
+            [count == 1 for count in flocks],
+            f"with (17) the flock is one component ({np.median(flocks):g} in the median)",
+            "the flock stays together with the estimate as well",
+            witness={"components by seed": flocks},
+        ),
+        mostly("measured", connected, "with its true velocity it is one component", "odometry mends it"),
+    ]
+
+
+THEOREM = Theorem(
+    id="J8",
+    title="The velocity estimate drifts",
+    statement=(
+        "Remark 3 holds the bearing form with the estimate (17) for equivalent. (17) leaves out the global speed "
+        "term and both bounds: estimates drift away from the velocities, and the flock disperses."
+    ),
+    source="Jond, bearing-distance flocking, (17) and Remark 3",
+    kind="fixed",
+    check=_check,
+    references=("jond-2025",),
+    expected={
+        "J8": "refuted",
+        "J8:forms": "verified",
+        "J8:equivalent": "refuted",
+        "J8:holds-together": "refuted",
+        "J8:measured": "verified",
+    },
+)

@@ -1,0 +1,77 @@
+"""Random starts of ten agents as in section 5.1 of the bearing-distance paper, and runs from twenty of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.trajectory import Trajectory
+from flockana.laws.bearing_distance import ZoneFlocking
+from flockana.measures.nets import components, links
+
+SEEDS, DURATION = 20, 20.0  # runs of an ensemble; s
+
+
+def zone_start(seed: int, n: int = 10) -> tuple[FloatArray, FloatArray]:
+    """The random start of section 5.1 of the bearing-distance paper: q in (0, 10)² m, p in (0, 1)² m/s by component.
+
+    Parameters
+    ----------
+    seed : int
+        Of the generator.
+    n : int
+        Number of agents.
+
+    Examples
+    --------
+    >>> zone_start(0)[0].shape
+    (10, 2)
+    """
+    rng = np.random.default_rng(seed)
+    return rng.uniform(0.0, 10.0, (n, 2)), rng.uniform(0.0, 1.0, (n, 2))
+
+
+def separated_start(seed: int, n: int = 10, *, least: float = 2.0, reach: float = 5.0) -> tuple[FloatArray, FloatArray]:
+    """A random start as `zone_start`, with no two agents closer than `least` and the net within `reach` connected.
+
+    Parameters
+    ----------
+    seed : int
+        Of the generator.
+    n : int
+        Number of agents.
+    least, reach : float
+        Least distance and range of the net, in m.
+
+    Examples
+    --------
+    >>> from flockana.measures.metrics import min_distance
+    >>> min_distance(separated_start(0)[0]) > 2.0
+    True
+    """
+    rng = np.random.default_rng(seed)
+    while True:
+        q = rng.uniform(0.0, 10.0, (1, 2))
+        for x in rng.uniform(0.0, 10.0, (100 * n, 2)):
+            if len(q) < n and np.linalg.norm(q - x, axis=1).min() > least:
+                q = np.vstack([q, x])
+        if len(q) == n and not components(n, links(q, reach)).any():
+            return q, rng.uniform(0.0, 1.0, (n, 2))
+
+
+def runs_from_random_starts(
+    law: ZoneFlocking, start: Callable[[int], tuple[FloatArray, FloatArray]] = zone_start
+) -> list[Trajectory]:
+    """One run of 20 s from each of twenty random starts.
+
+    Parameters
+    ----------
+    law : ZoneFlocking
+        The law.
+    start : callable
+        Positions and velocities by seed.
+    """
+    return [simulate(law, *start(seed), (0.0, DURATION)) for seed in range(SEEDS)]

@@ -1,0 +1,70 @@
+"""Erratum L1: (7) and (9) multiply two vectors; by components that product depends on the axes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.interactions.dead_zone import DeadZoneInteraction
+from flockana.laws.dead_zone import DeadZoneFlocking
+from flockana.theorems.dead_zone.erratum import CheckResult, erratum, margin_claim
+from flockana.theorems.theorem import Tolerances
+
+_SAME = 1e-9  # relative: two forces that differ by less are the same
+_ROUNDING = 1e-12  # relative, of a force of three agents: some hundred roundings
+
+
+def _check(tolerances: Tolerances) -> CheckResult:
+    """The forces on three agents before and after the axes are turned, as printed and as corrected."""
+    pair = DeadZoneInteraction(k1=0.0)
+    q = np.array([[0.0, 0.0], [2.0, 0.5], [-1.0, 2.5]])
+    turn = np.array([[0.6, -0.8], [0.8, 0.6]])
+
+    def printed(x: FloatArray) -> FloatArray:
+        """u_i = Σ_j φ_zi ∘ n_ij with φ_zi = Σ_j f_ij n_ij, the only product of (7) and (9) that gives a vector."""
+        delta = x[None] - x[:, None]
+        rho = np.linalg.norm(delta, axis=2)
+        n = delta / np.sqrt(1.0 + pair.eta * rho**2)[:, :, None]
+        f = np.where(rho > 0.0, pair.action(np.where(rho > 0.0, rho, 8.0)), 0.0)
+        u: FloatArray = np.einsum("ij,ijc->ic", f, n) * n.sum(axis=1)
+        return u
+
+    law = DeadZoneFlocking(pair)
+
+    def corrected(x: FloatArray) -> FloatArray:
+        return law.acceleration(0.0, x, np.zeros_like(x))
+
+    def change_by_turning(u: Any) -> float:
+        """Largest change of a force by the turn, relative to the largest force."""
+        return float(np.abs(u(q @ turn.T) - u(q) @ turn.T).max() / np.abs(u(q)).max())
+
+    printed_change, corrected_change = change_by_turning(printed), change_by_turning(corrected)
+    return [], [
+        margin_claim(
+            "printed",
+            _SAME - printed_change,
+            f"read by components, turning the axes changes the force by {printed_change:.3g} of itself",
+            error=_ROUNDING,
+        ),
+        margin_claim(
+            "corrected",
+            _SAME - corrected_change,
+            f"with f once and n once the force turns with the axes, to {corrected_change:.2g}",
+            error=_ROUNDING,
+        ),
+    ]
+
+
+THEOREM = erratum(
+    1,
+    "Direction and sum occur once",
+    "(7) already sums over neighbours and carries the direction; (9) multiplies by n_ij and sums again. A product "
+    "of two vectors is undefined; by components it depends on the axes. The scalar force once and n once is meant.",
+    "(7) and (9)",
+    _check,
+    whole="refuted",
+    printed="refuted",
+    corrected="verified",
+)

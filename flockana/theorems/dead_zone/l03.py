@@ -1,0 +1,52 @@
+"""Erratum L3: φ_z, called a bounded potential, is a force that is unbounded as 1/ρ² where agents meet."""
+
+from __future__ import annotations
+
+from flockana.theorems.dead_zone.case import PROOF
+from flockana.theorems.dead_zone.erratum import CheckResult, erratum
+from flockana.theorems.theorem import Claim, Tolerances
+
+
+def _check(tolerances: Tolerances) -> CheckResult:
+    """φ_z grows as 1/ρ² and its potential as −ln ρ where two agents meet: by algebra."""
+    import sympy as sp
+
+    from flockana.symbolic.dead_zone import K_R, RHO, derive_potential, repulsion
+
+    growth = sp.limit(RHO**2 * repulsion(), RHO, 0, "+")
+    potential = derive_potential()
+    unbounded = bool(growth == 2 * K_R)
+    return [], [
+        Claim(
+            "printed",
+            "refuted" if unbounded else "verified",
+            "symbolic",
+            computed=str(growth),
+            stated="φ_z is a bounded, positive definite potential",
+            witness="limit of ρ² |f| at 0",
+            proof=PROOF,
+            detail="φ_z is a force, and ρ²|φ_z| tends to 2 k_r at 0: it is unbounded",
+        ),
+        Claim(
+            "corrected",
+            "verified" if potential.holds else "refuted",
+            "symbolic",
+            computed=[str(residual) for residual in potential.residuals],
+            stated="dψ/dρ = F, and ψ/(-2k_r ln ρ) -> 1",
+            proof=PROOF,
+            detail="the potential in closed form, for η > 0 and η = 0, grows only logarithmically at 0, as n ~ ρ",
+        ),
+    ]
+
+
+THEOREM = erratum(
+    3,
+    "φ_z is a force, unbounded as 1/r²",
+    "φ_z is called a bounded potential. It is a force, unbounded as 1/r²; its potential is unbounded too, but only "
+    "logarithmically, because n ~ ρ.",
+    "section III",
+    _check,
+    whole="refuted",
+    printed="refuted",
+    corrected="verified",
+)

@@ -1,0 +1,83 @@
+"""Erratum L4: nothing keeps the flock together: two agents may part for ever, and wide starts do not connect."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flockana.base.binomial import clopper_pearson
+from flockana.dynamics.simulate import simulate
+from flockana.laws.dead_zone import DeadZoneFlocking
+from flockana.measures.metrics import connectivity, min_distance
+from flockana.theorems.dead_zone.case import PROOF
+from flockana.theorems.dead_zone.erratum import CheckResult, advance, erratum, margin_claim, parting_pair
+from flockana.theorems.dead_zone.parting import parts
+from flockana.theorems.theorem import Tolerances
+
+_SEEDS = 10  # of each box
+_INTERVAL = 1e-9  # to which the ends of an exact interval are computed
+
+
+def connected_count(box: float, *, seeds: int, n: int = 50, t_end: float = 60.0) -> int:
+    """Number of seeds from which a flock ends connected, with q(0) uniform in [0, box]².
+
+    Parameters
+    ----------
+    box : float
+        Side of the box; velocities are uniform in [−1, 1]².
+    seeds : int
+        Number of seeds, from 0 on.
+    n : int
+        Number of agents.
+    t_end : float
+        Time at which components are counted.
+    """
+    law, count = DeadZoneFlocking(), 0
+    for seed in range(seeds):
+        generator = np.random.default_rng(seed)
+        q, p = generator.uniform(0.0, box, (n, 2)), generator.uniform(-1.0, 1.0, (n, 2))
+        count += connectivity(advance(law, q, p, 0.01, t_end)[0], law.interaction.r) == 1.0
+    return count
+
+
+def _check(tolerances: Tolerances) -> CheckResult:
+    """A pair of agents that part for ever, and the share of flocks that end connected by the width of their start."""
+    law, q, p = parting_pair()
+    run = simulate(law, q, p, (0.0, 10.0))
+    end = parts(run.q[-1], run.p[-1], law)
+    narrow, wide = (connected_count(box, seeds=_SEEDS) for box in (40.0, 150.0))
+    least, most = float(clopper_pearson(narrow, _SEEDS)[0]), float(clopper_pearson(wide, _SEEDS)[1])
+    radius = 0.5 * min_distance(run.q[-1])
+    return [], [
+        margin_claim(
+            "printed",
+            -end.separation.margin,
+            f"two agents {q[1, 0]:g} apart that leave each other at {2.0 * p[1, 0]:g} part for ever: at t = 10 "
+            f"they are {radius:.4g} from their centre, where {end.separation.text}",
+            error=end.separation.error,
+            computed=radius,
+            stated="no agent farther than r from the leader",
+            proof=PROOF,
+        ),
+        margin_claim(
+            "wide-starts",
+            least - most,
+            f"of {_SEEDS} starts in a box of 40 m {narrow} end connected, of {_SEEDS} in one of 150 m {wide}: shares "
+            f"of at least {least:.2f} and at most {most:.2f} (95 %)",
+            error=_INTERVAL,
+            computed=[narrow, wide],
+            stated="the share of connected flocks falls with the box",
+        ),
+    ]
+
+
+THEOREM = erratum(
+    4,
+    "Cohesion is not implied",
+    "No leader appears in (9), and nothing keeps the net connected: two agents 14 m apart that leave each other at "
+    "12 m/s separate, and from wide starts the share of connected flocks falls towards 0.",
+    "Theorem 1, first claim",
+    _check,
+    whole="refuted",
+    printed="refuted",
+    wide_starts="verified",
+)

@@ -1,0 +1,30 @@
+"""Random starts of section 5.1: where agents begin, how far apart and how fast, and the runs from them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flockana.dynamics.simulate import simulate
+from flockana.laws.bearing_distance import ZoneFlocking
+from flockana.measures.metrics import min_distance
+from flockana.measures.nets import components, links
+from flockana.theorems.bearing_distance.random_starts import runs_from_random_starts, separated_start, zone_start
+
+
+def test_starts_are_what_they_say():
+    q, p = zone_start(3)
+    assert q.shape == p.shape == (10, 2)
+    assert p.min() > 0.0
+    q, _ = separated_start(3)
+    assert min_distance(q) > 2.0
+    assert components(10, links(q, 5.0)).max() == 0
+
+
+def test_one_run_of_twenty_seconds_from_each_start():
+    law = ZoneFlocking()
+    runs = runs_from_random_starts(law, separated_start)
+    assert len(runs) == 20
+    for seed, run in enumerate(runs):
+        np.testing.assert_array_equal(run.q[0], separated_start(seed)[0])
+        assert run.t[-1] == 20.0
+    np.testing.assert_array_equal(runs[3].q, simulate(law, *separated_start(3), (0.0, 20.0)).q)

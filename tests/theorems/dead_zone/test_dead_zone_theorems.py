@@ -1,0 +1,87 @@
+"""The dead-zone theorem, printed and corrected, on runs that decide each claim."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from flockana.dynamics.simulate import simulate
+from flockana.interactions import DeadZoneInteraction
+from flockana.laws.dead_zone import DeadZoneFlocking
+from flockana.laws.olfati_saber import Algorithm1
+from flockana.laws.semi_implicit import SemiImplicitEuler
+from flockana.theorems import verify
+
+
+def statuses(verdict):
+    return {claim.name: claim.status for claim in verdict.claims}
+
+
+@pytest.fixture(scope="module")
+def parting():
+    return simulate(DeadZoneFlocking(), [[0.0, 0.0], [14.0, 0.0]], [[-6.0, 0.0], [6.0, 0.0]], (0.0, 10.0))
+
+
+def test_two_agents_that_part_refute_cohesion_and_one_velocity(parting):
+    printed = statuses(verify("dead-zone-1-printed", parting))
+    assert printed == {"cohesion": "refuted", "energy": "verified", "velocity": "refuted", "collision": "verified"}
+    # the neighbours' energy falls here, by psi(r) at once when they leave range
+    assert verify("dead-zone-1-corrected", parting).status == "verified"
+
+
+def test_a_flock_that_contracts_refutes_the_printed_energy_only():
+    rng = np.random.default_rng(4)
+    q, p = rng.uniform(0.0, 20.0, (12, 2)), rng.uniform(-1.0, 1.0, (12, 2))
+    run = simulate(SemiImplicitEuler(DeadZoneFlocking(), 0.01), q, p, (0.0, 200.0), t_eval=np.linspace(0.0, 200.0, 201))
+    printed = verify("dead-zone-1-printed", run)
+    assert statuses(printed) == {
+        "cohesion": "verified",
+        "energy": "refuted",
+        "velocity": "verified",
+        "collision": "verified",
+    }
+    # pairs came into range: the rise is psi(15) less what was dissipated between two samples, or a multiple of it
+    far = DeadZoneInteraction().far_potential
+    assert 0.5 * far < printed.claim("energy").computed < 20.0 * far
+    corrected = statuses(verify("dead-zone-1-corrected", run))
+    assert corrected == {"rate": "verified", "balance": "vacuous", "components": "verified", "distance": "verified"}
+
+
+@pytest.mark.parametrize("end", [1e-3, 0.05, 0.08])
+def test_a_run_that_is_not_over_decides_no_limit(end):
+    """The start of L4, which parts for ever, while the two are in range: nothing tells it from one that does not."""
+    young = simulate(DeadZoneFlocking(), [[0.0, 0.0], [14.0, 0.0]], [[-6.0, 0.0], [6.0, 0.0]], (0.0, end))
+    assert statuses(verify("dead-zone-1-printed", young))["velocity"] == "inconclusive"
+    assert statuses(verify("dead-zone-1-printed", young))["cohesion"] == "inconclusive"
+    assert verify("dead-zone-1-corrected", young).claim("components").status == "inconclusive"
+
+
+def test_the_distance_bound_bites():
+    """Without damping the bound is attained; a larger energy than the run's would be refuted by it."""
+    law = DeadZoneFlocking(DeadZoneInteraction(ramp=0.0, k1=0.0, k_delta=0.0), k2=0.0)
+    run = simulate(law, [[0.0], [6.0]], [[20.0], [-20.0]], (0.0, 0.3))
+    claim = verify("dead-zone-1-corrected", run).claim("distance")
+    # ψ(ρ) = H: 1/sinh(400/400 + asinh(1/3.5)), with the pair's far potential nothing
+    bound = 1.0 / np.sinh(1.0 + np.arcsinh(1.0 / 3.5))
+    assert law.interaction.least_distance(400.0) == pytest.approx(bound, rel=1e-14)
+    assert abs(run.closest_approach().distance - bound) < 1e-6
+    assert claim.status in ("verified", "inconclusive")
+
+
+def test_another_law_is_none_of_its_business():
+    run = simulate(Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 1.0))
+    for name in ("dead-zone-1-printed", "dead-zone-1-corrected"):
+        assert verify(name, run).status == "vacuous"
+
+
+def test_a_flock_narrow_now_that_parts_for_ever_is_not_cohesive():
+    run = simulate(DeadZoneFlocking(), [[0.0, 0.0], [16.0, 0.0]], [[-0.1, 0.0], [0.1, 0.0]], (0.0, 1.0))
+    claim = verify("dead-zone-1-printed", run).claim("cohesion")
+    assert (claim.status, claim.computed < 15.0) == ("refuted", True)
+
+
+def test_claims_name_the_proof_of_what_they_say():
+    run = simulate(DeadZoneFlocking(), [[0.0], [4.0]], [[0.0], [0.0]], (0.0, 1.0))
+    for key, expected in (("corrected", {"rate", "distance"}), ("printed", {"energy", "collision"})):
+        claims = verify(f"dead-zone-1-{key}", run).claims
+        assert {claim.name for claim in claims if claim.proof == "dead-zone"} == expected

@@ -1,0 +1,154 @@
+"""Definition 5 on runs whose answer is known: each condition, the window, what lies between samples, and at r."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from theorems.made_up import SCALINGS, judged, made_up, same_in_all_units, statuses
+
+import flockana as fl
+from flockana.dynamics.simulate import simulate
+from flockana.lattice import hexagonal_patch
+from flockana.laws.olfati_saber import Algorithm1
+from flockana.measures.metrics import cohesion_radius, net_measures
+from flockana.theorems import Tolerances, verify
+from flockana.theorems.sampling import nets_at, nets_between, radius_between
+
+LAW = Algorithm1()
+BOTH = ("alpha-flocking", "alpha-flocking-strict")
+SPEED = 0.04 * LAW.scales.speed  # of two agents: K̃ is an eighth of its square
+
+
+@pytest.mark.parametrize("until", [1e-6, 2.0, 100.0])
+def test_a_lattice_in_steady_flight_flocks(until):
+    q = hexagonal_patch(1, 7.0)
+    run = simulate(LAW, q, 0 * q + 1.0, (0.0, until), t_eval=np.linspace(0.0, until, 30))
+    for name in BOTH:
+        verdict = verify(name, run)
+        assert set(statuses(verdict).values()) == {"verified"}
+        assert all(claim.error > 0.0 or claim.name in ("giant", "flock") for claim in verdict.claims)
+
+
+@pytest.mark.parametrize(
+    ("name", "claim", "q", "p"),
+    [
+        ("alpha-flocking", "giant", [[0.0], [7.0], [100.0], [107.0]], None),
+        ("alpha-flocking-strict", "flock", [[0.0], [7.0], [100.0]], None),
+        ("alpha-flocking", "deviation", [[0.0], [3.0]], None),
+        ("alpha-flocking-strict", "mismatch", [[0.0], [7.0]], [[0.0], [SPEED]]),
+    ],
+)
+def test_each_condition_is_looked_at(name, claim, q, p):
+    q = np.array(q)
+    p = 0 * q if p is None else np.array(p)
+    still = made_up(LAW, [q] * 3, [p] * 3, t=(0.0, 1e-3, 2e-3))
+    verdict = judged(name, still)
+    assert verdict.claim(claim).status == "refuted"
+    assert {c.status for c in verdict.claims if c.name != claim} == {"verified"}
+
+
+def test_cohesion_is_growth_over_the_window():
+    q = np.array([[0.0], [5.0]])
+    run = made_up(LAW, [q, q, 1.2 * q, 1.6 * q], t=np.arange(4.0))  # at rest at each
+    tolerances = Tolerances(settle=0.0, deviation=1.0)
+    assert judged("alpha-flocking", run, tolerances).claim("cohesive").status == "refuted"
+    shorter = run.window(0.0, 2.0)
+    assert judged("alpha-flocking", shorter, tolerances).claim("cohesive").status == "verified"
+
+
+def test_the_transient_is_left_out():
+    q = np.array([[0.0], [7.0]])
+    run = made_up(LAW, [10.0 * q, q, q], t=(0.0, 1.0, 2.0))
+    assert judged("alpha-flocking", run).status == "verified"
+    assert judged("alpha-flocking", run, Tolerances(settle=0.0)).status == "refuted"
+
+
+def test_one_sample_is_no_window():
+    q = hexagonal_patch(1, 7.0)
+    for times in ([2.0], [0.0, 2.0]):  # the second has one sample in its second half
+        run = simulate(LAW, q, 0 * q, (0.0, 2.0), t_eval=times)
+        for name in BOTH:
+            assert judged(name, run).status == "vacuous"
+
+
+def test_a_law_without_a_range_is_named():
+    run = made_up(fl.scenario("zone-51").law, np.zeros((3, 10, 2)))
+    for name in BOTH:
+        verdict = judged(name, run)
+        assert verdict.status == "vacuous"
+        assert verdict.hypotheses[0].detail == type(run.law).__name__ == "ZoneFlocking"
+
+
+def test_a_share_that_is_reached_exactly_is_not_exceeded():
+    """C* > 0.5: two of four agents are no giant, three are; 29 of 100 are not more than 0.29, though 0.29·100 < 29."""
+    for sizes, giant, status in (((2, 2), 0.5, "refuted"), ((3, 1), 0.5, "verified"), ((29, 71), 0.71, "refuted"),
+                                 ((28, 72), 0.71, "verified")):  # fmt: skip
+        q = np.concatenate([7.0 * np.arange(sizes[0]), 1e4 + 7.0 * np.arange(sizes[1])])[:, None]
+        claim = judged("alpha-flocking", made_up(LAW, [q] * 3), Tolerances(giant=giant)).claim("giant")
+        assert claim.status == status
+        assert (2.0 * claim.margin) % 2.0 == 1.0
+
+
+@pytest.mark.parametrize("side", [-1.0, 0.0, 1.0])
+def test_a_pair_at_r_but_for_rounding_decides_nothing(side):
+    """Two pairs r apart, to the last bit or two: linked or not, Ẽ is 0.04 or 0 and the net connected or not."""
+    gap = 8.4 * (1.0 + side * 2.3e-16)
+    q = np.array([[0.0], [7.0], [7.0 + gap], [14.0 + gap]])
+    run = made_up(LAW, [q] * 4)
+    found = judged("alpha-flocking-strict", run, Tolerances(deviation=0.004))
+    assert (found.claim("flock").status, found.claim("deviation").status) == ("inconclusive", "inconclusive")
+
+
+class TestBetweenSamples:
+    def test_a_net_that_breaks_in_between_is_not_called_connected(self):
+        """Both samples show a link of 7; at the speed it had it may have been 8.4 and back."""
+        q = np.array([[0.0], [7.0]])
+        p = np.array([[[-2.0], [2.0]], [[2.0], [-2.0]]])
+        u = np.array([[[2.0], [-2.0]]] * 2)
+        run = made_up(LAW, [q, q], p, t=(0.0, 2.0), u=u)
+        found = judged("alpha-flocking-strict", run, Tolerances(settle=0.0, mismatch=1.0))
+        assert found.claim("flock").status == "inconclusive"
+        assert found.claim("deviation").status == "inconclusive"
+
+    @given(st.integers(0, 2**32 - 1), st.integers(2, 7), st.integers(1, 3))
+    def test_bounds_hold_of_a_dense_run(self, seed, n, m):
+        """Radius, components, and the largest one, of a run kept sparsely: against the same run kept densely."""
+        rng = np.random.default_rng(seed)
+        q, p = rng.uniform(0.0, 12.0, (n, m)), rng.normal(0.0, 4.0, (n, m))
+        law = fl.Algorithm2(target=fl.StaticTarget((0.0,) * m))
+        dense = simulate(law, q, p, (0.0, 0.4), t_eval=np.linspace(0.0, 0.4, 161))
+        keep = slice(0, None, 8)
+        sparse = fl.Trajectory(dense.t[keep], dense.q[keep], dense.p[keep], dense.u[keep], law)
+        nets, radius = nets_between(sparse), radius_between(sparse)
+        for k, first in enumerate(range(0, 160, 8)):
+            inside = dense.q[first : first + 9]
+            assert max(cohesion_radius(x) for x in inside) <= radius[k] * (1.0 + 1e-12)
+            for x in inside:
+                connected, giant, _ = net_measures(x, 7.0, 8.4)
+                parts = n - connected * (n - 1)
+                assert nets.components_least[k] <= parts + 1e-9
+                assert parts <= nets.components[k] + 1e-9
+                assert nets.giant[k] - 1e-9 <= n * giant <= nets.giant_most[k] + 1e-9
+
+    def test_at_samples_only_rounding_is_open(self):
+        run = made_up(LAW, [[[0.0], [7.0]], [[0.0], [8.4]], [[0.0], [9.0]]])
+        nets = nets_at(run)
+        assert nets.open_links.tolist() == [0, 1, 0]
+        assert nets.components.tolist() == [1, 2, 2]
+        assert nets.components_least.tolist() == [1, 1, 2]
+
+    def test_a_map_has_nothing_between_its_steps(self):
+        run = fl.scenario("msn-case2-printed").run().window(0.0, 0.2)
+        assert nets_between(run).open_links.sum() == 0
+        radius = run.metric("cohesion_radius")
+        np.testing.assert_array_equal(radius_between(run), np.maximum(radius[:-1], radius[1:]))
+
+
+@pytest.mark.parametrize("scaling", SCALINGS)
+@pytest.mark.parametrize("name", BOTH)
+def test_units(name, scaling):
+    entry = fl.scenario("hexagon")
+    same_in_all_units(name, simulate(entry.law, entry.q0, entry.p0, (0.0, 3.0)), scaling)
+    same_in_all_units(name, simulate(entry.law, 1.7 * entry.q0, 9.0 * entry.p0, (0.0, 3.0)), scaling)

@@ -1,0 +1,165 @@
+"""Collisions: who certainly meets, who may, and how many the energy allows; erratum E13."""
+
+from __future__ import annotations
+
+from math import sqrt
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from theorems.made_up import SCALINGS, judged, made_up, same_in_all_units, statuses
+
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.trajectory import Trajectory
+from flockana.environment.targets import StaticTarget
+from flockana.interactions import AlphaInteraction, Gains
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.measures.path_bounds import contacts
+from flockana.theorems import Tolerances, verify
+from flockana.theorems.olfati_saber.collisions import below_multiple, near, passed
+
+ALPHA = AlphaInteraction(a=5e4, b=5e4)
+E13_LAW = Algorithm2(ALPHA, Gains(c1_alpha=1.0, c2_alpha=1.0, c1_gamma=0.01, c2_gamma=0.01), StaticTarget((0.0,)))
+E13_START = [[-12.0], [0.0], [30.0]], [[sqrt(5.6 * ALPHA.c_star)], [0.0], [0.0]]
+
+
+@pytest.fixture(scope="module")
+def e13():
+    return simulate(E13_LAW, *E13_START, (0.0, 0.05))
+
+
+def head_on(share, m=1, *, aside=0.0, tilt=0.0, apart=7.0, law=None, times=3.0):
+    """Two agents that approach each other with a share of c* as their energy, the second one a little aside."""
+    law = law or Algorithm1(gains=Gains(c2_alpha=0.0))
+    q = np.zeros((2, m))
+    q[1, 0] = apart
+    speed = sqrt(share * law.gains.c1_alpha * law.alpha.c_star - law.energy(0.0, q, 0.0 * q))
+    p = np.zeros((2, m))
+    p[0, 0], p[1, 0] = speed, -speed
+    if m > 1:
+        q[1, 1] += aside
+        turn = np.eye(m)
+        turn[:2, :2] = [[np.cos(tilt), -np.sin(tilt)], [np.sin(tilt), np.cos(tilt)]]
+        q, p = q @ turn.T, p @ turn.T
+    return simulate(law, q, p, (0.0, times * apart / speed))
+
+
+class TestTwoAgents:
+    @pytest.mark.parametrize("share", [0.3, 0.9, 1.0 - 1e-4])
+    @pytest.mark.parametrize("m", [1, 2, 3])
+    def test_below_c_star_they_never_meet(self, share, m):
+        verdict = verify("collision-energy", head_on(share, m))
+        assert verdict.claim("below").status == "verified"
+        assert verdict.claim("below").margin > verdict.claim("below").error > 0.0
+
+    @pytest.mark.parametrize("share", [1.1, 1.9])
+    @pytest.mark.parametrize("m", [1, 2, 3])
+    def test_between_c_star_and_twice_it_they_do(self, share, m):
+        """On one axis they change places for certain, whatever the dimension."""
+        found = statuses(verify("collision-energy", head_on(share, m)))
+        assert found == {"below": "vacuous", "twice": "refuted"}
+
+    @pytest.mark.parametrize("off", [1e-12, 1e-11, 1e-10])
+    def test_at_the_top_the_law_turns_them_back_whatever_the_integrator_does(self, off):
+        """H(0) = (1 − off) c*, by less than the run is off in energy: that they change places refutes nothing."""
+        run = head_on(1.0 - off, law=Algorithm1(gains=Gains(c1_alpha=1.0, c2_alpha=0.0)), times=10.0)
+        found = statuses(verify("collision-energy", run))
+        assert "refuted" not in found.values()
+
+    @pytest.mark.parametrize("share", [0.9, 1.1, 1.6])
+    def test_a_law_whose_forces_are_far_below_b_over_root_eps(self, share):
+        """Lengths short beside ℓ: the potential's rounding goes by the forces that there are, and decides nothing."""
+        alpha = AlphaInteraction(d=7e-6, r=7.35e-6)
+        law = Algorithm1(alpha, Gains(c2_alpha=0.0))
+        found = statuses(verify("collision-energy", head_on(share, apart=7e-6, law=law)))
+        assert found["below"] == ("verified" if share < 1.0 else "vacuous")
+
+    @pytest.mark.parametrize("aside", [1e-12, 1e-9, 1e-7])
+    def test_a_near_miss_is_no_collision(self, aside):
+        """Angular momentum never vanishes: they pass each other, however near."""
+        claim = verify("collision-energy", head_on(1.6, 2, aside=aside)).claim("twice")
+        assert claim.status in ("inconclusive", "verified")
+
+    def test_on_a_line_that_is_no_axis_rounding_tilts_the_paths(self):
+        assert verify("collision-energy", head_on(1.6, 2, tilt=0.4)).claim("twice").status == "inconclusive"
+
+    @pytest.mark.parametrize("scaling", SCALINGS)
+    def test_units(self, scaling):
+        for share in (0.5, 1.5):
+            same_in_all_units("collision-energy", head_on(share), scaling)
+
+
+@given(st.floats(-16.0, -1.0).map(lambda x: 10.0**x), st.sampled_from((-1.0, 1.0)))
+@settings(max_examples=15)
+def test_energy_at_c_star_is_decided_by_what_rounding_leaves(off, side):
+    """H(0) = (1 ± off) c*: the hypothesis is met, unmet, or assumed, never the wrong one of the first two."""
+    c_star, error = 50.0, 1e-10
+    found = below_multiple((1.0 + side * off) * c_star, error, c_star).status
+    right = "met" if side < 0.0 else "unmet"
+    assert found == (right if off * c_star > 2.0 * error else found)
+    assert found in (right, "assumed")
+
+
+def test_one_sample_excludes_no_collision():
+    run = simulate(Algorithm1(), [[0.0], [7.0]], [[1.0], [-1.0]], (0.0, 1.0), t_eval=[1.0])
+    assert statuses(judged("collision-energy", run)) == {"below": "inconclusive", "twice": "inconclusive"}
+
+
+class TestErratum13:
+    """The run of erratum E13, with its numbers."""
+
+    def test_two_pairs_meet_where_one_is_allowed(self, e13):
+        verdict = verify("E13", e13)
+        assert e13.energy()[0] / ALPHA.c_star == pytest.approx(1.909, abs=5e-4)
+        claim = verdict.claim("printed")
+        assert (claim.status, claim.computed, claim.margin) == ("refuted", 2, -0.5)
+        first, second = contacts(e13.t, e13.q, e13.p, e13.u, tol=1e-9)
+        assert (first.i, first.j, second.i, second.j) == (0, 1, 0, 2)
+        assert first.crossed
+        assert second.crossed
+        assert [first.time, second.time] == pytest.approx([0.00841, 0.02745], abs=5e-6)
+
+    def test_never_more_than_one_at_once(self, e13):
+        claim = verify("E13", e13).claim("corrected")
+        assert (claim.status, claim.computed) == ("verified", 1)
+        assert verify("os-3", e13).claim("iv-printed").status == "refuted"
+
+    def test_two_pairs_in_one_step_are_both_found(self, e13):
+        """Sampled so sparsely that both meetings fall between two samples: they might be together."""
+        keep = [0, int(np.searchsorted(e13.t, 0.035)), len(e13.t) - 1]
+        sparse = Trajectory(
+            e13.t[keep], e13.q[keep], e13.p[keep], e13.u[keep], e13.law, {"work": e13.extra["work"][keep]}
+        )
+        assert set(passed(sparse, Tolerances())) == {(0, 1), (0, 2)}
+        found = judged("E13", sparse)
+        assert found.claim("printed").status == "refuted"
+        assert found.claim("corrected").status == "inconclusive"
+
+    @pytest.mark.parametrize("scaling", SCALINGS)
+    def test_units(self, e13, scaling):
+        same_in_all_units("E13", e13, scaling)
+
+    def test_energy_at_a_multiple_of_c_star_leaves_k_open(self):
+        """H(0) = 2 c* but for rounding: whether one or two pairs may meet is not decided, nor is the claim on two."""
+        law = Algorithm2(gains=Gains(c1_gamma=0.0, c2_gamma=0.0), target=StaticTarget((0.0,)))
+        run = made_up(law, [[[0.0], [0.0], [0.0]]] * 2)
+        assert run.energy()[0] == pytest.approx(3.0 * 30.0 * law.alpha.c_star, rel=1e-12)
+        found = judged("E13", run)
+        assert found.claim("corrected").status != "refuted"
+
+    def test_without_pair_forces_there_is_no_c_star(self):
+        law = Algorithm2(gains=Gains(c1_alpha=0.0), target=StaticTarget((0.0,)))
+        assert verify("E13", simulate(law, *E13_START, (0.0, 0.01))).status == "vacuous"
+
+
+def test_pairs_that_end_at_one_place_never_certainly_met():
+    """Squeezed together they come nearer for ever: they may meet, and the count of those that must have is 0."""
+    gains = Gains(c1_alpha=1.0, c2_alpha=1.0, c1_gamma=20.0, c2_gamma=9.0)
+    law = Algorithm2(gains=gains, target=StaticTarget((0.0, 0.0)))
+    rng = np.random.default_rng(0)
+    run = simulate(law, rng.normal(0.0, 5.0, (3, 2)), np.zeros((3, 2)), (0.0, 80.0))
+    assert passed(run, Tolerances()) == {}
+    assert len(near(run, Tolerances())[-1]) == 3
+    assert judged("E13", run).claim("printed").status != "refuted"
+    assert judged("E13", run).claim("corrected").status != "refuted"

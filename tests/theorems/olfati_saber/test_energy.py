@@ -1,0 +1,204 @@
+"""The energy identities along runs: what falls, what balances, and whose error it is where they do not."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from theorems.made_up import SCALINGS, hypothesis, judged, same_in_all_units, statuses
+
+from flockana.dynamics.simulate import simulate
+from flockana.environment.obstacles import Sphere
+from flockana.environment.targets import StaticTarget, Target
+from flockana.interactions import Gains
+from flockana.lattice import hexagonal_patch
+from flockana.laws.algorithm3 import Algorithm3
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.theorems import Tolerances, verify
+from flockana.theorems.olfati_saber.energy import balance, never_rises
+
+LAW = Algorithm1()
+
+
+def hexagon(shake=0.2, speed=0.3):
+    rng = np.random.default_rng(1)
+    q = hexagonal_patch(1, 7.0)
+    return q + shake * rng.uniform(-1, 1, q.shape), speed * rng.uniform(-1, 1, q.shape)
+
+
+def bounce(**options):
+    return simulate(LAW, [[0.0], [3.0]], [[20.0], [-20.0]], (0.0, 2.0), **options)
+
+
+def test_a_good_run_balances_and_falls():
+    verdict = verify("energy", simulate(LAW, *hexagon(), (0.0, 5.0)))
+    assert statuses(verdict) == {"rate": "verified", "balance": "verified"}
+    assert verdict.claim("balance").computed < 1e-7
+    assert (verdict.claim("rate").margin, verdict.claim("rate").error > 0.0) == (1.0, True)
+
+
+@pytest.mark.parametrize("dt", [0.1, 0.05])
+def test_too_large_a_step_refutes_no_identity(dt):
+    """On this run alone the balance is off; a tighter one says whose fault that is."""
+    run = simulate(LAW, *hexagon(shake=1.0, speed=5.0), (0.0, 2.0), method="RK4", dt=dt)
+    assert judged("energy", run).claim("balance").status == "refuted"
+    assert verify("energy", run).claim("balance").status == "inconclusive"
+
+
+def test_a_rough_integration_refutes_nothing():
+    claim = verify("energy", bounce(rtol=1e-4, atol=1e-6)).claim("balance")
+    assert claim.margin < 0.0
+    assert claim.status == "inconclusive"
+
+
+def test_a_wrong_identity_stays_wrong_however_tightly_it_is_integrated(monkeypatch):
+    right = Algorithm1.flow
+
+    def flow(self, t, q, p):
+        u, rate = right(self, t, q, p)
+        return u, 1.001 * rate
+
+    monkeypatch.setattr(Algorithm1, "flow", flow)
+    run = bounce()
+    claim = verify("energy", run).claim("balance")
+    assert claim.status == "refuted"
+    lost = 1.0 - run.energy()[-1] / run.energy()[0]
+    assert claim.computed == pytest.approx(1e-3 * lost, rel=1e-2)
+
+
+def test_a_work_that_the_law_does_not_do_is_refuted_by_one_run_and_not_by_two():
+    run = bounce(rtol=1e-9)
+    forged = replace(run, extra={"work": 0.9 * run.extra["work"]})
+    assert balance(forged, [], Tolerances()).status == "refuted"
+    assert verify("energy", forged).claim("balance").status == "inconclusive"
+
+
+@pytest.mark.parametrize("offset", [0.0, 1e4, 1e7])
+def test_rounding_far_from_the_origin_is_in_the_error(offset):
+    q, p = hexagon()
+    run = simulate(LAW, q + offset, p, (0.0, 2.0))
+    claim = judged("energy", run).claim("balance")
+    assert claim.error > 1e-16 * offset
+    assert claim.status in ("verified", "inconclusive")
+
+
+class TestTheSign:
+    """dH/dt is a sum of terms of one sign, or one of differences: the margin is what is left of their magnitude."""
+
+    def test_without_damping_or_motion_nothing_can_raise_it(self):
+        undamped = Algorithm1(gains=Gains(c2_alpha=0.0))
+        for run in (
+            simulate(undamped, *hexagon(), (0.0, 1.0)),
+            simulate(LAW, [[0.0], [7.0]], [[0.0], [0.0]], (0.0, 1.0)),
+        ):
+            claim = never_rises(run, [])
+            assert (claim.status, claim.margin) == ("verified", 1.0)
+
+    def test_at_speeds_next_to_rounding_it_still_falls(self):
+        q, p = hexagon(shake=0.0, speed=1e-14)
+        claim = never_rises(simulate(Algorithm2(target=StaticTarget((0.0, 0.0))), q, p + 1.0, (0.0, 0.1)), [])
+        assert claim.status == "verified"
+
+    def test_a_rate_of_the_wrong_sign_is_refuted(self):
+        class Rising(Algorithm1):
+            def flow(self, t, q, p):
+                u, rate = super().flow(t, q, p)
+                return u, -rate
+
+        run = simulate(LAW, *hexagon(), (0.0, 1.0))
+        assert never_rises(replace(run, law=Rising()), []).status == "refuted"
+
+    def test_terms_that_cancel_within_their_rounding_decide_nothing(self, monkeypatch):
+        """An agent that moves with the γ-agent's own velocity, told, not kept: ⟨p, p - p_d⟩ is 0 but for rounding."""
+        law = Algorithm3(gains=Gains(c1_gamma=0.0), target=StaticTarget((0.0, 0.0), (0.1, 0.7)), obstacles=())
+        run = simulate(law, [[5.0, 5.0]], [[0.1 * (1.0 + 1e-16), 0.7]], (0.0, 0.5))
+        assert never_rises(run, []).status == "inconclusive"
+
+    def test_the_margin_is_the_share_of_the_terms_that_is_left(self):
+        """One agent towards a γ-agent that tells p_d: the rate is -c2γ p (p - p_d), its terms c2γ p (p + p_d)."""
+        law = Algorithm3(gains=Gains(c1_gamma=0.0, c2_gamma=2.0), target=StaticTarget((0.0,), (1.0,)))
+        run = simulate(law, [[50.0]], [[3.0]], (0.0, 1e-6))
+        fall = 3.0 * (3.0 - 1.0)
+        assert never_rises(run, []).margin == pytest.approx(fall / (fall + 2.0 * 3.0 * (3.0 + 1.0)), rel=1e-4)
+
+
+class Late(Target):
+    """A γ-agent that is at rest at every sample of the run below, and moves in between."""
+
+    def position(self, t):
+        return np.array([np.sin(2.0 * np.pi * t / 0.05), 0.0])
+
+    def rate(self, t):
+        return np.array([2.0 * np.pi / 0.05 * np.cos(2.0 * np.pi * t / 0.05), 0.0])
+
+    def state(self, t):
+        return self.position(t), np.zeros(2)
+
+
+class Lying(StaticTarget):
+    """A γ-agent that moves and declares that it does not."""
+
+    def state(self, t):
+        return np.array([np.sin(t), 0.0]), np.zeros(2)
+
+
+class TestTheGammaAgent:
+    def test_one_that_moves_between_samples_only_is_seen_to(self):
+        law = Algorithm3(target=Late())
+        run = simulate(law, [[5.0, 0.0], [12.0, 0.0]], np.zeros((2, 2)), (0.0, 1.0), t_eval=np.linspace(0.0, 1.0, 21))
+        for name in ("energy", "os-6"):
+            verdict = judged(name, run)
+            assert hypothesis(verdict, "the γ-agent is").status == "unmet"
+            assert verdict.claim("rate").status == "vacuous"
+
+    def test_one_that_lies_about_its_rate_takes_the_balance_with_it(self):
+        law = Algorithm3(target=Lying((0.0, 0.0)))
+        run = simulate(law, [[5.0, 0.0], [12.0, 0.0]], np.zeros((2, 2)), (0.0, 3.0))
+        verdict = verify("energy", run)
+        assert hypothesis(verdict, "declared rate").status == "unmet"
+        assert statuses(verdict) == {"rate": "vacuous", "balance": "vacuous"}
+
+    def test_a_users_path_that_was_seen_at_rest_is_assumed_to_be(self):
+        from flockana.environment.targets import CallableTarget
+
+        law = Algorithm3(target=CallableTarget(lambda t: ((0.0, 0.0), (0.0, 0.0))))
+        verdict = verify("energy", law=law, q0=[[5.0, 0.0]], p0=[[0.0, 1.0]], t_span=(0.0, 1.0))
+        assert hypothesis(verdict, "at rest").status == "assumed"
+        assert verdict.claim("rate").status == "verified"
+
+
+def test_a_subclass_is_another_law():
+    class Wind(Algorithm3):
+        def flow(self, t, q, p):
+            u, rate = super().flow(t, q, p)
+            return u + 1.0, rate
+
+    law = Wind(target=StaticTarget((0.0, 0.0)))
+    for name in ("energy", "os-6", "energy-printed"):
+        assert verify(name, law=law, q0=[[5.0, 0.0]], p0=[[0.0, 1.0]], t_span=(0.0, 0.5)).status == "vacuous"
+
+
+@pytest.mark.parametrize("scaling", SCALINGS)
+@pytest.mark.parametrize("name", ["energy", "energy-printed", "os-6"])
+def test_units(name, scaling):
+    law = Algorithm3(target=StaticTarget((2.0, 0.0)), obstacles=(Sphere((2.0, 5.8), 2.0),))
+    same_in_all_units(name, simulate(law, [[-6.0, 0.0], [10.0, 0.0]], np.zeros((2, 2)), (0.0, 1.0)), scaling)
+
+
+class TestThePrintedEnergy:
+    """E2 along a run: V_α twice rises where two agents too near approach, not where they are drawn together."""
+
+    LAW = Algorithm3(target=StaticTarget((2.0, 0.0)), obstacles=(Sphere((2.0, 5.8), 2.0),))
+
+    def test_rises_where_they_are_pressed_together(self):
+        run = simulate(self.LAW, [[0.0, 0.0], [4.0, 0.0]], [[5.0, 0.0], [-5.0, 0.0]], (0.0, 1.0))
+        claim = verify("energy-printed", run).claim("printed-run")
+        assert claim.status == "refuted"
+        assert -claim.margin == claim.computed > 100.0 * claim.error
+
+    def test_falls_where_they_are_drawn_together(self):
+        run = simulate(self.LAW, [[-6.0, 0.0], [10.0, 0.0]], np.zeros((2, 2)), (0.0, 1.0))
+        claim = verify("energy-printed", run).claim("printed-run")
+        assert claim.status == "verified"
+        assert claim.margin > claim.error > 0.0

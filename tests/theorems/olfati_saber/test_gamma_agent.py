@@ -1,0 +1,102 @@
+"""What the γ-agent does, by its positions: every shipped path, paths that lie, jump, or move between samples only."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from theorems.made_up import SCALINGS
+
+from flockana.base.units import rescale
+from flockana.dynamics.trajectory import Trajectory
+from flockana.environment.targets import (
+    CallableTarget,
+    CircleTarget,
+    LinearTarget,
+    RescaledVelocity,
+    SineTarget,
+    StaticTarget,
+)
+from flockana.laws.olfati_saber import Algorithm2
+from flockana.theorems.olfati_saber.gamma_agent import consistent, honest_rate, slip, still
+
+HERE, AWAY = (3.0, 1.0), (2.0, -1.0)
+
+
+def run(target, t=None):
+    """A flock of one at rest, for the times given: only the γ-agent is looked at."""
+    t = np.linspace(0.0, 5.0, 41) if t is None else np.asarray(t)
+    q = np.zeros((t.size, 1, 2))
+    return Trajectory(t, q, q, q, Algorithm2(target=target))
+
+
+MOVING = [
+    LinearTarget(HERE, AWAY),
+    SineTarget(HERE, AWAY, 3.0, 0.3),
+    CircleTarget(HERE, 3.0, 0.3),
+    CallableTarget(lambda t: ((np.sin(t), 1.0), (np.cos(t), 0.0))),
+]
+
+
+@pytest.mark.parametrize("target", MOVING, ids=lambda target: type(target).__name__)
+def test_a_path_with_its_own_velocity_is_consistent_and_moves(target):
+    assert consistent(run(target)).status == "met"
+    assert honest_rate(run(target)).status == "met"
+    assert still(run(target), told=True).status == "unmet"
+    assert still(run(target), told=False).status == "unmet"
+
+
+@pytest.mark.parametrize("target", MOVING[:3], ids=lambda target: type(target).__name__)
+@pytest.mark.parametrize("factor", [0.0, 0.5, 0.999, 1.001])
+def test_a_velocity_that_is_told_wrongly_is_seen_to_a_thousandth(target, factor):
+    """Its size is what is missing: mean speeds over an eighth of a time unit."""
+    told = RescaledVelocity(target, factor)
+    speed = np.linalg.norm([target.rate(t) for t in np.linspace(0.0, 5.0, 400)], axis=1).max()
+    found = consistent(run(told))
+    assert found.status == "unmet"
+    assert -found.margin == pytest.approx(abs(1.0 - factor) * speed, rel=0.05)
+    assert honest_rate(run(told)).status == "met"
+
+
+def test_rest_and_the_velocity_that_is_told_beside_it():
+    assert [still(run(StaticTarget(HERE)), told=told).status for told in (True, False)] == ["met", "met"]
+    assert [still(run(StaticTarget(HERE, AWAY)), told=told).status for told in (True, False)] == ["met", "unmet"]
+    assert still(run(LinearTarget(HERE, (0.0, 0.0))), told=False).status == "met"
+    assert consistent(run(StaticTarget(HERE, AWAY))).status == "unmet"
+
+
+def test_a_function_that_was_seen_at_rest_is_assumed_to_be():
+    found = still(run(CallableTarget(lambda t: (HERE, (0.0, 0.0)))), told=False)
+    assert found.status == "assumed"
+    assert "as seen at 281 times" in found.detail  # 41 samples and six points in each of 40 intervals
+
+
+def test_a_constant_that_only_rounding_moves_is_at_rest():
+    noisy = CallableTarget(lambda t: ((5.0 * np.cos(t) ** 2 + 5.0 * np.sin(t) ** 2, 1.0), (0.0, 0.0)))
+    assert still(run(noisy), told=False).status == "assumed"
+
+
+@pytest.mark.parametrize("between", [0.02, 0.11])
+def test_a_jump_between_two_samples_is_seen(between):
+    """At rest wherever one looks but for the jump: the difference of positions over that interval tells."""
+    jumps = CallableTarget(lambda t: ((0.0 if t < 1.0 + between else 1e-3, 0.0), (0.0, 0.0)))
+    assert still(run(jumps), told=False).status == "unmet"
+    assert consistent(run(jumps)).status == "unmet"
+
+
+def test_a_motion_that_vanishes_at_every_sample_is_seen():
+    h = 5.0 / 40.0
+    between = CallableTarget(lambda t: ((np.sin(2.0 * np.pi * t / h), 0.0), (0.0, 0.0)))
+    assert still(run(between), told=True).status == "unmet"
+
+
+def test_samples_too_sparse_for_the_path_leave_it_open():
+    assert consistent(run(CircleTarget(HERE, 3.0, 7.3), np.linspace(0.0, 5.0, 4))).status == "assumed"
+    assert slip(run(MOVING[0], [1.0]), lambda t: np.zeros(2)).error == np.inf
+
+
+@pytest.mark.parametrize("scaling", SCALINGS)
+@pytest.mark.parametrize("target", [*MOVING, RescaledVelocity(MOVING[2], 0.9), StaticTarget(HERE, AWAY)])
+def test_units(target, scaling):
+    one, two = run(target), rescale(run(target), length=scaling[0], time=scaling[1])
+    for check in (consistent, honest_rate, lambda each: still(each, told=True), lambda each: still(each, told=False)):
+        assert check(one).status == check(two).status

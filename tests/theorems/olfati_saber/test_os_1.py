@@ -1,0 +1,235 @@
+"""Theorem 1, on runs whose answer is known: its hypotheses, its limits, its energy bound."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+from theorems.made_up import SCALINGS, hypothesis, judged, made_up, same_in_all_units, statuses
+
+import flockana as fl
+from flockana.dynamics.simulate import simulate
+from flockana.interactions import AlphaInteraction, Gains
+from flockana.lattice import hexagonal_patch, hexagonal_spiral
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.theorems import Tolerances, verify
+from flockana.theorems.asymptotics import lattice_limit
+from flockana.theorems.olfati_saber.os_1 import _disconnected_energy
+from flockana.theorems.slides.e03 import rhombus_with_double_agent
+from flockana.theorems.theorem import Hypothesis
+
+LAW = Algorithm1()
+CLAIMS = ("i", "ii", "iii", "iii-barrier")
+
+
+def hexagon(seed: int = 1, shake: float = 0.2, speed: float = 0.3):
+    rng = np.random.default_rng(seed)
+    q = hexagonal_patch(1, 7.0)
+    return q + shake * rng.uniform(-1, 1, q.shape), speed * rng.uniform(-1, 1, q.shape)
+
+
+@pytest.fixture(scope="module")
+def run():
+    return simulate(LAW, *hexagon(), (0.0, 30.0))
+
+
+def test_holds_in_full_where_its_hypotheses_do(run):
+    verdict = verify("os-1", run)
+    assert statuses(verdict) == dict.fromkeys(CLAIMS, "verified")
+    assert {h.name: h.status for h in verdict.hypotheses} == {
+        "Algorithm 1 is applied": "met",
+        "c1α > 0": "met",
+        "c2α > 0": "met",
+        "every solution from Ω_c is a cohesive dynamic flock": "assumed",
+        "H(0) < c*": "met",
+        "H(0) < min{V : two agents coincide}": "met",
+    }
+    assert all(claim.error > 0.0 for claim in verdict.claims)
+    least = float(run.metric("min_distance").min())
+    assert least * (1.0 - 1e-3) < verdict.claim("iii").computed <= least
+
+
+@pytest.mark.parametrize("scaling", SCALINGS)
+@pytest.mark.parametrize("name", ["os-1", "energy", "lattice-limit-printed", "collision-energy", "os-5-terminal"])
+def test_units_change_no_verdict(run, name, scaling):
+    same_in_all_units(name, run, scaling)
+    same_in_all_units(name, run.window(0.0, 0.3), scaling)
+
+
+def test_an_undamped_pair_at_its_turning_point_has_no_limit():
+    """c2α = 0: it swings for ever. At rest for an instant, K̃ = 0 there, and nothing is verified."""
+    law = Algorithm1(gains=Gains(c2_alpha=0.0))
+    probe = simulate(law, [[0.0], [7.05]], [[0.0], [0.0]], (0.0, 2.0), rtol=1e-11)
+    v = probe.p[:, 1, 0] - probe.p[:, 0, 0]
+    k = int(np.flatnonzero((v[:-1] < 0.0) & (v[1:] >= 0.0))[0])
+    turning = float(probe.t[k] - v[k] * (probe.t[k + 1] - probe.t[k]) / (v[k + 1] - v[k]))
+    for options in ({}, {"t_eval": [0.0, turning]}):
+        run = simulate(law, [[0.0], [7.05]], [[0.0], [0.0]], (0.0, turning), **options)
+        verdict = verify("os-1", run)
+        assert hypothesis(verdict, "c2α").status == "unmet"
+        assert statuses(verdict) == dict.fromkeys(CLAIMS, "vacuous")
+        assert verify("lattice-limit-printed", run).status == "inconclusive"
+
+
+@pytest.mark.parametrize("damping", [1e-6, 1e-3])
+def test_a_hardly_damped_pair_has_not_shown_its_limit(damping):
+    law = Algorithm1(gains=Gains(c2_alpha=damping))
+    run = simulate(law, [[0.0], [7.05]], [[0.0], [0.0]], (0.0, 3.0))
+    assert [verify("os-1", run).claim(name).status for name in ("i", "ii")] == ["inconclusive"] * 2
+
+
+def test_too_short_a_run_is_inconclusive_never_refuted():
+    verdict = verify("os-1", simulate(LAW, *hexagon(), (0.0, 0.5)))
+    assert [verdict.claim(name).status for name in ("i", "ii", "iii")] == ["inconclusive", "inconclusive", "verified"]
+
+
+def test_a_flexible_net_needs_to_be_seen_decaying():
+    """A chain of three has no strict minimum: links and speeds must both have decayed, which takes longer than 0.2."""
+    q, p = [[0.0, 0.0], [7.1, 0.0], [14.0, 0.5]], np.zeros((3, 2))
+    law = Algorithm1(gains=Gains(c2_alpha=20.0))
+    assert statuses(verify("os-1", simulate(law, q, p, (0.0, 40.0))))["i"] == "verified"
+    assert statuses(verify("os-1", simulate(law, q, p, (0.0, 0.2))))["i"] == "inconclusive"
+
+
+@pytest.mark.parametrize("gains", [Gains(c1_alpha=0.0), Gains(c2_alpha=0.0), Gains(c1_alpha=0.0, c2_alpha=0.0)])
+def test_a_gain_that_vanishes_makes_it_vacuous(gains):
+    verdict = verify("os-1", law=Algorithm1(gains=gains), q0=hexagon()[0], p0=hexagon()[1], t_span=(0.0, 0.1))
+    assert statuses(verdict) == dict.fromkeys(CLAIMS, "vacuous")
+    for name in ("collision-energy", "lattice-limit-printed"):
+        found = verify(name, law=Algorithm1(gains=gains), q0=hexagon()[0], p0=hexagon()[1], t_span=(0.0, 0.1))
+        assert found.status == ("vacuous" if gains.c1_alpha == 0.0 else found.status)
+
+
+def test_one_agent_and_coincident_agents_crash_nothing():
+    for q in ([[1.0, 2.0]], [[0.0, 0.0], [0.0, 0.0]], np.zeros((4, 2))):
+        for name in ("os-1", "lattice-limit-printed", "collision-energy", "energy", "alpha-flocking", "os-5-terminal"):
+            verdict = verify(name, law=LAW, q0=q, p0=np.zeros(np.shape(q)), t_span=(0.0, 0.1))
+            assert verdict.status != "refuted" or name == "alpha-flocking"
+
+
+class Wind(Algorithm1):
+    """A subclass that pushes otherwise."""
+
+    def flow(self, t, q, p):
+        u, rate = super().flow(t, q, p)
+        return u + 1.0, rate
+
+
+@dataclass(frozen=True)
+class Softer(AlphaInteraction):
+    """A pair law that descends from the theorem's."""
+
+
+def test_what_descends_from_the_law_is_another_law():
+    for law in (Wind(), Algorithm1(alpha=Softer())):
+        verdict = verify("os-1", law=law, q0=hexagon()[0], p0=hexagon()[1], t_span=(0.0, 0.1))
+        assert statuses(verdict) == dict.fromkeys(CLAIMS, "vacuous")
+        assert hypothesis(verdict, "Algorithm 1").status == "unmet"
+    assert verify("os-1", law=Algorithm2(target=fl.StaticTarget((0.0, 0.0))), q0=hexagon()[0], p0=hexagon()[1],
+                  t_span=(0.0, 0.1)).status == "vacuous"  # fmt: skip
+
+
+def test_the_energy_hypothesis_has_the_margin_c_star_less_h(run):
+    energy = hypothesis(verify("os-1", run), "H(0) < c*")
+    h0 = LAW.energy(0.0, run.q[0], run.p[0] - run.p[0].mean(axis=0))
+    assert energy.margin == pytest.approx(30.0 * 52.383811786644864 - h0, rel=1e-12)
+
+
+def test_a_common_velocity_changes_no_verdict(run):
+    moving = simulate(LAW, run.q[0], run.p[0] + np.array([300.0, 0.0]), (0.0, 30.0))
+    one, two = (hypothesis(verify("os-1", each), "H(0) < c*").margin for each in (run, moving))
+    assert one == pytest.approx(two, rel=1e-9)
+
+
+@pytest.mark.parametrize("off", [-1e-3, -1e-12, 0.0, 1e-12, 1e-3])
+def test_energy_next_to_c_star_is_not_decided_by_rounding(off):
+    """Head on with H(0) = (1 + off) c*: below it the two never meet, and above (iii) says nothing."""
+    c_star = 30.0 * LAW.alpha.c_star
+    rest = LAW.energy(0.0, [[0.0], [7.0]], [[0.0], [0.0]])
+    v = np.sqrt((1.0 + off) * c_star - rest)
+    verdict = verify("os-1", law=LAW, q0=[[0.0], [7.0]], p0=[[v], [-v]], t_span=(0.0, 1.0))
+    low = hypothesis(verdict, "H(0) < c*")
+    assert low.status in {-1e-3: ("met",), 1e-3: ("unmet",)}.get(off, ("met", "assumed", "unmet"))
+    assert off != 0.0 or low.status == "assumed"
+    assert verdict.claim("iii").status != "refuted"
+
+
+def test_a_net_that_breaks_makes_it_vacuous():
+    verdict = verify("os-1", simulate(LAW, [[0.0, 0.0], [7.0, 0.0]], [[0.0, 0.0], [30.0, 0.0]], (0.0, 2.0)))
+    assert verdict.status == "vacuous"
+    assert "no flock at t" in hypothesis(verdict, "Ω_c").detail
+
+
+def test_a_level_set_that_holds_a_disconnected_state_makes_it_vacuous():
+    q, p = hexagon(speed=8.0)
+    verdict = verify("os-1", simulate(LAW, q, p, (0.0, 0.05)))
+    assert hypothesis(verdict, "Ω_c").status == "unmet"
+    assert "Ω_c holds a disconnected state" in hypothesis(verdict, "Ω_c").detail
+    assert {verdict.claim(name).status for name in ("i", "ii", "iii")} == {"vacuous"}
+
+
+@pytest.mark.parametrize("n", [2, 3, 8, 20])
+def test_the_disconnected_state_exists_and_has_the_energy_named(n):
+    apart = np.vstack([hexagonal_spiral(n - 1, 7.0), [[1e4, 0.0]]])
+    assert LAW.energy(0.0, apart, 0 * apart) == pytest.approx(_disconnected_energy(LAW, n, 2), rel=1e-12)
+    assert _disconnected_energy(LAW, 2, 2) == pytest.approx(30.0 * 0.73590113426239231, rel=1e-13)
+
+
+def test_no_disconnected_state_is_claimed_where_the_lattice_does_not_exist():
+    wide = Algorithm1(AlphaInteraction(d=1.0, r=1.8))
+    assert _disconnected_energy(wide, 7, 2) == np.inf
+    assert np.isfinite(_disconnected_energy(wide, 7, 1))
+
+
+class TestLatticeLimit:
+    def test_a_strict_minimum_that_is_no_lattice_refutes_it(self):
+        run = simulate(LAW, rhombus_with_double_agent(7.0), np.zeros((5, 2)), (0.0, 1.0))
+        claim = lattice_limit(run, [], Tolerances(), name="i")
+        assert claim.status == "refuted"
+        assert claim.computed == 1.0
+        assert claim.witness["curvature"] > 0.03
+        assert verify("lattice-limit-printed", run).status == "refuted"
+
+    def test_an_assumed_hypothesis_takes_the_refutation_back(self):
+        run = made_up(LAW, [rhombus_with_double_agent(7.0)] * 2)
+        assumed = Hypothesis("all of Ω_c stays together", "assumed")
+        assert lattice_limit(run, [assumed], Tolerances(), name="i").status == "inconclusive"
+
+    def test_a_strained_state_that_is_no_equilibrium_refutes_nothing(self):
+        run = made_up(LAW, [hexagonal_patch(1, 6.5)] * 2)
+        assert lattice_limit(run, [], Tolerances(), name="i").status == "inconclusive"
+
+    def test_at_rest_at_a_saddle_nothing_is_known(self):
+        """Three agents at the corners of a triangle, a fourth in its centre: strained, and held by nothing."""
+        angle = np.pi / 2.0 + 2.0 * np.pi * np.arange(3) / 3.0
+        q = np.vstack([np.zeros((1, 2)), 5.0 * np.column_stack([np.cos(angle), np.sin(angle)])])
+        run = made_up(LAW, [q] * 2)
+        assert lattice_limit(run, [], Tolerances(), name="i").status == "inconclusive"
+
+    @pytest.mark.parametrize("pull", [1e-9, 1e-6, 1.1])
+    def test_the_pull_of_a_gamma_agent_strains_every_lattice(self, pull):
+        """However little: within the tolerance the claim is open, beyond it refuted, and never verified."""
+        law = Algorithm2(gains=Gains(c1_gamma=pull, c2_gamma=2.0), target=fl.StaticTarget((0.0, 0.0)))
+        q = hexagonal_patch(1, 7.0)
+        verdict = verify("lattice-limit-printed", simulate(law, q, 0.0 * q, (0.0, 60.0)))
+        assert verdict.status == ("refuted" if pull > 1.0 else "inconclusive")
+
+    def test_without_links_there_is_no_lattice_to_speak_of(self):
+        run = simulate(LAW, [[0.0, 0.0], [50.0, 0.0]], np.zeros((2, 2)), (0.0, 5.0))
+        assert verify("lattice-limit-printed", run).status == "inconclusive"
+
+
+def test_a_failed_run_verifies_nothing(run):
+    failed = replace(run, status="failed", message="gave up")
+    assert set(statuses(verify("os-1", failed)).values()) == {"inconclusive"}
+
+
+def test_a_crossing_between_samples_is_no_collision_bound():
+    light = Algorithm1(gains=Gains(c1_alpha=1e3))  # c* above the kinetic energy
+    run = made_up(light, [[[0.0], [7.0]], [[7.0], [0.0]]], [[[7.0], [-7.0]]] * 2, t=(0.0, 1.0))
+    claim = judged("collision-energy", run).claim("below")
+    assert claim.status == "refuted"
+    assert claim.witness["pair"] == (0, 1)
+    assert claim.margin == pytest.approx(-7.0)
+    assert judged("os-1", run).claim("iii").status == "inconclusive"  # that all of Ω_c stays together is assumed

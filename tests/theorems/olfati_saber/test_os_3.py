@@ -1,0 +1,192 @@
+"""Theorem 3, on runs whose answer is known."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from theorems.made_up import SCALINGS, hypothesis, judged, made_up, same_in_all_units, statuses
+
+import flockana as fl
+from flockana.base.errors import ArgumentError
+from flockana.dynamics.simulate import simulate
+from flockana.environment.targets import CallableTarget, LinearTarget, RescaledVelocity, StaticTarget
+from flockana.interactions import Gains
+from flockana.lattice import hexagonal_patch
+from flockana.laws.olfati_saber import Algorithm2
+from flockana.theorems import Tolerances, verify
+
+LAW = Algorithm2(target=LinearTarget((20.0, 0.0), (1.0, 0.0)))
+ORIGIN = StaticTarget((0.0, 0.0))
+
+
+def start(seed: int = 3, n: int = 12):
+    rng = np.random.default_rng(seed)
+    return rng.normal(0.0, 12.0, (n, 2)), rng.uniform(-2, -1, (n, 2))
+
+
+def hexagon(seed: int = 1):
+    rng = np.random.default_rng(seed)
+    q = hexagonal_patch(1, 7.0)
+    return q + 0.2 * rng.uniform(-1, 1, q.shape), 0.3 * rng.uniform(-1, 1, q.shape)
+
+
+@pytest.fixture(scope="module")
+def run():
+    return simulate(LAW, *start(), (0.0, 40.0))
+
+
+def test_holds_for_a_small_flock(run):
+    verdict = verify("os-3", run)
+    found = statuses(verdict)
+    assert (found["i"], found["ii"], found["iii"]) == ("verified",) * 3
+    assert found["iv-instant"] == "verified"
+    assert verdict.status == "verified"
+    assert hypothesis(verdict, "dq_r/dt").status == "met"
+
+
+@pytest.mark.parametrize("scaling", SCALINGS)
+@pytest.mark.parametrize("name", ["os-3", "energy", "lattice-limit-printed", "E13"])
+def test_units_change_no_verdict(run, name, scaling):
+    same_in_all_units(name, run, scaling)
+    same_in_all_units(name, run.window(0.0, 0.3), scaling)
+
+
+@pytest.mark.parametrize("until", [1e-7, 1e-4, 0.3])
+def test_a_start_from_rest_is_no_limit(until):
+    """os-3:iii was verified 10⁻⁷ time units after a start from rest: K̃ had not grown yet."""
+    q, _ = start()
+    verdict = verify("os-3", simulate(LAW, q, np.zeros_like(q), (0.0, until)))
+    assert (verdict.claim("ii").status, verdict.claim("iii").status) == ("inconclusive",) * 2
+
+
+def test_micrometres_after_a_hundredth_of_a_second_are_no_equilibrium():
+    law = Algorithm2(
+        alpha=fl.AlphaInteraction(d=7e-6, r=8.4e-6), gains=Gains(1.0, 1.0, 0.0, 0.0, 1.0, 1.0), target=ORIGIN
+    )
+    q, p = start()
+    verdict = verify("os-3", simulate(law, 1e-6 * q, 1e-6 * p, (0.0, 0.01), atol=1e-16))
+    assert {verdict.claim(name).status for name in ("ii", "iii")} == {"inconclusive"}
+
+
+def rk4(law, q, p, dt, steps):
+    """Plain RK4, which looks at nothing that a step may leap over."""
+
+    def rate(t, x):
+        return np.stack([x[1], law.flow(t, *x)[0]])
+
+    times, states = dt * np.arange(steps + 1.0), [np.stack([q, p])]
+    for t in times[:-1]:
+        x = states[-1]
+        k1 = rate(t, x)
+        k2 = rate(t + 0.5 * dt, x + 0.5 * dt * k1)
+        k3 = rate(t + 0.5 * dt, x + 0.5 * dt * k2)
+        states.append(x + dt / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + rate(t + dt, x + dt * k3)))
+    (q, p), u = np.stack(states, axis=1), [rate(t, x)[1] for t, x in zip(times, states, strict=True)]
+    return made_up(law, q, p, t=times, u=u)
+
+
+def test_a_run_that_blew_up_refutes_nothing():
+    """A step far too large throws the flock out of its bound; the law keeps it, and the run is not the law's."""
+    q, p = hexagon()
+    wild = rk4(LAW, q, p, 0.8, 25)
+    assert judged("os-3", wild).claim("i").status == "refuted"  # by this run alone
+    with pytest.raises(ArgumentError, match=r"is off by .* from where Algorithm2 leads"):
+        verify("os-3", wild)
+
+
+def test_the_cohesion_bound_is_the_explicit_one(run):
+    q, v = run.q[0], run.p[0] - run.p[0].mean(axis=0)
+    x = q - q.mean(axis=0)
+    h0 = 30.0 * LAW.alpha.potential_energy(q) + 0.55 * np.sum(x**2) + 0.5 * np.sum(v**2)
+    claim = verify("os-3", run).claim("i")
+    radius = np.linalg.norm(run.q - run.q.mean(axis=1, keepdims=True), axis=2).max()
+    assert claim.margin == pytest.approx(np.sqrt(2.0 * h0 / 1.1) - radius, rel=1e-10)
+    assert 0.0 < claim.error < 0.1
+
+
+def test_a_flock_that_leaves_its_bound_is_refuted():
+    q = hexagonal_patch(1, 7.0)
+    assert judged("os-3", made_up(LAW, [q, 100.0 * q])).claim("i").status == "refuted"
+
+
+def test_a_radius_between_samples_counts():
+    """Two samples within the bound, a path that leaves it in between: nothing is verified."""
+    law = Algorithm2(gains=Gains(c1_alpha=0.0, c2_alpha=0.0, c1_gamma=1.0, c2_gamma=1.0), target=StaticTarget((0.0,)))
+    q, p = [[-1.0], [1.0]], [[-5.0], [5.0]]
+    run = made_up(law, [q, q], [p, [[5.0], [-5.0]]], t=(0.0, 40.0), u=[[[0.25], [-0.25]]] * 2)
+    bound = np.sqrt(2.0 * run.energy()[0])
+    assert 1.0 < bound < 1.0 + 5.0 * 20.0 - 0.125 * 20.0**2  # where the path turns
+    assert judged("os-3", run).claim("i").status == "inconclusive"
+
+
+@pytest.mark.parametrize("gains", [Gains(c1_gamma=0.0), Gains(c2_gamma=0.0)])
+def test_a_vanishing_gain_makes_its_first_claims_vacuous(gains):
+    verdict = verify("os-3", simulate(Algorithm2(gains=gains, target=ORIGIN), *hexagon(), (0.0, 1.0)))
+    assert {verdict.claim(name).status for name in ("i", "ii", "iii")} == {"vacuous"}
+    assert verdict.claim("iv-instant").status == "verified"
+
+
+def test_without_pair_forces_the_springs_are_judged_and_collisions_are_not():
+    """x'' = -x - 2x': critically damped, at rest at the γ-agent in the end."""
+    law = Algorithm2(gains=Gains(c1_alpha=0.0, c2_alpha=0.0, c1_gamma=1.0, c2_gamma=2.0), target=ORIGIN)
+    found = statuses(verify("os-3", simulate(law, *start(), (0.0, 60.0))))
+    assert (found["i"], found["ii"], found["iii"]) == ("verified",) * 3
+    assert {status for name, status in found.items() if name.startswith("iv")} == {"vacuous"}
+    assert verify("E13", law=law, q0=start()[0], p0=start()[1], t_span=(0.0, 0.1)).status == "vacuous"
+
+
+def test_an_inconsistent_target_is_reported_and_does_not_matter():
+    law = Algorithm2(target=RescaledVelocity(LinearTarget((20.0, 0.0), (1.0, 0.0)), 0.1))
+    verdict = verify("os-3", simulate(law, *start(), (0.0, 40.0)))
+    consistent = hypothesis(verdict, "dq_r/dt = p_r")
+    assert consistent.status == "unmet"
+    assert consistent.margin == pytest.approx(-0.9)
+    assert verdict.claim("i").status == "verified"
+
+
+def test_a_target_that_lies_about_its_velocity_is_caught():
+    lying = CallableTarget(lambda t: ((np.sin(t), 0.0), (0.0, 0.0)))
+    verdict = verify("os-3", simulate(Algorithm2(target=lying), *hexagon(), (0.0, 3.0)))
+    assert hypothesis(verdict, "dq_r/dt = p_r").status == "unmet"
+
+
+def test_a_saddle_is_not_called_a_minimum():
+    law = Algorithm2(gains=Gains(c1_gamma=1e-9), target=ORIGIN)
+    pair = np.array([[0.0, 0.0], [0.0, 0.0]])  # coincident, unstable: forces vanish by symmetry
+    claim = verify("os-3", simulate(law, pair, 0.0 * pair, (0.0, 5.0))).claim("ii")
+    assert claim.status == "inconclusive"
+    assert claim.computed < 0.0
+
+
+def test_with_energy_below_c_star_no_pair_collides():
+    law = Algorithm2(gains=Gains(c1_gamma=1e-3), target=ORIGIN)
+    run = simulate(law, *hexagon(), (0.0, 5.0))
+    assert run.energy()[0] < 30.0 * law.alpha.c_star
+    claim = verify("os-3", run).claim("iv-none")
+    assert claim.status == "verified"
+    assert 6.0 < claim.computed < 7.0
+
+
+def test_gains_per_agent_are_outside_the_theorem():
+    law = Algorithm2(gains=Gains(c1_gamma=[1.0] * 7, c2_gamma=2.0), target=ORIGIN)
+    assert verify("os-3", simulate(law, *hexagon(), (0.0, 0.5))).status == "vacuous"
+
+
+def test_one_sample_verifies_no_claim_about_a_run(run):
+    one = simulate(LAW, *start(), (0.0, 40.0), t_eval=[40.0])
+    found = statuses(judged("os-3", one))
+    assert found["iv-barrier"] != "verified"
+    assert found["iv-instant"] == "inconclusive"
+    assert found["iii"] in ("inconclusive", "verified")  # caught for ever, one state will do
+
+
+def test_a_failed_run_verifies_nothing(run):
+    failed = replace(run, status="failed", message="gave up")
+    assert set(statuses(verify("os-3", failed)).values()) <= {"inconclusive", "vacuous"}
+
+
+def test_the_tolerance_of_velocities_is_in_the_laws_scale(run):
+    strict = Tolerances(velocity=1e-300)
+    assert verify("os-3", run, tolerances=strict).claim("iii").status == "verified"  # by attraction, not by a threshold

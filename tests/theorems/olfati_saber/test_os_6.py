@@ -1,0 +1,192 @@
+"""Theorem 6 on runs: verified, t0 found, vacuous where a hypothesis fails, refuted where a law is wrong."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from theorems.made_up import judged
+
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.trajectory import Trajectory
+from flockana.environment.obstacles import Sphere, Wall
+from flockana.environment.targets import LinearTarget, RescaledVelocity, StaticTarget, Target
+from flockana.interactions import Gains
+from flockana.laws.algorithm3 import Algorithm3
+from flockana.laws.olfati_saber import Algorithm2
+from flockana.theorems import verify
+from flockana.theorems.olfati_saber.os_6 import condition_76
+
+OBSTACLES = (Sphere((3.0, 2.0), 2.0), Wall((0.0, -14.0), (0.0, 1.0)))
+
+
+def _run(target: Target, obstacles: Any = OBSTACLES, span: float = 6.0, **gains: float) -> Trajectory:
+    rng = np.random.default_rng(5)
+    q = rng.uniform((-25.0, -12.0), (0.0, 12.0), (12, 2))
+    law = Algorithm3(target=target, obstacles=obstacles, gains=Gains(**gains))
+    return simulate(law, q, rng.normal(size=q.shape), (0.0, span), rtol=1e-9)  # the β-taper is steep
+
+
+def _hypothesis(verdict: Any, part: str) -> Any:
+    (found,) = [h for h in verdict.hypotheses if part in h.name]
+    return found
+
+
+@pytest.fixture(scope="module")
+def static() -> Trajectory:
+    return _run(StaticTarget((30.0, 0.0)))
+
+
+def test_a_static_gamma_agent_verifies(static: Trajectory) -> None:
+    verdict = verify("os-6", static)
+    assert verdict.status == "verified"
+    assert all(h.status == "met" for h in verdict.hypotheses)
+    assert "t0 = 0, never broken" in _hypothesis(verdict, "(76)").detail
+    assert 0.0 < _hypothesis(verdict, "obstacle").margin < 4.2
+    assert verdict.claim("rate").computed == pytest.approx(static.energy_rate().max(), rel=1e-12)
+    assert verdict.claim("rate").margin > 0.0
+    assert verdict.claim("balance").computed < 1e-6
+    assert verify("energy", static).status == "verified"
+    assert verify("energy", static).claim("rate").status == "verified"
+
+
+def test_t0_is_the_first_sample_after_which_the_condition_stays() -> None:
+    """p_d ≠ 0 at a fixed q_r, towards it: (76) holds once the flock is faster than p_d, as pulled it becomes."""
+    law = Algorithm3(target=StaticTarget((300.0, 0.0), (2.0, 0.0)), obstacles=(Wall((0.0, -14.0), (0.0, 1.0)),))
+    run = simulate(law, [[-9.0, 0.0], [-9.0, 7.0]], [[1.0, 0.0], [1.0, 0.0]], (0.0, 6.0))
+    slack, verdict = condition_76(run), verify("os-6", run)
+    dense = [0.5 * np.sum(p * p) - 0.5 * len(p) * p.mean(axis=0) @ [2.0, 0.0] for p in run.p]
+    np.testing.assert_allclose(slack, dense, rtol=1e-12, atol=1e-12)
+    condition = _hypothesis(verdict, "(76)")
+    k = max((i for i in range(len(slack)) if slack[i] < 0.0), default=-1) + 1
+    assert 0 < k < len(slack)
+    assert condition.status == "met"
+    assert f"t0 = {run.t[k]:.6g}" in condition.detail
+    assert condition.margin == slack[k:].min()
+    assert verdict.status == "verified"
+    assert f"t >= {run.t[k]:.6g}" in verdict.claim("rate").stated
+
+
+def test_a_condition_broken_at_the_end_makes_it_vacuous() -> None:
+    """p_d away from the target: the pull slows the flock down to less than |p_d|, for as long as it lasts."""
+    run = _run(StaticTarget((300.0, 0.0), (-2.0, 0.0)))
+    verdict = verify("os-6", run)
+    assert condition_76(run)[-1] < 0.0
+    assert _hypothesis(verdict, "(76)").status == "unmet"
+    assert "up to the end" in _hypothesis(verdict, "(76)").detail
+    assert _hypothesis(verdict, "static").status == "met"
+    assert "p_r = [-2.0, 0.0] though q_r does not move" in _hypothesis(verdict, "static").detail
+    assert verdict.status == "vacuous"
+    energy = verify("energy", run)
+    assert energy.claim("rate").status == "vacuous"
+    assert energy.claim("balance").status == "verified"
+
+
+def test_a_condition_that_holds_at_the_last_sample_alone_makes_it_vacuous() -> None:
+    """One instant is no "from some t0 on": an agent that comes from behind, cut just after it is as fast as p_d."""
+    law = Algorithm3(target=StaticTarget((300.0, 0.0), (2.0, 0.0)))
+    run = simulate(law, [[-9.0, 0.0]], [[1.9, 0.0]], (0.0, 2.0), t_eval=np.linspace(0.0, 2.0, 400))
+    k = int(np.flatnonzero(condition_76(run) < 0.0)[-1]) + 1
+    assert 0 < k < 399
+    short = run.window(0.0, float(run.t[k]))
+    assert condition_76(short)[-1] >= 0.0
+    assert _hypothesis(judged("os-6", short), "(76)").status == "unmet"
+    assert _hypothesis(judged("os-6", run), "(76)").status == "met"
+
+
+def test_gains_per_agent_are_outside_the_theorem() -> None:
+    """Condition (76) adds up ⟨p_i, p_d⟩ with one c2γ for all."""
+    run = _run(StaticTarget((30.0, 0.0)), c2_gamma=[1.0] * 6 + [3.0] * 6)
+    verdict = verify("os-6", run)
+    assert verdict.status == "vacuous"
+    assert _hypothesis(verdict, "one c1γ and one c2γ").status == "unmet"
+
+
+def test_a_condition_that_rounding_decides_is_assumed() -> None:
+    """All agents at p_d, to the last bit: T = (n/2)⟨p_c, p_d⟩."""
+    law = Algorithm3(gains=Gains(c1_gamma=0.0), target=StaticTarget((0.0, 0.0), (0.1, 0.7)))
+    run = simulate(law, [[5.0, 5.0]], [[0.1, 0.7]], (0.0, 2.0))
+    assert _hypothesis(judged("os-6", run), "(76)").status == "assumed"
+    assert judged("os-6", run).claim("rate").status != "refuted"
+
+
+@pytest.mark.parametrize(
+    "target",
+    [LinearTarget((20.0, 0.0), (3.0, 0.0)), RescaledVelocity(LinearTarget((20.0, 0.0), (3.0, 0.0)), 0.0)],
+    ids=["consistent", "hidden velocity"],
+)
+def test_a_moving_gamma_agent_is_outside_the_theorem(target: Target) -> None:
+    run = _run(target)
+    verdict, energy = verify("os-6", run), verify("energy", run)
+    assert _hypothesis(verdict, "static").status == "unmet"
+    assert "outside the theorem" in _hypothesis(verdict, "static").detail
+    assert verdict.status == "vacuous"
+    assert energy.claim("rate").status == "vacuous"
+    assert energy.claim("balance").status == "verified"
+    assert energy.claim("balance").computed < 1e-6
+
+
+def test_another_law_is_vacuous() -> None:
+    run = simulate(Algorithm2(target=StaticTarget((0.0,))), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 1.0))
+    verdict = verify("os-6", run)
+    assert verdict.status == "vacuous"
+    assert [claim.name for claim in verdict.claims] == ["rate", "balance"]
+
+
+def test_an_agent_inside_a_sphere_voids_the_claim() -> None:
+    """Weak repulsion, a fast agent: it flies through, and inside dH/dt > 0 is possible; the balance is not."""
+    law = Algorithm3(
+        target=StaticTarget((20.0, 0.0)),
+        obstacles=(Sphere((0.0, 0.0), 3.0),),
+        gains=Gains(c1_beta=0.1, c2_beta=0.1, c2_gamma=0.0),
+    )
+    run = simulate(law, [[-8.0, 1.0]], [[6.0, 0.0]], (0.0, 3.0))
+    verdict = verify("os-6", run)
+    inside = _hypothesis(verdict, "obstacle")
+    assert inside.status == "unmet"
+    assert -2.5 < inside.margin < 0.0
+    assert verdict.status == "vacuous"
+    assert verify("energy", run).claim("balance").status == "verified"
+
+
+def test_inside_a_sphere_the_energy_can_rise() -> None:
+    law = Algorithm3(target=StaticTarget((0.0, 0.0)), obstacles=(Sphere((0.0, 0.0), 2.0),), gains=Gains(c2_gamma=0.0))
+    assert law.energy_rate(0.0, [[1.0, 0.0]], [[0.0, 1.0]]) > 0.0
+    assert law.energy_rate(0.0, [[3.0, 0.0]], [[0.0, 1.0]]) < 0.0
+
+
+def test_a_law_that_feeds_energy_in_is_refuted(static: Trajectory) -> None:
+    """Mutants: a rate of the wrong sign, and one that misses a term."""
+
+    class Rising(Algorithm3):
+        def flow(self, t: float, q: Any, p: Any) -> Any:
+            u, rate = super().flow(t, q, p)
+            return u, -rate
+
+    law = static.law
+    mutant = Rising(law.alpha, law.gains, law.target, law.beta, law.obstacles)
+    from flockana.theorems.olfati_saber.energy import balance, never_rises
+    from flockana.theorems.theorem import Tolerances
+
+    assert never_rises(replace(static, law=mutant), []).status == "refuted"
+    wrong = replace(static, extra={"work": 0.99 * static.extra["work"]})
+    assert balance(wrong, [], Tolerances()).status == "refuted"
+
+
+def test_an_obstacle_that_is_grazed_within_the_paths_error_is_left_open() -> None:
+    from theorems.made_up import made_up
+
+    law = Algorithm3(target=StaticTarget((20.0, 0.0)), obstacles=(Sphere((0.0, 0.0), 3.0),))
+    grazing = made_up(law, [[[-4.0, 3.0]], [[4.0, 3.0]]], [[[8.0, 0.0]]] * 2, t=(0.0, 1.0))
+    assert _hypothesis(judged("os-6", grazing), "obstacle").status == "assumed"
+    inside = made_up(law, [[[-4.0, 2.9]], [[4.0, 2.9]]], [[[8.0, 0.0]]] * 2, t=(0.0, 1.0))
+    assert _hypothesis(judged("os-6", inside), "obstacle").status == "unmet"
+
+
+def test_a_flock_at_rest_at_its_target_verifies() -> None:
+    """dH/dt = 0 exactly."""
+    run = simulate(Algorithm3(target=StaticTarget((0.0, 0.0))), [[0.0, 0.0]], [[0.0, 0.0]], (0.0, 1.0))
+    assert verify("os-6", run).claim("rate").status == "verified"
+    assert "there is none" in _hypothesis(verify("os-6", run), "obstacle").detail

@@ -1,0 +1,115 @@
+"""Erratum E4 and the bounds behind it, against counts made by hand and by brute force."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+from flockana.equilibria.barrier import (
+    bound_range,
+    collision_barrier,
+    collision_bounds,
+    energy_floor,
+    largest_clique,
+    lattice_reach,
+    none_from,
+    turan_pairs,
+)
+from flockana.interactions import AlphaInteraction
+from flockana.lattice import harborth, hexagonal_patch
+from flockana.laws.olfati_saber import Algorithm1
+from flockana.theorems import verify
+
+ALPHA = AlphaInteraction()
+
+
+def test_the_figures_of_the_erratum(verdict_of):
+    verdict = verdict_of("E4")
+    assert verdict.status == "verified"
+    assert (verdict.claim("found").computed, verdict.claim("vacuous").computed) == (14, 23)
+    barrier = verdict.claim("barrier").computed
+    assert barrier[3]["together"] - barrier[3]["ground"] == pytest.approx(52.384, abs=5e-4)
+    assert barrier[7]["together"] - barrier[7]["ground"] == pytest.approx(50.176, abs=5e-4)
+
+
+def test_the_barrier_at_seven_is_a_count_of_links():
+    found = collision_barrier(ALPHA, 7, starts=6)
+    # a hexagon without one agent, its centre doubled: 9 + 5 links and the pair itself leave 6 pairs out of range
+    assert found.together == pytest.approx(ALPHA.c_star + 6 * ALPHA.far_potential, abs=1e-8)
+    assert found.ground == pytest.approx((21 - harborth(7)) * ALPHA.far_potential, abs=1e-8)
+    distances = np.linalg.norm(found.state[:, None] - found.state[None], axis=2)[np.triu_indices(7, 1)]
+    assert np.sum(distances < 1e-7) == 1
+    assert ALPHA.potential_energy(found.state) == pytest.approx(found.together, rel=1e-12)
+
+
+def test_the_barrier_of_nineteen_is_that_of_a_doubled_inner_agent():
+    found = collision_barrier(ALPHA, 19, starts=2)
+    links = harborth(18) + 6 + 1
+    assert found.height == pytest.approx(ALPHA.c_star - (links - harborth(19)) * ALPHA.far_potential, abs=1e-7)
+    assert found.height == pytest.approx(49.440, abs=5e-4)
+
+
+def test_turan_by_brute_force():
+    for n, clique in ((4, 2), (5, 2), (5, 3), (6, 3)):
+        pairs, best = list(combinations(range(n), 2)), 0
+        for chosen in range(1 << len(pairs)):
+            if chosen.bit_count() <= best:
+                continue
+            edges = {pair for k, pair in enumerate(pairs) if chosen >> k & 1}
+            if not any(all(p in edges for p in combinations(group, 2)) for group in combinations(range(n), clique + 1)):
+                best = chosen.bit_count()
+        assert turan_pairs(n, clique) == best
+    assert all(turan_pairs(n, 3) == n * n // 3 for n in range(3, 40))
+
+
+def test_the_bracket_of_lengths_that_lower_v():
+    shortest, longest = bound_range(ALPHA)
+    assert (shortest, longest) == (pytest.approx(6.568, abs=5e-4), 8.4)
+    assert float(ALPHA.psi_alpha(ALPHA.sigma_norm(shortest))) == pytest.approx(ALPHA.far_potential, rel=1e-9)
+
+
+@pytest.mark.parametrize(("ratio", "m", "most"), [(1.28, 2, 3), (1.42, 2, 4), (1.62, 2, 5), (1.28, 3, 4), (2.5, 1, 3)])
+def test_cliques_are_no_larger_than_known_and_reached(ratio, m, most):
+    assert largest_clique(ratio, m) == most
+    angle = 2.0 * np.pi * np.arange(most) / most
+    shapes = {1: np.arange(most)[:, None], 2: np.column_stack([np.cos(angle), np.sin(angle)])}
+    points = shapes.get(m, np.array([[1.0, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])).astype(float)
+    distances = np.linalg.norm(points[:, None] - points[None], axis=2)[np.triu_indices(len(points), 1)]
+    assert distances.max() / distances.min() < ratio
+
+
+def test_no_random_state_lies_below_the_proved_floor():
+    rng = np.random.default_rng(0)
+    for n in (4, 9, 25):
+        for m in (1, 2, 3):
+            clusters = rng.uniform(0.0, 9.0, (4, m))  # near the shape that Turán's graph has
+            for q in (rng.uniform(0, 20, (n, m)), clusters[rng.integers(4, size=n)] + rng.normal(0, 0.1, (n, m))):
+                assert ALPHA.potential_energy(q) >= energy_floor(ALPHA, n, m)
+
+
+def test_n_max_for_every_parameter_set():
+    msn, one = AlphaInteraction(15.0, 18.0, 0.1, 0.1, 3.0, 3.0), AlphaInteraction(1.9, 2.8, 0.1, 0.4, 7.0, 9.0)
+    assert [(lattice_reach(a), none_from(a)) for a in (ALPHA, msn, one)] == [(14, 23), (16, 26), (5, 11)]
+    assert (lattice_reach(ALPHA, 1), none_from(ALPHA, 1), lattice_reach(ALPHA, 3)) == (13, 18, None)
+    assert lattice_reach(AlphaInteraction(7.0, 13.0)) is None  # κ > √3: the triangular lattice is none
+
+
+def test_collision_bounds_enclose_the_searched_barrier():
+    for n in (3, 7):
+        low, high = collision_bounds(ALPHA, n)
+        assert low <= collision_barrier(ALPHA, n, starts=3).together + 1e-9 <= high + 2e-9
+    assert collision_bounds(ALPHA, 1)[0] == np.inf
+
+
+def test_theorem_1_gets_the_sharper_claim():
+    law, q = Algorithm1(), hexagonal_patch(1, 7.0)
+    slow, fast = (v * np.random.default_rng(0).standard_normal(q.shape) for v in (1.0, 30.0))
+    verdict = verify("os-1", law=law, q0=q, p0=slow, t_span=(0.0, 1.0))
+    assert verdict.claim("iii-barrier").status == "verified"
+    verdict = verify("os-1", law=law, q0=q, p0=fast, t_span=(0.0, 0.2))
+    assert verdict.claim("iii-barrier").status == "vacuous"
+    between = verify("os-1", law=law, q0=q, p0=16.5 * slow, t_span=(0.0, 0.2))
+    names = {h.name: h.status for h in between.hypotheses}
+    assert names["H(0) < min{V : two agents coincide}"] in ("assumed", "met", "unmet")
