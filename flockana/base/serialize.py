@@ -1,15 +1,41 @@
-"""Frozen parameter objects to plain data and back, so that a saved run carries its law and can be re-verified."""
+"""Frozen parameter objects to plain data and back, so that a saved run carries its law and can be re-verified.
+
+A class of flockana is written by its name alone, ``flockana:Algorithm1``, wherever in the package it lives. Files that
+named a module are read the same way. A user's class is named with its module, which must be imported before the file
+is read.
+"""
 
 from __future__ import annotations
 
 import importlib
+import pkgutil
 import sys
 from dataclasses import fields, is_dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
 
 from flockana.base.errors import ArgumentError, FileError
+
+_ROOMS = ("flockana.interactions", "flockana.environment", "flockana.laws")  # whose objects files may hold
+
+
+@cache
+def parameter_classes() -> dict[str, type]:
+    """Every parameter class that a file may name, by its name.
+
+    Examples
+    --------
+    >>> parameter_classes()["Algorithm1"].__module__
+    'flockana.laws.olfati_saber'
+    """
+    found: dict[str, type] = {}
+    for room in map(importlib.import_module, _ROOMS):
+        for info in pkgutil.walk_packages(room.__path__, f"{room.__name__}."):
+            classes = (x for x in vars(importlib.import_module(info.name)).values() if isinstance(x, type))
+            found |= {x.__name__: x for x in classes if is_dataclass(x) and x.__module__ == info.name}
+    return found
 
 
 def to_data(value: Any) -> Any:
@@ -32,7 +58,9 @@ def to_data(value: Any) -> Any:
     """
     if is_dataclass(value) and not isinstance(value, type):
         data = {f.name: to_data(getattr(value, f.name)) for f in fields(value) if f.init}
-        return {"type": f"{type(value).__module__}:{type(value).__qualname__}", **data}
+        module = type(value).__module__
+        home = "flockana" if module.startswith("flockana.") else module
+        return {"type": f"{home}:{type(value).__qualname__}", **data}
     if isinstance(value, np.ndarray):
         return value.tolist()
     if isinstance(value, list | tuple):
@@ -71,14 +99,21 @@ def from_data(data: Any) -> Any:
         return data
     name = str(data.get("type"))
     module, _, qualname = name.partition(":")
-    if not module.startswith("flockana.") and module not in sys.modules:
+    ours = module.partition(".")[0] == "flockana"
+    if not ours and module not in sys.modules:
         raise FileError(f"the file needs {name}, which is not part of flockana: import {module} first, then load again")
     try:
-        cls: Any = importlib.import_module(module)
-        for part in qualname.split("."):
-            cls = getattr(cls, part)
-        if not (isinstance(cls, type) and is_dataclass(cls)):
+        cls = parameter_classes().get(qualname) if ours else _own_class(module, qualname)
+        if cls is None or not is_dataclass(cls):
             raise TypeError(f"{name} is no parameter class")
         return cls(**{key: from_data(v) for key, v in data.items() if key != "type"})
-    except (ImportError, AttributeError, TypeError, ValueError) as error:
+    except (AttributeError, TypeError, ValueError) as error:
         raise FileError(f"cannot rebuild {name} from the file: {error}") from error
+
+
+def _own_class(module: str, qualname: str) -> Any:
+    """A user's class, of a module that is imported already."""
+    found: Any = sys.modules[module]
+    for part in qualname.split("."):
+        found = getattr(found, part)
+    return found

@@ -143,8 +143,6 @@ def _print(found: Equilibrium, name: str, files: tuple[tuple[str, Path | None], 
     from rich.table import Table
     from rich.text import Text
 
-    from flockana.laws.dead_zone import DeadZoneFlocking
-
     facts = summary(found, name)
     console = Console(highlight=False)
     console.print(f"{name}: {found.kind}", style="bold", markup=False)
@@ -152,7 +150,7 @@ def _print(found: Equilibrium, name: str, files: tuple[tuple[str, Path | None], 
     table.add_column(no_wrap=True, style="bright_black")
     table.add_column()
     lowest = ", ".join(f"{value:.4g}" for value in found.hessian_eigenvalues[:_LOWEST])
-    contacts = isinstance(found.law, DeadZoneFlocking)
+    contacts = found.law.lattice is None
     scale, length = ("a contact's force", "contact − d1|/d1") if contacts else ("the law's force scale", "link − d|/d")
     strain = "" if facts["strain"] is None else f", |{length} at most {facts['strain']:.4g}"
     rows = (

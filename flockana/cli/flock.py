@@ -18,6 +18,7 @@ def read_flock(
     d: float | None = None,
     r: float | None = None,
     time: float | None = None,
+    potential: bool = True,
 ) -> tuple[Any, FloatArray]:
     """(law, q): the law of a scenario or a file, or Algorithm 1 or 2; a γ-agent is held where it is.
 
@@ -33,6 +34,8 @@ def read_flock(
         1 or 2, where no law comes with the positions; by default 1.
     d, r, time : float, optional
         As for `read_source`.
+    potential : bool
+        Refuse a law whose forces are not known to be gradients.
 
     Raises
     ------
@@ -52,9 +55,9 @@ def read_flock(
 
     if source in scenarios():
         _ensure_free(source, time=time, algorithm=algorithm, d=d, r=r)
-        return _of_scenario(source, start, seed)
+        return _of_scenario(source, start, seed, potential)
     ensure_source(source, scenarios())
-    law, q = _of_source(source, algorithm=algorithm, d=d, r=r, time=time)
+    law, q = _of_source(source, algorithm=algorithm, d=d, r=r, time=time, potential=potential)
     return law, q
 
 
@@ -66,15 +69,13 @@ def _ensure_free(name: str, **given: object) -> None:
             raise ArgumentError(f"--{option} {value}: {name} has a law of its own, and no such choice; leave it out")
 
 
-def _of_scenario(name: str, start: str, seed: int) -> tuple[Any, FloatArray]:
+def _of_scenario(name: str, start: str, seed: int, potential: bool) -> tuple[Any, FloatArray]:
     from flockana.base.errors import SolverError
-    from flockana.cli.source import stepped_law
     from flockana.equilibria.classify import ensure_small
-    from flockana.equilibria.potential import ensure_flock_law
     from flockana.scenarios import scenario
 
     item = scenario(name, seed)
-    law = ensure_flock_law(stepped_law(item.law), item.q0.shape[1])
+    law = _ensured(item.law.continuous or item.law, item.q0.shape[1], potential)
     ensure_small(*item.q0.shape)
     if start == "start":
         return _held(law, item.t_span[0]), item.q0
@@ -86,17 +87,30 @@ def _of_scenario(name: str, start: str, seed: int) -> tuple[Any, FloatArray]:
     return _held(law, float(run.t[-1])), run.q[-1]
 
 
-def _of_source(name: str, *, algorithm: int | None, d: float | None, r: float | None, time: float | None) -> Any:
+def _ensured(law: Any, m: int, potential: bool) -> Any:
+    """The law, if it has a potential where that is asked for; else if it is continuous."""
+    from flockana.base.errors import ArgumentError
+    from flockana.equilibria.potential import ensure_flock_law
+
+    if potential or law.conservative:
+        return ensure_flock_law(law, m)
+    if law.continuous is None:
+        raise ArgumentError(f"{type(law).__name__} is a map from step to step: expected a continuous law to linearise")
+    return law
+
+
+def _of_source(
+    name: str, *, algorithm: int | None, d: float | None, r: float | None, time: float | None, potential: bool
+) -> Any:
     """The law of the file, or Algorithm 1 or 2 with the user's scale and range; positions."""
     from flockana.cli.source import read_source
-    from flockana.equilibria.potential import ensure_flock_law
     from flockana.interactions import AlphaInteraction
     from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 
     given = read_source(name, d=d, r=r, time=time)
     if given.law is not None:
         _ensure_free(name, algorithm=algorithm, d=d, r=r)
-        return _held(ensure_flock_law(given.law, given.q.shape[1]), given.t), given.q
+        return _held(_ensured(given.law, given.q.shape[1], potential), given.t), given.q
     alpha = AlphaInteraction(d=given.d, r=given.r)
     if algorithm != 2:
         return Algorithm1(alpha), given.q

@@ -106,7 +106,7 @@ def read_source(name: str, *, d: float | None = None, r: float | None = None, ti
 
 def _scaled(name: str, q: FloatArray, law: Any, t: float, *, d: float | None, r: float | None) -> Source:
     """A range that is not given keeps the law's ratio to the scale."""
-    law = stepped_law(law)
+    law = None if law is None else law.continuous or law
     own_d, own_r = law_scales(law)
     scale = own_d if d is None else d
     if r is None:
@@ -114,28 +114,10 @@ def _scaled(name: str, q: FloatArray, law: Any, t: float, *, d: float | None, r:
     return Source(name, np.ascontiguousarray(q), scale, r, law, t)
 
 
-def stepped_law(law: Any) -> Any:
-    """The law that semi-implicit Euler steps; any other law as it is.
-
-    Parameters
-    ----------
-    law : object
-        A law, or None.
-
-    Examples
-    --------
-    >>> stepped_law(None) is None
-    True
-    """
-    from flockana.laws.semi_implicit import SemiImplicitEuler
-
-    return law.law if isinstance(law, SemiImplicitEuler) else law
-
-
 def law_scales(law: Any) -> tuple[float, float]:
-    """Scale and range to measure a law's lattices with: (d, r), and of the dead-zone law d₁ and 1.2 d₁.
+    """Scale and range to measure a law's lattices with: (d, r), or 1.2 d where most pairs within r are held nowhere.
 
-    Its contacts sit at d₁ (erratum L8); most pairs within its range have no length that they are held at.
+    The contacts of the dead-zone law sit at d₁ (erratum L8), its other pairs in a band.
 
     Parameters
     ----------
@@ -148,12 +130,10 @@ def law_scales(law: Any) -> tuple[float, float]:
     >>> law_scales(DeadZoneFlocking())
     (3.5, 4.2)
     """
-    from flockana.laws.dead_zone import DeadZoneFlocking
-
-    if isinstance(law, DeadZoneFlocking):
-        return law.interaction.d1, KAPPA * law.interaction.d1
-    alpha = getattr(law, "alpha", None)
-    return getattr(alpha, "d", D), getattr(alpha, "r", KAPPA * D)
+    if law is None or law.pair is None:
+        return D, KAPPA * D
+    d: float = law.pair.length
+    return law.lattice or (d, KAPPA * d)
 
 
 def _sample(path: Path, time: float | None) -> tuple[FloatArray, Any, float]:

@@ -69,13 +69,15 @@ def _stability(
     from flockana.cli.flock import read_flock
     from flockana.cli.picture import KINDS, ensure_file, write_figure
     from flockana.equilibria import find_equilibrium
+    from flockana.equilibria.rest import resting_state
     from flockana.stability import linearise
 
     if plot is not None:
         ensure_file(plot, KINDS)
     try:
-        law, q = read_flock(source, start=start, seed=seed, algorithm=algorithm, d=d, r=r, time=time)
-        found = linearise(law, q if as_given else find_equilibrium(law, q), allow_residual=as_given)
+        law, q = read_flock(source, start=start, seed=seed, algorithm=algorithm, d=d, r=r, time=time, potential=False)
+        here = q if as_given else find_equilibrium(law, q) if law.conservative else resting_state(law, q)
+        found = linearise(law, here, allow_residual=as_given)
         slow = slowest(found, modes)
         facts = summary(found, slow, source) | measures(found, delay=delay, norms=norms, strict=not as_given)
     except SolverError as error:

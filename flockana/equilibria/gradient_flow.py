@@ -85,7 +85,7 @@ def gradient_flow(law: Algorithm1 | Algorithm2, q0: Any, *, tol: float = 1e-11, 
     from scipy.integrate import BDF
 
     q = ensure_points("q0", q0)
-    if isinstance(law, Algorithm2):
+    if law.target is not None:
         ensure_one_gain(law.gains)
     shape, scale = q.shape, law.scales.force
     tol, horizon = ensure_positive("tol", tol), ensure_positive("horizon", horizon)

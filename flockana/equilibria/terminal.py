@@ -87,7 +87,7 @@ def terminal_state(
     >>> at_rest.strain, at_rest.force, at_rest.connected
     (0.0, 0.0, True)
     """
-    if isinstance(law, Algorithm2):
+    if law.target is not None:
         ensure_one_gain(law.gains)
     alpha = law.alpha
     forces = _forces(law, q, p)

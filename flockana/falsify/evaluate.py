@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -11,10 +11,11 @@ from flockana.base.checks import FloatArray
 from flockana.base.interrupts import interrupts_recognised
 from flockana.dynamics.trajectory import Trajectory
 from flockana.falsify.confirm import confirmed
-from flockana.falsify.grade import FAILED, LEADS, LIMITS, Lead, grade, squash
+from flockana.falsify.grade import FAILED, grade
 from flockana.falsify.space import Space
 from flockana.scenarios import Scenario
-from flockana.theorems import Claim, Theorem, Tolerances, Verdict, verify
+from flockana.theorems import Claim, Theorem, Tolerances, Verdict, theorem, verify
+from flockana.theorems.leads import squash
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,7 @@ class Problem:
     claim : str or None
         The claim whose grade counts; None for the least grade of all.
     surrogate : callable or None
-        ``surrogate(trajectory, claim) -> float`` in [0, 1], instead of those of `LEADS`.
+        ``surrogate(trajectory, claim) -> float`` in [0, 1], instead of the theorem's own `leads`.
     scales : mapping of str to float
         Units of the margins by claim, 1 where none is given.
     """
@@ -68,7 +69,7 @@ class Problem:
     theorem: str | Theorem
     tolerances: Tolerances
     claim: str | None = None
-    surrogate: Lead | None = None
+    surrogate: Callable[[Trajectory, Claim], float] | None = None
     scales: Mapping[str, float] = field(default_factory=dict)
 
     def __call__(self, point: FloatArray) -> Evaluation:
@@ -145,11 +146,11 @@ class Problem:
         return Evaluation(grades[worst], worst, verdict)
 
     def _grade(self, run: Trajectory, verdict: Verdict, claim: Claim) -> float:
-        label = f"{verdict.theorem}:{claim.name}"
-        lead = self.surrogate or LEADS.get(label)
+        checked = self.theorem if isinstance(self.theorem, Theorem) else theorem(self.theorem)
+        lead = self.surrogate or checked.leads.get(claim.name)
         aid = 0.0 if lead is None else min(max(float(lead(run, claim)), 0.0), 1.0)
         unit = self.scales.get(claim.name, 1.0)
-        value = grade(claim, verdict.hypotheses, scale=unit, lead=aid, limit=label in LIMITS)
+        value = grade(claim, verdict.hypotheses, scale=unit, lead=aid, limit=claim.name in checked.limits)
         if self.claim is None and claim.status == "inconclusive":
             return max(value, 0.0)  # its margin does not decide it, so a lower one must not draw the search
         return value

@@ -16,7 +16,6 @@ from PIL import Image
 
 from flockana import plots
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.minimal import MinimalFlocking
 from flockana.plots.snapshot import drawn_law
 from flockana.scenarios.findings import component_counts
 
@@ -77,7 +76,7 @@ def flock_pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
     tuple of Picture
     """
     law = drawn_law(trajectory)
-    linked = law.pair is not None or isinstance(law, MinimalFlocking)
+    linked = law.pair is not None or "edge_error" in trajectory.metrics()
     blocked = bool(law.obstacles)
     drawn = (
         Picture(

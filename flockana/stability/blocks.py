@@ -12,7 +12,8 @@ from flockana.base.errors import ArgumentError
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.solve import RESIDUAL
 from flockana.equilibria.terminal import rigid_motions
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.laws.terms.navigation import Navigation
+from flockana.laws.terms.pairs import PairTerm
 from flockana.stability.linearise import linearise
 
 NEUTRAL = 1e-9  # of the largest stiffness: a rigid motion that meets no more than that is neutral
@@ -111,6 +112,25 @@ def blocks(stiffness: FloatArray, damping: FloatArray, q: FloatArray) -> Blocks:
     return Blocks(stiffness, damping, rigid, neutral, _kernel(damping, neutral))
 
 
+def ensure_pairs_and_pull(law: Any) -> None:
+    """Raise unless a law consists of a pair term and, at most, a linear pull to a γ-agent, as Algorithms 1 and 2 do.
+
+    Parameters
+    ----------
+    law : object
+        What the caller gave.
+
+    Raises
+    ------
+    ArgumentError
+        If it does not.
+    """
+    terms = getattr(law, "terms", ())
+    linear = all(isinstance(term, PairTerm) or (isinstance(term, Navigation) and term.unit is None) for term in terms)
+    if not (terms and linear):
+        raise ArgumentError(f"law = {law!r}: expected Algorithm1 or Algorithm2")
+
+
 def second_order(law: Any, q: Any, *, t: float = 0.0, strict: bool = True) -> Blocks:
     """K and D of Algorithm 1 or 2 at an equilibrium, with the rigid motions sorted by what holds them.
 
@@ -142,8 +162,7 @@ def second_order(law: Any, q: Any, *, t: float = 0.0, strict: bool = True) -> Bl
     ([[1.1]], (1, 0))
     """
     q = ensure_points("q", q)
-    if not isinstance(law, Algorithm1 | Algorithm2):
-        raise ArgumentError(f"law = {law!r}: expected Algorithm1 or Algorithm2")
+    ensure_pairs_and_pull(law)
     law.check_dimension(q.shape[1])
     law.check_agents(len(q))
     if q.size > MOST:

@@ -12,7 +12,6 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_positive
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.simulate import simulate
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.measures.frame import moving_frame
 from flockana.measures.nets import links
 from flockana.stability.linearise import Linearisation
@@ -321,7 +320,7 @@ def _linear(found: Linearisation, dq: FloatArray, dp: FloatArray, t: FloatArray)
 
 def _off_centre(found: Linearisation, x: FloatArray) -> FloatArray:
     """Without the motion of the centre of mass, which nothing holds or which is a system of its own."""
-    free = isinstance(found.law, Algorithm1 | Algorithm2) and found.second_order.split.exact
+    free = found.law.splits and found.second_order.split.exact
     return x - x.mean(axis=1, keepdims=True) if free else x
 
 

@@ -116,7 +116,7 @@ def delay_system(law: Algorithm1 | Algorithm2, q: Any, *, delayed: str = "all", 
     if delayed == "all":
         return DelaySystem((zero, zero), (flock.stiffness, flock.damping), neutral)
     prompt_k, prompt_d = zero.copy(), zero.copy()
-    if isinstance(law, Algorithm2):
+    if law.target is not None:
         shape, own = np.shape(q), np.diag_indices(len(zero))
         prompt_k[own] = np.broadcast_to(law.gains.pull, shape).ravel()
         prompt_d[own] = np.broadcast_to(law.gains.drag, shape).ravel()

@@ -12,6 +12,8 @@ from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.dynamics.encounters import Encounters, State
 from flockana.dynamics.integrators import count_steps
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.laws.terms.pairs import PairTerm
+from flockana.stability.blocks import ensure_pairs_and_pull
 from flockana.stability.delay import DELAYED
 
 
@@ -76,8 +78,7 @@ def simulate_delayed(
     >>> round(float(run.q[-1, 0, 0]), 12)
     0.75
     """
-    if not isinstance(law, Algorithm1 | Algorithm2):
-        raise ArgumentError(f"law = {law!r}: expected Algorithm1 or Algorithm2")
+    ensure_pairs_and_pull(law)
     if delayed not in DELAYED:
         raise UnknownNameError("set of delayed terms", delayed, DELAYED)
     q, p = ensure_state(q0, p0)
@@ -105,11 +106,9 @@ def simulate_delayed(
     def push(t: float, q: FloatArray, p: FloatArray, q_old: FloatArray, p_old: FloatArray) -> FloatArray:
         if delayed == "all":
             return law.flow(t - delay, q_old, p_old)[0]
-        own = law.gains
-        heard = law.alpha.forces(q_old, p_old, stiffness=own.c1_alpha, damping=own.c2_alpha)[0]
-        if isinstance(law, Algorithm2):
-            q_r, p_r = law.target.state(t)
-            heard -= own.pull * (q - q_r) + own.drag * (p - p_r)
+        heard = np.zeros_like(q)
+        for term in law.terms:
+            term.act(t, *((q_old, p_old) if isinstance(term, PairTerm) else (q, p)), heard)
         return heard
 
     for k in range(steps):

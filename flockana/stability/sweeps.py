@@ -225,6 +225,6 @@ def margin_sweep(
 
 
 def _ensure_gain(law: Any, name: str) -> None:
-    known = GAINS[:2] if isinstance(law, Algorithm1) else GAINS
+    known = GAINS[:2] if law.target is None else GAINS
     if name not in known:
         raise UnknownNameError("gain", name, known)

@@ -19,7 +19,7 @@ from flockana.base.errors import ArgumentError
 from flockana.equilibria.curvature import EPS
 from flockana.interactions import Gains
 from flockana.laws.msn import MSNDiscretisation
-from flockana.laws.olfati_saber import Algorithm2, ensure_one_gain
+from flockana.laws.olfati_saber import ensure_one_gain
 
 if TYPE_CHECKING:
     from control import FrequencyResponseData, StateSpace, TimeResponseData, TransferFunction
@@ -175,7 +175,7 @@ def map_system(law: MSNDiscretisation) -> StateSpace:
     """
     import control
 
-    if not isinstance(law, MSNDiscretisation) or not isinstance(law.law, Algorithm2):
+    if not isinstance(law, MSNDiscretisation) or law.target is None:
         raise ArgumentError(f"law = {law!r}: expected an MSNDiscretisation of Algorithm 2")
     h, f, c1, c2 = law.dt, law.position_factor, law.gains.c1_gamma, law.gains.c2_gamma
     push = np.array([f * h * h, h])  # what one u does to (q, p)

@@ -235,6 +235,11 @@ class Theorem:
         Keys of the bibliography.
     expected : mapping of str to str
         For a fixed theorem, the status that is expected of it (key = its id) and of its claims (key = ``"id:claim"``).
+    leads : mapping of str to callable
+        By claim, a surrogate ``lead(trajectory, claim)`` in [0, 1] that leads a search for a counterexample where the
+        claim's margin gives no slope.
+    limits : tuple of str
+        Claims about limits that a run may refute all the same: until one does, their margin leads no search.
     """
 
     id: str
@@ -245,6 +250,8 @@ class Theorem:
     check: Callable[..., tuple[Iterable[Hypothesis], Iterable[Claim]]]
     references: tuple[str, ...] = ("olfati-saber-2006",)
     expected: Mapping[str, Status] = field(default_factory=dict)
+    leads: Mapping[str, Callable[[Any, Claim], float]] = field(default_factory=dict)
+    limits: tuple[str, ...] = ()
 
 
 def judge(margin: float, error: float, hypotheses: Iterable[Hypothesis]) -> Status:

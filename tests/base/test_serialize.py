@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import json
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, is_dataclass
+from importlib import import_module
+from pkgutil import walk_packages
 
 import numpy as np
 import pytest
 
 from flockana.base.errors import ArgumentError, FileError
-from flockana.base.serialize import from_data, to_data
+from flockana.base.serialize import from_data, parameter_classes, to_data
 from flockana.environment.targets import (
     CallableTarget,
     CircleTarget,
@@ -57,7 +59,20 @@ def test_arrays_and_numpy_scalars_become_numbers():
 
 
 def test_the_type_is_named():
-    assert to_data(Gains())["type"] == "flockana.interactions.gains:Gains"
+    assert to_data(Gains())["type"] == "flockana:Gains"
+    assert to_data(OurOwn(2.0))["type"] == f"{__name__}:OurOwn"
+
+
+def test_files_that_name_a_module_are_read_wherever_the_class_lives_now():
+    for module in ("flockana.interactions.gains", "flockana.where.it.once.was"):
+        assert from_data({"type": f"{module}:Gains", "c1_alpha": 2.0}) == Gains(c1_alpha=2.0)
+
+
+def test_no_two_parameter_classes_share_a_name():
+    rooms = [import_module(f"flockana.{room}") for room in ("interactions", "environment", "laws")]
+    modules = [import_module(x.name) for r in rooms for x in walk_packages(r.__path__, f"{r.__name__}.")]
+    names = [x.__name__ for m in modules for x in vars(m).values() if is_dataclass(x) and x.__module__ == m.__name__]
+    assert sorted(names) == sorted(parameter_classes())
 
 
 def test_functions_cannot_be_written():

@@ -17,12 +17,13 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import StaticTarget
 from flockana.falsify import Counterexample, falsify, replay
 from flockana.falsify.evaluate import Problem, units
-from flockana.falsify.grade import FAILED, LEADS, LIMITS, bridge, grade, missing, pairs_apart, squash, strained
+from flockana.falsify.grade import FAILED, grade, missing
 from flockana.falsify.search import Search
 from flockana.falsify.space import part, search_space
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.scenarios import scenario
-from flockana.theorems import Claim, Hypothesis, Theorem, Tolerances, Verdict, theorem, verify
+from flockana.theorems import Claim, Hypothesis, Theorem, Tolerances, Verdict, theorem, theorems, verify
+from flockana.theorems.leads import bridge, pairs_apart, squash, strained
 from flockana.theorems.olfati_saber.attraction import held
 from flockana.theorems.theorem import judge
 
@@ -162,7 +163,7 @@ class TestGrades:
         assert grade(settles, [], lead=0.9, limit=True) < grade(parts, [], lead=0.99, limit=True)
         assert grade(Claim("i", "refuted", margin=-1.0), [], lead=1.0, limit=True) == -2.5
         assert grade(Claim("i", "vacuous"), [], limit=True) == 2.0
-        assert set(LEADS) >= LIMITS
+        assert all(set(theorem(name).limits) <= set(theorem(name).leads) for name in theorems())
 
     def test_a_surrogate_never_outweighs_a_count(self):
         for k in range(30):
@@ -176,13 +177,14 @@ class TestGrades:
 
     def test_every_claim_that_has_a_surrogate_exists(self):
         runs = {"os-3": "three-agents-1d", "E13": "three-agents-1d"}
-        for label in LEADS:
-            name, claim = label.split(":")
+        led = [(name, claim, lead) for name in theorems() for claim, lead in theorem(name).leads.items()]
+        assert len(led) == 8
+        for name, claim, lead in led:
             run = scenario(runs.get(name, "head-on-collision")).run()
             if name.startswith("alpha"):
                 run = scenario("five-agents").run()
             one = verify(name, run).claim(claim)
-            assert 0.0 <= LEADS[label](run, one) <= 1.0
+            assert 0.0 <= lead(run, one) <= 1.0
 
 
 def made_up(*states):

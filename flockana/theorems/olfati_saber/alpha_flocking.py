@@ -10,6 +10,7 @@ from flockana.base.checks import FloatArray
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw
 from flockana.theorems.hypotheses import vacuous
+from flockana.theorems.leads import bridge
 from flockana.theorems.rounding import EPS, frame_error, spread_error
 from flockana.theorems.sampling import nets_at, nets_between, radius_between
 from flockana.theorems.theorem import Claim, Hypothesis, HypothesisStatus, Theorem, Tolerances, judge
@@ -155,6 +156,7 @@ THEOREM = (
         source="Olfati-Saber 2006, Definition 5",
         kind="trajectory",
         check=_plain,
+        leads={"giant": bridge},
     ),
     Theorem(
         id="alpha-flocking-strict",
@@ -163,5 +165,6 @@ THEOREM = (
         source="Olfati-Saber 2006, Definition 5, strict form",
         kind="trajectory",
         check=_strict,
+        leads={"flock": bridge},
     ),
 )

@@ -6,6 +6,7 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.asymptotics import lattice_limit
 from flockana.theorems.hypotheses import vacuous, with_alpha_gain
+from flockana.theorems.leads import strained
 from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances
 
 
@@ -27,4 +28,6 @@ THEOREM = Theorem(
     kind="trajectory",
     check=_check,
     references=("geschwender-2016", "olfati-saber-2006"),
+    leads={"lattice": strained},
+    limits=("lattice",),
 )

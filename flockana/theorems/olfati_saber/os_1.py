@@ -11,6 +11,7 @@ from flockana.lattice import harborth
 from flockana.laws.olfati_saber import Algorithm1, paper_pair
 from flockana.theorems.asymptotics import lattice_limit, velocities_match
 from flockana.theorems.hypotheses import positive, vacuous, with_alpha_gain
+from flockana.theorems.leads import strained
 from flockana.theorems.olfati_saber.attraction import held
 from flockana.theorems.olfati_saber.collisions import below_multiple, below_the_barrier, no_collision
 from flockana.theorems.olfati_saber.energy import proved
@@ -79,4 +80,6 @@ THEOREM = Theorem(
     source="Olfati-Saber 2006, Theorem 1",
     kind="trajectory",
     check=_check,
+    leads={"i": strained},
+    limits=("i",),
 )

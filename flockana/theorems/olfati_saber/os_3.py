@@ -12,6 +12,7 @@ from flockana.lattice import classify
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.theorems.asymptotics import velocities_match
 from flockana.theorems.hypotheses import applied, one_gain, positive, vacuous
+from flockana.theorems.leads import pairs_apart
 from flockana.theorems.limits import limit_claim
 from flockana.theorems.olfati_saber.attraction import held
 from flockana.theorems.olfati_saber.collisions import (
@@ -109,4 +110,5 @@ THEOREM = Theorem(
     source="Olfati-Saber 2006, Theorem 3",
     kind="trajectory",
     check=_check,
+    leads={"iv-printed": pairs_apart, "iv-instant": pairs_apart},
 )

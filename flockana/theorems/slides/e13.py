@@ -11,6 +11,7 @@ from flockana.environment.targets import StaticTarget
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.theorems.hypotheses import vacuous, with_alpha_gain
+from flockana.theorems.leads import pairs_apart
 from flockana.theorems.olfati_saber.collisions import distinct_pairs, pairs_at_one_instant
 from flockana.theorems.olfati_saber.energy import proved
 from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances
@@ -48,4 +49,5 @@ THEOREM = Theorem(
     kind="trajectory",
     check=_check,
     references=("geschwender-2016", "olfati-saber-2006"),
+    leads={"printed": pairs_apart, "corrected": pairs_apart},
 )

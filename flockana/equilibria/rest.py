@@ -1,0 +1,73 @@
+"""A state of rest near a configuration, of a law that need not have a potential: Newton's method on its forces."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_points
+from flockana.base.errors import ArgumentError, SolverError
+from flockana.laws.law import Law
+
+_STEPS = 40
+_RANK = 1e-10  # of the largest singular value: what is less is a direction in which nothing pushes
+_DONE = 1e-12  # of the stiffness times the flock's size
+_AGAIN = 0.5  # of a step, as often as the force grows by it
+
+
+def resting_state(law: Any, q0: Any, *, t: float = 0.0) -> FloatArray:
+    """Positions near q0 at which no agent is pushed while all stand still, by Newton's method in least squares.
+
+    Where a law has a potential `find_equilibrium` says more: which kind of equilibrium it is.
+
+    Parameters
+    ----------
+    law : Law
+        A continuous law with `derivatives`.
+    q0 : array_like, shape (n, m)
+        Start.
+    t : float
+        When, for a law that depends on time.
+
+    Returns
+    -------
+    ndarray, shape (n, m)
+
+    Raises
+    ------
+    ArgumentError
+        On another law or bad positions.
+    SolverError
+        If the forces do not vanish near q0.
+
+    Examples
+    --------
+    >>> from flockana.laws.minimal import MinimalFlocking
+    >>> resting_state(MinimalFlocking(edges=[(0, 1)], spacing=2.0), [[0.0], [1.9]]).round(12).tolist()
+    [[0.0], [2.0]]
+    """
+    if not isinstance(law, Law):
+        raise ArgumentError(f"law = {law!r}: expected a continuous law; a map has no forces at rest")
+    q, t = ensure_points("q0", q0), ensure_finite_scalar("t", t)
+    law.check_dimension(q.shape[1])
+    law.check_start(q, np.zeros_like(q))
+    size = float(np.abs(q - q.mean(axis=0)).max()) or 1.0
+    force = law.flow(t, q, np.zeros_like(q))[0]
+    for _ in range(_STEPS):
+        by_position: Any = law.derivatives(t, q, np.zeros_like(q))[0]
+        stiffness = by_position.toarray()
+        if np.abs(force).max() <= _DONE * float(np.abs(stiffness).max()) * size:
+            return q
+        step = -np.linalg.lstsq(stiffness, force.ravel(), rcond=_RANK)[0].reshape(q.shape)
+        share = 1.0
+        while True:
+            after = law.flow(t, q + share * step, np.zeros_like(q))[0]
+            if np.linalg.norm(after) < np.linalg.norm(force) or share < 1e-3:
+                break
+            share *= _AGAIN
+        q, force = q + share * step, after
+    raise SolverError(
+        f"no state of rest of {type(law).__name__} found near there: the largest force left is "
+        f"{float(np.linalg.norm(force, axis=1).max()):.3g}; start nearer to one, or linearise as it is"
+    )

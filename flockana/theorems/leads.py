@@ -1,0 +1,82 @@
+"""What leads a search for a counterexample where a claim's margin gives no slope: a count, or the same on all runs."""
+
+from __future__ import annotations
+
+from math import isfinite
+
+import numpy as np
+
+from flockana.dynamics.trajectory import Trajectory
+from flockana.measures.nets import links
+from flockana.theorems.olfati_saber.collisions import met
+from flockana.theorems.theorem import Claim, Tolerances
+
+
+def squash(x: float) -> float:
+    """x/(1 + |x|): keeps the order, and has a place for infinity.
+
+    Parameters
+    ----------
+    x : float
+        Any number, NaN excepted.
+
+    Examples
+    --------
+    >>> squash(1.0), squash(-3.0), squash(float("inf"))
+    (0.5, -0.75, 1.0)
+    """
+    return x / (1.0 + abs(x)) if isfinite(x) else (1.0 if x > 0.0 else -1.0)
+
+
+def pairs_apart(run: Trajectory, claim: Claim) -> float:
+    """For a count of pairs that meet: how far the nearest pair stays apart that has not met, over d.
+
+    Parameters
+    ----------
+    run : Trajectory
+        The run.
+    claim : Claim
+        Not used.
+    """
+    i, j = np.triu_indices(run.n, 1)
+    apart = np.linalg.norm(run.q[:, i] - run.q[:, j], axis=2).min(axis=0)
+    done = {(c.i, c.j) for c in met(run, Tolerances())}
+    open_ones = [x for x, a, b in zip(apart.tolist(), i.tolist(), j.tolist(), strict=True) if (a, b) not in done]
+    return squash(min(open_ones, default=0.0) / run.law.lattice[0])
+
+
+def bridge(run: Trajectory, claim: Claim) -> float:
+    """For a count of components: how far below r the longest link that holds the flock together stays.
+
+    Parameters
+    ----------
+    run : Trajectory
+        The run.
+    claim : Claim
+        Not used.
+    """
+    from scipy.sparse.csgraph import minimum_spanning_tree
+    from scipy.spatial.distance import pdist, squareform
+
+    longest = max(float(minimum_spanning_tree(squareform(pdist(q))).max()) for q in run.q) if run.n > 1 else 0.0
+    return 1.0 - squash(longest / run.law.lattice[1])
+
+
+def strained(run: Trajectory, claim: Claim) -> float:
+    """For the lattice as a limit: how soon links are unstrained, 1 less the mean over time of the largest strain.
+
+    Runs that pass by a strained equilibrium linger there: the longer they do, the nearer they are to its basin.
+
+    Parameters
+    ----------
+    run : Trajectory
+        The run.
+    claim : Claim
+        Not used.
+    """
+    (d, r), series = run.law.lattice, []
+    for q in run.q:
+        pairs = links(q, r)
+        lengths = np.linalg.norm(q[pairs[:, 0]] - q[pairs[:, 1]], axis=1)
+        series.append(float(np.abs(lengths / d - 1.0).max(initial=0.0)))
+    return 1.0 - float(np.trapezoid(np.minimum(series, 1.0), run.t)) / float(run.t[-1] - run.t[0])
