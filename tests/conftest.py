@@ -11,6 +11,8 @@ import signal
 import pytest
 from hypothesis import HealthCheck, settings
 
+collect_ignore = ["toys"]  # files that stand in the package's own folders while test_one_file.py runs
+
 settings.register_profile(
     "flockana",
     deadline=None,

@@ -63,6 +63,8 @@ BIBLIOGRAPHY = {
 def cite(item: Any) -> str:
     """Return the BibTeX entries that an object, or a key of the bibliography, rests on.
 
+    A law or theorem of your own brings its entries itself: a reference that begins with @ is BibTeX as it stands.
+
     Parameters
     ----------
     item : str or object
@@ -79,8 +81,8 @@ def cite(item: Any) -> str:
     '@article{olfatisaber2006flocking,'
     """
     keys = (item,) if isinstance(item, str) else tuple(getattr(item, "references", ()))
-    if not keys or any(key not in BIBLIOGRAPHY for key in keys):
+    if not keys or any(key not in BIBLIOGRAPHY and not key.startswith("@") for key in keys):
         raise ArgumentError(
             f"nothing to cite for {item!r}: expected an object with references, or one of {', '.join(BIBLIOGRAPHY)}"
         )
-    return "\n\n".join(BIBLIOGRAPHY[key] for key in keys)
+    return "\n\n".join(BIBLIOGRAPHY.get(key, key) for key in keys)

@@ -71,11 +71,12 @@ def _ensure_free(name: str, **given: object) -> None:
 
 def _of_scenario(name: str, start: str, seed: int, potential: bool) -> tuple[Any, FloatArray]:
     from flockana.base.errors import SolverError
+    from flockana.cli.source import integrated_law
     from flockana.equilibria.classify import ensure_small
     from flockana.scenarios import scenario
 
     item = scenario(name, seed)
-    law = _ensured(item.law.continuous or item.law, item.q0.shape[1], potential)
+    law = _ensured(integrated_law(item.law), item.q0.shape[1], potential)
     ensure_small(*item.q0.shape)
     if start == "start":
         return _held(law, item.t_span[0]), item.q0

@@ -106,12 +106,28 @@ def read_source(name: str, *, d: float | None = None, r: float | None = None, ti
 
 def _scaled(name: str, q: FloatArray, law: Any, t: float, *, d: float | None, r: float | None) -> Source:
     """A range that is not given keeps the law's ratio to the scale."""
-    law = None if law is None else law.continuous or law
+    law = integrated_law(law)
     own_d, own_r = law_scales(law)
     scale = own_d if d is None else d
     if r is None:
         r = own_r if d is None else own_r / own_d * d
     return Source(name, np.ascontiguousarray(q), scale, r, law, t)
+
+
+def integrated_law(law: Any) -> Any:
+    """The continuous law that a scheme integrates; any other law, and None, as it is.
+
+    Parameters
+    ----------
+    law : object
+        A law, or None.
+
+    Examples
+    --------
+    >>> integrated_law(None) is None
+    True
+    """
+    return law.continuous if getattr(law, "approximates", False) else law
 
 
 def law_scales(law: Any) -> tuple[float, float]:

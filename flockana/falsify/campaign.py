@@ -14,13 +14,14 @@ from flockana.base.checks import FloatArray, ensure_count
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.falsify.evaluate import Evaluation, Problem, units
 from flockana.falsify.falsification import Ending, Falsification
-from flockana.falsify.grade import FAILED, Lead
+from flockana.falsify.grade import FAILED
 from flockana.falsify.search import Search
 from flockana.falsify.space import STATE, part, search_space
 from flockana.scenarios import Scenario
 from flockana.scenarios import scenario as named_scenario
 from flockana.theorems import Claim, Theorem, Tolerances
 from flockana.theorems import theorem as named_theorem
+from flockana.theorems.theorem import Lead
 
 
 def falsify(

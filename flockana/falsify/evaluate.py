@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -16,6 +16,7 @@ from flockana.falsify.space import Space
 from flockana.scenarios import Scenario
 from flockana.theorems import Claim, Theorem, Tolerances, Verdict, theorem, verify
 from flockana.theorems.leads import squash
+from flockana.theorems.theorem import Lead
 
 
 @dataclass(frozen=True)
@@ -69,7 +70,7 @@ class Problem:
     theorem: str | Theorem
     tolerances: Tolerances
     claim: str | None = None
-    surrogate: Callable[[Trajectory, Claim], float] | None = None
+    surrogate: Lead | None = None
     scales: Mapping[str, float] = field(default_factory=dict)
 
     def __call__(self, point: FloatArray) -> Evaluation:

@@ -25,6 +25,7 @@ class DiscreteLaw(LawOfMotion):
     """
 
     dt: float
+    approximates: ClassVar[bool] = False  # whether it is a scheme that integrates `law`, and no law of its own
     steps_at_once: ClassVar[int] = 1
     extra_units: ClassVar[Mapping[str, Powers]] = {}
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from flockana.dynamics.trajectory import Trajectory
 
-# name in Trajectory.metrics(), label, logarithmic
+# name in Trajectory.metrics(), label, logarithmic; a law's own metrics bring their text themselves
 MEASURES = {
     "connectivity": ("C, relative connectivity", False),
     "cohesion_radius": ("R, cohesion radius (length)", False),
@@ -55,11 +55,11 @@ def measure(trajectory: Trajectory, name: str, *, ax: Axes | None = None) -> Axe
     UnknownNameError
         If there is no such metric.
     """
-    if name not in MEASURES:
-        raise UnknownNameError("metric", name, MEASURES)
-    label, logarithmic = MEASURES[name]
-    ax = ensure_axes(ax)
     found = trajectory.metrics()
+    if name not in MEASURES and name not in found:
+        raise UnknownNameError("metric", name, sorted({*MEASURES, *map(str, found)}))
+    label, logarithmic = MEASURES[name] if name in MEASURES else (found[name].attrs["long_name"], False)
+    ax = ensure_axes(ax)
     if name not in found:
         return _empty(ax, label, "not defined for this law")
     values = found[name].values
@@ -70,7 +70,7 @@ def measure(trajectory: Trajectory, name: str, *, ax: Axes | None = None) -> Axe
         ax.set_ylim(-0.03, 1.05)
     elif name == "coordination":
         ax.set_ylim(min(-0.03, float(np.nanmin(values, initial=0.0)) - 0.05), 1.05)
-    elif not logarithmic:
+    elif not logarithmic and not (values < 0.0).any():
         ax.set_ylim(bottom=0.0)
     return _frame(ax, trajectory, label)
 

@@ -96,7 +96,7 @@ def _describe(value: Any, law: Any) -> str:
     parts = []
     for f in fields(value):
         owner = _GAIN_OWNERS.get(f.name.rpartition("_")[2]) if f.name.startswith(("c1_", "c2_")) else None
-        if owner is None or hasattr(law, owner):
+        if owner is None or getattr(law, owner, None) is not None:
             parts.append(f"{f.name} = {_describe(getattr(value, f.name), law)}")
     return f"{type(value).__name__}({', '.join(parts)})"
 

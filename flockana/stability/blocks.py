@@ -39,6 +39,7 @@ class Blocks:
     --------
     Algorithm 1 lets a bond drift (2 translations) and leaves its orientation neutral:
 
+    >>> from flockana.laws.olfati_saber import Algorithm1
     >>> pair = second_order(Algorithm1(), [[0.0, 0.0], [7.0, 0.0]])
     >>> pair.rigid.shape[1], pair.neutral.shape[1], pair.drifting.shape[1]
     (3, 3, 2)
@@ -156,6 +157,7 @@ def second_order(law: Any, q: Any, *, t: float = 0.0, strict: bool = True) -> Bl
 
     Examples
     --------
+    >>> from flockana.laws.olfati_saber import Algorithm2
     >>> from flockana.environment.targets import StaticTarget
     >>> one = second_order(Algorithm2(target=StaticTarget((0.0,))), [[0.0]])
     >>> one.stiffness.tolist(), one.neutral.shape

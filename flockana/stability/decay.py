@@ -90,6 +90,7 @@ def slowest_seen(found: Linearisation) -> Mode:
 
     Examples
     --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
     >>> from flockana.stability.linearise import linearise
     >>> slowest_seen(linearise(Algorithm1(), [[0.0, 0.0], [7.0, 0.0]])).name
     'breathing'
@@ -129,6 +130,7 @@ def decay(found: Linearisation, *, name: str = "", amplitude: float = AMPLITUDE,
 
     Examples
     --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
     >>> from flockana.stability.linearise import linearise
     >>> pair = decay(linearise(Algorithm1(), [[0.0], [7.0]]))
     >>> pair.difference < 1e-3
@@ -176,6 +178,7 @@ def decay_table(
 
     Examples
     --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
     >>> from flockana.stability.linearise import linearise
     >>> [row.name for row in decay_table({"pair": linearise(Algorithm1(), [[0.0], [7.0]])})]
     ['pair']
@@ -270,6 +273,7 @@ def linear_range(
 
     Examples
     --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
     >>> from flockana.stability.linearise import linearise
     >>> found = linear_range(linearise(Algorithm1(), [[0.0], [7.0]]), amplitudes=[1e-4, 2e-4])
     >>> round(found.exponent, 1)

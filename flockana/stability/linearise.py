@@ -61,6 +61,7 @@ class Linearisation:
     --------
     Two agents at their distance: a spring and a damper between them, and a plane to move in.
 
+    >>> from flockana.laws.olfati_saber import Algorithm1
     >>> pair = linearise(Algorithm1(), [[0.0, 0.0], [7.0, 0.0]])
     >>> [mode.name for mode in pair.zero_modes], pair.drifting
     (['translation x', 'translation y', 'rotation'], ('translation x', 'translation y'))
@@ -287,6 +288,7 @@ def linearise(
 
     Examples
     --------
+    >>> from flockana.laws.olfati_saber import Algorithm2
     >>> from flockana.environment.targets import StaticTarget
     >>> law = Algorithm2(target=StaticTarget((0.0,)))
     >>> one = linearise(law, [[0.0]])

@@ -167,6 +167,7 @@ def map_system(law: MSNDiscretisation) -> StateSpace:
 
     Examples
     --------
+    >>> from flockana.laws.olfati_saber import Algorithm2
     >>> from flockana.environment.targets import StaticTarget
     >>> pull = Algorithm2(gains=Gains(c1_gamma=1.0, c2_gamma=2.0), target=StaticTarget((0.0,)))
     >>> system = map_system(MSNDiscretisation(pull, dt=0.1, in_place=False))
@@ -200,6 +201,7 @@ def map_gain(law: MSNDiscretisation, omega: float, *, factor: float = 1.0) -> fl
 
     Examples
     --------
+    >>> from flockana.laws.olfati_saber import Algorithm2
     >>> from flockana.environment.targets import StaticTarget
     >>> pull = Algorithm2(gains=Gains(c1_gamma=70.0, c2_gamma=16.733200530681511), target=StaticTarget((0.0, 0.0)))
     >>> omega = 2.0 * pi * 0.025 / 0.045

@@ -213,6 +213,9 @@ class Verdict:
         return "\n".join(lines)
 
 
+Lead = Callable[[Any, Claim], float]
+
+
 @dataclass(frozen=True)
 class Theorem:
     """A published statement, or its correction, with the function that checks it.
@@ -250,7 +253,7 @@ class Theorem:
     check: Callable[..., tuple[Iterable[Hypothesis], Iterable[Claim]]]
     references: tuple[str, ...] = ("olfati-saber-2006",)
     expected: Mapping[str, Status] = field(default_factory=dict)
-    leads: Mapping[str, Callable[[Any, Claim], float]] = field(default_factory=dict)
+    leads: Mapping[str, Lead] = field(default_factory=dict)
     limits: tuple[str, ...] = ()
 
 

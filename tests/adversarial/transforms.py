@@ -54,9 +54,9 @@ def rigid(case, turn, shift):
 def boosted(case, velocity):
     """Seen from a frame that moves: with a γ-agent only if it moves on a line."""
     law, back = case.law, case.since * velocity
-    if hasattr(law, "obstacles"):
+    if law.obstacles:
         raise UnchangedError("obstacles stand still")
-    if hasattr(law, "target"):
+    if law.target is not None:
         if not isinstance(law.target, LinearTarget):
             raise UnchangedError("no straight line")
         law = replace(law, target=LinearTarget(np.array(law.target.q), np.array(law.target.p) + velocity))
@@ -87,7 +87,7 @@ def later(case, by):
 
 def _world(law, turn, shift):
     changes = {}
-    if hasattr(law, "target"):
+    if law.target is not None:
         changes["target"] = _target(law.target, turn, shift)
     if getattr(law, "obstacles", ()):
         changes["obstacles"] = tuple(_obstacle(one, turn, shift) for one in law.obstacles)

@@ -97,7 +97,7 @@ def structural_energy(law, q, p):
             for one, other in combinations(q, 2):
                 length = mpmath.sqrt(sum((x - y) ** 2 for x, y in zip(one, other, strict=True)))
                 total += law.gains.c1_alpha * psi_alpha(min(length, mpmath.mpf(law.alpha.r)), law.alpha)
-        return total + (law.gains.c1_gamma * spread(q) if hasattr(law, "target") else 0)
+        return total + (law.gains.c1_gamma * spread(q) if law.target is not None else 0)
 
 
 def law_time(law):
@@ -133,7 +133,7 @@ class Motion:
 def structural(law, x, v):
     """v' of Algorithms 1 and 2 in the moving frame: there the γ-agent's place does not matter."""
     g, alpha = law.gains, law.alpha
-    u = -g.c1_gamma * x - g.c2_gamma * v if hasattr(law, "target") else np.zeros_like(x)
+    u = -g.c1_gamma * x - g.c2_gamma * v if law.target is not None else np.zeros_like(x)
     for i, j in combinations(range(len(x)), 2):
         apart = x[j] - x[i]
         s = hypot(*apart)
@@ -171,7 +171,7 @@ def head_on(law, s0, speed, until):
     The reduced problem s'' = −2 c1α F(s) − (2 c2α a(s) + c2γ) s' − c1γ s, from where the pair first exerts a force.
     """
     alpha, g = law.alpha, law.gains
-    c1, c2 = (g.c1_gamma, g.c2_gamma) if hasattr(law, "target") else (0.0, 0.0)
+    c1, c2 = (g.c1_gamma, g.c2_gamma) if law.target is not None else (0.0, 0.0)
     flown = 0.0
     if c1 == c2 == 0.0 and s0 > alpha.r:  # free until they are in range
         flown = (s0 - alpha.r) / speed if speed > 0.0 else until
@@ -252,7 +252,7 @@ def pair_rates(law, s):
     h = 1e-6 * s
     slope = (pull(s + h, law.alpha) - pull(s - h, law.alpha)) / (2.0 * h)
     a = adjacency(s, law.alpha)
-    gamma = hasattr(law, "target")
+    gamma = law.target is not None
     spring = 2.0 * law.gains.c1_alpha * slope + (law.gains.c1_gamma if gamma else 0.0)
     return spring, 2.0 * law.gains.c2_alpha * a + (law.gains.c2_gamma if gamma else 0.0)
 

@@ -223,7 +223,7 @@ def test_the_table_fits_in_80_columns_and_help_lists_the_builders(call):
 
 def test_the_commands_load_nothing_heavy():
     code = (
-        "import sys, flockana.commands.lattice, flockana.commands.equilibrium; "
+        "import sys, flockana.cli.lattice, flockana.cli.equilibrium; "
         "print([m for m in ('numpy', 'scipy', 'matplotlib', 'casadi', 'rich.table') if m in sys.modules][:4])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

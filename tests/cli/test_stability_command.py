@@ -138,3 +138,18 @@ def test_bad_input_is_one_line(call, arguments, said):
     assert err.startswith("flockana: ")
     assert err.count("\n") == 1
     assert said in err
+
+
+def test_a_law_without_a_potential_is_linearised_about_a_state_of_rest(found, call):
+    """A tree of eight in the plane: λ² + λ + μ = 0 for each edge's length, a slower λ = −1 for its direction."""
+    one = found("zone-tree", "--modes", 14)
+    assert (one["law"], one["n"]) == ("MinimalFlocking", 8)
+    assert one["zero modes"][:3] == ["translation x", "translation y", "rotation"]
+    assert len(one["zero modes"]) == 2 + 7
+    lengths = [mode for mode in one["modes"] if abs(mode["eigenvalue"][1]) > 1e-3]
+    assert len(lengths) == 7
+    for mode in lengths:
+        assert mode["eigenvalue"] == pytest.approx([-0.5, sqrt(0.75)], rel=1e-4)
+    code, _, err = call("zone-51-printed")
+    assert (code, err.count("\n")) == (2, 1)
+    assert "ZoneFlocking is a map from step to step: expected a continuous law" in err

@@ -1,0 +1,103 @@
+"""Laws as sums of terms: what each has, and that sums are sums."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from flockana.environment.obstacles import Sphere, Wall
+from flockana.environment.targets import LinearTarget, StaticTarget
+from flockana.interactions import AlphaInteraction, DeadZoneInteraction, Gains
+from flockana.laws.algorithm3 import Algorithm3
+from flockana.laws.bearing_distance import ZoneFlocking
+from flockana.laws.dead_zone import DeadZoneFlocking
+from flockana.laws.minimal import MinimalFlocking
+from flockana.laws.msn import MSNDiscretisation
+from flockana.laws.notebook import PushedAlgorithm1, PushedAlgorithm2
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.laws.semi_implicit import SemiImplicitEuler
+from flockana.laws.terms.navigation import Navigation
+from flockana.laws.terms.obstacles import ObstacleTerm
+from flockana.laws.terms.pairs import PairTerm
+
+TARGET = LinearTarget((9.0, 1.0), (1.0, -0.5))
+SOLIDS = (Sphere((20.0, 0.0), 3.0), Wall((0.0, -9.0), (0.0, 1.0)))
+EACH = Gains(c1_gamma=(1.0, 2.0, 3.0, 1.0), c2_gamma=(2.0, 1.0, 1.0, 0.5))
+SUMS = {
+    "1": Algorithm1(),
+    "2": Algorithm2(target=TARGET),
+    "2 each": Algorithm2(gains=EACH, target=TARGET),
+    "3": Algorithm3(target=TARGET, obstacles=SOLIDS),
+    "3 each": Algorithm3(gains=EACH, target=TARGET, obstacles=SOLIDS),
+    "dead zone": DeadZoneFlocking(),
+    "pushed": PushedAlgorithm2(target=TARGET, min_distance=2.0),
+}
+Q = np.array([[0.0, -7.0], [6.5, 0.5], [8.0, 0.0], [15.5, -5.5]])
+P = np.array([[1.0, 0.0], [0.2, -1.0], [0.0, 2.0], [-0.5, 0.3]])
+
+
+@pytest.mark.parametrize("name", SUMS)
+def test_force_power_energy_and_hessian_are_sums(name):
+    law, t = SUMS[name], 0.7
+    u, rate, energy = np.zeros_like(Q), 0.0, 0.0
+    for term in law.terms:
+        own = np.zeros_like(Q)
+        rate += term.act(t, Q, P, own)
+        energy += term.energy(t, Q)
+        u += own
+    v = P - P.mean(axis=0) if law.moving else P
+    np.testing.assert_allclose(law.acceleration(t, Q, P), u, rtol=1e-12, atol=1e-12)
+    assert law.energy_rate(t, Q, P) == pytest.approx(rate, rel=1e-12)
+    assert law.energy(t, Q, P) == pytest.approx(energy + 0.5 * np.sum(v * v), rel=1e-14)
+
+
+@pytest.mark.parametrize("name", [name for name in SUMS if name != "pushed"])
+def test_each_term_s_power_is_the_rate_of_its_energy_and_work(name):
+    """Along a step of the flow, and the force at rest is minus the gradient of the energy."""
+    law, t, h = SUMS[name], 0.7, 1e-5
+    states = [(t + s * h, Q + s * h * P + 0.5 * (s * h) ** 2 * law.flow(t, Q, P)[0], s) for s in (-1, 1)]
+    speeds = [P + s * h * law.flow(t, Q, P)[0] for _, _, s in states]
+    before, after = (law.hamiltonian(when, q, p) for (when, q, _), p in zip(states, speeds, strict=True))
+    assert (after - before) / (2.0 * h) == pytest.approx(law.flow(t, Q, P)[1], rel=2e-5)
+    if law.splits:
+        slope = np.zeros_like(Q)
+        for k in np.ndindex(*Q.shape):
+            e = np.zeros_like(Q)
+            e[k] = h
+            slope[k] = (law.potential_energy(t, Q + e) - law.potential_energy(t, Q - e)) / (2.0 * h)
+        force = law.flow(t, Q, 0.0 * Q)[0]
+        np.testing.assert_allclose(force - force.mean(axis=0), -slope, atol=1e-5 * np.abs(slope).max())
+
+
+def test_what_laws_have():
+    msn = MSNDiscretisation(Algorithm2(target=StaticTarget((0.0,))), dt=0.1)
+    table = {
+        "Algorithm1": (SUMS["1"], True, True, (7.0, 8.4), None, 0),
+        "Algorithm2": (SUMS["2"], True, True, (7.0, 8.4), TARGET, 0),
+        "Algorithm2 each": (SUMS["2 each"], True, False, (7.0, 8.4), TARGET, 0),
+        "Algorithm3": (SUMS["3"], True, False, (7.0, 8.4), TARGET, 2),
+        "dead zone": (SUMS["dead zone"], True, True, None, None, 0),
+        "pushed": (PushedAlgorithm1(), False, True, (7.0, 8.4), None, 0),
+        "minimal": (MinimalFlocking(), False, False, None, None, 0),
+        "zones": (ZoneFlocking(), False, False, None, None, 0),
+        "msn": (msn, False, False, (7.0, 8.4), msn.law.target, 0),
+        "euler": (SemiImplicitEuler(SUMS["3"]), False, False, (7.0, 8.4), TARGET, 2),
+    }
+    for name, (law, *expected) in table.items():
+        has = [law.conservative, law.splits, law.lattice, law.target, len(law.obstacles)]
+        assert has == expected, name
+    assert SUMS["dead zone"].pair == DeadZoneInteraction()
+    assert msn.pair == AlphaInteraction()
+    assert (ZoneFlocking().pair, MinimalFlocking().pair) == (None, None)
+    assert [type(term) for term in SUMS["3"].terms] == [PairTerm, ObstacleTerm, Navigation]
+    assert SUMS["3"].term(Navigation).target is TARGET
+    assert MinimalFlocking().term(Navigation) is None
+    assert SUMS["3"].obstacle_field.obstacles == SOLIDS
+
+
+def test_what_a_law_lacks_is_no_default_of_its_parameters():
+    """A law of one's own may name a parameter `target` or `pair` and give it no default."""
+    with pytest.raises(AttributeError, match="'Algorithm1' object has no attribute 'colour'"):
+        _ = Algorithm1().colour
+    assert not hasattr(Algorithm1, "target")
+    assert not hasattr(Algorithm1, "pair")

@@ -1,0 +1,12 @@
+"""The toy law's own figure in a report."""
+
+from flockana.laws.toy_swarm import ToySwarm
+
+from flockana import plots
+from flockana.report.figures import Picture, png
+
+LAWS = (ToySwarm,)
+
+
+def pictures(trajectory):
+    return (Picture("Largest speed.", png(lambda f: plots.measure(trajectory, "toy_speed", ax=f.subplots()), (4, 3))),)
