@@ -192,12 +192,17 @@ def _rests(run: Trajectory, tolerances: Tolerances) -> Claim:
     """It comes to rest: hardly any speed is left, and hardly any force on agents at rest where they are.
 
     With a γ-agent at rest and c2γ > 0 every motion dies out, as H falls by c2γ Σ‖p_i‖² at least; what is open is when.
-    So one instant will do here, of small speeds and forces together: it is no turning point of a swing for ever.
+    So one instant will do here, of small speeds and forces together: it is no turning point of a swing for ever. Near
+    stiff obstacles the solver's last digits are worth as much force: the calmest instant of the last tenth is taken.
     """
-    law, q, t = run.law, run.q[-1], float(run.t[-1])
-    force = float(np.linalg.norm(law.acceleration(t, q, np.zeros_like(q)), axis=1).max()) / run.scales.force
-    speed = float(np.linalg.norm(run.p[-1], axis=1).max()) / run.scales.speed
-    left = max(force / tolerances.force, speed / float(np.sqrt(tolerances.velocity)), 1e-300)
+    law, late = run.law, np.flatnonzero(run.t >= run.t[-1] - 0.1 * (run.t[-1] - run.t[0]))
+    still = np.zeros_like(run.p[0])
+    forces = np.array([np.linalg.norm(law.acceleration(run.t[k], run.q[k], still), axis=1).max() for k in late])
+    forces, speeds = forces / run.scales.force, np.linalg.norm(run.p[late], axis=2).max(axis=1) / run.scales.speed
+    lefts = np.maximum(forces / tolerances.force, speeds / np.sqrt(tolerances.velocity))
+    calmest = int(np.argmin(lefts))
+    t, force, speed = (float(series[calmest]) for series in (run.t[late], forces, speeds))
+    left = max(float(lefts[calmest]), 1e-300)
     damped = Certificate(float(np.clip(-np.log(left), -1.0, 1.0)), f"{left:.2g} of what counts as none")
     none = Certificate(-1.0, "without damping by the γ-agent it may never")
     detail = f"at t = {t:g} the largest force is {force:.2g} of the law's, the largest speed {speed:.2g}"
