@@ -167,7 +167,7 @@ def measures(found: Linearisation, *, delay: bool, norms: bool, strict: bool) ->
     """
     from math import isfinite
 
-    from flockana.stability.blocks import second_order
+    from flockana.stability.blocks import law_blocks
     from flockana.stability.delay import DELAYED, delay_margin, delay_system
     from flockana.stability.norms import disturbance_system, h2_norm, hinf_norm
 
@@ -181,7 +181,7 @@ def measures(found: Linearisation, *, delay: bool, norms: bool, strict: bool) ->
             margin = delay_margin(delay_system(law, found.q, delayed=kind, strict=strict))
             told[f"delay margin, {kind}"] = {"delay": finite(margin.delay), "frequency": finite(margin.frequency)}
     if norms:
-        system = disturbance_system(second_order(law, found.q, strict=strict))
+        system = disturbance_system(law_blocks(law, found.q, strict=strict))
         assert system is not None  # shapes are always bounded
         peak = hinf_norm(system)
         told["H2"], told["Hinf"] = finite(h2_norm(system)), finite(peak[0])

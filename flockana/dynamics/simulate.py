@@ -17,7 +17,7 @@ from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.interrupts import interrupts_recognised
 from flockana.dynamics.between import Between, Recorder
 from flockana.dynamics.integrators import Sample, Tally, adaptive, discrete, error_floor, nearest, rk4, start_sample
-from flockana.dynamics.switches import located
+from flockana.dynamics.switches import adaptive_with_switches
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.laws.law import Law
@@ -110,7 +110,7 @@ def simulate(
             rtol, atol = ensure_positive("rtol", rtol), None if atol is None else ensure_positive("atol", atol)
             how = (t_span, method, rtol, error_floor(law, q0, p0, t_span, rtol, atol), keep, tally)
             if isinstance(law, SwitchedLaw) and law.located:
-                keep_samples = located(law, q0, p0, *how)
+                keep_samples = adaptive_with_switches(law, q0, p0, *how)
             else:
                 keep_samples = adaptive(law, q0, p0, *how)
     started = time.perf_counter()

@@ -21,7 +21,7 @@ _NODES = chebyshev.chebpts1(2 * _DEGREE + 1)  # so many that a squared distance 
 _TO_SERIES = np.linalg.inv(chebyshev.chebvander(_NODES, 2 * _DEGREE))
 
 
-def located(
+def adaptive_with_switches(
     law: SwitchedLaw,
     q0: FloatArray,
     p0: FloatArray,

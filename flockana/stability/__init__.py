@@ -1,6 +1,6 @@
 """Linearised stability: Jacobians, modes, transfer functions, margins, norms and the design of gains."""
 
-from flockana.stability.blocks import Blocks, blocks, second_order
+from flockana.stability.blocks import Blocks, blocks, law_blocks
 from flockana.stability.decay import decay_table, linear_range
 from flockana.stability.delay import (
     DelayMargin,
@@ -40,6 +40,7 @@ __all__ = [
     "gain_sweep",
     "h2_norm",
     "hinf_norm",
+    "law_blocks",
     "linear_range",
     "linearise",
     "margin_sweep",
@@ -49,7 +50,6 @@ __all__ = [
     "response_ratio",
     "rightmost_roots",
     "scalar_margin",
-    "second_order",
     "simulate_delayed",
     "slowest_modes",
     "steady_error",

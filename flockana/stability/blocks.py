@@ -40,7 +40,7 @@ class Blocks:
     Algorithm 1 lets a bond drift (2 translations) and leaves its orientation neutral:
 
     >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> pair = second_order(Algorithm1(), [[0.0, 0.0], [7.0, 0.0]])
+    >>> pair = law_blocks(Algorithm1(), [[0.0, 0.0], [7.0, 0.0]])
     >>> pair.rigid.shape[1], pair.neutral.shape[1], pair.drifting.shape[1]
     (3, 3, 2)
     """
@@ -132,7 +132,7 @@ def ensure_pairs_and_pull(law: Any) -> None:
         raise ArgumentError(f"law = {law!r}: expected Algorithm1 or Algorithm2")
 
 
-def second_order(law: Any, q: Any, *, t: float = 0.0, strict: bool = True) -> Blocks:
+def law_blocks(law: Any, q: Any, *, t: float = 0.0, strict: bool = True) -> Blocks:
     """K and D of Algorithm 1 or 2 at an equilibrium, with the rigid motions sorted by what holds them.
 
     K = c1α ∇²V + c1γ and D = c2α L̂ + c2γ, the gains of the γ-agent one for all or one per agent. Under Algorithm 2
@@ -159,7 +159,7 @@ def second_order(law: Any, q: Any, *, t: float = 0.0, strict: bool = True) -> Bl
     --------
     >>> from flockana.laws.olfati_saber import Algorithm2
     >>> from flockana.environment.targets import StaticTarget
-    >>> one = second_order(Algorithm2(target=StaticTarget((0.0,))), [[0.0]])
+    >>> one = law_blocks(Algorithm2(target=StaticTarget((0.0,))), [[0.0]])
     >>> one.stiffness.tolist(), one.neutral.shape
     ([[1.1]], (1, 0))
     """

@@ -17,7 +17,7 @@ from flockana.base.checks import FloatArray, ensure_count, ensure_positive
 from flockana.base.errors import UnknownNameError
 from flockana.equilibria.curvature import EPS
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.stability.blocks import second_order
+from flockana.stability.blocks import law_blocks
 from flockana.stability.rounding import eigen
 
 ComplexArray = npt.NDArray[np.complex128]
@@ -111,7 +111,7 @@ def delay_system(law: Algorithm1 | Algorithm2, q: Any, *, delayed: str = "all", 
     """
     if delayed not in DELAYED:
         raise UnknownNameError("set of delayed terms", delayed, DELAYED)
-    flock = second_order(law, q, strict=strict)
+    flock = law_blocks(law, q, strict=strict)
     neutral, zero = flock.neutral.shape[1] + flock.drifting.shape[1], np.zeros_like(flock.stiffness)
     if delayed == "all":
         return DelaySystem((zero, zero), (flock.stiffness, flock.damping), neutral)

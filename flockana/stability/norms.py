@@ -15,7 +15,7 @@ from flockana.equilibria.curvature import EPS
 from flockana.equilibria.solve import find_equilibrium
 from flockana.lattice import hexagonal_spiral
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.stability.blocks import Blocks, complement, second_order
+from flockana.stability.blocks import Blocks, complement, law_blocks
 from flockana.stability.rounding import eigen
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ def disturbance_system(flock: Blocks, *, output: str = "shape") -> StateSpace | 
 
     Examples
     --------
-    >>> flock = second_order(Algorithm1(), [[0.0, 0.0], [7.0, 0.0]])
+    >>> flock = law_blocks(Algorithm1(), [[0.0, 0.0], [7.0, 0.0]])
     >>> system = disturbance_system(flock)
     >>> system.nstates, system.ninputs, system.noutputs
     (3, 4, 1)
@@ -117,7 +117,7 @@ def h2_bounds(flock: Blocks) -> tuple[float, float]:
 
     Examples
     --------
-    >>> low, high = h2_bounds(second_order(Algorithm1(), [[0.0], [7.0]]))
+    >>> low, high = h2_bounds(law_blocks(Algorithm1(), [[0.0], [7.0]]))
     >>> bool(abs(high / low - 1.0) < 1e-12)
     True
     """
@@ -246,7 +246,7 @@ def norms_against_size(law: Algorithm1 | Algorithm2, sizes: Sequence[int]) -> No
     counts = tuple(ensure_count("sizes", n) for n in sizes)
     rows = []
     for n in counts:
-        flock = second_order(law, _relaxed(law, n))
+        flock = law_blocks(law, _relaxed(law, n))
         system = disturbance_system(flock)
         assert system is not None  # shapes are always bounded
         rows.append((h2_norm(system), *hinf_norm(system), *h2_bounds(flock)))

@@ -13,7 +13,7 @@ from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.equilibria.solve import find_equilibrium
 from flockana.interactions import Gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain
-from flockana.stability.blocks import second_order
+from flockana.stability.blocks import law_blocks
 from flockana.stability.delay import delay_margin, delay_system
 from flockana.stability.translational import CentreOfMass
 
@@ -92,7 +92,7 @@ def gain_sweep(law: Algorithm1 | Algorithm2, q: Any, name: str, values: Any, *, 
     for level in levels.tolist():
         here = replace(law, gains=replace(law.gains, **{name: level}))
         q = np.array(find_equilibrium(here, q).q) if follow else q
-        flock = second_order(here, q, strict=follow)
+        flock = law_blocks(here, q, strict=follow)
         roots = np.linalg.eigvals(flock.matrix()).astype(np.complex128)
         roots = roots[np.argsort(np.abs(roots), kind="stable")]
         count = flock.neutral.shape[1] + flock.drifting.shape[1]

@@ -8,7 +8,7 @@ import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory
 from flockana.measures.nets import links
-from flockana.theorems.olfati_saber.collisions import met
+from flockana.theorems.olfati_saber.collisions import contacts_of
 from flockana.theorems.theorem import Claim, Tolerances
 
 
@@ -40,7 +40,7 @@ def pairs_apart(run: Trajectory, claim: Claim) -> float:
     """
     i, j = np.triu_indices(run.n, 1)
     apart = np.linalg.norm(run.q[:, i] - run.q[:, j], axis=2).min(axis=0)
-    done = {(c.i, c.j) for c in met(run, Tolerances())}
+    done = {(c.i, c.j) for c in contacts_of(run, Tolerances())}
     open_ones = [x for x, a, b in zip(apart.tolist(), i.tolist(), j.tolist(), strict=True) if (a, b) not in done]
     return squash(min(open_ones, default=0.0) / run.law.lattice[0])
 

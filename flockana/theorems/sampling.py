@@ -36,6 +36,26 @@ def _motion(run: Trajectory) -> FloatArray:
     return run.over_intervals(np.maximum, found)
 
 
+def fastest_between(run: Trajectory) -> FloatArray:
+    """An upper bound of ‖p_i − p_c‖ over each interval between samples, of every agent, shape (T − 1,).
+
+    Parameters
+    ----------
+    run : Trajectory
+        A run of a continuous law.
+
+    Examples
+    --------
+    >>> from flockana.dynamics.simulate import simulate
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> run = simulate(Algorithm1(), [[0.0], [99.0]], [[-1.0], [1.0]], (0.0, 1.0))
+    >>> bool(abs(fastest_between(run).max() - 1.0) < 1e-12)
+    True
+    """
+    fastest: FloatArray = _motion(run)[0]
+    return fastest
+
+
 def radius_between(run: Trajectory) -> FloatArray:
     """An upper bound of the cohesion radius over each interval between samples, shape (T − 1,).
 

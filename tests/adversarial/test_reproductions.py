@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from adversarial.cases import FALSE, OPEN, TRUE, VERIFIED, Case, hold
 
-from flockana import Tolerances, Trajectory, theorem, theorems, verify
+from flockana import Tolerances, Trajectory, simulate, theorem, theorems, verify
 from flockana.base.errors import ArgumentError, FileError
 from flockana.environment.targets import (
     CallableTarget,
@@ -369,3 +369,17 @@ def test_a_share_is_a_share():
     for field in ("giant", "settle"):
         with pytest.raises(ArgumentError, match=field):
             Tolerances(**{field: 1.5})
+
+
+# --- a window that begins between two samples -----------------------------------------------------------------------
+
+
+def test_where_samples_fall_does_not_say_how_much_a_flock_has_grown():
+    """Three agents fly apart and double their radius within the window; a late first sample hid it."""
+    law = Algorithm2(AlphaInteraction(d=7.0, r=7.35), Gains(1.0, 0.0, c1_gamma=0.0, c2_gamma=0.0), StaticTarget((2.1,)))
+    q = np.array([[10.155683774987544], [10.155683774987544], [-1.4624173943616945]])
+    p = np.array([[-170.43184667306846], [-123.91172034671153], [-70.33036493848445]])
+    until = 6.3746247320470095
+    for options in ({"t_eval": np.linspace(0.0, until, 700)}, {}, {"method": "LSODA", "rtol": 1e-6}):
+        claim = verify("alpha-flocking", simulate(law, q, p, (0.0, until), **options)).claim("cohesive")
+        assert claim.status in (("refuted",) if "t_eval" in options else ("refuted", "inconclusive", "vacuous"))

@@ -15,7 +15,7 @@ from flockana.equilibria import find_equilibrium
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_spiral
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.stability.blocks import second_order
+from flockana.stability.blocks import law_blocks
 from flockana.stability.design import GainProblem, design_gains, gain_problem
 from flockana.stability.linearise import linearise
 
@@ -30,7 +30,7 @@ def problem(n=7, **options):
 def test_the_matrix_is_the_papers():
     gains = np.random.default_rng(0).uniform(0.0, 5.0, 14)
     law = Algorithm2(target=ORIGIN, gains=Gains(c1_gamma=gains[:7], c2_gamma=gains[7:]))
-    whole = second_order(law, Q, strict=False).matrix()
+    whole = law_blocks(law, Q, strict=False).matrix()
     np.testing.assert_allclose(problem(rotation="counted").matrix(gains), whole, atol=1e-12)
     dropped = problem(form="simplified").matrix(gains)
     assert dropped.shape == (14, 14)
@@ -105,7 +105,7 @@ def test_gains_go_into_a_law():
 def slope(law, n=7, size=1e-6, span=(2.0, 5.0)):
     """(decay rate of the nonlinear flock towards its equilibrium, that of the slowest mode but for the rotation)."""
     found = find_equilibrium(law, hexagonal_spiral(n, 7.0))
-    flock = second_order(law, found.q)
+    flock = law_blocks(law, found.q)
     rate = -np.linalg.eigvals(flock.quotient()[0]).real.max()
     push = size * np.random.default_rng(4).standard_normal(found.q.shape)
     times = np.linspace(*span, 61)
@@ -150,7 +150,7 @@ def test_thirty_agents_decay_as_their_own_equilibrium_says(gains, rate):
     """Nonlinear runs started in the slowest mode; rotation neutral, gains per agent gain 0.6 % over critical ones."""
     law = Algorithm2(target=ORIGIN, gains=Gains(c1_gamma=gains[:30], c2_gamma=gains[30:]))
     q = hexagonal_spiral(30, 7.0)
-    flock = second_order(law, (found := find_equilibrium(law, q - gains[:30] @ q / gains[:30].sum())).q)
+    flock = law_blocks(law, (found := find_equilibrium(law, q - gains[:30] @ q / gains[:30].sum())).q)
     values, left, right = eig(flock.matrix(), left=True)
     order = np.argsort(np.abs(values))[flock.neutral.shape[1] :]
     slowest = max(order, key=lambda k: values[k].real)

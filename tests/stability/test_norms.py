@@ -17,7 +17,7 @@ from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_spiral
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.stability.blocks import complement, second_order
+from flockana.stability.blocks import complement, law_blocks
 from flockana.stability.norms import disturbance_system, h2_bounds, h2_norm, hinf_norm, norms_against_size
 
 ALPHA = AlphaInteraction()
@@ -52,7 +52,7 @@ def bond(law):
 
 def test_a_bond_has_the_norms_of_one_oscillator():
     law = Algorithm1()
-    (k, d), system = bond(law), disturbance_system(second_order(law, [[0.0], [7.0]]))
+    (k, d), system = bond(law), disturbance_system(law_blocks(law, [[0.0], [7.0]]))
     assert h2_norm(system) == pytest.approx(1.0 / sqrt(2.0 * d * k), rel=1e-12)
     assert hinf_norm(system)[0] == pytest.approx(1.0 / (d * sqrt(k - d * d / 4.0)), rel=1e-8)
 
@@ -60,7 +60,7 @@ def test_a_bond_has_the_norms_of_one_oscillator():
 @pytest.mark.parametrize("law", [Algorithm1(), Algorithm2(target=ORIGIN)])
 def test_against_python_control(law):
     """Its scipy fallback for H₂ and its bisection for H∞ (tolerance 1e-6), on a flock of seven."""
-    system = disturbance_system(second_order(law, find_equilibrium(law, hexagonal_spiral(7, 7.0)).q))
+    system = disturbance_system(law_blocks(law, find_equilibrium(law, hexagonal_spiral(7, 7.0)).q))
     assert h2_norm(system) == pytest.approx(control.norm(system, 2, method="scipy"), rel=1e-9)
     more = system.ninputs - system.noutputs  # its fallback takes as many outputs as inputs only (control 0.10.2)
     square = control.ss(system.A, system.B, np.vstack([system.C, np.zeros((more, system.nstates))]), 0.0)
@@ -76,7 +76,7 @@ def test_slycot_is_asked_where_it_is_present(monkeypatch):
 
 def test_the_peak_is_the_largest_gain_of_a_fine_sweep():
     law = Algorithm2(target=ORIGIN)
-    system = disturbance_system(second_order(law, find_equilibrium(law, hexagonal_spiral(12, 7.0)).q))
+    system = disturbance_system(law_blocks(law, find_equilibrium(law, hexagonal_spiral(12, 7.0)).q))
     norm, peak = hinf_norm(system)
     gains = [np.linalg.norm(system(1j * w), 2) for w in np.linspace(0.0, 60.0, 300)]
     assert max(gains) <= norm * (1.0 + 1e-9)
@@ -87,7 +87,7 @@ def test_the_peak_is_the_largest_gain_of_a_fine_sweep():
 def test_the_quotient_is_exact():
     """What is left of the spectrum is the whole, less one zero for each neutral or drifting motion."""
     for law, gone in ((Algorithm1(), 5), (Algorithm2(target=ORIGIN), 1)):
-        flock = second_order(law, find_equilibrium(law, hexagonal_spiral(7, 7.0)).q)
+        flock = law_blocks(law, find_equilibrium(law, hexagonal_spiral(7, 7.0)).q)
         every, left = np.linalg.eigvals(flock.matrix()), np.linalg.eigvals(flock.quotient()[0])
         assert len(every) - len(left) == gone
         every = every[np.argsort(np.abs(every))]
@@ -99,7 +99,7 @@ def test_the_quotient_is_exact():
 def test_white_noise_moves_the_shape_as_the_norm_says():
     """Covariance of the whole flock, integrated to its limit from zero, against the norm to the shape."""
     law = Algorithm2(target=ORIGIN)
-    flock = second_order(law, find_equilibrium(law, hexagonal_spiral(3, 7.0)).q)
+    flock = law_blocks(law, find_equilibrium(law, hexagonal_spiral(3, 7.0)).q)
     from scipy.linalg import expm
 
     a, n = flock.matrix(), len(flock.stiffness)
@@ -119,25 +119,25 @@ def test_white_noise_moves_the_shape_as_the_norm_says():
 def test_deviations_that_hold_the_turning_are_unbounded_but_on_a_line():
     law = Algorithm2(target=ORIGIN)
     assert (
-        disturbance_system(second_order(law, find_equilibrium(law, hexagonal_spiral(3, 7.0)).q), output="deviations")
+        disturbance_system(law_blocks(law, find_equilibrium(law, hexagonal_spiral(3, 7.0)).q), output="deviations")
         is None
     )
     line = Algorithm2(target=StaticTarget((0.0,)))
-    flock = second_order(line, find_equilibrium(line, [[-4.0], [3.0]]).q)
+    flock = law_blocks(line, find_equilibrium(line, [[-4.0], [3.0]]).q)
     norms = [h2_norm(disturbance_system(flock, output=name)) for name in ("shape", "deviations")]
     assert norms[0] == pytest.approx(norms[1], rel=1e-12)
 
 
 @pytest.mark.parametrize("law", [Algorithm1(), Algorithm2(target=ORIGIN, gains=Gains(c1_gamma=0.3, c2_gamma=8.0))])
 def test_the_closed_form_brackets_h2(law):
-    flock = second_order(law, find_equilibrium(law, hexagonal_spiral(12, 7.0)).q)
+    flock = law_blocks(law, find_equilibrium(law, hexagonal_spiral(12, 7.0)).q)
     low, high = h2_bounds(flock)
     assert low <= h2_norm(disturbance_system(flock)) <= high
 
 
 def test_with_equal_damping_the_bracket_closes():
     law = Algorithm2(target=ORIGIN, gains=Gains(c2_alpha=0.0, c2_gamma=3.0))
-    flock = second_order(law, find_equilibrium(law, hexagonal_spiral(7, 7.0)).q)
+    flock = law_blocks(law, find_equilibrium(law, hexagonal_spiral(7, 7.0)).q)
     assert h2_bounds(flock) == pytest.approx((h2_norm(disturbance_system(flock)),) * 2, rel=1e-9)
 
 
@@ -152,7 +152,7 @@ def test_norms_grow_with_the_flock():
 
 def test_per_agent_gains_keep_one_neutral_rotation():
     law = Algorithm2(target=ORIGIN, gains=Gains(c1_gamma=np.linspace(0.5, 2.0, 7), c2_gamma=np.linspace(3.0, 1.0, 7)))
-    flock = second_order(law, find_equilibrium(law, hexagonal_spiral(7, 7.0)).q)
+    flock = law_blocks(law, find_equilibrium(law, hexagonal_spiral(7, 7.0)).q)
     assert (flock.neutral.shape[1], flock.drifting.shape[1]) == (1, 0)
     assert 0.0 < h2_norm(disturbance_system(flock)) < inf
 
@@ -161,19 +161,19 @@ def test_per_agent_gains_keep_one_neutral_rotation():
     ("call", "error", "message"),
     [
         (
-            lambda: second_order(Algorithm1(), [[0.0], [6.0]]),
+            lambda: law_blocks(Algorithm1(), [[0.0], [6.0]]),
             ArgumentError,
             "no equilibrium: residual force .* finds one",
         ),
         (
-            lambda: second_order(Algorithm3(target=ORIGIN), [[0.0, 0.0]]),
+            lambda: law_blocks(Algorithm3(target=ORIGIN), [[0.0, 0.0]]),
             ArgumentError,
             "expected Algorithm1 or Algorithm2",
         ),
-        (lambda: second_order(Algorithm1(), np.zeros((1001, 2))), ArgumentError, "n m = 2002: expected at most 2000"),
-        (lambda: second_order(Algorithm2(target=ORIGIN), [[0.0]]), ArgumentError, "the target has 2 components"),
+        (lambda: law_blocks(Algorithm1(), np.zeros((1001, 2))), ArgumentError, "n m = 2002: expected at most 2000"),
+        (lambda: law_blocks(Algorithm2(target=ORIGIN), [[0.0]]), ArgumentError, "the target has 2 components"),
         (
-            lambda: disturbance_system(second_order(Algorithm1(), [[0.0], [7.0]]), output="all"),
+            lambda: disturbance_system(law_blocks(Algorithm1(), [[0.0], [7.0]]), output="all"),
             UnknownNameError,
             "unknown output 'all'",
         ),
@@ -186,5 +186,5 @@ def test_refusals(call, error, message):
 
 
 def test_one_agent_has_no_shape():
-    system = disturbance_system(second_order(Algorithm2(target=ORIGIN), [[0.0, 0.0]]))
+    system = disturbance_system(law_blocks(Algorithm2(target=ORIGIN), [[0.0, 0.0]]))
     assert (h2_norm(system), hinf_norm(system)) == (0.0, (0.0, 0.0))

@@ -18,7 +18,7 @@ from flockana.lattice import hexagonal_patch, hexagonal_spiral
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.stability import linearise, slowest_modes
-from flockana.stability.blocks import second_order
+from flockana.stability.blocks import law_blocks
 from flockana.stability.decay import decay
 from flockana.stability.delay import DelaySystem, delay_margin, delay_system, rightmost_roots, root_error
 from flockana.stability.norms import disturbance_system, h2_bounds, h2_norm, hinf_norm
@@ -118,9 +118,9 @@ def test_modes_rates_margins_and_norms_in_every_unit(law, length, time):
     margins = [delay_margin(delay_system(one, flock.q)) for one, flock in ((law, here), (there, found))]
     assert margins[1].delay == pytest.approx(time * margins[0].delay, rel=1e-9)
     assert margins[1].frequency * time == pytest.approx(margins[0].frequency, rel=1e-9)
-    norms = [h2_norm(disturbance_system(second_order(one, x.q))) for one, x in ((law, here), (there, found))]
+    norms = [h2_norm(disturbance_system(law_blocks(one, x.q))) for one, x in ((law, here), (there, found))]
     assert norms[1] == pytest.approx(time**1.5 * norms[0], rel=1e-8)  # length over a force of white noise
-    peaks = [hinf_norm(disturbance_system(second_order(one, x.q)))[0] for one, x in ((law, here), (there, found))]
+    peaks = [hinf_norm(disturbance_system(law_blocks(one, x.q)))[0] for one, x in ((law, here), (there, found))]
     assert peaks[1] == pytest.approx(time**2 * peaks[0], rel=1e-7)
 
 
@@ -128,7 +128,7 @@ def test_modes_rates_margins_and_norms_in_every_unit(law, length, time):
 @pytest.mark.parametrize("n", [2, 3])
 def test_a_closed_bracket_holds_its_norm(law, n):
     """Of a bond and of a triangle D is a multiple of 1 on shapes: both bounds are the norm itself."""
-    flock = second_order(law, find_equilibrium(law, hexagonal_spiral(n, 7.0)).q)
+    flock = law_blocks(law, find_equilibrium(law, hexagonal_spiral(n, 7.0)).q)
     low, high = h2_bounds(flock)
     assert low <= h2_norm(disturbance_system(flock)) <= high
     if isinstance(law, Algorithm1):

@@ -14,7 +14,7 @@ from flockana.equilibria import find_equilibrium
 from flockana.interactions import Gains
 from flockana.lattice import hexagonal_spiral
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.stability.blocks import second_order
+from flockana.stability.blocks import law_blocks
 from flockana.stability.delay import delay_margin, delay_system, scalar_margin
 from flockana.stability.sweeps import centre_locus, gain_sweep, margin_sweep
 
@@ -56,7 +56,7 @@ def test_the_equilibrium_is_followed():
     moved = gain_sweep(law, [[-3.5], [3.5]], "c1_gamma", values)
     stays = gain_sweep(law, [[-3.5], [3.5]], "c1_gamma", values, follow=False)
     pressed = replace(law, gains=replace(law.gains, c1_gamma=3.0))
-    there = second_order(pressed, find_equilibrium(pressed, [[-3.5], [3.5]]).q).matrix()
+    there = law_blocks(pressed, find_equilibrium(pressed, [[-3.5], [3.5]]).q).matrix()
     np.testing.assert_allclose(
         np.sort_complex(moved.eigenvalues[1]), np.sort_complex(np.linalg.eigvals(there)), rtol=1e-9
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import floor, inf
 
 import numpy as np
@@ -12,25 +13,48 @@ from flockana.laws.discrete import DiscreteLaw
 from flockana.theorems.hypotheses import vacuous
 from flockana.theorems.leads import bridge
 from flockana.theorems.rounding import EPS, frame_error, spread_error
-from flockana.theorems.sampling import nets_at, nets_between, radius_between
+from flockana.theorems.sampling import fastest_between, nets_at, nets_between, radius_between
 from flockana.theorems.theorem import Claim, Hypothesis, HypothesisStatus, Theorem, Tolerances, judge
 
 _SHARE = 1e-9  # of an agent: what a share of n agents, as a decimal fraction, may be off by
 
 
-def _window(run: Trajectory, tolerances: Tolerances) -> tuple[Hypothesis, Trajectory]:
+@dataclass(frozen=True)
+class _Window:
+    """A part of a run, with the sample before it if it begins between two: bounds between samples begin there.
+
+    Attributes
+    ----------
+    run : Trajectory
+        Its samples, and that one.
+    first : int
+        The first sample within.
+    start : float
+        When it begins.
+    """
+
+    run: Trajectory
+    first: int
+    start: float
+
+
+def _window(run: Trajectory, tolerances: Tolerances) -> tuple[Hypothesis, _Window]:
     """The part that is judged: flocking is defined over a time, which one instant is not."""
     start = float(run.t[0] + tolerances.settle * (run.t[-1] - run.t[0]))
-    part = run.remembered(f"window from {start!r}", lambda: run.window(start, float(run.t[-1])))
-    detail = f"from t = {part.t[0]:.4g} to {part.t[-1]:.4g}, at {len(part.t)} samples"
-    return Hypothesis("judged over a window", "met" if len(part.t) > 1 else "unmet", detail=detail), part
+    before = int(np.searchsorted(run.t, start, side="right")) - 1
+    lead = run.t[before] < start and not isinstance(run.law, DiscreteLaw)  # a map is nowhere between its steps
+    begin = float(run.t[before]) if lead else start
+    part = run.remembered(f"window from {begin!r}", lambda: run.window(begin, float(run.t[-1])))
+    count = len(part.t) - int(lead)
+    detail = f"from t = {part.t[-count]:.4g} to {part.t[-1]:.4g}, at {count} samples"
+    found = Hypothesis("judged over a window", "met" if count > 1 else "unmet", detail=detail)
+    return found, _Window(part, int(lead), start)
 
 
-def _always(
-    name: str, run: Trajectory, value: FloatArray, bound: float, error: FloatArray, between: FloatArray
-) -> Claim:
+def _always(name: str, part: _Window, value: FloatArray, bound: float, error: FloatArray, between: FloatArray) -> Claim:
     """A claim that a quantity stays below a bound: broken at one sample, or kept at all of them and in between."""
-    symbol, what = _SYMBOLS[name]
+    (symbol, what), t = _SYMBOLS[name], part.run.t[part.first :]
+    value, error = value[part.first :], error[part.first :]
     worst = int(np.argmax(value - error))
     if not value[worst] - error[worst] > bound:
         worst = int(np.argmax(value + error))
@@ -44,8 +68,8 @@ def _always(
         stated=f"{symbol} <= {bound:.4g}",
         margin=margin,
         error=float(error[worst]),
-        witness={"time": float(run.t[worst])},
-        detail=f"{what} {symbol}: {value[worst]:.4g} at worst, at t = {run.t[worst]:.4g}",
+        witness={"time": float(t[worst])},
+        detail=f"{what} {symbol}: {value[worst]:.4g} at worst, at t = {t[worst]:.4g}",
     )
 
 
@@ -56,11 +80,10 @@ _SYMBOLS = {
 }
 
 
-def _never_more(
-    name: str, run: Trajectory, counts: tuple[FloatArray, FloatArray, float], most: int, what: str
-) -> Claim:
+def _never_more(name: str, part: _Window, counts: tuple[FloatArray, FloatArray, float], most: int, what: str) -> Claim:
     """A claim that a number never exceeds a bound, in whole numbers (at samples at least, at most; between)."""
-    least, largest, between = counts
+    t, between = part.run.t[part.first :], counts[2]
+    least, largest = (series[part.first :] for series in counts[:2])
     worst = int(np.argmax(least))
     broken = least[worst] > most
     worst = worst if broken else int(np.argmax(largest))
@@ -73,8 +96,8 @@ def _never_more(
         stated=f"at most {most}",
         margin=margin,
         error=error,
-        witness={"time": float(run.t[worst])},
-        detail=f"{what}: {int(least[worst])} at worst, at t = {run.t[worst]:.4g}, where {most} may be"
+        witness={"time": float(t[worst])},
+        detail=f"{what}: {int(least[worst])} at worst, at t = {t[worst]:.4g}, where {most} may be"
         + (
             ""
             if error == 0.0
@@ -83,19 +106,21 @@ def _never_more(
     )
 
 
-def _flock(run: Trajectory, tolerances: Tolerances, *, giant: bool) -> Claim:
+def _flock(part: _Window, tolerances: Tolerances, *, giant: bool) -> Claim:
     """The net is connected, or keeps a component with more than a share of the agents, by links that are certain."""
+    run = part.run
     between, at = nets_between(run), nets_at(run)
     if not giant:
         counts = at.components_least, at.components, float(between.components.max(initial=0.0))
-        return _never_more("flock", run, counts, 1, "components")
+        return _never_more("flock", part, counts, 1, "components")
     fewest = floor(tolerances.giant * run.n + _SHARE) + 1  # agents that are more than the share
     counts = run.n - at.giant_most, run.n - at.giant, float(run.n - between.giant.min(initial=run.n))
-    return _never_more("giant", run, counts, run.n - fewest, "agents outside the giant component")
+    return _never_more("giant", part, counts, run.n - fewest, "agents outside the giant component")
 
 
-def _common(run: Trajectory, tolerances: Tolerances) -> list[Claim]:
+def _common(part: _Window, tolerances: Tolerances) -> list[Claim]:
     """Ẽ <= ε₁ and K̃ <= ε₂; a link that may come or go between samples, or by rounding, adds (r − d)² to Ẽ."""
+    run = part.run
     (d, r), units, steps = run.law.lattice, run.scales.energy, isinstance(run.law, DiscreteLaw)
     deviation, mismatch = run.metric("deviation_energy"), run.metric("velocity_mismatch") / units
     rounding = 8.0 * EPS * (float(np.abs(run.q).max()) / d + 1.0)
@@ -106,8 +131,8 @@ def _common(run: Trajectory, tolerances: Tolerances) -> list[Claim]:
     jumps = one_link * during.open_links / (2.0 * during.links + 1.0)
     own = spread_error(run.p) / (run.n * units)
     return [
-        _always("deviation", run, deviation, tolerances.deviation, error, _between(deviation, steps=steps) + jumps),
-        _always("mismatch", run, mismatch, tolerances.mismatch, own, _between(mismatch, steps=steps)),
+        _always("deviation", part, deviation, tolerances.deviation, error, _between(deviation, steps=steps) + jumps),
+        _always("mismatch", part, mismatch, tolerances.mismatch, own, _between(mismatch, steps=steps)),
     ]
 
 
@@ -118,10 +143,14 @@ def _between(value: FloatArray, *, steps: bool) -> FloatArray:
     return between
 
 
-def _cohesive(run: Trajectory, tolerances: Tolerances) -> Claim:
-    radius = run.metric("cohesion_radius")
-    error = np.full(len(run.t), 4.0 * frame_error(run.q))
-    return _always("cohesive", run, radius, tolerances.cohesion * float(radius[0]), error, radius_between(run))
+def _cohesive(part: _Window, tolerances: Tolerances) -> Claim:
+    """R never exceeds a multiple of that at the start of the window, which its first sample may come after."""
+    run = part.run
+    radius, after = run.metric("cohesion_radius"), float(run.t[part.first]) - part.start
+    grown = fastest_between(run)[0] * after if part.first else 0.0
+    error = np.full(len(run.t), 4.0 * frame_error(run.q) + tolerances.cohesion * grown)
+    bound = tolerances.cohesion * float(radius[part.first])
+    return _always("cohesive", part, radius, bound, error, radius_between(run))
 
 
 def _judged(run: Trajectory, tolerances: Tolerances, *, strict: bool) -> tuple[list[Hypothesis], list[Claim]]:

@@ -24,7 +24,7 @@ from flockana.theorems.theorem import Claim, Hypothesis, HypothesisStatus, Statu
 Pair = tuple[int, int]
 
 
-def met(run: Trajectory, tolerances: Tolerances) -> tuple[Contact, ...]:
+def contacts_of(run: Trajectory, tolerances: Tolerances) -> tuple[Contact, ...]:
     """Pairs whose interpolated paths come within the contact distance.
 
     Parameters
@@ -48,7 +48,7 @@ def passed(run: Trajectory, tolerances: Tolerances) -> dict[Pair, float]:
         `contact` is used, relative to d.
     """
     found, noise = {}, _noise(run, tolerances)
-    for contact in met(run, tolerances):
+    for contact in contacts_of(run, tolerances):
         apart = run.path.q[:, contact.j] - run.path.q[:, contact.i]
         moving = np.flatnonzero((apart != 0.0).any(axis=0))
         if moving.size == 1:
@@ -217,7 +217,7 @@ def distinct_pairs(
     certain, possible = passed(run, tolerances), set().union(*near(run, tolerances))
     refuted = len(certain) > most
     margin = most + 0.5 - len(certain) if refuted else least + 0.5 - len(possible)
-    first = [one for one in met(run, tolerances) if (one.i, one.j) in (certain if refuted else possible)]
+    first = [one for one in contacts_of(run, tolerances) if (one.i, one.j) in (certain if refuted else possible)]
     return Claim(
         name,
         _count(margin, (refuted or margin > 0.0) and len(run.t) > 1, [*needs, bites]),
