@@ -63,6 +63,11 @@ if TYPE_CHECKING:
     from flockana.laws.minimal import MinimalFlocking as MinimalFlocking
     from flockana.laws.olfati_saber import Algorithm1 as Algorithm1
     from flockana.laws.olfati_saber import Algorithm2 as Algorithm2
+    from flockana.laws.sum_of_terms import SumOfTerms as SumOfTerms
+    from flockana.laws.terms.navigation import Navigation as Navigation
+    from flockana.laws.terms.obstacles import ObstacleTerm as ObstacleTerm
+    from flockana.laws.terms.pairs import PairTerm as PairTerm
+    from flockana.laws.terms.term import Term as Term
     from flockana.measures import metrics as metrics
     from flockana.measures import reynolds as reynolds
     from flockana.measures.metrics import cohesion_radius as cohesion_radius
@@ -119,6 +124,11 @@ _BY_MODULE = {
     "environment.zone_world": ("Alien", "ZoneWorld"),
     "interactions": _INTERACTIONS,
     "laws.law": ("Law",),
+    "laws.sum_of_terms": ("SumOfTerms",),
+    "laws.terms.term": ("Term",),
+    "laws.terms.pairs": ("PairTerm",),
+    "laws.terms.navigation": ("Navigation",),
+    "laws.terms.obstacles": ("ObstacleTerm",),
     "laws.discrete": ("DiscreteLaw",),
     "laws.olfati_saber": ("Algorithm1", "Algorithm2"),
     "laws.algorithm3": ("Algorithm3",),

@@ -135,7 +135,7 @@ class AlphaInteraction(PairInteraction):
     @property
     def far_potential(self) -> float:
         """ψ_α(r_α)."""
-        return float(self.par[8])
+        return float(self.par[kernel.FAR])
 
     @property
     def length(self) -> float:
@@ -185,11 +185,11 @@ class AlphaInteraction(PairInteraction):
         left_end = clenshaw(knee, panels)
         if knee < d_alpha:
             shift = -clenshaw(d_alpha, panels)
-            par[7] = left_end + shift - at_knee
+            par[kernel.OFFSET] = left_end + shift - at_knee
         else:
             shift = at_knee - left_end
         panels[:, 2] += shift
-        par[8] = shift
+        par[kernel.FAR] = shift
         for array in (par, panels):
             array.setflags(write=False)
         return par, panels

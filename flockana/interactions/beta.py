@@ -97,7 +97,9 @@ class BetaInteraction:
         panels = integral_panels(
             taper, area * panel_edges(knee / area, d_beta / area, d_beta / area), value_at_right=0.0
         )
-        par[3] = clenshaw(knee, panels) - (area * sigma_norm(((knee - d_beta) / area) ** 2, 1.0) - knee)
+        par[kernel.BETA_OFFSET] = clenshaw(knee, panels) - (
+            area * sigma_norm(((knee - d_beta) / area) ** 2, 1.0) - knee
+        )
         for array in (par, panels):
             array.setflags(write=False)
         return par, panels

@@ -206,7 +206,7 @@ class DeadZoneInteraction(PairInteraction):
             # narrow panels near it keep the series short
             inner = self.d1 - _fractions(self.ramp, self.d1)[::-1]
             panels = integral_panels(ramped, inner, value_at_right=0.0)
-            par[9] = clenshaw(inner[0], panels)
+            par[kernel.INNER] = clenshaw(inner[0], panels)
             if self.d2 < self.r:
                 end = min(self.d2 + self.ramp, self.r)
                 # beyond r the kernel's force is 0, and at r the rule would meet that jump: stop just short of it
@@ -214,7 +214,7 @@ class DeadZoneInteraction(PairInteraction):
                 free[6] = inf
                 outer = integral_panels(ramped, span, value_at_right=0.0)
                 outer[:, 2] -= clenshaw(self.d2, outer)
-                par[10] = clenshaw(end, outer)
+                par[kernel.OUTER] = clenshaw(end, outer)
                 panels = np.vstack([panels, outer])
         for array in (par, panels):
             array.setflags(write=False)

@@ -1,8 +1,7 @@
 """The α- and β-pair laws as scalar functions of the squared distance.
 
-Parameter vectors (float64): α = (ε, h, a, b, c, d_α, r_α, constant of ψ where ρ_h = 1, ψ_α(r_α), ℓ²),
-β = (ε, h, d_β, constant of ψ where ρ_h = 1, ℓ²), ℓ the length that σ₁ counts in. A pair contributes
-w (q_j − q_i) + ρ (p_j − p_i) to u_i.
+Parameters are vectors of float64 whose places have the names below: OFFSET is the constant of ψ where ρ_h = 1, FAR is
+ψ_α(r_α), AREA is ℓ², ℓ the length that σ₁ counts in. A pair contributes w (q_j − q_i) + ρ (p_j − p_i) to u_i.
 """
 
 from __future__ import annotations
@@ -22,49 +21,52 @@ from flockana.kernels.scalars import (
     sigma_norm,
 )
 
+EPS, H, A, B, C, D_ALPHA, R_ALPHA, OFFSET, FAR, AREA = range(10)
+D_BETA, BETA_OFFSET, BETA_AREA = range(2, 5)  # after ε and h
+
 
 @register_jitable
 def phi_alpha(z, par):
     """φ_α(z) = ρ_h(z/r_α) φ((z − d_α)/ℓ²)."""
-    return bump(z / par[6], par[1]) * phi((z - par[5]) / par[9], par[2], par[3], par[4])
+    return bump(z / par[R_ALPHA], par[H]) * phi((z - par[D_ALPHA]) / par[AREA], par[A], par[B], par[C])
 
 
 @register_jitable
 def phi_alpha_slope(z, par):
     """dφ_α/dz."""
-    x, s = z / par[6], (z - par[5]) / par[9]
-    a, b, c = par[2], par[3], par[4]
-    return bump_slope(x, par[1]) / par[6] * phi(s, a, b, c) + bump(x, par[1]) * phi_slope(s, a, b, c) / par[9]
+    x, s = z / par[R_ALPHA], (z - par[D_ALPHA]) / par[AREA]
+    a, b, c = par[A], par[B], par[C]
+    return bump_slope(x, par[H]) / par[R_ALPHA] * phi(s, a, b, c) + bump(x, par[H]) * phi_slope(s, a, b, c) / par[AREA]
 
 
 @register_jitable
 def psi_alpha(z, par, panels):
     """ψ_α(z): closed form where ρ_h = 1, Chebyshev panels on the taper, constant from r_α on."""
-    if z >= par[6]:
-        return par[8]
-    if z < par[1] * par[6]:
-        return par[9] * phi_integral((z - par[5]) / par[9], par[2], par[3], par[4]) + par[7]
+    if z >= par[R_ALPHA]:
+        return par[FAR]
+    if z < par[H] * par[R_ALPHA]:
+        return par[AREA] * phi_integral((z - par[D_ALPHA]) / par[AREA], par[A], par[B], par[C]) + par[OFFSET]
     return clenshaw(z, panels)
 
 
 @register_jitable
 def adjacency_alpha(z, par):
     """a_ij as a function of z = ‖q_j − q_i‖_σ."""
-    return bump(z / par[6], par[1])
+    return bump(z / par[R_ALPHA], par[H])
 
 
 @register_jitable
 def pair_alpha(s2, par):
     """(stress s_ij, adjacency a_ij) of a pair at squared distance s2."""
-    z = sigma_norm(s2, par[0])
-    rho = bump(z / par[6], par[1])
-    return rho * phi((z - par[5]) / par[9], par[2], par[3], par[4]) / sqrt(1.0 + par[0] * s2), rho
+    z = sigma_norm(s2, par[EPS])
+    rho = bump(z / par[R_ALPHA], par[H])
+    return rho * phi((z - par[D_ALPHA]) / par[AREA], par[A], par[B], par[C]) / sqrt(1.0 + par[EPS] * s2), rho
 
 
 @register_jitable
 def pair_alpha_slope(s2, par):
     """d(s_ij)/d(s2), what the Hessian of V needs beside s_ij itself."""
-    eps = par[0]
+    eps = par[EPS]
     z, g = sigma_norm(s2, eps), 1.0 + eps * s2
     return 0.5 * (phi_alpha_slope(z, par) - eps * phi_alpha(z, par) / sqrt(g)) / g
 
@@ -72,40 +74,44 @@ def pair_alpha_slope(s2, par):
 @register_jitable
 def pair_alpha_adjacency_slope(s2, par):
     """d(a_ij)/d(s2), what the Jacobian of the consensus term needs where velocities differ."""
-    return 0.5 * bump_slope(sigma_norm(s2, par[0]) / par[6], par[1]) / (par[6] * sqrt(1.0 + par[0] * s2))
+    return (
+        0.5 * bump_slope(sigma_norm(s2, par[EPS]) / par[R_ALPHA], par[H]) / (par[R_ALPHA] * sqrt(1.0 + par[EPS] * s2))
+    )
 
 
 @register_jitable
 def pair_alpha_potential(s2, par, panels):
     """ψ_α of a pair at squared distance s2."""
-    return psi_alpha(sigma_norm(s2, par[0]), par, panels)
+    return psi_alpha(sigma_norm(s2, par[EPS]), par, panels)
 
 
 @register_jitable
 def phi_beta(z, par):
     """φ_β(z) = ρ_h(z/d_β)(σ₁((z − d_β)/ℓ²) − 1)."""
-    return bump(z / par[2], par[1]) * (sigma_1((z - par[2]) / par[4]) - 1.0)
+    return bump(z / par[D_BETA], par[H]) * (sigma_1((z - par[D_BETA]) / par[BETA_AREA]) - 1.0)
 
 
 @register_jitable
 def psi_beta(z, par, panels):
     """ψ_β(z): closed form where ρ_h = 1, Chebyshev panels on the taper, 0 from d_β on."""
-    if z >= par[2]:
+    if z >= par[D_BETA]:
         return 0.0
-    if z < par[1] * par[2]:
-        return par[4] * sigma_norm(((z - par[2]) / par[4]) ** 2, 1.0) - z + par[3]  # √(1+s²) − 1 − z: no cancellation
+    if z < par[H] * par[D_BETA]:
+        return (
+            par[BETA_AREA] * sigma_norm(((z - par[D_BETA]) / par[BETA_AREA]) ** 2, 1.0) - z + par[BETA_OFFSET]
+        )  # √(1+s²) − 1 − z: no cancellation
     return clenshaw(z, panels)
 
 
 @register_jitable
 def adjacency_beta(z, par):
     """b_ik as a function of z = ‖q̂_ik − q_i‖_σ."""
-    return bump(z / par[2], par[1])
+    return bump(z / par[D_BETA], par[H])
 
 
 @register_jitable
 def pair_beta(s2, par):
     """(weight of q̂_ik − q_i, b_ik) of an agent and its β-agent at squared distance s2."""
-    z = sigma_norm(s2, par[0])
-    rho = bump(z / par[2], par[1])
-    return rho * (sigma_1((z - par[2]) / par[4]) - 1.0) / sqrt(1.0 + par[0] * s2), rho
+    z = sigma_norm(s2, par[EPS])
+    rho = bump(z / par[D_BETA], par[H])
+    return rho * (sigma_1((z - par[D_BETA]) / par[BETA_AREA]) - 1.0) / sqrt(1.0 + par[EPS] * s2), rho

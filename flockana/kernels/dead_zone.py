@@ -1,7 +1,7 @@
 """The dead-zone pair law as scalar functions of the distance ρ, and its sums with every pair held in its zone.
 
-Parameter vector (float64): (η, k_r, k_δ, k₁, d₁, d₂, r, r_d, ramp, ψ where the inner ramp begins, ψ where the outer one
-ends). Zones of a pair: 0 repulsion, 1 dead zone, 2 attraction, 3 out of range. Without a ramp the force jumps between
+Parameters are a vector of float64 whose places have the names below: INNER is ψ where the inner ramp begins, OUTER where
+the outer one ends. Zones of a pair: 0 repulsion, 1 dead zone, 2 attraction, 3 out of range. Without a ramp the force jumps between
 them; `zone_forces` continues each piece smoothly beyond its zone, which is what a located switch needs.
 """
 
@@ -16,50 +16,51 @@ from flockana.kernels.compiling import njit
 from flockana.kernels.scalars import clenshaw
 
 REPULSION, DEAD, ATTRACTION, OUT = 0, 1, 2, 3
+ETA, K_R, K_DELTA, K_1, D_1, D_2, R, R_D, RAMP, INNER, OUTER = range(11)
 
 
 @register_jitable
 def repulsion(s, par):
     """2k_r/s² + k_δ, without ramp."""
-    return 2.0 * par[1] / (s * s) + par[2] if s > 0.0 else inf
+    return 2.0 * par[K_R] / (s * s) + par[K_DELTA] if s > 0.0 else inf
 
 
 @register_jitable
 def attraction(s, par):
     """2k_r/(r_d − s)² + k_δ, without ramp."""
-    return 2.0 * par[1] / (par[7] - s) ** 2 + par[2]
+    return 2.0 * par[K_R] / (par[R_D] - s) ** 2 + par[K_DELTA]
 
 
 @register_jitable
 def zone_of(s, par):
     """Which zone a pair at distance s is in; the dead zone is closed, the range open."""
-    if s >= par[6]:
+    if s >= par[R]:
         return OUT
-    if s < par[4]:
+    if s < par[D_1]:
         return REPULSION
-    return DEAD if s <= par[5] else ATTRACTION
+    return DEAD if s <= par[D_2] else ATTRACTION
 
 
 @register_jitable
 def action(s, par):
     """f(s): negative repels, positive attracts; ramped to 0 at both ends of the dead zone."""
-    zone, ramp = zone_of(s, par), par[8]
+    zone, ramp = zone_of(s, par), par[RAMP]
     if zone == REPULSION:
-        return -repulsion(s, par) * (min(1.0, (par[4] - s) / ramp) if ramp > 0.0 else 1.0)
+        return -repulsion(s, par) * (min(1.0, (par[D_1] - s) / ramp) if ramp > 0.0 else 1.0)
     if zone == ATTRACTION:
-        return attraction(s, par) * (min(1.0, (s - par[5]) / ramp) if ramp > 0.0 else 1.0)
+        return attraction(s, par) * (min(1.0, (s - par[D_2]) / ramp) if ramp > 0.0 else 1.0)
     return 0.0
 
 
 @register_jitable
 def action_slope(s, par):
     """df/ds off the edges of the zones."""
-    zone, ramp = zone_of(s, par), par[8]
+    zone, ramp = zone_of(s, par), par[RAMP]
     if zone == REPULSION:
-        slope, share = 4.0 * par[1] / s**3, (par[4] - s) / ramp if ramp > 0.0 else 1.0
+        slope, share = 4.0 * par[K_R] / s**3, (par[D_1] - s) / ramp if ramp > 0.0 else 1.0
         return slope * share + repulsion(s, par) / ramp if share < 1.0 else slope
     if zone == ATTRACTION:
-        slope, share = 4.0 * par[1] / (par[7] - s) ** 3, (s - par[5]) / ramp if ramp > 0.0 else 1.0
+        slope, share = 4.0 * par[K_R] / (par[R_D] - s) ** 3, (s - par[D_2]) / ramp if ramp > 0.0 else 1.0
         return slope * share + attraction(s, par) / ramp if share < 1.0 else slope
     return 0.0
 
@@ -67,32 +68,32 @@ def action_slope(s, par):
 @register_jitable
 def force(s, par):
     """F(s) = f(s) s/√(1 + ηs²) + k₁ s within the range, 0 beyond: negative repels."""
-    if s >= par[6]:
+    if s >= par[R]:
         return 0.0
-    return action(s, par) * s / sqrt(1.0 + par[0] * s * s) + par[3] * s
+    return action(s, par) * s / sqrt(1.0 + par[ETA] * s * s) + par[K_1] * s
 
 
 @register_jitable
 def repulsive_part(s, b, par):
     """∫_s^b (2k_r/x² + k_δ) x/√(1 + ηx²) dx for 0 < s ≤ b, every difference rearranged: η = 0 is no special case."""
-    at_s, at_b = sqrt(1.0 + par[0] * s * s), sqrt(1.0 + par[0] * b * b)
+    at_s, at_b = sqrt(1.0 + par[ETA] * s * s), sqrt(1.0 + par[ETA] * b * b)
     gap = (b - s) * (b + s) / (at_s + at_b)
     near = b < 2.0 * s  # else nothing cancels, and 1 + x would round
     ratio = log1p((b - s) / s) if near else log(b / s)
-    roots = log1p(-par[0] * gap / (1.0 + at_b)) if near else log((1.0 + at_s) / (1.0 + at_b))
-    return 2.0 * par[1] * (ratio + roots) + par[2] * gap
+    roots = log1p(-par[ETA] * gap / (1.0 + at_b)) if near else log((1.0 + at_s) / (1.0 + at_b))
+    return 2.0 * par[K_R] * (ratio + roots) + par[K_DELTA] * gap
 
 
 @register_jitable
 def attractive_part(a, s, par):
     """∫_a^s (2k_r/(r_d − x)² + k_δ) x/√(1 + ηx²) dx for a ≤ s < r_d."""
-    eta, r_d = par[0], par[7]
+    eta, r_d = par[ETA], par[R_D]
     big = 1.0 + eta * r_d * r_d
     at_s, at_a, root = sqrt(1.0 + eta * s * s), sqrt(1.0 + eta * a * a), sqrt(big)
     pole = r_d / big * (at_s / (r_d - s) - at_a / (r_d - a))
     ratio = (1.0 + eta * r_d * s + root * at_s) / (1.0 + eta * r_d * a + root * at_a)
     logarithm = (log(ratio) + log((r_d - a) / (r_d - s))) / (big * root)
-    return 2.0 * par[1] * (pole - logarithm) + par[2] * (s - a) * (s + a) / (at_s + at_a)
+    return 2.0 * par[K_R] * (pole - logarithm) + par[K_DELTA] * (s - a) * (s + a) / (at_s + at_a)
 
 
 @register_jitable
@@ -100,29 +101,29 @@ def potential(s, par, panels):
     """ψ(s) + ½ k₁ s²: closed form off the ramps, Chebyshev panels on them, constant from r on, ∞ at 0."""
     if s <= 0.0:
         return inf
-    x, ramp = min(s, par[6]), par[8]
-    pull = 0.5 * par[3] * x * x
-    inner, outer = par[4] - ramp, par[5] + ramp
+    x, ramp = min(s, par[R]), par[RAMP]
+    pull = 0.5 * par[K_1] * x * x
+    inner, outer = par[D_1] - ramp, par[D_2] + ramp
     if x <= inner:
-        return repulsive_part(x, inner, par) + par[9] + pull
-    if par[4] <= x <= par[5]:
+        return repulsive_part(x, inner, par) + par[INNER] + pull
+    if par[D_1] <= x <= par[D_2]:
         return pull
-    if x < par[4] or x < outer:
+    if x < par[D_1] or x < outer:
         return clenshaw(x, panels) + pull
-    return attractive_part(outer, x, par) + par[10] + pull
+    return attractive_part(outer, x, par) + par[OUTER] + pull
 
 
 @register_jitable
 def pair_dead_zone(s2, par):
     """(weight of q_j − q_i, a_ij) of a pair at squared distance s2 within the range."""
-    return action(sqrt(s2), par) / sqrt(1.0 + par[0] * s2) + par[3], 1.0
+    return action(sqrt(s2), par) / sqrt(1.0 + par[ETA] * s2) + par[K_1], 1.0
 
 
 @register_jitable
 def pair_dead_zone_slope(s2, par):
     """d(weight)/d(s2)."""
-    s, g = sqrt(s2), 1.0 + par[0] * s2
-    return 0.5 * (action_slope(s, par) / s - par[0] * action(s, par) / g) / sqrt(g)
+    s, g = sqrt(s2), 1.0 + par[ETA] * s2
+    return 0.5 * (action_slope(s, par) / s - par[ETA] * action(s, par) / g) / sqrt(g)
 
 
 @register_jitable
@@ -163,8 +164,8 @@ def zone_margins(q, zone, par):
             for c in range(m):
                 s2 += (q[j, c] - q[i, c]) ** 2
             s, z = sqrt(s2), zone[k]
-            low = (0.0, par[4], par[5], par[6])[z]
-            high = (par[4], min(par[5], par[6]), par[6], inf)[z]
+            low = (0.0, par[D_1], par[D_2], par[R])[z]
+            high = (par[D_1], min(par[D_2], par[R]), par[R], inf)[z]
             upper[k] = high - s < s - low if z != REPULSION else True
             margins[k] = high - s if upper[k] else s - low
             k += 1
@@ -191,7 +192,7 @@ def zone_forces(q, p, zone, par, c2, u):
                 f = -repulsion(s, par)
             elif z == ATTRACTION:
                 f = attraction(s, par)
-            w = f / sqrt(1.0 + par[0] * s2) + par[3]
+            w = f / sqrt(1.0 + par[ETA] * s2) + par[K_1]
             for c in range(m):
                 x = w * (q[j, c] - q[i, c]) + c2 * (p[j, c] - p[i, c])
                 u[i, c] += x
@@ -208,8 +209,17 @@ def semi_implicit_steps(q, p, par, c2, dt, steps):
     all_q, all_p, all_u = np.empty((steps, n, m)), np.empty((steps, n, m)), np.empty((steps, n, m))
     x, v, u = q.T.copy(), p.T.copy(), np.empty((m, n))
     s2, w, a, f = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
-    eta, k_r2, k_delta, k1, d1, d2, r, r_d = par[0], 2.0 * par[1], par[2], par[3], par[4], par[5], par[6], par[7]
-    steep = 1.0 / par[8] if par[8] > 0.0 else 1e300  # of the ramps
+    eta, k_r2, k_delta, k1, d1, d2, r, r_d = (
+        par[ETA],
+        2.0 * par[K_R],
+        par[K_DELTA],
+        par[K_1],
+        par[D_1],
+        par[D_2],
+        par[R],
+        par[R_D],
+    )
+    steep = 1.0 / par[RAMP] if par[RAMP] > 0.0 else 1e300  # of the ramps
     for step in range(steps):
         u[:] = 0.0
         for i in range(n):
