@@ -97,9 +97,8 @@ class BetaInteraction:
         panels = integral_panels(
             taper, area * panel_edges(knee / area, d_beta / area, d_beta / area), value_at_right=0.0
         )
-        par[kernel.BETA_OFFSET] = clenshaw(knee, panels) - (
-            area * sigma_norm(((knee - d_beta) / area) ** 2, 1.0) - knee
-        )
+        closed = area * sigma_norm(((knee - d_beta) / area) ** 2, 1.0) - knee
+        par[kernel.BETA_OFFSET] = clenshaw(knee, panels) - closed
         for array in (par, panels):
             array.setflags(write=False)
         return par, panels

@@ -74,9 +74,8 @@ def pair_alpha_slope(s2, par):
 @register_jitable
 def pair_alpha_adjacency_slope(s2, par):
     """d(a_ij)/d(s2), what the Jacobian of the consensus term needs where velocities differ."""
-    return (
-        0.5 * bump_slope(sigma_norm(s2, par[EPS]) / par[R_ALPHA], par[H]) / (par[R_ALPHA] * sqrt(1.0 + par[EPS] * s2))
-    )
+    r_alpha, x = par[R_ALPHA], sigma_norm(s2, par[EPS]) / par[R_ALPHA]
+    return 0.5 * bump_slope(x, par[H]) / (r_alpha * sqrt(1.0 + par[EPS] * s2))
 
 
 @register_jitable
@@ -97,9 +96,8 @@ def psi_beta(z, par, panels):
     if z >= par[D_BETA]:
         return 0.0
     if z < par[H] * par[D_BETA]:
-        return (
-            par[BETA_AREA] * sigma_norm(((z - par[D_BETA]) / par[BETA_AREA]) ** 2, 1.0) - z + par[BETA_OFFSET]
-        )  # √(1+s²) − 1 − z: no cancellation
+        s = (z - par[D_BETA]) / par[BETA_AREA]
+        return par[BETA_AREA] * sigma_norm(s**2, 1.0) - z + par[BETA_OFFSET]  # √(1+s²) − 1 − z: no cancellation
     return clenshaw(z, panels)
 
 

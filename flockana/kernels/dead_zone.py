@@ -1,8 +1,9 @@
 """The dead-zone pair law as scalar functions of the distance ρ, and its sums with every pair held in its zone.
 
-Parameters are a vector of float64 whose places have the names below: INNER is ψ where the inner ramp begins, OUTER where
-the outer one ends. Zones of a pair: 0 repulsion, 1 dead zone, 2 attraction, 3 out of range. Without a ramp the force jumps between
-them; `zone_forces` continues each piece smoothly beyond its zone, which is what a located switch needs.
+Parameters are a vector of float64 whose places have the names below: INNER is ψ where the inner ramp begins, OUTER
+where the outer one ends. Zones of a pair: 0 repulsion, 1 dead zone, 2 attraction, 3 out of range. Without a ramp the
+force jumps between them; `zone_forces` continues each piece smoothly beyond its zone, which is what a located switch
+needs.
 """
 
 from __future__ import annotations
@@ -209,16 +210,8 @@ def semi_implicit_steps(q, p, par, c2, dt, steps):
     all_q, all_p, all_u = np.empty((steps, n, m)), np.empty((steps, n, m)), np.empty((steps, n, m))
     x, v, u = q.T.copy(), p.T.copy(), np.empty((m, n))
     s2, w, a, f = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
-    eta, k_r2, k_delta, k1, d1, d2, r, r_d = (
-        par[ETA],
-        2.0 * par[K_R],
-        par[K_DELTA],
-        par[K_1],
-        par[D_1],
-        par[D_2],
-        par[R],
-        par[R_D],
-    )
+    eta, k_r2, k_delta, k1 = par[ETA], 2.0 * par[K_R], par[K_DELTA], par[K_1]
+    d1, d2, r, r_d = par[D_1], par[D_2], par[R], par[R_D]
     steep = 1.0 / par[RAMP] if par[RAMP] > 0.0 else 1e300  # of the ramps
     for step in range(steps):
         u[:] = 0.0
