@@ -65,11 +65,14 @@ class Crew:
         How many batches it can work on at once, now.
     renew : callable, optional
         Gives a new executor after a worker's death broke this one.
+    loses : bool
+        Whether a result may be lost with its worker, whatever error that then is: Dask's.
     """
 
     executor: Executor
     width: Callable[[], int]
     renew: Callable[[], Executor] | None = None
+    loses: bool = False
 
 
 @contextmanager
@@ -101,7 +104,7 @@ def crew(executor: Executor | None = None, *, cluster: str | None = None, jobs: 
         from flockana.ensemble.cluster import connected
 
         with connected(cluster, count) as (workers, threads):
-            yield Crew(workers, threads)
+            yield Crew(workers, threads, loses=True)
     elif count == 1:
         yield Crew(Serial(), lambda: 1)
     else:
@@ -191,7 +194,8 @@ def make_runs(request: Request, jobs: Sequence[Job], hands: Crew) -> Iterator[tu
                     records = future.result()
                 except Exception as error:
                     alone = len(batch) == 1 and not pending
-                    found = _under_suspicion(error, batch, pending, hands)
+                    lost = hands.loses and not isinstance(error, FlockanaError)  # `width` tells if all is over
+                    found = batch if lost else _under_suspicion(error, batch, pending, hands)
                     if not alone:
                         suspects.extend(found)
                         break  # what else is done is still pending, or under suspicion
