@@ -12,6 +12,7 @@ from flockana.environment.beta import ObstacleField
 from flockana.environment.capsule import Capsule
 from flockana.environment.obstacles import Sphere, Wall
 from flockana.environment.targets import StaticTarget
+from flockana.equilibria import program as program_module
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.program import Program
 from flockana.equilibria.solve import all_pairs
@@ -109,3 +110,25 @@ def test_translation_knows_its_nodes_and_refuses_others():
 def test_an_obstacle_without_symbolic_closest_point_is_refused():
     with pytest.raises(ArgumentError, match="expected spheres and walls"):
         obstacle_term(Capsule((0.0, 0.0), (4.0, 0.0), 1.0), BetaInteraction())
+
+
+@pytest.mark.parametrize("name", ["1", "2", "3"])
+def test_derivatives_by_the_kernels_are_those_by_the_formulas(name, monkeypatch):
+    """What IPOPT is handed for a pair law of one's own, on laws of which both are known."""
+    target = StaticTarget((3.0, 1.0))
+    law = {
+        "1": Algorithm1(),
+        "2": Algorithm2(target=target),
+        "3": Algorithm3(target=target, obstacles=(Sphere((9.0, 0.0), 2.0), Wall((0.0, -6.0), (0.0, 1.0)))),
+    }[name]
+    q = np.array([[0.0, 0.0], [6.0, 1.5], [1.0, 5.0], [5.5, -4.0]])
+    given = (Potential(law), q.shape, all_pairs(len(q)), 1)
+    by_formula = Program(*given)
+    monkeypatch.setattr(program_module, "has_form", lambda pair, others: False)
+    by_kernels = Program(*given)
+    x = q.ravel() / 7.0
+    for ours, formula in zip(by_kernels.derivatives(x), by_formula.derivatives(x), strict=True):
+        theirs = np.array(formula)
+        if name == "2" and theirs.shape[1] == 1:  # the pull of the centre is the gauge's to take out
+            theirs = theirs - np.tile(theirs.reshape(q.shape).mean(axis=0), len(q))[:, None]
+        np.testing.assert_allclose(np.array(ours), theirs, rtol=1e-9, atol=1e-9 * np.abs(theirs).max())

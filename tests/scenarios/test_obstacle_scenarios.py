@@ -15,7 +15,7 @@ from flockana.environment.targets import StaticTarget
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.scenarios import scenario, scenarios
 from flockana.scenarios.findings import component_counts
-from flockana.scenarios.obstacles import GAINS, SCENARIOS, blocked, free_start
+from flockana.scenarios.obstacles import GAINS, SCENARIOS, _rests, blocked, free_start
 from flockana.theorems import Tolerances, verify
 
 FINDS = Tolerances()
@@ -185,3 +185,14 @@ def test_a_static_target_beyond_free_space_is_reached():
     law = Algorithm3(gains=GAINS, target=StaticTarget((30.0, 0.0)), obstacles=())
     run = simulate(law, [[0.0, 0.0]], [[0.0, 0.0]], (0.0, 30.0))
     np.testing.assert_allclose(run.q[-1], [[30.0, 0.0]], atol=1e-6)
+
+
+def test_rest_is_judged_at_the_calmest_of_the_last_instants():
+    """An agent at its target; in the last sample it is off by what a solver may leave, and pulled."""
+    law = Algorithm3(target=StaticTarget((5.0, 0.0)))
+    t, q = np.linspace(0.0, 100.0, 101), np.full((101, 1, 2), (5.0, 0.0))
+    q[-1, 0, 0] += 1e-2
+    claim = _rests(Trajectory(t, q, 0.0 * q, 0.0 * q, law), Tolerances())
+    assert (claim.status, claim.computed) == ("verified", 0.0)
+    q[90:, 0, 0] += 1e-2
+    assert _rests(Trajectory(t, q, 0.0 * q, 0.0 * q, law), Tolerances()).status == "inconclusive"
