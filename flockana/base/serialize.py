@@ -58,9 +58,11 @@ def to_data(value: Any) -> Any:
     """
     if is_dataclass(value) and not isinstance(value, type):
         data = {f.name: to_data(getattr(value, f.name)) for f in fields(value) if f.init}
-        module = type(value).__module__
-        home = "flockana" if module.startswith("flockana.") else module
-        return {"type": f"{home}:{type(value).__qualname__}", **data}
+        kind = type(value)
+        ours = kind.__module__.startswith("flockana.")
+        if ours and parameter_classes().get(kind.__qualname__) is not kind:
+            raise ArgumentError(f"cannot write {value!r} to a file: expected laws and what they are made of")
+        return {"type": f"{'flockana' if ours else kind.__module__}:{kind.__qualname__}", **data}
     if isinstance(value, np.ndarray):
         return value.tolist()
     if isinstance(value, list | tuple):

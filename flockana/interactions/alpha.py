@@ -190,6 +190,10 @@ class AlphaInteraction(PairInteraction):
             shift = at_knee - left_end
         panels[:, 2] += shift
         par[kernel.FAR] = shift
+        if knee < d_alpha:  # what rounding of the sum leaves at d_α
+            rest = clenshaw(d_alpha, panels)
+            panels[:, 2] -= rest
+            par[[kernel.OFFSET, kernel.FAR]] -= rest
         for array in (par, panels):
             array.setflags(write=False)
         return par, panels

@@ -135,9 +135,7 @@ def _passed_between(run: Trajectory) -> int:
 def _gets_past(run: Trajectory, tolerances: Tolerances) -> Claim:
     x = run.q[-1, :, 0]
     detail = f"{int((x > 175.0).sum())} of {run.n} agents are beyond both spheres, the last one at x = {x.min():.4g}"
-    margin = float(
-        np.clip(x.min() - 175.0, -25.0, 25.0)
-    )  # a radius of the spheres is enough: how far agents get varies
+    margin = float(np.clip(x.min() - 175.0, -25.0, 25.0))  # a sphere's radius is enough: how far agents get varies
     return finding("past", margin, detail, computed=float(x.min()), stated="x > 175 for all")
 
 

@@ -23,6 +23,7 @@ from flockana.environment.targets import (
 )
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.theorems import Tolerances
 
 THIRD = 1.0 / 3.0
 
@@ -81,6 +82,8 @@ def test_functions_cannot_be_written():
         to_data(law)
     with pytest.raises(ArgumentError, match="expected parameters made of numbers"):
         to_data({1, 2})
+    with pytest.raises(ArgumentError, match="expected laws and what they are made of"):
+        to_data(Tolerances())  # it would be written, and never read
 
 
 @pytest.mark.parametrize(

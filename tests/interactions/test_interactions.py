@@ -104,8 +104,8 @@ def test_signs_and_slopes_of_any_alpha(d, kappa, eps, h, a, ratio):
     alpha = AlphaInteraction(d, kappa * d, eps, h, a, ratio * a)
     d_alpha, r_alpha = alpha.d_alpha, alpha.r_alpha
     assert alpha.phi_alpha(d_alpha) == 0.0
-    # rounding of the panels, whose largest value is ψ at one of their ends
-    assert abs(alpha.psi_alpha(d_alpha)) <= 1e-15 * max(alpha.c_star, alpha.far_potential)
+    # one rounding of the largest value on the panels, which for r far beyond d is ψ(r)
+    assert abs(alpha.psi_alpha(d_alpha)) <= np.finfo(float).eps * max(alpha.c_star, alpha.far_potential)
     below, above = np.linspace(0.0, d_alpha, 30)[:-1], np.linspace(d_alpha, r_alpha, 30)[1:-1]
     assert np.all(alpha.phi_alpha(below) < 0.0)
     assert np.all(alpha.phi_alpha(above) > 0.0)
