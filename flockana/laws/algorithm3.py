@@ -6,13 +6,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.environment.beta import ObstacleField
 from flockana.environment.obstacles import Obstacle
 from flockana.environment.targets import Target
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains, PairInteraction
-from flockana.laws.olfati_saber import alpha_scales, ensure_gains, ensure_pair, ensure_target
+from flockana.laws.olfati_saber import GAINS, PAIR, TARGET, alpha_scales, ensure_part
 from flockana.laws.sum_of_terms import SumOfTerms
 from flockana.laws.terms.navigation import Navigation
 from flockana.laws.terms.obstacles import ObstacleTerm
@@ -66,17 +65,14 @@ class Algorithm3(SumOfTerms):
     references = ("olfati-saber-2006",)
 
     def __post_init__(self) -> None:
-        ensure_pair("alpha", self.alpha)
-        ensure_gains(self.gains)
-        if not isinstance(self.beta, BetaInteraction):
-            raise ArgumentError(f"beta = {self.beta!r}: expected BetaInteraction(...)")
-        ensure_target(self.target)
-        if not isinstance(self.obstacles, Iterable):
-            raise ArgumentError(f"obstacles = {self.obstacles!r}: expected a sequence such as (Sphere((5, 0), 1),)")
+        ensure_part("alpha", self.alpha, PairInteraction, PAIR)
+        ensure_part("gains", self.gains, Gains, GAINS)
+        ensure_part("beta", self.beta, BetaInteraction, "BetaInteraction(...)")
+        ensure_part("target", self.target, Target, TARGET)
+        ensure_part("obstacles", self.obstacles, Iterable, "a sequence such as (Sphere((5, 0), 1),)")
         obstacles = tuple(self.obstacles)
         for k, obstacle in enumerate(obstacles):
-            if not isinstance(obstacle, Obstacle):
-                raise ArgumentError(f"obstacles[{k}] = {obstacle!r}: expected an obstacle such as Sphere((5, 0), 1)")
+            ensure_part(f"obstacles[{k}]", obstacle, Obstacle, "an obstacle such as Sphere((5, 0), 1)")
         object.__setattr__(self, "obstacles", obstacles)
         self._repulsion.ensure_dimension(self.target.dimension, "the target has")
 

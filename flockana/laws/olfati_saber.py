@@ -20,8 +20,8 @@ from flockana.laws.terms.term import Term
 from flockana.measures.frame import moving_frame
 
 
-def ensure_pair(name: str, value: Any) -> None:
-    """Raise unless a parameter is a pair interaction.
+def ensure_part(name: str, value: Any, kind: type, example: str) -> None:
+    """Raise unless a parameter is of its kind.
 
     Parameters
     ----------
@@ -29,48 +29,25 @@ def ensure_pair(name: str, value: Any) -> None:
         Of the parameter.
     value : object
         What the caller gave.
+    kind : type
+        What it must be.
+    example : str
+        One that would do.
 
     Raises
     ------
     ArgumentError
-        If it is none.
+        If it is not.
     """
-    if not isinstance(value, PairInteraction):
-        raise ArgumentError(f"{name} = {value!r}: expected AlphaInteraction(...), or another pair interaction")
+    if not isinstance(value, kind):
+        raise ArgumentError(f"{name} = {value!r}: expected {example}")
 
 
-def ensure_gains(value: Any) -> None:
-    """Raise unless a parameter holds gains.
-
-    Parameters
-    ----------
-    value : object
-        What the caller gave.
-
-    Raises
-    ------
-    ArgumentError
-        If it does not.
-    """
-    if not isinstance(value, Gains):
-        raise ArgumentError(f"gains = {value!r}: expected Gains(...)")
-
-
-def ensure_target(value: Any) -> None:
-    """Raise unless a parameter is a γ-agent.
-
-    Parameters
-    ----------
-    value : object
-        What the caller gave.
-
-    Raises
-    ------
-    ArgumentError
-        If it is none.
-    """
-    if not isinstance(value, Target):
-        raise ArgumentError(f"target = {value!r}: expected a γ-agent such as StaticTarget((0.0, 0.0))")
+PAIR, GAINS, TARGET = (
+    "AlphaInteraction(...), or another pair interaction",
+    "Gains(...)",
+    "a γ-agent such as StaticTarget((0.0, 0.0))",
+)
 
 
 def ensure_one_gain(gains: Gains) -> None:
@@ -171,8 +148,8 @@ class Algorithm1(SumOfTerms):
     references: ClassVar[tuple[str, ...]] = ("olfati-saber-2006",)
 
     def __post_init__(self) -> None:
-        ensure_pair("alpha", self.alpha)
-        ensure_gains(self.gains)
+        ensure_part("alpha", self.alpha, PairInteraction, PAIR)
+        ensure_part("gains", self.gains, Gains, GAINS)
 
     @property
     def scales(self) -> Scales:  # noqa: D102
@@ -228,9 +205,9 @@ class Algorithm2(SumOfTerms):
     references: ClassVar[tuple[str, ...]] = ("olfati-saber-2006",)
 
     def __post_init__(self) -> None:
-        ensure_pair("alpha", self.alpha)
-        ensure_gains(self.gains)
-        ensure_target(self.target)
+        ensure_part("alpha", self.alpha, PairInteraction, PAIR)
+        ensure_part("gains", self.gains, Gains, GAINS)
+        ensure_part("target", self.target, Target, TARGET)
 
     @property
     def scales(self) -> Scales:  # noqa: D102
