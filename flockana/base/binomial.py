@@ -11,18 +11,7 @@ from flockana.base.errors import ArgumentError
 
 
 def ensure_level(level: Any) -> float:
-    """Return a confidence level as a float between 0 and 1.
-
-    Parameters
-    ----------
-    level : float
-        What the caller gave.
-
-    Raises
-    ------
-    ArgumentError
-        If it does not lie strictly between 0 and 1.
-    """
+    """Return a confidence level as a float between 0 and 1."""
     value = ensure_finite_scalar("level", level)
     if not 0.0 < value < 1.0:
         raise ArgumentError(f"level = {value:g}: expected a confidence level between 0 and 1, such as 0.95")

@@ -17,18 +17,6 @@ FloatArray = npt.NDArray[np.float64]
 def ensure_finite_scalar(name: str, value: Any) -> float:
     """Return `value` as a finite float.
 
-    Parameters
-    ----------
-    name : str
-        The argument's name, for the message.
-    value : object
-        What the caller gave.
-
-    Raises
-    ------
-    ArgumentError
-        If it is not one finite real number.
-
     Examples
     --------
     >>> ensure_finite_scalar("d", 7)
@@ -44,15 +32,7 @@ def ensure_finite_scalar(name: str, value: Any) -> float:
 
 
 def ensure_positive(name: str, value: Any) -> float:
-    """Return `value` as a finite float > 0 (arguments and errors as `ensure_finite_scalar`).
-
-    Parameters
-    ----------
-    name : str
-        The argument's name, for the message.
-    value : object
-        What the caller gave.
-    """
+    """Return `value` as a finite float > 0 (arguments and errors as `ensure_finite_scalar`)."""
     number = ensure_finite_scalar(name, value)
     if number <= 0.0:
         raise ArgumentError(f"{name} = {number:g}: expected a number > 0")
@@ -60,15 +40,7 @@ def ensure_positive(name: str, value: Any) -> float:
 
 
 def ensure_nonnegative(name: str, value: Any) -> float:
-    """Return `value` as a finite float >= 0 (arguments and errors as `ensure_finite_scalar`).
-
-    Parameters
-    ----------
-    name : str
-        The argument's name, for the message.
-    value : object
-        What the caller gave.
-    """
+    """Return `value` as a finite float >= 0 (arguments and errors as `ensure_finite_scalar`)."""
     number = ensure_finite_scalar(name, value)
     if number < 0.0:
         raise ArgumentError(f"{name} = {number:g}: expected a number >= 0")
@@ -85,18 +57,6 @@ def _real_array(value: Any) -> FloatArray:
 
 def ensure_points(name: str, value: Any) -> FloatArray:
     """Return an (n, m) float64 array of n >= 1 points in m = 1, 2 or 3 dimensions.
-
-    Parameters
-    ----------
-    name : str
-        The argument's name, for the message.
-    value : array_like, shape (n, m)
-        Positions or velocities.
-
-    Raises
-    ------
-    ArgumentError
-        On a wrong shape, a non-numeric dtype, or a NaN or infinity (the first bad agent is named).
 
     Examples
     --------
@@ -126,16 +86,6 @@ def ensure_points(name: str, value: Any) -> FloatArray:
 def ensure_state(q: Any, p: Any) -> tuple[FloatArray, FloatArray]:
     """Return positions and velocities of equal shape (n, m).
 
-    Parameters
-    ----------
-    q, p : array_like, shape (n, m)
-        Positions and velocities.
-
-    Raises
-    ------
-    ArgumentError
-        If either is bad by itself or their shapes differ.
-
     Examples
     --------
     >>> q, p = ensure_state([[0.0, 1.0]], [[0.0, 0.0]])
@@ -149,15 +99,6 @@ def ensure_state(q: Any, p: Any) -> tuple[FloatArray, FloatArray]:
 
 def ensure_vector(name: str, value: Any, m: int | None = None) -> FloatArray:
     """Return a finite float64 vector, of m components if `m` is given.
-
-    Parameters
-    ----------
-    name : str
-        The argument's name, for the message.
-    value : array_like, shape (m,)
-        The vector.
-    m : int, optional
-        The dimension expected.
 
     Examples
     --------
@@ -180,20 +121,6 @@ def ensure_vector(name: str, value: Any, m: int | None = None) -> FloatArray:
 def ensure_fits(name: str, shape: tuple[int, ...], remedy: str) -> None:
     """Raise before an array of floats is allocated that would take more than half of the machine's memory.
 
-    Parameters
-    ----------
-    name : str
-        The array's name, for the message.
-    shape : tuple of int
-        Its shape.
-    remedy : str
-        What to do instead.
-
-    Raises
-    ------
-    ArgumentError
-        If it does not fit.
-
     Examples
     --------
     >>> ensure_fits("A", (600, 600), "sparse=True")
@@ -212,11 +139,6 @@ def ensure_fits(name: str, shape: tuple[int, ...], remedy: str) -> None:
 def ensure_time_span(t_span: Any) -> tuple[float, float]:
     """Return (t0, t1) with t0 < t1, both finite.
 
-    Parameters
-    ----------
-    t_span : sequence of two floats
-        Start and end.
-
     Examples
     --------
     >>> ensure_time_span((0, 5))
@@ -233,18 +155,6 @@ def ensure_time_span(t_span: Any) -> tuple[float, float]:
 
 def ensure_count(name: str, value: Any) -> int:
     """Return `value` as a whole number >= 1.
-
-    Parameters
-    ----------
-    name : str
-        The argument's name, for the message.
-    value : object
-        What the caller gave.
-
-    Raises
-    ------
-    ArgumentError
-        If it is no whole number >= 1.
 
     Examples
     --------

@@ -14,18 +14,6 @@ from flockana.base.errors import FileError
 def replacing(path: str | os.PathLike[str], *, remedy: str = "choose another file") -> Iterator[Path]:
     """Give a file to write, which takes the other's place when it is whole; after an error or Ctrl-C it is removed.
 
-    Parameters
-    ----------
-    path : path-like
-        File to write or to replace; its folder must exist.
-    remedy : str
-        What to do if it cannot be written.
-
-    Raises
-    ------
-    FileError
-        If it cannot be written.
-
     Examples
     --------
     >>> import tempfile

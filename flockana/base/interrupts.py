@@ -13,11 +13,6 @@ from multiprocessing import resource_tracker
 def interrupts_held() -> Iterator[list[int]]:
     """Keep Ctrl-C for later; gives a list that is empty as long as it did not come.
 
-    Raises
-    ------
-    KeyboardInterrupt
-        At the end, if Ctrl-C came meanwhile.
-
     Examples
     --------
     >>> with interrupts_held() as came:
@@ -63,11 +58,6 @@ def interrupts_hidden() -> Iterator[None]:
 @contextmanager
 def interrupts_recognised() -> Iterator[None]:
     """Make Ctrl-C again what others made of it: a kernel's call fails where it comes, a lock is found in disorder.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        Instead of an error that it caused.
 
     Examples
     --------

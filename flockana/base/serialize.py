@@ -41,16 +41,6 @@ def parameter_classes() -> dict[str, type]:
 def to_data(value: Any) -> Any:
     """Turn a parameter object into JSON data: dataclasses become a dict with their ``"type"``.
 
-    Parameters
-    ----------
-    value : object
-        A flockana parameter dataclass, or numbers, strings, arrays and sequences of them.
-
-    Raises
-    ------
-    ArgumentError
-        If something in it cannot be written down, such as a user's function.
-
     Examples
     --------
     >>> to_data((1.0, np.array([2.0, 3.0])))
@@ -79,16 +69,6 @@ def to_data(value: Any) -> Any:
 
 def from_data(data: Any) -> Any:
     """Rebuild what `to_data` wrote; only dataclasses of flockana, or of modules already imported, are made.
-
-    Parameters
-    ----------
-    data : object
-        JSON data.
-
-    Raises
-    ------
-    FileError
-        If a type is unknown here, or its parameters do not fit.
 
     Examples
     --------

@@ -60,15 +60,7 @@ def _rescaled(item: Any, length: float, time: float) -> Any:
 
 
 def scaled_fields(item: Any, length: float, time: float) -> dict[str, Any]:
-    """The arguments that make a parameter object again, in other units.
-
-    Parameters
-    ----------
-    item : dataclass
-        What is rescaled; what its ``units`` do not name is a pure number, or is rescaled by itself.
-    length, time : float
-        Factors.
-    """
+    """The arguments that make a parameter object again, in other units."""
     powers: Mapping[str, Powers] = getattr(item, "units", {})
     found = {}
     for field in (each for each in fields(item) if each.init):
@@ -83,13 +75,6 @@ def scaled_fields(item: Any, length: float, time: float) -> dict[str, Any]:
 
 def times(value: Any, factor: float) -> Any:
     """A number, or numbers in tuples and arrays, times a factor; None stays None.
-
-    Parameters
-    ----------
-    value : float, ndarray, tuple or None
-        The numbers.
-    factor : float
-        The factor.
 
     Examples
     --------

@@ -12,13 +12,7 @@ from flockana.cli.options import INTERRUPTED, OK, UNEXPECTED, Seed
 
 
 def register(app: typer.Typer) -> None:
-    """Add the command to the command line.
-
-    Parameters
-    ----------
-    app : typer.Typer
-        Of flockana.
-    """
+    """Add the command to the command line."""
     app.command("animate")(_animate)
 
 

@@ -6,13 +6,7 @@ import typer
 
 
 def register(app: typer.Typer) -> None:
-    """Add the commands to the command line.
-
-    Parameters
-    ----------
-    app : typer.Typer
-        Of flockana.
-    """
+    """Add the commands to the command line."""
     app.command("scenarios")(_scenarios)
     app.command("theorems")(_theorems)
 

@@ -24,13 +24,7 @@ _MOST = 7  # curves in one picture
 
 
 def register(app: typer.Typer) -> None:
-    """Add the command to the command line.
-
-    Parameters
-    ----------
-    app : typer.Typer
-        Of flockana.
-    """
+    """Add the command to the command line."""
     app.command("ensemble", help=_HELP)(_ensemble)
 
 
@@ -94,16 +88,6 @@ def _ensemble(
 
 def read_options(texts: list[str]) -> dict[str, Any]:
     """Values by option: a number, a truth value or a text if there is one, a list of them if there are several.
-
-    Parameters
-    ----------
-    texts : list of str
-        Such as ``"n=20,40"``.
-
-    Raises
-    ------
-    ArgumentError
-        If one has no name or no values, or comes twice.
 
     Examples
     --------
@@ -200,15 +184,7 @@ def _print(found: xarray.Dataset, table: xarray.Dataset, axes: list[str]) -> Non
 
 
 def share_table(table: xarray.Dataset, axes: list[str]) -> Table:
-    """A row per claim, for every combination of the parameters: how often verified, how often refuted.
-
-    Parameters
-    ----------
-    table : xarray.Dataset
-        From `flockana.ensemble.shares`.
-    axes : list of str
-        Its parameters.
-    """
+    """A row per claim, for every combination of the parameters: how often verified, how often refuted."""
     from itertools import product
 
     from rich import box
@@ -239,12 +215,6 @@ def share_table(table: xarray.Dataset, axes: list[str]) -> Table:
 
 
 def interval_text(entry: xarray.Dataset) -> str:
-    """A share and its interval in per cent.
-
-    Parameters
-    ----------
-    entry : xarray.Dataset
-        One entry of a table of shares.
-    """
+    """A share and its interval in per cent."""
     share, low, high = (100.0 * float(entry[name]) for name in ("share", "low", "high"))
     return f"{share:.1f} [{low:.1f}, {high:.1f}]"

@@ -29,13 +29,7 @@ _LOWEST = 6  # eigenvalues that are printed
 
 
 def register(app: typer.Typer) -> None:
-    """Add the command to the command line.
-
-    Parameters
-    ----------
-    app : typer.Typer
-        Of flockana.
-    """
+    """Add the command to the command line."""
     app.command("equilibrium", help=_HELP)(_equilibrium)
 
 
@@ -84,15 +78,7 @@ def _equilibrium(
 
 
 def summary(found: Equilibrium, name: str) -> dict[str, Any]:
-    """What was found, as plain data.
-
-    Parameters
-    ----------
-    found : Equilibrium
-        The equilibrium.
-    name : str
-        What was asked for.
-    """
+    """What was found, as plain data."""
     from flockana.equilibria.potential import Potential
     from flockana.measures.metrics import coincident_pairs
 

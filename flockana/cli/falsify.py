@@ -25,13 +25,7 @@ known to be false, or a replay on which the claim holds; 130 interrupted, with t
 
 
 def register(app: typer.Typer) -> None:
-    """Add the command to the command line.
-
-    Parameters
-    ----------
-    app : typer.Typer
-        Of flockana.
-    """
+    """Add the command to the command line."""
     app.command("falsify", help=_HELP)(_falsify)
 
 
@@ -96,16 +90,6 @@ def _falsify(
 
 def read_ranges(texts: list[str]) -> dict[str, tuple[float, float]]:
     """Bounds by parameter.
-
-    Parameters
-    ----------
-    texts : list of str
-        Such as ``"gains.c1_gamma=0.1,10"``.
-
-    Raises
-    ------
-    ArgumentError
-        If one has no name or not two numbers, or comes twice.
 
     Examples
     --------
@@ -184,13 +168,7 @@ def _print(found: Falsification) -> None:
 
 
 def claim_table(found: Falsification) -> Table:
-    """A row per claim: its margin at the scenario's start and at worst, the worst status, where it was judged.
-
-    Parameters
-    ----------
-    found : Falsification
-        Of a search.
-    """
+    """A row per claim: its margin at the scenario's start and at worst, the worst status, where it was judged."""
     import numpy as np
     from rich import box
     from rich.table import Table

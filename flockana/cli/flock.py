@@ -22,28 +22,6 @@ def read_flock(
 ) -> tuple[Any, FloatArray]:
     """(law, q): the law of a scenario or a file, or Algorithm 1 or 2; a γ-agent is held where it is.
 
-    Parameters
-    ----------
-    source : str
-        A scenario, a file, or a builder with its size.
-    start : {"end", "start"}
-        Of a scenario: the end of its run, or its start.
-    seed : int
-        Of a scenario's random start.
-    algorithm : int, optional
-        1 or 2, where no law comes with the positions; by default 1.
-    d, r, time : float, optional
-        As for `read_source`.
-    potential : bool
-        Refuse a law whose forces are not known to be gradients.
-
-    Raises
-    ------
-    ArgumentError, FileError
-        On a bad source, or an option that it does not leave open.
-    SolverError
-        If a scenario's run fails.
-
     Examples
     --------
     >>> law, q = read_flock("line:3", d=2.0)

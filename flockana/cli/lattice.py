@@ -30,13 +30,7 @@ _MANY = 1000  # crossings from which on they are not counted: the theorem's chec
 
 
 def register(app: typer.Typer) -> None:
-    """Add the command to the command line.
-
-    Parameters
-    ----------
-    app : typer.Typer
-        Of flockana.
-    """
+    """Add the command to the command line."""
     app.command("lattice", help=_HELP)(_lattice)
 
 
@@ -82,17 +76,7 @@ def _draw(ax: Any, given: Source, pairs: LinkArray) -> None:
 
 
 def measures(given: Source, pairs: LinkArray, verdict: Verdict) -> dict[str, Any]:
-    """All that is measured of a configuration, as plain data; None where there is nothing to measure.
-
-    Parameters
-    ----------
-    given : Source
-        Positions, scale, range.
-    pairs : int array, shape (M, 2)
-        Links.
-    verdict : Verdict
-        Of Theorem 5 on it: crossings and planarity are taken from there.
-    """
+    """All that is measured of a configuration, as plain data; None where there is nothing to measure."""
     from flockana.lattice import classify, harborth, is_complete, planar_bound
     from flockana.lattice.measure import GUARD
     from flockana.measures.metrics import deviation_energy, min_distance

@@ -45,18 +45,7 @@ def _complain(message: str) -> None:
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Run the command line and exit with its status.
-
-    Parameters
-    ----------
-    arguments : sequence of str, optional
-        Instead of those of the process.
-
-    Raises
-    ------
-    SystemExit
-        Always, with the exit status.
-    """
+    """Run the command line and exit with its status."""
     try:
         with interrupts_recognised():
             code = app(args=None if arguments is None else list(arguments), standalone_mode=False)

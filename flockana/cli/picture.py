@@ -19,22 +19,7 @@ _DPI = 160
 
 
 def ensure_file(path: Path, kinds: tuple[str, ...]) -> Path:
-    """Return the path if a file of such a kind can be written there; before any work whose result it should hold.
-
-    Parameters
-    ----------
-    path : Path
-        What the user gave.
-    kinds : tuple of str
-        Suffixes, with their dot.
-
-    Raises
-    ------
-    ArgumentError
-        If it is a folder or has another suffix.
-    FileError
-        If its folder cannot be made or written to.
-    """
+    """Return the path if a file of such a kind can be written there; before any work whose result it should hold."""
     from flockana.report.build import ensure_directory
 
     if path.is_dir():
@@ -46,42 +31,12 @@ def ensure_file(path: Path, kinds: tuple[str, ...]) -> Path:
 
 
 def write_picture(draw: Callable[[Axes], object], path: Path, *, m: int) -> None:
-    """Draw on new axes and write them as PNG, SVG or PDF, by the file's name.
-
-    Parameters
-    ----------
-    draw : callable
-        Draws on the Axes that it is given.
-    path : Path
-        The file.
-    m : int
-        Dimension; three-dimensional axes for m = 3.
-
-    Raises
-    ------
-    FileError
-        If it cannot be written.
-    """
+    """Draw on new axes and write them as PNG, SVG or PDF, by the file's name."""
     write_figure(lambda figure: draw(figure.add_subplot(projection="3d" if m == 3 else None)), path)
 
 
 def write_figure(draw: Callable[[Figure], object], path: Path, *, size: tuple[float, float] = _SIZE) -> None:
-    """Draw on a new figure and write it as PNG, SVG or PDF, by the file's name.
-
-    Parameters
-    ----------
-    draw : callable
-        Draws on the Figure that it is given.
-    path : Path
-        The file.
-    size : (float, float)
-        Width and height in inches.
-
-    Raises
-    ------
-    FileError
-        If it cannot be written.
-    """
+    """Draw on a new figure and write it as PNG, SVG or PDF, by the file's name."""
     from matplotlib.figure import Figure
 
     from flockana.plots.style import style

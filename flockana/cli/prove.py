@@ -29,13 +29,7 @@ _COLOURS = {"proved": "green", "FAILED": "bold red", "unknown": "yellow"}
 
 
 def register(app: typer.Typer) -> None:
-    """Add the command to the command line.
-
-    Parameters
-    ----------
-    app : typer.Typer
-        Of flockana.
-    """
+    """Add the command to the command line."""
     app.command("prove", help=_HELP)(_prove)
 
 

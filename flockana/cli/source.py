@@ -64,22 +64,6 @@ class Source:
 def read_source(name: str, *, d: float | None = None, r: float | None = None, time: float | None = None) -> Source:
     """Read or build a configuration.
 
-    Parameters
-    ----------
-    name : str
-        A file (.nc, .json; any other that exists is read as CSV) or a builder with its size.
-    d, r : float, optional
-        Scale and range; by default the law's, else d = 7 and r = 1.2 d. A builder's agents stand d apart.
-    time : float, optional
-        Of a run: the sample nearest to it; by default the last.
-
-    Raises
-    ------
-    FileError
-        If a file is missing or holds no positions.
-    ArgumentError
-        On an unknown builder, a bad size, scale or time.
-
     Examples
     --------
     >>> read_source("hexagonal-spiral:7").q.shape, read_source("square:2x2", d=2.0).r
@@ -117,11 +101,6 @@ def _scaled(name: str, q: FloatArray, law: Any, t: float, *, d: float | None, r:
 def integrated_law(law: Any) -> Any:
     """The continuous law that a scheme integrates; any other law, and None, as it is.
 
-    Parameters
-    ----------
-    law : object
-        A law, or None.
-
     Examples
     --------
     >>> integrated_law(None) is None
@@ -134,11 +113,6 @@ def law_scales(law: Any) -> tuple[float, float]:
     """Scale and range to measure a law's lattices with: (d, r), or 1.2 d where most pairs within r are held nowhere.
 
     The contacts of the dead-zone law sit at d₁ (erratum L8), its other pairs in a band.
-
-    Parameters
-    ----------
-    law : object
-        A law, or None for the usual scale.
 
     Examples
     --------
@@ -166,18 +140,6 @@ def _sample(path: Path, time: float | None) -> tuple[FloatArray, Any, float]:
 def ensure_source(name: str, more: tuple[str, ...] = ()) -> None:
     """Raise on a name that can be neither a file nor a builder, before anything is read.
 
-    Parameters
-    ----------
-    name : str
-        What the user gave.
-    more : tuple of str
-        Other names that would have done, to suggest.
-
-    Raises
-    ------
-    UnknownNameError
-        With the nearest name.
-
     Examples
     --------
     >>> ensure_source("line:3")
@@ -201,18 +163,6 @@ def builders() -> tuple[str, ...]:
 def build(text: str, d: float) -> tuple[FloatArray, float]:
     """Positions of a builder such as ``fcc:2x2x2``, and the largest κ at which they are an α-lattice.
 
-    Parameters
-    ----------
-    text : str
-        Its name, which must exist, a colon, its size.
-    d : float
-        Distance between neighbours.
-
-    Raises
-    ------
-    ArgumentError
-        If the size is no size, or a million agents are exceeded.
-
     Examples
     --------
     >>> build("line:3", 7.0)
@@ -230,18 +180,7 @@ def build(text: str, d: float) -> tuple[FloatArray, float]:
 
 
 def read_csv(path: Path) -> FloatArray:
-    """Positions from a CSV: a row for each agent, one to three columns, a header or none.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Raises
-    ------
-    FileError
-        If it is missing or no text, or if a row is ragged or holds something that is no finite number.
-    """
+    """Positions from a CSV: a row for each agent, one to three columns, a header or none."""
     try:
         with path.open(newline="", encoding="utf-8-sig") as file:
             lines = [(k, row) for k, row in enumerate(csv.reader(file), 1) if any(cell.strip() for cell in row)]

@@ -31,13 +31,7 @@ _DENSE = 1200  # n m above which only the slowest modes are sought, without a de
 
 
 def register(app: typer.Typer) -> None:
-    """Add the command to the command line.
-
-    Parameters
-    ----------
-    app : typer.Typer
-        Of flockana.
-    """
+    """Add the command to the command line."""
     app.command("stability", help=_HELP)(_stability)
 
 
@@ -93,32 +87,14 @@ def _stability(
 
 
 def slowest(found: Linearisation, count: int) -> tuple[Mode, ...]:
-    """The slowest modes; of a large flock without its whole spectrum.
-
-    Parameters
-    ----------
-    found : Linearisation
-        The linearised flock.
-    count : int
-        How many at most.
-    """
+    """The slowest modes; of a large flock without its whole spectrum."""
     from flockana.stability import slowest_modes
 
     return found.modes[:count] if found.q.size <= _DENSE else slowest_modes(found, count).modes
 
 
 def summary(found: Linearisation, slow: Iterable[Mode], name: str) -> dict[str, Any]:
-    """What the linearisation says, as plain data.
-
-    Parameters
-    ----------
-    found : Linearisation
-        The linearised flock.
-    slow : iterable of Mode
-        Its slowest modes.
-    name : str
-        What was asked for.
-    """
+    """What the linearisation says, as plain data."""
     from flockana.stability.translational import CentreOfMass
 
     slow, (n, m) = tuple(slow), found.q.shape
@@ -154,17 +130,7 @@ def summary(found: Linearisation, slow: Iterable[Mode], name: str) -> dict[str, 
 
 
 def measures(found: Linearisation, *, delay: bool, norms: bool, strict: bool) -> dict[str, Any]:
-    """Delay margins and norms, where asked for, as plain data; None where there is no bound.
-
-    Parameters
-    ----------
-    found : Linearisation
-        The linearised flock.
-    delay, norms : bool
-        What is wanted.
-    strict : bool
-        Refuse a state that is no equilibrium.
-    """
+    """Delay margins and norms, where asked for, as plain data; None where there is no bound."""
     from math import isfinite
 
     from flockana.stability.blocks import law_blocks

@@ -71,20 +71,7 @@ class Between:
             raise ArgumentError("between: expected rising times and arrays of shape (S, n, m)")
 
     def check_fits(self, t: FloatArray, q: FloatArray) -> None:
-        """Raise unless these are steps between the samples of a run.
-
-        Parameters
-        ----------
-        t : ndarray, shape (T,)
-            Times of the samples.
-        q : ndarray, shape (T, n, m)
-            Their positions.
-
-        Raises
-        ------
-        ArgumentError
-            If they are of another flock, or at times that are not between those of the samples.
-        """
+        """Raise unless these are steps between the samples of a run."""
         intervals = (len(t) + len(self.t) - 1, q.shape[1])
         if self.q.shape[1:] != q.shape[1:] or (self.slack is not None and self.slack.shape != intervals):
             raise ArgumentError(f"between.q has shape {self.q.shape}: expected steps of the flock of q {q.shape}")
@@ -92,13 +79,7 @@ class Between:
             raise ArgumentError("between.t: expected times between those of the samples, none of them a sample's")
 
     def within(self, t: FloatArray, kept: FloatArray) -> Between | None:
-        """The steps of a window; None if it is one sample.
-
-        Parameters
-        ----------
-        t, kept : ndarray
-            The times of all samples, and of those of the window.
-        """
+        """The steps of a window; None if it is one sample."""
         if len(kept) == 1:
             return None
         start, end = kept[0], kept[-1]
@@ -109,29 +90,13 @@ class Between:
         return Between(self.t[inside], self.q[inside], self.p[inside], self.u[inside], slack)
 
     def in_units(self, length: float, time: float) -> Between:
-        """The same in other units (`flockana.rescale`).
-
-        Parameters
-        ----------
-        length, time : float
-            Factors.
-        """
+        """The same in other units (`flockana.rescale`)."""
         slack = None if self.slack is None else self.slack * length
         return Between(self.t * time, self.q * length, self.p * (length / time), self.u * (length / time**2), slack)
 
 
 def merged(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, between: Between | None) -> Course:
-    """Samples and the steps between them in order of time.
-
-    Parameters
-    ----------
-    t : ndarray, shape (T,)
-        Times of the samples.
-    q, p, u : ndarray, shape (T, n, m)
-        The samples.
-    between : Between or None
-        The steps.
-    """
+    """Samples and the steps between them in order of time."""
     if between is None:
         return Course(t, q, p, u, None)
     order = np.argsort(np.concatenate([t, between.t]))
@@ -156,17 +121,7 @@ class Recorder:
         self._knots: list[_Knot] = []
 
     def add(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray, *, sample: bool) -> None:
-        """The next sample or step; steps before the first sample are nobody's.
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        q, p, u : ndarray, shape (n, m)
-            Positions, velocities, accelerations.
-        sample : bool
-            Whether it is a sample.
-        """
+        """The next sample or step; steps before the first sample are nobody's."""
         if not (sample or self._knots):
             return
         self._knots.append(_Knot(t, q, p, u, sample, np.zeros(len(q))))

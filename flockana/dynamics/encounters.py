@@ -71,13 +71,6 @@ class Encounters:
     def of(cls, law: Law, n: int) -> Encounters:
         """Those of a law.
 
-        Parameters
-        ----------
-        law : Law
-            Its `surfaces` and obstacles are asked for.
-        n : int
-            Number of agents.
-
         Examples
         --------
         >>> from flockana.laws.olfati_saber import Algorithm1
@@ -100,13 +93,6 @@ class Encounters:
 
     def share(self, h: float, before: State, after: State) -> float:
         """How much of a step may be taken, 1 if it stands.
-
-        Parameters
-        ----------
-        h : float
-            Length of the step.
-        before, after : State
-            At its ends.
 
         Examples
         --------

@@ -56,28 +56,12 @@ class Tally:
     notes: dict[str, Any] = field(default_factory=dict)
 
     def fail(self, message: str) -> None:
-        """Note that the run ended early, and why.
-
-        Parameters
-        ----------
-        message : str
-            In words.
-        """
+        """Note that the run ended early, and why."""
         self.status, self.message = "failed", message
 
 
 def start_sample(law: Law | DiscreteLaw, q0: FloatArray, p0: FloatArray, t0: float) -> Sample:
-    """The initial state as a sample.
-
-    Parameters
-    ----------
-    law : Law or DiscreteLaw
-        What moves the flock.
-    q0, p0 : ndarray, shape (n, m)
-        Start.
-    t0 : float
-        Time of the start.
-    """
+    """The initial state as a sample."""
     if isinstance(law, DiscreteLaw):
         return Sample(t0, q0, p0, np.zeros_like(q0), _copied(law.start(q0, p0)))
     extra = {"work": np.array(0.0)} if has_energy(law, t0, q0, p0) else {}
@@ -93,17 +77,7 @@ def _finite(*values: Any) -> bool:
 
 
 def has_energy(law: Law, t: float, q: FloatArray, p: FloatArray) -> bool:
-    """Whether a law has an energy, so that its work can be integrated.
-
-    Parameters
-    ----------
-    law : Law
-        The law.
-    t : float
-        Time.
-    q, p : ndarray, shape (n, m)
-        A state.
-    """
+    """Whether a law has an energy, so that its work can be integrated."""
     return bool(np.isfinite(law.hamiltonian(t, q, p)))
 
 
@@ -123,19 +97,6 @@ def error_floor(
     A law without scales is measured by the extent of its start and by the duration. Work is measured against the energy
     that it is the change of, not against zero, where it starts. Far from the origin places are known to their rounding
     only, and forces to what it makes of them: nothing below that can be asked for.
-
-    Parameters
-    ----------
-    law : Law
-        What moves the flock.
-    q0, p0 : ndarray, shape (n, m)
-        Start.
-    t_span : (float, float)
-        Start and end.
-    rtol : float
-        Relative tolerance.
-    atol : float or None
-        Absolute tolerance, in the state's own units.
     """
     scales = law.scales
     if scales is None:
@@ -164,27 +125,7 @@ def stepper(
     floor: Floor,
     tally: Tally,
 ) -> Stepper:
-    """One of scipy's solvers at the start of a run, counting evaluations.
-
-    Parameters
-    ----------
-    law : Law
-        What moves the flock.
-    flow : callable
-        What is integrated: its `flow`, or that of a piece.
-    q0, p0 : ndarray, shape (n, m)
-        Start.
-    t_span : (float, float)
-        Start and end.
-    method : str
-        One of scipy's solvers.
-    rtol : float
-        Relative tolerance.
-    floor : Floor
-        Absolute ones.
-    tally : Tally
-        Where evaluations are counted.
-    """
+    """One of scipy's solvers at the start of a run, counting evaluations."""
     frame = Frame.of(t_span[0], q0, p0, energetic=has_energy(law, t_span[0], q0, p0))
     sizes = (frame.size, frame.size, int(frame.energetic))
     atol = np.concatenate([np.full(size, value) for size, value in zip(sizes, floor, strict=True)])
@@ -194,17 +135,7 @@ def stepper(
 
 
 def counted(flow: Flow, tally: Tally, method: str) -> Flow:
-    """A flow that counts its evaluations, and stops a solver that would not notice that it is no longer finite.
-
-    Parameters
-    ----------
-    flow : callable
-        ``flow(t, q, p) -> (u, dH/dt)``.
-    tally : Tally
-        Where they are counted.
-    method : str
-        The solver.
-    """
+    """A flow that counts its evaluations, and stops a solver that would not notice that it is no longer finite."""
 
     def evaluated(t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
         tally.evaluations += 1
@@ -231,25 +162,6 @@ def adaptive(
 
     A step that leaps over an encounter, or (with a method that has no past) breaks the energy's balance by more than
     `rtol` of it, is made again, and shorter; `tally.notes` gets how many were.
-
-    Parameters
-    ----------
-    law : Law
-        What moves the flock.
-    q0, p0 : ndarray, shape (n, m)
-        Start.
-    t_span : (float, float)
-        Start and end.
-    method : str
-        One of scipy's solvers.
-    rtol : float
-        Relative tolerance.
-    floor : Floor
-        Absolute ones.
-    keep : ndarray or None
-        Times to keep; every step if None.
-    tally : Tally
-        Filled in on the way.
     """
     solver = stepper(law, law.flow, q0, p0, t_span, method, rtol, floor, tally)
     frame, encounters = solver.frame, Encounters.of(law, len(q0))
@@ -300,21 +212,6 @@ def rk4(
 
     A step that would leap over an encounter is made again, and shorter: dt is the longest step, and what a step does
     not see is not an error of its order. `tally.notes` gets how many were.
-
-    Parameters
-    ----------
-    law : Law
-        What moves the flock.
-    q0, p0 : ndarray, shape (n, m)
-        Start.
-    t_span : (float, float)
-        Start and end.
-    dt : float
-        Step.
-    keep : ndarray or None
-        Times to keep; every step if None.
-    tally : Tally
-        Filled in on the way.
     """
     energetic, encounters = has_energy(law, t_span[0], q0, p0), Encounters.of(law, len(q0))
     t, state, work = t_span[0], State(q0.copy(), p0.copy(), np.empty(0)), 0.0
@@ -364,15 +261,6 @@ def _rk4_step(law: Law, t: float, state: State, rate: float, h: float) -> tuple[
 def count_steps(start: float, stop: float, dt: float, rounded: Callable[[float], float] = np.ceil) -> int:
     """How many steps of dt it takes between two times; the times' own rounding makes none more or less.
 
-    Parameters
-    ----------
-    start, stop : float
-        The times.
-    dt : float
-        The step.
-    rounded : callable
-        `numpy.ceil` counts a step that is cut short, `numpy.floor` does not.
-
     Examples
     --------
     >>> count_steps(0.0, 0.3, 0.1), count_steps(1e6, 1e6 + 0.3, 0.1), count_steps(0.0, 0.31, 0.1)
@@ -401,19 +289,7 @@ def _stops(t_span: tuple[float, float], dt: float, keep: FloatArray | None) -> I
 def discrete(
     law: DiscreteLaw, q0: FloatArray, p0: FloatArray, t_span: tuple[float, float], tally: Tally
 ) -> Iterator[Sample]:
-    """Iterate the map; sample k holds the state at t0 + k dt and the input that brought it there.
-
-    Parameters
-    ----------
-    law : DiscreteLaw
-        The map.
-    q0, p0 : ndarray, shape (n, m)
-        Start.
-    t_span : (float, float)
-        Start and end.
-    tally : Tally
-        Filled in on the way.
-    """
+    """Iterate the map; sample k holds the state at t0 + k dt and the input that brought it there."""
     q, p, memory = q0, p0, law.start(q0, p0)
     yield Sample(t_span[0], q, p, np.zeros_like(q), _copied(memory))
     steps = count_steps(*t_span, law.dt, np.floor)
@@ -434,17 +310,7 @@ def discrete(
 
 
 def nearest(samples: Iterator[Sample], keep: FloatArray, dt: float) -> Iterator[Sample]:
-    """The steps nearest to the wanted times: between its steps a map has no state.
-
-    Parameters
-    ----------
-    samples : iterator of Sample
-        Steps in order.
-    keep : ndarray
-        Rising times.
-    dt : float
-        Step of the map.
-    """
+    """The steps nearest to the wanted times: between its steps a map has no state."""
     wanted = 0
     for sample in samples:
         while wanted < keep.size and keep[wanted] <= sample.t + 0.5 * dt:

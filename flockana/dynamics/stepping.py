@@ -51,17 +51,7 @@ class Frame:
 
     @classmethod
     def of(cls, t0: float, q0: FloatArray, p0: FloatArray, *, energetic: bool) -> Frame:
-        """That of a start.
-
-        Parameters
-        ----------
-        t0 : float
-            Its time.
-        q0, p0 : ndarray, shape (n, m)
-            Positions and velocities.
-        energetic : bool
-            Whether ∫ dH/dt is integrated.
-        """
+        """That of a start."""
         place, velocity = (np.tile(x.mean(axis=0), len(x)) for x in (q0, p0))
         rest = np.zeros(int(energetic))
         origin, drift = np.concatenate([place, velocity, rest]), np.concatenate([velocity, 0.0 * place, rest])
@@ -73,48 +63,22 @@ class Frame:
         return self.shape[0] * self.shape[1]
 
     def start(self, q0: FloatArray, p0: FloatArray) -> FloatArray:
-        """The vector of the start.
-
-        Parameters
-        ----------
-        q0, p0 : ndarray, shape (n, m)
-            Positions and velocities.
-        """
+        """The vector of the start."""
         y0: FloatArray = np.concatenate([q0.ravel(), p0.ravel(), np.zeros(int(self.energetic))]) - self.origin
         return y0
 
     def state(self, t: float, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """(q, p) of a vector.
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        y : ndarray, shape (N,)
-            The vector.
-        """
+        """(q, p) of a vector."""
         whole = y + (self.origin + self.drift * (t - self.t0))
         both = whole[: 2 * self.size].reshape(2, *self.shape)
         return both[0], both[1]
 
     def input(self, f: FloatArray) -> FloatArray:
-        """The accelerations in a rate of the vector.
-
-        Parameters
-        ----------
-        f : ndarray, shape (N,)
-            The rate.
-        """
+        """The accelerations in a rate of the vector."""
         return f[self.size : 2 * self.size].reshape(self.shape)
 
     def rate(self, flow: Flow) -> Callable[[float, FloatArray], FloatArray]:
-        """The right-hand side of the vector.
-
-        Parameters
-        ----------
-        flow : callable
-            ``flow(t, q, p) -> (u, dH/dt)``.
-        """
+        """The right-hand side of the vector."""
         size, energetic = self.size, self.energetic
 
         def rhs(t: float, y: FloatArray) -> FloatArray:
@@ -136,13 +100,7 @@ class Check(Protocol):
     """Something to hold a step against."""
 
     def share(self, before: Moment, after: Moment) -> float:
-        """How much of a step may be taken; 1 if it stands.
-
-        Parameters
-        ----------
-        before, after : Moment
-            Its ends, as it was made.
-        """
+        """How much of a step may be taken; 1 if it stands."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,13 +116,7 @@ class Meetings:
     encounters: Encounters
 
     def share(self, before: Moment, after: Moment) -> float:
-        """How much of a step may be taken.
-
-        Parameters
-        ----------
-        before, after : Moment
-            Its ends.
-        """
+        """How much of a step may be taken."""
         return self.encounters.share(after.t - before.t, before.state, after.state)
 
 
@@ -191,13 +143,7 @@ class Balance:
         self._in_vain = 0  # steps in a row for which halving did nothing
 
     def share(self, before: Moment, after: Moment) -> float:
-        """How much of a step may be taken.
-
-        Parameters
-        ----------
-        before, after : Moment
-            Its ends.
-        """
+        """How much of a step may be taken."""
         if self._in_vain == _PATIENCE:
             return 1.0
         first = self._known[1] if self._known[0] == before.t else self._energy(before)
@@ -256,17 +202,7 @@ class Stepper:
         self.begin(flow, t, y)
 
     def begin(self, flow: Flow, t: float, y: FloatArray) -> None:
-        """Go on from here, with another flow.
-
-        Parameters
-        ----------
-        flow : callable
-            ``flow(t, q, p) -> (u, dH/dt)``.
-        t : float
-            Time.
-        y : ndarray, shape (N,)
-            The state.
-        """
+        """Go on from here, with another flow."""
         self._rhs = self.frame.rate(flow)
         self._open(t, y, self.end, None)
         self.now = self._moment()
@@ -293,13 +229,7 @@ class Stepper:
         return self.now.t >= self.end
 
     def step(self, checks: tuple[Check, ...]) -> bool:
-        """One step that stands, to a new `now`; False if the solver gives up, for the reason in `message`.
-
-        Parameters
-        ----------
-        checks : tuple of Check
-            What the step is held against, in this order.
-        """
+        """One step that stands, to a new `now`; False if the solver gives up, for the reason in `message`."""
         start = self.now
         while True:
             if self._solver.status == "finished":  # a step that was made again ended here

@@ -36,25 +36,6 @@ def adaptive_with_switches(
 
     None is missed that the step's interpolant makes, however short the visit (`turns`). A pair held at a surface ends
     the run: its switches would become ever more frequent. `tally.notes` gets the number of switches.
-
-    Parameters
-    ----------
-    law : SwitchedLaw
-        What moves the flock.
-    q0, p0 : ndarray, shape (n, m)
-        Start.
-    t_span : (float, float)
-        Start and end.
-    method : str
-        One of scipy's solvers.
-    rtol : float
-        Relative tolerance.
-    floor : Floor
-        Absolute ones.
-    keep : ndarray or None
-        Times to keep; every step and every switch if None.
-    tally : Tally
-        Filled in on the way.
     """
     pieces = law.pieces(q0)
     solver = stepper(law, _held(law, pieces), q0, p0, t_span, method, rtol, floor, tally)
@@ -146,17 +127,6 @@ def turns(law: SwitchedLaw, pieces: Pieces, way: Way, start: float, end: float) 
 
     The interpolant of every solver is a polynomial, and so are the squares of distances: their turns are roots. Only
     pairs are asked whose two agents' ways, each bounded by the coefficients of its series, could reach an edge.
-
-    Parameters
-    ----------
-    law : SwitchedLaw
-        What moves the flock.
-    pieces : ndarray of int8
-        Where each pair is held.
-    way : callable
-        The step's interpolant, from a time to positions.
-    start, end : float
-        The step.
     """
     times = 0.5 * (start + end) + 0.5 * (end - start) * _NODES
     places = np.stack([way(t) for t in times.tolist()])  # (nodes, n, m)

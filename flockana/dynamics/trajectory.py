@@ -485,11 +485,6 @@ class Trajectory:
 def to_data_mapping(stats: Mapping[str, Any]) -> dict[str, Any]:
     """Plain data of a mapping with text keys.
 
-    Parameters
-    ----------
-    stats : mapping
-        Numbers, strings and sequences of them by name.
-
     Examples
     --------
     >>> to_data_mapping({"steps": np.int64(3)})

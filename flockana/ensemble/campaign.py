@@ -142,16 +142,6 @@ def ensemble(
 def ensure_seeds(seeds: Any) -> tuple[int, ...]:
     """Return seeds as a tuple of whole numbers >= 0, each of them once.
 
-    Parameters
-    ----------
-    seeds : iterable of int
-        What the caller gave.
-
-    Raises
-    ------
-    ArgumentError
-        If there are none, one is bad, or one comes twice.
-
     Examples
     --------
     >>> ensure_seeds(range(3))

@@ -26,23 +26,7 @@ _LOOK = 0.05  # seconds between looks for a first worker
 
 @contextmanager
 def connected(address: str, count: int) -> Iterator[tuple[Executor, Callable[[], int]]]:
-    """The executor of a cluster, and a function that tells how many runs it can make at once, now.
-
-    Parameters
-    ----------
-    address : str
-        Of a Dask scheduler, or ``"local"`` to start a cluster, which ends at the end.
-    count : int
-        Worker processes to start, with ``"local"``.
-
-    Raises
-    ------
-    ArgumentError
-        If Dask is not installed.
-    SolverError
-        If there is no scheduler at the address, it has no workers, or they cannot be started; and from the function, if
-        the scheduler or all workers are lost.
-    """
+    """The executor of a cluster, and a function that tells how many runs it can make at once, now."""
     try:
         import distributed  # noqa: F401
     except ImportError as error:

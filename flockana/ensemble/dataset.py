@@ -29,15 +29,6 @@ RESERVED = (
 def job_grid(axes: Mapping[str, Sequence[Scalar]], fixed: Mapping[str, Scalar], seeds: Sequence[int]) -> list[Job]:
     """All runs of an ensemble, in the order of its dataset: parameters as given, seeds fastest.
 
-    Parameters
-    ----------
-    axes : mapping of str to sequence
-        Values by option.
-    fixed : mapping of str to scalar
-        Options with one value.
-    seeds : sequence of int
-        Seeds.
-
     Examples
     --------
     >>> [job.seed for job in job_grid({"n": [3, 4]}, {}, [0, 1])]
@@ -54,17 +45,7 @@ def to_dataset(
     seeds: Sequence[int],
     records: Sequence[Record],
 ) -> xarray.Dataset:
-    """Lay records out along parameters, seeds, claims and theorems.
-
-    Parameters
-    ----------
-    request : Request
-        What was asked.
-    axes, fixed, seeds
-        As in `job_grid`.
-    records : sequence of Record
-        In the order of `job_grid`.
-    """
+    """Lay records out along parameters, seeds, claims and theorems."""
     import xarray
 
     dims, shape = (*axes, "seed"), (*(len(values) for values in axes.values()), len(seeds))
@@ -116,11 +97,6 @@ def to_dataset(
 def metric_name(name: str) -> str:
     """The variable of a measure: its own name, or the function's in a ``"module:function"``.
 
-    Parameters
-    ----------
-    name : str
-        As in `Request`.
-
     Examples
     --------
     >>> metric_name("strain"), metric_name("my.module:spread")
@@ -150,18 +126,7 @@ def _float(value: float | None) -> float:
 
 
 def ensure_ensemble(dataset: Any) -> None:
-    """Check that a dataset is one of `ensemble`.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        What the caller gave.
-
-    Raises
-    ------
-    ArgumentError
-        If it is not.
-    """
+    """Check that a dataset is one of `ensemble`."""
     import xarray
 
     if not (isinstance(dataset, xarray.Dataset) and {"status", "run"} <= {*dataset} and "seed" in dataset.dims):

@@ -47,11 +47,6 @@ def _sources(root: Path) -> list[Path]:
 def digest_of_sources(sources: Mapping[str, bytes]) -> str:
     """Digest of files by name, of what Python makes of them: comments, layout and docstrings do not count.
 
-    Parameters
-    ----------
-    sources : mapping of str to bytes
-        Contents by name; modules end in ``.py``.
-
     Examples
     --------
     >>> plain, commented = b"x = 1", b"x = (1)  # one"
@@ -82,11 +77,6 @@ def _meaning(source: bytes) -> bytes:
 
 def run_key(what: Mapping[str, Any]) -> str:
     """Key of one run in a store: a digest of plain data in which the order of names does not matter.
-
-    Parameters
-    ----------
-    what : mapping
-        Scenario, options, seed, theorems, metrics, tolerances, version of the mathematics.
 
     Examples
     --------

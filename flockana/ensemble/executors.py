@@ -36,15 +36,7 @@ class Serial(Executor):
     """
 
     def submit(self, function: Callable[..., Any], /, *arguments: Any, **options: Any) -> Future[Any]:
-        """Call the function now; Ctrl-C ends it and goes on to the caller.
-
-        Parameters
-        ----------
-        function : callable
-            What to call.
-        *arguments, **options
-            With what.
-        """
+        """Call the function now; Ctrl-C ends it and goes on to the caller."""
         future: Future[Any] = Future()
         try:
             future.set_result(function(*arguments, **options))
@@ -77,24 +69,7 @@ class Crew:
 
 @contextmanager
 def crew(executor: Executor | None = None, *, cluster: str | None = None, jobs: int | None = None) -> Iterator[Crew]:
-    """Who makes the runs; what is started here ends here.
-
-    Parameters
-    ----------
-    executor : Executor, optional
-        The user's own, which is left running.
-    cluster : str, optional
-        Address of a Dask scheduler, or ``"local"`` to start one.
-    jobs : int, optional
-        Processes to start, by default as many as there are cores; with 1 this process works itself.
-
-    Raises
-    ------
-    ArgumentError
-        If the choices exclude each other.
-    SolverError
-        If there is no scheduler at the address, or it has no workers.
-    """
+    """Who makes the runs; what is started here ends here."""
     ensure_crew(executor, cluster, jobs)
     count = cores() if jobs is None else jobs
     if executor is not None:
@@ -113,18 +88,7 @@ def crew(executor: Executor | None = None, *, cluster: str | None = None, jobs: 
 
 
 def ensure_crew(executor: Any, cluster: Any, jobs: Any) -> None:
-    """Check who shall make the runs, before anything is started.
-
-    Parameters
-    ----------
-    executor, cluster, jobs
-        As in `crew`.
-
-    Raises
-    ------
-    ArgumentError
-        If a choice is bad, or two exclude each other.
-    """
+    """Check who shall make the runs, before anything is started."""
     if executor is not None and not isinstance(executor, Executor):
         raise ArgumentError(f"executor = {executor!r}: expected a concurrent.futures.Executor")
     if executor is not None and (cluster is not None or jobs is not None):
@@ -160,20 +124,6 @@ def make_runs(request: Request, jobs: Sequence[Job], hands: Crew) -> Iterator[tu
 
     A run that ends its worker (for want of memory, say) is found by trying those under suspicion one at a time, and
     recorded as such; all others are made again.
-
-    Parameters
-    ----------
-    request : Request
-        What is asked of each.
-    jobs : sequence of Job
-        Which.
-    hands : Crew
-        Who does it.
-
-    Raises
-    ------
-    SolverError
-        If the executor broke and cannot be renewed, or its workers die one after the other.
     """
     waiting, suspects = deque(jobs), deque[Job]()
     pending: dict[Future[tuple[Record, ...]], tuple[Job, ...]] = {}

@@ -111,11 +111,6 @@ METRICS = tuple(_MEASURES)
 def measure_named(name: str) -> Measure:
     """The measure of that name.
 
-    Parameters
-    ----------
-    name : str
-        One of `METRICS`.
-
     Examples
     --------
     >>> measure_named("strain").text

@@ -29,24 +29,7 @@ def phases(
     ε₁ of Definition 5 of
     Olfati-Saber (2006); *other*, connected, but still moving or strained. A phase is of the end time, not of a limit.
 
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        From `ensemble`, with the measures end_distance, components, slip and deviation_energy.
-    contact : float
-        Distance, relative to d, below which agents count as collapsed onto each other.
-    tolerances : Tolerances, optional
-        Its `mismatch` and `deviation`.
-
-    Returns
-    -------
-    xarray.DataArray
-        Codes into `PHASES`, of the dimensions of the runs; -1 where a run did not complete.
-
-    Raises
-    ------
-    ArgumentError
-        If a measure is missing.
+    Returns xarray.DataArray Codes into `PHASES`, of the dimensions of the runs; -1 where a run did not complete.
 
     Examples
     --------

@@ -39,15 +39,7 @@ class ProcessPool(ProcessPoolExecutor):
         super().__init__(jobs, mp_context=context, initializer=_begin_worker)
 
     def submit(self, function: Callable[..., Any], /, *arguments: Any, **options: Any) -> Future[Any]:
-        """Call the function in a process, which is started if there are too few.
-
-        Parameters
-        ----------
-        function : callable
-            What to call.
-        *arguments, **options
-            With what.
-        """
+        """Call the function in a process, which is started if there are too few."""
         with interrupts_held(), interrupts_hidden(), single_threaded_children():
             return super().submit(function, *arguments, **options)
 

@@ -137,18 +137,7 @@ class Store:
             return int(self._file.execute("SELECT COUNT(*) FROM runs").fetchone()[0])
 
     def read(self, keys: Iterable[str]) -> dict[str, Record]:
-        """The runs that are there, by key.
-
-        Parameters
-        ----------
-        keys : iterable of str
-            Which to look for.
-
-        Raises
-        ------
-        FileError
-            If the file is damaged.
-        """
+        """The runs that are there, by key."""
         wanted, found = list(keys), {}
         with self._explained():
             for first in range(0, len(wanted), _AT_ONCE):
@@ -163,20 +152,7 @@ class Store:
         return found
 
     def add(self, scenario: str, records: Mapping[str, Record]) -> None:
-        """Write runs, all of them or none; a run that is there already stays as it is.
-
-        Parameters
-        ----------
-        scenario : str
-            Whose runs.
-        records : mapping of str to Record
-            By key.
-
-        Raises
-        ------
-        FileError
-            If they cannot be written, such as on a full disk.
-        """
+        """Write runs, all of them or none; a run that is there already stays as it is."""
         rows = [
             (key, scenario, one.job.seed, json.dumps(dict(one.job.options)), one.status, one.to_json())
             for key, one in records.items()

@@ -108,11 +108,6 @@ class Record:
     def from_json(cls, text: str) -> Record:
         """Read what `to_json` wrote.
 
-        Parameters
-        ----------
-        text : str
-            JSON.
-
         Examples
         --------
         >>> record = Record(Job(3, (("n", 7),)), "complete", claims={"os-1:i": ("verified", 0.1, None)})
@@ -127,16 +122,6 @@ class Record:
 
 def reference(function: Callable[..., Any]) -> str:
     """``"module:name"`` of a function that another process can import.
-
-    Parameters
-    ----------
-    function : callable
-        Defined at the top of a module.
-
-    Raises
-    ------
-    ArgumentError
-        If it is not found under its own name, as a lambda or an inner function is not.
 
     Examples
     --------
@@ -155,13 +140,7 @@ def reference(function: Callable[..., Any]) -> str:
 
 
 def resolve(name: str) -> Any:
-    """The function of a ``"module:name"``.
-
-    Parameters
-    ----------
-    name : str
-        As `reference` gave it.
-    """
+    """The function of a ``"module:name"``."""
     module, _, path = name.partition(":")
     item: Any = importlib.import_module(module)
     for part in path.split("."):
@@ -170,22 +149,7 @@ def resolve(name: str) -> Any:
 
 
 def run_batch(request: Request, jobs: tuple[Job, ...]) -> tuple[Record, ...]:
-    """Make some runs, one after the other, in this process.
-
-    Parameters
-    ----------
-    request : Request
-        What is asked of each.
-    jobs : tuple of Job
-        Which.
-
-    Raises
-    ------
-    SolverError
-        If this process has other mathematics than the one that asks.
-    KeyboardInterrupt
-        If a run was interrupted.
-    """
+    """Make some runs, one after the other, in this process."""
     if mathematics() != request.mathematics:
         raise SolverError(
             f"a worker computes with version {mathematics()} of the mathematics, expected {request.mathematics}: "
@@ -196,20 +160,7 @@ def run_batch(request: Request, jobs: tuple[Job, ...]) -> tuple[Record, ...]:
 
 
 def run_one(request: Request, job: Job) -> Record:
-    """Make one run; whatever goes wrong becomes part of its record.
-
-    Parameters
-    ----------
-    request : Request
-        What is asked of it.
-    job : Job
-        Which.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        If it was interrupted.
-    """
+    """Make one run; whatever goes wrong becomes part of its record."""
     started = time.perf_counter()
     try:
         with interrupts_recognised():
@@ -227,15 +178,7 @@ def run_one(request: Request, job: Job) -> Record:
 
 
 def build(name: str, job: Job) -> Scenario:
-    """The scenario of a job.
-
-    Parameters
-    ----------
-    name : str
-        A name of the catalogue, or ``"module:function"``.
-    job : Job
-        Seed and options.
-    """
+    """The scenario of a job."""
     if ":" not in name:
         return scenario(name, job.seed, **dict(job.options))
     made = resolve(name)(job.seed, **dict(job.options))

@@ -126,17 +126,7 @@ class Obstacle(ABC):
 
 
 def freeze_vector(obstacle: Obstacle, name: str, m: int | None = None) -> FloatArray:
-    """Validate a vector field of a frozen obstacle, keep it as a tuple, and return it as an array.
-
-    Parameters
-    ----------
-    obstacle : Obstacle
-        The dataclass, in its ``__post_init__``.
-    name : str
-        The field.
-    m : int, optional
-        Components expected.
-    """
+    """Validate a vector field of a frozen obstacle, keep it as a tuple, and return it as an array."""
     vector = ensure_vector(name, getattr(obstacle, name), m)
     object.__setattr__(obstacle, name, tuple(vector.tolist()))
     return vector

@@ -99,13 +99,6 @@ class SimplePolygon:
 def ball_clearance_on_way(ball: Sphere, start: FloatArray, end: FloatArray) -> FloatArray:
     """Least signed distance from a ball along straight ways, exact, shape (N,).
 
-    Parameters
-    ----------
-    ball : Sphere
-        The ball.
-    start, end : ndarray, shape (N, m)
-        Ends of the ways.
-
     Examples
     --------
     >>> ball_clearance_on_way(Sphere((0.0, 0.0), 1.0), np.array([[-9.0, 3.0]]), np.array([[9.0, 3.0]])).tolist()

@@ -67,19 +67,6 @@ def collision_barrier(alpha: AlphaInteraction, n: int, *, m: int = 2, starts: in
     Any pair will do, as agents are alike: the constraint is q_1 = q_2. Since every other pair then counts at least 0,
     the first is at least c*; and V(q) < the first minimum, with V not rising along the flow, excludes every collision.
 
-    Parameters
-    ----------
-    alpha : AlphaInteraction
-        The pair law.
-    n : int
-        Number of agents, 2 or more.
-    m : int
-        Dimension.
-    starts : int
-        Starts of each kind, random and lattice.
-    seed : int
-        Of the starts.
-
     Examples
     --------
     >>> round(collision_barrier(AlphaInteraction(), 3, starts=4).height, 3)
@@ -124,15 +111,7 @@ def _most_linked_first(q: FloatArray, alpha: AlphaInteraction) -> FloatArray:
 def bound_range(alpha: AlphaInteraction) -> tuple[float, float]:
     """Lengths between which a pair has ψ_α < ψ_α(r_α), so that it lowers V below that of pairs out of range.
 
-    Parameters
-    ----------
-    alpha : AlphaInteraction
-        The pair law.
-
-    Returns
-    -------
-    tuple of float
-        (shortest, r); the shortest is 0 where even a coincident pair has no more than ψ_α(r_α).
+    Returns tuple of float (shortest, r); the shortest is 0 where even a coincident pair has no more than ψ_α(r_α).
 
     Examples
     --------
@@ -153,13 +132,6 @@ def largest_clique(ratio: float, m: int) -> int | None:
     On a line p points have a ratio of p − 1 at least; four of the plane √2 (one angle is not acute), up to seven of it
     and five in space are known too. Beyond, balls of half the shortest distance about the points fit into Jung's ball.
 
-    Parameters
-    ----------
-    ratio : float
-        Longest over shortest distance, > 1.
-    m : int
-        Dimension.
-
     Examples
     --------
     >>> largest_clique(1.28, 2), largest_clique(1.5, 2), largest_clique(1.9, 1), largest_clique(1.28, 3)
@@ -175,11 +147,6 @@ def largest_clique(ratio: float, m: int) -> int | None:
 def turan_pairs(n: int, clique: int) -> int:
     """Most edges of a graph of n nodes without a clique of more than `clique` (Turán 1941).
 
-    Parameters
-    ----------
-    n, clique : int
-        Nodes, largest clique allowed.
-
     Examples
     --------
     >>> [turan_pairs(n, 3) for n in (3, 4, 6)]
@@ -192,13 +159,6 @@ def turan_pairs(n: int, clique: int) -> int:
 
 def energy_floor(alpha: AlphaInteraction, n: int, m: int = 2) -> float:
     """A proved lower bound of V over all configurations of n agents: pairs with ψ_α < ψ_α(r_α) form no large clique.
-
-    Parameters
-    ----------
-    alpha : AlphaInteraction
-        The pair law.
-    n, m : int
-        Agents, dimension.
 
     Examples
     --------
@@ -216,17 +176,7 @@ def energy_floor(alpha: AlphaInteraction, n: int, m: int = 2) -> float:
 def none_from(alpha: AlphaInteraction, m: int = 2) -> int | None:
     """Least n from which on, provably, no state at all has V < c*: Theorem 1(iii) says nothing there.
 
-    Parameters
-    ----------
-    alpha : AlphaInteraction
-        The pair law.
-    m : int
-        Dimension.
-
-    Returns
-    -------
-    int or None
-        None where the argument gives no bound.
+    Returns int or None None where the argument gives no bound.
 
     Examples
     --------
@@ -240,17 +190,7 @@ def none_from(alpha: AlphaInteraction, m: int = 2) -> int | None:
 def lattice_reach(alpha: AlphaInteraction, m: int = 2) -> int | None:
     """Largest n of which an exact α-lattice has V < c*: there Theorem 1(iii) is not vacuous.
 
-    Parameters
-    ----------
-    alpha : AlphaInteraction
-        The pair law.
-    m : int
-        Dimension: 1 (chains) or 2 (Harborth's lattices); in space the most links possible are not known.
-
-    Returns
-    -------
-    int or None
-        None where κ is too large for these lattices, or m = 3.
+    Returns int or None None where κ is too large for these lattices, or m = 3.
 
     Examples
     --------

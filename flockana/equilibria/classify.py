@@ -28,16 +28,6 @@ class Spectrum(NamedTuple):
 def ensure_small(n: int, m: int) -> None:
     """Raise if the whole Hessian spectrum of n agents would take more than a minute.
 
-    Parameters
-    ----------
-    n, m : int
-        Number of agents, dimension.
-
-    Raises
-    ------
-    ArgumentError
-        If n m > 6000.
-
     Examples
     --------
     >>> ensure_small(1000, 3)
@@ -50,13 +40,6 @@ def ensure_small(n: int, m: int) -> None:
 
 def landscape(potential: Potential, q: FloatArray) -> Landscape:
     """The potential about a configuration, with the force that is left there.
-
-    Parameters
-    ----------
-    potential : Potential
-        Whose Hessian.
-    q : ndarray, shape (n, m)
-        Positions.
 
     Examples
     --------
@@ -80,13 +63,6 @@ def spectrum(potential: Potential, q: FloatArray) -> Spectrum:
     What is zero there is a soft mode: a hinge that bends, a component that drifts; or a direction whose stiffness is
     no larger than what rounding and the force that is left account for (see `flockana.equilibria.curvature`).
 
-    Parameters
-    ----------
-    potential : Potential
-        Whose Hessian.
-    q : ndarray, shape (n, m)
-        Positions, an equilibrium; the more force is left, the more counts as zero.
-
     Examples
     --------
     >>> from flockana.laws.olfati_saber import Algorithm1
@@ -103,13 +79,6 @@ def spectrum(potential: Potential, q: FloatArray) -> Spectrum:
 def falling(potential: Potential, q: FloatArray) -> FloatArray | None:
     """The direction (n, m), of unit length, in which the potential falls most steeply to second order, if it does.
 
-    Parameters
-    ----------
-    potential : Potential
-        Whose Hessian.
-    q : ndarray, shape (n, m)
-        A critical point.
-
     Examples
     --------
     >>> from flockana.laws.olfati_saber import Algorithm1
@@ -123,11 +92,6 @@ def falling(potential: Potential, q: FloatArray) -> FloatArray | None:
 
 def kind_of(found: Spectrum) -> EquilibriumKind:
     """Name a spectrum: a negative direction decides before a zero one, which proves nothing.
-
-    Parameters
-    ----------
-    found : Spectrum
-        Off the rigid motions.
 
     Examples
     --------

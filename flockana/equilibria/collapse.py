@@ -56,15 +56,6 @@ class CollapseDiagram:
 def squeezed(alpha: AlphaInteraction, ratio: float, m: int = 2) -> Algorithm2:
     """Algorithm 2 with c1α = 1 and c1γ = ratio, its γ-agent at rest at the origin.
 
-    Parameters
-    ----------
-    alpha : AlphaInteraction
-        The pair law.
-    ratio : float
-        c1γ/c1α.
-    m : int
-        Dimension.
-
     Examples
     --------
     >>> squeezed(AlphaInteraction(), 0.5).gains.c1_gamma
@@ -75,13 +66,6 @@ def squeezed(alpha: AlphaInteraction, ratio: float, m: int = 2) -> Algorithm2:
 
 def nudged(q: FloatArray, d: float) -> FloatArray:
     """A configuration disturbed by 1e-4 d, always in the same way, so that no symmetry holds it up.
-
-    Parameters
-    ----------
-    q : ndarray, shape (n, m)
-        Positions.
-    d : float
-        Distance between neighbours.
 
     Examples
     --------
@@ -94,15 +78,6 @@ def nudged(q: FloatArray, d: float) -> FloatArray:
 
 def relaxed(alpha: AlphaInteraction, n: int, ratio: float) -> Equilibrium:
     """The minimum of U_λ that IPOPT finds from a hexagonal spiral of n agents, slightly disturbed.
-
-    Parameters
-    ----------
-    alpha : AlphaInteraction
-        The pair law.
-    n : int
-        Number of agents.
-    ratio : float
-        c1γ/c1α.
 
     Examples
     --------
@@ -158,11 +133,6 @@ def collapse_diagram(alpha: AlphaInteraction, sizes: Sequence[int], ratios: Sequ
 def natural_ratio(alpha: AlphaInteraction) -> float:
     """c1γ/c1α at which the γ-agent pulls as hard at a distance d as two agents repel each other at most.
 
-    Parameters
-    ----------
-    alpha : AlphaInteraction
-        The pair law.
-
     Examples
     --------
     >>> round(natural_ratio(AlphaInteraction(a=50.0, b=50.0)) / natural_ratio(AlphaInteraction()), 9)
@@ -179,26 +149,7 @@ def threshold(
     From below, since far above the threshold agents may rest apart again. Both ends of the bracket have been tried; it
     stays wider where a try inside it fails (near the threshold a flock settles slowly).
 
-    Parameters
-    ----------
-    collapses : callable
-        ratio -> bool; such as a relaxation by IPOPT, or the dynamics. A SolverError counts as no answer.
-    lowest : float
-        First ratio; lower ones are tried if it collapses.
-    factor : float
-        Step of the rise, > 1.
-    halvings : int
-        Bisections.
-
-    Returns
-    -------
-    tuple of float
-        (largest ratio seen safe, least ratio seen to collapse).
-
-    Raises
-    ------
-    SolverError
-        If nothing, or everything, collapses at ratios within a factor of 1e5 of the first.
+    Returns tuple of float (largest ratio seen safe, least ratio seen to collapse).
 
     Examples
     --------

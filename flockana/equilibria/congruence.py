@@ -16,11 +16,6 @@ _FLAT = 1e-6  # of the extent: so near a line or a plane a configuration lies in
 def spectrum_of_distances(q: FloatArray) -> FloatArray:
     """All pairwise distances in rising order: equal for congruent configurations, and rarely for others.
 
-    Parameters
-    ----------
-    q : ndarray, shape (n, m)
-        Positions.
-
     Examples
     --------
     >>> spectrum_of_distances(np.array([[0.0], [3.0], [1.0]])).tolist()
@@ -34,13 +29,6 @@ def congruent(first: FloatArray, second: FloatArray, *, tol: float) -> bool:
 
     Equal distance spectra are asked first; then the isometry is constructed, since different configurations can share
     a spectrum.
-
-    Parameters
-    ----------
-    first, second : ndarray, shape (n, m)
-        Configurations.
-    tol : float
-        Distance within which points agree.
 
     Examples
     --------

@@ -124,13 +124,7 @@ class Landscape:
         return Curvatures(self.values, signs, self.rounding)
 
     def change(self, k: int) -> float:
-        """By how much eigenvalue k changes on the way to the critical point; infinite if that is not near.
-
-        Parameters
-        ----------
-        k : int
-            Which, from the least.
-        """
+        """By how much eigenvalue k changes on the way to the critical point; infinite if that is not near."""
         reach = 2.0 * self.force / max(abs(float(self.values[k])), self.rounding or np.inf)
         if not reach <= _REACH * self.length:
             return float("inf")
@@ -152,11 +146,6 @@ class Landscape:
 
         Within a distance R up to which the stiffness keeps half of its least value λ, the potential rises by λR²/4 from
         the minimum, which is lower than here by no more than ρ²/λ.
-
-        Parameters
-        ----------
-        energy : float
-            ½ Σ‖v_i‖².
         """
         if not np.isfinite(self.distance):
             return False
@@ -194,15 +183,7 @@ class Landscape:
 def least_curvature(found: Landscape) -> tuple[float, float]:
     """The smallest curvature over the largest in modulus, and its error from rounding and the residual force.
 
-    Parameters
-    ----------
-    found : Landscape
-        About a configuration.
-
-    Returns
-    -------
-    tuple of float
-        (NaN, ∞) where there is nothing but rigid motions; (0, 0) where nothing is stiff at all.
+    Returns tuple of float (NaN, ∞) where there is nothing but rigid motions; (0, 0) where nothing is stiff at all.
     """
     values = found.values
     if not values.size:
@@ -217,11 +198,6 @@ def downhill(found: Landscape) -> FloatArray:
     """The direction (n, m), of unit length, in which the potential falls most steeply to second order.
 
     The same on every machine, in an eigenspace of several dimensions too: what a fixed vector has in it.
-
-    Parameters
-    ----------
-    found : Landscape
-        About a configuration where the least curvature is negative.
     """
     near = found.values <= found.values[0] + 1e-6 * abs(found.values[0])
     basis = found.vectors[:, near]

@@ -42,13 +42,6 @@ class GradientLimit:
 def structural_force(law: Algorithm1 | Algorithm2, q: FloatArray) -> FloatArray:
     """−∇V(q) of Algorithm 1, −∇U_λ of Algorithm 2 in the moving frame, shape (n, m).
 
-    Parameters
-    ----------
-    law : Algorithm1 or Algorithm2
-        The law.
-    q : ndarray, shape (n, m)
-        Positions.
-
     Examples
     --------
     >>> structural_force(Algorithm1(), np.array([[0.0], [7.0]])).ravel().tolist()
@@ -59,22 +52,6 @@ def structural_force(law: Algorithm1 | Algorithm2, q: FloatArray) -> FloatArray:
 
 def gradient_flow(law: Algorithm1 | Algorithm2, q0: Any, *, tol: float = 1e-11, horizon: float = 1e4) -> GradientLimit:
     """Follow q' = −∇U from q0 until the force vanishes; the last digits by Newton's method.
-
-    Parameters
-    ----------
-    law : Algorithm1 or Algorithm2
-        The law whose potential is descended.
-    q0 : array_like, shape (n, m)
-        Start.
-    tol : float
-        Residual force, relative to that of the law's `scales`, at which to stop.
-    horizon : float
-        Longest time of the flow, in units of d over the force scale.
-
-    Raises
-    ------
-    ArgumentError
-        With per-agent gains, under which the force does not vanish in a moving frame.
 
     Examples
     --------

@@ -27,18 +27,6 @@ _CONCENTRIC = 1e-12  # of unit axes, or of the lengths at hand: what is less is 
 def ensure_flock_law(law: Any, m: int) -> SumOfTerms:
     """Return the law if it is a sum of terms whose forces are gradients, without jumps, in m dimensions.
 
-    Parameters
-    ----------
-    law : object
-        What the caller gave.
-    m : int
-        Dimension of the flock.
-
-    Raises
-    ------
-    ArgumentError
-        If it is another law, has no pair term, or lives in another dimension.
-
     Examples
     --------
     >>> from flockana.laws.olfati_saber import Algorithm1
@@ -124,37 +112,17 @@ class Potential:
         return target
 
     def energy(self, q: FloatArray) -> float:
-        """Its value, pairs out of range included.
-
-        Parameters
-        ----------
-        q : ndarray, shape (n, m)
-            Positions.
-        """
+        """Its value, pairs out of range included."""
         return float(self.law.hamiltonian(self.t, q, np.zeros_like(q)))
 
     def listed_energy(self, q: FloatArray, pairs: LinkArray) -> float:
-        """Its value from the listed pairs, less the far potential of each pair of agents: no large constant to round.
-
-        Parameters
-        ----------
-        q : ndarray, shape (n, m)
-            Positions.
-        pairs : int array, shape (M, 2)
-            Pairs, all those within range among them.
-        """
+        """Its value from the listed pairs, less the far potential of each pair: no large constant to round."""
         lengths = np.linalg.norm(q[pairs[:, 1]] - q[pairs[:, 0]], axis=1)
         total = self.gain * float(np.sum(self.pair.energy_at(lengths) - self.pair.far_potential))
         return total + sum(term.energy(self.t, q) for term in self.others)
 
     def force(self, q: FloatArray) -> FloatArray:
-        """Its negative gradient by the law's own kernels, shape (n, m).
-
-        Parameters
-        ----------
-        q : ndarray, shape (n, m)
-            Positions.
-        """
+        """Its negative gradient by the law's own kernels, shape (n, m)."""
         push = self.law.flow(self.t, q, np.zeros_like(q))[0]
         if not self.pinned:
             return moving_frame(push)
@@ -165,34 +133,17 @@ class Potential:
         return still
 
     def residual(self, q: FloatArray) -> float:
-        """Largest force on an agent over `force_scale`.
-
-        Parameters
-        ----------
-        q : ndarray, shape (n, m)
-            Positions.
-        """
+        """Largest force on an agent over `force_scale`."""
         return float(np.linalg.norm(self.force(q), axis=1).max()) / self.force_scale
 
     def stiffness(self, q: FloatArray) -> Any:
-        """Its Hessian, sparse, in the order of ``q.ravel()``.
-
-        Parameters
-        ----------
-        q : ndarray, shape (n, m)
-            Positions.
-        """
+        """Its Hessian, sparse, in the order of ``q.ravel()``."""
         return self.law.stiffness(q, self.t)
 
     def symmetries(self, q: FloatArray) -> FloatArray:
         """Orthonormal basis (n m, k) of the rigid motions that leave it unchanged.
 
         All of them where shape and centre move apart; else the rotations about the γ-agent that move no obstacle.
-
-        Parameters
-        ----------
-        q : ndarray, shape (n, m)
-            Positions.
         """
         if not self.pinned:
             return rigid_motions(q)
@@ -209,15 +160,7 @@ class Potential:
 
 
 def inside_obstacle(law: Law, q: FloatArray) -> bool:
-    """Whether an agent is inside an obstacle, where ψ_β falls again and means nothing.
-
-    Parameters
-    ----------
-    law : Law
-        The law.
-    q : ndarray, shape (n, m)
-        Positions.
-    """
+    """Whether an agent is inside an obstacle, where ψ_β falls again and means nothing."""
     return not np.isfinite(q).all() or any(bool(obstacle.contains(q).any()) for obstacle in law.obstacles)
 
 

@@ -146,13 +146,7 @@ class Program:
         self._solvers: dict[tuple[float, int], Any] = {}
 
     def value(self, x: FloatArray) -> float:
-        """Objective at x; NaN where an agent is inside an obstacle, which makes IPOPT take a shorter step.
-
-        Parameters
-        ----------
-        x : ndarray, shape (n m,)
-            Positions over d.
-        """
+        """Objective at x; NaN where an agent is inside an obstacle, which makes IPOPT take a shorter step."""
         q = self.d * x.reshape(self.shape)
         if inside_obstacle(self.potential.law, q):
             return float("nan")
@@ -167,21 +161,7 @@ class Program:
         tol: float = 1e-10,
         max_iter: int = 3000,
     ) -> tuple[FloatArray, bool, str]:
-        """Minimise from q0: (positions, whether IPOPT succeeded, IPOPT's status).
-
-        Parameters
-        ----------
-        q0 : ndarray, shape (n, m)
-            Start.
-        basis : ndarray, shape (n m, gauge), optional
-            Gauge; the symmetries at q0 by default.
-        reach : float
-            No coordinate changes by more than this.
-        tol : float
-            Gradient, relative to the force scale, at which IPOPT stops.
-        max_iter : int
-            Most iterations.
-        """
+        """Minimise from q0: (positions, whether IPOPT succeeded, IPOPT's status)."""
         start = q0.ravel() / self.d
         basis = self.potential.symmetries(q0) if basis is None else basis
         held = basis.T @ start

@@ -21,20 +21,7 @@ _AGREE = 1e-6  # relative: eigenvalues written on one machine and computed on an
 
 
 def write_equilibrium(found: Equilibrium, path: str | Path) -> None:
-    """Write an equilibrium, its law and its Hessian spectrum as JSON; numbers read back exactly.
-
-    Parameters
-    ----------
-    found : Equilibrium
-        What was found (of a γ-agent that moves, the file keeps the law at t = 0).
-    path : str or Path
-        The file.
-
-    Raises
-    ------
-    FileError
-        If it cannot be written.
-    """
+    """Write an equilibrium, its law and its Hessian spectrum as JSON; numbers read back exactly."""
     data = {
         "format": _FORMAT,
         "law": to_data(found.law),
@@ -51,18 +38,7 @@ def write_equilibrium(found: Equilibrium, path: str | Path) -> None:
 
 
 def read_equilibrium(path: str | Path) -> Equilibrium:
-    """Read an equilibrium and compute everything anew from its positions; what the file claims must agree.
-
-    Parameters
-    ----------
-    path : str or Path
-        A file that `write_equilibrium` wrote.
-
-    Raises
-    ------
-    FileError
-        If it is no such file, is no equilibrium of its law, or claims what is not so.
-    """
+    """Read an equilibrium and compute everything anew from its positions; what the file claims must agree."""
     try:
         data = json.loads(Path(path).read_text())
         if data["format"] != _FORMAT:

@@ -21,26 +21,6 @@ def resting_state(law: Any, q0: Any, *, t: float = 0.0) -> FloatArray:
 
     Where a law has a potential `find_equilibrium` says more: which kind of equilibrium it is.
 
-    Parameters
-    ----------
-    law : Law
-        A continuous law with `derivatives`.
-    q0 : array_like, shape (n, m)
-        Start.
-    t : float
-        When, for a law that depends on time.
-
-    Returns
-    -------
-    ndarray, shape (n, m)
-
-    Raises
-    ------
-    ArgumentError
-        On another law or bad positions.
-    SolverError
-        If the forces do not vanish near q0.
-
     Examples
     --------
     >>> from flockana.laws.minimal import MinimalFlocking

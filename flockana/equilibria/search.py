@@ -27,19 +27,6 @@ _LEVEL = 1e-4  # of c1α ψ_α(r_α): energies this close may be those of one eq
 def random_starts(n: int, m: int, d: float, count: int, *, seed: int = 0, density: float = 1.3) -> list[FloatArray]:
     """Starts uniform in a ball that holds n agents denser than a lattice of spacing d by the given factor.
 
-    Parameters
-    ----------
-    n, m : int
-        Agents, dimension.
-    d : float
-        Distance between neighbours.
-    count : int
-        How many starts.
-    seed : int
-        Of the generator.
-    density : float
-        Agents per volume, relative to one in d^m.
-
     Examples
     --------
     >>> [start.shape for start in random_starts(5, 3, 7.0, 2)]
@@ -60,19 +47,6 @@ def lattice_starts(n: int, m: int, d: float, count: int, *, seed: int = 0, noise
     """Starts grown agent by agent on the line, the triangular lattice or FCC, at random free places, and disturbed.
 
     Of three random free places the one with the most neighbours is taken: compact patches, but not the same each time.
-
-    Parameters
-    ----------
-    n, m : int
-        Agents, dimension.
-    d : float
-        Distance between neighbours.
-    count : int
-        How many starts.
-    seed : int
-        Of the generator.
-    noise : float
-        Standard deviation of the disturbance, over d.
 
     Examples
     --------
@@ -143,13 +117,7 @@ class Search:
 
     @property
     def best(self) -> Equilibrium:
-        """The equilibrium of lowest energy.
-
-        Raises
-        ------
-        SolverError
-            If every start failed.
-        """
+        """The equilibrium of lowest energy."""
         if not self.found:
             raise SolverError(
                 f"none of {self.starts} starts led to an equilibrium; the first failure: {self.failures[:1]}"
@@ -157,15 +125,7 @@ class Search:
         return self.found[0].equilibrium
 
     def strained(self, *, lattice: float = 1e-6, distinct: bool = True) -> tuple[Equilibrium, ...]:
-        """Strict minima that are no α-lattice.
-
-        Parameters
-        ----------
-        lattice : float
-            Largest |link − d|/d of what is one.
-        distinct : bool
-            Leave out those in which agents coincide.
-        """
+        """Strict minima that are no α-lattice."""
         return tuple(
             one.equilibrium
             for one in self.found
@@ -184,26 +144,6 @@ def _attempt(law: Any, method: str, start: FloatArray) -> Equilibrium | str:
 
 def search(law: Any, starts: Iterable[Any], *, method: str = "minimise", executor: Executor | None = None) -> Search:
     """Find the equilibria that many starts lead to, each once.
-
-    Parameters
-    ----------
-    law : Algorithm1, Algorithm2 or Algorithm3
-        The law.
-    starts : iterable of array_like, shape (n, m)
-        Starts, all of one shape, such as `random_starts` and `lattice_starts`.
-    method : {"minimise", "root"}
-        As in `find_equilibrium`; ``"root"`` finds saddles too.
-    executor : concurrent.futures.Executor, optional
-        Where to solve; here and now if not given.
-
-    Returns
-    -------
-    Search
-
-    Raises
-    ------
-    ArgumentError
-        If there is no start, or their shapes differ.
 
     Examples
     --------
@@ -229,11 +169,6 @@ def distinct(equilibria: Sequence[Equilibrium]) -> tuple[Found, ...]:
     """Group equilibria up to translation, rotation, reflection and numbering, lowest energy first.
 
     Degenerate ones come in families (a hinge bends, a component drifts): those of equal energy and index are one.
-
-    Parameters
-    ----------
-    equilibria : sequence of Equilibrium
-        Of one law and one number of agents.
     """
     groups: list[list[Equilibrium]] = []
     for one in _by_energy(equilibria):

@@ -163,24 +163,6 @@ def find_equilibrium(
 def finish(potential: Potential, q: FloatArray, done: bool, message: str, *, strict: bool = True) -> Equilibrium:
     """Polish what a solver returned, classify it, and refuse what is no equilibrium.
 
-    Parameters
-    ----------
-    potential : Potential
-        Whose equilibrium.
-    q : ndarray, shape (n, m)
-        What the solver returned.
-    done : bool
-        Whether it reported success.
-    message : str
-        Its status.
-    strict : bool
-        Raise on failure.
-
-    Raises
-    ------
-    SolverError
-        If the solver failed, or the force does not vanish.
-
     Examples
     --------
     >>> from flockana.laws.olfati_saber import Algorithm1
@@ -230,11 +212,6 @@ def _fixed_in_space(potential: Potential) -> bool:
 
 def all_pairs(n: int) -> LinkArray:
     """Every pair of n agents.
-
-    Parameters
-    ----------
-    n : int
-        Number of agents.
 
     Examples
     --------

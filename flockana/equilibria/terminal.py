@@ -67,20 +67,6 @@ def terminal_state(
 ) -> TerminalState:
     """Measure a state: residual force, link lengths, Hessian off the rigid motions.
 
-    Parameters
-    ----------
-    law : Algorithm1 or Algorithm2
-        The law.
-    q, p : ndarray, shape (n, m)
-        Positions and velocities.
-    contact : float
-        Distance, relative to d, at which two agents count as coincident.
-
-    Raises
-    ------
-    ArgumentError
-        With per-agent gains, under which there is no moving frame to measure forces in.
-
     Examples
     --------
     >>> at_rest = terminal_state(Algorithm1(), np.array([[0.0, 0.0], [7.0, 0.0]]), np.zeros((2, 2)))
@@ -120,11 +106,6 @@ def _forces(law: Any, q: FloatArray, p: FloatArray) -> FloatArray:
 def rigid_motions(q: FloatArray) -> FloatArray:
     """Orthonormal basis of the infinitesimal translations and rotations of a configuration, shape (n m, k).
 
-    Parameters
-    ----------
-    q : ndarray, shape (n, m)
-        Positions, in any unit; k is less than m(m+1)/2 where they are degenerate (a point, a line in space).
-
     Examples
     --------
     >>> rigid_motions(np.array([[0.0, 0.0], [1.0, 0.0]])).shape
@@ -151,13 +132,6 @@ def relative_curvature(law: Any, q: FloatArray) -> float:
 
     NaN where there is nothing but rigid motions, or where the matrix is too large for its whole spectrum.
 
-    Parameters
-    ----------
-    law : Algorithm1 or Algorithm2
-        A law with `stiffness`.
-    q : ndarray, shape (n, m)
-        Positions.
-
     Examples
     --------
     A bond of length d resists stretching:
@@ -171,15 +145,6 @@ def relative_curvature(law: Any, q: FloatArray) -> float:
 
 def surroundings(law: Any, q: FloatArray, *, force: float = 0.0) -> Landscape | None:
     """The structural potential about a configuration; None where its Hessian is too large for the whole spectrum.
-
-    Parameters
-    ----------
-    law : Algorithm1 or Algorithm2
-        A law with `stiffness`.
-    q : ndarray, shape (n, m)
-        Positions.
-    force : float
-        What is left of the force, over all coordinates.
 
     Examples
     --------

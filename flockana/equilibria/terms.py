@@ -42,18 +42,6 @@ def _compile(name: str, gradient: list[Any], symbols: Any, values: dict[Any, flo
 def pair_term(pair: PairInteraction, m: int) -> ca.Function:
     """Gradient (m,) and Hessian (m, m) of the pair's potential in Δ = q_j − q_i.
 
-    Parameters
-    ----------
-    pair : PairInteraction
-        The pair law, one whose definition `flockana.symbolic` has.
-    m : int
-        Dimension.
-
-    Raises
-    ------
-    ArgumentError
-        For another pair law.
-
     Examples
     --------
     >>> gradient, _ = pair_term(AlphaInteraction(), 2)([7.0, 0.0])
@@ -74,13 +62,6 @@ def pair_term(pair: PairInteraction, m: int) -> ca.Function:
 def dead_zone_gradient(delta: sp.Matrix, pair: DeadZoneInteraction) -> sp.Matrix:
     """F(‖Δ‖) Δ/‖Δ‖ with the numbers of a pair law put in.
 
-    Parameters
-    ----------
-    delta : sympy.Matrix, shape (m, 1)
-        q_j − q_i.
-    pair : DeadZoneInteraction
-        The pair law.
-
     Examples
     --------
     >>> [float(x) for x in dead_zone_gradient(sp.Matrix([8, 0]), DeadZoneInteraction(k1=0.5))]
@@ -97,13 +78,6 @@ def dead_zone_gradient(delta: sp.Matrix, pair: DeadZoneInteraction) -> sp.Matrix
 def has_form(pair: PairInteraction, others: Iterable[Term]) -> bool:
     """Whether gradient and Hessian of a potential can be generated; else they are computed by the law's own kernels.
 
-    Parameters
-    ----------
-    pair : PairInteraction
-        The pair law.
-    others : iterable of Term
-        All other terms of the law.
-
     Examples
     --------
     >>> has_form(AlphaInteraction(), ())
@@ -114,17 +88,7 @@ def has_form(pair: PairInteraction, others: Iterable[Term]) -> bool:
 
 
 def own_derivatives(term: Term, t: float, q: Any) -> Iterator[tuple[Any, Any]]:
-    """Gradient (m, n) and Hessian blocks (m, m n) of a term in which an agent depends on itself alone, piece by piece.
-
-    Parameters
-    ----------
-    term : Navigation or ObstacleTerm
-        The term.
-    t : float
-        When.
-    q : casadi.MX, shape (m, n)
-        Positions.
-    """
+    """Gradient (m, n) and Hessian blocks (m, m n), piece by piece, of a term of each agent by itself."""
     m, n = q.shape
     if isinstance(term, ObstacleTerm):
         for obstacle in term.field.obstacles:
@@ -145,13 +109,6 @@ def own_derivatives(term: Term, t: float, q: Any) -> Iterator[tuple[Any, Any]]:
 def pull_term(m: int, unit: float = 1.0) -> ca.Function:
     """Gradient and Hessian of ℓ²(√(1 + ‖x‖²/ℓ²) − 1), Algorithm 3's pull to the γ-agent, in x = q_i − q_r.
 
-    Parameters
-    ----------
-    m : int
-        Dimension.
-    unit : float
-        ℓ, the length that σ₁ counts in.
-
     Examples
     --------
     >>> [float(x) for x in ca.vertsplit(pull_term(2)([0.75, 0.0])[0])]
@@ -164,18 +121,6 @@ def pull_term(m: int, unit: float = 1.0) -> ca.Function:
 @lru_cache(maxsize=256)
 def obstacle_term(obstacle: Obstacle, beta: BetaInteraction) -> ca.Function:
     """Gradient and Hessian of ψ_β(‖q̂ − q‖_σ) of one obstacle in the agent's position q.
-
-    Parameters
-    ----------
-    obstacle : Obstacle
-        A `Sphere` or a `Wall`.
-    beta : BetaInteraction
-        The law between agent and β-agent.
-
-    Raises
-    ------
-    ArgumentError
-        For another kind of obstacle: only these two have a symbolic closest point.
 
     Examples
     --------

@@ -29,18 +29,6 @@ _RELATIONS: dict[Any, Callable[[Any, Any], Any]] = {
 def to_casadi(expression: Any, values: Mapping[Any, Any]) -> Any:
     """Translate a sympy expression, node by node; what has no symbols left becomes the nearest float.
 
-    Parameters
-    ----------
-    expression : sympy.Expr
-        Sums, products, powers, minima, cosines, comparisons and Piecewise of the symbols.
-    values : mapping of sympy.Symbol to casadi.SX
-        What each symbol stands for.
-
-    Raises
-    ------
-    ArgumentError
-        On a function that has no translation (an unevaluated integral, say), or a symbol without a value.
-
     Examples
     --------
     >>> x = ca.SX.sym("x")

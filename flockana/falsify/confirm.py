@@ -46,20 +46,6 @@ def confirmed(verdict: Verdict, judge: Callable[[Trajectory], Verdict], case: Ca
     """A verdict whose refuted claims a run at a thousandth of the tolerance refutes too; the others are inconclusive.
 
     A map has no tolerance: its verdict stays as it is.
-
-    Parameters
-    ----------
-    verdict : Verdict
-        On a run of this start.
-    judge : callable
-        From a run to its verdict.
-    case : Case
-        What the run was of.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        If it was interrupted.
     """
     if isinstance(case.law, DiscreteLaw) or all(claim.status != "refuted" for claim in verdict.claims):
         return verdict
@@ -79,11 +65,6 @@ def confirmed(verdict: Verdict, judge: Callable[[Trajectory], Verdict], case: Ca
 
 def tighter(options: Mapping[str, Any]) -> dict[str, Any]:
     """Options of `simulate` with a thousandth of the tolerance; a fixed step gives way to an adaptive method.
-
-    Parameters
-    ----------
-    options : mapping
-        Keyword arguments of `simulate`.
 
     Examples
     --------

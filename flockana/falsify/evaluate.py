@@ -74,18 +74,7 @@ class Problem:
     scales: Mapping[str, float] = field(default_factory=dict)
 
     def __call__(self, point: FloatArray) -> Evaluation:
-        """Evaluate a point; an error becomes the grade of a failed run.
-
-        Parameters
-        ----------
-        point : ndarray, shape (D,)
-            Of the unit cube.
-
-        Raises
-        ------
-        KeyboardInterrupt
-            If it was interrupted.
-        """
+        """Evaluate a point; an error becomes the grade of a failed run."""
         try:
             with interrupts_recognised():
                 return self.judged(self.space.case(point))
@@ -93,18 +82,7 @@ class Problem:
             return Evaluation(FAILED, message=f"{type(error).__name__}: {' '.join(str(error).split())}")
 
     def judged(self, case: Scenario) -> Evaluation:
-        """Run a case and grade its verdict; errors are the caller's.
-
-        Parameters
-        ----------
-        case : Scenario
-            Law, start, span, options.
-
-        Raises
-        ------
-        KeyboardInterrupt
-            If it was interrupted.
-        """
+        """Run a case and grade its verdict; errors are the caller's."""
         with np.errstate(all="ignore"):
             run = case.run()
             if run.status == "interrupted":
@@ -114,15 +92,7 @@ class Problem:
             return self.graded(run, self.verdict(case, run))
 
     def verdict(self, case: Scenario, run: Trajectory) -> Verdict:
-        """The verdict on a run of a case; what it refutes, a much finer run refutes too.
-
-        Parameters
-        ----------
-        case : Scenario
-            Law, start, span, options.
-        run : Trajectory
-            A complete run of it.
-        """
+        """The verdict on a run of a case; what it refutes, a much finer run refutes too."""
 
         def judge(one: Trajectory) -> Verdict:
             return verify(self.theorem, one, tolerances=self.tolerances, subject=case.name)
@@ -130,15 +100,7 @@ class Problem:
         return confirmed(judge(run), judge, case)
 
     def graded(self, run: Trajectory, verdict: Verdict) -> Evaluation:
-        """Grade a verdict.
-
-        Parameters
-        ----------
-        run : Trajectory
-            A complete run.
-        verdict : Verdict
-            On it.
-        """
+        """Grade a verdict."""
         if self.claim is not None and all(one.name != self.claim for one in verdict.claims):
             verdict = replace(verdict, claims=(*verdict.claims, Claim(self.claim, "vacuous", detail="not judged")))
         chosen = [one for one in verdict.claims if self.claim in (None, one.name)]
@@ -158,12 +120,6 @@ class Problem:
 
 
 def units(verdict: Verdict) -> dict[str, float]:
-    """Units of margins: their sizes on a run, so that those of different claims can be compared.
-
-    Parameters
-    ----------
-    verdict : Verdict
-        Of the scenario's own start.
-    """
+    """Units of margins: their sizes on a run, so that those of different claims can be compared."""
     sizes = {c.name: abs(float(c.margin)) for c in verdict.claims if c.margin is not None}
     return {name: size for name, size in sizes.items() if 0.0 < squash(size) < 1.0}

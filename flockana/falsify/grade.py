@@ -22,20 +22,6 @@ def grade(
 ) -> float:
     """The grade of one claim on one run.
 
-    Parameters
-    ----------
-    claim : Claim
-        As judged.
-    hypotheses : iterable of Hypothesis
-        Of its theorem; where the claim is vacuous, the unmet ones say how far away it is.
-    scale : float
-        Unit of the margin, > 0.
-    lead : float
-        A surrogate's value in [0, 1]; see `Theorem.leads`.
-    limit : bool
-        Whether it is about a limit. Until one is certain that is none, its margin says how well the limit is known, not
-        how near the claim is to breaking: then the surrogate alone counts.
-
     Examples
     --------
     >>> near, far = Claim("i", "verified", margin=0.1), Claim("i", "verified", margin=5.0)
@@ -56,11 +42,6 @@ def grade(
 
 def missing(hypotheses: Iterable[Hypothesis]) -> float:
     """How far hypotheses are from being met: the sum over the unmet ones, each below 1, or 1 if it has no margin.
-
-    Parameters
-    ----------
-    hypotheses : iterable of Hypothesis
-        As found.
 
     Examples
     --------

@@ -53,13 +53,7 @@ class Search:
         return [x[: self.dimension] for x in self._asked]
 
     def tell(self, grades: list[float]) -> None:
-        """The grades of the generation that was asked for last, all of it.
-
-        Parameters
-        ----------
-        grades : list of float
-            One for each point, in their order; lower is better.
-        """
+        """The grades of the generation that was asked for last, all of it."""
         self._cma.tell(list(zip(self._asked, grades, strict=True)))
         if self._cma.should_stop():
             self.restarts += 1

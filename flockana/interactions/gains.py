@@ -20,13 +20,6 @@ PER_AGENT = ("c1_gamma", "c2_gamma")
 def weighted(gain: Any, values: FloatArray) -> float:
     """Σ_i gain_i values_i, for one gain or one per agent.
 
-    Parameters
-    ----------
-    gain : float or tuple of float
-        A gain of `Gains`.
-    values : ndarray, shape (n,)
-        One per agent.
-
     Examples
     --------
     >>> weighted(2.0, np.array([1.0, 3.0])), weighted((2.0, 1.0), np.array([1.0, 3.0]))

@@ -20,17 +20,7 @@ if TYPE_CHECKING:
 
 
 def evaluate(compiled: Callable[..., Any], x: Any, *parameters: Any) -> Any:
-    """Run a compiled scalar function (`kernels.lift.lift_scalar`) over a scalar or an array of any shape.
-
-    Parameters
-    ----------
-    compiled : callable
-        Takes a one-dimensional array and the parameters.
-    x : float or ndarray
-        Where to evaluate it.
-    *parameters : object
-        Passed on.
-    """
+    """Run a compiled scalar function (`kernels.lift.lift_scalar`) over a scalar or an array of any shape."""
     values = np.asarray(x, dtype=np.float64)
     out = compiled(values.ravel(), *parameters)
     return float(out[0]) if values.ndim == 0 else out.reshape(values.shape)
@@ -244,13 +234,7 @@ class PairInteraction(ABC):
 
 
 def ensure_resolved(d: float, r: float, eps: float, unit: float) -> None:
-    """Raise where the parameters are so extreme that d and r have no σ-norms apart from 0, ∞ and each other.
-
-    Parameters
-    ----------
-    d, r, eps, unit : float
-        Distance, range, ε and the length that σ₁ counts in, all positive.
-    """
+    """Raise where the parameters are so extreme that d and r have no σ-norms apart from 0, ∞ and each other."""
     near, far = sigma_norm(d * d, eps), sigma_norm(r * r, eps)
     area = unit * unit
     counted = 0.0 < area < inf and near / area > 0.0 and far / area < inf
@@ -262,13 +246,7 @@ def ensure_resolved(d: float, r: float, eps: float, unit: float) -> None:
 
 
 def ensure_bump_start(h: Any) -> float:
-    """Return h as a float strictly between 0 and 1.
-
-    Parameters
-    ----------
-    h : object
-        What the caller gave.
-    """
+    """Return h as a float strictly between 0 and 1."""
     start = ensure_finite_scalar("h", h)
     if not 0.0 < start < 1.0:
         raise ArgumentError(f"h = {start:g}: expected 0 < h < 1; at h = 1 the bump jumps (erratum E10)")

@@ -34,18 +34,6 @@ _ROUNDINGS = 8.0  # of eps: two subtractions and a product on either side
 def ensure_links(links: Any, n: int) -> LinkArray:
     """Return links as an int32 array (M, 2) of agents 0 … n − 1.
 
-    Parameters
-    ----------
-    links : array_like, shape (M, 2)
-        Pairs of different agents.
-    n : int
-        Number of agents.
-
-    Raises
-    ------
-    ArgumentError
-        On another shape or type, an agent that does not exist, or a link of an agent to itself.
-
     Examples
     --------
     >>> ensure_links([[0, 1]], 2).tolist()
@@ -139,13 +127,6 @@ class _Exact:
 
 def turns_left(q: FloatArray, centre: Any, first: Any, second: Any) -> Any:
     """Whether the way around `centre` from agent `first` to `second` is a left turn of less than a half, exactly.
-
-    Parameters
-    ----------
-    q : ndarray, shape (n, 2)
-        Positions.
-    centre, first, second : int array, shape (K,)
-        Agents.
 
     Examples
     --------

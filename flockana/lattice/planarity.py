@@ -194,16 +194,6 @@ def _planar(n: int, links: LinkArray) -> bool:
 def ensure_plane(m: int) -> None:
     """Refuse what has a meaning in the plane only.
 
-    Parameters
-    ----------
-    m : int
-        Dimension.
-
-    Raises
-    ------
-    ArgumentError
-        If it is not 2.
-
     Examples
     --------
     >>> ensure_plane(2)

@@ -125,11 +125,6 @@ def rigidity(q: Any, links: Any, *, tol: float = 1e-5, dense: bool | None = None
 def rigid_motion_count(q: FloatArray) -> int:
     """Number of independent infinitesimal translations and rotations of a configuration.
 
-    Parameters
-    ----------
-    q : ndarray, shape (n, m)
-        Positions: rotations that leave their affine hull where it is do not count.
-
     Examples
     --------
     >>> rigid_motion_count(np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])), rigid_motion_count(np.eye(3))

@@ -91,17 +91,7 @@ class MSNDiscretisation(DiscreteLaw):
     def step(
         self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
     ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
-        """One iteration, unchecked; it needs no memory, since the previous net is that of the q it is given.
-
-        Parameters
-        ----------
-        t : float
-            Time at the start of the step.
-        q, p : ndarray, shape (n, m)
-            Positions and velocities; left as they are.
-        memory : mapping
-            Passed along.
-        """
+        """One iteration, unchecked; it needs no memory, since the previous net is that of the q it is given."""
         later, h = t + self.dt, self.dt
         if not self.in_place:
             u, _ = self.law.flow(later, q, p)

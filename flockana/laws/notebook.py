@@ -27,21 +27,7 @@ MIN_DISTANCE, FACTOR = 0.05, 10.0
 def extra_push(alpha: AlphaInteraction, q: FloatArray, *, min_distance: float, factor: float) -> FloatArray:
     """What the push adds to Σ_j φ_α n_ij: φ_α (σ_ε(factor Δ) − σ_ε(Δ)) for each pair with ‖Δ‖ < min_distance.
 
-    Parameters
-    ----------
-    alpha : AlphaInteraction
-        The pair law.
-    q : ndarray, shape (n, m)
-        Positions.
-    min_distance : float
-        Distance below which a pair is pushed.
-    factor : float
-        By what Δ = q_j − q_i is multiplied.
-
-    Returns
-    -------
-    ndarray, shape (n, m)
-        It sums to zero over the agents.
+    Returns ndarray, shape (n, m) It sums to zero over the agents.
 
     Examples
     --------
@@ -98,15 +84,7 @@ class PushTerm(Term):
         return float(np.sum(f * p))  # the same in the moving frame, for the pushes cancel
 
     def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Zero where it does not act; raise where it does.
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
-        """
+        """Zero where it does not act; raise where it does."""
         if any(i.size for i, _ in pair_blocks(q, self.min_distance)):
             raise ArgumentError(
                 f"agents are closer than min_distance = {self.min_distance:g}: expected them farther apart, where the "

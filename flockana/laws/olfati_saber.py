@@ -21,24 +21,7 @@ from flockana.measures.frame import moving_frame
 
 
 def ensure_part(name: str, value: Any, kind: type, example: str) -> None:
-    """Raise unless a parameter is of its kind.
-
-    Parameters
-    ----------
-    name : str
-        Of the parameter.
-    value : object
-        What the caller gave.
-    kind : type
-        What it must be.
-    example : str
-        One that would do.
-
-    Raises
-    ------
-    ArgumentError
-        If it is not.
-    """
+    """Raise unless a parameter is of its kind."""
     if not isinstance(value, kind):
         raise ArgumentError(f"{name} = {value!r}: expected {example}")
 
@@ -52,16 +35,6 @@ PAIR, GAINS, TARGET = (
 
 def ensure_one_gain(gains: Gains) -> None:
     """Raise on per-agent gains, for what needs the split into a shape and a centre of mass.
-
-    Parameters
-    ----------
-    gains : Gains
-        Gains of Algorithm 2.
-
-    Raises
-    ------
-    ArgumentError
-        If c1γ or c2γ is given agent by agent.
 
     Examples
     --------
@@ -77,16 +50,6 @@ def ensure_one_gain(gains: Gains) -> None:
 def paper_pair(law: Any) -> AlphaInteraction:
     """The pair law of a law, which must be the paper's: what is proved of φ_α holds of no other.
 
-    Parameters
-    ----------
-    law : Algorithm1, Algorithm2 or Algorithm3
-        The law.
-
-    Raises
-    ------
-    ArgumentError
-        If it has another pair law.
-
     Examples
     --------
     >>> paper_pair(Algorithm1()).kappa
@@ -99,13 +62,6 @@ def paper_pair(law: Any) -> AlphaInteraction:
 
 def alpha_scales(alpha: PairInteraction, gains: Gains) -> Scales:
     """d, and the time in which the law's leading term moves an agent by d: of c1α, or else of c1γ, c2α or c2γ.
-
-    Parameters
-    ----------
-    alpha : PairInteraction
-        The pair law.
-    gains : Gains
-        Gains of Algorithm 1, 2 or 3.
 
     Examples
     --------

@@ -65,17 +65,7 @@ class SemiImplicitEuler(DiscreteLaw):
     def step(
         self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
     ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
-        """One step, unchecked.
-
-        Parameters
-        ----------
-        t : float
-            Time at its start.
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
-        memory : mapping
-            Empty.
-        """
+        """One step, unchecked."""
         if _is_compiled(self.law):  # the same sums in the same order as `iterate`
             next_q, next_p, applied = self.law.semi_implicit(q, p, self.dt, 1)
             return next_q[0], next_p[0], applied[0], memory
@@ -86,33 +76,13 @@ class SemiImplicitEuler(DiscreteLaw):
     def iterate(
         self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray], steps: int
     ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
-        """Several steps at once, in one compiled loop where the law has one.
-
-        Parameters
-        ----------
-        t : float
-            Time at the start of the first.
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
-        memory : mapping
-            Empty.
-        steps : int
-            How many.
-        """
+        """Several steps at once, in one compiled loop where the law has one."""
         if _is_compiled(self.law):
             return (*self.law.semi_implicit(q, p, self.dt, steps), {})
         return super().iterate(t, q, p, memory, steps)
 
     def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:
-        """The energy of the law that is stepped; the scheme does not keep its balance.
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
-        """
+        """The energy of the law that is stepped; the scheme does not keep its balance."""
         return self.law.hamiltonian(t, q, p)
 
 

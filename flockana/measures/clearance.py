@@ -70,21 +70,6 @@ def clearance(
     The bound subtracts an allowance for each path's own error (`flockana.kernels.paths`), so it is weak where samples
     are too sparse to resolve the motion.
 
-    Parameters
-    ----------
-    t : ndarray, shape (T,)
-        Sample times, rising.
-    q, p, u : ndarray, shape (T, n, m)
-        Positions, velocities, accelerations.
-    obstacles : sequence of Obstacle
-        Convex solids.
-    slack : ndarray, shape (T - 1, n), optional
-        What else the paths may be off by.
-
-    Returns
-    -------
-    Clearance
-
     Examples
     --------
     An agent that grazes the unit disc halfway between two samples:
@@ -219,17 +204,6 @@ def constrained_lattice(
     """Measure a configuration against a constrained α-lattice (Olfati-Saber 2006).
 
     The repulsion ends at d' but N_i^β at r': an agent between the two is a neighbour that nothing pulls to d'.
-
-    Parameters
-    ----------
-    q : array_like, shape (n, m)
-        Positions.
-    obstacles : sequence of Obstacle
-        Of the same dimension.
-    alpha : AlphaInteraction
-        d and r.
-    beta : BetaInteraction
-        d' and r'.
 
     Examples
     --------

@@ -8,11 +8,6 @@ from flockana.base.checks import FloatArray
 def moving_frame(x: FloatArray) -> FloatArray:
     """Deviations from the mean over agents, x_i − x_c.
 
-    Parameters
-    ----------
-    x : ndarray, shape (n, m)
-        Positions or velocities.
-
     Examples
     --------
     >>> import numpy as np

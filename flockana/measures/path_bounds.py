@@ -54,15 +54,6 @@ def closest_approach(
     Paths are quintic between samples; the bound subtracts an allowance for each path's own error, so it is weak where
     samples are too sparse to resolve the motion.
 
-    Parameters
-    ----------
-    t : ndarray, shape (T,)
-        Sample times, rising.
-    q, p, u : ndarray, shape (T, n, m)
-        Positions, velocities, accelerations.
-    slack : ndarray, shape (T - 1, n), optional
-        What else the paths may be off by.
-
     Examples
     --------
     Two agents that pass each other between the samples, in one dimension:
@@ -116,19 +107,6 @@ def cohesion_bound(
 ) -> FloatArray:
     """Upper bound of the cohesion radius max_i ‖q_i − q_c‖ over each interval between samples, its ends included.
 
-    Parameters
-    ----------
-    t : ndarray, shape (T,)
-        Sample times, rising.
-    q, p, u : ndarray, shape (T, n, m)
-        Positions, velocities, accelerations.
-    slack : ndarray, shape (T - 1, n), optional
-        What else the paths may be off by.
-
-    Returns
-    -------
-    ndarray, shape (T - 1,)
-
     Examples
     --------
     Two agents that swing out and back between the samples, q = ± t (1 − t):
@@ -171,15 +149,6 @@ class Contact:
 
 def contacts(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, *, tol: float) -> tuple[Contact, ...]:
     """Pairs that come within `tol` of each other, each with its first time, in order of time.
-
-    Parameters
-    ----------
-    t : ndarray, shape (T,)
-        Sample times, rising.
-    q, p, u : ndarray, shape (T, n, m)
-        Positions, velocities, accelerations.
-    tol : float
-        Distance that counts as contact.
 
     Examples
     --------

@@ -18,16 +18,6 @@ Edges = tuple[tuple[int, int], ...]
 def ensure_edges(edges: Any) -> Edges:
     """Return directed edges (j, i) as a tuple of pairs.
 
-    Parameters
-    ----------
-    edges : iterable of (int, int)
-        Edge (j, i) carries information from agent j to agent i: i perceives j.
-
-    Raises
-    ------
-    ArgumentError
-        If one is no pair of two different agents >= 0, comes twice, or there is none.
-
     Examples
     --------
     >>> ensure_edges([[0, 1], [1, 2]])
@@ -51,11 +41,6 @@ def ensure_edges(edges: Any) -> Edges:
 def both_ways(links: Iterable[tuple[int, int]]) -> Edges:
     """The directed edges of an undirected graph: each link in both directions.
 
-    Parameters
-    ----------
-    links : iterable of (int, int)
-        Unordered pairs.
-
     Examples
     --------
     >>> both_ways([(0, 1)])
@@ -66,13 +51,6 @@ def both_ways(links: Iterable[tuple[int, int]]) -> Edges:
 
 def random_out_tree(n: int, rng: np.random.Generator) -> Edges:
     """A random rooted out-tree: agent 0 is the root, and each other perceives one that comes before it.
-
-    Parameters
-    ----------
-    n : int
-        Number of agents, at least 2.
-    rng : numpy.random.Generator
-        Draws the parents.
 
     Examples
     --------
@@ -88,13 +66,6 @@ def out_tree_root(n: int, edges: Edges) -> int | None:
     Information flows along edges, so the root perceives nobody and all others are reached from it. (The paper calls
     "root" a node that all others reach: against its own direction of edges that would be the opposite tree.)
 
-    Parameters
-    ----------
-    n : int
-        Number of agents.
-    edges : tuple of (int, int)
-        Directed edges (j, i).
-
     Examples
     --------
     >>> out_tree_root(3, ((0, 1), (0, 2))), out_tree_root(3, ((1, 0), (2, 0)))
@@ -109,13 +80,6 @@ def out_tree_root(n: int, edges: Edges) -> int | None:
 def is_connected(n: int, edges: Edges) -> bool:
     """Whether the graph is connected when directions are forgotten.
 
-    Parameters
-    ----------
-    n : int
-        Number of agents.
-    edges : tuple of (int, int)
-        Directed edges.
-
     Examples
     --------
     >>> is_connected(3, ((0, 1),))
@@ -126,13 +90,6 @@ def is_connected(n: int, edges: Edges) -> bool:
 
 def incidence(n: int, edges: Edges) -> FloatArray:
     """D of the paper, shape (n, M): +1 where the agent receives along the edge, −1 where it sends.
-
-    Parameters
-    ----------
-    n : int
-        Number of agents.
-    edges : tuple of (int, int)
-        Directed edges (j, i).
 
     Examples
     --------
@@ -148,13 +105,6 @@ def incidence(n: int, edges: Edges) -> FloatArray:
 def receivers(n: int, edges: Edges) -> FloatArray:
     """D_in, shape (n, M): what is left of D if only those who receive are kept. The loop holds D_in Dᵀ, not D Dᵀ.
 
-    Parameters
-    ----------
-    n : int
-        Number of agents.
-    edges : tuple of (int, int)
-        Directed edges (j, i).
-
     Examples
     --------
     >>> receivers(2, ((0, 1),)).tolist()
@@ -166,13 +116,6 @@ def receivers(n: int, edges: Edges) -> FloatArray:
 
 def edge_vectors(q: FloatArray, edges: Edges) -> FloatArray:
     """x_e = q_j − q_i of each edge (j, i), shape (..., M, m): x = (−Dᵀ ⊗ I) q.
-
-    Parameters
-    ----------
-    q : ndarray, shape (..., n, m)
-        Positions, or velocities for the rates.
-    edges : tuple of (int, int)
-        Directed edges.
 
     Examples
     --------

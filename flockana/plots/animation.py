@@ -36,17 +36,7 @@ def equal_times(trajectory: Trajectory, count: int) -> Trajectory:
     Of a map, which has no state between its steps, the nearest ones, with all that its memory holds of them, each once:
     fewer than asked for where it has fewer. So of a run of one sample, that sample.
 
-    Parameters
-    ----------
-    trajectory : Trajectory
-        The run.
-    count : int
-        Number of times, >= 1; with 1 the start alone.
-
-    Returns
-    -------
-    Trajectory
-        Of a continuous law without its ``extra`` series.
+    Returns Trajectory Of a continuous law without its ``extra`` series.
     """
     t = trajectory.t
     times = np.linspace(t[0], t[-1], count)
@@ -163,15 +153,7 @@ def animate(
 
 
 def ensure_film(path: str | os.PathLike[str], *, seconds: float, fps: float) -> Path:
-    """Raise unless a film of that name, length and rate can be written, before any work for it is done.
-
-    Parameters
-    ----------
-    path : path-like
-        File to write; its folder must exist.
-    seconds, fps : float
-        As for `animate`.
-    """
+    """Raise unless a film of that name, length and rate can be written, before any work for it is done."""
     from matplotlib.animation import FFMpegWriter
 
     target = Path(path)
@@ -192,11 +174,6 @@ def ensure_film(path: str | os.PathLike[str], *, seconds: float, fps: float) -> 
 
 def frame_count(seconds: float, fps: float) -> int:
     """Number of frames of a film, at least 1.
-
-    Parameters
-    ----------
-    seconds, fps : float
-        As for `animate`.
 
     Examples
     --------

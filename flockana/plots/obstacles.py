@@ -49,13 +49,7 @@ def obstacles(items: Iterable[Obstacle], *, ax: Axes | None = None, view: Any = 
 
 
 def bounds(items: Iterable[Obstacle]) -> FloatArray:
-    """Corners of the boxes about the bounded ones among obstacles, shape (2 K, m): what a view must show.
-
-    Parameters
-    ----------
-    items : iterable of Obstacle
-        All of one dimension; at least one.
-    """
+    """Corners of the boxes about the bounded ones among obstacles, shape (2 K, m): what a view must show."""
     solids = tuple(items)
     balls = [solid.ball for solid in solids if np.isfinite(solid.ball[1])]
     corners = [centre + side * radius for centre, radius in balls for side in (-1.0, 1.0)]

@@ -69,35 +69,13 @@ def snapshot(
 
 
 def drawn_law(trajectory: Trajectory) -> Any:
-    """The law of a run; of a map that steps another law, that one.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        The run.
-    """
+    """The law of a run; of a map that steps another law, that one."""
     return trajectory.law.continuous or trajectory.law
 
 
 @singledispatch
 def draw_sample(law: Any, trajectory: Trajectory, k: int, *, ax: Axes | None, velocities: bool, bar: bool) -> Axes:
-    """Draw sample k of a run; ``@draw_sample.register(Law)`` says how a law with a world of its own is drawn.
-
-    Parameters
-    ----------
-    law : Law or DiscreteLaw
-        From `drawn_law`: its type chooses the drawing.
-    trajectory : Trajectory
-        The run.
-    k : int
-        The sample.
-    ax, velocities, bar
-        As for `snapshot`.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-    """
+    """Draw sample k of a run; ``@draw_sample.register(Law)`` says how a law with a world of its own is drawn."""
     pair, target = law.pair, law.target
     q, t = trajectory.q[k], float(trajectory.t[k])
     return configuration(
@@ -116,15 +94,7 @@ def draw_sample(law: Any, trajectory: Trajectory, k: int, *, ax: Axes | None, ve
 
 @singledispatch
 def in_view(law: Any, trajectory: Trajectory) -> FloatArray:
-    """Points that a film of a run must show, shape (N, m); to be registered with `draw_sample`.
-
-    Parameters
-    ----------
-    law : Law or DiscreteLaw
-        From `drawn_law`.
-    trajectory : Trajectory
-        The run.
-    """
+    """Points that a film of a run must show, shape (N, m); to be registered with `draw_sample`."""
     shown = [trajectory.q.reshape(-1, trajectory.m)]
     if law.target is not None:
         shown.append(np.array([law.target.position(t) for t in trajectory.t.tolist()]))
@@ -264,15 +234,7 @@ def _beta_agents(ax: Any, points: FloatArray, field: ObstacleField, size: float)
 
 
 def velocity_arrows(ax: Any, q: Any, p: Any) -> str:
-    """Draw velocities as arrows, the longest always as long; return what a title says of it, empty if none is drawn.
-
-    Parameters
-    ----------
-    ax : matplotlib.axes.Axes
-        Where to draw.
-    q, p : array_like, shape (n, m)
-        Positions and velocities.
-    """
+    """Draw velocities as arrows, the longest always as long; return what a title says of it, empty if none is drawn."""
     x, v = _in_plane(ensure_points("q", q)), _in_plane(ensure_points("p", p))
     fastest = float(np.linalg.norm(v, axis=1).max())
     extent = float(np.ptp(x, axis=0).max()) or 1.0

@@ -80,15 +80,7 @@ def style() -> Iterator[None]:
 
 
 def ensure_axes(ax: Any, *, m: int = 2) -> Axes:
-    """Return `ax`, or new axes in flockana's look: flat ones, or three-dimensional ones for m = 3.
-
-    Parameters
-    ----------
-    ax : matplotlib.axes.Axes, optional
-        What the caller gave.
-    m : int
-        Dimension of what will be drawn.
-    """
+    """Return `ax`, or new axes in flockana's look: flat ones, or three-dimensional ones for m = 3."""
     if ax is not None:
         return ax  # type: ignore[no-any-return]
     import matplotlib.pyplot as plt
@@ -126,13 +118,7 @@ def subplots(
 
 
 def legend_above(ax: Any) -> None:
-    """Put the legend above the axes, where it hides no data.
-
-    Parameters
-    ----------
-    ax : matplotlib.axes.Axes
-        With labelled artists.
-    """
+    """Put the legend above the axes, where it hides no data."""
     columns = 3 if len(ax.get_legend_handles_labels()[0]) in (3, 5, 6) else 4
     ax.legend(
         loc="lower left",
@@ -148,11 +134,6 @@ def legend_above(ax: Any) -> None:
 def hairline(n: int) -> tuple[float, float]:
     """Width and opacity of one of n lines that share axes: the more there are, the fainter.
 
-    Parameters
-    ----------
-    n : int
-        Number of lines.
-
     Examples
     --------
     >>> hairline(3), hairline(150)
@@ -162,15 +143,7 @@ def hairline(n: int) -> tuple[float, float]:
 
 
 def frame_space(ax: Any, points: FloatArray) -> None:
-    """Label the axes of space and scale them equally: a cube about the points where m = 3.
-
-    Parameters
-    ----------
-    ax : matplotlib.axes.Axes
-        Flat or three-dimensional.
-    points : ndarray, shape (k, m)
-        What must be in view, m = 2 or 3.
-    """
+    """Label the axes of space and scale them equally: a cube about the points where m = 3."""
     names = "xyz"[: points.shape[1]]
     for name in names:
         getattr(ax, f"set_{name}label")(f"{name} (length)")

@@ -30,22 +30,7 @@ _STATUSES = ("verified", "refuted", "vacuous", "inconclusive")
 
 
 def ensure_directory(directory: str | os.PathLike[str]) -> Path:
-    """Make a folder that can be written to, before any work whose results should go there.
-
-    Parameters
-    ----------
-    directory : path-like
-        Folder; made, with its parents, if there is none.
-
-    Returns
-    -------
-    pathlib.Path
-
-    Raises
-    ------
-    FileError
-        If it cannot be made or written to.
-    """
+    """Make a folder that can be written to, before any work whose results should go there."""
     path = Path(directory)
     try:
         path.mkdir(parents=True, exist_ok=True)
@@ -66,33 +51,7 @@ def write_report(
     complete: bool = True,
     statistics: StatisticsSection | None = None,
 ) -> Path:
-    """Write ``index.html`` and ``verdicts.json``; existing ones are replaced only when the new ones are whole.
-
-    Parameters
-    ----------
-    results : iterable of ScenarioResult, FixedResult, ScenarioPage or FixedPage
-        What was found, in the order of the report.
-    directory : path-like
-        Folder to write to; made if there is none.
-    seed : int
-        Of the random starts.
-    seconds : float, optional
-        Wall time that it all took.
-    complete : bool
-        False if something that was asked for is missing; the page then says so.
-    statistics : StatisticsSection, optional
-        Shares over many seeds.
-
-    Returns
-    -------
-    pathlib.Path
-        The page.
-
-    Raises
-    ------
-    FileError
-        If the folder cannot be written to.
-    """
+    """Write ``index.html`` and ``verdicts.json``; existing ones are replaced only when the new ones are whole."""
     folder = ensure_directory(directory)
     pages = [page(r) if isinstance(r, ScenarioResult | FixedResult) else r for r in results]
     run = _run_facts(seed, seconds, complete)
@@ -108,21 +67,7 @@ def verdicts_json(
     complete: bool = True,
     statistics: StatisticsSection | None = None,
 ) -> str:
-    """All verdicts as JSON text, with the run that they come from.
-
-    Parameters
-    ----------
-    pages : iterable of ScenarioPage or FixedPage
-        What was found.
-    seed : int
-        Of the random starts.
-    seconds : float, optional
-        Wall time that it all took.
-    complete : bool
-        False if something that was asked for is missing.
-    statistics : StatisticsSection, optional
-        Shares over many seeds.
-    """
+    """All verdicts as JSON text, with the run that they come from."""
     return _json(list(pages), _run_facts(seed, seconds, complete), statistics)
 
 

@@ -35,13 +35,7 @@ def _expectation(finding: Finding) -> Text:
 
 
 def verdict_table(pages: Iterable[Page]) -> Table:
-    """A row per verdict, grouped by what it was checked on.
-
-    Parameters
-    ----------
-    pages : iterable of ScenarioPage or FixedPage
-        What was found.
-    """
+    """A row per verdict, grouped by what it was checked on."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), collapse_padding=True)
     widths = {"theorem": None, "status": 14, "rigour": 8, "decided by": None, "expected": 8}
     for heading, width in widths.items():  # on a narrow terminal names give way, findings do not
@@ -63,13 +57,7 @@ def verdict_table(pages: Iterable[Page]) -> Table:
 
 
 def statistics_table(section: StatisticsSection) -> Table:
-    """A row per claim: in which share of the seeds it is verified, and refuted, in per cent with intervals.
-
-    Parameters
-    ----------
-    section : StatisticsSection
-        What was found.
-    """
+    """A row per claim: in which share of the seeds it is verified, and refuted, in per cent with intervals."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
     for heading in ("claim", "verified", "refuted"):
         table.add_column(heading, no_wrap=True, justify="left" if heading == "claim" else "right")
@@ -82,13 +70,7 @@ def statistics_table(section: StatisticsSection) -> Table:
 
 
 def details(verdict: Verdict) -> Group:
-    """A verdict in full: hypotheses and claims, each with its finding in words.
-
-    Parameters
-    ----------
-    verdict : Verdict
-        The finding.
-    """
+    """A verdict in full: hypotheses and claims, each with its finding in words."""
     on = f" on {verdict.subject}" if verdict.subject else ""
     title = Text.assemble((verdict.theorem, "bold"), on, ": ", _status(verdict.status))
     table = Table(box=None, show_header=False, pad_edge=False, padding=(0, 1))
@@ -104,15 +86,7 @@ def details(verdict: Verdict) -> Group:
 
 
 def summary(pages: Sequence[Page], seconds: float) -> str:
-    """How many verdicts of each kind, how many as expected, in what time.
-
-    Parameters
-    ----------
-    pages : sequence of ScenarioPage or FixedPage
-        What was found.
-    seconds : float
-        Wall time.
-    """
+    """How many verdicts of each kind, how many as expected, in what time."""
     findings = [finding for one in pages for finding in one.findings]
     kinds = ((s, sum(f.verdict.status == s for f in findings)) for s in MARKS)
     counts = ", ".join(f"{count} {status}" for status, count in kinds if count)
@@ -153,13 +127,7 @@ def theorem_table() -> Table:
 
 
 def run_table(run: Trajectory) -> Table:
-    """The metrics of a run at its start and its end.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-    """
+    """The metrics of a run at its start and its end."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
     table.add_column("measure")
     for when in (f"t = {run.t[0]:g}", f"t = {run.t[-1]:g}"):
@@ -177,17 +145,7 @@ def run_table(run: Trajectory) -> Table:
 
 @contextmanager
 def progress_bar(console: Console, total: int, *, enabled: bool) -> Iterator[Callable[[int, tuple[str, ...]], None]]:
-    """A bar over tasks, on a terminal only; gives a function to call with (done, names under way).
-
-    Parameters
-    ----------
-    console : rich.console.Console
-        Where to draw it.
-    total : int
-        Number of tasks.
-    enabled : bool
-        False draws nothing.
-    """
+    """A bar over tasks, on a terminal only; gives a function to call with (done, names under way)."""
     columns = (BarColumn(24), MofNCompleteColumn(), TimeElapsedColumn(), TextColumn("{task.description}"))
     hidden = not (enabled and console.is_terminal)
     with Progress(*columns, console=console, transient=True, disable=hidden) as bar:

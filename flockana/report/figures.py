@@ -48,33 +48,13 @@ def _own() -> tuple[tuple[tuple[type, ...], Callable[[Trajectory], tuple[Picture
 
 
 def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
-    """Draw a run: by the ``*_figures`` module that names its law among its ``LAWS``, else as any flock is drawn.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        The run.
-
-    Returns
-    -------
-    tuple of Picture
-    """
+    """Draw a run: by the ``*_figures`` module that names its law among its ``LAWS``, else as any flock is drawn."""
     draw = next((own for laws, own in _own() if isinstance(trajectory.law, laws)), flock_pictures)
     return draw(trajectory)
 
 
 def flock_pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
-    """Draw snapshots, paths, C R Ẽ K̃, energy with its balance, distances and speeds; among obstacles, clearance.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        The run.
-
-    Returns
-    -------
-    tuple of Picture
-    """
+    """Draw snapshots, paths, C R Ẽ K̃, energy with its balance, distances and speeds; among obstacles, clearance."""
     law = drawn_law(trajectory)
     linked = law.pair is not None or "edge_error" in trajectory.metrics()
     blocked = bool(law.obstacles)
@@ -125,15 +105,7 @@ def _png(draw: Callable[[Figure, Trajectory], None], run: Trajectory, size: tupl
 
 
 def png(draw: Callable[[Figure], None], size: tuple[float, float]) -> str:
-    """A figure in flockana's look, as a ``data:`` address.
-
-    Parameters
-    ----------
-    draw : callable
-        Draws on the figure that it is given.
-    size : (float, float)
-        Width and height in inches.
-    """
+    """A figure in flockana's look, as a ``data:`` address."""
     with plots.style():
         figure = Figure(figsize=size, layout="constrained")  # not pyplot's: nothing to close, safe in any process
         draw(figure)

@@ -63,13 +63,7 @@ class LatticeSection:
 
 
 def lattice_section(pages: Iterable[Page]) -> LatticeSection | None:
-    """Gather it from the verdicts; None if none of them is about lattices or equilibria.
-
-    Parameters
-    ----------
-    pages : iterable of ScenarioPage or FixedPage
-        What was found.
-    """
+    """Gather it from the verdicts; None if none of them is about lattices or equilibria."""
     found = [(one.name, finding.verdict) for one in pages for finding in one.findings]
     found = [(name, verdict) for name, verdict in found if verdict.theorem in _TOPICS]
     if not found:

@@ -153,15 +153,7 @@ Page = ScenarioPage | FixedPage
 
 
 def page(result: ScenarioResult | FixedResult, *, figures: bool = True) -> Page:
-    """Turn a result into plain data, its figures drawn.
-
-    Parameters
-    ----------
-    result : ScenarioResult or FixedResult
-        What was found.
-    figures : bool
-        Draw the figures.
-    """
+    """Turn a result into plain data, its figures drawn."""
     if isinstance(result, FixedResult):
         return FixedPage(_finding(result.verdict, result.theorem, result.theorem.expected))
     scenario, run = result.scenario, result.trajectory

@@ -83,13 +83,7 @@ class StabilitySection:
 
 
 def stability_section(pages: Iterable[Page]) -> StabilitySection | None:
-    """Gather it from the verdicts; None if none of them is about the linearisation.
-
-    Parameters
-    ----------
-    pages : iterable of ScenarioPage or FixedPage
-        What was found.
-    """
+    """Gather it from the verdicts; None if none of them is about the linearisation."""
     found = [(one.name, finding.verdict) for one in pages for finding in one.findings]
     decays = [(name, v) for name, v in found if v.theorem in _DECAYS]
     margins = [v for _, v in found if v.theorem in _MARGINS]

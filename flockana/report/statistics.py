@@ -71,20 +71,6 @@ class Surveyed:
 def surveys(name: str | None, count: int | None, *, seed: int = 0) -> tuple[Survey, ...]:
     """What to run for the section.
 
-    Parameters
-    ----------
-    name : str, optional
-        A scenario; by default all that ask for statistics.
-    count : int, optional
-        Seeds of each; by default as many as a scenario asks for of the catalogue, none of one scenario by itself.
-    seed : int
-        The first of them.
-
-    Raises
-    ------
-    ArgumentError
-        If a count is given with what is no scenario, or of one whose source reports nothing.
-
     Examples
     --------
     >>> [one.name for one in surveys("zone-51", 30)]
@@ -109,18 +95,7 @@ def surveys(name: str | None, count: int | None, *, seed: int = 0) -> tuple[Surv
 
 
 def carry_out(survey: Survey) -> Surveyed:
-    """Make the runs in this process.
-
-    Parameters
-    ----------
-    survey : Survey
-        Which.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        If a run was interrupted.
-    """
+    """Make the runs in this process."""
     return Surveyed(survey, run_batch(_request(survey.scenario), tuple(Job(seed) for seed in survey.seeds)))
 
 
@@ -234,17 +209,7 @@ class StatisticsSection:
 
 
 def gather(asked: Sequence[Survey], made: Iterable[Surveyed], *, figures: bool = True) -> StatisticsSection | None:
-    """The section of all scenarios whose surveys were all made; None if there is no such.
-
-    Parameters
-    ----------
-    asked : sequence of Survey
-        What there was to do.
-    made : iterable of Surveyed
-        What was done of it, in any order.
-    figures : bool
-        Draw the shares.
-    """
+    """The section of all scenarios whose surveys were all made; None if there is no such."""
     found = {one.survey: one.records for one in made}
     whole = []
     for name in dict.fromkeys(one.scenario for one in asked):
@@ -259,22 +224,7 @@ def gather(asked: Sequence[Survey], made: Iterable[Surveyed], *, figures: bool =
 def statistics_section(
     datasets: Iterable[xarray.Dataset], *, level: float = 0.95, figures: bool = True
 ) -> StatisticsSection:
-    """Gather the section from ensembles of scenarios of the catalogue.
-
-    Parameters
-    ----------
-    datasets : iterable of xarray.Dataset
-        From `flockana.ensemble.ensemble`, each over seeds alone.
-    level : float
-        Confidence of the intervals.
-    figures : bool
-        Draw the shares.
-
-    Raises
-    ------
-    ArgumentError
-        If one is over more than seeds, or not of the catalogue.
-    """
+    """Gather the section from ensembles of scenarios of the catalogue."""
     given = tuple(datasets)
     entries = tuple(_entry(one, level) for one in given)
     tables = [shares(one, level=level) for one in given] if figures else []

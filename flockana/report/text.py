@@ -24,11 +24,6 @@ _GAIN_OWNERS = {
 def show(value: Any) -> str:
     """Write any value of a claim briefly: numbers to four digits, long sequences by their number of entries.
 
-    Parameters
-    ----------
-    value : object
-        Computed, stated, margin, error or witness.
-
     Examples
     --------
     >>> show(1.23456789), show(None), show({"pair": (1, 2)}), show(np.arange(9))
@@ -58,23 +53,12 @@ def _inner(value: Any) -> str:
 
 
 def deciding_claim(verdict: Verdict) -> Claim | None:
-    """The first claim that has the verdict's own status; None for a verdict without claims.
-
-    Parameters
-    ----------
-    verdict : Verdict
-        The finding.
-    """
+    """The first claim that has the verdict's own status; None for a verdict without claims."""
     return next((claim for claim in verdict.claims if claim.status == verdict.status), None)
 
 
 def parameters(law: Any) -> tuple[tuple[str, str], ...]:
     """A law's parameters as (name, value) to read; gains that act on nothing in this law are left out.
-
-    Parameters
-    ----------
-    law : Law or DiscreteLaw
-        A dataclass of dataclasses, numbers and functions.
 
     Examples
     --------
@@ -103,11 +87,6 @@ def _describe(value: Any, law: Any) -> str:
 
 def tolerance_rows(tolerances: Tolerances) -> tuple[tuple[str, str, str], ...]:
     """(name, value, meaning) of every threshold; the meanings are those of the class's own documentation.
-
-    Parameters
-    ----------
-    tolerances : Tolerances
-        Thresholds.
 
     Examples
     --------

@@ -48,22 +48,6 @@ class Task:
 def plan(name: str | None = None, *, seed: int = 0, figures: bool = True) -> tuple[Task, ...]:
     """What to do for a name: scenarios in the order of the catalogue, then theorems by themselves.
 
-    Parameters
-    ----------
-    name : str, optional
-        A scenario; a theorem (on every scenario that names it, or by itself); ``"errata"``; by default everything.
-    seed : int
-        Of the random starts.
-    figures : bool
-        Draw figures.
-
-    Raises
-    ------
-    UnknownNameError
-        If there is no scenario or theorem of that name.
-    ArgumentError
-        If the theorem is checked on something that no scenario provides.
-
     Examples
     --------
     >>> plan("E8")
@@ -94,18 +78,7 @@ def plan(name: str | None = None, *, seed: int = 0, figures: bool = True) -> tup
 
 
 def do(task: Task | Survey) -> Page | Surveyed:
-    """Carry out one task in this process.
-
-    Parameters
-    ----------
-    task : Task or Survey
-        What to do.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        If the run was interrupted.
-    """
+    """Carry out one task in this process."""
     with interrupts_recognised():
         if isinstance(task, Survey):
             return carry_out(task)
@@ -122,24 +95,7 @@ def do(task: Task | Survey) -> Page | Surveyed:
 def perform(
     tasks: Sequence[Task | Survey], *, jobs: int = 1, watch: Callable[[tuple[str, ...]], None] = lambda names: None
 ) -> Iterator[Page | Surveyed]:
-    """Carry out tasks, yielding what each finds as it is done; on Ctrl-C, stop what runs and raise.
-
-    Parameters
-    ----------
-    tasks : sequence of Task or Survey
-        What to do.
-    jobs : int
-        Processes at most; 1 works in this one.
-    watch : callable
-        Is told, again and again, the names of the tasks under way.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        On Ctrl-C, when all workers have ended.
-    SolverError
-        If a worker died, for want of memory most likely.
-    """
+    """Carry out tasks, yielding what each finds as it is done; on Ctrl-C, stop what runs and raise."""
     jobs = min(jobs, len(tasks))
     if jobs <= 1:
         for task in tasks:

@@ -14,13 +14,7 @@ LAWS = (ZoneFlocking,)
 
 
 def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
-    """Draw snapshots, paths, distances, speeds and inputs against their bounds, C R D, and dangers.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        A run of ZoneFlocking.
-    """
+    """Draw snapshots, paths, distances, speeds and inputs against their bounds, C R D, and dangers."""
 
     def drawn(draw: object, size: tuple[float, float]) -> str:
         return png(lambda figure: draw(figure, trajectory), size)  # type: ignore[operator]

@@ -121,13 +121,7 @@ def _contained(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def passed(run: Trajectory) -> int:
-    """How many agents pass the narrow gap between the slab and the wall, upwards.
-
-    Parameters
-    ----------
-    run : Trajectory
-        A run of ``zone-gap`` or ``zone-gap-buffer``.
-    """
+    """How many agents pass the narrow gap between the slab and the wall, upwards."""
     corners = np.array(_SLAB.vertices)
     x, y = run.q[:, :, 0], run.q[:, :, 1]
     inside = (x > corners[:, 0].max()) & (y > corners[:, 1].mean())

@@ -33,17 +33,6 @@ def finding(
 
     A margin half-way between whole numbers is a count against a bound, and exact; any other is off by its rounding.
 
-    Parameters
-    ----------
-    name, detail : str
-        As in `Claim`.
-    margin : float
-        Positive where the source's report agrees with the run.
-    computed, stated, witness : object
-        As in `Claim`.
-    error : float, optional
-        Error of the margin; by default that of its rounding, where it is no count.
-
     Examples
     --------
     >>> finding("connected", 0.5, "one component").status
@@ -62,15 +51,6 @@ def in_the_end(
 ) -> Claim:
     """A report of what a flock comes to: verified by a certificate, and open as long as there is none, never refuted.
 
-    Parameters
-    ----------
-    name, detail : str
-        As in `Claim`.
-    certificate : Certificate
-        What speaks for it.
-    computed, stated, witness : object
-        As in `Claim`.
-
     Examples
     --------
     >>> in_the_end("rests", Certificate(-0.5, "it does not fall"), "it still moves").status
@@ -80,15 +60,7 @@ def in_the_end(
 
 
 def in_source_units(scales: Scales, check: Check) -> Check:
-    """The same report on a run in any units: one that compares with its source's figures is asked in the source's.
-
-    Parameters
-    ----------
-    scales : Scales
-        Of the source's law.
-    check : callable
-        ``check(trajectory, tolerances) -> Claim``.
-    """
+    """The same report on a run in any units: one that compares with its source's figures is asked in the source's."""
 
     def asked(run: Trajectory, tolerances: Tolerances) -> Claim:
         length, time = scales.length / run.scales.length, scales.time / run.scales.time
@@ -99,38 +71,18 @@ def in_source_units(scales: Scales, check: Check) -> Check:
 
 
 def as_tightly(run: Trajectory) -> dict[str, Any]:
-    """Options of `simulate` for a run beside another one, to be integrated as tightly as that.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The other run; empty for a map, or a fixed step.
-    """
+    """Options of `simulate` for a run beside another one, to be integrated as tightly as that."""
     return {name: run.stats[name] for name in ("rtol", "atol") if run.stats.get(name) is not None}
 
 
 def component_count(run: Trajectory, k: int = -1) -> int:
-    """Number of components of the net at sample k of a run.
-
-    Parameters
-    ----------
-    run : Trajectory
-        A run of a law with an interaction range.
-    k : int
-        Which sample; the last by default.
-    """
+    """Number of components of the net at sample k of a run."""
     pair = run.law.pair
     assert pair is not None
     return int(components(run.n, links(run.q[k], pair.range)).max()) + 1
 
 
 def component_counts(run: Trajectory) -> npt.NDArray[np.int64]:
-    """Number of components of the net at each sample of a run, shape (T,).
-
-    Parameters
-    ----------
-    run : Trajectory
-        A run of a law with an interaction range.
-    """
+    """Number of components of the net at each sample of a run, shape (T,)."""
     counts: npt.NDArray[np.int64] = np.rint(run.n - run.metric("connectivity") * (run.n - 1)).astype(np.int64)
     return counts

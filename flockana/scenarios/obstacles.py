@@ -53,21 +53,6 @@ def free_start(
 ) -> tuple[FloatArray, FloatArray]:
     """The paper's random start about a centre, with agents too near an obstacle drawn again until none is.
 
-    Parameters
-    ----------
-    seed : int
-        Of the generator.
-    n : int
-        Agents.
-    centre : sequence of float
-        Mean position.
-    spread : float
-        Standard deviation of each coordinate.
-    obstacles : sequence of Obstacle
-        What to keep clear of.
-    room : float
-        Least clearance.
-
     Examples
     --------
     >>> wall = Sphere((0.0, 0.0), 3.0)
@@ -148,15 +133,6 @@ def _squeezes(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 def blocked(q: FloatArray, target: FloatArray, obstacles: Sequence[Obstacle]) -> FloatArray:
     """Which agents have an obstacle on the straight way to the γ-agent, shape (n,).
-
-    Parameters
-    ----------
-    q : ndarray, shape (n, m)
-        Positions.
-    target : ndarray, shape (m,)
-        Position of the γ-agent.
-    obstacles : sequence of Obstacle
-        What may be in the way.
 
     Examples
     --------

@@ -130,13 +130,6 @@ _MATCHED = Report("matched", "velocities match (Fig. 18: K̃ goes to 0)", _ends_
 def random_start(seed: int, n: int, m: int) -> tuple[FloatArray, FloatArray]:
     """The paper's start: q normal with variance 2500 per coordinate, p uniform in [−2, −1]^m.
 
-    Parameters
-    ----------
-    seed : int
-        Of the generator.
-    n, m : int
-        Agents and dimensions.
-
     Examples
     --------
     >>> q, p = random_start(0, 150, 2)

@@ -77,11 +77,6 @@ class Blocks:
 def complement(basis: FloatArray) -> FloatArray:
     """Orthonormal basis of what is orthogonal to an orthonormal basis.
 
-    Parameters
-    ----------
-    basis : ndarray, shape (N, k)
-        Orthonormal columns.
-
     Examples
     --------
     >>> np.abs(complement(np.array([[1.0], [0.0]]))).tolist()
@@ -114,18 +109,7 @@ def blocks(stiffness: FloatArray, damping: FloatArray, q: FloatArray) -> Blocks:
 
 
 def ensure_pairs_and_pull(law: Any) -> None:
-    """Raise unless a law consists of a pair term and, at most, a linear pull to a γ-agent, as Algorithms 1 and 2 do.
-
-    Parameters
-    ----------
-    law : object
-        What the caller gave.
-
-    Raises
-    ------
-    ArgumentError
-        If it does not.
-    """
+    """Raise unless a law consists of a pair term and, at most, a linear pull to a γ-agent, as Algorithms 1 and 2 do."""
     terms = getattr(law, "terms", ())
     linear = all(isinstance(term, PairTerm) or (isinstance(term, Navigation) and term.unit is None) for term in terms)
     if not (terms and linear):

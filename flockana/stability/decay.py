@@ -78,16 +78,6 @@ class Decay:
 def slowest_seen(found: Linearisation) -> Mode:
     """The slowest mode that shows in velocities relative to the centre of mass.
 
-    Parameters
-    ----------
-    found : Linearisation
-        The linearised flock.
-
-    Raises
-    ------
-    ArgumentError
-        If there is none, or it does not decay by more than rounding could feign.
-
     Examples
     --------
     >>> from flockana.laws.olfati_saber import Algorithm1
@@ -111,22 +101,6 @@ def decay(found: Linearisation, *, name: str = "", amplitude: float = AMPLITUDE,
 
     K̃ falls as exp(−2 σ t), times a function of the mode's half period. The slope is therefore that of sums over half
     periods, and exact for a pure mode.
-
-    Parameters
-    ----------
-    found : Linearisation
-        The linearised flock, about an equilibrium at which its γ-agent rests or moves steadily.
-    name : str
-        Of the equilibrium.
-    amplitude : float
-        Largest displacement of an agent, in units of the law's length d (of the flock's size, where it has none).
-    seed : int
-        Of the random perturbation.
-
-    Raises
-    ------
-    ArgumentError
-        If nothing decays, or so slowly that the run would take for ever.
 
     Examples
     --------

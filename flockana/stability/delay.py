@@ -53,15 +53,7 @@ class DelaySystem:
         return 0.5 * (d + float(np.sqrt(d * d + 4.0 * k)))
 
     def characteristic(self, s: complex, delay: float) -> ComplexArray:
-        """s² + K₀ + s D₀ + (K₁ + s D₁) e^(−sτ), singular at the roots.
-
-        Parameters
-        ----------
-        s : complex
-            Where.
-        delay : float
-            τ.
-        """
+        """s² + K₀ + s D₀ + (K₁ + s D₁) e^(−sτ), singular at the roots."""
         (k0, d0), (k1, d1) = self.prompt, self.late
         matrix: ComplexArray = s * s * np.eye(len(k0)) + k0 + s * d0 + (k1 + s * d1) * np.exp(-s * delay)
         return matrix
@@ -268,15 +260,6 @@ def rightmost_roots(system: DelaySystem, delay: float, *, nodes: int = 16, count
 
 def root_error(system: DelaySystem, s: complex, delay: float) -> float:
     """How far a refined root may be from the true one: what the characteristic matrix leaves over, and rounding.
-
-    Parameters
-    ----------
-    system : DelaySystem
-        The linearised flock.
-    s : complex
-        A root, such as one of `rightmost_roots`.
-    delay : float
-        τ.
 
     Examples
     --------

@@ -75,13 +75,7 @@ class GainProblem:
     agents: int
 
     def matrix(self, gains: FloatArray) -> FloatArray:
-        """The state matrix for gains (c1γ_1 … c1γ_n, c2γ_1 … c2γ_n), without what is set apart.
-
-        Parameters
-        ----------
-        gains : ndarray, shape (2 n,)
-            Gains.
-        """
+        """The state matrix for gains (c1γ_1 … c1γ_n, c2γ_1 … c2γ_n), without what is set apart."""
         each = len(self.stiffness) // self.agents
         pull, drag = np.repeat(gains, each).reshape(2, -1)
         kept = complement(self.apart)
@@ -89,35 +83,18 @@ class GainProblem:
         return np.vstack([top, np.hstack([-(self.stiffness + np.diag(pull)) @ kept, -self.damping - np.diag(drag)])])
 
     def eigenvalues(self, gains: FloatArray) -> ComplexArray:
-        """Eigenvalues of `matrix`, largest real part first.
-
-        Parameters
-        ----------
-        gains : ndarray, shape (2 n,)
-            Gains.
-        """
+        """Eigenvalues of `matrix`, largest real part first."""
         values: ComplexArray = np.linalg.eigvals(self.matrix(gains)).astype(np.complex128)
         return values[np.lexsort((values.imag, -values.real))]
 
     def abscissa(self, gains: FloatArray) -> float:
-        """Largest real part: minus the decay rate of the slowest mode.
-
-        Parameters
-        ----------
-        gains : ndarray, shape (2 n,)
-            Gains.
-        """
+        """Largest real part: minus the decay rate of the slowest mode."""
         return float(np.linalg.eigvals(self.matrix(gains)).real.max())
 
     def slopes(self, gains: FloatArray) -> tuple[ComplexArray, FloatArray]:
         """(eigenvalues, derivatives of their real parts in the gains), shapes (M,) and (M, 2 n).
 
         dλ = y* dA x/(y* x) with left and right eigenvectors y, x; meaningless where eigenvalues coalesce.
-
-        Parameters
-        ----------
-        gains : ndarray, shape (2 n,)
-            Gains.
         """
         from scipy.linalg import eig
 

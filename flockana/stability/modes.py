@@ -102,11 +102,6 @@ class Split(NamedTuple):
 def translations(n: int, m: int) -> FloatArray:
     """Unit translations along the axes, one per column, shape (n m, m).
 
-    Parameters
-    ----------
-    n, m : int
-        Number of agents, dimension.
-
     Examples
     --------
     >>> translations(4, 1).ravel().tolist()
@@ -118,13 +113,6 @@ def translations(n: int, m: int) -> FloatArray:
 
 def split(stiffness: Any, damping: Any, m: int) -> Split:
     """Look for the split into centre of mass and shape: K and D map translations to translations, and Kᵀ, Dᵀ do.
-
-    Parameters
-    ----------
-    stiffness, damping : sparse array, shape (n m, n m)
-        K and D.
-    m : int
-        Dimension.
 
     Examples
     --------
@@ -252,19 +240,7 @@ class SecondOrder:
         return values, (rest[:size] @ vectors).astype(np.complex128), errors
 
     def named(self, values: Any, vectors: Any, errors: Any, others: tuple[Mode, ...]) -> tuple[Mode, ...]:
-        """Modes from eigenvalues and columns of displacements, with `others` among them, in order, named.
-
-        Parameters
-        ----------
-        values : complex ndarray, shape (k,)
-            Eigenvalues.
-        vectors : complex ndarray, shape (n m, k)
-            Displacements.
-        errors : ndarray, shape (k,)
-            How far rounding may have moved each.
-        others : tuple of Mode
-            Modes that have their names.
-        """
+        """Modes from eigenvalues and columns of displacements, with `others` among them, in order, named."""
         fields = _pure_fields(self.q)
         modes = list(others)
         for value, vector, error in zip(values.tolist(), vectors.T, np.asarray(errors).tolist(), strict=True):

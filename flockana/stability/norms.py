@@ -110,11 +110,6 @@ def h2_bounds(flock: Blocks) -> tuple[float, float]:
     d_min ≤ D ≤ d_max and covariance grows with the noise, that brackets it. They meet, but for rounding, where D is a
     multiple of 1.
 
-    Parameters
-    ----------
-    flock : Blocks
-        The linearised flock, stable but for its rigid motions.
-
     Examples
     --------
     >>> low, high = h2_bounds(law_blocks(Algorithm1(), [[0.0], [7.0]]))

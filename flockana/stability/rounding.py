@@ -27,11 +27,6 @@ _ROUNDINGS = 16.0  # of eps ‖A‖, in the entries of A and in LAPACK
 def eigen(matrix: FloatArray) -> tuple[ComplexArray, ComplexArray, FloatArray]:
     """(eigenvalues, right eigenvectors, how far rounding may have moved each eigenvalue) of a square matrix.
 
-    Parameters
-    ----------
-    matrix : ndarray, shape (N, N)
-        Any; its rows and columns are balanced first, so that the units of its states do not set the error.
-
     Examples
     --------
     >>> values, _, errors = eigen(np.array([[0.0, 1.0], [-1.0, 0.0]]))
@@ -70,15 +65,6 @@ def _together(values: ComplexArray, size: float) -> FloatArray:
 def root_error(value: complex, stiffness: float, damping: float, errors: tuple[float, float]) -> float:
     """How far a root of λ² + damping λ + stiffness moves, of which the coefficients are known to errors only.
 
-    Parameters
-    ----------
-    value : complex
-        The root.
-    stiffness, damping : float
-        Coefficients.
-    errors : tuple of float
-        Of stiffness and damping.
-
     Examples
     --------
     >>> root_error(-1.0, 2.0, 3.0, (1e-12, 0.0)), root_error(-1.0, 1.0, 2.0, (1e-12, 0.0))
@@ -94,15 +80,6 @@ def mode_errors(stiffness: Any, damping: Any, values: ComplexArray, shapes: Comp
 
     To first order by ‖(λ² + λD + K) v‖/|vᵀ(2λ + D) v|, for vᵀ is then the left eigenvector; of a double root by the
     square root of the push.
-
-    Parameters
-    ----------
-    stiffness, damping : sparse array, shape (N, N)
-        K and D.
-    values : complex ndarray, shape (k,)
-        Roots.
-    shapes : complex ndarray, shape (N, k)
-        Their vectors.
     """
     rows = [float(abs(matrix).sum(axis=1).max()) for matrix in (stiffness, damping)]
     errors = np.empty(len(values))
@@ -118,13 +95,6 @@ def mode_errors(stiffness: Any, damping: Any, values: ComplexArray, shapes: Comp
 
 def slowest_first(values: ComplexArray, errors: FloatArray) -> list[int]:
     """Order of eigenvalues by decay rate, then by frequency, then as given; what rounding may have parted is equal.
-
-    Parameters
-    ----------
-    values : complex ndarray, shape (k,)
-        Eigenvalues.
-    errors : ndarray, shape (k,)
-        How far rounding may have moved each.
 
     Examples
     --------

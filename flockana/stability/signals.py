@@ -21,13 +21,6 @@ if TYPE_CHECKING:
 def labels(name: str, n: int, m: int) -> list[str]:
     """Names of a quantity of n agents by component, in the order of ``q.ravel()``.
 
-    Parameters
-    ----------
-    name : str
-        Such as ``"q"``.
-    n, m : int
-        Number of agents, dimension.
-
     Examples
     --------
     >>> labels("q", 2, 2)
@@ -75,13 +68,7 @@ def _system(
 
 
 def whole_system(found: Linearisation) -> control.StateSpace:
-    """All agents: see `Linearisation.state_space`.
-
-    Parameters
-    ----------
-    found : Linearisation
-        The linearised flock.
-    """
+    """All agents: see `Linearisation.state_space`."""
     n, m = found.q.shape
     ensure_fits("A", found.A_sparse.shape, "use A_sparse and slowest_modes(...)")
     unit = translations(n, m)
@@ -98,13 +85,7 @@ def whole_system(found: Linearisation) -> control.StateSpace:
 
 
 def structural_system(found: Linearisation) -> control.StateSpace:
-    """The shape alone: see `Linearisation.structural`.
-
-    Parameters
-    ----------
-    found : Linearisation
-        The linearised flock.
-    """
+    """The shape alone: see `Linearisation.structural`."""
     found.ensure_split()
     n, m = found.q.shape
     if n == 1:
@@ -125,13 +106,7 @@ def structural_system(found: Linearisation) -> control.StateSpace:
 
 
 def translational_system(found: Linearisation) -> control.StateSpace:
-    """The centre of mass alone: see `Linearisation.translational`.
-
-    Parameters
-    ----------
-    found : Linearisation
-        The linearised flock.
-    """
+    """The centre of mass alone: see `Linearisation.translational`."""
     found.ensure_split()
     n, m = found.q.shape
     mean = translations(n, m).T / np.sqrt(n)

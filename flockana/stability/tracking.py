@@ -28,11 +28,6 @@ _WHOLE = 1e-9  # relative: a run that is as long as a period but for rounding is
 def path_and_factor(target: Target | None) -> tuple[Target | None, float]:
     """(the γ-agent's path, the factor of its p_r), unwrapped.
 
-    Parameters
-    ----------
-    target : Target or None
-        A γ-agent.
-
     Examples
     --------
     >>> path_and_factor(RescaledVelocity(LinearTarget((0.0,), (2.0,)), 0.5))[1]
@@ -69,16 +64,6 @@ class Motion:
 
 def motion(target: Target) -> Motion:
     """A γ-agent's motion as a line plus a harmonic.
-
-    Parameters
-    ----------
-    target : Target
-        Static, on a line, a sine or a circle; with a rescaled p_r or not.
-
-    Raises
-    ------
-    ArgumentError
-        On another target.
 
     Examples
     --------
@@ -154,22 +139,6 @@ def steady_error(gains: Gains, target: Target) -> tuple[float, float]:
 def centre_path(gains: Gains, target: Target, t: Any, q_c: Any, p_c: Any) -> FloatArray:
     """q_c(t) in closed form from its start at t[0], transient included, shape (T, m).
 
-    Parameters
-    ----------
-    gains : Gains
-        c1γ > 0 and c2γ are used.
-    target : Target
-        Static, on a line, a sine or a circle.
-    t : array_like, shape (T,)
-        Times.
-    q_c, p_c : array_like, shape (m,)
-        Position and velocity of the centre of mass at t[0].
-
-    Raises
-    ------
-    ArgumentError
-        On another target, without a pull, or in resonance.
-
     Examples
     --------
     Without damping it swings through a target at rest and as far beyond:
@@ -235,15 +204,7 @@ def _swings(run: Trajectory) -> tuple[ComplexArray, ComplexArray, float]:
 
 
 def whole_period(run: Trajectory, path: SineTarget | CircleTarget) -> bool:
-    """Whether a run lasts for a period of its γ-agent at least.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-    path : SineTarget or CircleTarget
-        The γ-agent.
-    """
+    """Whether a run lasts for a period of its γ-agent at least."""
     return bool(float(run.t[-1] - run.t[0]) * path.frequency >= 1.0 - _WHOLE)
 
 

@@ -155,16 +155,6 @@ def map_system(law: MSNDiscretisation) -> StateSpace:
     Exact if all agents move at once; agent by agent, action and reaction differ within a step, and the sum over
     agents obeys no equation of its own.
 
-    Parameters
-    ----------
-    law : MSNDiscretisation
-        Around Algorithm 2.
-
-    Raises
-    ------
-    ArgumentError
-        If the map has no γ-agent.
-
     Examples
     --------
     >>> from flockana.laws.olfati_saber import Algorithm2
@@ -189,15 +179,6 @@ def map_system(law: MSNDiscretisation) -> StateSpace:
 
 def map_gain(law: MSNDiscretisation, omega: float, *, factor: float = 1.0) -> float:
     """`predicted_gain` for the MSN project's map: |G_q(e^jωh) + factor jω G_p(e^jωh)|.
-
-    Parameters
-    ----------
-    law : MSNDiscretisation
-        Around Algorithm 2.
-    omega : float
-        Angular frequency, in radians per time unit.
-    factor : float
-        p_r over dq_r/dt.
 
     Examples
     --------

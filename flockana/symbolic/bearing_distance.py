@@ -21,11 +21,6 @@ _X = sp.Symbol("x", nonnegative=True)
 def pair_symbols(m: int = 2) -> tuple[sp.Matrix, sp.Matrix, sp.Matrix, sp.Matrix]:
     """Return (p_i, v_i, p_j, v_j): positions and velocities of an agent and of one in its zones.
 
-    Parameters
-    ----------
-    m : int
-        Dimension.
-
     Examples
     --------
     >>> pair_symbols(2)[2].T
@@ -37,11 +32,6 @@ def pair_symbols(m: int = 2) -> tuple[sp.Matrix, sp.Matrix, sp.Matrix, sp.Matrix
 
 def bearing(m: int = 2) -> tuple[sp.Expr, sp.Matrix, sp.Expr, sp.Matrix]:
     """Return (d, b, d', b'): distance and bearing (11) from i to j, and their rates by the chain rule (12).
-
-    Parameters
-    ----------
-    m : int
-        Dimension.
 
     Examples
     --------
@@ -64,11 +54,6 @@ def bearing(m: int = 2) -> tuple[sp.Expr, sp.Matrix, sp.Expr, sp.Matrix]:
 def position_form(m: int = 2) -> dict[str, sp.Matrix]:
     """Return cohesion (3), alignment (4) and separation (6) of a pair with unit weights, from positions.
 
-    Parameters
-    ----------
-    m : int
-        Dimension.
-
     Examples
     --------
     >>> position_form(1)["cohesion"]
@@ -82,11 +67,6 @@ def position_form(m: int = 2) -> dict[str, sp.Matrix]:
 def bearing_form(m: int = 2) -> dict[str, sp.Matrix]:
     """Return cohesion (14), alignment (15) and separation (19) of a pair with unit weights, from bearing and distance.
 
-    Parameters
-    ----------
-    m : int
-        Dimension.
-
     Examples
     --------
     >>> p_i, _, p_j, _ = pair_symbols(1)
@@ -99,11 +79,6 @@ def bearing_form(m: int = 2) -> dict[str, sp.Matrix]:
 
 def derive_equivalence(m: int = 2) -> Derivation:
     """Derive that the two forms agree for cohesion, alignment (the identity (13)) and separation.
-
-    Parameters
-    ----------
-    m : int
-        Dimension.
 
     Examples
     --------
@@ -141,13 +116,6 @@ def estimate_gap() -> sp.Expr:
 def saturation(norm: sp.Expr = _X, *, bound: sp.Expr = BOUND) -> sp.Expr:
     """Return m tanh(x/m), the length that (9) and (10) give to a vector of length x.
 
-    Parameters
-    ----------
-    norm : number or sympy.Expr
-        Length of the vector.
-    bound : number or sympy.Expr
-        The bound m.
-
     Examples
     --------
     The drag of (10): at 3 m/s with a bound of 4 a single step leaves (erratum J7)
@@ -162,11 +130,6 @@ def saturation(norm: sp.Expr = _X, *, bound: sp.Expr = BOUND) -> sp.Expr:
 def saturation_factor(order: int = 6) -> sp.Expr:
     """Return the series of tanh(x)/x at its removable singularity 0, as a polynomial in x.
 
-    Parameters
-    ----------
-    order : int
-        Terms below this power.
-
     Examples
     --------
     >>> saturation_factor(4)
@@ -177,13 +140,6 @@ def saturation_factor(order: int = 6) -> sp.Expr:
 
 def fastest_under_drag(step: sp.Expr, force: sp.Expr, bound: sp.Expr, *, digits: int = 15) -> sp.Float:
     """Return lim sup ‖v‖ under (10) for inputs up to `force`: the fixed point of v ↦ sat(v + δ u).
-
-    Parameters
-    ----------
-    step, force, bound : number or sympy.Expr
-        δ, u^max and v^max.
-    digits : int
-        Precision.
 
     Examples
     --------
@@ -197,15 +153,6 @@ def fastest_under_drag(step: sp.Expr, force: sp.Expr, bound: sp.Expr, *, digits:
 
 def stand_off(*, desired_speed: sp.Expr = SPEED, drive: sp.Expr | None = None, weight: sp.Expr = GAIN) -> sp.Expr:
     """Return the distance at which an agent that heads for a wall stands: global drive and repulsion balance (J12).
-
-    Parameters
-    ----------
-    desired_speed : number or sympy.Expr
-        v^d.
-    drive : number or sympy.Expr, optional
-        w^ga.
-    weight : number or sympy.Expr
-        w^oa of the wall, or w^ls of an agent.
 
     Examples
     --------

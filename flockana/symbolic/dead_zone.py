@@ -20,11 +20,6 @@ PSI = UndefinedFunction("psi", real=True, __dict__={"fdiff": lambda self, argind
 def repulsion(rho: sp.Expr = RHO) -> sp.Expr:
     """Return 2k_r/rho^2 + k_delta, what acts below d_1.
 
-    Parameters
-    ----------
-    rho : sympy.Expr
-        Distance.
-
     Examples
     --------
     >>> repulsion()
@@ -35,11 +30,6 @@ def repulsion(rho: sp.Expr = RHO) -> sp.Expr:
 
 def attraction(rho: sp.Expr = RHO) -> sp.Expr:
     """Return 2k_r/(r_d - rho)^2 + k_delta, what acts between d_2 and r.
-
-    Parameters
-    ----------
-    rho : sympy.Expr
-        Distance.
 
     Examples
     --------
@@ -52,11 +42,6 @@ def attraction(rho: sp.Expr = RHO) -> sp.Expr:
 def direction(rho: sp.Expr = RHO, eta: sp.Expr = ETA) -> sp.Expr:
     """Return the length of n_ij, rho/sqrt(1 + eta rho^2): eq. (8), no unit vector.
 
-    Parameters
-    ----------
-    rho, eta : sympy.Expr
-        Distance and parameter.
-
     Examples
     --------
     >>> direction(eta=sp.Integer(0))
@@ -67,13 +52,6 @@ def direction(rho: sp.Expr = RHO, eta: sp.Expr = ETA) -> sp.Expr:
 
 def action(rho: sp.Expr = RHO, *, ramp: sp.Expr = sp.S.Zero) -> sp.Expr:
     """Return f(rho), negative where it repels, 0 on [d_1, d_2] and from r on.
-
-    Parameters
-    ----------
-    rho : sympy.Expr
-        Distance.
-    ramp : sympy.Expr
-        Length over which it rises beside the dead zone; 0 for the printed jumps.
 
     Examples
     --------
@@ -92,13 +70,6 @@ def action(rho: sp.Expr = RHO, *, ramp: sp.Expr = sp.S.Zero) -> sp.Expr:
 def force(rho: sp.Expr = RHO, *, ramp: sp.Expr = sp.S.Zero) -> sp.Expr:
     """Return F(rho) = f rho/sqrt(1 + eta rho^2) + k_1 rho within r, 0 beyond.
 
-    Parameters
-    ----------
-    rho : sympy.Expr
-        Distance.
-    ramp : sympy.Expr
-        As in `action`.
-
     Examples
     --------
     >>> force().subs({RHO: 3, D_1: 2, D_2: 4, R: 5})
@@ -109,11 +80,6 @@ def force(rho: sp.Expr = RHO, *, ramp: sp.Expr = sp.S.Zero) -> sp.Expr:
 
 def repulsive_primitive(s: sp.Expr = RHO, *, eta: sp.Expr = ETA_POSITIVE) -> sp.Expr:
     """Return P_r with dP_r/ds = (2k_r/s^2 + k_delta) s/sqrt(1 + eta s^2), for eta > 0 or eta = 0.
-
-    Parameters
-    ----------
-    s, eta : sympy.Expr
-        Distance and parameter.
 
     Examples
     --------
@@ -127,11 +93,6 @@ def repulsive_primitive(s: sp.Expr = RHO, *, eta: sp.Expr = ETA_POSITIVE) -> sp.
 
 def attractive_primitive(s: sp.Expr = RHO, *, eta: sp.Expr = ETA_POSITIVE) -> sp.Expr:
     """Return P_a with dP_a/ds = (2k_r/(r_d - s)^2 + k_delta) s/sqrt(1 + eta s^2), for eta > 0 or eta = 0.
-
-    Parameters
-    ----------
-    s, eta : sympy.Expr
-        Distance and parameter.
 
     Examples
     --------
@@ -147,11 +108,6 @@ def attractive_primitive(s: sp.Expr = RHO, *, eta: sp.Expr = ETA_POSITIVE) -> sp
 
 def potential(rho: sp.Expr = RHO, *, eta: sp.Expr = ETA_POSITIVE) -> sp.Expr:
     """Return the saturated potential of a pair without ramp, psi(min(rho, r)), for d_2 < r.
-
-    Parameters
-    ----------
-    rho, eta : sympy.Expr
-        Distance and parameter.
 
     Examples
     --------
@@ -223,11 +179,6 @@ def saturated_energy_identity(m: int = 2) -> Derivation:
     H is a sum over pairs of psi(min(rho, r)) and over agents of |p_i|^2/2 (of the deviations from the mean: momentum
     is conserved), so an identity for one pair is one for every n. It holds on either side of every switch, and psi is
     continuous across them.
-
-    Parameters
-    ----------
-    m : int
-        Dimension, 1, 2 or 3.
 
     Examples
     --------

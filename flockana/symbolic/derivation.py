@@ -40,16 +40,9 @@ class Step:
 def latex_steps(title: str, steps: tuple[Step, ...]) -> str:
     """Return a titled sequence of steps as one ``aligned`` environment.
 
-    Parameters
-    ----------
-    title : str
-        The heading, as LaTeX text.
-    steps : tuple of Step
-        The rows.
-
     Examples
     --------
-    >>> latex_steps("T", (Step("One.", sp.Integer(1)),)).startswith(r"\\begin{aligned}")
+    >>> latex_steps("T", (Step("One.", sp.Integer(1)),)).startswith(r"\begin{aligned}")
     True
     """
     rows = [rf"& \textbf{{{title}}}", *(step.latex() for step in steps)]

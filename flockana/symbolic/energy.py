@@ -113,26 +113,12 @@ class GenericPair:
         self.p = vector(f"{velocity}_i", m), vector(f"{velocity}_j", m)
 
     def forces(self, gains: GainSymbols = GAINS) -> tuple[sp.Matrix, sp.Matrix]:
-        """Return the force of j on i and, by the same formula, of i on j.
-
-        Parameters
-        ----------
-        gains : GainSymbols
-            Gains; all symbolic by default.
-        """
+        """Return the force of j on i and, by the same formula, of i on j."""
         (q_i, q_j), (p_i, p_j) = self.q, self.p
         return pair_force(q_i, p_i, q_j, p_j, gains=gains), pair_force(q_j, p_j, q_i, p_i, gains=gains)
 
     def along(self, energy: sp.Expr, gains: GainSymbols = GAINS) -> sp.Expr:
-        """Return the rate of a pair's energy under the forces between the two, tidied.
-
-        Parameters
-        ----------
-        energy : sympy.Expr
-            An energy of the two agents.
-        gains : GainSymbols
-            Gains; all symbolic by default.
-        """
+        """Return the rate of a pair's energy under the forces between the two, tidied."""
         components = [[*first, *second] for first, second in (self.q, self.p, self.forces(gains))]
         return self.tidy(along_flow(energy, *components))
 
@@ -143,13 +129,7 @@ class GenericPair:
         return self.tidy(ADJACENCY(self.z) * (stacked.T * block * stacked)[0])
 
     def tidy(self, expression: sp.Expr) -> sp.Expr:
-        """Return an expression expanded in relative coordinates, the sigma-norm of the pair named z_ij.
-
-        Parameters
-        ----------
-        expression : sympy.Expr
-            An expression of the two agents.
-        """
+        """Return an expression expanded in relative coordinates, the sigma-norm of the pair named z_ij."""
         root = sp.Symbol("w", positive=True)
         relative = {
             i: j + sp.Symbol(f"d{i}", real=True) for ends in (self.q, self.p) for i, j in zip(*ends, strict=True)
@@ -162,13 +142,7 @@ class GenericPair:
         return collected.xreplace(back).subs(root, 1 + EPS * self.z)
 
     def lift(self, expression: sp.Expr) -> sp.Expr:
-        """Return the sum over all pairs of an expression of this one.
-
-        Parameters
-        ----------
-        expression : sympy.Expr
-            An expression of the two agents, tidied.
-        """
+        """Return the sum over all pairs of an expression of this one."""
         names: dict[sp.Expr, sp.Expr] = {self.z: Z[I_, J_]}
         for base, ends in zip(self.frame, (self.q, self.p), strict=True):
             for index, end in zip((I_, J_), ends, strict=True):

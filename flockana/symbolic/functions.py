@@ -17,13 +17,6 @@ HALF = sp.Rational(1, 2)
 def taper(z: sp.Expr, *, h: sp.Expr = AlphaSymbols.h) -> sp.Expr:
     """Return the falling half-cosine of the bump, without its range h <= z <= 1.
 
-    Parameters
-    ----------
-    z : sympy.Expr
-        Where to evaluate it.
-    h : sympy.Expr
-        End of the plateau, 0 < h < 1.
-
     Examples
     --------
     >>> taper(sp.Rational(3, 4), h=sp.Rational(1, 2))

@@ -43,18 +43,6 @@ def derive_pair_jacobian(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivatio
     side by side; those in q_i, p_i are their negatives, and those of the force on j are the opposite of all: the
     residuals hold each of them.
 
-    Parameters
-    ----------
-    m : int
-        Dimension, 1, 2 or 3.
-    gains : GainSymbols
-        Gains; all symbolic if not given.
-
-    Raises
-    ------
-    ArgumentError
-        If m is not 1, 2 or 3.
-
     Examples
     --------
     >>> derive_pair_jacobian(2).holds
@@ -99,20 +87,6 @@ def derive_pair_jacobian(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivatio
 def derive_agent_jacobian(m: int = 2, *, gains: GainSymbols = GAINS, bounded: bool = False) -> Derivation:
     """Derive what the γ-agent does to ∂u_i/∂(q_i, p_i), with x = q_i − q_r: −c1 I, or −c1 (I/w − x xᵀ/w³), and −c2 I.
 
-    Parameters
-    ----------
-    m : int
-        Dimension, 1, 2 or 3.
-    gains : GainSymbols
-        Gains; all symbolic if not given.
-    bounded : bool
-        The pull of Algorithm 3, by σ₁, instead of Algorithm 2's; w = √(1 + ‖x‖²).
-
-    Raises
-    ------
-    ArgumentError
-        If m is not 1, 2 or 3.
-
     Examples
     --------
     >>> derive_agent_jacobian(3, bounded=True).holds
@@ -146,11 +120,6 @@ def turn(obstacle: GenericObstacle) -> sp.Matrix:
 
     Zero at a wall; at a sphere, along e, −(μ/ρ) [⟨a, e⟩ Pp + ⟨a, p⟩ Pe + a ⟨Pe, p⟩] with a = x/ρ.
 
-    Parameters
-    ----------
-    obstacle : GenericObstacle
-        An agent and an obstacle of a kind.
-
     Examples
     --------
     >>> turn(GenericObstacle("wall", 2))
@@ -174,20 +143,6 @@ def derive_obstacle_jacobian(kind: str, m: int = 2, *, gains: GainSymbols = GAIN
     With the gap g = q̂ − q, D = ∂q̂/∂q and w the weight of g: in q_i
     −c1 [w (I − D) + 2 w' g gᵀ] + c2 [b ∂p̂/∂q − 2 b' (p̂ − p) gᵀ], since the gradient of ‖g‖² is −2g; in p_i
     c2 b (D − I).
-
-    Parameters
-    ----------
-    kind : str
-        ``"wall"`` or ``"sphere"``.
-    m : int
-        Dimension, 1, 2 or 3.
-    gains : GainSymbols
-        Gains; all symbolic if not given.
-
-    Raises
-    ------
-    ArgumentError
-        On an unknown kind or a bad dimension.
 
     Examples
     --------

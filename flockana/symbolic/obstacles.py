@@ -33,13 +33,6 @@ PSI_BETA = UndefinedFunction("psi_beta", real=True, __dict__={"fdiff": lambda se
 def wall_beta(q: sp.Matrix, p: sp.Matrix, point: sp.Matrix, normal: sp.Matrix) -> tuple[sp.Matrix, sp.Matrix]:
     """Return (q_hat, p_hat) = (P q + (I - P) y, P p), the beta-agent on a wall (Olfati-Saber 2006).
 
-    Parameters
-    ----------
-    q, p : sympy.Matrix, shape (m, 1)
-        Position and velocity of the agent.
-    point, normal : sympy.Matrix, shape (m, 1)
-        A point y of the wall, and any vector along its normal.
-
     Examples
     --------
     >>> column = lambda *x: sp.Matrix(x)
@@ -52,15 +45,6 @@ def wall_beta(q: sp.Matrix, p: sp.Matrix, point: sp.Matrix, normal: sp.Matrix) -
 
 def sphere_beta(q: sp.Matrix, p: sp.Matrix, centre: sp.Matrix, radius: sp.Expr) -> tuple[sp.Matrix, sp.Matrix]:
     """Return (q_hat, p_hat) = (mu q + (1 - mu) y, mu P p), the beta-agent on a sphere (Olfati-Saber 2006).
-
-    Parameters
-    ----------
-    q, p : sympy.Matrix, shape (m, 1)
-        Position and velocity of the agent.
-    centre : sympy.Matrix, shape (m, 1)
-        y.
-    radius : sympy.Expr
-        R.
 
     Examples
     --------
@@ -111,13 +95,7 @@ class GenericObstacle:
         self.derivative = beta[0].jacobian(self.x)  # of q_hat in q = y + x
 
     def reduce(self, expression: sp.Expr) -> sp.Expr:
-        """Return an expression in normal form, with |x| named rho: what vanishes identically comes out as 0.
-
-        Parameters
-        ----------
-        expression : sympy.Expr
-            Rational in the components and sqrt(x . x).
-        """
+        """Return an expression in normal form, with |x| named rho: what vanishes identically comes out as 0."""
         square, first = self.x.dot(self.x), self.x[0]
         on_a_line = {sp.Abs(first): self.distance, sp.sign(first): first / self.distance}  # sqrt(x . x) if m = 1
         named = expression.xreplace(on_a_line if self.m == 1 else {square: self.distance**2})
@@ -135,25 +113,13 @@ class GenericObstacle:
         return (self.mu - 1) * (self.p.dot(self.p) - along) - along
 
     def force(self, gains: GainSymbols = GAINS) -> sp.Matrix:
-        """Return what the obstacle contributes to u_i: c1_beta phi_beta n_hat + c2_beta b (p_hat - p_i).
-
-        Parameters
-        ----------
-        gains : GainSymbols
-            Gains; all symbolic by default.
-        """
+        """Return what the obstacle contributes to u_i: c1_beta phi_beta n_hat + c2_beta b (p_hat - p_i)."""
         z = sigma_norm(self.gap)
         attraction = gains.c1_beta * PHI_BETA(z) * sigma_norm_gradient(self.gap)
         return attraction + gains.c2_beta * WEIGHT(z) * (self.rate - self.p)
 
     def energy_residual(self, gains: GainSymbols = GAINS) -> sp.Expr:
-        """Return the rate of c1_beta psi_beta + |p|^2/2 under `force`, less c2_beta b <p, p_hat - p>, reduced.
-
-        Parameters
-        ----------
-        gains : GainSymbols
-            Gains; all symbolic by default.
-        """
+        """Return the rate of c1_beta psi_beta + |p|^2/2 under `force`, less c2_beta b <p, p_hat - p>, reduced."""
         energy = gains.c1_beta * PSI_BETA(sigma_norm(self.gap)) + HALF * self.p.dot(self.p)
         rate = along_flow(energy, self.x, self.p, self.force(gains))
         claimed = gains.c2_beta * WEIGHT(sigma_norm(self.gap)) * self.braking()
@@ -169,18 +135,6 @@ def derive_envelope(kind: str, m: int = 2) -> Derivation:
     With D = dq_hat/dq the gradient of |q_hat - q|^2/2 is (D - I)^T (q_hat - q). The gap q_hat - q is normal to the
     surface and D maps into its tangent space, so D^T (q_hat - q) = 0 and -(q_hat - q) is left. This holds inside the
     obstacle too, except at a sphere's centre, where q_hat does not exist.
-
-    Parameters
-    ----------
-    kind : str
-        ``"wall"`` or ``"sphere"``.
-    m : int
-        Dimension, 1, 2 or 3.
-
-    Raises
-    ------
-    ArgumentError
-        On an unknown kind or a bad dimension.
 
     Examples
     --------
@@ -246,18 +200,6 @@ class Braking:
 
 def derive_braking(kind: str, m: int = 2) -> Braking:
     """Derive <p, p_hat - p> = (mu - 1) |P p|^2 - <a, p>^2 and the sign of each term; mu = 1 at a wall.
-
-    Parameters
-    ----------
-    kind : str
-        ``"wall"`` or ``"sphere"``.
-    m : int
-        Dimension, 1, 2 or 3.
-
-    Raises
-    ------
-    ArgumentError
-        On an unknown kind or a bad dimension.
 
     Examples
     --------

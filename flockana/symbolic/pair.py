@@ -23,16 +23,6 @@ PSI = UndefinedFunction("psi_alpha", real=True, __dict__={"fdiff": lambda self, 
 def ensure_dimension(m: int) -> int:
     """Return the dimension m if it is 1, 2 or 3.
 
-    Parameters
-    ----------
-    m : int
-        What the caller gave.
-
-    Raises
-    ------
-    ArgumentError
-        If it is anything else.
-
     Examples
     --------
     >>> ensure_dimension(2)
@@ -45,13 +35,6 @@ def ensure_dimension(m: int) -> int:
 
 def vector(name: str, m: int) -> sp.Matrix:
     """Return a column of m real symbols.
-
-    Parameters
-    ----------
-    name : str
-        Their common name, such as ``"q_i"``.
-    m : int
-        How many.
 
     Examples
     --------
@@ -107,13 +90,6 @@ def own_force(
 ) -> sp.Matrix:
     """Return the navigational feedback of Algorithm 2: -c1_gamma (q_i - q_r) - c2_gamma (p_i - p_r).
 
-    Parameters
-    ----------
-    q_i, p_i, q_r, p_r : sympy.Matrix, shape (m, 1)
-        Positions and velocities of the agent and of the gamma-agent.
-    gains : GainSymbols
-        Gains; all symbolic if not given.
-
     Examples
     --------
     >>> zero = sp.Matrix([0])
@@ -125,15 +101,6 @@ def own_force(
 
 def along_flow(energy: sp.Expr, q: Sequence[sp.Symbol], p: Sequence[sp.Symbol], u: Sequence[sp.Expr]) -> sp.Expr:
     """Return the chain rule: the rate of an energy(q, p) along q' = p, p' = u.
-
-    Parameters
-    ----------
-    energy : sympy.Expr
-        A function of the symbols q and p.
-    q, p : sequence of sympy.Symbol
-        Positions and velocities, component by component.
-    u : sequence of sympy.Expr
-        Accelerations, in the same order.
 
     Examples
     --------

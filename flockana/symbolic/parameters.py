@@ -18,18 +18,6 @@ _C1_BETA, _C2_BETA = sp.symbols("c_1^beta c_2^beta", nonnegative=True)
 def exact(name: str, value: Any) -> sp.Expr:
     """Return a number or expression as an exact sympy expression: the float 0.1 becomes 1/10.
 
-    Parameters
-    ----------
-    name : str
-        The argument's name, for the message.
-    value : number or sympy.Expr
-        What the caller gave.
-
-    Raises
-    ------
-    ArgumentError
-        If it is neither, or is not finite.
-
     Examples
     --------
     >>> exact("eps", 0.1)

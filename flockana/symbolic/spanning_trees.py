@@ -23,11 +23,6 @@ Edges = Sequence[tuple[int, int]]
 def incidence_matrix(edges: Edges) -> sp.Matrix:
     """Return D, a row for each agent and a column for each edge.
 
-    Parameters
-    ----------
-    edges : sequence of (int, int)
-        Directed edges (j, i).
-
     Examples
     --------
     >>> incidence_matrix([(0, 1), (1, 2)])
@@ -42,11 +37,6 @@ def incidence_matrix(edges: Edges) -> sp.Matrix:
 
 def receiver_matrix(edges: Edges) -> sp.Matrix:
     """Return D_in: the entries +1 of D.
-
-    Parameters
-    ----------
-    edges : sequence of (int, int)
-        Directed edges (j, i).
 
     Examples
     --------
@@ -69,11 +59,6 @@ def _column(name: str, size: int) -> sp.Matrix:
 
 def stacked_form(edges: Edges) -> Derivation:
     """Derive (35), u = -D_in W^s D^T p - D_in W^a D^T v, from the sums over neighbours, and L = D D^T beside it.
-
-    Parameters
-    ----------
-    edges : sequence of (int, int)
-        Directed edges (j, i).
 
     Examples
     --------
@@ -101,15 +86,8 @@ def separation_forms(edges: Edges) -> dict[str, Derivation]:
     (28) adds q, and the identity before (34) gives q the sign of D^T p: both are wrong, and since they are used
     together (34) comes out right.
 
-    Parameters
-    ----------
-    edges : sequence of (int, int)
-        Directed edges (j, i).
-
-    Returns
-    -------
-    dict of str to Derivation
-        "28", "28-corrected", "identity", "identity-corrected", "34"; the residuals are the rows of left minus right.
+    Returns dict of str to Derivation "28", "28-corrected", "identity", "identity-corrected", "34"; the residuals are
+    the rows of left minus right.
 
     Examples
     --------
@@ -146,11 +124,6 @@ def edge_matrices(edges: Edges) -> tuple[sp.Matrix, sp.Matrix]:
 
     On a rooted tree every agent but the root has one edge, so W^a = I; elsewhere an agent's edges share its mean.
 
-    Parameters
-    ----------
-    edges : sequence of (int, int)
-        Directed edges (j, i).
-
     Examples
     --------
     >>> edge_matrices([(0, 1), (1, 2)])[1]
@@ -165,11 +138,6 @@ def edge_matrices(edges: Edges) -> tuple[sp.Matrix, sp.Matrix]:
 
 def tree_characteristic(edges: Edges) -> Derivation:
     """Derive det(s^2 I + s A^a + A^s) = prod (s^2 + s + w_e) on a rooted tree, for weights w_e of any sign.
-
-    Parameters
-    ----------
-    edges : sequence of (int, int)
-        Directed edges (j, i) of a rooted out-tree.
 
     Examples
     --------
@@ -191,13 +159,6 @@ def tree_characteristic(edges: Edges) -> Derivation:
 def frozen_eigenvalues(ratio: sp.Expr, *, mu: sp.Expr = sp.S.One) -> tuple[sp.Expr, sp.Expr]:
     """Return the roots of s^2 + s + mu (1 - 1/ratio): an edge of the matrix A_cl at |x| = ratio rho.
 
-    Parameters
-    ----------
-    ratio : number or sympy.Expr
-        Length over desired spacing, positive.
-    mu : number or sympy.Expr
-        Weight.
-
     Examples
     --------
     >>> frozen_eigenvalues(1), frozen_eigenvalues(sp.Rational(1, 2))
@@ -210,11 +171,6 @@ def frozen_eigenvalues(ratio: sp.Expr, *, mu: sp.Expr = sp.S.One) -> tuple[sp.Ex
 
 def symmetric_part(children: int) -> Derivation:
     """Derive the spectrum of the symmetric part of D^T D_in for root -> a -> k children: 1 and 1 +- sqrt(k)/2.
-
-    Parameters
-    ----------
-    children : int
-        k.
 
     Examples
     --------
@@ -237,11 +193,6 @@ def symmetric_part(children: int) -> Derivation:
 
 def spacing_spectrum(m: int) -> Derivation:
     """Derive the spectrum of an edge at |x| = rho in m dimensions: s^2 + s + mu once, s^2 + s the other m - 1 times.
-
-    Parameters
-    ----------
-    m : int
-        Dimension.
 
     Examples
     --------

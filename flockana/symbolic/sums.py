@@ -54,11 +54,6 @@ def write_out(generic: sp.Expr, n: int, m: int = 1) -> sp.Expr:
 def over_pairs(summand: sp.Expr) -> sp.Expr:
     """Return the sum over all unordered pairs i < j of an expression in i and j.
 
-    Parameters
-    ----------
-    summand : sympy.Expr
-        The term of one pair.
-
     Examples
     --------
     >>> write_out(over_pairs(sp.Integer(1)), 4)
@@ -70,11 +65,6 @@ def over_pairs(summand: sp.Expr) -> sp.Expr:
 def over_agents(summand: sp.Expr) -> sp.Expr:
     """Return the sum over all agents of an expression in i.
 
-    Parameters
-    ----------
-    summand : sympy.Expr
-        The term of one agent.
-
     Examples
     --------
     >>> write_out(over_agents(X[I_, 1]), 2)
@@ -85,13 +75,6 @@ def over_agents(summand: sp.Expr) -> sp.Expr:
 
 def sigma_distance(base: sp.IndexedBase = Q, m: sp.Expr = M) -> sp.Basic:
     """Return the definition of z_ij, the sigma-distance of agents i and j.
-
-    Parameters
-    ----------
-    base : sympy.IndexedBase
-        Positions.
-    m : int or sympy.Expr
-        Dimension.
 
     Examples
     --------

@@ -38,13 +38,6 @@ def gamma_force(
 ) -> sp.Matrix:
     """Return the navigational feedback of Algorithm 3: -c1_gamma sigma_1(q_i - q_r) - c2_gamma (p_i - p_r).
 
-    Parameters
-    ----------
-    q_i, p_i, q_r, p_r : sympy.Matrix, shape (m, 1)
-        Positions and velocities of the agent and of the gamma-agent.
-    gains : GainSymbols
-        Gains; all symbolic if not given.
-
     Examples
     --------
     >>> zero = sp.Matrix([0])
@@ -75,24 +68,6 @@ def theorem6_identity(
     copies: sp.Expr = _ONE,
 ) -> EnergyIdentity:
     """Derive dH/dt along Algorithm 3: consensus, damping at obstacles, drag towards p_r (Olfati-Saber, Theorem 6).
-
-    Parameters
-    ----------
-    m : int
-        Dimension, 1, 2 or 3.
-    gains : GainSymbols
-        Gains; all symbolic if not given.
-    kinds : iterable of str
-        Obstacles among ``"wall"`` and ``"sphere"``.
-    moving : bool
-        A gamma-agent with dq_r/dt = s, not necessarily p_r, adds -c1_gamma sum <sigma_1(q_i - q_r), s>.
-    copies : sympy.Expr
-        How often V_alpha counts each pair: once. Anything else leaves a residual (erratum E2).
-
-    Raises
-    ------
-    ArgumentError
-        If m is not 1, 2 or 3, or a kind is unknown.
 
     Examples
     --------
@@ -138,11 +113,6 @@ def theorem6_identity(
 def condition_76_residual(m: int = 2) -> sp.Expr:
     """Return sum <p_i, p_i - p_d> - (2 T - n <p_c, p_d>), which vanishes: condition (76) is the sign of the drag.
 
-    Parameters
-    ----------
-    m : int
-        Dimension, 1, 2 or 3.
-
     Examples
     --------
     >>> condition_76_residual(3)
@@ -158,16 +128,6 @@ def condition_76_residual(m: int = 2) -> sp.Expr:
 
 def e2_identity(m: int = 2) -> EnergyIdentity:
     """Derive dH/dt of the printed H, which counts every pair twice: dV_alpha/dt is left over, and it has no sign.
-
-    Parameters
-    ----------
-    m : int
-        Dimension, 1, 2 or 3.
-
-    Raises
-    ------
-    ArgumentError
-        If m is not 1, 2 or 3.
 
     Examples
     --------

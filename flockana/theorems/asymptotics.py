@@ -32,15 +32,7 @@ def _stirred(run: Trajectory, scale: float) -> float:
 
 
 def still(run: Trajectory, tolerances: Tolerances) -> Certificate:
-    """Whether all relative motion dies out: the root mean square of the relative velocities decays to what counts as 0.
-
-    Parameters
-    ----------
-    run : Trajectory
-        A run of any law.
-    tolerances : Tolerances
-        `velocity` is used.
-    """
+    """Whether all relative motion dies out: the rms of the relative velocities decays to what counts as 0."""
     speed = np.sqrt(run.metric("velocity_mismatch")) + frame_error(run.p) + _stirred(run, run.scales.speed)
     found = decay(run.t, speed, floor=float(np.sqrt(tolerances.velocity)) * run.scales.speed).certificate
     return Certificate(found.margin, f"√K̃: {found.text}", found.error)
@@ -54,21 +46,7 @@ def velocities_match(
     name: str,
     caught: Iterable[Certificate] = (),
 ) -> Claim:
-    """Velocities match in the moving frame: K̃ decays steadily, or a certificate says that it will.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-    tolerances : Tolerances
-        `velocity` is used.
-    needs : iterable of Hypothesis
-        Hypotheses of the claim.
-    name : str
-        Name of the claim.
-    caught : iterable of Certificate
-        Of a terminal state, by laws that have one.
-    """
+    """Velocities match in the moving frame: K̃ decays steadily, or a certificate says that it will."""
     series = run.metric("velocity_mismatch")
     return limit_claim(
         name,
@@ -82,17 +60,7 @@ def velocities_match(
 
 
 def settled(end: TerminalState, tolerances: Tolerances, scales: Scales) -> bool:
-    """Whether a terminal state is an equilibrium of the structural dynamics within tolerance, attracting or not.
-
-    Parameters
-    ----------
-    end : TerminalState
-        The state.
-    tolerances : Tolerances
-        `force` and `velocity` are used.
-    scales : Scales
-        Of the law.
-    """
+    """Whether a terminal state is an equilibrium of the structural dynamics within tolerance, attracting or not."""
     return end.force <= tolerances.force and end.mismatch <= tolerances.velocity * scales.energy
 
 
@@ -112,17 +80,6 @@ def lattice_limit(run: Trajectory, needs: Iterable[Hypothesis], tolerances: Tole
     Where the flock is caught by a strict minimum, the limit is known up to its distance from there. In a net that can
     flex there is none: then the largest strain and the relative speeds must both decay to what counts as 0. An
     equilibrium with c1γ > 0 is no lattice, as λJ presses on every link: what little it may be verifies nothing.
-
-    Parameters
-    ----------
-    run : Trajectory
-        A run of Algorithm 1 or 2 with c1α > 0.
-    needs : iterable of Hypothesis
-        Hypotheses of the claim.
-    tolerances : Tolerances
-        `lattice` and `velocity` are used.
-    name : str
-        Name of the claim.
     """
     needs = list(needs)
     end = terminal_state(run.law, run.q[-1], run.p[-1], contact=tolerances.contact)

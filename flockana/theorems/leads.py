@@ -15,11 +15,6 @@ from flockana.theorems.theorem import Claim, Tolerances
 def squash(x: float) -> float:
     """x/(1 + |x|): keeps the order, and has a place for infinity.
 
-    Parameters
-    ----------
-    x : float
-        Any number, NaN excepted.
-
     Examples
     --------
     >>> squash(1.0), squash(-3.0), squash(float("inf"))
@@ -29,15 +24,7 @@ def squash(x: float) -> float:
 
 
 def pairs_apart(run: Trajectory, claim: Claim) -> float:
-    """For a count of pairs that meet: how far the nearest pair stays apart that has not met, over d.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-    claim : Claim
-        Not used.
-    """
+    """For a count of pairs that meet: how far the nearest pair stays apart that has not met, over d."""
     i, j = np.triu_indices(run.n, 1)
     apart = np.linalg.norm(run.q[:, i] - run.q[:, j], axis=2).min(axis=0)
     done = {(c.i, c.j) for c in contacts_of(run, Tolerances())}
@@ -46,15 +33,7 @@ def pairs_apart(run: Trajectory, claim: Claim) -> float:
 
 
 def bridge(run: Trajectory, claim: Claim) -> float:
-    """For a count of components: how far below r the longest link that holds the flock together stays.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-    claim : Claim
-        Not used.
-    """
+    """For a count of components: how far below r the longest link that holds the flock together stays."""
     from scipy.sparse.csgraph import minimum_spanning_tree
     from scipy.spatial.distance import pdist, squareform
 
@@ -66,13 +45,6 @@ def strained(run: Trajectory, claim: Claim) -> float:
     """For the lattice as a limit: how soon links are unstrained, 1 less the mean over time of the largest strain.
 
     Runs that pass by a strained equilibrium linger there: the longer they do, the nearer they are to its basin.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-    claim : Claim
-        Not used.
     """
     (d, r), series = run.law.lattice, []
     for q in run.q:

@@ -95,19 +95,7 @@ class Decay:
 def decay(t: npt.ArrayLike, amplitude: npt.ArrayLike, *, floor: float) -> Decay:
     """Measure how a series falls towards 0.
 
-    Parameters
-    ----------
-    t : array_like, shape (T,)
-        Rising times.
-    amplitude : array_like, shape (T,)
-        What should vanish, >= 0, to its first power: a speed, not its square. Add its numerical error to it.
-    floor : float
-        What counts as 0, > 0, in the unit of the series.
-
-    Returns
-    -------
-    Decay
-        Of a series with a value that is not finite, one that certifies nothing.
+    Returns Decay Of a series with a value that is not finite, one that certifies nothing.
 
     Examples
     --------
@@ -169,19 +157,6 @@ def limit_claim(
     detail: str,
 ) -> Claim:
     """A claim about a limit, by its best certificate: verified, or open.
-
-    Parameters
-    ----------
-    name : str
-        Name of the claim.
-    needs : iterable of Hypothesis
-        Hypotheses of the claim.
-    certificates : iterable of Certificate
-        Each of them would do.
-    computed, stated, witness, proof : object
-        As in `Claim`.
-    detail : str
-        As in `Claim`; what the best certificate says is added.
 
     Examples
     --------

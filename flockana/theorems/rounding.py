@@ -22,11 +22,6 @@ _POTENTIAL = 1e-13  # of c*: to which ψ_α is known (`AlphaInteraction.psi_alph
 def frame_error(x: FloatArray) -> float:
     """Bound of the rounding of each coordinate of x_i − x_c, x_c a mean of n numbers.
 
-    Parameters
-    ----------
-    x : ndarray, shape (..., n, m)
-        Positions or velocities, at one instant or several.
-
     Examples
     --------
     >>> frame_error(np.full((2, 1), 1e6)) < 1e-8
@@ -37,11 +32,6 @@ def frame_error(x: FloatArray) -> float:
 
 def spread_error(x: FloatArray) -> FloatArray:
     """Bound of the rounding of ½ Σ‖x_i − x_c‖², by instant.
-
-    Parameters
-    ----------
-    x : ndarray, shape (T, n, m)
-        Positions or velocities.
 
     Examples
     --------
@@ -60,11 +50,6 @@ def pair_force_error(alpha: AlphaInteraction) -> float:
 
     φ loses nothing to cancellation, but its argument (‖x‖_σ − d_α)/ℓ² does: by a few ε of both terms, times its slope.
 
-    Parameters
-    ----------
-    alpha : AlphaInteraction
-        The pair law.
-
     Examples
     --------
     >>> pair_force_error(AlphaInteraction(d=7.0, r=8.4)) < 1e-12
@@ -79,15 +64,6 @@ def pair_force_error(alpha: AlphaInteraction) -> float:
 
 def energy_error(law: Any, q: FloatArray, p: FloatArray, energy: FloatArray) -> FloatArray:
     """Bound of the rounding of the energy of Algorithm 1, 2 or 3, by instant: all its terms are >= 0.
-
-    Parameters
-    ----------
-    law : Algorithm1, Algorithm2 or Algorithm3
-        The law.
-    q, p : ndarray, shape (T, n, m)
-        Positions and velocities.
-    energy : ndarray, shape (T,)
-        The energy there.
 
     Examples
     --------

@@ -39,11 +39,6 @@ def _motion(run: Trajectory) -> FloatArray:
 def fastest_between(run: Trajectory) -> FloatArray:
     """An upper bound of ‖p_i − p_c‖ over each interval between samples, of every agent, shape (T − 1,).
 
-    Parameters
-    ----------
-    run : Trajectory
-        A run of a continuous law.
-
     Examples
     --------
     >>> from flockana.dynamics.simulate import simulate
@@ -58,11 +53,6 @@ def fastest_between(run: Trajectory) -> FloatArray:
 
 def radius_between(run: Trajectory) -> FloatArray:
     """An upper bound of the cohesion radius over each interval between samples, shape (T − 1,).
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run; a map has no state between its steps.
 
     Examples
     --------
@@ -104,13 +94,7 @@ class Nets:
 
 
 def nets_at(run: Trajectory) -> Nets:
-    """The net at each sample of a run of a law with an α-interaction, but for rounding.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-    """
+    """The net at each sample of a run of a law with an α-interaction, but for rounding."""
     return run.remembered("nets at samples", lambda: _nets_at(run))
 
 
@@ -123,13 +107,7 @@ def _nets_at(run: Trajectory) -> Nets:
 
 
 def nets_between(run: Trajectory) -> Nets:
-    """The net in each interval between samples: what is nearer to r than the motion may bridge is left open.
-
-    Parameters
-    ----------
-    run : Trajectory
-        A run of a law with an α-interaction; a map has no state between its steps, so of each the first end is taken.
-    """
+    """The net in each interval between samples: what is nearer to r than the motion may bridge is left open."""
     return run.remembered("nets between samples", lambda: _nets_between(run))
 
 

@@ -39,19 +39,6 @@ def corroborated(claims: Sequence[Claim], run: Trajectory, judge_again: Judge) -
 
     Claims of a rigour above numeric, and those that are vacuous or inconclusive already, stay as they are. A failed
     run decides nothing. A map has no second run: it is exact but for rounding.
-
-    Parameters
-    ----------
-    claims : sequence of Claim
-        What was found on the run.
-    run : Trajectory
-        The run.
-    judge_again : callable
-        From the second run to its claims, in the same order.
-
-    Returns
-    -------
-    tuple of Claim
     """
     if not any(_open(claim) for claim in claims):
         return tuple(claims)
@@ -95,13 +82,7 @@ def _agreed(one: Claim, two: Claim) -> Claim:
 
 
 def second_run(run: Trajectory) -> Trajectory:
-    """The same law from the same start, a hundred times more tightly, at the same times; kept with the run.
-
-    Parameters
-    ----------
-    run : Trajectory
-        A run of a continuous law.
-    """
+    """The same law from the same start, a hundred times more tightly, at the same times; kept with the run."""
     return run.remembered("second run", lambda: _integrated(run, 0, len(run.t), TIGHTER))
 
 
@@ -119,19 +100,7 @@ def _integrated(run: Trajectory, first: int, stop: int, factor: float, *, own_st
 
 
 def ensure_fits(run: Trajectory) -> None:
-    """Raise unless the samples of a run are those of its law: the inputs, and some steps, are computed anew.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-
-    Raises
-    ------
-    ArgumentError
-        If an input is not the law's at that state, or integrating from a sample does not lead to the next: the run
-        was edited, or belongs to another law.
-    """
+    """Raise unless the samples of a run are those of its law: the inputs, and some steps, are computed anew."""
     run.remembered("fits", lambda: _ensure_fits(run))
 
 

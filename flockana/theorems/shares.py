@@ -17,11 +17,6 @@ _ROUNDING = 1e-9  # of the ends of an interval, which are quantiles of a beta di
 def share(holds: Iterable[Any]) -> tuple[int, int, tuple[float, float]]:
     """(how often, of how many, exact Clopper-Pearson interval of the share).
 
-    Parameters
-    ----------
-    holds : iterable of truth values
-        One for each start.
-
     Examples
     --------
     >>> share([True] * 20)[2][1], share([False] * 20)[0]
@@ -33,21 +28,7 @@ def share(holds: Iterable[Any]) -> tuple[int, int, tuple[float, float]]:
 
 
 def always(name: str, holds: Iterable[Any], what: str, stated: str, *, witness: Any = None) -> Claim:
-    """A claim about every start: refuted if the share is below 1 for certain, never verified by a sample.
-
-    Parameters
-    ----------
-    name : str
-        Name of the claim.
-    holds : iterable of truth values
-        One for each start.
-    what : str
-        What was seen, for the detail.
-    stated : str
-        What the source says.
-    witness : object
-        As in `Claim`.
-    """
+    """A claim about every start: refuted if the share is below 1 for certain, never verified by a sample."""
     count, size, interval = share(holds)
     return Claim(
         name,
@@ -64,23 +45,7 @@ def always(name: str, holds: Iterable[Any], what: str, stated: str, *, witness: 
 def mostly(
     name: str, holds: Iterable[Any], what: str, stated: str, *, least: float = 0.5, witness: Any = None
 ) -> Claim:
-    """A claim about a share, judged by the lower end of its interval.
-
-    Parameters
-    ----------
-    name : str
-        Name of the claim.
-    holds : iterable of truth values
-        One for each start.
-    what : str
-        What was seen, for the detail.
-    stated : str
-        What is said.
-    least : float
-        Share that the interval must exceed.
-    witness : object
-        As in `Claim`.
-    """
+    """A claim about a share, judged by the lower end of its interval."""
     count, size, interval = share(holds)
     status = judge(interval[0] - least, _ROUNDING, [])
     return Claim(

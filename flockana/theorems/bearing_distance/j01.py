@@ -24,15 +24,6 @@ _INTERVAL = 1e-9  # to which the ends of an exact interval are computed
 def random_forest(count: int, seed: int, *, rho: float = 1.0) -> tuple[MinimalFlocking, FloatArray, FloatArray]:
     """(law, q, p) of many random out-trees of 2 to 8 agents, none of which sees another: one run moves them all.
 
-    Parameters
-    ----------
-    count : int
-        Number of trees.
-    seed : int
-        Of the trees and their states: positions in a box of 4 ρ, velocities up to ρ in each component.
-    rho : float
-        Desired spacing.
-
     Examples
     --------
     >>> law, q, p = random_forest(3, 0)

@@ -19,11 +19,6 @@ _PATH_LENGTHS, _PATH_SPACING = (2.05, 2.7, 2.05), (1.0, 2.0, 2.0, 1.0)  # α_i r
 def path_matrices(mu: float) -> tuple[FloatArray, FloatArray]:
     """(A^s, A^a) of x'' = −A^a x' − A^s x on an undirected path of four, with edges of 2.05, 2.7, 2.05 and αr = |N_i|.
 
-    Parameters
-    ----------
-    mu : float
-        Weight of every spring.
-
     Examples
     --------
     >>> path_matrices(1.0)[1].diagonal().round(12).tolist()

@@ -18,13 +18,6 @@ _SAME, _ROUNDING = 1e-9, 1e-11  # relative: numbers that differ by less are the 
 def dragged_speed(dt: float, *, u_max: float = 2.0, v_max: float = 4.0) -> float:
     """The largest speed that full thrust holds against (10): the fixed point of v -> v^max tanh((v + dt u^max)/v^max).
 
-    Parameters
-    ----------
-    dt : float
-        Step.
-    u_max, v_max : float
-        Bounds of input and speed.
-
     Examples
     --------
     >>> round(dragged_speed(0.1), 4), round(dragged_speed(0.001), 3)

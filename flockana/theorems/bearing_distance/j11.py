@@ -25,13 +25,6 @@ _SEEDS, _SEEDS_RECOMMENDED = 20, 12  # of 12 two may fail, and more than half of
 def minimal_start(m: int, seed: int) -> tuple[FloatArray, FloatArray]:
     """The paper's random start: positions uniform in a box of 30 m, velocities up to 1 m/s in each component.
 
-    Parameters
-    ----------
-    m : int
-        Dimension.
-    seed : int
-        Of the generator.
-
     Examples
     --------
     >>> minimal_start(3, 0)[0].shape
@@ -43,13 +36,6 @@ def minimal_start(m: int, seed: int) -> tuple[FloatArray, FloatArray]:
 
 def perceived_components(law: MinimalFlocking, q: FloatArray) -> int:
     """Number of components of the undirected graph of who perceives whom.
-
-    Parameters
-    ----------
-    law : MinimalFlocking
-        The law.
-    q : ndarray, shape (n, m)
-        Positions.
 
     Examples
     --------

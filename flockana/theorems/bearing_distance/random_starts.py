@@ -18,13 +18,6 @@ SEEDS, DURATION = 20, 20.0  # runs of an ensemble; s
 def zone_start(seed: int, n: int = 10) -> tuple[FloatArray, FloatArray]:
     """The random start of section 5.1 of the bearing-distance paper: q in (0, 10)² m, p in (0, 1)² m/s by component.
 
-    Parameters
-    ----------
-    seed : int
-        Of the generator.
-    n : int
-        Number of agents.
-
     Examples
     --------
     >>> zone_start(0)[0].shape
@@ -36,15 +29,6 @@ def zone_start(seed: int, n: int = 10) -> tuple[FloatArray, FloatArray]:
 
 def separated_start(seed: int, n: int = 10, *, least: float = 2.0, reach: float = 5.0) -> tuple[FloatArray, FloatArray]:
     """A random start as `zone_start`, with no two agents closer than `least` and the net within `reach` connected.
-
-    Parameters
-    ----------
-    seed : int
-        Of the generator.
-    n : int
-        Number of agents.
-    least, reach : float
-        Least distance and range of the net, in m.
 
     Examples
     --------
@@ -65,13 +49,5 @@ def separated_start(seed: int, n: int = 10, *, least: float = 2.0, reach: float 
 def runs_from_random_starts(
     law: ZoneFlocking, start: Callable[[int], tuple[FloatArray, FloatArray]] = zone_start
 ) -> list[Trajectory]:
-    """One run of 20 s from each of twenty random starts.
-
-    Parameters
-    ----------
-    law : ZoneFlocking
-        The law.
-    start : callable
-        Positions and velocities by seed.
-    """
+    """One run of 20 s from each of twenty random starts."""
     return [simulate(law, *start(seed), (0.0, DURATION)) for seed in range(SEEDS)]

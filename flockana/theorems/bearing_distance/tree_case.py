@@ -66,13 +66,7 @@ class TreeCase:
         return tuple(outwards)
 
     def on_manifold(self, q: FloatArray) -> FloatArray:
-        """A configuration with the bearings of q and every edge at its desired length, about the origin.
-
-        Parameters
-        ----------
-        q : ndarray, shape (n, m)
-            Positions; an edge of length 0 gets the bearing of the first axis.
-        """
+        """A configuration with the bearings of q and every edge at its desired length, about the origin."""
         x = edge_vectors(q, self.links)
         length = np.linalg.norm(x, axis=1, keepdims=True)
         bearing = np.divide(x, length, out=np.tile(np.eye(q.shape[1])[0], (len(x), 1)), where=length > 0.0)
@@ -83,13 +77,7 @@ class TreeCase:
         return placed
 
     def edge_system(self, q: FloatArray) -> FloatArray:
-        """A of the edge dynamics (x, x') at an equilibrium: T A T⁺ with T = −Dᵀ ⊗ I, since u depends on edges alone.
-
-        Parameters
-        ----------
-        q : ndarray, shape (n, m)
-            Positions.
-        """
+        """A of the edge dynamics (x, x') at an equilibrium: T A T⁺ with T = −Dᵀ ⊗ I, since u depends on edges alone."""
         m = q.shape[1]
         T = np.kron(-incidence(self.n, self.links).T, np.eye(m))
         twice = np.kron(np.eye(2), T)
@@ -97,36 +85,18 @@ class TreeCase:
         return A
 
     def lengths(self, q: FloatArray) -> FloatArray:
-        """|x_e| of each edge, shape (..., n − 1).
-
-        Parameters
-        ----------
-        q : ndarray, shape (..., n, m)
-            Positions.
-        """
+        """|x_e| of each edge, shape (..., n − 1)."""
         lengths: FloatArray = np.linalg.norm(edge_vectors(q, self.links), axis=-1)
         return lengths
 
     def energies(self, q: FloatArray, p: FloatArray) -> FloatArray:
-        """V = ½‖x'‖² + ½μ(‖x‖ − ρ)² of each edge, shape (n − 1,). At the root it falls: V' = −a‖x'‖².
-
-        Parameters
-        ----------
-        q, p : ndarray, shape (n, m)
-            A state.
-        """
+        """V = ½‖x'‖² + ½μ(‖x‖ − ρ)² of each edge, shape (n − 1,). At the root it falls: V' = −a‖x'‖²."""
         rate = edge_vectors(p, self.links)
         V: FloatArray = 0.5 * (np.sum(rate * rate, axis=1) + self.mu * (self.lengths(q) - self.rho) ** 2)
         return V
 
     def shortest(self, run: Trajectory) -> FloatArray:
-        """A lower bound of the length of each edge over a run, between its samples too, shape (n − 1,).
-
-        Parameters
-        ----------
-        run : Trajectory
-            The run.
-        """
+        """A lower bound of the length of each edge over a run, between its samples too, shape (n − 1,)."""
         at = self.lengths(run.q)
         least: FloatArray = at.min(axis=0)
         ends = [(np.array([j], dtype=np.int32), np.array([i], dtype=np.int32)) for j, i in self.links]
@@ -141,15 +111,7 @@ class TreeCase:
 
 
 def tree_case(law: MinimalFlocking, n: int) -> TreeCase | None:
-    """The edges of a law on a frozen tree, directed from a root or undirected; None if its graph is no tree.
-
-    Parameters
-    ----------
-    law : MinimalFlocking
-        The law.
-    n : int
-        Number of agents.
-    """
+    """The edges of a law on a frozen tree, directed from a root or undirected; None if its graph is no tree."""
     if law.edges is None:
         return None
     root = out_tree_root(n, law.edges)
@@ -164,13 +126,6 @@ def tree_case(law: MinimalFlocking, n: int) -> TreeCase | None:
 def characteristic_residual(A: FloatArray, factors: Sequence[tuple[float, float]]) -> float:
     """Largest relative difference between det(sI − A) and Π (s² + b s + c), at as many points as decide a polynomial.
 
-    Parameters
-    ----------
-    A : ndarray, shape (2k, 2k)
-        A matrix.
-    factors : sequence of k pairs (b, c)
-        Quadratic factors.
-
     Examples
     --------
     >>> characteristic_residual(np.array([[0.0, 1.0], [-2.0, -3.0]]), [(3.0, 2.0)]) < 1e-12
@@ -184,13 +139,7 @@ def characteristic_residual(A: FloatArray, factors: Sequence[tuple[float, float]
 
 
 def tree_hypotheses(run: Trajectory) -> tuple[list[Hypothesis], TreeCase | None]:
-    """Hypotheses that both readings of the theorem share, and the tree if there is one.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-    """
+    """Hypotheses that both readings of the theorem share, and the tree if there is one."""
     applies = type(run.law) is MinimalFlocking
     needs = [Hypothesis("the minimal law is applied", "met" if applies else "unmet", detail=type(run.law).__name__)]
     if not applies:
@@ -212,13 +161,5 @@ def tree_hypotheses(run: Trajectory) -> tuple[list[Hypothesis], TreeCase | None]
 
 
 def length_error(case: TreeCase, run: Trajectory) -> float:
-    """Rounding of |x_e|/ρ_e along a run: of positions that far from the origin.
-
-    Parameters
-    ----------
-    case : TreeCase
-        The tree.
-    run : Trajectory
-        The run.
-    """
+    """Rounding of |x_e|/ρ_e along a run: of positions that far from the origin."""
     return 8.0 * EPS * (1.0 + float(np.abs(run.q).max()) / float(case.rho.min()))

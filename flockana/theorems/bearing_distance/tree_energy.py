@@ -51,19 +51,7 @@ def _amplitude_error(case: TreeCase, run: Trajectory, energy: float, edges: list
 
 
 def root_claim(case: TreeCase, run: Trajectory, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
-    """(iii): V of an edge from the root falls, and while V(0) < μρ²/2 it keeps that edge from length 0.
-
-    Parameters
-    ----------
-    case : TreeCase
-        A directed tree.
-    run : Trajectory
-        Its run.
-    needs : list of Hypothesis
-        Hypotheses of the claim.
-    tolerances : Tolerances
-        `energy`: by how much of V(0) it may rise from one sample to the next.
-    """
+    """(iii): V of an edge from the root falls, and while V(0) < μρ²/2 it keeps that edge from length 0."""
     start, rounding = case.energies(run.q[0], run.p[0]), length_error(case, run)
     from_root = [e for e, (j, _) in enumerate(case.links) if j == case.root]
     edges = [e for e in from_root if start[e] / case.barrier[e] < 1.0 - 4.0 * rounding]
@@ -111,19 +99,7 @@ def _energy_error(case: TreeCase, run: Trajectory) -> float:
 
 
 def energy_claim(case: TreeCase, run: Trajectory, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
-    """The undirected law: dH/dt = −Σσ‖v_i − v_j‖², a sum of squares, is the rate of H: so it never rises.
-
-    Parameters
-    ----------
-    case : TreeCase
-        An undirected tree.
-    run : Trajectory
-        Its run.
-    needs : list of Hypothesis
-        Hypotheses of the claim.
-    tolerances : Tolerances
-        `energy`, relative to the largest H.
-    """
+    """The undirected law: dH/dt = −Σσ‖v_i − v_j‖², a sum of squares, is the rate of H: so it never rises."""
     if "work" not in run.extra:
         return Claim("energy", "inconclusive", detail="the run carries no integral of dH/dt")
     H, largest = run.energy(), float(run.energy().max())
@@ -149,19 +125,7 @@ def energy_claim(case: TreeCase, run: Trajectory, needs: list[Hypothesis], toler
 
 
 def edge_claim(case: TreeCase, run: Trajectory, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
-    """Undirected: H(0) pays for no edge to shrink below ρ − √(2H(0)/μ).
-
-    Parameters
-    ----------
-    case : TreeCase
-        An undirected tree.
-    run : Trajectory
-        Its run.
-    needs : list of Hypothesis
-        Hypotheses of the claim.
-    tolerances : Tolerances
-        `energy`: by how much of itself H may have risen.
-    """
+    """Undirected: H(0) pays for no edge to shrink below ρ − √(2H(0)/μ)."""
     start, barrier = float(run.energy()[0]), float(case.barrier.min())
     small = below("H(0) < μρ²/2 on every edge", start, barrier, _energy_error(case, run), f"H(0) = {start:.4g}")
     edges = list(range(len(case.links)))

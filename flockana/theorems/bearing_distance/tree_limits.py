@@ -32,13 +32,6 @@ _ERROR = 1e-12  # of a share: all roundings in it are taken outwards
 def edge_shares(case: TreeCase, q: FloatArray, p: FloatArray) -> FloatArray:
     """V̂/(½μρ²) of each edge, shape (n − 1,): below 1 it never comes to length 0; ∞ where nothing is known.
 
-    Parameters
-    ----------
-    case : TreeCase
-        A tree with μ, a > 0.
-    q, p : ndarray, shape (n, m)
-        A state.
-
     Examples
     --------
     >>> from flockana.laws.minimal import MinimalFlocking
@@ -80,15 +73,7 @@ def _directed(case: TreeCase, q: FloatArray, p: FloatArray) -> FloatArray:
 
 
 def settles(case: TreeCase, q: FloatArray, p: FloatArray) -> Certificate:
-    """Every edge goes to its desired length and every velocity difference to 0, from this state on.
-
-    Parameters
-    ----------
-    case : TreeCase
-        A tree with μ, a > 0.
-    q, p : ndarray, shape (n, m)
-        A state.
-    """
+    """Every edge goes to its desired length and every velocity difference to 0, from this state on."""
     share = float(edge_shares(case, q, p).max())
     never = "no edge can ever shrink to 0 from here" if share < 1.0 else "an edge might still shrink to 0"
     text = f"{never}: the energy that one may get is {share:.2g} of what that takes"
@@ -96,14 +81,6 @@ def settles(case: TreeCase, q: FloatArray, p: FloatArray) -> Certificate:
 
 
 def longest_floor(case: TreeCase, q: FloatArray, p: FloatArray) -> tuple[float, float]:
-    """(least |x|/ρ that the safest edge keeps for ever, its error); at most 0 where none is known to.
-
-    Parameters
-    ----------
-    case : TreeCase
-        A tree with μ, a > 0.
-    q, p : ndarray, shape (n, m)
-        A state.
-    """
+    """(least |x|/ρ that the safest edge keeps for ever, its error); at most 0 where none is known to."""
     share = float(edge_shares(case, q, p).min())
     return (1.0 - sqrt(share) if share < 4.0 else -1.0), sqrt(_ERROR)

@@ -30,13 +30,6 @@ def tree_spectrum(case: TreeCase, q: FloatArray) -> Spectrum:
     """The spectrum of the law linearised at a point of the manifold, with the rate of its slowest mode but 0.
 
     Times are counted in 1/√μ of the stiffest spring, so that nothing depends on their unit.
-
-    Parameters
-    ----------
-    case : TreeCase
-        The tree, μ, a > 0.
-    q : ndarray, shape (n, m)
-        Positions, every edge at its desired length.
     """
     return _undirected(case, q) if case.root is None else _directed(case, q)
 

@@ -24,26 +24,14 @@ _BOUND = 1e-9  # relative rounding of the explicit bound: that of H̄(0)/2k_r in
 
 
 def dead_zone_law(run: Trajectory) -> DeadZoneFlocking | None:
-    """The dead-zone law of a run, of its semi-implicit Euler steps too; None under another law, a subclass included.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-    """
+    """The dead-zone law of a run, of its semi-implicit Euler steps too; None under another law, a subclass included."""
     law: Any = run.law.law if type(run.law) is SemiImplicitEuler else run.law
     exact = type(law) is DeadZoneFlocking and type(law.interaction) is DeadZoneInteraction
     return law if exact else None
 
 
 def hypotheses(run: Trajectory) -> list[Hypothesis]:
-    """The law, and distinct positions at the start.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-    """
+    """The law, and distinct positions at the start."""
     law = dead_zone_law(run)
     applies = Hypothesis("the dead-zone law is applied", "met" if law else "unmet", detail=type(run.law).__name__)
     least = min_distance(run.q[0])
@@ -52,44 +40,18 @@ def hypotheses(run: Trajectory) -> list[Hypothesis]:
 
 
 def at_the_end(run: Trajectory, law: DeadZoneFlocking) -> Parts:
-    """The parts of the flock in the last state of a run, and what is certain of them; kept with the run.
-
-    Parameters
-    ----------
-    run : Trajectory
-        A run of the law, or of its semi-implicit Euler steps.
-    law : DeadZoneFlocking
-        The law.
-    """
+    """The parts of the flock in the last state of a run, and what is certain of them; kept with the run."""
     dt = run.law.dt if isinstance(run.law, DiscreteLaw) else None
     return run.remembered("dead-zone parts", lambda: parts(run.q[-1], run.p[-1], law, dt))
 
 
 def settling(end: Parts) -> Certificate:
-    """Velocities match within each part for ever: each settles by itself, and no two of them meet.
-
-    Parameters
-    ----------
-    end : Parts
-        The parts.
-    """
+    """Velocities match within each part for ever: each settles by itself, and no two of them meet."""
     return min((*(part.settles for part in end.parts), end.apart), key=lambda certificate: certificate.margin)
 
 
 def one_velocity(run: Trajectory, end: Parts, needs: list[Hypothesis], *, name: str) -> Claim:
-    """K̃ → 0: certain of one part that settles, refuted where parts are certain to part, each at its own velocity.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-    end : Parts
-        Its parts at the end.
-    needs : list of Hypothesis
-        Hypotheses of the claim.
-    name : str
-        Name of the claim.
-    """
+    """K̃ → 0: certain of one part that settles, refuted where parts are certain to part, each at its own velocity."""
     series = run.metric("velocity_mismatch")
     claim = limit_claim(
         name,
@@ -111,19 +73,6 @@ def no_collision(run: Trajectory, bound: float, unit: float, needs: list[Hypothe
     """No two agents come closer than a bound: between the samples too, except for a map, which has nothing there.
 
     The margin is ln(ρ/bound), as a bound may be exponentially small; ρ over the unit where the bound is 0.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-    bound : float
-        The bound, at least 0.
-    unit : float
-        The law's unit of lengths.
-    needs : list of Hypothesis
-        Hypotheses of the claim.
-    name : str
-        Name of the claim.
     """
     if isinstance(run.law, DiscreteLaw) or len(run.t) == 1:
         series = run.metric("min_distance")

@@ -17,15 +17,7 @@ CheckResult = tuple[list[Hypothesis], list[Claim]]
 def margin_claim(
     name: str, margin: float, detail: str, *, error: float, rigour: Rigour = "numeric", **more: Any
 ) -> Claim:
-    """A claim judged by its margin alone.
-
-    Parameters
-    ----------
-    name, margin, detail, error, rigour
-        As in `Claim`.
-    **more
-        Further fields of `Claim`.
-    """
+    """A claim judged by its margin alone."""
     return Claim(name, judge(margin, error, []), rigour, margin=margin, error=error, detail=detail, **more)
 
 
@@ -39,23 +31,7 @@ def erratum(
     whole: Status,
     **claims: Status,
 ) -> Theorem:
-    """Erratum L1 to L8 as a theorem that is checked by itself.
-
-    Parameters
-    ----------
-    number : int
-        Number of the erratum, 1 to 8.
-    title, statement : str
-        As in `Theorem`.
-    source : str
-        Where in the paper.
-    check : callable
-        As in `Theorem`.
-    whole : str
-        Expected status.
-    **claims : str
-        Expected status of its claims by name, with underscores for hyphens.
-    """
+    """Erratum L1 to L8 as a theorem that is checked by itself."""
     key = f"L{number}"
     expected = {f"{key}:{name.replace('_', '-')}": status for name, status in claims.items()}
     where = f"Li, Yuan and Liu, {source}"
@@ -70,17 +46,7 @@ def parting_pair() -> tuple[DeadZoneFlocking, FloatArray, FloatArray]:
 def advance(
     law: DeadZoneFlocking, q: FloatArray, p: FloatArray, dt: float, t_end: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Positions and velocities at t_end, by semi-implicit Euler steps of which only the last is kept.
-
-    Parameters
-    ----------
-    law : DeadZoneFlocking
-        The law.
-    q, p : ndarray, shape (n, m)
-        State at the start.
-    dt, t_end : float
-        Step and end; 500 steps are made at a time.
-    """
+    """Positions and velocities at t_end, by semi-implicit Euler steps of which only the last is kept."""
     for _ in range(round(t_end / (500 * dt))):
         states = law.semi_implicit(q, p, dt, 500)
         q, p = states[0][-1], states[1][-1]

@@ -72,15 +72,6 @@ _NOTHING = Hold(inf, 0.0, inf)
 def hold(law: DeadZoneFlocking, q: FloatArray, p: FloatArray, dt: float | None = None) -> Hold:
     """Measure whether a flock by itself is held for ever; one agent always is.
 
-    Parameters
-    ----------
-    law : DeadZoneFlocking
-        The law.
-    q, p : ndarray, shape (n, m)
-        Positions and velocities of all agents that are ever in range of each other.
-    dt : float, optional
-        Step, of the map of semi-implicit Euler steps.
-
     Examples
     --------
     Two agents at their contact, and two that have more energy than it takes to leave it:

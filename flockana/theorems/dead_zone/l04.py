@@ -18,19 +18,7 @@ _INTERVAL = 1e-9  # to which the ends of an exact interval are computed
 
 
 def connected_count(box: float, *, seeds: int, n: int = 50, t_end: float = 60.0) -> int:
-    """Number of seeds from which a flock ends connected, with q(0) uniform in [0, box]².
-
-    Parameters
-    ----------
-    box : float
-        Side of the box; velocities are uniform in [−1, 1]².
-    seeds : int
-        Number of seeds, from 0 on.
-    n : int
-        Number of agents.
-    t_end : float
-        Time at which components are counted.
-    """
+    """Number of seeds from which a flock ends connected, with q(0) uniform in [0, box]²."""
     law, count = DeadZoneFlocking(), 0
     for seed in range(seeds):
         generator = np.random.default_rng(seed)

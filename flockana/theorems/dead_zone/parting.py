@@ -199,15 +199,6 @@ class Parts:
 def parts(q: FloatArray, p: FloatArray, law: DeadZoneFlocking, dt: float | None = None) -> Parts:
     """The components of the net at r.
 
-    Parameters
-    ----------
-    q, p : ndarray, shape (n, m)
-        Positions and velocities.
-    law : DeadZoneFlocking
-        The law.
-    dt : float, optional
-        Step of the map of semi-implicit Euler steps; by default the flow.
-
     Examples
     --------
     >>> law, apart = DeadZoneFlocking(), np.array([[0.0], [16.0]])

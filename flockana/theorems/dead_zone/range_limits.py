@@ -34,26 +34,12 @@ class Entry:
 
 
 def thinned(run: Trajectory) -> bool:
-    """Whether a map had states between those that were kept.
-
-    Parameters
-    ----------
-    run : Trajectory
-        A run of any law; what lies between the samples of a continuous one is its path.
-    """
+    """Whether a map had states between those that were kept."""
     return isinstance(run.law, DiscreteLaw) and bool((np.diff(run.t) > _NEXT * run.law.dt).any())
 
 
 def first_entry(run: Trajectory, r: float) -> Entry:
     """The first pair that comes into range in a run.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run; between two of its steps its path is the quintic through their positions, velocities and accelerations,
-        but for an allowance.
-    r : float
-        Interaction range, open.
 
     Examples
     --------

@@ -48,13 +48,7 @@ def lattice_equilibria() -> dict[str, Linearisation]:
 
 
 def row(one: Decay) -> dict[str, Any]:
-    """A line of the decay table as plain data.
-
-    Parameters
-    ----------
-    one : Decay
-        What was predicted and measured.
-    """
+    """A line of the decay table as plain data."""
     return {
         "law": one.law,
         "n": one.n,

@@ -77,18 +77,8 @@ class Attraction:
 def attraction(law: Algorithm1 | Algorithm2, q: FloatArray, p: FloatArray) -> Attraction:
     """Measure whether a state is caught for ever; see the module's text for the argument.
 
-    Parameters
-    ----------
-    law : Algorithm1 or Algorithm2
-        The law, with one c1γ and c2γ for all agents, of which one damps.
-    q, p : ndarray, shape (n, m)
-        Positions and velocities.
-
-    Returns
-    -------
-    Attraction
-        With a barrier of 0 where nothing is known: at a saddle, in a flexible net, and of a flock with more
-        coordinates than a dense Hessian is made for.
+    Returns Attraction With a barrier of 0 where nothing is known: at a saddle, in a flexible net, and of a flock with
+    more coordinates than a dense Hessian is made for.
 
     Examples
     --------
@@ -119,13 +109,7 @@ def attraction(law: Algorithm1 | Algorithm2, q: FloatArray, p: FloatArray) -> At
 
 
 def held(run: Trajectory) -> Attraction:
-    """`attraction` of the last state of a run, kept with the run.
-
-    Parameters
-    ----------
-    run : Trajectory
-        A run of Algorithm 1 or 2 with one c1γ and c2γ for all agents.
-    """
+    """`attraction` of the last state of a run, kept with the run."""
     return run.remembered("attraction at the end", lambda: attraction(run.law, run.q[-1], run.p[-1]))
 
 
@@ -156,11 +140,6 @@ def _force(law: Algorithm1 | Algorithm2, q: FloatArray) -> float:
 def kinetic(p: FloatArray) -> float:
     """K(v) = ½ Σ‖p_i − p_c‖², with the rounding of v added.
 
-    Parameters
-    ----------
-    p : ndarray, shape (n, m)
-        Velocities.
-
     Examples
     --------
     >>> 1.0 <= kinetic(np.array([[1.0], [-1.0]])) < 1.0 + 1e-12
@@ -172,11 +151,6 @@ def kinetic(p: FloatArray) -> float:
 
 def gyration(q: FloatArray) -> float:
     """Least size of a unit rotation's motion, over all coordinates; ∞ on a line.
-
-    Parameters
-    ----------
-    q : ndarray, shape (n, m)
-        Positions.
 
     Examples
     --------
@@ -204,17 +178,6 @@ def barrier(
     curvature: float, distance: float, windows: Iterable[float], lipschitz_within: Callable[[float], float]
 ) -> float:
     """The highest barrier of step 2 over a choice of windows w: a wide one has a large L, a narrow one a small ρ.
-
-    Parameters
-    ----------
-    curvature : float
-        λ, less its rounding.
-    distance : float
-        δ.
-    windows : iterable of float
-        Distances w.
-    lipschitz_within : callable
-        From w to L.
 
     Examples
     --------
@@ -249,15 +212,6 @@ def _lipschitz(law: Algorithm1 | Algorithm2, q: FloatArray, window: float) -> fl
 
 def weight_at_both_ends(n: int, pairs: LinkArray, weights: FloatArray) -> float:
     """The largest sum of the weights at both ends of a link: a bound of the weighted Laplacian's largest eigenvalue.
-
-    Parameters
-    ----------
-    n : int
-        Number of agents.
-    pairs : int array, shape (M, 2)
-        Links.
-    weights : ndarray, shape (M,)
-        Of the links, >= 0.
 
     Examples
     --------

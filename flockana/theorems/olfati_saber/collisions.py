@@ -25,28 +25,12 @@ Pair = tuple[int, int]
 
 
 def contacts_of(run: Trajectory, tolerances: Tolerances) -> tuple[Contact, ...]:
-    """Pairs whose interpolated paths come within the contact distance.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-    tolerances : Tolerances
-        `contact` is used, relative to d.
-    """
+    """Pairs whose interpolated paths come within the contact distance."""
     return contacts(*run.path[:4], tol=tolerances.contact * run.law.alpha.d)
 
 
 def passed(run: Trajectory, tolerances: Tolerances) -> dict[Pair, float]:
-    """Pairs that certainly met, and how far they go past each other: they change places on a line both keep to.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-    tolerances : Tolerances
-        `contact` is used, relative to d.
-    """
+    """Pairs that certainly met, and how far they go past each other: they change places on a line both keep to."""
     found, noise = {}, _noise(run, tolerances)
     for contact in contacts_of(run, tolerances):
         apart = run.path.q[:, contact.j] - run.path.q[:, contact.i]
@@ -59,15 +43,7 @@ def passed(run: Trajectory, tolerances: Tolerances) -> dict[Pair, float]:
 
 
 def near(run: Trajectory, tolerances: Tolerances) -> list[set[Pair]]:
-    """Pairs that may meet, by interval between samples: their paths, allowance included, come that near.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-    tolerances : Tolerances
-        `contact` is used, relative to d.
-    """
+    """Pairs that may meet, by interval between samples: their paths, allowance included, come that near."""
     noise = _noise(run, tolerances)
     lower = run.closest_approach().lower_by_interval
     found: list[set[Pair]] = [set() for _ in lower]
@@ -92,13 +68,6 @@ def below_the_barrier(run: Trajectory, energy: float, error: float) -> Hypothesi
     """H(0) < min{V : two agents coincide}: met below its proved bound, unmet where a state with a pair is in reach.
 
     Between the two it is assumed: `flockana.equilibria.barrier.collision_barrier` searches the minimum itself.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-    energy, error : float
-        The law's structural energy at the start, and its rounding.
     """
     from flockana.equilibria.barrier import collision_bounds
 
@@ -111,15 +80,6 @@ def below_the_barrier(run: Trajectory, energy: float, error: float) -> Hypothesi
 
 def below_multiple(energy: float, error: float, c_star: float, times: int = 1) -> Hypothesis:
     """H(0) < k c*, the energy of k coincident pairs.
-
-    Parameters
-    ----------
-    energy, error : float
-        The law's structural energy at the start, and its rounding.
-    c_star : float
-        Energy of a coincident pair, gain included.
-    times : int
-        k.
 
     Examples
     --------
@@ -134,21 +94,7 @@ def below_multiple(energy: float, error: float, c_star: float, times: int = 1) -
 def no_collision(
     run: Trajectory, needs: Iterable[Hypothesis], tolerances: Tolerances, *, name: str, proof: str | None = None
 ) -> Claim:
-    """No two agents ever coincide: a lower bound of all distances, between samples too, is positive.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-    needs : iterable of Hypothesis
-        Hypotheses of the claim.
-    tolerances : Tolerances
-        `contact` is used, relative to d.
-    name : str
-        Name of the claim.
-    proof : str, optional
-        Id of the proof that the hypotheses exclude collisions.
-    """
+    """No two agents ever coincide: a lower bound of all distances, between samples too, is positive."""
     needs, closest, noise = list(needs), run.closest_approach(), _noise(run, tolerances)
     pair, margin = closest.pair, closest.lower
     if not margin > noise and (certain := passed(run, tolerances)):
@@ -194,21 +140,7 @@ def _count(margin: float, decided: bool, needs: Iterable[Hypothesis]) -> Status:
 def distinct_pairs(
     run: Trajectory, needs: Iterable[Hypothesis], tolerances: Tolerances, *, name: str, proof: str | None = None
 ) -> Claim:
-    """As printed: with H(0) < (k+1)c*, at most k distinct pairs collide over the whole run (refuted by E13).
-
-    Parameters
-    ----------
-    run : Trajectory
-        A run of Algorithm 2 with c1α > 0.
-    needs : iterable of Hypothesis
-        Hypotheses of the claim.
-    tolerances : Tolerances
-        `contact` is used.
-    name : str
-        Name of the claim.
-    proof : str, optional
-        Id of the proof of what this run does.
-    """
+    """As printed: with H(0) < (k+1)c*, at most k distinct pairs collide over the whole run (refuted by E13)."""
     c_star = run.law.gains.c1_alpha * run.law.alpha.c_star
     energy, pairs = float(run.energy()[0]), run.n * (run.n - 1) // 2
     error = float(energy_error(run.law, run.q[:1], run.p[:1], run.energy()[:1])[0])
@@ -239,19 +171,6 @@ def pairs_at_one_instant(
 
     Pairs that may meet between the same two samples count as if they met at once; those that were never apart by more
     than the contact distance at a sample, as coincident there.
-
-    Parameters
-    ----------
-    run : Trajectory
-        A run of Algorithm 2 with c1α > 0.
-    needs : iterable of Hypothesis
-        Hypotheses of the claim.
-    tolerances : Tolerances
-        `contact` is used.
-    name : str
-        Name of the claim.
-    proof : str, optional
-        Id of the proof of the bound.
     """
     c_star = run.law.gains.c1_alpha * run.law.alpha.c_star
     energy, error = run.energy(), energy_error(run.law, run.q, run.p, run.energy())

@@ -18,15 +18,7 @@ from flockana.theorems.theorem import Claim, Hypothesis, HypothesisStatus, Theor
 
 
 def proved(run: Trajectory, proof: str = "energy-identities") -> str | None:
-    """The id of the proof of this law's energy identity, which knows walls, spheres and gains common to all agents.
-
-    Parameters
-    ----------
-    run : Trajectory
-        A run of Algorithm 1, 2 or 3.
-    proof : str
-        The id.
-    """
+    """The id of the proof of this law's energy identity, which knows walls, spheres and gains common to all agents."""
     known = all(type(obstacle) in (Sphere, Wall) for obstacle in run.law.obstacles)
     return proof if known and not run.law.gains.per_agent else None
 
@@ -43,17 +35,6 @@ def balance(run: Trajectory, needs: Iterable[Hypothesis], tolerances: Tolerances
     """H(t) − H(0) agrees with the integral of the closed-form rate: the identity is right.
 
     What the integration spoils is not the identity's: a second, tighter run tells the two apart (`verify` makes it).
-
-    Parameters
-    ----------
-    run : Trajectory
-        A run of a law with an energy.
-    needs : iterable of Hypothesis
-        Hypotheses of the claim.
-    tolerances : Tolerances
-        `energy` is used.
-    proof : str, optional
-        Id of the proof of the identity.
     """
     needs, energy, residual = list(needs), run.energy(), run.energy_residual
     worst, largest = int(np.argmax(np.abs(residual))), float(np.abs(energy).max())
@@ -78,13 +59,6 @@ def cancelling(run: Trajectory, since: int = 0) -> FloatArray:
 
     They are c2β ΣΣ b ⟨p_i, p̂_ik − p_i⟩, of β-agents no faster than their agent, c2γ Σ⟨p_i, p_i − p_r⟩, and the work
     of a γ-agent that moves. The others, −c2α pᵀL̂p and −c2γ‖v‖², are sums of squares.
-
-    Parameters
-    ----------
-    run : Trajectory
-        A run of Algorithm 1, 2 or 3.
-    since : int
-        Index of the first sample that counts.
     """
     law, p, size = run.law, run.p[since:], np.zeros(len(run.t) - since)
     if isinstance(law, Algorithm1) or (isinstance(law, Algorithm2) and not law.gains.per_agent):
@@ -101,17 +75,7 @@ def cancelling(run: Trajectory, since: int = 0) -> FloatArray:
 
 
 def falling_share(run: Trajectory, rate: FloatArray, cancels: FloatArray) -> tuple[FloatArray, float]:
-    """What is left of a rate's terms as a fall, as a share of their magnitude, from 1 to −1; and its rounding.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-    rate : ndarray, shape (T,)
-        The rate of an energy.
-    cancels : ndarray, shape (T,)
-        Magnitude of those of its terms that may have either sign.
-    """
+    """What is left of a rate's terms as a fall, as a share of their magnitude, from 1 to −1; and its rounding."""
     size = np.abs(rate) + 2.0 * cancels
     share = np.divide(-rate, size, out=np.ones_like(rate), where=size > 0.0)
     return share, (run.n**2 + 64) * EPS
@@ -123,17 +87,6 @@ def never_rises(run: Trajectory, needs: Iterable[Hypothesis], *, since: int = 0,
     A sum of terms of one sign keeps it in floating point, so that Algorithms 1 and 2 have the margin 1 at every state;
     where terms may cancel (`cancelling`), the rest is held against their rounding. Where nothing moves, or nothing
     damps, the rate is 0 without any term, and the claim holds.
-
-    Parameters
-    ----------
-    run : Trajectory
-        A run of a law with an energy.
-    needs : iterable of Hypothesis
-        Hypotheses of the claim.
-    since : int
-        Index of the first sample that counts.
-    proof : str, optional
-        Id of the proof of the sign.
     """
     needs, rate = list(needs), run.energy_rate()[since:]
     share, error = falling_share(run, rate, cancelling(run, since))
@@ -154,13 +107,7 @@ def never_rises(run: Trajectory, needs: Iterable[Hypothesis], *, since: int = 0,
 
 
 def stays_outside(run: Trajectory) -> Hypothesis:
-    """No agent enters an obstacle, between samples either: inside a sphere ⟨p_i, p̂_ik − p_i⟩ may be positive.
-
-    Parameters
-    ----------
-    run : Trajectory
-        A run of Algorithm 3.
-    """
+    """No agent enters an obstacle, between samples either: inside a sphere ⟨p_i, p̂_ik − p_i⟩ may be positive."""
     name, least = "no agent enters an obstacle", run.clearance()
     if not run.law.obstacles:
         return Hypothesis(name, "met", detail="there is none")

@@ -39,15 +39,7 @@ def _between(t: FloatArray) -> FloatArray:
 
 
 def still(run: Trajectory, *, told: bool) -> Hypothesis:
-    """That the γ-agent rests during the whole run.
-
-    Parameters
-    ----------
-    run : Trajectory
-        A run of a law with a γ-agent.
-    told : bool
-        Whether p_r may be any constant, as Theorem 6 has it; else it must be 0 too, and no work is done.
-    """
+    """That the γ-agent rests during the whole run."""
     target = run.law.target
     times = np.concatenate([run.t, _between(run.t).ravel()])
     states = [target.state(float(time)) for time in times]
@@ -89,15 +81,7 @@ class Slip:
 
 
 def slip(run: Trajectory, velocity: Callable[[float], FloatArray]) -> Slip:
-    """Hold a declared velocity against the differences of the γ-agent's positions over the intervals of a run.
-
-    Parameters
-    ----------
-    run : Trajectory
-        A run of a law with a γ-agent.
-    velocity : callable
-        The velocity at a time.
-    """
+    """Hold a declared velocity against the differences of the γ-agent's positions over the intervals of a run."""
     target, h = run.law.target, np.diff(run.t)
     if h.size == 0:
         return Slip(0.0, float("inf"))
@@ -120,24 +104,12 @@ def _mean(velocity: Callable[[float], FloatArray], nodes: FloatArray) -> FloatAr
 
 
 def consistent(run: Trajectory) -> Hypothesis:
-    """dq_r/dt = p_r: what the γ-agent tells the flock is what it does.
-
-    Parameters
-    ----------
-    run : Trajectory
-        A run of a law with a γ-agent.
-    """
+    """dq_r/dt = p_r: what the γ-agent tells the flock is what it does."""
     return _agrees(run, "dq_r/dt = p_r", "p_r", lambda t: run.law.target.state(t)[1])
 
 
 def honest_rate(run: Trajectory) -> Hypothesis:
-    """That the target's declared rate is that of its positions: the closed form of dH/dt takes it from there.
-
-    Parameters
-    ----------
-    run : Trajectory
-        A run of a law with a γ-agent.
-    """
+    """That the target's declared rate is that of its positions: the closed form of dH/dt takes it from there."""
     return _agrees(run, "the γ-agent's declared rate is dq_r/dt", "the rate", run.law.target.rate)
 
 

@@ -236,17 +236,7 @@ def _holds_exactly(net: _Net, two: LinkArray) -> bool:
 
 
 def check(q: FloatArray, d: float, r: float, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
-    """Hypotheses and claims of Theorem 5, and of its extension, on a configuration.
-
-    Parameters
-    ----------
-    q : ndarray, shape (n, m)
-        Positions.
-    d, r : float
-        Scale and interaction range.
-    tolerances : Tolerances
-        `contact`, `lattice` and `quasi` are used.
-    """
+    """Hypotheses and claims of Theorem 5, and of its extension, on a configuration."""
     net = _Net(q, d, r)
     lattice = _lattice_hypotheses(net, tolerances)
     wide = _dimension("m = 2 or 3", net.m > 1, net)

@@ -18,17 +18,7 @@ PROOF = "energy-identities"
 
 
 def identity_claim(name: str, residual: Any, stated: str, detail: str) -> Claim:
-    """An identity by its residual, as computed by sympy: verified if that is 0, refuted if not.
-
-    Parameters
-    ----------
-    name : str
-        Name of the claim.
-    residual : sympy.Expr
-        What is left of the identity.
-    stated, detail : str
-        As in `Claim`.
-    """
+    """An identity by its residual, as computed by sympy: verified if that is 0, refuted if not."""
     holds = bool(residual == 0)
     return Claim(
         name,
@@ -43,13 +33,7 @@ def identity_claim(name: str, residual: Any, stated: str, detail: str) -> Claim:
 
 
 def state_claim(state: Any) -> Claim:
-    """That the printed energy does not rise, at a rational state where its exact rate is known.
-
-    Parameters
-    ----------
-    state : flockana.symbolic.RisingEnergy
-        The state and the two rates.
-    """
+    """That the printed energy does not rise, at a rational state where its exact rate is known."""
     rate, true_rate = float(state.rate), float(state.true_rate)
     return Claim(
         "printed-state",
@@ -70,17 +54,6 @@ def run_claim(run: Trajectory, excess: FloatArray, where: str, needs: Iterable[H
 
     It is refuted by a rise from any sample to a later one, by more than the balance of the true energy is off; samples
     at which it does not rise verify nothing.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-    excess : ndarray, shape (T,)
-        What the source prints too much.
-    where : str
-        The run in words.
-    needs : iterable of Hypothesis
-        Hypotheses of the claim.
     """
     needs, true = list(needs), run.energy()
     printed = true + excess
@@ -103,17 +76,7 @@ def run_claim(run: Trajectory, excess: FloatArray, where: str, needs: Iterable[H
 
 
 def corroborated_run_claim(run: Trajectory, excess: Callable[[Trajectory], FloatArray], where: str) -> Claim:
-    """`run_claim` of an erratum's own run, with the error that a tighter second run of it shows.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-    excess : callable
-        From a run to what the source prints too much along it.
-    where : str
-        The run in words.
-    """
+    """`run_claim` of an erratum's own run, with the error that a tighter second run of it shows."""
     (claim,) = corroborated(
         [run_claim(run, excess(run), where)], run, lambda again: [run_claim(again, excess(again), where)]
     )

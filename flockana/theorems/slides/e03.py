@@ -29,15 +29,6 @@ _STRAINED = (40, 19)  # (n, seed) of a start whose limit holds a strained compon
 def random_disc(n: int, seed: int, *, d: float) -> FloatArray:
     """A random start, uniform in a disc of radius 0.6 d √n: about a third denser than the lattice.
 
-    Parameters
-    ----------
-    n : int
-        Number of agents.
-    seed : int
-        Of the generator, beside n.
-    d : float
-        Distance between neighbours.
-
     Examples
     --------
     >>> random_disc(3, 0, d=7.0).shape
@@ -50,11 +41,6 @@ def random_disc(n: int, seed: int, *, d: float) -> FloatArray:
 
 def rhombus_with_double_agent(d: float) -> FloatArray:
     """Five agents: two triangles on a common side, and a second agent on one of that side's ends.
-
-    Parameters
-    ----------
-    d : float
-        Distance between neighbours.
 
     Examples
     --------

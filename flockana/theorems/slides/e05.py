@@ -37,11 +37,6 @@ _PROOF = "nonplanar-fcc"
 def fcc_star(d: float) -> FloatArray:
     """A site of the face-centred cubic lattice and its twelve neighbours.
 
-    Parameters
-    ----------
-    d : float
-        Distance between neighbours.
-
     Examples
     --------
     >>> fcc_star(7.0).shape
@@ -52,11 +47,6 @@ def fcc_star(d: float) -> FloatArray:
 
 def fcc_eight(d: float) -> FloatArray:
     """Eight sites of the face-centred cubic lattice with 17 links and no drawing in the plane.
-
-    Parameters
-    ----------
-    d : float
-        Distance between neighbours.
 
     Examples
     --------
@@ -72,11 +62,6 @@ def _add(site: Site, step: Site) -> Site:
 
 def fragments(size: int) -> Iterator[tuple[Site, ...]]:
     """Every connected set of `size` face-centred cubic sites, once up to translation (Redelmeier 1981).
-
-    Parameters
-    ----------
-    size : int
-        Number of sites.
 
     Examples
     --------
@@ -108,11 +93,6 @@ def _links(sites: tuple[Site, ...]) -> tuple[tuple[int, int], ...]:
 
 def non_planar_fragments(size: int) -> tuple[int, int]:
     """How many fragments of that size there are, and how many of them are not planar; exact, in whole numbers.
-
-    Parameters
-    ----------
-    size : int
-        Number of sites.
 
     Examples
     --------

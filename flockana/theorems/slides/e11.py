@@ -25,22 +25,7 @@ _NAMES = ("printed", "minimum", "threshold")
 
 
 def collapses(law: Algorithm2, rings: int, ratio: float) -> bool:
-    """Whether a hexagonal patch, slightly disturbed, flows to coincident agents at this c1γ/c1α.
-
-    Parameters
-    ----------
-    law : Algorithm2
-        Its pair law is used; gains and target are set here.
-    rings : int
-        Rings of the patch.
-    ratio : float
-        c1γ/c1α.
-
-    Raises
-    ------
-    SolverError
-        If the gradient flow does not settle.
-    """
+    """Whether a hexagonal patch, slightly disturbed, flows to coincident agents at this c1γ/c1α."""
     pressed = squeezed(paper_pair(law), ratio)
     limit = gradient_flow(pressed, nudged(hexagonal_patch(rings, law.alpha.length), law.alpha.length))
     if not limit.converged:
@@ -51,17 +36,7 @@ def collapses(law: Algorithm2, rings: int, ratio: float) -> bool:
 def collapse_threshold(law: Algorithm2, rings: int) -> tuple[float, float]:
     """Bracket the least ratio c1γ/c1α at which the gradient flow of a hexagonal patch collapses.
 
-    Parameters
-    ----------
-    law : Algorithm2
-        Its pair law is used.
-    rings : int
-        Rings of the patch.
-
-    Returns
-    -------
-    tuple of float
-        (largest ratio seen safe, least ratio seen to collapse).
+    Returns tuple of float (largest ratio seen safe, least ratio seen to collapse).
     """
     lowest = _LOWEST * natural_ratio(paper_pair(law))
     return threshold(lambda ratio: collapses(law, rings, ratio), lowest=lowest, factor=_FACTOR, halvings=_HALVINGS)
