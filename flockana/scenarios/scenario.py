@@ -201,7 +201,8 @@ def differences(verdict: Verdict, expected: Mapping[str, Status]) -> tuple[str, 
 
 
 @cache
-def _catalogue() -> dict[str, Callable[..., Scenario]]:
+def catalogue() -> dict[str, Callable[..., Scenario]]:
+    """Builders of all scenarios, by name: what the modules of this package call SCENARIOS."""
     package = importlib.import_module("flockana.scenarios")
     found: dict[str, Callable[..., Scenario]] = {}
     for info in pkgutil.iter_modules(package.__path__):
@@ -217,7 +218,7 @@ def scenarios() -> tuple[str, ...]:
     >>> "collapse" in scenarios()
     True
     """
-    return tuple(_catalogue())
+    return tuple(catalogue())
 
 
 def scenario(name: str, seed: int = 0, **options: Any) -> Scenario:
@@ -244,11 +245,11 @@ def scenario(name: str, seed: int = 0, **options: Any) -> Scenario:
     >>> scenario("collapse", seed=1).name
     'collapse'
     """
-    if name not in _catalogue():
+    if name not in catalogue():
         raise UnknownNameError("scenario", name, scenarios())
     if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
         raise ArgumentError(f"seed = {seed!r}: expected a whole number >= 0")
-    build = _catalogue()[name]
+    build = catalogue()[name]
     known = [key for key in inspect.signature(build).parameters if key != "seed"]
     unknown = sorted(set(options) - set(known))
     if unknown:
