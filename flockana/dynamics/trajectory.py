@@ -21,8 +21,9 @@ from flockana.base.serialize import from_data, to_data
 from flockana.base.units import rescale, times
 from flockana.dynamics.between import Between, Course, merged
 from flockana.laws.discrete import ensure_law
-from flockana.measures import metrics as measure
 from flockana.measures.clearance import Clearance, clearance
+from flockana.measures.measure import Flock, Measure, Series, measures
+from flockana.measures.metrics import cohesion_radius
 from flockana.measures.path_bounds import ClosestApproach, closest_approach, cohesion_bound
 
 if TYPE_CHECKING:
@@ -207,9 +208,37 @@ class Trajectory:
     def _metrics(self) -> xarray.Dataset:
         import xarray
 
-        texts = {name: text for name, (text, _) in (self._any_flock() | dict(self._own)).items()}
-        data = {name: xarray.Variable("time", self.metric(name), {"long_name": texts[name]}) for name in texts}
+        shown = [self.measure(name) for name in self._metric_names]
+        data = {
+            it.name: xarray.Variable("time", self.metric(it.name), {"long_name": it.text, "units": it.unit})
+            for it in shown
+        }
         return xarray.Dataset(data, coords={"time": self.t})
+
+    @property
+    def _metric_names(self) -> tuple[str, ...]:
+        any_flock = (name for name, it in measures().items() if it.over_time is not None and it.defined(self.law))
+        return tuple(dict.fromkeys((*any_flock, *self._own)))
+
+    def measure(self, name: str) -> Measure:
+        """What a metric is in words, its unit, how it is drawn.
+
+        Parameters
+        ----------
+        name : str
+            Its name.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is none of that name, neither for any flock nor for this law.
+        """
+        if name in measures():
+            return measures()[name]
+        if name in self._own:
+            text, _, logarithmic = Series(*self._own[name])
+            return Measure(name, text, "", logarithmic=logarithmic)
+        raise UnknownNameError("metric", name, self._metric_names)
 
     def metric(self, name: str) -> FloatArray:
         """One of `metrics` over time, shape (T,), at the cost of that one alone.
@@ -225,13 +254,13 @@ class Trajectory:
             If there is none of that name for this law.
         """
         if name not in self._measured:
-            known = self._any_flock()
-            if name in known:  # else the law is asked, which may cost more
-                values = known[name][1]()
-            elif name in self._own:
-                values = np.fromiter(self._own[name][1], float, len(self.t))
+            of_any = measures().get(name)
+            if of_any is not None and of_any.over_time is not None and of_any.defined(self.law):
+                values = of_any.over_time(self._flock)
+            elif name in self._own:  # the law is asked last, which may cost more
+                values = np.fromiter(Series(*self._own[name]).values, float, len(self.t))
             else:
-                raise UnknownNameError("metric", name, (*known, *self._own))
+                raise UnknownNameError("metric", name, self._metric_names)
             self._measured[name] = values
         return self._measured[name]
 
@@ -253,36 +282,22 @@ class Trajectory:
     def _memory(self) -> dict[str, Any]:
         return {}
 
-    def _any_flock(self) -> dict[str, tuple[str, Callable[[], FloatArray]]]:
-        """What is measured of every flock: in words, and a function that does it."""
-        q, p, lattice = self.q, self.p, self.law.lattice
-        series: dict[str, tuple[str, Callable[[], FloatArray]]] = {
-            "cohesion_radius": ("R = max ‖q_i − q_c‖", lambda: measure.cohesion_radii(q)),
-            "velocity_mismatch": ("K̃ = K/n", lambda: measure.spreads(p) / self.n),
-            "inertia": ("J", lambda: measure.spreads(q)),
-            "min_distance": ("least distance at the samples", lambda: measure.min_distances(q)),
-            "order": ("polar order", lambda: measure.orders(p)),
-            "coordination": ("C, mean cosine between velocities", lambda: measure.coordinations(p)),
-        }
-        if lattice is not None:
-            series |= {
-                "connectivity": ("C = rank(L)/(n − 1)", lambda: self._nets[0]),
-                "giant_share": ("C*, share of nodes", lambda: self._nets[1]),
-                "deviation_energy": ("Ẽ = E/d²", lambda: self._nets[2] / lattice[0] ** 2),
-            }
-        return series
-
     @cached_property
     def _measured(self) -> dict[str, FloatArray]:
         return {}
 
     @cached_property
-    def _own(self) -> Mapping[str, tuple[str, FloatArray]]:
+    def _own(self) -> Mapping[str, Any]:
         return self.law.measures(self.t, self.q, self.p, self.extra)  # type: ignore[no-any-return]
 
     @cached_property
-    def _nets(self) -> FloatArray:
-        return np.array([measure.net_measures(x, *self.law.lattice) for x in self.q]).T
+    def _flock(self) -> Flock:
+        return Flock(self.law, self.q, self.p)
+
+    @cached_property
+    def end(self) -> Flock:
+        """The flock at the last sample."""
+        return Flock(self.law, self.q[-1:], self.p[-1:])
 
     @cached_property
     def path(self) -> Course:
@@ -323,7 +338,7 @@ class Trajectory:
     def cohesion_bound(self) -> float:
         """An upper bound of the cohesion radius max ‖q_i − q_c‖ at every time of the run, under the same conditions."""
         bounds = self.cohesion_bounds
-        return float(bounds.max()) if bounds.size else measure.cohesion_radius(self.q[0])
+        return float(bounds.max()) if bounds.size else cohesion_radius(self.q[0])
 
     @cached_property
     def cohesion_bounds(self) -> FloatArray:

@@ -18,10 +18,10 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.ensemble.dataset import RESERVED, job_grid, metric_name, to_dataset
 from flockana.ensemble.digest import run_key
 from flockana.ensemble.executors import crew, ensure_crew, make_runs
-from flockana.ensemble.measures import METRICS
 from flockana.ensemble.processes import cores
 from flockana.ensemble.store import Store
 from flockana.ensemble.work import COMPLETE, Job, Request, Scalar, reference, resolve
+from flockana.measures.measure import measures
 from flockana.scenarios import Scenario, scenarios
 from flockana.scenarios import scenario as named_scenario
 from flockana.scenarios.scenario import SOURCE
@@ -37,7 +37,7 @@ def ensemble(
     *,
     theorems: Iterable[str] | None = None,
     parameters: Mapping[str, Scalar | Iterable[Scalar]] | None = None,
-    metrics: Iterable[str | Callable[[Trajectory], float]] = METRICS,
+    metrics: Iterable[str | Callable[[Trajectory], float]] | None = None,
     tolerances: Tolerances | None = None,
     executor: Executor | None = None,
     cluster: str | None = None,
@@ -63,7 +63,7 @@ def ensemble(
     parameters : mapping of str to scalar or iterable, optional
         Options of the scenario: several values make a dimension of the result, one value does not.
     metrics : iterable of str or callable
-        What to keep of each run: names, by default all of `METRICS`, or functions ``trajectory -> float`` from the
+        What to keep of each run: names, by default all there are, or functions ``trajectory -> float`` from the
         top of a module.
     tolerances : Tolerances, optional
         Thresholds of the verdicts.
@@ -187,12 +187,14 @@ def _scalar(name: str, value: Any) -> Scalar:
 
 
 def _ensure_metrics(metrics: Any) -> tuple[str, ...]:
+    if metrics is None:
+        return tuple(measures())
     if isinstance(metrics, str) or not isinstance(metrics, Iterable):
         raise ArgumentError(f"metrics = {metrics!r}: expected several names or functions, such as ('strain',)")
     found = []
     for one in metrics:
-        if not callable(one) and one not in METRICS:
-            raise UnknownNameError("metric", one, METRICS)
+        if not callable(one) and one not in measures():
+            raise UnknownNameError("metric", one, measures())
         found.append(reference(one) if callable(one) else one)
     return tuple(found)
 

@@ -187,7 +187,7 @@ class LawOfMotion(ABC):  # noqa: B024  # each of its two kinds has an abstract m
 
     def measures(
         self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
-    ) -> Mapping[str, tuple[str, FloatArray]]:
+    ) -> Mapping[str, Any]:
         """What is worth measuring of a run of this law, beside what is of any flock: `Trajectory.metrics` shows it.
 
         Parameters
@@ -201,7 +201,7 @@ class LawOfMotion(ABC):  # noqa: B024  # each of its two kinds has an abstract m
 
         Returns
         -------
-        mapping of str to (str, ndarray of shape (T,))
+        mapping of str to (str, ndarray of shape (T,)) or to `flockana.measures.measure.Series`
             By name, what it is in words and its values.
         """
         return {}

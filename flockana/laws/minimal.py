@@ -17,6 +17,7 @@ from flockana.base.units import Powers, times
 from flockana.kernels.minimal import edge_forces, perceived_edges
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law
+from flockana.measures.measure import Series
 from flockana.measures.nets import components
 from flockana.measures.perception import Edges, ensure_edges
 
@@ -306,11 +307,12 @@ class MinimalFlocking(Law):
 
     def measures(  # noqa: D102
         self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
-    ) -> Mapping[str, tuple[str, FloatArray]]:
+    ) -> Mapping[str, Any]:
         if self.edges is not None:
             head, tail, _, rho, _ = self._frozen
             errors = np.abs(np.linalg.norm(q[:, tail] - q[:, head], axis=2) - rho)
-            return {"edge_error": ("largest | ‖x_e‖ − ρ_e | of an edge", errors.max(axis=1))}
+            text = "largest edge error | ‖x_e‖ − ρ_e | (length)"
+            return {"edge_error": Series(text, errors.max(axis=1), logarithmic=True)}
         labels = [components(q.shape[1], np.column_stack(self.edge_data(one)[:2])) for one in q]
         parts, largest = (np.array([f(np.bincount(one)) for one in labels], float) for f in (np.size, np.max))
         n = q.shape[1]

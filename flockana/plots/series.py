@@ -17,19 +17,6 @@ if TYPE_CHECKING:
 
     from flockana.dynamics.trajectory import Trajectory
 
-# name in Trajectory.metrics(), label, logarithmic; a law's own metrics bring their text themselves
-MEASURES = {
-    "connectivity": ("C, relative connectivity", False),
-    "cohesion_radius": ("R, cohesion radius (length)", False),
-    "deviation_energy": ("Ẽ, deviation energy", False),
-    "velocity_mismatch": ("K̃, velocity mismatch (length²/time²)", True),
-    "giant_share": ("C*, share of the largest component", False),
-    "min_distance": ("least distance (length)", False),
-    "inertia": ("J, inertia (length²)", False),
-    "order": ("polar order", False),
-    "coordination": ("C, coordination", False),
-    "edge_error": ("largest edge error (length)", True),
-}
 _FEW = 12  # components that a linear scale shows as well
 PANEL = ("connectivity", "cohesion_radius", "deviation_energy", "velocity_mismatch")
 
@@ -55,24 +42,19 @@ def measure(trajectory: Trajectory, name: str, *, ax: Axes | None = None) -> Axe
     UnknownNameError
         If there is no such metric.
     """
-    found = trajectory.metrics()
-    if name not in MEASURES and name not in found:
-        raise UnknownNameError("metric", name, sorted({*MEASURES, *map(str, found)}))
-    label, logarithmic = MEASURES[name] if name in MEASURES else (found[name].attrs["long_name"], False)
-    ax = ensure_axes(ax)
-    if name not in found:
-        return _empty(ax, label, "not defined for this law")
-    values = found[name].values
+    drawn, ax = trajectory.measure(name), ensure_axes(ax)
+    try:
+        values = trajectory.metric(name)
+    except UnknownNameError:
+        return _empty(ax, drawn.label, "not defined for this law")
     ax.plot(trajectory.t, values, color=BLUE, linestyle="-")
-    if logarithmic and (values > 0.0).any():
+    if drawn.logarithmic and (values > 0.0).any():
         ax.set_yscale("log")
-    if name in ("connectivity", "giant_share", "order"):
-        ax.set_ylim(-0.03, 1.05)
-    elif name == "coordination":
-        ax.set_ylim(min(-0.03, float(np.nanmin(values, initial=0.0)) - 0.05), 1.05)
-    elif not logarithmic and not (values < 0.0).any():
+    if drawn.at_most_one:
+        ax.set_ylim(float(np.nanmin(values, initial=0.0)) - 0.03, 1.05)
+    elif not drawn.logarithmic and not (values < 0.0).any():
         ax.set_ylim(bottom=0.0)
-    return _frame(ax, trajectory, label)
+    return _frame(ax, trajectory, drawn.label)
 
 
 def panel(trajectory: Trajectory, *, axes: Any = None) -> Any:

@@ -13,12 +13,13 @@ import tiny_flocks
 import xarray
 
 from flockana.base.errors import ArgumentError, SolverError, UnknownNameError
-from flockana.ensemble import METRICS, PHASES, STATUSES, Store, ensemble, executors, phases, shares
+from flockana.ensemble import PHASES, STATUSES, Store, ensemble, executors, phases, shares
 from flockana.ensemble import digest as digests
 from flockana.ensemble.digest import digest_of_sources, mathematics, run_key
 from flockana.ensemble.executors import Crew, Serial, crew, make_runs
 from flockana.ensemble.processes import ProcessPool
 from flockana.ensemble.work import Job, Request, run_batch
+from flockana.measures.measure import measures
 from flockana.scenarios import scenario
 from flockana.theorems import Tolerances, verify
 
@@ -54,7 +55,7 @@ def test_the_numbers_do_not_depend_on_who_computes_them(alone, pool):
 
 def test_theorems_with_linear_algebra_agree_to_the_bit_between_processes(pool):
     """The Hessian's spectrum: threads of linear algebra could round differently."""
-    given = {"theorems": ["os-1", "os-5-terminal"], "metrics": METRICS}
+    given = {"theorems": ["os-1", "os-5-terminal"], "metrics": tuple(measures())}
     assert same(ensemble("hexagon", [0, 1], **given, jobs=1), ensemble("hexagon", [0, 1], **given, executor=pool))
 
 
@@ -113,7 +114,7 @@ def test_theorems_and_tolerances_are_those_asked_for():
     assert float(found.margin.sel(claim="source:odd")) == 1.5
     run = tiny_flocks.trio(1).run()
     assert STATUSES[int(found.verdict.sel(theorem="energy"))] == verify("energy", run).status
-    assert not {*METRICS} & {*found}
+    assert not {*measures()} & {*found}
 
 
 def test_shares_count_what_was_decided():
@@ -217,8 +218,8 @@ def test_a_worker_with_other_mathematics_is_refused():
 def test_the_mathematics_change_with_what_computes_and_with_nothing_else(monkeypatch):
     root = digests.Path(digests.__file__).resolve().parent.parent
     names = {path.relative_to(root).as_posix() for path in digests._sources(root)}
-    assert {"kernels/alpha.py", "dynamics/integrators.py", "theorems/olfati_saber/os_1.py", "base/errors.py"} <= names
-    assert {"scenarios/msn.py", "ensemble/measures.py", "equilibria/strained13.json"} <= names
+    assert {"kernels/alpha.py", "dynamics/adaptive.py", "theorems/olfati_saber/os_1.py", "base/errors.py"} <= names
+    assert {"scenarios/msn.py", "measures/standard.py", "equilibria/strained13.json"} <= names
     assert not any(name.startswith(("plots/", "report/", "cli/", "falsify/")) for name in names)
     assert not {"ensemble/store.py", "base/references.py", "_version.py", "__init__.py"} & names
     source = b'def f(x):\n    """Doc."""\n    return x + 1\n'
