@@ -10,6 +10,7 @@ from __future__ import annotations
 import importlib
 import pkgutil
 import sys
+from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from functools import cache
 from typing import Any
@@ -99,3 +100,15 @@ def _own_class(module: str, qualname: str) -> Any:
     for part in qualname.split("."):
         found = getattr(found, part)
     return found
+
+
+def to_data_mapping(stats: Mapping[str, Any]) -> dict[str, Any]:
+    """Plain data of a mapping with text keys.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> to_data_mapping({"steps": np.int64(3)})
+    {'steps': 3}
+    """
+    return {key: to_data(value) for key, value in stats.items()}

@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from flockana._version import __version__
 from flockana.base.checks import FloatArray
-from flockana.base.errors import ArgumentError, FileError, UnknownNameError
-from flockana.base.files import replacing
+from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.scales import Scales
-from flockana.base.serialize import from_data, to_data
 from flockana.base.units import rescale, times
+from flockana.dynamics import saved
 from flockana.dynamics.between import Between, Course, merged
 from flockana.laws.discrete import ensure_law
 from flockana.measures.clearance import Clearance, clearance
@@ -29,13 +27,9 @@ from flockana.measures.path_bounds import ClosestApproach, closest_approach, coh
 if TYPE_CHECKING:
     import xarray
 
-    from flockana.plots.film import Film
-
 _Value = TypeVar("_Value")
 
-FORMAT = "flockana-trajectory"
-FORMAT_VERSION = 1
-_BETWEEN = {"t": ("step",), "slack": ("interval", "agent")} | dict.fromkeys("qpu", ("step", "agent", "axis"))
+PLOTS = "flockana.plots"  # who draws is named, not imported: this room lies below
 STATUSES = ("complete", "interrupted", "failed")
 
 
@@ -51,13 +45,6 @@ def _frozen_series(name: str, values: Any, samples: int) -> FloatArray:
         raise ArgumentError(f"{name}[{', '.join(map(str, k))}] = {array[k]}: expected finite numbers ({bad.sum()} bad)")
     array.setflags(write=False)
     return array
-
-
-def _read_between(data: xarray.Dataset) -> Between | None:
-    """The steps between the samples in what was read from a file."""
-    if "between_t" not in data:
-        return None
-    return Between(**{name: np.array(data[f"between_{name}"]) for name in _BETWEEN if f"between_{name}" in data})
 
 
 @dataclass(frozen=True, eq=False)
@@ -354,7 +341,7 @@ class Trajectory:
         path, obstacles = self.path, self.law.obstacles
         return clearance(path.t, path.q, path.p, path.u, obstacles, path.slack)
 
-    def animate(self, *, seconds: float = 10.0, fps: float = 15.0, velocities: bool = False) -> Film:
+    def animate(self, *, seconds: float = 10.0, fps: float = 15.0, velocities: bool = False) -> Any:
         """The run as a film: a notebook shows it, ``.save(path)`` writes GIF or MP4.
 
         Parameters
@@ -370,9 +357,7 @@ class Trajectory:
         -------
         flockana.plots.Film
         """
-        from flockana.plots.film import Film
-
-        return Film(self, seconds, fps, velocities)
+        return import_module(PLOTS).Film(self, seconds, fps, velocities)
 
     def window(self, start: float, end: float) -> Trajectory:
         """The samples with start ≤ t ≤ end, as a run of their own.
@@ -402,25 +387,7 @@ class Trajectory:
 
     def to_xarray(self) -> xarray.Dataset:
         """The run as an `xarray.Dataset` with dimensions time, agent and axis; the law is in the attributes."""
-        import xarray
-
-        dims = ("time", "agent", "axis")
-        data: dict[str, Any] = {"q": (dims, self.q), "p": (dims, self.p), "u": (dims, self.u)}
-        data |= {f"extra_{k}": (("time", *(f"{k}_{a}" for a in range(v.ndim - 1))), v) for k, v in self.extra.items()}
-        if self.between is not None:
-            kept = vars(self.between)
-            data |= {f"between_{k}": (_BETWEEN[k], kept[k]) for k in _BETWEEN if kept[k] is not None}
-        coords = {"time": self.t, "agent": np.arange(self.n), "axis": list("xyz"[: self.m])}
-        attrs = {
-            "format": FORMAT,
-            "format_version": FORMAT_VERSION,
-            "flockana_version": __version__,
-            "law": json.dumps(to_data(self.law)),
-            "status": self.status,
-            "message": self.message,
-            "stats": json.dumps(to_data_mapping(self.stats)),
-        }
-        return xarray.Dataset(data, coords, attrs)
+        return saved.to_xarray(self)
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write the run, law and parameters included, as netCDF-4; an existing file is replaced only when whole.
@@ -441,13 +408,7 @@ class Trajectory:
         ArgumentError
             If the law holds something that has no written form, such as a user's function.
         """
-        target = Path(path)
-        if "\0" in str(target):  # HDF5 would write to what precedes it
-            raise FileError(f"cannot write {str(target)!r}: null byte; choose a file name and folder to write to")
-        dataset = self.to_xarray()
-        with replacing(target, remedy="choose a file name and folder to write to") as partial:
-            dataset.to_netcdf(partial, engine="h5netcdf")
-        return target
+        return saved.save(self.to_xarray(), path)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Trajectory:
@@ -463,46 +424,4 @@ class Trajectory:
         FileError
             If the file is missing, is no netCDF, is not one of ours, is of a newer format, or is damaged.
         """
-        import xarray
-
-        source = Path(path)
-        if not source.is_file():
-            raise FileError(f"no file {source}: expected one written by Trajectory.save")
-        try:
-            with xarray.open_dataset(source, engine="h5netcdf") as dataset:
-                data = dataset.load()
-        except Exception as error:  # h5py raises many kinds on damaged bytes
-            raise FileError(f"cannot read {source} as netCDF-4: {error}; was it written by Trajectory.save?") from error
-        if data.attrs.get("format") != FORMAT:
-            raise FileError(
-                f"{source} holds no flockana run (format {data.attrs.get('format')!r}, expected {FORMAT!r})"
-            )
-        try:
-            version = int(data.attrs["format_version"])
-            if version > FORMAT_VERSION:
-                raise FileError(f"{source} is of format {version}, newer than {FORMAT_VERSION}: update flockana")
-            return cls(
-                t=np.array(data["time"]),
-                q=np.array(data["q"]),
-                p=np.array(data["p"]),
-                u=np.array(data["u"]),
-                law=ensure_law(from_data(json.loads(data.attrs["law"]))),
-                extra={str(k)[6:]: np.array(v) for k, v in data.data_vars.items() if str(k).startswith("extra_")},
-                status=str(data.attrs["status"]),
-                message=str(data.attrs["message"]),
-                stats=json.loads(data.attrs["stats"]),
-                between=_read_between(data),
-            )
-        except (KeyError, ValueError, TypeError, RecursionError) as error:
-            raise FileError(f"{source} is damaged: {error!r}; run the simulation again") from error
-
-
-def to_data_mapping(stats: Mapping[str, Any]) -> dict[str, Any]:
-    """Plain data of a mapping with text keys.
-
-    Examples
-    --------
-    >>> to_data_mapping({"steps": np.int64(3)})
-    {'steps': 3}
-    """
-    return {key: to_data(value) for key, value in stats.items()}
+        return saved.load(cls, path)
