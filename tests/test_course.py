@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 from flockana.course import grade
-
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tools"))
-import course  # tools/ is no package
+from tools import course
 
 
 @pytest.mark.parametrize(

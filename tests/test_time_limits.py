@@ -7,7 +7,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from programs import posix
+
+from tests.programs import posix
 
 pytestmark = posix
 CONFIGURATION = Path(__file__).parents[1] / "pyproject.toml"

@@ -5,8 +5,6 @@ from __future__ import annotations
 from math import sqrt
 
 import numpy as np
-from adversarial import truth
-from adversarial.cases import Case
 from hypothesis import assume
 from hypothesis import strategies as st
 
@@ -21,6 +19,8 @@ from flockana.environment.targets import (
 )
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from tests.adversarial import truth
+from tests.adversarial.cases import Case
 
 seeds = st.integers(0, 2**32 - 1)
 plain = st.just({})  # as simulate does it by itself

@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from adversarial.cases import Case
-from adversarial.transforms import UNITS, UnchangedError, in_units, later, renumbered, rigid
 
 from flockana.base.errors import ArgumentError
 from flockana.laws.discrete import DiscreteLaw
 from flockana.scenarios import scenario, scenarios
+from tests.adversarial.cases import Case
+from tests.adversarial.transforms import UNITS, UnchangedError, in_units, later, renumbered, rigid
 
 QUICK = {  # one change each in the sample; every change of every scenario in the attack
     "head-on": "micrometres and milliseconds",

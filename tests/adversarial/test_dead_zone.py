@@ -6,14 +6,14 @@ from math import asinh, exp, sinh, sqrt
 
 import numpy as np
 import pytest
-from adversarial.cases import FALSE, REFUTED, TRUE, VERIFIED, Case, effort, hold
-from adversarial.strategies import powers, samplings, seeds, ways
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.integrate import quad, solve_ivp
 
 from flockana.interactions import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
+from tests.adversarial.cases import FALSE, REFUTED, TRUE, VERIFIED, Case, effort, hold
+from tests.adversarial.strategies import powers, samplings, seeds, ways
 
 THEOREMS = ("dead-zone-1-printed", "dead-zone-1-corrected")
 CORRECTED = dict.fromkeys(("rate", "balance", "components", "distance"), TRUE)

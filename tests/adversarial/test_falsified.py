@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from adversarial import truth
-from adversarial.cases import effort
 from hypothesis import given
 from hypothesis import strategies as st
 
 from flockana import falsify, scenario, simulate, verify
+from tests.adversarial import truth
+from tests.adversarial.cases import effort
 
 TRUE_CLAIMS = [  # theorem, claim, scenario: proved, so that no search, however wide, may come back with one
     ("collision-energy", "below", "head-on"),

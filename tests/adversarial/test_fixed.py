@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from adversarial.cases import FALSE, REFUTED, TRUE, VERIFIED
 
 from flockana import Tolerances, verify
+from tests.adversarial.cases import FALSE, REFUTED, TRUE, VERIFIED
 
 # from the list of errata: `r` what is printed and false, `v` what is true; a search may come back without an answer
 TRUTHS = {

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from adversarial import truth
-from adversarial.cases import FALSE, OPEN, REFUTED, TRUE, VERIFIED, Case, effort, hold
-from adversarial.strategies import seeds
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from flockana.environment.targets import CircleTarget, RescaledVelocity, SineTarget, StaticTarget
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from tests.adversarial import truth
+from tests.adversarial.cases import FALSE, OPEN, REFUTED, TRUE, VERIFIED, Case, effort, hold
+from tests.adversarial.strategies import seeds
 
 THEOREMS = ("E12", "linearised-decay-terminal")
 

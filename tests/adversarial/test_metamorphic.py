@@ -6,15 +6,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from adversarial import truth
-from adversarial.cases import effort
-from adversarial.strategies import flocks, seeds
-from adversarial.transforms import UNITS, UnchangedError, boosted, in_units, later, renumbered, rigid
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from flockana import Tolerances, verify
 from flockana.laws.olfati_saber import Algorithm1
+from tests.adversarial import truth
+from tests.adversarial.cases import effort
+from tests.adversarial.strategies import flocks, seeds
+from tests.adversarial.transforms import UNITS, UnchangedError, boosted, in_units, later, renumbered, rigid
 
 BY_LAW = {
     1: ("os-1", "energy", "collision-energy", "alpha-flocking", "alpha-flocking-strict", "lattice-limit-printed"),

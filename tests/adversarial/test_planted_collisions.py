@@ -6,15 +6,15 @@ from math import sqrt
 
 import numpy as np
 import pytest
-from adversarial import truth
-from adversarial.cases import ANY, FALSE, OPEN, REFUTED, TRUE, VACUOUS, VERIFIED, Case, effort, hold
-from adversarial.strategies import aimed, pair_laws, powers, ways
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from flockana.environment.targets import StaticTarget
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from tests.adversarial import truth
+from tests.adversarial.cases import ANY, FALSE, OPEN, REFUTED, TRUE, VACUOUS, VERIFIED, Case, effort, hold
+from tests.adversarial.strategies import aimed, pair_laws, powers, ways
 
 THEOREMS = ("collision-energy", "os-1", "os-3", "E13")
 far_off = st.sampled_from((0.3, 0.6, 0.9, 1.1, 1.5, 1.9, 3.0))  # H/c*, decided by far

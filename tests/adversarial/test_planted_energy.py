@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from adversarial import truth
-from adversarial.cases import FALSE, OPEN, REFUTED, TRUE, VERIFIED, Case, effort, hold
-from adversarial.strategies import flocks, pair_laws, powers, seeds, starts, ways
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -15,6 +12,9 @@ from flockana.environment.targets import StaticTarget
 from flockana.interactions import BetaInteraction, Gains
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1
+from tests.adversarial import truth
+from tests.adversarial.cases import FALSE, OPEN, REFUTED, TRUE, VERIFIED, Case, effort, hold
+from tests.adversarial.strategies import flocks, pair_laws, powers, seeds, starts, ways
 
 THEOREMS = ("energy", "energy-printed", "os-6", "os-3", "os-1", "E13")
 STILL = {"rate": TRUE, "balance": TRUE}

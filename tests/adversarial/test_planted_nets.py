@@ -7,15 +7,15 @@ from math import comb, sqrt
 
 import numpy as np
 import pytest
-from adversarial import truth
-from adversarial.cases import FALSE, OPEN, REFUTED, TRUE, VERIFIED, Case, effort, hold
-from adversarial.strategies import powers, seeds
 from hypothesis import given
 from hypothesis import strategies as st
 
 from flockana import verify
 from flockana.interactions import AlphaInteraction
 from flockana.laws.olfati_saber import Algorithm1
+from tests.adversarial import truth
+from tests.adversarial.cases import FALSE, OPEN, REFUTED, TRUE, VERIFIED, Case, effort, hold
+from tests.adversarial.strategies import powers, seeds
 
 THEOREMS = ("os-5", "os-5-terminal")
 ROOTS = {"triangular": sqrt(3.0), "square": sqrt(2.0), "fcc": sqrt(2.0)}

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
-from adversarial.cases import FALSE, OPEN, TRUE, VERIFIED, Case, hold
 
 from flockana import Tolerances, Trajectory, simulate, theorem, theorems, verify
 from flockana.base.errors import ArgumentError, FileError
@@ -24,6 +23,7 @@ from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.scenarios import scenario
+from tests.adversarial.cases import FALSE, OPEN, TRUE, VERIFIED, Case, hold
 
 ORIGIN = StaticTarget((0.0, 0.0))
 APART, STILL = np.array([[0.0, 0.0], [8.0, 0.0]]), np.zeros((2, 2))

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from adversarial.cases import FALSE, OPEN, REFUTED, TRUE, VACUOUS, VERIFIED, Case, effort, hold
-from adversarial.strategies import powers, seeds, ways
 from hypothesis import given
 from hypothesis import strategies as st
 
 from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import both_ways, random_out_tree
+from tests.adversarial.cases import FALSE, OPEN, REFUTED, TRUE, VACUOUS, VERIFIED, Case, effort, hold
+from tests.adversarial.strategies import powers, seeds, ways
 
 THEOREMS = ("zone-1-printed", "zone-1-corrected")
 CORRECTED = dict.fromkeys(

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from adversarial import truth
 
 from flockana.environment.targets import StaticTarget
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from tests.adversarial import truth
 
 # d, r, ε, h, a, b, ψ_α(0), ψ_α(r_α): 40-digit quadrature
 TABLE = [

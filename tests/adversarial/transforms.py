@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from adversarial.cases import Case
 
 from flockana import rescale
 from flockana.environment.capsule import Capsule
@@ -20,6 +19,7 @@ from flockana.environment.targets import (
     StaticTarget,
 )
 from flockana.laws.minimal import MinimalFlocking
+from tests.adversarial.cases import Case
 
 UNITS = {
     "micrometres and milliseconds": (1e6, 1e3),

@@ -7,9 +7,9 @@ import sys
 import threading
 
 import pytest
-from programs import out_of_a_kernel, posix
 
 from flockana.base.interrupts import interrupts_held, interrupts_recognised
+from tests.programs import out_of_a_kernel, posix
 
 REPORT = "import signal; print(*(s.name for s in signal.pthread_sigmask(signal.SIG_BLOCK, ())), sep=',')"
 

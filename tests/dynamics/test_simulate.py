@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from programs import out_of_a_kernel
 
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.dynamics.simulate import ADAPTIVE, METHODS, simulate
@@ -16,6 +15,7 @@ from flockana.interactions import Gains
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from tests.programs import out_of_a_kernel
 
 LAW = Algorithm2(gains=Gains(c1_alpha=3.0, c2_alpha=1.0), target=LinearTarget((5.0, 0.0), (1.0, 0.5)))
 

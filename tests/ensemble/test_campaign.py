@@ -9,7 +9,6 @@ from concurrent.futures.process import BrokenProcessPool
 
 import numpy as np
 import pytest
-import tiny_flocks
 import xarray
 
 from flockana.base.errors import ArgumentError, SolverError, UnknownNameError
@@ -22,6 +21,7 @@ from flockana.ensemble.work import Job, Request, run_batch
 from flockana.measures.measure import measures
 from flockana.scenarios import scenario
 from flockana.theorems import Tolerances, verify
+from tests.ensemble import tiny_flocks
 
 SEEDS = range(6)
 REQUEST = Request("tiny_flocks:trio", ("source",), ())

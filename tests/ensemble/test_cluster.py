@@ -13,16 +13,16 @@ from multiprocessing import active_children, spawn
 from pathlib import Path
 
 import pytest
-import tiny_flocks
-from programs import ANSWERS_CTRL_C, group, interrupt, posix, program, until
-from tiny_flocks import begun
 
 from flockana.base.errors import ArgumentError, SolverError
 from flockana.ensemble import Store, cluster, ensemble, executors
+from tests.ensemble import tiny_flocks
+from tests.ensemble.tiny_flocks import begun
+from tests.programs import ANSWERS_CTRL_C, group, interrupt, posix, program, until
 
 distributed = pytest.importorskip("distributed")
 pytestmark = posix
-HERE = Path(__file__).parent
+ROOT = Path(__file__).parents[2]
 RUNS = 40
 
 
@@ -37,7 +37,7 @@ def dask(kind, file, environment, *options):
     """A scheduler or a worker on loopback, with its own folder for its files."""
     command = ["-m", f"distributed.cli.dask_{kind}", "--host", "127.0.0.1", "--scheduler-file", file, *options]
     own = environment | {"DASK_TEMPORARY_DIRECTORY": str(file.parent)}
-    return program(*command, environment=own, paths=[HERE, HERE.parent], output=subprocess.DEVNULL)
+    return program(*command, environment=own, paths=[ROOT], output=subprocess.DEVNULL)
 
 
 def scheduler(file, environment):
@@ -305,11 +305,11 @@ def test_ctrl_c_ends_a_cluster_of_ones_own(tmp_path):
     """A program at work; its worker processes never get the signal."""
     log = tmp_path / "log"
     code = (
-        "import sys, tiny_flocks\nfrom flockana.ensemble import ensemble\n"
+        "import sys\nfrom tests.ensemble import tiny_flocks\nfrom flockana.ensemble import ensemble\n"
         "if __name__ == '__main__':\n    ensemble(tiny_flocks.gated, range(40), cluster='local', jobs=2)\n"
     )
     environment = {tiny_flocks.LOG: str(log), tiny_flocks.GATE: str(tmp_path / "gate")}
-    own = {"environment": environment | {"DASK_TEMPORARY_DIRECTORY": str(tmp_path)}, "paths": [HERE, HERE.parent]}
+    own = {"environment": environment | {"DASK_TEMPORARY_DIRECTORY": str(tmp_path)}, "paths": [ROOT]}
     with program("-c", ANSWERS_CTRL_C + code, **own) as process:
         until(lambda: any(seed >= 24 for _, seed in begun(log)), process)
         interrupt(process)

@@ -5,9 +5,8 @@ import signal
 import time
 from multiprocessing import active_children
 
-from programs import posix
-
 from flockana.ensemble.processes import ProcessPool
+from tests.programs import posix
 
 
 @posix

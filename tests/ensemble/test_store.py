@@ -4,17 +4,18 @@ import sqlite3
 from pathlib import Path
 
 import pytest
-import tiny_flocks
-from programs import group, posix, program, until
-from tiny_flocks import begun
 
 from flockana.base.errors import FileError
 from flockana.ensemble import Store, ensemble, store
 from flockana.ensemble.work import Job, Record
+from tests.ensemble import tiny_flocks
+from tests.ensemble.tiny_flocks import begun
+from tests.programs import group, posix, program, until
 
-HERE = Path(__file__).parent
+ROOT = Path(__file__).parents[2]
 CAMPAIGN = """
-import sys, tiny_flocks
+import sys
+from tests.ensemble import tiny_flocks
 from flockana.ensemble import ensemble
 path, runs, jobs = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
 found = ensemble(tiny_flocks.gated, range(runs), theorems=["source"], jobs=jobs, store=path)
@@ -25,7 +26,7 @@ print(found.order.values.tobytes().hex())
 def start(path, runs, jobs):
     """A campaign of gated runs; its log and its gate lie beside the store."""
     environment = {tiny_flocks.LOG: str(path.with_name("log")), tiny_flocks.GATE: str(path.with_name("gate"))}
-    return program("-c", CAMPAIGN, path, runs, jobs, paths=[HERE, HERE.parent], environment=environment)
+    return program("-c", CAMPAIGN, path, runs, jobs, paths=[ROOT], environment=environment)
 
 
 def seeds_in(path):

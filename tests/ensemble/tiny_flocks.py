@@ -10,11 +10,11 @@ from pathlib import Path
 
 import numpy as np
 from numba.core import event
-from programs import out_of_a_kernel
 
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.scenarios import Report, Scenario
 from flockana.theorems import Claim
+from tests.programs import out_of_a_kernel
 
 LOG = "FLOCKANA_TEST_LOG"  # names a file that gets a line "pid seed" for every run that is begun
 GATE = "FLOCKANA_TEST_GATE"  # names a file without which gated runs do not go on

@@ -6,10 +6,10 @@ import re
 
 import numpy as np
 import pytest
-from reference import dense
 
 from flockana.base.errors import ArgumentError
 from flockana.measures import metrics, nets
+from tests.reference import dense
 
 PATH = np.array([[0.0], [1.0], [2.0]])
 

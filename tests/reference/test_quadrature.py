@@ -5,9 +5,9 @@ from __future__ import annotations
 import mpmath as mp
 import numpy as np
 import pytest
-from reference.values import ALPHA, PARAMETERS
 
 from flockana.interactions import AlphaInteraction, BetaInteraction
+from tests.reference.values import ALPHA, PARAMETERS
 
 TOL = 1e-13  # of c*: what the interaction promises
 ULPS = 4 * 2.0**-52  # of ψ itself: where ψ(r_α) is hundreds of c* (r/d = 5), 1e-13 c* is below one ulp of the value

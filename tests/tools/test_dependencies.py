@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import sys
-from pathlib import Path
-
 import pytest
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools"))
-import dependencies  # tools/ is no package
+from tools import dependencies
 
 
 def test_every_direct_dependency_is_held_at_its_bound():

@@ -4,24 +4,20 @@ from __future__ import annotations
 
 import json
 import signal
-import sys
 import threading
 import time
 from collections import Counter
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from flockana import scenario
 from flockana.theorems import Tolerances
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools"))
-from portability import __main__ as command  # tools/ is no package
-from portability import crew, worker
-from portability.crew import Unit, carry_out
-from portability.findings import Findings, Row, differences, table
-from portability.variants import NATIVE, Change, Environment, changes, environments, no_effect
+from tools.portability import __main__ as command
+from tools.portability import crew, worker
+from tools.portability.crew import Unit, carry_out
+from tools.portability.findings import Findings, Row, differences, table
+from tools.portability.variants import NATIVE, Change, Environment, changes, environments, no_effect
 
 AVX512 = {
     "machine": "x86_64",

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from theorems.made_up import SCALINGS, judged, made_up, same_in_all_units, statuses
 
 import flockana as fl
 from flockana.dynamics.simulate import simulate
@@ -15,6 +14,7 @@ from flockana.laws.olfati_saber import Algorithm1
 from flockana.measures.metrics import cohesion_radius, net_measures
 from flockana.theorems import Tolerances, verify
 from flockana.theorems.sampling import nets_at, nets_between, radius_between
+from tests.theorems.made_up import SCALINGS, judged, made_up, same_in_all_units, statuses
 
 LAW = Algorithm1()
 BOTH = ("alpha-flocking", "alpha-flocking-strict")

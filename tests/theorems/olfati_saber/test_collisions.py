@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from theorems.made_up import SCALINGS, judged, made_up, same_in_all_units, statuses
 
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
@@ -18,6 +17,7 @@ from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.measures.path_bounds import contacts
 from flockana.theorems import Tolerances, verify
 from flockana.theorems.olfati_saber.collisions import below_multiple, near, passed
+from tests.theorems.made_up import SCALINGS, judged, made_up, same_in_all_units, statuses
 
 ALPHA = AlphaInteraction(a=5e4, b=5e4)
 E13_LAW = Algorithm2(ALPHA, Gains(c1_alpha=1.0, c2_alpha=1.0, c1_gamma=0.01, c2_gamma=0.01), StaticTarget((0.0,)))

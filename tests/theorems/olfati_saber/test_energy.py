@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from theorems.made_up import SCALINGS, hypothesis, judged, same_in_all_units, statuses
 
 from flockana.dynamics.simulate import simulate
 from flockana.environment.obstacles import Sphere
@@ -17,6 +16,7 @@ from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems import Tolerances, verify
 from flockana.theorems.olfati_saber.energy import balance, never_rises
+from tests.theorems.made_up import SCALINGS, hypothesis, judged, same_in_all_units, statuses
 
 LAW = Algorithm1()
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from theorems.made_up import SCALINGS
 
 from flockana.base.units import rescale
 from flockana.dynamics.trajectory import Trajectory
@@ -18,6 +17,7 @@ from flockana.environment.targets import (
 )
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.theorems.olfati_saber.gamma_agent import consistent, honest_rate, slip, still
+from tests.theorems.made_up import SCALINGS
 
 HERE, AWAY = (3.0, 1.0), (2.0, -1.0)
 

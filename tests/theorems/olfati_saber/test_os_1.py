@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
-from theorems.made_up import SCALINGS, hypothesis, judged, made_up, same_in_all_units, statuses
 
 import flockana as fl
 from flockana.dynamics.simulate import simulate
@@ -18,6 +17,7 @@ from flockana.theorems.asymptotics import lattice_limit
 from flockana.theorems.olfati_saber.os_1 import _disconnected_energy
 from flockana.theorems.slides.e03 import rhombus_with_double_agent
 from flockana.theorems.theorem import Hypothesis
+from tests.theorems.made_up import SCALINGS, hypothesis, judged, made_up, same_in_all_units, statuses
 
 LAW = Algorithm1()
 CLAIMS = ("i", "ii", "iii", "iii-barrier")

@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from theorems.made_up import SCALINGS, hypothesis, judged, made_up, same_in_all_units, statuses
 
 import flockana as fl
 from flockana.base.errors import ArgumentError
@@ -16,6 +15,7 @@ from flockana.interactions import Gains
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.theorems import Tolerances, verify
+from tests.theorems.made_up import SCALINGS, hypothesis, judged, made_up, same_in_all_units, statuses
 
 LAW = Algorithm2(target=LinearTarget((20.0, 0.0), (1.0, 0.0)))
 ORIGIN = StaticTarget((0.0, 0.0))

@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from theorems.made_up import judged
 
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
@@ -18,6 +17,7 @@ from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.theorems import verify
 from flockana.theorems.olfati_saber.os_6 import condition_76
+from tests.theorems.made_up import judged
 
 OBSTACLES = (Sphere((3.0, 2.0), 2.0), Wall((0.0, -14.0), (0.0, 1.0)))
 
@@ -176,7 +176,7 @@ def test_a_law_that_feeds_energy_in_is_refuted(static: Trajectory) -> None:
 
 
 def test_an_obstacle_that_is_grazed_within_the_paths_error_is_left_open() -> None:
-    from theorems.made_up import made_up
+    from tests.theorems.made_up import made_up
 
     law = Algorithm3(target=StaticTarget((20.0, 0.0)), obstacles=(Sphere((0.0, 0.0), 3.0),))
     grazing = made_up(law, [[[-4.0, 3.0]], [[4.0, 3.0]]], [[[8.0, 0.0]]] * 2, t=(0.0, 1.0))

@@ -9,7 +9,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from programs import Starts, out_of_a_kernel
 
 from flockana.base.errors import ArgumentError, FileError, UnknownNameError
 from flockana.dynamics.simulate import simulate
@@ -26,6 +25,7 @@ from flockana.theorems import Claim, Hypothesis, Theorem, Tolerances, Verdict, t
 from flockana.theorems.leads import bridge, pairs_apart, squash, strained
 from flockana.theorems.olfati_saber.attraction import held
 from flockana.theorems.theorem import judge
+from tests.programs import Starts, out_of_a_kernel
 
 HEAD_ON = scenario("head-on")
 THREE_AT_REST = replace(scenario("three-agents-1d"), p0=np.zeros((3, 1)))

@@ -7,12 +7,12 @@ from contextlib import closing
 import pytest
 import xarray
 from PIL import Image
-from programs import ANSWERS_CTRL_C, CLI, interrupt, posix, program, until
 
 from flockana.base.errors import ArgumentError
 from flockana.cli.ensemble import read_options
 from flockana.cli.main import main
 from flockana.ensemble import ensemble, shares
+from tests.programs import ANSWERS_CTRL_C, CLI, interrupt, posix, program, until
 
 
 @pytest.fixture

@@ -8,7 +8,6 @@ import sys
 import numpy as np
 import pytest
 from PIL import Image
-from programs import out_of_a_kernel
 
 from flockana.cli.main import main
 from flockana.cli.source import builders, read_source
@@ -16,6 +15,7 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import AlphaInteraction
 from flockana.lattice import links
 from flockana.laws.olfati_saber import Algorithm1
+from tests.programs import out_of_a_kernel
 
 THEOREMS = importlib.import_module("flockana.theorems")  # flockana.theorems itself is a function
 

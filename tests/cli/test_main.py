@@ -13,7 +13,6 @@ from textwrap import indent
 
 import numpy as np
 import pytest
-from programs import ANSWERS_CTRL_C, CLI, IGNORES_CTRL_C, group, interrupt, out_of_a_kernel, posix, program, until
 
 from flockana.base.errors import SolverError
 from flockana.cli.main import main
@@ -22,6 +21,7 @@ from flockana.laws.olfati_saber import Algorithm1
 from flockana.report.work import plan
 from flockana.scenarios import Report, Scenario
 from flockana.theorems import Claim
+from tests.programs import ANSWERS_CTRL_C, CLI, IGNORES_CTRL_C, group, interrupt, out_of_a_kernel, posix, program, until
 
 
 def tiny(name="tiny", status="refuted"):

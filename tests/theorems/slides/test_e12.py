@@ -1,4 +1,4 @@
-"""E9 and E12: the excess of the printed step, and the gain of the centre of mass."""
+"""Erratum E12: the gain of the centre of mass that follows a γ-agent."""
 
 from __future__ import annotations
 
@@ -24,15 +24,6 @@ from flockana.theorems import Tolerances, theorem, verify
 
 OMEGA = 2 * pi * 0.025 / 0.045
 STRONG = scenario("msn-case4").law.gains
-
-
-def test_e9():
-    verdict = verify("E9")
-    assert verdict.status == "refuted"
-    assert verdict.claim("printed").computed == "dt**2*u"
-    assert (verdict.claim("printed").status, verdict.claim("printed").rigour) == ("refuted", "symbolic")
-    assert (verdict.claim("corrected").status, verdict.claim("corrected").computed) == ("verified", "0")
-    assert verdict.claim("excess").computed == verdict.claim("excess").stated == 0.125
 
 
 @pytest.mark.parametrize(("factor", "gain"), [(0.009, 0.852), (1.0, 1.109)])

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from reference import dense
 
 from flockana.environment.targets import LinearTarget
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from tests.reference import dense
 
 REL = 1e-12
 PAIRS = [dense.Pair(), dense.Pair(1.9, 2.8, 0.1, 0.4, 7.0, 9.0), dense.Pair(7.0, 8.4, 0.1, 0.9, 2.0, 30.0)]

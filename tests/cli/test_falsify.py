@@ -5,13 +5,13 @@ import json
 import numpy as np
 import pytest
 from PIL import Image
-from programs import Starts
 
 from flockana.base.errors import ArgumentError
 from flockana.cli.falsify import _known_false, read_ranges
 from flockana.cli.main import main
 from flockana.falsify import evaluate
 from flockana.theorems import Claim, theorems
+from tests.programs import Starts
 
 
 @pytest.fixture

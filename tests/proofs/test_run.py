@@ -12,12 +12,12 @@ from pathlib import Path
 from textwrap import indent
 
 import pytest
-from programs import ANSWERS_CTRL_C, CLI, group, interrupt, posix, program, until
 
 from flockana.cli.main import main
 from proofs import certificates, proof, run
 from proofs.proof import Step
 from proofs.run import Outcome, check
+from tests.programs import ANSWERS_CTRL_C, CLI, group, interrupt, posix, program, until
 
 HEAD = """
 from proofs.proof import Proof, Step

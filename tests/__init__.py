@@ -1,0 +1,1 @@
+"""Helpers and tests; pytest imports every file by its own path, and helpers as `tests.<folder>.<name>`."""
