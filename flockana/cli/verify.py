@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -10,7 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from flockana.base.errors import ArgumentError, FlockanaError
-from flockana.cli.options import BAD_INPUT, INTERRUPTED, OK, UNEXPECTED, Seed
+from flockana.cli.options import Jobs, Seed
+from flockana.cli.show import show_files
+from flockana.cli.status import BAD_INPUT, INTERRUPTED, OK, UNEXPECTED
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -20,12 +21,7 @@ if TYPE_CHECKING:
     from flockana.report.work import Task
 
 
-def register(app: typer.Typer) -> None:
-    """Add the command to the command line."""
-    app.command("verify")(_verify)
-
-
-def _verify(
+def verify_command(
     name: Annotated[
         str | None,
         typer.Argument(help="A scenario, a theorem, or 'errata'; by default the whole catalogue.", metavar="[NAME]"),
@@ -37,7 +33,7 @@ def _verify(
     ] = None,
     report: Annotated[Path, typer.Option(metavar="DIR", help="Folder of the report.")] = Path("report"),
     no_report: Annotated[bool, typer.Option("--no-report", help="Write no report.")] = False,
-    json: Annotated[bool, typer.Option("--json", help="Print the verdicts as JSON, and nothing else.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the verdicts as JSON, and nothing else.")] = False,
     seeds: Annotated[
         int | None,
         typer.Option(
@@ -47,14 +43,13 @@ def _verify(
             show_default=False,
         ),
     ] = None,
-    jobs: Annotated[int, typer.Option(min=1, help="Processes; by default the number of cores.", show_default=False)] = (
-        os.cpu_count() or 1
-    ),
+    jobs: Jobs = None,
 ) -> int:
     """Run scenarios, check theorems, print the verdicts, write a report.
 
     Exit status: 0 all as expected, 2 bad input, 3 some verdict differs from the expected, 130 interrupted.
     """
+    from flockana.ensemble.processes import cores
     from flockana.report.build import ensure_directory, verdicts_json, write_report
     from flockana.report.statistics import Surveyed, gather, surveys
     from flockana.report.work import plan
@@ -69,7 +64,9 @@ def _verify(
         many = () if no_report and seeds is None else surveys(name, seeds, seed=seed)
     if not no_report:
         ensure_directory(report)
-    results, code, failure = ([_saved(name, on, not no_report)], OK, None) if on else _perform((*tasks, *many), jobs)
+    results, code, failure = (
+        ([_saved(name, on, not no_report)], OK, None) if on else _perform((*tasks, *many), jobs or cores())
+    )
     pages = [one for one in results if not isinstance(one, Surveyed)]
     statistics = gather(many, [one for one in results if isinstance(one, Surveyed)], figures=not no_report)
     if code == OK and any(page.surprises for page in pages):
@@ -78,7 +75,7 @@ def _verify(
     written = None
     if not no_report and (pages or complete):
         written = write_report(pages, report, seed=seed, seconds=seconds, complete=complete, statistics=statistics)
-    if json:
+    if as_json:
         text = verdicts_json(pages, seed=seed, seconds=seconds, complete=complete, statistics=statistics)
         typer.echo(text, nl=False)
     else:
@@ -169,4 +166,4 @@ def _print_verdicts(
         console.print("shares of runs over many seeds: in the report")
     console.print(summary(pages, seconds), markup=False)
     if written is not None:
-        console.print(f"report: {written}", markup=False, soft_wrap=True)
+        show_files(report=written)
