@@ -72,7 +72,7 @@ from .plots.animation import animate as animate
 from .scenarios.scenario import Scenario as Scenario
 from .scenarios.scenario import scenario as scenario
 from .scenarios.scenario import scenarios as scenarios
-from .stability.linearise import Linearisation as Linearisation
+from .stability.linearisation import Linearisation as Linearisation
 from .stability.linearise import linearise as linearise
 from .stability.modes import Mode as Mode
 from .stability.slowest import slowest_modes as slowest_modes

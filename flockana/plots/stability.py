@@ -30,7 +30,7 @@ from flockana.stability.motion import mode_motion
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from flockana.stability.linearise import Linearisation
+    from flockana.stability.linearisation import Linearisation
 
 _LOOKS = (("x", BLUE), ("+", GREEN), ("1", PURPLE), ("2", INK))
 _RATIOS = (0.1, 0.3, 0.5, 0.7, 0.9)

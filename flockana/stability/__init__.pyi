@@ -1,6 +1,7 @@
 from .blocks import Blocks as Blocks
 from .blocks import blocks as blocks
 from .blocks import law_blocks as law_blocks
+from .centre_path import steady_error as steady_error
 from .decay import decay_table as decay_table
 from .decay import linear_range as linear_range
 from .delay import DelayMargin as DelayMargin
@@ -13,7 +14,7 @@ from .delayed_run import simulate_delayed as simulate_delayed
 from .design import GainDesign as GainDesign
 from .design import design_gains as design_gains
 from .design import gain_problem as gain_problem
-from .linearise import Linearisation as Linearisation
+from .linearisation import Linearisation as Linearisation
 from .linearise import linearise as linearise
 from .modes import Mode as Mode
 from .motion import mode_motion as mode_motion
@@ -27,7 +28,6 @@ from .sweeps import centre_locus as centre_locus
 from .sweeps import gain_sweep as gain_sweep
 from .sweeps import margin_sweep as margin_sweep
 from .tracking import response_ratio as response_ratio
-from .tracking import steady_error as steady_error
 from .tracking import tracking as tracking
 from .translational import CentreOfMass as CentreOfMass
 from .translational import predicted_gain as predicted_gain

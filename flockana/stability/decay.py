@@ -14,7 +14,7 @@ from flockana.base.errors import ArgumentError
 from flockana.dynamics.simulate import simulate
 from flockana.measures.frame import moving_frame
 from flockana.measures.nets import links
-from flockana.stability.linearise import Linearisation
+from flockana.stability.linearisation import Linearisation
 from flockana.stability.modes import Mode
 from flockana.stability.motion import mode_motion
 

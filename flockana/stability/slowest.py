@@ -8,7 +8,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_count
 from flockana.base.errors import ArgumentError, SolverError
-from flockana.stability.linearise import Linearisation
+from flockana.stability.linearisation import Linearisation
 from flockana.stability.modes import Mode, SecondOrder
 from flockana.stability.rounding import mode_errors
 
