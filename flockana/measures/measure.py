@@ -14,10 +14,8 @@ from importlib import import_module
 from math import nan
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import numpy as np
-
 from flockana.base.checks import FloatArray
-from flockana.measures.metrics import net_measures
+from flockana.measures.metrics import nets
 
 if TYPE_CHECKING:
     from flockana.dynamics.trajectory import Trajectory
@@ -44,7 +42,7 @@ class Flock:
         """C, C* and E of the net at each instant, shape (3, T); E only where the law has a lattice scale d."""
         r = self.law.pair.range
         d = r if self.law.lattice is None else self.law.lattice[0]
-        return np.array([net_measures(q, d, r) for q in self.q]).T
+        return nets(self.q, d, r)
 
 
 class Series(NamedTuple):

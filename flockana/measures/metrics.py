@@ -8,8 +8,8 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_points, ensure_positive
 from flockana.kernels.instants import least_distances
-from flockana.kernels.neighbours import pair_blocks
-from flockana.measures.nets import components, link_lengths, links
+from flockana.kernels.neighbours import pair_blocks, pair_list
+from flockana.measures.nets import components, link_lengths
 
 _TREE = 300  # agents from which on a search tree beats all pairs
 
@@ -29,10 +29,13 @@ def net_measures(q: Any, d: float, r: float) -> tuple[float, float, float]:
     >>> net_measures([[0.0], [3.0], [9.0]], d=3.0, r=4.0)
     (0.5, 0.6666666666666666, 0.0)
     """
-    q = ensure_points("q", q)
-    n, pairs = len(q), links(q, r)
+    return _net_measures(ensure_points("q", q), ensure_positive("d", d), ensure_positive("r", r))
+
+
+def _net_measures(q: FloatArray, d: float, r: float) -> tuple[float, float, float]:
+    n, pairs = len(q), np.column_stack(pair_list(q, r))
     sizes = np.bincount(components(n, pairs))
-    excess = link_lengths(q, pairs) - ensure_positive("d", d)
+    excess = link_lengths(q, pairs) - d
     deviation = float(2.0 * np.sum(excess**2) / (2 * excess.size + 1))
     return (1.0 if n == 1 else (n - sizes.size) / (n - 1)), float(sizes.max()) / n, deviation
 
@@ -219,6 +222,19 @@ def coincident_pairs(q: Any, tol: float) -> int:
 
 
 # The same at every instant of a run, unchecked: x has shape (T, n, m), the result (T,).
+
+
+def nets(q: FloatArray, d: float, r: float) -> FloatArray:
+    """`net_measures` over time, unchecked: C, C* and E, shape (3, T).
+
+    Parameters
+    ----------
+    q : ndarray, shape (T, n, m)
+        Positions.
+    d, r : float
+        Desired distance and interaction range.
+    """
+    return np.array([_net_measures(x, d, r) for x in q]).T
 
 
 def cohesion_radii(q: FloatArray) -> FloatArray:

@@ -14,7 +14,7 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.kernels.neighbours import pair_blocks
 from flockana.kernels.paths import bernstein, closest_pair, control_points, farthest, touching_pairs
-from flockana.measures.metrics import cohesion_radii, min_distance
+from flockana.measures.metrics import cohesion_radii, min_distances
 
 ROUNDING = 2.0**-50  # of the coordinates: a smaller distance is lost in their rounding and counts as 0
 RELATIVE_TOL = 1e-6  # of the subdivision: far below the interpolation allowance of any real run
@@ -65,7 +65,7 @@ def closest_approach(
     """
     lower, reached, when, pair = np.inf, np.inf, float(t[0]), (-1, -1)
     bounds = np.full(len(t) - 1, np.inf)
-    at_samples = np.array([min_distance(x) for x in q])
+    at_samples = min_distances(q)
     if q.shape[1] == 1:
         return ClosestApproach(np.inf, np.inf, when, pair, bounds)
     k = int(np.argmin(at_samples))
