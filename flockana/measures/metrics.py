@@ -29,7 +29,8 @@ def net_measures(q: Any, d: float, r: float) -> tuple[float, float, float]:
     >>> net_measures([[0.0], [3.0], [9.0]], d=3.0, r=4.0)
     (0.5, 0.6666666666666666, 0.0)
     """
-    return _net_measures(ensure_points("q", q), ensure_positive("d", d), ensure_positive("r", r))
+    q, r = ensure_points("q", q), ensure_positive("r", r)
+    return _net_measures(q, ensure_positive("d", d), r)
 
 
 def _net_measures(q: FloatArray, d: float, r: float) -> tuple[float, float, float]:
