@@ -31,12 +31,12 @@ def parameter_classes() -> dict[str, type]:
     >>> parameter_classes()["Algorithm1"].__module__
     'flockana.laws.olfati_saber'
     """
-    found: dict[str, type] = {}
+    classes_by_name: dict[str, type] = {}
     for room in map(importlib.import_module, _ROOMS):
         for info in pkgutil.walk_packages(room.__path__, f"{room.__name__}."):
             classes = (x for x in vars(importlib.import_module(info.name)).values() if isinstance(x, type))
-            found |= {x.__name__: x for x in classes if is_dataclass(x) and x.__module__ == info.name}
-    return found
+            classes_by_name |= {x.__name__: x for x in classes if is_dataclass(x) and x.__module__ == info.name}
+    return classes_by_name
 
 
 def to_data(value: Any) -> Any:
@@ -96,10 +96,10 @@ def from_data(data: Any) -> Any:
 
 def _own_class(module: str, qualname: str) -> Any:
     """A user's class, of a module that is imported already."""
-    found: Any = sys.modules[module]
+    item: Any = sys.modules[module]
     for part in qualname.split("."):
-        found = getattr(found, part)
-    return found
+        item = getattr(item, part)
+    return item
 
 
 def to_data_mapping(stats: Mapping[str, Any]) -> dict[str, Any]:

@@ -15,22 +15,22 @@ from flockana.laws.law import Law
 def check_first_call(law: Law | DiscreteLaw, t0: float, q0: FloatArray, p0: FloatArray) -> None:
     """Raise unless the law gives what a law gives: real numbers in the flock's shape, finite where it starts."""
     name, at = type(law).__name__, f"at the start, t = {t0:g}"
-    found: Any
+    given: Any
     parts: tuple[str, ...]
     if isinstance(law, DiscreteLaw):
         memory = {key: np.array(value) for key, value in law.start(q0, p0).items()}
-        found, expected, parts = law.step(t0, q0.copy(), p0.copy(), memory), "(q, p, u, memory)", ("q", "p", "u")
+        given, expected, parts = law.step(t0, q0.copy(), p0.copy(), memory), "(q, p, u, memory)", ("q", "p", "u")
     else:
-        found, expected, parts = law.flow(t0, q0, p0), "(u, dH/dt)", ("u",)
-    if not isinstance(found, tuple) or len(found) != len(parts) + 1:
-        raise ArgumentError(f"{name} gives {found!r} {at}: expected {expected}")
-    for part, value in zip(parts, found, strict=False):
+        given, expected, parts = law.flow(t0, q0, p0), "(u, dH/dt)", ("u",)
+    if not isinstance(given, tuple) or len(given) != len(parts) + 1:
+        raise ArgumentError(f"{name} gives {given!r} {at}: expected {expected}")
+    for part, value in zip(parts, given, strict=False):
         array = np.asarray(value)
         if array.dtype.kind not in "fiu" or array.shape != q0.shape:
             kind = f"{array.dtype} of shape {array.shape}"
             raise ArgumentError(f"{name} gives {part} as {kind} {at}: expected real numbers of shape {q0.shape}")
     if not isinstance(law, DiscreteLaw):
-        _check_finite(law, np.asarray(found[0]), found[1], t0, q0, p0, at)
+        _check_finite(law, np.asarray(given[0]), given[1], t0, q0, p0, at)
 
 
 def _check_finite(law: Law, u: FloatArray, rate: Any, t0: float, q0: FloatArray, p0: FloatArray, at: str) -> None:

@@ -77,10 +77,10 @@ def turns(law: SwitchedLaw, pieces: Pieces, way: Way, start: float, end: float) 
     reach = np.sum(np.linalg.norm(series[1:], axis=2), axis=0)  # an agent's way from its mean place, series[0]
     rows, columns = np.triu_indices(len(reach), 1)
     near = law.margins(pieces, series[0]).inside <= (reach[rows] + reach[columns]) * (1.0 + 1e-9)
-    found: set[float] = set()
+    times_of_turns: set[float] = set()
     for i, j in zip(rows[near].tolist(), columns[near].tolist(), strict=True):
         squared = _TO_SERIES @ np.sum((places[:, j] - places[:, i]) ** 2, axis=1)
         roots = chebyshev.chebroots(chebyshev.chebder(chebyshev.chebtrim(squared, 1e-15 * abs(squared).max())))
         real = roots.real[np.abs(roots.imag) < 1e-6]
-        found.update((0.5 * (start + end) + 0.5 * (end - start) * real[np.abs(real) < 1.0]).tolist())
-    return sorted(t for t in found if start < t < end)
+        times_of_turns.update((0.5 * (start + end) + 0.5 * (end - start) * real[np.abs(real) < 1.0]).tolist())
+    return sorted(t for t in times_of_turns if start < t < end)

@@ -297,8 +297,8 @@ class Trajectory:
 
     @cached_property
     def _closest(self) -> ClosestApproach:
-        found = closest_approach(*self.path)
-        return replace(found, lower_by_interval=self.over_intervals(np.minimum, found.lower_by_interval))
+        approach = closest_approach(*self.path)
+        return replace(approach, lower_by_interval=self.over_intervals(np.minimum, approach.lower_by_interval))
 
     def over_intervals(self, reduce: np.ufunc, values: FloatArray) -> FloatArray:
         """Numbers of the path's intervals, shape (..., S), to one for each interval between samples.
@@ -312,8 +312,8 @@ class Trajectory:
         """
         if self.between is None:
             return values
-        found: FloatArray = reduce.reduceat(values, np.searchsorted(self.path.t, self.t[:-1]), axis=-1)
-        return found
+        reduced: FloatArray = reduce.reduceat(values, np.searchsorted(self.path.t, self.t[:-1]), axis=-1)
+        return reduced
 
     def min_distance(self) -> float:
         """A lower bound of every distance between two agents at every time of the run.

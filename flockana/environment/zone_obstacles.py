@@ -127,8 +127,8 @@ def ball_clearance_on_way(ball: Sphere, start: FloatArray, end: FloatArray) -> F
     length2 = np.sum(way**2, axis=1)
     share = np.divide(np.sum(way * away, axis=1), length2, out=np.zeros(len(way)), where=length2 > 0.0)
     nearest = np.clip(share, 0.0, 1.0)[:, None] * way - away
-    found: FloatArray = np.linalg.norm(nearest, axis=1) - ball.radius
-    return found
+    clearance: FloatArray = np.linalg.norm(nearest, axis=1) - ball.radius
+    return clearance
 
 
 @dataclass(frozen=True)
@@ -175,5 +175,5 @@ class Box:
             Points.
         """
         q = ensure_points("q", q)
-        found: FloatArray = np.minimum(q - np.array(self.low), np.array(self.high) - q).min(axis=1)
-        return found
+        inside: FloatArray = np.minimum(q - np.array(self.low), np.array(self.high) - q).min(axis=1)
+        return inside

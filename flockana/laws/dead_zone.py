@@ -166,10 +166,10 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         steps : int
             How many.
         """
-        found: tuple[FloatArray, FloatArray, FloatArray] = semi_implicit_steps(
+        stepped: tuple[FloatArray, FloatArray, FloatArray] = semi_implicit_steps(
             q, p, self.interaction.par, self.k2, dt, steps
         )
-        return found
+        return stepped
 
     @property
     def located(self) -> bool:
@@ -184,8 +184,8 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         q : ndarray, shape (n, m)
             Positions.
         """
-        found: Pieces = zones(q, self.interaction.par)
-        return found
+        pieces: Pieces = zones(q, self.interaction.par)
+        return pieces
 
     def piece_flow(self, pieces: Pieces, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
         """As `flow`, every pair held in its zone.

@@ -48,9 +48,9 @@ _LACKING: Mapping[str, Any] = {"target": None, "obstacles": (), "obstacle_field"
 def _pair_among(parameters: Iterable[Any]) -> PairInteraction | None:
     """The first pair interaction of finite range, of a law that is stepped too."""
     for value in parameters:
-        found = value.pair if isinstance(value, LawOfMotion) else value
-        if isinstance(found, PairInteraction):
-            return found if np.isfinite(found.range) else None
+        pair = value.pair if isinstance(value, LawOfMotion) else value
+        if isinstance(pair, PairInteraction):
+            return pair if np.isfinite(pair.range) else None
     return None
 
 

@@ -246,8 +246,8 @@ def cohesion_radii(q: FloatArray) -> FloatArray:
     q : ndarray, shape (T, n, m)
         Positions.
     """
-    found: FloatArray = np.linalg.norm(_centred(q), axis=2).max(axis=1)
-    return found
+    radii: FloatArray = np.linalg.norm(_centred(q), axis=2).max(axis=1)
+    return radii
 
 
 def spreads(x: FloatArray) -> FloatArray:
@@ -258,8 +258,8 @@ def spreads(x: FloatArray) -> FloatArray:
     x : ndarray, shape (T, n, m)
         Positions or velocities.
     """
-    found: FloatArray = 0.5 * np.sum(_centred(x) ** 2, axis=(1, 2))
-    return found
+    spread: FloatArray = 0.5 * np.sum(_centred(x) ** 2, axis=(1, 2))
+    return spread
 
 
 def min_distances(q: FloatArray) -> FloatArray:
@@ -273,8 +273,8 @@ def min_distances(q: FloatArray) -> FloatArray:
     from scipy.spatial import KDTree
 
     if q.shape[1] < _TREE:
-        found: FloatArray = least_distances(q)
-        return found
+        distances: FloatArray = least_distances(q)
+        return distances
     return np.array([np.asarray(KDTree(x).query(x, k=2)[0])[:, 1].min() for x in q])
 
 
@@ -286,8 +286,8 @@ def orders(p: FloatArray) -> FloatArray:
     p : ndarray, shape (T, n, m)
         Velocities.
     """
-    found: FloatArray = np.linalg.norm(_headings(p).mean(axis=1), axis=1)
-    return found
+    lengths: FloatArray = np.linalg.norm(_headings(p).mean(axis=1), axis=1)
+    return lengths
 
 
 def coordinations(p: FloatArray) -> FloatArray:
@@ -301,8 +301,8 @@ def coordinations(p: FloatArray) -> FloatArray:
     k = np.count_nonzero(np.any(p != 0.0, axis=2), axis=1)
     # |Σ ĥ|² counts every pair twice and every agent once
     twice = np.sum(_headings(p).sum(axis=1) ** 2, axis=1) - k
-    found: FloatArray = np.divide(twice, k * (k - 1), out=np.full(len(p), np.nan), where=k > 1)
-    return found
+    cosines: FloatArray = np.divide(twice, k * (k - 1), out=np.full(len(p), np.nan), where=k > 1)
+    return cosines
 
 
 def _centred(x: FloatArray) -> FloatArray:

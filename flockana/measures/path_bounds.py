@@ -158,7 +158,7 @@ def contacts(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, *, tol:
     >>> contact.i, contact.j, contact.crossed, abs(contact.time - 0.5) < 1e-9
     (0, 1, True, True)
     """
-    found: dict[tuple[int, int], Contact] = {}
+    first: dict[tuple[int, int], Contact] = {}
     for k in range(len(t) - 1):
         h = t[k + 1] - t[k]
         points, reach, _ = control_points(h, q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1])
@@ -167,8 +167,8 @@ def contacts(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, *, tol:
             touching_pairs(points, reach, i, j, tol, at)
             for hit in np.flatnonzero(at >= 0.0):
                 a, b = sorted((int(i[hit]), int(j[hit])))
-                if (a, b) not in found:
+                if (a, b) not in first:
                     before, after = q[k, b] - q[k, a], q[k + 1, b] - q[k + 1, a]
                     crossed = q.shape[2] == 1 and bool(before[0] * after[0] < 0.0)
-                    found[a, b] = Contact(a, b, float(t[k] + at[hit] * h), crossed)
-    return tuple(sorted(found.values(), key=lambda c: (c.time, c.i, c.j)))
+                    first[a, b] = Contact(a, b, float(t[k] + at[hit] * h), crossed)
+    return tuple(sorted(first.values(), key=lambda c: (c.time, c.i, c.j)))

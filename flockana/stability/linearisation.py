@@ -180,10 +180,10 @@ class Linearisation:
         ArgumentError
             With the leak from the one to the other.
         """
-        found = self.second_order.split
-        if not found.exact:
+        split = self.second_order.split
+        if not split.exact:
             raise ArgumentError(
-                f"{type(self.law).__name__} does not split into shape and centre of mass here: {found.leak:.2g} of a "
+                f"{type(self.law).__name__} does not split into shape and centre of mass here: {split.leak:.2g} of a "
                 "translation goes into the shape or back (relative to the largest entry of K and D). Expected forces "
                 "between agents that cancel, and one linear pull on all: no σ₁, no obstacles, no gains that differ; "
                 "use modes and state_space"

@@ -113,11 +113,11 @@ def linearise(
         _ensure_steady(law, t, q, p, matrix)
     if links is None:
         links = getattr(equilibrium, "links", None)
-    found = _default_links(law, q) if links is None else ensure_links(links, len(q))
+    between = _default_links(law, q) if links is None else ensure_links(links, len(q))
     q, p = q.copy(), p.copy()
     for array in (q, p):
         array.setflags(write=False)
-    return Linearisation(law, q, p, t, residual, found, matrix, zero)
+    return Linearisation(law, q, p, t, residual, between, matrix, zero)
 
 
 def _softest(equilibrium: Any, matrix: csr_array) -> float:
@@ -138,8 +138,8 @@ def _finite_jacobian(law: Law, t: float, q: FloatArray, p: FloatArray) -> csr_ar
 
     why = ""
     if len(q) > 1:
-        found: Any = cKDTree(q).query(q, k=2)
-        distance, other = found
+        nearest: Any = cKDTree(q).query(q, k=2)
+        distance, other = nearest
         i = int(np.argmin(distance[:, 1]))
         j = other[i, 1] if other[i, 1] != i else other[i, 0]  # of coincident agents either may come first
         why = f", where agents {min(i, j)} and {max(i, j)} are {distance[i, 1]:.3g} apart"

@@ -57,29 +57,29 @@ def pure_fields(q: FloatArray) -> list[tuple[str, FloatArray]]:
 def name_kernel(kernel: FloatArray, q: FloatArray) -> tuple[list[str], FloatArray]:
     """Names and an orthonormal basis of a kernel: rigid motions first, by axis where they can be told apart."""
     names: list[str] = []
-    found = np.zeros((q.size, 0))
+    basis = np.zeros((q.size, 0))
     for name, flow in pure_fields(q):
         if name == "breathing":  # of a flock without neighbours it costs nothing, but it is no rigid motion
             continue
-        rest = flow - found @ (found.T @ flow)
+        rest = flow - basis @ (basis.T @ flow)
         inside = np.linalg.norm(flow - kernel @ (kernel.T @ flow)) <= _NAMED
         if inside and np.linalg.norm(rest) > _NAMED:
-            names, found = [*names, name], np.column_stack([found, rest / np.linalg.norm(rest)])
+            names, basis = [*names, name], np.column_stack([basis, rest / np.linalg.norm(rest)])
     rigid, unit = rigid_motions(q), translations(*q.shape)
     for fields, kind in ((unit, "translation"), (rigid, "rotation")):  # along no axis, or about the γ-agent
-        left = _off(kernel, found)
+        left = _off(kernel, basis)
         u, sizes, _ = np.linalg.svd(left.T @ fields, full_matrices=False)
-        mixed = _off(left @ u[:, sizes > 1.0 - _NAMED], found)
-        names, found = [*names, *[kind] * mixed.shape[1]], np.column_stack([found, mixed])
-    soft = _off(kernel, found)
+        mixed = _off(left @ u[:, sizes > 1.0 - _NAMED], basis)
+        names, basis = [*names, *[kind] * mixed.shape[1]], np.column_stack([basis, mixed])
+    soft = _off(kernel, basis)
     names += [f"soft {k}" for k in range(1, soft.shape[1] + 1)]
-    return names, np.column_stack([found, soft])
+    return names, np.column_stack([basis, soft])
 
 
-def _off(kernel: FloatArray, found: FloatArray) -> FloatArray:
-    """Orthonormal basis of what a kernel holds beyond `found`, which it contains."""
+def _off(kernel: FloatArray, named: FloatArray) -> FloatArray:
+    """Orthonormal basis of what a kernel holds beyond `named`, which it contains."""
     if kernel.shape[1] == 0:
         return kernel
-    basis, sizes, _ = np.linalg.svd(kernel - found @ (found.T @ kernel), full_matrices=False)
+    basis, sizes, _ = np.linalg.svd(kernel - named @ (named.T @ kernel), full_matrices=False)
     rest: FloatArray = basis[:, sizes > 0.5]
     return rest

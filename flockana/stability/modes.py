@@ -300,8 +300,8 @@ class SecondOrder:
         push = damping @ motion
         if not push.size or np.abs(push).max() <= self.zero * self.damping_scale:
             return np.zeros_like(motion)
-        found: FloatArray = -np.linalg.lstsq(matrix.toarray(), push, rcond=self.zero)[0]
-        return found
+        solution: FloatArray = -np.linalg.lstsq(matrix.toarray(), push, rcond=self.zero)[0]
+        return solution
 
 
 def _roots(stiffness: float, damping: float, errors: tuple[float, float]) -> list[complex]:

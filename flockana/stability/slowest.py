@@ -66,8 +66,8 @@ def slowest_modes(linearisation: Linearisation, count: int = 12) -> SlowModes:
     >>> from flockana.laws.olfati_saber import Algorithm1
     >>> from flockana.stability.linearise import linearise
     >>> patch = linearise(Algorithm1(), hexagonal_patch(2, 7.0))
-    >>> found = slowest_modes(patch, 3)
-    >>> bool(abs(found.modes[0].decay_rate - patch.decay_rate) < 1e-9 * patch.decay_rate), found.complete_to > 1.0
+    >>> slow = slowest_modes(patch, 3)
+    >>> bool(abs(slow.modes[0].decay_rate - patch.decay_rate) < 1e-9 * patch.decay_rate), slow.complete_to > 1.0
     (True, True)
     """
     count = ensure_count("count", count)

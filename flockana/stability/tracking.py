@@ -192,8 +192,8 @@ def tracking(run: Trajectory) -> Tracking:
     >>> from flockana.dynamics.simulate import simulate
     >>> from flockana import CircleTarget, Gains, StaticTarget
     >>> law = Algorithm2(gains=Gains(c1_gamma=1.0, c2_gamma=0.0), target=StaticTarget((5.0,)))
-    >>> found = tracking(simulate(law, [[1.0]], [[0.0]], (0.0, 7.0)))
-    >>> [round(x, 4) for x in (found.quantity("period").predicted, found.quantity("period").measured)]
+    >>> quantities = tracking(simulate(law, [[1.0]], [[0.0]], (0.0, 7.0)))
+    >>> [round(x, 4) for x in (quantities.quantity("period").predicted, quantities.quantity("period").measured)]
     [6.2832, 6.2832]
     """
     law = run.law
@@ -201,19 +201,19 @@ def tracking(run: Trajectory) -> Tracking:
         raise ArgumentError(f"{type(law).__name__}: expected a run of Algorithm 2 or of the MSN project's map of it")
     moving = motion(law.target)
     centre = CentreOfMass(law.gains, moving.factor)
-    found: list[Quantity] = []
+    quantities: list[Quantity] = []
     if type(law) is Algorithm2:
         q_c = run.q.mean(axis=1)
         path = centre_path(law.gains, law.target, run.t, q_c[0], run.p[0].mean(axis=0))
-        found.append(Quantity("path, largest deviation (length)", 0.0, float(np.abs(q_c - path).max())))
+        quantities.append(Quantity("path, largest deviation (length)", 0.0, float(np.abs(q_c - path).max())))
     if moving.swing.any():
-        found += _ratio(run, centre, moving)
+        quantities += _ratio(run, centre, moving)
     elif moving.velocity.any():
         lag = np.linalg.norm(run.q[-1].mean(axis=0) - law.target.position(float(run.t[-1])))
-        found.append(Quantity("lag (length)", steady_error(law.gains, law.target)[0], float(lag)))
+        quantities.append(Quantity("lag (length)", steady_error(law.gains, law.target)[0], float(lag)))
     elif type(law) is Algorithm2 and np.isfinite(centre.period):
-        found += _swing(run, centre)
-    return Tracking(centre, tuple(found))
+        quantities += _swing(run, centre)
+    return Tracking(centre, tuple(quantities))
 
 
 def _ratio(run: Trajectory, centre: CentreOfMass, moving: Motion) -> list[Quantity]:
