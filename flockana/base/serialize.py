@@ -7,17 +7,17 @@ is read.
 
 from __future__ import annotations
 
-import importlib
-import pkgutil
 import sys
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from functools import cache
+from itertools import chain
 from typing import Any
 
 import numpy as np
 
 from flockana.base.errors import ArgumentError, FileError
+from flockana.base.modules import modules
 
 _ROOMS = ("flockana.interactions", "flockana.environment", "flockana.laws")  # whose objects files may hold
 
@@ -32,10 +32,9 @@ def parameter_classes() -> dict[str, type]:
     'flockana.laws.olfati_saber'
     """
     classes_by_name: dict[str, type] = {}
-    for room in map(importlib.import_module, _ROOMS):
-        for info in pkgutil.walk_packages(room.__path__, f"{room.__name__}."):
-            classes = (x for x in vars(importlib.import_module(info.name)).values() if isinstance(x, type))
-            classes_by_name |= {x.__name__: x for x in classes if is_dataclass(x) and x.__module__ == info.name}
+    for module in chain.from_iterable(map(modules, _ROOMS)):
+        classes = (x for x in vars(module).values() if isinstance(x, type))
+        classes_by_name |= {x.__name__: x for x in classes if is_dataclass(x) and x.__module__ == module.__name__}
     return classes_by_name
 
 

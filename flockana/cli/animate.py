@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from flockana.base.progress import progress_bar
 from flockana.cli.options import ScenarioName, Seed, output
 from flockana.cli.show import show_files
 from flockana.cli.status import INTERRUPTED, OK, UNEXPECTED
@@ -21,11 +22,8 @@ def animate_command(
     seconds: Annotated[float, typer.Option(help="Length of the film.")] = 10.0,
 ) -> int:
     """Simulate a scenario and write a film of it: GIF, or MP4 where ffmpeg is installed."""
-    from rich.console import Console
-
     from flockana.plots.animation import animate, ensure_film, frame_count
     from flockana.report.build import ensure_directory
-    from flockana.report.console import progress_bar
     from flockana.scenarios import scenario
 
     item = scenario(name, seed)
@@ -34,8 +32,8 @@ def animate_command(
     run = item.run(progress=sys.stdout.isatty())
     if run.status == "interrupted":
         return INTERRUPTED
-    with progress_bar(Console(stderr=True), frame_count(seconds, fps), enabled=True) as advance:
-        animate(run, film, seconds=seconds, fps=fps, progress=lambda done, total: advance(done, ("drawing",)))
+    with progress_bar(frame_count(seconds, fps)) as advance:
+        animate(run, film, seconds=seconds, fps=fps, progress=lambda done, total: advance(done, "drawing"))
     typer.echo(f"{item.name}, {run.status}: {run.message}")
     show_files(written=film)
     return OK if run.status == "complete" else UNEXPECTED

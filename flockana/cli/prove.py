@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.base.progress import progress_bar
 from flockana.cli.options import Jobs, output
 from flockana.cli.show import show_files
 from flockana.cli.status import OK, UNEXPECTED
@@ -37,11 +38,8 @@ def prove_command(
 
     Exit status: 0 all proved, 2 bad input, 3 some proof failed or is unknown, 130 interrupted.
     """
-    from rich.console import Console
-
     from flockana.ensemble.processes import cores
     from flockana.report.build import ensure_directory
-    from flockana.report.console import progress_bar
 
     proof, run, certificates = (_module(name) for name in ("proof", "run", "certificates"))
     known = proof.names()
@@ -52,12 +50,12 @@ def prove_command(
     ensure_directory(folder)
     started = time.perf_counter()
     outcomes: list[Any] = []
-    with progress_bar(Console(stderr=True), len(chosen), enabled=True) as advance:
+    with progress_bar(len(chosen)) as advance:
         for outcome in run.check(
             chosen,
             jobs=jobs or cores(),
             time_limit=time_limit,
-            watch=lambda under_way: advance(len(outcomes), under_way),
+            watch=lambda under_way: advance(len(outcomes), ", ".join(under_way)),
         ):
             certificates.write(outcome, folder)
             outcomes.append(outcome)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from flockana.base.errors import ArgumentError, FlockanaError
+from flockana.base.progress import progress_bar
 from flockana.cli.options import Jobs, Seed
 from flockana.cli.show import show_files
 from flockana.cli.status import BAD_INPUT, INTERRUPTED, OK, UNEXPECTED
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from flockana.report.pages import Page
-    from flockana.report.statistics import StatisticsSection, Survey, Surveyed
+    from flockana.report.statistics import StatisticsSection, Survey, SurveyResult
     from flockana.report.work import Task
 
 
@@ -51,7 +52,7 @@ def verify_command(
     """
     from flockana.ensemble.processes import cores
     from flockana.report.build import ensure_directory, verdicts_json, write_report
-    from flockana.report.statistics import Surveyed, gather, surveys
+    from flockana.report.statistics import SurveyResult, gather, surveys
     from flockana.report.work import plan
 
     started = time.perf_counter()
@@ -65,10 +66,11 @@ def verify_command(
     if not no_report:
         ensure_directory(report)
     results, code, failure = (
-        ([_saved(name, on, not no_report)], OK, None) if on else _perform((*tasks, *many), jobs or cores())
+        ([_saved(name, on, not no_report)], OK, None) if on else _check_all((*tasks, *many), jobs or cores())
     )
-    pages = [one for one in results if not isinstance(one, Surveyed)]
-    statistics = gather(many, [one for one in results if isinstance(one, Surveyed)], figures=not no_report)
+    pages = [result for result in results if not isinstance(result, SurveyResult)]
+    surveyed = [result for result in results if isinstance(result, SurveyResult)]
+    statistics = gather(many, surveyed, figures=not no_report)
     if code == OK and any(page.surprises for page in pages):
         code = UNEXPECTED
     seconds, complete = time.perf_counter() - started, code in (OK, UNEXPECTED)
@@ -85,24 +87,27 @@ def verify_command(
     return code
 
 
-def _perform(tasks: Sequence[Task | Survey], jobs: int) -> tuple[list[Page | Surveyed], int, FlockanaError | None]:
-    """Carry tasks out under a progress bar; what was done before an interrupt or an error is kept."""
-    from rich.console import Console
+def _check_all(
+    tasks: Sequence[Task | Survey], jobs: int
+) -> tuple[list[Page | SurveyResult], int, FlockanaError | None]:
+    """(results in the order of the tasks, exit status, error): what was done before an error or Ctrl-C is kept."""
+    from flockana.report.work import check_all
 
-    from flockana.report.console import progress_bar
-    from flockana.report.work import perform
-
-    done: dict[str, Page | Surveyed] = {}
+    results: dict[str, Page | SurveyResult] = {}
     code, failure = OK, None
     try:
-        with progress_bar(Console(stderr=True), len(tasks), enabled=True) as advance:
-            for one in perform(tasks, jobs=jobs, watch=lambda names: advance(len(done), names)):
-                done[one.name] = one
+        with progress_bar(len(tasks)) as advance:
+
+            def watch(under_way: Sequence[Task | Survey]) -> None:
+                advance(len(results), ", ".join(task.name for task in under_way))
+
+            for result in check_all(tasks, jobs=jobs, watch=watch):
+                results[result.name] = result
     except KeyboardInterrupt:
         code = INTERRUPTED
     except FlockanaError as error:
         code, failure = BAD_INPUT, error
-    return [done[task.name] for task in tasks if task.name in done], code, failure
+    return [results[task.name] for task in tasks if task.name in results], code, failure
 
 
 def _ensure_checkable(name: str | None, seeds: int | None) -> None:

@@ -7,7 +7,7 @@ of the energy balance is `Trajectory.energy_residual`.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,7 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_positive, ensure_state, ensure_time_span
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.interrupts import interrupts_recognised
+from flockana.base.progress import progress_bar
 from flockana.dynamics.adaptive import adaptive
 from flockana.dynamics.between import Between, Recorder
 from flockana.dynamics.first_call import check_first_call
@@ -28,7 +29,6 @@ from flockana.laws.law import Law
 
 ADAPTIVE = ("DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA")
 METHODS = (*ADAPTIVE, "RK4")
-_REFRESH = 0.1  # seconds between updates of the progress bar
 
 
 def simulate(
@@ -158,44 +158,15 @@ def _collect(
     """Drain the integrator: the samples, and its steps between them; on Ctrl-C keep what there is."""
     kept: list[Sample] = []
     recorder = Recorder()
-    with _progress_bar(t_span, enabled=progress) as advance:
+    with progress_bar(t_span[1] - t_span[0], enabled=progress, counted=False, steady=True) as advance:
         try:
             with interrupts_recognised():
                 for sample in samples:
                     if sample.wanted:
                         kept.append(sample)
                     recorder.add(sample.t, sample.q, sample.p, sample.u, sample=sample.wanted)
-                    advance(sample.t)
+                    advance(sample.t - t_span[0], f"t = {sample.t:.4g}")
         except KeyboardInterrupt:
             until = f"the last sample is at t = {kept[-1].t:g}" if kept else "no sample was reached but the start"
             tally.status, tally.message = "interrupted", f"interrupted: {until}"
     return kept, recorder.between()
-
-
-class _progress_bar:  # noqa: N801  # reads as the context manager it is
-    """A rich progress bar over simulated time, or nothing."""
-
-    def __init__(self, t_span: tuple[float, float], *, enabled: bool) -> None:
-        self.t_span, self.enabled, self.shown = t_span, enabled, 0.0
-
-    def __enter__(self) -> Callable[[float], None]:
-        if not self.enabled:
-            return lambda t: None
-        from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
-
-        columns = (TextColumn("t = {task.fields[now]:.4g}"), BarColumn(), TimeRemainingColumn())
-        self.bar = Progress(*columns, transient=True)
-        t0, t1 = self.t_span
-        task = self.bar.add_task("", total=t1 - t0, now=t0)
-        self.bar.start()
-
-        def advance(t: float) -> None:
-            if time.perf_counter() - self.shown > _REFRESH:
-                self.bar.update(task, completed=t - t0, now=t)
-                self.shown = time.perf_counter()
-
-        return advance
-
-    def __exit__(self, *exc: object) -> None:
-        if self.enabled:
-            self.bar.stop()

@@ -6,15 +6,14 @@ What only the runs of one law have is in that law's `measures`.
 
 from __future__ import annotations
 
-import pkgutil
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache, cached_property
-from importlib import import_module
 from math import nan
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from flockana.base.checks import FloatArray
+from flockana.base.modules import modules
 from flockana.measures.metrics import nets
 
 if TYPE_CHECKING:
@@ -138,6 +137,4 @@ def measures() -> Mapping[str, Measure]:
     >>> measures()["strain"].summary
     'δ/d, largest |link − d|/d, at the end'
     """
-    package = import_module(__name__.rpartition(".")[0])
-    modules = [import_module(info.name) for info in pkgutil.iter_modules(package.__path__, f"{package.__name__}.")]
-    return {measure.name: measure for module in modules for measure in getattr(module, "MEASURES", ())}
+    return {it.name: it for module in modules("flockana.measures") for it in getattr(module, "MEASURES", ())}

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Sequence
 
 import numpy as np
-from rich.console import Console, Group
+from rich.console import Group
 from rich.markup import escape
 from rich.padding import Padding
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Column, Table
 from rich.text import Text
 
@@ -130,17 +128,3 @@ def run_table(run: Trajectory) -> Table:
     if "work" in run.extra:
         table.add_row("residual of the energy balance", "0", f"{run.energy_residual[-1]:.2g}")
     return table
-
-
-@contextmanager
-def progress_bar(console: Console, total: int, *, enabled: bool) -> Iterator[Callable[[int, tuple[str, ...]], None]]:
-    """A bar over tasks, on a terminal only; gives a function to call with (done, names under way)."""
-    columns = (BarColumn(24), MofNCompleteColumn(), TimeElapsedColumn(), TextColumn("{task.description}"))
-    hidden = not (enabled and console.is_terminal)
-    with Progress(*columns, console=console, transient=True, disable=hidden) as bar:
-        task = bar.add_task("starting", total=total)
-
-        def advance(done: int, names: tuple[str, ...]) -> None:
-            bar.update(task, completed=done, description=", ".join(names))
-
-        yield advance

@@ -12,11 +12,12 @@ import pytest
 import xarray
 
 from flockana.base.errors import ArgumentError, SolverError, UnknownNameError
-from flockana.ensemble import PHASES, STATUSES, Store, ensemble, executors, phases, shares
+from flockana.ensemble import PHASES, STATUSES, Store, batches, ensemble, phases, shares
 from flockana.ensemble import digest as digests
 from flockana.ensemble.digest import digest_of_sources, mathematics, run_key
-from flockana.ensemble.executors import Crew, Serial, crew, make_runs
+from flockana.ensemble.executors import Crew, Serial, crew
 from flockana.ensemble.processes import ProcessPool
+from flockana.ensemble.runs import make_runs
 from flockana.ensemble.work import Job, Request, run_batch
 from flockana.measures.measure import measures
 from flockana.scenarios import scenario
@@ -147,7 +148,7 @@ def test_a_run_that_ends_its_worker_is_found_and_the_others_are_made():
 
 
 def test_workers_that_all_die_end_the_ensemble_with_the_remedy(monkeypatch):
-    monkeypatch.setattr(executors, "_HOPELESS", 2)
+    monkeypatch.setattr(batches, "_HOPELESS", 2)
     with pytest.raises(SolverError, match=r"2 worker processes died .*__main__.*jobs=1"):
         ensemble(tiny_flocks.lethal, range(9), theorems=[], jobs=2)
 
@@ -327,8 +328,8 @@ def test_a_users_executor_is_kept_as_busy_as_it_is_wide():
 def test_batches_grow_with_short_runs_and_shrink_towards_the_end():
     """1000 runs of a millisecond for 2 workers: batches of 250, then ever fewer, four of them out at once."""
     waiting = deque(range(1000))
-    sent = [len(batch) for batch in executors._next_batches(waiting, deque(), 0, 2, 500)]
+    sent = [len(batch) for batch in batches._next_batches(waiting, deque(), 0, 2, 500)]
     assert sent == [250, 187, 140, 105]
-    assert [len(batch) for batch in executors._next_batches(waiting, deque(), 3, 2, 10)] == [10]
-    assert list(executors._next_batches(waiting, deque([7]), 1, 2, 10)) == []
-    assert list(executors._next_batches(waiting, deque([7]), 0, 2, 10)) == [(7,)]
+    assert [len(batch) for batch in batches._next_batches(waiting, deque(), 3, 2, 10)] == [10]
+    assert list(batches._next_batches(waiting, deque([7]), 1, 2, 10)) == []
+    assert list(batches._next_batches(waiting, deque([7]), 0, 2, 10)) == [(7,)]
