@@ -21,7 +21,7 @@ def toys():
     packages = {room: importlib.import_module(f"flockana.{room}") for room in ROOMS}
     caches = (
         importlib.import_module("flockana.theorems.catalogue")._catalogue,
-        importlib.import_module("flockana.scenarios.scenario")._catalogue,
+        importlib.import_module("flockana.scenarios.scenario").catalogue,
         importlib.import_module("flockana.report.figures")._own,
         importlib.import_module("flockana.base.serialize").parameter_classes,
         importlib.import_module("flockana.measures.measure").measures,

@@ -145,10 +145,9 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         _ensure_apart(q)
         return super().stiffness(q, t)
 
-    def measures(
+    def measures(  # noqa: D102
         self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
     ) -> Mapping[str, tuple[str, FloatArray]]:
-        """The energy of neighbours only, over time (arguments as in `LawOfMotion.measures`)."""
         literal = np.array([self.literal_energy(x, v) for x, v in zip(q, p, strict=True)])
         return {"literal_energy": ("H of neighbours only", literal)}
 

@@ -200,7 +200,7 @@ def differences(verdict: Verdict, expected: Mapping[str, Status]) -> tuple[str, 
 
 
 @cache
-def _catalogue() -> dict[str, Callable[..., Scenario]]:
+def catalogue() -> dict[str, Callable[..., Scenario]]:
     """How to build each scenario, by its name: the `SCENARIOS` of every module of this package."""
     builders: dict[str, Callable[..., Scenario]] = {}
     for module in modules("flockana.scenarios"):
@@ -216,7 +216,7 @@ def scenarios() -> tuple[str, ...]:
     >>> "collapse" in scenarios()
     True
     """
-    return tuple(_catalogue())
+    return tuple(catalogue())
 
 
 def scenario(name: str, seed: int = 0, **options: Any) -> Scenario:
@@ -243,11 +243,11 @@ def scenario(name: str, seed: int = 0, **options: Any) -> Scenario:
     >>> scenario("collapse", seed=1).name
     'collapse'
     """
-    if name not in _catalogue():
+    if name not in catalogue():
         raise UnknownNameError("scenario", name, scenarios())
     if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
         raise ArgumentError(f"seed = {seed!r}: expected a whole number >= 0")
-    build = _catalogue()[name]
+    build = catalogue()[name]
     known = [key for key in inspect.signature(build).parameters if key != "seed"]
     unknown = sorted(set(options) - set(known))
     if unknown:

@@ -10,23 +10,10 @@ from PIL import Image
 
 from flockana.base.errors import ArgumentError
 from flockana.cli.ensemble import read_options
-from flockana.cli.main import main
 from flockana.ensemble import ensemble, shares
 from tests.programs import ANSWERS_CTRL_C, CLI, interrupt, posix, program, until
 
-
-@pytest.fixture
-def call(capsys, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("COLUMNS", "80")
-
-    def run(*arguments):
-        with pytest.raises(SystemExit) as end:
-            main(["ensemble", *map(str, arguments)])
-        out = capsys.readouterr()
-        return end.value.code, out.out, out.err
-
-    return run
+COMMAND = ("ensemble",)
 
 
 def test_it_prints_shares_and_writes_what_is_asked_for(call, tmp_path):

@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import importlib
-import json
 import subprocess
 import sys
 
@@ -9,38 +8,20 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from flockana.cli.main import main
+from flockana.base.errors import SolverError
 from flockana.cli.source import builders, read_source
 from flockana.dynamics.trajectory import Trajectory
+from flockana.equilibria import find_equilibrium
+from flockana.equilibria.record import write_equilibrium
 from flockana.interactions import AlphaInteraction
-from flockana.lattice import links
+from flockana.lattice import hexagonal_patch, links
+from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.olfati_saber import Algorithm1
 from tests.programs import out_of_a_kernel
 
+COMMAND = ("lattice",)
+
 THEOREMS = importlib.import_module("flockana.theorems")  # flockana.theorems itself is a function
-
-
-@pytest.fixture
-def call(capsys, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-
-    def run(*arguments):
-        with pytest.raises(SystemExit) as end:
-            main([str(a) for a in arguments])
-        out = capsys.readouterr()
-        return end.value.code, out.out, out.err
-
-    return run
-
-
-@pytest.fixture
-def measured(call):
-    def run(*arguments):
-        code, out, err = call("lattice", *arguments, "--json")
-        assert (code, err) == (0, "")
-        return json.loads(out)
-
-    return run
 
 
 @pytest.fixture
@@ -51,68 +32,66 @@ def saved(tmp_path):
     Trajectory(np.array([0.0, 1.0, 2.0]), q, 0.0 * q, 0.0 * q, law).save(tmp_path / "run.nc")
 
 
-def test_a_hexagon_of_19_is_measured_exactly(measured):
-    found = measured("hexagonal-spiral:19")
-    assert (found["n"], found["m"], found["links"], found["harborth"], found["planar bound"]) == (19, 2, 42, 42, 51)
-    assert (found["kind"], found["edge-length error"], found["deviation energy"]) == ("α-lattice", 0.0, 0.0)
-    assert (found["shortest link"], found["longest link"], found["d"]) == (7.0, 7.0, 7.0)
-    assert found["r"] == pytest.approx(8.4)
-    assert found["coordination"] == {"3": 6, "4": 6, "6": 7}
-    assert found["defects"] == {"interior": 7, "interior coordination": {"6": 7}, "charge": 0}
-    rigid = found["rigidity"]  # 2n − 3 = 35 independent links of 42
+def test_a_hexagon_of_19_is_measured_exactly(found):
+    one = found("hexagonal-spiral:19")
+    assert (one["n"], one["m"], one["links"], one["harborth"], one["planar bound"]) == (19, 2, 42, 42, 51)
+    assert (one["kind"], one["edge-length error"], one["deviation energy"]) == ("α-lattice", 0.0, 0.0)
+    assert (one["shortest link"], one["longest link"], one["d"]) == (7.0, 7.0, 7.0)
+    assert one["r"] == pytest.approx(8.4)
+    assert one["coordination"] == {"3": 6, "4": 6, "6": 7}
+    assert one["defects"] == {"interior": 7, "interior coordination": {"6": 7}, "charge": 0}
+    rigid = one["rigidity"]  # 2n − 3 = 35 independent links of 42
     assert (rigid["rank"], rigid["flexes"], rigid["self_stresses"]) == (35, 0, 7)
-    assert (found["crossings"], found["planar graph"], found["kuratowski"]) == (0, True, None)
-    assert (found["complete"], found["components"], found["verdict"]["status"]) == (False, 1, "verified")
+    assert (one["crossings"], one["planar graph"], one["kuratowski"]) == (0, True, None)
+    assert (one["complete"], one["components"], one["verdict"]["status"]) == (False, 1, "verified")
 
 
-def test_a_block_of_fcc_has_no_crossing_but_no_planar_graph(measured):
-    found = measured("fcc:2x2x2")
-    assert (found["n"], found["m"], found["crossings"], found["planar graph"]) == (32, 3, 0, False)
-    assert found["kuratowski"]["kind"] in ("K5", "K3,3")
-    assert found["kuratowski"]["links"] >= 9
-    assert (found["harborth"], found["defects"]) == (None, None)
-    assert found["verdict"]["status"] == "refuted"
+def test_a_block_of_fcc_has_no_crossing_but_no_planar_graph(found):
+    one = found("fcc:2x2x2")
+    assert (one["n"], one["m"], one["crossings"], one["planar graph"]) == (32, 3, 0, False)
+    assert one["kuratowski"]["kind"] in ("K5", "K3,3")
+    assert one["kuratowski"]["links"] >= 9
+    assert (one["harborth"], one["defects"]) == (None, None)
+    assert one["verdict"]["status"] == "refuted"
 
 
-def test_a_square_bends_and_its_diagonals_cross_once_they_are_links(call, measured):
-    sides = measured("square:2x2")
+def test_a_square_bends_and_its_diagonals_cross_once_they_are_links(call, found):
+    sides = found("square:2x2")
     assert (sides["links"], sides["rigidity"]["flexes"], sides["crossings"]) == (4, 1, 0)
-    all_six = measured("square:2x2", "--r", 10)
+    all_six = found("square:2x2", "--r", 10)
     assert (all_six["links"], all_six["crossings"], all_six["complete"], all_six["kind"]) == (6, 1, True, "neither")
     assert all_six["edge-length error"] == pytest.approx(7.0 * (np.sqrt(2.0) - 1.0))
-    out = " ".join(call("lattice", "square:2x2")[1].split())
+    out = " ".join(call("square:2x2")[1].split())
     assert "1 flex; rank 4, 0 self-stresses" in out
     assert "up to κ = 1.4142" in out
     assert "none; each decided exactly" in out
-    assert "0 of 7 interior agents without six neighbours, charge 0" in " ".join(
-        call("lattice", "hexagonal-spiral:19")[1].split()
-    )
+    assert "0 of 7 interior agents without six neighbours, charge 0" in " ".join(call("hexagonal-spiral:19")[1].split())
 
 
 def test_a_seven_fold_defect_is_counted(call, tmp_path):
     angle = np.arange(7) * 2.0 * np.pi / 7.0
     ring = np.column_stack([np.cos(angle), np.sin(angle)]) * 7.5
     np.savetxt(tmp_path / "seven.csv", np.vstack([[0.0, 0.0], ring]), delimiter=",", header="x,y")
-    code, out, _ = call("lattice", "seven.csv")
+    code, out, _ = call("seven.csv")
     assert code == 0
     assert "1 of 1 interior agents without six neighbours, charge -1" in " ".join(out.split())
     assert "3: 7, 7: 1" in out
 
 
-def test_a_run_gives_scale_range_and_the_sample_asked_for(measured, saved):
-    last = measured("run.nc")
+def test_a_run_gives_scale_range_and_the_sample_asked_for(found, saved):
+    last = found("run.nc")
     assert (last["d"], last["r"], last["time"], last["links"], last["least distance"]) == (5.0, 7.0, 2.0, 0, 8.0)
     assert (last["kind"], last["edge-length error"], last["components"]) == ("neither", None, 2)
-    middle = measured("run.nc", "--time", 0.9)
+    middle = found("run.nc", "--time", 0.9)
     assert (middle["time"], middle["edge-length error"]) == (1.0, 1.0)
-    assert measured("run.nc", "--d", 10)["r"] == 14.0  # the law's ratio is kept
-    assert measured("run.nc", "--r", 9)["links"] == 1
+    assert found("run.nc", "--d", 10)["r"] == 14.0  # the law's ratio is kept
+    assert found("run.nc", "--r", 9)["links"] == 1
 
 
 @pytest.mark.parametrize("text", ["x,y\n0,0\n7,0\n", "0,0\n\n7,0\n", "\ufeff0, 0\n7, 0\n", "# x,y\n0,0\n7,0"])
-def test_a_csv_is_read_with_and_without_a_header(measured, tmp_path, text):
+def test_a_csv_is_read_with_and_without_a_header(found, tmp_path, text):
     (tmp_path / "two.csv").write_text(text, encoding="utf-8")
-    assert (measured("two.csv")["n"], measured("two.csv")["longest link"]) == (2, 7.0)
+    assert (found("two.csv")["n"], found("two.csv")["longest link"]) == (2, 7.0)
 
 
 def test_every_builder_is_an_alpha_lattice_at_its_largest_ratio_and_the_scale_is_heeded():
@@ -124,14 +103,14 @@ def test_every_builder_is_an_alpha_lattice_at_its_largest_ratio_and_the_scale_is
         assert given.r == pytest.approx(3.6)
 
 
-def test_one_agent_and_no_links_are_no_error(measured):
-    one = measured("line:1", "-o", "one.png")
+def test_one_agent_and_no_links_are_no_error(found):
+    one = found("line:1", "-o", "one.png")
     assert (one["links"], one["least distance"], one["kind"], one["components"]) == (0, None, "neither", 1)
 
 
 @pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
 def test_a_picture_is_written_where_it_is_asked_for(call, tmp_path, suffix):
-    code, out, err = call("lattice", "bcc:1x1x1" if suffix == "png" else "line:4", "-o", f"new/it.{suffix}")
+    code, out, err = call("bcc:1x1x1" if suffix == "png" else "line:4", "-o", f"new/it.{suffix}")
     path = tmp_path / "new" / f"it.{suffix}"
     assert (code, err) == (0, "")
     assert f"picture: new/it.{suffix}" in out
@@ -169,7 +148,7 @@ def test_a_picture_is_written_where_it_is_asked_for(call, tmp_path, suffix):
         ([], "SOURCE"),
     ],
 )
-def test_bad_input_is_2_and_one_line(call, saved, tmp_path, arguments, message):
+def test_bad_input_is_2_and_one_line(refused, saved, tmp_path, arguments, message):
     texts = {
         "ragged": "x,y\n0,0\n1\n",
         "nan": "0,0\n1,nan\n",
@@ -180,16 +159,12 @@ def test_bad_input_is_2_and_one_line(call, saved, tmp_path, arguments, message):
     for name, text in texts.items():
         (tmp_path / f"{name}.csv").write_text(text)
     (tmp_path / "bytes.csv").write_bytes(bytes(range(128, 256)))
-    code, out, err = call("lattice", *arguments)
-    assert (code, out) == (2, "")
-    assert err.startswith("flockana: ")
-    assert err.count("\n") == 1
-    assert message in err
+    refused(message, *arguments)
 
 
 def test_an_unwritable_picture_is_refused_before_anything_is_measured(call, monkeypatch, tmp_path):
     monkeypatch.setattr(THEOREMS, "verify", lambda *a, **k: pytest.fail("it measured"))
-    assert call("lattice", "line:3", "-o", "it.txt")[0] == 2
+    assert call("line:3", "-o", "it.txt")[0] == 2
 
 
 @pytest.mark.parametrize("error", [KeyboardInterrupt(), out_of_a_kernel()])
@@ -198,26 +173,30 @@ def test_ctrl_c_is_130(error, call, monkeypatch):
         raise error
 
     monkeypatch.setattr(THEOREMS, "verify", interrupted)
-    assert call("lattice", "line:3") == (130, "", "flockana: interrupted\n")
+    assert call("line:3") == (130, "", "flockana: interrupted\n")
+
+
+def test_an_equilibrium_of_contacts_is_measured_by_them(found, tmp_path):
+    write_equilibrium(find_equilibrium(DeadZoneFlocking(), hexagonal_patch(1, 3.5)), tmp_path / "contacts.json")
+    one = found("contacts.json")
+    assert (one["d"], one["r"], one["kind"]) == (3.5, pytest.approx(4.2), "quasi-α-lattice")
 
 
 def test_what_cannot_be_decided_is_said(call, monkeypatch):
-    from flockana.base.errors import SolverError
-
     def undecided(*arguments):
         raise SolverError("a zero pivot")
 
     monkeypatch.setattr("flockana.lattice.rigidity", undecided)
-    code, out, _ = call("lattice", "line:3")
+    code, out, _ = call("line:3")
     assert (code, "undecided: a zero pivot" in out) == (0, True)
 
 
 def test_the_table_fits_in_80_columns_and_help_lists_the_builders(call):
-    code, out, _ = call("lattice", "fcc:2x2x2")
+    code, out, _ = call("fcc:2x2x2")
     assert code == 0
     assert max(map(len, out.splitlines())) <= 80
     assert "\x1b" not in out
-    shown = call("lattice", "--help")[1]
+    shown = call("--help")[1]
     assert all(form.split(":")[0] + ":" in shown for form in builders())
 
 

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import importlib
 import json
 import os
 import subprocess
@@ -13,12 +12,15 @@ from textwrap import indent
 
 import numpy as np
 import pytest
+from PIL import Image
 
-from flockana.base.errors import SolverError
-from flockana.cli.main import main
+from flockana.base.errors import FlockanaError, SolverError
 from flockana.dynamics.trajectory import Trajectory
+from flockana.ensemble import executors
 from flockana.laws.olfati_saber import Algorithm1
-from flockana.report.work import plan
+from flockana.report import work
+from flockana.report.statistics import Survey
+from flockana.report.work import Task, check_all, plan
 from flockana.scenarios import Report, Scenario
 from flockana.theorems import Claim
 from tests.programs import ANSWERS_CTRL_C, CLI, IGNORES_CTRL_C, group, interrupt, out_of_a_kernel, posix, program, until
@@ -39,23 +41,9 @@ def verdicts(folder):
 
 
 @pytest.fixture
-def catalogue(monkeypatch):
+def catalogue(offer):
     """A catalogue of two small scenarios: one meets its expectation, the other does not."""
-    found = {"right": tiny("right", "verified"), "wrong": tiny("wrong", "refuted")}
-    monkeypatch.setattr(importlib.import_module("flockana.scenarios.scenario"), "_catalogue", lambda: found)
-
-
-@pytest.fixture
-def call(capsys, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-
-    def run(*arguments):
-        with pytest.raises(SystemExit) as end:
-            main([str(a) for a in arguments])
-        out = capsys.readouterr()
-        return end.value.code, out.out, out.err
-
-    return run
+    offer(right=tiny("right", "verified"), wrong=tiny("wrong", "refuted"))
 
 
 def test_as_expected_is_0_and_a_surprise_is_3(call, catalogue):
@@ -100,12 +88,10 @@ def test_shares_over_seeds_are_told_when_asked_for(call):
     assert (code, verdicts("report")["statistics"]) == (0, None)
 
 
-def test_the_whole_catalogue_tells_shares_of_who_asks_for_them(call, catalogue, monkeypatch):
-    scenarios = importlib.import_module("flockana.scenarios.scenario")
+def test_the_whole_catalogue_tells_shares_of_who_asks_for_them(call, offer, monkeypatch):
     claim = Claim("apart", "verified")
     one = replace(tiny("right", "verified")(), reports=(Report("apart", "all apart", lambda *given: claim),), seeds=26)
-    found = {"right": lambda seed=0: replace(one, seed=seed), "wrong": tiny("wrong", "verified")}
-    monkeypatch.setattr(scenarios, "_catalogue", lambda: found)
+    offer(right=lambda seed=0: replace(one, seed=seed), wrong=tiny("wrong", "verified"))
     monkeypatch.setattr("flockana.report.work.theorems", lambda: ("energy",))
     code, out, _ = call("verify", "--jobs", 1)
     (told,) = verdicts("report")["statistics"]["scenarios"]
@@ -157,12 +143,8 @@ def test_everything_is_every_scenario_with_all_its_verdicts(catalogue):
         (["verify", "--colour"], "--colour"),
     ],
 )
-def test_bad_input_is_2_and_one_line(call, arguments, message):
-    code, out, err = call(*arguments)
-    assert (code, out) == (2, "")
-    assert err.startswith("flockana: ")
-    assert err.count("\n") == 1
-    assert message in err
+def test_bad_input_is_2_and_one_line(refused, arguments, message):
+    refused(message, *arguments)
 
 
 def test_an_unwritable_report_is_refused_before_anything_runs(call, monkeypatch, tmp_path):
@@ -191,10 +173,6 @@ def test_an_unwritable_film_is_refused_before_the_run(call, monkeypatch, tmp_pat
 
 
 def test_animate_writes_a_film(call, catalogue, monkeypatch, tmp_path):
-    from dataclasses import replace
-
-    from PIL import Image
-
     film = ("animate", "right", "-o", "new/film.gif", "--seconds", 0.3, "--fps", 10)
     code, out, err = call(*film)
     assert (code, err) == (0, "")
@@ -223,9 +201,7 @@ def test_run_saves_and_verify_reads_it_back(call, catalogue, tmp_path):
 def test_a_run_of_another_scenario_is_refused(call, catalogue, tmp_path):
     call("run", "right", "-o", "run.nc")
     run = Trajectory.load(tmp_path / "run.nc")
-    np.testing.assert_equal(run.n, 2)
-    from dataclasses import replace
-
+    assert run.n == 2
     replace(run, q=run.q[:, :1], p=run.p[:, :1], u=run.u[:, :1], extra={}).save(tmp_path / "one.nc")
     code, _, err = call("verify", "right", "--on", "one.nc")
     assert code == 2
@@ -234,7 +210,6 @@ def test_a_run_of_another_scenario_is_refused(call, catalogue, tmp_path):
 
 @pytest.mark.parametrize("error", [KeyboardInterrupt(), out_of_a_kernel()])
 def test_what_was_done_before_an_interrupt_is_reported(error, call, catalogue, monkeypatch):
-    work = importlib.import_module("flockana.report.work")
     verify = work.verify
 
     def interrupted(theorem, run, **options):
@@ -252,7 +227,6 @@ def test_what_was_done_before_an_interrupt_is_reported(error, call, catalogue, m
 
 
 def test_what_was_done_before_an_error_is_reported(call, catalogue, monkeypatch):
-    work = importlib.import_module("flockana.report.work")
     verify = work.verify
 
     def failing(theorem, run, **options):
@@ -267,8 +241,6 @@ def test_what_was_done_before_an_error_is_reported(call, catalogue, monkeypatch)
 
 
 def test_an_interrupted_run_is_saved(call, catalogue, monkeypatch, tmp_path):
-    from dataclasses import replace
-
     whole = Scenario.run
     monkeypatch.setattr(Scenario, "run", lambda self, **k: replace(whole(self), status="interrupted"))
     code, _, _ = call("run", "right", "-o", "run.nc")
@@ -298,16 +270,11 @@ def test_processes_work_in_parallel_and_a_pipe_gets_no_colour(tmp_path):
     command = [sys.executable, "-c", CLI, "verify", "alpha-flocking", "--on", "x"]
     done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
     assert done.returncode == 2
-    from flockana.report.work import Task, check_all
-
     tasks = [Task("E8", fixed=True), Task("E10", fixed=True)]
     assert sorted(page.name for page in check_all(tasks, jobs=2)) == ["E10", "E8"]
 
 
 def test_an_error_in_a_worker_arrives_with_the_name_of_its_task():
-    from flockana.base.errors import FlockanaError
-    from flockana.report.work import Task, check_all
-
     with pytest.raises(FlockanaError, match="nothing: unknown theorem 'nothing'"):
         list(check_all([Task("nothing", fixed=True), Task("E8", fixed=True)], jobs=2))
 
@@ -339,9 +306,6 @@ class Broken(ThreadPoolExecutor):
 
 
 def test_a_worker_that_dies_while_tasks_are_sent_loses_no_task(monkeypatch):
-    from flockana.ensemble import executors
-    from flockana.report.work import Task, check_all
-
     pools = iter([Broken(2), ThreadPoolExecutor(2)])
     monkeypatch.setattr(executors, "ProcessPool", lambda jobs: next(pools))
     tasks = [Task("E8", fixed=True), Task("E10", fixed=True)]
@@ -349,9 +313,6 @@ def test_a_worker_that_dies_while_tasks_are_sent_loses_no_task(monkeypatch):
 
 
 def test_a_task_that_ends_its_process_is_named_when_all_others_are_done():
-    from flockana.report.statistics import Survey
-    from flockana.report.work import Task, check_all
-
     tasks = [Survey("os:_exit", (0, 1)), Task("E8", fixed=True), Task("E10", fixed=True)]
     results = check_all(tasks, jobs=2)
     assert sorted(next(results).name for _ in range(2)) == ["E10", "E8"]
@@ -362,8 +323,6 @@ def test_a_task_that_ends_its_process_is_named_when_all_others_are_done():
 
 
 def test_in_one_process_a_result_is_given_before_the_next_task_begins():
-    from flockana.report.work import Task, check_all
-
     begun = []
     results = check_all([Task("E8", fixed=True), Task("E10", fixed=True)], watch=begun.append)
     assert next(results).name == "E8"

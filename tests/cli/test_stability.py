@@ -1,11 +1,9 @@
 from __future__ import annotations
 
-import json
 from math import sqrt
 
 import pytest
 
-from flockana.cli.main import main
 from flockana.environment.targets import StaticTarget
 from flockana.equilibria import find_equilibrium
 from flockana.lattice import hexagonal_patch
@@ -13,28 +11,7 @@ from flockana.laws.olfati_saber import Algorithm2
 from flockana.stability import linearise
 from flockana.stability.delay import scalar_margin
 
-
-@pytest.fixture
-def call(capsys, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-
-    def run(*arguments):
-        with pytest.raises(SystemExit) as end:
-            main(["stability", *(str(a) for a in arguments)])
-        out = capsys.readouterr()
-        return end.value.code, out.out, out.err
-
-    return run
-
-
-@pytest.fixture
-def found(call):
-    def run(*arguments):
-        code, out, err = call(*arguments, "--json")
-        assert (code, err) == (0, "")
-        return json.loads(out)
-
-    return run
+COMMAND = ("stability",)
 
 
 def test_seven_agents_of_algorithm_1(found):
@@ -132,12 +109,8 @@ def test_a_state_as_given(call, found, tmp_path):
         (("line:3", "--delay", "--modes", 0), "--modes"),
     ],
 )
-def test_bad_input_is_one_line(call, arguments, said):
-    code, out, err = call(*arguments)
-    assert (code, out) == (2, "")
-    assert err.startswith("flockana: ")
-    assert err.count("\n") == 1
-    assert said in err
+def test_bad_input_is_one_line(refused, arguments, said):
+    refused(said, *arguments)
 
 
 def test_a_law_without_a_potential_is_linearised_about_a_state_of_rest(found, call):
