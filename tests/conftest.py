@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import secrets
 import signal
+from functools import cache
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -49,6 +50,14 @@ def pytest_report_header(config):
 def pytest_collection_modifyitems(config, items):
     if not config.getoption("attack"):
         items[:] = [item for item in items if item.get_closest_marker("attack") is None]
+
+
+@pytest.fixture(scope="session")
+def verdict_of():
+    """The verdict of a theorem that needs no run, by its id: computed once, however many tests ask for it."""
+    from flockana.theorems import verify
+
+    return cache(verify)
 
 
 @pytest.fixture

@@ -38,7 +38,7 @@ class Step:
 
 
 def latex_steps(title: str, steps: tuple[Step, ...]) -> str:
-    """Return a titled sequence of steps as one ``aligned`` environment.
+    r"""Return a titled sequence of steps as one ``aligned`` environment.
 
     Examples
     --------

@@ -22,7 +22,7 @@ TRUE_CLAIMS = [  # theorem, claim, scenario: proved, so that no search, however 
     ("energy", "rate", "three-agents-1d"),
     ("energy", "balance", "five-agents"),
 ]
-SAMPLED = 4
+SAMPLED = 2
 BUDGET = 20
 regions = st.sampled_from((None, 3.0, 30.0, 300.0, 3000.0))
 speeds = st.sampled_from((None, 1.0, 50.0, 500.0))

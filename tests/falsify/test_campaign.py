@@ -6,6 +6,7 @@ import json
 import pickle
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -103,12 +104,11 @@ class TestFindsWhatIsFalse:
 
 
 class TestDoesNotBreakWhatIsTrue:
-    """The budgets are those within which the false claims break, or more."""
+    """Nor do the searches of tests/adversarial/test_falsified.py, from wider regions."""
 
     @pytest.mark.parametrize(
         ("name", "case", "claim", "options"),
         [
-            ("collision-energy", HEAD_ON, "below", {}),
             ("os-1", replace(scenario("hexagon"), t_span=(0.0, 2.0)), "iii", {"region": 0.5, "speed": 1.0}),
             ("os-3", THREE_AT_REST, "i", {"speed": 2500.0}),
             ("E13", THREE_AT_REST, "corrected", {"speed": 2500.0}),
@@ -118,10 +118,10 @@ class TestDoesNotBreakWhatIsTrue:
             ("dead-zone-1-corrected", replace(scenario("dead-zone-flow", n=4, box=8.0), t_span=(0.0, 3.0)), None, {}),
         ],
     )
-    def test_within_the_same_budget(self, name, case, claim, options):
-        found = falsify(name, case, claim=claim, budget=40, **options)
+    def test_in_a_few_generations(self, name, case, claim, options):
+        found = falsify(name, case, claim=claim, budget=20, **options)
         assert claim not in found.broken if claim else not found.broken
-        assert (found.evaluations, found.ended, found.failures) == (40, "budget", 0)
+        assert (found.evaluations, found.ended, found.failures) == (20, "budget", 0)
         judged = [status for status in found.statuses[found.claim] if status != "vacuous"]
         assert len(judged) > 5  # it was tested, not only vacuous
 
@@ -179,10 +179,9 @@ class TestGrades:
         runs = {"os-3": "three-agents-1d", "E13": "three-agents-1d"}
         led = [(name, claim, lead) for name in theorems() for claim, lead in theorem(name).leads.items()]
         assert len(led) == 8
+        ran = cache(lambda entry: scenario(entry).run())
         for name, claim, lead in led:
-            run = scenario(runs.get(name, "head-on-collision")).run()
-            if name.startswith("alpha"):
-                run = scenario("five-agents").run()
+            run = ran("five-agents" if name.startswith("alpha") else runs.get(name, "head-on-collision"))
             one = verify(name, run).claim(claim)
             assert 0.0 <= lead(run, one) <= 1.0
 
@@ -329,10 +328,10 @@ class TestTheOutcome:
         assert one.grade == Problem(space, "collision-energy", Tolerances(), "twice")(space.start).grade
 
     def test_the_budget_may_be_used_up_for_a_worse_one(self):
-        found = falsify(OWN, HEAD_ON, budget=60, deepen=True, vary="p", speed=40.0)
-        shallow = falsify(OWN, HEAD_ON, budget=60, vary="p", speed=40.0)
-        assert (found.evaluations, found.ended) == (60, "budget")
-        assert shallow.evaluations < 60
+        found = falsify(OWN, HEAD_ON, budget=30, deepen=True, vary="p", speed=40.0)
+        shallow = falsify(OWN, HEAD_ON, budget=30, vary="p", speed=40.0)
+        assert (found.evaluations, found.ended) == (30, "budget")
+        assert shallow.evaluations < 30
         assert found.margin < shallow.margin < 0.0
 
     def test_parameters_are_searched_and_reported(self):

@@ -1,4 +1,4 @@
-"""The dead-zone scenarios: what is expected of them is what they show, at another seed too."""
+"""The dead-zone scenarios: as specified, and what they show at other seeds and in other boxes."""
 
 from __future__ import annotations
 
@@ -8,15 +8,6 @@ from scipy.spatial import KDTree
 
 from flockana.base.errors import ArgumentError
 from flockana.scenarios import scenario
-
-NAMES = ("dead-zone", "dead-zone-wide-lattice", "dead-zone-wide-start", "dead-zone-hard", "dead-zone-flow")
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_every_status_is_the_expected_one(name):
-    item = scenario(name)
-    for verdict in item.verify(item.run()):
-        assert item.surprises(verdict) == ()
 
 
 def test_the_default_is_the_specified_one():
