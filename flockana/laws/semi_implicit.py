@@ -79,8 +79,8 @@ class SemiImplicitEuler(DiscreteLaw):
             return (*self.law.semi_implicit(q, p, self.dt, steps), {})
         return super().iterate(t, q, p, memory, steps)
 
-    def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:
-        """The energy of the law that is stepped; the scheme does not keep its balance."""
+    def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:  # noqa: D102
+        # the energy of the law that is stepped; the scheme does not keep its balance
         return self.law.hamiltonian(t, q, p)
 
 
