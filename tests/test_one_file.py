@@ -12,7 +12,7 @@ import pytest
 import flockana as fl
 
 TOYS = Path(__file__).parent / "toys"
-ROOMS = ("interactions", "laws", "environment", "theorems", "scenarios", "report")
+ROOMS = ("interactions", "laws", "environment", "measures", "theorems", "scenarios", "plots", "report")
 
 
 @pytest.fixture(scope="module")
@@ -24,6 +24,7 @@ def toys():
         importlib.import_module("flockana.scenarios.scenario").catalogue,
         importlib.import_module("flockana.report.figures")._own,
         importlib.import_module("flockana.base.serialize").parameter_classes,
+        importlib.import_module("flockana.measures.measure").measures,
     )
     before = set(sys.modules)
     for room, package in packages.items():
@@ -59,6 +60,21 @@ def test_a_run_with_its_energy_and_metrics(run, toys):
     assert float(found["toy_speed"][-1]) < 1e-4
     assert float(found["connectivity"][-1]) == 1.0
     assert float(found["deviation_energy"][-1]) < 1e-3
+
+
+def test_a_measure(run, toys):
+    reach = run.metric("toy_reach")
+    np.testing.assert_array_equal(reach, np.linalg.norm(run.q, axis=2).max(axis=1))
+    assert run.metrics()["toy_reach"].attrs == {"long_name": "farthest from the origin", "units": "length"}
+    assert fl.plots.measure(run, "toy_reach").get_ylabel() == "farthest from the origin (length)"
+    many = fl.ensemble("toy-swarm", [0], theorems=["toy-rest"], metrics=["toy_reach"])
+    assert float(many["toy_reach"][0]) == pytest.approx(reach[-1], rel=1e-12)
+
+
+def test_a_plot(run, toys):
+    toy_hodograph = importlib.import_module("flockana.plots.toy_hodograph").toy_hodograph
+    (line, *_) = toy_hodograph(run).get_lines()
+    np.testing.assert_array_equal(line.get_xydata(), run.p[:, 0])
 
 
 def test_saved_and_loaded(run, toys, tmp_path):

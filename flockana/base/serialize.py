@@ -7,16 +7,17 @@ is read.
 
 from __future__ import annotations
 
-import importlib
-import pkgutil
 import sys
+from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from functools import cache
+from itertools import chain
 from typing import Any
 
 import numpy as np
 
 from flockana.base.errors import ArgumentError, FileError
+from flockana.base.modules import modules
 
 _ROOMS = ("flockana.interactions", "flockana.environment", "flockana.laws")  # whose objects files may hold
 
@@ -30,12 +31,11 @@ def parameter_classes() -> dict[str, type]:
     >>> parameter_classes()["Algorithm1"].__module__
     'flockana.laws.olfati_saber'
     """
-    found: dict[str, type] = {}
-    for room in map(importlib.import_module, _ROOMS):
-        for info in pkgutil.walk_packages(room.__path__, f"{room.__name__}."):
-            classes = (x for x in vars(importlib.import_module(info.name)).values() if isinstance(x, type))
-            found |= {x.__name__: x for x in classes if is_dataclass(x) and x.__module__ == info.name}
-    return found
+    classes_by_name: dict[str, type] = {}
+    for module in chain.from_iterable(map(modules, _ROOMS)):
+        classes = (x for x in vars(module).values() if isinstance(x, type))
+        classes_by_name |= {x.__name__: x for x in classes if is_dataclass(x) and x.__module__ == module.__name__}
+    return classes_by_name
 
 
 def to_data(value: Any) -> Any:
@@ -95,7 +95,19 @@ def from_data(data: Any) -> Any:
 
 def _own_class(module: str, qualname: str) -> Any:
     """A user's class, of a module that is imported already."""
-    found: Any = sys.modules[module]
+    item: Any = sys.modules[module]
     for part in qualname.split("."):
-        found = getattr(found, part)
-    return found
+        item = getattr(item, part)
+    return item
+
+
+def to_data_mapping(stats: Mapping[str, Any]) -> dict[str, Any]:
+    """Plain data of a mapping with text keys.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> to_data_mapping({"steps": np.int64(3)})
+    {'steps': 3}
+    """
+    return {key: to_data(value) for key, value in stats.items()}

@@ -62,15 +62,15 @@ def _rescaled(item: Any, length: float, time: float) -> Any:
 def scaled_fields(item: Any, length: float, time: float) -> dict[str, Any]:
     """The arguments that make a parameter object again, in other units."""
     powers: Mapping[str, Powers] = getattr(item, "units", {})
-    found = {}
+    fields_scaled = {}
     for field in (each for each in fields(item) if each.init):
         value = getattr(item, field.name)
         if field.name in powers:
             by_length, by_time = powers[field.name]
-            found[field.name] = times(value, length**by_length * time**by_time)
+            fields_scaled[field.name] = times(value, length**by_length * time**by_time)
         else:
-            found[field.name] = _rescaled(value, length, time)
-    return found
+            fields_scaled[field.name] = _rescaled(value, length, time)
+    return fields_scaled
 
 
 def times(value: Any, factor: float) -> Any:

@@ -8,37 +8,32 @@ from typing import Annotated
 
 import typer
 
-from flockana.cli.options import INTERRUPTED, OK, UNEXPECTED, Seed
+from flockana.base.progress import progress_bar
+from flockana.cli.options import ScenarioName, Seed, output
+from flockana.cli.show import show_files
+from flockana.cli.status import INTERRUPTED, OK, UNEXPECTED
 
 
-def register(app: typer.Typer) -> None:
-    """Add the command to the command line."""
-    app.command("animate")(_animate)
-
-
-def _animate(
-    name: Annotated[str, typer.Argument(metavar="SCENARIO", help="Its name in the catalogue.")],
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="GIF or MP4 file to write.")],
+def animate_command(
+    name: ScenarioName,
+    film: Annotated[Path, output("GIF or MP4 file to write.")],
     seed: Seed = 0,
     fps: Annotated[float, typer.Option(help="Frames per second.")] = 15.0,
     seconds: Annotated[float, typer.Option(help="Length of the film.")] = 10.0,
 ) -> int:
     """Simulate a scenario and write a film of it: GIF, or MP4 where ffmpeg is installed."""
-    from rich.console import Console
-
     from flockana.plots.animation import animate, ensure_film, frame_count
     from flockana.report.build import ensure_directory
-    from flockana.report.console import progress_bar
     from flockana.scenarios import scenario
 
     item = scenario(name, seed)
-    ensure_directory(output.parent)
-    ensure_film(output, seconds=seconds, fps=fps)
+    ensure_directory(film.parent)
+    ensure_film(film, seconds=seconds, fps=fps)
     run = item.run(progress=sys.stdout.isatty())
     if run.status == "interrupted":
         return INTERRUPTED
-    with progress_bar(Console(stderr=True), frame_count(seconds, fps), enabled=True) as advance:
-        animate(run, output, seconds=seconds, fps=fps, progress=lambda done, total: advance(done, ("drawing",)))
+    with progress_bar(frame_count(seconds, fps)) as advance:
+        animate(run, film, seconds=seconds, fps=fps, progress=lambda done, total: advance(done, "drawing"))
     typer.echo(f"{item.name}, {run.status}: {run.message}")
-    typer.echo(f"written: {output}")
+    show_files(written=film)
     return OK if run.status == "complete" else UNEXPECTED

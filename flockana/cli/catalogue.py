@@ -1,17 +1,9 @@
-"""`flockana scenarios` and `flockana theorems`: what there is."""
+"""`flockana scenarios` and `flockana theorems`: the catalogues."""
 
 from __future__ import annotations
 
-import typer
 
-
-def register(app: typer.Typer) -> None:
-    """Add the commands to the command line."""
-    app.command("scenarios")(_scenarios)
-    app.command("theorems")(_theorems)
-
-
-def _scenarios() -> None:
+def scenarios_command() -> None:
     """List the catalogue of published simulations."""
     from rich.console import Console
 
@@ -20,7 +12,7 @@ def _scenarios() -> None:
     Console(highlight=False).print(scenario_table())
 
 
-def _theorems() -> None:
+def theorems_command() -> None:
     """List the theorems and errata that can be checked."""
     from rich.console import Console
 

@@ -7,29 +7,21 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from flockana.base.files import replacing
+from flockana.cli.options import Drawing, Jobs, ScenarioName, output
+from flockana.cli.show import show, show_files
+from flockana.cli.status import OK, UNEXPECTED
+
 if TYPE_CHECKING:
     import xarray
     from rich.table import Table
 
-_HELP = """Run and verify a scenario for many seeds, and print in which share of the runs each claim holds.
-
-With --store, runs are kept as they are done: after Ctrl-C, or anything worse, the same command goes on from there.
---plot draws the shares; over one --set option with several values, against it; over two, the phase diagram.
-
-Exit status: 0 done, 2 bad input, 3 some run did not complete, 130 interrupted.
-"""
-_INCOMPLETE = 3
-_TOLD = 3  # errors that are printed
+_MESSAGES = 3  # kinds of errors that are printed
 _MOST = 7  # curves in one picture
 
 
-def register(app: typer.Typer) -> None:
-    """Add the command to the command line."""
-    app.command("ensemble", help=_HELP)(_ensemble)
-
-
-def _ensemble(
-    scenario: Annotated[str, typer.Argument(metavar="SCENARIO", help="Its name in the catalogue.")],
+def ensemble_command(
+    scenario: ScenarioName,
     seeds: Annotated[int, typer.Option(min=1, help="How many seeds.")] = 100,
     first: Annotated[int, typer.Option("--first-seed", min=0, help="The first of them.")] = 0,
     theorem: Annotated[
@@ -44,13 +36,18 @@ def _ensemble(
     cluster: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="A Dask scheduler's address, or 'local' to start one.")
     ] = None,
-    jobs: Annotated[
-        int | None, typer.Option(min=1, help="Processes; by default the number of cores.", show_default=False)
-    ] = None,
+    jobs: Jobs = None,
     level: Annotated[float, typer.Option(help="Confidence of the intervals.")] = 0.95,
-    output: Annotated[Path | None, typer.Option("--output", "-o", metavar="FILE", help="netCDF file to write.")] = None,
-    plot: Annotated[Path | None, typer.Option(metavar="PICTURE", help="PNG, SVG or PDF to draw to.")] = None,
+    save_to: Annotated[Path | None, output("netCDF file to write.")] = None,
+    plot: Drawing = None,
 ) -> int:
+    """Run and verify a scenario for many seeds, and print in which share of the runs each claim holds.
+
+    With --store, runs are kept as they are done: after Ctrl-C, or anything worse, the same command goes on from there.
+    --plot draws the shares; over one --set option with several values, against it; over two, the phase diagram.
+
+    Exit status: 0 done, 2 bad input, 3 some run did not complete, 130 interrupted.
+    """
     from flockana.base.binomial import ensure_level
     from flockana.cli.picture import KINDS, ensure_file, write_picture
     from flockana.ensemble import ensemble, shares
@@ -58,12 +55,11 @@ def _ensemble(
     parameters = read_options(options or [])
     axes = [name for name, values in parameters.items() if isinstance(values, list)]
     ensure_level(level)
-    for path, kinds in ((output, (".nc",)), (plot, KINDS)):
-        if path is not None:
-            ensure_file(path, kinds)
+    ensure_file(save_to, (".nc",))
+    ensure_file(plot, KINDS)
     if plot is not None:
         _ensure_drawable(axes)
-    found = ensemble(
+    runs = ensemble(
         scenario,
         range(first, first + seeds),
         theorems=theorem or None,
@@ -74,16 +70,15 @@ def _ensemble(
         retry=retry,
         progress=True,
     )
-    table = shares(found, level=level)
-    if output is not None:
-        _write(found, output)
-    _print(found, table, axes)
+    table = shares(runs, level=level)
+    if save_to is not None:
+        with replacing(save_to) as partial:
+            runs.to_netcdf(partial, engine="h5netcdf")
+    _show(runs, table, axes)
     if plot is not None:
-        write_picture(lambda ax: _draw(ax, found, table, axes), plot, m=2)
-    for label, file in (("store", store), ("saved", output), ("picture", plot)):
-        if file is not None:
-            typer.echo(f"{label}: {file}")
-    return _INCOMPLETE if (found.run != 0).any() else 0
+        write_picture(lambda ax: _draw(ax, runs, table, axes), plot, m=2)
+    show_files(store=store, saved=save_to, picture=plot)
+    return UNEXPECTED if (runs.run != 0).any() else OK
 
 
 def read_options(texts: list[str]) -> dict[str, Any]:
@@ -96,17 +91,17 @@ def read_options(texts: list[str]) -> dict[str, Any]:
     """
     from flockana.base.errors import ArgumentError
 
-    found: dict[str, Any] = {}
+    options: dict[str, Any] = {}
     for text in texts:
         name, _, values = text.partition("=")
         words = [word.strip() for word in values.split(",")]
         if not name or not all(words):
             raise ArgumentError(f"--set {text}: expected OPTION=VALUE or OPTION=VALUE,VALUE,…, such as n=20,40")
-        if name in found:
+        if name in options:
             raise ArgumentError(f"--set {text}: {name} is set already; give all its values at once")
-        given = [_value(word) for word in words]
-        found[name] = given if len(given) > 1 else given[0]
-    return found
+        chosen = [_value(word) for word in words]
+        options[name] = chosen if len(chosen) > 1 else chosen[0]
+    return options
 
 
 def _value(word: str) -> int | float | bool | str:
@@ -127,20 +122,13 @@ def _ensure_drawable(axes: list[str]) -> None:
         raise ArgumentError(f"--plot: {len(axes)} options have several values; expected two at most")
 
 
-def _write(found: xarray.Dataset, path: Path) -> None:
-    from flockana.base.files import replacing
-
-    with replacing(path) as partial:
-        found.to_netcdf(partial, engine="h5netcdf")
-
-
-def _draw(ax: Any, found: xarray.Dataset, table: xarray.Dataset, axes: list[str]) -> None:
+def _draw(ax: Any, runs: xarray.Dataset, table: xarray.Dataset, axes: list[str]) -> None:
     from flockana import plots
     from flockana.ensemble import phases
 
-    title = found.attrs["scenario"]
+    title = runs.attrs["scenario"]
     if len(axes) == 2:
-        plots.phase_diagram(phases(found), axes[0], axes[1], ax=ax, title=title)
+        plots.phase_diagram(phases(runs), axes[0], axes[1], ax=ax, title=title)
     elif axes:
         plots.share_against(table, axes[0], claims=_telling(table), ax=ax, title=title)
     else:
@@ -159,42 +147,38 @@ def _telling(table: xarray.Dataset) -> list[str]:
     return [str(table.claim.values[k]) for k in sorted(most.tolist())]
 
 
-def _print(found: xarray.Dataset, table: xarray.Dataset, axes: list[str]) -> None:
-    from rich.console import Console
-
-    console = Console(highlight=False)
-    bad = found.run.values != 0
-    console.print(f"{found.attrs['scenario']}: {bad.size} runs", style="bold", markup=False)
-    if table.claim.size:
-        console.print(share_table(table, axes))
+def _show(runs: xarray.Dataset, table: xarray.Dataset, axes: list[str]) -> None:
+    bad = runs.run.values != 0
+    tables = [share_table(table, axes)] if table.claim.size else []
+    console = show(f"{runs.attrs['scenario']}: {bad.size} runs", *tables)
+    if tables:
         console.print(
             f"shares of the runs on which a claim was checked, vacuous and inconclusive ones included, with their "
             f"{100 * table.attrs['level']:g} % Clopper-Pearson intervals",
             style="bright_black",
         )
-    seconds = found.seconds.values
+    seconds = runs.seconds.values
     console.print(f"{seconds.sum():.1f} s of computing, {seconds.mean():.3g} s a run", markup=False)
     if bad.any():
-        told = list(dict.fromkeys(found.message.values[bad].tolist()))
+        messages = list(dict.fromkeys(runs.message.values[bad].tolist()))
         console.print(f"{bad.sum()} did not complete:", style="bold red", markup=False)
-        for message in told[:_TOLD]:
+        for message in messages[:_MESSAGES]:
             console.print(f"  {message}", markup=False)
-        if len(told) > _TOLD:
-            console.print(f"  … and {len(told) - _TOLD} more kinds", markup=False)
+        if len(messages) > _MESSAGES:
+            console.print(f"  … and {len(messages) - _MESSAGES} more kinds", markup=False)
 
 
 def share_table(table: xarray.Dataset, axes: list[str]) -> Table:
     """A row per claim, for every combination of the parameters: how often verified, how often refuted."""
     from itertools import product
 
-    from rich import box
-    from rich.table import Table
     from rich.text import Text
 
-    grid = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
-    # on a narrow terminal names give way, findings do not
-    for heading, width in (("claim", None), ("runs", 4), ("verified, %", 19), ("refuted, %", 19), ("vacuous", 7)):
-        grid.add_column(heading, justify="left" if width is None else "right", no_wrap=True, min_width=width)
+    from flockana.report.tables import column, headed_table
+
+    widths = {"runs": 4, "verified, %": 19, "refuted, %": 19, "vacuous": 7}
+    columns = (column(heading, right=True, width=width) for heading, width in widths.items())
+    grid = headed_table(column("claim"), *columns)
     for values in product(*(table[name].values.tolist() for name in axes)):
         part = table.sel(dict(zip(axes, values, strict=True)))
         if axes:
@@ -202,15 +186,15 @@ def share_table(table: xarray.Dataset, axes: list[str]) -> Table:
             grid.add_row(Text(point, style="bold"))
         before = ""
         for label in table.claim.values.tolist():
-            one = part.sel(claim=label)
+            counts = part.sel(claim=label)
             theorem, _, claim = label.partition(":")
-            if not int(one.runs):
+            if not int(counts.runs):
                 continue
             if theorem != before:
                 grid.add_row(Text(theorem))
             before = theorem
-            cells = [interval_text(one.sel(of=of)) for of in ("verified", "refuted")]
-            grid.add_row(f"  {claim}", str(int(one.runs)), *cells, str(int(one.vacuous) or ""))
+            cells = [interval_text(counts.sel(of=of)) for of in ("verified", "refuted")]
+            grid.add_row(f"  {claim}", str(int(counts.runs)), *cells, str(int(counts.vacuous) or ""))
     return grid
 
 

@@ -7,29 +7,17 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from flockana.cli.options import INTERRUPTED, OK, UNEXPECTED
+from flockana.cli.options import output
+from flockana.cli.show import show, show_files
+from flockana.cli.status import INTERRUPTED, OK, UNEXPECTED
 
 if TYPE_CHECKING:
     from rich.table import Table
 
     from flockana.falsify import Falsification
 
-_HELP = """Search initial states, and parameters if asked to, for a run that breaks a claim of a theorem.
 
-THEOREM is one about runs; the search begins at the scenario's start, in a box about it. With -o, a counterexample that
-is found is written as JSON; --replay simulates such a file again and checks it. That nothing is found proves nothing.
-
-Exit status: 0 nothing found, or a claim broken that is known to be false; 2 bad input; 3 a claim broken that is not
-known to be false, or a replay on which the claim holds; 130 interrupted, with the worst so far printed.
-"""
-
-
-def register(app: typer.Typer) -> None:
-    """Add the command to the command line."""
-    app.command("falsify", help=_HELP)(_falsify)
-
-
-def _falsify(
+def falsify_command(
     theorem: Annotated[str | None, typer.Argument(metavar="[THEOREM]", help="Such as os-3.")] = None,
     on: Annotated[str | None, typer.Option(metavar="SCENARIO", help="Where the search begins.")] = None,
     budget: Annotated[int, typer.Option(min=1, help="Runs to make at most.")] = 200,
@@ -45,24 +33,33 @@ def _falsify(
         typer.Option("--set", metavar="NAME=LOW,HIGH", help="Bounds of a parameter, as gains.c1_gamma=0.1,10."),
     ] = None,
     deepen: Annotated[bool, typer.Option("--deepen", help="Use up the budget after a claim is broken.")] = False,
-    output: Annotated[Path | None, typer.Option("--output", "-o", metavar="FILE", help="JSON file to write.")] = None,
+    save_to: Annotated[Path | None, output("JSON file to write.")] = None,
     plot: Annotated[Path | None, typer.Option(metavar="PICTURE", help="PNG, SVG or PDF of the search.")] = None,
     replay: Annotated[Path | None, typer.Option(metavar="FILE", help="Check a counterexample, search none.")] = None,
 ) -> int:
+    """Search initial states, and parameters if asked to, for a run that breaks a claim of a theorem.
+
+    THEOREM is one about runs; the search begins at the scenario's start, in a box about it. With -o, a counterexample
+    that is found is written as JSON; --replay simulates such a file again and checks it. That nothing is found proves
+    nothing.
+
+    Exit status: 0 nothing found, or a claim broken that is known to be false; 2 bad input; 3 a claim broken that is not
+    known to be false, or a replay on which the claim holds; 130 interrupted, with the worst so far printed.
+    """
     from flockana.base.errors import ArgumentError
     from flockana.cli.picture import KINDS, ensure_file, write_picture
     from flockana.falsify import falsify
+    from flockana.plots.falsify import falsification
 
     if replay is not None:
-        if (theorem, on, claim, output, plot) != (None,) * 5:
+        if (theorem, on, claim, save_to, plot) != (None,) * 5:
             raise ArgumentError("--replay FILE brings its own theorem and start: expected no other")
         return _replay(replay)
     if theorem is None or on is None:
         raise ArgumentError("expected THEOREM --on SCENARIO, such as os-3 --on three-agents-1d, or --replay FILE")
-    for path, kinds in ((output, (".json",)), (plot, KINDS)):
-        if path is not None:
-            ensure_file(path, kinds)
-    found = falsify(
+    ensure_file(save_to, (".json",))
+    ensure_file(plot, KINDS)
+    search = falsify(
         theorem,
         on,
         budget=budget,
@@ -75,17 +72,15 @@ def _falsify(
         deepen=deepen,
         progress=True,
     )
-    _print(found)
-    if output is not None and found.found:
-        typer.echo(f"counterexample: {found.save(output)}")
+    _show(search)
+    if save_to is not None and search.found:
+        show_files(counterexample=search.save(save_to))
     if plot is not None:
-        from flockana.plots.falsify import falsification
-
-        write_picture(lambda ax: falsification(found, ax=ax), plot, m=2)
-        typer.echo(f"picture: {plot}")
-    if found.ended == "interrupted":
+        write_picture(lambda ax: falsification(search, ax=ax), plot, m=2)
+        show_files(picture=plot)
+    if search.ended == "interrupted":
         return INTERRUPTED
-    return UNEXPECTED if any(not _known_false(found.theorem, name) for name in found.broken) else OK
+    return OK if all(_known_false(search.theorem, name) for name in search.broken) else UNEXPECTED
 
 
 def read_ranges(texts: list[str]) -> dict[str, tuple[float, float]]:
@@ -98,17 +93,17 @@ def read_ranges(texts: list[str]) -> dict[str, tuple[float, float]]:
     """
     from flockana.base.errors import ArgumentError
 
-    found: dict[str, tuple[float, float]] = {}
+    ranges: dict[str, tuple[float, float]] = {}
     for text in texts:
         name, _, bounds = text.partition("=")
         try:
             low, high = (float(word) for word in bounds.split(","))
         except ValueError:
             name = ""
-        if not name or name in found:
+        if not name or name in ranges:
             raise ArgumentError(f"--set {text}: expected NAME=LOW,HIGH once for each name, such as gains.c1_alpha=1,50")
-        found[name] = low, high
-    return found
+        ranges[name] = low, high
+    return ranges
 
 
 def _replay(path: Path) -> int:
@@ -117,12 +112,12 @@ def _replay(path: Path) -> int:
     from flockana.falsify import Counterexample
     from flockana.report.console import details
 
-    found = Counterexample.load(path)
-    verdict = found.check()
-    status = next((one.status for one in verdict.claims if one.name == found.claim), "not judged")
+    counterexample = Counterexample.load(path)
+    verdict = counterexample.check()
+    status = {claim.name: claim.status for claim in verdict.claims}.get(counterexample.claim, "not judged")
     Console(highlight=False).print(details(verdict))
     again = "it breaks again" if status == "refuted" else f"it does not break here: {status}"
-    typer.echo(f"{found.theorem}:{found.claim}, found by flockana {found.version}: {again}")
+    typer.echo(f"{counterexample.theorem}:{counterexample.claim}, found by flockana {counterexample.version}: {again}")
     return OK if status == "refuted" else UNEXPECTED
 
 
@@ -135,58 +130,51 @@ def _known_false(theorem: str, claim: str) -> bool:
     if "printed" in theorem + claim:
         return True
     expected = [scenario(name).expected for name in scenarios()]
-    if any(one.get(f"{theorem}:{claim}") == "refuted" for one in expected):
+    if any(statuses.get(f"{theorem}:{claim}") == "refuted" for statuses in expected):
         return True
     # where a scenario says that the theorem breaks, and not by which claim, it may be by any
     return any(
-        one.get(theorem) == "refuted" and not any(key.startswith(f"{theorem}:") for key in one) for one in expected
+        statuses.get(theorem) == "refuted" and not any(key.startswith(f"{theorem}:") for key in statuses)
+        for statuses in expected
     )
 
 
-def _print(found: Falsification) -> None:
-    from rich.console import Console
-
-    console = Console(highlight=False)
-    console.print(f"{found.theorem} on {found.scenario}, seed {found.seed}", style="bold", markup=False)
-    console.print(claim_table(found))
-    runs = f"{found.evaluations} of {found.budget} runs"
-    if found.failures:
-        runs += f", {found.failures} failed ({found.message})"
-    if found.found:
-        known = "known to be false" if _known_false(found.theorem, found.claim) else "NOT known to be false"
-        text = f"found: {found.claim} is broken, and it is {known}; {runs}"
+def _show(search: Falsification) -> None:
+    console = show(f"{search.theorem} on {search.scenario}, seed {search.seed}", claim_table(search))
+    runs = f"{search.evaluations} of {search.budget} runs"
+    if search.failures:
+        runs += f", {search.failures} failed ({search.message})"
+    if search.found:
+        known = "known to be false" if _known_false(search.theorem, search.claim) else "NOT known to be false"
+        text = f"found: {search.claim} is broken, and it is {known}; {runs}"
     else:
-        text = f"nothing found, which proves nothing: {found.claim} came nearest; {runs}"
-    console.print(text + ("; interrupted" if found.ended == "interrupted" else ""), markup=False)
-    others = [name for name in found.broken if name != found.claim]
+        text = f"nothing found, which proves nothing: {search.claim} came nearest; {runs}"
+    console.print(text + ("; interrupted" if search.ended == "interrupted" else ""), markup=False)
+    others = [name for name in search.broken if name != search.claim]
     if others:
         console.print(f"  broken on the way: {', '.join(others)}; search them by --claim", markup=False)
-    for name, value in found.parameters.items():
+    for name, value in search.parameters.items():
         console.print(f"  {name} = {value:.6g}", markup=False)
-    if found.found and found.verdict is not None:
-        console.print(f"  {found.verdict.claim(found.claim).detail}", markup=False)
+    if search.found and search.verdict is not None:
+        console.print(f"  {search.verdict.claim(search.claim).detail}", markup=False)
 
 
-def claim_table(found: Falsification) -> Table:
+def claim_table(search: Falsification) -> Table:
     """A row per claim: its margin at the scenario's start and at worst, the worst status, where it was judged."""
     import numpy as np
-    from rich import box
-    from rich.table import Table
     from rich.text import Text
 
-    from flockana.report.text import MARKS, show
+    from flockana.report.tables import column, headed_table
+    from flockana.report.text import MARKS
+    from flockana.report.text import show as number
 
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
-    table.add_column("claim", no_wrap=True)
-    for heading in ("margin at the start", "at worst"):
-        table.add_column(heading, justify="right", no_wrap=True)
-    table.add_column("worst status", no_wrap=True)
-    table.add_column("judged on", justify="right", no_wrap=True)
-    for name, margins in found.margins.items():
-        judged = sum(status not in ("vacuous", "failed") for status in found.statuses[name])
-        ends = (margins[0], found.least(name)[-1])
-        cells = ["—" if np.isnan(value) else show(float(value)) for value in ends]
-        style = "bold" if name == found.claim else ""
-        worst = found.worst_status(name)
+    headings = {"claim": False, "margin at the start": True, "at worst": True, "worst status": False, "judged on": True}
+    table = headed_table(*(column(heading, right=right) for heading, right in headings.items()))
+    for name, margins in search.margins.items():
+        judged = sum(status not in ("vacuous", "failed") for status in search.statuses[name])
+        ends = (margins[0], search.least(name)[-1])
+        cells = ["—" if np.isnan(value) else number(float(value)) for value in ends]
+        style = "bold" if name == search.claim else ""
+        worst = search.worst_status(name)
         table.add_row(Text(name, style=style), *cells, f"{MARKS.get(worst, '!')} {worst}", f"{judged} runs")
     return table

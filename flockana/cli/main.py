@@ -7,18 +7,27 @@ as expected, 2 bad input, 3 some verdict differs from the expected, 130 interrup
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from flockana._version import __version__
 from flockana.base.errors import FlockanaError
 from flockana.base.interrupts import interrupts_recognised
-from flockana.cli import animate, catalogue, ensemble, equilibrium, falsify, lattice, prove, run, stability, verify
-from flockana.cli.options import BAD_INPUT, INTERRUPTED, OK
+from flockana.cli.animate import animate_command
+from flockana.cli.catalogue import scenarios_command, theorems_command
+from flockana.cli.ensemble import ensemble_command
+from flockana.cli.equilibrium import equilibrium_command
+from flockana.cli.falsify import falsify_command
+from flockana.cli.lattice import lattice_command
+from flockana.cli.prove import prove_command
+from flockana.cli.run import run_command
+from flockana.cli.stability import stability_command
+from flockana.cli.status import BAD_INPUT, INTERRUPTED, OK, complain
+from flockana.cli.verify import verify_command
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
 app = typer.Typer(
     name="flockana", help="Do these flocks do what the theorems say?", no_args_is_help=False, add_completion=False
@@ -36,12 +45,21 @@ def _flockana(
         typer.echo(context.get_help())
 
 
-for _command in (verify, run, animate, catalogue, lattice, equilibrium, stability, prove, ensemble, falsify):
-    _command.register(app)
-
-
-def _complain(message: str) -> None:
-    typer.echo(f"flockana: {' '.join(message.split())}", err=True)
+_COMMANDS: dict[str, Callable[..., Any]] = {
+    "verify": verify_command,
+    "run": run_command,
+    "animate": animate_command,
+    "scenarios": scenarios_command,
+    "theorems": theorems_command,
+    "lattice": lattice_command,
+    "equilibrium": equilibrium_command,
+    "stability": stability_command,
+    "prove": prove_command,
+    "ensemble": ensemble_command,
+    "falsify": falsify_command,
+}
+for _name, _command in _COMMANDS.items():
+    app.command(_name)(_command)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -50,7 +68,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         with interrupts_recognised():
             code = app(args=None if arguments is None else list(arguments), standalone_mode=False)
     except FlockanaError as error:
-        _complain(str(error))
+        complain(error)
         code = BAD_INPUT
     except (KeyboardInterrupt, typer.Abort):
         code = INTERRUPTED
@@ -59,8 +77,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
         message = getattr(error, "format_message", None)
         if message is None:
             raise
-        _complain(message())
+        complain(message())
         code = BAD_INPUT
     if code == INTERRUPTED:  # by us, or by typer, which returns this status itself when it sees Ctrl-C first
-        _complain("interrupted")
+        complain("interrupted")
     sys.exit(code or OK)

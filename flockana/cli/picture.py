@@ -18,16 +18,17 @@ _SIZE = (7.2, 5.4)
 _DPI = 160
 
 
-def ensure_file(path: Path, kinds: tuple[str, ...]) -> Path:
-    """Return the path if a file of such a kind can be written there; before any work whose result it should hold."""
+def ensure_file(path: Path | None, kinds: tuple[str, ...]) -> None:
+    """Raise if no file of such a kind can be written there; before any work whose result it should hold."""
     from flockana.report.build import ensure_directory
 
+    if path is None:
+        return
     if path.is_dir():
         raise ArgumentError(f"{path} is a folder: expected a file name, such as {path / ('it' + kinds[0])}")
     if path.suffix.lower() not in kinds:
         raise ArgumentError(f"{path}: expected a file name that ends in {' or '.join(kinds)}")
     ensure_directory(path.parent)
-    return path
 
 
 def write_picture(draw: Callable[[Axes], object], path: Path, *, m: int) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib
-import os
 import sys
 import time
 from collections.abc import Sequence
@@ -13,42 +12,34 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from flockana.base.errors import ArgumentError, UnknownNameError
-from flockana.cli.options import OK, UNEXPECTED
+from flockana.base.progress import progress_bar
+from flockana.cli.options import Jobs, output
+from flockana.cli.show import show_files
+from flockana.cli.status import OK, UNEXPECTED
 
 if TYPE_CHECKING:
     from rich.table import Table
 
-_HELP = """Check the executable proofs, print what each proves, and write certificates (Markdown with LaTeX, and JSON).
-
-A proof whose steps all hold is `proved`. One with a step that does not hold is `FAILED`. One that takes too long, lacks
-a library or cannot tell is `unknown`, which is not `false`, and fails the run too.
-
-Exit status: 0 all proved, 2 bad input, 3 some proof failed or is unknown, 130 interrupted.
-"""
 _COLOURS = {"proved": "green", "FAILED": "bold red", "unknown": "yellow"}
 
 
-def register(app: typer.Typer) -> None:
-    """Add the command to the command line."""
-    app.command("prove", help=_HELP)(_prove)
-
-
-def _prove(
+def prove_command(
     wanted: Annotated[list[str] | None, typer.Argument(metavar="[ID]...", help="Proofs; by default all.")] = None,
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="DIR", help="Folder of the certificates.")] = Path(
-        "certificates"
-    ),
-    jobs: Annotated[int, typer.Option(min=1, help="Processes; by default the number of cores.", show_default=False)] = (
-        os.cpu_count() or 1
-    ),
+    folder: Annotated[Path, output("Folder of the certificates.", metavar="DIR")] = Path("certificates"),
+    jobs: Jobs = None,
     time_limit: Annotated[
         float | None, typer.Option(min=0.0, metavar="SECONDS", help="For each proof, instead of its own limit.")
     ] = None,
 ) -> int:
-    from rich.console import Console
+    """Check the executable proofs, print what each proves, and write certificates (Markdown with LaTeX, and JSON).
 
+    A proof whose steps all hold is `proved`. One with a step that does not hold is `FAILED`. One that takes too long,
+    lacks a library or cannot tell is `unknown`, which is not `false`, and fails the run too.
+
+    Exit status: 0 all proved, 2 bad input, 3 some proof failed or is unknown, 130 interrupted.
+    """
+    from flockana.ensemble.processes import cores
     from flockana.report.build import ensure_directory
-    from flockana.report.console import progress_bar
 
     proof, run, certificates = (_module(name) for name in ("proof", "run", "certificates"))
     known = proof.names()
@@ -56,17 +47,21 @@ def _prove(
         if name not in known:
             raise UnknownNameError("proof", name, known)
     chosen = tuple(dict.fromkeys(wanted or known))
-    folder, started = ensure_directory(output), time.perf_counter()
+    ensure_directory(folder)
+    started = time.perf_counter()
     outcomes: list[Any] = []
-    with progress_bar(Console(stderr=True), len(chosen), enabled=True) as advance:
+    with progress_bar(len(chosen)) as advance:
         for outcome in run.check(
-            chosen, jobs=jobs, time_limit=time_limit, watch=lambda under_way: advance(len(outcomes), under_way)
+            chosen,
+            jobs=jobs or cores(),
+            time_limit=time_limit,
+            watch=lambda under_way: advance(len(outcomes), ", ".join(under_way)),
         ):
             certificates.write(outcome, folder)
             outcomes.append(outcome)
     outcomes.sort(key=lambda outcome: chosen.index(outcome.id))
     certificates.write_index(outcomes, folder)
-    _print(outcomes, time.perf_counter() - started, folder)
+    _show(outcomes, time.perf_counter() - started, folder)
     return OK if all(outcome.status == "proved" for outcome in outcomes) else UNEXPECTED
 
 
@@ -86,7 +81,7 @@ def _status(outcome: Any) -> str:
     return "FAILED" if outcome.status == "failed" else str(outcome.status)
 
 
-def _print(outcomes: Sequence[Any], seconds: float, folder: Path) -> None:
+def _show(outcomes: Sequence[Any], seconds: float, folder: Path) -> None:
     from rich.console import Console
 
     console = Console(highlight=False)
@@ -96,18 +91,17 @@ def _print(outcomes: Sequence[Any], seconds: float, folder: Path) -> None:
             console.print(f"  {outcome.id}: {objection}", style=_COLOURS[_status(outcome)], markup=False)
     proved, steps = sum(o.status == "proved" for o in outcomes), sum(len(o.steps) for o in outcomes)
     console.print(f"{proved} of {len(outcomes)} proved, {steps} steps, in {seconds:.0f} s", markup=False)
-    console.print(f"certificates: {folder}", markup=False, soft_wrap=True)
+    show_files(certificates=folder)
 
 
 def _table(outcomes: Sequence[Any]) -> Table:
-    from rich import box
-    from rich.table import Table
+    from rich.table import Column
     from rich.text import Text
 
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
-    table.add_column("theorem, and what exactly is proved", ratio=1)
-    for heading in ("rigour", "steps", "status", "time"):
-        table.add_column(heading, no_wrap=True, justify="right" if heading in ("steps", "time") else "left")
+    from flockana.report.tables import column, headed_table
+
+    others = (column(name, right=name in ("steps", "time")) for name in ("rigour", "steps", "status", "time"))
+    table = headed_table(Column("theorem, and what exactly is proved", ratio=1), *others)
     for outcome in outcomes:
         table.add_row(
             Text.assemble(

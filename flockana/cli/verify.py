@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -10,22 +9,20 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from flockana.base.errors import ArgumentError, FlockanaError
-from flockana.cli.options import BAD_INPUT, INTERRUPTED, OK, UNEXPECTED, Seed
+from flockana.base.progress import progress_bar
+from flockana.cli.options import Jobs, Seed
+from flockana.cli.show import show_files
+from flockana.cli.status import BAD_INPUT, INTERRUPTED, OK, UNEXPECTED
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from flockana.report.pages import Page
-    from flockana.report.statistics import StatisticsSection, Survey, Surveyed
+    from flockana.report.statistics import StatisticsSection, Survey, SurveyResult
     from flockana.report.work import Task
 
 
-def register(app: typer.Typer) -> None:
-    """Add the command to the command line."""
-    app.command("verify")(_verify)
-
-
-def _verify(
+def verify_command(
     name: Annotated[
         str | None,
         typer.Argument(help="A scenario, a theorem, or 'errata'; by default the whole catalogue.", metavar="[NAME]"),
@@ -37,7 +34,7 @@ def _verify(
     ] = None,
     report: Annotated[Path, typer.Option(metavar="DIR", help="Folder of the report.")] = Path("report"),
     no_report: Annotated[bool, typer.Option("--no-report", help="Write no report.")] = False,
-    json: Annotated[bool, typer.Option("--json", help="Print the verdicts as JSON, and nothing else.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the verdicts as JSON, and nothing else.")] = False,
     seeds: Annotated[
         int | None,
         typer.Option(
@@ -47,16 +44,15 @@ def _verify(
             show_default=False,
         ),
     ] = None,
-    jobs: Annotated[int, typer.Option(min=1, help="Processes; by default the number of cores.", show_default=False)] = (
-        os.cpu_count() or 1
-    ),
+    jobs: Jobs = None,
 ) -> int:
     """Run scenarios, check theorems, print the verdicts, write a report.
 
     Exit status: 0 all as expected, 2 bad input, 3 some verdict differs from the expected, 130 interrupted.
     """
+    from flockana.ensemble.processes import cores
     from flockana.report.build import ensure_directory, verdicts_json, write_report
-    from flockana.report.statistics import Surveyed, gather, surveys
+    from flockana.report.statistics import SurveyResult, gather, surveys
     from flockana.report.work import plan
 
     started = time.perf_counter()
@@ -69,16 +65,19 @@ def _verify(
         many = () if no_report and seeds is None else surveys(name, seeds, seed=seed)
     if not no_report:
         ensure_directory(report)
-    results, code, failure = ([_saved(name, on, not no_report)], OK, None) if on else _perform((*tasks, *many), jobs)
-    pages = [one for one in results if not isinstance(one, Surveyed)]
-    statistics = gather(many, [one for one in results if isinstance(one, Surveyed)], figures=not no_report)
+    results, code, failure = (
+        ([_saved(name, on, not no_report)], OK, None) if on else _check_all((*tasks, *many), jobs or cores())
+    )
+    pages = [result for result in results if not isinstance(result, SurveyResult)]
+    surveyed = [result for result in results if isinstance(result, SurveyResult)]
+    statistics = gather(many, surveyed, figures=not no_report)
     if code == OK and any(page.surprises for page in pages):
         code = UNEXPECTED
     seconds, complete = time.perf_counter() - started, code in (OK, UNEXPECTED)
     written = None
     if not no_report and (pages or complete):
         written = write_report(pages, report, seed=seed, seconds=seconds, complete=complete, statistics=statistics)
-    if json:
+    if as_json:
         text = verdicts_json(pages, seed=seed, seconds=seconds, complete=complete, statistics=statistics)
         typer.echo(text, nl=False)
     else:
@@ -88,24 +87,27 @@ def _verify(
     return code
 
 
-def _perform(tasks: Sequence[Task | Survey], jobs: int) -> tuple[list[Page | Surveyed], int, FlockanaError | None]:
-    """Carry tasks out under a progress bar; what was done before an interrupt or an error is kept."""
-    from rich.console import Console
+def _check_all(
+    tasks: Sequence[Task | Survey], jobs: int
+) -> tuple[list[Page | SurveyResult], int, FlockanaError | None]:
+    """(results in the order of the tasks, exit status, error): what was done before an error or Ctrl-C is kept."""
+    from flockana.report.work import check_all
 
-    from flockana.report.console import progress_bar
-    from flockana.report.work import perform
-
-    done: dict[str, Page | Surveyed] = {}
+    results: dict[str, Page | SurveyResult] = {}
     code, failure = OK, None
     try:
-        with progress_bar(Console(stderr=True), len(tasks), enabled=True) as advance:
-            for one in perform(tasks, jobs=jobs, watch=lambda names: advance(len(done), names)):
-                done[one.name] = one
+        with progress_bar(len(tasks)) as advance:
+
+            def watch(under_way: Sequence[Task | Survey]) -> None:
+                advance(len(results), ", ".join(task.name for task in under_way))
+
+            for result in check_all(tasks, jobs=jobs, watch=watch):
+                results[result.name] = result
     except KeyboardInterrupt:
         code = INTERRUPTED
     except FlockanaError as error:
         code, failure = BAD_INPUT, error
-    return [done[task.name] for task in tasks if task.name in done], code, failure
+    return [results[task.name] for task in tasks if task.name in results], code, failure
 
 
 def _ensure_checkable(name: str | None, seeds: int | None) -> None:
@@ -169,4 +171,4 @@ def _print_verdicts(
         console.print("shares of runs over many seeds: in the report")
     console.print(summary(pages, seconds), markup=False)
     if written is not None:
-        console.print(f"report: {written}", markup=False, soft_wrap=True)
+        show_files(report=written)

@@ -74,8 +74,8 @@ class Encounters:
         Examples
         --------
         >>> from flockana.laws.olfati_saber import Algorithm1
-        >>> found = Encounters.of(Algorithm1(), 2)
-        >>> found.radii.tolist(), found.far
+        >>> encounters = Encounters.of(Algorithm1(), 2)
+        >>> encounters.radii.tolist(), encounters.far
         ([[8.4], [8.4]], 3.5)
         """
         surfaces = [np.broadcast_to(np.asarray(one, dtype=np.float64), (n,)) for one in law.surfaces]

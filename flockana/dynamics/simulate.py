@@ -7,7 +7,7 @@ of the energy balance is `Trajectory.energy_residual`.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -15,17 +15,20 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_positive, ensure_state, ensure_time_span
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.interrupts import interrupts_recognised
+from flockana.base.progress import progress_bar
+from flockana.dynamics.adaptive import adaptive
 from flockana.dynamics.between import Between, Recorder
-from flockana.dynamics.integrators import Sample, Tally, adaptive, discrete, error_floor, nearest, rk4, start_sample
-from flockana.dynamics.switches import adaptive_with_switches
+from flockana.dynamics.first_call import check_first_call
+from flockana.dynamics.iterate import discrete, nearest
+from flockana.dynamics.rk4 import rk4
+from flockana.dynamics.sample import Sample, Tally, start_sample
+from flockana.dynamics.tolerance import error_floor
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.laws.law import Law
-from flockana.laws.switched import SwitchedLaw
 
 ADAPTIVE = ("DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA")
 METHODS = (*ADAPTIVE, "RK4")
-_REFRESH = 0.1  # seconds between updates of the progress bar
 
 
 def simulate(
@@ -93,37 +96,27 @@ def simulate(
     law.check_start(q0, p0)
     t_span = ensure_time_span(t_span)
     keep = _check_t_eval(t_eval, t_span)
-    _check_first_call(law, t_span[0], q0, p0)
-    tally = Tally()
+    check_first_call(law, t_span[0], q0, p0)
+    tally, how = Tally(), dict[str, Any]()
     if isinstance(law, DiscreteLaw):
         if dt is not None or method != "DOP853":
             raise ArgumentError("a discrete law brings its own step: expected neither dt nor method")
-        samples, name = discrete(law, q0, p0, t_span, tally), "discrete"
-        step = _ensure_step("law.dt", law.dt, t_span)
-        keep_samples = samples if keep is None else nearest(samples, keep, step)
+        method, how = "discrete", {"dt": _ensure_step("law.dt", law.dt, t_span)}
+        samples = discrete(law, q0, p0, t_span, tally)
+        samples = samples if keep is None else nearest(samples, keep, law.dt)
+    elif _ensure_method(method, dt) == "RK4":
+        how = {"dt": _ensure_step("dt", dt, t_span)}
+        samples = rk4(law, q0, p0, t_span, how["dt"], keep, tally)
     else:
-        _check_method(method, dt)
-        name = method
-        if method == "RK4":
-            keep_samples = rk4(law, q0, p0, t_span, _ensure_step("dt", dt, t_span), keep, tally)
-        else:
-            rtol, atol = ensure_positive("rtol", rtol), None if atol is None else ensure_positive("atol", atol)
-            how = (t_span, method, rtol, error_floor(law, q0, p0, t_span, rtol, atol), keep, tally)
-            if isinstance(law, SwitchedLaw) and law.located:
-                keep_samples = adaptive_with_switches(law, q0, p0, *how)
-            else:
-                keep_samples = adaptive(law, q0, p0, *how)
+        how = {"rtol": ensure_positive("rtol", rtol), "atol": None if atol is None else ensure_positive("atol", atol)}
+        floor = error_floor(law, q0, p0, t_span, **how)
+        samples = adaptive(law, q0, p0, t_span, method, how["rtol"], floor, keep, tally)
     started = time.perf_counter()
-    kept, between = _collect(keep_samples, t_span, tally, progress)
-    if not kept:  # ended before the first time to keep: the start at least is known
-        kept = [start_sample(law, q0, p0, t_span[0])]
+    kept, between = _collect(samples, t_span, tally, progress)
+    counts = {"method": method, "steps": tally.steps, "evaluations": tally.evaluations}
+    stats = counts | tally.notes | how | {"seconds": time.perf_counter() - started}
+    kept = kept or [start_sample(law, q0, p0, t_span[0])]  # ended before the first time to keep
     extra = {key: np.stack([s.extra[key] for s in kept]) for key in kept[0].extra}
-    stats: dict[str, Any] = {"method": name, "steps": tally.steps, "evaluations": tally.evaluations} | tally.notes
-    if name == "RK4" or isinstance(law, DiscreteLaw):
-        stats["dt"] = law.dt if isinstance(law, DiscreteLaw) else dt
-    else:
-        stats |= {"rtol": rtol, "atol": atol}
-    stats["seconds"] = time.perf_counter() - started
     q, p, u = (np.stack([getattr(s, name) for s in kept]) for name in ("q", "p", "u"))
     t = np.array([s.t for s in kept])
     return Trajectory(t, q, p, u, law, extra, tally.status, tally.message, stats, between)
@@ -136,46 +129,14 @@ def _ensure_step(name: str, dt: Any, t_span: tuple[float, float]) -> float:
     return step
 
 
-def _check_method(method: str, dt: float | None) -> None:
+def _ensure_method(method: str, dt: float | None) -> str:
     if method not in METHODS:
         raise UnknownNameError("method", method, METHODS)
     if method == "RK4" and dt is None:
         raise ArgumentError("dt = None: method RK4 needs a fixed step, such as dt=0.005")
     if method != "RK4" and dt is not None:
         raise ArgumentError(f"dt = {dt!r}: {method} chooses its own steps; give t_eval to choose output times")
-
-
-def _check_first_call(law: Law | DiscreteLaw, t0: float, q0: FloatArray, p0: FloatArray) -> None:
-    """Raise unless the law gives what a law gives: real numbers in the flock's shape, finite where it starts."""
-    name, at = type(law).__name__, f"at the start, t = {t0:g}"
-    found: Any
-    parts: tuple[str, ...]
-    if isinstance(law, DiscreteLaw):
-        memory = {key: np.array(value) for key, value in law.start(q0, p0).items()}
-        found, expected, parts = law.step(t0, q0.copy(), p0.copy(), memory), "(q, p, u, memory)", ("q", "p", "u")
-    else:
-        found, expected, parts = law.flow(t0, q0, p0), "(u, dH/dt)", ("u",)
-    if not isinstance(found, tuple) or len(found) != len(parts) + 1:
-        raise ArgumentError(f"{name} gives {found!r} {at}: expected {expected}")
-    for part, value in zip(parts, found, strict=False):
-        array = np.asarray(value)
-        if array.dtype.kind not in "fiu" or array.shape != q0.shape:
-            kind = f"{array.dtype} of shape {array.shape}"
-            raise ArgumentError(f"{name} gives {part} as {kind} {at}: expected real numbers of shape {q0.shape}")
-    if isinstance(law, DiscreteLaw):
-        return
-    u, rate, energy = np.asarray(found[0]), found[1], law.hamiltonian(t0, q0, p0)
-    if not (finite := np.isfinite(u).all(axis=1)).all():
-        i = int(np.argmin(finite))
-        raise ArgumentError(f"{name} gives u[{i}] = {u[i]} {at}: expected finite accelerations there")
-    for what, number in (("H", energy), ("dH/dt", rate)):
-        if np.ndim(number) != 0 or np.asarray(number).dtype.kind not in "fiu":
-            raise ArgumentError(f"{name} gives {what} = {number!r} {at}: expected a real number, or NaN without energy")
-    if np.isfinite(energy) and not np.isfinite(rate):
-        raise ArgumentError(
-            f"{name} gives H = {energy:g}, but dH/dt = {rate} {at}: expected the rate of that energy, or H = NaN for a "
-            "law without one"
-        )
+    return method
 
 
 def _check_t_eval(t_eval: Any, t_span: tuple[float, float]) -> FloatArray | None:
@@ -197,44 +158,15 @@ def _collect(
     """Drain the integrator: the samples, and its steps between them; on Ctrl-C keep what there is."""
     kept: list[Sample] = []
     recorder = Recorder()
-    with _progress_bar(t_span, enabled=progress) as advance:
+    with progress_bar(t_span[1] - t_span[0], enabled=progress, counted=False, steady=True) as advance:
         try:
             with interrupts_recognised():
                 for sample in samples:
                     if sample.wanted:
                         kept.append(sample)
                     recorder.add(sample.t, sample.q, sample.p, sample.u, sample=sample.wanted)
-                    advance(sample.t)
+                    advance(sample.t - t_span[0], f"t = {sample.t:.4g}")
         except KeyboardInterrupt:
             until = f"the last sample is at t = {kept[-1].t:g}" if kept else "no sample was reached but the start"
             tally.status, tally.message = "interrupted", f"interrupted: {until}"
     return kept, recorder.between()
-
-
-class _progress_bar:  # noqa: N801  # reads as the context manager it is
-    """A rich progress bar over simulated time, or nothing."""
-
-    def __init__(self, t_span: tuple[float, float], *, enabled: bool) -> None:
-        self.t_span, self.enabled, self.shown = t_span, enabled, 0.0
-
-    def __enter__(self) -> Callable[[float], None]:
-        if not self.enabled:
-            return lambda t: None
-        from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
-
-        columns = (TextColumn("t = {task.fields[now]:.4g}"), BarColumn(), TimeRemainingColumn())
-        self.bar = Progress(*columns, transient=True)
-        t0, t1 = self.t_span
-        task = self.bar.add_task("", total=t1 - t0, now=t0)
-        self.bar.start()
-
-        def advance(t: float) -> None:
-            if time.perf_counter() - self.shown > _REFRESH:
-                self.bar.update(task, completed=t - t0, now=t)
-                self.shown = time.perf_counter()
-
-        return advance
-
-    def __exit__(self, *exc: object) -> None:
-        if self.enabled:
-            self.bar.stop()

@@ -1,16 +1,13 @@
-"""Integrate a law with jumps from switch to switch: scipy's solvers on one smooth piece at a time."""
+"""Where a law with jumps switches: the first time, within a step, at which a pair leaves its smooth piece."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from typing import Any
+from collections.abc import Callable
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
 from flockana.base.checks import FloatArray
-from flockana.dynamics.integrators import Floor, Sample, Tally, counted, stepper
-from flockana.dynamics.stepping import Flow
 from flockana.laws.switched import Pieces, SwitchedLaw
 
 Way = Callable[[float], FloatArray]
@@ -21,85 +18,31 @@ _NODES = chebyshev.chebpts1(2 * _DEGREE + 1)  # so many that a squared distance 
 _TO_SERIES = np.linalg.inv(chebyshev.chebvander(_NODES, 2 * _DEGREE))
 
 
-def adaptive_with_switches(
-    law: SwitchedLaw,
-    q0: FloatArray,
-    p0: FloatArray,
-    t_span: tuple[float, float],
-    method: str,
-    rtol: float,
-    floor: Floor,
-    keep: FloatArray | None,
-    tally: Tally,
-) -> Iterator[Sample]:
-    """Step a solver with every pair held in its piece; at the first pair that leaves, stop there and start anew.
+class Switches:
+    """A law with every pair held in its piece, until one leaves it.
 
-    None is missed that the step's interpolant makes, however short the visit (`turns`). A pair held at a surface ends
-    the run: its switches would become ever more frequent. `tally.notes` gets the number of switches.
+    A pair held at a surface (a Filippov sliding mode) would switch ever more frequently: `cross` reports it.
     """
-    pieces = law.pieces(q0)
-    solver = stepper(law, _held(law, pieces), q0, p0, t_span, method, rtol, floor, tally)
-    frame = solver.frame
-    t, wanted, switches = t_span[0], 0, 0
-    beside: Sample | None = None
-    tally.notes["switches"] = switches
 
-    def sample(t: float, y: FloatArray) -> Sample:
-        q, p = frame.state(t, y)
-        work = {"work": np.array(y[-1])} if frame.energetic else {}
-        return Sample(t, q, p, law.piece_flow(pieces, t, q, p)[0], work)
+    def __init__(self, law: SwitchedLaw, q0: FloatArray) -> None:
+        self.law, self.pieces, self.count = law, law.pieces(q0), 0
 
-    if keep is None or keep[0] == t:
-        wanted = 1
-        yield sample(t, solver.now.y)._replace(q=q0, p=p0)  # not a rounding beside it, as in the frame
-    while t < t_span[1]:
-        if not solver.step(()):
-            tally.fail(solver.message)
-            return
-        tally.steps += 1
-        course, start = solver.course(), t
+    def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
+        """As `Law.flow`, every pair's piece continued smoothly beyond its edges."""
+        return self.law.piece_flow(self.pieces, t, q, p)
 
-        def way(s: float, course: Any = course) -> FloatArray:
-            return frame.state(s, course(s))[0]
+    def first(self, way: Way, start: float, end: float) -> float | None:
+        """The first time at which a pair is beyond its piece, however short the visit; None if there is none."""
+        return first_switch(self.law, self.pieces, way, start, end)
 
-        end = _first_switch(law, pieces, way, start, solver.now.t)
-        t, y = (solver.now.t, solver.now.y) if end is None else (end, course(end))
-        coming = keep[wanted] if keep is not None and wanted < keep.size else t
-        if beside is not None and beside.t < min(coming, t):
-            yield beside
-        beside = None
-        while keep is not None and wanted < keep.size and keep[wanted] < t:
-            yield sample(keep[wanted], course(keep[wanted]))
-            wanted += 1
-        asked = keep is None or (wanted < keep.size and keep[wanted] == t)
-        wanted += int(asked)
-        yield sample(t, y)._replace(wanted=asked)
-        if end is None:
-            continue
-        switches += 1
-        tally.notes["switches"] = switches
-        before, (q, p) = pieces, frame.state(t, y)
-        pieces = law.crossed(before, law.margins(before, q))
-        if reason := law.sliding(before, pieces, t, q, p):
-            tally.notes["sliding"] = reason
-            tally.fail(f"sliding at t = {t:.6g}: {reason}")
-            return
-        solver.begin(counted(_held(law, pieces), tally, method), t, y)
-        beside = _beside(sample(t, y))
+    def cross(self, t: float, q: FloatArray, p: FloatArray) -> str | None:
+        """Hold the pairs in the pieces after a switch; returns in words what slides there, None if nothing does."""
+        before = self.pieces
+        self.pieces, self.count = self.law.crossed(before, self.law.margins(before, q)), self.count + 1
+        return self.law.sliding(before, self.pieces, t, q, p)
 
 
-def _beside(switch: Sample) -> Sample:
-    """The path goes on from a switch with the other side's input: a knot next to it, apart in any unit of time."""
-    gap = 4.0 * float(np.spacing(abs(switch.t)))
-    return switch._replace(t=switch.t + gap, q=switch.q + gap * switch.p, wanted=False)
-
-
-def _held(law: SwitchedLaw, pieces: Pieces) -> Flow:
-    """The flow with every pair held in its piece."""
-    return lambda t, q, p: law.piece_flow(pieces, t, q, p)
-
-
-def _first_switch(law: SwitchedLaw, pieces: Pieces, way: Way, start: float, end: float) -> float | None:
+def first_switch(law: SwitchedLaw, pieces: Pieces, way: Way, start: float, end: float) -> float | None:
     """The first time at which a pair is beyond its piece; None if there is none.
 
     Between two turns every distance that could reach an edge is monotone: no pair can have left and be back.
@@ -134,10 +77,10 @@ def turns(law: SwitchedLaw, pieces: Pieces, way: Way, start: float, end: float) 
     reach = np.sum(np.linalg.norm(series[1:], axis=2), axis=0)  # an agent's way from its mean place, series[0]
     rows, columns = np.triu_indices(len(reach), 1)
     near = law.margins(pieces, series[0]).inside <= (reach[rows] + reach[columns]) * (1.0 + 1e-9)
-    found: set[float] = set()
+    times_of_turns: set[float] = set()
     for i, j in zip(rows[near].tolist(), columns[near].tolist(), strict=True):
         squared = _TO_SERIES @ np.sum((places[:, j] - places[:, i]) ** 2, axis=1)
         roots = chebyshev.chebroots(chebyshev.chebder(chebyshev.chebtrim(squared, 1e-15 * abs(squared).max())))
         real = roots.real[np.abs(roots.imag) < 1e-6]
-        found.update((0.5 * (start + end) + 0.5 * (end - start) * real[np.abs(real) < 1.0]).tolist())
-    return sorted(t for t in found if start < t < end)
+        times_of_turns.update((0.5 * (start + end) + 0.5 * (end - start) * real[np.abs(real) < 1.0]).tolist())
+    return sorted(t for t in times_of_turns if start < t < end)

@@ -2,39 +2,34 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from flockana._version import __version__
 from flockana.base.checks import FloatArray
-from flockana.base.errors import ArgumentError, FileError, UnknownNameError
-from flockana.base.files import replacing
+from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.scales import Scales
-from flockana.base.serialize import from_data, to_data
 from flockana.base.units import rescale, times
+from flockana.dynamics import saved
 from flockana.dynamics.between import Between, Course, merged
 from flockana.laws.discrete import ensure_law
-from flockana.measures import metrics as measure
 from flockana.measures.clearance import Clearance, clearance
+from flockana.measures.measure import Flock, Measure, Series, measures
+from flockana.measures.metrics import cohesion_radius
 from flockana.measures.path_bounds import ClosestApproach, closest_approach, cohesion_bound
 
 if TYPE_CHECKING:
     import xarray
 
-    from flockana.plots.film import Film
-
 _Value = TypeVar("_Value")
 
-FORMAT = "flockana-trajectory"
-FORMAT_VERSION = 1
-_BETWEEN = {"t": ("step",), "slack": ("interval", "agent")} | dict.fromkeys("qpu", ("step", "agent", "axis"))
+PLOTS = "flockana.plots"  # who draws is named, not imported: this room lies below
 STATUSES = ("complete", "interrupted", "failed")
 
 
@@ -50,13 +45,6 @@ def _frozen_series(name: str, values: Any, samples: int) -> FloatArray:
         raise ArgumentError(f"{name}[{', '.join(map(str, k))}] = {array[k]}: expected finite numbers ({bad.sum()} bad)")
     array.setflags(write=False)
     return array
-
-
-def _read_between(data: xarray.Dataset) -> Between | None:
-    """The steps between the samples in what was read from a file."""
-    if "between_t" not in data:
-        return None
-    return Between(**{name: np.array(data[f"between_{name}"]) for name in _BETWEEN if f"between_{name}" in data})
 
 
 @dataclass(frozen=True, eq=False)
@@ -207,9 +195,37 @@ class Trajectory:
     def _metrics(self) -> xarray.Dataset:
         import xarray
 
-        texts = {name: text for name, (text, _) in (self._any_flock() | dict(self._own)).items()}
-        data = {name: xarray.Variable("time", self.metric(name), {"long_name": texts[name]}) for name in texts}
+        shown = [self.measure(name) for name in self._metric_names]
+        data = {
+            it.name: xarray.Variable("time", self.metric(it.name), {"long_name": it.text, "units": it.unit})
+            for it in shown
+        }
         return xarray.Dataset(data, coords={"time": self.t})
+
+    @property
+    def _metric_names(self) -> tuple[str, ...]:
+        any_flock = (name for name, it in measures().items() if it.over_time is not None and it.defined(self.law))
+        return tuple(dict.fromkeys((*any_flock, *self._own)))
+
+    def measure(self, name: str) -> Measure:
+        """What a metric is in words, its unit, how it is drawn.
+
+        Parameters
+        ----------
+        name : str
+            Its name.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is none of that name, neither for any flock nor for this law.
+        """
+        if name in measures():
+            return measures()[name]
+        if name in self._own:
+            text, _, logarithmic = Series(*self._own[name])
+            return Measure(name, text, "", logarithmic=logarithmic)
+        raise UnknownNameError("metric", name, self._metric_names)
 
     def metric(self, name: str) -> FloatArray:
         """One of `metrics` over time, shape (T,), at the cost of that one alone.
@@ -225,13 +241,13 @@ class Trajectory:
             If there is none of that name for this law.
         """
         if name not in self._measured:
-            known = self._any_flock()
-            if name in known:  # else the law is asked, which may cost more
-                values = known[name][1]()
-            elif name in self._own:
-                values = np.fromiter(self._own[name][1], float, len(self.t))
+            of_any = measures().get(name)
+            if of_any is not None and of_any.over_time is not None and of_any.defined(self.law):
+                values = of_any.over_time(self._flock)
+            elif name in self._own:  # the law is asked last, which may cost more
+                values = np.fromiter(Series(*self._own[name]).values, float, len(self.t))
             else:
-                raise UnknownNameError("metric", name, (*known, *self._own))
+                raise UnknownNameError("metric", name, self._metric_names)
             self._measured[name] = values
         return self._measured[name]
 
@@ -253,36 +269,22 @@ class Trajectory:
     def _memory(self) -> dict[str, Any]:
         return {}
 
-    def _any_flock(self) -> dict[str, tuple[str, Callable[[], FloatArray]]]:
-        """What is measured of every flock: in words, and a function that does it."""
-        q, p, lattice = self.q, self.p, self.law.lattice
-        series: dict[str, tuple[str, Callable[[], FloatArray]]] = {
-            "cohesion_radius": ("R = max ‖q_i − q_c‖", lambda: measure.cohesion_radii(q)),
-            "velocity_mismatch": ("K̃ = K/n", lambda: measure.spreads(p) / self.n),
-            "inertia": ("J", lambda: measure.spreads(q)),
-            "min_distance": ("least distance at the samples", lambda: measure.min_distances(q)),
-            "order": ("polar order", lambda: measure.orders(p)),
-            "coordination": ("C, mean cosine between velocities", lambda: measure.coordinations(p)),
-        }
-        if lattice is not None:
-            series |= {
-                "connectivity": ("C = rank(L)/(n − 1)", lambda: self._nets[0]),
-                "giant_share": ("C*, share of nodes", lambda: self._nets[1]),
-                "deviation_energy": ("Ẽ = E/d²", lambda: self._nets[2] / lattice[0] ** 2),
-            }
-        return series
-
     @cached_property
     def _measured(self) -> dict[str, FloatArray]:
         return {}
 
     @cached_property
-    def _own(self) -> Mapping[str, tuple[str, FloatArray]]:
+    def _own(self) -> Mapping[str, Any]:
         return self.law.measures(self.t, self.q, self.p, self.extra)  # type: ignore[no-any-return]
 
     @cached_property
-    def _nets(self) -> FloatArray:
-        return np.array([measure.net_measures(x, *self.law.lattice) for x in self.q]).T
+    def _flock(self) -> Flock:
+        return Flock(self.law, self.q, self.p)
+
+    @cached_property
+    def end(self) -> Flock:
+        """The flock at the last sample."""
+        return Flock(self.law, self.q[-1:], self.p[-1:])
 
     @cached_property
     def path(self) -> Course:
@@ -295,8 +297,8 @@ class Trajectory:
 
     @cached_property
     def _closest(self) -> ClosestApproach:
-        found = closest_approach(*self.path)
-        return replace(found, lower_by_interval=self.over_intervals(np.minimum, found.lower_by_interval))
+        approach = closest_approach(*self.path)
+        return replace(approach, lower_by_interval=self.over_intervals(np.minimum, approach.lower_by_interval))
 
     def over_intervals(self, reduce: np.ufunc, values: FloatArray) -> FloatArray:
         """Numbers of the path's intervals, shape (..., S), to one for each interval between samples.
@@ -310,8 +312,8 @@ class Trajectory:
         """
         if self.between is None:
             return values
-        found: FloatArray = reduce.reduceat(values, np.searchsorted(self.path.t, self.t[:-1]), axis=-1)
-        return found
+        reduced: FloatArray = reduce.reduceat(values, np.searchsorted(self.path.t, self.t[:-1]), axis=-1)
+        return reduced
 
     def min_distance(self) -> float:
         """A lower bound of every distance between two agents at every time of the run.
@@ -323,7 +325,7 @@ class Trajectory:
     def cohesion_bound(self) -> float:
         """An upper bound of the cohesion radius max ‖q_i − q_c‖ at every time of the run, under the same conditions."""
         bounds = self.cohesion_bounds
-        return float(bounds.max()) if bounds.size else measure.cohesion_radius(self.q[0])
+        return float(bounds.max()) if bounds.size else cohesion_radius(self.q[0])
 
     @cached_property
     def cohesion_bounds(self) -> FloatArray:
@@ -339,7 +341,7 @@ class Trajectory:
         path, obstacles = self.path, self.law.obstacles
         return clearance(path.t, path.q, path.p, path.u, obstacles, path.slack)
 
-    def animate(self, *, seconds: float = 10.0, fps: float = 15.0, velocities: bool = False) -> Film:
+    def animate(self, *, seconds: float = 10.0, fps: float = 15.0, velocities: bool = False) -> Any:
         """The run as a film: a notebook shows it, ``.save(path)`` writes GIF or MP4.
 
         Parameters
@@ -355,9 +357,7 @@ class Trajectory:
         -------
         flockana.plots.Film
         """
-        from flockana.plots.film import Film
-
-        return Film(self, seconds, fps, velocities)
+        return import_module(PLOTS).Film(self, seconds, fps, velocities)
 
     def window(self, start: float, end: float) -> Trajectory:
         """The samples with start ≤ t ≤ end, as a run of their own.
@@ -387,25 +387,7 @@ class Trajectory:
 
     def to_xarray(self) -> xarray.Dataset:
         """The run as an `xarray.Dataset` with dimensions time, agent and axis; the law is in the attributes."""
-        import xarray
-
-        dims = ("time", "agent", "axis")
-        data: dict[str, Any] = {"q": (dims, self.q), "p": (dims, self.p), "u": (dims, self.u)}
-        data |= {f"extra_{k}": (("time", *(f"{k}_{a}" for a in range(v.ndim - 1))), v) for k, v in self.extra.items()}
-        if self.between is not None:
-            kept = vars(self.between)
-            data |= {f"between_{k}": (_BETWEEN[k], kept[k]) for k in _BETWEEN if kept[k] is not None}
-        coords = {"time": self.t, "agent": np.arange(self.n), "axis": list("xyz"[: self.m])}
-        attrs = {
-            "format": FORMAT,
-            "format_version": FORMAT_VERSION,
-            "flockana_version": __version__,
-            "law": json.dumps(to_data(self.law)),
-            "status": self.status,
-            "message": self.message,
-            "stats": json.dumps(to_data_mapping(self.stats)),
-        }
-        return xarray.Dataset(data, coords, attrs)
+        return saved.to_xarray(self)
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write the run, law and parameters included, as netCDF-4; an existing file is replaced only when whole.
@@ -426,13 +408,7 @@ class Trajectory:
         ArgumentError
             If the law holds something that has no written form, such as a user's function.
         """
-        target = Path(path)
-        if "\0" in str(target):  # HDF5 would write to what precedes it
-            raise FileError(f"cannot write {str(target)!r}: null byte; choose a file name and folder to write to")
-        dataset = self.to_xarray()
-        with replacing(target, remedy="choose a file name and folder to write to") as partial:
-            dataset.to_netcdf(partial, engine="h5netcdf")
-        return target
+        return saved.save(self.to_xarray(), path)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Trajectory:
@@ -448,46 +424,4 @@ class Trajectory:
         FileError
             If the file is missing, is no netCDF, is not one of ours, is of a newer format, or is damaged.
         """
-        import xarray
-
-        source = Path(path)
-        if not source.is_file():
-            raise FileError(f"no file {source}: expected one written by Trajectory.save")
-        try:
-            with xarray.open_dataset(source, engine="h5netcdf") as dataset:
-                data = dataset.load()
-        except Exception as error:  # h5py raises many kinds on damaged bytes
-            raise FileError(f"cannot read {source} as netCDF-4: {error}; was it written by Trajectory.save?") from error
-        if data.attrs.get("format") != FORMAT:
-            raise FileError(
-                f"{source} holds no flockana run (format {data.attrs.get('format')!r}, expected {FORMAT!r})"
-            )
-        try:
-            version = int(data.attrs["format_version"])
-            if version > FORMAT_VERSION:
-                raise FileError(f"{source} is of format {version}, newer than {FORMAT_VERSION}: update flockana")
-            return cls(
-                t=np.array(data["time"]),
-                q=np.array(data["q"]),
-                p=np.array(data["p"]),
-                u=np.array(data["u"]),
-                law=ensure_law(from_data(json.loads(data.attrs["law"]))),
-                extra={str(k)[6:]: np.array(v) for k, v in data.data_vars.items() if str(k).startswith("extra_")},
-                status=str(data.attrs["status"]),
-                message=str(data.attrs["message"]),
-                stats=json.loads(data.attrs["stats"]),
-                between=_read_between(data),
-            )
-        except (KeyError, ValueError, TypeError, RecursionError) as error:
-            raise FileError(f"{source} is damaged: {error!r}; run the simulation again") from error
-
-
-def to_data_mapping(stats: Mapping[str, Any]) -> dict[str, Any]:
-    """Plain data of a mapping with text keys.
-
-    Examples
-    --------
-    >>> to_data_mapping({"steps": np.int64(3)})
-    {'steps': 3}
-    """
-    return {key: to_data(value) for key, value in stats.items()}
+        return saved.load(cls, path)

@@ -3,8 +3,7 @@
 from flockana.base.binomial import clopper_pearson
 from flockana.ensemble.campaign import ensemble
 from flockana.ensemble.dataset import STATUSES, shares
-from flockana.ensemble.measures import METRICS
 from flockana.ensemble.phases import PHASES, phases
 from flockana.ensemble.store import Store
 
-__all__ = ["METRICS", "PHASES", "STATUSES", "Store", "clopper_pearson", "ensemble", "phases", "shares"]
+__all__ = ["PHASES", "STATUSES", "Store", "clopper_pearson", "ensemble", "phases", "shares"]

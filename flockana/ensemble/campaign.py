@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import inspect
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Executor
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack
 from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,14 +14,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.base.progress import progress_bar
 from flockana.dynamics.trajectory import Trajectory
 from flockana.ensemble.dataset import RESERVED, job_grid, metric_name, to_dataset
 from flockana.ensemble.digest import run_key
-from flockana.ensemble.executors import crew, ensure_crew, make_runs
-from flockana.ensemble.measures import METRICS
+from flockana.ensemble.executors import crew, ensure_crew
 from flockana.ensemble.processes import cores
+from flockana.ensemble.runs import make_runs
 from flockana.ensemble.store import Store
 from flockana.ensemble.work import COMPLETE, Job, Request, Scalar, reference, resolve
+from flockana.measures.measure import measures
 from flockana.scenarios import Scenario, scenarios
 from flockana.scenarios import scenario as named_scenario
 from flockana.scenarios.scenario import SOURCE
@@ -37,7 +39,7 @@ def ensemble(
     *,
     theorems: Iterable[str] | None = None,
     parameters: Mapping[str, Scalar | Iterable[Scalar]] | None = None,
-    metrics: Iterable[str | Callable[[Trajectory], float]] = METRICS,
+    metrics: Iterable[str | Callable[[Trajectory], float]] | None = None,
     tolerances: Tolerances | None = None,
     executor: Executor | None = None,
     cluster: str | None = None,
@@ -63,7 +65,7 @@ def ensemble(
     parameters : mapping of str to scalar or iterable, optional
         Options of the scenario: several values make a dimension of the result, one value does not.
     metrics : iterable of str or callable
-        What to keep of each run: names, by default all of `METRICS`, or functions ``trajectory -> float`` from the
+        What to keep of each run: names, by default all there are, or functions ``trajectory -> float`` from the
         top of a module.
     tolerances : Tolerances, optional
         Thresholds of the verdicts.
@@ -126,16 +128,19 @@ def ensemble(
             found = {key: one for key, one in found.items() if one.status == COMPLETE}
         missing = [job for job in grid if keys[job] not in found]
         if missing:
-            advance = stack.enter_context(_bar(len(missing), len(grid), enabled=progress))
+            advance = stack.enter_context(progress_bar(len(missing), enabled=progress, steady=True))
+            text = f"runs, {len(grid) - len(missing)} stored before" if len(missing) < len(grid) else "runs"
+            done = 0
             if executor is None and cluster is None:
                 jobs = min(jobs or cores(), len(missing))
-            with crew(executor, cluster=cluster, jobs=jobs) as hands:
-                for records in make_runs(request, missing, hands):
+            with crew(executor, cluster=cluster, jobs=jobs) as workers:
+                for records in make_runs(request, missing, workers):
                     new = {keys[one.job]: one for one in records}
                     if kept is not None:
                         kept.add(name, new)
                     found |= new
-                    advance(len(new))
+                    done += len(new)
+                    advance(done, text)
     return to_dataset(request, axes, fixed, seeds, [found[keys[job]] for job in grid])
 
 
@@ -187,12 +192,14 @@ def _scalar(name: str, value: Any) -> Scalar:
 
 
 def _ensure_metrics(metrics: Any) -> tuple[str, ...]:
+    if metrics is None:
+        return tuple(measures())
     if isinstance(metrics, str) or not isinstance(metrics, Iterable):
         raise ArgumentError(f"metrics = {metrics!r}: expected several names or functions, such as ('strain',)")
     found = []
     for one in metrics:
-        if not callable(one) and one not in METRICS:
-            raise UnknownNameError("metric", one, METRICS)
+        if not callable(one) and one not in measures():
+            raise UnknownNameError("metric", one, measures())
         found.append(reference(one) if callable(one) else one)
     return tuple(found)
 
@@ -258,35 +265,3 @@ def _source_digest(name: str, *, strict: bool) -> str:
             "the store out, or put the function into a module"
         )
     return ""
-
-
-@contextmanager
-def _bar(missing: int, total: int, *, enabled: bool) -> Iterator[Callable[[int], None]]:
-    """A bar with rate and time left, on a terminal; gives a function to call with the number of runs just done."""
-    from rich.console import Console
-    from rich.progress import (
-        BarColumn,
-        MofNCompleteColumn,
-        Progress,
-        TextColumn,
-        TimeElapsedColumn,
-        TimeRemainingColumn,
-    )
-
-    console = Console(stderr=True)
-    if not (enabled and console.is_terminal):
-        yield lambda done: None
-        return
-    stored = f", {total - missing} stored before" if total > missing else ""
-    columns = (BarColumn(24), MofNCompleteColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
-    left = (TextColumn("left"), TimeRemainingColumn())
-    with Progress(*columns, *left, console=console, transient=True) as bar:
-        task = bar.add_task(f"runs{stored}", total=missing)
-
-        def advance(done: int) -> None:
-            bar.advance(task, done)
-            state = next(one for one in bar.tasks if one.id == task)
-            rate = state.completed / state.elapsed if state.elapsed else 0.0
-            bar.update(task, description=f"runs{stored}, {rate:.3g}/s")
-
-        yield advance

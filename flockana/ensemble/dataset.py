@@ -12,8 +12,8 @@ import numpy as np
 from flockana._version import __version__
 from flockana.base.binomial import clopper_pearson, ensure_level
 from flockana.base.errors import ArgumentError
-from flockana.ensemble.measures import measure_named
 from flockana.ensemble.work import COMPLETE, DIED, ERROR, FAILED, Job, Record, Request, Scalar
+from flockana.measures.measure import measures
 
 if TYPE_CHECKING:
     import xarray
@@ -108,8 +108,8 @@ def metric_name(name: str) -> str:
 def _described(name: str) -> dict[str, str]:
     if ":" in name:
         return {"long_name": metric_name(name)}
-    found = measure_named(name)
-    return {"long_name": found.text, "units": found.unit}
+    measure = measures()[name]
+    return {"long_name": measure.summary, "units": measure.unit}
 
 
 def _flags(names: Sequence[str]) -> dict[str, Any]:

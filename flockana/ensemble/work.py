@@ -13,7 +13,7 @@ from flockana.base.errors import ArgumentError, SolverError
 from flockana.base.interrupts import interrupts_recognised
 from flockana.dynamics.trajectory import Trajectory
 from flockana.ensemble.digest import mathematics
-from flockana.ensemble.measures import METRICS, measure_named
+from flockana.measures.measure import measures
 from flockana.scenarios import Scenario, scenario
 from flockana.scenarios.scenario import SOURCE
 from flockana.theorems import Tolerances, Verdict, verify
@@ -58,7 +58,7 @@ class Request:
 
     scenario: str
     theorems: tuple[str, ...] | None = None
-    metrics: tuple[str, ...] = METRICS
+    metrics: tuple[str, ...] = field(default_factory=lambda: tuple(measures()))
     tolerances: Tolerances = field(default_factory=Tolerances)
     mathematics: str = field(default_factory=mathematics)
 
@@ -211,7 +211,7 @@ def _verdicts(request: Request, item: Scenario, run: Trajectory) -> tuple[Verdic
 
 
 def _measure(name: str) -> Callable[[Trajectory], float]:
-    return resolve(name) if ":" in name else measure_named(name).value
+    return resolve(name) if ":" in name else measures()[name].number
 
 
 def _number(value: Any) -> float | None:

@@ -153,13 +153,15 @@ class ObstacleField:
         q, p : ndarray, shape (n, m)
             Positions and velocities.
         """
-        found = []
+        by_obstacle = []
         for k, obstacle in enumerate(self.obstacles):
             agents = obstacle.beta_agents(q, p)
             near = np.flatnonzero(np.abs(agents.clearance) < self.beta.r)
-            found.append((near, np.full(near.size, k), agents.q[near], agents.p[near], np.abs(agents.clearance[near])))
+            by_obstacle.append(
+                (near, np.full(near.size, k), agents.q[near], agents.p[near], np.abs(agents.clearance[near]))
+            )
         empty = np.empty(0, np.int64), np.empty(0, np.int64), q[:0], p[:0], np.empty(0)
-        return BetaLinks(*map(np.concatenate, zip(empty, *found, strict=True)))
+        return BetaLinks(*map(np.concatenate, zip(empty, *by_obstacle, strict=True)))
 
 
 def check_free(q: FloatArray, obstacles: Sequence[Obstacle]) -> None:

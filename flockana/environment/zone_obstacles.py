@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
@@ -16,7 +17,6 @@ from flockana.base.checks import FloatArray, ensure_points, ensure_vector
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 from flockana.environment.obstacles import Sphere
-from flockana.kernels.zone_obstacles import polygon_clearance, polygon_clearance_on_segments
 
 
 @dataclass(frozen=True)
@@ -59,6 +59,14 @@ class SimplePolygon:
             )
         object.__setattr__(self, "vertices", tuple(map(tuple, corners.tolist())))
 
+    @cached_property
+    def _shape(self) -> Any:
+        import shapely
+
+        shape = shapely.Polygon(self.vertices)
+        shapely.prepare(shape)
+        return shape
+
     @property
     def edges(self) -> FloatArray:
         """Rows (x0, y0, x1, y1), shape (V, 4)."""
@@ -73,25 +81,36 @@ class SimplePolygon:
         q : array_like, shape (N, 2)
             Points.
         """
-        found: FloatArray = polygon_clearance(ensure_points("q", q), self.edges)
-        return found
+        import shapely
+
+        points = shapely.points(ensure_points("q", q))
+        distance = shapely.distance(points, self._shape.boundary)
+        signed: FloatArray = np.where(shapely.contains(self._shape, points), -distance, distance)
+        return signed
 
     def clearance_on_way(self, start: FloatArray, end: FloatArray) -> FloatArray:
         """Lower bound of the signed distance along straight ways, exact outside the polygon, shape (N,).
+
+        Where a way enters, the signed distance s changes by at most the way travelled: s >= (s_a + s_b − length)/2.
 
         Parameters
         ----------
         start, end : ndarray, shape (N, 2)
             Ends of the ways.
         """
-        found: FloatArray = polygon_clearance_on_segments(start, end, self.edges)
-        return found
+        import shapely
+
+        ways, ends = shapely.linestrings(np.stack([start, end], axis=1)), (self.clearance(start), self.clearance(end))
+        least = np.minimum(shapely.distance(ways, self._shape.boundary), np.minimum(*ends))
+        deepest = 0.5 * (ends[0] + ends[1] - np.linalg.norm(end - start, axis=1))
+        bound: FloatArray = np.where(shapely.intersects(ways, self._shape), np.minimum(least, deepest), least)
+        return bound
 
     def enclosing_circle(self) -> Sphere:
         """The smallest disc that holds it: the buffer zone of the conventional method that the paper compares with."""
         import shapely
 
-        circle = shapely.minimum_bounding_circle(shapely.Polygon(self.vertices))
+        circle = shapely.minimum_bounding_circle(self._shape)
         centre = (circle.centroid.x, circle.centroid.y)
         return Sphere(centre, float(np.linalg.norm(np.array(self.vertices) - centre, axis=1).max()))
 
@@ -108,8 +127,8 @@ def ball_clearance_on_way(ball: Sphere, start: FloatArray, end: FloatArray) -> F
     length2 = np.sum(way**2, axis=1)
     share = np.divide(np.sum(way * away, axis=1), length2, out=np.zeros(len(way)), where=length2 > 0.0)
     nearest = np.clip(share, 0.0, 1.0)[:, None] * way - away
-    found: FloatArray = np.linalg.norm(nearest, axis=1) - ball.radius
-    return found
+    clearance: FloatArray = np.linalg.norm(nearest, axis=1) - ball.radius
+    return clearance
 
 
 @dataclass(frozen=True)
@@ -156,5 +175,5 @@ class Box:
             Points.
         """
         q = ensure_points("q", q)
-        found: FloatArray = np.minimum(q - np.array(self.low), np.array(self.high) - q).min(axis=1)
-        return found
+        inside: FloatArray = np.minimum(q - np.array(self.low), np.array(self.high) - q).min(axis=1)
+        return inside

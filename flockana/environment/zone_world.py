@@ -107,8 +107,8 @@ class ZoneWorld:
             raise ArgumentError(f"{self}: expected obstacles, box and aliens of one dimension")
 
     def _dimensions(self) -> list[int]:
-        found = [2 if isinstance(o, SimplePolygon) else o.dimension for o in self.obstacles]
-        return found + [len(a.start) for a in self.aliens] + ([] if self.box is None else [len(self.box.low)])
+        dimensions = [2 if isinstance(o, SimplePolygon) else o.dimension for o in self.obstacles]
+        return dimensions + [len(a.start) for a in self.aliens] + ([] if self.box is None else [len(self.box.low)])
 
     @property
     def dimension(self) -> int | None:
@@ -156,8 +156,8 @@ class ZoneWorld:
         q : ndarray, shape (N, m)
             Points.
         """
-        found: FloatArray = np.min([o.clearance(q) for o in self.obstacles] or [np.full(len(q), np.inf)], axis=0)
-        return found
+        least: FloatArray = np.min([o.clearance(q) for o in self.obstacles] or [np.full(len(q), np.inf)], axis=0)
+        return least
 
     def clearance_on_way(self, start: FloatArray, end: FloatArray) -> FloatArray:
         """Lower bound of the signed distance from all obstacles along straight ways, exact outside them, shape (N,).
@@ -167,13 +167,13 @@ class ZoneWorld:
         start, end : ndarray, shape (N, m)
             Ends of the ways.
         """
-        found = [np.full(len(start), np.inf)]
+        bounds = [np.full(len(start), np.inf)]
         for o in self.obstacles:
             if isinstance(o, Sphere):
-                found.append(ball_clearance_on_way(o, start, end))
+                bounds.append(ball_clearance_on_way(o, start, end))
             else:
-                found.append(o.clearance_on_way(start, end))
-        return np.min(found, axis=0)  # type: ignore[no-any-return]
+                bounds.append(o.clearance_on_way(start, end))
+        return np.min(bounds, axis=0)  # type: ignore[no-any-return]
 
     def check_start(self, q: FloatArray) -> None:
         """Raise if an agent begins outside the box, in an obstacle, or at an alien.

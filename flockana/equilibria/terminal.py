@@ -127,22 +127,6 @@ def rigid_motions(q: FloatArray) -> FloatArray:
     return independent
 
 
-def relative_curvature(law: Any, q: FloatArray) -> float:
-    """Smallest eigenvalue of the law's stiffness off the rigid motions, over the largest in modulus.
-
-    NaN where there is nothing but rigid motions, or where the matrix is too large for its whole spectrum.
-
-    Examples
-    --------
-    A bond of length d resists stretching:
-
-    >>> relative_curvature(Algorithm1(), np.array([[0.0, 0.0], [7.0, 0.0]]))
-    1.0
-    """
-    around = surroundings(law, q)
-    return least_curvature(around)[0] if around else float("nan")
-
-
 def surroundings(law: Any, q: FloatArray, *, force: float = 0.0) -> Landscape | None:
     """The structural potential about a configuration; None where its Hessian is too large for the whole spectrum.
 

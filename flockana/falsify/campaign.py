@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from concurrent.futures import Executor
-from contextlib import contextmanager
 from dataclasses import replace
 from typing import Any
 
@@ -12,6 +11,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_count
 from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.base.progress import progress_bar
 from flockana.falsify.evaluate import Evaluation, Problem, units
 from flockana.falsify.falsification import Ending, Falsification
 from flockana.falsify.grade import FAILED
@@ -112,7 +112,7 @@ def falsify(
     record.add(None, first)
     search = Search(space.start, seed)
     ended: Ending = "budget"
-    with _bar(budget, f"{item.id} on {begin.name}", enabled=progress) as show:
+    with progress_bar(budget, enabled=progress, steady=True) as advance:
         try:
             while len(record.rows) < budget and (deepen or not record.best.found):
                 points = search.ask()
@@ -120,7 +120,7 @@ def falsify(
                 for point, one in zip(batch, (executor.map if executor else map)(problem, batch), strict=True):
                     grades.append(one.grade)
                     record.add(point, one)
-                    show(len(record.rows), record.best)
+                    advance(len(record.rows), f"{item.id} on {begin.name}, worst: {_worst(record.best)}")
                     if one.found and not deepen:
                         break
                 if len(grades) == len(points):
@@ -211,25 +211,6 @@ def _margin(claim: Claim) -> float:
     return float("nan") if claim.status == "vacuous" or claim.margin is None else float(claim.margin)
 
 
-@contextmanager
-def _bar(total: int, text: str, *, enabled: bool) -> Iterator[Callable[[int, Evaluation], None]]:
-    """A bar with rate, time left and the worst so far, on a terminal; gives a function to call after each run."""
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
-    console = Console(stderr=True)
-    if not (enabled and console.is_terminal):
-        yield lambda done, best: None
-        return
-    columns = (BarColumn(24), MofNCompleteColumn(), TextColumn("{task.description}", markup=False))
-    with Progress(*columns, TextColumn("left"), TimeRemainingColumn(), console=console, transient=True) as bar:
-        task = bar.add_task(text, total=total)
-
-        def show(done: int, best: Evaluation) -> None:
-            bar.update(task, completed=done)
-            state = next(one for one in bar.tasks if one.id == task)
-            rate = done / state.elapsed if state.elapsed else 0.0
-            worst = "all failed" if best.verdict is None else f"{best.claim} {best.verdict.claim(best.claim).status}"
-            bar.update(task, description=f"{text}, {rate:.3g}/s, worst: {worst}")
-
-        yield show
+def _worst(best: Evaluation) -> str:
+    """The worst claim so far and its status, beside the progress bar."""
+    return "all failed" if best.verdict is None else f"{best.claim} {best.verdict.claim(best.claim).status}"

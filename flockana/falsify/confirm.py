@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import Any, Protocol
 
 from flockana.base.checks import FloatArray
-from flockana.dynamics.integrators import FINEST
 from flockana.dynamics.simulate import simulate
+from flockana.dynamics.tolerance import FINEST
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law

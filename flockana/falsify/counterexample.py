@@ -14,9 +14,9 @@ from flockana._version import __version__
 from flockana.base.checks import FloatArray, ensure_state, ensure_time_span
 from flockana.base.errors import FileError, FlockanaError
 from flockana.base.files import replacing
-from flockana.base.serialize import from_data, to_data
+from flockana.base.serialize import from_data, to_data, to_data_mapping
 from flockana.dynamics.simulate import simulate
-from flockana.dynamics.trajectory import Trajectory, to_data_mapping
+from flockana.dynamics.trajectory import Trajectory
 from flockana.falsify.confirm import confirmed
 from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.laws.law import Law

@@ -269,12 +269,12 @@ class DeadZoneInteraction(PairInteraction):
             ("d2", self.d2, s[1], inside(s[1], inf)),
             ("r", self.r, inside(s[2], 0.0), s[2]),
         ]
-        found = []
+        jumps = []
         for name, where, low, high in sides:
             below, above = (float(x) for x in _FORCE(np.array([low, high]), par))
             if where <= self.r and not np.isclose(below, above, rtol=1e-9, atol=1e-9 * self.contact_force):
-                found.append(Jump(name, where, below, above))
-        return tuple(found)
+                jumps.append(Jump(name, where, below, above))
+        return tuple(jumps)
 
     def least_distance(self, energy: float) -> float:
         """No pair of total energy at most `energy` is closer than this: where repulsion alone has that potential.

@@ -73,7 +73,7 @@ class PairInteraction(ABC):
     @property
     @abstractmethod
     def strength(self) -> float:
-        """The strongest force between two agents, nearly; of a contact, where it is unbounded: the unit of forces."""
+        """The unit of forces: about the strongest between two agents, that of a contact where it is unbounded."""
 
     @abstractmethod
     def energy_at(self, lengths: FloatArray) -> FloatArray:

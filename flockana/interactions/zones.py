@@ -181,17 +181,17 @@ class ZoneWeights:
         ArgumentError
             If there are weights for another number of agents or aliens.
         """
-        found = {}
+        values = {}
         for field in fields(self)[:6]:
             name, value = field.name, getattr(self, field.name)
             if name in ("speed", "obstacle"):
-                found[name] = _spread(name, value, n)
+                values[name] = _spread(name, value, n)
                 continue
             shape: tuple[int, ...] = (n, aliens if name == "alien" else n)
             if isinstance(value, tuple) and np.shape(value) != shape:
                 raise ArgumentError(f"{name} has shape {np.shape(value)}: expected one number, or {shape}")
-            found[name] = np.array(np.broadcast_to(np.asarray(value, dtype=np.float64), shape))
-        return found
+            values[name] = np.array(np.broadcast_to(np.asarray(value, dtype=np.float64), shape))
+        return values
 
 
 def _table(name: str, value: Any) -> Table:

@@ -112,12 +112,12 @@ def _fill(x, pairs, owner, low, high, home, piece, stop, cell, planes, row, firs
             if not _compared(owner, low, high, home, piece, cell, s, t):
                 continue
             a, b = owner[piece[s]], owner[piece[t]]
-            found = cross(x, pairs[a, 0], pairs[a, 1], pairs[b, 0], pairs[b, 1], planes)
-            if found == 0:
+            sign = cross(x, pairs[a, 0], pairs[a, 1], pairs[b, 0], pairs[b, 1], planes)
+            if sign == 0:
                 continue
             if count == capacity:
                 return s, mark
-            first[count], second[count], sure[count] = a, b, found == 1
+            first[count], second[count], sure[count] = a, b, sign == 1
             count += 1
     return piece.size, count
 

@@ -12,7 +12,7 @@ from flockana.kernels.compiling import njit
 @njit(cache=True)
 def least_distances(q):
     """Least distance between two agents at each instant, shape (T,) of (T, n, m); ∞ for one agent."""
-    found = np.empty(len(q))
+    distances = np.empty(len(q))
     for k in range(len(q)):
         least = inf
         for i in range(q.shape[1]):
@@ -21,5 +21,5 @@ def least_distances(q):
                 for c in range(q.shape[2]):
                     s2 += (q[k, j, c] - q[k, i, c]) ** 2
                 least = min(least, s2)
-        found[k] = sqrt(least)
-    return found
+        distances[k] = sqrt(least)
+    return distances

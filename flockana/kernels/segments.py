@@ -1,4 +1,4 @@
-"""Two segments: do they meet, and how far apart are they? Signs that know when they are unsure.
+"""Whether two segments meet and how far apart they are, with signs of determinants bounded against rounding.
 
 Signs of determinants are taken in floating point where a bound of the rounding error vouches for them (Shewchuk 1997)
 and are handed back as UNSURE where it does not.
@@ -138,10 +138,10 @@ def cross(x, i, j, g, h, planes):
         t = (s + 1) % 3
         c_side, d_side = turn(a[s], a[t], b[s], b[t], c[s], c[t]), turn(a[s], a[t], b[s], b[t], d[s], d[t])
         a_side, b_side = turn(c[s], c[t], d[s], d[t], a[s], a[t]), turn(c[s], c[t], d[s], d[t], b[s], b[t])
-        found = meet(c_side, d_side, a_side, b_side)
-        if found == 0:
+        meeting = meet(c_side, d_side, a_side, b_side)
+        if meeting == 0:
             return 0
-        answer = max(answer, found)
+        answer = max(answer, meeting)
     if planes == 3:
         sign = _volume(a, b, c, d)
         if abs(sign) == 1:

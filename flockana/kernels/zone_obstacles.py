@@ -9,8 +9,6 @@ from __future__ import annotations
 
 from math import inf, sqrt
 
-import numpy as np
-
 from flockana.kernels.compiling import njit
 
 
@@ -184,36 +182,3 @@ def _walls(x, h, moving, depth, half, c, box, choices, out):
                 least, axis, force = distance, k, term
     if axis >= 0:
         out[axis] += force
-
-
-@njit(cache=True)
-def polygon_clearance(q, edges):
-    """Signed distance of points (N, 2) from a polygon's boundary, negative inside."""
-    found = np.empty(q.shape[0])
-    for i in range(q.shape[0]):
-        gx, gy, inside = to_boundary(q[i, 0], q[i, 1], edges, 0, edges.shape[0])
-        found[i] = -sqrt(gx * gx + gy * gy) if inside else sqrt(gx * gx + gy * gy)
-    return found
-
-
-@njit(cache=True)
-def polygon_clearance_on_segments(a, b, edges):
-    """Lower bound of the signed distance from a polygon along the segments a[i] b[i]: exact where they stay outside.
-
-    Where one enters, the signed distance s changes by at most the way travelled: s >= (s_a + s_b − length)/2.
-    """
-    ends, found = (polygon_clearance(a, edges), polygon_clearance(b, edges)), np.empty(a.shape[0])
-    for i in range(a.shape[0]):
-        ax, ay, bx, by = a[i, 0], a[i, 1], b[i, 0], b[i, 1]
-        found[i] = min(ends[0][i], ends[1][i])
-        enters = found[i] < 0.0
-        for k in range(edges.shape[0]):
-            cx, cy, dx, dy = edges[k, 0], edges[k, 1], edges[k, 2], edges[k, 3]
-            enters = enters or segments_meet(ax, ay, bx, by, cx, cy, dx, dy)
-            for x, y in ((cx, cy), (dx, dy)):
-                ux, uy = to_segment(x, y, ax, ay, bx, by)
-                found[i] = min(found[i], sqrt(ux * ux + uy * uy))
-        if enters:
-            length = sqrt((bx - ax) ** 2 + (by - ay) ** 2)
-            found[i] = min(found[i], 0.5 * (ends[0][i] + ends[1][i] - length))
-    return found

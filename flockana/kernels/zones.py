@@ -184,11 +184,11 @@ def behave(i, q, p, heading, estimate, alien, zones, settings, choices, world, o
 def behaviours(q, p, heading, estimate, alien, zones, settings, choices, world):
     """The six behaviours of all agents at one instant, shape (6, n, m); headings and estimates are changed."""
     n, m = q.shape
-    found, out = np.empty((6, n, m)), np.empty((6, m))
+    components, out = np.empty((6, n, m)), np.empty((6, m))
     for i in range(n):
         behave(i, q, p, heading, estimate, alien, zones, settings, choices, world, out)
-        found[:, i] = out
-    return found
+        components[:, i] = out
+    return components
 
 
 @njit(cache=True)
@@ -267,7 +267,7 @@ def run(q, p, heading, estimate, alien, zones, settings, choices, world, steps):
 def populations(q, r, c, a):
     """Mean number of agents in the zones of repulsion, conflict and attraction of an agent, (T, n, m) -> (T, 3)."""
     steps, n, m = q.shape
-    found = np.zeros((steps, 3))
+    shares = np.zeros((steps, 3))
     for t in range(steps):
         for i in range(n):
             for j in range(n):
@@ -277,15 +277,15 @@ def populations(q, r, c, a):
                 d = sqrt(d2)
                 if j == i or d > a[i]:
                     continue
-                found[t, 0 if d <= r[i] else 1 if d <= c[i] else 2] += 1.0 / n
-    return found
+                shares[t, 0 if d <= r[i] else 1 if d <= c[i] else 2] += 1.0 / n
+    return shares
 
 
 @njit(cache=True)
 def fragments(q, a):
     """(Components, agents in the largest) over time, (T, 2); linked are those of whom one attracts the other."""
     steps, n, m = q.shape
-    found = np.zeros((steps, 2), np.int64)
+    counts = np.zeros((steps, 2), np.int64)
     seen, stack = np.empty(n, np.bool_), np.empty(n, np.int64)
     for t in range(steps):
         seen[:] = False
@@ -304,6 +304,6 @@ def fragments(q, a):
                     if not seen[j] and sqrt(d2) <= max(a[i], a[j]):
                         seen[j], stack[waiting] = True, j
                         waiting += 1
-            found[t, 0] += 1
-            found[t, 1] = max(found[t, 1], size)
-    return found
+            counts[t, 0] += 1
+            counts[t, 1] = max(counts[t, 1], size)
+    return counts

@@ -85,19 +85,19 @@ def crossings(q: Any, links: Any, *, limit: int | None = None) -> LinkArray:
     if limit is not None and (isinstance(limit, bool) or not isinstance(limit, int | np.integer) or limit < 1):
         raise ArgumentError(f"limit = {limit!r}: expected a whole number >= 1, or None for all")
     exact = _Exact(q, links)
-    found, count = [np.empty((0, 2), dtype=np.int32)], 0
+    blocks, count = [np.empty((0, 2), dtype=np.int32)], 0
     for a, b, sure in crossing_blocks(q, links):
         true = sure.copy()
         for k in np.flatnonzero(~sure):
             true[k] = exact.cross(int(a[k]), int(b[k]))
-        found.append(np.column_stack([np.minimum(a, b), np.maximum(a, b)])[true])
-        count += len(found[-1])
+        blocks.append(np.column_stack([np.minimum(a, b), np.maximum(a, b)])[true])
+        count += len(blocks[-1])
         if limit is not None and count >= limit:
-            found = [np.unique(np.concatenate(found), axis=0)]
-            count = len(found[0])
+            blocks = [np.unique(np.concatenate(blocks), axis=0)]
+            count = len(blocks[0])
             if count >= limit:
                 break
-    pairs: LinkArray = np.unique(np.concatenate(found), axis=0)
+    pairs: LinkArray = np.unique(np.concatenate(blocks), axis=0)
     return pairs if limit is None else pairs[:limit]
 
 

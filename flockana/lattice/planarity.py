@@ -125,8 +125,8 @@ def kuratowski(n: int, links: Any) -> Kuratowski | None:
 
     Examples
     --------
-    >>> found = kuratowski(6, [[i, j] for i in range(3) for j in range(3, 6)])
-    >>> found.kind, found.corners
+    >>> witness = kuratowski(6, [[i, j] for i in range(3) for j in range(3, 6)])
+    >>> witness.kind, witness.corners
     ('K3,3', (0, 1, 2, 3, 4, 5))
     """
     n = ensure_count("n", n)

@@ -231,9 +231,10 @@ class ZoneFlocking(DiscreteLaw):
     def iterate(  # noqa: D102
         self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray], steps: int
     ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
-        found = compiled.run(np.array(q), np.array(p), *self._state(q, memory), *self._constants(*q.shape), steps)
-        after = {"heading": found[3], "estimate": found[4]} | ({"alien": found[5]} if self.world.aliens else {})
-        return found[0], found[1], found[2], after
+        state, constants = self._state(q, memory), self._constants(*q.shape)
+        qs, ps, us, headings, estimates, aliens = compiled.run(np.array(q), np.array(p), *state, *constants, steps)
+        after = {"heading": headings, "estimate": estimates} | ({"alien": aliens} if self.world.aliens else {})
+        return qs, ps, us, after
 
     def behaviours(self, q: Any, p: Any, memory: Mapping[str, Any] | None = None) -> dict[str, FloatArray]:
         """The six accelerations at one instant by name, each of shape (n, m), before the bound (9).
@@ -253,8 +254,8 @@ class ZoneFlocking(DiscreteLaw):
         q, p = ensure_state(q, p)
         self.check_dimension(q.shape[1])
         known = self.start(q, p) if memory is None else memory
-        found = compiled.behaviours(q, p, *self._state(q, known), *self._constants(*q.shape))
-        return dict(zip(BEHAVIOURS, found, strict=True))
+        components = compiled.behaviours(q, p, *self._state(q, known), *self._constants(*q.shape))
+        return dict(zip(BEHAVIOURS, components, strict=True))
 
     def measures(  # noqa: D102
         self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
@@ -262,7 +263,7 @@ class ZoneFlocking(DiscreteLaw):
         n = q.shape[1]
         r, c, a, _ = self.radii.arrays(n)
         parts, counts = compiled.fragments(q, a), compiled.populations(q, r, c, a)
-        found = {
+        series = {
             "connectivity": (
                 "C = rank(L)/(n − 1), of agents within a",
                 (n - parts[:, 0]) / (n - 1) if n > 1 else parts[:, 0],
@@ -270,16 +271,16 @@ class ZoneFlocking(DiscreteLaw):
             "giant_share": ("C*, share of nodes", parts[:, 1] / n),
         }
         for k, zone in enumerate(("repulsion", "conflict", "attraction")):
-            found[f"in_{zone}"] = (f"mean number of agents in the zone of {zone}", counts[:, k])
+            series[f"in_{zone}"] = (f"mean number of agents in the zone of {zone}", counts[:, k])
         if "alien" in extra:
             gaps = np.linalg.norm(q[:, :, None] - extra["alien"][:, None], axis=3)
-            found["alien_distance"] = ("least distance from an alien", gaps.min(axis=(1, 2)))
+            series["alien_distance"] = ("least distance from an alien", gaps.min(axis=(1, 2)))
         if self.world.obstacles:
-            found |= self._clearances(t, q)
+            series |= self._clearances(t, q)
         if self.world.box is not None:
             inside = self.world.box.clearance(q.reshape(-1, q.shape[2])).reshape(q.shape[:2]).min(axis=1)
-            found["wall_distance"] = ("least distance from a wall, negative outside the box", inside)
-        return found
+            series["wall_distance"] = ("least distance from a wall, negative outside the box", inside)
+        return series
 
     def _clearances(self, t: FloatArray, q: FloatArray) -> dict[str, tuple[str, FloatArray]]:
         """Clearance at the samples, and its bound on the straight way from each sample to the next."""

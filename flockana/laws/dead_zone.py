@@ -19,7 +19,7 @@ from flockana.laws.sum_of_terms import SumOfTerms
 from flockana.laws.switched import Margins, Pieces, SwitchedLaw
 from flockana.laws.terms.pairs import PairTerm
 from flockana.laws.terms.term import Term
-from flockana.measures.nets import components, links
+from flockana.measures.nets import links
 
 SLIDES = 1e-6  # of d1: a pair driven back from both sides that swings no farther than this counts as held
 
@@ -145,29 +145,11 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         _ensure_apart(q)
         return super().stiffness(q, t)
 
-    def measures(
+    def measures(  # noqa: D102
         self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
     ) -> Mapping[str, tuple[str, FloatArray]]:
-        """Connectivity and giant component of the net at r, and the energy of neighbours only, over time.
-
-        Parameters
-        ----------
-        t : ndarray, shape (T,)
-            Sample times.
-        q, p : ndarray, shape (T, n, m)
-            Positions and velocities.
-        extra : mapping
-            Not used.
-        """
-        n, r = q.shape[1], self.interaction.r
-        sizes = [np.bincount(components(n, links(x, r))) for x in q]
-        connectivity = np.array([1.0 if n == 1 else (n - s.size) / (n - 1) for s in sizes])
         literal = np.array([self.literal_energy(x, v) for x, v in zip(q, p, strict=True)])
-        return {
-            "connectivity": ("C = rank(L)/(n − 1) of the net at r", connectivity),
-            "giant_share": ("C*, share of nodes", np.array([s.max() / n for s in sizes])),
-            "literal_energy": ("H of neighbours only", literal),
-        }
+        return {"literal_energy": ("H of neighbours only", literal)}
 
     def semi_implicit(
         self, q: FloatArray, p: FloatArray, dt: float, steps: int
@@ -183,10 +165,10 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         steps : int
             How many.
         """
-        found: tuple[FloatArray, FloatArray, FloatArray] = semi_implicit_steps(
+        stepped: tuple[FloatArray, FloatArray, FloatArray] = semi_implicit_steps(
             q, p, self.interaction.par, self.k2, dt, steps
         )
-        return found
+        return stepped
 
     @property
     def located(self) -> bool:
@@ -201,8 +183,8 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         q : ndarray, shape (n, m)
             Positions.
         """
-        found: Pieces = zones(q, self.interaction.par)
-        return found
+        pieces: Pieces = zones(q, self.interaction.par)
+        return pieces
 
     def piece_flow(self, pieces: Pieces, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
         """As `flow`, every pair held in its zone.

@@ -50,7 +50,7 @@ class DiscreteLaw(LawOfMotion):
 
     def measures(  # noqa: D102
         self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
-    ) -> Mapping[str, tuple[str, FloatArray]]:
+    ) -> Mapping[str, Any]:
         return {} if self.continuous is None else self.continuous.measures(t, q, p, extra)
 
     @abstractmethod

@@ -48,9 +48,9 @@ _LACKING: Mapping[str, Any] = {"target": None, "obstacles": (), "obstacle_field"
 def _pair_among(parameters: Iterable[Any]) -> PairInteraction | None:
     """The first pair interaction of finite range, of a law that is stepped too."""
     for value in parameters:
-        found = value.pair if isinstance(value, LawOfMotion) else value
-        if isinstance(found, PairInteraction):
-            return found if np.isfinite(found.range) else None
+        pair = value.pair if isinstance(value, LawOfMotion) else value
+        if isinstance(pair, PairInteraction):
+            return pair if np.isfinite(pair.range) else None
     return None
 
 
@@ -187,7 +187,7 @@ class LawOfMotion(ABC):  # noqa: B024  # each of its two kinds has an abstract m
 
     def measures(
         self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
-    ) -> Mapping[str, tuple[str, FloatArray]]:
+    ) -> Mapping[str, Any]:
         """What is worth measuring of a run of this law, beside what is of any flock: `Trajectory.metrics` shows it.
 
         Parameters
@@ -201,7 +201,7 @@ class LawOfMotion(ABC):  # noqa: B024  # each of its two kinds has an abstract m
 
         Returns
         -------
-        mapping of str to (str, ndarray of shape (T,))
+        mapping of str to (str, ndarray of shape (T,)) or to `flockana.measures.measure.Series`
             By name, what it is in words and its values.
         """
         return {}

@@ -5,18 +5,20 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_points, ensure_positive
+from flockana.base.checks import FloatArray, ensure_points
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
-from flockana.base.units import Powers, times
+from flockana.base.units import times
 from flockana.kernels.minimal import edge_forces, perceived_edges
 from flockana.laws.discrete import DiscreteLaw
+from flockana.laws.edges import EdgeData, PerAgent, PerPair, per_agent, per_pair, weighed_edges
 from flockana.laws.law import Law
+from flockana.laws.semi_implicit import SemiImplicitEuler
+from flockana.measures.measure import Series
 from flockana.measures.nets import components
 from flockana.measures.perception import Edges, ensure_edges
 
@@ -24,45 +26,6 @@ if TYPE_CHECKING:
     from scipy.sparse import sparray
 
 _EQUAL = 1e-14  # relative: products of three numbers that are equal by algebra differ by less
-PerAgent = float | tuple[float, ...]
-PerPair = float | tuple[tuple[float, ...], ...]
-
-
-class EdgeData(NamedTuple):
-    """What acts along each directed edge, arrays of shape (M,).
-
-    Parameters
-    ----------
-    head, tail : int64 arrays
-        The agent i that perceives and the agent j that it perceives.
-    mu, rho, align : ndarray
-        Weight μ_ij of the spring, its length ρ_i = α_i r_i, and the weight of v_j − v_i.
-    """
-
-    head: npt.NDArray[np.int64]
-    tail: npt.NDArray[np.int64]
-    mu: FloatArray
-    rho: FloatArray
-    align: FloatArray
-
-
-def _per_agent(name: str, value: Any) -> PerAgent:
-    """One number > 0, or one for each agent."""
-    if np.ndim(value) == 0:
-        return ensure_positive(name, value)
-    return tuple(ensure_positive(f"{name}[{k}]", one) for k, one in enumerate(value))
-
-
-def _per_pair(name: str, value: Any) -> PerPair:
-    """One number >= 0, or a square table of them."""
-    if np.ndim(value) == 0:
-        return ensure_nonnegative(name, value)
-    table = np.asarray(value, dtype=object)
-    if table.ndim != 2 or table.shape[0] != table.shape[1]:
-        raise ArgumentError(f"{name} has shape {table.shape}: expected one number, or (n, n): how much i heeds j")
-    return tuple(
-        tuple(ensure_nonnegative(f"{name}[{i}][{j}]", one) for j, one in enumerate(row)) for i, row in enumerate(table)
-    )
 
 
 @dataclass(frozen=True)
@@ -122,9 +85,9 @@ class MinimalFlocking(Law):
             raise ArgumentError(f"normalised = {self.normalised!r}: expected True or False")
         for name in ("radius", "beta", "spacing"):
             if name == "radius" or getattr(self, name) is not None:
-                object.__setattr__(self, name, _per_agent(name, getattr(self, name)))
+                object.__setattr__(self, name, per_agent(name, getattr(self, name)))
         for name in ("mu", "sigma"):
-            object.__setattr__(self, name, _per_pair(name, getattr(self, name)))
+            object.__setattr__(self, name, per_pair(name, getattr(self, name)))
         if self.edges is not None:
             object.__setattr__(self, "edges", ensure_edges(self.edges))
         self._check_sizes()
@@ -211,7 +174,7 @@ class MinimalFlocking(Law):
     @cached_property
     def _frozen(self) -> EdgeData:
         pairs = np.array(self.edges, dtype=np.int64)
-        return self._weigh(pairs[:, 1].copy(), pairs[:, 0].copy())
+        return weighed_edges(self, pairs[:, 1].copy(), pairs[:, 0].copy())
 
     def edge_data(self, q: FloatArray) -> EdgeData:
         """Directed edges of a state with their weights and spacings, unchecked.
@@ -223,25 +186,7 @@ class MinimalFlocking(Law):
         """
         if self.edges is not None:
             return self._frozen
-        return self._weigh(*perceived_edges(q, np.full(len(q), self.radius)))
-
-    def _weigh(self, head: npt.NDArray[np.int64], tail: npt.NDArray[np.int64]) -> EdgeData:
-        def of_agent(value: PerAgent) -> Any:
-            return value if isinstance(value, float) else np.array(value)[head]
-
-        def of_pair(value: PerPair) -> FloatArray:
-            return np.full(head.size, value) if isinstance(value, float) else np.array(value)[head, tail]
-
-        if self.spacing is not None:
-            rho = of_agent(self.spacing)
-        else:
-            count = np.bincount(head)[head]
-            rho = count if self.beta is None else of_agent(self.beta) * of_agent(self.radius) * count
-        align = of_pair(self.sigma)
-        if self.normalised:
-            total = np.bincount(head, align)[head]
-            align = np.divide(align, total, out=np.zeros_like(align), where=total > 0.0)
-        return EdgeData(head, tail, of_pair(self.mu), np.full(head.size, rho, dtype=np.float64), align)
+        return weighed_edges(self, *perceived_edges(q, np.full(len(q), self.radius)))
 
     def perceived(self, q: Any) -> Edges:
         """The directed edges (j, i) of a state: i perceives j.
@@ -306,11 +251,12 @@ class MinimalFlocking(Law):
 
     def measures(  # noqa: D102
         self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
-    ) -> Mapping[str, tuple[str, FloatArray]]:
+    ) -> Mapping[str, Any]:
         if self.edges is not None:
             head, tail, _, rho, _ = self._frozen
             errors = np.abs(np.linalg.norm(q[:, tail] - q[:, head], axis=2) - rho)
-            return {"edge_error": ("largest | ‖x_e‖ − ρ_e | of an edge", errors.max(axis=1))}
+            text = "largest edge error | ‖x_e‖ − ρ_e | (length)"
+            return {"edge_error": Series(text, errors.max(axis=1), logarithmic=True)}
         labels = [components(q.shape[1], np.column_stack(self.edge_data(one)[:2])) for one in q]
         parts, largest = (np.array([f(np.bincount(one)) for one in labels], float) for f in (np.size, np.max))
         n = q.shape[1]
@@ -373,7 +319,7 @@ class MinimalFlocking(Law):
 
 
 @dataclass(frozen=True)
-class DiscreteMinimalFlocking(DiscreteLaw):
+class DiscreteMinimalFlocking(SemiImplicitEuler):
     """v' = v + δ u(p, v), p' = p + δ v': the minimal model in the order of the paper's Algorithm 1, all agents at once.
 
     Parameters
@@ -399,30 +345,13 @@ class DiscreteMinimalFlocking(DiscreteLaw):
     law: MinimalFlocking
     dt: float = 0.1
 
-    units: ClassVar[Mapping[str, Powers]] = {"dt": (0, 1)}
-
     references = ("jond-2025",)
+    approximates = False  # the paper's law is the map
     steps_at_once = 50
 
     def __post_init__(self) -> None:
         if not isinstance(self.law, MinimalFlocking):
             raise ArgumentError(f"law = {self.law!r}: expected MinimalFlocking(...)")
-        object.__setattr__(self, "dt", ensure_positive("dt", self.dt))
+        super().__post_init__()
 
-    def step(
-        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
-    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
-        """One step, unchecked; it needs no memory.
-
-        Parameters
-        ----------
-        t : float
-            Time at the start of the step.
-        q, p : ndarray, shape (n, m)
-            Positions and velocities; left as they are.
-        memory : mapping
-            Passed along.
-        """
-        u, _ = self.law.flow(t, q, p)
-        v = p + self.dt * u
-        return q + self.dt * v, v, u, memory
+    hamiltonian = DiscreteLaw.hamiltonian  # none: H is the continuous law's

@@ -62,10 +62,9 @@ class SemiImplicitEuler(DiscreteLaw):
         """Keys of the law's bibliography."""
         return self.law.references
 
-    def step(
+    def step(  # noqa: D102
         self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
     ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
-        """One step, unchecked."""
         if _is_compiled(self.law):  # the same sums in the same order as `iterate`
             next_q, next_p, applied = self.law.semi_implicit(q, p, self.dt, 1)
             return next_q[0], next_p[0], applied[0], memory
@@ -73,16 +72,15 @@ class SemiImplicitEuler(DiscreteLaw):
         p = p + self.dt * u
         return q + self.dt * p, p, u, memory
 
-    def iterate(
+    def iterate(  # noqa: D102
         self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray], steps: int
     ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
-        """Several steps at once, in one compiled loop where the law has one."""
         if _is_compiled(self.law):
             return (*self.law.semi_implicit(q, p, self.dt, steps), {})
         return super().iterate(t, q, p, memory, steps)
 
-    def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:
-        """The energy of the law that is stepped; the scheme does not keep its balance."""
+    def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:  # noqa: D102
+        # the energy of the law that is stepped; the scheme does not keep its balance
         return self.law.hamiltonian(t, q, p)
 
 

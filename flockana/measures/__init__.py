@@ -1,1 +1,4 @@
 """Numbers of one instant or of a path: nets, metrics, distances, clearances, Reynolds' rules, perception."""
+
+from flockana.measures import metrics as metrics
+from flockana.measures import reynolds as reynolds

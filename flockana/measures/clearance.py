@@ -76,12 +76,12 @@ def clearance(
 
     >>> from flockana.environment.obstacles import Sphere
     >>> q, p = np.array([[[-2.0, 1.5]], [[2.0, 1.5]]]), np.array([[[4.0, 0.0]]] * 2)
-    >>> found = clearance(np.array([0.0, 1.0]), q, p, 0.0 * p, [Sphere((0.0, 0.0), 1.0)])
-    >>> round(found.lower, 6), round(found.reached, 6), found.time
+    >>> closest = clearance(np.array([0.0, 1.0]), q, p, 0.0 * p, [Sphere((0.0, 0.0), 1.0)])
+    >>> round(closest.lower, 6), round(closest.reached, 6), closest.time
     (0.5, 0.5, 0.5)
     """
     n, m = q.shape[1:]
-    found = [_Least(t, obstacle.clearance(q.reshape(-1, m)).reshape(len(t), n)) for obstacle in obstacles]
+    least_of = [_Least(t, obstacle.clearance(q.reshape(-1, m)).reshape(len(t), n)) for obstacle in obstacles]
     extent, rows = float(np.ptp(q.reshape(-1, m), axis=0).max()), max(1, _CHUNK // n)
     tol = max(RELATIVE_TOL * extent, ROUNDING * float(np.abs(q).max()))
     for first in range(0, len(t) - 1 if obstacles else 0, rows):
@@ -94,16 +94,16 @@ def clearance(
         if slack is not None:
             allowance = allowance + slack[part]
         reach = [np.linalg.norm(points - points[:, :, end], axis=3).max(axis=2) + allowance for end in (_FIRST, _LAST)]
-        for obstacle, least in zip(obstacles, found, strict=True):
+        for obstacle, least in zip(obstacles, least_of, strict=True):
             near = np.maximum(least.at_samples[part] - reach[0], least.at_samples[after] - reach[1]) < least.lower
             row, agent = np.nonzero(near)
             bound = _refine(obstacle, points[row, agent], allowance[row, agent], least.lower, tol)
             least.update(bound, t, row + part.start, agent)
-    k = min(range(len(found)), key=lambda each: found[each].reached, default=-1)
-    bounds = np.array([least.lower for least in found])
+    k = min(range(len(least_of)), key=lambda each: least_of[each].reached, default=-1)
+    bounds = np.array([least.lower for least in least_of])
     if k < 0:
         return Clearance(inf, inf, float(t[0]), -1, -1, bounds)
-    return Clearance(float(bounds.min()), found[k].reached, found[k].time, found[k].agent, k, bounds)
+    return Clearance(float(bounds.min()), least_of[k].reached, least_of[k].time, least_of[k].agent, k, bounds)
 
 
 class _Bound(NamedTuple):
@@ -209,8 +209,8 @@ def constrained_lattice(
     --------
     >>> from flockana.environment.obstacles import Wall
     >>> wall = Wall((0.0, 0.0), (0.0, 1.0))
-    >>> found = constrained_lattice([[0.0, 4.2], [7.0, 4.7]], [wall], alpha=AlphaInteraction(), beta=BetaInteraction())
-    >>> round(found.alpha_error, 6), round(found.beta_error, 6), found.links, found.beta_links
+    >>> state = constrained_lattice([[0.0, 4.2], [7.0, 4.7]], [wall], alpha=AlphaInteraction(), beta=BetaInteraction())
+    >>> round(state.alpha_error, 6), round(state.beta_error, 6), state.links, state.beta_links
     (0.017834, 0.5, 1, 2)
     """
     q = ensure_points("q", q)

@@ -8,8 +8,8 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_points, ensure_positive
 from flockana.kernels.instants import least_distances
-from flockana.kernels.neighbours import pair_blocks
-from flockana.measures.nets import components, link_lengths, links
+from flockana.kernels.neighbours import pair_blocks, pair_list
+from flockana.measures.nets import components, link_lengths
 
 _TREE = 300  # agents from which on a search tree beats all pairs
 
@@ -29,10 +29,14 @@ def net_measures(q: Any, d: float, r: float) -> tuple[float, float, float]:
     >>> net_measures([[0.0], [3.0], [9.0]], d=3.0, r=4.0)
     (0.5, 0.6666666666666666, 0.0)
     """
-    q = ensure_points("q", q)
-    n, pairs = len(q), links(q, r)
+    q, r = ensure_points("q", q), ensure_positive("r", r)
+    return _net_measures(q, ensure_positive("d", d), r)
+
+
+def _net_measures(q: FloatArray, d: float, r: float) -> tuple[float, float, float]:
+    n, pairs = len(q), np.column_stack(pair_list(q, r))
     sizes = np.bincount(components(n, pairs))
-    excess = link_lengths(q, pairs) - ensure_positive("d", d)
+    excess = link_lengths(q, pairs) - d
     deviation = float(2.0 * np.sum(excess**2) / (2 * excess.size + 1))
     return (1.0 if n == 1 else (n - sizes.size) / (n - 1)), float(sizes.max()) / n, deviation
 
@@ -221,6 +225,19 @@ def coincident_pairs(q: Any, tol: float) -> int:
 # The same at every instant of a run, unchecked: x has shape (T, n, m), the result (T,).
 
 
+def nets(q: FloatArray, d: float, r: float) -> FloatArray:
+    """`net_measures` over time, unchecked: C, C* and E, shape (3, T).
+
+    Parameters
+    ----------
+    q : ndarray, shape (T, n, m)
+        Positions.
+    d, r : float
+        Desired distance and interaction range.
+    """
+    return np.array([_net_measures(x, d, r) for x in q]).T
+
+
 def cohesion_radii(q: FloatArray) -> FloatArray:
     """`cohesion_radius` over time, unchecked.
 
@@ -229,8 +246,8 @@ def cohesion_radii(q: FloatArray) -> FloatArray:
     q : ndarray, shape (T, n, m)
         Positions.
     """
-    found: FloatArray = np.linalg.norm(_centred(q), axis=2).max(axis=1)
-    return found
+    radii: FloatArray = np.linalg.norm(_centred(q), axis=2).max(axis=1)
+    return radii
 
 
 def spreads(x: FloatArray) -> FloatArray:
@@ -241,8 +258,8 @@ def spreads(x: FloatArray) -> FloatArray:
     x : ndarray, shape (T, n, m)
         Positions or velocities.
     """
-    found: FloatArray = 0.5 * np.sum(_centred(x) ** 2, axis=(1, 2))
-    return found
+    spread: FloatArray = 0.5 * np.sum(_centred(x) ** 2, axis=(1, 2))
+    return spread
 
 
 def min_distances(q: FloatArray) -> FloatArray:
@@ -256,8 +273,8 @@ def min_distances(q: FloatArray) -> FloatArray:
     from scipy.spatial import KDTree
 
     if q.shape[1] < _TREE:
-        found: FloatArray = least_distances(q)
-        return found
+        distances: FloatArray = least_distances(q)
+        return distances
     return np.array([np.asarray(KDTree(x).query(x, k=2)[0])[:, 1].min() for x in q])
 
 
@@ -269,8 +286,8 @@ def orders(p: FloatArray) -> FloatArray:
     p : ndarray, shape (T, n, m)
         Velocities.
     """
-    found: FloatArray = np.linalg.norm(_headings(p).mean(axis=1), axis=1)
-    return found
+    lengths: FloatArray = np.linalg.norm(_headings(p).mean(axis=1), axis=1)
+    return lengths
 
 
 def coordinations(p: FloatArray) -> FloatArray:
@@ -284,8 +301,8 @@ def coordinations(p: FloatArray) -> FloatArray:
     k = np.count_nonzero(np.any(p != 0.0, axis=2), axis=1)
     # |Σ ĥ|² counts every pair twice and every agent once
     twice = np.sum(_headings(p).sum(axis=1) ** 2, axis=1) - k
-    found: FloatArray = np.divide(twice, k * (k - 1), out=np.full(len(p), np.nan), where=k > 1)
-    return found
+    cosines: FloatArray = np.divide(twice, k * (k - 1), out=np.full(len(p), np.nan), where=k > 1)
+    return cosines
 
 
 def _centred(x: FloatArray) -> FloatArray:

@@ -14,7 +14,7 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.kernels.neighbours import pair_blocks
 from flockana.kernels.paths import bernstein, closest_pair, control_points, farthest, touching_pairs
-from flockana.measures.metrics import cohesion_radii, min_distance
+from flockana.measures.metrics import cohesion_radii, min_distances
 
 ROUNDING = 2.0**-50  # of the coordinates: a smaller distance is lost in their rounding and counts as 0
 RELATIVE_TOL = 1e-6  # of the subdivision: far below the interpolation allowance of any real run
@@ -65,7 +65,7 @@ def closest_approach(
     """
     lower, reached, when, pair = np.inf, np.inf, float(t[0]), (-1, -1)
     bounds = np.full(len(t) - 1, np.inf)
-    at_samples = np.array([min_distance(x) for x in q])
+    at_samples = min_distances(q)
     if q.shape[1] == 1:
         return ClosestApproach(np.inf, np.inf, when, pair, bounds)
     k = int(np.argmin(at_samples))
@@ -158,7 +158,7 @@ def contacts(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, *, tol:
     >>> contact.i, contact.j, contact.crossed, abs(contact.time - 0.5) < 1e-9
     (0, 1, True, True)
     """
-    found: dict[tuple[int, int], Contact] = {}
+    first: dict[tuple[int, int], Contact] = {}
     for k in range(len(t) - 1):
         h = t[k + 1] - t[k]
         points, reach, _ = control_points(h, q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1])
@@ -167,8 +167,8 @@ def contacts(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, *, tol:
             touching_pairs(points, reach, i, j, tol, at)
             for hit in np.flatnonzero(at >= 0.0):
                 a, b = sorted((int(i[hit]), int(j[hit])))
-                if (a, b) not in found:
+                if (a, b) not in first:
                     before, after = q[k, b] - q[k, a], q[k + 1, b] - q[k + 1, a]
                     crossed = q.shape[2] == 1 and bool(before[0] * after[0] < 0.0)
-                    found[a, b] = Contact(a, b, float(t[k] + at[hit] * h), crossed)
-    return tuple(sorted(found.values(), key=lambda c: (c.time, c.i, c.j)))
+                    first[a, b] = Contact(a, b, float(t[k] + at[hit] * h), crossed)
+    return tuple(sorted(first.values(), key=lambda c: (c.time, c.i, c.j)))

@@ -26,16 +26,16 @@ def ensure_edges(edges: Any) -> Edges:
     given = list(edges) if isinstance(edges, Iterable) else []
     if not given:
         raise ArgumentError(f"edges = {edges!r}: expected pairs (j, i), such as ((0, 1), (1, 2)): 1 perceives 0")
-    found: dict[tuple[int, int], None] = {}
+    unique: dict[tuple[int, int], None] = {}
     for k, edge in enumerate(given):
         pair = np.asarray(edge)
         if pair.shape != (2,) or pair.dtype.kind not in "iu" or pair.min() < 0 or pair[0] == pair[1]:
             raise ArgumentError(f"edges[{k}] = {edge!r}: expected two different agents (j, i), counted from 0")
         one = int(pair[0]), int(pair[1])
-        if one in found:
+        if one in unique:
             raise ArgumentError(f"edges[{k}] = {one}: expected each edge once; for both directions give (j, i), (i, j)")
-        found[one] = None
-    return tuple(found)
+        unique[one] = None
+    return tuple(unique)
 
 
 def both_ways(links: Iterable[tuple[int, int]]) -> Edges:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.ticker import FuncFormatter, NullFormatter
+from matplotlib.ticker import FuncFormatter, MultipleLocator, NullFormatter
 
 from flockana.plots.style import (
     BLUE,
@@ -16,8 +16,8 @@ from flockana.plots.style import (
     PURPLE,
     VERMILLION,
     ensure_axes,
+    finish,
     hairline,
-    legend_above,
     style,
 )
 
@@ -66,11 +66,9 @@ def bode(responses: Mapping[str, Any], *, marks: Mapping[str, float] | None = No
         text = {"xytext": (3, 4), "textcoords": "offset points", "color": MUTED, "fontsize": 8}
         magnitude.annotate(name, (omega, 0.0), xycoords=magnitude.get_xaxis_transform(), **text)
     magnitude.axhline(0.0, color=FAINT, linewidth=1.2, linestyle="-", zorder=0)
-    legend_above(magnitude)
-    magnitude.set_ylabel("|q_c/q_r| (dB)")
-    phase.set_ylabel("phase (degrees)")
-    phase.set_xlabel("ω (radians/time)")
-    phase.yaxis.set_major_locator(_degrees())
+    finish(magnitude, y="|q_c/q_r| (dB)")
+    finish(phase, "ω (radians/time)", "phase (degrees)")
+    phase.yaxis.set_major_locator(MultipleLocator(45.0))
     return np.ravel(axes)
 
 
@@ -97,10 +95,7 @@ def root_locus(sweep: Sweep, *, ax: Axes | None = None) -> Axes:
     ax.plot(roots[0].real, roots[0].imag, "x", color=INK, markersize=5, linestyle="none", label=first)
     ax.plot(roots[-1].real, roots[-1].imag, "o", color=VERMILLION, markersize=3.5, linestyle="none", label=last)
     ax.axvline(0.0, color=MUTED, linewidth=0.9, linestyle="-", zorder=0)
-    ax.set_xlabel("Re s (1/time)")
-    ax.set_ylabel("Im s (radians/time)")
-    legend_above(ax)
-    return ax
+    return finish(ax, "Re s (1/time)", "Im s (radians/time)")
 
 
 def gain_sweep(sweep: Sweep, *, ax: Axes | None = None) -> Axes:
@@ -118,19 +113,16 @@ def gain_sweep(sweep: Sweep, *, ax: Axes | None = None) -> Axes:
     matplotlib.axes.Axes
     """
     ax = ensure_axes(ax)
-    parts = sweep.eigenvalues.real[:, sweep.neutral :]
-    width, alpha = hairline(parts.shape[1])
-    ax.plot(sweep.values, parts, color=MUTED, linestyle="-", linewidth=width, alpha=alpha)
+    decay = sweep.eigenvalues.real[:, sweep.neutral :]
+    width, alpha = hairline(decay.shape[1])
+    ax.plot(sweep.values, decay, color=MUTED, linestyle="-", linewidth=width, alpha=alpha)
     ax.plot([], [], color=MUTED, linestyle="-", linewidth=0.8, label="every mode")
     ax.plot(sweep.values, sweep.abscissa, color=VERMILLION, linestyle="-", linewidth=2.0, label="the slowest")
     ax.axhline(0.0, color=INK, linewidth=0.8, linestyle="-")
     if sweep.neutral:
         ax.plot([], [], linestyle="none", label=f"({sweep.neutral} neutral set apart)")
-    ax.set_xlabel(_gain_label(sweep.name))
-    ax.set_ylabel("Re s (1/time)")
     ax.set_xlim(sweep.values[0], sweep.values[-1])
-    legend_above(ax)
-    return ax
+    return finish(ax, _gain_label(sweep.name), "Re s (1/time)")
 
 
 def norms(table: NormTable, *, ax: Axes | None = None) -> Axes:
@@ -158,10 +150,7 @@ def norms(table: NormTable, *, ax: Axes | None = None) -> Axes:
     ax.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
     ax.xaxis.set_minor_formatter(NullFormatter())
     ax.tick_params(axis="x", which="minor", bottom=False)
-    ax.set_xlabel("n, agents")
-    ax.set_ylabel("norm from forces to the shape")
-    legend_above(ax)
-    return ax
+    return finish(ax, "n, agents", "norm from forces to the shape")
 
 
 def delay_chart(sweeps: Mapping[str, MarginSweep], *, ax: Axes | None = None) -> Axes:
@@ -187,16 +176,8 @@ def delay_chart(sweeps: Mapping[str, MarginSweep], *, ax: Axes | None = None) ->
         ax.plot(sweep.values, sweep.margins, color=colour, linestyle=dash, label=label)
     ax.text(0.03, 0.05, "stable", transform=ax.transAxes, color=MUTED)
     ax.set_ylim(bottom=0.0)
-    ax.set_ylabel("τ*, delay margin (time)")
-    legend_above(ax)
-    return ax
+    return finish(ax, y="τ*, delay margin (time)")
 
 
 def _gain_label(name: str) -> str:
     return f"{_NAMES[name]} ({_UNITS[name[:2]]})"
-
-
-def _degrees() -> Any:
-    from matplotlib.ticker import MultipleLocator
-
-    return MultipleLocator(45.0)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flockana.base.errors import ArgumentError
-from flockana.plots.style import BLUE, MUTED, VERMILLION, ensure_axes, legend_above
+from flockana.plots.style import BLUE, MUTED, VERMILLION, ensure_axes, finish
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -59,10 +59,8 @@ def dead_zone_force(interaction: DeadZoneInteraction, *, nearest: float | None =
         ax.axvline(place, color=MUTED, linewidth=0.8, linestyle=":")
         ax.annotate(name, (place, 0.0), (3, 4), xycoords=("data", "axes fraction"), textcoords="offset points")
     ax.set_xlim(0.0, far)
-    ax.set_xlabel("distance of the pair (length)")
-    ax.set_ylabel("F, force along the line (length/time²)")
     ax.set_title("below 0 it repels", color=MUTED, fontsize=8)
-    return ax
+    return finish(ax, "distance of the pair (length)", "F, force along the line (length/time²)")
 
 
 def dead_zone_energies(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
@@ -84,19 +82,11 @@ def dead_zone_energies(trajectory: Trajectory, *, ax: Axes | None = None) -> Axe
     ArgumentError
         If the law measures no energy of neighbours.
     """
-    found = trajectory.metrics()
-    if "literal_energy" not in found:
+    metrics = trajectory.metrics()
+    if "literal_energy" not in metrics:
         raise ArgumentError(f"law = {trajectory.law!r}: expected a run of DeadZoneFlocking")
     ax = ensure_axes(ax)
     ax.plot(trajectory.t, trajectory.energy(), color=BLUE, linestyle="-", label="H̄, every pair, ψ constant beyond r")
-    ax.plot(
-        trajectory.t,
-        found.literal_energy.values,
-        color=VERMILLION,
-        linestyle="--",
-        label="H, neighbours only (printed)",
-    )
-    ax.set_xlabel("t (time)")
-    ax.set_ylabel("energy (length²/time²)")
-    legend_above(ax)
-    return ax
+    printed = metrics.literal_energy.values
+    ax.plot(trajectory.t, printed, color=VERMILLION, linestyle="--", label="H, neighbours only (printed)")
+    return finish(ax, "t (time)", "energy (length²/time²)")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.plots.style import BLUE, GREEN, INK, MUTED, PURPLE, VERMILLION, ensure_axes, legend_above
+from flockana.plots.style import BLUE, GREEN, INK, MUTED, PURPLE, VERMILLION, ensure_axes, finish
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -34,9 +34,9 @@ def linear_range(
     matplotlib.axes.Axes
     """
     ax = ensure_axes(ax)
-    for k, (label, (sizes, found, changes)) in enumerate(ranges.items()):
+    for k, (label, (sizes, deviations, changes)) in enumerate(ranges.items()):
         colour, marker, dash = _LOOKS[k % len(_LOOKS)]
-        x, y, broken = np.asarray(sizes), np.asarray(found), np.asarray(changes, dtype=bool)
+        x, y, broken = np.asarray(sizes), np.asarray(deviations), np.asarray(changes, dtype=bool)
         ax.plot(x, y, color=colour, linestyle=dash, linewidth=1.2, zorder=2)
         ax.plot(x[~broken], y[~broken], marker, color=colour, markersize=4.5, linestyle="none", label=label, zorder=3)
         look: Any = {"color": colour, "markerfacecolor": "white", "markersize": 5.0, "linestyle": "none", "zorder": 3}
@@ -50,10 +50,7 @@ def linear_range(
         ax.annotate(name, (value, 0.0), xycoords=ax.get_xaxis_transform(), rotation=90.0, ha="right", **text)
     ax.set_xscale("log")
     ax.set_yscale("log")
-    ax.set_xlabel("largest initial displacement / d")
-    ax.set_ylabel("deviation from the linear motion / displacement")
-    legend_above(ax)
-    return ax
+    return finish(ax, "largest initial displacement / d", "deviation from the linear motion / displacement")
 
 
 def measured_gains(points: Mapping[str, tuple[float, float]], *, ax: Axes | None = None) -> Axes:
@@ -75,5 +72,4 @@ def measured_gains(points: Mapping[str, tuple[float, float]], *, ax: Axes | None
         shape = _LOOKS[k % len(_LOOKS)][1]
         height = 20.0 * np.log10(ratio)
         ax.plot(omega, height, shape, color=INK, markerfacecolor="none", markersize=7.0 + 2.5 * (k % 2), label=label)
-    legend_above(ax)
-    return ax
+    return finish(ax)

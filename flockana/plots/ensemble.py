@@ -69,7 +69,7 @@ def share_against(
         raise ArgumentError(
             f"{len(chosen)} claims: expected at most {_MOST} in one picture; choose some by claims=[...]"
         )
-    axes: Any = ensure_axes(ax)
+    axes = ensure_axes(ax)
     values = table[parameter].values
     place = values if values.dtype.kind in "iuf" else np.arange(len(values))
     spread = float(np.ptp(place)) or 1.0
@@ -87,8 +87,7 @@ def share_against(
     axes.set_ylim(-0.03, 1.03)
     axes.yaxis.set_major_formatter(PercentFormatter(1.0))
     axes.set_ylabel(f"share of runs {of}, {100 * table.attrs['level']:g} % intervals")
-    _finish(axes, title)
-    return axes  # type: ignore[no-any-return]
+    return _finish(axes, title)
 
 
 def share_bars(
@@ -117,7 +116,7 @@ def share_bars(
         If the table has parameters, or no such claim.
     """
     chosen = _ensure_table(table, set(), claims, "verified")
-    axes: Any = ensure_axes(ax)
+    axes = ensure_axes(ax)
     rows = np.arange(len(chosen))[::-1]
     for of, colour, mark, shift in (("verified", BLUE, "o", 0.12), ("refuted", VERMILLION, "s", -0.12)):
         part = table.sel(claim=chosen, of=of)
@@ -134,8 +133,7 @@ def share_bars(
     axes.set_xlabel(
         f"share of {_several(table.runs.sel(claim=chosen).values)} runs, {100 * table.attrs['level']:g} % intervals"
     )
-    _finish(axes, title)
-    return axes  # type: ignore[no-any-return]
+    return _finish(axes, title)
 
 
 def distribution(
@@ -175,7 +173,7 @@ def distribution(
     ArgumentError
         If there is nothing to draw.
     """
-    axes: Any = ensure_axes(ax)
+    axes = ensure_axes(ax)
     drawn = 0
     for k, (name, values) in enumerate(groups.items()):
         known = np.sort(np.asarray(values, dtype=np.float64).ravel())
@@ -202,8 +200,7 @@ def distribution(
     axes.yaxis.set_major_formatter(PercentFormatter(1.0))
     axes.set_xlabel(quantity)
     axes.set_ylabel("share of runs at or below")
-    _finish(axes, title)
-    return axes  # type: ignore[no-any-return]
+    return _finish(axes, title)
 
 
 def phase_diagram(
@@ -241,7 +238,7 @@ def phase_diagram(
     """
     if {*phase.dims} != {x, y, "seed"}:
         raise ArgumentError(f"phase has dimensions {', '.join(map(str, phase.dims))}: expected {x}, {y} and seed")
-    axes: Any = ensure_axes(ax)
+    axes = ensure_axes(ax)
     names = phase.attrs["flag_meanings"].split()
     codes = phase.transpose(x, y, "seed").values
     seen: set[str] = set()
@@ -252,14 +249,8 @@ def phase_diagram(
             width, name = float(count) / known.size, names[code]
             colour, hatch = _PHASES[name]
             label = None if name in seen else name
-            look: dict[str, Any] = {
-                "facecolor": colour,
-                "hatch": hatch,
-                "edgecolor": "white",
-                "linewidth": 0.0,
-                "label": label,
-            }
-            axes.add_patch(Rectangle((left, row - 0.5), width, 1.0, **look))
+            look: dict[str, Any] = {"facecolor": colour, "hatch": hatch, "edgecolor": "white", "linewidth": 0.0}
+            axes.add_patch(Rectangle((left, row - 0.5), width, 1.0, label=label, **look))
             left, seen = left + width, seen | {name}
     for axis, name, label in ((axes.xaxis, x, labels[0]), (axes.yaxis, y, labels[1])):
         values = phase[name].values.tolist()
@@ -304,10 +295,11 @@ def _several(counts: Any) -> str:
     return f"{most}" if least == most else f"{least} to {most}"
 
 
-def _finish(axes: Any, title: str) -> None:
+def _finish(axes: Any, title: str) -> Axes:
     """Legend above the axes in as many columns as its texts leave room for, the title above it."""
     labels = axes.get_legend_handles_labels()[1]
     columns = max(1, min(4, len(labels), _LINE // (6 + max(len(text) for text in labels))))
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, borderaxespad=0.2, fontsize=8)
     if title:
         axes.set_title(title, pad=10 + 14 * -(-len(labels) // columns))
+    return axes  # type: ignore[no-any-return]

@@ -1,4 +1,4 @@
-"""A search for a counterexample: the margins that it met, and the least so far."""
+"""A search for a counterexample: the margin in each run, and the least so far."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from matplotlib.ticker import MaxNLocator
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.plots.style import BLUE, INK, MUTED, VERMILLION, ensure_axes, legend_above
+from flockana.plots.style import BLUE, INK, MUTED, VERMILLION, ensure_axes, finish
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -72,10 +72,10 @@ def search_history(
     ArgumentError
         If the two differ in length, or there is no run.
     """
-    values, least = (np.asarray(one, dtype=np.float64) for one in (margins, best))
+    values, least = (np.asarray(series, dtype=np.float64) for series in (margins, best))
     if values.ndim != 1 or values.shape != least.shape or not values.size:
         raise ArgumentError(f"margins {values.shape}, best {least.shape}: expected one number per run in each")
-    axes: Any = ensure_axes(ax)
+    axes = ensure_axes(ax)
     run = np.arange(1, values.size + 1)
     known = np.isfinite(values)
     axes.plot(run[known], values[known], "o", color=MUTED, markersize=2.5, label="a run")
@@ -91,13 +91,11 @@ def search_history(
     _scale(axes, values[known])
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.set_xlim(0.5, values.size + 0.5)
-    axes.set_xlabel("run of the search; the first is the scenario's own start")
-    axes.set_ylabel(f"margin of {label}" if label else "margin")
     axes.yaxis.get_offset_text().set(x=-0.09, ha="center")  # a power of ten, which would lie under the legend
-    legend_above(axes)
     if title:
         axes.set_title(title, pad=28)
-    return axes  # type: ignore[no-any-return]
+    y = f"margin of {label}" if label else "margin"
+    return finish(axes, "run of the search; the first is the scenario's own start", y)
 
 
 def _scale(axes: Any, values: FloatArray) -> None:

@@ -6,10 +6,8 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 from matplotlib.ticker import FixedLocator, NullFormatter, ScalarFormatter
-from mpl_toolkits.mplot3d.art3d import Line3DCollection  # type: ignore[import-untyped]
 
 from flockana.plots.style import (
     BLUE,
@@ -21,8 +19,10 @@ from flockana.plots.style import (
     STRAIN,
     VERMILLION,
     ensure_axes,
+    finish,
     frame_space,
-    legend_above,
+    in_plane,
+    lines,
 )
 
 if TYPE_CHECKING:
@@ -87,8 +87,8 @@ def defect_map(
     """
     points = np.asarray(q, dtype=np.float64)
     m = points.shape[1]
-    x = np.column_stack([points, np.zeros(len(points))]) if m == 1 else points
-    axes: Any = ensure_axes(ax, m=m)
+    x = in_plane(points)
+    axes = ensure_axes(ax, m=m)
     if m == 3:
         axes.computed_zorder = False  # else links are drawn across the agents in front of them
     raster = len(x) > _RASTER
@@ -103,29 +103,25 @@ def defect_map(
         edge |= {"depthshade": False} if m == 3 else {}
         axes.scatter(*these.T, s=size, marker=marker, color=colour, label=label, zorder=3, rasterized=raster, **edge)
     axes.set_title(title)
-    if m == 1:
-        axes.set(xlabel="x (length)", yticks=[], ylim=(-1.0, 1.0))
-    else:
-        frame_space(axes, x)
     look: dict[str, Any] = {"borderaxespad": 0.0, "fontsize": 8, "handletextpad": 0.2, "columnspacing": 1.0}
     axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.14), ncols=2, **look)  # wider, it would squeeze the axes
-    return axes  # type: ignore[no-any-return]  # the stubs have no three-dimensional axes
+    return frame_space(axes, x, m)
 
 
 def _draw_links(ax: Any, segments: Any, strain: Any, limit: float | None, raster: bool) -> None:
-    kind: Any = Line3DCollection if segments.shape[2] == 3 else LineCollection
     width = float(np.clip(20.0 / len(segments) ** 0.5, 0.3, 2.2)) * (0.6 if segments.shape[2] == 3 else 1.0)
     if strain is None:
-        ax.add_collection(kind(segments, colors=MUTED, linewidths=width, zorder=2, rasterized=raster))
+        ax.add_collection(lines(segments, colors=MUTED, linewidths=width, zorder=2, rasterized=raster))
         return
     values = np.asarray(strain, dtype=np.float64)
     end = (float(np.abs(values).max()) if limit is None else limit) or 1.0
-    lines = kind(segments, cmap=STRAIN, norm=Normalize(-end, end), linewidths=width, zorder=2, rasterized=raster)
-    lines.set_array(values)
-    ax.add_collection(lines)
+    norm = Normalize(-end, end)
+    coloured = lines(segments, cmap=STRAIN, norm=norm, linewidths=width, zorder=2, rasterized=raster)
+    coloured.set_array(values)
+    ax.add_collection(coloured)
     extend = ("min" if values.min() < -end else "") + ("max" if values.max() > end else "")
     scale = ax.get_figure().colorbar(
-        lines,
+        coloured,
         ax=ax,
         label="strain of links (length − d)/d",
         shrink=0.75,
@@ -142,7 +138,7 @@ def collapse(diagram: CollapseDiagram, *, ax: Axes | None = None) -> Axes:
     Parameters
     ----------
     diagram : CollapseDiagram
-        What was found.
+        Shortest distances, sizes and ratios.
     ax : matplotlib.axes.Axes, optional
         Where to draw.
 
@@ -150,7 +146,7 @@ def collapse(diagram: CollapseDiagram, *, ax: Axes | None = None) -> Axes:
     -------
     matplotlib.axes.Axes
     """
-    axes: Any = ensure_axes(ax)
+    axes = ensure_axes(ax)
     n, ratio = np.broadcast_arrays(diagram.sizes[:, None], diagram.ratios[None, :])
     apart, together, failed = diagram.coincident == 0, diagram.coincident > 0, diagram.coincident < 0
     dots = axes.scatter(
@@ -179,7 +175,7 @@ def collapse_brackets(brackets: Mapping[int, Sequence[float]], *, ax: Axes | Non
     -------
     matplotlib.axes.Axes
     """
-    axes: Any = ensure_axes(ax)
+    axes = ensure_axes(ax)
     sizes = sorted(brackets)
     low, high = np.array([brackets[n] for n in sizes]).T
     axes.vlines(sizes, low, high, color=MUTED, linewidth=1.2, zorder=2)
@@ -209,9 +205,9 @@ def barrier(
     -------
     matplotlib.axes.Axes
     """
-    axes: Any = ensure_axes(ax)
+    axes = ensure_axes(ax)
     sizes = sorted(together)
-    upper, lower = (np.array([one[n] for n in sizes]) / c_star for one in (together, ground))
+    upper, lower = (np.array([energy[n] for n in sizes]) / c_star for energy in (together, ground))
     axes.plot(sizes, upper, marker="x", color=VERMILLION, linestyle="--", label="least V where two meet")
     axes.plot(sizes, lower, marker="o", color=BLUE, linestyle="-", label="least V")
     axes.plot(sizes, upper - lower, marker="s", color=GREEN, linestyle="-.", label="barrier")
@@ -228,7 +224,4 @@ def _over_size(ax: Any, sizes: Sequence[int], label: str, *, logarithmic: bool =
         ax.yaxis.set_minor_formatter(ScalarFormatter() if np.ptp(np.log10(ax.get_ylim())) < 1.5 else NullFormatter())
     if len(sizes) <= 12:
         ax.xaxis.set_major_locator(FixedLocator(sizes))
-    ax.set_xlabel("n, agents")
-    ax.set_ylabel(label)
-    legend_above(ax)
-    return ax  # type: ignore[no-any-return]
+    return finish(ax, "n, agents", label)

@@ -42,7 +42,7 @@ def obstacles(items: Iterable[Obstacle], *, ax: Axes | None = None, view: Any = 
     matplotlib.axes.Axes
     """
     solids = tuple(items)
-    axes: Any = ensure_axes(ax, m=solids[0].dimension if solids else 2)
+    axes = ensure_axes(ax, m=solids[0].dimension if solids else 2)
     for solid in solids:
         _draw(axes, solid, np.zeros((1, solid.dimension)) if view is None else np.asarray(view, dtype=np.float64))
     return axes  # type: ignore[no-any-return]  # the stubs have no three-dimensional axes

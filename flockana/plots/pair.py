@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flockana.plots.style import BLUE, MUTED, VERMILLION, ensure_axes
+from flockana.plots.style import BLUE, MUTED, VERMILLION, ensure_axes, finish
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -62,7 +62,5 @@ def _frame(ax: Axes, interaction: AlphaInteraction, label: str) -> Axes:
     for name, x in (("d", interaction.d), ("r", interaction.r)):
         ax.axvline(x, color=MUTED, linewidth=0.8, linestyle=":")
         ax.annotate(name, (x, 1.0), (3, -9), xycoords=("data", "axes fraction"), textcoords="offset points")
-    ax.set_xlabel("distance of the pair (length)")
-    ax.set_ylabel(label)
     ax.set_xlim(0.0, 1.15 * interaction.r)
-    return ax
+    return finish(ax, "distance of the pair (length)", label)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flockana.base.errors import ArgumentError
-from flockana.plots.style import BLUE, FAINT, INK, ensure_axes, hairline
+from flockana.plots.style import BLUE, FAINT, INK, ensure_axes, finish, hairline
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -57,6 +57,4 @@ def phase_portrait(
     axes.plot(x, v, color=BLUE, linestyle="-", linewidth=width, alpha=alpha)
     axes.scatter(x[0], v[0], s=14, facecolors="white", edgecolors=BLUE, zorder=3)
     axes.scatter(x[-1], v[-1], s=14, color=BLUE, zorder=3)
-    axes.set_xlabel(labels[0])
-    axes.set_ylabel(labels[1])
-    return axes
+    return finish(axes, *labels)

@@ -10,7 +10,7 @@ from matplotlib.collections import LineCollection
 from flockana.base.checks import FloatArray, ensure_points
 from flockana.base.errors import ArgumentError
 from flockana.measures.reynolds import Reynolds
-from flockana.plots.style import BLUE, FAINT, GREEN, INK, VERMILLION, ensure_axes, frame_space, legend_above
+from flockana.plots.style import BLUE, FAINT, GREEN, INK, VERMILLION, ensure_axes, finish, frame_space
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -42,7 +42,7 @@ def rules(parts: Reynolds, q: Any, *, ax: Axes | None = None) -> Axes:
     points = ensure_points("q", q)
     if points.shape != parts.total.shape or points.shape[1] != 2:
         raise ArgumentError(f"q of shape {points.shape}, rules of shape {parts.total.shape}: expected (n, 2) of both")
-    axes: Any = ensure_axes(ax)
+    axes = ensure_axes(ax)
     signs = (parts.stress > 0.0, parts.stress < 0.0, parts.stress == 0.0)
     looks = ((BLUE, "-", "F⁺, pulls"), (VERMILLION, "--", "F⁻, pushes"), (FAINT, ":", "F⁰"))
     for chosen, (colour, dash, name) in zip(signs, looks, strict=True):
@@ -58,12 +58,11 @@ def rules(parts: Reynolds, q: Any, *, ax: Axes | None = None) -> Axes:
     longest = max(float(np.linalg.norm(part, axis=1).max()) for _, part, _ in arrows)
     for name, part, colour in arrows:
         _arrows(axes, points, part, longest, colour, name)
-    said = f"longest arrow: {longest:.3g} length/time²" if longest > 0.0 else "no rule acts"
+    scale = f"longest arrow: {longest:.3g} length/time²" if longest > 0.0 else "no rule acts"
     axes.margins(0.12)
-    frame_space(axes, points)
-    legend_above(axes)
-    axes.get_legend().set_title(said, prop={"size": 8})
-    return axes  # type: ignore[no-any-return]
+    finish(axes)
+    axes.get_legend().set_title(scale, prop={"size": 8})
+    return frame_space(axes, points, 2)
 
 
 def _arrows(ax: Any, points: FloatArray, part: FloatArray, longest: float, colour: str, name: str) -> None:

@@ -9,7 +9,19 @@ from matplotlib.ticker import FormatStrFormatter, MaxNLocator, NullFormatter
 
 from flockana.base.errors import UnknownNameError
 from flockana.laws.discrete import DiscreteLaw
-from flockana.plots.style import BLUE, GREEN, INK, MUTED, PURPLE, VERMILLION, ensure_axes, hairline, legend_above, style
+from flockana.plots.style import (
+    BLUE,
+    GREEN,
+    INK,
+    MUTED,
+    PURPLE,
+    VERMILLION,
+    ensure_axes,
+    finish_empty,
+    finish_over_time,
+    hairline,
+    subplots,
+)
 from flockana.scenarios.findings import component_counts
 
 if TYPE_CHECKING:
@@ -17,19 +29,6 @@ if TYPE_CHECKING:
 
     from flockana.dynamics.trajectory import Trajectory
 
-# name in Trajectory.metrics(), label, logarithmic; a law's own metrics bring their text themselves
-MEASURES = {
-    "connectivity": ("C, relative connectivity", False),
-    "cohesion_radius": ("R, cohesion radius (length)", False),
-    "deviation_energy": ("Ẽ, deviation energy", False),
-    "velocity_mismatch": ("K̃, velocity mismatch (length²/time²)", True),
-    "giant_share": ("C*, share of the largest component", False),
-    "min_distance": ("least distance (length)", False),
-    "inertia": ("J, inertia (length²)", False),
-    "order": ("polar order", False),
-    "coordination": ("C, coordination", False),
-    "edge_error": ("largest edge error (length)", True),
-}
 _FEW = 12  # components that a linear scale shows as well
 PANEL = ("connectivity", "cohesion_radius", "deviation_energy", "velocity_mismatch")
 
@@ -55,24 +54,19 @@ def measure(trajectory: Trajectory, name: str, *, ax: Axes | None = None) -> Axe
     UnknownNameError
         If there is no such metric.
     """
-    found = trajectory.metrics()
-    if name not in MEASURES and name not in found:
-        raise UnknownNameError("metric", name, sorted({*MEASURES, *map(str, found)}))
-    label, logarithmic = MEASURES[name] if name in MEASURES else (found[name].attrs["long_name"], False)
-    ax = ensure_axes(ax)
-    if name not in found:
-        return _empty(ax, label, "not defined for this law")
-    values = found[name].values
+    drawn, ax = trajectory.measure(name), ensure_axes(ax)
+    try:
+        values = trajectory.metric(name)
+    except UnknownNameError:
+        return finish_empty(ax, drawn.label, "not defined for this law")
     ax.plot(trajectory.t, values, color=BLUE, linestyle="-")
-    if logarithmic and (values > 0.0).any():
+    if drawn.logarithmic and (values > 0.0).any():
         ax.set_yscale("log")
-    if name in ("connectivity", "giant_share", "order"):
-        ax.set_ylim(-0.03, 1.05)
-    elif name == "coordination":
-        ax.set_ylim(min(-0.03, float(np.nanmin(values, initial=0.0)) - 0.05), 1.05)
-    elif not logarithmic and not (values < 0.0).any():
+    if drawn.at_most_one:
+        ax.set_ylim(float(np.nanmin(values, initial=0.0)) - 0.03, 1.05)
+    elif not drawn.logarithmic and not (values < 0.0).any():
         ax.set_ylim(bottom=0.0)
-    return _frame(ax, trajectory, label)
+    return finish_over_time(ax, trajectory.t, drawn.label)
 
 
 def panel(trajectory: Trajectory, *, axes: Any = None) -> Any:
@@ -90,10 +84,7 @@ def panel(trajectory: Trajectory, *, axes: Any = None) -> Any:
     ndarray of matplotlib.axes.Axes, shape (4,)
     """
     if axes is None:
-        import matplotlib.pyplot as plt
-
-        with style():
-            axes = plt.subplots(2, 2, figsize=(8.4, 5.0))[1]
+        axes = subplots(2, 2, size=(8.4, 5.0))[1]
     flat = np.ravel(axes)
     for name, ax in zip(PANEL, flat, strict=True):
         measure(trajectory, name, ax=ax)
@@ -117,9 +108,9 @@ def energy(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     ax = ensure_axes(ax)
     values = trajectory.energy()
     if not np.isfinite(values).any():
-        return _empty(ax, "H, energy", "this law has no energy")
+        return finish_empty(ax, "H, energy", "this law has no energy")
     ax.plot(trajectory.t, values, color=BLUE, linestyle="-")
-    return _frame(ax, trajectory, "H, energy")
+    return finish_over_time(ax, trajectory.t, "H, energy")
 
 
 def energy_residual(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
@@ -139,10 +130,10 @@ def energy_residual(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     ax = ensure_axes(ax)
     label = "H − H(0) − ∫ dH/dt"
     if "work" not in trajectory.extra:
-        return _empty(ax, label, "no energy balance: this law has no energy")
+        return finish_empty(ax, label, "no energy balance: this law has no energy")
     ax.axhline(0.0, color=MUTED, linewidth=0.8, linestyle="-")
     ax.plot(trajectory.t, trajectory.energy_residual, color=VERMILLION, linestyle="-", linewidth=1.0)
-    return _frame(ax, trajectory, label)
+    return finish_over_time(ax, trajectory.t, label)
 
 
 def distances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
@@ -162,7 +153,7 @@ def distances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     ax = ensure_axes(ax)
     label = "least distance (length)"
     if trajectory.n == 1:
-        return _empty(ax, label, "one agent has no distances")
+        return finish_empty(ax, label, "one agent has no distances")
     t, least = trajectory.t, trajectory.metrics()["min_distance"].values
     ax.plot(t, least, color=BLUE, linestyle="-", linewidth=2.4, alpha=0.6, label="at the samples")
     if len(t) > 1 and not isinstance(trajectory.law, DiscreteLaw):
@@ -173,8 +164,7 @@ def distances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     ):
         ax.axhline(length, color=colour, linestyle=dash, linewidth=1.1, label=name)
     ax.set_ylim(bottom=0.0)
-    legend_above(ax)
-    return _frame(ax, trajectory, label)
+    return finish_over_time(ax, trajectory.t, label)
 
 
 def components(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
@@ -194,7 +184,7 @@ def components(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     ax = ensure_axes(ax)
     label = "components of the net"
     if "connectivity" not in trajectory.metrics():
-        return _empty(ax, label, "not defined for this law")
+        return finish_empty(ax, label, "not defined for this law")
     counts = component_counts(trajectory)
     ax.plot(trajectory.t, counts, color=BLUE, linestyle="-", drawstyle="steps-post")
     if counts.max() > _FEW:
@@ -204,7 +194,7 @@ def components(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     else:
         ax.yaxis.set_major_locator(MaxNLocator(integer=True))
     ax.set_ylim(0.8, max(2.5, 1.3 * float(counts.max())))
-    return _frame(ax, trajectory, label)
+    return finish_over_time(ax, trajectory.t, label)
 
 
 def clearances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
@@ -225,7 +215,7 @@ def clearances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     label = "least clearance (length)"
     solids = trajectory.law.obstacles
     if not solids:
-        return _empty(ax, label, "there are no obstacles")
+        return finish_empty(ax, label, "there are no obstacles")
     t, q = trajectory.t, trajectory.q
     width, alpha = hairline(2 * len(solids))
     for k, solid in enumerate(solids):
@@ -239,8 +229,7 @@ def clearances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
         ax.axhline(beta.d, color=GREEN, linestyle=":", linewidth=1.1, label="d'")
         ax.set_ylim(min(0.0, bound), max(6.0 * beta.d, 1.5 * bound))
     ax.axhline(0.0, color=INK, linewidth=0.8, linestyle="-")
-    legend_above(ax)
-    return _frame(ax, trajectory, label)
+    return finish_over_time(ax, trajectory.t, label)
 
 
 def speeds(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
@@ -269,8 +258,7 @@ def speeds(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
         handed = [np.linalg.norm(target.state(s)[1]) for s in t.tolist()]
         ax.plot(t, handed, color=VERMILLION, linestyle="--", label="γ-agent's ‖p_r‖")
     ax.set_ylim(bottom=0.0)
-    legend_above(ax)
-    return _frame(ax, trajectory, "speed (length/time)")
+    return finish_over_time(ax, trajectory.t, "speed (length/time)")
 
 
 def centre_of_mass(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
@@ -295,21 +283,4 @@ def centre_of_mass(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
         path = np.array([target.position(s) for s in t.tolist()])
         for k, colour in zip(range(trajectory.m), (BLUE, GREEN, PURPLE), strict=False):
             ax.plot(t, path[:, k], color=colour, linestyle="--", linewidth=1.1, label=f"{'xyz'[k]} of the γ-agent")
-    legend_above(ax)
-    return _frame(ax, trajectory, "position (length)")
-
-
-def _frame(ax: Axes, trajectory: Trajectory, label: str) -> Axes:
-    ax.set_xlabel("t (time)")
-    ax.set_ylabel(label)
-    if len(trajectory.t) > 1:
-        ax.set_xlim(trajectory.t[0], trajectory.t[-1])
-    return ax
-
-
-def _empty(ax: Axes, label: str, reason: str) -> Axes:
-    ax.set_ylabel(label)
-    ax.set_xticks([])
-    ax.set_yticks([])
-    ax.text(0.5, 0.5, reason, ha="center", va="center", transform=ax.transAxes, color=MUTED)
-    return ax
+    return finish_over_time(ax, trajectory.t, "position (length)")

@@ -11,9 +11,7 @@ from functools import singledispatch
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
-from mpl_toolkits.mplot3d.art3d import Line3DCollection  # type: ignore[import-untyped]
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_points
 from flockana.environment.beta import ObstacleField
@@ -22,7 +20,18 @@ from flockana.interactions import BetaInteraction
 from flockana.measures.nets import link_lengths, links
 from flockana.plots.obstacles import bounds
 from flockana.plots.obstacles import obstacles as draw_obstacles
-from flockana.plots.style import GREEN, INK, MUTED, PURPLE, STRAIN, VERMILLION, ensure_axes, frame_space
+from flockana.plots.style import (
+    GREEN,
+    INK,
+    MUTED,
+    PURPLE,
+    STRAIN,
+    VERMILLION,
+    ensure_axes,
+    frame_space,
+    in_plane,
+    lines,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -152,8 +161,8 @@ def configuration(
     """
     points = ensure_points("q", q)
     m = points.shape[1]
-    axes: Any = ensure_axes(ax, m=m)
-    x = _in_plane(points)
+    axes = ensure_axes(ax, m=m)
+    x = in_plane(points)
     if edges is not None:
         pairs = np.asarray(edges, dtype=np.int64).reshape(-1, 2)
         _links(axes, x, points, pairs, d, None, bar)
@@ -164,24 +173,18 @@ def configuration(
     axes.scatter(*x.T, s=size, color=INK, linewidths=0, zorder=3, label="agents")
     seen = x
     if target is not None:
-        mark = _in_plane(np.asarray(target, dtype=np.float64)[None, :])
+        mark = in_plane(np.asarray(target, dtype=np.float64)[None, :])
         axes.scatter(
             *mark.T, s=110, marker="*", color=VERMILLION, edgecolors="white", linewidths=0.6, zorder=4, label="γ-agent"
         )
         seen = np.vstack([x, mark])
     if len(obstacles):
-        seen = np.vstack([seen, _in_plane(bounds(obstacles))])
+        seen = np.vstack([seen, in_plane(bounds(obstacles))])
         draw_obstacles(obstacles, ax=axes, view=seen[:, :m])
         if beta is not None:
             _beta_agents(axes, points, ObstacleField(tuple(obstacles), beta), size)
     axes.set_title(title + ("" if p is None else velocity_arrows(axes, points, p)), fontsize=9)
-    _frame(axes, seen, m)
-    return axes  # type: ignore[no-any-return]  # the stubs have no three-dimensional axes
-
-
-def _in_plane(points: FloatArray) -> FloatArray:
-    """Agents on a line are drawn on the axis y = 0."""
-    return np.column_stack([points, np.zeros(len(points))]) if points.shape[1] == 1 else points
+    return frame_space(axes, seen, m)
 
 
 def _links(ax: Any, x: FloatArray, points: FloatArray, pairs: Any, d: Any, r: float | None, bar: bool) -> None:
@@ -189,22 +192,21 @@ def _links(ax: Any, x: FloatArray, points: FloatArray, pairs: Any, d: Any, r: fl
 
     Where agents have many, links are thin, and those near d lie above the others.
     """
-    kind: Any = Line3DCollection if x.shape[1] == 3 else LineCollection
     few = min(1.0, (_MANY * len(points) / max(1, len(pairs))) ** 0.5)
     look: dict[str, Any] = {"linewidths": few * float(np.clip(120.0 / len(points), 0.7, 1.8)), "zorder": 2}
     if d is None:
-        ax.add_collection(kind(x[pairs], colors=MUTED, **look))
+        ax.add_collection(lines(x[pairs], colors=MUTED, **look))
         return
     strain = (link_lengths(points, pairs) - d) / d
     order = np.argsort(-np.abs(strain), kind="stable") if few < 1.0 else slice(None)
     limit = 1.0 if r is None else min(1.0, r / d - 1.0)
-    lines = kind(x[pairs[order]], cmap=STRAIN, norm=Normalize(-limit, limit), **look)
-    lines.set_array(strain[order])
-    ax.add_collection(lines)
+    coloured = lines(x[pairs[order]], cmap=STRAIN, norm=Normalize(-limit, limit), **look)
+    coloured.set_array(strain[order])
+    ax.add_collection(coloured)
     if bar:
         label, pad = "strain (length − d)/d", 0.12 if x.shape[1] == 3 else 0.03
         ends = "min" if limit < 1.0 else "max"
-        scale = ax.get_figure().colorbar(lines, ax=ax, extend=ends, shrink=0.75, aspect=28, pad=pad, label=label)
+        scale = ax.get_figure().colorbar(coloured, ax=ax, extend=ends, shrink=0.75, aspect=28, pad=pad, label=label)
         scale.outline.set_visible(False)
 
 
@@ -226,16 +228,15 @@ def _beta_agents(ax: Any, points: FloatArray, field: ObstacleField, size: float)
     near = field.links(points, np.zeros_like(points))
     if near.agent.size == 0:
         return
-    ends = np.stack([_in_plane(points[near.agent]), _in_plane(near.q)], axis=1)
-    kind: Any = Line3DCollection if ends.shape[2] == 3 else LineCollection
-    ax.add_collection(kind(ends, colors=PURPLE, linewidths=0.9, linestyles=":", zorder=2))
+    ends = np.stack([in_plane(points[near.agent]), in_plane(near.q)], axis=1)
+    ax.add_collection(lines(ends, colors=PURPLE, linewidths=0.9, linestyles=":", zorder=2))
     look = {"facecolors": "white", "edgecolors": PURPLE, "linewidths": 0.8, "zorder": 3}
     ax.scatter(*ends[:, 1].T, s=0.7 * size, marker="D", label="β-agents", **look)
 
 
 def velocity_arrows(ax: Any, q: Any, p: Any) -> str:
     """Draw velocities as arrows, the longest always as long; return what a title says of it, empty if none is drawn."""
-    x, v = _in_plane(ensure_points("q", q)), _in_plane(ensure_points("p", p))
+    x, v = in_plane(ensure_points("q", q)), in_plane(ensure_points("p", p))
     fastest = float(np.linalg.norm(v, axis=1).max())
     extent = float(np.ptp(x, axis=0).max()) or 1.0
     if fastest <= _AT_REST * extent:
@@ -247,14 +248,3 @@ def velocity_arrows(ax: Any, q: Any, p: Any) -> str:
             *x.T, *v.T, angles="xy", scale_units="width", scale=fastest / _ARROW, width=0.0022, color=GREEN, zorder=2.5
         )
     return f"   longest arrow: {fastest:.3g} length/time"
-
-
-def _frame(ax: Any, points: FloatArray, m: int) -> None:
-    """Equal axes with units; a line has no y."""
-    if m > 1:
-        frame_space(ax, points)
-        return
-    ax.set_xlabel("x (length)")
-    ax.set_yticks([])
-    ax.set_ylim(-1.0, 1.0)
-    ax.margins(x=0.05)

@@ -8,8 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.collections import LineCollection
-from mpl_toolkits.mplot3d.art3d import Line3DCollection  # type: ignore[import-untyped]
 
 from flockana.plots.animation import animate
 from flockana.plots.style import (
@@ -21,8 +19,10 @@ from flockana.plots.style import (
     PURPLE,
     VERMILLION,
     ensure_axes,
+    finish,
     frame_space,
-    legend_above,
+    in_plane,
+    lines,
 )
 from flockana.stability.modes import Mode
 from flockana.stability.motion import mode_motion
@@ -30,7 +30,7 @@ from flockana.stability.motion import mode_motion
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from flockana.stability.linearise import Linearisation
+    from flockana.stability.linearisation import Linearisation
 
 _LOOKS = (("x", BLUE), ("+", GREEN), ("1", PURPLE), ("2", INK))
 _RATIOS = (0.1, 0.3, 0.5, 0.7, 0.9)
@@ -54,7 +54,7 @@ def pole_map(poles: Any, *, grid: bool = True, ax: Axes | None = None) -> Axes:
     -------
     matplotlib.axes.Axes
     """
-    axes: Any = ensure_axes(ax)
+    axes = ensure_axes(ax)
     groups = dict(poles) if isinstance(poles, Mapping) else {"eigenvalues": poles}
     values = {name: np.asarray(group, dtype=np.complex128).ravel() for name, group in groups.items()}
     whole = np.concatenate(list(values.values()))
@@ -71,8 +71,6 @@ def pole_map(poles: Any, *, grid: bool = True, ax: Axes | None = None) -> Axes:
     if zeros:
         look = {"color": INK, "markerfacecolor": "none", "markersize": 9.0, "zorder": 4}
         axes.plot(0.0, 0.0, "o", label=f"zero eigenvalues: {zeros}", **look)
-    axes.set_xlabel("Re λ (1/time)")
-    axes.set_ylabel("Im λ (rad/time)")
     axes.margins(0.08)
     axes.autoscale_view()
     height = max(1.2 * float(np.abs(whole.imag).max()), 0.2 * float(np.abs(whole).max()))  # real poles have none
@@ -80,8 +78,7 @@ def pole_map(poles: Any, *, grid: bool = True, ax: Axes | None = None) -> Axes:
         axes.set_ylim(-height, height)
     if grid:
         _damping_rays(axes)
-    legend_above(axes)
-    return axes  # type: ignore[no-any-return]
+    return finish(axes, "Re λ (1/time)", "Im λ (rad/time)")
 
 
 def _damping_rays(ax: Any) -> None:
@@ -128,17 +125,15 @@ def mode_shape(q: Any, links: Any, shape: Any, *, target: Any = None, ax: Axes |
     """
     points, moves = np.asarray(q, dtype=np.float64), np.asarray(shape)
     m = points.shape[1]
-    axes: Any = ensure_axes(ax, m=m)
-    if m == 1:  # agents on a line move along it
-        points, moves = (np.column_stack([part, np.zeros(len(part))]) for part in (points, moves))
+    axes = ensure_axes(ax, m=m)
+    points, moves = in_plane(points), in_plane(moves)
     extent = float(np.ptp(points, axis=0).max()) or 1.0
     moves = moves * (_ARROW * extent / (float(np.abs(moves).max()) or 1.0))
-    kind: Any = Line3DCollection if m == 3 else LineCollection
     if len(links):
-        axes.add_collection(kind(points[np.asarray(links)], colors=FAINT, linewidths=1.0, zorder=1))
+        axes.add_collection(lines(points[np.asarray(links)], colors=FAINT, linewidths=1.0, zorder=1))
     if np.iscomplexobj(moves):
         orbits = points[:, None] + np.real(np.exp(1j * _RING)[None, :, None] * moves[:, None])
-        axes.add_collection(kind(orbits, colors=VERMILLION, linewidths=0.9, zorder=2))
+        axes.add_collection(lines(orbits, colors=VERMILLION, linewidths=0.9, zorder=2))
     size = float(np.clip(700.0 / len(points), 3.0, 22.0))
     axes.scatter(*points.T, s=size, color=INK, linewidths=0, zorder=3)
     arrows = np.real(moves)
@@ -154,14 +149,10 @@ def mode_shape(q: Any, links: Any, shape: Any, *, target: Any = None, ax: Axes |
         axes.scatter(*mark.T, s=90, marker="*", color=PURPLE, edgecolors="white", linewidths=0.6, zorder=3.5)
         seen = np.vstack([seen, mark])
     axes.set_title(title)
-    if m == 1:
-        axes.set(xlabel="x (length)", yticks=[], ylim=(-1.0, 1.0))
-    else:
-        if m == 2:  # neither arrows nor collections count in the view
-            axes.update_datalim(seen)
-            axes.autoscale_view()
-        frame_space(axes, seen)
-    return axes  # type: ignore[no-any-return]  # the stubs have no three-dimensional axes
+    if m == 2:  # neither arrows nor collections count in the view
+        axes.update_datalim(seen)
+        axes.autoscale_view()
+    return frame_space(axes, seen, m)
 
 
 def mode_title(mode: Mode) -> str:

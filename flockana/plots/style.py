@@ -7,9 +7,12 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import matplotlib as mpl
+import numpy as np
 from cycler import cycler
+from matplotlib.collections import LineCollection
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.ticker import MaxNLocator
+from mpl_toolkits.mplot3d.art3d import Line3DCollection  # type: ignore[import-untyped]
 
 from flockana.base.checks import FloatArray
 
@@ -79,10 +82,10 @@ def style() -> Iterator[None]:
         mpl.interactive(interactive)
 
 
-def ensure_axes(ax: Any, *, m: int = 2) -> Axes:
+def ensure_axes(ax: Any, *, m: int = 2) -> Any:
     """Return `ax`, or new axes in flockana's look: flat ones, or three-dimensional ones for m = 3."""
     if ax is not None:
-        return ax  # type: ignore[no-any-return]
+        return ax
     import matplotlib.pyplot as plt
 
     with style():
@@ -117,6 +120,32 @@ def subplots(
         return plt.subplots(rows, columns, figsize=size or (4.4 * columns, 3.4 * rows), subplot_kw=kind)
 
 
+def finish(ax: Any, x: str = "", y: str = "") -> Axes:
+    """Name the two axes of a drawing and put a legend above it if something in it has a label; returns the axes."""
+    if x:
+        ax.set_xlabel(x)
+    if y:
+        ax.set_ylabel(y)
+    if ax.get_legend_handles_labels()[0]:
+        legend_above(ax)
+    return ax  # type: ignore[no-any-return]
+
+
+def finish_over_time(ax: Any, t: FloatArray, y: str) -> Axes:
+    """Finish a drawing over time: from the first of the times to the last."""
+    if len(t) > 1:
+        ax.set_xlim(t[0], t[-1])
+    return finish(ax, "t (time)", y)
+
+
+def finish_empty(ax: Any, y: str, reason: str) -> Axes:
+    """Leave the axes empty, with the reason in their middle."""
+    ax.set_xticks([])
+    ax.set_yticks([])
+    ax.text(0.5, 0.5, reason, ha="center", va="center", transform=ax.transAxes, color=MUTED)
+    return finish(ax, y=y)
+
+
 def legend_above(ax: Any) -> None:
     """Put the legend above the axes, where it hides no data."""
     columns = 3 if len(ax.get_legend_handles_labels()[0]) in (3, 5, 6) else 4
@@ -142,17 +171,31 @@ def hairline(n: int) -> tuple[float, float]:
     return min(max(20.0 / n, 0.4), 1.2), min(max(20.0 / n, 0.4), 0.9)
 
 
-def frame_space(ax: Any, points: FloatArray) -> None:
-    """Label the axes of space and scale them equally: a cube about the points where m = 3."""
-    names = "xyz"[: points.shape[1]]
+def in_plane(points: FloatArray) -> FloatArray:
+    """Points as they are drawn: those of a line on the axis y = 0."""
+    return np.column_stack([points, np.zeros(len(points))]) if points.shape[1] == 1 else points
+
+
+def lines(segments: Any, **look: Any) -> Any:
+    """A collection of lines to add to axes, of the plane or of space: each a sequence of as many points."""
+    return (Line3DCollection if np.shape(segments)[-1] == 3 else LineCollection)(segments, **look)
+
+
+def frame_space(ax: Any, points: FloatArray, m: int) -> Axes:
+    """Label the axes of space and scale them equally: a cube about the points where m = 3; a line has no y."""
+    if m == 1:
+        ax.set(xlabel="x (length)", yticks=[], ylim=(-1.0, 1.0))
+        return ax  # type: ignore[no-any-return]
+    names = "xyz"[:m]
     for name in names:
         getattr(ax, f"set_{name}label")(f"{name} (length)")
-    if len(names) == 2:
+    if m == 2:
         ax.set_aspect("equal", adjustable="datalim")
-        return
+        return ax  # type: ignore[no-any-return]
     ax.set_box_aspect(None, zoom=0.82)  # room for the labels, which the layout does not measure
     low, high = points.min(axis=0), points.max(axis=0)
     middle, half = 0.5 * (low + high), 0.53 * float((high - low).max()) or 1.0
     for name, centre in zip(names, middle.tolist(), strict=True):
         getattr(ax, f"set_{name}lim")(centre - half, centre + half)
         getattr(ax, f"{name}axis").set_major_locator(MaxNLocator(4))
+    return ax  # type: ignore[no-any-return]

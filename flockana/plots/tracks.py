@@ -5,11 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.collections import LineCollection
-from mpl_toolkits.mplot3d.art3d import Line3DCollection  # type: ignore[import-untyped]
 
 from flockana.base.checks import FloatArray
-from flockana.plots.style import BLUE, INK, MUTED, VERMILLION, ensure_axes, frame_space, hairline, legend_above
+from flockana.plots.style import BLUE, INK, MUTED, VERMILLION, ensure_axes, finish, frame_space, hairline, lines
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,17 +31,15 @@ def trajectories(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     -------
     matplotlib.axes.Axes
     """
-    axes: Any = ensure_axes(ax, m=trajectory.m)
+    axes = ensure_axes(ax, m=trajectory.m)
     paths = np.stack([_plane(trajectory.t, trajectory.q[:, i]) for i in range(trajectory.n)])
-    kind = Line3DCollection if trajectory.m == 3 else LineCollection
     width, alpha = hairline(trajectory.n)
-    axes.add_collection(kind(list(paths), colors=BLUE, linewidths=width, alpha=alpha))
+    axes.add_collection(lines(list(paths), colors=BLUE, linewidths=width, alpha=alpha))
     axes.scatter(*paths[:, 0].T, s=7, facecolors="none", edgecolors=MUTED, linewidths=0.6, label="start", zorder=3)
     axes.scatter(*paths[:, -1].T, s=7, color=INK, linewidths=0, label="end", zorder=3)
     target = _target(axes, trajectory)
     _frame(axes, np.vstack([paths.reshape(-1, paths.shape[2]), *target]), trajectory.m)
-    legend_above(axes)
-    return axes  # type: ignore[no-any-return]  # the stubs have no three-dimensional axes
+    return finish(axes)
 
 
 def centre_path(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
@@ -60,7 +56,7 @@ def centre_path(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     -------
     matplotlib.axes.Axes
     """
-    axes: Any = ensure_axes(ax, m=trajectory.m)
+    axes = ensure_axes(ax, m=trajectory.m)
     centre = _plane(trajectory.t, trajectory.q.mean(axis=1))
     axes.plot(*centre.T, color=BLUE, linestyle="-", linewidth=1.8, label="centre of mass")
     axes.scatter(*centre[:1].T, s=28, facecolors="white", edgecolors=BLUE, zorder=3)
@@ -68,8 +64,7 @@ def centre_path(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     target = _target(axes, trajectory)
     _frame(axes, np.vstack([centre, *target]), trajectory.m)
     _widen(axes, np.vstack([centre, *target]), trajectory)
-    legend_above(axes)
-    return axes  # type: ignore[no-any-return]  # the stubs have no three-dimensional axes
+    return finish(axes)
 
 
 def _widen(ax: Any, points: FloatArray, trajectory: Trajectory) -> None:
@@ -100,7 +95,6 @@ def _target(ax: Any, trajectory: Trajectory) -> tuple[FloatArray, ...]:
 
 def _frame(ax: Any, points: FloatArray, m: int) -> None:
     if m == 1:
-        ax.set_xlabel("t (time)")
-        ax.set_ylabel("x (length)")
+        ax.set(xlabel="t (time)", ylabel="x (length)")
     else:
-        frame_space(ax, points)
+        frame_space(ax, points, m)

@@ -6,9 +6,8 @@ from itertools import combinations, product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.collections import PolyCollection
 from matplotlib.patches import Circle, Polygon, Rectangle
-from mpl_toolkits.mplot3d.art3d import Line3DCollection  # type: ignore[import-untyped]
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar
 from flockana.base.errors import ArgumentError
@@ -29,9 +28,10 @@ from flockana.plots.style import (
     PURPLE,
     VERMILLION,
     ensure_axes,
+    finish_over_time,
     frame_space,
     hairline,
-    legend_above,
+    lines,
 )
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ def zones(
     when = trajectory.t[-1] if time is None else ensure_finite_scalar("time", time)
     k = int(np.argmin(np.abs(trajectory.t - when)))
     q, heading = trajectory.q[k], trajectory.extra["heading"][k]
-    axes: Any = ensure_axes(ax, m=m)
+    axes = ensure_axes(ax, m=m)
     seen = [q, _corners(law.world, m)]
     if m == 2:
         _world(axes, law.world, buffer=law.obstacle_zone == "buffer")
@@ -88,9 +88,8 @@ def zones(
             _triangles(axes, q, heading, law)
     else:
         _space(axes, law.world)
-    kind: Any = Line3DCollection if m == 3 else LineCollection
     pairs = links(q, float(np.nextafter(law.radii.reach[2], np.inf)))
-    axes.add_collection(kind(q[pairs], colors=MUTED, linewidths=0.8, alpha=0.7, zorder=2))
+    axes.add_collection(lines(q[pairs], colors=MUTED, linewidths=0.8, alpha=0.7, zorder=2))
     axes.scatter(*q.T, s=22, color=INK, linewidths=0, zorder=3, label="agents")
     if m == 3:
         axes.quiver(*q.T, *heading.T, length=law.radii.reach[1], color=BLUE, linewidth=0.8)
@@ -100,8 +99,7 @@ def zones(
         axes.scatter(*aliens.T, s=70, marker="X", color=VERMILLION, edgecolors="white", linewidths=0.6, zorder=4)
     fastest = velocity_arrows(axes, q, trajectory.p[k]) if velocities else ""
     axes.set_title(f"t = {trajectory.t[k]:.4g}{fastest}", fontsize=9)
-    frame_space(axes, np.vstack(seen))
-    return axes  # type: ignore[no-any-return]  # the stubs have no three-dimensional axes
+    return frame_space(axes, np.vstack(seen), m)
 
 
 @draw_sample.register(ZoneFlocking)
@@ -165,7 +163,7 @@ def _space(ax: Any, world: ZoneWorld) -> None:
     if world.box is not None:
         corners = list(product(*zip(world.box.low, world.box.high, strict=True)))
         edges = [pair for pair in combinations(corners, 2) if np.count_nonzero(np.subtract(*pair)) == 1]
-        ax.add_collection(Line3DCollection(edges, colors=INK, linewidths=0.8))
+        ax.add_collection(lines(edges, colors=INK, linewidths=0.8))
 
 
 def zone_distances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
@@ -194,7 +192,7 @@ def zone_distances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     for radius, (name, colour, dash) in zip(law.radii.reach, looks, strict=True):
         ax.axhline(radius, color=colour, linestyle=dash, linewidth=1.1, label=name)
     ax.set_ylim(bottom=0.0)
-    return _frame(ax, trajectory, "distance (length)")
+    return finish_over_time(ax, trajectory.t, "distance (length)")
 
 
 def zone_speeds(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
@@ -216,7 +214,7 @@ def zone_speeds(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     ax.axhline(law.desired_speed, color=GREEN, linestyle=":", linewidth=1.2, label="desired")
     ax.axhline(law.v_max, color=VERMILLION, linestyle="--", linewidth=1.1, label="bound")
     ax.set_ylim(0.0, 1.08 * law.v_max)
-    return _frame(ax, trajectory, "speed (length/time)")
+    return finish_over_time(ax, trajectory.t, "speed (length/time)")
 
 
 def zone_controls(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
@@ -237,7 +235,7 @@ def zone_controls(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     _agents(ax, trajectory, np.linalg.norm(trajectory.u, axis=2))
     ax.axhline(law.u_max, color=VERMILLION, linestyle="--", linewidth=1.1, label="bound")
     ax.set_ylim(0.0, 1.08 * law.u_max)
-    return _frame(ax, trajectory, "input ‖u‖ (length/time²)")
+    return finish_over_time(ax, trajectory.t, "input ‖u‖ (length/time²)")
 
 
 def zone_safety(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
@@ -255,21 +253,21 @@ def zone_safety(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     matplotlib.axes.Axes
     """
     _law(trajectory)
-    ax, found = ensure_axes(ax), trajectory.metrics()
+    ax, metrics = ensure_axes(ax), trajectory.metrics()
     shown = (
         ("obstacle_clearance_bound", "obstacle", BLUE, "-"),
         ("wall_distance", "wall", GREEN, "-."),
         ("alien_distance", "alien", VERMILLION, "--"),
     )
     for name, label, colour, dash in shown:
-        if name in found:
-            ax.plot(trajectory.t, found[name].values, color=colour, linestyle=dash, linewidth=1.1, label=label)
+        if name in metrics:
+            ax.plot(trajectory.t, metrics[name].values, color=colour, linestyle=dash, linewidth=1.1, label=label)
     if not ax.get_legend_handles_labels()[0]:
         ax.set_yticks([])
         ax.text(0.5, 0.5, "nothing to keep clear of", ha="center", va="center", transform=ax.transAxes, color=MUTED)
     else:
         ax.axhline(0.0, color=INK, linewidth=0.8, linestyle="-")
-    return _frame(ax, trajectory, "least distance (length)")
+    return finish_over_time(ax, trajectory.t, "least distance (length)")
 
 
 def zone_populations(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
@@ -287,11 +285,11 @@ def zone_populations(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     matplotlib.axes.Axes
     """
     _law(trajectory)
-    ax, found = ensure_axes(ax), trajectory.metrics()
+    ax, metrics = ensure_axes(ax), trajectory.metrics()
     for zone, colour, dash in (("repulsion", VERMILLION, "--"), ("conflict", PURPLE, "-."), ("attraction", GREEN, ":")):
-        ax.plot(trajectory.t, found[f"in_{zone}"].values, color=colour, linestyle=dash, linewidth=1.2, label=zone)
+        ax.plot(trajectory.t, metrics[f"in_{zone}"].values, color=colour, linestyle=dash, linewidth=1.2, label=zone)
     ax.set_ylim(bottom=0.0)
-    return _frame(ax, trajectory, "agents in the zone, mean")
+    return finish_over_time(ax, trajectory.t, "agents in the zone, mean")
 
 
 def _agents(ax: Any, trajectory: Trajectory, values: FloatArray) -> None:
@@ -299,13 +297,3 @@ def _agents(ax: Any, trajectory: Trajectory, values: FloatArray) -> None:
     ax.plot(trajectory.t, values, color=BLUE, linestyle="-", linewidth=width, alpha=alpha)
     ax.plot([], [], color=BLUE, linestyle="-", linewidth=0.8, label="agents")
     ax.plot(trajectory.t, values.mean(axis=1), color=INK, linestyle="-", linewidth=1.4, label="mean")
-
-
-def _frame(ax: Any, trajectory: Trajectory, label: str) -> Axes:
-    if ax.get_legend_handles_labels()[0]:
-        legend_above(ax)
-    ax.set_xlabel("t (time)")
-    ax.set_ylabel(label)
-    if len(trajectory.t) > 1:
-        ax.set_xlim(trajectory.t[0], trajectory.t[-1])
-    return ax  # type: ignore[no-any-return]

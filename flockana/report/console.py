@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Sequence
 
 import numpy as np
-from rich import box
-from rich.console import Console, Group
+from rich.console import Group
 from rich.markup import escape
 from rich.padding import Padding
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
-from rich.table import Table
+from rich.table import Column, Table
 from rich.text import Text
 
 from flockana.dynamics.trajectory import Trajectory
 from flockana.report.pages import Finding, Page, ScenarioPage
 from flockana.report.statistics import StatisticsSection
+from flockana.report.tables import column, headed_table
 from flockana.report.text import MARKS, deciding_claim, show
 from flockana.scenarios import scenario, scenarios
 from flockana.theorems import Verdict, theorem, theorems
@@ -36,16 +34,15 @@ def _expectation(finding: Finding) -> Text:
 
 def verdict_table(pages: Iterable[Page]) -> Table:
     """A row per verdict, grouped by what it was checked on."""
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), collapse_padding=True)
     widths = {"theorem": None, "status": 14, "rigour": 8, "decided by": None, "expected": 8}
-    for heading, width in widths.items():  # on a narrow terminal names give way, findings do not
-        table.add_column(heading, no_wrap=True, min_width=width)
-    for one in pages:
-        if isinstance(one, ScenarioPage):
-            table.add_row(Text(one.name, style="bold"))
-        for finding in one.findings:
+    columns = (column(heading, width=width) for heading, width in widths.items())
+    table = headed_table(*columns, collapse_padding=True)
+    for page in pages:
+        if isinstance(page, ScenarioPage):
+            table.add_row(Text(page.name, style="bold"))
+        for finding in page.findings:
             verdict, claim = finding.verdict, deciding_claim(finding.verdict)
-            indent = "  " if isinstance(one, ScenarioPage) else ""
+            indent = "  " if isinstance(page, ScenarioPage) else ""
             table.add_row(
                 Text(indent + verdict.theorem),
                 _status(verdict.status),
@@ -58,9 +55,7 @@ def verdict_table(pages: Iterable[Page]) -> Table:
 
 def statistics_table(section: StatisticsSection) -> Table:
     """A row per claim: in which share of the seeds it is verified, and refuted, in per cent with intervals."""
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
-    for heading in ("claim", "verified", "refuted"):
-        table.add_column(heading, no_wrap=True, justify="left" if heading == "claim" else "right")
+    table = headed_table(column("claim"), column("verified", right=True), column("refuted", right=True))
     for entry in section.entries:
         left_out = f", {entry.incomplete} incomplete" if entry.incomplete else ""
         table.add_row(Text.assemble((entry.scenario, "bold"), f", {entry.runs} seeds{left_out}"))
@@ -73,10 +68,8 @@ def details(verdict: Verdict) -> Group:
     """A verdict in full: hypotheses and claims, each with its finding in words."""
     on = f" on {verdict.subject}" if verdict.subject else ""
     title = Text.assemble((verdict.theorem, "bold"), on, ": ", _status(verdict.status))
-    table = Table(box=None, show_header=False, pad_edge=False, padding=(0, 1))
-    table.add_column(max_width=26)
-    table.add_column(no_wrap=True)
-    table.add_column(ratio=1)
+    columns = Column(max_width=26), Column(no_wrap=True), Column(ratio=1)
+    table = Table(*columns, box=None, show_header=False, pad_edge=False, padding=(0, 1))
     for h in verdict.hypotheses:
         table.add_row(Text(f"given: {h.name}", style="bright_black"), h.status, Text(h.detail))
     for c in verdict.claims:
@@ -87,10 +80,10 @@ def details(verdict: Verdict) -> Group:
 
 def summary(pages: Sequence[Page], seconds: float) -> str:
     """How many verdicts of each kind, how many as expected, in what time."""
-    findings = [finding for one in pages for finding in one.findings]
+    findings = [finding for page in pages for finding in page.findings]
     kinds = ((s, sum(f.verdict.status == s for f in findings)) for s in MARKS)
     counts = ", ".join(f"{count} {status}" for status, count in kinds if count)
-    surprises = sum(len(one.surprises) for one in pages)
+    surprises = sum(len(page.surprises) for page in pages)
     judged = "all as expected" if not surprises else f"{surprises} different from the expected"
     if not any(f.expected for f in findings):
         judged = "nothing was expected"
@@ -100,9 +93,7 @@ def summary(pages: Sequence[Page], seconds: float) -> str:
 
 def scenario_table() -> Table:
     """The catalogue of scenarios: size, law and time span, title, source, theorems."""
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), show_lines=True)
-    table.add_column("scenario", no_wrap=True)
-    table.add_column("what", ratio=1)
+    table = headed_table(column("scenario"), Column("what", ratio=1), show_lines=True)
     for name in scenarios():
         item = scenario(name)
         n, m = item.q0.shape
@@ -115,10 +106,8 @@ def scenario_table() -> Table:
 
 def theorem_table() -> Table:
     """The catalogue of theorems: id, title, what each is checked on, source."""
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
-    table.add_column("theorem", no_wrap=True, style="bold")
-    table.add_column("what, and where it is printed", ratio=1)
-    table.add_column("checked on", no_wrap=True)
+    name_column = Column("theorem", no_wrap=True, style="bold")
+    table = headed_table(name_column, Column("what, and where it is printed", ratio=1), column("checked on"))
     kinds = {"trajectory": "a run", "configuration": "positions", "fixed": "itself"}
     for name in theorems():
         item = theorem(name)
@@ -128,10 +117,8 @@ def theorem_table() -> Table:
 
 def run_table(run: Trajectory) -> Table:
     """The metrics of a run at its start and its end."""
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
-    table.add_column("measure")
-    for when in (f"t = {run.t[0]:g}", f"t = {run.t[-1]:g}"):
-        table.add_column(when, justify="right", no_wrap=True)
+    times = (column(f"t = {run.t[k]:g}", right=True) for k in (0, -1))
+    table = headed_table("measure", *times)
     for name, series in run.metrics().items():
         label = f"{series.attrs['long_name']}"
         table.add_row(escape(f"{name}: {label}"), *(f"{float(series[k]):.5g}" for k in (0, -1)))
@@ -141,17 +128,3 @@ def run_table(run: Trajectory) -> Table:
     if "work" in run.extra:
         table.add_row("residual of the energy balance", "0", f"{run.energy_residual[-1]:.2g}")
     return table
-
-
-@contextmanager
-def progress_bar(console: Console, total: int, *, enabled: bool) -> Iterator[Callable[[int, tuple[str, ...]], None]]:
-    """A bar over tasks, on a terminal only; gives a function to call with (done, names under way)."""
-    columns = (BarColumn(24), MofNCompleteColumn(), TimeElapsedColumn(), TextColumn("{task.description}"))
-    hidden = not (enabled and console.is_terminal)
-    with Progress(*columns, console=console, transient=True, disable=hidden) as bar:
-        task = bar.add_task("starting", total=total)
-
-        def advance(done: int, names: tuple[str, ...]) -> None:
-            bar.update(task, completed=done, description=", ".join(names))
-
-        yield advance

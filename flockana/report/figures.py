@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import base64
-import importlib
-import pkgutil
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
@@ -15,6 +13,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from flockana import plots
+from flockana.base.modules import modules
 from flockana.dynamics.trajectory import Trajectory
 from flockana.plots.snapshot import drawn_law
 from flockana.scenarios.findings import component_counts
@@ -41,10 +40,7 @@ class Picture:
 @cache
 def _own() -> tuple[tuple[tuple[type, ...], Callable[[Trajectory], tuple[Picture, ...]]], ...]:
     """(laws, pictures) of every module of this package whose name ends in _figures: laws with figures of their own."""
-    package = importlib.import_module("flockana.report")
-    names = [info.name for info in pkgutil.iter_modules(package.__path__) if info.name.endswith("_figures")]
-    modules = [importlib.import_module(f"flockana.report.{name}") for name in names]
-    return tuple((module.LAWS, module.pictures) for module in modules)
+    return tuple((module.LAWS, module.pictures) for module in modules("flockana.report", ending="_figures"))
 
 
 def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:

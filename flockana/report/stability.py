@@ -19,7 +19,7 @@ from flockana.report.figures import Picture, png
 from flockana.report.pages import Page
 from flockana.scenarios import scenario, scenarios
 from flockana.stability import Linearisation, linearise
-from flockana.stability.tracking import path_and_factor
+from flockana.stability.centre_path import path_and_factor
 from flockana.stability.translational import CentreOfMass
 from flockana.theorems import Verdict
 

@@ -48,15 +48,15 @@ class Survey:
 
 
 @dataclass(frozen=True)
-class Surveyed:
-    """A survey that was made.
+class SurveyResult:
+    """The records of a survey's runs.
 
     Parameters
     ----------
     survey : Survey
-        What was asked.
+        Which runs.
     records : tuple of Record
-        What was found, one of each seed.
+        One of each seed.
     """
 
     survey: Survey
@@ -94,9 +94,9 @@ def surveys(name: str | None, count: int | None, *, seed: int = 0) -> tuple[Surv
     )
 
 
-def carry_out(survey: Survey) -> Surveyed:
-    """Make the runs in this process."""
-    return Surveyed(survey, run_batch(_request(survey.scenario), tuple(Job(seed) for seed in survey.seeds)))
+def make_survey(survey: Survey) -> SurveyResult:
+    """Make and judge the runs of a survey in this process."""
+    return SurveyResult(survey, run_batch(_request(survey.scenario), tuple(Job(seed) for seed in survey.seeds)))
 
 
 def _request(name: str) -> Request:
@@ -208,17 +208,17 @@ class StatisticsSection:
         return {"level": self.level, "scenarios": [asdict(one) for one in self.entries]}
 
 
-def gather(asked: Sequence[Survey], made: Iterable[Surveyed], *, figures: bool = True) -> StatisticsSection | None:
+def gather(asked: Sequence[Survey], made: Iterable[SurveyResult], *, figures: bool = True) -> StatisticsSection | None:
     """The section of all scenarios whose surveys were all made; None if there is no such."""
-    found = {one.survey: one.records for one in made}
-    whole = []
-    for name in dict.fromkeys(one.scenario for one in asked):
-        parts = [one for one in asked if one.scenario == name]
-        if all(one in found for one in parts):  # half a table is not shown as if it were whole
-            seeds = [seed for one in parts for seed in one.seeds]
-            records = [record for one in parts for record in found[one]]
-            whole.append(to_dataset(_request(name), {}, {}, seeds, records))
-    return statistics_section(whole, figures=figures) if whole else None
+    records = {result.survey: result.records for result in made}
+    datasets = []
+    for name in dict.fromkeys(survey.scenario for survey in asked):
+        batches = [survey for survey in asked if survey.scenario == name]
+        if all(survey in records for survey in batches):  # half a table is not shown as if it were whole
+            seeds = [seed for survey in batches for seed in survey.seeds]
+            runs = [record for survey in batches for record in records[survey]]
+            datasets.append(to_dataset(_request(name), {}, {}, seeds, runs))
+    return statistics_section(datasets, figures=figures) if datasets else None
 
 
 def statistics_section(

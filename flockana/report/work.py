@@ -1,23 +1,20 @@
-"""Run and verify many scenarios, in processes of their own where that pays."""
+"""Run and verify many scenarios, in several processes."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, wait
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
 from dataclasses import dataclass
 
 from flockana.base.errors import ArgumentError, FlockanaError, SolverError, UnknownNameError
 from flockana.base.interrupts import interrupts_recognised
-from flockana.ensemble.processes import ProcessPool
+from flockana.ensemble.batches import work_through
+from flockana.ensemble.executors import crew
 from flockana.report.pages import FixedResult, Page, ScenarioResult, page
-from flockana.report.statistics import Survey, Surveyed, carry_out
+from flockana.report.statistics import Survey, SurveyResult, make_survey
 from flockana.scenarios import scenario, scenarios
 from flockana.theorems import theorem, theorems, verify
 
 ERRATA = "errata"
-_TICK = 0.2  # seconds between looks at what is running
 
 
 @dataclass(frozen=True)
@@ -46,7 +43,7 @@ class Task:
 
 
 def plan(name: str | None = None, *, seed: int = 0, figures: bool = True) -> tuple[Task, ...]:
-    """What to do for a name: scenarios in the order of the catalogue, then theorems by themselves.
+    """The tasks that a name stands for: scenarios in the order of the catalogue, then theorems by themselves.
 
     Examples
     --------
@@ -58,17 +55,17 @@ def plan(name: str | None = None, *, seed: int = 0, figures: bool = True) -> tup
     if name is None:
         wanted: tuple[str, ...] = theorems()
     elif name == ERRATA:
-        wanted = tuple(one for one in theorems() if one[0].isupper())
+        wanted = tuple(erratum for erratum in theorems() if erratum[0].isupper())
     elif name in theorems():
         wanted = (name,)
     else:
         raise UnknownNameError("scenario or theorem", name, (*scenarios(), *theorems(), ERRATA))
     runs = []
-    for one in scenarios():
-        shared = tuple(t for t in scenario(one, seed).theorems if t in wanted)
+    for subject in scenarios():
+        shared = tuple(t for t in scenario(subject, seed).theorems if t in wanted)
         if name is None or shared:
-            runs.append(Task(one, seed=seed, only=() if name is None else shared, figures=figures))
-    fixed = [Task(one, fixed=True) for one in wanted if theorem(one).kind == "fixed"]
+            runs.append(Task(subject, seed=seed, only=() if name is None else shared, figures=figures))
+    fixed = [Task(t, fixed=True) for t in wanted if theorem(t).kind == "fixed"]
     if not runs and not fixed:
         raise ArgumentError(
             f"{name} is checked on a {theorem(wanted[0]).kind}, and no scenario names it: "
@@ -77,61 +74,45 @@ def plan(name: str | None = None, *, seed: int = 0, figures: bool = True) -> tup
     return (*runs, *fixed)
 
 
-def do(task: Task | Survey) -> Page | Surveyed:
-    """Carry out one task in this process."""
-    with interrupts_recognised():
-        if isinstance(task, Survey):
-            return carry_out(task)
-        if task.fixed:
-            return page(FixedResult(theorem(task.name), verify(task.name)))
-        item = scenario(task.name, task.seed)
-        run = item.run()
-        if run.status == "interrupted":
-            raise KeyboardInterrupt
-        verdicts = tuple(verify(one, run, subject=item.name) for one in task.only) or item.verify(run)
-        return page(ScenarioResult(item, run, verdicts), figures=task.figures)
-
-
-def perform(
-    tasks: Sequence[Task | Survey], *, jobs: int = 1, watch: Callable[[tuple[str, ...]], None] = lambda names: None
-) -> Iterator[Page | Surveyed]:
-    """Carry out tasks, yielding what each finds as it is done; on Ctrl-C, stop what runs and raise."""
-    jobs = min(jobs, len(tasks))
-    if jobs <= 1:
-        for task in tasks:
-            watch((task.name,))
-            yield do(task)
-        return
-    pool = ProcessPool(jobs)
+def check(task: Task | Survey) -> Page | SurveyResult:
+    """Run and verify one task in this process; an error names the task."""
     try:
-        with _explained():
-            futures = {pool.submit(_do_for_parent, task): task.name for task in tasks}
-        pending = set(futures)
-        while pending:
-            done, pending = wait(pending, timeout=_TICK, return_when=FIRST_COMPLETED)
-            for future in done:
-                with _explained():
-                    result = future.result()
-                yield result
-            watch(tuple(futures[f] for f in futures if f in pending and f.running())[:jobs])
-        pool.shutdown()
-    except BaseException:
-        pool.stop()
-        raise
-
-
-def _do_for_parent(task: Task | Survey) -> Page | Surveyed:
-    try:
-        return do(task)
+        with interrupts_recognised():
+            if isinstance(task, Survey):
+                return make_survey(task)
+            if task.fixed:
+                return page(FixedResult(theorem(task.name), verify(task.name)))
+            item = scenario(task.name, task.seed)
+            run = item.run()
+            if run.status == "interrupted":
+                raise KeyboardInterrupt
+            verdicts = tuple(verify(name, run, subject=item.name) for name in task.only) or item.verify(run)
+            return page(ScenarioResult(item, run, verdicts), figures=task.figures)
     except FlockanaError as error:
-        # sent as one plain kind: errors with constructors of their own do not survive the way between processes
+        # one plain kind: errors with constructors of their own do not survive the way between processes
         raise FlockanaError(f"{task.name}: {error}") from None
 
 
-@contextmanager
-def _explained() -> Iterator[None]:
-    """A pool that broke, which a submission may be the first to meet, as our error with a remedy."""
-    try:
-        yield
-    except BrokenProcessPool as error:
-        raise SolverError("a worker process died; if memory is short, try --jobs 1") from error
+def check_all(
+    tasks: Sequence[Task | Survey],
+    *,
+    jobs: int = 1,
+    watch: Callable[[tuple[Task | Survey, ...]], None] = lambda under_way: None,
+) -> Iterator[Page | SurveyResult]:
+    """Run and verify tasks in so many processes, giving each result as it is done; Ctrl-C stops what runs and raises.
+
+    A task that ends its process (for want of memory, say) is named in an error, when all others are done.
+    """
+    if not tasks:
+        return
+    lost: list[str] = []
+    with crew(jobs=min(jobs, len(tasks))) as workers:
+        for done in work_through(tasks, _check_batch, workers, watch=watch):
+            yield from (result for _, result in done if result is not None)
+            lost += [task.name for task, result in done if result is None]
+    if lost:
+        raise SolverError(f"{', '.join(lost)}: the worker process ended; if memory is short, try --jobs 1")
+
+
+def _check_batch(tasks: tuple[Task | Survey, ...]) -> tuple[Page | SurveyResult, ...]:
+    return tuple(check(task) for task in tasks)

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import importlib
 import inspect
-import pkgutil
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache
@@ -12,6 +10,7 @@ from typing import Any
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.base.modules import modules
 from flockana.base.units import rescale, times
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
@@ -202,12 +201,11 @@ def differences(verdict: Verdict, expected: Mapping[str, Status]) -> tuple[str, 
 
 @cache
 def catalogue() -> dict[str, Callable[..., Scenario]]:
-    """Builders of all scenarios, by name: what the modules of this package call SCENARIOS."""
-    package = importlib.import_module("flockana.scenarios")
-    found: dict[str, Callable[..., Scenario]] = {}
-    for info in pkgutil.iter_modules(package.__path__):
-        found |= getattr(importlib.import_module(f"flockana.scenarios.{info.name}"), "SCENARIOS", {})
-    return dict(sorted(found.items()))
+    """How to build each scenario, by its name: the `SCENARIOS` of every module of this package."""
+    builders: dict[str, Callable[..., Scenario]] = {}
+    for module in modules("flockana.scenarios"):
+        builders |= getattr(module, "SCENARIOS", {})
+    return dict(sorted(builders.items()))
 
 
 def scenarios() -> tuple[str, ...]:

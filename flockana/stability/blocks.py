@@ -160,8 +160,8 @@ def law_blocks(law: Any, q: Any, *, t: float = 0.0, strict: bool = True) -> Bloc
             f"q is no equilibrium: residual force {residual:.2g} of the law's force scale, more than {RESIDUAL:g}; "
             "find_equilibrium finds one, and strict=False studies this state all the same"
         )
-    found = linearise(law, q, t=t, allow_residual=True)
-    return blocks(found.stiffness.toarray(), found.damping.toarray(), q)
+    linearised = linearise(law, q, t=t, allow_residual=True)
+    return blocks(linearised.stiffness.toarray(), linearised.damping.toarray(), q)
 
 
 def _kernel(matrix: FloatArray, basis: FloatArray) -> FloatArray:

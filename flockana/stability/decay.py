@@ -14,7 +14,7 @@ from flockana.base.errors import ArgumentError
 from flockana.dynamics.simulate import simulate
 from flockana.measures.frame import moving_frame
 from flockana.measures.nets import links
-from flockana.stability.linearise import Linearisation
+from flockana.stability.linearisation import Linearisation
 from flockana.stability.modes import Mode
 from flockana.stability.motion import mode_motion
 
@@ -75,7 +75,7 @@ class Decay:
         return abs(self.random_measured / self.random_linear - 1.0)
 
 
-def slowest_seen(found: Linearisation) -> Mode:
+def slowest_seen(flock: Linearisation) -> Mode:
     """The slowest mode that shows in velocities relative to the centre of mass.
 
     Examples
@@ -85,7 +85,7 @@ def slowest_seen(found: Linearisation) -> Mode:
     >>> slowest_seen(linearise(Algorithm1(), [[0.0, 0.0], [7.0, 0.0]])).name
     'breathing'
     """
-    for mode in found.modes:
+    for mode in flock.modes:
         if float(np.linalg.norm(mode.shape - mode.shape.mean(axis=0))) >= _SEEN:
             if mode.decays:
                 return mode
@@ -93,10 +93,10 @@ def slowest_seen(found: Linearisation) -> Mode:
                 f"mode {mode.name} has decay rate {mode.decay_rate:.3g}, where rounding alone may make "
                 f"{mode.error:.1g}: expected a stable flock"
             )
-    raise ArgumentError(f"n = {len(found.q)}: expected a mode of the shape; this flock has none")
+    raise ArgumentError(f"n = {len(flock.q)}: expected a mode of the shape; this flock has none")
 
 
-def decay(found: Linearisation, *, name: str = "", amplitude: float = AMPLITUDE, seed: int = 0) -> Decay:
+def decay(flock: Linearisation, *, name: str = "", amplitude: float = AMPLITUDE, seed: int = 0) -> Decay:
     """Run the nonlinear flock from a small perturbation along its slowest mode, and from a random one.
 
     K̃ falls as exp(−2 σ t), times a function of the mode's half period. The slope is therefore that of sums over half
@@ -110,8 +110,8 @@ def decay(found: Linearisation, *, name: str = "", amplitude: float = AMPLITUDE,
     >>> pair.difference < 1e-3
     True
     """
-    mode = slowest_seen(found)
-    size = ensure_positive("amplitude", amplitude) * _length(found)
+    mode = slowest_seen(flock)
+    size = ensure_positive("amplitude", amplitude) * _length(flock)
     half = pi / mode.frequency if mode.frequency else 1.0 / mode.decay_rate
     count = max(_FEWEST, ceil(log(_FALL) / (2.0 * mode.decay_rate * half)))
     if count > _MOST:
@@ -120,19 +120,19 @@ def decay(found: Linearisation, *, name: str = "", amplitude: float = AMPLITUDE,
             f"{mode.damping_ratio:.2g}): expected at most {_MOST // 2} times; take more damping"
         )
     t = np.linspace(0.0, count * half, count * _SAMPLES + 1)
-    start = mode_motion(found, mode, amplitude=size, samples=2)
-    mismatch = _mismatch(_run(found, start.q[0] - found.q, start.p[0], t)[1])
+    start = mode_motion(flock, mode, amplitude=size, samples=2)
+    mismatch = _mismatch(_run(flock, start.q[0] - flock.q, start.p[0], t)[1])
     slopes = _slopes(mismatch, half)
     rng = np.random.default_rng(seed)
-    dq = moving_frame(rng.standard_normal(found.q.shape))
+    dq = moving_frame(rng.standard_normal(flock.q.shape))
     dq *= size / float(np.linalg.norm(dq, axis=1).max())
     late = int(_LATE * t.size)
     late_linear, late_measured = (
         float(-0.5 * _slopes(_mismatch(p)[late:], half).mean())
-        for p in (_linear(found, dq, 0.0 * dq, t)[1], _run(found, dq, 0.0 * dq, t)[1])
+        for p in (_linear(flock, dq, 0.0 * dq, t)[1], _run(flock, dq, 0.0 * dq, t)[1])
     )
     measured, error = -0.5 * float(slopes.mean()), 0.5 * float(slopes.std())
-    law, (n, m) = type(found.law).__name__, found.q.shape
+    law, (n, m) = type(flock.law).__name__, flock.q.shape
     return Decay(
         name or law, law, n, m, mode, mode.decay_rate, measured, error, late_linear, late_measured, t, mismatch
     )
@@ -227,13 +227,13 @@ class LinearRange:
 
 
 def linear_range(
-    found: Linearisation, *, name: str = "", amplitudes: Sequence[float] = tuple(np.geomspace(1e-4, 0.3, 15).tolist())
+    flock: Linearisation, *, name: str = "", amplitudes: Sequence[float] = tuple(np.geomspace(1e-4, 0.3, 15).tolist())
 ) -> LinearRange:
     """Compare nonlinear runs from perturbations along the slowest mode with its linear motion, as they grow.
 
     Parameters
     ----------
-    found : Linearisation
+    flock : Linearisation
         The linearised flock.
     name : str
         Of the equilibrium.
@@ -249,46 +249,46 @@ def linear_range(
     --------
     >>> from flockana.laws.olfati_saber import Algorithm1
     >>> from flockana.stability.linearise import linearise
-    >>> found = linear_range(linearise(Algorithm1(), [[0.0], [7.0]]), amplitudes=[1e-4, 2e-4])
-    >>> round(found.exponent, 1)
+    >>> flock = linear_range(linearise(Algorithm1(), [[0.0], [7.0]]), amplitudes=[1e-4, 2e-4])
+    >>> round(flock.exponent, 1)
     2.0
     """
     levels = np.array([ensure_positive("amplitudes", x) for x in amplitudes])
     if levels.size == 0 or np.any(np.diff(levels) <= 0.0):
         raise ArgumentError(f"amplitudes = {amplitudes!r}: expected rising numbers")
-    mode, pair = slowest_seen(found), found.law.pair
+    mode, pair = slowest_seen(flock), flock.law.pair
     reach = inf if pair is None else pair.range
     deviations, changes = [], []
-    for size in (levels * _length(found)).tolist():
-        line = mode_motion(found, mode, amplitude=size, periods=1.0 + 3.0 * bool(mode.frequency), samples=97)
-        q, _ = _run(found, line.q[0] - found.q, line.p[0], line.t)
-        drift = _off_centre(found, q - line.q)
+    for size in (levels * _length(flock)).tolist():
+        line = mode_motion(flock, mode, amplitude=size, periods=1.0 + 3.0 * bool(mode.frequency), samples=97)
+        q, _ = _run(flock, line.q[0] - flock.q, line.p[0], line.t)
+        drift = _off_centre(flock, q - line.q)
         deviations.append(float(np.linalg.norm(drift, axis=2).max()) / size)
         changes.append(len({links(x, reach).tobytes() for x in q}) > 1 if np.isfinite(reach) else False)
     return LinearRange(
-        name or type(found.law).__name__, levels, np.array(deviations), np.array(changes), _margin(found, mode, reach)
+        name or type(flock.law).__name__, levels, np.array(deviations), np.array(changes), _margin(flock, mode, reach)
     )
 
 
-def _length(found: Linearisation) -> float:
+def _length(flock: Linearisation) -> float:
     """The law's own length, d, else the size of the flock."""
-    own = found.law.scales
-    return own.length if own else float(np.linalg.norm(found.q - found.q.mean(axis=0), axis=1).max()) or 1.0
+    own = flock.law.scales
+    return own.length if own else float(np.linalg.norm(flock.q - flock.q.mean(axis=0), axis=1).max()) or 1.0
 
 
-def _run(found: Linearisation, dq: FloatArray, dp: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _run(flock: Linearisation, dq: FloatArray, dp: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Positions and velocities of the nonlinear flock, in the frame that moves with the equilibrium."""
-    times = found.t + t
+    times = flock.t + t
     span = float(times[0]), float(times[-1])
-    run = simulate(found.law, found.q + dq, found.p + dp, span, t_eval=times, rtol=_RTOL)
-    return run.q - t[:, None, None] * found.p, run.p - found.p
+    run = simulate(flock.law, flock.q + dq, flock.p + dp, span, t_eval=times, rtol=_RTOL)
+    return run.q - t[:, None, None] * flock.p, run.p - flock.p
 
 
-def _linear(found: Linearisation, dq: FloatArray, dp: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _linear(flock: Linearisation, dq: FloatArray, dp: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
     """δq, δp of the linear flock at equally spaced times."""
     from scipy.linalg import expm
 
-    step, state = expm(found.A * (t[1] - t[0])), np.concatenate([dq.ravel(), dp.ravel()])
+    step, state = expm(flock.A * (t[1] - t[0])), np.concatenate([dq.ravel(), dp.ravel()])
     states = np.empty((t.size, state.size))
     for k in range(t.size):
         states[k], state = state, step @ state
@@ -296,17 +296,17 @@ def _linear(found: Linearisation, dq: FloatArray, dp: FloatArray, t: FloatArray)
     return split[:, 0], split[:, 1]
 
 
-def _off_centre(found: Linearisation, x: FloatArray) -> FloatArray:
+def _off_centre(flock: Linearisation, x: FloatArray) -> FloatArray:
     """Without the motion of the centre of mass, which nothing holds or which is a system of its own."""
-    free = found.law.splits and found.second_order.split.exact
+    free = flock.law.splits and flock.second_order.split.exact
     return x - x.mean(axis=1, keepdims=True) if free else x
 
 
 def _mismatch(p: FloatArray) -> FloatArray:
     """K̃ at every sample."""
     relative = p - p.mean(axis=1, keepdims=True)
-    found: FloatArray = 0.5 * np.sum(relative**2, axis=(1, 2))
-    return found
+    mismatch: FloatArray = 0.5 * np.sum(relative**2, axis=(1, 2))
+    return mismatch
 
 
 def _slopes(mismatch: FloatArray, half: float) -> FloatArray:
@@ -317,14 +317,14 @@ def _slopes(mismatch: FloatArray, half: float) -> FloatArray:
     return slopes
 
 
-def _margin(found: Linearisation, mode: Mode, reach: float) -> float:
+def _margin(flock: Linearisation, mode: Mode, reach: float) -> float:
     """Amplitude in units of d at which the first pair comes to the distance r, as its length swings to first order."""
     if not np.isfinite(reach):
         return inf
-    i, j = np.triu_indices(len(found.q), 1)
-    delta = found.q[j] - found.q[i]
+    i, j = np.triu_indices(len(flock.q), 1)
+    delta = flock.q[j] - flock.q[i]
     length = np.linalg.norm(delta, axis=1)
     shape = mode.shape / float(np.linalg.norm(np.real(mode.shape), axis=1).max())
     rate = np.abs(np.einsum("kc,kc->k", delta / length[:, None], shape[j] - shape[i]))
     moving = rate > 1e-9
-    return float((np.abs(length - reach)[moving] / rate[moving]).min(initial=inf)) / _length(found)
+    return float((np.abs(length - reach)[moving] / rate[moving]).min(initial=inf)) / _length(flock)

@@ -190,8 +190,8 @@ def _phases(system: DelaySystem, omega: float) -> ComplexArray:
     """The values that e^jωτ would have to take, largest modulus first."""
     (k0, d0), (k1, d1) = system.prompt, system.late
     now = k0 - omega**2 * np.eye(len(k0)) + 1j * omega * d0
-    found = np.linalg.eigvals(-np.linalg.solve(now, k1 + 1j * omega * d1)).astype(np.complex128)
-    return found[np.argsort(-np.abs(found), kind="stable")]
+    phases = np.linalg.eigvals(-np.linalg.solve(now, k1 + 1j * omega * d1)).astype(np.complex128)
+    return phases[np.argsort(-np.abs(phases), kind="stable")]
 
 
 def _angle(z: complex) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_count, ensure_positive, ensure_state, ensure_time_span
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.dynamics.encounters import Encounters, State
-from flockana.dynamics.integrators import count_steps
+from flockana.dynamics.iterate import count_steps
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.laws.terms.pairs import PairTerm
 from flockana.stability.blocks import ensure_pairs_and_pull

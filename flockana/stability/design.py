@@ -157,8 +157,8 @@ class GainDesign:
         """
         from dataclasses import replace
 
-        found = self.heterogeneous if heterogeneous else self.homogeneous
-        pull, drag = found.reshape(2, -1)
+        chosen = self.heterogeneous if heterogeneous else self.homogeneous
+        pull, drag = chosen.reshape(2, -1)
         if heterogeneous:
             return replace(base, c1_gamma=pull, c2_gamma=drag)
         return replace(base, c1_gamma=float(pull[0]), c2_gamma=float(drag[0]))
@@ -243,8 +243,8 @@ def design_gains(
     A lone agent is best damped critically: √5 with c1γ <= 5.
 
     >>> alone = GainProblem(np.zeros((1, 1)), np.zeros((1, 1)), np.zeros((1, 0)), 1)
-    >>> found = design_gains(alone, starts=1)
-    >>> round(found.rate_homogeneous**2, 3), found.homogeneous.round(2).tolist()
+    >>> designs = design_gains(alone, starts=1)
+    >>> round(designs.rate_homogeneous**2, 3), designs.homogeneous.round(2).tolist()
     (5.0, [5.0, 4.47])
     """
     low, high = _bounds(bounds)
@@ -254,8 +254,8 @@ def design_gains(
     for k in range(ensure_count("starts", starts)):
         near = alike + 0.1 * (high - low) * rng.standard_normal(2 * n)
         trials.append(np.clip(near, low, high) if k % 2 == 0 else rng.uniform(low, high, 2 * n))
-    found = [_descend(problem, start, low, high) for start in trials]
-    best = min([alike, *found], key=problem.abscissa)
+    designs = [_descend(problem, start, low, high) for start in trials]
+    best = min([alike, *designs], key=problem.abscissa)
     if polish:
         best = min([best, _evolve(problem, best, low, high, polish, seed)], key=problem.abscissa)
     spectra = problem.eigenvalues(alike), problem.eigenvalues(best)
@@ -288,8 +288,10 @@ def _homogeneous(problem: GainProblem, low: float, high: float) -> FloatArray:
         fine = {"xatol": _SMALLEST * (high - low), "fatol": _GAINED * abs(problem.abscissa(spread((a, b))))}
         options: Any = {"initial_simplex": np.clip(simplex, low, high), "maxfev": 200, **fine}
         box = [(low, high)] * 2
-        found = minimize(_folded(problem, spread), np.array([a, b]), method="Nelder-Mead", bounds=box, options=options)
-        best = min(best, spread(found.x), key=problem.abscissa)
+        polished = minimize(
+            _folded(problem, spread), np.array([a, b]), method="Nelder-Mead", bounds=box, options=options
+        )
+        best = min(best, spread(polished.x), key=problem.abscissa)
     return best
 
 

@@ -19,13 +19,13 @@ from flockana.base.checks import FloatArray
 from flockana.base.errors import SolverError
 from flockana.equilibria.curvature import EPS
 from flockana.equilibria.terminal import rigid_motions
+from flockana.stability.mode_names import name_kernel, normalised, pure_fields, translations
 from flockana.stability.rounding import eigen, root_error, slowest_first
 
 ZERO = 1e-8  # of the largest row sum: what K does to a motion that costs nothing
 _SPLIT = 1e-10  # relative: how much of the centre's motion may leak into the shape where the split is called exact
 _PURE = 0.99  # cosine to a rotation or a uniform expansion from which on a mode is named for it
 _ROUNDINGS = 8.0  # of eps √N times the largest row sum, where rows are summed that cancel
-_NAMED = 1e-6  # how far a rigid motion may be from the kernel that it is found in
 
 
 @dataclass(frozen=True)
@@ -97,18 +97,6 @@ class Split(NamedTuple):
     def exact(self) -> bool:
         """Whether the linear dynamics of centre and shape do not touch each other."""
         return self.leak <= _SPLIT
-
-
-def translations(n: int, m: int) -> FloatArray:
-    """Unit translations along the axes, one per column, shape (n m, m).
-
-    Examples
-    --------
-    >>> translations(4, 1).ravel().tolist()
-    [0.5, 0.5, 0.5, 0.5]
-    """
-    unit: FloatArray = np.tile(np.eye(m), (n, 1)) / np.sqrt(n)
-    return unit
 
 
 def split(stiffness: Any, damping: Any, m: int) -> Split:
@@ -241,10 +229,10 @@ class SecondOrder:
 
     def named(self, values: Any, vectors: Any, errors: Any, others: tuple[Mode, ...]) -> tuple[Mode, ...]:
         """Modes from eigenvalues and columns of displacements, with `others` among them, in order, named."""
-        fields = _pure_fields(self.q)
+        fields = pure_fields(self.q)
         modes = list(others)
         for value, vector, error in zip(values.tolist(), vectors.T, np.asarray(errors).tolist(), strict=True):
-            shape = _normalised(vector, real=complex(value).imag == 0.0)
+            shape = normalised(vector, real=complex(value).imag == 0.0)
             near = [name for name, field in fields if abs(np.vdot(field, shape)) >= _PURE]
             modes.append(Mode(complex(value), shape.reshape(self.q.shape), near[0] if near else "", error))
         order = slowest_first(np.array([mode.eigenvalue for mode in modes]), np.array([mode.error for mode in modes]))
@@ -254,7 +242,7 @@ class SecondOrder:
     def _set_apart(self, kernel: FloatArray, cokernel: FloatArray) -> Invariant:
         """Chains of generalised eigenvectors at 0 from the kernels of K and Kᵀ, and the centre's own motion."""
         k = kernel.shape[1]
-        names, kernel = _name_kernel(kernel, self.q)
+        names, kernel = name_kernel(kernel, self.q)
         drag = cokernel.T @ (self.damping @ kernel)  # a zero mode is semisimple iff D pushes it out of the range of K
         small = self.zero * self.damping_scale
         u, sizes, vt = np.linalg.svd(drag) if k else (drag, np.zeros(0), drag)
@@ -312,8 +300,8 @@ class SecondOrder:
         push = damping @ motion
         if not push.size or np.abs(push).max() <= self.zero * self.damping_scale:
             return np.zeros_like(motion)
-        found: FloatArray = -np.linalg.lstsq(matrix.toarray(), push, rcond=self.zero)[0]
-        return found
+        solution: FloatArray = -np.linalg.lstsq(matrix.toarray(), push, rcond=self.zero)[0]
+        return solution
 
 
 def _roots(stiffness: float, damping: float, errors: tuple[float, float]) -> list[complex]:
@@ -324,64 +312,3 @@ def _roots(stiffness: float, damping: float, errors: tuple[float, float]) -> lis
     spread = sqrt(0.0 if abs(square) <= 2.0 * abs(damping) * errors[1] + 4.0 * errors[0] else square)
     far = -0.5 * (damping + spread) if damping >= 0.0 else -0.5 * (damping - spread)
     return [far, stiffness / far]
-
-
-def _normalised(vector: Any, *, real: bool) -> Any:
-    """Unit length, turned so that the real part is as large as can be; the first large component positive."""
-    vector = vector / np.linalg.norm(vector)
-    vector = vector * np.exp(-0.5j * np.angle(np.sum(vector**2)))
-    size = np.abs(vector.real)
-    if vector.real[np.argmax(size > (1.0 - _NAMED) * size.max())] < 0.0:
-        vector = -vector
-    return vector.real / np.linalg.norm(vector.real) if real else vector
-
-
-def _rotations(q: FloatArray) -> list[tuple[str, FloatArray]]:
-    """Infinitesimal rotations about the centre, by axis, not normalised."""
-    x, m = q - q.mean(axis=0), q.shape[1]
-    turns = []
-    for name, (a, b) in {"rotation x": (1, 2), "rotation y": (2, 0), "rotation z": (0, 1)}.items():
-        if max(a, b) < m:
-            turn = np.zeros_like(x)
-            turn[:, a], turn[:, b] = -x[:, b], x[:, a]
-            turns.append(("rotation" if m == 2 else name, turn.ravel()))
-    return turns
-
-
-def _pure_fields(q: FloatArray) -> list[tuple[str, FloatArray]]:
-    """Unit fields that give a mode its name: uniform expansion, translations, rotations."""
-    fields = [("breathing", (q - q.mean(axis=0)).ravel())]
-    fields += [(f"translation {'xyz'[c]}", column) for c, column in enumerate(translations(*q.shape).T)]
-    fields += _rotations(q)
-    return [(name, field / np.linalg.norm(field)) for name, field in fields if np.linalg.norm(field) > 0.0]
-
-
-def _name_kernel(kernel: FloatArray, q: FloatArray) -> tuple[list[str], FloatArray]:
-    """Names and an orthonormal basis of a kernel: rigid motions first, by axis where they can be told apart."""
-    names: list[str] = []
-    found = np.zeros((q.size, 0))
-    for name, flow in _pure_fields(q):
-        if name == "breathing":  # of a flock without neighbours it costs nothing, but it is no rigid motion
-            continue
-        rest = flow - found @ (found.T @ flow)
-        inside = np.linalg.norm(flow - kernel @ (kernel.T @ flow)) <= _NAMED
-        if inside and np.linalg.norm(rest) > _NAMED:
-            names, found = [*names, name], np.column_stack([found, rest / np.linalg.norm(rest)])
-    rigid, unit = rigid_motions(q), translations(*q.shape)
-    for fields, kind in ((unit, "translation"), (rigid, "rotation")):  # along no axis, or about the γ-agent
-        left = _off(kernel, found)
-        u, sizes, _ = np.linalg.svd(left.T @ fields, full_matrices=False)
-        mixed = _off(left @ u[:, sizes > 1.0 - _NAMED], found)
-        names, found = [*names, *[kind] * mixed.shape[1]], np.column_stack([found, mixed])
-    soft = _off(kernel, found)
-    names += [f"soft {k}" for k in range(1, soft.shape[1] + 1)]
-    return names, np.column_stack([found, soft])
-
-
-def _off(kernel: FloatArray, found: FloatArray) -> FloatArray:
-    """Orthonormal basis of what a kernel holds beyond `found`, which it contains."""
-    if kernel.shape[1] == 0:
-        return kernel
-    basis, sizes, _ = np.linalg.svd(kernel - found @ (found.T @ kernel), full_matrices=False)
-    rest: FloatArray = basis[:, sizes > 0.5]
-    return rest

@@ -9,7 +9,7 @@ import numpy as np
 from flockana.base.checks import ensure_count, ensure_positive
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.trajectory import Trajectory
-from flockana.stability.linearise import Linearisation
+from flockana.stability.linearisation import Linearisation
 from flockana.stability.modes import Mode
 
 _SHARE = 0.3  # of the mean distance between agents (a square's side for each): largest displacement

@@ -176,10 +176,10 @@ def hinf_norm(system: StateSpace, *, tol: float = 1e-9) -> tuple[float, float]:
         values = np.linalg.eigvals(np.block([[a, bb / level], [-cc / level, -a.T]]))
         crossing = np.sort(values.imag[(np.abs(values.real) <= _IMAGINARY * np.abs(values).max()) & (values.imag >= 0)])
         middles = np.concatenate([crossing, 0.5 * (crossing[1:] + crossing[:-1])])
-        found = max(((_gain(a, b, c, w), w) for w in middles.tolist()), default=(0.0, 0.0))
-        if found[0] <= level:
-            return max(best, found)
-        best = found
+        peak = max(((_gain(a, b, c, w), w) for w in middles.tolist()), default=(0.0, 0.0))
+        if peak[0] <= level:
+            return max(best, peak)
+        best = peak
     raise SolverError(f"the H∞ norm did not settle in {_ROUNDS} rounds; the last lower bound is {best[0]:.6g}")
 
 
@@ -250,5 +250,5 @@ def norms_against_size(law: Algorithm1 | Algorithm2, sizes: Sequence[int]) -> No
 
 
 def _relaxed(law: Any, n: int) -> FloatArray:
-    found: FloatArray = find_equilibrium(law, hexagonal_spiral(n, law.alpha.d)).q
-    return found
+    relaxed: FloatArray = find_equilibrium(law, hexagonal_spiral(n, law.alpha.d)).q
+    return relaxed

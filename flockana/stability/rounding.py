@@ -42,8 +42,8 @@ def eigen(matrix: FloatArray) -> tuple[ComplexArray, ComplexArray, FloatArray]:
     if not matrix.size:
         return np.zeros(0, np.complex128), np.zeros((0, 0), np.complex128), np.zeros(0)
     balanced, _, _, units, _ = dgebal(matrix, scale=1)  # by powers of 2: no rounding
-    found: Any = eig(balanced, left=True, right=True)
-    values, left, right = (np.asarray(part, dtype=np.complex128) for part in found)
+    solved: Any = eig(balanced, left=True, right=True)
+    values, left, right = (np.asarray(part, dtype=np.complex128) for part in solved)
     size = float(np.linalg.norm(balanced))
     with np.errstate(divide="ignore"):
         alone = _ROUNDINGS * EPS * size / np.abs(np.einsum("ij,ij->j", left.conj(), right))
@@ -58,8 +58,8 @@ def _together(values: ComplexArray, size: float) -> FloatArray:
     """
     tight = _ROUNDINGS * EPS
     same = np.sum(np.abs(values[:, None] - values[None, :]) <= 2.0 * tight * size, axis=1)
-    found: FloatArray = np.where(same > 1, size * tight ** (1.0 / same), np.inf)
-    return found
+    bound: FloatArray = np.where(same > 1, size * tight ** (1.0 / same), np.inf)
+    return bound
 
 
 def root_error(value: complex, stiffness: float, damping: float, errors: tuple[float, float]) -> float:
@@ -101,11 +101,11 @@ def slowest_first(values: ComplexArray, errors: FloatArray) -> list[int]:
     >>> slowest_first(np.array([-1.0 + 5.0j, -1.0 - 1e-16 + 2.0j, -0.5]), np.full(3, 1e-15))
     [2, 1, 0]
     """
-    found: list[int] = []
+    order: list[int] = []
     for level in _levels(range(len(values)), -np.real(values), errors):
         for pair in _levels(level, np.abs(np.imag(values)), errors):
-            found += sorted(pair)
-    return found
+            order += sorted(pair)
+    return order
 
 
 def _levels(indices: Iterable[int], sizes: FloatArray, errors: FloatArray) -> list[list[int]]:

@@ -1,4 +1,7 @@
-"""Linearised flocks as python-control systems, with a name for every state, input and output."""
+"""Linearised flocks as python-control systems, with a name for every state, input and output.
+
+The flock is a `Linearisation`, whose properties these functions are.
+"""
 
 from __future__ import annotations
 
@@ -10,12 +13,10 @@ from flockana.base.checks import FloatArray, ensure_fits
 from flockana.base.errors import ArgumentError
 from flockana.lattice.rigidity import rigidity_matrix
 from flockana.laws.terms.navigation import Navigation
-from flockana.stability.modes import translations
+from flockana.stability.mode_names import translations
 
 if TYPE_CHECKING:
     import control
-
-    from flockana.stability.linearise import Linearisation
 
 
 def labels(name: str, n: int, m: int) -> list[str]:
@@ -33,18 +34,18 @@ def _vector(name: str, m: int) -> list[str]:
     return [f"{name}_{axis}" for axis in "xyz"[:m]]
 
 
-def _target_inputs(found: Linearisation) -> tuple[FloatArray, list[str]]:
+def _target_inputs(flock: Any) -> tuple[FloatArray, list[str]]:
     """Columns of ∂u/∂(q_r, p_r) and their names; none for a law without a γ-agent."""
-    size, m = found.q.size, found.q.shape[1]
-    if (pull := found.law.term(Navigation)) is None:
+    size, m = flock.q.size, flock.q.shape[1]
+    if (pull := flock.law.term(Navigation)) is None:
         return np.zeros((size, 0)), []
-    by_position, by_velocity = pull.target_derivatives(found.t, found.q)
+    by_position, by_velocity = pull.target_derivatives(flock.t, flock.q)
     return np.hstack([by_position.reshape(size, m), by_velocity.reshape(size, m)]), _vector("qr", m) + _vector("pr", m)
 
 
-def _lengths(found: Linearisation) -> tuple[FloatArray, list[str]]:
-    rates = rigidity_matrix(found.q, found.links).toarray() if len(found.links) else np.zeros((0, found.q.size))
-    return rates, [f"l{i}_{j}" for i, j in found.links.tolist()]
+def _lengths(flock: Any) -> tuple[FloatArray, list[str]]:
+    rates = rigidity_matrix(flock.q, flock.links).toarray() if len(flock.links) else np.zeros((0, flock.q.size))
+    return rates, [f"l{i}_{j}" for i, j in flock.links.tolist()]
 
 
 def _system(
@@ -67,13 +68,13 @@ def _system(
     return control.ss(A, B, C, np.zeros((outputs, inputs)), states=states, inputs=given, outputs=seen, name=title)
 
 
-def whole_system(found: Linearisation) -> control.StateSpace:
+def whole_system(flock: Any) -> control.StateSpace:
     """All agents: see `Linearisation.state_space`."""
-    n, m = found.q.shape
-    ensure_fits("A", found.A_sparse.shape, "use A_sparse and slowest_modes(...)")
+    n, m = flock.q.shape
+    ensure_fits("A", flock.A_sparse.shape, "use A_sparse and slowest_modes(...)")
     unit = translations(n, m)
-    target, target_names = _target_inputs(found)
-    lengths, length_names = _lengths(found)
+    target, target_names = _target_inputs(flock)
+    lengths, length_names = _lengths(flock)
     drive = np.hstack([np.eye(n * m), target])
     read = np.vstack([unit.T / np.sqrt(n), np.eye(n * m) - unit @ unit.T, lengths])
     names = (
@@ -81,22 +82,22 @@ def whole_system(found: Linearisation) -> control.StateSpace:
         labels("f", n, m) + target_names,
         _vector("qc", m) + labels("x", n, m) + length_names,
     )
-    return _system((found.stiffness.toarray(), found.damping.toarray()), drive, read, names, "flock")
+    return _system((flock.stiffness.toarray(), flock.damping.toarray()), drive, read, names, "flock")
 
 
-def structural_system(found: Linearisation) -> control.StateSpace:
+def structural_system(flock: Any) -> control.StateSpace:
     """The shape alone: see `Linearisation.structural`."""
-    found.ensure_split()
-    n, m = found.q.shape
+    flock.ensure_split()
+    n, m = flock.q.shape
     if n == 1:
         raise ArgumentError("n = 1: expected at least two agents; one has no shape")
-    ensure_fits("A", found.A_sparse.shape, "use A_sparse and slowest_modes(...)")
+    ensure_fits("A", flock.A_sparse.shape, "use A_sparse and slowest_modes(...)")
     unit = translations(n, m)
     kept = (n - 1) * m
     extend = np.vstack([np.eye(kept), -np.tile(np.eye(m), (1, n - 1))])  # the last agent's deviation
     off = (np.eye(n * m) - unit @ unit.T)[:kept]
-    lengths, length_names = _lengths(found)
-    blocks = ((found.stiffness[:kept] @ extend), (found.damping[:kept] @ extend))
+    lengths, length_names = _lengths(flock)
+    blocks = ((flock.stiffness[:kept] @ extend), (flock.damping[:kept] @ extend))
     names = (
         labels("x", n - 1, m) + labels("v", n - 1, m),
         labels("f", n, m),
@@ -105,13 +106,13 @@ def structural_system(found: Linearisation) -> control.StateSpace:
     return _system(blocks, off, np.vstack([extend, lengths @ extend]), names, "shape")
 
 
-def translational_system(found: Linearisation) -> control.StateSpace:
+def translational_system(flock: Any) -> control.StateSpace:
     """The centre of mass alone: see `Linearisation.translational`."""
-    found.ensure_split()
-    n, m = found.q.shape
+    flock.ensure_split()
+    n, m = flock.q.shape
     mean = translations(n, m).T / np.sqrt(n)
-    target, target_names = _target_inputs(found)
-    alone = found.second_order.split
+    target, target_names = _target_inputs(flock)
+    alone = flock.second_order.split
     names = (
         _vector("qc", m) + _vector("pc", m),
         labels("f", n, m) + target_names,

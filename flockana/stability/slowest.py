@@ -8,7 +8,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_count
 from flockana.base.errors import ArgumentError, SolverError
-from flockana.stability.linearise import Linearisation
+from flockana.stability.linearisation import Linearisation
 from flockana.stability.modes import Mode, SecondOrder
 from flockana.stability.rounding import mode_errors
 
@@ -66,8 +66,8 @@ def slowest_modes(linearisation: Linearisation, count: int = 12) -> SlowModes:
     >>> from flockana.laws.olfati_saber import Algorithm1
     >>> from flockana.stability.linearise import linearise
     >>> patch = linearise(Algorithm1(), hexagonal_patch(2, 7.0))
-    >>> found = slowest_modes(patch, 3)
-    >>> bool(abs(found.modes[0].decay_rate - patch.decay_rate) < 1e-9 * patch.decay_rate), found.complete_to > 1.0
+    >>> slow = slowest_modes(patch, 3)
+    >>> bool(abs(slow.modes[0].decay_rate - patch.decay_rate) < 1e-9 * patch.decay_rate), slow.complete_to > 1.0
     (True, True)
     """
     count = ensure_count("count", count)

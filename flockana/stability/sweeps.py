@@ -81,8 +81,8 @@ def gain_sweep(law: Algorithm1 | Algorithm2, q: Any, name: str, values: Any, *, 
     --------
     >>> from flockana.environment.targets import StaticTarget
     >>> law = Algorithm2(target=StaticTarget((0.0,)))
-    >>> found = gain_sweep(law, [[0.0]], "c1_gamma", [1.0, 2.0])
-    >>> [round(float(x), 6) for x in (found.eigenvalues[1] * found.eigenvalues[1].conj()).real]
+    >>> sweep = gain_sweep(law, [[0.0]], "c1_gamma", [1.0, 2.0])
+    >>> [round(float(x), 6) for x in (sweep.eigenvalues[1] * sweep.eigenvalues[1].conj()).real]
     [2.0, 2.0]
     """
     _ensure_gain(law, name)
@@ -210,17 +210,17 @@ def margin_sweep(
     The more damping is delayed, the less delay it bears:
 
     >>> from flockana.environment.targets import StaticTarget
-    >>> found = margin_sweep(Algorithm2(target=StaticTarget((0.0,))), [[0.0]], "c2_gamma", [1.0, 4.0, 16.0])
-    >>> bool(found.margins[1] < found.margins[0] and found.margins[2] < found.margins[1])
+    >>> margins = margin_sweep(Algorithm2(target=StaticTarget((0.0,))), [[0.0]], "c2_gamma", [1.0, 4.0, 16.0])
+    >>> bool(margins.margins[1] < margins.margins[0] and margins.margins[2] < margins.margins[1])
     True
     """
     _ensure_gain(law, name)
-    q, levels, found = ensure_points("q", q), _rising(values), []
+    q, levels, delays = ensure_points("q", q), _rising(values), []
     for level in levels.tolist():
         here = replace(law, gains=replace(law.gains, **{name: level}))
         q = np.array(find_equilibrium(here, q).q)
-        found.append(delay_margin(delay_system(here, q, delayed=delayed), grid=grid))
-    margins, frequencies = (np.array([getattr(x, kind) for x in found]) for kind in ("delay", "frequency"))
+        delays.append(delay_margin(delay_system(here, q, delayed=delayed), grid=grid))
+    margins, frequencies = (np.array([getattr(x, kind) for x in delays]) for kind in ("delay", "frequency"))
     return MarginSweep(name, levels, margins, frequencies, delayed)
 
 

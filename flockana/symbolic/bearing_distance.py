@@ -127,17 +127,6 @@ def saturation(norm: sp.Expr = _X, *, bound: sp.Expr = BOUND) -> sp.Expr:
     return bound * sp.tanh(exact("norm", norm) / bound)
 
 
-def saturation_factor(order: int = 6) -> sp.Expr:
-    """Return the series of tanh(x)/x at its removable singularity 0, as a polynomial in x.
-
-    Examples
-    --------
-    >>> saturation_factor(4)
-    1 - x**2/3
-    """
-    return sp.series(sp.tanh(_X) / _X, _X, 0, order).removeO()
-
-
 def fastest_under_drag(step: sp.Expr, force: sp.Expr, bound: sp.Expr, *, digits: int = 15) -> sp.Float:
     """Return lim sup ‖v‖ under (10) for inputs up to `force`: the fixed point of v ↦ sat(v + δ u).
 

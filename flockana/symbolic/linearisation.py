@@ -32,8 +32,8 @@ def _slopes(force: sp.Matrix, table: dict[Any, Any], variables: sp.Matrix, sigma
         derivative = {"fdiff": lambda self, argindex=1, slope=slope: slope(self.args[0])}
         aware[function] = UndefinedFunction(f"{function.__name__}*", real=True, __dict__=derivative)
         force = force.replace(function, aware[function])
-    found = sp.Matrix(force).jacobian(sp.Matrix(list(variables))).xreplace({sigma: z}).subs(1 + EPS * sigma, ROOT)
-    return sp.ImmutableMatrix(found.xreplace({aware[function](z): function(z) for function in table}))
+    slopes = sp.Matrix(force).jacobian(sp.Matrix(list(variables))).xreplace({sigma: z}).subs(1 + EPS * sigma, ROOT)
+    return sp.ImmutableMatrix(slopes.xreplace({aware[function](z): function(z) for function in table}))
 
 
 def derive_pair_jacobian(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivation:
@@ -66,9 +66,9 @@ def derive_pair_jacobian(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivatio
     stated = (-by_position, by_position, -by_velocity, by_velocity)
     residuals = [
         sp.expand(entry)
-        for found, sign in ((on_i, 1), (on_j, -1))
-        for one, claimed in zip(found, stated, strict=True)
-        for entry in one - sign * claimed
+        for derived, sign in ((on_i, 1), (on_j, -1))
+        for block, claimed in zip(derived, stated, strict=True)
+        for entry in block - sign * claimed
     ]
     steps = (
         Step(

@@ -146,14 +146,14 @@ def tree_characteristic(edges: Edges) -> Derivation:
     """
     stiffness, damping = edge_matrices(edges)
     pencil = S**2 * sp.eye(len(edges)) + S * damping + stiffness
-    found = sp.expand(pencil.det(method="berkowitz"))
+    determinant = sp.expand(pencil.det(method="berkowitz"))
     factors = prod(S**2 + S + sp.Symbol(f"w_{j}{i}") for j, i in edges)
     steps = (
         Step("The pencil of the edge dynamics, triangular in the order of the tree:", pencil),
-        Step("Its determinant:", found),
+        Step("Its determinant:", determinant),
         Step(r"One factor for each edge, with $w_e = \mu_e(1 - \rho_e/|x_e|)$:", factors),
     )
-    return Derivation("Spectrum on a rooted tree", steps, factors, (sp.expand(found - factors),))
+    return Derivation("Spectrum on a rooted tree", steps, factors, (sp.expand(determinant - factors),))
 
 
 def frozen_eigenvalues(ratio: sp.Expr, *, mu: sp.Expr = sp.S.One) -> tuple[sp.Expr, sp.Expr]:
@@ -204,10 +204,12 @@ def spacing_spectrum(m: int) -> Derivation:
     at = {x[0]: RHO, **{x[k]: 0 for k in range(1, m)}}
     stiffness = force.jacobian(x).subs(at).applyfunc(sp.simplify)
     expected = (S**2 + S + MU) * (S**2 + S) ** (m - 1)
-    found = (S**2 * sp.eye(m) + S * sp.eye(m) + stiffness).det()
+    determinant = (S**2 * sp.eye(m) + S * sp.eye(m) + stiffness).det()
     steps = (
         Step("The spring of an edge:", force),
         Step(r"Its derivative at length $\rho$ along the first axis:", stiffness),
         Step("The characteristic polynomial of the edge:", expected),
     )
-    return Derivation("Spectrum at the desired spacing", steps, sp.factor(expected), (sp.expand(found - expected),))
+    return Derivation(
+        "Spectrum at the desired spacing", steps, sp.factor(expected), (sp.expand(determinant - expected),)
+    )

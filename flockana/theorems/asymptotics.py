@@ -8,7 +8,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.scales import Scales
-from flockana.dynamics.integrators import FLOOR
+from flockana.dynamics.tolerance import FLOOR
 from flockana.dynamics.trajectory import Trajectory
 from flockana.equilibria.terminal import TerminalState, terminal_state
 from flockana.lattice import classify

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import importlib
-import pkgutil
 import re
 from functools import cache
 from typing import Any
 
 from flockana.base.checks import ensure_points, ensure_positive
 from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.base.modules import modules
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.theorems.second_run import corroborated, ensure_fits
@@ -18,10 +17,9 @@ from flockana.theorems.theorem import Theorem, Tolerances, Verdict
 
 @cache
 def _catalogue() -> dict[str, Theorem]:
-    package = importlib.import_module("flockana.theorems")
     found: dict[str, Theorem] = {}
-    for info in pkgutil.walk_packages(package.__path__, "flockana.theorems."):
-        item = getattr(importlib.import_module(info.name), "THEOREM", None)
+    for module in modules("flockana.theorems"):
+        item = getattr(module, "THEOREM", None)
         for one in item if isinstance(item, tuple) else (item,):
             if isinstance(one, Theorem):
                 found[one.id] = one

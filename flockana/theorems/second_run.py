@@ -15,8 +15,8 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError, FlockanaError
-from flockana.dynamics.integrators import FINEST
 from flockana.dynamics.simulate import simulate
+from flockana.dynamics.tolerance import FINEST
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.switched import SwitchedLaw

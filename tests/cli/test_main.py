@@ -14,9 +14,11 @@ from PIL import Image
 
 from flockana.base.errors import FlockanaError, SolverError
 from flockana.dynamics.trajectory import Trajectory
+from flockana.ensemble import executors
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.report import work
-from flockana.report.work import Task, perform, plan
+from flockana.report.statistics import Survey
+from flockana.report.work import Task, check_all, plan
 from flockana.scenarios import Report, Scenario
 from flockana.theorems import Claim
 from tests.programs import ANSWERS_CTRL_C, CLI, IGNORES_CTRL_C, group, interrupt, out_of_a_kernel, posix, program, until
@@ -145,7 +147,7 @@ def test_bad_input_is_2_and_one_line(refused, arguments, message):
 
 def test_an_unwritable_report_is_refused_before_anything_runs(call, monkeypatch, tmp_path):
     (tmp_path / "report").write_text("a file")
-    monkeypatch.setattr("flockana.report.work.do", lambda task: pytest.fail("it ran"))
+    monkeypatch.setattr("flockana.report.work.check", lambda task: pytest.fail("it ran"))
     code, _, err = call("verify", "hexagon")
     assert code == 2
     assert "cannot write to report: there is a file of that name" in err
@@ -223,16 +225,16 @@ def test_what_was_done_before_an_interrupt_is_reported(error, call, catalogue, m
 
 
 def test_what_was_done_before_an_error_is_reported(call, catalogue, monkeypatch):
-    do = work.do
+    verify = work.verify
 
-    def failing(task):
-        if task.name == "wrong":
+    def failing(theorem, run, **options):
+        if options["subject"] == "wrong":
             raise SolverError("it gave up")
-        return do(task)
+        return verify(theorem, run, **options)
 
-    monkeypatch.setattr(work, "do", failing)
+    monkeypatch.setattr(work, "verify", failing)
     code, _, err = call("verify", "energy", "--jobs", 1)
-    assert (code, err) == (2, "flockana: it gave up\n")
+    assert (code, err) == (2, "flockana: wrong: it gave up\n")
     assert len(verdicts("report")["verdicts"]) == 1
 
 
@@ -264,12 +266,12 @@ def test_version_and_help(call):
 
 def test_processes_work_in_parallel():
     tasks = [Task("E8", fixed=True), Task("E10", fixed=True)]
-    assert sorted(page.name for page in perform(tasks, jobs=2)) == ["E10", "E8"]
+    assert sorted(page.name for page in check_all(tasks, jobs=2)) == ["E10", "E8"]
 
 
 def test_an_error_in_a_worker_arrives_with_the_name_of_its_task():
     with pytest.raises(FlockanaError, match="nothing: unknown theorem 'nothing'"):
-        list(perform([Task("nothing", fixed=True), Task("E8", fixed=True)], jobs=2))
+        list(check_all([Task("nothing", fixed=True), Task("E8", fixed=True)], jobs=2))
 
 
 WORKING = """
@@ -281,7 +283,7 @@ def endless(task):
     Path("begun").touch()
     time.sleep(3600.0)
 
-work.do = endless
+work.check = endless
 if __name__ == "__main__":
 """
 
@@ -298,11 +300,28 @@ class Broken(ThreadPoolExecutor):
         self.shutdown()
 
 
-def test_a_worker_that_dies_while_tasks_are_sent_is_told_with_the_remedy(monkeypatch):
-    monkeypatch.setattr(work, "ProcessPool", Broken)
-    tasks = [work.Task("E8", fixed=True)] * 2
-    with pytest.raises(SolverError, match="a worker process died; if memory is short, try --jobs 1"):
-        list(work.perform(tasks, jobs=2))
+def test_a_worker_that_dies_while_tasks_are_sent_loses_no_task(monkeypatch):
+    pools = iter([Broken(2), ThreadPoolExecutor(2)])
+    monkeypatch.setattr(executors, "ProcessPool", lambda jobs: next(pools))
+    tasks = [Task("E8", fixed=True), Task("E10", fixed=True)]
+    assert sorted(page.name for page in check_all(tasks, jobs=2)) == ["E10", "E8"]
+
+
+def test_a_task_that_ends_its_process_is_named_when_all_others_are_done():
+    tasks = [Survey("os:_exit", (0, 1)), Task("E8", fixed=True), Task("E10", fixed=True)]
+    results = check_all(tasks, jobs=2)
+    assert sorted(next(results).name for _ in range(2)) == ["E10", "E8"]
+    with pytest.raises(
+        SolverError, match="os:_exit, seeds 0 to 1: the worker process ended; if memory is short, try --jobs 1"
+    ):
+        next(results)
+
+
+def test_in_one_process_a_result_is_given_before_the_next_task_begins():
+    begun = []
+    results = check_all([Task("E8", fixed=True), Task("E10", fixed=True)], watch=begun.append)
+    assert next(results).name == "E8"
+    assert {task.name for tasks in begun for task in tasks} == {"E8"}
 
 
 @posix

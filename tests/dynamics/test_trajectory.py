@@ -15,7 +15,7 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import CallableTarget, CircleTarget
 from flockana.interactions import Gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.measures import metrics
+from flockana.measures import measure, metrics
 
 
 def make(n=5, m=2, **options):
@@ -55,7 +55,7 @@ def test_metrics_are_the_metrics():
 
 def test_one_metric_is_that_of_all_and_costs_no_other(monkeypatch):
     run = make(t_eval=np.linspace(0.0, 1.0, 11))
-    monkeypatch.setattr(metrics, "net_measures", lambda *given: pytest.fail("a metric that was not asked for"))
+    monkeypatch.setattr(measure, "nets", lambda *given: pytest.fail("a metric that was not asked for"))
     np.testing.assert_array_equal(run.metric("min_distance"), RUN.metrics().min_distance)
     np.testing.assert_array_equal(run.metric("coordination"), RUN.metrics().coordination)
     monkeypatch.undo()

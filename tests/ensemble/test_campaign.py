@@ -12,12 +12,14 @@ import pytest
 import xarray
 
 from flockana.base.errors import ArgumentError, SolverError, UnknownNameError
-from flockana.ensemble import METRICS, PHASES, STATUSES, Store, ensemble, executors, phases, shares
+from flockana.ensemble import PHASES, STATUSES, Store, batches, ensemble, phases, shares
 from flockana.ensemble import digest as digests
 from flockana.ensemble.digest import digest_of_sources, mathematics, run_key
-from flockana.ensemble.executors import Crew, Serial, crew, make_runs
+from flockana.ensemble.executors import Crew, Serial, crew
 from flockana.ensemble.processes import ProcessPool
+from flockana.ensemble.runs import make_runs
 from flockana.ensemble.work import Job, Request, run_batch
+from flockana.measures.measure import measures
 from flockana.scenarios import scenario
 from flockana.theorems import Tolerances, verify
 from tests.ensemble import tiny_flocks
@@ -54,7 +56,7 @@ def test_the_numbers_do_not_depend_on_who_computes_them(alone, pool):
 
 def test_theorems_with_linear_algebra_agree_to_the_bit_between_processes(pool):
     """The Hessian's spectrum: threads of linear algebra could round differently."""
-    given = {"theorems": ["os-1", "os-5-terminal"], "metrics": METRICS}
+    given = {"theorems": ["os-1", "os-5-terminal"], "metrics": tuple(measures())}
     assert same(ensemble("hexagon", [0, 1], **given, jobs=1), ensemble("hexagon", [0, 1], **given, executor=pool))
 
 
@@ -113,7 +115,7 @@ def test_theorems_and_tolerances_are_those_asked_for():
     assert float(found.margin.sel(claim="source:odd")) == 1.5
     run = tiny_flocks.trio(1).run()
     assert STATUSES[int(found.verdict.sel(theorem="energy"))] == verify("energy", run).status
-    assert not {*METRICS} & {*found}
+    assert not {*measures()} & {*found}
 
 
 def test_shares_count_what_was_decided():
@@ -146,7 +148,7 @@ def test_a_run_that_ends_its_worker_is_found_and_the_others_are_made():
 
 
 def test_workers_that_all_die_end_the_ensemble_with_the_remedy(monkeypatch):
-    monkeypatch.setattr(executors, "_HOPELESS", 2)
+    monkeypatch.setattr(batches, "_HOPELESS", 2)
     with pytest.raises(SolverError, match=r"2 worker processes died .*__main__.*jobs=1"):
         ensemble(tiny_flocks.lethal, range(9), theorems=[], jobs=2)
 
@@ -217,8 +219,8 @@ def test_a_worker_with_other_mathematics_is_refused():
 def test_the_mathematics_change_with_what_computes_and_with_nothing_else(monkeypatch):
     root = digests.Path(digests.__file__).resolve().parent.parent
     names = {path.relative_to(root).as_posix() for path in digests._sources(root)}
-    assert {"kernels/alpha.py", "dynamics/integrators.py", "theorems/olfati_saber/os_1.py", "base/errors.py"} <= names
-    assert {"scenarios/msn.py", "ensemble/measures.py", "equilibria/strained13.json"} <= names
+    assert {"kernels/alpha.py", "dynamics/adaptive.py", "theorems/olfati_saber/os_1.py", "base/errors.py"} <= names
+    assert {"scenarios/msn.py", "measures/standard.py", "equilibria/strained13.json"} <= names
     assert not any(name.startswith(("plots/", "report/", "cli/", "falsify/")) for name in names)
     assert not {"ensemble/store.py", "base/references.py", "_version.py", "__init__.py"} & names
     source = b'def f(x):\n    """Doc."""\n    return x + 1\n'
@@ -326,8 +328,8 @@ def test_a_users_executor_is_kept_as_busy_as_it_is_wide():
 def test_batches_grow_with_short_runs_and_shrink_towards_the_end():
     """1000 runs of a millisecond for 2 workers: batches of 250, then ever fewer, four of them out at once."""
     waiting = deque(range(1000))
-    sent = [len(batch) for batch in executors._next_batches(waiting, deque(), 0, 2, 500)]
+    sent = [len(batch) for batch in batches._next_batches(waiting, deque(), 0, 2, 500)]
     assert sent == [250, 187, 140, 105]
-    assert [len(batch) for batch in executors._next_batches(waiting, deque(), 3, 2, 10)] == [10]
-    assert list(executors._next_batches(waiting, deque([7]), 1, 2, 10)) == []
-    assert list(executors._next_batches(waiting, deque([7]), 0, 2, 10)) == [(7,)]
+    assert [len(batch) for batch in batches._next_batches(waiting, deque(), 3, 2, 10)] == [10]
+    assert list(batches._next_batches(waiting, deque([7]), 1, 2, 10)) == []
+    assert list(batches._next_batches(waiting, deque([7]), 0, 2, 10)) == [(7,)]

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from flockana.base.errors import ArgumentError, SolverError
-from flockana.ensemble import Store, cluster, ensemble, executors
+from flockana.ensemble import Store, cluster, ensemble, runs
 from tests.ensemble import tiny_flocks
 from tests.ensemble.tiny_flocks import begun
 from tests.programs import ANSWERS_CTRL_C, group, interrupt, posix, program, until
@@ -89,7 +89,7 @@ def meanwhile(condition, act, *alive):
 def test_a_worker_killed_in_mid_run_loses_nothing(running, tmp_path, monkeypatch):
     """Batches of one run each, so that many are out when the worker dies; it is held in one of them."""
     address, log, gate, _ = running
-    monkeypatch.setattr(executors, "_BATCH_SECONDS", 0.0)
+    monkeypatch.setattr(runs, "_BATCH_SECONDS", 0.0)
     killed = []
 
     def held():
@@ -122,7 +122,7 @@ def test_the_same_runs_are_made_again_when_they_are_asked_for_again(running):
 
 def test_a_scheduler_lost_in_mid_run_ends_the_ensemble_and_what_was_done_is_kept(running, tmp_path, monkeypatch):
     address, _, _, master = running
-    monkeypatch.setattr(executors, "_BATCH_SECONDS", 0.0)
+    monkeypatch.setattr(runs, "_BATCH_SECONDS", 0.0)
     monkeypatch.setattr(cluster, "_CONNECT", 20.0)  # after which Dask gives up a scheduler that it has lost
     path = tmp_path / "s.sqlite"
 
@@ -156,7 +156,7 @@ def test_a_scheduler_that_falls_silent_ends_the_ensemble(running, monkeypatch):
 def test_a_cluster_whose_workers_are_gone_for_good_is_given_up(running, monkeypatch):
     address, log, _, _ = running
     monkeypatch.setattr(cluster, "_ALONE", 5.0)
-    monkeypatch.setattr(executors, "_BATCH_SECONDS", 0.0)
+    monkeypatch.setattr(runs, "_BATCH_SECONDS", 0.0)
 
     def both_at_work():
         return len({process for process, _ in begun(log)}) == 2 and any(seed >= 24 for _, seed in begun(log))

@@ -13,15 +13,15 @@ from flockana.ensemble import clopper_pearson, ensemble
 from flockana.ensemble.work import Record
 from flockana.report.build import verdicts_json, write_report
 from flockana.report.console import statistics_table
-from flockana.report.statistics import TEMPLATE, Share, carry_out, gather, statistics_section, surveys
-from flockana.report.work import perform
+from flockana.report.statistics import TEMPLATE, Share, gather, make_survey, statistics_section, surveys
+from flockana.report.work import check_all
 from flockana.scenarios import scenario
 
 
 @pytest.fixture(scope="module")
 def section():
     asked = surveys("notebook-algorithm1", 3)
-    return gather(asked, perform(asked))
+    return gather(asked, check_all(asked))
 
 
 def test_a_row_counts_what_each_run_says_by_itself(section):
@@ -88,7 +88,7 @@ def test_the_catalogue_asks_for_itself_and_seeds_are_split_among_processes():
 
 def test_surveys_in_any_order_give_what_one_ensemble_gives():
     asked = surveys("zone-51", 30)
-    made = [carry_out(one) for one in reversed(asked)]
+    made = [make_survey(one) for one in reversed(asked)]
     (entry,) = gather(asked, made, figures=False).entries
     whole = ensemble("zone-51", range(30), theorems=["source"], metrics=[], jobs=1)
     (other,) = statistics_section([whole], figures=False).entries
@@ -97,14 +97,14 @@ def test_surveys_in_any_order_give_what_one_ensemble_gives():
 
 def test_half_a_scenario_is_left_out():
     asked = (*surveys("zone-51", 30), *surveys("zone-gap", 2))
-    made = [carry_out(one) for one in asked if one.seeds[0] == 0]
+    made = [make_survey(one) for one in asked if one.seeds[0] == 0]
     assert [one.scenario for one in gather(asked, made, figures=False).entries] == ["zone-gap"]
     assert gather(asked, made[:1]) is None
 
 
 def test_runs_that_fail_are_counted_and_not_hidden():
     (asked,) = surveys("zone-gap", 2)
-    done = carry_out(asked)
+    done = make_survey(asked)
     failed = replace(done, records=(done.records[0], Record(done.records[1].job, "error", "ValueError: no")))
     (entry,) = gather([asked], [failed], figures=False).entries
     assert (entry.runs, entry.incomplete, entry.rows[0].verified.runs) == (2, 1, 1)

@@ -19,12 +19,12 @@ from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.stability import linearise, slowest_modes
 from flockana.stability.blocks import law_blocks
+from flockana.stability.centre_path import centre_path
 from flockana.stability.decay import decay
 from flockana.stability.delay import DelaySystem, delay_margin, delay_system, rightmost_roots, root_error
 from flockana.stability.norms import disturbance_system, h2_bounds, h2_norm, hinf_norm
 from flockana.stability.rounding import eigen, slowest_first
 from flockana.stability.sweeps import gain_sweep
-from flockana.stability.tracking import centre_path
 from flockana.stability.translational import CentreOfMass
 
 UNITS = [(1e-6, 1.0), (1e3, 1.0), (1.0, 1e-3), (1.0, 1e3), (1e-6, 1e-3)]

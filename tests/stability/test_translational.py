@@ -25,7 +25,8 @@ from flockana.interactions import Gains
 from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.scenarios import scenario
-from flockana.stability.tracking import centre_path, motion, response_ratio, steady_error, tracking
+from flockana.stability.centre_path import centre_path, motion, steady_error
+from flockana.stability.tracking import response_ratio, tracking
 from flockana.stability.translational import CentreOfMass, map_gain, map_system, predicted_gain
 from flockana.symbolic.parameters import GainSymbols
 from flockana.symbolic.translational import S, damping_ratio, natural_frequency, transfer_function

@@ -18,7 +18,8 @@ from flockana.lattice import hexagonal_patch
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.stability.decay import Decay, LinearRange, decay, decay_table, linear_range
-from flockana.stability.linearise import Linearisation, linearise
+from flockana.stability.linearisation import Linearisation
+from flockana.stability.linearise import linearise
 from flockana.theorems.slides.e05 import fcc_star
 from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
 

@@ -11,7 +11,8 @@ from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import CircleTarget, SineTarget
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.stability.tracking import centre_path, motion, path_and_factor, response_ratio, whole_period
+from flockana.stability.centre_path import centre_path, motion, path_and_factor
+from flockana.stability.tracking import response_ratio, whole_period
 from flockana.stability.translational import predicted_gain
 from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
 

@@ -1,4 +1,4 @@
-"""What an ensemble records of the net, for any law with an interaction range."""
+"""What is measured of any run: over time, and the number that an ensemble keeps of it."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ from math import isnan
 import pytest
 
 from flockana.dynamics.simulate import simulate
-from flockana.ensemble.measures import _MEASURES
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.laws.semi_implicit import SemiImplicitEuler
+from flockana.measures.measure import measures
 
 
 @pytest.mark.parametrize("law", [DeadZoneFlocking(), SemiImplicitEuler(DeadZoneFlocking(), 0.01)])
 def test_a_dead_zone_flock_has_components_at_its_range_and_no_strain(law):
     run = simulate(law, [[0.0, 0.0], [5.0, 0.0], [100.0, 0.0]], [[0.0, 0.0]] * 3, (0.0, 0.02))
-    found = {name: one.value(run) for name, one in _MEASURES.items()}
+    found = {name: it.number(run) for name, it in measures().items()}
     assert (found["components"], found["giant_share"]) == (2.0, pytest.approx(2.0 / 3.0))
     assert isnan(found["strain"])
     assert law.pair == DeadZoneInteraction()
@@ -26,7 +26,7 @@ def test_a_dead_zone_flock_has_components_at_its_range_and_no_strain(law):
 
 def test_links_of_a_lattice_law_are_as_before():
     run = simulate(Algorithm1(), [[0.0], [7.7], [30.0]], [[0.0]] * 3, (0.0, 0.01), t_eval=[0.0])
-    found = {name: one.value(run) for name, one in _MEASURES.items()}
+    found = {name: it.number(run) for name, it in measures().items()}
     assert (found["components"], found["strain"]) == (2.0, pytest.approx(0.1))
 
 
@@ -34,4 +34,19 @@ def test_a_law_without_a_pair_interaction_has_no_net():
     law = MinimalFlocking(edges=[(0, 1)], spacing=1.0)
     assert law.pair is None
     run = simulate(law, [[0.0], [1.0]], [[0.0], [0.0]], (0.0, 0.1))
-    assert isnan(_MEASURES["components"].value(run))
+    assert isnan(measures()["components"].number(run))
+
+
+def test_the_number_of_a_measure_over_time_is_its_last_value():
+    q, p = [[0.0, 0.0], [7.5, 0.0], [3.0, 6.0], [40.0, 1.0]], [[1.0, 0.0], [0.5, 0.5], [0.0, 0.0], [1.0, 2.0]]
+    run = simulate(Algorithm1(), q, p, (0.0, 1.0))
+    for measure in measures().values():
+        if measure.over_time is not None and measure.of_run is None:
+            assert measure.number(run) == run.metric(measure.name)[-1]
+    assert measures()["min_distance"].number(run) == run.min_distance()
+
+
+def test_a_measure_says_what_it_is():
+    measure = measures()["cohesion_radius"]
+    assert (measure.label, measure.summary) == ("R, cohesion radius (length)", "R, cohesion radius, at the end")
+    assert measures()["order"].label == "polar order"

@@ -1,0 +1,35 @@
+"""What commands print: a title with tables under it, the files that they wrote, or JSON."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from rich.console import Console, RenderableType
+
+
+def show(title: str, *tables: RenderableType) -> Console:
+    """Print a title in bold, and tables under it; gives the console, for more."""
+    from rich.console import Console
+
+    console = Console(highlight=False)
+    console.print(title, style="bold", markup=False)
+    for table in tables:
+        console.print(table)
+    return console
+
+
+def show_files(**files: Path | None) -> None:
+    """Print where each file is that was written, by what it is."""
+    for kind, path in files.items():
+        if path is not None:
+            typer.echo(f"{kind}: {path}")
+
+
+def show_json(data: Any) -> None:
+    """Print plain data as JSON."""
+    typer.echo(json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False))

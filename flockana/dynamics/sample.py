@@ -1,0 +1,72 @@
+"""What integrators yield: samples of a run as it goes, and a tally of what they did."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.laws.discrete import DiscreteLaw
+from flockana.laws.law import Law
+
+
+class Sample(NamedTuple):
+    """One instant of a run: a sample, or if it is not `wanted` a step that the integrator made between samples."""
+
+    t: float
+    q: FloatArray
+    p: FloatArray
+    u: FloatArray
+    extra: dict[str, FloatArray]
+    wanted: bool = True
+
+
+@dataclass
+class Tally:
+    """What a run did, filled in as it goes, so that an interrupted run can tell.
+
+    Parameters
+    ----------
+    evaluations, steps : int
+        Counts of right-hand sides and of steps.
+    status, message : str
+        As in `Trajectory`.
+    notes : dict
+        What else an integrator has to tell, for `Trajectory.stats`.
+    """
+
+    evaluations: int = 0
+    steps: int = 0
+    status: str = "complete"
+    message: str = "reached the end of the time span"
+    notes: dict[str, Any] = field(default_factory=dict)
+
+    def fail(self, message: str) -> None:
+        """Note that the run ended early, and why."""
+        self.status, self.message = "failed", message
+
+
+def start_sample(law: Law | DiscreteLaw, q0: FloatArray, p0: FloatArray, t0: float) -> Sample:
+    """The initial state as a sample."""
+    if isinstance(law, DiscreteLaw):
+        return Sample(t0, q0, p0, np.zeros_like(q0), copied(law.start(q0, p0)))
+    extra = {"work": np.array(0.0)} if has_energy(law, t0, q0, p0) else {}
+    return Sample(t0, q0, p0, law.flow(t0, q0, p0)[0], extra)
+
+
+def copied(memory: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+    """Series of a map's memory that it may go on to change."""
+    return {name: np.array(value) for name, value in memory.items()}
+
+
+def finite(*values: Any) -> bool:
+    """Whether all numbers in all arrays are."""
+    return all(bool(np.isfinite(value).all()) for value in values)
+
+
+def has_energy(law: Law, t: float, q: FloatArray, p: FloatArray) -> bool:
+    """Whether a law has an energy, so that its work can be integrated."""
+    return bool(np.isfinite(law.hamiltonian(t, q, p)))

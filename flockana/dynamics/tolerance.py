@@ -1,0 +1,49 @@
+"""Absolute tolerances of the adaptive solvers: multiples of the law's own scales, never below what rounding allows."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.base.scales import Scales
+from flockana.laws.law import Law
+
+FLOOR = 1e-2  # of the relative tolerance: the default absolute one, over the law's scales
+FINEST = 3e-14  # relative tolerance below which the solvers cannot go
+_ROUNDINGS = 1.0  # of the largest coordinate, at that tolerance: what a force makes of rounded places is noise
+_COARSER = 0.25  # power of the tolerance by which more is allowed: runs at two tolerances differ, and so tell the error
+
+
+class Floor(NamedTuple):
+    """Errors that are always allowed, whatever the state: of a position, a velocity, and the work."""
+
+    length: float
+    speed: float
+    energy: float
+
+
+def error_floor(
+    law: Law, q0: FloatArray, p0: FloatArray, t_span: tuple[float, float], rtol: float, atol: float | None
+) -> Floor:
+    """Absolute tolerances: the same number for all, or by default a hundredth of `rtol` times the law's own scales.
+
+    A law without scales is measured by the extent of its start and by the duration. Work is measured against the energy
+    that it is the change of, not against zero, where it starts. Far from the origin places are known to their rounding
+    only, and forces to what it makes of them: nothing below that can be asked for.
+    """
+    scales = law.scales
+    if scales is None:
+        duration = t_span[1] - t_span[0]
+        extent, travel = (float(np.abs(x - x.mean(axis=0)).max()) for x in (q0, p0 * duration))
+        scales = Scales(extent or travel or float(np.abs(p0).max()) * duration or 1.0, duration)
+    share = FLOOR * rtol
+    floor = (share * scales.length, share * scales.speed, share * len(q0) * scales.energy)
+    length, speed, energy = floor if atol is None else (atol,) * 3
+    reach = float(np.abs(q0).max() + np.abs(p0.mean(axis=0)).max() * (t_span[1] - t_span[0]))
+    blur = _ROUNDINGS * (rtol / FINEST) ** _COARSER * float(np.spacing(reach)) / scales.length
+    length, speed = max(length, blur * scales.length), max(speed, blur * scales.speed)
+    energy = max(energy, blur * len(q0) * scales.energy)
+    start = law.hamiltonian(t_span[0], q0, p0)
+    return Floor(length, speed, max(energy, rtol * abs(start)) if np.isfinite(start) else energy)

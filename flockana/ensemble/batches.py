@@ -1,0 +1,127 @@
+"""Hand work out in batches to whoever works: a few more than there are workers, results as they are done.
+
+Nothing is decided by which comes first, so results do not depend on who works. An item that ends its worker process
+(for want of memory, say) is found by trying those under suspicion one at a time; all others are worked on again.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future
+from concurrent.futures import wait as wait_for
+from typing import Any, TypeVar
+
+from flockana.base.errors import FlockanaError, SolverError
+from flockana.ensemble.executors import Crew
+
+_TICK = 0.2  # seconds between looks around
+_QUEUED = 2  # batches per worker that are out at once: one at work, one ready
+_HOPELESS = 3  # workers that died in a row, without one batch done in between
+
+Item = TypeVar("Item")
+Result = TypeVar("Result")
+Batch = tuple[Any, ...]
+Pending = dict[Future[Any], Batch]
+
+
+def work_through(
+    items: Sequence[Item],
+    function: Callable[[tuple[Item, ...]], tuple[Result, ...]],
+    workers: Crew,
+    *,
+    batch_size: Callable[[tuple[Result, ...]], int] = lambda results: 1,
+    watch: Callable[[tuple[Item, ...]], None] = lambda under_way: None,
+) -> Iterator[tuple[tuple[Item, Result | None], ...]]:
+    """Call a function on batches of items; give each item with its result as batches are done, in any order.
+
+    The result is None for an item that ended its worker process. `batch_size` tells from the last results how many
+    items to send together; `watch` is told what is under way. An error of the function ends all.
+
+    Examples
+    --------
+    >>> from flockana.ensemble.executors import crew
+    >>> with crew(jobs=1) as workers:
+    ...     list(work_through([2, 3], lambda batch: tuple(x * x for x in batch), workers))
+    [((2, 4),), ((3, 9),)]
+    """
+    waiting, suspects = deque(items), deque[Any]()
+    pending: Pending = {}
+    dead: list[tuple[Item, None]] = []  # kept back until a batch is done: only then the fault was theirs
+    size = 1
+    try:
+        while waiting or suspects or pending:
+            width = workers.width()
+            for batch in _next_batches(waiting, suspects, len(pending), width, size):
+                watch((*_under_way(pending), *batch)[:width])
+                try:
+                    sent = workers.executor.submit(function, batch)
+                except Exception as error:  # it broke since we last looked: whoever it was, not this batch
+                    suspects.extend(_suspected(error, batch, pending, workers))
+                    break
+                pending[sent] = batch
+                if sent.done():  # this process works itself: what is done is given before more is begun
+                    break
+            done, _ = wait_for(pending, timeout=_TICK, return_when=FIRST_COMPLETED)
+            for future in done:
+                batch = pending.pop(future)
+                try:
+                    results = future.result()
+                except Exception as error:
+                    alone = len(batch) == 1 and not pending
+                    lost = workers.loses and not isinstance(error, FlockanaError)  # `width` tells if all is over
+                    suspected = batch if lost else _suspected(error, batch, pending, workers)
+                    if not alone:
+                        suspects.extend(suspected)
+                        break  # what else is done is still pending, or under suspicion
+                    dead.append((batch[0], None))
+                    if len(dead) == _HOPELESS:
+                        raise _hopeless() from error
+                else:
+                    size = batch_size(results)
+                    yield (*dead, *zip(batch, results, strict=True))
+                    dead.clear()
+            watch(_under_way(pending)[:width])
+        yield tuple(dead)
+    except BaseException:
+        for future in pending:
+            future.cancel()
+        raise
+
+
+def _next_batches(
+    waiting: deque[Any], suspects: deque[Any], out: int, width: int, size: int
+) -> Iterator[tuple[Any, ...]]:
+    """Batches to send now: a few per worker; one item alone while some are suspected of ending workers."""
+    if suspects:
+        if not out:
+            yield (suspects.popleft(),)
+        return
+    for _ in range(_QUEUED * width - out):
+        if waiting:
+            fair = max(1, len(waiting) // (_QUEUED * width))  # so that all workers end together
+            yield tuple(waiting.popleft() for _ in range(min(size, fair)))
+
+
+def _under_way(pending: Pending) -> Batch:
+    """The items that workers have begun, or are about to."""
+    return tuple(item for future, batch in pending.items() if future.running() for item in batch)
+
+
+def _suspected(error: BaseException, batch: Batch, pending: Pending, workers: Crew) -> Batch:
+    """The items any of which may have ended a worker; raises if it was something else, or nothing can go on."""
+    if type(error).__name__ == "KilledWorker":  # Dask's, after it tried the batch on several workers
+        return batch
+    if isinstance(error, BrokenExecutor) and workers.renew is not None:
+        suspected = (*batch, *(item for other in pending.values() for item in other))
+        pending.clear()
+        workers.executor = workers.renew()
+        return suspected
+    raise error
+
+
+def _hopeless() -> SolverError:
+    return SolverError(
+        f"{_HOPELESS} worker processes died one after the other: a script that starts them must do so under "
+        "`if __name__ == '__main__':`; if memory is short, use jobs=1 (--jobs 1)"
+    )

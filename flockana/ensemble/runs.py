@@ -1,0 +1,38 @@
+"""Make the runs of an ensemble, by whoever works."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+
+from flockana.base.errors import FlockanaError, SolverError
+from flockana.ensemble.batches import work_through
+from flockana.ensemble.executors import Crew
+from flockana.ensemble.work import DIED, Job, Record, Request, run_batch
+
+_BATCH_SECONDS = 0.5  # runs shorter than this travel together
+_LONGEST_BATCH = 256
+
+
+def make_runs(request: Request, jobs: Sequence[Job], workers: Crew) -> Iterator[tuple[Record, ...]]:
+    """Make runs; records come as batches of them are done. One that ends its worker process is recorded as such."""
+    try:
+        for done in work_through(jobs, partial(run_batch, request), workers, batch_size=_batch_size):
+            yield tuple(_died(job) if record is None else record for job, record in done)
+    except FlockanaError:
+        raise
+    except Exception as error:  # what a run raises is in its record: this comes from who works
+        raise SolverError(
+            f"the executor failed: {type(error).__name__}: {error}; runs in a store are kept, so mend it and start "
+            "again"
+        ) from error
+
+
+def _died(job: Job) -> Record:
+    return Record(job, DIED, "the worker process that made this run ended")
+
+
+def _batch_size(records: tuple[Record, ...]) -> int:
+    """How many runs make a batch of about half a second, by the last ones that were made."""
+    each = sum(record.seconds for record in records) / len(records)
+    return int(min(_LONGEST_BATCH, max(1.0, _BATCH_SECONDS / max(each, 1e-6))))

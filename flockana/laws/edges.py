@@ -1,0 +1,72 @@
+"""Directed edges of the minimal model, with the weights and lengths that its parameters give them."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_positive
+from flockana.base.errors import ArgumentError
+
+PerAgent = float | tuple[float, ...]
+PerPair = float | tuple[tuple[float, ...], ...]
+
+
+class EdgeData(NamedTuple):
+    """What acts along each directed edge, arrays of shape (M,).
+
+    Parameters
+    ----------
+    head, tail : int64 arrays
+        The agent i that perceives and the agent j that it perceives.
+    mu, rho, align : ndarray
+        Weight μ_ij of the spring, its length ρ_i = α_i r_i, and the weight of v_j − v_i.
+    """
+
+    head: npt.NDArray[np.int64]
+    tail: npt.NDArray[np.int64]
+    mu: FloatArray
+    rho: FloatArray
+    align: FloatArray
+
+
+def per_agent(name: str, value: Any) -> PerAgent:
+    """One number > 0, or one for each agent."""
+    if np.ndim(value) == 0:
+        return ensure_positive(name, value)
+    return tuple(ensure_positive(f"{name}[{k}]", one) for k, one in enumerate(value))
+
+
+def per_pair(name: str, value: Any) -> PerPair:
+    """One number >= 0, or a square table of them."""
+    if np.ndim(value) == 0:
+        return ensure_nonnegative(name, value)
+    table = np.asarray(value, dtype=object)
+    if table.ndim != 2 or table.shape[0] != table.shape[1]:
+        raise ArgumentError(f"{name} has shape {table.shape}: expected one number, or (n, n): how much i heeds j")
+    return tuple(
+        tuple(ensure_nonnegative(f"{name}[{i}][{j}]", one) for j, one in enumerate(row)) for i, row in enumerate(table)
+    )
+
+
+def weighed_edges(law: Any, head: npt.NDArray[np.int64], tail: npt.NDArray[np.int64]) -> EdgeData:
+    """What acts along each edge by the parameters of a `MinimalFlocking`, means taken over these edges."""
+
+    def of_agent(value: PerAgent) -> Any:
+        return value if isinstance(value, float) else np.array(value)[head]
+
+    def of_pair(value: PerPair) -> FloatArray:
+        return np.full(head.size, value) if isinstance(value, float) else np.array(value)[head, tail]
+
+    if law.spacing is not None:
+        rho = of_agent(law.spacing)
+    else:
+        count = np.bincount(head)[head]
+        rho = count if law.beta is None else of_agent(law.beta) * of_agent(law.radius) * count
+    align = of_pair(law.sigma)
+    if law.normalised:
+        total = np.bincount(head, align)[head]
+        align = np.divide(align, total, out=np.zeros_like(align), where=total > 0.0)
+    return EdgeData(head, tail, of_pair(law.mu), np.full(head.size, rho, dtype=np.float64), align)

@@ -1,0 +1,140 @@
+"""What is measured of any run, over time and as one number of it: a measure is one entry of one table.
+
+A file of this package that defines ``MEASURES`` adds to it: `Trajectory.metrics`, ensembles and plots then know them.
+What only the runs of one law have is in that law's `measures`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache, cached_property
+from math import nan
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from flockana.base.checks import FloatArray
+from flockana.base.modules import modules
+from flockana.measures.metrics import nets
+
+if TYPE_CHECKING:
+    from flockana.dynamics.trajectory import Trajectory
+
+
+@dataclass(frozen=True, eq=False)
+class Flock:
+    """A flock at several instants, under its law: what measures are taken of.
+
+    Attributes
+    ----------
+    law : LawOfMotion
+        The law.
+    q, p : ndarray, shape (T, n, m)
+        Positions and velocities.
+    """
+
+    law: Any
+    q: FloatArray
+    p: FloatArray
+
+    @cached_property
+    def nets(self) -> FloatArray:
+        """C, C* and E of the net at each instant, shape (3, T); E only where the law has a lattice scale d."""
+        r = self.law.pair.range
+        d = r if self.law.lattice is None else self.law.lattice[0]
+        return nets(self.q, d, r)
+
+
+class Series(NamedTuple):
+    """A measure that a law takes of its own runs, already taken."""
+
+    text: str
+    values: FloatArray
+    logarithmic: bool = False
+
+
+def any_law(law: Any) -> bool:
+    """Whether a measure makes sense for the law: always."""
+    return True
+
+
+def has_range(law: Any) -> bool:
+    """Whether the law has an interaction range, so that there is a net."""
+    return law.pair is not None
+
+
+def has_lattice(law: Any) -> bool:
+    """Whether the law has a lattice scale d and an interaction range r."""
+    return law.lattice is not None
+
+
+@dataclass(frozen=True)
+class Measure:
+    """One measure of runs.
+
+    Parameters
+    ----------
+    name : str
+        Its name in `Trajectory.metrics` and in ensembles.
+    text : str
+        What it is, for people.
+    unit : str
+        Its unit.
+    over_time : callable, optional
+        ``over_time(flock) -> ndarray of shape (T,)``: its value at each instant of a `Flock`.
+    of_run : callable, optional
+        ``of_run(trajectory) -> float``: what an ensemble keeps of a run; by default the value at the end.
+    of_run_text : str
+        What that is, where it is not the value at the end.
+    defined : callable
+        ``defined(law)``: whether it makes sense.
+    logarithmic : bool
+        Draw it on a logarithmic axis.
+    at_most_one : bool
+        It is a share or a cosine, so that its axis ends at 1.
+    """
+
+    name: str
+    text: str
+    unit: str = "1"
+    over_time: Callable[[Flock], FloatArray] | None = None
+    of_run: Callable[[Trajectory], float] | None = None
+    of_run_text: str = ""
+    defined: Callable[[Any], bool] = any_law
+    logarithmic: bool = False
+    at_most_one: bool = False
+
+    @property
+    def label(self) -> str:
+        """Text and unit, for an axis."""
+        return self.text if self.unit in ("", "1") else f"{self.text} ({self.unit})"
+
+    @property
+    def summary(self) -> str:
+        """What `number` is."""
+        return self.of_run_text or f"{self.text}, at the end"
+
+    def number(self, run: Trajectory) -> float:
+        """The number that an ensemble keeps of a run; NaN where the measure makes no sense for the law.
+
+        Parameters
+        ----------
+        run : Trajectory
+            The run.
+        """
+        if not self.defined(run.law):
+            return nan
+        if self.of_run is not None:
+            return float(self.of_run(run))
+        return nan if self.over_time is None else float(self.over_time(run.end)[0])
+
+
+@cache
+def measures() -> Mapping[str, Measure]:
+    """Every measure by name: those of all ``MEASURES`` in the files of this package.
+
+    Examples
+    --------
+    >>> measures()["strain"].summary
+    'δ/d, largest |link − d|/d, at the end'
+    """
+    return {it.name: it for module in modules("flockana.measures") for it in getattr(module, "MEASURES", ())}

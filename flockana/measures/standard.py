@@ -1,0 +1,105 @@
+"""The measures of any flock: of its net, its extent and its velocities."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.measures import metrics
+from flockana.measures.measure import Flock, Measure, has_lattice, has_range
+from flockana.measures.nets import components, link_lengths, links
+
+if TYPE_CHECKING:
+    from flockana.dynamics.trajectory import Trajectory
+
+
+def _mismatch(flock: Flock) -> FloatArray:
+    """K̃ = K/n."""
+    mismatch: FloatArray = metrics.spreads(flock.p) / flock.p.shape[1]
+    return mismatch
+
+
+def _component_count(run: Trajectory) -> int:
+    return int(components(run.n, links(run.q[-1], run.law.pair.range)).max()) + 1
+
+
+def _strain(run: Trajectory) -> float:
+    d, r = run.law.lattice
+    lengths = link_lengths(run.q[-1], links(run.q[-1], r))
+    return float(np.abs(lengths - d).max()) / d if lengths.size else np.nan
+
+
+def _relative_residual(run: Trajectory) -> float:
+    if "work" not in run.extra:
+        return np.nan
+    largest = float(np.abs(run.energy()).max())
+    return float(np.abs(run.energy_residual).max()) / largest if largest > 0.0 else 0.0
+
+
+MEASURES = (
+    Measure(
+        "connectivity",
+        "C, relative connectivity",
+        over_time=lambda flock: flock.nets[0],
+        defined=has_range,
+        at_most_one=True,
+    ),
+    Measure(
+        "giant_share",
+        "C*, share of the largest component",
+        over_time=lambda flock: flock.nets[1],
+        defined=has_range,
+        at_most_one=True,
+    ),
+    Measure(
+        "components",
+        "components of the net",
+        of_run=_component_count,
+        of_run_text="components of the net at the end",
+        defined=has_range,
+    ),
+    Measure(
+        "deviation_energy",
+        "Ẽ = E/d², deviation energy",
+        over_time=lambda flock: flock.nets[2] / flock.law.lattice[0] ** 2,
+        defined=has_lattice,
+    ),
+    Measure("strain", "δ/d, largest |link − d|/d", of_run=_strain, defined=has_lattice),
+    Measure("cohesion_radius", "R, cohesion radius", "length", lambda flock: metrics.cohesion_radii(flock.q)),
+    Measure("velocity_mismatch", "K̃ = K/n, velocity mismatch", "length²/time²", _mismatch, logarithmic=True),
+    Measure(
+        "slip",
+        "K̃ over the square of the law's speed scale",
+        of_run=lambda run: float(_mismatch(run.end)[0]) / run.scales.energy,
+    ),
+    Measure("inertia", "J, inertia", "length²", lambda flock: metrics.spreads(flock.q)),
+    Measure(
+        "min_distance",
+        "least distance",
+        "length",
+        over_time=lambda flock: metrics.min_distances(flock.q),
+        of_run=lambda run: run.min_distance(),
+        of_run_text="closest approach of two agents in the run, a lower bound between samples too",
+    ),
+    Measure(
+        "end_distance",
+        "least distance over d",
+        of_run=lambda run: metrics.min_distance(run.q[-1]) / run.law.lattice[0],
+        defined=has_lattice,
+    ),
+    Measure("order", "polar order", over_time=lambda flock: metrics.orders(flock.p), at_most_one=True),
+    Measure(
+        "coordination",
+        "C, mean cosine between velocities",
+        over_time=lambda flock: metrics.coordinations(flock.p),
+        at_most_one=True,
+    ),
+    Measure(
+        "energy_residual",
+        "residual of the energy balance",
+        of_run=_relative_residual,
+        of_run_text="largest |residual of the energy balance| over the largest |H|",
+    ),
+)

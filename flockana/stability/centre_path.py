@@ -1,0 +1,167 @@
+"""The centre of mass behind a γ-agent on a line, a sine or a circle, in closed form."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.base.checks import FloatArray, ensure_vector
+from flockana.base.errors import ArgumentError
+from flockana.environment.targets import CircleTarget, LinearTarget, RescaledVelocity, SineTarget, StaticTarget, Target
+from flockana.interactions import Gains
+from flockana.stability.translational import CentreOfMass
+
+ComplexArray = npt.NDArray[np.complex128]
+
+_SHORT = 1e-8  # of Δt²: the series' next term is its square over 120
+
+
+def path_and_factor(target: Target | None) -> tuple[Target | None, float]:
+    """(the γ-agent's path, the factor of its p_r), unwrapped.
+
+    Examples
+    --------
+    >>> path_and_factor(RescaledVelocity(LinearTarget((0.0,), (2.0,)), 0.5))[1]
+    0.5
+    """
+    if isinstance(target, RescaledVelocity):
+        return target.target, target.factor
+    return target, 1.0
+
+
+@dataclass(frozen=True)
+class Motion:
+    """q_r(t) = start + velocity t + Re(swing e^jωt) and p_r(t) = drift + factor Re(jω swing e^jωt).
+
+    Parameters
+    ----------
+    start, velocity, drift : ndarray, shape (m,)
+        Where it is at t = 0 but for the swing, how fast it travels, and what it says about that.
+    swing : complex ndarray, shape (m,)
+        Amplitudes.
+    omega : float
+        Angular frequency, 0 without a swing.
+    factor : float
+        p_r over dq_r/dt, of the swing.
+    """
+
+    start: FloatArray
+    velocity: FloatArray
+    drift: FloatArray
+    swing: ComplexArray
+    omega: float
+    factor: float
+
+
+def motion(target: Target) -> Motion:
+    """A γ-agent's motion as a line plus a harmonic.
+
+    Examples
+    --------
+    >>> motion(CircleTarget((1.0, 2.0), 3.0, 0.5)).swing.tolist()
+    [(3+0j), -3j]
+    """
+    path, factor = path_and_factor(target)
+    if isinstance(path, StaticTarget):
+        start, still = np.array(path.q), np.zeros(len(path.q))
+        told = path.state(0.0)[1] if path is target else still
+        return Motion(start, still, told, still.astype(np.complex128), 0.0, factor)
+    if isinstance(path, LinearTarget):
+        velocity = np.array(path.p)
+        return Motion(np.array(path.q), velocity, factor * velocity, velocity.astype(np.complex128) * 0.0, 0.0, factor)
+    if isinstance(path, SineTarget):
+        velocity, swing = np.array(path.velocity), np.zeros(len(path.start), dtype=np.complex128)
+        swing[path.axis] = -1j * path.amplitude * np.exp(1j * path.phase)
+        omega = 2.0 * pi * path.frequency
+        return Motion(np.array(path.start), velocity, factor * velocity, swing, omega, factor)
+    if isinstance(path, CircleTarget):
+        swing = np.zeros(len(path.centre), dtype=np.complex128)
+        swing[:2] = path.radius * np.exp(1j * path.phase) * np.array([1.0, -1j])
+        still, omega = np.zeros(len(path.centre)), 2.0 * pi * path.frequency
+        return Motion(np.array(path.centre), still, still, swing, omega, factor)
+    raise ArgumentError(f"target = {target!r}: expected a static, linear, sine or circle target")
+
+
+def steady_motion(gains: Gains, moving: Motion) -> tuple[FloatArray, ComplexArray]:
+    """(constant lag behind the line, swing of the centre of mass) once the transient is gone."""
+    c1, c2 = gains.c1_gamma, gains.c2_gamma
+    if c1 == 0.0:
+        raise ArgumentError("c1_gamma = 0: expected a pull > 0; without one the centre of mass follows no position")
+    if c2 == 0.0 and moving.swing.any() and abs(moving.omega**2 - c1) <= 1e-12 * c1:
+        raise ArgumentError(
+            f"c2_gamma = 0 and the γ-agent swings at √c1γ = {moving.omega:g}: resonance, no steady state"
+        )
+    lag: FloatArray = c2 * (moving.velocity - moving.drift) / c1
+    return lag, CentreOfMass(gains, moving.factor).response(moving.omega) * moving.swing
+
+
+def steady_error(gains: Gains, target: Target) -> tuple[float, float]:
+    """Largest ‖q_c − q_r‖ for ever after the transient: (of the line, of the swing).
+
+    On a line the centre lags by c2γ ‖v − p_r‖/c1γ, by nothing if p_r is the true velocity; on a sine or circle of
+    size A by |G(jω) − 1| A.
+
+    Parameters
+    ----------
+    gains : Gains
+        c1γ and c2γ are used.
+    target : Target
+        Static, on a line, a sine or a circle.
+
+    Raises
+    ------
+    ArgumentError
+        On another target, without a pull, or in resonance.
+
+    Examples
+    --------
+    >>> hidden = RescaledVelocity(LinearTarget((0.0, 0.0), (3.0, 0.0)), 0.0)
+    >>> steady_error(Gains(c1_gamma=2.0, c2_gamma=4.0), hidden)
+    (6.0, 0.0)
+    """
+    moving = motion(target)
+    lag, swing = steady_motion(gains, moving)
+    off = swing - moving.swing
+    # the longest semi-axis of the ellipse Re(off e^jωt)
+    square = 0.5 * (float(np.vdot(off, off).real) + abs(complex(off @ off)))
+    return float(np.linalg.norm(lag)), float(np.sqrt(square))
+
+
+def centre_path(gains: Gains, target: Target, t: Any, q_c: Any, p_c: Any) -> FloatArray:
+    """q_c(t) in closed form from its start at t[0], transient included, shape (T, m).
+
+    Examples
+    --------
+    Without damping it swings through a target at rest and as far beyond:
+
+    >>> swing = Gains(c1_gamma=1.0, c2_gamma=0.0)
+    >>> centre_path(swing, StaticTarget((5.0,)), [0.0, pi], [1.0], [0.0]).round(9).ravel().tolist()
+    [1.0, 9.0]
+    """
+    moving, times = motion(target), np.atleast_1d(np.asarray(t, dtype=np.float64))
+    start, speed = ensure_vector("q_c", q_c, moving.start.size), ensure_vector("p_c", p_c, moving.start.size)
+    lag, swing = steady_motion(gains, moving)
+    turn = np.exp(1j * moving.omega * times)[:, None]
+    steady = moving.start + moving.velocity * times[:, None] - lag + (swing * turn).real
+    rate = moving.velocity + (1j * moving.omega * swing * turn[0]).real
+    path: FloatArray = steady + transient(gains, times - times[0], start - steady[0], speed - rate)
+    return path
+
+
+def transient(gains: Gains, since: FloatArray, left: FloatArray, swift: FloatArray) -> FloatArray:
+    """How an offset and a velocity left over die out, x'' = −c1γ x − c2γ x', shape (T, m)."""
+    since = since[:, None]
+    decay, square = 0.5 * gains.c2_gamma, CentreOfMass(gains).discriminant
+    root = np.sqrt(complex(square))
+    # e^At of the companion matrix: cosh and sinh(√Δ t)/√Δ, real whatever the sign of Δ; decay ≥ Re √Δ, so no overflow
+    rise, fall = np.exp((root - decay) * since), np.exp((-root - decay) * since)
+    level = 0.5 * (rise + fall).real
+    short = np.abs(square) * since**2 < _SHORT  # where rise and fall cancel: sinh x/x by its series
+    series = since * np.exp(-decay * since) * (1.0 + square * since**2 / 6.0)
+    slope = np.where(short, series, ((rise - fall) / (2.0 * (root or 1.0))).real)
+    motion: FloatArray = left * level + (swift + decay * left) * slope
+    return motion

@@ -1,0 +1,217 @@
+"""Linearised dynamics of a flock near an equilibrium: matrices, eigenvalues, modes, python-control systems."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.base.checks import FloatArray, ensure_fits, ensure_state
+from flockana.base.errors import ArgumentError
+from flockana.laws.law import Law
+from flockana.measures.nets import LinkArray
+from flockana.stability.modes import Mode, SecondOrder
+from flockana.stability.signals import structural_system, translational_system, whole_system
+
+if TYPE_CHECKING:
+    import control
+    from scipy.sparse import csr_array
+
+
+@dataclass(frozen=True, eq=False)
+class Linearisation:
+    """δq'' + D δq' + K δq = 0 near an equilibrium, in the frame that moves with it.
+
+    Parameters
+    ----------
+    law : Law
+        The law.
+    q, p : ndarray, shape (n, m)
+        Where it is linearised; every agent has the velocity of the frame.
+    t : float
+        When.
+    residual : float
+        How far the state is from an equilibrium, relative to the law's forces.
+    links : int array, shape (M, 2)
+        Links, whose lengths are outputs of `state_space`.
+    A_sparse : scipy.sparse.csr_array, shape (2nm, 2nm)
+        A of d(δq, δp)/dt = A (δq, δp), in the order ``(q.ravel(), p.ravel())``.
+    zero : float
+        What counts as a zero mode: a motion that K multiplies by less than this, relative to its largest row sum.
+
+    Examples
+    --------
+    Two agents at their distance: a spring and a damper between them, and a plane to move in.
+
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> from flockana.stability import linearise
+    >>> pair = linearise(Algorithm1(), [[0.0, 0.0], [7.0, 0.0]])
+    >>> [mode.name for mode in pair.zero_modes], pair.drifting
+    (['translation x', 'translation y', 'rotation'], ('translation x', 'translation y'))
+    >>> [(mode.name, round(mode.decay_rate, 4)) for mode in pair.modes]
+    [('breathing', 1.9637), ('rotation', 3.9275)]
+    """
+
+    law: Law
+    q: FloatArray = field(repr=False)
+    p: FloatArray = field(repr=False)
+    t: float
+    residual: float
+    links: LinkArray = field(repr=False)
+    A_sparse: csr_array = field(repr=False)
+    zero: float
+
+    @cached_property
+    def A(self) -> FloatArray:  # noqa: N802  # what control engineers call it
+        """The matrix as a dense array; refused where it would not fit in memory."""
+        ensure_fits("A", self.A_sparse.shape, "use A_sparse and slowest_modes(...)")
+        dense: FloatArray = self.A_sparse.toarray()
+        return dense
+
+    @property
+    def stiffness(self) -> csr_array:
+        """K = −∂u/∂q, sparse."""
+        size = self.q.size
+        return -self.A_sparse[size:, :size]
+
+    @property
+    def damping(self) -> csr_array:
+        """D = −∂u/∂p, sparse."""
+        size = self.q.size
+        return -self.A_sparse[size:, size:]
+
+    @cached_property
+    def second_order(self) -> SecondOrder:
+        """The quadratic eigenproblem (λ² + λ D + K) v = 0."""
+        return SecondOrder(self.q, self.stiffness, self.damping, zero=self.zero)
+
+    @property
+    def _dense(self) -> SecondOrder:
+        ensure_fits("A", self.A_sparse.shape, "use A_sparse and slowest_modes(...)")
+        return self.second_order
+
+    @property
+    def eigenvalues(self) -> npt.NDArray[np.complex128]:
+        """All 2nm eigenvalues of A, the largest real part first; zero modes come out as exact zeros."""
+        return self._dense.eigenvalues
+
+    @property
+    def zero_modes(self) -> tuple[Mode, ...]:
+        """Motions that cost nothing, K v = 0: translations, rotations, then soft ones (hinges, loose parts)."""
+        return self._dense.invariant.zero
+
+    @property
+    def drifting(self) -> tuple[str, ...]:
+        """Names of the zero modes along which a velocity persists: no force, no damping, a Jordan block."""
+        return self._dense.invariant.drifting
+
+    @property
+    def semisimple(self) -> bool:
+        """Whether the zero modes have no Jordan block: every perturbation then stays bounded along them."""
+        return self._dense.invariant.chains == 0
+
+    @property
+    def modes(self) -> tuple[Mode, ...]:
+        """All other modes, slowest first; one for each real eigenvalue or conjugate pair."""
+        return self._dense.modes
+
+    @property
+    def decay_rate(self) -> float:
+        """Slowest decay rate off the zero modes, per time unit; negative if something grows, NaN without modes."""
+        return self.modes[0].decay_rate if self.modes else float("nan")
+
+    @property
+    def stable(self) -> bool:
+        """Whether every mode off the zero modes dies out, by more than rounding could feign; True if there is none."""
+        return all(mode.decays for mode in self.modes)
+
+    @property
+    def structural_decay_rate(self) -> float:
+        """`decay_rate` of the shape alone, the centre of mass left out; raises where they do not separate."""
+        self.ensure_split()
+        centre = {id(mode) for mode in self._dense.invariant.translational}
+        return next((mode.decay_rate for mode in self.modes if id(mode) not in centre), float("nan"))
+
+    @property
+    def spectral_abscissa(self) -> float:
+        """Largest real part of the eigenvalues off the zero modes: minus `decay_rate`."""
+        return -self.decay_rate
+
+    def limit(self, dq: Any, dp: Any) -> FloatArray:
+        """Where a small perturbation ends: its displacement along the manifold of equilibria, to first order.
+
+        The zero modes keep what their left eigenvectors measure, w·(D δq + δp); all else decays if `decay_rate` > 0.
+        Under Algorithms 1 and 2 the manifold is the orbit of the equilibrium under its symmetries.
+
+        Parameters
+        ----------
+        dq, dp : array_like, shape (n, m)
+            Perturbation of positions and velocities.
+
+        Returns
+        -------
+        ndarray, shape (n, m)
+
+        Raises
+        ------
+        ArgumentError
+            If a zero mode drifts, so that there is no limit, or on bad arrays.
+        """
+        dq, dp = ensure_state(dq, dp)
+        if dq.shape != self.q.shape:
+            raise ArgumentError(f"dq has shape {dq.shape}: expected {self.q.shape}, that of the equilibrium")
+        if not self.semisimple:
+            raise ArgumentError(
+                f"zero modes drift ({', '.join(self.drifting) or 'combined'}): there is no limit in this frame; "
+                "take the mean off dq and dp and look at `structural`"
+            )
+        zero = self._dense.invariant
+        kept = zero.cokernel.T @ (self.damping @ dq.ravel() + dp.ravel())  # constant in time
+        return (zero.kernel @ np.linalg.solve(zero.cokernel.T @ (self.damping @ zero.kernel), kept)).reshape(dq.shape)
+
+    def ensure_split(self) -> None:
+        """Raise unless the centre of mass and the shape move independently of each other, to first order.
+
+        Raises
+        ------
+        ArgumentError
+            With the leak from the one to the other.
+        """
+        split = self.second_order.split
+        if not split.exact:
+            raise ArgumentError(
+                f"{type(self.law).__name__} does not split into shape and centre of mass here: {split.leak:.2g} of a "
+                "translation goes into the shape or back (relative to the largest entry of K and D). Expected forces "
+                "between agents that cancel, and one linear pull on all: no σ₁, no obstacles, no gains that differ; "
+                "use modes and state_space"
+            )
+
+    @cached_property
+    def state_space(self) -> control.StateSpace:
+        """Python-control system of all agents.
+
+        States q0_x, …, p0_x, …; inputs f0_x, … (a disturbance force on each agent) and qr_x, …, pr_x, … (the
+        γ-agent, if there is one); outputs qc_x, … (centre of mass), x0_x, … (deviations from it), l0_1, … (lengths of
+        links), all as differences from the equilibrium.
+        """
+        return whole_system(self)
+
+    @cached_property
+    def structural(self) -> control.StateSpace:
+        """Python-control system of the shape; raises where the split is not exact.
+
+        States x0_x, …, v0_x, … of all agents but the last, which is minus their sum; inputs f0_x, …; outputs x0_x, … of
+        all agents, l0_1, ….
+        """
+        return structural_system(self)
+
+    @cached_property
+    def translational(self) -> control.StateSpace:
+        """Python-control system of the centre; raises where the split is not exact.
+
+        States qc_x, …, pc_x, …; inputs f0_x, …, qr_x, …, pr_x, …; outputs qc_x, ….
+        """
+        return translational_system(self)

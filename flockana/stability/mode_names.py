@@ -1,0 +1,85 @@
+"""What a mode is called: translation, rotation, breathing where its shape is that, else a number."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.equilibria.terminal import rigid_motions
+
+_NAMED = 1e-6  # how far a rigid motion may be from the kernel that it is found in
+
+
+def translations(n: int, m: int) -> FloatArray:
+    """Unit translations along the axes, one per column, shape (n m, m).
+
+    Examples
+    --------
+    >>> translations(4, 1).ravel().tolist()
+    [0.5, 0.5, 0.5, 0.5]
+    """
+    unit: FloatArray = np.tile(np.eye(m), (n, 1)) / np.sqrt(n)
+    return unit
+
+
+def normalised(vector: Any, *, real: bool) -> Any:
+    """Unit length, turned so that the real part is as large as can be; the first large component positive."""
+    vector = vector / np.linalg.norm(vector)
+    vector = vector * np.exp(-0.5j * np.angle(np.sum(vector**2)))
+    size = np.abs(vector.real)
+    if vector.real[np.argmax(size > (1.0 - _NAMED) * size.max())] < 0.0:
+        vector = -vector
+    return vector.real / np.linalg.norm(vector.real) if real else vector
+
+
+def _rotations(q: FloatArray) -> list[tuple[str, FloatArray]]:
+    """Infinitesimal rotations about the centre, by axis, not normalised."""
+    x, m = q - q.mean(axis=0), q.shape[1]
+    turns = []
+    for name, (a, b) in {"rotation x": (1, 2), "rotation y": (2, 0), "rotation z": (0, 1)}.items():
+        if max(a, b) < m:
+            turn = np.zeros_like(x)
+            turn[:, a], turn[:, b] = -x[:, b], x[:, a]
+            turns.append(("rotation" if m == 2 else name, turn.ravel()))
+    return turns
+
+
+def pure_fields(q: FloatArray) -> list[tuple[str, FloatArray]]:
+    """Unit fields that give a mode its name: uniform expansion, translations, rotations."""
+    fields = [("breathing", (q - q.mean(axis=0)).ravel())]
+    fields += [(f"translation {'xyz'[c]}", column) for c, column in enumerate(translations(*q.shape).T)]
+    fields += _rotations(q)
+    return [(name, field / np.linalg.norm(field)) for name, field in fields if np.linalg.norm(field) > 0.0]
+
+
+def name_kernel(kernel: FloatArray, q: FloatArray) -> tuple[list[str], FloatArray]:
+    """Names and an orthonormal basis of a kernel: rigid motions first, by axis where they can be told apart."""
+    names: list[str] = []
+    basis = np.zeros((q.size, 0))
+    for name, flow in pure_fields(q):
+        if name == "breathing":  # of a flock without neighbours it costs nothing, but it is no rigid motion
+            continue
+        rest = flow - basis @ (basis.T @ flow)
+        inside = np.linalg.norm(flow - kernel @ (kernel.T @ flow)) <= _NAMED
+        if inside and np.linalg.norm(rest) > _NAMED:
+            names, basis = [*names, name], np.column_stack([basis, rest / np.linalg.norm(rest)])
+    rigid, unit = rigid_motions(q), translations(*q.shape)
+    for fields, kind in ((unit, "translation"), (rigid, "rotation")):  # along no axis, or about the γ-agent
+        left = _off(kernel, basis)
+        u, sizes, _ = np.linalg.svd(left.T @ fields, full_matrices=False)
+        mixed = _off(left @ u[:, sizes > 1.0 - _NAMED], basis)
+        names, basis = [*names, *[kind] * mixed.shape[1]], np.column_stack([basis, mixed])
+    soft = _off(kernel, basis)
+    names += [f"soft {k}" for k in range(1, soft.shape[1] + 1)]
+    return names, np.column_stack([basis, soft])
+
+
+def _off(kernel: FloatArray, named: FloatArray) -> FloatArray:
+    """Orthonormal basis of what a kernel holds beyond `named`, which it contains."""
+    if kernel.shape[1] == 0:
+        return kernel
+    basis, sizes, _ = np.linalg.svd(kernel - named @ (named.T @ kernel), full_matrices=False)
+    rest: FloatArray = basis[:, sizes > 0.5]
+    return rest

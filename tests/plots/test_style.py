@@ -1,0 +1,55 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from flockana.plots.style import finish, finish_empty, finish_over_time, frame_space, in_plane, lines
+
+
+@pytest.fixture
+def ax():
+    return Figure().add_subplot()
+
+
+def test_axes_are_named_and_labels_make_a_legend(ax):
+    ax.plot([0.0, 1.0], [1.0, 2.0])
+    assert finish(ax, "x (length)", "y (length)") is ax
+    assert (ax.get_xlabel(), ax.get_ylabel(), ax.get_legend()) == ("x (length)", "y (length)", None)
+    ax.plot([0.0, 1.0], [2.0, 1.0], label="a line")
+    (text,) = finish(ax).get_legend().get_texts()
+    assert (text.get_text(), ax.get_xlabel()) == ("a line", "x (length)")
+
+
+def test_a_drawing_over_time_goes_from_the_first_time_to_the_last(ax):
+    finish_over_time(ax, np.array([2.0, 3.0, 7.0]), "H, energy")
+    assert (ax.get_xlim(), ax.get_xlabel(), ax.get_ylabel()) == ((2.0, 7.0), "t (time)", "H, energy")
+    before = ax.get_xlim()
+    assert finish_over_time(ax, np.array([5.0]), "").get_xlim() == before  # one instant has no extent
+
+
+def test_empty_axes_say_why(ax):
+    finish_empty(ax, "H, energy", "this law has no energy")
+    assert [text.get_text() for text in ax.texts] == ["this law has no energy"]
+    assert (ax.get_ylabel(), len(ax.get_xticks()), len(ax.get_yticks())) == ("H, energy", 0, 0)
+
+
+def test_agents_of_a_line_lie_on_the_axis():
+    np.testing.assert_array_equal(in_plane(np.array([[3.0], [4.0]])), [[3.0, 0.0], [4.0, 0.0]])
+    points = np.ones((2, 3))
+    assert in_plane(points) is points
+
+
+@pytest.mark.parametrize("m", [2, 3])
+def test_lines_are_of_their_space_even_if_there_are_none(m):
+    ax = Figure().add_subplot(projection="3d" if m == 3 else None)
+    for count in (0, 2):
+        ax.add_collection(lines(np.zeros((count, 2, m)), colors="k"))
+    assert [type(c).__name__ for c in ax.collections] == ["Line3DCollection" if m == 3 else "LineCollection"] * 2
+
+
+def test_a_line_has_no_second_coordinate(ax):
+    frame_space(ax, np.zeros((3, 2)), 1)
+    assert (ax.get_xlabel(), ax.get_ylabel(), len(ax.get_yticks())) == ("x (length)", "", 0)
+    frame_space(ax, np.zeros((3, 2)), 2)
+    assert (ax.get_ylabel(), ax.get_aspect()) == ("y (length)", 1.0)
