@@ -52,7 +52,7 @@ def work_through(
     try:
         while waiting or suspects or pending:
             width = workers.width()
-            for batch in _next_batches(waiting, suspects, len(pending), width, size):
+            for batch in next_batches(waiting, suspects, len(pending), width, size):
                 watch((*_under_way(pending), *batch)[:width])
                 try:
                     sent = workers.executor.submit(function, batch)
@@ -89,7 +89,7 @@ def work_through(
         raise
 
 
-def _next_batches(
+def next_batches(
     waiting: deque[Any], suspects: deque[Any], out: int, width: int, size: int
 ) -> Iterator[tuple[Any, ...]]:
     """Batches to send now: a few per worker; one item alone while some are suspected of ending workers."""

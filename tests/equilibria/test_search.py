@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from flockana.base.errors import ArgumentError, FileError, SolverError
-from flockana.equilibria.coincidence import _trace, least_with_coincidence
+from flockana.equilibria.coincidence import hessian_trace, least_with_coincidence
 from flockana.equilibria.collapse import CollapseDiagram, collapse_diagram, collapse_threshold, threshold
 from flockana.equilibria.congruence import congruent
 from flockana.equilibria.record import read_equilibrium, smallest_strained, write_equilibrium
@@ -155,7 +155,7 @@ def test_coincident_agents_need_enough_neighbours():
             pair = np.zeros((2, m))
             pair[1, 0] = length
             trace = float(np.trace(alpha.hessian(pair).toarray()[:m, :m]))
-            assert float(_trace(alpha, np.array([length]), m)[0]) == pytest.approx(trace, abs=1e-11)
+            assert float(hessian_trace(alpha, np.array([length]), m)[0]) == pytest.approx(trace, abs=1e-11)
     assert [least_with_coincidence(alpha, m) for m in (1, 2, 3)] == [4, 5, 6]
     # five is reached in the plane, four on a line: a pair between two others
     assert find_equilibrium(LAW, rhombus_with_double_agent(7.0), method="root").kind == "minimum"
