@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import combinations, product
 from math import sqrt
 from typing import Any
@@ -11,8 +12,9 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.lattice import is_planar, kuratowski, planar_bound
+from flockana.theorems.claims import erratum, judged
 from flockana.theorems.olfati_saber.os_5 import check
-from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
+from flockana.theorems.theorem import Claim, Tolerances
 
 _D, _R = 7.0, 8.4
 Site = tuple[int, int, int]
@@ -113,51 +115,43 @@ def non_planar_fragments(size: int) -> tuple[int, int]:
 
 
 def _counterexample(name: str, q: FloatArray, sites: tuple[Site, ...], tolerances: Tolerances) -> list[Claim]:
-    """Edges do not cross, by the theorem's own check; the graph is not planar, by its links as whole numbers."""
-    _, found = check(q, _D, _R, tolerances)
-    claims = {claim.name: claim for claim in found}
+    """The claims of Theorem 5(i) on a lattice in space: its graph is planar, and its edges do not cross."""
+    claims = {claim.name: claim for claim in check(q, _D, _R, tolerances)[1]}
     edges = _links(sites)
     witness: Any = kuratowski(len(sites), edges)
     uncrossed, graph = claims["i"], claims["i-graph"]
     bound, planar = planar_bound(len(sites)), is_planar(len(sites), edges)
     return [
-        Claim(
+        judged(
             f"printed-{name}",
-            judge(1.0 if planar else -1.0, 0.0, []),
+            1.0 if planar else -1.0,
+            0.0,
             computed={"links": len(edges), "bound": bound, "graph": graph.computed},
             stated="the graph is planar",
-            margin=1.0 if planar else -1.0,
-            error=0.0,
             witness={"q": q} | (vars(witness) if witness else {}),
             proof=_PROOF,
             detail=f"{len(sites)} face-centred cubic sites: {graph.detail}",
         ),
-        Claim(
-            f"uncrossed-{name}",
-            uncrossed.status,
-            computed=uncrossed.computed,
-            stated=uncrossed.stated,
-            margin=uncrossed.margin,
-            error=uncrossed.error,
-            witness=uncrossed.witness,
+        replace(
+            uncrossed,
+            name=f"uncrossed-{name}",
             proof=_PROOF,
             detail=f"in space its edges do not cross: {uncrossed.detail}",
         ),
     ]
 
 
-def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+def _check(tolerances: Tolerances) -> list[Claim]:
     total, bad = non_planar_fragments(_FRAGMENT)
-    return [], [
+    return [
         *_counterexample("13", fcc_star(_D), _STAR, tolerances),
         *_counterexample("8", fcc_eight(_D), _EIGHT, tolerances),
-        Claim(
+        judged(
             "six",
-            judge(0.5 - bad, 0.0, []),
+            0.5 - bad,
+            0.0,
             computed={"fragments": total, "not planar": bad},
             stated="every fragment of six sites is planar",
-            margin=0.5 - bad,
-            error=0.0,
             witness="every connected fragment, up to translation",
             proof=_PROOF,
             detail=f"all {total} connected fragments of {_FRAGMENT} sites were tested: {bad} are not planar",
@@ -165,8 +159,8 @@ def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
     ]
 
 
-THEOREM = Theorem(
-    id="E5",
+THEOREM = erratum(
+    "E5",
     title="α-lattices in space need not have planar graphs",
     statement=(
         "Theorem 5(i) is printed as: the graph is planar for m = 2, 3. In space only the edges do not cross. A face-"
@@ -174,15 +168,13 @@ THEOREM = Theorem(
         "are not planar either. All fragments of six sites are."
     ),
     source="Lecture slides, Theorem 5",
-    kind="fixed",
     check=_check,
     references=("geschwender-2016", "olfati-saber-2006"),
     expected={
-        "E5": "refuted",
-        "E5:printed-13": "refuted",
-        "E5:uncrossed-13": "verified",
-        "E5:printed-8": "refuted",
-        "E5:uncrossed-8": "verified",
-        "E5:six": "verified",
+        "printed-13": "refuted",
+        "uncrossed-13": "verified",
+        "printed-8": "refuted",
+        "uncrossed-8": "verified",
+        "six": "verified",
     },
 )
