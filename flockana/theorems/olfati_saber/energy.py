@@ -130,10 +130,7 @@ def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
     if type(run.law) is Algorithm3:
         rest.append(stays_outside(run))
     proof = proved(run)
-    return [*rest, *rates], [
-        never_rises(run, rest, proof=proof),
-        balance(run, rates, tolerances, proof=proof),
-    ]
+    return [*rest, *rates], [never_rises(run, rest, proof=proof), balance(run, rates, tolerances, proof=proof)]
 
 
 THEOREM = Theorem(

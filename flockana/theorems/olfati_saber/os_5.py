@@ -14,16 +14,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.dynamics.trajectory import Trajectory
-from flockana.lattice import (
-    classify,
-    crossings,
-    harborth,
-    is_planar,
-    kuratowski,
-    links,
-    planar_bound,
-    separation,
-)
+from flockana.lattice import classify, crossings, harborth, is_planar, kuratowski, links, planar_bound, separation
 from flockana.lattice.measure import GUARD
 from flockana.measures.metrics import min_distance
 from flockana.measures.nets import LinkArray, link_lengths

@@ -22,16 +22,7 @@ Site = tuple[int, int, int]
 # Face-centred cubic sites are the whole points of even coordinate sum; neighbours are √2 apart.
 _STEPS: tuple[Site, ...] = tuple((x, y, z) for x, y, z in product((-1, 0, 1), repeat=3) if x * x + y * y + z * z == 2)
 _STAR: tuple[Site, ...] = ((0, 0, 0), *_STEPS)
-_EIGHT: tuple[Site, ...] = (
-    (0, 0, 0),
-    (1, 0, 1),
-    (2, 1, 1),
-    (1, 1, 0),
-    (2, 2, 0),
-    (2, 1, -1),
-    (1, 0, -1),
-    (2, 0, 0),
-)
+_EIGHT: tuple[Site, ...] = ((0, 0, 0), (1, 0, 1), (2, 1, 1), (1, 1, 0), (2, 2, 0), (2, 1, -1), (1, 0, -1), (2, 0, 0))
 _FRAGMENT = 6
 _PROOF = "nonplanar-fcc"
 

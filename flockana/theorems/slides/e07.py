@@ -24,13 +24,7 @@ def _share(name: str, share: float, detail: str) -> Claim:
     """Whether a share of the hundred agents is the source's: 96 of them, as a whole number."""
     margin = 0.5 - abs(round(100.0 * share) - 96)
     return judged(
-        name,
-        margin,
-        0.0,
-        computed=share,
-        stated=0.96,
-        witness="components of 1, 1, 1, 1 and 96 agents",
-        detail=detail,
+        name, margin, 0.0, computed=share, stated=0.96, witness="components of 1, 1, 1, 1 and 96 agents", detail=detail
     )
 
 
