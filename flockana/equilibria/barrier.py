@@ -32,7 +32,7 @@ _LARGEST = 2_000  # agents up to which the counts are followed
 
 @dataclass(frozen=True)
 class Barrier:
-    """Lowest energies found, with and without the demand that two agents coincide.
+    """Lowest energies of n agents that a search came to, with and without two agents at one place.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ class Barrier:
 
     @property
     def height(self) -> float:
-        """What has to be put into the best flock to bring two agents together, `together` − `ground`."""
+        """Energy needed to bring two agents of the best flock together, `together` − `ground`."""
         return self.together - self.ground
 
 

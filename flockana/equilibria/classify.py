@@ -91,7 +91,7 @@ def falling(potential: Potential, q: FloatArray) -> FloatArray | None:
 
 
 def kind_of(modes: Spectrum) -> EquilibriumKind:
-    """Name a spectrum: a negative direction decides before a zero one, which proves nothing.
+    """The kind of critical point: any negative eigenvalue excludes a minimum, and else any zero one leaves it open.
 
     Examples
     --------

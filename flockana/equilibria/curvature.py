@@ -124,7 +124,7 @@ class Landscape:
         return Curvatures(self.values, signs, self.rounding)
 
     def change(self, k: int) -> float:
-        """By how much eigenvalue k changes on the way to the critical point; infinite if that is not near."""
+        """Change of eigenvalue k on the way to the critical point; infinite if that is not near."""
         reach = 2.0 * self.force / max(abs(float(self.values[k])), self.rounding or np.inf)
         if not reach <= _REACH * self.length:
             return float("inf")
@@ -167,7 +167,7 @@ class Landscape:
         return turned + max(_row_sum(self.stiffness(x) - self.here) for x in self._around(reach)) <= 0.5 * least
 
     def _around(self, reach: float) -> list[FloatArray]:
-        """The flock blown up, shrunk, and shifted if its place matters.
+        """The configuration scaled up, scaled down, and shifted unless the potential is invariant under translations.
 
         Every distance above half of `length` changes by √2 `reach` at least, as those of links may.
         """

@@ -207,7 +207,7 @@ class _Record:
 
 
 def _margin(claim: Claim) -> float:
-    """NaN where nothing is claimed: a vacuous claim's margin says nothing of it."""
+    """The margin of a claim; NaN if it is vacuous, when its margin has no meaning."""
     return float("nan") if claim.status == "vacuous" or claim.margin is None else float(claim.margin)
 
 

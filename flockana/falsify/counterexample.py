@@ -1,4 +1,4 @@
-"""A run that breaks a claim, as a JSON file that anybody can simulate and check again."""
+"""Counterexamples as JSON files, to be simulated and checked again."""
 
 from __future__ import annotations
 

@@ -61,7 +61,7 @@ class Falsification:
     message: str = ""
 
     def __repr__(self) -> str:
-        """One line, whatever the number of evaluations."""
+        """A summary in one line."""
         what = f"{self.theorem}:{self.claim} on {self.scenario}"
         return f"<Falsification of {what}: {self.status}, margin {self.margin:.4g}, {self.evaluations} evaluations>"
 

@@ -33,7 +33,7 @@ def _numerical_noise(run: Trajectory, scale: float) -> float:
     return _NOISE * float(FLOOR * run.stats["rtol"] * scale if given is None else given)
 
 
-def still(run: Trajectory, tolerances: Tolerances) -> Certificate:
+def rest_certificate(run: Trajectory, tolerances: Tolerances) -> Certificate:
     """Certificate that all relative motion dies out: the rms relative velocity decays to what counts as 0."""
     speed = np.sqrt(run.metric("velocity_mismatch")) + frame_error(run.p) + _numerical_noise(run, run.scales.speed)
     falls = decay(run.t, speed, floor=float(np.sqrt(tolerances.velocity)) * run.scales.speed).certificate
@@ -53,7 +53,7 @@ def velocities_match(
     return limit_claim(
         name,
         needs,
-        [*caught, still(run, tolerances)],
+        [*caught, rest_certificate(run, tolerances)],
         computed=float(series[-1]),
         stated=f"K̃ -> 0 (below {tolerances.velocity:g} of the law's speed² it counts as 0)",
         witness={"time": float(run.t[-1]), "K̃ at the start": float(series[0])},
@@ -91,7 +91,7 @@ def lattice_limit(run: Trajectory, needs: Iterable[Hypothesis], tolerances: Tole
     else:
         strains = _strains(run) + _numerical_noise(run, run.scales.length) / run.law.alpha.d
         falls = decay(run.t, strains, floor=tolerances.lattice).certificate
-        both = still(run, tolerances), replace(falls, text=f"strain: {falls.text}")
+        both = rest_certificate(run, tolerances), replace(falls, text=f"strain: {falls.text}")
         certificate = min(both, key=lambda each: each.margin)
         margin, error = min(margin, certificate.margin), certificate.error
     kind = classify(end.strain, lattice=tolerances.lattice, quasi=tolerances.quasi)

@@ -151,12 +151,12 @@ def _relative(path: Course, steps: range, pairs: LinkArray) -> tuple[FloatArray,
 
 
 def _rounding(run: Trajectory) -> float:
-    """Of a distance of two agents, against r."""
+    """Rounding of a distance of two agents, compared with r."""
     return float(16.0 * EPS * (np.abs(run.q).max() + run.law.lattice[1]))
 
 
 def _row(run: Trajectory, k: int, pairs: LinkArray, certain: npt.NDArray[np.bool_]) -> tuple[float, ...]:
-    """Numbers of one net, of pairs that may be linked and of which some certainly are; sample k has it if all are."""
+    """A row of `Nets` from the pairs that may be linked, and those among them that certainly are, near sample k."""
     count = int(certain.sum())
     if count == len(pairs):
         number = run.n - float(run.metric("connectivity")[k]) * (run.n - 1)

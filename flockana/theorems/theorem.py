@@ -1,4 +1,4 @@
-"""What a theorem, a hypothesis, a claim and a verdict are, and how a verdict follows from its claims."""
+"""Theorems, hypotheses, claims and verdicts, and how a verdict follows from its claims."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ def _end(law: MinimalFlocking, seed: int) -> FloatArray:
 
 
 def _runaway_attracts(law: MinimalFlocking, worst: float, tolerances: Tolerances) -> Certificate:
-    """All runs end near the runaway, which attracts: linearised there, every mode decays but that of its direction."""
+    """Certificate that the runaway attracts: runs end near it, where all modes decay but that of its direction."""
     q = np.array([[-5.0 / 3.0, 0.0], [0.0, 0.0], [-5.0 / 3.0, 0.0]])
     T = np.kron(np.eye(2), np.kron(-incidence(3, ((0, 1), (1, 2))).T, np.eye(2)))  # (q, p) to edges and their rates
     modes = np.linalg.eigvals(T @ np.asarray(law.jacobian(0.0, q, 0.0 * q)) @ np.linalg.pinv(T))

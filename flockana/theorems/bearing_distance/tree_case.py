@@ -1,4 +1,4 @@
-"""A frozen tree of the minimal model, edge by edge: what both forms of Theorem 1 need of it."""
+"""A frozen tree of the minimal model, edge by edge: lengths, energies, equilibria, linearisation."""
 
 from __future__ import annotations
 

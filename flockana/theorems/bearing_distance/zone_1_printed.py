@@ -1,4 +1,4 @@
-"""Theorem 1 of the bearing-distance paper as printed: the edges of a spanning tree vanish. They do not."""
+"""Theorem 1 of the bearing-distance paper as printed: that the edges of a spanning tree vanish (false)."""
 
 from __future__ import annotations
 

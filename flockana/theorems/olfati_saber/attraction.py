@@ -63,7 +63,7 @@ def attraction(law: Algorithm1 | Algorithm2, q: FloatArray, p: FloatArray) -> Ba
     connected = everywhere or connected_within(q, paper_pair(law).r - sqrt(2.0) * distance)
     if distance == inf or not connected:
         return Basin(inf, 0.0, distance, curvature)
-    leaving = barrier(curvature, distance, law.alpha.length * WINDOWS, lambda window: _lipschitz(law, q, window))
+    leaving = barrier(curvature, distance, law.alpha.length * WINDOWS, lambda window: lipschitz_within(law, q, window))
     return Basin(float(kinetic(p) + force**2 / curvature), leaving, distance, curvature)
 
 
@@ -87,7 +87,7 @@ def _force(law: Algorithm1 | Algorithm2, q: FloatArray) -> float:
     return float(np.linalg.norm(structural_force(law, q))) + sqrt(q.size) * rounding
 
 
-def _lipschitz(law: Algorithm1 | Algorithm2, q: FloatArray, window: float) -> float:
+def lipschitz_within(law: Algorithm1 | Algorithm2, q: FloatArray, window: float) -> float:
     """Lipschitz constant L of ∇²U within a distance of q."""
     alpha, slack = paper_pair(law), sqrt(2.0) * window
     pairs = links(q, alpha.r + slack)

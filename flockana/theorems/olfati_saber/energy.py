@@ -13,7 +13,7 @@ from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.claims import judged
 from flockana.theorems.hypotheses import law_is
-from flockana.theorems.olfati_saber.gamma_agent import declared_rate_is_true, still
+from flockana.theorems.olfati_saber.gamma_agent import declared_rate_is_true, target_rests
 from flockana.theorems.rounding import EPS, energy_error
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, HypothesisStatus, Theorem, Tolerances
 
@@ -125,7 +125,7 @@ def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
     rest: list[Hypothesis] = []
     rates: list[Hypothesis] = []
     if type(run.law) is Algorithm3 or (run.law.gains.per_agent and type(run.law) is Algorithm2):
-        rest.append(still(run, told=False))  # outside of the moving frame a moving γ-agent does work
+        rest.append(target_rests(run, told=False))  # outside of the moving frame a moving γ-agent does work
         rates.append(declared_rate_is_true(run))
     if type(run.law) is Algorithm3:
         rest.append(stays_outside(run))

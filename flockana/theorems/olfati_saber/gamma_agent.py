@@ -38,7 +38,7 @@ def _between(t: FloatArray) -> FloatArray:
     return nodes
 
 
-def still(run: Trajectory, *, told: bool) -> Hypothesis:
+def target_rests(run: Trajectory, *, told: bool) -> Hypothesis:
     """The hypothesis that the γ-agent rests during the whole run; if `told`, with a constant p_r, else with p_r = 0."""
     target = run.law.target
     times = np.concatenate([run.t, _between(run.t).ravel()])
@@ -52,11 +52,11 @@ def still(run: Trajectory, *, told: bool) -> Hypothesis:
         "the γ-agent is static" if told else "the γ-agent is at rest, p_r = 0",
         status,
         -max(way / run.scales.length, change / speed),
-        _rest(moves, told, p_r[0]) + ("" if status != "assumed" else f", as seen at {times.size} times"),
+        _describe_rest(moves, told, p_r[0]) + ("" if status != "assumed" else f", as seen at {times.size} times"),
     )
 
 
-def _rest(moves: bool, told: bool, p_r: FloatArray) -> str:
+def _describe_rest(moves: bool, told: bool, p_r: FloatArray) -> str:
     if moves:
         outside = "it moves, which is outside the theorem"
         return outside if told else "it moves, or says so: it does work on the flock, of either sign"

@@ -1,4 +1,4 @@
-"""The slides' summaries of Theorems 1 and 3, of one run: it converges to an α-lattice. Erratum E3 says when not."""
+"""The slides' summaries of Theorems 1 and 3 on a run: it converges to an α-lattice (false, erratum E3)."""
 
 from __future__ import annotations
 

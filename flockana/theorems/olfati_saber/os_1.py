@@ -19,7 +19,7 @@ from flockana.theorems.rounding import energy_error
 from flockana.theorems.theorem import Checked, Hypothesis, Theorem, Tolerances, unmet
 
 
-def _disconnected_energy(law: Algorithm1, n: int, m: int) -> float:
+def disconnected_energy(law: Algorithm1, n: int, m: int) -> float:
     """Energy of a state at rest that is no flock: the best lattice of n − 1 agents and one agent far away.
 
     ∞ where that lattice does not exist (κ too large) or n = 1.
@@ -44,7 +44,7 @@ def _stays_together(run: Trajectory) -> Hypothesis:
     if connectivity[worst] < 1.0:
         detail = f"this run is no flock at t = {run.t[worst]:.4g}, where C = {connectivity[worst]:.3f}"
         return Hypothesis(name, "unmet", float(connectivity[worst]) - 1.0, detail)
-    (energy, error), apart = _start(run), _disconnected_energy(run.law, run.n, run.m)
+    (energy, error), apart = _start(run), disconnected_energy(run.law, run.n, run.m)
     if energy - error >= apart:
         detail = f"Ω_c holds a disconnected state at rest: its energy is {apart:.5g}, and c >= H(0) = {energy:.5g}"
         return Hypothesis(name, "unmet", apart - energy, detail)

@@ -32,7 +32,7 @@ _COLLISIONS = ("iv-printed", "iv-instant", "iv-none", "iv-barrier")
 
 
 def _cohesive(run: Trajectory, needs: list[Hypothesis], error: float) -> Claim:
-    """(i) with its explicit bound: ½ c1γ R² <= λ J <= H_λ(t) <= H_λ(0), between samples too."""
+    """Claim (i), R below an explicit bound: ½ c1γ R² <= λ J <= H_λ(t) <= H_λ(0), between samples too."""
     radius, c1_gamma = run.metric("cohesion_radius"), run.law.gains.c1_gamma
     worst, energy = int(np.argmax(radius)), float(run.energy()[0])
     largest = float(radius[worst])
@@ -55,7 +55,7 @@ def _cohesive(run: Trajectory, needs: list[Hypothesis], error: float) -> Claim:
 
 
 def _minimum(run: Trajectory, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
-    """(ii): the limit is a local minimum of U_λ, strict but for the rotations; one run cannot refute it."""
+    """Claim (ii), that the limit is a local minimum of U_λ, strict but for rotations; a run cannot refute it."""
     end = terminal_state(run.law, run.q[-1], run.p[-1], contact=tolerances.contact)
     kind = classify(end.strain, lattice=tolerances.lattice, quasi=tolerances.quasi)
     links = f"links off d by up to {100.0 * end.strain:.2g} %" if end.links else "no links"

@@ -42,7 +42,7 @@ _ROUNDING = 1e-12  # relative error of a distance of two stored positions near t
 _CERTAIN = 64.0 * EPS  # relative difference of two squared lengths that floating point gets the sign of
 
 
-class _Net:
+class Net:
     """A configuration with its links, their lengths and their crossings."""
 
     def __init__(self, q: FloatArray, d: float, r: float) -> None:
@@ -67,10 +67,11 @@ class _Net:
 
     @property
     def crossing_text(self) -> str:
+        """That count in words."""
         return f"{self.crossing_count or 'no'} pairs of {len(self.links)} links cross"
 
 
-def _lattice_hypotheses(net: _Net, tolerances: Tolerances) -> list[Hypothesis]:
+def _lattice_hypotheses(net: Net, tolerances: Tolerances) -> list[Hypothesis]:
     apart, kappa = net.closest / net.d - tolerances.contact, net.r / net.d
     kind = classify(net.strain, lattice=tolerances.lattice, quasi=tolerances.quasi)
     text = f"{kind}: δ/d = {net.strain:.3g}" if len(net.links) else "there are no links"
@@ -81,18 +82,18 @@ def _lattice_hypotheses(net: _Net, tolerances: Tolerances) -> list[Hypothesis]:
     ]
 
 
-def _dimension(name: str, holds: bool, net: _Net) -> Hypothesis:
+def _dimension(name: str, holds: bool, net: Net) -> Hypothesis:
     return condition(name, holds, detail=f"m = {net.m}, n = {net.n}")
 
 
-def _far_apart(net: _Net, length: float, name: str) -> Hypothesis:
+def _far_apart(net: Net, length: float, name: str) -> Hypothesis:
     margin = net.closest - length / sqrt(2.0)
     text = f"shortest distance {net.closest:.6g} against {length / sqrt(2.0):.6g}"
     # what rounding decides is not taken for met
     return condition(f"all pairs are farther apart than {name}", margin > net.rounding, margin, text)
 
 
-def _uncrossed(net: _Net, needs: list[Hypothesis], name: str, text: str) -> Claim:
+def uncrossed(net: Net, needs: list[Hypothesis], name: str, text: str) -> Claim:
     """The claim that no two links cross: exact for positions as stored; in space a clearance must exceed rounding."""
     count = net.crossing_count
     if unmet(needs):
@@ -118,7 +119,7 @@ def _uncrossed(net: _Net, needs: list[Hypothesis], name: str, text: str) -> Clai
     )
 
 
-def _graph(net: _Net, needs: list[Hypothesis]) -> Claim:
+def _graph(net: Net, needs: list[Hypothesis]) -> Claim:
     """The claim as printed that the graph is planar: so it is where the net itself is a drawing without crossings."""
     drawn = net.m < 3 and len(net.crossings) == 0 and net.closest > 0.0
     planar = drawn or is_planar(net.n, net.links)
@@ -141,7 +142,7 @@ def _graph(net: _Net, needs: list[Hypothesis]) -> Claim:
 
 
 def _bound(
-    net: _Net, needs: list[Hypothesis], name: str, bound: int, text: str, *, proof: str | None = _COUNTS
+    net: Net, needs: list[Hypothesis], name: str, bound: int, text: str, *, proof: str | None = _COUNTS
 ) -> Claim:
     count = len(net.links)
     return judged(
@@ -157,7 +158,7 @@ def _bound(
     )
 
 
-def _incomplete(net: _Net, needs: list[Hypothesis]) -> Claim:
+def _incomplete(net: Net, needs: list[Hypothesis]) -> Claim:
     missing = net.n * (net.n - 1) // 2 - len(net.links)
     return judged(
         "iii",
@@ -172,7 +173,7 @@ def _incomplete(net: _Net, needs: list[Hypothesis]) -> Claim:
     )
 
 
-def _unlinked(net: _Net) -> list[int]:
+def _unlinked(net: Net) -> list[int]:
     """Some pair that is not linked: an agent with the fewest neighbours, and an agent that is not among them."""
     count = np.bincount(net.links.ravel(), minlength=net.n)
     i = int(np.argmin(count))
@@ -180,7 +181,7 @@ def _unlinked(net: _Net) -> list[int]:
     return [i, int(np.setdiff1d(np.arange(net.n), np.append(near, i))[0])]
 
 
-def _quantitative(net: _Net) -> Claim:
+def _quantitative(net: Net) -> Claim:
     """The claim that of two links that cross, of lengths at most ℓ, two agents are within ℓ/√2 of each other."""
     name, stated = "extension-quantitative", "of two crossing links of lengths at most ℓ, two agents are within ℓ/√2"
     if not len(net.crossings):
@@ -205,7 +206,7 @@ def _quantitative(net: _Net) -> Claim:
     )
 
 
-def _of_crossing(net: _Net) -> tuple[FloatArray, FloatArray]:
+def _of_crossing(net: Net) -> tuple[FloatArray, FloatArray]:
     """Squared length of the longer of two links that cross, and least squared distance of two of their agents."""
     agents = net.links[net.crossings].reshape(-1, 4)
     squared = [
@@ -215,7 +216,7 @@ def _of_crossing(net: _Net) -> tuple[FloatArray, FloatArray]:
     return np.maximum(squared[0], squared[-1]), np.min(squared, axis=0)
 
 
-def _holds_exactly(net: _Net, two: LinkArray) -> bool:
+def _holds_exactly(net: Net, two: LinkArray) -> bool:
     """Whether two agents of two links are within ℓ/√2, in exact arithmetic."""
 
     def squared(i: Any, j: Any) -> Fraction:
@@ -227,7 +228,7 @@ def _holds_exactly(net: _Net, two: LinkArray) -> bool:
 
 def check(q: FloatArray, d: float, r: float, tolerances: Tolerances) -> Checked:
     """Hypotheses and claims of Theorem 5, and of its extension, for one configuration."""
-    net = _Net(q, d, r)
+    net = Net(q, d, r)
     lattice = _lattice_hypotheses(net, tolerances)
     wide = _dimension("m = 2 or 3", net.m > 1, net)
     plane, many = _dimension("m = 2", net.m == 2, net), _dimension("n >= 3", net.n >= 3, net)
@@ -236,13 +237,13 @@ def check(q: FloatArray, d: float, r: float, tolerances: Tolerances) -> Checked:
     loose = _far_apart(net, longest, "ℓ/√2, ℓ the longest link")
     printed = 3 * net.n - 6
     return [*lattice, wide, plane, many, more, far, loose], [
-        _uncrossed(net, [*lattice, wide], "i", "edges of an α-lattice do not cross"),
+        uncrossed(net, [*lattice, wide], "i", "edges of an α-lattice do not cross"),
         _graph(net, [*lattice, wide]),
         _bound(net, [*lattice, plane, many], "ii", printed, "3n - 6"),
         _bound(net, [*lattice, plane], "ii-sharp", harborth(net.n), "floor(3n - sqrt(12n - 3))", proof=None),  # cited
         _incomplete(net, [*lattice, more]),
-        _uncrossed(net, [far], "extension", "links of pairs farther apart than r/√2 do not cross"),
-        _uncrossed(net, [loose], "extension-lengths", "links of pairs farther apart than ℓ/√2 do not cross"),
+        uncrossed(net, [far], "extension", "links of pairs farther apart than r/√2 do not cross"),
+        uncrossed(net, [loose], "extension-lengths", "links of pairs farther apart than ℓ/√2 do not cross"),
         _bound(net, [loose, plane, many], "extension-links", printed, "3n - 6"),
         _quantitative(net),
     ]

@@ -9,7 +9,7 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.theorems.hypotheses import common_gains, law_with_common_gains
 from flockana.theorems.olfati_saber.energy import balance, never_rises, proved, stays_outside
-from flockana.theorems.olfati_saber.gamma_agent import declared_rate_is_true, still
+from flockana.theorems.olfati_saber.gamma_agent import declared_rate_is_true, target_rests
 from flockana.theorems.rounding import EPS
 from flockana.theorems.theorem import Checked, Hypothesis, Theorem, Tolerances
 
@@ -50,7 +50,7 @@ def _condition(run: Trajectory) -> tuple[Hypothesis, int]:
 
 def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
     slow_enough, since = _condition(run)
-    needs = [common_gains(run), still(run, told=True), slow_enough, stays_outside(run)]
+    needs = [common_gains(run), target_rests(run, told=True), slow_enough, stays_outside(run)]
     rate, proof = declared_rate_is_true(run), proved(run, "theorem6")
     return [*needs, rate], [
         never_rises(run, needs, since=since, proof=proof),

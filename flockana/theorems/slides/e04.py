@@ -70,7 +70,7 @@ def _reached(alpha: AlphaInteraction) -> Claim:
 
 
 def _none(alpha: AlphaInteraction) -> Claim:
-    """The claim that no state of 23 agents has V < c*: two distances of four points differ by √2."""
+    """The claim that no state of 23 agents has V < c*: two distances of four points differ by a factor √2."""
     n = none_from(alpha)
     shortest, longest = bound_range(alpha)
     margin = float("nan") if n is None else energy_floor(alpha, n) - alpha.c_star

@@ -21,8 +21,8 @@ Site = tuple[int, int, int]
 
 # Face-centred cubic sites are the whole points of even coordinate sum; neighbours are √2 apart.
 _STEPS: tuple[Site, ...] = tuple((x, y, z) for x, y, z in product((-1, 0, 1), repeat=3) if x * x + y * y + z * z == 2)
-_STAR: tuple[Site, ...] = ((0, 0, 0), *_STEPS)
-_EIGHT: tuple[Site, ...] = ((0, 0, 0), (1, 0, 1), (2, 1, 1), (1, 1, 0), (2, 2, 0), (2, 1, -1), (1, 0, -1), (2, 0, 0))
+STAR: tuple[Site, ...] = ((0, 0, 0), *_STEPS)
+EIGHT: tuple[Site, ...] = ((0, 0, 0), (1, 0, 1), (2, 1, 1), (1, 1, 0), (2, 2, 0), (2, 1, -1), (1, 0, -1), (2, 0, 0))
 _FRAGMENT = 6
 _PROOF = "nonplanar-fcc"
 
@@ -35,7 +35,7 @@ def fcc_star(d: float) -> FloatArray:
     >>> fcc_star(7.0).shape
     (13, 3)
     """
-    return d / sqrt(2.0) * np.array(_STAR, dtype=float)
+    return d / sqrt(2.0) * np.array(STAR, dtype=float)
 
 
 def fcc_eight(d: float) -> FloatArray:
@@ -46,7 +46,7 @@ def fcc_eight(d: float) -> FloatArray:
     >>> fcc_eight(7.0).shape
     (8, 3)
     """
-    return d / sqrt(2.0) * np.array(_EIGHT, dtype=float)
+    return d / sqrt(2.0) * np.array(EIGHT, dtype=float)
 
 
 def _add(site: Site, step: Site) -> Site:
@@ -75,7 +75,8 @@ def fragments(size: int) -> Iterator[tuple[Site, ...]]:
     return grow([], [origin], {origin})  # the least site of each set is the origin
 
 
-def _links(sites: tuple[Site, ...]) -> tuple[tuple[int, int], ...]:
+def site_links(sites: tuple[Site, ...]) -> tuple[tuple[int, int], ...]:
+    """Pairs of sites that are nearest neighbours, by their whole-number coordinates."""
     steps = set(_STEPS)
     return tuple(
         (i, j)
@@ -96,7 +97,7 @@ def non_planar_fragments(size: int) -> tuple[int, int]:
     total = bad = 0
     for sites in fragments(size):
         total += 1
-        edges = _links(sites)
+        edges = site_links(sites)
         if len(edges) < 9:  # K3,3 has nine links, K5 ten
             continue
         if edges not in known:
@@ -108,7 +109,7 @@ def non_planar_fragments(size: int) -> tuple[int, int]:
 def _counterexample(name: str, q: FloatArray, sites: tuple[Site, ...], tolerances: Tolerances) -> list[Claim]:
     """The claims of Theorem 5(i) on a lattice in space: its graph is planar, and its edges do not cross."""
     claims = {claim.name: claim for claim in check(q, _D, _R, tolerances)[1]}
-    edges = _links(sites)
+    edges = site_links(sites)
     witness: Any = kuratowski(len(sites), edges)
     uncrossed, graph = claims["i"], claims["i-graph"]
     bound, planar = planar_bound(len(sites)), is_planar(len(sites), edges)
@@ -135,8 +136,8 @@ def _counterexample(name: str, q: FloatArray, sites: tuple[Site, ...], tolerance
 def _check(tolerances: Tolerances) -> list[Claim]:
     total, bad = non_planar_fragments(_FRAGMENT)
     return [
-        *_counterexample("13", fcc_star(_D), _STAR, tolerances),
-        *_counterexample("8", fcc_eight(_D), _EIGHT, tolerances),
+        *_counterexample("13", fcc_star(_D), STAR, tolerances),
+        *_counterexample("8", fcc_eight(_D), EIGHT, tolerances),
         judged(
             "six",
             0.5 - bad,

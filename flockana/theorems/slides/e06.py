@@ -1,4 +1,4 @@
-"""Erratum E6: 3n − 6 needs three agents, and is not sharp."""
+"""Erratum E6: 3n − 6 bounds the links of three agents or more only, and is not sharp."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Erratum E7: a share of nodes printed as a share of edges."""
+"""Erratum E7: C* is a share of nodes, though it is printed as a share of edges."""
 
 from __future__ import annotations
 

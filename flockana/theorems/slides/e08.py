@@ -1,4 +1,4 @@
-"""Erratum E8: the rank of the wrong matrix."""
+"""Erratum E8: connectivity is the rank of the Laplacian, not of the adjacency matrix."""
 
 from __future__ import annotations
 

@@ -47,7 +47,7 @@ def _agrees(name: str, ratio: tuple[float, float], gain: float, tolerances: Tole
 
 
 def _consistent(run: Trajectory, path: SineTarget | CircleTarget) -> tuple[float, float]:
-    """The ratio of the same flock behind the γ-agent with its true p_r, and its error, that of integration included."""
+    """The measured ratio, and its error, of the same flock behind the same γ-agent with its true p_r."""
     law = replace(run.law, target=path)
     again = simulate(law, run.q[0], run.p[0], (float(run.t[0]), float(run.t[-1])))
     ratio, error = response_ratio(again)

@@ -10,7 +10,7 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.theorems.hypotheses import law_is
 from flockana.theorems.olfati_saber.energy import cancelling, falling_share, stays_outside
-from flockana.theorems.olfati_saber.gamma_agent import still
+from flockana.theorems.olfati_saber.gamma_agent import target_rests
 from flockana.theorems.slides.claims_on_energy import run_claim
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, judge
 
@@ -30,7 +30,7 @@ def _by_rate(run: Trajectory, claim: Claim, needs: list[Hypothesis]) -> Claim:
 
 
 def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
-    needs = [still(run, told=False), stays_outside(run)]
+    needs = [target_rests(run, told=False), stays_outside(run)]
     pairs = np.array([run.law.gains.c1_alpha * run.law.alpha.potential_energy(q) for q in run.q])
     claim = run_claim(run, pairs, f"{run.n} agents", needs)
     return needs, [_by_rate(run, claim, needs) if claim.status == "inconclusive" else claim]
