@@ -15,7 +15,7 @@ from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.scenarios.findings import finding
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
-from flockana.theorems.dead_zone.case import at_the_end, dead_zone_law, one_velocity
+from flockana.theorems.dead_zone.case import dead_zone_law, final_components, velocities_match
 from flockana.theorems.dead_zone.range_limits import thinned
 from flockana.theorems.rounding import EPS
 from flockana.theorems.theorem import Status
@@ -36,7 +36,7 @@ def _law(run: Trajectory) -> DeadZoneFlocking:
 
 def _consensus(run: Trajectory, tolerances: Tolerances) -> Claim:
     """All velocities agree in the limit: certain of a flock that is held, and certainly not where parts part."""
-    return one_velocity(run, at_the_end(run, _law(run)), [], name="consensus")
+    return velocities_match(run, final_components(run, _law(run)), [], name="consensus")
 
 
 def _together(run: Trajectory, tolerances: Tolerances) -> Claim:
@@ -44,7 +44,7 @@ def _together(run: Trajectory, tolerances: Tolerances) -> Claim:
     from scipy.sparse.csgraph import minimum_spanning_tree
     from scipy.spatial.distance import pdist, squareform
 
-    r, count = _law(run).interaction.r, at_the_end(run, _law(run)).count
+    r, count = _law(run).interaction.r, final_components(run, _law(run)).count
     longest = float(minimum_spanning_tree(squareform(pdist(run.q[-1]))).max()) if run.n > 1 else 0.0
     detail = f"{count} component(s) at t = {run.t[-1]:g}: to join all takes links of up to {longest:.4g}, and r = {r:g}"
     error = _rounding(run, r)

@@ -21,7 +21,7 @@ from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.asymptotics import velocities_match
 from flockana.theorems.limits import decay
-from flockana.theorems.olfati_saber.attraction import held
+from flockana.theorems.olfati_saber.attraction import final_basin
 from flockana.theorems.theorem import Status
 
 _OURS = (
@@ -64,7 +64,7 @@ def _ends_as_lattice(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _ends_matched(run: Trajectory, tolerances: Tolerances) -> Claim:
-    return velocities_match(run, tolerances, [], name="matched", caught=[held(run).certificate])
+    return velocities_match(run, tolerances, [], name="matched", caught=[final_basin(run).certificate])
 
 
 def _topology_changes(run: Trajectory, tolerances: Tolerances) -> Claim:
