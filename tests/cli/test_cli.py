@@ -349,7 +349,7 @@ def test_a_worker_that_dies_while_tasks_are_sent_loses_no_task(monkeypatch):
 
 
 def test_a_task_that_ends_its_process_is_named_when_all_others_are_done():
-    from flockana.report.statistics import Survey
+    from flockana.report.surveys import Survey
     from flockana.report.work import Task, check_all
 
     tasks = [Survey("os:_exit", (0, 1)), Task("E8", fixed=True), Task("E10", fixed=True)]
