@@ -25,7 +25,7 @@ from flockana.theorems import Tolerances, verify
 from tests.ensemble import tiny_flocks
 
 SEEDS = range(6)
-REQUEST = Request("tiny_flocks:trio", ("source",), ())
+REQUEST = Request("tests.ensemble.tiny_flocks:trio", ("source",), ())
 
 
 def same(first, second):
@@ -193,7 +193,7 @@ def test_workers_load_kernels_and_keep_to_one_thread(monkeypatch):
     ensemble(tiny_flocks.trio, [0], jobs=1)
     asked = [tiny_flocks.compilations, tiny_flocks.threads]
     for _ in range(3):  # other processes that compile at the same moment may spoil the cache's index, but not for ever
-        with ProcessPool(2) as pool:
+        with ProcessPool(1) as pool:
             found = ensemble(tiny_flocks.trio, range(4), metrics=asked, executor=pool)
         assert found.threads.values.tolist() == [1.0] * 4
         if not found.compilations.values.any():

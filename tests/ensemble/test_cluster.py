@@ -106,8 +106,8 @@ def test_a_worker_killed_in_mid_run_loses_nothing(running, tmp_path, monkeypatch
     assert len(killed) == 1
     assert begun(log)[-1][0] != killed[0]
     assert not found.run.values.any()
-    pool = ensemble(tiny_flocks.trio, range(RUNS), **given, jobs=2).assign_attrs(scenario=found.attrs["scenario"])
-    assert found.drop_vars("seconds").identical(pool.drop_vars("seconds"))
+    here = ensemble(tiny_flocks.trio, range(RUNS), **given, jobs=1).assign_attrs(scenario=found.attrs["scenario"])
+    assert found.drop_vars("seconds").identical(here.drop_vars("seconds"))
     with Store(tmp_path / "s.sqlite") as kept:
         assert len(kept) == RUNS
 
@@ -302,11 +302,11 @@ def test_worker_processes_that_do_not_start_are_told_with_the_remedy(python, tmp
 
 
 def test_ctrl_c_ends_a_cluster_of_ones_own(tmp_path):
-    """A program at work; its worker processes never get the signal."""
+    """A program at work; its worker process never gets the signal."""
     log = tmp_path / "log"
     code = (
         "import sys\nfrom tests.ensemble import tiny_flocks\nfrom flockana.ensemble import ensemble\n"
-        "if __name__ == '__main__':\n    ensemble(tiny_flocks.gated, range(40), cluster='local', jobs=2)\n"
+        "if __name__ == '__main__':\n    ensemble(tiny_flocks.gated, range(40), cluster='local', jobs=1)\n"
     )
     environment = {tiny_flocks.LOG: str(log), tiny_flocks.GATE: str(tmp_path / "gate")}
     own = {"environment": environment | {"DASK_TEMPORARY_DIRECTORY": str(tmp_path)}, "paths": [ROOT]}

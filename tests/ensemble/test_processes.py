@@ -39,5 +39,14 @@ def test_workers_never_get_ctrl_c(answering):
         assert pool.submit(_of_the_interrupt).result() == (True, signal.SIG_IGN)
 
 
+@posix
+def test_where_ctrl_c_is_ignored_a_pool_leaves_it_so(answering):
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    with ProcessPool(1) as pool:
+        pool.submit(pow, 2, 5).result()
+        assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
+    assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
+
+
 def _of_the_interrupt():
     return signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, ()), signal.getsignal(signal.SIGINT)

@@ -6,9 +6,11 @@ What is true or false of a start is known by algebra here; sizes go from far abo
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from flockana.base.units import rescale
 from flockana.dynamics.simulate import simulate
@@ -160,7 +162,6 @@ def test_a_saddle_holds_nothing():
     """Four agents in a square of contacts, balanced on its diagonals: no minimum, though nothing moves."""
     law = DeadZoneFlocking(DeadZoneInteraction(k1=0.05))
     line = np.array([[0.0, 0.0], [3.4, 0.0], [6.8, 0.0]])  # in the plane a straight chain under pressure buckles
-    from scipy.optimize import brentq
 
     def push(s):
         return float(law.flow(0.0, np.array([[0.0, 0.0], [s, 0.0], [2.0 * s, 0.0]]), 0.0 * line)[0][0, 0])
@@ -263,15 +264,20 @@ def test_the_distance_bound_is_kept_where_it_is_attained(speed, units):
 # -- whatever else might be asked -------------------------------------------------------------------------------------
 
 
+@cache
+def judged(discrete):
+    """A run in metres and seconds, and what is said of it."""
+    law = SemiImplicitEuler(LAW, 0.01) if discrete else LAW
+    run = simulate(law, *small_flock(3), (0.0, 80.0))
+    return run, {name: statuses(name, run) for name in ("dead-zone-1-printed", "dead-zone-1-corrected")}
+
+
 @pytest.mark.parametrize("units", UNITS[1:])
 @pytest.mark.parametrize("discrete", [True, False])
 def test_verdicts_are_the_same_in_all_units(units, discrete):
-    q, p = small_flock(3)
-    law = SemiImplicitEuler(LAW, 0.01) if discrete else LAW
-    run = simulate(law, q, p, (0.0, 80.0))
-    length, time = units
-    for name in ("dead-zone-1-printed", "dead-zone-1-corrected"):
-        assert statuses(name, rescale(run, length=length, time=time)) == statuses(name, run)
+    run, said = judged(discrete)
+    there = rescale(run, length=units[0], time=units[1])
+    assert {name: statuses(name, there) for name in said} == said
 
 
 @pytest.mark.parametrize("far", [0.0, 1e3, 1e6, 1e9])
