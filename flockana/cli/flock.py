@@ -67,7 +67,7 @@ def _of_scenario(name: str, start: str, seed: int, potential: bool) -> tuple[Any
 
 
 def _ensured(law: Any, m: int, potential: bool) -> Any:
-    """The law, if it has a potential where that is asked for; else if it is continuous."""
+    """Return the law, or raise if it is no continuous one, or has no potential where one is needed."""
     from flockana.base.errors import ArgumentError
     from flockana.equilibria.potential import ensure_flock_law
 

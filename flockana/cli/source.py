@@ -78,8 +78,8 @@ def read_source(name: str, *, d: float | None = None, r: float | None = None, ti
     if path.suffix == ".json":
         from flockana.equilibria.record import read_equilibrium
 
-        found = read_equilibrium(path)
-        return _scaled(name, found.q, found.law, 0.0, d=d, r=r)
+        equilibrium = read_equilibrium(path)
+        return _scaled(name, equilibrium.q, equilibrium.law, 0.0, d=d, r=r)
     if path.suffix in _FILES or path.exists():
         return _scaled(name, read_csv(path), None, 0.0, d=d, r=r)
     ensure_source(name)
@@ -89,7 +89,7 @@ def read_source(name: str, *, d: float | None = None, r: float | None = None, ti
 
 
 def _scaled(name: str, q: FloatArray, law: Any, t: float, *, d: float | None, r: float | None) -> Source:
-    """A range that is not given keeps the law's ratio to the scale."""
+    """Positions with a scale and a range: a range that is not given keeps the law's ratio to the scale."""
     law = integrated_law(law)
     own_d, own_r = law_scales(law)
     scale = own_d if d is None else d
@@ -170,10 +170,10 @@ def build(text: str, d: float) -> tuple[FloatArray, float]:
     """
     name, _, size = text.partition(":")
     function, form = _BUILDERS[name]
-    parts = size.split("x")
-    if len(parts) != len(form.split("x")) or not all(p.isascii() and p.isdigit() and len(p) <= 9 for p in parts):
+    numbers = size.split("x")
+    if len(numbers) != len(form.split("x")) or not all(k.isascii() and k.isdigit() and len(k) <= 9 for k in numbers):
         raise ArgumentError(f"{text!r}: expected {name}:{form}, with whole numbers")
-    counts = [int(p) for p in parts]
+    counts = [int(k) for k in numbers]
     if (3 * counts[0] ** 2 if form == "RINGS" else prod(counts)) > _MOST:
         raise ArgumentError(f"{text!r}: expected a size of at most {_MOST} agents")
     return function(*counts, d), lattice.max_ratio(name.replace("-", "_"))

@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from flockana.report.pages import Page
-    from flockana.report.statistics import StatisticsSection, Survey, SurveyResult
+    from flockana.report.statistics import StatisticsSection
+    from flockana.report.surveys import Survey, SurveyResult
     from flockana.report.work import Task
 
 
@@ -52,7 +53,8 @@ def verify_command(
     """
     from flockana.ensemble.processes import cores
     from flockana.report.build import ensure_directory, verdicts_json, write_report
-    from flockana.report.statistics import SurveyResult, gather, surveys
+    from flockana.report.statistics import gather
+    from flockana.report.surveys import SurveyResult, surveys
     from flockana.report.work import plan
 
     started = time.perf_counter()

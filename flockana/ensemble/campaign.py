@@ -104,10 +104,10 @@ def ensemble(
 
     Examples
     --------
-    >>> found = ensemble("hexagon", range(4), theorems=["os-1"], jobs=1)
-    >>> found.claim.values.tolist()
+    >>> runs = ensemble("hexagon", range(4), theorems=["os-1"], jobs=1)
+    >>> runs.claim.values.tolist()
     ['os-1:i', 'os-1:ii', 'os-1:iii', 'os-1:iii-barrier']
-    >>> found.status.sel(claim="os-1:iii").values.tolist()  # 0 is verified
+    >>> runs.status.sel(claim="os-1:iii").values.tolist()  # 0 is verified
     [0, 0, 0, 0]
     """
     ensure_crew(executor, cluster, jobs)
@@ -123,10 +123,10 @@ def ensemble(
     with ExitStack() as stack:
         kept = None if store is None else stack.enter_context(Store(store))
         keys = _keys(request, grid, strict=kept is not None)
-        found = {} if kept is None else kept.read(keys.values())
+        records = {} if kept is None else kept.read(keys.values())
         if retry:
-            found = {key: one for key, one in found.items() if one.status == COMPLETE}
-        missing = [job for job in grid if keys[job] not in found]
+            records = {key: record for key, record in records.items() if record.status == COMPLETE}
+        missing = [job for job in grid if keys[job] not in records]
         if missing:
             advance = stack.enter_context(progress_bar(len(missing), enabled=progress, steady=True))
             text = f"runs, {len(grid) - len(missing)} stored before" if len(missing) < len(grid) else "runs"
@@ -134,14 +134,14 @@ def ensemble(
             if executor is None and cluster is None:
                 jobs = min(jobs or cores(), len(missing))
             with crew(executor, cluster=cluster, jobs=jobs) as workers:
-                for records in make_runs(request, missing, workers):
-                    new = {keys[one.job]: one for one in records}
+                for made in make_runs(request, missing, workers):
+                    new = {keys[record.job]: record for record in made}
                     if kept is not None:
                         kept.add(name, new)
-                    found |= new
+                    records |= new
                     done += len(new)
                     advance(done, text)
-    return to_dataset(request, axes, fixed, seeds, [found[keys[job]] for job in grid])
+    return to_dataset(request, axes, fixed, seeds, [records[keys[job]] for job in grid])
 
 
 def ensure_seeds(seeds: Any) -> tuple[int, ...]:
@@ -160,15 +160,15 @@ def ensure_seeds(seeds: Any) -> tuple[int, ...]:
             raise ArgumentError(f"seed {seed!r}: expected a whole number >= 0, below 2^63")
     if not given:
         raise ArgumentError("seeds: there are none; expected at least one, such as range(200)")
-    found = tuple(int(seed) for seed in given)
-    if len(set(found)) < len(found):
-        twice = next(seed for k, seed in enumerate(found) if seed in found[:k])
+    whole = tuple(int(seed) for seed in given)
+    if len(set(whole)) < len(whole):
+        twice = next(seed for k, seed in enumerate(whole) if seed in whole[:k])
         raise ArgumentError(f"seed {twice} comes twice: expected different seeds")
-    return found
+    return whole
 
 
 def _split(parameters: Any) -> tuple[dict[str, list[Scalar]], dict[str, Scalar]]:
-    """(options with several values, options with one)."""
+    """Options with several values, and options with one: (axes, fixed)."""
     axes: dict[str, list[Scalar]] = {}
     fixed: dict[str, Scalar] = {}
     if not isinstance(parameters, Mapping | None):
@@ -196,18 +196,18 @@ def _ensure_metrics(metrics: Any) -> tuple[str, ...]:
         return tuple(measures())
     if isinstance(metrics, str) or not isinstance(metrics, Iterable):
         raise ArgumentError(f"metrics = {metrics!r}: expected several names or functions, such as ('strain',)")
-    found = []
-    for one in metrics:
-        if not callable(one) and one not in measures():
-            raise UnknownNameError("metric", one, measures())
-        found.append(reference(one) if callable(one) else one)
-    return tuple(found)
+    names = []
+    for metric in metrics:
+        if not callable(metric) and metric not in measures():
+            raise UnknownNameError("metric", metric, measures())
+        names.append(reference(metric) if callable(metric) else metric)
+    return tuple(names)
 
 
 def _ensure_names(axes: Mapping[str, Any], fixed: Mapping[str, Any], metrics: Sequence[str]) -> None:
     """Options and metrics become names in one dataset: none may come twice."""
     seen = {*RESERVED}
-    for name in (*axes, *fixed, *(metric_name(one) for one in metrics)):
+    for name in (*axes, *fixed, *(metric_name(metric) for metric in metrics)):
         if name in seen:
             raise ArgumentError(f"{name}: the result has another variable of that name; leave it out or rename it")
         seen.add(name)
@@ -218,19 +218,19 @@ def _ensure_theorems(names: Any) -> tuple[str, ...] | None:
         return None
     if isinstance(names, str) or not isinstance(names, Iterable):
         raise ArgumentError(f"theorems = {names!r}: expected several names, such as ['os-1', '{SOURCE}']")
-    found = tuple(dict.fromkeys(names))
-    for name in found:
+    chosen = tuple(dict.fromkeys(names))
+    for name in chosen:
         if name not in (SOURCE, *theorems()):
             raise UnknownNameError("theorem", name, (SOURCE, *theorems()))
         if name != SOURCE and theorem(name).kind != "trajectory":
             raise ArgumentError(f"{name} is not about a run: expected theorems about motion, such as os-1")
-    return found
+    return chosen
 
 
 def _ensure_scenario(
     scenario: Any, axes: Mapping[str, Sequence[Scalar]], fixed: Mapping[str, Scalar], seed: int
 ) -> str:
-    """Its name, when its options are known to be good: those of the catalogue are tried once each."""
+    """The name of a scenario whose options are good: those of the catalogue are tried once each."""
     if isinstance(scenario, str):
         if scenario not in scenarios():
             raise UnknownNameError("scenario", scenario, scenarios())

@@ -38,7 +38,7 @@ def connected(address: str, count: int) -> Iterator[tuple[Executor, Callable[[],
         if address == "local":
             with interrupts_held(), interrupts_hidden(), single_threaded_children():
                 own = _own_cluster(count)
-        client = _found(own or address, address)
+        client = _client(own or address, address)
         try:
             # by default Dask takes two calls that look alike for one and gives the first one's result again
             yield client.get_executor(pure=False), _Width(client)
@@ -65,7 +65,7 @@ def _own_cluster(count: int) -> Any:
         )
         return cluster
     except Exception as error:
-        reason = _told(error)
+        reason = _reason(error)
     _end(cluster)
     del cluster
     gc.collect()
@@ -75,13 +75,13 @@ def _own_cluster(count: int) -> Any:
     )
 
 
-def _found(target: Any, address: str) -> Any:
+def _client(target: Any, address: str) -> Any:
     """A client of a cluster, or of the scheduler at an address, that has a worker."""
     try:
         with interrupts_recognised():
             return _opened(target)
     except Exception as error:
-        reason = _told(error)
+        reason = _reason(error)
     gc.collect()  # what is left of a client goes now, when no lock of Dask's is held
     raise SolverError(
         f"cluster = {address!r}: no scheduler with a worker answers within {_CONNECT:g} s ({reason}); start "
@@ -128,32 +128,32 @@ class _Width:
 
     def __call__(self) -> int:
         try:
-            found = _threads(self.client, _ALONE)
+            threads = _threads(self.client, _ALONE)
         except Exception as error:  # whatever Dask makes of a scheduler that is gone
             raise SolverError(
-                f"the executor failed: Dask's scheduler does not answer ({_told(error)}); runs in a store are kept, so "
-                "mend it and start again"
+                f"the executor failed: Dask's scheduler does not answer ({_reason(error)}); runs in a store are kept, "
+                "so mend it and start again"
             ) from error
         now = time.monotonic()
-        if found:
+        if threads:
             self.seen = now
         elif now - self.seen > _ALONE:
             raise SolverError(
                 f"the executor failed: the cluster has had no worker for {_ALONE:g} s; runs in a store are kept, so "
                 "start workers and go on"
             )
-        return max(1, found)
+        return max(1, threads)
 
 
-def _end(one: Any) -> None:
+def _end(closing: Any) -> None:
     """Close a client or a cluster, also one whose constructor failed, and the thread that it started."""
     with interrupts_held():
         with suppress(Exception):  # there is nobody left to answer
-            one.close(timeout=_CLOSE)
+            closing.close(timeout=_CLOSE)
         with suppress(AttributeError):  # it failed before it had one
-            one._loop_runner.stop()
+            closing._loop_runner.stop()
 
 
-def _told(error: BaseException) -> str:
+def _reason(error: BaseException) -> str:
     text = str(error) or "no answer" * isinstance(error, TimeoutError)
     return " ".join(f"{type(error).__name__}: {text}".split())

@@ -49,8 +49,8 @@ def to_dataset(
     import xarray
 
     dims, shape = (*axes, "seed"), (*(len(values) for values in axes.values()), len(seeds))
-    claims = list(dict.fromkeys(name for one in records for name in one.claims))
-    theorems = list(dict.fromkeys(name for one in records for name in one.verdicts))
+    claims = list(dict.fromkeys(name for record in records for name in record.claims))
+    theorems = list(dict.fromkeys(name for record in records for name in record.verdicts))
 
     def over_runs(values: Sequence[Any], dtype: Any, **attributes: Any) -> xarray.Variable:
         return xarray.Variable(dims, np.array(values, dtype=dtype).reshape(shape), attributes)
@@ -60,23 +60,29 @@ def to_dataset(
         table = np.array(rows, dtype=dtype).reshape(*shape, len(labels))
         return xarray.Variable((*dims, name), table, attributes)
 
-    found = [[one.claims.get(name, (None, None, None)) for name in claims] for one in records]
-    verdicts = [[_code(STATUSES, one.verdicts.get(name)) for name in theorems] for one in records]
+    claimed = [[record.claims.get(name, (None, None, None)) for name in claims] for record in records]
+    verdicts = [[_code(STATUSES, record.verdicts.get(name)) for name in theorems] for record in records]
     of_claims = {
-        "status": by("claim", claims, [[_code(STATUSES, s) for s, _, _ in row] for row in found], **_flags(STATUSES)),
-        "margin": by("claim", claims, [[_float(m) for _, m, _ in row] for row in found], long_name="margin of a claim"),
-        "error": by("claim", claims, [[_float(e) for _, _, e in row] for row in found], long_name="error of a margin"),
+        "status": by("claim", claims, [[_code(STATUSES, s) for s, _, _ in row] for row in claimed], **_flags(STATUSES)),
+        "margin": by(
+            "claim", claims, [[_float(m) for _, m, _ in row] for row in claimed], long_name="margin of a claim"
+        ),
+        "error": by(
+            "claim", claims, [[_float(e) for _, _, e in row] for row in claimed], long_name="error of a margin"
+        ),
         "verdict": by("theorem", theorems, verdicts, **_flags(STATUSES)),
     }
     of_runs = {
-        "run": over_runs([_code(RUNS, one.status) for one in records], np.int8, **_flags(RUNS)),
-        "message": over_runs([one.message for one in records], object, long_name="why a run did not complete"),
-        "steps": over_runs([one.stats.get("steps", 0) for one in records], np.int64),
-        "evaluations": over_runs([one.stats.get("evaluations", 0) for one in records], np.int64),
-        "seconds": over_runs([one.seconds for one in records], np.float64, long_name="wall time", units="s"),
+        "run": over_runs([_code(RUNS, record.status) for record in records], np.int8, **_flags(RUNS)),
+        "message": over_runs([record.message for record in records], object, long_name="why a run did not complete"),
+        "steps": over_runs([record.stats.get("steps", 0) for record in records], np.int64),
+        "evaluations": over_runs([record.stats.get("evaluations", 0) for record in records], np.int64),
+        "seconds": over_runs([record.seconds for record in records], np.float64, long_name="wall time", units="s"),
     }
     measured = {
-        metric_name(name): over_runs([one.metrics.get(name, np.nan) for one in records], np.float64, **_described(name))
+        metric_name(name): over_runs(
+            [record.metrics.get(name, np.nan) for record in records], np.float64, **_described(name)
+        )
         for name in request.metrics
     }
     coords: dict[str, Any] = {name: list(values) for name, values in axes.items()} | dict(fixed)
@@ -161,8 +167,8 @@ def shares(dataset: xarray.Dataset, *, level: float = 0.95) -> xarray.Dataset:
     Examples
     --------
     >>> from flockana.ensemble import ensemble
-    >>> found = shares(ensemble("hexagon", range(3), theorems=["energy"], jobs=1))
-    >>> part = found.sel(claim="energy:balance", of="verified")
+    >>> table = shares(ensemble("hexagon", range(3), theorems=["energy"], jobs=1))
+    >>> part = table.sel(claim="energy:balance", of="verified")
     >>> int(part.runs), float(part.share), round(float(part.low), 3)
     (3, 1.0, 0.292)
     """
@@ -177,6 +183,6 @@ def shares(dataset: xarray.Dataset, *, level: float = 0.95) -> xarray.Dataset:
     low, high = clopper_pearson(judged.values, trials.values, level=level)
     share = (judged / trials.where(trials > 0)).assign_attrs(long_name="share of the runs")
     incomplete = (dataset.run != RUNS.index(COMPLETE)).sum("seed")
-    found = {"share": share, "low": judged.copy(data=low), "high": judged.copy(data=high), "runs": runs}
-    found |= {"incomplete": incomplete, **counts}
-    return xarray.Dataset(found, attrs=dataset.attrs | {"level": level}).assign_coords(of=["verified", "refuted"])
+    table = {"share": share, "low": judged.copy(data=low), "high": judged.copy(data=high), "runs": runs}
+    table |= {"incomplete": incomplete, **counts}
+    return xarray.Dataset(table, attrs=dataset.attrs | {"level": level}).assign_coords(of=["verified", "refuted"])

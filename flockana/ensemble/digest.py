@@ -1,7 +1,7 @@
 """Under which key a run is stored, and the version of the mathematics that its numbers come from.
 
-The version is no constant that somebody must remember to raise: a stale number that is taken for a fresh one is the
-worst that a store can do. It is a digest of all that decides the numbers: every source of the package up to the
+The version is no constant that somebody must remember to raise, or a stale number could be taken for a fresh one. It
+is a digest of all that decides the numbers: every source of the package up to the
 scenarios and the measures of runs, without comments and docstrings, and the versions of the libraries that compute.
 What only shows numbers (plots, reports, commands) and how runs are distributed is left out. So a better sentence in a
 docstring keeps a store, and a changed kernel does not.
@@ -21,7 +21,7 @@ from typing import Any
 
 _LIBRARIES = ("numpy", "scipy", "numba")
 _SILENT = ("plots", "report", "cli", "falsify", "ensemble", "base/references.py", "_version.py", "__init__.py")
-_ENSEMBLE = ("ensemble/work.py", "ensemble/measures.py")  # of the ensemble, what makes a record
+_ENSEMBLE = ("ensemble/work.py",)  # of the ensemble, what makes a record
 
 
 @cache
@@ -40,8 +40,8 @@ def mathematics() -> str:
 def source_files(root: Path) -> list[Path]:
     """The package's modules and data that decide numbers."""
     files = (p for p in root.rglob("*") if p.suffix in (".py", ".json") and "__pycache__" not in p.parts)
-    parts = ((p, p.relative_to(root)) for p in files)
-    return sorted(p for p, r in parts if r.as_posix() in _ENSEMBLE or not {r.parts[0], r.as_posix()} & {*_SILENT})
+    pairs = ((p, p.relative_to(root)) for p in files)
+    return sorted(p for p, r in pairs if r.as_posix() in _ENSEMBLE or not {r.parts[0], r.as_posix()} & {*_SILENT})
 
 
 def digest_of_sources(sources: Mapping[str, bytes]) -> str:

@@ -1,4 +1,4 @@
-"""Into which phase a run ended: flocking, fragmentation, collapse, or none of them."""
+"""In which phase a run ended: flocking, fragmentation, collapse, or none of them."""
 
 from __future__ import annotations
 
@@ -44,12 +44,12 @@ def phases(
     if missing:
         raise ArgumentError(f"the dataset lacks {', '.join(missing)}: call ensemble with these metrics")
     limits = tolerances or Tolerances()
-    distance, parts, mismatch, deviation = (dataset[name] for name in _NEEDED)
+    distance, components, mismatch, deviation = (dataset[name] for name in _NEEDED)
     settled = (mismatch <= limits.mismatch) & (deviation <= limits.deviation)
-    kinds = [distance < ensure_nonnegative("contact", contact), parts > 1.0, settled]
+    kinds = [distance < ensure_nonnegative("contact", contact), components > 1.0, settled]
     names = ("collapse", "fragmentation", "flocking")
     codes = np.select([kind.values for kind in kinds], [PHASES.index(name) for name in names], PHASES.index("other"))
-    known = np.isfinite(distance.values) & np.isfinite(parts.values)
+    known = np.isfinite(distance.values) & np.isfinite(components.values)
     attributes = {"long_name": "phase at the end", "flag_values": list(range(len(PHASES)))}
     attributes["flag_meanings"] = " ".join(PHASES)
     return distance.copy(data=np.where(known, codes, -1).astype(np.int8)).assign_attrs(attributes).rename("phase")

@@ -111,9 +111,9 @@ class Store:
                 time.sleep(0.01)
 
     def _ensure_whole(self) -> None:
-        found = self._file.execute("PRAGMA quick_check(1)").fetchone()[0]
-        if found != "ok":
-            raise sqlite3.DatabaseError(found)
+        fault = self._file.execute("PRAGMA quick_check(1)").fetchone()[0]
+        if fault != "ok":
+            raise sqlite3.DatabaseError(fault)
 
     def _ensure_version(self) -> None:
         facts = dict(self._file.execute("SELECT name, value FROM facts"))
@@ -138,7 +138,7 @@ class Store:
 
     def read(self, keys: Iterable[str]) -> dict[str, Record]:
         """The runs that are there, by key."""
-        wanted, found = list(keys), {}
+        wanted, records = list(keys), {}
         with self._explained():
             for first in range(0, len(wanted), _AT_ONCE):
                 part = wanted[first : first + _AT_ONCE]
@@ -146,16 +146,16 @@ class Store:
                 rows = self._file.execute(f"SELECT key, record FROM runs WHERE key IN ({marks})", part)
                 for key, text in rows:
                     try:
-                        found[key] = Record.from_json(text)
+                        records[key] = Record.from_json(text)
                     except (ValueError, KeyError, TypeError) as error:
                         raise sqlite3.DatabaseError(f"run {key[:8]} cannot be read, {error!r}") from error
-        return found
+        return records
 
     def add(self, scenario: str, records: Mapping[str, Record]) -> None:
         """Write runs, all of them or none; a run that is there already stays as it is."""
         rows = [
-            (key, scenario, one.job.seed, json.dumps(dict(one.job.options)), one.status, one.to_json())
-            for key, one in records.items()
+            (key, scenario, r.job.seed, json.dumps(dict(r.job.options)), r.status, r.to_json())
+            for key, r in records.items()
         ]
         with self._explained(), self._transaction():
             self._file.executemany(_INSERT, rows)
@@ -177,7 +177,7 @@ class Store:
 
     @contextmanager
     def _explained(self) -> Iterator[None]:
-        """SQLite's errors, as ours with a remedy."""
+        """Turn errors of SQLite into errors of flockana, with a remedy."""
         try:
             yield
         except sqlite3.OperationalError as error:

@@ -169,12 +169,12 @@ def run_one(request: Request, job: Job) -> Record:
             if run.status == "interrupted":
                 raise KeyboardInterrupt
             if run.status != COMPLETE:  # of a part of the run no claim about the whole follows
-                found = Record(job, FAILED, run.message, stats=_stats(run))
+                record = Record(job, FAILED, run.message, stats=_stats(run))
             else:
-                found = _judged(request, job, item, run)
+                record = _judged(request, job, item, run)
     except Exception as error:
-        found = Record(job, ERROR, f"{type(error).__name__}: {' '.join(str(error).split())}")
-    return replace(found, seconds=time.perf_counter() - started)
+        record = Record(job, ERROR, f"{type(error).__name__}: {' '.join(str(error).split())}")
+    return replace(record, seconds=time.perf_counter() - started)
 
 
 def build(name: str, job: Job) -> Scenario:
@@ -204,10 +204,10 @@ def _verdicts(request: Request, item: Scenario, run: Trajectory) -> tuple[Verdic
     if request.theorems is None:
         return item.verify(run, tolerances=tolerances)
     chosen = [name for name in request.theorems if name != SOURCE]
-    found = [verify(name, run, tolerances=tolerances, subject=item.name) for name in chosen]
+    verdicts = [verify(name, run, tolerances=tolerances, subject=item.name) for name in chosen]
     if SOURCE in request.theorems:
-        found += item.reported(run, tolerances=tolerances)
-    return tuple(found)
+        verdicts += item.reported(run, tolerances=tolerances)
+    return tuple(verdicts)
 
 
 def _measure(name: str) -> Callable[[Trajectory], float]:

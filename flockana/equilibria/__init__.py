@@ -1,4 +1,4 @@
-"""Equilibria: find them, tell minima from saddles, search for all of them, and what they certify."""
+"""Equilibria of laws with a potential: solvers, classification, searches, and barriers against collisions."""
 
 from __future__ import annotations
 

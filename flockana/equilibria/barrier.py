@@ -1,4 +1,4 @@
-"""How much energy it takes to bring two agents together: the barrier, and the sizes beyond which c* certifies nothing.
+"""The energy that it takes to bring two agents together, and the flock sizes beyond which no state is below c*.
 
 All energies here are those of V, to be multiplied by c1α.
 """
@@ -32,7 +32,7 @@ _LARGEST = 2_000  # agents up to which the counts are followed
 
 @dataclass(frozen=True)
 class Barrier:
-    """Lowest energies found, with and without the demand that two agents coincide.
+    """Lowest energies of n agents that a search came to, with and without two agents at one place.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ class Barrier:
 
     @property
     def height(self) -> float:
-        """What has to be put into the best flock to bring two agents together, `together` − `ground`."""
+        """Energy needed to bring two agents of the best flock together, `together` − `ground`."""
         return self.together - self.ground
 
 
@@ -81,14 +81,14 @@ def collision_barrier(alpha: AlphaInteraction, n: int, *, m: int = 2, starts: in
     tie = np.hstack([translations, apart.reshape(n * m, m)])
     ground, together, state, solves = inf, inf, np.full((n, m), np.nan), 0
     for q in _starts(alpha, n, m, starts, seed):
-        low, done, _ = free.solve(q, basis=translations)
-        if done:
+        low, converged, _ = free.solve(q, basis=translations)
+        if converged:
             ground, solves = min(ground, alpha.potential_energy(low)), solves + 1
     for q in _starts(alpha, n - 1, m, starts, seed):
         doubled = _most_linked_first(q, alpha)
         doubled = np.vstack([doubled[:1], doubled])
-        low, done, _ = tied.solve(doubled, basis=tie)
-        if done:
+        low, converged, _ = tied.solve(doubled, basis=tie)
+        if converged:
             solves += 1
             if (value := alpha.potential_energy(low)) < together:
                 together, state = value, low
@@ -111,7 +111,7 @@ def _most_linked_first(q: FloatArray, alpha: AlphaInteraction) -> FloatArray:
 def bound_range(alpha: AlphaInteraction) -> tuple[float, float]:
     """Lengths between which a pair has ψ_α < ψ_α(r_α), so that it lowers V below that of pairs out of range.
 
-    Returns tuple of float (shortest, r); the shortest is 0 where even a coincident pair has no more than ψ_α(r_α).
+    They are (shortest, r); the shortest is 0 where even a coincident pair has no more than ψ_α(r_α).
 
     Examples
     --------
@@ -174,9 +174,7 @@ def energy_floor(alpha: AlphaInteraction, n: int, m: int = 2) -> float:
 
 
 def none_from(alpha: AlphaInteraction, m: int = 2) -> int | None:
-    """Least n from which on, provably, no state at all has V < c*: Theorem 1(iii) says nothing there.
-
-    Returns int or None None where the argument gives no bound.
+    """Least n from which on, provably, no state at all has V < c*, so that Theorem 1(iii) is empty; None if unknown.
 
     Examples
     --------
@@ -188,9 +186,7 @@ def none_from(alpha: AlphaInteraction, m: int = 2) -> int | None:
 
 
 def lattice_reach(alpha: AlphaInteraction, m: int = 2) -> int | None:
-    """Largest n of which an exact α-lattice has V < c*: there Theorem 1(iii) is not vacuous.
-
-    Returns int or None None where κ is too large for these lattices, or m = 3.
+    """Largest n of which an exact α-lattice has V < c*; None where κ is too large for these lattices, or m = 3.
 
     Examples
     --------

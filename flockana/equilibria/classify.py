@@ -71,9 +71,9 @@ def spectrum(potential: Potential, q: FloatArray) -> Spectrum:
     >>> rigid, index, soft
     (3, 0, 1)
     """
-    found = landscape(potential, q)
-    values, signs, _ = found.curvatures()
-    return Spectrum(values, found.rigid.shape[1], int(np.sum(signs < 0)), int(np.sum(signs == 0)))
+    here = landscape(potential, q)
+    values, signs, _ = here.curvatures()
+    return Spectrum(values, here.rigid.shape[1], int(np.sum(signs < 0)), int(np.sum(signs == 0)))
 
 
 def falling(potential: Potential, q: FloatArray) -> FloatArray | None:
@@ -85,19 +85,19 @@ def falling(potential: Potential, q: FloatArray) -> FloatArray | None:
     >>> falling(Potential(Algorithm1()), np.array([[0.0], [7.0]])) is None
     True
     """
-    found = landscape(potential, q)
-    signs = found.curvatures().signs
-    return downhill(found) if signs.size and signs[0] < 0 else None
+    here = landscape(potential, q)
+    signs = here.curvatures().signs
+    return downhill(here) if signs.size and signs[0] < 0 else None
 
 
-def kind_of(found: Spectrum) -> EquilibriumKind:
-    """Name a spectrum: a negative direction decides before a zero one, which proves nothing.
+def kind_of(modes: Spectrum) -> EquilibriumKind:
+    """The kind of critical point: any negative eigenvalue excludes a minimum, and else any zero one leaves it open.
 
     Examples
     --------
     >>> kind_of(Spectrum(np.array([-1.0, 0.0, 2.0]), 3, 1, 1)), kind_of(Spectrum(np.array([0.0, 2.0]), 3, 0, 1))
     ('saddle', 'degenerate')
     """
-    if found.negative:
-        return "maximum" if found.negative == found.eigenvalues.size else "saddle"
-    return "degenerate" if found.zero else "minimum"
+    if modes.negative:
+        return "maximum" if modes.negative == modes.eigenvalues.size else "saddle"
+    return "degenerate" if modes.zero else "minimum"

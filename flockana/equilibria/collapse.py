@@ -1,4 +1,4 @@
-"""Erratum E11 from equilibria: minima of U_λ as λ/c1α grows, and where agents begin to coincide."""
+"""Minima of U_λ as λ/c1α grows, and the ratio from which on agents coincide (erratum E11)."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def squeezed(alpha: AlphaInteraction, ratio: float, m: int = 2) -> Algorithm2:
 
 
 def nudged(q: FloatArray, d: float) -> FloatArray:
-    """A configuration disturbed by 1e-4 d, always in the same way, so that no symmetry holds it up.
+    """A configuration disturbed by 1e-4 d, always in the same way, so that it does not stay at a symmetric saddle.
 
     Examples
     --------
@@ -119,13 +119,13 @@ def collapse_diagram(alpha: AlphaInteraction, sizes: Sequence[int], ratios: Sequ
         row = []
         for c, ratio in enumerate(rising):
             try:
-                found = relaxed(alpha, n, float(ratio))
+                minimum = relaxed(alpha, n, float(ratio))
             except SolverError:
                 row.append("failed")
                 continue
-            coincident[k, c] = coincident_pairs(found.q, CONTACT * alpha.d)
-            closest[k, c] = 0.0 if coincident[k, c] else min_distance(found.q) / alpha.d
-            row.append(found.kind)
+            coincident[k, c] = coincident_pairs(minimum.q, CONTACT * alpha.d)
+            closest[k, c] = 0.0 if coincident[k, c] else min_distance(minimum.q) / alpha.d
+            row.append(minimum.kind)
         kinds.append(tuple(row))
     return CollapseDiagram(np.array(counts), rising, closest, coincident, tuple(kinds))
 
@@ -144,12 +144,10 @@ def natural_ratio(alpha: AlphaInteraction) -> float:
 def threshold(
     collapses: Callable[[float], bool], *, lowest: float = 0.01, factor: float = _FACTOR, halvings: int = 4
 ) -> tuple[float, float]:
-    """Bracket the least ratio at which something collapses: from one that does not, raised until it does, bisected.
+    """(largest ratio seen safe, least ratio seen to collapse): raised from a safe ratio until it collapses, bisected.
 
     From below, since far above the threshold agents may rest apart again. Both ends of the bracket have been tried; it
     stays wider where a try inside it fails (near the threshold a flock settles slowly).
-
-    Returns tuple of float (largest ratio seen safe, least ratio seen to collapse).
 
     Examples
     --------
@@ -173,16 +171,16 @@ def threshold(
         if low * _RANGE < lowest:
             raise SolverError(f"collapse, or no answer, at ratios down to {low:.3g}: expected none at the least")
     high, doubt = factor * low, False
-    while (found := seen(high)) is not True:
-        doubt = doubt or found is None
+    while (collapsed := seen(high)) is not True:
+        doubt = doubt or collapsed is None
         low, high = low if doubt else high, factor * high
         if high > _RANGE * lowest:
             raise SolverError(f"no collapse at ratios up to {high:.3g}: expected one below {_RANGE * lowest:.3g}")
     for _ in range(0 if doubt else halvings):
         middle = sqrt(low * high)
-        if (found := seen(middle)) is None:
+        if (collapsed := seen(middle)) is None:
             break
-        low, high = (low, middle) if found else (middle, high)
+        low, high = (low, middle) if collapsed else (middle, high)
     return low, high
 
 

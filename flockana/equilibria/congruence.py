@@ -45,10 +45,10 @@ def congruent(first: FloatArray, second: FloatArray, *, tol: float) -> bool:
         return False
     x, y = first - first.mean(axis=0), second - second.mean(axis=0)
     frame = _frame(x)
-    images, tree = cdist(y, y), KDTree(y)
+    distances, tree = cdist(y, y), KDTree(y)
     wanted, norms = cdist(x[frame], x[frame]), np.linalg.norm(x[frame], axis=1)
     candidates = [np.flatnonzero(np.abs(np.linalg.norm(y, axis=1) - norm) <= 2.0 * tol) for norm in norms]
-    return any(_maps(x, y, frame, image, tree, tol) for image in _images(candidates, images, wanted, 4.0 * tol))
+    return any(_maps(x, y, frame, image, tree, tol) for image in _images(candidates, distances, wanted, 4.0 * tol))
 
 
 def _frame(x: FloatArray) -> list[int]:
@@ -68,15 +68,15 @@ def _frame(x: FloatArray) -> list[int]:
 
 def _images(candidates: list[Any], distances: FloatArray, wanted: FloatArray, tol: float) -> list[tuple[int, ...]]:
     """Tuples of agents with the frame's distances to the centre and between each other."""
-    found: list[tuple[int, ...]] = [()]
+    images: list[tuple[int, ...]] = [()]
     for k, options in enumerate(candidates):
-        found = [
+        images = [
             (*image, int(agent))
-            for image in found
+            for image in images
             for agent in options
             if all(abs(distances[agent, image[e]] - wanted[k, e]) <= tol for e in range(k))
         ]
-    return found
+    return images
 
 
 def _maps(x: FloatArray, y: FloatArray, frame: list[int], image: tuple[int, ...], tree: KDTree, tol: float) -> bool:

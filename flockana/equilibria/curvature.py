@@ -1,4 +1,4 @@
-"""The sign of each curvature of a potential at a computed equilibrium, known to rounding and a residual force only.
+"""Signs of a potential's curvatures at a computed equilibrium, as far as rounding and the residual force leave them.
 
 Where a force ρ is left and the Hessian has the eigenvalue λ along v, the true critical point lies about ρ/|λ| away, and
 the curvature that counts is the one there. So λ has a sign only if the stiffness keeps half of |λ| within twice that
@@ -40,7 +40,7 @@ class Curvatures(NamedTuple):
 
 
 class Landscape:
-    """A potential about one configuration: its Hessian off the rigid motions, and how it changes nearby.
+    """A potential about a configuration: its Hessian off the rigid motions, and how much that changes nearby.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ class Landscape:
         return Curvatures(self.values, signs, self.rounding)
 
     def change(self, k: int) -> float:
-        """By how much eigenvalue k changes on the way to the critical point; infinite if that is not near."""
+        """Change of eigenvalue k on the way to the critical point; infinite if that is not near."""
         reach = 2.0 * self.force / max(abs(float(self.values[k])), self.rounding or np.inf)
         if not reach <= _REACH * self.length:
             return float("inf")
@@ -167,7 +167,7 @@ class Landscape:
         return turned + max(_row_sum(self.stiffness(x) - self.here) for x in self._around(reach)) <= 0.5 * least
 
     def _around(self, reach: float) -> list[FloatArray]:
-        """The flock blown up, shrunk, and shifted if its place matters.
+        """The configuration scaled up, scaled down, and shifted unless the potential is invariant under translations.
 
         Every distance above half of `length` changes by √2 `reach` at least, as those of links may.
         """
@@ -180,30 +180,30 @@ class Landscape:
         return places
 
 
-def least_curvature(found: Landscape) -> tuple[float, float]:
+def least_curvature(landscape: Landscape) -> tuple[float, float]:
     """The smallest curvature over the largest in modulus, and its error from rounding and the residual force.
 
-    Returns tuple of float (NaN, ∞) where there is nothing but rigid motions; (0, 0) where nothing is stiff at all.
+    They are (NaN, ∞) where there is nothing but rigid motions, and (0, 0) where nothing is stiff at all.
     """
-    values = found.values
+    values = landscape.values
     if not values.size:
         return float("nan"), float("inf")
     largest = float(np.abs(values).max())
-    if largest <= found.rounding:
+    if largest <= landscape.rounding:
         return 0.0, 0.0
-    return float(values[0]) / largest, min((found.change(0) + 2.0 * found.rounding) / largest, float("inf"))
+    return float(values[0]) / largest, min((landscape.change(0) + 2.0 * landscape.rounding) / largest, float("inf"))
 
 
-def downhill(found: Landscape) -> FloatArray:
+def downhill(landscape: Landscape) -> FloatArray:
     """The direction (n, m), of unit length, in which the potential falls most steeply to second order.
 
     The same on every machine, in an eigenspace of several dimensions too: what a fixed vector has in it.
     """
-    near = found.values <= found.values[0] + 1e-6 * abs(found.values[0])
-    basis = found.vectors[:, near]
-    fixed = np.random.default_rng(0).standard_normal(found.q.size)
+    near = landscape.values <= landscape.values[0] + 1e-6 * abs(landscape.values[0])
+    basis = landscape.vectors[:, near]
+    fixed = np.random.default_rng(0).standard_normal(landscape.q.size)
     direction = basis @ (basis.T @ fixed)
-    return np.ascontiguousarray((direction / np.linalg.norm(direction)).reshape(found.q.shape))
+    return np.ascontiguousarray((direction / np.linalg.norm(direction)).reshape(landscape.q.shape))
 
 
 def _row_sum(matrix: Any) -> float:

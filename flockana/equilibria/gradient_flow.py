@@ -19,7 +19,7 @@ _NEWTON_REACH = 1e-3  # of d: a step farther than that is no polishing, and migh
 
 @dataclass(frozen=True)
 class GradientLimit:
-    """Where the gradient flow ends.
+    """The limit of the gradient flow.
 
     Attributes
     ----------

@@ -70,12 +70,12 @@ class Potential:
 
     @property
     def pinned(self) -> bool:
-        """Whether a translation of the flock changes it."""
+        """Whether a translation of the flock changes the potential."""
         return not self.law.splits
 
     @property
     def force_scale(self) -> float:
-        """That of the law's scales; of a law without scales, that of its pairs."""
+        """The force scale of the law; of a law without scales, that of its pairs."""
         own = self.law.scales
         return self.gain * self.pair.strength if own is None else own.force
 
@@ -91,7 +91,7 @@ class Potential:
 
     @property
     def gain(self) -> float:
-        """What its potential is multiplied by: c1α; 1 for the dead zone, which carries its own."""
+        """Factor of the pair potential: c1α; 1 for the dead zone, which carries its own."""
         return self.pairs.stiffness
 
     @property
@@ -112,17 +112,17 @@ class Potential:
         return target
 
     def energy(self, q: FloatArray) -> float:
-        """Its value, pairs out of range included."""
+        """The potential energy, pairs out of range included."""
         return float(self.law.hamiltonian(self.t, q, np.zeros_like(q)))
 
     def listed_energy(self, q: FloatArray, pairs: LinkArray) -> float:
-        """Its value from the listed pairs, less the far potential of each pair: no large constant to round."""
+        """The potential energy of the listed pairs, less the far potential of each: no large constant to round."""
         lengths = np.linalg.norm(q[pairs[:, 1]] - q[pairs[:, 0]], axis=1)
         total = self.gain * float(np.sum(self.pair.energy_at(lengths) - self.pair.far_potential))
         return total + sum(term.energy(self.t, q) for term in self.others)
 
     def force(self, q: FloatArray) -> FloatArray:
-        """Its negative gradient by the law's own kernels, shape (n, m)."""
+        """The negative gradient of the potential by the law's own kernels, shape (n, m)."""
         push = self.law.flow(self.t, q, np.zeros_like(q))[0]
         if not self.pinned:
             return moving_frame(push)
@@ -137,11 +137,11 @@ class Potential:
         return float(np.linalg.norm(self.force(q), axis=1).max()) / self.force_scale
 
     def stiffness(self, q: FloatArray) -> Any:
-        """Its Hessian, sparse, in the order of ``q.ravel()``."""
+        """The Hessian of the potential, sparse, in the order of ``q.ravel()``."""
         return self.law.stiffness(q, self.t)
 
     def symmetries(self, q: FloatArray) -> FloatArray:
-        """Orthonormal basis (n m, k) of the rigid motions that leave it unchanged.
+        """Orthonormal basis (n m, k) of the rigid motions that leave the potential unchanged.
 
         All of them where shape and centre move apart; else the rotations about the γ-agent that move no obstacle.
         """
@@ -160,7 +160,7 @@ class Potential:
 
 
 def inside_obstacle(law: Law, q: FloatArray) -> bool:
-    """Whether an agent is inside an obstacle, where ψ_β falls again and means nothing."""
+    """Whether an agent is inside an obstacle, where ψ_β falls again and keeps nobody out."""
     return not np.isfinite(q).all() or any(bool(obstacle.contains(q).any()) for obstacle in law.obstacles)
 
 

@@ -77,7 +77,7 @@ class _Derivatives(ca.Callback):
 
 
 class _Watch(ca.Callback):
-    """Asked after every iteration whether to stop: it does when Ctrl-C came, which CasADi would take for a failure."""
+    """Callback after every iteration that stops the solver on Ctrl-C, which CasADi would take for a failure."""
 
     def __init__(self, size: int, gauge: int) -> None:
         ca.Callback.__init__(self)
@@ -168,8 +168,8 @@ class Program:
         box = {"lbx": start - reach / self.d, "ubx": start + reach / self.d}
         with interrupts_held() as self._watch.came:
             solver = self._solver(tol, max_iter)
-            found = solver(x0=start, p=basis.T.ravel(), lbg=held, ubg=held, **box)
-            stats, x = solver.stats(), np.array(found["x"])
+            solution = solver(x0=start, p=basis.T.ravel(), lbg=held, ubg=held, **box)
+            stats, x = solver.stats(), np.array(solution["x"])
         return self.d * x.reshape(self.shape), bool(stats["success"]), str(stats["return_status"])
 
     def _solver(self, tol: float, max_iter: int) -> Any:

@@ -1,4 +1,4 @@
-"""An equilibrium as a JSON file that carries its law, and is verified again whenever it is read."""
+"""Write an equilibrium and its law as JSON, and read it back with all its properties computed and compared."""
 
 from __future__ import annotations
 
@@ -20,53 +20,53 @@ _FORMAT = "flockana equilibrium 1"
 _AGREE = 1e-6  # relative: eigenvalues written on one machine and computed on another
 
 
-def write_equilibrium(found: Equilibrium, path: str | Path) -> None:
+def write_equilibrium(equilibrium: Equilibrium, path: str | Path) -> None:
     """Write an equilibrium, its law and its Hessian spectrum as JSON; numbers read back exactly."""
     data = {
         "format": _FORMAT,
-        "law": to_data(found.law),
-        "q": found.q.tolist(),
-        "energy": found.energy,
-        "kind": found.kind,
-        "strain": found.strain(),
-        "links": len(found.links),
-        "rigid_modes": found.rigid_modes,
-        "hessian_eigenvalues": found.hessian_eigenvalues.tolist(),
+        "law": to_data(equilibrium.law),
+        "q": equilibrium.q.tolist(),
+        "energy": equilibrium.energy,
+        "kind": equilibrium.kind,
+        "strain": equilibrium.strain(),
+        "links": len(equilibrium.links),
+        "rigid_modes": equilibrium.rigid_modes,
+        "hessian_eigenvalues": equilibrium.hessian_eigenvalues.tolist(),
     }
     with replacing(path) as partial:
         partial.write_text(json.dumps(data, indent=1) + "\n")
 
 
 def read_equilibrium(path: str | Path) -> Equilibrium:
-    """Read an equilibrium and compute everything anew from its positions; what the file claims must agree."""
+    """Read an equilibrium; everything is computed anew from its positions and must agree with the file."""
     try:
         data = json.loads(Path(path).read_text())
         if data["format"] != _FORMAT:
             raise ValueError(f"its format is {data['format']!r}, expected {_FORMAT!r}")
         law, q = from_data(data["law"]), np.array(data["q"], dtype=np.float64)
-        found = finish(Potential(law), q, True, "read from a file and verified")
-        _compare(found, data)
+        equilibrium = finish(Potential(law), q, True, "read from a file and verified")
+        _compare(equilibrium, data)
     except (OSError, ValueError, KeyError, TypeError, AttributeError, FlockanaError) as error:
         raise FileError(f"{path} holds no equilibrium: {error}") from error
-    return found
+    return equilibrium
 
 
-def _compare(found: Equilibrium, data: dict[str, Any]) -> None:
+def _compare(equilibrium: Equilibrium, data: dict[str, Any]) -> None:
     """Raise unless kind, links, modes, energy and spectrum are what the file says."""
-    exact = {"kind": found.kind, "links": len(found.links), "rigid_modes": found.rigid_modes}
+    exact = {"kind": equilibrium.kind, "links": len(equilibrium.links), "rigid_modes": equilibrium.rigid_modes}
     for name, value in exact.items():
         if data[name] != value:
             raise ValueError(f"it claims {name} = {data[name]!r}, but {value!r} is computed")
-    potential = Potential(found.law)
+    potential = Potential(equilibrium.law)
     unit = potential.force_scale * potential.pair.length  # of energies: a lattice may have none but rounding
-    largest = max(float(np.abs(found.hessian_eigenvalues).max(initial=0.0)), unit / potential.pair.length**2)
+    largest = max(float(np.abs(equilibrium.hessian_eigenvalues).max(initial=0.0)), unit / potential.pair.length**2)
     claimed = np.array(data["hessian_eigenvalues"], dtype=np.float64)
-    if claimed.shape != found.hessian_eigenvalues.shape or np.any(
-        np.abs(claimed - found.hessian_eigenvalues) > _AGREE * largest
+    if claimed.shape != equilibrium.hessian_eigenvalues.shape or np.any(
+        np.abs(claimed - equilibrium.hessian_eigenvalues) > _AGREE * largest
     ):
         raise ValueError("its Hessian eigenvalues are not those computed from its positions")
-    if not isclose(data["energy"], found.energy, rel_tol=_AGREE, abs_tol=_AGREE * unit):
-        raise ValueError(f"it claims an energy of {data['energy']}, but {found.energy} is computed")
+    if not isclose(data["energy"], equilibrium.energy, rel_tol=_AGREE, abs_tol=_AGREE * unit):
+        raise ValueError(f"it claims an energy of {data['energy']}, but {equilibrium.energy} is computed")
 
 
 def smallest_strained() -> Equilibrium:

@@ -12,12 +12,12 @@ from flockana.laws.law import Law
 
 _STEPS = 40
 _RANK = 1e-10  # of the largest singular value: what is less is a direction in which nothing pushes
-_DONE = 1e-12  # of the stiffness times the flock's size
-_AGAIN = 0.5  # of a step, as often as the force grows by it
+_CONVERGED = 1e-12  # of the stiffness times the flock's size
+_SHORTEN = 0.5  # factor on a step, as often as the force grows by it
 
 
 def resting_state(law: Any, q0: Any, *, t: float = 0.0) -> FloatArray:
-    """Positions near q0 at which no agent is pushed while all stand still, by Newton's method in least squares.
+    """Positions near q0 at which the force on every agent at rest vanishes, by Newton's method in least squares.
 
     Where a law has a potential `find_equilibrium` says more: which kind of equilibrium it is.
 
@@ -37,7 +37,7 @@ def resting_state(law: Any, q0: Any, *, t: float = 0.0) -> FloatArray:
     for _ in range(_STEPS):
         by_position: Any = law.derivatives(t, q, np.zeros_like(q))[0]
         stiffness = by_position.toarray()
-        if np.abs(force).max() <= _DONE * float(np.abs(stiffness).max()) * size:
+        if np.abs(force).max() <= _CONVERGED * float(np.abs(stiffness).max()) * size:
             return q
         step = -np.linalg.lstsq(stiffness, force.ravel(), rcond=_RANK)[0].reshape(q.shape)
         share = 1.0
@@ -45,7 +45,7 @@ def resting_state(law: Any, q0: Any, *, t: float = 0.0) -> FloatArray:
             after = law.flow(t, q + share * step, np.zeros_like(q))[0]
             if np.linalg.norm(after) < np.linalg.norm(force) or share < 1e-3:
                 break
-            share *= _AGAIN
+            share *= _SHORTEN
         q, force = q + share * step, after
     raise SolverError(
         f"no state of rest of {type(law).__name__} found near there: the largest force left is "

@@ -1,4 +1,4 @@
-"""Many starts, distinct equilibria: random discs and lattice patches, minimised in parallel, ranked by energy."""
+"""Distinct equilibria from many starts, random discs and lattice patches, minimised in parallel, ranked by energy."""
 
 from __future__ import annotations
 
@@ -79,13 +79,13 @@ def lattice_starts(n: int, m: int, d: float, count: int, *, seed: int = 0, noise
 
 
 @dataclass(frozen=True)
-class Found:
-    """One of the distinct equilibria of a search.
+class Distinct:
+    """An equilibrium that a search came to, once or more often.
 
     Parameters
     ----------
     equilibrium : Equilibrium
-        The first that was found.
+        The first of those that are the same but for a rigid motion and the numbering.
     count : int
         How many starts ended there.
     coincident : int
@@ -99,11 +99,11 @@ class Found:
 
 @dataclass(frozen=True)
 class Search:
-    """What a search found.
+    """The distinct equilibria that many starts lead to.
 
     Parameters
     ----------
-    found : tuple of Found
+    found : tuple of Distinct
         Distinct equilibria, lowest energy first; degenerate ones are told apart by their energy only.
     starts : int
         How many starts there were.
@@ -111,7 +111,7 @@ class Search:
         Messages of the solves that found nothing.
     """
 
-    found: tuple[Found, ...]
+    found: tuple[Distinct, ...]
     starts: int
     failures: tuple[str, ...] = field(default=(), repr=False)
 
@@ -127,11 +127,11 @@ class Search:
     def strained(self, *, lattice: float = 1e-6, distinct: bool = True) -> tuple[Equilibrium, ...]:
         """Strict minima that are no α-lattice."""
         return tuple(
-            one.equilibrium
-            for one in self.found
-            if one.equilibrium.kind == "minimum"
-            and one.equilibrium.strain() > lattice
-            and not (distinct and one.coincident)
+            item.equilibrium
+            for item in self.found
+            if item.equilibrium.kind == "minimum"
+            and item.equilibrium.strain() > lattice
+            and not (distinct and item.coincident)
         )
 
 
@@ -159,31 +159,31 @@ def search(law: Any, starts: Iterable[Any], *, method: str = "minimise", executo
         raise ArgumentError(f"starts: expected at least one, all of one shape, got {sorted({p.shape for p in points})}")
     outcomes = list((executor.map if executor else map)(partial(_attempt, law, method), points))
     return Search(
-        distinct([one for one in outcomes if isinstance(one, Equilibrium)]),
+        distinct([outcome for outcome in outcomes if isinstance(outcome, Equilibrium)]),
         len(points),
-        tuple(one for one in outcomes if isinstance(one, str)),
+        tuple(outcome for outcome in outcomes if isinstance(outcome, str)),
     )
 
 
-def distinct(equilibria: Sequence[Equilibrium]) -> tuple[Found, ...]:
+def distinct(equilibria: Sequence[Equilibrium]) -> tuple[Distinct, ...]:
     """Group equilibria up to translation, rotation, reflection and numbering, lowest energy first.
 
     Degenerate ones come in families (a hinge bends, a component drifts): those of equal energy and index are one.
     """
     groups: list[list[Equilibrium]] = []
-    for one in _by_energy(equilibria):
-        potential = Potential(one.law)
+    for equilibrium in _by_energy(equilibria):
+        potential = Potential(equilibrium.law)
         for group in reversed(groups):
-            if one.energy - group[0].energy > _LEVEL * potential.gain * potential.pair.far_potential:
-                groups.append([one])
+            if equilibrium.energy - group[0].energy > _LEVEL * potential.gain * potential.pair.far_potential:
+                groups.append([equilibrium])
                 break
-            if _same(group[0], one):
-                group.append(one)
+            if _same(group[0], equilibrium):
+                group.append(equilibrium)
                 break
         else:
-            groups.append([one])
+            groups.append([equilibrium])
     contact = Potential(equilibria[0].law).pair.length * _CONTACT if equilibria else 1.0
-    return tuple(Found(group[0], len(group), coincident_pairs(group[0].q, contact)) for group in groups)
+    return tuple(Distinct(group[0], len(group), coincident_pairs(group[0].q, contact)) for group in groups)
 
 
 def _by_energy(equilibria: Sequence[Equilibrium]) -> list[Equilibrium]:

@@ -30,7 +30,7 @@ _REACH = 1e-3  # of d: a polish that goes farther than that has left the point i
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """A configuration at which no agent is pushed, and what kind of critical point it is.
+    """A configuration at which the force on every agent vanishes, and what kind of critical point it is.
 
     Parameters
     ----------
@@ -156,12 +156,12 @@ def find_equilibrium(
     margin = ensure_positive("margin", margin) * potential.pair.length
     law.check_start(q, np.zeros_like(q))
     search = _minimise if method == "minimise" else _root
-    found, done, message = search(potential, q, margin, max_iter)
-    return finish(potential, found, done, message, strict=strict)
+    last, converged, message = search(potential, q, margin, max_iter)
+    return finish(potential, last, converged, message, strict=strict)
 
 
-def finish(potential: Potential, q: FloatArray, done: bool, message: str, *, strict: bool = True) -> Equilibrium:
-    """Polish what a solver returned, classify it, and refuse what is no equilibrium.
+def finish(potential: Potential, q: FloatArray, converged: bool, message: str, *, strict: bool = True) -> Equilibrium:
+    """The equilibrium at which a solver ended, refined by Newton's method and classified; an error if it is none.
 
     Examples
     --------
@@ -169,15 +169,15 @@ def finish(potential: Potential, q: FloatArray, done: bool, message: str, *, str
     >>> finish(Potential(Algorithm1()), np.array([[0.0], [7.0 + 1e-5]]), True, "given").residual < 1e-12
     True
     """
-    q = _polish(potential, q) if done else q
+    q = _polish(potential, q) if converged else q
     if potential.target is not None and not _fixed_in_space(potential):  # under Algorithm 2 the target holds the centre
         q = q + (potential.target - q.mean(axis=0))
     residual = potential.residual(q)
     blocked = inside_obstacle(potential.law, q)
-    success = done and residual <= RESIDUAL and not blocked
+    success = converged and residual <= RESIDUAL and not blocked
     if blocked:
         message = f"{message}, but with an agent inside an obstacle"
-    elif done and not success:
+    elif converged and not success:
         message = (
             f"{message}, yet the residual force is {residual:.2g} of the law's force scale, more than {RESIDUAL:g}"
         )
@@ -186,7 +186,7 @@ def finish(potential: Potential, q: FloatArray, done: bool, message: str, *, str
             f"no equilibrium of {type(potential.law).__name__} found: {message} (residual force {residual:.2g}); "
             "start nearer to one (gradient_flow goes downhill more carefully), or raise max_iter"
         )
-    found = spectrum(potential, q)
+    modes = spectrum(potential, q)
     q.setflags(write=False)
     return Equilibrium(
         law=potential.law,
@@ -194,11 +194,11 @@ def finish(potential: Potential, q: FloatArray, done: bool, message: str, *, str
         energy=potential.energy(q),
         residual=residual,
         links=links(q, potential.pair.range),
-        kind=kind_of(found),
-        hessian_eigenvalues=found.eigenvalues,
-        rigid_modes=found.rigid,
-        zero_modes=found.zero,
-        index=found.negative,
+        kind=kind_of(modes),
+        hessian_eigenvalues=modes.eigenvalues,
+        rigid_modes=modes.rigid,
+        zero_modes=modes.zero,
+        index=modes.negative,
         success=success,
         message=message,
     )
@@ -222,7 +222,7 @@ def all_pairs(n: int) -> LinkArray:
 
 
 def _minimise(potential: Potential, q: FloatArray, margin: float, max_iter: int) -> tuple[FloatArray, bool, str]:
-    """Solve in a box about the start, then about what was found, until the box does not matter.
+    """Solve in a box about the start, then about each solution, until the box does not matter.
 
     The box is so small that no pair outside the list can come within range, and IPOPT's long steps along soft
     directions cannot scatter the flock. A point from which V falls is left along its most negative direction.
@@ -237,8 +237,8 @@ def _minimise(potential: Potential, q: FloatArray, margin: float, max_iter: int)
             listed = all_pairs(n) if n <= _ALL_PAIRS else links(q, potential.pair.range + margin)
             program = Program(potential, (n, m), listed, basis.shape[1])
         reach, start = margin / (2.0 * sqrt(m)), q
-        q, done, status = program.solve(q, basis=basis, reach=reach, max_iter=max_iter)
-        if not (done and np.isfinite(q).all()):
+        q, converged, status = program.solve(q, basis=basis, reach=reach, max_iter=max_iter)
+        if not (converged and np.isfinite(q).all()):
             return q, False, status
         if np.abs(q - start).max() > _INSIDE * reach:
             continue
@@ -265,14 +265,14 @@ def _root(potential: Potential, q: FloatArray, margin: float, max_iter: int) -> 
     def jacobian(x: FloatArray) -> FloatArray:
         return np.vstack([np.array(ca.triu2symm(program.derivatives(x)[1])), basis.T])
 
-    found = least_squares(equations, start, jacobian, xtol=1e-15, ftol=1e-15, gtol=1e-15, max_nfev=max_iter)
-    done = found.status > 0 and float(np.abs(found.fun).max()) < 1e-5
-    reason = found.message if done else f"{found.message} The gradient has a least square that is not zero."
-    return program.d * found.x.reshape(q.shape), done, reason
+    result = least_squares(equations, start, jacobian, xtol=1e-15, ftol=1e-15, gtol=1e-15, max_nfev=max_iter)
+    converged = result.status > 0 and float(np.abs(result.fun).max()) < 1e-5
+    reason = result.message if converged else f"{result.message} The gradient has a least square that is not zero."
+    return program.d * result.x.reshape(q.shape), converged, reason
 
 
 def _polish(potential: Potential, q: FloatArray) -> FloatArray:
-    """Newton's last digits with the law's own stiffness, rigid motions held, soft modes left alone by a small shift."""
+    """Refine by Newton's method with the law's stiffness; rigid motions stay, a small shift keeps soft modes finite."""
     from scipy.sparse import block_array, csc_array, eye_array
     from scipy.sparse.linalg import splu
 

@@ -1,4 +1,4 @@
-"""Where a run ended: is it an equilibrium, is it a lattice, is it a minimum?"""
+"""The last state of a run: its distance from equilibrium, its links, and its second-order character."""
 
 from __future__ import annotations
 
@@ -80,8 +80,8 @@ def terminal_state(
     force = float(np.linalg.norm(forces, axis=1).max())
     lengths = link_lengths(q, links(q, alpha.range))
     empty = lengths.size == 0
-    around = surroundings(law, q, force=float(np.linalg.norm(forces)))
-    curvature, error = least_curvature(around) if around else (float("nan"), float("inf"))
+    landscape = surroundings(law, q, force=float(np.linalg.norm(forces)))
+    curvature, error = least_curvature(landscape) if landscape else (float("nan"), float("inf"))
     return TerminalState(
         force=force / law.scales.force,
         mismatch=velocity_mismatch(p) / len(q),
@@ -93,7 +93,7 @@ def terminal_state(
         connected=connectivity(q, alpha.range) == 1.0,
         curvature=curvature,
         curvature_error=error,
-        distance=around.distance / alpha.length if around else float("inf"),
+        distance=landscape.distance / alpha.length if landscape else float("inf"),
     )
 
 

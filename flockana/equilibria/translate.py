@@ -1,4 +1,4 @@
-"""From sympy expressions to CasADi ones: what the solver differentiates is what the derivations are about."""
+"""Translate sympy expressions to CasADi ones, so that the solver uses the expressions that were derived."""
 
 from __future__ import annotations
 
@@ -39,23 +39,25 @@ def to_casadi(expression: Any, values: Mapping[Any, Any]) -> Any:
         return float(expression.evalf(25))
     if expression in values:
         return values[expression]
-    parts = [to_casadi(part, values) for part in expression.args if not isinstance(expression, sp.Piecewise)]
+    arguments = [
+        to_casadi(argument, values) for argument in expression.args if not isinstance(expression, sp.Piecewise)
+    ]
     kind = type(expression)
     if kind in _UNARY:
-        return _UNARY[kind](*parts)
+        return _UNARY[kind](*arguments)
     if kind in _RELATIONS:
-        return _RELATIONS[kind](*parts)
+        return _RELATIONS[kind](*arguments)
     if isinstance(expression, sp.Min | sp.Max):
-        return reduce(ca.fmin if isinstance(expression, sp.Min) else ca.fmax, parts)
+        return reduce(ca.fmin if isinstance(expression, sp.Min) else ca.fmax, arguments)
     if isinstance(expression, sp.Add):
-        return sum(parts[1:], parts[0])
+        return sum(arguments[1:], arguments[0])
     if isinstance(expression, sp.Mul):
-        product = parts[0]
-        for part in parts[1:]:
-            product = product * part
+        product = arguments[0]
+        for factor in arguments[1:]:
+            product = product * factor
         return product
     if isinstance(expression, sp.Pow):
-        return _power(parts[0], expression.exp, parts[1])
+        return _power(arguments[0], expression.exp, arguments[1])
     if isinstance(expression, sp.Piecewise):
         return _piecewise(expression, values)
     raise ArgumentError(f"{expression}: expected elementary functions of {', '.join(map(str, values))}")

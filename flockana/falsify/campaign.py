@@ -1,4 +1,4 @@
-"""Search a scenario's neighbourhood for a run that breaks a claim of a theorem."""
+"""Search the neighbourhood of a scenario for a run that refutes a claim of a theorem."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from flockana.falsify.evaluate import Evaluation, Problem, units
 from flockana.falsify.falsification import Ending, Falsification
 from flockana.falsify.grade import FAILED
 from flockana.falsify.search import Search
-from flockana.falsify.space import STATE, part, search_space
+from flockana.falsify.space import STATE, law_parameter, search_space
 from flockana.scenarios import Scenario
 from flockana.scenarios import scenario as named_scenario
 from flockana.theorems import Claim, Theorem, Tolerances
@@ -41,7 +41,7 @@ def falsify(
     executor: Executor | None = None,
     progress: bool = False,
 ) -> Falsification:
-    """Search initial states, and parameters if asked to, for a run that breaks a claim: minimise the claim's margin.
+    """Search initial states, and parameters of the law, for a run that refutes a claim, by minimising its margin.
 
     CMA-ES (restarted with growing populations) in a box about the scenario's start. Where hypotheses are not met the
     search is led back by how far they are missed; a run that fails counts as worse than any other. That nothing is
@@ -117,11 +117,11 @@ def falsify(
             while len(record.rows) < budget and (deepen or not record.best.found):
                 points = search.ask()
                 batch, grades = points[: budget - len(record.rows)], []
-                for point, one in zip(batch, (executor.map if executor else map)(problem, batch), strict=True):
-                    grades.append(one.grade)
-                    record.add(point, one)
+                for point, evaluation in zip(batch, (executor.map if executor else map)(problem, batch), strict=True):
+                    grades.append(evaluation.grade)
+                    record.add(point, evaluation)
                     advance(len(record.rows), f"{item.id} on {begin.name}, worst: {_worst(record.best)}")
-                    if one.found and not deepen:
+                    if evaluation.found and not deepen:
                         break
                 if len(grades) == len(points):
                     search.tell(grades)
@@ -134,7 +134,7 @@ def falsify(
         theorem=item.id,
         claim=record.best.claim or claim or "",
         case=case,
-        parameters={name: float(part(case.law, name)) for name in space.parameters},
+        parameters={name: float(law_parameter(case.law, name)) for name in space.parameters},
         verdict=record.best.verdict,
         **record.columns(record.best.claim or claim or ""),
         seed=seed,
@@ -165,7 +165,7 @@ def _ensure_kinds(theorem: Any, scenario: Any, tolerances: Any, surrogate: Any) 
 
 
 def _at_the_start(problem: Problem, begin: Scenario) -> tuple[Problem, Evaluation]:
-    """The first evaluation, on the scenario's own start, with units for margins from it; its errors are the user's."""
+    """The evaluation of the scenario's own start, and the problem with units for margins from it; errors are raised."""
     with np.errstate(all="ignore"):
         run = begin.run()
         if run.status == "interrupted":
@@ -173,7 +173,7 @@ def _at_the_start(problem: Problem, begin: Scenario) -> tuple[Problem, Evaluatio
         if run.status != "complete":
             return problem, Evaluation(FAILED, message=run.message)
         verdict = problem.verdict(begin, run)
-        names = [one.name for one in verdict.claims]
+        names = [claim.name for claim in verdict.claims]
         if problem.claim is not None and problem.claim not in names:
             raise UnknownNameError("claim", problem.claim, names)
         problem = replace(problem, scales=units(verdict))
@@ -188,12 +188,12 @@ class _Record:
         self.best, self.message = Evaluation(np.inf), ""
         self.point: FloatArray | None = None  # the scenario's own start
 
-    def add(self, point: FloatArray | None, one: Evaluation) -> None:
-        claims = () if one.verdict is None else one.verdict.claims
+    def add(self, point: FloatArray | None, evaluation: Evaluation) -> None:
+        claims = () if evaluation.verdict is None else evaluation.verdict.claims
         self.rows.append({c.name: (c.status, _margin(c)) for c in claims})
-        self.message = one.message or self.message
-        if one.grade < self.best.grade:
-            self.best, self.point = one, point
+        self.message = evaluation.message or self.message
+        if evaluation.grade < self.best.grade:
+            self.best, self.point = evaluation, point
 
     def columns(self, claim: str) -> dict[str, Any]:
         """`margins` and `statuses` by claim; of a run that failed there is neither."""
@@ -207,7 +207,7 @@ class _Record:
 
 
 def _margin(claim: Claim) -> float:
-    """NaN where nothing is claimed: a vacuous claim's margin says nothing of it."""
+    """The margin of a claim; NaN if it is vacuous, when its margin has no meaning."""
     return float("nan") if claim.status == "vacuous" or claim.margin is None else float(claim.margin)
 
 

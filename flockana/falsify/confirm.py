@@ -1,4 +1,4 @@
-"""No counterexample that a finer run takes back: what refutes a claim is integrated a thousand times more tightly."""
+"""Confirm counterexamples: a run that refutes a claim is integrated again, a thousand times more tightly."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ _DEFAULT = 1e-8  # the relative tolerance of `simulate`; for want of its own, th
 
 
 class Case(Protocol):
-    """What can be run again: a scenario or a counterexample."""
+    """A law with a start and options of `simulate`: a scenario or a counterexample."""
 
     @property
     def law(self) -> Law | DiscreteLaw:
-        """What moves the flock."""
+        """The law of motion."""
 
     @property
     def q0(self) -> FloatArray:
@@ -43,7 +43,7 @@ class Case(Protocol):
 
 
 def confirmed(verdict: Verdict, judge: Callable[[Trajectory], Verdict], case: Case) -> Verdict:
-    """A verdict whose refuted claims a run at a thousandth of the tolerance refutes too; the others are inconclusive.
+    """The verdict, its refuted claims inconclusive unless a run at a thousandth of the tolerance refutes them too.
 
     A map has no tolerance: its verdict stays as it is.
     """
@@ -52,11 +52,11 @@ def confirmed(verdict: Verdict, judge: Callable[[Trajectory], Verdict], case: Ca
     run = simulate(case.law, case.q0, case.p0, case.t_span, **tighter(case.options))
     if run.status == "interrupted":
         raise KeyboardInterrupt
-    found = {claim.name: claim.status for claim in judge(run).claims} if run.status == "complete" else {}
+    statuses = {claim.name: claim.status for claim in judge(run).claims} if run.status == "complete" else {}
     reason = "a run at a thousandth of the tolerance takes this back"
     claims = (
         replace(claim, status="inconclusive", detail=f"{claim.detail}; {reason}".lstrip("; "))
-        if claim.status == "refuted" and found.get(claim.name) != "refuted"
+        if claim.status == "refuted" and statuses.get(claim.name) != "refuted"
         else claim
         for claim in verdict.claims
     )
@@ -68,14 +68,14 @@ def tighter(options: Mapping[str, Any]) -> dict[str, Any]:
 
     Examples
     --------
-    >>> found = tighter({"method": "RK4", "dt": 0.1, "t_eval": [1.0]})
-    >>> sorted(found), round(found["rtol"], 14)
+    >>> options = tighter({"method": "RK4", "dt": 0.1, "t_eval": [1.0]})
+    >>> sorted(options), round(options["rtol"], 14)
     (['rtol', 't_eval'], 1e-11)
     """
-    found = {key: value for key, value in options.items() if key not in ("dt", "rtol", "atol")}
-    if found.get("method") == "RK4":
-        del found["method"]
-    found["rtol"] = max(THOUSANDTH * options.get("rtol", _DEFAULT), FINEST)
+    finer = {key: value for key, value in options.items() if key not in ("dt", "rtol", "atol")}
+    if finer.get("method") == "RK4":
+        del finer["method"]
+    finer["rtol"] = max(THOUSANDTH * options.get("rtol", _DEFAULT), FINEST)
     if options.get("atol") is not None:
-        found["atol"] = THOUSANDTH * options["atol"]
-    return found
+        finer["atol"] = THOUSANDTH * options["atol"]
+    return finer

@@ -1,4 +1,4 @@
-"""A run that breaks a claim, as a JSON file that anybody can simulate and check again."""
+"""Counterexamples as JSON files, to be simulated and checked again."""
 
 from __future__ import annotations
 
@@ -28,16 +28,16 @@ FORMAT_VERSION = 1
 
 @dataclass(frozen=True, eq=False)
 class Counterexample:
-    """All that is needed to see a claim break.
+    """A law, a start and the claim that a run from there refutes.
 
     Parameters
     ----------
     theorem, claim : str
-        What breaks.
+        The claim that is refuted, and its theorem.
     scenario : str
         Where the search began.
     law : Law or DiscreteLaw
-        What moves the flock.
+        The law of motion.
     q0, p0 : ndarray, shape (n, m)
         The start.
     t_span : (float, float)
@@ -47,9 +47,9 @@ class Counterexample:
     tolerances : Tolerances
         Thresholds of the verdict.
     margin, error : float
-        Of the claim, as found; NaN if it has none.
+        Of the claim when it was refuted; NaN if it has none.
     version : str
-        Of flockana, that found it.
+        Of flockana, when it was written.
     """
 
     theorem: str
@@ -66,7 +66,7 @@ class Counterexample:
     version: str = __version__
 
     def run(self) -> Trajectory:
-        """Simulate it.
+        """Simulate the counterexample.
 
         Raises
         ------
@@ -79,7 +79,7 @@ class Counterexample:
         return run
 
     def verify(self, run: Trajectory, *, theorem: Theorem | None = None) -> Verdict:
-        """Check the theorem on a run of it.
+        """Check the theorem on a run of the counterexample.
 
         Parameters
         ----------
@@ -92,7 +92,7 @@ class Counterexample:
         return verify(theorem or self.theorem, run, tolerances=self.tolerances, subject=subject)
 
     def check(self, *, theorem: Theorem | None = None) -> Verdict:
-        """Simulate it and check its theorem; what is refuted, a run at a thousandth of the tolerance refutes too.
+        """Simulate the counterexample and check its theorem, confirmed by a run at a thousandth of the tolerance.
 
         Parameters
         ----------
@@ -111,7 +111,7 @@ class Counterexample:
         return confirmed(judge(self.run()), judge, self)
 
     def save(self, path: str | os.PathLike[str]) -> Path:
-        """Write it as JSON; numbers read back exactly, an existing file is replaced only when whole.
+        """Write the counterexample as JSON; numbers read back exactly, an existing file is replaced only when whole.
 
         Parameters
         ----------
@@ -149,7 +149,7 @@ class Counterexample:
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Counterexample:
-        """Read what `save` wrote.
+        """Read a counterexample that `save` wrote.
 
         Parameters
         ----------
@@ -168,8 +168,8 @@ class Counterexample:
         except ValueError as error:
             raise FileError(f"{path} is no JSON ({error}): expected a file that `flockana falsify -o` wrote") from error
         if not isinstance(data, dict) or data.get("format") != FORMAT:
-            found = data.get("format") if isinstance(data, dict) else type(data).__name__
-            raise FileError(f"{path} holds no counterexample (format {found!r}, expected {FORMAT!r})")
+            format_ = data.get("format") if isinstance(data, dict) else type(data).__name__
+            raise FileError(f"{path} holds no counterexample (format {format_!r}, expected {FORMAT!r})")
         if data.get("format_version") != FORMAT_VERSION:
             raise FileError(
                 f"{path} is of format {data.get('format_version')!r}, expected {FORMAT_VERSION}: use the flockana that "

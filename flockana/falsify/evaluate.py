@@ -1,4 +1,4 @@
-"""One evaluation of the search: a point to a run, its verdict, and its grade; what a worker executes."""
+"""Evaluation of a point of the search space: its run, the verdict on it, and the grade that the search minimises."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from flockana.theorems.theorem import Lead
 
 @dataclass(frozen=True)
 class Evaluation:
-    """What became of one point.
+    """Grade, deciding claim and verdict of one point of the search space.
 
     Parameters
     ----------
@@ -48,14 +48,14 @@ class Evaluation:
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """What is evaluated; calling it with a point of the space gives an `Evaluation`, whatever goes wrong.
+    """A theorem to be refuted in a search space; called with a point it gives an `Evaluation`, errors included.
 
     Parameters
     ----------
     space : Space
-        What the points stand for.
+        The search space.
     theorem : str or Theorem
-        What is checked.
+        The theorem.
     tolerances : Tolerances
         Thresholds.
     claim : str or None
@@ -92,19 +92,19 @@ class Problem:
             return self.graded(run, self.verdict(case, run))
 
     def verdict(self, case: Scenario, run: Trajectory) -> Verdict:
-        """The verdict on a run of a case; what it refutes, a much finer run refutes too."""
+        """The verdict on a run of a case, its refutations confirmed by a much finer run."""
 
-        def judge(one: Trajectory) -> Verdict:
-            return verify(self.theorem, one, tolerances=self.tolerances, subject=case.name)
+        def judge(again: Trajectory) -> Verdict:
+            return verify(self.theorem, again, tolerances=self.tolerances, subject=case.name)
 
         return confirmed(judge(run), judge, case)
 
     def graded(self, run: Trajectory, verdict: Verdict) -> Evaluation:
         """Grade a verdict."""
-        if self.claim is not None and all(one.name != self.claim for one in verdict.claims):
+        if self.claim is not None and all(claim.name != self.claim for claim in verdict.claims):
             verdict = replace(verdict, claims=(*verdict.claims, Claim(self.claim, "vacuous", detail="not judged")))
-        chosen = [one for one in verdict.claims if self.claim in (None, one.name)]
-        grades = {one.name: self._grade(run, verdict, one) for one in chosen}
+        chosen = [claim for claim in verdict.claims if self.claim in (None, claim.name)]
+        grades = {claim.name: self._grade(run, verdict, claim) for claim in chosen}
         worst = min(grades, key=grades.__getitem__)
         return Evaluation(grades[worst], worst, verdict)
 

@@ -1,4 +1,4 @@
-"""What a search for a counterexample found: the worst run, what each claim came to, and the way there."""
+"""Result of a search for a counterexample: the worst run, and the course of every claim's margin."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class Falsification:
     message: str = ""
 
     def __repr__(self) -> str:
-        """One line, whatever the number of evaluations."""
+        """A summary in one line."""
         what = f"{self.theorem}:{self.claim} on {self.scenario}"
         return f"<Falsification of {what}: {self.status}, margin {self.margin:.4g}, {self.evaluations} evaluations>"
 
@@ -146,7 +146,7 @@ class Falsification:
         return tuple(name for name in self.statuses if self.refuting(name))
 
     def worst_status(self, claim: str) -> str:
-        """The worst that became of a claim: refuted, else inconclusive, else verified, else vacuous, else failed.
+        """The worst status of a claim in the search: refuted, else inconclusive, verified, vacuous, failed.
 
         Parameters
         ----------

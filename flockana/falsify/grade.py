@@ -1,4 +1,4 @@
-"""What the search minimises: one number for each run, lower the nearer the run comes to breaking the claim.
+"""The grade that the search minimises: a number for each run, lower the nearer it comes to refuting the claim.
 
 Refuted runs are graded in [-3, -2], judged ones in (-1, 1.001], vacuous ones from 2 on, failed ones 1000. So a search
 that leaves the hypotheses is led back by how far they are missed, and comes to the margin when they are met.

@@ -1,4 +1,4 @@
-"""CMA-ES in the unit cube, restarted with twice the population from a random point whenever it has converged."""
+"""CMA-ES in the unit cube, restarted from a random point with twice the population whenever it has converged."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _FULL = 100  # dimensions up to which the whole covariance is learned, beyond th
 
 
 class Search:
-    """Asks for points to evaluate, a generation at a time, and is told their grades (IPOP-CMA-ES).
+    """An optimiser that proposes points, a generation at a time, and learns from their grades (IPOP-CMA-ES).
 
     Parameters
     ----------
@@ -48,12 +48,12 @@ class Search:
         self._cma = kind(mean, _SIGMA, bounds, seed=int(self._rng.integers(2**31)), population_size=population)
 
     def ask(self) -> list[FloatArray]:
-        """A generation of points, each of shape (D,)."""
+        """The next generation of points, each of shape (D,)."""
         self._asked = [self._cma.ask() for _ in range(self._cma.population_size)]
         return [x[: self.dimension] for x in self._asked]
 
     def tell(self, grades: list[float]) -> None:
-        """The grades of the generation that was asked for last, all of it."""
+        """Learn from the grades of the whole generation that `ask` returned last."""
         self._cma.tell(list(zip(self._asked, grades, strict=True)))
         if self._cma.should_stop():
             self.restarts += 1

@@ -1,4 +1,4 @@
-"""The bounded space that is searched: states about a scenario's start, and parameters of its law."""
+"""The bounded search space: states about a scenario's start, and parameters of its law."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _FASTER = 2.0  # the bound on velocities, over the largest component at the star
 
 @dataclass(frozen=True, eq=False)
 class Space:
-    """Points of a unit cube, and the cases that they stand for.
+    """A unit cube whose points are initial states, and parameters of the law, within bounds.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ class Space:
         """The point nearest to the scenario's own start, shape (D,)."""
         state = {"q": self.scenario.q0, "p": self.scenario.p0}
         x = np.concatenate([np.empty(0), *(state[name].ravel() for name in self.vary)])
-        own = (float(part(self.scenario.law, name)) for name in self.parameters)
+        own = (float(law_parameter(self.scenario.law, name)) for name in self.parameters)
         shares = [_share(value, *ends) for value, ends in zip(own, self.parameters.values(), strict=True)]
         point: FloatArray = np.clip(np.concatenate([(x - self.low) / (self.high - self.low), shares]), 0.0, 1.0)
         return point
@@ -71,10 +71,10 @@ class Space:
         """
         shape, law, k = self.scenario.q0.shape, self.scenario.law, len(self.low)
         x = self.low + point[:k] * (self.high - self.low)
-        parts = np.split(x, max(1, len(self.vary)))
-        state: dict[str, Any] = {f"{name}0": values.reshape(shape) for name, values in zip(self.vary, parts)}  # noqa: B905  # no part for no name
+        values = np.split(x, max(1, len(self.vary)))
+        state: dict[str, Any] = {f"{name}0": x.reshape(shape) for name, x in zip(self.vary, values)}  # noqa: B905  # no values for no name
         for share, (name, ends) in zip(point[k:].tolist(), self.parameters.items(), strict=True):
-            law = _with_part(law, name, _value(share, *ends))
+            law = _with_parameter(law, name, _value(share, *ends))
         return replace(self.scenario, law=law, **state)
 
 
@@ -123,8 +123,8 @@ def search_space(
     return Space(scenario, chosen, low, high, ranges)
 
 
-def part(law: Any, name: str) -> Any:
-    """A parameter of a law by its dotted name.
+def law_parameter(law: Any, name: str) -> Any:
+    """The value of a law's parameter, by its dotted name.
 
     Parameters
     ----------
@@ -136,9 +136,9 @@ def part(law: Any, name: str) -> Any:
     return reduce(getattr, name.split("."), law)
 
 
-def _with_part(law: Any, name: str, value: float) -> Any:
+def _with_parameter(law: Any, name: str, value: float) -> Any:
     head, _, rest = name.partition(".")
-    return replace(law, **{head: _with_part(getattr(law, head), rest, value) if rest else value})
+    return replace(law, **{head: _with_parameter(getattr(law, head), rest, value) if rest else value})
 
 
 def _share(value: float, low: float, high: float) -> float:
@@ -159,11 +159,11 @@ def _ends(name: str, given: Any) -> tuple[Any, Any]:
 
 
 def _range(law: Any, name: str, given: Any) -> tuple[float, float]:
-    low, high = (ensure_finite_scalar(name, one) for one in _ends(name, given))
+    low, high = (ensure_finite_scalar(name, end) for end in _ends(name, given))
     if not low < high:
         raise ArgumentError(f"{name} = ({low:g}, {high:g}): expected low < high")
     try:
-        _with_part(law, name, float(part(law, name)))
+        _with_parameter(law, name, float(law_parameter(law, name)))
     except (AttributeError, TypeError, ValueError):
         raise ArgumentError(
             f"{name}: {type(law).__name__} has no such number; expected a dotted name, such as gains.c1_alpha"

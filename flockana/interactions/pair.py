@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from functools import cached_property
 from math import inf
 from typing import TYPE_CHECKING, Any
 
@@ -117,10 +118,18 @@ class PairInteraction(ABC):
             pᵀL̂p = ½ Σ over ordered pairs of a_ij ‖p_j − p_i‖².
         """
         u = np.zeros_like(q) if out is None else out
-        dissipation = 0.0
-        for i, j in pair_blocks(q, self.range):
-            dissipation += self.kernels.forces(q, p, i, j, self.par, stiffness, damping, u)
+        forces, forces_of = self.kernels.sweeps[q.shape[1] - 1]
+        dissipation = forces(q, p, self.range, self._constants, stiffness, damping, u)
+        if dissipation < 0.0:  # too sparse for a grid of cells
+            dissipation = 0.0
+            for i, j in pair_blocks(q, self.range):
+                dissipation += forces_of(q, p, i, j, self._constants, stiffness, damping, u)
         return u, dissipation
+
+    @cached_property
+    def _constants(self) -> tuple[float, ...]:
+        """`par` as the force kernels read it: constants in registers, which no array can alias."""
+        return tuple(self.par.tolist())
 
     def potential_energy(self, q: FloatArray) -> float:
         """V(q) = ½ Σ_i Σ_{j≠i} ψ: every pair once, those out of range included.
@@ -233,11 +242,14 @@ class PairInteraction(ABC):
         return coo_array(entries, shape=(n * m, n * m)).tocsr()
 
 
+_MOST_COUNTED = 1e140  # units of ℓ²: φ squares them
+
+
 def ensure_resolved(d: float, r: float, eps: float, unit: float) -> None:
     """Raise where the parameters are so extreme that d and r have no σ-norms apart from 0, ∞ and each other."""
     near, far = sigma_norm(d * d, eps), sigma_norm(r * r, eps)
     area = unit * unit
-    counted = 0.0 < area < inf and near / area > 0.0 and far / area < inf
+    counted = 0.0 < area < inf and near / area > 0.0 and far / area < _MOST_COUNTED
     if not (0.0 < near < far < inf and eps * r * r < inf and counted):
         raise ArgumentError(
             f"d = {d:g}, r = {r:g}, eps = {eps:g}, unit = {unit:g}: their σ-norms are {near:g} and {far:g}; "

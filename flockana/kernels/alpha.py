@@ -17,8 +17,10 @@ from flockana.kernels.scalars import (
     phi,
     phi_integral,
     phi_slope,
+    phi_within,
     sigma_1,
     sigma_norm,
+    taper,
 )
 
 EPS, H, A, B, C, D_ALPHA, R_ALPHA, OFFSET, FAR, AREA = range(10)
@@ -58,9 +60,10 @@ def adjacency_alpha(z, par):
 @register_jitable
 def pair_alpha(s2, par):
     """(stress s_ij, adjacency a_ij) of a pair at squared distance s2."""
-    z = sigma_norm(s2, par[EPS])
-    rho = bump(z / par[R_ALPHA], par[H])
-    return rho * phi((z - par[D_ALPHA]) / par[AREA], par[A], par[B], par[C]) / sqrt(1.0 + par[EPS] * s2), rho
+    root = sqrt(1.0 + par[EPS] * s2)
+    z = s2 / (root + 1.0)  # the σ-norm, s2 being within range
+    rho = taper(z / par[R_ALPHA], par[H])
+    return rho * phi_within((z - par[D_ALPHA]) / par[AREA], par[A], par[B], par[C]) / root, rho
 
 
 @register_jitable

@@ -17,17 +17,17 @@ from typing import Any
 import numpy as np
 
 from flockana.kernels.compiling import njit
+from flockana.kernels.sweep import lift_sweep
 
 
 @dataclass(frozen=True)
 class PairKernels:
-    """Compiled sums over a block of pairs (i, j); arrays are changed in place where said.
+    """Compiled sums over all pairs within range, or over a block of pairs (i, j).
 
     Attributes
     ----------
-    forces : callable
-        ``forces(q, p, i, j, par, c1, c2, u)`` adds c1 w (q_j − q_i) + c2 a (p_j − p_i) to u_i, its opposite to u_j,
-        and returns Σ a ‖p_j − p_i‖² over the block.
+    sweeps : tuple of pairs of callables
+        The forces of all pairs, and of those given, in one, two and three dimensions (`lift_sweep`).
     potential : callable
         ``potential(q, i, j, par, panels)`` returns Σ ψ over the block.
     terms : callable
@@ -36,7 +36,7 @@ class PairKernels:
         ``adjacency_slope(s2, par)`` returns da/d(s²) over an array of squared distances; None if the law gives none.
     """
 
-    forces: Callable[..., float]
+    sweeps: tuple[tuple[Callable[..., float], Callable[..., float]], ...]
     potential: Callable[..., float]
     terms: Callable[..., Any]
     adjacency_slope: Callable[..., Any] | None = None
@@ -84,24 +84,6 @@ def lift(
     digest = source_digest(pair, slope, potential)
 
     @njit(cache=True)
-    def forces(q, p, i, j, par, c1, c2, u):
-        total = 0.0 * digest
-        m = q.shape[1]
-        for k in range(i.size):
-            a, b = i[k], j[k]
-            s2, v2 = 0.0, 0.0
-            for c in range(m):
-                s2 += (q[b, c] - q[a, c]) ** 2
-                v2 += (p[b, c] - p[a, c]) ** 2
-            w, rho = pair(s2, par)
-            total += rho * v2
-            for c in range(m):
-                f = c1 * w * (q[b, c] - q[a, c]) + c2 * rho * (p[b, c] - p[a, c])
-                u[a, c] += f
-                u[b, c] -= f
-        return total
-
-    @njit(cache=True)
     def energy(q, i, j, par, panels):
         total = 0.0 * digest
         for k in range(i.size):
@@ -122,7 +104,8 @@ def lift(
             out[2, k] = slope(s2, par)
         return out
 
-    return PairKernels(forces, energy, terms, None if adjacency_slope is None else lift_scalar(adjacency_slope))
+    sweeps = tuple(lift_sweep(pair, m, digest) for m in (1, 2, 3))
+    return PairKernels(sweeps, energy, terms, None if adjacency_slope is None else lift_scalar(adjacency_slope))
 
 
 def lift_scalar(function: Callable[..., float]) -> Callable[..., Any]:

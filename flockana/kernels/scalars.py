@@ -5,9 +5,12 @@ They are plain Python functions that numba may also inline into a compiled loop 
 
 from __future__ import annotations
 
-from math import cos, inf, pi, sin, sqrt
+from math import factorial, inf, pi, sin, sqrt
 
 from numba.extending import register_jitable
+
+_FLAT = 1e140  # from here on φ is its limit, and squares would overflow
+_S1, _S2, _S3, _S4, _S5, _S6, _S7, _S8, _S9, _S10 = ((-1.0) ** k / factorial(2 * k + 1) for k in range(1, 11))
 
 
 @register_jitable
@@ -26,13 +29,23 @@ def sigma_1(s):
 
 
 @register_jitable
+def taper(z, h):
+    """ρ_h(z) for z ≥ 0: 1 up to h, a raised cosine on [h, 1], 0 from there on.
+
+    ½(1 + cos πt) = ½ − ½ sin π(t − ½) by the series of the sine, to rounding; a loop over it is vectorised.
+    """
+    y = pi * ((z - h) / (1.0 - h) - 0.5)
+    x = y * y
+    high = _S6 + x * (_S7 + x * (_S8 + x * (_S9 + x * _S10)))
+    rho = 0.5 - 0.5 * y * (1.0 + x * (_S1 + x * (_S2 + x * (_S3 + x * (_S4 + x * (_S5 + x * high))))))
+    rho = 1.0 if z < h else rho
+    return 0.0 if z >= 1.0 else rho
+
+
+@register_jitable
 def bump(z, h):
     """ρ_h(z): 1 on [0, h), a raised cosine on [h, 1], 0 otherwise."""
-    if z < 0.0 or z >= 1.0:
-        return 0.0
-    if z < h:
-        return 1.0
-    return 0.5 * (1.0 + cos(pi * (z - h) / (1.0 - h)))
+    return 0.0 if z < 0.0 else taper(z, h)
 
 
 @register_jitable
@@ -45,11 +58,24 @@ def bump_slope(z, h):
 
 @register_jitable
 def phi(s, a, b, c):
-    """φ(s) = ½[(a+b) σ₁(s+c) + (a−b)] for c = (b−a)/√(4ab), as ½(a+b)[σ₁(s+c) − σ₁(c)] without its cancellation."""
-    if s + c <= 0.0 or s > 1.0:
-        return 0.5 * ((a + b) * sigma_1(s + c) + (a - b))
-    at_s, at_0 = sqrt(1.0 + (s + c) ** 2), sqrt(1.0 + c * c)
-    return 0.5 * (a + b) * s * (s + 2.0 * c) / (at_s * at_0 * ((s + c) * at_0 + c * at_s))
+    """φ(s) = ½[(a+b) σ₁(s+c) + (a−b)] for c = (b−a)/√(4ab)."""
+    if abs(s) > _FLAT:
+        s = _FLAT if s > 0.0 else -_FLAT
+    return phi_within(s, a, b, c)
+
+
+@register_jitable
+def phi_within(s, a, b, c):
+    """φ(s) where |s| ≤ 1e140; a loop over it is vectorised.
+
+    It is ½(a+b)[σ₁(x) − σ₁(c)], x = s + c, whose difference (x√(1+c²) − c√(1+x²))/√… is rearranged where x > 0, so that
+    nothing cancels. The last summand of g keeps 0/0 out; it is beyond all rounding elsewhere.
+    """
+    x = s + c
+    at_x, at_c = sqrt(1.0 + x * x), sqrt(1.0 + c * c)
+    g = abs(x) * at_c + c * at_x + 1e-300
+    difference = s * (s + 2.0 * c) if x > 0.0 else -g * g  # times g
+    return 0.5 * (a + b) * (difference / g) / (at_x * at_c)
 
 
 @register_jitable

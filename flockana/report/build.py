@@ -73,8 +73,8 @@ def verdicts_json(
 
 def _json(pages: list[Page], run: dict[str, Any], statistics: StatisticsSection | None) -> str:
     data = run | {
-        "surprises": [text for one in pages for text in one.surprises],
-        "verdicts": [finding.to_dict() for one in pages for finding in one.findings],
+        "surprises": [text for page in pages for text in page.surprises],
+        "verdicts": [finding.to_dict() for page in pages for finding in page.findings],
         "statistics": None if statistics is None else statistics.to_dict(),
     }
     return json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
@@ -104,17 +104,17 @@ def _html(pages: list[Page], run: dict[str, Any], statistics: StatisticsSection 
         loader=PackageLoader("flockana.report", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True
     )
     environment.filters |= {"show": show, "deciding": deciding_claim}
-    findings = [finding for one in pages for finding in one.findings]
+    findings = [finding for page in pages for finding in page.findings]
     counts: Counter[str] = Counter(finding.verdict.status for finding in findings)
     return environment.get_template("template.html.j2").render(
         run=run,
-        scenarios=[one for one in pages if isinstance(one, ScenarioPage)],
-        fixed=[one for one in pages if isinstance(one, FixedPage)],
+        scenarios=[page for page in pages if isinstance(page, ScenarioPage)],
+        fixed=[page for page in pages if isinstance(page, FixedPage)],
         lattices=lattice_section(pages),
         statistics=statistics,
         stability=stability_section(pages),
         counts=[(status, counts[status]) for status in _STATUSES],
-        surprises=[text for one in pages for text in one.surprises],
+        surprises=[text for page in pages for text in page.surprises],
         marks=MARKS,
         tolerances=[tolerance_rows(t) for t in dict.fromkeys(f.verdict.tolerances for f in findings)],
     )

@@ -39,7 +39,7 @@ class Picture:
 
 @cache
 def _own() -> tuple[tuple[tuple[type, ...], Callable[[Trajectory], tuple[Picture, ...]]], ...]:
-    """(laws, pictures) of every module of this package whose name ends in _figures: laws with figures of their own."""
+    """Laws with figures of their own: (laws, pictures) of every module of this package that ends in _figures."""
     return tuple((module.LAWS, module.pictures) for module in modules("flockana.report", ending="_figures"))
 
 

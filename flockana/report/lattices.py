@@ -45,7 +45,7 @@ class EndState:
 
 @dataclass(frozen=True)
 class LatticeSection:
-    """What the section shows.
+    """End states, spirals and pictures of lattices and equilibria, for the report.
 
     Parameters
     ----------
@@ -63,16 +63,18 @@ class LatticeSection:
 
 
 def lattice_section(pages: Iterable[Page]) -> LatticeSection | None:
-    """Gather it from the verdicts; None if none of them is about lattices or equilibria."""
-    found = [(one.name, finding.verdict) for one in pages for finding in one.findings]
-    found = [(name, verdict) for name, verdict in found if verdict.theorem in _TOPICS]
-    if not found:
+    """Gather the section from the verdicts; None if none of them is about lattices or equilibria."""
+    verdicts = [(page.name, finding.verdict) for page in pages for finding in page.findings]
+    verdicts = [(name, verdict) for name, verdict in verdicts if verdict.theorem in _TOPICS]
+    if not verdicts:
         return None
-    ends = (_end(name, verdict) for name, verdict in found if verdict.theorem == "os-5-terminal")
+    ends = (_end(name, verdict) for name, verdict in verdicts if verdict.theorem == "os-5-terminal")
     spirals = tuple((n, len(links(hexagonal_spiral(n, 7.0), 8.4)), harborth(n)) for n in _SIZES)
-    pictures = (_collapse([v for _, v in found]), _barrier([v for _, v in found]))
+    pictures = (_collapse([v for _, v in verdicts]), _barrier([v for _, v in verdicts]))
     return LatticeSection(
-        tuple(end for end in ends if end is not None), spirals, tuple(one for one in pictures if one is not None)
+        tuple(end for end in ends if end is not None),
+        spirals,
+        tuple(picture for picture in pictures if picture is not None),
     )
 
 
@@ -86,7 +88,7 @@ def _end(name: str, verdict: Verdict) -> EndState | None:
 
 
 def _computed(verdicts: Sequence[Verdict], theorem: str, claim: str) -> Any:
-    """What the first verdict on the theorem that says so computed for the claim; None if there is none."""
+    """The number that the first verdict on a theorem computed for a claim; None if none did."""
     claims = (c for v in verdicts if v.theorem == theorem for c in v.claims if c.name == claim)
     return next((c.computed for c in claims if c.computed is not None), None)
 
@@ -111,7 +113,7 @@ def _barrier(verdicts: Sequence[Verdict]) -> Picture | None:
     witness = next((c.witness for v in verdicts if v.theorem == "E4" for c in v.claims if c.name == "found"), None)
     if computed is None or witness is None:
         return None
-    together, ground = ({n: one[key] for n, one in computed.items()} for key in ("together", "ground"))
+    together, ground = ({n: energies[key] for n, energies in computed.items()} for key in ("together", "ground"))
 
     def draw(figure: Figure) -> None:
         plots.barrier(together, ground, witness["c*"], ax=figure.subplots())

@@ -75,7 +75,7 @@ class Finding:
 
     @property
     def as_expected(self) -> bool | None:
-        """None where nothing was expected."""
+        """Whether the verdict is the expected one; None where nothing was expected."""
         return not self.surprises if self.expected else None
 
     def to_dict(self) -> dict[str, Any]:
@@ -90,7 +90,7 @@ class Finding:
 
 @dataclass(frozen=True)
 class ScenarioPage:
-    """All that the report says of one scenario, as plain data.
+    """All that the report says of a scenario, as plain data.
 
     Parameters
     ----------
@@ -117,8 +117,8 @@ class ScenarioPage:
     @property
     def surprises(self) -> tuple[str, ...]:
         """What differs from the expected, a run that ended early included."""
-        found = tuple(text for finding in self.findings for text in finding.surprises)
-        return (self.trouble, *found) if self.trouble else found
+        surprises = tuple(text for finding in self.findings for text in finding.surprises)
+        return (self.trouble, *surprises) if self.trouble else surprises
 
 
 @dataclass(frozen=True)
@@ -173,8 +173,10 @@ def _scenario_finding(scenario: Scenario, verdict: Verdict) -> Finding:
     expected = {k: v for k, v in scenario.expected.items() if k.split(":")[0] == verdict.theorem}
     if verdict.theorem != SOURCE:
         return _finding(verdict, theorem(verdict.theorem), expected)
-    said = " ".join(f"{report.name}: {report.text.rstrip('.')}." for report in scenario.reports)
-    return Finding(verdict, "What the source reports", said, scenario.source, expected, differences(verdict, expected))
+    reports = " ".join(f"{report.name}: {report.text.rstrip('.')}." for report in scenario.reports)
+    return Finding(
+        verdict, "What the source reports", reports, scenario.source, expected, differences(verdict, expected)
+    )
 
 
 def _finding(verdict: Verdict, item: Theorem, expected: Mapping[str, Status]) -> Finding:

@@ -33,7 +33,7 @@ _LONGER = (
 
 @dataclass(frozen=True)
 class Row:
-    """One line of the decay table, as text.
+    """A row of the table of decay rates, as text.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class Row:
 
 @dataclass(frozen=True)
 class StabilitySection:
-    """What the section shows.
+    """Poles, decay rates, linear range and delay margins, for the report.
 
     Parameters
     ----------
@@ -83,21 +83,21 @@ class StabilitySection:
 
 
 def stability_section(pages: Iterable[Page]) -> StabilitySection | None:
-    """Gather it from the verdicts; None if none of them is about the linearisation."""
-    found = [(one.name, finding.verdict) for one in pages for finding in one.findings]
-    decays = [(name, v) for name, v in found if v.theorem in _DECAYS]
-    margins = [v for _, v in found if v.theorem in _MARGINS]
+    """Gather the section from the verdicts; None if none of them is about the linearisation."""
+    verdicts = [(page.name, finding.verdict) for page in pages for finding in page.findings]
+    decays = [(name, v) for name, v in verdicts if v.theorem in _DECAYS]
+    margins = [v for _, v in verdicts if v.theorem in _MARGINS]
     if not decays and not margins:
         return None
-    pictures = (_range([v for _, v in decays]), bode_picture(found))
-    told = [claim.detail for v in margins for claim in v.claims]
+    pictures = (_range([v for _, v in decays]), bode_picture(verdicts))
+    margin_texts = [claim.detail for v in margins for claim in v.claims]
     if any(v.theorem == "heterogeneous-gains" for v in margins):
-        told.append(_LONGER)
+        margin_texts.append(_LONGER)
     return StabilitySection(
         flock_pictures(),
         tuple(row for name, v in decays for row in _rows(name, v)),
-        tuple(one for one in pictures if one is not None),
-        tuple(told),
+        tuple(picture for picture in pictures if picture is not None),
+        tuple(margin_texts),
     )
 
 
@@ -109,18 +109,18 @@ def _rows(name: str, verdict: Verdict) -> list[Row]:
     return [
         Row(
             f"{name}, last state" if terminal else label,
-            one["mode"],
-            str(one["n"]),
-            f"{one['frequency']:.3f}",
-            f"{one['predicted']:.5f}",
-            f"{one['measured']:.5f}",
-            f"{one['error']:.0e}",
-            f"{abs(one['measured'] / one['predicted'] - 1.0):.0e}",
-            f"{one['random, linear']:.5f}",
-            f"{one['random, measured']:.5f}",
+            decay["mode"],
+            str(decay["n"]),
+            f"{decay['frequency']:.3f}",
+            f"{decay['predicted']:.5f}",
+            f"{decay['measured']:.5f}",
+            f"{decay['error']:.0e}",
+            f"{abs(decay['measured'] / decay['predicted'] - 1.0):.0e}",
+            f"{decay['random, linear']:.5f}",
+            f"{decay['random, measured']:.5f}",
             claim.status,
         )
-        for label, one in claim.computed.items()
+        for label, decay in claim.computed.items()
     ]
 
 
@@ -152,13 +152,15 @@ def _range(verdicts: Sequence[Verdict]) -> Picture | None:
     claim = next((c for v in verdicts for c in v.claims if c.name == "range" and c.computed), None)
     if claim is None:
         return None
-    curves = {name: (one["amplitudes"], one["deviations"], one["net changes"]) for name, one in claim.computed.items()}
+    curves = {
+        name: (curve["amplitudes"], curve["deviations"], curve["net changes"]) for name, curve in claim.computed.items()
+    }
     bend = claim.witness["σ₁ bends at"]
 
     def draw(figure: Figure) -> None:
         plots.linear_range(curves, marks={"σ₁ bends": bend}, ax=figure.subplots())
 
-    exponents = ", ".join(f"{one['exponent']:.3f}" for one in claim.computed.values())
+    exponents = ", ".join(f"{curve['exponent']:.3f}" for curve in claim.computed.values())
     text = (
         "How far the linearisation holds: largest distance ever between a run and the linear motion of its slowest "
         f"mode, over the initial displacement. It grows with the displacement, the distance itself as its square "
@@ -168,10 +170,10 @@ def _range(verdicts: Sequence[Verdict]) -> Picture | None:
     return Picture(text, png(draw, (6.5, 4.0)))
 
 
-def bode_picture(found: Sequence[tuple[str, Verdict]]) -> Picture | None:
+def bode_picture(verdicts: Sequence[tuple[str, Verdict]]) -> Picture | None:
     """The project's γ-agent, with the p_r that it hands over and with the true one; what its runs show."""
     points, centres, words = {}, {}, []
-    for name, verdict in found:
+    for name, verdict in verdicts:
         if verdict.theorem != "E12" or name not in scenarios():
             continue
         law: Any = scenario(name).law

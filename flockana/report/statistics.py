@@ -12,8 +12,8 @@ from flockana import plots
 from flockana.base.errors import ArgumentError
 from flockana.ensemble import shares
 from flockana.ensemble.dataset import to_dataset
-from flockana.ensemble.work import Job, Record, Request, run_batch
 from flockana.report.figures import Picture, png
+from flockana.report.surveys import Survey, SurveyResult, request
 from flockana.scenarios import Scenario, scenario, scenarios
 from flockana.scenarios.scenario import SOURCE
 from flockana.theorems import theorem
@@ -23,84 +23,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 TEMPLATE = "statistics.html.j2"  # takes `statistics`, the section
-_AT_ONCE = 25  # runs in one survey: a few seconds, so that all processes end together
-
-
-@dataclass(frozen=True)
-class Survey:
-    """Runs of one scenario to make and judge by what its source reports; names and numbers only, so it can be sent.
-
-    Parameters
-    ----------
-    scenario : str
-        Its name.
-    seeds : tuple of int
-        Which runs.
-    """
-
-    scenario: str
-    seeds: tuple[int, ...]
-
-    @property
-    def name(self) -> str:
-        """As progress shows it."""
-        return f"{self.scenario}, seeds {self.seeds[0]} to {self.seeds[-1]}"
-
-
-@dataclass(frozen=True)
-class SurveyResult:
-    """The records of a survey's runs.
-
-    Parameters
-    ----------
-    survey : Survey
-        Which runs.
-    records : tuple of Record
-        One of each seed.
-    """
-
-    survey: Survey
-    records: tuple[Record, ...]
-
-    @property
-    def name(self) -> str:
-        """As progress shows it."""
-        return self.survey.name
-
-
-def surveys(name: str | None, count: int | None, *, seed: int = 0) -> tuple[Survey, ...]:
-    """What to run for the section.
-
-    Examples
-    --------
-    >>> [one.name for one in surveys("zone-51", 30)]
-    ['zone-51, seeds 0 to 24', 'zone-51, seeds 25 to 29']
-    """
-    if name is None:
-        asked = {one: scenario(one, seed).seeds for one in scenarios()}
-        wanted = {one: most if count is None else count for one, most in asked.items() if most}
-    elif not count:
-        return ()
-    elif name not in scenarios() or not scenario(name, seed).reports:
-        raise ArgumentError(
-            f"--seeds {count}: {name} is no scenario with a source that reports something; leave it out"
-        )
-    else:
-        wanted = {name: count}
-    return tuple(
-        Survey(one, tuple(range(first, min(first + _AT_ONCE, seed + most))))
-        for one, most in wanted.items()
-        for first in range(seed, seed + most, _AT_ONCE)
-    )
-
-
-def make_survey(survey: Survey) -> SurveyResult:
-    """Make and judge the runs of a survey in this process."""
-    return SurveyResult(survey, run_batch(_request(survey.scenario), tuple(Job(seed) for seed in survey.seeds)))
-
-
-def _request(name: str) -> Request:
-    return Request(name, (SOURCE,), ())
 
 
 @dataclass(frozen=True)
@@ -187,7 +109,7 @@ class Entry:
 
 @dataclass(frozen=True)
 class StatisticsSection:
-    """What the section shows.
+    """Shares over many seeds of the scenarios that were surveyed.
 
     Parameters
     ----------
@@ -205,7 +127,7 @@ class StatisticsSection:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data for JSON."""
-        return {"level": self.level, "scenarios": [asdict(one) for one in self.entries]}
+        return {"level": self.level, "scenarios": [asdict(entry) for entry in self.entries]}
 
 
 def gather(asked: Sequence[Survey], made: Iterable[SurveyResult], *, figures: bool = True) -> StatisticsSection | None:
@@ -217,7 +139,7 @@ def gather(asked: Sequence[Survey], made: Iterable[SurveyResult], *, figures: bo
         if all(survey in records for survey in batches):  # half a table is not shown as if it were whole
             seeds = [seed for survey in batches for seed in survey.seeds]
             runs = [record for survey in batches for record in records[survey]]
-            datasets.append(to_dataset(_request(name), {}, {}, seeds, runs))
+            datasets.append(to_dataset(request(name), {}, {}, seeds, runs))
     return statistics_section(datasets, figures=figures) if datasets else None
 
 
@@ -226,8 +148,8 @@ def statistics_section(
 ) -> StatisticsSection:
     """Gather the section from ensembles of scenarios of the catalogue."""
     given = tuple(datasets)
-    entries = tuple(_entry(one, level) for one in given)
-    tables = [shares(one, level=level) for one in given] if figures else []
+    entries = tuple(_entry(ensemble, level) for ensemble in given)
+    tables = [shares(ensemble, level=level) for ensemble in given] if figures else []
     drawn = [table for table in tables if table.claim.size]
     return StatisticsSection(level, entries, _picture(drawn) if drawn else None)
 
@@ -261,7 +183,7 @@ def _entry(dataset: xarray.Dataset, level: float) -> Entry:
             "scenario of the catalogue over seeds alone; select values of the others by .sel(...)"
         )
     table = shares(dataset, level=level)
-    options = {str(key): one.item() for key, one in dataset.coords.items() if not one.dims}
+    options = {str(key): value.item() for key, value in dataset.coords.items() if not value.dims}
     item = scenario(name, int(dataset.seed[0]), **options)
     return Entry(
         name,

@@ -77,12 +77,12 @@ def parameters(law: Any) -> tuple[tuple[str, str], ...]:
 def _describe(value: Any, law: Any) -> str:
     if not is_dataclass(value):
         return getattr(value, "__name__", None) or show(value)
-    parts = []
+    values = []
     for f in fields(value):
         owner = _GAIN_OWNERS.get(f.name.rpartition("_")[2]) if f.name.startswith(("c1_", "c2_")) else None
         if owner is None or getattr(law, owner, None) is not None:
-            parts.append(f"{f.name} = {_describe(getattr(value, f.name), law)}")
-    return f"{type(value).__name__}({', '.join(parts)})"
+            values.append(f"{f.name} = {_describe(getattr(value, f.name), law)}")
+    return f"{type(value).__name__}({', '.join(values)})"
 
 
 def tolerance_rows(tolerances: Tolerances) -> tuple[tuple[str, str, str], ...]:

@@ -10,7 +10,7 @@ from flockana.base.interrupts import interrupts_recognised
 from flockana.ensemble.batches import work_through
 from flockana.ensemble.executors import crew
 from flockana.report.pages import FixedResult, Page, ScenarioResult, page
-from flockana.report.statistics import Survey, SurveyResult, make_survey
+from flockana.report.surveys import Survey, SurveyResult, make_survey
 from flockana.scenarios import scenario, scenarios
 from flockana.theorems import theorem, theorems, verify
 

@@ -51,10 +51,10 @@ def _snapshots(figure: Figure, run: Trajectory) -> None:
 
 def _middle(run: Trajectory) -> int:
     """Where a flock, once together, is most split; else where it is nearest to an obstacle; else half way in time."""
-    counts, found = component_counts(run), run.metrics()
+    counts, metrics = component_counts(run), run.metrics()
     if counts[0] == 1 and counts.max() > 1:
         return int(counts.argmax())
-    return int(found.obstacle_clearance.values.argmin()) if "obstacle_clearance" in found else len(run.t) // 2
+    return int(metrics.obstacle_clearance.values.argmin()) if "obstacle_clearance" in metrics else len(run.t) // 2
 
 
 def _motion(figure: Figure, run: Trajectory) -> None:

@@ -9,7 +9,6 @@ a flock passes one that the conventional method, which wraps obstacles in discs,
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -42,7 +41,7 @@ _GAP = ZoneWorld((_SLAB,), _BOX)
 
 
 def _late(run: Trajectory, values: FloatArray, since: float) -> FloatArray:
-    """A series from a time on; one NaN, which judges as inconclusive, of a run that ended before."""
+    """The values of a series from a time on; a NaN, judged as inconclusive, for a run that ended before."""
     kept = values[run.t > since - 0.5 * run.law.dt]
     return kept if kept.size else np.array([np.nan])
 
@@ -84,7 +83,7 @@ def _bounds(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _apart_after_together(run: Trajectory) -> tuple[npt.NDArray[np.int64], int]:
-    """Numbers of components, and the first sample apart after one together; -1 if there is none."""
+    """Numbers of components, and the first sample with several after a sample with one; -1 if there is none."""
     counts = component_counts(run)
     together = np.flatnonzero(counts == 1)
     apart = np.flatnonzero(counts[together[0] :] > 1) if together.size else together
@@ -165,7 +164,7 @@ _BARRED = (Report("blocked", "with circular buffer zones none passes", _blocked)
 
 
 def _apart(seed: int, least: float = 2.0) -> tuple[FloatArray, FloatArray]:
-    """As printed, but drawn until all are more than `least` apart and the net within a is connected."""
+    """The printed start, drawn until all agents are more than `least` apart and the net within a is connected."""
     rng = np.random.default_rng(seed)
     while True:
         q = rng.uniform(0.0, AREA, (1, 2))
@@ -276,7 +275,7 @@ def _build(name: str) -> Callable[..., Scenario]:
             (0.0, end),
             seed,
             _EXPECTED[name],
-            tuple(replace(one, check=in_source_units(law.scales, one.check)) for one in reports),
+            in_source_units(law.scales, reports),
             references=("jond-2025",),
             seeds=200,
             settings="printed settings" if name.endswith("printed") else "recommended settings",

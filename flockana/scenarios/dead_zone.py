@@ -15,7 +15,7 @@ from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.scenarios.findings import finding
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
-from flockana.theorems.dead_zone.case import at_the_end, dead_zone_law, one_velocity
+from flockana.theorems.dead_zone.case import dead_zone_law, final_components, velocities_match
 from flockana.theorems.dead_zone.range_limits import thinned
 from flockana.theorems.rounding import EPS
 from flockana.theorems.theorem import Status
@@ -35,16 +35,16 @@ def _law(run: Trajectory) -> DeadZoneFlocking:
 
 
 def _consensus(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """All velocities agree in the limit: certain of a flock that is held, and certainly not where parts part."""
-    return one_velocity(run, at_the_end(run, _law(run)), [], name="consensus")
+    """All velocities agree in the limit: certain where a flock is held together, impossible where components part."""
+    return velocities_match(run, final_components(run, _law(run)), [], name="consensus")
 
 
 def _together(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """One flock at the end of the run: the longest link that it takes to join all is shorter than r."""
+    """The net is connected at the end of the run: the longest link that it takes to join all is shorter than r."""
     from scipy.sparse.csgraph import minimum_spanning_tree
     from scipy.spatial.distance import pdist, squareform
 
-    r, count = _law(run).interaction.r, at_the_end(run, _law(run)).count
+    r, count = _law(run).interaction.r, final_components(run, _law(run)).count
     longest = float(minimum_spanning_tree(squareform(pdist(run.q[-1]))).max()) if run.n > 1 else 0.0
     detail = f"{count} component(s) at t = {run.t[-1]:g}: to join all takes links of up to {longest:.4g}, and r = {r:g}"
     error = _rounding(run, r)
@@ -54,7 +54,7 @@ def _together(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _safe(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Safe distances all the time: read as more than half of that below which agents repel."""
+    """Distances are safe all the time: more than half of the distance below which agents repel."""
     d1, at = _law(run).interaction.d1, float(run.metric("min_distance").min())
     ever = at if isinstance(run.law, DiscreteLaw) else run.closest_approach().lower
     seen = ever > 0.5 * d1 and not thinned(run)
@@ -65,7 +65,7 @@ def _safe(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _lattice(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """An α-lattice: every agent's nearest neighbour at one distance, within the tolerance of a quasi-lattice."""
+    """The end is an α-lattice, within a quasi-lattice's tolerance: every nearest neighbour is at one distance."""
     from scipy.spatial import KDTree
 
     if run.n == 1:
@@ -87,7 +87,7 @@ def _lattice(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _rounding(run: Trajectory, length: float) -> float:
-    """Of a distance of two agents, over a length."""
+    """Rounding error of the distance of two agents, as a share of a length."""
     return 8.0 * EPS * (float(np.abs(run.q).max()) / length + 1.0)
 
 

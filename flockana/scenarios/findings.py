@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from flockana.base.scales import Scales
 from flockana.base.units import rescale
 from flockana.dynamics.trajectory import Trajectory
 from flockana.measures.nets import components, links
+from flockana.scenarios.scenario import Report
 from flockana.theorems.limits import Certificate, limit_claim
 from flockana.theorems.theorem import Claim, Tolerances, judge
 
@@ -59,15 +61,18 @@ def in_the_end(
     return limit_claim(name, [], [certificate], computed=computed, stated=stated, witness=witness, detail=detail)
 
 
-def in_source_units(scales: Scales, check: Check) -> Check:
-    """The same report on a run in any units: one that compares with its source's figures is asked in the source's."""
+def in_source_units(scales: Scales, reports: Iterable[Report]) -> tuple[Report, ...]:
+    """The same reports of a run in any units: judged in the units of their source, whose figures they compare with."""
 
-    def asked(run: Trajectory, tolerances: Tolerances) -> Claim:
-        length, time = scales.length / run.scales.length, scales.time / run.scales.time
-        same = abs(length - 1.0) < ROUNDING and abs(time - 1.0) < ROUNDING
-        return check(run if same else rescale(run, length=length, time=time), tolerances)
+    def converted(check: Check) -> Check:
+        def check_in_source_units(run: Trajectory, tolerances: Tolerances) -> Claim:
+            length, time = scales.length / run.scales.length, scales.time / run.scales.time
+            same = abs(length - 1.0) < ROUNDING and abs(time - 1.0) < ROUNDING
+            return check(run if same else rescale(run, length=length, time=time), tolerances)
 
-    return asked
+        return check_in_source_units
+
+    return tuple(replace(report, check=converted(report.check)) for report in reports)
 
 
 def as_tightly(run: Trajectory) -> dict[str, Any]:

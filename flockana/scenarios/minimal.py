@@ -8,7 +8,6 @@ averaged: then forces are mutual, momentum is kept, and H falls but where percep
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 
@@ -99,7 +98,7 @@ def _flock(m: int, *, printed: bool) -> Callable[[int], Scenario]:
             (0.0, duration),
             seed,
             expected,
-            tuple(replace(one, check=in_source_units(law.scales, one.check)) for one in _REPORTS),
+            in_source_units(law.scales, _REPORTS),
             references=_REFERENCES,
             seeds=200,
             settings=f"{'printed' if printed else 'recommended'} settings",

@@ -51,27 +51,27 @@ def _rank(run: Trajectory) -> float:
 
 
 def _fragments(run: Trajectory, tolerances: Tolerances) -> Claim:
-    parts, share = component_count(run), giant_share(run.q[-1], run.law.alpha.r)
-    detail = f"{parts} components at the end, the largest with {share:.0%} of the agents"
-    return finding("fragments", parts - 1.5, detail, computed=parts, stated="more than 1")
+    components, share = component_count(run), giant_share(run.q[-1], run.law.alpha.r)
+    detail = f"{components} components at the end, the largest with {share:.0%} of the agents"
+    return finding("fragments", components - 1.5, detail, computed=components, stated="more than 1")
 
 
-def _about(name: str, found: float, stated: float, scatter: float, text: str) -> Claim:
+def _about(name: str, measured: float, stated: float, scatter: float, text: str) -> Claim:
     """Agreement with a figure read to one decimal from a run with another random start."""
-    margin = 0.05 + scatter - abs(found - stated)
-    return finding(name, margin, text, computed=found, stated=f"about {stated:g}")
+    margin = 0.05 + scatter - abs(measured - stated)
+    return finding(name, margin, text, computed=measured, stated=f"about {stated:g}")
 
 
 def _final_rank(run: Trajectory, tolerances: Tolerances) -> Claim:
-    found, true = _rank(run), connectivity(run.q[-1], run.law.alpha.r)
-    text = f"rank(A)/n with a zero diagonal is {found:.2f}, reported 0.4; C = rank(L)/(n - 1) is {true:.2f}"
-    return _about("connectivity", found, 0.4, _SCATTER[50.0], text)
+    rank, true = _rank(run), connectivity(run.q[-1], run.law.alpha.r)
+    text = f"rank(A)/n with a zero diagonal is {rank:.2f}, reported 0.4; C = rank(L)/(n - 1) is {true:.2f}"
+    return _about("connectivity", rank, 0.4, _SCATTER[50.0], text)
 
 
 def _final_rank_as_typeset(run: Trajectory, tolerances: Tolerances) -> Claim:
-    found = _rank_with_diagonal(run)
-    text = f"the code as typeset keeps a unit diagonal but for the last agent: rank(A)/n = {found:.2f}, reported 0.4"
-    return _about("connectivity-as-typeset", found, 0.4, _SCATTER[50.0], text)
+    rank = _rank_with_diagonal(run)
+    text = f"the code as typeset keeps a unit diagonal but for the last agent: rank(A)/n = {rank:.2f}, reported 0.4"
+    return _about("connectivity-as-typeset", rank, 0.4, _SCATTER[50.0], text)
 
 
 def _unit_gains(run: Trajectory, tolerances: Tolerances) -> Claim:
@@ -79,9 +79,9 @@ def _unit_gains(run: Trajectory, tolerances: Tolerances) -> Claim:
     was = run.law
     printed = isinstance(was, MSNDiscretisation)
     law = replace(was, law=replace(was.law, gains=slow)) if printed else replace(was, gains=slow)
-    found = _rank(simulate(law, run.q[0], run.p[0], (float(run.t[0]), float(run.t[-1])), **as_tightly(run)))
-    text = f"with unit gains rank(A)/n with a zero diagonal is {found:.2f}, reported 0.7"
-    return _about("unit-gains", found, 0.7, _SCATTER[1.0], text)
+    rank = _rank(simulate(law, run.q[0], run.p[0], (float(run.t[0]), float(run.t[-1])), **as_tightly(run)))
+    text = f"with unit gains rank(A)/n with a zero diagonal is {rank:.2f}, reported 0.7"
+    return _about("unit-gains", rank, 0.7, _SCATTER[1.0], text)
 
 
 def _top_speed(run: Trajectory, tolerances: Tolerances) -> Claim:
@@ -216,7 +216,7 @@ def _law(case: int) -> Algorithm1 | Algorithm2:
 
 
 def _expected(case: int, *, printed: bool) -> dict[str, Status]:
-    """Expected statuses. The map's own are those of its reports: the theorems are about the continuous laws."""
+    """Expected statuses of a case: of the map only those of its reports, for the theorems are about continuous laws."""
     none: dict[str, Status] = {"alpha-flocking": "refuted", "alpha-flocking-strict": "refuted"}
     none["os-5-terminal:i"] = "vacuous"
     if not printed:
@@ -250,7 +250,7 @@ def _expected(case: int, *, printed: bool) -> dict[str, Status]:
 def _case(case: int, *, printed: bool) -> Callable[[int], Scenario]:
     side = 50.0 if case <= 2 else 150.0
     continuous = _law(case)
-    reports = tuple(replace(one, check=in_source_units(continuous.scales, one.check)) for one in _REPORTS[case])
+    reports = in_source_units(continuous.scales, _REPORTS[case])
     law: Law | DiscreteLaw = MSNDiscretisation(continuous, DT) if printed else continuous
     how = (
         "as the project ran it: agent by agent in place, with its position update (E9), 540 steps of 0.009"

@@ -35,7 +35,7 @@ def _integrator(law: Algorithm1 | Algorithm2) -> dict[str, Any]:
 
 
 def _other(run: Trajectory) -> Trajectory:
-    """The same start with the push switched on, or off."""
+    """The run from the same start with the push switched on if it was off, and off if it was on."""
     law = run.law
     shared = {"alpha": law.alpha, "gains": law.gains} | ({} if law.target is None else {"target": law.target})
     other = _SWITCH[type(law)](**shared)
@@ -77,8 +77,8 @@ def _velocity_follows(run: Trajectory, tolerances: Tolerances) -> Claim:
     return in_the_end("follows", certificate, detail, computed=middle, stated=f"below {_FOLLOWS:g}")
 
 
-def _push_report(law: Algorithm1 | Algorithm2) -> Report:
-    return Report("push", "a tenfold push below 0.05 keeps agents apart", in_source_units(law.scales, _push))
+_PUSHES = Report("push", "a tenfold push below 0.05 keeps agents apart", _push)
+_VELOCITY = Report("follows", "agents take on the γ-agent's velocity", _velocity_follows)
 
 
 def _algorithm1(seed: int = 0, push: bool = False) -> Scenario:
@@ -100,7 +100,7 @@ def _algorithm1(seed: int = 0, push: bool = False) -> Scenario:
         (0.0, 5.0),
         seed,
         expected,
-        (_push_report(law),),
+        in_source_units(law.scales, (_PUSHES,)),
         options=_integrator(law),
         references=("notebook-r2", "olfati-saber-2006"),
         shipped={"alpha-flocking-strict": "refuted", "alpha-flocking-strict:flock": "refuted"},
@@ -113,7 +113,6 @@ def _algorithm2(seed: int = 0, push: bool = False) -> Scenario:
     target = StaticTarget((5.0, 5.0), (0.7, 0.1))
     law = PushedAlgorithm2(alpha, gains, target) if push else Algorithm2(alpha, gains, target)
     generator = np.random.default_rng(seed)
-    follows = in_source_units(law.scales, _velocity_follows)
     # c1γ = 0: nothing draws the agents together, and of Theorem 3 only (iv) remains, which needs no c1γ
     expected: dict[str, Status] = {
         "alpha-flocking-strict:deviation": "verified",
@@ -134,7 +133,7 @@ def _algorithm2(seed: int = 0, push: bool = False) -> Scenario:
         (0.0, 15.0),
         seed,
         expected,
-        (_push_report(law), Report("follows", "agents take on the γ-agent's velocity", follows)),
+        in_source_units(law.scales, (_PUSHES, _VELOCITY)),
         options=_integrator(law),
         references=("notebook-r2", "olfati-saber-2006"),
         shipped={"alpha-flocking-strict:mismatch": "verified", "source:follows": "verified"},

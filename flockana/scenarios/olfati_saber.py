@@ -21,7 +21,7 @@ from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.asymptotics import velocities_match
 from flockana.theorems.limits import decay
-from flockana.theorems.olfati_saber.attraction import held
+from flockana.theorems.olfati_saber.attraction import final_basin
 from flockana.theorems.theorem import Status
 
 _OURS = (
@@ -45,9 +45,9 @@ _RESTS = ("os-3", "os-3:ii", "os-3:iii")  # what some starts have not settled by
 
 
 def _ends_connected(run: Trajectory, tolerances: Tolerances) -> Claim:
-    parts = component_count(run)
-    detail = f"{parts} component(s) at t = {run.t[-1]:g}"
-    return finding("connected", 1.5 - parts, detail, computed=parts, stated=1)
+    components = component_count(run)
+    detail = f"{components} component(s) at t = {run.t[-1]:g}"
+    return finding("connected", 1.5 - components, detail, computed=components, stated=1)
 
 
 def _ends_as_lattice(run: Trajectory, tolerances: Tolerances) -> Claim:
@@ -64,7 +64,7 @@ def _ends_as_lattice(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _ends_matched(run: Trajectory, tolerances: Tolerances) -> Claim:
-    return velocities_match(run, tolerances, [], name="matched", caught=[held(run).certificate])
+    return velocities_match(run, tolerances, [], name="matched", caught=[final_basin(run).certificate])
 
 
 def _topology_changes(run: Trajectory, tolerances: Tolerances) -> Claim:
@@ -79,10 +79,10 @@ def _topology_changes(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _fragments(run: Trajectory, tolerances: Tolerances) -> Claim:
-    parts = component_count(run)
+    components = component_count(run)
     share = giant_share(run.q[-1], run.law.alpha.r)
-    detail = f"{parts} components at t = {run.t[-1]:g}, the largest with {share:.0%} of the agents"
-    return finding("fragments", parts - 1.5, detail, computed=parts, stated="more than 1")
+    detail = f"{components} components at t = {run.t[-1]:g}, the largest with {share:.0%} of the agents"
+    return finding("fragments", components - 1.5, detail, computed=components, stated="more than 1")
 
 
 def _stays_mismatched(run: Trajectory, tolerances: Tolerances) -> Claim:
@@ -107,7 +107,8 @@ def _meets(run: Trajectory, tolerances: Tolerances) -> Claim:
         for k, (x, unit) in enumerate(((run.q, run.scales.length), (run.p, run.scales.speed)))
     )
     certificate = min(
-        (decay(run.t, off, floor=tolerances.agreement).certificate for off in (away, slip)), key=lambda one: one.margin
+        (decay(run.t, off, floor=tolerances.agreement).certificate for off in (away, slip)),
+        key=lambda certificate: certificate.margin,
     )
     detail = f"the centre of mass ends {away[-1]:.2g} d from the γ-agent, at {slip[-1]:.2g} of the law's speed"
     stated = f"both -> 0 (<= {tolerances.agreement:g})"

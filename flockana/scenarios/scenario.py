@@ -25,7 +25,7 @@ SOURCE = "source"  # the id under which a source's own report is judged
 
 @dataclass(frozen=True)
 class Report:
-    """Something that the source says it saw, and the function that looks whether it is so.
+    """Something that the source reports of its run, and the function that judges whether it is so.
 
     Parameters
     ----------
@@ -127,8 +127,8 @@ class Scenario:
         tolerances : Tolerances, optional
             Thresholds.
         """
-        found = tuple(verify(name, trajectory, tolerances=tolerances, subject=self.name) for name in self.theorems)
-        return found + self.reported(trajectory, tolerances=tolerances)
+        verdicts = tuple(verify(name, trajectory, tolerances=tolerances, subject=self.name) for name in self.theorems)
+        return verdicts + self.reported(trajectory, tolerances=tolerances)
 
     def reported(self, trajectory: Trajectory, *, tolerances: Tolerances | None = None) -> tuple[Verdict, ...]:
         """Check what the source reports, as one verdict; none if it reports nothing.
@@ -191,11 +191,11 @@ def differences(verdict: Verdict, expected: Mapping[str, Status]) -> tuple[str, 
     expected : mapping of str to str
         The expectation; what it does not name may be anything.
     """
-    found = {verdict.theorem: verdict.status} | {f"{verdict.theorem}:{c.name}": c.status for c in verdict.claims}
+    statuses = {verdict.theorem: verdict.status} | {f"{verdict.theorem}:{c.name}": c.status for c in verdict.claims}
     return tuple(
-        f"{key} is {found.get(key, 'missing')}, expected {status}"
+        f"{key} is {statuses.get(key, 'missing')}, expected {status}"
         for key, status in expected.items()
-        if key.split(":")[0] == verdict.theorem and found.get(key) != status
+        if key.split(":")[0] == verdict.theorem and statuses.get(key) != status
     )
 
 

@@ -1,4 +1,4 @@
-"""Theorems and errata: each file of this package that defines `THEOREM` is found by itself."""
+"""Theorems and errata: every file of this package that defines `THEOREM` is in the catalogue."""
 
 from flockana.theorems.catalogue import theorem, theorems, verify
 from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, Verdict

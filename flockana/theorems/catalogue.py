@@ -1,4 +1,4 @@
-"""Find the theorems, one per file, and check them on a run, a configuration, or by themselves."""
+"""The catalogue of theorems, one per file, and `verify`, which checks one on a run, a configuration, or by itself."""
 
 from __future__ import annotations
 
@@ -11,23 +11,22 @@ from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.modules import modules
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
-from flockana.theorems.second_run import corroborated, ensure_fits
+from flockana.theorems.second_run import ensure_fits, examined_twice
 from flockana.theorems.theorem import Theorem, Tolerances, Verdict
 
 
 @cache
 def _catalogue() -> dict[str, Theorem]:
-    found: dict[str, Theorem] = {}
+    by_id: dict[str, Theorem] = {}
     for module in modules("flockana.theorems"):
-        item = getattr(module, "THEOREM", None)
-        for one in item if isinstance(item, tuple) else (item,):
-            if isinstance(one, Theorem):
-                found[one.id] = one
-    return dict(sorted(found.items(), key=lambda pair: _natural(pair[0])))
+        defined = getattr(module, "THEOREM", None)
+        several = defined if isinstance(defined, tuple) else (defined,)
+        by_id |= {item.id: item for item in several if isinstance(item, Theorem)}
+    return dict(sorted(by_id.items(), key=lambda pair: _natural(pair[0])))
 
 
 def _natural(name: str) -> tuple[Any, ...]:
-    """E2 before E10, and the errata after the theorems."""
+    """Sort key of an id: E2 before E10, and the errata after the theorems."""
     return (name[:1].isupper(), *(int(part) if part.isdigit() else part for part in re.split(r"(\d+)", name)))
 
 
@@ -135,12 +134,9 @@ def verify(
     subject_data: tuple[Any, ...] = ()
     if item.kind == "configuration":
         subject_data = (ensure_points("q", q), ensure_positive("d", d), ensure_positive("r", r))
-    hypotheses, claims = item.check(*subject_data, used)
-    return Verdict(item.id, tuple(hypotheses), tuple(claims), used, subject)
+    return Verdict(item.id, *item.examine(*subject_data, used), used, subject)
 
 
 def _verified_run(item: Theorem, run: Trajectory, tolerances: Tolerances, subject: str) -> Verdict:
     ensure_fits(run)
-    hypotheses, claims = item.check(run, tolerances)
-    agreed = corroborated(tuple(claims), run, lambda again: item.check(again, tolerances)[1])
-    return Verdict(item.id, tuple(hypotheses), agreed, tolerances, subject)
+    return Verdict(item.id, *examined_twice(item, run, tolerances), tolerances, subject)

@@ -1,19 +1,87 @@
-"""Hypotheses that several theorems share: which law it is, which gains it has, what lies below what."""
+"""Hypotheses that several theorems share: which law a run is of, which gains it has, what lies below what."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import Any
+from collections.abc import Callable, Iterable
 
 from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
-from flockana.theorems.theorem import Claim, Hypothesis, Status
+from flockana.theorems.theorem import Claim, Hypothesis
 
-_PARTS = {"alpha": AlphaInteraction, "beta": BetaInteraction, "gains": Gains}
+_MEMBERS = {"alpha": AlphaInteraction, "beta": BetaInteraction, "gains": Gains}
+
+
+def condition(name: str, holds: bool, margin: float | None = None, detail: str = "") -> Hypothesis:
+    """A hypothesis that is met or not, and never merely assumed.
+
+    Parameters
+    ----------
+    name : str
+        The condition.
+    holds : bool
+        Whether it is met.
+    margin : float, optional
+        How far it is met (positive) or missed (negative).
+    detail : str
+        In words.
+
+    Examples
+    --------
+    >>> condition("c1α > 0", False, 0.0).status
+    'unmet'
+    """
+    return Hypothesis(name, "met" if holds else "unmet", margin, detail)
+
+
+def law_is(name: str, *laws: type) -> Callable[[Trajectory], Hypothesis]:
+    """The hypothesis that a run is of one of these laws, to be declared as a theorem's `law`.
+
+    Parameters
+    ----------
+    name : str
+        The laws, as the hypothesis names them.
+    *laws : type
+        Classes of laws; what descends from one of them may push otherwise and is another law.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> law_is("Algorithm 1", Algorithm1).__name__
+    'applied_to'
+    """
+
+    def applied_to(run: Trajectory) -> Hypothesis:
+        return applied(run, name, *laws)
+
+    return applied_to
+
+
+def law_with_common_gains(name: str, *laws: type) -> Callable[[Trajectory], Hypothesis]:
+    """As `law_is`, and one c1γ and one c2γ for all agents.
+
+    Parameters
+    ----------
+    name : str
+        The laws, as the hypothesis names them.
+    *laws : type
+        Classes of laws with gains.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm2
+    >>> law_with_common_gains("Algorithm 2", Algorithm2).__name__
+    'applied_to'
+    """
+
+    def applied_to(run: Trajectory) -> Hypothesis:
+        law = applied(run, name, *laws)
+        return law if law.status == "unmet" or not run.law.gains.per_agent else common_gains(run)
+
+    return applied_to
 
 
 def applied(run: Trajectory, name: str, *laws: type) -> Hypothesis:
-    """That a run is one of these laws, and of nothing that only descends from it and may push otherwise.
+    """The hypothesis that a run is of one of these laws, and not of a class derived from one, which may push otherwise.
 
     Parameters
     ----------
@@ -26,39 +94,32 @@ def applied(run: Trajectory, name: str, *laws: type) -> Hypothesis:
     """
     law = run.law
     other = [
-        f"{part} is {type(getattr(law, part)).__name__}" for part, known in _PARTS.items() if _else(law, part, known)
+        f"{member} is {type(getattr(law, member)).__name__}"
+        for member, known in _MEMBERS.items()
+        if hasattr(law, member) and type(getattr(law, member)) is not known
     ]
-    exact = type(law) in laws and not other
     detail = ", ".join([type(law).__name__, *(other if type(law) in laws else [])])
-    return Hypothesis(f"{name} is applied", "met" if exact else "unmet", detail=detail)
-
-
-def _else(law: Any, part: str, known: type) -> bool:
-    return hasattr(law, part) and type(getattr(law, part)) is not known
+    return condition(f"{name} is applied", type(law) in laws and not other, detail=detail)
 
 
 def positive(run: Trajectory, **gains: str) -> Hypothesis:
-    """That gains are positive, which take part in what a theorem says.
+    """The hypothesis that some gains are positive.
 
     Parameters
     ----------
     run : Trajectory
         A run of a law with gains.
     **gains : str
-        How each is written, by its name in `Gains`; one for all agents.
+        How each is written, by its name in `Gains`; common to all agents.
     """
     values = {text: float(getattr(run.law.gains, name)) for name, text in gains.items()}
     least = min(values.values())
-    return Hypothesis(
-        " and ".join(f"{text} > 0" for text in values),
-        "met" if least > 0.0 else "unmet",
-        least,
-        ", ".join(f"{text} = {value:g}" for text, value in values.items()),
-    )
+    detail = ", ".join(f"{text} = {value:g}" for text, value in values.items())
+    return condition(" and ".join(f"{text} > 0" for text in values), least > 0.0, least, detail)
 
 
-def one_gain(run: Trajectory) -> Hypothesis:
-    """That c1γ and c2γ are common to all agents: else the shape does not separate from the centre of mass.
+def common_gains(run: Trajectory) -> Hypothesis:
+    """The hypothesis that all agents have the same c1γ and c2γ: else the shape does not separate from the centre.
 
     Parameters
     ----------
@@ -67,49 +128,52 @@ def one_gain(run: Trajectory) -> Hypothesis:
     """
     several = run.law.gains.per_agent
     detail = "gains are given per agent" if several else ""
-    return Hypothesis("one c1γ and one c2γ for all agents", "unmet" if several else "met", detail=detail)
+    return condition("one c1γ and one c2γ for all agents", not several, detail=detail)
 
 
-def with_alpha_gain(run: Trajectory, name: str, *laws: type) -> list[Hypothesis]:
-    """One of these laws, c1α > 0, and common gains where it has a γ-agent; what comes first is missed first.
+def has_lattice(run: Trajectory) -> Hypothesis:
+    """The hypothesis that the law has a lattice scale d and an interaction range r.
 
     Parameters
     ----------
     run : Trajectory
         The run.
-    name : str
-        The laws, as the hypothesis names them.
-    *laws : type
-        Classes of laws with an α-interaction.
     """
-    law = applied(run, name, *laws)
-    if law.status == "unmet":
-        return [law]
-    single = [one_gain(run)] if run.law.target is not None else []
-    return [law, *single, positive(run, c1_alpha="c1α")]
+    known = run.law.lattice is not None
+    return condition("the law has a scale d and a range r", known, detail=type(run.law).__name__)
 
 
-def vacuous(needs: Iterable[Hypothesis], names: Iterable[str]) -> list[Claim]:
-    """Vacuous claims if a hypothesis is unmet, with the reason; none otherwise.
+def alpha_gain(run: Trajectory) -> list[Hypothesis]:
+    """c1α > 0, and common gains where the law has a γ-agent.
 
     Parameters
     ----------
-    needs : iterable of Hypothesis
-        Hypotheses without which nothing is worth computing.
+    run : Trajectory
+        A run of a law with an α-interaction.
+    """
+    return [*([common_gains(run)] if run.law.target is not None else []), positive(run, c1_alpha="c1α")]
+
+
+def vacuous(missed: Hypothesis, names: Iterable[str]) -> list[Claim]:
+    """Claims that an unmet hypothesis makes vacuous, where it is not one of the whole theorem.
+
+    Parameters
+    ----------
+    missed : Hypothesis
+        The unmet hypothesis: the reason.
     names : iterable of str
         Names of the claims.
 
     Examples
     --------
-    >>> vacuous([Hypothesis("c1α > 0", "met", 1.0)], ["i"])
-    []
+    >>> vacuous(Hypothesis("c1α > 0", "unmet", 0.0, "c1α = 0"), ["iv"])[0].detail
+    'c1α > 0: c1α = 0'
     """
-    unmet = next((need for need in needs if need.status == "unmet"), None)
-    return [] if unmet is None else [Claim(name, "vacuous", detail=f"{unmet.name}: {unmet.detail}") for name in names]
+    return [Claim(name, "vacuous", detail=f"{missed.name}: {missed.detail}") for name in names]
 
 
 def below(name: str, value: float, bound: float, error: float, detail: str) -> Hypothesis:
-    """That a number lies below a bound: assumed where rounding would decide it.
+    """The hypothesis that a number lies below a bound: assumed where rounding would decide it.
 
     Parameters
     ----------
@@ -130,22 +194,4 @@ def below(name: str, value: float, bound: float, error: float, detail: str) -> H
     margin = bound - value
     if abs(margin) <= error:
         return Hypothesis(name, "assumed", margin, f"{detail}; equal but for rounding")
-    return Hypothesis(name, "met" if margin > 0.0 else "unmet", margin, detail)
-
-
-def conceded(status: Status, needs: Iterable[Hypothesis]) -> Status:
-    """The status of a claim whose hypotheses may be no more than assumed: what fails then may be they.
-
-    Parameters
-    ----------
-    status : str
-        As judged.
-    needs : iterable of Hypothesis
-        Hypotheses of the claim.
-
-    Examples
-    --------
-    >>> conceded("refuted", [Hypothesis("every solution stays together", "assumed")])
-    'inconclusive'
-    """
-    return "inconclusive" if status == "refuted" and any(need.status == "assumed" for need in needs) else status
+    return condition(name, margin > 0.0, margin, detail)

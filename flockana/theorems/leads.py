@@ -1,4 +1,4 @@
-"""What leads a search for a counterexample where a claim's margin gives no slope: a count, or the same on all runs."""
+"""Surrogates that lead a search for a counterexample where a margin gives no slope: a count, or equal on all runs."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ def squash(x: float) -> float:
 
 
 def pairs_apart(run: Trajectory, claim: Claim) -> float:
-    """For a count of pairs that meet: how far the nearest pair stays apart that has not met, over d."""
+    """Lead for a count of pairs that meet: distance of the nearest pair that has not met, over d."""
     i, j = np.triu_indices(run.n, 1)
     apart = np.linalg.norm(run.q[:, i] - run.q[:, j], axis=2).min(axis=0)
-    done = {(c.i, c.j) for c in contacts_of(run, Tolerances())}
-    open_ones = [x for x, a, b in zip(apart.tolist(), i.tolist(), j.tolist(), strict=True) if (a, b) not in done]
-    return squash(min(open_ones, default=0.0) / run.law.lattice[0])
+    touched = {(contact.i, contact.j) for contact in contacts_of(run, Tolerances())}
+    others = [x for x, a, b in zip(apart.tolist(), i.tolist(), j.tolist(), strict=True) if (a, b) not in touched]
+    return squash(min(others, default=0.0) / run.law.lattice[0])
 
 
 def bridge(run: Trajectory, claim: Claim) -> float:
-    """For a count of components: how far below r the longest link that holds the flock together stays."""
+    """Lead for a count of components: how far the longest link that connects the flock stays below r."""
     from scipy.sparse.csgraph import minimum_spanning_tree
     from scipy.spatial.distance import pdist, squareform
 
@@ -42,7 +42,7 @@ def bridge(run: Trajectory, claim: Claim) -> float:
 
 
 def strained(run: Trajectory, claim: Claim) -> float:
-    """For the lattice as a limit: how soon links are unstrained, 1 less the mean over time of the largest strain.
+    """Lead for the lattice as a limit: 1 less the mean over time of the largest strain.
 
     Runs that pass by a strained equilibrium linger there: the longer they do, the nearer they are to its basin.
     """

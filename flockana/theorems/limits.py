@@ -1,31 +1,31 @@
-"""What a finite run can say of a limit: certificates, each with a margin, and the claim that the best of them makes.
+"""Certificates that a quantity tends to a limit, each with a margin, and the claim that the best of them makes.
 
-A claim about t → ∞ is verified only by a certificate, and a run that has none leaves it open: no run is long enough
-to refute a limit. (What is certain for ever, such as parts that part, is its theorem's own to say.) There are two
-kinds:
+A claim about t → ∞ is verified only by a certificate, and inconclusive without one: no run is long enough to refute a
+limit. (A theorem refutes its limit where something is certain for ever, as that two groups part.) There are two kinds:
 
-* a state that is caught in an attracting equilibrium (`flockana.theorems.olfati_saber.attraction`), which says it all
-  at one instant and without a tolerance;
+* a state that is caught in the basin of a minimum (`flockana.theorems.basin`), which one instant shows, without a
+  tolerance;
 * `Decay`: a quantity that falls steadily, through several time constants, until it is below what counts as 0, and
-  stays there. One instant never will do: not the turning point of an oscillation, and no start from rest.
+  stays there. One instant never suffices: not the turning point of an oscillation, and no start from rest.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from math import e, inf, log
+from math import e, inf, isnan, log
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from flockana.theorems.theorem import Claim, Hypothesis, judge
+from flockana.theorems.claims import judged
+from flockana.theorems.theorem import Claim, Hypothesis
 
 TIME_CONSTANTS = 5.0  # e-foldings: a factor 148
 REBOUND = 3.0  # e-foldings: a factor 20, more than the noise of an integration that has come to rest varies by
 _WINDOWS = 8  # into which the last part of the fall is divided
-_PARTS = (0.5, 0.25, 0.125)  # of the time until the fall ends: what came before it fell does not count
+_LAST = (0.5, 0.25, 0.125)  # of the time until the fall ends: what came before it fell does not count
 _UNEVEN = 4.0  # times the slowest window's pace: what a swing, or several modes, may make of a steady fall
 _CUTS = 4  # levels down to which the fall is measured
 _ROUNDING = 1e-12  # of a logarithm of two amplitudes, or a ratio of two energies
@@ -34,7 +34,7 @@ _LEAST = 1e-300  # below it an amplitude is 0
 
 @dataclass(frozen=True)
 class Certificate:
-    """What speaks for a limit, as a number: it holds if the margin is positive.
+    """Evidence for a limit: it is certain if the margin is positive.
 
     Attributes
     ----------
@@ -53,7 +53,7 @@ class Certificate:
 
 @dataclass(frozen=True)
 class Decay:
-    """How a series that should go to 0 falls.
+    """How steadily, how far and how late a series falls that should go to 0.
 
     Attributes
     ----------
@@ -93,9 +93,7 @@ class Decay:
 
 
 def decay(t: npt.ArrayLike, amplitude: npt.ArrayLike, *, floor: float) -> Decay:
-    """Measure how a series falls towards 0.
-
-    Returns Decay Of a series with a value that is not finite, one that certifies nothing.
+    """How a series falls towards 0; one with a value that is not finite certifies nothing.
 
     Examples
     --------
@@ -123,13 +121,13 @@ def _fall(t: npt.NDArray[np.float64], values: npt.NDArray[np.float64], until: fl
     if above.size == 0:  # it was never seen to fall
         return 0.0
     start, end = float(t[0]), float(t[above[-1]])
-    found = [-inf]
-    for part in _PARTS:
-        windows = _envelope(t, values, end - part * (end - start), end)
+    most = -inf
+    for share in _LAST:
+        windows = _envelope(t, values, end - share * (end - start), end)
         if np.isfinite(windows).all():
             falls = np.log(windows[:-1] / windows[1:])
-            found.append(float(min(falls.sum(), _UNEVEN * falls.size * falls.min())))
-    return max(found)
+            most = max(most, float(min(falls.sum(), _UNEVEN * falls.size * falls.min())))
+    return most
 
 
 def _envelope(
@@ -137,12 +135,12 @@ def _envelope(
 ) -> npt.NDArray[np.float64]:
     """The largest value in each of `_WINDOWS` equal windows; NaN in one that holds no sample."""
     edges = np.linspace(start, end, _WINDOWS + 1)
-    found = np.full(_WINDOWS, np.nan)
+    largest = np.full(_WINDOWS, np.nan)
     for k in range(_WINDOWS):
         inside = values[(t >= edges[k]) & (t <= edges[k + 1])]
         if inside.size:
-            found[k] = inside.max()
-    return found
+            largest[k] = inside.max()
+    return largest
 
 
 def limit_claim(
@@ -163,16 +161,17 @@ def limit_claim(
     >>> limit_claim("i", [], [Certificate(-1.0, "it does not fall")], computed=1.0, stated="0", detail="x").status
     'inconclusive'
     """
-    best = max(certificates, key=lambda one: one.margin if one.margin == one.margin else -inf)
-    status = judge(best.margin, best.error, needs)
-    return Claim(
+    best = max(certificates, key=lambda certificate: -inf if isnan(certificate.margin) else certificate.margin)
+    text = f"{detail}; {best.text}"
+    return judged(
         name,
-        "inconclusive" if status == "refuted" else status,
+        best.margin,
+        best.error,
+        needs,
+        refutes=False,
         computed=computed,
         stated=stated,
-        margin=best.margin,
-        error=best.error,
         witness=witness,
         proof=proof,
-        detail=f"{detail}; {best.text}",
+        detail=text,
     )

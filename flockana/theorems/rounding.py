@@ -1,4 +1,4 @@
-"""How far rounding can move what a verdict compares: bounds from the number of terms and their magnitudes.
+"""Bounds of rounding errors in what a verdict compares, from the number of terms and their magnitudes.
 
 A sum of k numbers in floating point is off by at most about k ε times the sum of their magnitudes, and a difference
 of two numbers by ε times the larger of the two. Nothing here says how far the integration is off: that a second,

@@ -1,4 +1,4 @@
-"""What a flock may do between two samples: bounds from the paths through the solver's own steps (`Trajectory.path`).
+"""Bounds on a flock between two samples, from the paths through the solver's own steps (`Trajectory.path`).
 
 A distance between two agents of relative speed at most w and relative acceleration at most c exceeds what it is at the
 nearer end by w h/2 at most in an interval h, and the larger of both ends by h²/8 of its second derivative, which is
@@ -26,14 +26,14 @@ from flockana.theorems.rounding import EPS
 def _motion(run: Trajectory) -> FloatArray:
     """Largest ‖p_i − p_c‖ and ‖u_i − u_c‖ on the paths, and how far these may be off, shape (3, T − 1)."""
     path = run.path
-    found = np.empty((3, len(path.t) - 1))
+    bounds = np.empty((3, len(path.t) - 1))
     for k, h in enumerate(np.diff(path.t).tolist()):
         ends = (x[k + side] for side in (0, 1) for x in (path.q, path.p, path.u))
         points, _, allowance = bernstein(h, *ends)
         legs = 5.0 / h * np.diff(points - points.mean(axis=0), axis=1)
         sizes = [np.linalg.norm(x, axis=2).max() for x in (legs, 4.0 / h * np.diff(legs, axis=1))]
-        found[:, k] = *sizes, (allowance if path.slack is None else allowance + path.slack[k]).max()
-    return run.over_intervals(np.maximum, found)
+        bounds[:, k] = *sizes, (allowance if path.slack is None else allowance + path.slack[k]).max()
+    return run.over_intervals(np.maximum, bounds)
 
 
 def fastest_between(run: Trajectory) -> FloatArray:
@@ -71,7 +71,7 @@ def radius_between(run: Trajectory) -> FloatArray:
 
 @dataclass(frozen=True)
 class Nets:
-    """What is certain of the net at samples, or throughout the intervals between them; one number for each.
+    """Bounds on the net at samples, or throughout the intervals between them; one number for each.
 
     Attributes
     ----------
@@ -151,19 +151,19 @@ def _relative(path: Course, steps: range, pairs: LinkArray) -> tuple[FloatArray,
 
 
 def _rounding(run: Trajectory) -> float:
-    """Of a distance of two agents, against r."""
+    """Rounding of a distance of two agents, compared with r."""
     return float(16.0 * EPS * (np.abs(run.q).max() + run.law.lattice[1]))
 
 
 def _row(run: Trajectory, k: int, pairs: LinkArray, certain: npt.NDArray[np.bool_]) -> tuple[float, ...]:
-    """Numbers of one net, of pairs that may be linked and of which some certainly are; sample k has it if all are."""
+    """A row of `Nets` from the pairs that may be linked, and those among them that certainly are, near sample k."""
     count = int(certain.sum())
     if count == len(pairs):
-        parts = run.n - float(run.metric("connectivity")[k]) * (run.n - 1)
+        number = run.n - float(run.metric("connectivity")[k]) * (run.n - 1)
         giant = run.n * float(run.metric("giant_share")[k])
-        return round(parts), round(parts), round(giant), round(giant), count, 0
-    some, all_of_them = (np.bincount(components(run.n, chosen)) for chosen in (pairs[certain], pairs))
-    return some.size, all_of_them.size, int(some.max()), int(all_of_them.max()), count, len(pairs) - count
+        return round(number), round(number), round(giant), round(giant), count, 0
+    least, most = (np.bincount(components(run.n, linked)) for linked in (pairs[certain], pairs))
+    return least.size, most.size, int(least.max()), int(most.max()), count, len(pairs) - count
 
 
 def _nets(rows: list[tuple[float, ...]]) -> Nets:

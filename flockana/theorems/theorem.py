@@ -1,4 +1,4 @@
-"""What a theorem, a hypothesis, a claim and a verdict are, and how a verdict follows from its claims."""
+"""Theorems, hypotheses, claims and verdicts, and how a verdict follows from its claims."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ class Tolerances:
 
 @dataclass(frozen=True)
 class Hypothesis:
-    """A condition of a theorem, as found in this case.
+    """A condition of a theorem, and whether it holds in one case.
 
     Parameters
     ----------
@@ -112,18 +112,18 @@ class Hypothesis:
 
 @dataclass(frozen=True)
 class Claim:
-    """What a theorem says of this case, and whether it is so.
+    """One statement of a theorem about one case, with its status, margin and numerical error.
 
     Parameters
     ----------
     name : str
         Short name, such as ``"iii"``.
     status : {"verified", "refuted", "vacuous", "inconclusive"}
-        The finding.
+        Whether it holds.
     rigour : {"symbolic", "smt", "interval", "numeric"}
         How it is known.
     computed, stated : object
-        What was found and what the theorem says.
+        What was computed here, and what the theorem states.
     margin : float, optional
         How far the claim holds (positive) or fails (negative).
     error : float, optional
@@ -133,7 +133,7 @@ class Claim:
     proof : str, optional
         Identifier of an executable proof.
     detail : str
-        The claim and the finding, in one sentence.
+        The statement and the evidence, in one sentence.
     """
 
     name: str
@@ -173,9 +173,7 @@ class Verdict:
     @property
     def status(self) -> Status:
         """Refuted if a claim is; else inconclusive if one is; else verified if one is; else vacuous."""
-        found = {claim.status for claim in self.claims}
-        order: tuple[Status, ...] = ("refuted", "inconclusive", "verified")
-        return next((status for status in order if status in found), "vacuous")
+        return overall([claim.status for claim in self.claims])
 
     @property
     def rigour(self) -> Rigour:
@@ -214,6 +212,7 @@ class Verdict:
 
 
 Lead = Callable[[Any, Claim], float]
+Checked = tuple[list[Hypothesis], list[Claim]]  # what a theorem's `check` returns
 
 
 @dataclass(frozen=True)
@@ -233,7 +232,7 @@ class Theorem:
     kind : {"trajectory", "configuration", "fixed"}
         What `check` takes before the tolerances: a Trajectory; q, d, r; or nothing.
     check : callable
-        Returns (hypotheses, claims).
+        Returns (hypotheses, claims); claims may be left out where a hypothesis is unmet (see `claims`).
     references : tuple of str
         Keys of the bibliography.
     expected : mapping of str to str
@@ -243,6 +242,13 @@ class Theorem:
         claim's margin gives no slope.
     limits : tuple of str
         Claims about limits that a run may refute all the same: until one does, their margin leads no search.
+    law : callable, optional
+        Of a theorem about runs: ``law(run)`` is the hypothesis that the run is of a law that the theorem is about. Only
+        if it is met is `check` called.
+    claims : tuple of str
+        Names of the claims, in order. Those that `check` leaves out are vacuous if a hypothesis is unmet.
+    reason : str
+        Text of such a vacuous claim, with ``{name}`` and ``{detail}`` of the first unmet hypothesis.
     """
 
     id: str
@@ -255,10 +261,67 @@ class Theorem:
     expected: Mapping[str, Status] = field(default_factory=dict)
     leads: Mapping[str, Lead] = field(default_factory=dict)
     limits: tuple[str, ...] = ()
+    law: Callable[[Any], Hypothesis] | None = None
+    claims: tuple[str, ...] = ()
+    reason: str = "{name}: {detail}"
+
+    def examine(self, *case: Any) -> tuple[tuple[Hypothesis, ...], tuple[Claim, ...]]:
+        """Hypotheses and claims of one case; claims that `check` leaves out for an unmet hypothesis are vacuous.
+
+        Parameters
+        ----------
+        *case : object
+            What `check` takes, the tolerances last.
+        """
+        hypotheses = [] if self.law is None else [self.law(case[0])]
+        claims: list[Claim] = []
+        if unmet(hypotheses) is None:
+            further, stated = self.check(*case)
+            hypotheses, claims = [*hypotheses, *further], list(stated)
+        if (missed := unmet(hypotheses)) is not None:
+            text, made = self.reason.format(name=missed.name, detail=missed.detail), {claim.name for claim in claims}
+            claims += [Claim(name, "vacuous", detail=text) for name in self.claims if name not in made]
+        return tuple(hypotheses), tuple(claims)
+
+
+def unmet(hypotheses: Iterable[Hypothesis]) -> Hypothesis | None:
+    """The first hypothesis that is not met, if any is not.
+
+    Parameters
+    ----------
+    hypotheses : iterable of Hypothesis
+        In the theorem's order.
+
+    Examples
+    --------
+    >>> unmet([Hypothesis("c1α > 0", "met"), Hypothesis("c2α > 0", "unmet")]).name
+    'c2α > 0'
+    """
+    return next((hypothesis for hypothesis in hypotheses if hypothesis.status == "unmet"), None)
+
+
+def overall(statuses: Iterable[Status]) -> Status:
+    """Status of a theorem from those of its claims: refuted if one is, else inconclusive, verified, vacuous.
+
+    Parameters
+    ----------
+    statuses : iterable of str
+        Of the claims.
+
+    Examples
+    --------
+    >>> overall(["verified", "refuted"]), overall(["vacuous", "verified"]), overall([])
+    ('refuted', 'verified', 'vacuous')
+    """
+    given = set(statuses)
+    order: tuple[Status, ...] = ("refuted", "inconclusive", "verified")
+    return next((status for status in order if status in given), "vacuous")
 
 
 def judge(margin: float, error: float, hypotheses: Iterable[Hypothesis]) -> Status:
     """Status of a claim from its margin: vacuous under an unmet hypothesis, inconclusive within the error.
+
+    What fails under a hypothesis that is only assumed is inconclusive too: it may be the hypothesis that does not hold.
 
     Parameters
     ----------
@@ -273,12 +336,17 @@ def judge(margin: float, error: float, hypotheses: Iterable[Hypothesis]) -> Stat
     --------
     >>> judge(0.5, 0.1, []), judge(0.05, 0.1, []), judge(-0.5, 0.1, []), judge(float("nan"), 0.0, [])
     ('verified', 'inconclusive', 'refuted', 'inconclusive')
+    >>> judge(-0.5, 0.1, [Hypothesis("every solution stays together", "assumed")])
+    'inconclusive'
     """
-    if any(h.status == "unmet" for h in hypotheses):
+    known = {hypothesis.status for hypothesis in hypotheses}
+    if "unmet" in known:
         return "vacuous"
     if not math.isfinite(error) or math.isnan(margin) or abs(margin) <= error:
         return "inconclusive"
-    return "verified" if margin > 0.0 else "refuted"
+    if margin > 0.0:
+        return "verified"
+    return "inconclusive" if "assumed" in known else "refuted"
 
 
 def _plain(value: Any) -> Any:

@@ -17,7 +17,7 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.ensemble import executors
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.report import work
-from flockana.report.statistics import Survey
+from flockana.report.surveys import Survey
 from flockana.report.work import Task, check_all, plan
 from flockana.scenarios import Report, Scenario
 from flockana.theorems import Claim

@@ -19,12 +19,12 @@ from flockana.falsify import Counterexample, falsify, replay
 from flockana.falsify.evaluate import Problem, units
 from flockana.falsify.grade import FAILED, grade, missing
 from flockana.falsify.search import Search
-from flockana.falsify.space import part, search_space
+from flockana.falsify.space import law_parameter, search_space
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.scenarios import scenario
 from flockana.theorems import Claim, Hypothesis, Theorem, Tolerances, Verdict, theorem, theorems, verify
 from flockana.theorems.leads import bridge, pairs_apart, squash, strained
-from flockana.theorems.olfati_saber.attraction import held
+from flockana.theorems.olfati_saber.attraction import final_basin
 from flockana.theorems.theorem import judge
 from tests.programs import Starts, out_of_a_kernel
 
@@ -77,7 +77,7 @@ class TestFindsWhatIsFalse:
         assert found.statuses["lattice"][0] == "verified"
         assert found.found
         assert found.evaluations > 1
-        assert held(found.run()).certificate.margin > 0.0  # for ever
+        assert final_basin(found.run()).certificate.margin > 0.0  # for ever
         end = found.run().q[-1]
         assert np.linalg.norm(end[0] - end[4]) < 1e-6  # two agents have become one
         assert found.margin == pytest.approx(-1.0, abs=1e-5)
@@ -232,12 +232,12 @@ class TestSpace:
         space = search_space(HEAD_ON, vary=(), parameters=ranges)
         assert space.dimension == 2
         middle = space.case(np.full(2, 0.5))
-        assert part(middle.law, "gains.c1_alpha") == pytest.approx(30.0, rel=1e-12)
-        assert part(middle.law, "gains.c2_gamma") == 2.0
+        assert law_parameter(middle.law, "gains.c1_alpha") == pytest.approx(30.0, rel=1e-12)
+        assert law_parameter(middle.law, "gains.c2_gamma") == 2.0
         assert middle.q0 is HEAD_ON.q0
         assert middle.law.alpha == HEAD_ON.law.alpha
         assert space.start[0] == pytest.approx(0.5, rel=1e-12)
-        ends = [part(space.case(np.full(2, x)).law, "gains.c1_alpha") for x in (0.0, 1.0)]
+        ends = [law_parameter(space.case(np.full(2, x)).law, "gains.c1_alpha") for x in (0.0, 1.0)]
         assert ends == [0.3, 3000.0]
 
     @pytest.mark.parametrize(

@@ -13,7 +13,8 @@ from flockana.ensemble import clopper_pearson, ensemble
 from flockana.ensemble.work import Record
 from flockana.report.build import verdicts_json, write_report
 from flockana.report.console import statistics_table
-from flockana.report.statistics import TEMPLATE, Share, gather, make_survey, statistics_section, surveys
+from flockana.report.statistics import TEMPLATE, Share, gather, statistics_section
+from flockana.report.surveys import make_survey, surveys
 from flockana.report.work import check_all
 from flockana.scenarios import scenario
 

@@ -15,7 +15,8 @@ from flockana.environment.targets import StaticTarget
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.scenarios import scenario, scenarios
 from flockana.scenarios.findings import component_counts
-from flockana.scenarios.obstacles import GAINS, SCENARIOS, _rests, blocked, free_start
+from flockana.scenarios.obstacle_claims import blocked, rests
+from flockana.scenarios.obstacles import GAINS, SCENARIOS, free_start
 from flockana.theorems import Tolerances, verify
 
 FINDS = Tolerances()
@@ -185,7 +186,7 @@ def test_rest_is_judged_at_the_calmest_of_the_last_instants():
     law = Algorithm3(target=StaticTarget((5.0, 0.0)))
     t, q = np.linspace(0.0, 100.0, 101), np.full((101, 1, 2), (5.0, 0.0))
     q[-1, 0, 0] += 1e-2
-    claim = _rests(Trajectory(t, q, 0.0 * q, 0.0 * q, law), Tolerances())
+    claim = rests(Trajectory(t, q, 0.0 * q, 0.0 * q, law), Tolerances())
     assert (claim.status, claim.computed) == ("verified", 0.0)
     q[90:, 0, 0] += 1e-2
-    assert _rests(Trajectory(t, q, 0.0 * q, 0.0 * q, law), Tolerances()).status == "inconclusive"
+    assert rests(Trajectory(t, q, 0.0 * q, 0.0 * q, law), Tolerances()).status == "inconclusive"

@@ -21,8 +21,7 @@ def made_up(law, q, p=None, t=None, u=None):
 def judged(name, run, tolerances=None):
     """What the theorem's check says of this one run, without a second."""
     used = tolerances or Tolerances()
-    hypotheses, claims = theorem(name).check(run, used)
-    return Verdict(name, tuple(hypotheses), tuple(claims), used)
+    return Verdict(name, *theorem(name).examine(run, used), used)
 
 
 SCALINGS = [(1e-6, 1.0), (1e3, 1e-3), (25.4, 60.0)]

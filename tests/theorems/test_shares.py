@@ -5,13 +5,13 @@ from __future__ import annotations
 import pytest
 from scipy.stats import beta
 
-from flockana.theorems.shares import always, mostly, share
+from flockana.theorems.shares import always, interval, mostly, share
 
 
 def test_shares_have_exact_intervals():
-    count, size, interval = share([True] * 7 + [False] * 13)
+    count, size, ends = share([True] * 7 + [False] * 13)
     assert (count, size) == (7, 20)
-    assert interval == pytest.approx((beta.ppf(0.025, 7, 14), beta.ppf(0.975, 8, 13)))
+    assert ends == interval(7, 20) == pytest.approx((beta.ppf(0.025, 7, 14), beta.ppf(0.975, 8, 13)))
 
 
 def test_a_sample_never_verifies_always_and_refutes_only_what_it_excludes():

@@ -15,6 +15,7 @@ from flockana.theorems.theorem import judge
 
 UNMET = Hypothesis("connected", "unmet")
 ASSUMED = Hypothesis("connected", "assumed")
+MET = Hypothesis("connected", "met")
 
 
 @pytest.mark.parametrize(
@@ -48,6 +49,9 @@ def test_the_rigour_of_a_verdict_is_the_weakest_among_the_claims_that_decide_it(
         (1.0, 0.1, [UNMET], "vacuous"),
         (-1.0, 0.1, [ASSUMED, UNMET], "vacuous"),
         (1.0, 0.1, [ASSUMED], "verified"),
+        (-1.0, 0.1, [ASSUMED], "inconclusive"),
+        (0.05, 0.1, [ASSUMED], "inconclusive"),
+        (-1.0, 0.1, [MET], "refuted"),
         (float("nan"), 0.0, [], "inconclusive"),
         (1.0, float("nan"), [], "inconclusive"),
         (float("inf"), 0.0, [], "verified"),
@@ -123,6 +127,46 @@ def test_differences_name_what_differs_and_what_is_missing():
         "x is verified, expected refuted",
         "x:iii is missing, expected verified",
     )
+
+
+def a_theorem(check, **options):
+    return Theorem("mine", "Mine", "One is one.", "nowhere", "trajectory", check, claims=("i", "ii", "iii"), **options)
+
+
+def test_claims_that_the_check_leaves_out_are_vacuous_for_the_first_unmet_hypothesis():
+    given = [MET, Hypothesis("b", "unmet", detail="b is 3"), Hypothesis("c", "unmet", detail="c is 4")]
+    made = Claim("ii", "verified")
+    hypotheses, claims = a_theorem(lambda run, tolerances: (given, [made])).examine(None, Tolerances())
+    assert hypotheses == tuple(given)
+    assert claims == (made, Claim("i", "vacuous", detail="b: b is 3"), Claim("iii", "vacuous", detail="b: b is 3"))
+    _, claims = a_theorem(lambda run, tolerances: (given, []), reason="not so: {name}").examine(None, Tolerances())
+    assert [claim.detail for claim in claims] == ["not so: b"] * 3
+
+
+def test_no_claim_is_added_where_no_hypothesis_is_unmet():
+    """zone-1-corrected has claims about directed and claims about undirected trees."""
+    made = Claim("ii", "verified")
+    item = a_theorem(lambda run, tolerances: ([ASSUMED], [made]))
+    assert item.examine(None, Tolerances()) == ((ASSUMED,), (made,))
+
+
+def test_the_law_is_asked_before_the_check_and_comes_first():
+    other, own = Hypothesis("it is the law", "unmet", detail="another"), Hypothesis("it is the law", "met")
+
+    def never(run, tolerances):
+        raise AssertionError("checked under another law")
+
+    hypotheses, claims = a_theorem(never, law=lambda run: other).examine(None, Tolerances())
+    assert (hypotheses, [claim.detail for claim in claims]) == ((other,), ["it is the law: another"] * 3)
+    item = a_theorem(lambda run, tolerances: ([UNMET], []), law=lambda run: own)
+    hypotheses, claims = item.examine(None, Tolerances())
+    assert hypotheses == (own, UNMET)
+    assert [claim.status for claim in claims] == ["vacuous"] * 3
+
+
+def test_every_theorem_about_runs_declares_its_claims():
+    for item in map(theorem, theorems()):
+        assert bool(item.claims) == (item.kind == "trajectory"), item.id
 
 
 def test_a_theorem_of_ones_own_is_checked_without_a_place_in_the_catalogue():

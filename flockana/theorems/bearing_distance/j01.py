@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.base.binomial import clopper_pearson
 from flockana.base.checks import FloatArray
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
@@ -12,13 +11,13 @@ from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.nets import components
 from flockana.measures.perception import Edges, edge_vectors, random_out_tree
 from flockana.theorems.bearing_distance.tree_case import TreeCase, tree_case
-from flockana.theorems.bearing_distance.tree_limits import longest_floor, settles
+from flockana.theorems.bearing_distance.tree_limits import length_kept, settles
+from flockana.theorems.claims import erratum, judged
 from flockana.theorems.limits import limit_claim
-from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
+from flockana.theorems.shares import CONFIDENCE, INTERVAL_ERROR, interval
+from flockana.theorems.theorem import Claim, Tolerances
 
 _TREES, _MOST_AGENTS, _SEED, _END = 200, 8, 1, 80.0  # agents of a tree at most; s
-_CONFIDENCE = 0.95
-_INTERVAL = 1e-9  # to which the ends of an exact interval are computed
 
 
 def random_forest(count: int, seed: int, *, rho: float = 1.0) -> tuple[MinimalFlocking, FloatArray, FloatArray]:
@@ -56,7 +55,7 @@ def _trees(run: Trajectory) -> list[tuple[TreeCase, FloatArray, FloatArray]]:
     return trees
 
 
-def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+def _check(tolerances: Tolerances) -> list[Claim]:
     law, q, p = random_forest(_TREES, _SEED)
     run = simulate(law, q, p, (0.0, _END), t_eval=(0.0, _END))
     lengths = np.linalg.norm(edge_vectors(run.q[-1], law.edges or ()), axis=1)
@@ -64,18 +63,17 @@ def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
     certificates = [settles(*tree) for tree in trees]
     weakest = min(certificates, key=lambda certificate: certificate.margin)
     settled = sum(certificate.margin > certificate.error for certificate in certificates)
-    vanished = sum(not longest_floor(*tree)[0] > 0.0 for tree in trees)
-    least, most = map(float, clopper_pearson(settled, _TREES, level=_CONFIDENCE))
-    low, high = map(float, clopper_pearson(vanished, _TREES, level=_CONFIDENCE))
+    vanished = sum(not length_kept(*tree)[0] > 0.0 for tree in trees)
+    (least, most), (low, high) = interval(settled, _TREES), interval(vanished, _TREES)
     case = {"trees": _TREES, "agents": f"2 to {_MOST_AGENTS}", "seed": _SEED, "t": _END}
-    return [], [
-        Claim(
+    return [
+        judged(
             "printed",
-            judge(high - 1.0, _INTERVAL, []) if vanished < _TREES else "inconclusive",
+            high - 1.0,
+            INTERVAL_ERROR,
+            verifies=False,
             computed={"trees whose edges might all vanish": vanished, "interval": [low, high]},
             stated="|x_e| -> 0 on every edge of every spanning tree (share 1)",
-            margin=high - 1.0,
-            error=_INTERVAL,
             witness=case | {"shortest edge at the end": float(lengths.min())},
             detail=f"of {_TREES} random directed trees {_TREES - vanished} keep an edge at a length > 0 for ever; the "
             f"shortest of all is {lengths.min():.8g} αr at the end",
@@ -88,21 +86,20 @@ def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
             stated="what converges is | |x_e| - α_i r_i | and the velocity difference, on every edge",
             witness=case | {"largest length error": float(np.abs(lengths - 1.0).max())},
             detail=f"{settled} of {_TREES} random directed trees go to every edge at αr and equal velocities; share "
-            f"{least:.3f} or more ({_CONFIDENCE:.0%}, Clopper-Pearson)",
+            f"{least:.3f} or more ({CONFIDENCE:.0%}, Clopper-Pearson)",
         ),
     ]
 
 
-THEOREM = Theorem(
-    id="J1",
+THEOREM = erratum(
+    "J1",
     title="Edges converge to their desired lengths, not to zero",
     statement=(
         "Theorem 1 lets the edge vectors x and their rates converge to zero. x = 0 is collision and contradicts "
         "the goal (27); what converges is the length error | |x_e| - α_i r_i | and the velocity difference."
     ),
     source="Jond, bearing-distance flocking, Theorem 1, (36)",
-    kind="fixed",
     check=_check,
     references=("jond-2025",),
-    expected={"J1": "refuted", "J1:printed": "refuted", "J1:corrected": "verified"},
+    expected={"printed": "refuted", "corrected": "verified"},
 )

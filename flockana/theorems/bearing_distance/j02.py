@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from flockana.laws.minimal import MinimalFlocking
-from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances
+from flockana.theorems.claims import erratum, exact
+from flockana.theorems.theorem import Claim, Tolerances
 
 
 def _two_agents_abscissa(ratio: float) -> float:
@@ -16,7 +17,7 @@ def _two_agents_abscissa(ratio: float) -> float:
     return float(np.linalg.eigvals(np.asarray(A)[np.ix_(child, child)]).real.max())
 
 
-def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+def _check(tolerances: Tolerances) -> list[Claim]:
     import sympy as sp
 
     from flockana.symbolic.spanning_trees import frozen_eigenvalues, symmetric_part
@@ -25,11 +26,10 @@ def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
     abscissas = {ratio: sp.re(values[0]) for ratio, values in eigenvalues.items()}
     measured = _two_agents_abscissa(0.5)
     five_children = symmetric_part(5)
-    return [], [
-        Claim(
+    return [
+        exact(
             "hurwitz",
-            "refuted" if abscissas["1/2"].is_positive else "verified",
-            "symbolic",
+            not (abscissas["1/2"].is_positive),
             computed={ratio: [str(value) for value in values] for ratio, values in eigenvalues.items()},
             stated="A_cl is Hurwitz, whatever the edges' lengths",
             margin=-float(abscissas["1/2"]),
@@ -39,10 +39,9 @@ def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
             detail=f"two agents at half the spacing: eigenvalue {float(abscissas['1/2']):.3f}, unstable (the law's own "
             f"Jacobian: {measured:.3f}); at the spacing {abscissas['1']}, singular",
         ),
-        Claim(
+        exact(
             "outside",
-            "verified" if abscissas["2"].is_negative and abscissas["1"] == 0 else "refuted",
-            "symbolic",
+            abscissas["2"].is_negative and abscissas["1"] == 0,
             computed=float(abscissas["2"]),
             stated="Hurwitz if and only if |x_e| > α_i r_i on every edge",
             margin=-float(abscissas["2"]),
@@ -67,8 +66,8 @@ def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
     ]
 
 
-THEOREM = Theorem(
-    id="J2",
+THEOREM = erratum(
+    "J2",
     title="A_cl is Hurwitz only outside the desired spacing",
     statement=(
         "The proof takes the edge matrices for positive definite, A_cl for Hurwitz. W^s = diag(μ(1 - αr/|x|)) is "
@@ -76,13 +75,7 @@ THEOREM = Theorem(
         "every edge. DᵀD_in is not positive definite once a node has five children."
     ),
     source="Jond, bearing-distance flocking, Theorem 1, proof",
-    kind="fixed",
     check=_check,
     references=("jond-2025",),
-    expected={
-        "J2": "refuted",
-        "J2:hurwitz": "refuted",
-        "J2:outside": "verified",
-        "J2:positive-definite": "refuted",
-    },
+    expected={"hurwitz": "refuted", "outside": "verified", "positive-definite": "refuted"},
 )

@@ -9,7 +9,8 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import both_ways
-from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
+from flockana.theorems.claims import erratum, exact, judged
+from flockana.theorems.theorem import Claim, Tolerances
 
 _EIGENVALUES = 1e-6  # of matrices of 6 rows and entries up to 4000, well apart: 1e-12 of these entries times 100
 _TREE_SHAPES = (((0, 1), (1, 2), (2, 3)), ((0, 1), (0, 2), (0, 3)), ((0, 1), (1, 2), (1, 3), (0, 4)))
@@ -56,40 +57,37 @@ def _pairing(mu: float) -> tuple[float, float]:
     return best, float(true.real.max())
 
 
-def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+def _check(tolerances: Tolerances) -> list[Claim]:
     from flockana.symbolic.spanning_trees import tree_characteristic
 
     residuals = {str(edges): tree_characteristic(edges).residuals[0] for edges in _TREE_SHAPES}
     error, abscissa = _pairing(400.0)
     _, stiffer = _pairing(4000.0)
-    return [], [
-        Claim(
+    return [
+        judged(
             "printed",
-            judge(-error, _EIGENVALUES, []),
+            -error,
+            _EIGENVALUES,
             computed=error,
             stated="λ² + λ μ_i + γ_i = 0, index by index, for any graph",
-            margin=-error,
-            error=_EIGENVALUES,
             witness={"graph": "undirected path of four", "|x|": _PATH_LENGTHS, "α_i r_i": _PATH_SPACING, "μ": 400.0},
             proof="bearing-distance-printed",
             detail=f"on an undirected path the best pairing misses an eigenvalue by {error:.3f}: the matrices do not "
             "commute",
         ),
-        Claim(
+        judged(
             "hurwitz",
-            judge(-stiffer, _EIGENVALUES, []),
+            -stiffer,
+            _EIGENVALUES,
             computed=stiffer,
             stated="negative real parts of all eigenvalues, since μ_i and γ_i have positive ones",
-            margin=-stiffer,
-            error=_EIGENVALUES,
             witness={"graph": "the same path, every |x_e| > α_i r_i", "μ": 4000.0, "at μ = 400": abscissa},
             proof="bearing-distance-printed",
             detail=f"with μ = 4000 an eigenvalue has real part {stiffer:.4f}, though every edge is longer than α_i r_i",
         ),
-        Claim(
+        exact(
             "trees",
-            "verified" if all(residual == 0 for residual in residuals.values()) else "refuted",
-            "symbolic",
+            not any(residuals.values()),
             computed="residual 0" if not any(residuals.values()) else str(residuals),
             stated="on rooted trees det(s² I + s A^a + A^s) = Π (s² + s + w_e)",
             witness=list(residuals),
@@ -100,8 +98,8 @@ def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
     ]
 
 
-THEOREM = Theorem(
-    id="J3",
+THEOREM = erratum(
+    "J3",
     title="Eigenvalues do not pair off index by index",
     statement=(
         "After (39) the proof pairs the eigenvalues of two matrices that do not commute. On directed rooted trees "
@@ -109,8 +107,7 @@ THEOREM = Theorem(
         "unstable though every edge is longer than desired."
     ),
     source="Jond, bearing-distance flocking, Theorem 1, proof, after (39)",
-    kind="fixed",
     check=_check,
     references=("jond-2025",),
-    expected={"J3": "refuted", "J3:printed": "refuted", "J3:hurwitz": "refuted", "J3:trees": "verified"},
+    expected={"printed": "refuted", "hurwitz": "refuted", "trees": "verified"},
 )

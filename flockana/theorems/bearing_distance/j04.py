@@ -6,27 +6,19 @@ import numpy as np
 
 from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import edge_vectors, incidence, receivers
-from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
+from flockana.theorems.claims import equal, erratum, judged
+from flockana.theorems.theorem import Claim, Tolerances
 
 _TREE = ((0, 1), (1, 2), (1, 3), (0, 4))
 _SAME, _ROUNDING = 1e-9, 1e-13  # relative: forces that differ by less are the same; their rounding
 
 
 def _identity(name: str, stated: str, detail: str) -> Claim:
-    """An identity of the separation forces on a directed tree of five, judged by algebra."""
+    """An identity of the separation forces on a directed tree of five, by algebra."""
     from flockana.symbolic.spanning_trees import separation_forms
 
-    form = separation_forms(_TREE)[name]
-    return Claim(
-        name,
-        "verified" if form.holds else "refuted",
-        "symbolic",
-        computed="residual 0" if form.holds else "a residual that is not 0",
-        stated=stated,
-        witness=[str(row) for row in form.residuals],
-        proof="bearing-distance-printed",
-        detail=detail,
-    )
+    residuals = separation_forms(_TREE)[name].residuals
+    return equal(name, residuals, stated=stated, proof="bearing-distance-printed", detail=detail)
 
 
 def _loop() -> Claim:
@@ -41,21 +33,20 @@ def _loop() -> Claim:
         float(np.abs(-left * w @ D.T @ q - left @ D.T @ p - u).max()) for left in (D_in, D)
     )  # W^a = I on a tree
     margin = _SAME - error / float(np.abs(u).max())
-    return Claim(
+    return judged(
         "loop",
-        judge(margin, _ROUNDING, []),
+        margin,
+        _ROUNDING,
         computed=error,
         stated="u = -D_in W^s Dᵀ p - D_in W^a Dᵀ v, with D_in where the text says 'like the incidence matrix'",
-        margin=margin,
-        error=_ROUNDING,
         witness={"with D in place of D_in": undirected},
         detail=f"(35) with D_in agrees with the law to {error:.1g}; with D, as L = D Dᵀ would have it, it is off by "
         f"{undirected:.3g}",
     )
 
 
-def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
-    return [], [
+def _check(tolerances: Tolerances) -> list[Claim]:
+    return [
         _identity("28", "separation = -(d W Dᵀ) p + (d W) q", "(28) as printed has the wrong sign before q"),
         _identity("identity", "(d W) q = α r (d W W^q Dᵀ) p", "so has the identity before (34)"),
         _identity("34", "separation = -(d W (I - α r W^q) Dᵀ) p", "the two errors cancel: (34) is right"),
@@ -63,8 +54,8 @@ def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
     ]
 
 
-THEOREM = Theorem(
-    id="J4",
+THEOREM = erratum(
+    "J4",
     title="Two signs that cancel, and the wrong Laplacian",
     statement=(
         "(28) adds q where it must be subtracted, and the identity before (34) has the sign of q wrong as well: "
@@ -72,14 +63,7 @@ THEOREM = Theorem(
         "D_in Dᵀ, where D_in keeps the receivers' entries alone."
     ),
     source="Jond, bearing-distance flocking, section 4, (28) to (35)",
-    kind="fixed",
     check=_check,
     references=("jond-2025",),
-    expected={
-        "J4": "refuted",
-        "J4:28": "refuted",
-        "J4:identity": "refuted",
-        "J4:34": "verified",
-        "J4:loop": "verified",
-    },
+    expected={"28": "refuted", "identity": "refuted", "34": "verified", "loop": "verified"},
 )

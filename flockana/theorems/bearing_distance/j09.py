@@ -9,10 +9,11 @@ from flockana.environment.zone_world import Alien, ZoneWorld
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.theorems.bearing_distance.random_starts import DURATION, runs_from_random_starts
-from flockana.theorems.shares import share
-from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
+from flockana.theorems.claims import erratum, judged
+from flockana.theorems.shares import INTERVAL_ERROR, share
+from flockana.theorems.theorem import Claim, Tolerances
 
-_ROUNDING, _INTERVAL = 1e-11, 1e-9  # relative: of a few hundred steps of one agent; of the ends of an exact interval
+_ROUNDING = 1e-11  # relative: of a few hundred steps of one agent
 _WATCHFUL = ZoneRadii(1.5, c=3.0, a=5.0, s=6.0)
 _STRONG = ZoneWeights(separation=20.0, cohesion_gain=0.5, alignment_gain=4.0)  # recommended for section 5.2
 
@@ -29,39 +30,37 @@ def _nearest_alien(surveillance: str) -> tuple[float, list[float]]:
     return float((20.0 - head_on.q[:, 0, 0]).min()), nearest
 
 
-def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+def _check(tolerances: Tolerances) -> list[Claim]:
     (through, annulus), (gap, disc) = (_nearest_alien(name) for name in ("annulus", "disc"))
     stand_off = 6.0 - 3.0 * 5.0 / 5.0  # s − v^d w^ga/w^ss
     clear = sum(d > a for d, a in zip(disc, annulus, strict=True))
-    _, size, interval = share([distance > 1.5 for distance in annulus])
-    return [], [
-        Claim(
+    _, size, (_, high) = share([distance > 1.5 for distance in annulus])
+    return [
+        judged(
             "printed",
-            judge(through / stand_off, _ROUNDING, []),
+            through / stand_off,
+            _ROUNDING,
             computed=through,
             stated="an agent keeps clear of an alien that it sees",
-            margin=through / stand_off,
-            error=_ROUNDING,
             witness={"alien": (20.0, 0.0), "q(0)": (0.0, 0.0), "p(0)": (3.0, 0.0)},
             detail="N_i^s ends at a_i: nearer than 5 m the alien exerts no force: an agent runs straight through it",
         ),
-        Claim(
+        judged(
             "corrected",
-            judge(1e-3 - abs(gap / stand_off - 1.0), _ROUNDING, []),
+            1e-3 - abs(gap / stand_off - 1.0),
+            _ROUNDING,
             computed=gap,
             stated=stand_off,
-            margin=1e-3 - abs(gap / stand_off - 1.0),
-            error=_ROUNDING,
             witness="the same agent and alien, 0 < d <= s_i",
             detail=f"with 0 < d <= s_i it stops at {gap:.4f} m, where s - v^d w^ga/w^ss = {stand_off:g}",
         ),
-        Claim(
+        judged(
             "flock",
-            "refuted" if interval[1] < 1.0 - _INTERVAL else "inconclusive",
+            high - 1.0,
+            INTERVAL_ERROR,
+            verifies=False,
             computed={"median, printed": float(np.median(annulus)), "median, corrected": float(np.median(disc))},
             stated="the flock keeps more than 1.5 m from an alien that hunts it (share 1)",
-            margin=interval[1] - 1.0,
-            error=_INTERVAL,
             witness={"printed": annulus, "corrected": disc},
             detail=f"least distance of ten agents from a hunting alien over {size} seeds: {np.median(annulus):.2f} m "
             f"in the median as printed, {np.median(disc):.2f} m as corrected (larger in {clear} of {size})",
@@ -69,16 +68,15 @@ def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
     ]
 
 
-THEOREM = Theorem(
-    id="J9",
-    title="An alien nearer than a_i is not minded",
+THEOREM = erratum(
+    "J9",
+    title="An alien nearer than a_i exerts no force",
     statement=(
         "N_i^s holds the aliens at a_i < d <= s_i: one that comes closer exerts no force and walks through the "
         "flock. With 0 < d <= s_i an agent stands off at s - v^d w^ga/w^ss."
     ),
     source="Jond, bearing-distance flocking, definition of N_i^s",
-    kind="fixed",
     check=_check,
     references=("jond-2025",),
-    expected={"J9": "refuted", "J9:printed": "refuted", "J9:corrected": "verified", "J9:flock": "refuted"},
+    expected={"printed": "refuted", "corrected": "verified", "flock": "refuted"},
 )

@@ -9,8 +9,9 @@ from flockana.interactions import ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.measures.metrics import coordination, min_distance
 from flockana.theorems.bearing_distance.random_starts import SEEDS, runs_from_random_starts, separated_start, zone_start
+from flockana.theorems.claims import erratum, judged
 from flockana.theorems.shares import always, mostly
-from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
+from flockana.theorems.theorem import Claim, Tolerances
 
 _STARTS = 2000
 _SAME, _ROUNDING = 1e-9, 1e-11  # relative: forces that differ by less are the same; their rounding
@@ -34,20 +35,19 @@ def _weights_cancel() -> Claim:
         forces, other_forces = (law.behaviours(q, p) for law in (printed, other))
         pairs = [(forces[name], other_forces[name]) for name in ("cohesion", "alignment")]
         worst = max(worst, *(float(np.abs(a - b).max() / np.abs(a).max()) for a, b in pairs))
-    return Claim(
+    return judged(
         "weights",
-        judge(worst - _SAME, _ROUNDING, []),
+        worst - _SAME,
+        _ROUNDING,
         computed=worst,
         stated="w^lc = 0.75 and w^la = 0.25 weigh cohesion against alignment",
-        margin=worst - _SAME,
-        error=_ROUNDING,
         witness={"(w^lc, w^la)": [(0.75, 0.25), (40.0, 7.0)], "starts": SEEDS},
         detail=f"with weights of 40 and 7 for 0.75 and 0.25 cohesion and alignment stay the same to {worst:.1g}: "
         "uniform weights cancel in (3), (4)",
     )
 
 
-def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+def _check(tolerances: Tolerances) -> list[Claim]:
     printed = [_least_coordination(run) for run in runs_from_random_starts(ZoneFlocking.printed())]
     mended_law = ZoneFlocking.printed(own_velocity="measured", order="synchronous", speed_bound="clip")
     mended = [_least_coordination(run) for run in runs_from_random_starts(mended_law)]
@@ -56,7 +56,7 @@ def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
     D = [min(map(min_distance, run.q)) for run in recommended]
     separated = [min_distance(zone_start(seed)[0]) > _SAFE for seed in range(_STARTS)]
     order = f"C >= {_IN_ORDER:g} from {_FROM:g} s on"
-    return [], [
+    return [
         always("distances", separated, "agents start more than 1.5 m apart", "distances above 1.5 m throughout"),
         always(
             "order",
@@ -83,8 +83,8 @@ def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
     ]
 
 
-THEOREM = Theorem(
-    id="J10",
+THEOREM = erratum(
+    "J10",
     title="Section 5.1 does not come out as reported",
     statement=(
         "Section 5.1 reports distances above 1.5 m throughout and C = 1 within 2 s. Random starts as described "
@@ -92,15 +92,13 @@ THEOREM = Theorem(
         "uniform weights 0.75 and 0.25 cancel. Gains in front of the means and separated, connected starts mend it."
     ),
     source="Jond, bearing-distance flocking, section 5.1",
-    kind="fixed",
     check=_check,
     references=("jond-2025",),
     expected={
-        "J10": "refuted",
-        "J10:distances": "refuted",
-        "J10:order": "refuted",
-        "J10:order-mended": "refuted",
-        "J10:weights": "refuted",
-        "J10:recommended": "verified",
+        "distances": "refuted",
+        "order": "refuted",
+        "order-mended": "refuted",
+        "weights": "refuted",
+        "recommended": "verified",
     },
 )

@@ -9,7 +9,8 @@ from flockana.environment.zone_obstacles import Box, SimplePolygon
 from flockana.environment.zone_world import ZoneWorld
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
-from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
+from flockana.theorems.claims import erratum, judged
+from flockana.theorems.theorem import Claim, Tolerances
 
 _ROUNDING = 1e-11  # relative: of a few hundred steps
 _RADII = ZoneRadii(1.5, c=3.0, a=5.0)
@@ -69,7 +70,7 @@ def _stand_offs() -> tuple[float, dict[str, list[float]]]:
     return max(abs(a - b) for a, b in rows.values()), rows
 
 
-def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+def _check(tolerances: Tolerances) -> list[Claim]:
     outward, inward, beyond = _inside("literal")
     mended_outward, mended_inward, mended_beyond = _inside("outward")
     error, stand_offs = _stand_offs()
@@ -80,14 +81,13 @@ def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
         min(mended_outward / force, mended_inward / force, -mended_beyond / c),
         min(at_wall, least_gap) / c,
     )
-    return [], [
-        Claim(
+    return [
+        judged(
             "printed",
-            judge(printed, _ROUNDING, []),
+            printed,
+            _ROUNDING,
             computed={"outward force in an obstacle": outward, "inward force beyond a wall": inward},
             stated="(8) repels an agent from an obstacle and from a wall",
-            margin=printed,
-            error=_ROUNDING,
             witness={
                 "in an obstacle": (10.5, 0.3),
                 "beyond the wall x = 50": (50.1, 25.0),
@@ -96,35 +96,32 @@ def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
             detail=f"inside, b - p_i points outwards and (8) pushes in: {outward:.3g} in an obstacle, {inward:.3g} "
             f"beyond a wall, and after 3 s the agent is {beyond:.3g} m beyond it",
         ),
-        Claim(
+        judged(
             "corrected",
-            judge(mended, _ROUNDING, []),
+            mended,
+            _ROUNDING,
             computed={"outward force in an obstacle": mended_outward, "inward force beyond a wall": mended_inward},
             stated="with d + c along b - p_i it is pushed out of obstacles and back behind walls",
-            margin=mended,
-            error=_ROUNDING,
             witness="the same agents",
             detail=f"pushed out by {mended_outward:.3g}, back by {mended_inward:.3g}: after 3 s the second is "
             f"{-mended_beyond:.3g} m inside",
         ),
-        Claim(
+        judged(
             "stand-off",
-            judge(1e-6 - error / c, _ROUNDING, []),
+            1e-6 - error / c,
+            _ROUNDING,
             computed={case: pair[1] for case, pair in stand_offs.items()},
             stated={case: pair[0] for case, pair in stand_offs.items()},
-            margin=1e-6 - error / c,
-            error=_ROUNDING,
             witness="head on, inputs unbounded, weights that damp the approach",
             detail="agents that run head on at a wall, or at each other, stop at c - v^d w^ga/w in "
             f"{len(stand_offs)} cases (off by {error:.1g} m)",
         ),
-        Claim(
+        judged(
             "contact",
-            judge(clearance, _ROUNDING, []),
+            clearance,
+            _ROUNDING,
             computed={"distance from the wall": at_wall, "least signed gap of two agents": least_gap},
             stated="w^oa = w^ls = 5 keep agents off walls and each other",
-            margin=clearance,
-            error=_ROUNDING,
             witness={"w^ga": 5.0, "w": 5.0, "c": 3.0, "v^d": 3.0, "stand-off": 0.0},
             detail=f"with the printed 5, 5, 3, 3 the stand-off is 0: an agent comes to rest {abs(at_wall):.1g} m from "
             "the wall, and two that meet head on pass through each other",
@@ -132,22 +129,15 @@ def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
     ]
 
 
-THEOREM = Theorem(
-    id="J12",
+THEOREM = erratum(
+    "J12",
     title="Repulsion reverses inside obstacles, and the printed weights allow contact",
     statement=(
         "Inside an obstacle or beyond a wall b - p_i reverses, and (8) pushes deeper in. Outside, an agent that "
         "runs head on at a wall or another agent stands off at c - v^d w^ga/w: 0 with the printed 5, 5, 3, 3."
     ),
     source="Jond, bearing-distance flocking, (8) and section 5",
-    kind="fixed",
     check=_check,
     references=("jond-2025",),
-    expected={
-        "J12": "refuted",
-        "J12:printed": "refuted",
-        "J12:corrected": "verified",
-        "J12:stand-off": "verified",
-        "J12:contact": "refuted",
-    },
+    expected={"printed": "refuted", "corrected": "verified", "stand-off": "verified", "contact": "refuted"},
 )

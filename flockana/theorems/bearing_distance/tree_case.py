@@ -1,4 +1,4 @@
-"""A run of the minimal model on a frozen tree, seen by its edges: what both readings of Theorem 1 need."""
+"""A frozen tree of the minimal model, edge by edge: lengths, energies, equilibria, linearisation."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from flockana.kernels.paths import closest_pair, control_points
 from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import Edges, edge_vectors, incidence, is_connected, out_tree_root
 from flockana.stability import linearise
+from flockana.theorems.hypotheses import condition
 from flockana.theorems.rounding import EPS
 from flockana.theorems.theorem import Hypothesis
 
@@ -23,7 +24,7 @@ _RESOLVED = 1e-9  # of a length between samples: far below the allowance for the
 
 @dataclass(frozen=True)
 class TreeCase:
-    """A run on a frozen tree, by its edges.
+    """A minimal law on a frozen tree, by its edges.
 
     Parameters
     ----------
@@ -55,13 +56,13 @@ class TreeCase:
     @cached_property
     def walk(self) -> tuple[tuple[int, int, int], ...]:
         """(edge, agent nearer to the root, agent farther from it) of all edges, from the root outwards."""
-        near, outwards = {self.links[0][0] if self.root is None else self.root}, []
+        reached, outwards = {self.links[0][0] if self.root is None else self.root}, []
         left = dict(enumerate(self.links))
         while left:
             for e, (j, i) in list(left.items()):
-                if j in near or i in near:
-                    outwards.append((e, j, i) if j in near else (e, i, j))
-                    near |= {j, i}
+                if j in reached or i in reached:
+                    outwards.append((e, j, i) if j in reached else (e, i, j))
+                    reached |= {j, i}
                     del left[e]
         return tuple(outwards)
 
@@ -138,25 +139,25 @@ def characteristic_residual(A: FloatArray, factors: Sequence[tuple[float, float]
     return float(np.abs(determinants[:, 0] * np.exp(determinants[:, 1] - stated) - 1.0).max())
 
 
+def minimal_law(run: Trajectory) -> Hypothesis:
+    """The hypothesis that a run is of the minimal law."""
+    return condition("the minimal law is applied", type(run.law) is MinimalFlocking, detail=type(run.law).__name__)
+
+
 def tree_hypotheses(run: Trajectory) -> tuple[list[Hypothesis], TreeCase | None]:
-    """Hypotheses that both readings of the theorem share, and the tree if there is one."""
-    applies = type(run.law) is MinimalFlocking
-    needs = [Hypothesis("the minimal law is applied", "met" if applies else "unmet", detail=type(run.law).__name__)]
-    if not applies:
-        return needs, None
-    law, case = run.law, tree_case(run.law, run.n)
-    frozen = law.edges is not None
+    """Hypotheses that both forms of the theorem have in common, and the tree if there is one."""
+    case, frozen = tree_case(run.law, run.n), run.law.edges is not None
     kind = "no frozen graph" if not frozen else "neither a rooted out-tree nor a reciprocal undirected tree"
     if case is not None:
         kind = "an undirected tree" if case.root is None else f"an out-tree from agent {case.root}, which reaches all"
-    needs += [
-        Hypothesis("the graph never changes", "met" if frozen else "unmet", detail="" if frozen else "perceived"),
-        Hypothesis("the graph is a spanning tree", "met" if case else "unmet", detail=kind),
+    needs = [
+        condition("the graph never changes", frozen, detail="" if frozen else "perceived"),
+        condition("the graph is a spanning tree", case is not None, detail=kind),
     ]
     if case is not None:
         for name, weights in (("μ > 0", case.mu), ("alignment is at work", case.align)):
             least = float(weights.min())
-            needs.append(Hypothesis(name, "met" if least > 0.0 else "unmet", least))
+            needs.append(condition(name, least > 0.0, least))
     return needs, case
 
 

@@ -1,10 +1,10 @@
-"""Energies on a frozen tree: that they fall along a run, and the lengths that they keep the edges from falling below.
+"""Claims that energies on a frozen tree fall along a run, and that edges keep the lengths which these guarantee.
 
-A bound that is attained, as ρ - √(2V/μ) is by an edge pressed and let go, cannot be met by a margin. So it is asked of
-an energy larger by the tolerance that the energy itself is given; what is asked is then met by half of that.
+A bound that is attained, as ρ - √(2V/μ) is by an edge pressed and let go, leaves no margin. So it is compared with the
+bound of an energy larger by the tolerance on energies, which leaves half of that.
 
-What looks broken may be the integrator's, and a tighter second run no better where both are down to rounding: then what
-the two differ by counts as error.
+A violation may be the integrator's, and a tighter second run no better where both are down to rounding: then the
+difference of the two counts as error.
 """
 
 from __future__ import annotations
@@ -17,16 +17,17 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.dynamics.trajectory import Trajectory
 from flockana.theorems.bearing_distance.tree_case import TreeCase, length_error
+from flockana.theorems.claims import judged
 from flockana.theorems.hypotheses import below
 from flockana.theorems.rounding import EPS, spread_error
 from flockana.theorems.second_run import second_run
-from flockana.theorems.theorem import Claim, Hypothesis, Tolerances, judge
+from flockana.theorems.theorem import Claim, Hypothesis, Tolerances
 
 _PROOF = "bearing-distance"
 
 
 def _noise(run: Trajectory, series: Callable[[Trajectory], FloatArray]) -> float:
-    """By how much a series of a run differs from that of a tighter one, at worst; ∞ if that does not get as far."""
+    """Largest difference of a series between a run and a tighter one; ∞ if that does not get as far."""
     again = second_run(run)
     return float(np.abs(series(run) - series(again)).max()) if len(again.t) == len(run.t) else inf
 
@@ -51,7 +52,7 @@ def _amplitude_error(case: TreeCase, run: Trajectory, energy: float, edges: list
 
 
 def root_claim(case: TreeCase, run: Trajectory, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
-    """(iii): V of an edge from the root falls, and while V(0) < μρ²/2 it keeps that edge from length 0."""
+    """The claim that V of an edge from the root falls, and while V(0) < μρ²/2 keeps that edge from length 0."""
     start, rounding = case.energies(run.q[0], run.p[0]), length_error(case, run)
     from_root = [e for e, (j, _) in enumerate(case.links) if j == case.root]
     edges = [e for e in from_root if start[e] / case.barrier[e] < 1.0 - 4.0 * rounding]
@@ -74,13 +75,13 @@ def root_claim(case: TreeCase, run: Trajectory, needs: list[Hypothesis], toleran
         margin = nan
     if margin < 0.0:
         error += 4.0 * _noise(run, relative)
-    return Claim(
+    return judged(
         "root-edge",
-        judge(margin, error, needs),
+        margin,
+        error,
+        needs,
         computed={"least distance to the bound": slack, "largest rise of V in a step": rises},
         stated="|x(t)| >= ρ - sqrt(2V(0)/μ) > 0 on edges from the root, with V never rising",
-        margin=margin,
-        error=error,
         witness={f"edge {case.links[e]}": {"V(0)": float(start[e])} for e in edges},
         proof=_PROOF,
         detail=f"{len(edges)} edges from the root start below μρ²/2; their V rises by {rises:.1g} of V(0) at most, and "
@@ -99,7 +100,7 @@ def _energy_error(case: TreeCase, run: Trajectory) -> float:
 
 
 def energy_claim(case: TreeCase, run: Trajectory, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
-    """The undirected law: dH/dt = −Σσ‖v_i − v_j‖², a sum of squares, is the rate of H: so it never rises."""
+    """The claim, on an undirected tree, that H never rises: its rate is −Σσ‖v_i − v_j‖²."""
     if "work" not in run.extra:
         return Claim("energy", "inconclusive", detail="the run carries no integral of dH/dt")
     H, largest = run.energy(), float(run.energy().max())
@@ -107,16 +108,14 @@ def energy_claim(case: TreeCase, run: Trajectory, needs: list[Hypothesis], toler
     error = _energy_error(case, run) / largest if largest > 0.0 else inf
     margin = tolerances.energy - residual / largest if largest > 0.0 else nan
     if margin < 0.0:
-        error += (
-            4.0 * (_noise(run, Trajectory.energy) + _noise(run, lambda trajectory: trajectory.extra["work"])) / largest
-        )
-    return Claim(
+        error += 4.0 * (_noise(run, Trajectory.energy) + _noise(run, lambda again: again.extra["work"])) / largest
+    return judged(
         "energy",
-        judge(margin if rate <= 0.0 else -1.0, error, needs),
+        margin if rate <= 0.0 else -1.0,
+        error,
+        needs,
         computed=rate,
         stated="dH/dt = -Σ σ |v_i - v_j|² <= 0",
-        margin=margin if rate <= 0.0 else -1.0,
-        error=error,
         witness={"H(0)": float(H[0]), "H(T)": float(H[-1]), "residual": residual},
         proof=_PROOF,
         detail=f"H falls from {H[0]:.4g} to {H[-1]:.3g}; its rate is never above {rate:.1g}, and accounts for H to "
@@ -125,7 +124,7 @@ def energy_claim(case: TreeCase, run: Trajectory, needs: list[Hypothesis], toler
 
 
 def edge_claim(case: TreeCase, run: Trajectory, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
-    """Undirected: H(0) pays for no edge to shrink below ρ − √(2H(0)/μ)."""
+    """The claim, on an undirected tree, that no edge shrinks below ρ − √(2H(0)/μ)."""
     start, barrier = float(run.energy()[0]), float(case.barrier.min())
     small = below("H(0) < μρ²/2 on every edge", start, barrier, _energy_error(case, run), f"H(0) = {start:.4g}")
     edges = list(range(len(case.links)))
@@ -135,18 +134,14 @@ def edge_claim(case: TreeCase, run: Trajectory, needs: list[Hypothesis], toleran
     error = 4.0 * _amplitude_error(case, run, start, edges) + 64.0 * EPS
     margin = nan if slack < 0.0 and not broken else slack
     if margin < 0.0:
-        error += (
-            4.0
-            * _noise(run, lambda trajectory: case.lengths(trajectory.q))
-            * sqrt(float(case.mu.max()) / (2.0 * start))
-        )
-    return Claim(
+        error += 4.0 * _noise(run, lambda again: case.lengths(again.q)) * sqrt(float(case.mu.max()) / (2.0 * start))
+    return judged(
         "no-collision",
-        judge(margin, error, [*needs, small]),
+        margin,
+        error,
+        [*needs, small],
         computed=float(case.lengths(run.q).min()),
         stated="|x(t)| >= ρ - sqrt(2H(0)/μ) > 0 on every edge",
-        margin=margin,
-        error=error,
         witness={"H(0)": start, "least μρ²/2": barrier},
         proof=_PROOF,
         detail=f"H(0) = {start:.4g}, and a collision of an edge costs {barrier:.4g}; the shortest edge is "

@@ -1,4 +1,4 @@
-"""What is certain for ever of a flock on a frozen tree, from one state: a certificate of the limit in Theorem 1.
+"""Certificates, from one state, of how a flock on a frozen tree ends: the limit in Theorem 1.
 
 *Undirected, reciprocal forces.* H never rises. While H < ½μρ² on every edge, no edge comes to length 0; then velocities
 match and every |x_e| goes to ρ_e, by LaSalle's principle, as on a tree nothing else is at rest.
@@ -22,9 +22,12 @@ from math import inf, sqrt
 import numpy as np
 
 from flockana.base.checks import FloatArray
+from flockana.dynamics.trajectory import Trajectory
+from flockana.measures.perception import edge_vectors
 from flockana.theorems.bearing_distance.tree_case import TreeCase
-from flockana.theorems.limits import Certificate
+from flockana.theorems.limits import Certificate, limit_claim
 from flockana.theorems.rounding import EPS, spread_error
+from flockana.theorems.theorem import Claim, Hypothesis
 
 _ERROR = 1e-12  # of a share: all roundings in it are taken outwards
 
@@ -73,14 +76,28 @@ def _directed(case: TreeCase, q: FloatArray, p: FloatArray) -> FloatArray:
 
 
 def settles(case: TreeCase, q: FloatArray, p: FloatArray) -> Certificate:
-    """Every edge goes to its desired length and every velocity difference to 0, from this state on."""
+    """Certificate that from this state every edge goes to its desired length, every velocity difference to 0."""
     share = float(edge_shares(case, q, p).max())
     never = "no edge can ever shrink to 0 from here" if share < 1.0 else "an edge might still shrink to 0"
     text = f"{never}: the energy that one may get is {share:.2g} of what that takes"
     return Certificate(max(-1.0, 1.0 - share), text, _ERROR)
 
 
-def longest_floor(case: TreeCase, q: FloatArray, p: FloatArray) -> tuple[float, float]:
-    """(least |x|/ρ that the safest edge keeps for ever, its error); at most 0 where none is known to."""
+def velocity_claim(case: TreeCase, run: Trajectory, needs: list[Hypothesis], *, stated: str) -> Claim:
+    """The claim that the velocities at both ends of every edge match in the limit."""
+    speeds = np.linalg.norm(edge_vectors(run.p[[0, -1]], case.links), axis=2).max(axis=1)
+    return limit_claim(
+        "velocities",
+        needs,
+        [settles(case, run.q[-1], run.p[-1])],
+        computed=float(speeds[1]),
+        stated=stated,
+        witness={"time": float(run.t[-1]), "at the start": float(speeds[0])},
+        detail=f"velocities match: |x_e'| goes from {speeds[0]:.3g} to {speeds[1]:.3g} at t = {run.t[-1]:g}",
+    )
+
+
+def length_kept(case: TreeCase, q: FloatArray, p: FloatArray) -> tuple[float, float]:
+    """(least |x|/ρ that the edge farthest from collision keeps for ever, its error); <= 0 where nothing is known."""
     share = float(edge_shares(case, q, p).min())
     return (1.0 - sqrt(share) if share < 4.0 else -1.0), sqrt(_ERROR)

@@ -1,4 +1,4 @@
-"""The spectrum of the minimal model on a frozen tree, at equilibrium: what of it a computation can decide."""
+"""The spectrum of the minimal model on a frozen tree at equilibrium, compared with the stated one within rounding."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _CLEAR = 1e3  # times its rounding, from which on a number is not 0
 
 
 class Spectrum(NamedTuple):
-    """What was found, and by how much (positive: as stated), relative to what would count as another spectrum."""
+    """Zero eigenvalues, slowest other rate, error of the polynomial, and margin and error of "it is as stated"."""
 
     zeros: int
     slowest: float

@@ -7,19 +7,18 @@ from math import log, nan
 import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory
-from flockana.measures.perception import edge_vectors
-from flockana.theorems.bearing_distance.tree_case import TreeCase, length_error, tree_hypotheses
+from flockana.theorems.bearing_distance.tree_case import TreeCase, length_error, minimal_law, tree_hypotheses
 from flockana.theorems.bearing_distance.tree_energy import edge_claim, energy_claim, root_claim
-from flockana.theorems.bearing_distance.tree_limits import settles
+from flockana.theorems.bearing_distance.tree_limits import settles, velocity_claim
 from flockana.theorems.bearing_distance.tree_spectrum import tree_spectrum
-from flockana.theorems.hypotheses import vacuous
-from flockana.theorems.limits import TIME_CONSTANTS, Certificate, limit_claim
-from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
+from flockana.theorems.claims import judged
+from flockana.theorems.hypotheses import condition
+from flockana.theorems.limits import TIME_CONSTANTS, limit_claim
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
 
 _NEAR, _FLOOR = 1e-2, 1e-7  # length errors, relative to ρ: near the manifold, and above the integrator's own error
 _BLUR = 1e-3  # largest share of a length error that may be rounding
 _PROOF = "bearing-distance"
-_CLAIMS = ("lengths", "velocities", "spectrum", "exponential", "root-edge", "energy", "no-collision")
 
 
 def _errors(case: TreeCase, run: Trajectory) -> np.ndarray:
@@ -28,12 +27,13 @@ def _errors(case: TreeCase, run: Trajectory) -> np.ndarray:
     return errors
 
 
-def _lengths(case: TreeCase, run: Trajectory, caught: Certificate, needs: list[Hypothesis]) -> Claim:
+def _lengths(case: TreeCase, run: Trajectory, needs: list[Hypothesis]) -> Claim:
+    """The claim that every edge takes its desired length in the limit."""
     errors = _errors(case, run)
     return limit_claim(
         "lengths",
         needs,
-        [caught],
+        [settles(case, run.q[-1], run.p[-1])],
         computed=float(errors[-1]),
         stated="||x_e| - ρ_e| -> 0",
         witness={"time": float(run.t[-1]), "at the start": float(errors[0])},
@@ -42,36 +42,23 @@ def _lengths(case: TreeCase, run: Trajectory, caught: Certificate, needs: list[H
     )
 
 
-def _velocities(case: TreeCase, run: Trajectory, caught: Certificate, needs: list[Hypothesis]) -> Claim:
-    speeds = np.linalg.norm(edge_vectors(run.p[[0, -1]], case.links), axis=2).max(axis=1)
-    return limit_claim(
-        "velocities",
-        needs,
-        [caught],
-        computed=float(speeds[1]),
-        stated="|x_e'| -> 0",
-        witness={"time": float(run.t[-1]), "at the start": float(speeds[0])},
-        detail=f"velocities match: |x_e'| goes from {speeds[0]:.3g} to {speeds[1]:.3g} at t = {run.t[-1]:g}",
-    )
-
-
 def _spectrum(case: TreeCase, run: Trajectory, needs: list[Hypothesis]) -> Claim:
-    """At the point of M next to the end of the run: the factors edge by edge, and the zero modes."""
+    """The claim about the spectrum at the equilibrium beside the end of the run: its factors and its zero modes."""
     m, spectrum = run.m, tree_spectrum(case, case.on_manifold(run.q[-1]))
     expected, factors = (case.n - 1) * (m - 1), "roots with negative real parts beside"
     if case.root is not None:
         factors = f"Π (s² + a s + μ_e)(s² + a s)^{m - 1}, off by {spectrum.residual:.1g}"
-    return Claim(
+    return judged(
         "spectrum",
-        judge(spectrum.margin, spectrum.error, needs),
+        spectrum.margin,
+        spectrum.error,
+        needs,
         computed={
             "zero modes": spectrum.zeros,
             "slowest other": -spectrum.slowest,
             "polynomial error": spectrum.residual,
         },
         stated=f"a semisimple zero of multiplicity (n - 1)(m - 1) = {expected}, and {factors}",
-        margin=spectrum.margin,
-        error=spectrum.error,
         witness="the law linearised in edge coordinates, at the end's bearings and the desired lengths",
         proof=_PROOF,
         detail=f"zero has a kernel of dimension {spectrum.zeros}, that of the manifold of equilibria; the rest decays "
@@ -80,9 +67,10 @@ def _spectrum(case: TreeCase, run: Trajectory, needs: list[Hypothesis]) -> Claim
 
 
 def _exponential(case: TreeCase, run: Trajectory, needs: list[Hypothesis]) -> Claim:
-    """Near the manifold, and above the integrator's own error, length errors fall at half the slowest rate at least.
+    """The claim that near the manifold length errors fall at half the slowest rate of the spectrum at least.
 
-    Seen through five time constants of that rate; a chain of equal edges starts more slowly, which refutes nothing.
+    It must be seen through five time constants of that rate, above the integrator's own error; a chain of equal edges
+    starts more slowly, which refutes nothing.
     """
     errors, rounding = _errors(case, run), length_error(case, run)
     slowest = tree_spectrum(case, case.on_manifold(run.q[-1])).slowest
@@ -90,15 +78,14 @@ def _exponential(case: TreeCase, run: Trajectory, needs: list[Hypothesis]) -> Cl
     last = int(np.max(np.flatnonzero(errors > max(_FLOOR, rounding / _BLUR)), initial=0))
     seen = last > first and (run.t[last] - run.t[first]) * slowest >= TIME_CONSTANTS
     rate = log(errors[first] / errors[last]) / (run.t[last] - run.t[first]) if seen else nan
-    margin, error = rate / slowest - 0.5, _BLUR / TIME_CONSTANTS
-    status = judge(margin, error, needs)
-    return Claim(
+    return judged(
         "exponential",
-        "inconclusive" if status == "refuted" else status,
+        rate / slowest - 0.5,
+        _BLUR / TIME_CONSTANTS,
+        needs,
+        refutes=False,
         computed=rate,
         stated=f"length errors fall as exp(-c t), c >= {0.5 * slowest:.4g}, half the slowest rate of the spectrum",
-        margin=margin,
-        error=error,
         witness={"slowest rate of the spectrum": slowest},
         detail=f"length errors fall from {errors[first]:.1g} to {errors[last]:.1g} ρ at a rate of {rate:.3g}"
         if seen
@@ -106,26 +93,21 @@ def _exponential(case: TreeCase, run: Trajectory, needs: list[Hypothesis]) -> Cl
     )
 
 
-def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
     needs, case = tree_hypotheses(run)
-    nothing = vacuous(needs, _CLAIMS)
-    if case is None or nothing:
-        return needs, nothing
-    needs.append(Hypothesis("each edge has one desired length, for ever", "met", detail=_spacings(case)))
-    caught = settles(case, run.q[-1], run.p[-1])
+    if case is None or unmet(needs):
+        return needs, []
+    # on a graph that never changes the number of neighbours, and so the spacing, never does
+    spacings = f"ρ from {case.rho.min():g} to {case.rho.max():g}"
+    needs.append(condition("each edge has one desired length, for ever", True, detail=spacings))
     claims = [
-        _lengths(case, run, caught, needs),
-        _velocities(case, run, caught, needs),
+        _lengths(case, run, needs),
+        velocity_claim(case, run, needs, stated="|x_e'| -> 0"),
         _spectrum(case, run, needs),
     ]
     if case.root is None:
         return needs, [*claims, energy_claim(case, run, needs, tolerances), edge_claim(case, run, needs, tolerances)]
     return needs, [*claims, _exponential(case, run, needs), root_claim(case, run, needs, tolerances)]
-
-
-def _spacings(case: TreeCase) -> str:
-    """On a graph that never changes the number of neighbours, and so the spacing, never does."""
-    return f"ρ from {case.rho.min():g} to {case.rho.max():g}"
 
 
 THEOREM = Theorem(
@@ -141,6 +123,8 @@ THEOREM = Theorem(
     ),
     source="Jond, bearing-distance flocking, Theorem 1; corrected by us",
     kind="trajectory",
+    law=minimal_law,
     check=_check,
+    claims=("lengths", "velocities", "spectrum", "exponential", "root-edge", "energy", "no-collision"),
     references=("jond-2025",),
 )

@@ -1,4 +1,4 @@
-"""Theorem 1 of the bearing-distance paper as printed: the edges of a spanning tree vanish. They do not."""
+"""Theorem 1 of the bearing-distance paper as printed: that the edges of a spanning tree vanish (false)."""
 
 from __future__ import annotations
 
@@ -7,29 +7,27 @@ from math import inf, nan, sqrt
 import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory
-from flockana.measures.perception import edge_vectors
-from flockana.theorems.bearing_distance.tree_case import TreeCase, length_error, tree_hypotheses
-from flockana.theorems.bearing_distance.tree_limits import longest_floor, settles
-from flockana.theorems.hypotheses import vacuous
-from flockana.theorems.limits import limit_claim
-from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
+from flockana.theorems.bearing_distance.tree_case import TreeCase, length_error, minimal_law, tree_hypotheses
+from flockana.theorems.bearing_distance.tree_limits import length_kept, velocity_claim
+from flockana.theorems.claims import judged
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
 
 _PROOF = "bearing-distance-printed"
-_CLAIMS = ("equilibrium", "edges", "velocities", "hurwitz")
 
 
 def _at_rest(case: TreeCase, run: Trajectory, needs: list[Hypothesis]) -> Claim:
     """The counterexample: at rest with every edge at its desired length, where nothing moves and x is not 0."""
     q = case.on_manifold(run.q[-1])
     u = float(np.abs(case.law.flow(0.0, q, 0.0 * q)[0]).max())
-    kept, error = longest_floor(case, q, 0.0 * q)
-    return Claim(
+    kept, error = length_kept(case, q, 0.0 * q)
+    return judged(
         "equilibrium",
-        judge(-kept if kept > 0.0 else nan, error, needs),
+        -kept,
+        error,
+        needs,
+        verifies=False,
         computed=kept * float(case.rho.min()),
         stated="x -> 0 from any initial condition",
-        margin=-kept,
-        error=error,
         witness={"q": q.tolist(), "p": "0", "largest |u|": u},
         proof=_PROOF,
         detail=f"at rest with every edge at its desired length nothing moves (|u| <= {u:.1g}): |x_e| stays "
@@ -38,16 +36,16 @@ def _at_rest(case: TreeCase, run: Trajectory, needs: list[Hypothesis]) -> Claim:
 
 
 def _edges_vanish(case: TreeCase, run: Trajectory, needs: list[Hypothesis]) -> Claim:
-    """x -> 0 on this run: refuted by an edge that has too little energy to shorten to 0 ever again."""
+    """The claim x -> 0 on this run: refuted by an edge that has too little energy ever to shorten to 0."""
     length = case.lengths(run.q[-1])
-    kept, error = longest_floor(case, run.q[-1], run.p[-1])
-    return Claim(
+    kept, error = length_kept(case, run.q[-1], run.p[-1])
+    return judged(
         "edges",
-        judge(-kept if kept > 0.0 else nan, error, needs),
+        -kept if kept > 0.0 else nan,
+        error,
+        needs,
         computed=[float(length.min()), float(length.max())],
         stated="|x_e| -> 0 on every edge",
-        margin=-kept if kept > 0.0 else nan,
-        error=error,
         witness={"q(0)": run.q[0].tolist(), "p(0)": run.p[0].tolist(), "time": float(run.t[-1])},
         proof=_PROOF,
         detail=f"at t = {run.t[-1]:g} edges are {length.min():.6g} to {length.max():.6g} long"
@@ -65,7 +63,7 @@ def _abscissa(case: TreeCase, lengths: np.ndarray) -> float:
 
 
 def _hurwitz(case: TreeCase, run: Trajectory, needs: list[Hypothesis]) -> Claim:
-    """A_cl along the run, Hurwitz if and only if every edge is longer than desired: the proof says so of every state.
+    """The claim that A_cl is Hurwitz all along the run: it is if and only if every edge is longer than desired.
 
     det(sI - A_cl) is the product of s² + a s + w_e, and w_e has the sign of |x_e| - ρ_e: the lengths decide.
     """
@@ -75,13 +73,13 @@ def _hurwitz(case: TreeCase, run: Trajectory, needs: list[Hypothesis]) -> Claim:
     between = float((case.shortest(run) / case.rho).min()) if least > 1.0 else least
     margin = nan if least > 1.0 >= between else between - 1.0
     error, abscissa = length_error(case, run), _abscissa(case, at[k] * case.rho)
-    return Claim(
+    return judged(
         "hurwitz",
-        judge(margin, error, needs),
+        margin,
+        error,
+        needs,
         computed=abscissa,
         stated="all eigenvalues of A_cl have negative real parts",
-        margin=margin,
-        error=error,
         witness={"time": float(run.t[k]), "|x_e|/ρ": at[k].tolist()},
         proof=_PROOF,
         detail=f"at t = {run.t[k]:.4g}, with an edge at {least:.4g} of its desired length, A_cl has an eigenvalue with "
@@ -89,27 +87,18 @@ def _hurwitz(case: TreeCase, run: Trajectory, needs: list[Hypothesis]) -> Claim:
     )
 
 
-def _velocities(case: TreeCase, run: Trajectory, needs: list[Hypothesis]) -> Claim:
-    speeds = np.linalg.norm(edge_vectors(run.p[[0, -1]], case.links), axis=2).max(axis=1)
-    return limit_claim(
-        "velocities",
-        needs,
-        [settles(case, run.q[-1], run.p[-1])],
-        computed=float(speeds[1]),
-        stated="x' -> 0 on every edge",
-        witness={"time": float(run.t[-1]), "at the start": float(speeds[0])},
-        detail=f"velocities match: |x_e'| goes from {speeds[0]:.3g} to {speeds[1]:.3g} at t = {run.t[-1]:g}",
-    )
-
-
-def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
     needs, case = tree_hypotheses(run)
     if case is not None and case.root is None:
-        needs[2] = Hypothesis("the graph is a spanning tree", "unmet", detail="undirected: no agent is a root")
-    nothing = vacuous(needs, _CLAIMS)
-    if case is None or nothing:
-        return needs, nothing
-    return needs, [each(case, run, needs) for each in (_at_rest, _edges_vanish, _velocities, _hurwitz)]
+        needs[1] = Hypothesis("the graph is a spanning tree", "unmet", detail="undirected: no agent is a root")
+    if case is None or unmet(needs):
+        return needs, []
+    return needs, [
+        _at_rest(case, run, needs),
+        _edges_vanish(case, run, needs),
+        velocity_claim(case, run, needs, stated="x' -> 0 on every edge"),
+        _hurwitz(case, run, needs),
+    ]
 
 
 THEOREM = Theorem(
@@ -122,6 +111,8 @@ THEOREM = Theorem(
     ),
     source="Jond, bearing-distance flocking, Theorem 1",
     kind="trajectory",
+    law=minimal_law,
     check=_check,
+    claims=("equilibrium", "edges", "velocities", "hurwitz"),
     references=("jond-2025",),
 )

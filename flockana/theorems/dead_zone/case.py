@@ -1,4 +1,4 @@
-"""What the two forms of the dead-zone theorem share: its law, its hypotheses, its distances and its limits."""
+"""The dead-zone law of a run, and hypotheses and claims that both forms of the dead-zone theorem have."""
 
 from __future__ import annotations
 
@@ -14,7 +14,9 @@ from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.measures.metrics import min_distance
-from flockana.theorems.dead_zone.parting import Parts, parts
+from flockana.theorems.claims import judged
+from flockana.theorems.dead_zone.parting import Components, components_of
+from flockana.theorems.hypotheses import condition
 from flockana.theorems.limits import Certificate, limit_claim
 from flockana.theorems.rounding import EPS
 from flockana.theorems.theorem import Claim, Hypothesis, judge
@@ -33,25 +35,26 @@ def dead_zone_law(run: Trajectory) -> DeadZoneFlocking | None:
 def hypotheses(run: Trajectory) -> list[Hypothesis]:
     """The law, and distinct positions at the start."""
     law = dead_zone_law(run)
-    applies = Hypothesis("the dead-zone law is applied", "met" if law else "unmet", detail=type(run.law).__name__)
     least = min_distance(run.q[0])
-    distinct = Hypothesis("agents start at distinct places", "met" if least > 0.0 else "unmet", least)
-    return [applies, distinct]
+    return [
+        condition("the dead-zone law is applied", law is not None, detail=type(run.law).__name__),
+        condition("agents start at distinct places", least > 0.0, least),
+    ]
 
 
-def at_the_end(run: Trajectory, law: DeadZoneFlocking) -> Parts:
-    """The parts of the flock in the last state of a run, and what is certain of them; kept with the run."""
+def final_components(run: Trajectory, law: DeadZoneFlocking) -> Components:
+    """The components of the net in the last state of a run, and what is certain of them; kept with the run."""
     dt = run.law.dt if isinstance(run.law, DiscreteLaw) else None
-    return run.remembered("dead-zone parts", lambda: parts(run.q[-1], run.p[-1], law, dt))
+    return run.remembered("dead-zone components", lambda: components_of(run.q[-1], run.p[-1], law, dt))
 
 
-def settling(end: Parts) -> Certificate:
-    """Velocities match within each part for ever: each settles by itself, and no two of them meet."""
-    return min((*(part.settles for part in end.parts), end.apart), key=lambda certificate: certificate.margin)
+def settling(end: Components) -> Certificate:
+    """Certificate that velocities match within each component: each settles by itself, and no two of them meet."""
+    return min((*(c.settles for c in end.members), end.apart), key=lambda certificate: certificate.margin)
 
 
-def one_velocity(run: Trajectory, end: Parts, needs: list[Hypothesis], *, name: str) -> Claim:
-    """K̃ → 0: certain of one part that settles, refuted where parts are certain to part, each at its own velocity."""
+def velocities_match(run: Trajectory, end: Components, needs: list[Hypothesis], *, name: str) -> Claim:
+    """K̃ → 0: certain of one component that settles, refuted where components part, each at its own velocity."""
     series = run.metric("velocity_mismatch")
     claim = limit_claim(
         name,
@@ -64,9 +67,9 @@ def one_velocity(run: Trajectory, end: Parts, needs: list[Hypothesis], *, name: 
     )
     if not end.parting:
         return claim
-    margin, error = end.separation.margin, end.separation.error
-    status, detail = judge(-margin, error, needs), f"{claim.detail}: {end.count} parts keep their own for ever"
-    return replace(claim, status=status, margin=-margin, error=error, proof=PROOF, detail=detail)
+    margin, error = -end.separation.margin, end.separation.error
+    detail = f"{claim.detail}: {end.count} parts keep their own for ever"
+    return replace(claim, status=judge(margin, error, needs), margin=margin, error=error, proof=PROOF, detail=detail)
 
 
 def no_collision(run: Trajectory, bound: float, unit: float, needs: list[Hypothesis], *, name: str) -> Claim:
@@ -77,30 +80,26 @@ def no_collision(run: Trajectory, bound: float, unit: float, needs: list[Hypothe
     if isinstance(run.law, DiscreteLaw) or len(run.t) == 1:
         series = run.metric("min_distance")
         k = int(np.argmin(series))
-        least, upper, where, time = float(series[k]), float(series[k]), "at the samples", float(run.t[k])
+        lower, upper, where, time = float(series[k]), float(series[k]), "at the samples", float(run.t[k])
     else:
         closest = run.closest_approach()
-        least, upper, where, time = closest.lower, closest.distance, "ever", closest.time
+        lower, upper, where, time = closest.lower, closest.distance, "ever", closest.time
     rounding = 4.0 * EPS * float(np.abs(run.q).max())
-    margin, error = _above(least, bound, unit, rounding)
-    status = judge(margin, error, needs)
-    if status == "refuted" and upper > bound:  # the lower bound is weak where samples are sparse
-        status = "inconclusive"
-    return Claim(
+    return judged(
         name,
-        status,
-        computed=least,
+        *_log_ratio(lower, bound, unit, rounding),
+        needs,
+        refutes=not upper > bound,  # the lower bound is weak where samples are sparse
+        computed=lower,
         stated=f"every distance > {bound:.4g}",
-        margin=margin,
-        error=error,
         witness={"time": time},
         proof=PROOF,
-        detail=f"no two agents come closer than {least:.4g} {where}; the bound is {bound:.3g}",
+        detail=f"no two agents come closer than {lower:.4g} {where}; the bound is {bound:.3g}",
     )
 
 
-def _above(least: float, bound: float, unit: float, rounding: float) -> tuple[float, float]:
-    """(margin, error) of a distance against a bound; one agent has none."""
+def _log_ratio(least: float, bound: float, unit: float, rounding: float) -> tuple[float, float]:
+    """Logarithm of a distance over a bound, and its error; a single agent has no distances."""
     if least == inf:
         return 1.0, EPS
     if bound == 0.0:

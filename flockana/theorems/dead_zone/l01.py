@@ -9,14 +9,14 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.theorems.dead_zone.erratum import CheckResult, erratum, margin_claim
-from flockana.theorems.theorem import Tolerances
+from flockana.theorems.claims import erratum, judged
+from flockana.theorems.theorem import Claim, Tolerances
 
 _SAME = 1e-9  # relative: two forces that differ by less are the same
 _ROUNDING = 1e-12  # relative, of a force of three agents: some hundred roundings
 
 
-def _check(tolerances: Tolerances) -> CheckResult:
+def _check(tolerances: Tolerances) -> list[Claim]:
     """The forces on three agents before and after the axes are turned, as printed and as corrected."""
     pair = DeadZoneInteraction(k1=0.0)
     q = np.array([[0.0, 0.0], [2.0, 0.5], [-1.0, 2.5]])
@@ -41,30 +41,31 @@ def _check(tolerances: Tolerances) -> CheckResult:
         return float(np.abs(u(q @ turn.T) - u(q) @ turn.T).max() / np.abs(u(q)).max())
 
     printed_change, corrected_change = change_by_turning(printed), change_by_turning(corrected)
-    return [], [
-        margin_claim(
+    return [
+        judged(
             "printed",
             _SAME - printed_change,
-            f"read by components, turning the axes changes the force by {printed_change:.3g} of itself",
-            error=_ROUNDING,
+            _ROUNDING,
+            detail=f"read by components, turning the axes changes the force by {printed_change:.3g} of itself",
         ),
-        margin_claim(
+        judged(
             "corrected",
             _SAME - corrected_change,
-            f"with f once and n once the force turns with the axes, to {corrected_change:.2g}",
-            error=_ROUNDING,
+            _ROUNDING,
+            detail=f"with f once and n once the force turns with the axes, to {corrected_change:.2g}",
         ),
     ]
 
 
 THEOREM = erratum(
-    1,
-    "Direction and sum occur once",
-    "(7) already sums over neighbours and carries the direction; (9) multiplies by n_ij and sums again. A product "
-    "of two vectors is undefined; by components it depends on the axes. The scalar force once and n once is meant.",
-    "(7) and (9)",
-    _check,
-    whole="refuted",
-    printed="refuted",
-    corrected="verified",
+    "L1",
+    title="Direction and sum occur once",
+    statement=(
+        "(7) already sums over neighbours and carries the direction; (9) multiplies by n_ij and sums again. A product "
+        "of two vectors is undefined; by components it depends on the axes. The scalar force once and n once is meant."
+    ),
+    source="Li, Yuan and Liu, (7) and (9)",
+    check=_check,
+    references=("li-dead-zone",),
+    expected={"printed": "refuted", "corrected": "verified"},
 )

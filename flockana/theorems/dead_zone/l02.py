@@ -5,14 +5,14 @@ from __future__ import annotations
 from math import sqrt
 
 from flockana.interactions.dead_zone import DeadZoneInteraction
+from flockana.theorems.claims import erratum, judged
 from flockana.theorems.dead_zone.case import PROOF
-from flockana.theorems.dead_zone.erratum import CheckResult, erratum, margin_claim
-from flockana.theorems.theorem import Tolerances
+from flockana.theorems.theorem import Claim, Tolerances
 
 _ROUNDING = 1e-12  # relative, of a force of two agents
 
 
-def _check(tolerances: Tolerances) -> CheckResult:
+def _check(tolerances: Tolerances) -> list[Claim]:
     """The force on two agents nearer than d1 with either direction of n, and when they meet under the printed one."""
     from scipy.integrate import quad
 
@@ -21,34 +21,35 @@ def _check(tolerances: Tolerances) -> CheckResult:
     level = float(pair.psi(start))
     # two agents at rest under −F: ½ρ'² = 2(ψ(ρ) − ψ(3)), and with ρ = 3(1 − x²) the integrand is smooth at the start
     fall = quad(lambda x: 3.0 * x / sqrt(pair.psi(start * (1.0 - x * x)) - level), 0.0, 1.0, limit=200)[0]
-    return [], [
-        margin_claim(
+    return [
+        judged(
             "printed",
             attraction,
-            f"with n = q_i - q_j two agents at rest {start:g} apart, nearer than d1, are drawn together and meet after "
-            f"{fall:.4g}",
-            error=_ROUNDING,
+            _ROUNDING,
             computed=fall,
             stated="repulsion below r_b - δ",
             proof=PROOF,
+            detail=f"with n = q_i - q_j two agents at rest {start:g} apart, nearer than d1, are drawn together and "
+            f"meet after {fall:.4g}",
         ),
-        margin_claim(
+        judged(
             "corrected",
             -attraction,
-            f"with n = q_j - q_i their force is {attraction:.4g} of that of a contact: it repels",
-            error=_ROUNDING,
+            _ROUNDING,
+            detail=f"with n = q_j - q_i their force is {attraction:.4g} of that of a contact: it repels",
         ),
     ]
 
 
 THEOREM = erratum(
-    2,
-    "n points from i to j",
-    "Three conventions for n are given; with q_i - q_j repulsion and attraction change places and agents fall into "
-    "each other. q_j - q_i is meant throughout.",
-    "(6)-(8)",
-    _check,
-    whole="refuted",
-    printed="refuted",
-    corrected="verified",
+    "L2",
+    title="n points from i to j",
+    statement=(
+        "Three conventions for n are given; with q_i - q_j repulsion and attraction change places and agents fall into "
+        "each other. q_j - q_i is meant throughout."
+    ),
+    source="Li, Yuan and Liu, (6)-(8)",
+    check=_check,
+    references=("li-dead-zone",),
+    expected={"printed": "refuted", "corrected": "verified"},
 )

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from flockana.theorems.claims import erratum, exact
 from flockana.theorems.dead_zone.case import PROOF
-from flockana.theorems.dead_zone.erratum import CheckResult, erratum
 from flockana.theorems.theorem import Claim, Tolerances
 
 
-def _check(tolerances: Tolerances) -> CheckResult:
+def _check(tolerances: Tolerances) -> list[Claim]:
     """φ_z grows as 1/ρ² and its potential as −ln ρ where two agents meet: by algebra."""
     import sympy as sp
 
@@ -15,22 +15,19 @@ def _check(tolerances: Tolerances) -> CheckResult:
 
     growth = sp.limit(RHO**2 * repulsion(), RHO, 0, "+")
     potential = derive_potential()
-    unbounded = bool(growth == 2 * K_R)
-    return [], [
-        Claim(
+    return [
+        exact(
             "printed",
-            "refuted" if unbounded else "verified",
-            "symbolic",
+            growth != 2 * K_R,
             computed=str(growth),
             stated="φ_z is a bounded, positive definite potential",
             witness="limit of ρ² |f| at 0",
             proof=PROOF,
             detail="φ_z is a force, and ρ²|φ_z| tends to 2 k_r at 0: it is unbounded",
         ),
-        Claim(
+        exact(
             "corrected",
-            "verified" if potential.holds else "refuted",
-            "symbolic",
+            potential.holds,
             computed=[str(residual) for residual in potential.residuals],
             stated="dψ/dρ = F, and ψ/(-2k_r ln ρ) -> 1",
             proof=PROOF,
@@ -40,13 +37,14 @@ def _check(tolerances: Tolerances) -> CheckResult:
 
 
 THEOREM = erratum(
-    3,
-    "φ_z is a force, unbounded as 1/r²",
-    "φ_z is called a bounded potential. It is a force, unbounded as 1/r²; its potential is unbounded too, but only "
-    "logarithmically, because n ~ ρ.",
-    "section III",
-    _check,
-    whole="refuted",
-    printed="refuted",
-    corrected="verified",
+    "L3",
+    title="φ_z is a force, unbounded as 1/r²",
+    statement=(
+        "φ_z is called a bounded potential. It is a force, unbounded as 1/r²; its potential is unbounded too, but only "
+        "logarithmically, because n ~ ρ."
+    ),
+    source="Li, Yuan and Liu, section III",
+    check=_check,
+    references=("li-dead-zone",),
+    expected={"printed": "refuted", "corrected": "verified"},
 )

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.base.binomial import clopper_pearson
 from flockana.dynamics.simulate import simulate
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.measures.metrics import connectivity, min_distance
+from flockana.theorems.claims import erratum, judged
 from flockana.theorems.dead_zone.case import PROOF
-from flockana.theorems.dead_zone.erratum import CheckResult, advance, erratum, margin_claim, parting_pair
-from flockana.theorems.dead_zone.parting import parts
-from flockana.theorems.theorem import Tolerances
+from flockana.theorems.dead_zone.motions import advance, parting_pair
+from flockana.theorems.dead_zone.parting import components_of
+from flockana.theorems.shares import INTERVAL_ERROR, interval
+from flockana.theorems.theorem import Claim, Tolerances
 
 _SEEDS = 10  # of each box
-_INTERVAL = 1e-9  # to which the ends of an exact interval are computed
 
 
 def connected_count(box: float, *, seeds: int, n: int = 50, t_end: float = 60.0) -> int:
@@ -27,45 +27,46 @@ def connected_count(box: float, *, seeds: int, n: int = 50, t_end: float = 60.0)
     return count
 
 
-def _check(tolerances: Tolerances) -> CheckResult:
+def _check(tolerances: Tolerances) -> list[Claim]:
     """A pair of agents that part for ever, and the share of flocks that end connected by the width of their start."""
     law, q, p = parting_pair()
     run = simulate(law, q, p, (0.0, 10.0))
-    end = parts(run.q[-1], run.p[-1], law)
+    end = components_of(run.q[-1], run.p[-1], law)
     narrow, wide = (connected_count(box, seeds=_SEEDS) for box in (40.0, 150.0))
-    least, most = float(clopper_pearson(narrow, _SEEDS)[0]), float(clopper_pearson(wide, _SEEDS)[1])
+    least, most = interval(narrow, _SEEDS)[0], interval(wide, _SEEDS)[1]
     radius = 0.5 * min_distance(run.q[-1])
-    return [], [
-        margin_claim(
+    return [
+        judged(
             "printed",
             -end.separation.margin,
-            f"two agents {q[1, 0]:g} apart that leave each other at {2.0 * p[1, 0]:g} part for ever: at t = 10 "
-            f"they are {radius:.4g} from their centre, where {end.separation.text}",
-            error=end.separation.error,
+            end.separation.error,
             computed=radius,
             stated="no agent farther than r from the leader",
             proof=PROOF,
+            detail=f"two agents {q[1, 0]:g} apart that leave each other at {2.0 * p[1, 0]:g} part for ever: at t = 10 "
+            f"they are {radius:.4g} from their centre, where {end.separation.text}",
         ),
-        margin_claim(
+        judged(
             "wide-starts",
             least - most,
-            f"of {_SEEDS} starts in a box of 40 m {narrow} end connected, of {_SEEDS} in one of 150 m {wide}: shares "
-            f"of at least {least:.2f} and at most {most:.2f} (95 %)",
-            error=_INTERVAL,
+            INTERVAL_ERROR,
             computed=[narrow, wide],
             stated="the share of connected flocks falls with the box",
+            detail=f"of {_SEEDS} starts in a box of 40 m {narrow} end connected, of {_SEEDS} in one of 150 m {wide}: "
+            f"shares of at least {least:.2f} and at most {most:.2f} (95 %)",
         ),
     ]
 
 
 THEOREM = erratum(
-    4,
-    "Cohesion is not implied",
-    "No leader appears in (9), and nothing keeps the net connected: two agents 14 m apart that leave each other at "
-    "12 m/s separate, and from wide starts the share of connected flocks falls towards 0.",
-    "Theorem 1, first claim",
-    _check,
-    whole="refuted",
-    printed="refuted",
-    wide_starts="verified",
+    "L4",
+    title="Cohesion is not implied",
+    statement=(
+        "No leader appears in (9), and nothing keeps the net connected: two agents 14 m apart that leave each other at "
+        "12 m/s separate, and from wide starts the share of connected flocks falls towards 0."
+    ),
+    source="Li, Yuan and Liu, Theorem 1, first claim",
+    check=_check,
+    references=("li-dead-zone",),
+    expected={"printed": "refuted", "wide-starts": "verified"},
 )

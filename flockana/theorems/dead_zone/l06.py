@@ -9,16 +9,16 @@ import numpy as np
 from flockana.dynamics.simulate import simulate
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
+from flockana.theorems.claims import erratum, judged
 from flockana.theorems.dead_zone.case import PROOF
-from flockana.theorems.dead_zone.erratum import CheckResult, erratum, margin_claim
-from flockana.theorems.theorem import Tolerances
+from flockana.theorems.theorem import Claim, Tolerances
 
 _TIGHT: dict[str, Any] = {"rtol": 1e-11, "atol": 1e-12}
 _MEASURED = 1e-4  # relative, of a closest approach at that tolerance: it moves by less than 1e-5 with the tolerance
 _ATTAINED = 1e-3  # relative: so near the bound is attained
 
 
-def _check(tolerances: Tolerances) -> CheckResult:
+def _check(tolerances: Tolerances) -> list[Claim]:
     """The closest approach of two agents that run head on at three speeds, against the explicit bound."""
     law = DeadZoneFlocking(DeadZoneInteraction(ramp=0.0, k1=0.0, k_delta=0.0), k2=0.0)
     speeds, closest, bounds = (5.0, 20.0, 40.0), [], []
@@ -29,38 +29,39 @@ def _check(tolerances: Tolerances) -> CheckResult:
         bounds.append(law.interaction.least_distance(float(run.energy()[0])))
     gap = max(abs(a / b - 1.0) for a, b in zip(closest, bounds, strict=True))
     distances = ", ".join(f"{a:.3g}" for a in closest)
-    return [], [
-        margin_claim(
+    return [
+        judged(
             "printed",
             min(closest) / law.scales.length,
-            f"head-on at {', '.join(f'{s:g}' for s in speeds)} each, two agents come as near as {distances} "
-            "and never meet",
-            error=_MEASURED,
+            _MEASURED,
             computed=closest,
             stated="no collision",
             proof=PROOF,
+            detail=f"head-on at {', '.join(f'{s:g}' for s in speeds)} each, two agents come as near as {distances} "
+            "and never meet",
         ),
-        margin_claim(
+        judged(
             "bound",
             _ATTAINED - gap,
-            f"the explicit bound is attained where nothing is lost: the two agree to {gap:.1g}, and it falls "
-            "exponentially with the energy",
-            error=_MEASURED,
+            _MEASURED,
             computed=bounds,
             stated="ρ >= 1/(√η sinh(H̄(0)/2k_r + asinh(1/(√η d₁))))",
             proof=PROOF,
+            detail=f"the explicit bound is attained where nothing is lost: the two agree to {gap:.1g}, and it falls "
+            "exponentially with the energy",
         ),
     ]
 
 
 THEOREM = erratum(
-    6,
-    "No collision, with an explicit bound",
-    "True for distinct starts and k_r > 0: the distance stays above an explicit bound, which is exponentially "
-    "small in the energy, and attained without damping.",
-    "Theorem 1, third claim",
-    _check,
-    whole="verified",
-    printed="verified",
-    bound="verified",
+    "L6",
+    title="No collision, with an explicit bound",
+    statement=(
+        "True for distinct starts and k_r > 0: the distance stays above an explicit bound, which is exponentially "
+        "small in the energy, and attained without damping."
+    ),
+    source="Li, Yuan and Liu, Theorem 1, third claim",
+    check=_check,
+    references=("li-dead-zone",),
+    expected={"printed": "verified", "bound": "verified"},
 )

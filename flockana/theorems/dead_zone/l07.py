@@ -11,10 +11,11 @@ from flockana.dynamics.simulate import simulate
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.measures.metrics import spreads
-from flockana.theorems.dead_zone.erratum import CheckResult, advance, erratum, margin_claim, parting_pair
+from flockana.theorems.claims import erratum, judged
 from flockana.theorems.dead_zone.hold import hold
-from flockana.theorems.dead_zone.parting import parts
-from flockana.theorems.theorem import Tolerances
+from flockana.theorems.dead_zone.motions import advance, parting_pair
+from flockana.theorems.dead_zone.parting import components_of
+from flockana.theorems.theorem import Claim, Tolerances
 
 _SPREAD = 0.2  # of a ratio of two means of a chattering scheme: over starts they differ by 7 %
 
@@ -32,66 +33,70 @@ def _chatter(law: DeadZoneFlocking, dt: float) -> float:
     return float(np.sqrt(spreads(velocities) / velocities.shape[1]).mean())
 
 
-def _check(tolerances: Tolerances) -> CheckResult:
+def _check(tolerances: Tolerances) -> list[Claim]:
     """Velocities of a pair that parts, and of a flock whose contacts chatter with hard jumps and rest with a ramp."""
     law, q, p = parting_pair()
     run = simulate(law, q, p, (0.0, 10.0))
-    end = parts(run.q[-1], run.p[-1], law)
+    end = components_of(run.q[-1], run.p[-1], law)
     hard = DeadZoneFlocking(DeadZoneInteraction(ramp=0.0))
     coarse, fine = _chatter(hard, 0.01), _chatter(hard, 0.002)
     q, p = _settled(law, 0.01)
     ramped = hold(law, q, p, 0.01).certificate
     held = simulate(hard, [[0.0, 0.0], [5.0, 0.0]], np.zeros((2, 2)), (0.0, 200.0))
-    return [], [
-        margin_claim(
+    return [
+        judged(
             "printed",
             -end.separation.margin,
-            f"two agents that part keep a velocity mismatch of {end.drift:.4g} for ever",
-            error=end.separation.error,
+            end.separation.error,
             stated="all velocities match",
+            detail=f"two agents that part keep a velocity mismatch of {end.drift:.4g} for ever",
         ),
-        margin_claim(
+        judged(
             "components",
-            1.0 if all(part.size == 1 for part in end.parts) else nan,
-            "each of the two components is one agent",
-            error=0.0,  # a whole number
+            1.0 if all(component.size == 1 for component in end.members) else nan,
+            0.0,
+            detail="each of the two components is one agent",
         ),
-        margin_claim(
+        judged(
             "chatter",
             1.0 - fine / coarse,
-            f"with the printed jumps √K̃ stays at {coarse:.3g} with a step of 0.01 and at {fine:.3g} with 0.002",
-            error=_SPREAD,
+            _SPREAD,
             computed=[coarse, fine],
             stated="the scheme chatters, the less the shorter its step",
+            detail=f"with the printed jumps √K̃ stays at {coarse:.3g} with a step of 0.01 and at {fine:.3g} with 0.002",
         ),
-        margin_claim(
+        judged(
             "sliding",
             1.0 if "sliding" in held.stats else -1.0,
-            f"with every switch located: {held.message}",
-            error=0.0,  # a whole number
+            0.0,
             stated="a pair at d1 is held there in a sliding mode",
+            detail=f"with every switch located: {held.message}",
         ),
-        margin_claim(
+        judged(
             "ramp",
             ramped.margin,
-            f"with a ramp of 0.25 the mismatch vanishes: {ramped.text}",
-            error=ramped.error,
+            ramped.error,
             computed=float(np.sqrt(spreads(p[None])[0] / len(p))),
+            detail=f"with a ramp of 0.25 the mismatch vanishes: {ramped.text}",
         ),
     ]
 
 
 THEOREM = erratum(
-    7,
-    "Velocities match within components",
-    "Velocities match within connected components only. With the printed hard jumps contacts are sliding modes, "
-    "and a scheme of fixed step chatters about them; with a ramp the mismatch vanishes.",
-    "Theorem 1, second claim",
-    _check,
-    whole="refuted",
-    printed="refuted",
-    components="verified",
-    chatter="verified",
-    sliding="verified",
-    ramp="verified",
+    "L7",
+    title="Velocities match within components",
+    statement=(
+        "Velocities match within connected components only. With the printed hard jumps contacts are sliding modes, "
+        "and a scheme of fixed step chatters about them; with a ramp the mismatch vanishes."
+    ),
+    source="Li, Yuan and Liu, Theorem 1, second claim",
+    check=_check,
+    references=("li-dead-zone",),
+    expected={
+        "printed": "refuted",
+        "components": "verified",
+        "chatter": "verified",
+        "sliding": "verified",
+        "ramp": "verified",
+    },
 )

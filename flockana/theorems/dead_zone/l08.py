@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from flockana.interactions.dead_zone import DeadZoneInteraction
+from flockana.theorems.claims import erratum, judged
 from flockana.theorems.dead_zone.case import PROOF
-from flockana.theorems.dead_zone.erratum import CheckResult, erratum, margin_claim
-from flockana.theorems.theorem import Tolerances
+from flockana.theorems.theorem import Claim, Tolerances
 
 _ROUNDING = 1e-11  # m: of the root of a force
 
 
-def _check(tolerances: Tolerances) -> CheckResult:
+def _check(tolerances: Tolerances) -> list[Claim]:
     """n equidistant points span n − 1 dimensions; and two agents rest at d1, not at r_b."""
     import sympy as sp
     from scipy.optimize import brentq
@@ -19,46 +19,46 @@ def _check(tolerances: Tolerances) -> CheckResult:
     pair = DeadZoneInteraction()
     contact = float(brentq(pair.force, pair.d1 - pair.ramp, pair.d1))
     off_r_b, off_d1 = (abs(contact - at) / pair.ramp for at in (pair.r_b, pair.d1))
-    return [], [
-        margin_claim(
+    return [
+        judged(
             "printed",
             float(2 - rank),
-            f"four points at equal distances have a Gram matrix of rank {rank}, but the plane has 2 dimensions",
-            error=0.0,  # a whole number
+            0.0,
             rigour="symbolic",
             computed=rank,
             stated="all pairs of a flock at distance d",
             proof=PROOF,
+            detail=f"four points at equal distances have a Gram matrix of rank {rank}, but the plane has 2 dimensions",
         ),
-        margin_claim(
+        judged(
             "balance-distance",
             1.0 - off_r_b,
-            f"two agents rest {contact:.5g} apart, not at the balance distance r_b = {pair.r_b:g}",
-            error=_ROUNDING / pair.ramp,
+            _ROUNDING / pair.ramp,
             computed=contact,
             stated="r_b",
+            detail=f"two agents rest {contact:.5g} apart, not at the balance distance r_b = {pair.r_b:g}",
         ),
-        margin_claim(
+        judged(
             "contact",
             1.0 - off_d1,
-            f"but at r_b - δ = {pair.d1:g}, where repulsion ends, less {pair.d1 - contact:.2g} up the ramp",
-            error=_ROUNDING / pair.ramp,
+            _ROUNDING / pair.ramp,
             computed=contact,
             stated="r_b - δ",
             proof=PROOF,
+            detail=f"but at r_b - δ = {pair.d1:g}, where repulsion ends, less {pair.d1 - contact:.2g} up the ramp",
         ),
     ]
 
 
 THEOREM = erratum(
-    8,
-    "No α-lattice of all pairs, and contacts at r_b - δ",
-    "All pairs at one distance d is impossible for n > 3 in the plane. Contacts sit where repulsion ends, at r_b - "
-    "δ, not at the balance distance r_b.",
-    "(1) and the principles of section III",
-    _check,
-    whole="refuted",
-    printed="refuted",
-    balance_distance="refuted",
-    contact="verified",
+    "L8",
+    title="No α-lattice of all pairs, and contacts at r_b - δ",
+    statement=(
+        "All pairs at one distance d is impossible for n > 3 in the plane. Contacts sit where repulsion ends, at r_b - "
+        "δ, not at the balance distance r_b."
+    ),
+    source="Li, Yuan and Liu, (1) and the principles of section III",
+    check=_check,
+    references=("li-dead-zone",),
+    expected={"printed": "refuted", "balance-distance": "refuted", "contact": "verified"},
 )

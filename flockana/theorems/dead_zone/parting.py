@@ -1,7 +1,7 @@
-"""The parts of a dead-zone flock, and what is certain of them for ever: what holds one together, which of them part.
+"""The components of a dead-zone flock's net, and what is certain of them for ever: which stay together, which part.
 
-While no two parts meet, each has a centre of constant velocity and an energy H̄ of its own that does not rise. Two
-things hold a part together:
+While no two components meet, each has a centre of constant velocity and an energy H̄ of its own that does not rise. Two
+things keep a component together:
 
 * its energy: no pair's potential is negative, so at most M = ⌊H̄/ψ̄(r)⌋ of its pairs are ever out of range. If
   M < n - 1 it stays connected, for a cut leaves at least n - 1 pairs out of range; then the steps in the net from one
@@ -9,11 +9,11 @@ things hold a part together:
   nobody gets farther from the centre than B = r (n - 1 + M)/n. With k₂ > 0 its velocities then match: the net's least
   eigenvalue but 0 stays above a positive number, so ∫K dt is finite, and dK/dt is bounded as no two agents come closer
   than an explicit distance (Barbalat's lemma).
-* a strict minimum of its potential (`flockana.theorems.dead_zone.hold`): nobody then gets farther than now, but for the
-  little way to it. That holds of a map of semi-implicit Euler steps as well, whose energy may rise.
+* a strict minimum of its potential (`flockana.theorems.dead_zone.hold`): nobody then gets farther than now, but for
+  the little way to it. That holds of a map of semi-implicit Euler steps as well, whose energy may rise.
 
-Two parts never meet if their centres, at constant velocities, never come closer than r + B + B'. Of a map that is not
-held this is said of the flow from its last state.
+Two components never meet if their centres, at constant velocities, never come closer than r + B + B'. Of a map that
+is not held this is said of the flow from its last state.
 """
 
 from __future__ import annotations
@@ -27,7 +27,8 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.measures.nets import components, links
-from flockana.theorems.dead_zone.hold import Hold, hold
+from flockana.theorems.basin import Basin
+from flockana.theorems.dead_zone.hold import hold
 from flockana.theorems.limits import Certificate
 from flockana.theorems.rounding import EPS
 
@@ -35,8 +36,8 @@ _WHOLE = 1e-12  # of a number of pairs, by which rounding may make it a whole on
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
-    """One component of the net at one instant, and what is certain of it while it meets no other.
+class Component:
+    """A component of the net at one instant, and what is certain of it while it meets no other.
 
     Parameters
     ----------
@@ -64,8 +65,8 @@ class Part:
         return 0.5 * float(np.sum((self.p - self.p.mean(axis=0)) ** 2)) / self.size
 
     @cached_property
-    def hold(self) -> Hold:
-        """How firmly a minimum holds it."""
+    def basin(self) -> Basin:
+        """The basin of the minimum of its potential beside it."""
         return hold(self.law, self.q, self.p, self.dt)
 
     @cached_property
@@ -89,124 +90,120 @@ class Part:
     @property
     def settles(self) -> Certificate:
         """Its velocities will match: by the better of the two certificates."""
-        return self.bond if self.bond.margin > 0.0 else self.hold.certificate
+        return self.bond if self.bond.margin > 0.0 else self.basin.certificate
 
     @cached_property
     def radius(self) -> float:
         """How far from its centre an agent ever gets, at most; ∞ if it might break up."""
         if self.size == 1:
             return 0.0
-        if self.hold.certificate.margin > 0.0:
-            return float(np.linalg.norm(self.q - self.q.mean(axis=0), axis=1).max()) + self.hold.distance
+        if self.basin.certificate.margin > 0.0:
+            return float(np.linalg.norm(self.q - self.q.mean(axis=0), axis=1).max()) + self.basin.reach
         pairs, n = self._out_of_range * (1.0 + _WHOLE) + _WHOLE, self.size
         return self.law.interaction.r * (n - 1 + floor(pairs)) / n if pairs < n - 1 else inf
 
 
 @dataclass(frozen=True, eq=False)
-class Parts:
+class Components:
     """The components of a flock at one instant.
 
     Parameters
     ----------
-    parts : tuple of Part
-        They, the largest index of their agents last.
+    members : tuple of Component
+        The components, in the order of their first agents.
     r : float
         Interaction range.
     """
 
-    parts: tuple[Part, ...]
+    members: tuple[Component, ...]
     r: float
 
     @property
     def count(self) -> int:
         """How many there are."""
-        return len(self.parts)
+        return len(self.members)
 
     @property
     def mismatch(self) -> float:
-        """Largest K̃ of a part."""
-        return max(part.mismatch for part in self.parts)
+        """Largest K̃ of a component."""
+        return max(component.mismatch for component in self.members)
 
     @cached_property
     def drift(self) -> float:
-        """K̃ of the centres, ½ Σ n_c‖v_c − v̄‖²/n: what is left of K̃ for ever if no two parts meet."""
-        sizes, velocity = self._sizes, np.array([part.p.mean(axis=0) for part in self.parts])
+        """K̃ of the centres, ½ Σ n_c‖v_c − v̄‖²/n: what is left of K̃ for ever if no two components meet."""
+        sizes, velocity = self._sizes, np.array([component.p.mean(axis=0) for component in self.members])
         mean = np.average(velocity, axis=0, weights=sizes)
         return 0.5 * float(sizes @ np.sum((velocity - mean) ** 2, axis=1)) / float(sizes.sum())
 
     @property
     def apart(self) -> Certificate:
-        """No two parts ever meet; the margin is by how much their ways clear r + B + B', over r."""
-        margin, error = self._ways
+        """No two components ever meet; the margin is by how much their paths clear r + B + B', over r."""
+        margin, error = self._clearance
         clear = margin > error
         return Certificate(float(np.clip(margin, -1.0, 1.0)), f"parts {'never' if clear else 'may'} meet", error)
 
     @cached_property
-    def _ways(self) -> tuple[float, float]:
-        """(clearance over r, its rounding): of lengths, and of the direction of the ways, as velocities are means."""
+    def _clearance(self) -> tuple[float, float]:
+        """Least clearance of two paths of centres over r, and its rounding: of lengths, and of mean velocities."""
         if self.count == 1:
             return inf, EPS
-        centre, velocity = (np.array([x.mean(axis=0) for x in xs]) for xs in zip(*self._states, strict=True))
-        radius = np.array([part.radius for part in self.parts])
+        centre, velocity = (np.array([getattr(c, x).mean(axis=0) for c in self.members]) for x in "qp")
+        radius = np.array([component.radius for component in self.members])
         a, b = np.triu_indices(self.count, 1)
         x, v = centre[b] - centre[a], velocity[b] - velocity[a]
         speed2 = np.sum(v**2, axis=1)
-        turn = np.maximum(0.0, -np.sum(x * v, axis=1)) / np.where(speed2 > 0.0, speed2, 1.0)  # when they are closest
-        nearest = np.linalg.norm(x + turn[:, None] * v, axis=1)
-        blur = self._blur[a] + self._blur[b]
+        when = np.maximum(0.0, -np.sum(x * v, axis=1)) / np.where(speed2 > 0.0, speed2, 1.0)
+        nearest = np.linalg.norm(x + when[:, None] * v, axis=1)
+        blur = self._velocity_error[a] + self._velocity_error[b]
         turned = np.divide(4.0 * blur, np.sqrt(speed2), out=np.ones_like(blur), where=4.0 * blur < np.sqrt(speed2))
         bent = float((np.linalg.norm(x, axis=1) * np.where(blur > 0.0, turned, 0.0)).max())
-        extent = max(float(np.abs(part.q).max()) for part in self.parts)
+        extent = max(float(np.abs(component.q).max()) for component in self.members)
         n = float(self._sizes.max())
         error = (n + 16.0) * EPS * (extent + self.r) + bent
         return float((nearest - self.r - radius[a] - radius[b]).min()) / self.r, error / self.r
 
     @property
     def parting(self) -> bool:
-        """Whether it is certain that they part."""
+        """Whether it is certain that the components part."""
         return self.separation.margin > self.separation.error
 
     @cached_property
     def separation(self) -> Certificate:
-        """No two parts ever meet, and their centres have different velocities: the flock grows beyond all bounds.
+        """No two components ever meet, and their centres have different velocities: the flock grows beyond all bounds.
 
         The margin is the lesser of that of `apart` and of the drift over the square of the law's speed scale.
         """
         if self.count == 1:
             return Certificate(-1.0, "the flock is in one part")
-        unit = self.parts[0].law.scales.speed
-        blur, drift = 2.0 * float(self._blur.max()) / unit, self.drift / unit**2
+        unit = self.members[0].law.scales.speed
+        blur, drift = 2.0 * float(self._velocity_error.max()) / unit, self.drift / unit**2
         slip = 4.0 * blur * (sqrt(drift) + blur) + 64.0 * EPS * drift
-        margin, error = min(self._ways, (drift, slip), key=lambda pair: pair[0] - pair[1])
+        margin, error = min(self._clearance, (drift, slip), key=lambda pair: pair[0] - pair[1])
         text = f"{self.count} {self.apart.text}, and their centres keep a K̃ of {self.drift:.4g}"
         return Certificate(float(np.clip(margin, -1.0, 1.0)), text, error)
 
     @cached_property
-    def _blur(self) -> FloatArray:
-        """Rounding of the velocity of each part's centre: of a mean, so none of one agent."""
-        blur = [0.0 if part.size == 1 else (part.size + 2) * EPS * float(np.abs(part.p).max()) for part in self.parts]
-        return np.array(blur)
+    def _velocity_error(self) -> FloatArray:
+        """Rounding of the velocity of each component's centre: of a mean, so none of a single agent."""
+        several = [(c.size + 2) * EPS * float(np.abs(c.p).max()) if c.size > 1 else 0.0 for c in self.members]
+        return np.array(several)
 
     @property
     def _sizes(self) -> FloatArray:
-        return np.array([part.size for part in self.parts], dtype=np.float64)
-
-    @property
-    def _states(self) -> list[tuple[FloatArray, FloatArray]]:
-        return [(part.q, part.p) for part in self.parts]
+        return np.array([component.size for component in self.members], dtype=np.float64)
 
 
-def parts(q: FloatArray, p: FloatArray, law: DeadZoneFlocking, dt: float | None = None) -> Parts:
+def components_of(q: FloatArray, p: FloatArray, law: DeadZoneFlocking, dt: float | None = None) -> Components:
     """The components of the net at r.
 
     Examples
     --------
     >>> law, apart = DeadZoneFlocking(), np.array([[0.0], [16.0]])
-    >>> parts(apart, np.array([[-1.0], [1.0]]), law).parting
+    >>> components_of(apart, np.array([[-1.0], [1.0]]), law).parting
     True
-    >>> parts(apart, np.array([[1.0], [-1.0]]), law).parting
+    >>> components_of(apart, np.array([[1.0], [-1.0]]), law).parting
     False
     """
     label = components(len(q), links(q, law.interaction.r))
     groups = [np.flatnonzero(label == k) for k in range(int(label.max()) + 1)]
-    return Parts(tuple(Part(law, q[g], p[g], dt) for g in groups), law.interaction.r)
+    return Components(tuple(Component(law, q[g], p[g], dt) for g in groups), law.interaction.r)

@@ -1,4 +1,4 @@
-"""Whether two agents of a run come into range of each other: between the samples too, or not to be told."""
+"""Whether two agents of a run come into range of each other, between the samples too, as far as it can be decided."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _NEXT = 1.5  # steps: samples of a map that are farther apart have states betwee
 
 @dataclass(frozen=True)
 class Entry:
-    """What is known of pairs that come into range.
+    """The first pair that comes into range, and whether there may be others.
 
     Parameters
     ----------

@@ -5,27 +5,25 @@ from __future__ import annotations
 import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory
-from flockana.theorems.dead_zone.case import PROOF, at_the_end, dead_zone_law, hypotheses, no_collision, settling
-from flockana.theorems.dead_zone.parting import Parts
-from flockana.theorems.hypotheses import vacuous
+from flockana.theorems.claims import judged
+from flockana.theorems.dead_zone.case import PROOF, dead_zone_law, final_components, hypotheses, no_collision, settling
+from flockana.theorems.dead_zone.parting import Components
 from flockana.theorems.limits import limit_claim
 from flockana.theorems.olfati_saber.energy import balance
-from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
-
-_CLAIMS = ("rate", "balance", "components", "distance")
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
 
 
 def _rate(run: Trajectory, rate: np.ndarray, needs: list[Hypothesis]) -> Claim:
     """−k₂ pᵀL̂p is a sum of squares: no rounding can change its sign, and samples where it has another are counted."""
     worst, rising = int(np.argmax(rate)), int(np.sum(~(rate <= 0.0)))
     margin = float(-rising or 1)
-    return Claim(
+    return judged(
         "rate",
-        judge(margin, 0.0, needs),
+        margin,
+        0.0,
+        needs,
         computed=float(rate[worst]),
         stated="dH̄/dt = -k₂ pᵀL̂p <= 0, across all switches",
-        margin=margin,
-        error=0.0,
         witness={"time": float(run.t[worst]), "samples at which it is positive": rising},
         proof=PROOF,
         detail=f"the saturated energy goes from {run.energy()[0]:.6g} to {run.energy()[-1]:.6g}",
@@ -38,7 +36,7 @@ def _balance(run: Trajectory, needs: list[Hypothesis], tolerances: Tolerances) -
     return Claim("balance", "vacuous", detail="the steps of a scheme of first order keep no energy balance")
 
 
-def _components(run: Trajectory, end: Parts, needs: list[Hypothesis]) -> Claim:
+def _components(run: Trajectory, end: Components, needs: list[Hypothesis]) -> Claim:
     """Within each component velocities match in the end; a finite run cannot refute the limit."""
     return limit_claim(
         "components",
@@ -51,17 +49,16 @@ def _components(run: Trajectory, end: Parts, needs: list[Hypothesis]) -> Claim:
     )
 
 
-def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
     needs, law = hypotheses(run), dead_zone_law(run)
-    nothing = vacuous(needs, _CLAIMS)
-    if law is None or nothing:
-        return needs, nothing
+    if law is None or unmet(needs):
+        return needs, []
     rate = np.array([law.flow(float(t), q, p)[1] for t, q, p in zip(run.t, run.q, run.p, strict=True)])
     bound = law.interaction.least_distance(float(run.energy()[0]))
     return needs, [
         _rate(run, rate, needs),
         _balance(run, needs, tolerances),
-        _components(run, at_the_end(run, law), needs),
+        _components(run, final_components(run, law), needs),
         no_collision(run, bound, law.scales.length, needs, name="distance"),
     ]
 
@@ -78,5 +75,6 @@ THEOREM = Theorem(
     source="ours; repairs Li, Yuan and Liu, Theorem 1",
     kind="trajectory",
     check=_check,
+    claims=("rate", "balance", "components", "distance"),
     references=("li-dead-zone",),
 )

@@ -7,52 +7,47 @@ from math import nan
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.measures.metrics import cohesion_radius
+from flockana.theorems.claims import judged
 from flockana.theorems.dead_zone.case import (
     PROOF,
-    at_the_end,
     dead_zone_law,
+    final_components,
     hypotheses,
     no_collision,
-    one_velocity,
+    velocities_match,
 )
-from flockana.theorems.dead_zone.parting import Parts
+from flockana.theorems.dead_zone.parting import Components
 from flockana.theorems.dead_zone.range_limits import first_entry
-from flockana.theorems.hypotheses import vacuous
 from flockana.theorems.rounding import EPS, frame_error
-from flockana.theorems.theorem import Claim, Hypothesis, Status, Theorem, Tolerances, judge
-
-_CLAIMS = ("cohesion", "energy", "velocity", "collision")
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
 
 
-def _certain_radius(run: Trajectory, end: Parts, radius: float) -> tuple[float, float, str]:
+def _certain_radius(run: Trajectory, end: Components, radius: float) -> tuple[float, float, str]:
     """(1 - R/r of the limit, its error, how it is known); NaN where nothing is."""
     if end.count > 1:
         apart = end.separation
         return -apart.margin if end.parting else nan, apart.error, apart.text
-    (part,), r = end.parts, end.r
-    if part.size == 1 or part.hold.certificate.margin > 0.0:
-        error = (part.hold.distance + 2.0 * frame_error(run.q[-1:])) / r + 4.0 * EPS
-        return 1.0 - radius / r, error, part.hold.certificate.text
-    if part.dt is None and part.radius < r:
-        return (
-            1.0 - part.radius / r,
-            4.0 * EPS,
-            f"{part.bond.text}, and no agent {part.radius:.4g} away from the centre",
-        )
-    return nan, EPS, part.hold.certificate.text
+    (whole,), r = end.members, end.r
+    caught = whole.basin.certificate
+    if whole.size == 1 or caught.margin > 0.0:
+        return 1.0 - radius / r, (whole.basin.reach + 2.0 * frame_error(run.q[-1:])) / r + 4.0 * EPS, caught.text
+    if whole.dt is None and whole.radius < r:
+        text = f"{whole.bond.text}, and no agent {whole.radius:.4g} away from the centre"
+        return 1.0 - whole.radius / r, 4.0 * EPS, text
+    return nan, EPS, caught.text
 
 
-def _cohesion(run: Trajectory, end: Parts, needs: list[Hypothesis]) -> Claim:
+def _cohesion(run: Trajectory, end: Components, needs: list[Hypothesis]) -> Claim:
     """R ≤ r in the end: of a flock that is held the limit is known, of one that parts as well."""
     radius = cohesion_radius(run.q[-1])
     margin, error, known = _certain_radius(run, end, radius)
-    return Claim(
+    return judged(
         "cohesion",
-        judge(margin, error, needs),
+        margin,
+        error,
+        needs,
         computed=radius,
         stated=f"in the end no agent is farther than r = {end.r:g} from the leader (read: the centre of mass)",
-        margin=margin,
-        error=error,
         witness={"components": end.count, "time": float(run.t[-1])},
         proof=PROOF if end.count > 1 else None,
         detail=f"at t = {run.t[-1]:g} there are {end.count} component(s), R = {radius:.4g}; {known}",
@@ -67,7 +62,6 @@ def _energy(run: Trajectory, law: DeadZoneFlocking, needs: list[Hypothesis]) -> 
     jump, entry = law.interaction.far_potential, first_entry(run, law.interaction.r)
     enters = entry.pair is not None and jump > 0.0
     margin = -1.0 if enters else nan if entry.unsure and jump > 0.0 else 1.0
-    status: Status = judge(margin, 0.0, needs)
     detail = "no pair comes into range"
     if enters:
         detail = f"agents {entry.pair} come into range of each other before t = {entry.time:.6g}: H rises by {jump:.4g}"
@@ -75,29 +69,28 @@ def _energy(run: Trajectory, law: DeadZoneFlocking, needs: list[Hypothesis]) -> 
         detail = "the potential of a pair is 0 at r: nothing jumps"
     elif entry.unsure:
         detail = "between the samples, or but for rounding, a pair may come into range"
-    return Claim(
+    return judged(
         "energy",
-        status,
+        margin,
+        0.0,
+        needs,
         computed=jump if enters else 0.0,
         stated="H, summed over neighbours, never rises",
-        margin=margin,
-        error=0.0,
         witness={"agents": entry.pair, "time": entry.time},
         proof=PROOF,
         detail=detail,
     )
 
 
-def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
     needs, law = hypotheses(run), dead_zone_law(run)
-    nothing = vacuous(needs, _CLAIMS)
-    if law is None or nothing:
-        return needs, nothing
-    end = at_the_end(run, law)
+    if law is None or unmet(needs):
+        return needs, []
+    end = final_components(run, law)
     return needs, [
         _cohesion(run, end, needs),
         _energy(run, law, needs),
-        one_velocity(run, end, needs, name="velocity"),
+        velocities_match(run, end, needs, name="velocity"),
         no_collision(run, 0.0, law.scales.length, needs, name="collision"),
     ]
 
@@ -114,5 +107,6 @@ THEOREM = Theorem(
     source="Li, Yuan and Liu, Theorem 1 (its proof is omitted there)",
     kind="trajectory",
     check=_check,
+    claims=("cohesion", "energy", "velocity", "collision"),
     references=("li-dead-zone",),
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import sqrt
 from typing import Any
@@ -20,11 +20,14 @@ from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.stability.decay import Decay, LinearRange, decay, decay_table, linear_range
 from flockana.stability.linearisation import Linearisation
 from flockana.stability.linearise import linearise
+from flockana.theorems.claims import erratum, judged
+from flockana.theorems.hypotheses import condition
 from flockana.theorems.slides.e05 import fcc_star
-from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
+from flockana.theorems.theorem import Checked, Claim, Theorem, Tolerances
 
 RANGES = ("hexagon 19, Algorithm 1", "hexagon 19, Algorithm 2")
 _MOST = 200  # agents: the spectrum is dense
+_RANGE_FIELDS = ("exponent", "amplitudes", "deviations", "net_changes", "margin")
 _EXPONENT = 0.05  # how far from 2: the first amplitudes still hold a share of the next term
 
 
@@ -39,57 +42,53 @@ def lattice_equilibria() -> dict[str, Linearisation]:
     d = AlphaInteraction().d
     nets: dict[str, FloatArray] = {f"hexagon {3 * k * (k + 1) + 1}": hexagonal_patch(k, d) for k in (1, 2, 3)}
     nets["FCC site 13"] = fcc_star(d)
-    found = {}
+    flocks = {}
     for name, q in nets.items():
         for law in (Algorithm1(), Algorithm2(target=StaticTarget(q.mean(axis=0)))):
-            found[f"{name}, Algorithm {type(law).__name__[-1]}"] = linearise(law, find_equilibrium(law, q))
+            flocks[f"{name}, Algorithm {type(law).__name__[-1]}"] = linearise(law, find_equilibrium(law, q))
     wall = Algorithm3(target=StaticTarget((0.0, 2.0)), obstacles=(Wall((0.0, 0.0), (0.0, 1.0)),))
-    found["hexagon 7 at a wall, Algorithm 3"] = linearise(wall, find_equilibrium(wall, nets["hexagon 7"] + (0.0, 12.0)))
-    return found
+    start = nets["hexagon 7"] + (0.0, 12.0)
+    return flocks | {"hexagon 7 at a wall, Algorithm 3": linearise(wall, find_equilibrium(wall, start))}
 
 
-def row(one: Decay) -> dict[str, Any]:
+def row(rates: Decay) -> dict[str, Any]:
     """A line of the decay table as plain data."""
     return {
-        "law": one.law,
-        "n": one.n,
-        "m": one.m,
-        "mode": one.mode.name,
-        "frequency": one.mode.frequency,
-        "predicted": one.predicted,
-        "measured": one.measured,
-        "error": one.error,
-        "random, linear": one.random_linear,
-        "random, measured": one.random_measured,
+        "law": rates.law,
+        "n": rates.n,
+        "m": rates.m,
+        "mode": rates.mode.name,
+        "frequency": rates.mode.frequency,
+        "predicted": rates.predicted,
+        "measured": rates.measured,
+        "error": rates.error,
+        "random, linear": rates.random_linear,
+        "random, measured": rates.random_measured,
     }
 
 
-def _agreement(rows: Iterable[Decay], tolerances: Tolerances) -> list[Claim]:
-    """Rates along the slowest mode, and late rates from random starts."""
-    rows = list(rows)
-    worst = max(rows, key=lambda one: one.difference)
-    other = max(rows, key=lambda one: one.random_difference)
-    margin, mixed = tolerances.agreement - worst.difference, tolerances.agreement - other.random_difference
-    error = max(one.error / one.predicted for one in rows)
+def _agreement(decays: Sequence[Decay], tolerances: Tolerances) -> list[Claim]:
+    """The claims about the decay rate along the slowest mode, and about late rates from random starts."""
+    worst = max(decays, key=lambda each: each.difference)
+    other = max(decays, key=lambda each: each.random_difference)
+    error = max(each.error / each.predicted for each in decays)
     return [
-        Claim(
+        judged(
             "decay",
-            judge(margin, error, []),
-            computed={one.name: row(one) for one in rows},
+            tolerances.agreement - worst.difference,
+            error,
+            computed={each.name: row(each) for each in decays},
             stated="K̃ falls at twice the decay rate of the slowest mode, along which the flock was displaced",
-            margin=margin,
-            error=error,
             witness=worst.name,
             detail=f"measured rates differ from the predicted ones by {worst.difference:.2g} at most ({worst.name}: "
             f"{worst.measured:.6g} for {worst.predicted:.6g})",
         ),
-        Claim(
+        judged(
             "random",
-            judge(mixed, error, []),
+            tolerances.agreement - other.random_difference,
+            error,
             computed=other.random_measured,
             stated=other.random_linear,
-            margin=mixed,
-            error=error,
             witness=other.name,
             detail="from a random start all modes die out together: late in the run K̃ falls as the linear system's, "
             f"to {other.random_difference:.2g} at worst ({other.name}: {other.random_measured:.6g} for "
@@ -98,72 +97,62 @@ def _agreement(rows: Iterable[Decay], tolerances: Tolerances) -> list[Claim]:
     ]
 
 
-def _range(found: Mapping[str, LinearRange], alpha: AlphaInteraction) -> Claim:
+def _range(ranges: Mapping[str, LinearRange], alpha: AlphaInteraction) -> Claim:
     """The deviation's exponent: the first neglected term is quadratic about a lattice."""
-    exponents = [one.exponent for one in found.values()]
+    exponents = [each.exponent for each in ranges.values()]
     margin = _EXPONENT - max(abs(exponent - 2.0) for exponent in exponents)
-    error = max(one.exponent_error for one in found.values())
+    error = max(each.exponent_error for each in ranges.values())
     bend = sqrt(1.0 + alpha.eps * alpha.d**2) / alpha.d**2  # σ₁'s argument is 1 where ‖q_ij‖_σ is off by 1
     limits = "; ".join(
-        f"{name}: 1 % at {one.limit(0.01):.2g} d, 10 % at {one.limit(0.1):.2g} d" for name, one in found.items()
+        f"{name}: 1 % at {each.limit(0.01):.2g} d, 10 % at {each.limit(0.1):.2g} d" for name, each in ranges.items()
     )
-    return Claim(
+    return judged(
         "range",
-        judge(margin, error, []),
+        margin,
+        error,
         computed={
-            name: {
-                "exponent": one.exponent,
-                "amplitudes": one.amplitudes,
-                "deviations": one.deviations,
-                "net changes": one.net_changes,
-                "margin": one.margin,
-            }
-            for name, one in found.items()
+            name: {key.replace("_", " "): getattr(each, key) for key in _RANGE_FIELDS} for name, each in ranges.items()
         },
         stated="a run leaves its linear prediction by a distance that grows as the square of the amplitude",
-        margin=margin,
-        error=error,
-        witness={"σ₁ bends at": bend, "a link reaches r at": {name: one.margin for name, one in found.items()}},
+        witness={"σ₁ bends at": bend, "a link reaches r at": {name: each.margin for name, each in ranges.items()}},
         detail=f"exponents {', '.join(f'{exponent:.3f}' for exponent in exponents)}; deviation of {limits}. σ₁ "
         f"saturates where a link is off by {bend:.2g} d, and that ends the linear range, long before a link reaches r",
     )
 
 
-def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+def _check(tolerances: Tolerances) -> list[Claim]:
     flocks = lattice_equilibria()
     ranges = {name: linear_range(flocks[name], name=name) for name in RANGES}
-    return [], [*_agreement(decay_table(flocks), tolerances), _range(ranges, AlphaInteraction())]
+    return [*_agreement(decay_table(flocks), tolerances), _range(ranges, AlphaInteraction())]
 
 
 def _terminal(run: Trajectory) -> tuple[Linearisation | None, str]:
-    """The equilibrium that the run's last state is near to, linearised; or None and why not."""
-    law = run.law
+    """The equilibrium beside the run's last state, linearised; or None and why there is none."""
+    law: Any = run.law
     if type(law) not in (Algorithm1, Algorithm2, Algorithm3):  # a subclass may push otherwise
         return None, f"{type(law).__name__} has no equilibria that are sought here"
     if run.n > _MOST:
         return None, f"n = {run.n}: more than {_MOST}"
-    target = law.target
-    held: Any = law
-    if target is not None:
-        held = replace(held, target=StaticTarget(target.position(float(run.t[-1]))))
+    if law.target is not None:
+        law = replace(law, target=StaticTarget(law.target.position(float(run.t[-1]))))
     try:
-        found = linearise(held, find_equilibrium(held, run.q[-1]))
+        linear = linearise(law, find_equilibrium(law, run.q[-1]))
     except FlockanaError as error:
         return None, str(error)
-    return found, f"residual {found.residual:.2g}, decay rate {found.decay_rate:.4g}"
+    return linear, f"residual {linear.residual:.2g}, decay rate {linear.decay_rate:.4g}"
 
 
-def _check_terminal(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
-    found, why = _terminal(run)
-    stable = found is not None and bool(found.modes) and found.stable
-    given = Hypothesis("an equilibrium near the last state is stable", "met" if stable else "unmet", detail=why)
-    if found is None or not stable:
-        return [given], [Claim(name, "vacuous", detail="no stable equilibrium to return to") for name in _NAMES]
+def _check_terminal(run: Trajectory, tolerances: Tolerances) -> Checked:
+    linear, why = _terminal(run)
+    stable = linear is not None and bool(linear.modes) and linear.stable
+    given = [condition("an equilibrium near the last state is stable", stable, detail=why)]
+    if linear is None or not stable:
+        return given, []
     try:
-        one = decay(found, name=f"n = {run.n}, last state")
+        rates = decay(linear, name=f"n = {run.n}, last state")
     except ArgumentError as error:  # it has no shape, or hardly any damping
-        return [given], [Claim(name, "inconclusive", detail=f"no rate was measured: {error}") for name in _NAMES]
-    return [given], _agreement([one], tolerances)
+        return given, [Claim(name, "inconclusive", detail=f"no rate was measured: {error}") for name in _NAMES]
+    return given, _agreement([rates], tolerances)
 
 
 _NAMES = ("decay", "random")
@@ -173,21 +162,15 @@ _STATEMENT = (
 )
 
 THEOREM = (
-    Theorem(
-        id="linearised-decay",
+    erratum(
+        "linearised-decay",
         title="The linearisation tells the truth near lattices",
         statement=_STATEMENT
         + ", and the distance from the linear prediction grows as the square of the perturbation. Checked on hexagonal "
         "patches, an FCC site, and a hexagon at a wall.",
         source="ours; the statement is textbook knowledge",
-        kind="fixed",
         check=_check,
-        expected={
-            "linearised-decay": "verified",
-            "linearised-decay:decay": "verified",
-            "linearised-decay:random": "verified",
-            "linearised-decay:range": "verified",
-        },
+        expected={"decay": "verified", "random": "verified", "range": "verified"},
     ),
     Theorem(
         id="linearised-decay-terminal",
@@ -196,5 +179,7 @@ THEOREM = (
         source="ours; the statement is textbook knowledge",
         kind="trajectory",
         check=_check_terminal,
+        claims=_NAMES,
+        reason="no stable equilibrium to return to",
     ),
 )

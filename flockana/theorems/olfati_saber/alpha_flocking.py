@@ -10,11 +10,12 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw
-from flockana.theorems.hypotheses import vacuous
+from flockana.theorems.claims import judged
+from flockana.theorems.hypotheses import condition, has_lattice
 from flockana.theorems.leads import bridge
 from flockana.theorems.rounding import EPS, frame_error, spread_error
 from flockana.theorems.sampling import fastest_between, nets_at, nets_between, radius_between
-from flockana.theorems.theorem import Claim, Hypothesis, HypothesisStatus, Theorem, Tolerances, judge
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
 
 _SHARE = 1e-9  # of an agent: what a share of n agents, as a decimal fraction, may be off by
 
@@ -39,7 +40,7 @@ class _Window:
 
 
 def _window(run: Trajectory, tolerances: Tolerances) -> tuple[Hypothesis, _Window]:
-    """The part that is judged: flocking is defined over a time, which one instant is not."""
+    """The part of a run that is judged: flocking is defined over a time, which one instant is not."""
     start = float(run.t[0] + tolerances.settle * (run.t[-1] - run.t[0]))
     before = int(np.searchsorted(run.t, start, side="right")) - 1
     lead = run.t[before] < start and not isinstance(run.law, DiscreteLaw)  # a map is nowhere between its steps
@@ -47,8 +48,7 @@ def _window(run: Trajectory, tolerances: Tolerances) -> tuple[Hypothesis, _Windo
     part = run.remembered(f"window from {begin!r}", lambda: run.window(begin, float(run.t[-1])))
     count = len(part.t) - int(lead)
     detail = f"from t = {part.t[-count]:.4g} to {part.t[-1]:.4g}, at {count} samples"
-    found = Hypothesis("judged over a window", "met" if count > 1 else "unmet", detail=detail)
-    return found, _Window(part, int(lead), start)
+    return condition("judged over a window", count > 1, detail=detail), _Window(part, int(lead), start)
 
 
 def _always(name: str, part: _Window, value: FloatArray, bound: float, error: FloatArray, between: FloatArray) -> Claim:
@@ -61,13 +61,12 @@ def _always(name: str, part: _Window, value: FloatArray, bound: float, error: Fl
         between = np.maximum(between - value[worst], 0.0)
         error = error + float(between.max(initial=0.0))
     margin = bound - float(value[worst])
-    return Claim(
+    return judged(
         name,
-        judge(margin, float(error[worst]), []),
+        margin,
+        float(error[worst]),
         computed=float(value[worst]),
         stated=f"{symbol} <= {bound:.4g}",
-        margin=margin,
-        error=float(error[worst]),
         witness={"time": float(t[worst])},
         detail=f"{what} {symbol}: {value[worst]:.4g} at worst, at t = {t[worst]:.4g}",
     )
@@ -88,38 +87,38 @@ def _never_more(name: str, part: _Window, counts: tuple[FloatArray, FloatArray, 
     broken = least[worst] > most
     worst = worst if broken else int(np.argmax(largest))
     margin = most + 0.5 - (float(least[worst]) if broken else max(float(largest[worst]), between))
-    error = 0.0 if broken or margin > 0.0 else inf
-    return Claim(
+    certain = broken or margin > 0.0
+    near = "whether there are ever more is open: a pair comes as near to r as this run can tell"
+    return judged(
         name,
-        judge(margin, error, []),
+        margin,
+        0.0 if certain else inf,
         computed=int(least[worst]),
         stated=f"at most {most}",
-        margin=margin,
-        error=error,
         witness={"time": float(t[worst])},
         detail=f"{what}: {int(least[worst])} at worst, at t = {t[worst]:.4g}, where {most} may be"
-        + (
-            ""
-            if error == 0.0
-            else "; whether there are ever more is open: a pair comes as near to r as this run can tell"
-        ),
+        + ("" if certain else f"; {near}"),
     )
 
 
-def _flock(part: _Window, tolerances: Tolerances, *, giant: bool) -> Claim:
-    """The net is connected, or keeps a component with more than a share of the agents, by links that are certain."""
+def _connected(part: _Window) -> Claim:
+    """The claim that the net is connected throughout, by links that are certain."""
+    between, at = nets_between(part.run), nets_at(part.run)
+    counts = at.components_least, at.components, float(between.components.max(initial=0.0))
+    return _never_more("flock", part, counts, 1, "components")
+
+
+def _giant(part: _Window, tolerances: Tolerances) -> Claim:
+    """The claim that a component keeps more than a share of the agents, by links that are certain."""
     run = part.run
     between, at = nets_between(run), nets_at(run)
-    if not giant:
-        counts = at.components_least, at.components, float(between.components.max(initial=0.0))
-        return _never_more("flock", part, counts, 1, "components")
     fewest = floor(tolerances.giant * run.n + _SHARE) + 1  # agents that are more than the share
     counts = run.n - at.giant_most, run.n - at.giant, float(run.n - between.giant.min(initial=run.n))
     return _never_more("giant", part, counts, run.n - fewest, "agents outside the giant component")
 
 
 def _common(part: _Window, tolerances: Tolerances) -> list[Claim]:
-    """Ẽ <= ε₁ and K̃ <= ε₂; a link that may come or go between samples, or by rounding, adds (r − d)² to Ẽ."""
+    """The claims Ẽ <= ε₁ and K̃ <= ε₂; a link that may come or go between samples, or by rounding, adds to Ẽ."""
     run = part.run
     (d, r), units, steps = run.law.lattice, run.scales.energy, isinstance(run.law, DiscreteLaw)
     deviation, mismatch = run.metric("deviation_energy"), run.metric("velocity_mismatch") / units
@@ -137,40 +136,38 @@ def _common(part: _Window, tolerances: Tolerances) -> list[Claim]:
 
 
 def _between(value: FloatArray, *, steps: bool) -> FloatArray:
-    """What a smooth series may reach between samples: beyond the larger end by half of what the ends differ."""
+    """Bound of a smooth series between samples: beyond the larger end by half of what the ends differ."""
     ends = np.maximum(value[:-1], value[1:])
     between: FloatArray = ends if steps else ends + 0.5 * np.abs(np.diff(value))
     return between
 
 
 def _cohesive(part: _Window, tolerances: Tolerances) -> Claim:
-    """R never exceeds a multiple of that at the start of the window, which its first sample may come after."""
+    """The claim that R never exceeds a multiple of its value at the start of the window."""
     run = part.run
-    radius, after = run.metric("cohesion_radius"), float(run.t[part.first]) - part.start
+    radius = run.metric("cohesion_radius")
+    after = float(run.t[part.first]) - part.start  # by which its first sample comes later than the window begins
     grown = fastest_between(run)[0] * after if part.first else 0.0
     error = np.full(len(run.t), 4.0 * frame_error(run.q) + tolerances.cohesion * grown)
     bound = tolerances.cohesion * float(radius[part.first])
     return _always("cohesive", part, radius, bound, error, radius_between(run))
 
 
-def _judged(run: Trajectory, tolerances: Tolerances, *, strict: bool) -> tuple[list[Hypothesis], list[Claim]]:
-    names = ("flock", "deviation", "mismatch") if strict else ("giant", "cohesive", "deviation", "mismatch")
-    has: HypothesisStatus = "unmet" if run.law.lattice is None else "met"
-    law = Hypothesis("the law has a scale d and a range r", has, detail=type(run.law).__name__)
+def _given(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], _Window]:
     window, part = _window(run, tolerances)
-    needs = [law, window]
-    if nothing := vacuous(needs, names):
-        return needs, nothing
-    first = [_flock(part, tolerances, giant=not strict), *([] if strict else [_cohesive(part, tolerances)])]
-    return needs, [*first, *_common(part, tolerances)]
+    return [has_lattice(run), window], part
 
 
-def _plain(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
-    return _judged(run, tolerances, strict=False)
+def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
+    needs, part = _given(run, tolerances)
+    if unmet(needs):
+        return needs, []
+    return needs, [_giant(part, tolerances), _cohesive(part, tolerances), *_common(part, tolerances)]
 
 
-def _strict(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
-    return _judged(run, tolerances, strict=True)
+def _check_strict(run: Trajectory, tolerances: Tolerances) -> Checked:
+    needs, part = _given(run, tolerances)
+    return needs, [] if unmet(needs) else [_connected(part), *_common(part, tolerances)]
 
 
 THEOREM = (
@@ -184,7 +181,8 @@ THEOREM = (
         ),
         source="Olfati-Saber 2006, Definition 5",
         kind="trajectory",
-        check=_plain,
+        check=_check,
+        claims=("giant", "cohesive", "deviation", "mismatch"),
         leads={"giant": bridge},
     ),
     Theorem(
@@ -193,7 +191,8 @@ THEOREM = (
         statement="Over [t0, tf] the net is connected, Ẽ <= ε₁ and K̃ <= ε₂.",
         source="Olfati-Saber 2006, Definition 5, strict form",
         kind="trajectory",
-        check=_strict,
+        check=_check_strict,
+        claims=("flock", "deviation", "mismatch"),
         leads={"flock": bridge},
     ),
 )

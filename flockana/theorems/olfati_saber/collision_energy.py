@@ -6,22 +6,22 @@ import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.theorems.hypotheses import vacuous, with_alpha_gain
+from flockana.theorems.hypotheses import alpha_gain, law_is
 from flockana.theorems.olfati_saber.collisions import below_multiple, no_collision
 from flockana.theorems.rounding import energy_error
-from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances
+from flockana.theorems.theorem import Checked, Theorem, Tolerances, unmet
 
-_CLAIMS = {"below": 1, "twice": 2}
+_MULTIPLES = {"below": 1, "twice": 2}  # of c*, by claim
 
 
-def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
-    needs = with_alpha_gain(run, "Algorithm 1 or 2", Algorithm1, Algorithm2)
-    if nothing := vacuous(needs, _CLAIMS):
-        return needs, nothing
+def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
+    needs = alpha_gain(run)
+    if unmet(needs):
+        return needs, []
     energy = run.law.structural_energy(run.q[0], run.p[0])
     error = float(energy_error(run.law, run.q[:1], run.p[:1], np.array([energy]))[0])
     c_star = run.law.gains.c1_alpha * run.law.alpha.c_star
-    bounds = {name: below_multiple(energy, error, c_star, k) for name, k in _CLAIMS.items()}
+    bounds = {name: below_multiple(energy, error, c_star, k) for name, k in _MULTIPLES.items()}
     return [*needs, *bounds.values()], [
         no_collision(run, [*needs, bound], tolerances, name=name) for name, bound in bounds.items()
     ]
@@ -37,6 +37,8 @@ THEOREM = Theorem(
     ),
     source="Olfati-Saber 2006, Theorems 1(iii) and 3(iv); that the bound is sharp is ours",
     kind="trajectory",
+    law=law_is("Algorithm 1 or 2", Algorithm1, Algorithm2),
     check=_check,
+    claims=tuple(_MULTIPLES),
     references=("olfati-saber-2006", "flockana"),
 )

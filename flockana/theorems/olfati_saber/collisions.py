@@ -17,36 +17,37 @@ from flockana.kernels.neighbours import pair_blocks
 from flockana.kernels.paths import control_points, touching_pairs
 from flockana.measures.metrics import coincident_pairs
 from flockana.measures.path_bounds import ROUNDING, Contact, contacts
-from flockana.theorems.hypotheses import below, conceded
+from flockana.theorems.claims import judged
+from flockana.theorems.hypotheses import below, condition
 from flockana.theorems.rounding import energy_error
-from flockana.theorems.theorem import Claim, Hypothesis, HypothesisStatus, Status, Tolerances, judge
+from flockana.theorems.theorem import Claim, Hypothesis, HypothesisStatus, Tolerances
 
 Pair = tuple[int, int]
 
 
 def contacts_of(run: Trajectory, tolerances: Tolerances) -> tuple[Contact, ...]:
-    """Pairs whose interpolated paths come within the contact distance."""
+    """Contacts of a run: pairs whose interpolated paths come within the contact distance."""
     return contacts(*run.path[:4], tol=tolerances.contact * run.law.alpha.d)
 
 
 def passed(run: Trajectory, tolerances: Tolerances) -> dict[Pair, float]:
     """Pairs that certainly met, and how far they go past each other: they change places on a line both keep to."""
-    found, noise = {}, _noise(run, tolerances)
+    depths, noise = {}, _noise(run, tolerances)
     for contact in contacts_of(run, tolerances):
         apart = run.path.q[:, contact.j] - run.path.q[:, contact.i]
         moving = np.flatnonzero((apart != 0.0).any(axis=0))
         if moving.size == 1:
             depth = float(min(apart[:, moving[0]].max(), -apart[:, moving[0]].min()))
             if depth > noise:
-                found[contact.i, contact.j] = depth
-    return found
+                depths[contact.i, contact.j] = depth
+    return depths
 
 
 def near(run: Trajectory, tolerances: Tolerances) -> list[set[Pair]]:
     """Pairs that may meet, by interval between samples: their paths, allowance included, come that near."""
     noise = _noise(run, tolerances)
     lower = run.closest_approach().lower_by_interval
-    found: list[set[Pair]] = [set() for _ in lower]
+    pairs: list[set[Pair]] = [set() for _ in lower]
     t, *states, slack = run.path
     of_sample = np.searchsorted(run.t, t[:-1], side="right") - 1
     for k in np.flatnonzero(lower[of_sample] <= noise):
@@ -55,8 +56,8 @@ def near(run: Trajectory, tolerances: Tolerances) -> list[set[Pair]]:
         for i, j in pair_blocks(states[0][k], within + 2.0 * float(reach.max())):
             at = np.empty(i.size)
             touching_pairs(points, reach, i, j, within, at)
-            found[of_sample[k]] |= {(int(min(i[h], j[h])), int(max(i[h], j[h]))) for h in np.flatnonzero(at >= 0.0)}
-    return found
+            pairs[of_sample[k]] |= {(int(min(i[h], j[h])), int(max(i[h], j[h]))) for h in np.flatnonzero(at >= 0.0)}
+    return pairs
 
 
 def _noise(run: Trajectory, tolerances: Tolerances) -> float:
@@ -65,7 +66,7 @@ def _noise(run: Trajectory, tolerances: Tolerances) -> float:
 
 
 def below_the_barrier(run: Trajectory, energy: float, error: float) -> Hypothesis:
-    """H(0) < min{V : two agents coincide}: met below its proved bound, unmet where a state with a pair is in reach.
+    """The hypothesis H(0) < min{V : two agents coincide}: met below a proved bound, unmet above the V of such a state.
 
     Between the two it is assumed: `flockana.equilibria.barrier.collision_barrier` searches the minimum itself.
     """
@@ -79,7 +80,7 @@ def below_the_barrier(run: Trajectory, energy: float, error: float) -> Hypothesi
 
 
 def below_multiple(energy: float, error: float, c_star: float, times: int = 1) -> Hypothesis:
-    """H(0) < k c*, the energy of k coincident pairs.
+    """The hypothesis H(0) < k c*, the energy of k coincident pairs.
 
     Examples
     --------
@@ -94,7 +95,7 @@ def below_multiple(energy: float, error: float, c_star: float, times: int = 1) -
 def no_collision(
     run: Trajectory, needs: Iterable[Hypothesis], tolerances: Tolerances, *, name: str, proof: str | None = None
 ) -> Claim:
-    """No two agents ever coincide: a lower bound of all distances, between samples too, is positive."""
+    """The claim that no two agents ever coincide: a lower bound of all distances is positive, between samples too."""
     needs, closest, noise = list(needs), run.closest_approach(), _noise(run, tolerances)
     pair, margin = closest.pair, closest.lower
     if not margin > noise and (certain := passed(run, tolerances)):
@@ -104,13 +105,13 @@ def no_collision(
     text = f"no distance falls below {closest.lower:.4g}" if margin >= 0.0 else f"they pass by {-margin:.4g}"
     if margin < 0.0 and "work" in run.extra and _spare(run, pair, needs) <= float(np.abs(run.energy_residual).max()):
         error = float("inf")
-    return Claim(
+    return judged(
         name,
-        conceded(judge(margin, error, needs), needs),
+        margin,
+        error,
+        needs,
         computed=closest.lower,
         stated="distance > 0 between any two agents, always",
-        margin=margin,
-        error=error,
         witness={"pair": pair, "time": closest.time},
         proof=proof,
         detail=f"no collision: {text} (agents {pair[0]} and {pair[1]}; the closest approach is at t = "
@@ -119,7 +120,7 @@ def no_collision(
 
 
 def _spare(run: Trajectory, pair: Pair, needs: Iterable[Hypothesis]) -> float:
-    """Energy by which a meeting, and the hypotheses, are decided; 0 on a line where nothing is certain.
+    """Energy by which it is decided that a pair meets, and that the bounds on H(0) hold.
 
     A pair meets at no less than c*, and the energy never rises. So at the last sample before the meeting it is above c*
     by more than it is off, or the integrator may have lifted the pair over a top that turns it back in truth.
@@ -132,31 +133,29 @@ def _spare(run: Trajectory, pair: Pair, needs: Iterable[Hypothesis]) -> float:
     return float(min(*met_by, abs(energy - run.law.gains.c1_alpha * run.law.alpha.c_star), float("inf")))
 
 
-def _count(margin: float, decided: bool, needs: Iterable[Hypothesis]) -> Status:
-    """A count against a bound, in whole numbers; open where which pairs meet is."""
-    return judge(margin, 0.0 if decided else float("inf"), needs)
-
-
 def distinct_pairs(
     run: Trajectory, needs: Iterable[Hypothesis], tolerances: Tolerances, *, name: str, proof: str | None = None
 ) -> Claim:
-    """As printed: with H(0) < (k+1)c*, at most k distinct pairs collide over the whole run (refuted by E13)."""
+    """The claim as printed that with H(0) < (k+1)c* at most k distinct pairs collide over the whole run (see E13)."""
     c_star = run.law.gains.c1_alpha * run.law.alpha.c_star
     energy, pairs = float(run.energy()[0]), run.n * (run.n - 1) // 2
     error = float(energy_error(run.law, run.q[:1], run.p[:1], run.energy()[:1])[0])
     least, most = floor((energy - error) / c_star), floor((energy + error) / c_star)
-    bites = Hypothesis("k < n(n-1)/2", "met" if least < pairs else "unmet", float(pairs - least - 1))
+    bites = condition("k < n(n-1)/2", least < pairs, float(pairs - least - 1))
     certain, possible = passed(run, tolerances), set().union(*near(run, tolerances))
     refuted = len(certain) > most
-    margin = most + 0.5 - len(certain) if refuted else least + 0.5 - len(possible)
-    first = [one for one in contacts_of(run, tolerances) if (one.i, one.j) in (certain if refuted else possible)]
-    return Claim(
+    counted = set(certain) if refuted else possible
+    margin = (most if refuted else least) + 0.5 - len(counted)
+    first = [contact for contact in contacts_of(run, tolerances) if (contact.i, contact.j) in counted]
+    return judged(
         name,
-        _count(margin, (refuted or margin > 0.0) and len(run.t) > 1, [*needs, bites]),
-        computed=len(certain if refuted else possible),
+        margin,
+        0.0,
+        [*needs, bites],
+        verifies=len(run.t) > 1,
+        refutes=refuted and len(run.t) > 1,  # else it is open which pairs meet
+        computed=len(counted),
         stated=f"at most {least} of {pairs} pairs collide, as H(0) = {energy / c_star:.4g} c*",
-        margin=margin,
-        error=0.0,
         witness=[f"agents {c.i} and {c.j} at t = {c.time:.6g}{' (order changed)' if c.crossed else ''}" for c in first],
         proof=proof,
         detail=f"as printed: {len(certain)} distinct pairs certainly collide and {len(possible)} may, where at most "
@@ -167,7 +166,7 @@ def distinct_pairs(
 def pairs_at_one_instant(
     run: Trajectory, needs: Iterable[Hypothesis], tolerances: Tolerances, *, name: str, proof: str | None = None
 ) -> Claim:
-    """Corrected: at any one instant at most ⌊H/c*⌋ pairs coincide.
+    """The corrected claim that at any instant at most ⌊H/c*⌋ pairs coincide.
 
     Pairs that may meet between the same two samples count as if they met at once; those that were never apart by more
     than the contact distance at a sample, as coincident there.
@@ -176,19 +175,21 @@ def pairs_at_one_instant(
     energy, error = run.energy(), energy_error(run.law, run.q, run.p, run.energy())
     allowed = np.floor((energy - error) / c_star)
     at_most = np.floor((energy + error) / c_star)
-    together = np.array([len(found) for found in near(run, tolerances)])
+    together = np.array([len(pairs) for pairs in near(run, tolerances)])
     exactly = np.array([_coincident(q) for q in run.q])  # to the last bit: nothing else is certain at an instant
     spare = np.minimum(allowed[:-1], allowed[1:]) - together
     worst, broken = (int(np.argmin(spare)) if spare.size else 0), int(np.argmin(at_most - exactly))
     refuted = bool(at_most[broken] < exactly[broken])
     margin = float((at_most - exactly)[broken] if refuted else spare.min(initial=np.inf)) + 0.5
-    return Claim(
+    return judged(
         name,
-        _count(margin, (refuted or margin > 0.0) and len(run.t) > 1, needs),
+        margin,
+        0.0,
+        needs,
+        verifies=len(run.t) > 1,
+        refutes=refuted and len(run.t) > 1,  # else it is open which pairs meet
         computed=int(together.max(initial=0)),
         stated="at most floor(H(t)/c*) pairs coincide at the same time t",
-        margin=margin,
-        error=0.0,
         witness={"time": float(run.t[broken if refuted else worst]), "allowed": int(allowed[worst])},
         proof=proof,
         detail=f"per instant: at most {int(together.max(initial=0))} pairs may coincide at one time; the energy never "

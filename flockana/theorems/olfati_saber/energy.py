@@ -1,4 +1,4 @@
-"""The energy identities that the theorems rest on, checked along a run."""
+"""The energy identities of Algorithms 1 to 3, on which the theorems rest, checked along a run."""
 
 from __future__ import annotations
 
@@ -11,10 +11,11 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.obstacles import Sphere, Wall
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.theorems.hypotheses import applied, conceded, vacuous
-from flockana.theorems.olfati_saber.gamma_agent import honest_rate, still
+from flockana.theorems.claims import judged
+from flockana.theorems.hypotheses import law_is
+from flockana.theorems.olfati_saber.gamma_agent import declared_rate_is_true, target_rests
 from flockana.theorems.rounding import EPS, energy_error
-from flockana.theorems.theorem import Claim, Hypothesis, HypothesisStatus, Theorem, Tolerances, judge
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, HypothesisStatus, Theorem, Tolerances
 
 
 def proved(run: Trajectory, proof: str = "energy-identities") -> str | None:
@@ -32,22 +33,22 @@ def _rounding(run: Trajectory) -> float:
 
 
 def balance(run: Trajectory, needs: Iterable[Hypothesis], tolerances: Tolerances, *, proof: str | None = None) -> Claim:
-    """H(t) − H(0) agrees with the integral of the closed-form rate: the identity is right.
+    """The claim that H(t) − H(0) agrees with the integral of the closed-form rate.
 
-    What the integration spoils is not the identity's: a second, tighter run tells the two apart (`verify` makes it).
+    Whether a difference is the integrator's, a second, tighter run tells (`verify` makes it).
     """
-    needs, energy, residual = list(needs), run.energy(), run.energy_residual
+    energy, residual = run.energy(), run.energy_residual
     worst, largest = int(np.argmax(np.abs(residual))), float(np.abs(energy).max())
     share = float(np.abs(residual[worst])) / (largest or 1.0)
     error = 2.0 * _rounding(run) / (largest or 1.0) + EPS
     course = "falls" if energy[-1] <= energy[0] else "rises"
-    return Claim(
+    return judged(
         "balance",
-        conceded(judge(tolerances.energy - share, error, needs), needs),
+        tolerances.energy - share,
+        error,
+        needs,
         computed=share,
         stated=f"H(t) - H(0) = integral of dH/dt, to {tolerances.energy:g} of the largest |H|",
-        margin=tolerances.energy - share,
-        error=error,
         witness={"time": float(run.t[worst]), "residual": float(residual[worst])},
         proof=proof,
         detail=f"H {course} from {energy[0]:.6g} to {energy[-1]:.6g}; the balance is off by {share:.2g} of it at most",
@@ -55,7 +56,7 @@ def balance(run: Trajectory, needs: Iterable[Hypothesis], tolerances: Tolerances
 
 
 def cancelling(run: Trajectory, since: int = 0) -> FloatArray:
-    """Magnitude of those terms of dH/dt that are differences, and may cancel, at each sample from one on.
+    """Magnitude of those terms of dH/dt that are differences, and may cancel, at each sample from `since` on.
 
     They are c2β ΣΣ b ⟨p_i, p̂_ik − p_i⟩, of β-agents no faster than their agent, c2γ Σ⟨p_i, p_i − p_r⟩, and the work
     of a γ-agent that moves. The others, −c2α pᵀL̂p and −c2γ‖v‖², are sums of squares.
@@ -75,30 +76,30 @@ def cancelling(run: Trajectory, since: int = 0) -> FloatArray:
 
 
 def falling_share(run: Trajectory, rate: FloatArray, cancels: FloatArray) -> tuple[FloatArray, float]:
-    """What is left of a rate's terms as a fall, as a share of their magnitude, from 1 to −1; and its rounding."""
+    """−rate over the magnitude of its terms, from 1 (all of them fall) to −1, and its rounding."""
     size = np.abs(rate) + 2.0 * cancels
     share = np.divide(-rate, size, out=np.ones_like(rate), where=size > 0.0)
     return share, (run.n**2 + 64) * EPS
 
 
 def never_rises(run: Trajectory, needs: Iterable[Hypothesis], *, since: int = 0, proof: str | None = None) -> Claim:
-    """dH/dt ≤ 0 at every sample from one on, by the closed form: its margin is what is left of its terms' magnitude.
+    """The claim that dH/dt ≤ 0 at every sample from `since` on; the margin is the fall over its terms' magnitude.
 
     A sum of terms of one sign keeps it in floating point, so that Algorithms 1 and 2 have the margin 1 at every state;
     where terms may cancel (`cancelling`), the rest is held against their rounding. Where nothing moves, or nothing
     damps, the rate is 0 without any term, and the claim holds.
     """
-    needs, rate = list(needs), run.energy_rate()[since:]
+    rate = run.energy_rate()[since:]
     share, error = falling_share(run, rate, cancelling(run, since))
     worst, highest = int(np.argmin(share)), float(rate.max())
     margin = float(share[worst])
-    return Claim(
+    return judged(
         "rate",
-        conceded(judge(margin, error, needs), needs),
+        margin,
+        error,
+        needs,
         computed=highest,
         stated="dH/dt <= 0" if since == 0 else f"dH/dt <= 0 for t >= {run.t[since]:.6g}",
-        margin=margin,
-        error=error,
         witness={"time": float(run.t[since + worst])},
         proof=proof,
         detail=f"the closed-form rate is at most {highest:.3g} from t = {run.t[since]:.4g} on; what falls is at least "
@@ -107,7 +108,7 @@ def never_rises(run: Trajectory, needs: Iterable[Hypothesis], *, since: int = 0,
 
 
 def stays_outside(run: Trajectory) -> Hypothesis:
-    """No agent enters an obstacle, between samples either: inside a sphere ⟨p_i, p̂_ik − p_i⟩ may be positive."""
+    """The hypothesis that no agent enters an obstacle: inside a sphere ⟨p_i, p̂_ik − p_i⟩ may be positive."""
     name, least = "no agent enters an obstacle", run.clearance()
     if not run.law.obstacles:
         return Hypothesis(name, "met", detail="there is none")
@@ -120,21 +121,16 @@ def stays_outside(run: Trajectory) -> Hypothesis:
     return Hypothesis(name, status, least.lower if status == "assumed" else least.reached, text)
 
 
-def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
-    law = applied(run, "Algorithm 1, 2 or 3", Algorithm1, Algorithm2, Algorithm3)
-    if nothing := vacuous([law], ("rate", "balance")):
-        return [law], nothing
-    rests, honest = [law], [law]
+def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
+    rest: list[Hypothesis] = []
+    rates: list[Hypothesis] = []
     if type(run.law) is Algorithm3 or (run.law.gains.per_agent and type(run.law) is Algorithm2):
-        rests.append(still(run, told=False))  # outside of the moving frame a moving γ-agent does work
-        honest.append(honest_rate(run))
+        rest.append(target_rests(run, told=False))  # outside of the moving frame a moving γ-agent does work
+        rates.append(declared_rate_is_true(run))
     if type(run.law) is Algorithm3:
-        rests.append(stays_outside(run))
+        rest.append(stays_outside(run))
     proof = proved(run)
-    return [*rests, *honest[1:]], [
-        never_rises(run, rests, proof=proof),
-        balance(run, honest, tolerances, proof=proof),
-    ]
+    return [*rest, *rates], [never_rises(run, rest, proof=proof), balance(run, rates, tolerances, proof=proof)]
 
 
 THEOREM = Theorem(
@@ -148,5 +144,7 @@ THEOREM = Theorem(
     ),
     source="Olfati-Saber 2006, proofs of Theorems 1, 3 and 6",
     kind="trajectory",
+    law=law_is("Algorithm 1, 2 or 3", Algorithm1, Algorithm2, Algorithm3),
     check=_check,
+    claims=("rate", "balance"),
 )

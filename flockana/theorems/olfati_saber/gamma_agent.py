@@ -1,8 +1,8 @@
-"""What the γ-agent really does during a run, by looking at its positions, between the samples too.
+"""Whether the γ-agent rests, and moves as it declares, by its positions during a run, between the samples too.
 
 A target declares its own velocity and rate, and may be wrong about either. Here the difference of its positions over
-each interval between samples is held against the integral of what it declares, and rest means that no position seen
-differs. What only a function knows cannot be seen everywhere: for one of a user's own, rest that was seen is assumed.
+each interval between samples is compared with the integral of what it declares, and rest means that no position seen
+differs. A function cannot be seen everywhere: of a target of a user's own, rest that was seen is assumed.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _CONSISTENT = 1e-6  # of the law's speed: what a source's own rounding of a velo
 
 
 def _known(target: Target) -> bool:
-    """Whether the path is given by a formula of ours, whose samples tell all."""
+    """Whether the path is one of the built-in formulas, which samples determine."""
     return type(target) in _CLOSED_FORMS or (type(target) is RescaledVelocity and _known(target.target))
 
 
@@ -38,25 +38,25 @@ def _between(t: FloatArray) -> FloatArray:
     return nodes
 
 
-def still(run: Trajectory, *, told: bool) -> Hypothesis:
-    """That the γ-agent rests during the whole run."""
+def target_rests(run: Trajectory, *, told: bool) -> Hypothesis:
+    """The hypothesis that the γ-agent rests during the whole run; if `told`, with a constant p_r, else with p_r = 0."""
     target = run.law.target
     times = np.concatenate([run.t, _between(run.t).ravel()])
     states = [target.state(float(time)) for time in times]
-    q_r, p_r = (np.array([state[part] for state in states]) for part in (0, 1))
+    q_r, p_r = (np.array(series) for series in zip(*states, strict=True))
     speed = run.scales.speed
-    off = float(np.abs(q_r - q_r[0]).max()), float(np.abs(p_r - (p_r[0] if told else 0.0)).max())
-    moves = off[0] > 4.0 * EPS * float(np.abs(q_r).max()) or off[1] > 4.0 * EPS * max(float(np.abs(p_r).max()), speed)
+    way, change = float(np.abs(q_r - q_r[0]).max()), float(np.abs(p_r - (p_r[0] if told else 0.0)).max())
+    moves = way > 4.0 * EPS * float(np.abs(q_r).max()) or change > 4.0 * EPS * max(float(np.abs(p_r).max()), speed)
     status: HypothesisStatus = "unmet" if moves else "met" if _known(target) else "assumed"
     return Hypothesis(
         "the γ-agent is static" if told else "the γ-agent is at rest, p_r = 0",
         status,
-        -max(off[0] / run.scales.length, off[1] / speed),
-        _rest(moves, told, p_r[0]) + ("" if status != "assumed" else f", as seen at {times.size} times"),
+        -max(way / run.scales.length, change / speed),
+        _describe_rest(moves, told, p_r[0]) + ("" if status != "assumed" else f", as seen at {times.size} times"),
     )
 
 
-def _rest(moves: bool, told: bool, p_r: FloatArray) -> str:
+def _describe_rest(moves: bool, told: bool, p_r: FloatArray) -> str:
     if moves:
         outside = "it moves, which is outside the theorem"
         return outside if told else "it moves, or says so: it does work on the flock, of either sign"
@@ -66,7 +66,7 @@ def _rest(moves: bool, told: bool, p_r: FloatArray) -> str:
 
 @dataclass(frozen=True)
 class Slip:
-    """How far a declared velocity is from the one that the positions show, at worst over the intervals of a run.
+    """Difference between a declared velocity and the one that the positions show, at worst over a run's intervals.
 
     Attributes
     ----------
@@ -81,7 +81,7 @@ class Slip:
 
 
 def slip(run: Trajectory, velocity: Callable[[float], FloatArray]) -> Slip:
-    """Hold a declared velocity against the differences of the γ-agent's positions over the intervals of a run."""
+    """The difference between a declared velocity and the one that the γ-agent's positions show over a run."""
     target, h = run.law.target, np.diff(run.t)
     if h.size == 0:
         return Slip(0.0, float("inf"))
@@ -104,19 +104,19 @@ def _mean(velocity: Callable[[float], FloatArray], nodes: FloatArray) -> FloatAr
 
 
 def consistent(run: Trajectory) -> Hypothesis:
-    """dq_r/dt = p_r: what the γ-agent tells the flock is what it does."""
+    """The hypothesis dq_r/dt = p_r: the γ-agent moves with the velocity that it tells the flock."""
     return _agrees(run, "dq_r/dt = p_r", "p_r", lambda t: run.law.target.state(t)[1])
 
 
-def honest_rate(run: Trajectory) -> Hypothesis:
-    """That the target's declared rate is that of its positions: the closed form of dH/dt takes it from there."""
+def declared_rate_is_true(run: Trajectory) -> Hypothesis:
+    """The hypothesis that the target's declared rate is that of its positions, as the closed form of dH/dt needs."""
     return _agrees(run, "the γ-agent's declared rate is dq_r/dt", "the rate", run.law.target.rate)
 
 
 def _agrees(run: Trajectory, name: str, what: str, velocity: Callable[[float], FloatArray]) -> Hypothesis:
-    found, allowed = slip(run, velocity), _CONSISTENT * run.scales.speed
-    if found.off + found.error <= allowed:
-        return Hypothesis(name, "met", -found.off)
-    if found.off - found.error <= allowed:
-        return Hypothesis(name, "assumed", -found.off, "the samples are too sparse to tell")
-    return Hypothesis(name, "unmet", -found.off, f"{what} is off by up to {found.off:.3g}")
+    difference, allowed = slip(run, velocity), _CONSISTENT * run.scales.speed
+    if difference.off + difference.error <= allowed:
+        return Hypothesis(name, "met", -difference.off)
+    if difference.off - difference.error <= allowed:
+        return Hypothesis(name, "assumed", -difference.off, "the samples are too sparse to tell")
+    return Hypothesis(name, "unmet", -difference.off, f"{what} is off by up to {difference.off:.3g}")

@@ -1,19 +1,18 @@
-"""The slides' summaries of Theorems 1 and 3, of one run: it converges to an α-lattice. Erratum E3 says when not."""
+"""The slides' summaries of Theorems 1 and 3 on a run: it converges to an α-lattice (false, erratum E3)."""
 
 from __future__ import annotations
 
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.asymptotics import lattice_limit
-from flockana.theorems.hypotheses import vacuous, with_alpha_gain
+from flockana.theorems.hypotheses import alpha_gain, law_is
 from flockana.theorems.leads import strained
-from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances
+from flockana.theorems.theorem import Checked, Theorem, Tolerances, unmet
 
 
-def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
-    needs = with_alpha_gain(run, "Algorithm 1 or 2", Algorithm1, Algorithm2)
-    nothing = vacuous(needs, ["lattice"])
-    return needs, nothing or [lattice_limit(run, needs, tolerances, name="lattice")]
+def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
+    needs = alpha_gain(run)
+    return needs, [] if unmet(needs) else [lattice_limit(run, needs, tolerances, name="lattice")]
 
 
 THEOREM = Theorem(
@@ -26,7 +25,9 @@ THEOREM = Theorem(
     ),
     source="slides, Theorems 1(i) and 3(ii) and their summaries",
     kind="trajectory",
+    law=law_is("Algorithm 1 or 2", Algorithm1, Algorithm2),
     check=_check,
+    claims=("lattice",),
     references=("geschwender-2016", "olfati-saber-2006"),
     leads={"lattice": strained},
     limits=("lattice",),

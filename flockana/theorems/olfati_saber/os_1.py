@@ -10,18 +10,16 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.lattice import harborth
 from flockana.laws.olfati_saber import Algorithm1, paper_pair
 from flockana.theorems.asymptotics import lattice_limit, velocities_match
-from flockana.theorems.hypotheses import positive, vacuous, with_alpha_gain
+from flockana.theorems.hypotheses import law_is, positive
 from flockana.theorems.leads import strained
-from flockana.theorems.olfati_saber.attraction import held
+from flockana.theorems.olfati_saber.attraction import final_basin
 from flockana.theorems.olfati_saber.collisions import below_multiple, below_the_barrier, no_collision
 from flockana.theorems.olfati_saber.energy import proved
 from flockana.theorems.rounding import energy_error
-from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances
-
-_CLAIMS = ("i", "ii", "iii", "iii-barrier")
+from flockana.theorems.theorem import Checked, Hypothesis, Theorem, Tolerances, unmet
 
 
-def _disconnected_energy(law: Algorithm1, n: int, m: int) -> float:
+def disconnected_energy(law: Algorithm1, n: int, m: int) -> float:
     """Energy of a state at rest that is no flock: the best lattice of n − 1 agents and one agent far away.
 
     ∞ where that lattice does not exist (κ too large) or n = 1.
@@ -33,37 +31,36 @@ def _disconnected_energy(law: Algorithm1, n: int, m: int) -> float:
 
 
 def _start(run: Trajectory) -> tuple[float, float]:
-    """The structural energy at the start, and its rounding."""
+    """The energy in the moving frame at the start, and its rounding."""
     energy = run.law.structural_energy(run.q[0], run.p[0])
     return energy, float(energy_error(run.law, run.q[:1], run.p[:1], np.array([energy]))[0])
 
 
 def _stays_together(run: Trajectory) -> Hypothesis:
-    """Ω_c speaks of every solution that starts in it: this run can break it, and so can a state that lies in it."""
+    """The hypothesis on all solutions from Ω_c: this run can break it, and so can a disconnected state in Ω_c."""
     connectivity = run.metric("connectivity")
     worst = int(np.argmin(connectivity))
     name = "every solution from Ω_c is a cohesive dynamic flock"
     if connectivity[worst] < 1.0:
         detail = f"this run is no flock at t = {run.t[worst]:.4g}, where C = {connectivity[worst]:.3f}"
         return Hypothesis(name, "unmet", float(connectivity[worst]) - 1.0, detail)
-    (energy, error), apart = _start(run), _disconnected_energy(run.law, run.n, run.m)
+    (energy, error), apart = _start(run), disconnected_energy(run.law, run.n, run.m)
     if energy - error >= apart:
         detail = f"Ω_c holds a disconnected state at rest: its energy is {apart:.5g}, and c >= H(0) = {energy:.5g}"
         return Hypothesis(name, "unmet", apart - energy, detail)
     return Hypothesis(name, "assumed", detail="this run is connected at every sample; the others are not known")
 
 
-def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
-    needs = with_alpha_gain(run, "Algorithm 1", Algorithm1)
-    needs += [positive(run, c2_alpha="c2α")] if len(needs) > 1 else []
-    if nothing := vacuous(needs, _CLAIMS):
-        return needs, nothing
+def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
+    needs = [positive(run, c1_alpha="c1α"), positive(run, c2_alpha="c2α")]
+    if unmet(needs):
+        return needs, []
     energy, error = _start(run)
     needs, c_star = [*needs, _stays_together(run)], run.law.gains.c1_alpha * run.law.alpha.c_star
     low, barrier = below_multiple(energy, error, c_star), below_the_barrier(run, energy, error)
     return [*needs, low, barrier], [
         lattice_limit(run, needs, tolerances, name="i"),
-        velocities_match(run, tolerances, needs, name="ii", caught=[held(run).certificate]),
+        velocities_match(run, tolerances, needs, name="ii", caught=[final_basin(run).certificate]),
         no_collision(run, [*needs, low], tolerances, name="iii", proof=proved(run, "collisions")),
         no_collision(run, [*needs, barrier], tolerances, name="iii-barrier"),
     ]
@@ -79,7 +76,9 @@ THEOREM = Theorem(
     ),
     source="Olfati-Saber 2006, Theorem 1",
     kind="trajectory",
+    law=law_is("Algorithm 1", Algorithm1),
     check=_check,
+    claims=("i", "ii", "iii", "iii-barrier"),
     leads={"i": strained},
     limits=("i",),
 )

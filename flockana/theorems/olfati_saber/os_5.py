@@ -14,23 +14,14 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.dynamics.trajectory import Trajectory
-from flockana.lattice import (
-    classify,
-    crossings,
-    harborth,
-    is_complete,
-    is_planar,
-    kuratowski,
-    links,
-    planar_bound,
-    separation,
-)
+from flockana.lattice import classify, crossings, harborth, is_planar, kuratowski, links, planar_bound, separation
 from flockana.lattice.measure import GUARD
 from flockana.measures.metrics import min_distance
 from flockana.measures.nets import LinkArray, link_lengths
-from flockana.theorems.hypotheses import vacuous
+from flockana.theorems.claims import judged
+from flockana.theorems.hypotheses import condition, has_lattice
 from flockana.theorems.rounding import EPS
-from flockana.theorems.theorem import Claim, Hypothesis, HypothesisStatus, Theorem, Tolerances, judge
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
 
 CLAIMS = (
     "i",
@@ -51,8 +42,8 @@ _ROUNDING = 1e-12  # relative error of a distance of two stored positions near t
 _CERTAIN = 64.0 * EPS  # relative difference of two squared lengths that floating point gets the sign of
 
 
-class _Net:
-    """The measures of one configuration that several claims share."""
+class Net:
+    """A configuration with its links, their lengths and their crossings."""
 
     def __init__(self, q: FloatArray, d: float, r: float) -> None:
         self.q, self.d, self.r = q, d, r
@@ -76,36 +67,36 @@ class _Net:
 
     @property
     def crossing_text(self) -> str:
+        """That count in words."""
         return f"{self.crossing_count or 'no'} pairs of {len(self.links)} links cross"
 
 
-def _lattice_hypotheses(net: _Net, tolerances: Tolerances) -> list[Hypothesis]:
+def _lattice_hypotheses(net: Net, tolerances: Tolerances) -> list[Hypothesis]:
     apart, kappa = net.closest / net.d - tolerances.contact, net.r / net.d
     kind = classify(net.strain, lattice=tolerances.lattice, quasi=tolerances.quasi)
-    exact: HypothesisStatus = "met" if kind == "α-lattice" else "unmet"
     text = f"{kind}: δ/d = {net.strain:.3g}" if len(net.links) else "there are no links"
     return [
-        Hypothesis("distinct positions", "met" if apart > 0.0 else "unmet", apart, f"shortest {net.closest:.6g}"),
-        Hypothesis("κ = r/d > 1", "met" if kappa > 1.0 else "unmet", kappa - 1.0, f"κ = {kappa:.6g}"),
-        Hypothesis("q is an α-lattice", exact, tolerances.lattice - net.strain, text),
+        condition("distinct positions", apart > 0.0, apart, f"shortest {net.closest:.6g}"),
+        condition("κ = r/d > 1", kappa > 1.0, kappa - 1.0, f"κ = {kappa:.6g}"),
+        condition("q is an α-lattice", kind == "α-lattice", tolerances.lattice - net.strain, text),
     ]
 
 
-def _dimension(name: str, holds: bool, net: _Net) -> Hypothesis:
-    return Hypothesis(name, "met" if holds else "unmet", detail=f"m = {net.m}, n = {net.n}")
+def _dimension(name: str, holds: bool, net: Net) -> Hypothesis:
+    return condition(name, holds, detail=f"m = {net.m}, n = {net.n}")
 
 
-def _far_apart(net: _Net, length: float, name: str) -> Hypothesis:
+def _far_apart(net: Net, length: float, name: str) -> Hypothesis:
     margin = net.closest - length / sqrt(2.0)
-    met = margin > net.rounding  # what a rounding decides is not taken for met
     text = f"shortest distance {net.closest:.6g} against {length / sqrt(2.0):.6g}"
-    return Hypothesis(f"all pairs are farther apart than {name}", "met" if met else "unmet", margin, text)
+    # what rounding decides is not taken for met
+    return condition(f"all pairs are farther apart than {name}", margin > net.rounding, margin, text)
 
 
-def _uncrossed(net: _Net, needs: list[Hypothesis], name: str, text: str) -> Claim:
-    """No two links cross: exact for the positions as stored; in space only a clearance speaks for the true ones."""
+def uncrossed(net: Net, needs: list[Hypothesis], name: str, text: str) -> Claim:
+    """The claim that no two links cross: exact for positions as stored; in space a clearance must exceed rounding."""
     count = net.crossing_count
-    if any(h.status == "unmet" for h in needs):
+    if unmet(needs):
         detail = f"{text}: {net.crossing_text}"
         return Claim(name, "vacuous", computed=count, stated="no crossing", proof=_CROSSINGS, detail=detail)
     if count:
@@ -115,91 +106,91 @@ def _uncrossed(net: _Net, needs: list[Hypothesis], name: str, text: str) -> Clai
         margin, error = gap.distance / net.d, 2.0 * net.rounding / net.d
         which = None if gap.links is None else net.agents(gap.links)
         near = f"; links without a common agent stay {'at least ' if which is None else ''}{gap.distance:.4g} apart"
-    return Claim(
+    return judged(
         name,
-        judge(margin, error, needs),
+        margin,
+        error,
+        needs,
         computed=count,
         stated="no crossing",
-        margin=margin,
-        error=error,
         witness={"crossing": [net.agents(p) for p in net.crossings[:_SHOWN]]} if count else {"nearest": which},
         proof=_CROSSINGS,
         detail=f"{text}: {net.crossing_text}{near}",
     )
 
 
-def _graph(net: _Net, needs: list[Hypothesis]) -> Claim:
-    """As printed, (i) calls the graph planar: so it is where a drawing without crossings lies in the plane."""
+def _graph(net: Net, needs: list[Hypothesis]) -> Claim:
+    """The claim as printed that the graph is planar: so it is where the net itself is a drawing without crossings."""
     drawn = net.m < 3 and len(net.crossings) == 0 and net.closest > 0.0
     planar = drawn or is_planar(net.n, net.links)
     witness = None
     if not planar and len(net.links) <= _WITNESS_LIMIT:
         witness = kuratowski(net.n, net.links)
     bound = planar_bound(net.n)
-    found = "" if witness is None else f", which holds a subdivided {witness.kind} of {len(witness.links)} links"
-    return Claim(
+    subgraph = "" if witness is None else f", which holds a subdivided {witness.kind} of {len(witness.links)} links"
+    return judged(
         "i-graph",
-        judge(1.0 if planar else -1.0, 0.0, needs),
+        1.0 if planar else -1.0,
+        0.0,
+        needs,
         computed="planar" if planar else "not planar",
         stated="the graph of the net is planar (as printed)",
-        margin=1.0 if planar else -1.0,
-        error=0.0,
         witness=None if witness is None else vars(witness),
-        detail=f"the graph of {len(net.links)} links on {net.n} agents is {'' if planar else 'not '}planar{found}; "
+        detail=f"the graph of {len(net.links)} links on {net.n} agents is {'' if planar else 'not '}planar{subgraph}; "
         f"a planar one has at most {bound}",
     )
 
 
 def _bound(
-    net: _Net, needs: list[Hypothesis], name: str, bound: int, text: str, *, proof: str | None = _COUNTS
+    net: Net, needs: list[Hypothesis], name: str, bound: int, text: str, *, proof: str | None = _COUNTS
 ) -> Claim:
     count = len(net.links)
-    return Claim(
+    return judged(
         name,
-        judge(bound - count + 0.5, 0.0, needs),
+        bound - count + 0.5,
+        0.0,
+        needs,
         computed=count,
         stated=f"at most {bound} links",
-        margin=bound - count + 0.5,  # between the numbers that keep it and those that do not
-        error=0.0,
         witness=None,
         proof=proof,
         detail=f"{count} links, {text} = {bound} (Harborth's number is {harborth(net.n)})",
     )
 
 
-def _incomplete(net: _Net, needs: list[Hypothesis]) -> Claim:
+def _incomplete(net: Net, needs: list[Hypothesis]) -> Claim:
     missing = net.n * (net.n - 1) // 2 - len(net.links)
-    return Claim(
+    return judged(
         "iii",
-        judge(-0.5 if is_complete(net.n, net.links) else 0.5, 0.0, needs),
+        float(missing) - 0.5,
+        0.0,
+        needs,
         computed=missing,
         stated="at least one pair is not linked",
-        margin=float(missing) - 0.5,
-        error=0.0,
         witness=_unlinked(net) if missing else None,
         proof=_COUNTS,
         detail=f"not complete: {missing} pairs of {net.n} agents are not linked",
     )
 
 
-def _unlinked(net: _Net) -> list[int]:
-    """Some pair that is not linked: an agent with too few neighbours, and one that it lacks."""
+def _unlinked(net: Net) -> list[int]:
+    """Some pair that is not linked: an agent with the fewest neighbours, and an agent that is not among them."""
     count = np.bincount(net.links.ravel(), minlength=net.n)
     i = int(np.argmin(count))
     near = net.links[(net.links == i).any(axis=1)].ravel()
     return [i, int(np.setdiff1d(np.arange(net.n), np.append(near, i))[0])]
 
 
-def _quantitative(net: _Net) -> Claim:
-    """If two links of lengths at most ℓ cross, some two of their agents are within ℓ/√2 of each other."""
+def _quantitative(net: Net) -> Claim:
+    """The claim that of two links that cross, of lengths at most ℓ, two agents are within ℓ/√2 of each other."""
     name, stated = "extension-quantitative", "of two crossing links of lengths at most ℓ, two agents are within ℓ/√2"
     if not len(net.crossings):
         return Claim(name, "vacuous", computed=0, stated=stated, proof=_CROSSINGS, detail="no links cross")
     longest, shortest = _of_crossing(net)
     spare = longest - 2.0 * shortest
-    open_ones = np.flatnonzero(np.abs(spare) <= _CERTAIN * longest)
-    exact = [_holds_exactly(net, net.links[net.crossings[k]]) for k in open_ones]
-    failing = np.concatenate([np.flatnonzero(spare < -_CERTAIN * longest), open_ones[~np.array(exact, dtype=bool)]])
+    unclear = np.flatnonzero(np.abs(spare) <= _CERTAIN * longest)
+    exact = [_holds_exactly(net, net.links[net.crossings[k]]) for k in unclear]
+    failing = np.concatenate([np.flatnonzero(spare < -_CERTAIN * longest), unclear[~np.array(exact, dtype=bool)]])
     slack = np.sqrt(0.5 * longest) - np.sqrt(shortest)
     worst = int(failing[0]) if failing.size else int(np.argmin(slack))
     return Claim(
@@ -215,8 +206,8 @@ def _quantitative(net: _Net) -> Claim:
     )
 
 
-def _of_crossing(net: _Net) -> tuple[FloatArray, FloatArray]:
-    """Of each two links that cross: the squared length of the longer, and the least squared distance of two agents."""
+def _of_crossing(net: Net) -> tuple[FloatArray, FloatArray]:
+    """Squared length of the longer of two links that cross, and least squared distance of two of their agents."""
     agents = net.links[net.crossings].reshape(-1, 4)
     squared = [
         np.where(agents[:, i] == agents[:, j], np.inf, ((net.q[agents[:, i]] - net.q[agents[:, j]]) ** 2).sum(axis=1))
@@ -225,7 +216,7 @@ def _of_crossing(net: _Net) -> tuple[FloatArray, FloatArray]:
     return np.maximum(squared[0], squared[-1]), np.min(squared, axis=0)
 
 
-def _holds_exactly(net: _Net, two: LinkArray) -> bool:
+def _holds_exactly(net: Net, two: LinkArray) -> bool:
     """Whether two agents of two links are within ℓ/√2, in exact arithmetic."""
 
     def squared(i: Any, j: Any) -> Fraction:
@@ -235,9 +226,9 @@ def _holds_exactly(net: _Net, two: LinkArray) -> bool:
     return 2 * min(squared(i, j) for i, j in combinations(sorted(set(two.ravel().tolist())), 2)) <= longest
 
 
-def check(q: FloatArray, d: float, r: float, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
-    """Hypotheses and claims of Theorem 5, and of its extension, on a configuration."""
-    net = _Net(q, d, r)
+def check(q: FloatArray, d: float, r: float, tolerances: Tolerances) -> Checked:
+    """Hypotheses and claims of Theorem 5, and of its extension, for one configuration."""
+    net = Net(q, d, r)
     lattice = _lattice_hypotheses(net, tolerances)
     wide = _dimension("m = 2 or 3", net.m > 1, net)
     plane, many = _dimension("m = 2", net.m == 2, net), _dimension("n >= 3", net.n >= 3, net)
@@ -246,23 +237,21 @@ def check(q: FloatArray, d: float, r: float, tolerances: Tolerances) -> tuple[li
     loose = _far_apart(net, longest, "ℓ/√2, ℓ the longest link")
     printed = 3 * net.n - 6
     return [*lattice, wide, plane, many, more, far, loose], [
-        _uncrossed(net, [*lattice, wide], "i", "edges of an α-lattice do not cross"),
+        uncrossed(net, [*lattice, wide], "i", "edges of an α-lattice do not cross"),
         _graph(net, [*lattice, wide]),
         _bound(net, [*lattice, plane, many], "ii", printed, "3n - 6"),
         _bound(net, [*lattice, plane], "ii-sharp", harborth(net.n), "floor(3n - sqrt(12n - 3))", proof=None),  # cited
         _incomplete(net, [*lattice, more]),
-        _uncrossed(net, [far], "extension", "links of pairs farther apart than r/√2 do not cross"),
-        _uncrossed(net, [loose], "extension-lengths", "links of pairs farther apart than ℓ/√2 do not cross"),
+        uncrossed(net, [far], "extension", "links of pairs farther apart than r/√2 do not cross"),
+        uncrossed(net, [loose], "extension-lengths", "links of pairs farther apart than ℓ/√2 do not cross"),
         _bound(net, [loose, plane, many], "extension-links", printed, "3n - 6"),
         _quantitative(net),
     ]
 
 
-def _check_terminal(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
-    has: HypothesisStatus = "unmet" if run.law.lattice is None else "met"
-    ranged = Hypothesis("the law has a scale d and a range r", has, detail=type(run.law).__name__)
-    if nothing := vacuous([ranged], CLAIMS):
-        return [ranged], nothing
+def _check_terminal(run: Trajectory, tolerances: Tolerances) -> Checked:
+    if run.law.lattice is None:
+        return [has_lattice(run)], []
     d, r = run.law.lattice
     return check(np.asarray(run.q[-1]), d, r, tolerances)
 
@@ -294,6 +283,7 @@ THEOREM = (
         source="Olfati-Saber 2006, Theorem 5; the extension is flockana's",
         kind="trajectory",
         check=_check_terminal,
+        claims=CLAIMS,
         references=_REFERENCES,
     ),
 )

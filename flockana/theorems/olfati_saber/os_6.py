@@ -7,11 +7,11 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.algorithm3 import Algorithm3
-from flockana.theorems.hypotheses import applied, one_gain, vacuous
+from flockana.theorems.hypotheses import common_gains, law_with_common_gains
 from flockana.theorems.olfati_saber.energy import balance, never_rises, proved, stays_outside
-from flockana.theorems.olfati_saber.gamma_agent import honest_rate, still
+from flockana.theorems.olfati_saber.gamma_agent import declared_rate_is_true, target_rests
 from flockana.theorems.rounding import EPS
-from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances
+from flockana.theorems.theorem import Checked, Hypothesis, Theorem, Tolerances
 
 
 def condition_76(run: Trajectory) -> FloatArray:
@@ -23,9 +23,10 @@ def condition_76(run: Trajectory) -> FloatArray:
 
 
 def _condition(run: Trajectory) -> tuple[Hypothesis, int]:
-    """(76), and the first sample from which it holds to the end; the last one if it does for less than the law's time.
+    """(76), and the first sample from which it holds to the end; the last sample if it does for too short a time.
 
-    One instant at the end is no "from some t0 on". Where rounding decides, it is assumed to hold.
+    It must hold for the law's time scale at least: one instant at the end is no "from some t0 on". Where rounding
+    decides, it is assumed to hold.
     """
     slack = condition_76(run)
     told = np.array([np.linalg.norm(run.law.target.state(float(t))[1]) for t in run.t])
@@ -47,17 +48,13 @@ def _condition(run: Trajectory) -> tuple[Hypothesis, int]:
     return Hypothesis(name, "met" if sure else "assumed", float(slack[since:].min()), detail), since
 
 
-def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
-    law = applied(run, "Algorithm 3", Algorithm3)
-    single = one_gain(run) if law.status == "met" else law
-    if nothing := vacuous([single], ("rate", "balance")):
-        return [single], nothing
-    condition, since = _condition(run)
-    needs = [law, single, still(run, told=True), condition, stays_outside(run)]
-    honest, proof = honest_rate(run), proved(run, "theorem6")
-    return [*needs, honest], [
+def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
+    slow_enough, since = _condition(run)
+    needs = [common_gains(run), target_rests(run, told=True), slow_enough, stays_outside(run)]
+    rate, proof = declared_rate_is_true(run), proved(run, "theorem6")
+    return [*needs, rate], [
         never_rises(run, needs, since=since, proof=proof),
-        balance(run, [*needs, honest], tolerances, proof=proof),
+        balance(run, [*needs, rate], tolerances, proof=proof),
     ]
 
 
@@ -73,5 +70,7 @@ THEOREM = Theorem(
     ),
     source="Olfati-Saber 2006, Theorem 6",
     kind="trajectory",
+    law=law_with_common_gains("Algorithm 3", Algorithm3),
     check=_check,
+    claims=("rate", "balance"),
 )

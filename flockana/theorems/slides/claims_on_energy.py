@@ -3,42 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.dynamics.trajectory import Trajectory
-from flockana.theorems.hypotheses import conceded
+from flockana.theorems.claims import exact, judged
 from flockana.theorems.rounding import energy_error
 from flockana.theorems.second_run import corroborated
-from flockana.theorems.theorem import Claim, Hypothesis, judge
+from flockana.theorems.theorem import Claim, Hypothesis
 
 PROOF = "energy-identities"
 
 
-def identity_claim(name: str, residual: Any, stated: str, detail: str) -> Claim:
-    """An identity by its residual, as computed by sympy: verified if that is 0, refuted if not."""
-    holds = bool(residual == 0)
-    return Claim(
-        name,
-        "verified" if holds else "refuted",
-        "symbolic",
-        computed="residual 0" if holds else "a residual that is not 0",
-        stated=stated,
-        witness=str(residual),
-        proof=PROOF,
-        detail=detail,
-    )
-
-
 def state_claim(state: Any) -> Claim:
-    """That the printed energy does not rise, at a rational state where its exact rate is known."""
+    """The claim that the printed energy does not rise, at a rational state where its exact rate is known."""
     rate, true_rate = float(state.rate), float(state.true_rate)
-    return Claim(
+    return exact(
         "printed-state",
-        "refuted" if state.rate.is_positive else "verified",
-        "symbolic",
+        not state.rate.is_positive,
         computed=rate,
         stated="dH/dt <= 0 for the printed H",
         margin=-rate,
@@ -50,12 +35,12 @@ def state_claim(state: Any) -> Claim:
 
 
 def run_claim(run: Trajectory, excess: FloatArray, where: str, needs: Iterable[Hypothesis] = ()) -> Claim:
-    """That the printed energy, the true one plus an excess, never rises along a run on which the true one falls.
+    """The claim that the printed energy, the true one plus an excess, never rises while the true one falls.
 
     It is refuted by a rise from any sample to a later one, by more than the balance of the true energy is off; samples
     at which it does not rise verify nothing.
     """
-    needs, true = list(needs), run.energy()
+    true = run.energy()
     printed = true + excess
     above = printed - np.minimum.accumulate(printed)
     peak = int(np.argmax(above))
@@ -63,16 +48,17 @@ def run_claim(run: Trajectory, excess: FloatArray, where: str, needs: Iterable[H
     error = 2.0 * (float(np.abs(run.energy_residual).max()) + rounding)
     rise, falls = float(above[peak]), float(np.diff(true).max(initial=-np.inf)) <= error
     course = f"the printed H rises by {rise:.4g} until t = {run.t[peak]:.3g}" if rise > 0.0 else "the printed H falls"
-    return Claim(
+    claim = judged(
         "printed-run",
-        conceded(judge(-rise if falls else 0.0, error, needs), needs),
+        -rise if falls else 0.0,
+        error,
+        needs,
         computed=rise,
         stated="the printed H never rises",
-        margin=-rise,
-        error=error,
         witness={"q(0)": run.q[0].tolist(), "p(0)": run.p[0].tolist(), "time": float(run.t[peak])},
         detail=f"along a run of {where} {course}; the true one {'falls throughout' if falls else 'rises too'}",
     )
+    return replace(claim, margin=-rise)
 
 
 def corroborated_run_claim(run: Trajectory, excess: Callable[[Trajectory], FloatArray], where: str) -> Claim:

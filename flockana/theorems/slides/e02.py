@@ -10,8 +10,9 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.obstacles import Sphere
 from flockana.environment.targets import StaticTarget
 from flockana.laws.algorithm3 import Algorithm3
-from flockana.theorems.slides.claims_on_energy import corroborated_run_claim, identity_claim, state_claim
-from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances
+from flockana.theorems.claims import equal, erratum
+from flockana.theorems.slides.claims_on_energy import PROOF, corroborated_run_claim, state_claim
+from flockana.theorems.theorem import Claim, Tolerances
 
 
 def _rising_run() -> Claim:
@@ -19,47 +20,42 @@ def _rising_run() -> Claim:
     law = Algorithm3(target=StaticTarget((2.0, 0.0)), obstacles=(Sphere((2.0, 5.8), 2.0),))
     run = simulate(law, [[0.0, 0.0], [4.0, 0.0]], [[5.0, 0.0], [-5.0, 0.0]], (0.0, 1.0))
 
-    def pairs(one: Trajectory) -> FloatArray:
-        return np.array([law.gains.c1_alpha * law.alpha.potential_energy(q) for q in one.q])
+    def pair_energy(again: Trajectory) -> FloatArray:
+        return np.array([law.gains.c1_alpha * law.alpha.potential_energy(q) for q in again.q])
 
-    return corroborated_run_claim(run, pairs, "two agents beside a sphere")
+    return corroborated_run_claim(run, pair_energy, "two agents beside a sphere")
 
 
-def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+def _check(tolerances: Tolerances) -> list[Claim]:
     from flockana.symbolic.theorem6 import e2_counterexample, e2_identity, theorem6_identity
 
     stated = "dH/dt = -c2α pᵀL̂p + c2β ΣΣ b ⟨p, p̂ - p⟩ - c2γ Σ⟨p, p - p_r⟩"
-    return [], [
-        identity_claim(
+    return [
+        equal(
             "printed",
             e2_identity(m=2).residual,
-            f"{stated} for V_α = Σ_i Σ_(j≠i) ψ_α",
-            "the printed V_α has twice the gradient that u^α uses: dV_α/dt is left over, and it has no sign",
+            stated=f"{stated} for V_α = Σ_i Σ_(j≠i) ψ_α",
+            proof=PROOF,
+            detail="the printed V_α has twice the gradient that u^α uses: dV_α/dt is left over, and it has no sign",
         ),
         state_claim(e2_counterexample()),
         _rising_run(),
-        identity_claim(
+        equal(
             "corrected",
             theorem6_identity(m=2).residual,
-            f"{stated} for V_α = ½ Σ_i Σ_(j≠i) ψ_α",
-            "with every pair once the identity is exact, for every n and any walls and spheres",
+            stated=f"{stated} for V_α = ½ Σ_i Σ_(j≠i) ψ_α",
+            proof=PROOF,
+            detail="with every pair once the identity is exact, for every n and any walls and spheres",
         ),
     ]
 
 
-THEOREM = Theorem(
-    id="E2",
+THEOREM = erratum(
+    "E2",
     title="V_α of Algorithm 3 counts every pair once",
     statement="The slides print V_α = Σ_i Σ_(j≠i) ψ_α for Algorithm 3; its gradient is twice u^α. The factor is ½.",
     source="slides, Algorithm 3",
-    kind="fixed",
     check=_check,
     references=("geschwender-2016", "olfati-saber-2006"),
-    expected={
-        "E2": "refuted",
-        "E2:printed": "refuted",
-        "E2:printed-state": "refuted",
-        "E2:printed-run": "refuted",
-        "E2:corrected": "verified",
-    },
+    expected={"printed": "refuted", "printed-state": "refuted", "printed-run": "refuted", "corrected": "verified"},
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import combinations, product
 from math import sqrt
 from typing import Any
@@ -11,25 +12,17 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.lattice import is_planar, kuratowski, planar_bound
+from flockana.theorems.claims import erratum, judged
 from flockana.theorems.olfati_saber.os_5 import check
-from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
+from flockana.theorems.theorem import Claim, Tolerances
 
 _D, _R = 7.0, 8.4
 Site = tuple[int, int, int]
 
 # Face-centred cubic sites are the whole points of even coordinate sum; neighbours are √2 apart.
 _STEPS: tuple[Site, ...] = tuple((x, y, z) for x, y, z in product((-1, 0, 1), repeat=3) if x * x + y * y + z * z == 2)
-_STAR: tuple[Site, ...] = ((0, 0, 0), *_STEPS)
-_EIGHT: tuple[Site, ...] = (
-    (0, 0, 0),
-    (1, 0, 1),
-    (2, 1, 1),
-    (1, 1, 0),
-    (2, 2, 0),
-    (2, 1, -1),
-    (1, 0, -1),
-    (2, 0, 0),
-)
+STAR: tuple[Site, ...] = ((0, 0, 0), *_STEPS)
+EIGHT: tuple[Site, ...] = ((0, 0, 0), (1, 0, 1), (2, 1, 1), (1, 1, 0), (2, 2, 0), (2, 1, -1), (1, 0, -1), (2, 0, 0))
 _FRAGMENT = 6
 _PROOF = "nonplanar-fcc"
 
@@ -42,7 +35,7 @@ def fcc_star(d: float) -> FloatArray:
     >>> fcc_star(7.0).shape
     (13, 3)
     """
-    return d / sqrt(2.0) * np.array(_STAR, dtype=float)
+    return d / sqrt(2.0) * np.array(STAR, dtype=float)
 
 
 def fcc_eight(d: float) -> FloatArray:
@@ -53,7 +46,7 @@ def fcc_eight(d: float) -> FloatArray:
     >>> fcc_eight(7.0).shape
     (8, 3)
     """
-    return d / sqrt(2.0) * np.array(_EIGHT, dtype=float)
+    return d / sqrt(2.0) * np.array(EIGHT, dtype=float)
 
 
 def _add(site: Site, step: Site) -> Site:
@@ -82,7 +75,8 @@ def fragments(size: int) -> Iterator[tuple[Site, ...]]:
     return grow([], [origin], {origin})  # the least site of each set is the origin
 
 
-def _links(sites: tuple[Site, ...]) -> tuple[tuple[int, int], ...]:
+def site_links(sites: tuple[Site, ...]) -> tuple[tuple[int, int], ...]:
+    """Pairs of sites that are nearest neighbours, by their whole-number coordinates."""
     steps = set(_STEPS)
     return tuple(
         (i, j)
@@ -103,7 +97,7 @@ def non_planar_fragments(size: int) -> tuple[int, int]:
     total = bad = 0
     for sites in fragments(size):
         total += 1
-        edges = _links(sites)
+        edges = site_links(sites)
         if len(edges) < 9:  # K3,3 has nine links, K5 ten
             continue
         if edges not in known:
@@ -113,51 +107,43 @@ def non_planar_fragments(size: int) -> tuple[int, int]:
 
 
 def _counterexample(name: str, q: FloatArray, sites: tuple[Site, ...], tolerances: Tolerances) -> list[Claim]:
-    """Edges do not cross, by the theorem's own check; the graph is not planar, by its links as whole numbers."""
-    _, found = check(q, _D, _R, tolerances)
-    claims = {claim.name: claim for claim in found}
-    edges = _links(sites)
+    """The claims of Theorem 5(i) on a lattice in space: its graph is planar, and its edges do not cross."""
+    claims = {claim.name: claim for claim in check(q, _D, _R, tolerances)[1]}
+    edges = site_links(sites)
     witness: Any = kuratowski(len(sites), edges)
     uncrossed, graph = claims["i"], claims["i-graph"]
     bound, planar = planar_bound(len(sites)), is_planar(len(sites), edges)
     return [
-        Claim(
+        judged(
             f"printed-{name}",
-            judge(1.0 if planar else -1.0, 0.0, []),
+            1.0 if planar else -1.0,
+            0.0,
             computed={"links": len(edges), "bound": bound, "graph": graph.computed},
             stated="the graph is planar",
-            margin=1.0 if planar else -1.0,
-            error=0.0,
             witness={"q": q} | (vars(witness) if witness else {}),
             proof=_PROOF,
             detail=f"{len(sites)} face-centred cubic sites: {graph.detail}",
         ),
-        Claim(
-            f"uncrossed-{name}",
-            uncrossed.status,
-            computed=uncrossed.computed,
-            stated=uncrossed.stated,
-            margin=uncrossed.margin,
-            error=uncrossed.error,
-            witness=uncrossed.witness,
+        replace(
+            uncrossed,
+            name=f"uncrossed-{name}",
             proof=_PROOF,
             detail=f"in space its edges do not cross: {uncrossed.detail}",
         ),
     ]
 
 
-def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+def _check(tolerances: Tolerances) -> list[Claim]:
     total, bad = non_planar_fragments(_FRAGMENT)
-    return [], [
-        *_counterexample("13", fcc_star(_D), _STAR, tolerances),
-        *_counterexample("8", fcc_eight(_D), _EIGHT, tolerances),
-        Claim(
+    return [
+        *_counterexample("13", fcc_star(_D), STAR, tolerances),
+        *_counterexample("8", fcc_eight(_D), EIGHT, tolerances),
+        judged(
             "six",
-            judge(0.5 - bad, 0.0, []),
+            0.5 - bad,
+            0.0,
             computed={"fragments": total, "not planar": bad},
             stated="every fragment of six sites is planar",
-            margin=0.5 - bad,
-            error=0.0,
             witness="every connected fragment, up to translation",
             proof=_PROOF,
             detail=f"all {total} connected fragments of {_FRAGMENT} sites were tested: {bad} are not planar",
@@ -165,8 +151,8 @@ def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
     ]
 
 
-THEOREM = Theorem(
-    id="E5",
+THEOREM = erratum(
+    "E5",
     title="α-lattices in space need not have planar graphs",
     statement=(
         "Theorem 5(i) is printed as: the graph is planar for m = 2, 3. In space only the edges do not cross. A face-"
@@ -174,15 +160,13 @@ THEOREM = Theorem(
         "are not planar either. All fragments of six sites are."
     ),
     source="Lecture slides, Theorem 5",
-    kind="fixed",
     check=_check,
     references=("geschwender-2016", "olfati-saber-2006"),
     expected={
-        "E5": "refuted",
-        "E5:printed-13": "refuted",
-        "E5:uncrossed-13": "verified",
-        "E5:printed-8": "refuted",
-        "E5:uncrossed-8": "verified",
-        "E5:six": "verified",
+        "printed-13": "refuted",
+        "uncrossed-13": "verified",
+        "printed-8": "refuted",
+        "uncrossed-8": "verified",
+        "six": "verified",
     },
 )

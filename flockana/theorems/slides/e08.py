@@ -1,17 +1,18 @@
-"""Erratum E8: the rank of the wrong matrix."""
+"""Erratum E8: connectivity is the rank of the Laplacian, not of the adjacency matrix."""
 
 from __future__ import annotations
 
 from flockana.measures.metrics import connectivity
 from flockana.measures.nets import links, printed_rank_connectivity
-from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
+from flockana.theorems.claims import erratum, judged
+from flockana.theorems.theorem import Claim, Tolerances
 
 
-def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+def _check(tolerances: Tolerances) -> list[Claim]:
     """A path of three agents: connected, so C must be 1."""
     q = [[0.0], [1.0], [2.0]]
     printed, true = printed_rank_connectivity(3, links(q, 1.5)), connectivity(q, 1.5)
-    return [], [
+    return [
         _rank("printed", printed, 3, f"rank(A)/n of the adjacency matrix is {printed:.4g} on a connected path"),
         _rank("corrected", true, 2, f"rank(L)/(n - 1) of the Laplacian is {true:.4g}"),
     ]
@@ -20,28 +21,18 @@ def _check(tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
 def _rank(name: str, share: float, full: int, detail: str) -> Claim:
     """Whether the measure is 1, as it must be on a connected net: by the rank it comes from, a whole number."""
     margin = 0.5 - (full - round(full * share))
-    return Claim(
-        name,
-        judge(margin, 0.0, []),
-        computed=share,
-        stated=1.0,
-        margin=margin,
-        error=0.0,
-        witness="a path of three agents",
-        detail=detail,
-    )
+    return judged(name, margin, 0.0, computed=share, stated=1.0, witness="a path of three agents", detail=detail)
 
 
-THEOREM = Theorem(
-    id="E8",
+THEOREM = erratum(
+    "E8",
     title="Connectivity is the rank of the Laplacian",
     statement=(
         "The MSN project measures connectivity by C = rank(A)/n of the adjacency matrix, to be 1 on a connected net. A "
         "path of three agents is connected and gives 2/3; C = rank(L)/(n - 1) gives 1."
     ),
     source="MSN project, data collection",
-    kind="fixed",
     check=_check,
     references=("isola-2024", "olfati-saber-2006"),
-    expected={"E8": "refuted", "E8:printed": "refuted", "E8:corrected": "verified"},
+    expected={"printed": "refuted", "corrected": "verified"},
 )

@@ -16,12 +16,13 @@ from flockana.interactions import AlphaInteraction
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm2, paper_pair
 from flockana.measures.metrics import velocity_mismatch
-from flockana.theorems.theorem import Claim, Hypothesis, Status, Theorem, Tolerances, judge
+from flockana.theorems.claims import judged
+from flockana.theorems.hypotheses import condition, law_is
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
 
 _RINGS = (1, 2, 3)  # hexagons of 7, 19 and 37 agents
 _LOWEST, _FACTOR = 0.06, 1.3  # where the search starts, of `natural_ratio`, and its steps
 _HALVINGS = 3
-_NAMES = ("printed", "minimum", "threshold")
 
 
 def collapses(law: Algorithm2, rings: int, ratio: float) -> bool:
@@ -34,32 +35,26 @@ def collapses(law: Algorithm2, rings: int, ratio: float) -> bool:
 
 
 def collapse_threshold(law: Algorithm2, rings: int) -> tuple[float, float]:
-    """Bracket the least ratio c1γ/c1α at which the gradient flow of a hexagonal patch collapses.
-
-    Returns tuple of float (largest ratio seen safe, least ratio seen to collapse).
-    """
+    """(largest ratio c1γ/c1α at which the gradient flow of a hexagonal patch was seen safe, least seen to collapse)."""
     lowest = _LOWEST * natural_ratio(paper_pair(law))
     return threshold(lambda ratio: collapses(law, rings, ratio), lowest=lowest, factor=_FACTOR, halvings=_HALVINGS)
 
 
-def _hypotheses(run: Trajectory) -> list[Hypothesis]:
-    law = run.law
-    if type(law) is not Algorithm2:
-        return [Hypothesis("Algorithm 2 is applied", "unmet", detail=type(law).__name__)]
-    found = [Hypothesis("Algorithm 2 is applied", "met", detail="Algorithm2")]
-    if law.gains.per_agent:
-        return [*found, Hypothesis("one c1γ for all agents", "unmet", detail="gains are given per agent")]
-    least = min(law.gains.c1_alpha, law.gains.c1_gamma)
-    return [*found, Hypothesis("c1α > 0 and c1γ > 0", "met" if least > 0.0 else "unmet", least)]
+def _gains(run: Trajectory) -> Hypothesis:
+    gains = run.law.gains
+    if gains.per_agent:
+        return Hypothesis("one c1γ for all agents", "unmet", detail="gains are given per agent")
+    least = min(gains.c1_alpha, gains.c1_gamma)
+    return condition("c1α > 0 and c1γ > 0", least > 0.0, least)
 
 
-def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
-    hypotheses = _hypotheses(run)
-    if any(h.status == "unmet" for h in hypotheses):
-        return hypotheses, [Claim(name, "vacuous", detail=f"not so: {hypotheses[-1].name}") for name in _NAMES]
+def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
+    needs = [_gains(run)]
+    if unmet(needs):
+        return needs, []
     end = terminal_state(run.law, run.q[-1], run.p[-1], contact=tolerances.contact)
     caught = _caught(run, end, tolerances)
-    return hypotheses, [_printed(run, end, caught, tolerances), _minimum(end, caught, tolerances), _thresholds(run.law)]
+    return needs, [_printed(run, end, caught, tolerances), _minimum(end, caught, tolerances), _thresholds(run.law)]
 
 
 def _caught(run: Trajectory, end: TerminalState, tolerances: Tolerances) -> bool:
@@ -70,34 +65,33 @@ def _caught(run: Trajectory, end: TerminalState, tolerances: Tolerances) -> bool
 
 
 def _printed(run: Trajectory, end: TerminalState, caught: bool, tolerances: Tolerances) -> Claim:
-    """The strain of the limit; two agents are farther from it by √2 of the distance to the minimum at most."""
+    """The claim as printed, by the strain of the limit, where a distance differs by √2 of that to it at most."""
     margin, error = tolerances.quasi - end.strain, sqrt(2.0) * end.distance
     ratio = run.law.gains.c1_gamma / run.law.gains.c1_alpha
     at_rest = "" if caught else "; it is not known to rest there"
-    found = "no links" if isnan(end.strain) else f"{end.coincident} coincident pairs; its shortest link is "
-    return Claim(
+    lengths = f"{end.coincident} coincident pairs; its shortest link is {end.shortest:.3g}"
+    return judged(
         "printed",
-        judge(margin, error, []) if caught else "inconclusive",
+        margin,
+        error,
+        verifies=caught,
+        refutes=caught,
         computed=end.strain,
         stated=f"the limit is a quasi-α-lattice at least: |link - d|/d <= {tolerances.quasi:g}",
-        margin=margin,
-        error=error,
         witness={"coincident pairs": end.coincident, "shortest link": end.shortest},
-        detail=f"with c1γ/c1α = {ratio:.3g} the limit has {found}"
-        + ("" if isnan(end.strain) else f"{end.shortest:.3g}")
-        + at_rest,
+        detail=f"with c1γ/c1α = {ratio:.3g} the limit has {'no links' if isnan(end.strain) else lengths}{at_rest}",
     )
 
 
 def _minimum(end: TerminalState, caught: bool, tolerances: Tolerances) -> Claim:
-    margin, error = end.curvature - tolerances.curvature, end.curvature_error
-    return Claim(
+    return judged(
         "minimum",
-        "verified" if caught and judge(margin, error, []) == "verified" else "inconclusive",
+        end.curvature - tolerances.curvature,
+        end.curvature_error,
+        verifies=caught,
+        refutes=False,
         computed=end.curvature,
         stated="the limit is a strict local minimum of U_λ off the rotations, so that it attracts an open set",
-        margin=margin,
-        error=error,
         witness={"force": end.force, "K̃": end.mismatch},
         detail=f"least curvature {end.curvature:.3g} of the largest, residual force {end.force:.1g}",
     )
@@ -114,28 +108,26 @@ def _brackets(alpha: AlphaInteraction) -> dict[int, tuple[float, float]] | str:
 
 
 def _thresholds(law: Algorithm2) -> Claim:
-    """Falling if the brackets lie below each other: their middles differ by more than their widths, as logarithms."""
-    found = _brackets(law.alpha)
-    said: dict[str, Any] = {
+    """The claim that the ratio falls: the brackets' middles differ by more than their widths, as logarithms."""
+    brackets = _brackets(law.alpha)
+    about: dict[str, Any] = {
         "stated": "the ratio c1γ/c1α at which a hexagonal patch begins to collapse falls with n",
         "witness": "hexagonal patches relaxed by gradient flow, ratio bisected",
     }
-    if isinstance(found, str):
-        return Claim("threshold", "inconclusive", detail=f"no threshold was found: {found}", **said)
-    spans = [(log(low), log(high)) for low, high in found.values()]
+    if isinstance(brackets, str):
+        return Claim("threshold", "inconclusive", detail=f"no threshold was found: {brackets}", **about)
+    spans = [(log(low), log(high)) for low, high in brackets.values()]
     # from the middle of one bracket to that of the next, and half of both widths
     falls = [(0.5 * (a + b - c - d), 0.5 * (b - a + d - c)) for (a, b), (c, d) in pairwise(spans)]
     margin, error = min(falls, key=lambda fall: fall[0] - fall[1])
-    status: Status = judge(margin, error, [])
-    table = ", ".join(f"n = {n}: {low:.3g} to {high:.3g}" for n, (low, high) in found.items())
-    return Claim(
+    table = ", ".join(f"n = {n}: {low:.3g} to {high:.3g}" for n, (low, high) in brackets.items())
+    return judged(
         "threshold",
-        status,
-        computed={n: list(pair) for n, pair in found.items()},
-        margin=margin,
-        error=error,
+        margin,
+        error,
+        computed={n: list(pair) for n, pair in brackets.items()},
         detail=f"a hexagonal patch collapses from c1γ/c1α on: {table}",
-        **said,
+        **about,
     )
 
 
@@ -148,6 +140,9 @@ THEOREM = Theorem(
     ),
     source="slides, summary of Theorem 3; both student projects",
     kind="trajectory",
+    law=law_is("Algorithm 2", Algorithm2),
     check=_check,
+    claims=("printed", "minimum", "threshold"),
+    reason="not so: {name}",
     references=("geschwender-2016", "isola-2024", "notebook-r2"),
 )

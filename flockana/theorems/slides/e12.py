@@ -14,42 +14,41 @@ from flockana.laws.olfati_saber import Algorithm2
 from flockana.stability.centre_path import centre_path, motion, path_and_factor
 from flockana.stability.tracking import response_ratio, whole_period
 from flockana.stability.translational import predicted_gain
-from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
-
-_NAMES = ("predicted", "consistent", "printed")
+from flockana.theorems.claims import judged
+from flockana.theorems.hypotheses import condition
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
 
 
 def _hypotheses(run: Trajectory) -> list[Hypothesis]:
     applies = type(run.law) is Algorithm2 and not run.law.gains.per_agent
-    detail = f"{type(run.law).__name__}{', gains per agent' if not applies and type(run.law) is Algorithm2 else ''}"
-    law = Hypothesis("Algorithm 2 is applied, one gain for all", "met" if applies else "unmet", detail=detail)
+    kind = f"{type(run.law).__name__}{', gains per agent' if not applies and type(run.law) is Algorithm2 else ''}"
     path, factor = path_and_factor(run.law.target) if applies else (None, 1.0)
     swings = isinstance(path, SineTarget | CircleTarget) and whole_period(run, path)
-    detail = f"p_r = {factor:.6g} dq_r/dt" if swings else "no circle or sine, or less than a period"
-    target = Hypothesis("the γ-agent moves on a circle or a sine", "met" if swings else "unmet", detail=detail)
-    wrong = Hypothesis("its p_r is not dq_r/dt", "met" if factor != 1.0 else "unmet", detail=detail)
+    told = f"p_r = {factor:.6g} dq_r/dt" if swings else "no circle or sine, or less than a period"
     drag = float(run.law.gains.c2_gamma) if applies else 0.0
-    damped = Hypothesis("c2γ > 0: the start is forgotten", "met" if drag > 0.0 else "unmet", drag)
-    return [law, target, wrong, damped]
+    return [
+        condition("Algorithm 2 is applied, one gain for all", applies, detail=kind),
+        condition("the γ-agent moves on a circle or a sine", swings, detail=told),
+        condition("its p_r is not dq_r/dt", factor != 1.0, detail=told),
+        condition("c2γ > 0: the start is forgotten", drag > 0.0, drag),
+    ]
 
 
-def _agrees(name: str, found: tuple[float, float], gain: float, tolerances: Tolerances, detail: str) -> Claim:
-    """Relative to the predicted gain; where that is 0, which is told no velocity and feels no pull, to the γ-agent."""
-    scale = gain or 1.0
-    margin, error = tolerances.agreement - abs(found[0] - gain) / scale, found[1] / scale
-    return Claim(
+def _agrees(name: str, ratio: tuple[float, float], gain: float, tolerances: Tolerances, detail: str) -> Claim:
+    """The claim that a measured ratio and its error agree with a predicted gain, relative to that unless it is 0."""
+    (measured, error), scale = ratio, gain or 1.0
+    return judged(
         name,
-        judge(margin, error, []),
-        computed=found[0],
+        tolerances.agreement - abs(measured - gain) / scale,
+        error / scale,
+        computed=measured,
         stated=gain,
-        margin=margin,
-        error=error,
-        detail=f"{detail}: measured ratio {found[0]:.4f}, transfer function {gain:.4f}",
+        detail=f"{detail}: measured ratio {measured:.4f}, transfer function {gain:.4f}",
     )
 
 
 def _consistent(run: Trajectory, path: SineTarget | CircleTarget) -> tuple[float, float]:
-    """The ratio of the same flock behind the γ-agent with its true p_r, and its error, that of integration included."""
+    """The measured ratio, and its error, of the same flock behind the same γ-agent with its true p_r."""
     law = replace(run.law, target=path)
     again = simulate(law, run.q[0], run.p[0], (float(run.t[0]), float(run.t[-1])))
     ratio, error = response_ratio(again)
@@ -61,29 +60,27 @@ def _consistent(run: Trajectory, path: SineTarget | CircleTarget) -> tuple[float
     return ratio, error + float(np.abs(centre - exact).max()) / size
 
 
-def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
-    hypotheses = _hypotheses(run)
-    if any(h.status == "unmet" for h in hypotheses):
-        return hypotheses, [Claim(name, "vacuous", detail="no γ-agent with a wrong p_r to follow") for name in _NAMES]
+def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
+    needs = _hypotheses(run)
+    if unmet(needs):
+        return needs, []
     law = run.law
     path, factor = path_and_factor(law.target)
     assert isinstance(path, SineTarget | CircleTarget)
     omega = 2.0 * pi * path.frequency
-    handed, true = response_ratio(run), _consistent(run, path)
+    handed, (true, error) = response_ratio(run), _consistent(run, path)
     predicted = predicted_gain(law.gains, omega, factor=factor)
-    margin = 1.0 - true[0]
-    return hypotheses, [
+    return needs, [
         _agrees("predicted", handed, predicted, tolerances, f"with the p_r that was handed over, {factor:g} dq_r/dt"),
-        _agrees("consistent", true, predicted_gain(law.gains, omega), tolerances, "with p_r = dq_r/dt"),
-        Claim(
+        _agrees("consistent", (true, error), predicted_gain(law.gains, omega), tolerances, "with p_r = dq_r/dt"),
+        judged(
             "printed",
-            judge(margin, true[1], []),
-            computed=true[0],
+            1.0 - true,
+            error,
+            computed=true,
             stated="the ratio is below 1 because the γ-agent turns",
-            margin=margin,
-            error=true[1],
-            witness={"handed p_r": handed[0], "true p_r": true[0]},
-            detail=f"the same turning γ-agent with its true p_r is followed at {true[0]:.4f} of its size, not less "
+            witness={"handed p_r": handed[0], "true p_r": true},
+            detail=f"the same turning γ-agent with its true p_r is followed at {true:.4f} of its size, not less "
             f"than 1: it is the wrong p_r that makes the ratio {handed[0]:.4f}",
         ),
     ]
@@ -100,5 +97,7 @@ THEOREM = Theorem(
     source="MSN project, conclusion, cases 3 and 4",
     kind="trajectory",
     check=_check,
+    claims=("predicted", "consistent", "printed"),
+    reason="no γ-agent with a wrong p_r to follow",
     references=("isola-2024", "olfati-saber-2006"),
 )

@@ -10,17 +10,17 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import StaticTarget
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.theorems.hypotheses import vacuous, with_alpha_gain
+from flockana.theorems.hypotheses import alpha_gain, law_is
 from flockana.theorems.leads import pairs_apart
 from flockana.theorems.olfati_saber.collisions import distinct_pairs, pairs_at_one_instant
 from flockana.theorems.olfati_saber.energy import proved
-from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances
+from flockana.theorems.theorem import Checked, Theorem, Tolerances, unmet
 
 _UNTIL = 0.03  # by then both pairs have coincided
 
 
 def _enclosed(run: Trajectory) -> str | None:
-    """The id of the proof that encloses the erratum's own run, if this is it."""
+    """The id of the proof by interval arithmetic, if this run is the one that it encloses."""
     alpha, gains = AlphaInteraction(a=5e4, b=5e4), Gains(c1_alpha=1.0, c2_alpha=1.0, c1_gamma=0.01, c2_gamma=0.01)
     start = np.array([[-12.0], [0.0], [30.0]]), np.array([[sqrt(5.6 * alpha.c_star)], [0.0], [0.0]])
     same = all(np.array_equal(*both) for both in zip(start, (run.q[0], run.p[0]), strict=True))
@@ -28,10 +28,10 @@ def _enclosed(run: Trajectory) -> str | None:
     return "distinct-pairs" if its_own else None
 
 
-def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
-    needs = with_alpha_gain(run, "Algorithm 2", Algorithm2)
-    if nothing := vacuous(needs, ("printed", "corrected")):
-        return needs, nothing
+def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
+    needs = alpha_gain(run)
+    if unmet(needs):
+        return needs, []
     return needs, [
         distinct_pairs(run, needs, tolerances, name="printed", proof=_enclosed(run)),
         pairs_at_one_instant(run, needs, tolerances, name="corrected", proof=proved(run, "collisions")),
@@ -47,7 +47,9 @@ THEOREM = Theorem(
     ),
     source="slides, Theorem 3(iv)",
     kind="trajectory",
+    law=law_is("Algorithm 2", Algorithm2),
     check=_check,
+    claims=("printed", "corrected"),
     references=("geschwender-2016", "olfati-saber-2006"),
     leads={"printed": pairs_apart, "corrected": pairs_apart},
 )

@@ -8,15 +8,15 @@ import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.algorithm3 import Algorithm3
-from flockana.theorems.hypotheses import applied, conceded, vacuous
+from flockana.theorems.hypotheses import law_is
 from flockana.theorems.olfati_saber.energy import cancelling, falling_share, stays_outside
-from flockana.theorems.olfati_saber.gamma_agent import still
+from flockana.theorems.olfati_saber.gamma_agent import target_rests
 from flockana.theorems.slides.claims_on_energy import run_claim
-from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, judge
 
 
-def _steadily(run: Trajectory, claim: Claim, needs: list[Hypothesis]) -> Claim:
-    """Of a run on which it does not rise: whether its rate, in closed form, is negative wherever anything moves.
+def _by_rate(run: Trajectory, claim: Claim, needs: list[Hypothesis]) -> Claim:
+    """The claim by the rate in closed form, which must be negative wherever anything moves.
 
     V_α too much adds c1α ⟨∇V, p⟩ to the rate, which has no sign.
     """
@@ -25,18 +25,15 @@ def _steadily(run: Trajectory, claim: Claim, needs: list[Hypothesis]) -> Claim:
     turned = np.linalg.norm(forces, axis=2) * np.linalg.norm(run.p, axis=2)
     share, error = falling_share(run, run.energy_rate() - power, cancelling(run) + turned.sum(axis=1))
     margin = float(share.min())
-    status = conceded(judge(margin, error, needs), needs)
-    return replace(claim, status=status if status != "refuted" else "inconclusive", margin=margin, error=error)
+    status = judge(margin, error, needs)
+    return replace(claim, status="inconclusive" if status == "refuted" else status, margin=margin, error=error)
 
 
-def _check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
-    law = applied(run, "Algorithm 3", Algorithm3)
-    if nothing := vacuous([law], ["printed-run"]):
-        return [law], nothing
-    needs = [law, still(run, told=False), stays_outside(run)]
+def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
+    needs = [target_rests(run, told=False), stays_outside(run)]
     pairs = np.array([run.law.gains.c1_alpha * run.law.alpha.potential_energy(q) for q in run.q])
     claim = run_claim(run, pairs, f"{run.n} agents", needs)
-    return needs, [_steadily(run, claim, needs) if claim.status == "inconclusive" else claim]
+    return needs, [_by_rate(run, claim, needs) if claim.status == "inconclusive" else claim]
 
 
 THEOREM = Theorem(
@@ -48,6 +45,8 @@ THEOREM = Theorem(
     ),
     source="slides, Algorithm 3",
     kind="trajectory",
+    law=law_is("Algorithm 3", Algorithm3),
     check=_check,
+    claims=("printed-run",),
     references=("geschwender-2016", "olfati-saber-2006"),
 )

@@ -30,7 +30,7 @@ def run_on(edges, *, m=2, seed=0, end=80.0, size=2.0, speed=0.5, **options):
 
 def claim_of(name, run, claim):
     """A claim on a run as it is, edited or not."""
-    return next(c for c in theorem(name).check(run, Tolerances())[1] if c.name == claim)
+    return next(c for c in theorem(name).examine(run, Tolerances())[1] if c.name == claim)
 
 
 @pytest.fixture(scope="module")

@@ -9,23 +9,27 @@ from flockana.dynamics.simulate import simulate
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.scenarios import scenario
 from flockana.theorems import verify
-from flockana.theorems.dead_zone.parting import parts
+from flockana.theorems.dead_zone.parting import components_of
 
 
 def test_parts_tell_receding_from_approaching():
     law = DeadZoneFlocking()
     q = np.array([[0.0, 0.0], [3.5, 0.0], [50.0, 0.0], [53.5, 0.0]])
     away, back = (np.array([[-s, 0.0], [-s, 0.2], [s, 0.0], [s, 0.0]]) for s in (1.0, -1.0))
-    assert (parts(q, away, law).count, parts(q, away, law).parting, parts(q, back, law).parting) == (2, True, False)
-    assert parts(q, away, law).mismatch == pytest.approx(0.5 * 2 * 0.01 / 2)
-    assert not parts(q[:2], away[:2], law).parting
-    assert not parts(q, 0.0 * q, law).parting  # they stay apart, but at one velocity
+    assert (
+        components_of(q, away, law).count,
+        components_of(q, away, law).parting,
+        components_of(q, back, law).parting,
+    ) == (2, True, False)
+    assert components_of(q, away, law).mismatch == pytest.approx(0.5 * 2 * 0.01 / 2)
+    assert not components_of(q[:2], away[:2], law).parting
+    assert not components_of(q, 0.0 * q, law).parting  # they stay apart, but at one velocity
 
 
 def test_parts_may_pass_each_other_beyond_range_only():
     law, p = DeadZoneFlocking(), np.array([[1.0, 0.0], [-1.0, 0.0]])
     for offset, certain in ((15.1, True), (14.9, False)):
-        assert parts(np.array([[0.0, 0.0], [100.0, offset]]), p, law).parting is certain
+        assert components_of(np.array([[0.0, 0.0], [100.0, offset]]), p, law).parting is certain
 
 
 def test_centres_that_recede_do_not_part_what_can_still_reach_out():
@@ -36,7 +40,7 @@ def test_centres_that_recede_do_not_part_what_can_still_reach_out():
     law = DeadZoneFlocking(k2=0.0)
     q = np.array([[0.0, 0.0], [14.0, 0.0], [40.0, 0.0]])
     p = np.array([[-13.0, 0.0], [12.0, 0.0], [0.2, 0.0]])
-    assert (parts(q, p, law).count, parts(q, p, law).parting) == (2, False)
+    assert (components_of(q, p, law).count, components_of(q, p, law).parting) == (2, False)
     run = simulate(law, q, p, (0.0, 4.0))
     assert np.linalg.norm(run.q[:, 2] - run.q[:, 1], axis=1).min() < 15.0
     assert verify("dead-zone-1-printed", run.window(0.0, 0.5)).claim("velocity").status == "inconclusive"
@@ -51,7 +55,7 @@ def test_a_pair_is_bound_by_its_energy(share, distance, certain):
     q = np.array([[-4.0, 0.0], [4.0, 0.0], [0.0, distance]])
     speed = np.sqrt(share * law.interaction.far_potential - law.interaction.psi(8.0))  # each of the two: ½(s² + s²)
     p = np.array([[speed, 0.0], [-speed, 0.0], [0.0, 1.0]])
-    assert parts(q, p, law).parting is certain
+    assert components_of(q, p, law).parting is certain
 
 
 @pytest.mark.parametrize(("distance", "certain"), [(29.9, False), (30.1, True)])
@@ -59,7 +63,7 @@ def test_a_chain_is_bound_by_its_pairs_out_of_range(distance, certain):
     """n = 3 with its ends 16 apart: H is 1.1 psi(r), so M = 1, and B = 15 (2 + 1)/3."""
     q = np.array([[-8.0, 0.0], [0.0, 0.0], [8.0, 0.0], [0.0, distance]])
     p = np.array([[0.0, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, 1.0]])
-    assert parts(q, p, DeadZoneFlocking()).parting is certain
+    assert components_of(q, p, DeadZoneFlocking()).parting is certain
 
 
 def test_what_parts_for_ever_does():
@@ -67,6 +71,6 @@ def test_what_parts_for_ever_does():
     item = scenario("dead-zone-wide-start", seed=3)
     law = item.law.law
     run = simulate(item.law, item.q0, item.p0, (0.0, 800.0), t_eval=[0.0, 400.0, 800.0])
-    middle, end = (parts(q, p, law) for q, p in zip(run.q[1:], run.p[1:], strict=True))
+    middle, end = (components_of(q, p, law) for q, p in zip(run.q[1:], run.p[1:], strict=True))
     assert middle.parting
     assert (end.count, end.parting) == (middle.count, True)

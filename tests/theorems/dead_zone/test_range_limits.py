@@ -20,7 +20,7 @@ from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.measures.metrics import cohesion_radius
 from flockana.theorems import verify
 from flockana.theorems.dead_zone.hold import hold
-from flockana.theorems.dead_zone.parting import parts
+from flockana.theorems.dead_zone.parting import components_of
 from flockana.theorems.dead_zone.range_limits import first_entry
 
 UNITS = [(1.0, 1.0), (1e6, 1.0), (1e-3, 1.0), (1.0, 1e3), (1e-3, 1e-3)]  # metres to µm, km; seconds to ms, ks
@@ -119,7 +119,7 @@ def test_two_contacts_that_part_however_slowly(drift, units):
 def test_two_agents_that_pass_at_the_edge_of_their_range(offset):
     """Head on but for r + offset: beyond it they never meet and part for ever; within it they pull at each other."""
     q, p = [[0.0, 0.0], [100.0, 15.0 + offset]], [[1.0, 0.0], [-1.0, 0.0]]
-    found = parts(np.array(q), np.array(p), LAW)
+    found = components_of(np.array(q), np.array(p), LAW)
     if offset > 0.0:
         assert found.parting if offset >= 1e-9 else True
     else:
@@ -146,15 +146,15 @@ def test_what_is_certain_at_one_instant_comes_true(seed, start):
     run = simulate(LAW, q, p, (0.0, 150.0), t_eval=np.linspace(0.0, 150.0, 61))
     end, integrated = cohesion_radius(run.q[-1]), 1e-7  # places are as good as rtol = 1e-8 of some ten metres
     held = [hold(LAW, x, v) for x, v in zip(run.q, run.p, strict=True)]
-    bound = [parts(x, v, LAW) for x, v in zip(run.q, run.p, strict=True)]
+    bound = [components_of(x, v, LAW) for x, v in zip(run.q, run.p, strict=True)]
     for k in range(60):
         if held[k].certificate.margin > 0.0:
-            assert abs(cohesion_radius(run.q[k]) - end) <= held[k].distance + integrated
+            assert abs(cohesion_radius(run.q[k]) - end) <= held[k].reach + integrated
             assert run.metric("velocity_mismatch")[-1] < max(1e-12, run.metric("velocity_mismatch")[k])
             assert held[k + 1].certificate.margin > 0.0 or held[k + 1].excess < held[k].barrier
-        if bound[k].count == 1 and bound[k].parts[0].radius < np.inf:
-            assert max(map(cohesion_radius, run.q[k:])) <= bound[k].parts[0].radius + integrated
-            assert all(parts(x, v, LAW).count == 1 for x, v in zip(run.q[k:], run.p[k:], strict=True))
+        if bound[k].count == 1 and bound[k].members[0].radius < np.inf:
+            assert max(map(cohesion_radius, run.q[k:])) <= bound[k].members[0].radius + integrated
+            assert all(components_of(x, v, LAW).count == 1 for x, v in zip(run.q[k:], run.p[k:], strict=True))
     assert start is small_flock or held[-1].certificate.margin > 0.9
 
 

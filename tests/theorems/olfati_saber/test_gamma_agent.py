@@ -16,7 +16,7 @@ from flockana.environment.targets import (
     StaticTarget,
 )
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.theorems.olfati_saber.gamma_agent import consistent, honest_rate, slip, still
+from flockana.theorems.olfati_saber.gamma_agent import consistent, declared_rate_is_true, slip, target_rests
 from tests.theorems.made_up import SCALINGS
 
 HERE, AWAY = (3.0, 1.0), (2.0, -1.0)
@@ -40,9 +40,9 @@ MOVING = [
 @pytest.mark.parametrize("target", MOVING, ids=lambda target: type(target).__name__)
 def test_a_path_with_its_own_velocity_is_consistent_and_moves(target):
     assert consistent(run(target)).status == "met"
-    assert honest_rate(run(target)).status == "met"
-    assert still(run(target), told=True).status == "unmet"
-    assert still(run(target), told=False).status == "unmet"
+    assert declared_rate_is_true(run(target)).status == "met"
+    assert target_rests(run(target), told=True).status == "unmet"
+    assert target_rests(run(target), told=False).status == "unmet"
 
 
 @pytest.mark.parametrize("target", MOVING[:3], ids=lambda target: type(target).__name__)
@@ -54,39 +54,39 @@ def test_a_velocity_that_is_told_wrongly_is_seen_to_a_thousandth(target, factor)
     found = consistent(run(told))
     assert found.status == "unmet"
     assert -found.margin == pytest.approx(abs(1.0 - factor) * speed, rel=0.05)
-    assert honest_rate(run(told)).status == "met"
+    assert declared_rate_is_true(run(told)).status == "met"
 
 
 def test_rest_and_the_velocity_that_is_told_beside_it():
-    assert [still(run(StaticTarget(HERE)), told=told).status for told in (True, False)] == ["met", "met"]
-    assert [still(run(StaticTarget(HERE, AWAY)), told=told).status for told in (True, False)] == ["met", "unmet"]
-    assert still(run(LinearTarget(HERE, (0.0, 0.0))), told=False).status == "met"
+    assert [target_rests(run(StaticTarget(HERE)), told=told).status for told in (True, False)] == ["met", "met"]
+    assert [target_rests(run(StaticTarget(HERE, AWAY)), told=told).status for told in (True, False)] == ["met", "unmet"]
+    assert target_rests(run(LinearTarget(HERE, (0.0, 0.0))), told=False).status == "met"
     assert consistent(run(StaticTarget(HERE, AWAY))).status == "unmet"
 
 
 def test_a_function_that_was_seen_at_rest_is_assumed_to_be():
-    found = still(run(CallableTarget(lambda t: (HERE, (0.0, 0.0)))), told=False)
+    found = target_rests(run(CallableTarget(lambda t: (HERE, (0.0, 0.0)))), told=False)
     assert found.status == "assumed"
     assert "as seen at 281 times" in found.detail  # 41 samples and six points in each of 40 intervals
 
 
 def test_a_constant_that_only_rounding_moves_is_at_rest():
     noisy = CallableTarget(lambda t: ((5.0 * np.cos(t) ** 2 + 5.0 * np.sin(t) ** 2, 1.0), (0.0, 0.0)))
-    assert still(run(noisy), told=False).status == "assumed"
+    assert target_rests(run(noisy), told=False).status == "assumed"
 
 
 @pytest.mark.parametrize("between", [0.02, 0.11])
 def test_a_jump_between_two_samples_is_seen(between):
     """At rest wherever one looks but for the jump: the difference of positions over that interval tells."""
     jumps = CallableTarget(lambda t: ((0.0 if t < 1.0 + between else 1e-3, 0.0), (0.0, 0.0)))
-    assert still(run(jumps), told=False).status == "unmet"
+    assert target_rests(run(jumps), told=False).status == "unmet"
     assert consistent(run(jumps)).status == "unmet"
 
 
 def test_a_motion_that_vanishes_at_every_sample_is_seen():
     h = 5.0 / 40.0
     between = CallableTarget(lambda t: ((np.sin(2.0 * np.pi * t / h), 0.0), (0.0, 0.0)))
-    assert still(run(between), told=True).status == "unmet"
+    assert target_rests(run(between), told=True).status == "unmet"
 
 
 def test_samples_too_sparse_for_the_path_leave_it_open():
@@ -98,5 +98,10 @@ def test_samples_too_sparse_for_the_path_leave_it_open():
 @pytest.mark.parametrize("target", [*MOVING, RescaledVelocity(MOVING[2], 0.9), StaticTarget(HERE, AWAY)])
 def test_units(target, scaling):
     one, two = run(target), rescale(run(target), length=scaling[0], time=scaling[1])
-    for check in (consistent, honest_rate, lambda each: still(each, told=True), lambda each: still(each, told=False)):
+    for check in (
+        consistent,
+        declared_rate_is_true,
+        lambda each: target_rests(each, told=True),
+        lambda each: target_rests(each, told=False),
+    ):
         assert check(one).status == check(two).status

@@ -14,7 +14,7 @@ from flockana.lattice import hexagonal_patch, hexagonal_spiral
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems import Tolerances, verify
 from flockana.theorems.asymptotics import lattice_limit
-from flockana.theorems.olfati_saber.os_1 import _disconnected_energy
+from flockana.theorems.olfati_saber.os_1 import disconnected_energy
 from flockana.theorems.slides.e03 import rhombus_with_double_agent
 from flockana.theorems.theorem import Hypothesis
 from tests.theorems.made_up import SCALINGS, hypothesis, judged, made_up, same_in_all_units, statuses
@@ -172,14 +172,14 @@ def test_a_level_set_that_holds_a_disconnected_state_makes_it_vacuous():
 @pytest.mark.parametrize("n", [2, 3, 8, 20])
 def test_the_disconnected_state_exists_and_has_the_energy_named(n):
     apart = np.vstack([hexagonal_spiral(n - 1, 7.0), [[1e4, 0.0]]])
-    assert LAW.energy(0.0, apart, 0 * apart) == pytest.approx(_disconnected_energy(LAW, n, 2), rel=1e-12)
-    assert _disconnected_energy(LAW, 2, 2) == pytest.approx(30.0 * 0.73590113426239231, rel=1e-13)
+    assert LAW.energy(0.0, apart, 0 * apart) == pytest.approx(disconnected_energy(LAW, n, 2), rel=1e-12)
+    assert disconnected_energy(LAW, 2, 2) == pytest.approx(30.0 * 0.73590113426239231, rel=1e-13)
 
 
 def test_no_disconnected_state_is_claimed_where_the_lattice_does_not_exist():
     wide = Algorithm1(AlphaInteraction(d=1.0, r=1.8))
-    assert _disconnected_energy(wide, 7, 2) == np.inf
-    assert np.isfinite(_disconnected_energy(wide, 7, 1))
+    assert disconnected_energy(wide, 7, 2) == np.inf
+    assert np.isfinite(disconnected_energy(wide, 7, 1))
 
 
 class TestLatticeLimit:

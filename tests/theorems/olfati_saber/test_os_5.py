@@ -184,7 +184,7 @@ def test_the_quantitative_form_is_decided_as_by_fractions(seed, m):
     """Every pair of links that cross, of nets on a grid where ℓ = √2 times the least distance happens often."""
     rng = np.random.default_rng(seed)
     q = rng.integers(0, 4, (9, m)) * D / 3.0
-    net = os_5._Net(q, D, R)
+    net = os_5.Net(q, D, R)
     longest, shortest = os_5._of_crossing(net)
     exact = [os_5._holds_exactly(net, net.links[pair]) for pair in net.crossings]
     assert all(exact)
@@ -235,13 +235,13 @@ def test_the_threshold_of_the_extension_is_sharp():
 def test_in_space_only_a_clearance_above_rounding_is_believed():
     """Two links of 7 within 1e-14 of each other: nobody knows whether they cross."""
     q = D * np.array([[-0.5, 0.0, 0.0], [0.5, 0.0, 0.0], [0.0, -0.5, 1e-14], [0.0, 0.5, 1e-14]])
-    from flockana.theorems.olfati_saber.os_5 import _Net, _uncrossed
+    from flockana.theorems.olfati_saber.os_5 import Net, uncrossed
 
-    net = _Net(q, D, R)
+    net = Net(q, D, R)
     assert len(net.crossings) == 0
-    assert _uncrossed(net, [], "i", "").status == "inconclusive"
+    assert uncrossed(net, [], "i", "").status == "inconclusive"
     q[2:, 2] = 0.0
-    assert _uncrossed(_Net(q, D, R), [], "i", "").status == "refuted"
+    assert uncrossed(Net(q, D, R), [], "i", "").status == "refuted"
 
 
 class TestTerminal:

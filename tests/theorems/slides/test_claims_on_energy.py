@@ -9,7 +9,7 @@ import pytest
 
 from flockana.dynamics.simulate import simulate
 from flockana.laws.olfati_saber import Algorithm1
-from flockana.theorems.slides.claims_on_energy import identity_claim, run_claim
+from flockana.theorems.slides.claims_on_energy import run_claim
 from flockana.theorems.theorem import Hypothesis
 
 
@@ -53,8 +53,3 @@ def test_a_rise_within_the_error_of_the_balance_is_left_open(run, size):
 def test_an_unmet_hypothesis_makes_it_vacuous(run):
     unmet = Hypothesis("the γ-agent is at rest", "unmet")
     assert run_claim(run, 10.0 * (run.energy()[0] - run.energy()), "two agents", [unmet]).status == "vacuous"
-
-
-def test_an_identity_is_judged_by_its_residual():
-    assert identity_claim("x", 0, "", "").status == "verified"
-    assert identity_claim("x", 1, "", "").status == "refuted"

@@ -10,7 +10,7 @@ import pytest
 
 from flockana.lattice import crossings, links
 from flockana.measures.metrics import min_distance
-from flockana.theorems.slides.e05 import _EIGHT, _STAR, _links, fcc_eight, fcc_star, fragments, non_planar_fragments
+from flockana.theorems.slides.e05 import EIGHT, STAR, fcc_eight, fcc_star, fragments, non_planar_fragments, site_links
 
 D, R = 7.0, 8.4
 
@@ -20,13 +20,11 @@ def e5(verdict_of):
     return verdict_of("E5")
 
 
-@pytest.mark.parametrize(
-    ("name", "build", "sites", "count"), [("13", fcc_star, _STAR, 36), ("8", fcc_eight, _EIGHT, 17)]
-)
+@pytest.mark.parametrize(("name", "build", "sites", "count"), [("13", fcc_star, STAR, 36), ("8", fcc_eight, EIGHT, 17)])
 def test_both_counterexamples_are_lattices_with_the_links_known_beforehand(e5, name, build, sites, count):
     q = build(D)
     pairs = links(q, R)
-    assert pairs.tolist() == [list(p) for p in _links(sites)]  # floating point and whole numbers
+    assert pairs.tolist() == [list(p) for p in site_links(sites)]  # floating point and whole numbers
     assert (len(q), len(pairs)) == (int(name), count)
     np.testing.assert_allclose(np.linalg.norm(q[pairs[:, 0]] - q[pairs[:, 1]], axis=1), D, rtol=1e-14)
     assert min_distance(q) == pytest.approx(D)
@@ -55,7 +53,7 @@ def test_the_witness_is_within_the_net(e5):
 def test_fragments_are_enumerated_without_gaps_or_repeats():
     """Against growth by one site at a time, with sets."""
     whole = {frozenset({(0, 0, 0)})}
-    steps = [s for s in _STAR if s != (0, 0, 0)]
+    steps = [s for s in STAR if s != (0, 0, 0)]
     for size in range(2, 5):
         grown = set()
         for cluster in whole:
@@ -77,5 +75,5 @@ def test_all_fragments_of_six_are_planar(e5):
 
 def test_the_counter_of_non_planar_fragments_sees_them(monkeypatch):
     module = sys.modules["flockana.theorems.slides.e05"]
-    monkeypatch.setattr(module, "fragments", lambda size: iter([_EIGHT, _EIGHT[::-1]]))
+    monkeypatch.setattr(module, "fragments", lambda size: iter([EIGHT, EIGHT[::-1]]))
     assert non_planar_fragments(8) == (2, 2)

@@ -41,7 +41,7 @@ def brackets(monkeypatch):
 
 
 def claims(run):
-    return {claim.name: claim for claim in theorem("E11").check(run, Tolerances())[1]}
+    return {claim.name: claim for claim in theorem("E11").examine(run, Tolerances())[1]}
 
 
 def test_a_pressed_flock_at_rest_is_a_quasi_lattice_and_a_minimum(settled, brackets):

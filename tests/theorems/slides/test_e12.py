@@ -55,7 +55,7 @@ def test_e12_does_not_pass_a_gain_that_is_wrong():
     mislabelled = replace(run, law=replace(law, target=RescaledVelocity(law.target, 0.25)))
     with pytest.raises(ArgumentError, match="of another law"):
         verify("E12", mislabelled)
-    claims = {claim.name: claim.status for claim in theorem("E12").check(mislabelled, Tolerances())[1]}
+    claims = {claim.name: claim.status for claim in theorem("E12").examine(mislabelled, Tolerances())[1]}
     assert (claims["predicted"], claims["consistent"]) == ("refuted", "verified")
 
 
@@ -76,9 +76,9 @@ def test_e12_is_the_same_in_every_unit():
     path = CircleTarget((0.0, 0.0), 2.0, 0.5)
     law = Algorithm2(gains=Gains(c1_gamma=20.0, c2_gamma=9.0), target=RescaledVelocity(path, 0.25))
     run = simulate(law, [[1.0, 1.0]], [[0.0, 0.0]], (0.0, 8.0))
-    here = theorem("E12").check(run, Tolerances())[1]
+    here = theorem("E12").examine(run, Tolerances())[1]
     for length, time in ((1e-6, 1e3), (1e3, 1e-3)):
-        there = theorem("E12").check(rescale(run, length=length, time=time), Tolerances())[1]
+        there = theorem("E12").examine(rescale(run, length=length, time=time), Tolerances())[1]
         assert [claim.status for claim in there] == [claim.status for claim in here]
         assert [claim.margin for claim in there] == pytest.approx([claim.margin for claim in here], abs=1e-5)
 

@@ -1,0 +1,90 @@
+"""Runs of scenarios from many seeds, for the report's shares: planned, sent and made in batches."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from flockana.base.errors import ArgumentError
+from flockana.ensemble.work import Job, Record, Request, run_batch
+from flockana.scenarios import scenario, scenarios
+from flockana.scenarios.scenario import SOURCE
+
+_AT_ONCE = 25  # runs in one survey: a few seconds, so that all processes end together
+
+
+@dataclass(frozen=True)
+class Survey:
+    """Runs of one scenario to make and judge by what its source reports; names and numbers only, so it can be sent.
+
+    Parameters
+    ----------
+    scenario : str
+        Its name.
+    seeds : tuple of int
+        Which runs.
+    """
+
+    scenario: str
+    seeds: tuple[int, ...]
+
+    @property
+    def name(self) -> str:
+        """As progress shows it."""
+        return f"{self.scenario}, seeds {self.seeds[0]} to {self.seeds[-1]}"
+
+
+@dataclass(frozen=True)
+class SurveyResult:
+    """The records of a survey's runs.
+
+    Parameters
+    ----------
+    survey : Survey
+        Which runs.
+    records : tuple of Record
+        One of each seed.
+    """
+
+    survey: Survey
+    records: tuple[Record, ...]
+
+    @property
+    def name(self) -> str:
+        """As progress shows it."""
+        return self.survey.name
+
+
+def surveys(name: str | None, count: int | None, *, seed: int = 0) -> tuple[Survey, ...]:
+    """The surveys that the section on many seeds needs.
+
+    Examples
+    --------
+    >>> [survey.name for survey in surveys("zone-51", 30)]
+    ['zone-51, seeds 0 to 24', 'zone-51, seeds 25 to 29']
+    """
+    if name is None:
+        usual = {subject: scenario(subject, seed).seeds for subject in scenarios()}
+        wanted = {subject: most if count is None else count for subject, most in usual.items() if most}
+    elif not count:
+        return ()
+    elif name not in scenarios() or not scenario(name, seed).reports:
+        raise ArgumentError(
+            f"--seeds {count}: {name} is no scenario with a source that reports something; leave it out"
+        )
+    else:
+        wanted = {name: count}
+    return tuple(
+        Survey(subject, tuple(range(first, min(first + _AT_ONCE, seed + most))))
+        for subject, most in wanted.items()
+        for first in range(seed, seed + most, _AT_ONCE)
+    )
+
+
+def make_survey(survey: Survey) -> SurveyResult:
+    """Make and judge the runs of a survey in this process."""
+    return SurveyResult(survey, run_batch(request(survey.scenario), tuple(Job(seed) for seed in survey.seeds)))
+
+
+def request(name: str) -> Request:
+    """What is asked of every run: to be judged by what its source reports, and no more."""
+    return Request(name, (SOURCE,), ())

@@ -1,0 +1,163 @@
+"""What sources report of flocks among obstacles, as claims that a run is judged by."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import inf
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.dynamics.trajectory import Trajectory
+from flockana.environment.obstacles import Obstacle
+from flockana.measures.clearance import ConstrainedLattice, constrained_lattice
+from flockana.scenarios.findings import ROUNDING, component_counts, finding, in_the_end
+from flockana.theorems import Claim, Tolerances
+from flockana.theorems.limits import Certificate
+
+_SEGMENT = 400  # points on the straight way to the γ-agent that are looked at
+
+
+def stays_clear(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """No agent enters: by the lower bound of all clearances; one that is inside at a point of its path refutes it."""
+    least = run.clearance()
+    rounding = ROUNDING * float(np.abs(run.q).max())
+    margin = least.reached if least.reached < -rounding else least.lower
+    error = rounding if margin > 0.0 or margin == least.reached else inf
+    detail = (
+        f"agent {least.agent} comes closest, {least.reached:.4g} from obstacles[{least.obstacle}] at "
+        f"t = {least.time:.4g}; no agent is closer than {least.lower:.4g} to any at any time"
+    )
+    witness = {"agent": least.agent, "obstacle": least.obstacle, "time": least.time}
+    return finding("clear", margin, detail, computed=least.lower, stated="> 0", error=error, witness=witness)
+
+
+def splits(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """The net is connected at first, and in several components later."""
+    counts = component_counts(run)
+    whole = np.flatnonzero(counts == 1)
+    if whole.size == 0:
+        return finding("splits", -1.0, f"the net is never connected: at least {counts.min()} components", stated=1)
+    after = counts[whole[0] :]
+    most, apart = int(after.max()), run.t[whole[0] :][after > 1]
+    detail = f"connected from t = {run.t[whole[0]]:.4g}" + (
+        f"; in up to {most} components between t = {apart[0]:.4g} and {apart[-1]:.4g}" if most > 1 else " to the end"
+    )
+    return finding("splits", min(most, 2) - 1.5, detail, computed=most, stated="1, then more than 1")
+
+
+def rejoins(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """One flock at the end of the run: open, for where agents are by then hangs on the last bit of their start."""
+    counts = component_counts(run)
+    apart = np.flatnonzero(counts > 1)
+    detail = f"{counts[-1]} component(s) at t = {run.t[-1]:g}"
+    if counts[-1] == 1 and apart.size:
+        detail += f", connected again from t = {run.t[apart[-1] + 1]:.4g} on"
+    certificate = Certificate(-1.0, "the net at one instant of a motion that forgets its start is no limit")
+    return in_the_end("rejoins", certificate, detail, computed=int(counts[-1]), stated="1")
+
+
+def _passed_between(run: Trajectory) -> int:
+    """How many agents cross x = 150 between the two spheres of the gap."""
+    before = run.q[:-1, :, 0] < 150.0
+    crossing = before & (run.q[1:, :, 0] >= 150.0)
+    row, agent = np.nonzero(crossing)
+    last = np.full(run.n, -1)
+    np.maximum.at(last, agent, row)
+    y = run.q[np.maximum(last, 0) + 1, np.arange(run.n), 1]
+    return int(np.sum((last >= 0) & (y > 55.0) & (y < 75.0)))
+
+
+def gets_past(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """All agents are beyond both spheres of the gap at the end."""
+    x = run.q[-1, :, 0]
+    detail = f"{int((x > 175.0).sum())} of {run.n} agents are beyond both spheres, the last one at x = {x.min():.4g}"
+    margin = float(np.clip(x.min() - 175.0, -25.0, 25.0))  # a sphere's radius is enough: how far agents get varies
+    return finding("past", margin, detail, computed=float(x.min()), stated="x > 175 for all")
+
+
+def squeezes(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """More than half of the agents go through the gap between the two spheres."""
+    through = _passed_between(run)
+    detail = f"{through} of {run.n} agents go through the gap, of width 20; the others round the outside of the spheres"
+    margin = float(np.clip(through - 0.5 * run.n, -0.1 * run.n, 0.1 * run.n))  # a tenth is enough: the number varies
+    return finding("squeezes", margin, detail, computed=through, stated="more than half")
+
+
+def blocked(q: FloatArray, target: FloatArray, obstacles: Sequence[Obstacle]) -> FloatArray:
+    """Which agents have an obstacle on the straight way to the γ-agent, shape (n,).
+
+    Examples
+    --------
+    >>> q = np.array([[0.0, 0.0], [0.0, 9.0]])
+    >>> blocked(q, np.array([10.0, 0.0]), [Sphere((5.0, 0.0), 1.0)]).tolist()
+    [True, False]
+    """
+    share = np.linspace(0.0, 1.0, _SEGMENT)[:, None, None]
+    way = (q + share * (target - q)).reshape(-1, q.shape[1])
+    hit = np.any([obstacle.contains(way) for obstacle in obstacles], axis=0)
+    blocked_agents: FloatArray = hit.reshape(_SEGMENT, len(q)).any(axis=0)
+    return blocked_agents
+
+
+def traps(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """Held back: behind an obstacle at the end, and slower than what counts as a standstill for the last tenth."""
+    held = blocked(run.q[-1], run.law.target.position(float(run.t[-1])), run.law.obstacles)
+    last = run.t >= run.t[-1] - 0.1 * (run.t[-1] - run.t[0])
+    limit = tolerances.agreement * run.law.gains.c1_gamma * run.law.alpha.unit / run.law.gains.c2_gamma
+    slow = np.linalg.norm(run.p[last], axis=2).max(axis=0) < limit
+    count = int((held & slow).sum())
+    detail = (
+        f"until t = {run.t[-1]:g} {count} of {run.n} agents rest (slower than {limit:.3g}, {tolerances.agreement:g} of "
+        "the speed at which agents near the γ-agent) with an obstacle on the straight way to the γ-agent"
+    )
+    certificate = Certificate(1.0 if count else -1.0, "that is a count" if count else "none does, as yet")
+    return in_the_end("trapped", certificate, detail, computed=count, stated="more than 0")
+
+
+def rests(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """It comes to rest: hardly any speed is left, and hardly any force on agents at rest where they are.
+
+    With a γ-agent at rest and c2γ > 0 every motion dies out, as H falls by c2γ Σ‖p_i‖² at least; what is open is when.
+    So one instant will do here, of small speeds and forces together: it is no turning point of a swing for ever. Near
+    stiff obstacles the solver's last digits are worth as much force: the calmest instant of the last tenth is taken.
+    """
+    law, late = run.law, np.flatnonzero(run.t >= run.t[-1] - 0.1 * (run.t[-1] - run.t[0]))
+    still = np.zeros_like(run.p[0])
+    forces = np.array([np.linalg.norm(law.acceleration(run.t[k], run.q[k], still), axis=1).max() for k in late])
+    forces, speeds = forces / run.scales.force, np.linalg.norm(run.p[late], axis=2).max(axis=1) / run.scales.speed
+    lefts = np.maximum(forces / tolerances.force, speeds / np.sqrt(tolerances.velocity))
+    calmest = int(np.argmin(lefts))
+    t, force, speed = (float(series[calmest]) for series in (run.t[late], forces, speeds))
+    left = max(float(lefts[calmest]), 1e-300)
+    damped = Certificate(float(np.clip(-np.log(left), -1.0, 1.0)), f"{left:.2g} of what counts as none")
+    none = Certificate(-1.0, "without damping by the γ-agent it may never")
+    detail = f"at t = {t:g} the largest force is {force:.2g} of the law's, the largest speed {speed:.2g}"
+    certificate = damped if law.gains.c2_gamma > 0.0 else none
+    return in_the_end("rests", certificate, detail, computed=force, stated=f"force <= {tolerances.force:g} at rest")
+
+
+def _measured(run: Trajectory) -> tuple[ConstrainedLattice, float, str]:
+    """How far the end is from a constrained α-lattice, relative to d and d' too, and in words."""
+    law = run.law
+    end = constrained_lattice(run.q[-1], law.obstacles, alpha=law.alpha, beta=law.beta)
+    strain = max(end.alpha_error / law.alpha.d, end.beta_error / law.beta.d)
+    detail = (
+        f"{end.beta_links} β-agents are d' away but for {end.beta_error:.3g}, {end.links} links d long but for "
+        f"{end.alpha_error:.3g}: relative to d' and d {strain:.2g} at most"
+    )
+    return end, strain, detail
+
+
+def touches(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """Some agent rests within the range of an obstacle, at d' from it."""
+    end, _, detail = _measured(run)
+    return finding("in-touch", end.beta_links - 0.5, detail, computed=end.beta_links, stated="β-neighbours")
+
+
+def constrained(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """The end is a quasi constrained α-lattice."""
+    _, strain, detail = _measured(run)
+    margin = (tolerances.quasi - strain) / tolerances.quasi
+    certificate = Certificate(float(np.clip(margin, -1.0, 1.0)), f"quasi is up to {tolerances.quasi:g}")
+    return in_the_end("constrained-lattice", certificate, detail, computed=strain, stated=f"<= {tolerances.quasi:g}")

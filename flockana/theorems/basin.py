@@ -1,0 +1,188 @@
+"""Basins of strict minima: how much energy a flock needs at least to leave the minimum of a potential U beside it.
+
+Where x' = v, v' = -∇U - D(x) v with D >= 0, the energy E = U + K never rises. Let λ be the least eigenvalue of ∇²U(x)
+off the rigid motions, g = ∇U(x), and let ∇²U be Lipschitz with constant L within the distance w of x.
+
+1. Off the rigid motions U is strictly convex near x. If |g| is small, it has a minimum x* there, within δ = 2|g|/λ
+   of x; ∇U(x*) is orthogonal both to the rigid motions of x* and to the complement of those of x, so it is 0 as long
+   as δ is less than the least radius of gyration (else λ is taken off the translations alone). The curvature at x* is
+   λ - Lδ at least, and U(x) - U(x*) <= |g|²/λ.
+2. Of the states with the distance ρ from the set of all x* moved rigidly, the nearest of these differs from each by a
+   vector that is orthogonal to the rigid motions; so U >= U(x*) + ρ²(½(λ - Lδ) - Lρ/6) there, for ρ + δ <= w, and for
+   ρ <= λ/(2L) there is no equilibrium nearer than ρ but x* itself.
+3. If E - U(x*) <= K + |g|²/λ is less than that barrier, the flock never leaves. With damping of all relative motion
+   (c2γ > 0, or damping along the links of a connected net) it converges to x*, and its velocities match, by LaSalle's
+   principle.
+
+No tolerance enters: the flock's own scales come in through λ, L and the barrier. What depends on the law, its force,
+its Hessian and the third derivatives of its pair potential, is in `olfati_saber.attraction` and `dead_zone.hold`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from math import inf, nan, sqrt
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.measures.frame import moving_frame
+from flockana.measures.nets import LinkArray, components, links
+from flockana.theorems.limits import Certificate
+from flockana.theorems.rounding import EPS
+
+WINDOWS = np.geomspace(1e-8, 0.25, 25)  # of the law's length: distances up to which L is taken
+_SAFETY = 1.25  # on a difference quotient of the stiffness: its curve is smooth but for a few kinks
+_SYMMETRIC = 1e-9  # of the largest: a rotation that moves the agents by less is no motion, as in `rigid_motions`
+_GROWTH = 10.0  # factor by which the energy of a map of steps may rise
+
+
+@dataclass(frozen=True)
+class Basin:
+    """The basin of the strict minimum beside a state, as far as it is known, and the state's energy above that minimum.
+
+    Attributes
+    ----------
+    excess : float
+        Bound of the energy above the minimum; ∞ where there is none.
+    barrier : float
+        Energy that the flock needs at least to leave; 0 where nothing is known.
+    distance : float
+        Bound δ of the distance to the minimum, over all coordinates; ∞ where there is none.
+    curvature : float
+        Least eigenvalue λ of ∇²U off the rigid motions, less its rounding.
+    stability : float
+        Of a map of steps, positive where every mode of it decays, with room to spare; 1 of a flow.
+    verb : str
+        How the certificate says that the flock stays, ``"caught"`` or ``"held"``.
+    """
+
+    excess: float = inf
+    barrier: float = 0.0
+    distance: float = inf
+    curvature: float = nan
+    stability: float = 1.0
+    verb: str = "caught"
+
+    @property
+    def reach(self) -> float:
+        """How far from here, over all coordinates and but for rigid motions, the flock ever gets while it is caught."""
+        return self.distance + 2.0 * sqrt(self.excess / self.curvature)
+
+    @property
+    def certificate(self) -> Certificate:
+        """That the energy above the minimum is less than the barrier; of a map of steps, than a tenth of it."""
+        if not self.barrier > 0.0:
+            return Certificate(-1.0, f"it is not known to be {self.verb} by a minimum")
+        if self.stability <= 0.0:
+            return Certificate(max(-1.0, self.stability), "the step is too long for the stiffness of its contacts")
+        ratio = self.excess / self.barrier * (_GROWTH if self.stability < 1.0 else 1.0)
+        stays, leaves = f"{self.verb} by a strict minimum for ever", "near a minimum, with energy enough to leave"
+        where = stays if ratio < 1.0 else leaves
+        text = f"it is {where}: {self.excess:.2g} above it, where leaving takes {self.barrier:.2g} at least"
+        return Certificate(max(-1.0, min(1.0 - ratio, self.stability)), text)
+
+
+ALONE = Basin(0.0, inf, 0.0, inf)  # of one agent, which has no relative motion
+
+
+def curvatures(stiffness: Any, rigid: FloatArray) -> tuple[float, float]:
+    """(least eigenvalue off some rigid motions, less its rounding, and the largest); NaN and 0 where there is none."""
+    free = np.linalg.svd(rigid, full_matrices=True)[0][:, rigid.shape[1] :]
+    if free.shape[1] == 0:
+        return nan, 0.0
+    values = np.linalg.eigvalsh(free.T @ (stiffness @ free))
+    largest = float(np.abs(values).max())
+    return float(values[0]) - 64.0 * len(rigid) * EPS * largest, largest
+
+
+def kinetic(p: FloatArray) -> float:
+    """K(v) = ½ Σ‖p_i − p_c‖², with the rounding of v added.
+
+    Examples
+    --------
+    >>> 1.0 <= kinetic(np.array([[1.0], [-1.0]])) < 1.0 + 1e-12
+    True
+    """
+    rounding = sqrt(p.size) * 8.0 * EPS * float(np.abs(p).max())
+    return 0.5 * (float(np.linalg.norm(moving_frame(p))) + rounding) ** 2
+
+
+def gyration(q: FloatArray) -> float:
+    """Least size of a unit rotation's motion, over all coordinates; ∞ on a line.
+
+    Examples
+    --------
+    >>> gyration(np.array([[-1.0, 0.0], [1.0, 0.0]]))
+    1.4142135623730951
+    """
+    x, m = moving_frame(q), q.shape[1]
+    turns = []
+    for a in range(m):
+        for b in range(a):
+            turn = np.zeros_like(x)
+            turn[:, a], turn[:, b] = x[:, b], -x[:, a]
+            turns.append(turn.ravel())
+    sizes = np.linalg.svd(np.array(turns), compute_uv=False) if turns else np.empty(0)
+    return float(np.min(sizes[sizes > _SYMMETRIC * sizes.max(initial=0.0)], initial=inf))
+
+
+def connected_within(q: FloatArray, reach: float) -> bool:
+    """Whether the net of all pairs nearer than a reach is connected."""
+    return reach > 0.0 and not components(len(q), links(q, reach)).any()
+
+
+def barrier(
+    curvature: float, distance: float, windows: Iterable[float], lipschitz_within: Callable[[float], float]
+) -> float:
+    """The highest barrier of step 2 over a choice of windows w: a wide one has a large L, a narrow one a small ρ.
+
+    Examples
+    --------
+    >>> barrier(2.0, 0.0, [1.0, 3.0], lambda window: 0.0)
+    9.0
+    """
+    best = 0.0
+    for window in windows:
+        lipschitz = lipschitz_within(float(window))
+        reach = window - distance
+        if lipschitz > 0.0:
+            reach = min(reach, 0.5 * curvature / lipschitz)
+        inner = curvature - lipschitz * distance
+        if reach > 4.0 * distance and inner > 0.5 * curvature:
+            best = max(best, reach**2 * (0.5 * inner - lipschitz * reach / 6.0))
+    return float(best)
+
+
+def lipschitz_constant(n: int, pairs: LinkArray, third: FloatArray) -> float:
+    """Lipschitz constant L of ∇²U from a bound T of the third derivatives of each pair's potential.
+
+    A displacement a of all agents changes the Hessian's block of a pair by at most T |a_j - a_i| and a pair's length by
+    at most √2 |a|. So L <= √2 max Σ T |b_j - b_i|² over unit b: the largest eigenvalue of the Laplacian weighted by T,
+    which is at most the largest sum of the weights at both ends of a link.
+
+    Examples
+    --------
+    >>> round(lipschitz_constant(3, np.array([[0, 1], [1, 2]]), np.array([1.0, 2.0])) / sqrt(2.0), 12)
+    5.0
+    """
+    if not len(pairs):
+        return 0.0
+    ends = np.bincount(pairs.ravel(), weights=np.repeat(third, 2), minlength=n)
+    return sqrt(2.0) * float((ends[pairs[:, 0]] + ends[pairs[:, 1]]).max())
+
+
+def third_derivative(
+    s: FloatArray, along: FloatArray, across: FloatArray, *, least_step: float, noise: FloatArray | float = 0.0
+) -> FloatArray:
+    """Norm of the third derivative of each pair's potential F(|x|), at worst over the lengths s, shape (M, points).
+
+    It is F''' along the pair three times, the slope of `along` = F'', and `across` = (F'/s)' along it once and across
+    twice; of unit vectors the second kind makes 3 e (1 - e²) <= 2/√3 at most. F''' is a difference quotient.
+    """
+    step = np.diff(s, axis=1)
+    change = np.divide(np.abs(np.diff(along, axis=1)), step, out=np.zeros_like(step), where=step > least_step)
+    norm: FloatArray = _SAFETY * change.max(axis=1) + noise + 2.0 / sqrt(3.0) * np.abs(across).max(axis=1)
+    return norm

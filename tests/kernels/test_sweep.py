@@ -1,0 +1,90 @@
+"""Sums over all pairs by the sweep: against a dense transcription, at the edges of blocks, cells and dimensions."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from flockana.interactions import AlphaInteraction
+from flockana.kernels.grid import sort_into_grid
+
+ALPHA = AlphaInteraction(d=2.0, r=2.6, a=2.0, b=5.0)
+
+
+def dense(q, p, pair, c1, c2):
+    """Σ_j φ_α n_ij and Σ_j a_ij (p_j − p_i) by the definition, all pairs at once."""
+    delta, slip = q[None] - q[:, None], p[None] - p[:, None]
+    s2 = np.sum(delta**2, axis=2)
+    z = pair.sigma_norm(np.sqrt(s2))
+    phi, a = (np.where(s2 < pair.r**2, f(z), 0.0) for f in (pair.phi_alpha, pair.adjacency))
+    np.fill_diagonal(a, 0.0)
+    n = delta / np.sqrt(1.0 + pair.eps * s2)[:, :, None]
+    u = c1 * np.sum(phi[:, :, None] * n, axis=1) + c2 * np.sum(a[:, :, None] * slip, axis=1)
+    return u, 0.5 * float(np.sum(a * np.sum(slip**2, axis=2)))
+
+
+def flock(seed, n, m, spread):
+    rng = np.random.default_rng(seed)
+    return rng.uniform(0.0, spread, (n, m)), rng.normal(size=(n, m))
+
+
+@pytest.mark.parametrize("m", [1, 2, 3])
+@pytest.mark.parametrize(("n", "spread"), [(1, 1.0), (2, 1.0), (40, 3.0), (60, 20.0), (300, 25.0), (300, 1e7)])
+def test_the_sweep_is_the_dense_sum(n, m, spread):
+    """One agent; blocks that fill many times over; a box too sparse for a grid of cells."""
+    q, p = flock(n + m, n, m, spread)
+    u, rate = ALPHA.forces(q, p, stiffness=1.3, damping=0.7)
+    expected, expected_rate = dense(q, p, ALPHA, 1.3, 0.7)
+    size = max(1.0, np.abs(expected).max())
+    np.testing.assert_allclose(u, expected, atol=1e-13 * n * size)
+    assert rate == pytest.approx(expected_rate, rel=1e-12, abs=1e-12)
+
+
+def test_a_sparse_flock_takes_the_other_way_to_the_same_sum():
+    q, p = flock(0, 50, 2, 6.0)
+    near, _ = ALPHA.forces(q, p, stiffness=1.0, damping=1.0)
+    far, still = np.vstack([q, [[1e9, -1e9]]]), np.vstack([p, [[0.0, 0.0]]])
+    assert sort_into_grid(far, ALPHA.r)[1].size == 0
+    np.testing.assert_allclose(ALPHA.forces(far, still, stiffness=1.0, damping=1.0)[0][:-1], near, atol=1e-12)
+
+
+def test_forces_are_added_and_their_sum_is_kept():
+    q, p = flock(1, 200, 2, 15.0)
+    given_before = np.ones_like(q)
+    u, _ = ALPHA.forces(q, p, stiffness=1.0, damping=1.0)
+    np.testing.assert_array_equal(ALPHA.forces(q, p, stiffness=1.0, damping=1.0, out=given_before)[0], u + 1.0)
+    np.testing.assert_allclose(u.sum(axis=0), 0.0, atol=1e-11)
+
+
+def test_a_pair_at_the_range_feels_nothing_and_one_inside_does():
+    for gap, moved in ((ALPHA.r, False), (np.nextafter(ALPHA.r, 0.0), True), (0.0, False)):
+        u, rate = ALPHA.forces(np.array([[0.0], [gap]]), np.array([[0.0], [1.0]]), stiffness=1.0, damping=1.0)
+        assert bool(u.any()) == (moved or gap == 0.0)
+        assert rate == pytest.approx({0.0: 1.0}.get(gap, 0.0), abs=1e-12)
+
+
+def test_an_agent_at_no_number_is_near_nobody_and_breaks_nothing():
+    q, p = flock(2, 30, 2, 6.0)
+    expected, _ = ALPHA.forces(q[1:], p[1:], stiffness=1.0, damping=1.0)
+    q[0] = np.nan
+    np.testing.assert_allclose(ALPHA.forces(q, p, stiffness=1.0, damping=1.0)[0][1:], expected, atol=1e-12)
+
+
+@given(st.integers(1, 3), st.integers(1, 60), st.floats(0.5, 12.0), st.integers(0, 10**6))
+def test_each_two_agents_within_range_are_in_adjacent_cells_once(m, n, spread, seed):
+    q = np.random.default_rng(seed).uniform(-spread, spread, (n, m))
+    order, start, rows = (part.astype(int) for part in sort_into_grid(q, 1.0))
+    if start.size == 0:
+        return
+    assert sorted(order) == list(range(n))
+    seen = []
+    for cell in range(start.size - 2):
+        for i in range(start[cell], start[cell + 1]):
+            spans = [(i + 1, start[cell + 2]), *((start[cell + d - 1], start[cell + d + 2]) for d in rows)]
+            seen += [tuple(sorted((order[i], order[j]))) for begin, end in spans for j in range(begin, end)]
+    assert len(seen) == len(set(seen))
+    i, j = np.triu_indices(n, 1)
+    near = np.linalg.norm(q[i] - q[j], axis=1) < 1.0
+    assert set(zip(i[near].tolist(), j[near].tolist(), strict=True)) <= set(seen)

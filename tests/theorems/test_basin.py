@@ -1,0 +1,90 @@
+"""The basin of a minimum: curvature, barrier, Lipschitz constant, certificate, against closed forms."""
+
+from __future__ import annotations
+
+from math import inf, sqrt
+
+import numpy as np
+import pytest
+
+from flockana.theorems.basin import (
+    ALONE,
+    Basin,
+    barrier,
+    connected_within,
+    curvatures,
+    lipschitz_constant,
+    third_derivative,
+)
+
+
+@pytest.mark.parametrize(
+    ("basin", "margin", "word"),
+    [
+        (Basin(), -1.0, "not known to be caught"),
+        (Basin(0.5, 2.0), 0.75, "caught by a strict minimum for ever"),
+        (Basin(3.0, 2.0), -0.5, "energy enough to leave"),
+        (Basin(50.0, 2.0), -1.0, "energy enough to leave"),
+        (ALONE, 1.0, "caught"),
+        (Basin(0.1, 2.0, verb="held"), 0.95, "held by a strict minimum"),
+        (Basin(0.1, 2.0, stability=0.9), 0.5, "for ever"),  # a map may use a tenth of the barrier
+        (Basin(0.1, 2.0, stability=0.3), 0.3, "for ever"),  # and is no surer than its step is stable
+        (Basin(0.3, 2.0, stability=0.9), -0.5, "energy enough"),
+        (Basin(0.0, 2.0, stability=-0.4), -0.4, "too long"),
+        (Basin(0.0, 2.0, stability=-4.0), -1.0, "too long"),
+    ],
+)
+def test_the_certificate_compares_the_energy_with_the_barrier(basin, margin, word):
+    assert basin.certificate.margin == pytest.approx(margin, rel=1e-12)
+    assert word in basin.certificate.text
+
+
+def test_how_far_a_caught_flock_gets():
+    """U = ½λx²: with the energy E above the minimum it goes out to √(2E/λ); the bound is √2 of that."""
+    assert Basin(2.0, 9.0, 0.25, 0.5).reach == 0.25 + 4.0
+    assert ALONE.reach == 0.0
+
+
+def test_curvatures_leave_out_the_rigid_motions():
+    spring = 3.0 * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    least, largest = curvatures(spring, np.full((2, 1), sqrt(0.5)))
+    assert largest == pytest.approx(6.0, rel=1e-14)
+    assert 6.0 * (1.0 - 1e-12) < least < 6.0  # its rounding is taken off
+    least, largest = curvatures(np.zeros((1, 1)), np.ones((1, 1)))
+    assert np.isnan(least)
+    assert largest == 0.0
+
+
+def test_the_barrier_of_a_cubic_well():
+    """U = ½λx² − (L/6)|x|³ rises to 2λ³/(3L²); within half of the way, ρ = λ/2L, its barrier is ρ²(½λ − Lρ/6)."""
+    curvature, lipschitz = 2.0, 3.0
+    reach = 0.5 * curvature / lipschitz
+    wide = barrier(curvature, 0.0, [0.1, 10.0], lambda window: lipschitz)
+    assert wide == pytest.approx(reach**2 * (0.5 * curvature - lipschitz * reach / 6.0), rel=1e-14)
+    assert wide < 2.0 * curvature**3 / (3.0 * lipschitz**2)
+    assert barrier(curvature, 1.0, [4.0], lambda window: 0.0) == 0.0  # the minimum is too far for its window
+
+
+def test_the_lipschitz_constant_of_one_pair_is_exact():
+    """Two agents on a line: the Hessian is F'' (1, -1)ᵀ(1, -1), of norm 2F'', which changes by 2T |Δs| = 2T √2 |a|."""
+    assert lipschitz_constant(2, np.array([[0, 1]]), np.array([5.0])) == pytest.approx(2.0 * sqrt(2.0) * 5.0)
+    assert lipschitz_constant(2, np.empty((0, 2), dtype=int), np.empty(0)) == 0.0
+    assert lipschitz_constant(4, np.array([[0, 1], [2, 3]]), np.array([5.0, 1.0])) == pytest.approx(10.0 * sqrt(2.0))
+
+
+def test_the_third_derivative_covers_a_known_one():
+    """F = s⁴: F''' = 24 s, at worst at the longest length, within the safety of the difference quotient."""
+    s = np.linspace(1.0, 2.0, 49)[None]
+    along, across = 12.0 * s**2, 8.0 * s  # F'' and (F'/s)'
+    bound = float(third_derivative(s, along, across, least_step=0.0)[0])
+    exact = 48.0 + 2.0 / sqrt(3.0) * 16.0
+    assert exact <= bound <= 1.25 * 48.0 + 2.0 / sqrt(3.0) * 16.0
+    assert third_derivative(s, along, across, least_step=0.0, noise=7.0)[0] == pytest.approx(bound + 7.0, rel=1e-14)
+    assert third_derivative(s, along, 0.0 * s, least_step=1.0)[0] == 0.0  # no step counts that is so short
+
+
+def test_a_net_is_connected_within_its_reach():
+    q = np.array([[0.0], [1.0], [3.0]])
+    assert connected_within(q, 2.5)
+    assert not connected_within(q, 1.5)
+    assert not connected_within(q, -inf)
