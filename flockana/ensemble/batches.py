@@ -17,7 +17,7 @@ from flockana.ensemble.executors import Crew
 
 _TICK = 0.2  # seconds between looks around
 _QUEUED = 2  # batches per worker that are out at once: one at work, one ready
-_HOPELESS = 3  # workers that died in a row, without one batch done in between
+HOPELESS = 3  # workers that died in a row, without one batch done in between
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -75,7 +75,7 @@ def work_through(
                         suspects.extend(suspected)
                         break  # what else is done is still pending, or under suspicion
                     dead.append((batch[0], None))
-                    if len(dead) == _HOPELESS:
+                    if len(dead) == HOPELESS:
                         raise _hopeless() from error
                 else:
                     size = batch_size(results)
@@ -122,6 +122,6 @@ def _suspected(error: BaseException, batch: Batch, pending: Pending, workers: Cr
 
 def _hopeless() -> SolverError:
     return SolverError(
-        f"{_HOPELESS} worker processes died one after the other: a script that starts them must do so under "
+        f"{HOPELESS} worker processes died one after the other: a script that starts them must do so under "
         "`if __name__ == '__main__':`; if memory is short, use jobs=1 (--jobs 1)"
     )

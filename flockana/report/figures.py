@@ -38,14 +38,14 @@ class Picture:
 
 
 @cache
-def _own() -> tuple[tuple[tuple[type, ...], Callable[[Trajectory], tuple[Picture, ...]]], ...]:
+def pictures_of_laws() -> tuple[tuple[tuple[type, ...], Callable[[Trajectory], tuple[Picture, ...]]], ...]:
     """Laws with figures of their own: (laws, pictures) of every module of this package that ends in _figures."""
     return tuple((module.LAWS, module.pictures) for module in modules("flockana.report", ending="_figures"))
 
 
 def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
     """Draw a run: by the ``*_figures`` module that names its law among its ``LAWS``, else as any flock is drawn."""
-    draw = next((own for laws, own in _own() if isinstance(trajectory.law, laws)), flock_pictures)
+    draw = next((own for laws, own in pictures_of_laws() if isinstance(trajectory.law, laws)), flock_pictures)
     return draw(trajectory)
 
 

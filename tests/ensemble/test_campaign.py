@@ -148,7 +148,7 @@ def test_a_run_that_ends_its_worker_is_found_and_the_others_are_made():
 
 
 def test_workers_that_all_die_end_the_ensemble_with_the_remedy(monkeypatch):
-    monkeypatch.setattr(batches, "_HOPELESS", 2)
+    monkeypatch.setattr(batches, "HOPELESS", 2)
     with pytest.raises(SolverError, match=r"2 worker processes died .*__main__.*jobs=1"):
         ensemble(tiny_flocks.lethal, range(9), theorems=[], jobs=2)
 

@@ -160,7 +160,7 @@ def test_the_pair_list_is_checked_again_and_renewed(monkeypatch):
             super().__init__(potential, shape, pairs, gauge)
 
     monkeypatch.setattr(solve_module, "Program", Counted)
-    monkeypatch.setattr(solve_module, "_ALL_PAIRS", 2)
+    monkeypatch.setattr(solve_module, "ALL_PAIRS", 2)
     law = Algorithm2(target=StaticTarget((0.0,)), gains=Gains(c1_gamma=0.5))
     start = np.array([[-20.0], [0.0], [20.0], [40.0]])  # nothing is in range until the target has pulled them in
     found = find_equilibrium(law, start)
@@ -173,7 +173,7 @@ def test_the_pair_list_is_checked_again_and_renewed(monkeypatch):
 def test_pair_lists_and_all_pairs_agree(monkeypatch):
     start = hexagonal_spiral(30, 7.0) + 0.2 * np.random.default_rng(1).standard_normal((30, 2))
     every = find_equilibrium(Algorithm1(), start)
-    monkeypatch.setattr(solve_module, "_ALL_PAIRS", 0)
+    monkeypatch.setattr(solve_module, "ALL_PAIRS", 0)
     listed = find_equilibrium(Algorithm1(), start)
     assert len(every.links) == harborth(30)
     assert listed.energy == pytest.approx(every.energy, rel=1e-12)
