@@ -2,8 +2,25 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from matplotlib.figure import Figure
+
+from flockana.dynamics.simulate import simulate
+from flockana.environment.targets import LinearTarget
+from flockana.laws.discrete import DiscreteLaw
+from flockana.laws.olfati_saber import Algorithm2
+
+
+@dataclass(frozen=True)
+class Halving(DiscreteLaw):
+    """Each step halves every distance: no range, no energy, no target."""
+
+    dt: float = 0.5
+
+    def step(self, t, q, p, memory):
+        return 0.5 * q, p, 0.0 * q, memory
 
 
 def axes(m=2):
@@ -33,3 +50,10 @@ def frame(film, k):
     film._fig.canvas.draw()
     (ax,) = film._fig.axes
     return ax
+
+
+def a_run(m=2, n=4):
+    """Agents from anywhere, pulled after a γ-agent in uniform motion, at tenths of a time unit."""
+    target = LinearTarget((1.0,) * m, (2.0,) * m)
+    q = np.random.default_rng(0).uniform(0.0, 12.0, (n, m))
+    return simulate(Algorithm2(target=target), q, 0.0 * q, (0.0, 1.0), t_eval=np.linspace(0.0, 1.0, 11))

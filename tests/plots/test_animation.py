@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import pytest
 from PIL import Image
@@ -16,18 +14,9 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.obstacles import Sphere
 from flockana.environment.targets import StaticTarget
 from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.plots.animation import ensure_film, equal_times, film_size, film_view
-from tests.plots.artists import frame, title
-
-
-@dataclass(frozen=True)
-class Halving(DiscreteLaw):
-    dt: float = 0.5
-
-    def step(self, t, q, p, memory):
-        return 0.5 * q, p, 0.0 * q, memory
+from tests.plots.artists import Halving, frame, title
 
 
 def a_run(m=2):

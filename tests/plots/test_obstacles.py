@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from matplotlib.collections import LineCollection
@@ -23,12 +22,6 @@ from flockana.measures.reynolds import reynolds
 from flockana.plots.obstacles import bounds
 from flockana.report.figures import middle_sample, pictures
 from tests.plots.artists import axes, segments
-
-
-@pytest.fixture(autouse=True)
-def _nothing_left_open():
-    yield
-    plt.close("all")
 
 
 def outline(solid, **options):

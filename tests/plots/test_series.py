@@ -5,18 +5,16 @@ from dataclasses import dataclass
 import matplotlib as mpl
 import numpy as np
 import pytest
-from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
 from flockana import plots
-from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.base.errors import UnknownNameError
 from flockana.dynamics.simulate import simulate
-from flockana.environment.targets import LinearTarget, StaticTarget
+from flockana.environment.targets import StaticTarget
 from flockana.interactions import AlphaInteraction
-from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from tests.plots.artists import axes, points
+from tests.plots.artists import Halving, a_run, axes
 
 
 @dataclass(frozen=True)
@@ -27,75 +25,8 @@ class Drag(Law):
         return -p, float("nan")
 
 
-@dataclass(frozen=True)
-class Halving(DiscreteLaw):
-    dt: float = 0.5
-
-    def step(self, t, q, p, memory):
-        return 0.5 * q, p, 0.0 * q, memory
-
-
-@pytest.fixture(autouse=True)
-def _nothing_left_open():
-    import matplotlib.pyplot as plt
-
-    before = dict(mpl.rcParams)
-    yield
-    plt.close("all")
-    assert dict(mpl.rcParams) == before, "a figure changed matplotlib's global settings"
-
-
-def a_run(m=2, n=4):
-    target = LinearTarget((1.0,) * m, (2.0,) * m)
-    q = np.random.default_rng(0).uniform(0.0, 12.0, (n, m))
-    return simulate(Algorithm2(target=target), q, 0.0 * q, (0.0, 1.0), t_eval=np.linspace(0.0, 1.0, 11))
-
-
 def line(ax, label):
     return next(one for one in ax.get_lines() if one.get_label() == label)
-
-
-def test_links_are_coloured_by_strain():
-    q = np.array([[0.0, 0.0], [7.0, 0.0], [7.0, 7.7], [100.0, 0.0]])
-    ax = plots.configuration(q, d=7.0, r=8.4, ax=axes())
-    links = next(c for c in ax.collections if isinstance(c, LineCollection))
-    np.testing.assert_allclose(links.get_array(), [0.0, 0.1], atol=1e-12)
-    np.testing.assert_allclose(links.get_segments()[1], q[[1, 2]])
-    assert (links.norm.vmin, links.norm.vmax) == pytest.approx((-0.2, 0.2))
-
-
-def test_without_a_desired_distance_links_are_plain_and_without_a_range_there_are_none():
-    q = np.array([[0.0, 0.0], [1.0, 0.0]])
-    plain = plots.configuration(q, r=2.0, ax=axes())
-    assert next(c for c in plain.collections if isinstance(c, LineCollection)).get_array() is None
-    assert not any(isinstance(c, LineCollection) for c in plots.configuration(q, ax=axes()).collections)
-
-
-def test_the_longest_arrow_is_labelled_with_the_largest_speed_and_rest_has_no_arrows():
-    q, p = np.zeros((2, 2)), np.array([[3.0, 4.0], [1.0, 0.0]])
-    assert "longest arrow: 5 length/time" in plots.configuration(q, p, ax=axes()).get_title(loc="left") + (
-        plots.configuration(q, p, ax=axes()).get_title()
-    )
-    assert "arrow" not in plots.configuration(q, 0.0 * p, ax=axes()).get_title()
-
-
-@pytest.mark.parametrize("m", [1, 2, 3])
-def test_a_snapshot_shows_the_nearest_sample_and_the_target_then(m):
-    run = a_run(m)
-    ax = plots.snapshot(run, 0.52, ax=axes(m))
-    assert "t = 0.5" in ax.get_title(loc="left") + ax.get_title()
-    dots, star = (next(c for c in ax.collections if c.get_label() == name) for name in ("agents", "γ-agent"))
-    if m == 3:
-        np.testing.assert_allclose(points(dots), run.q[5])
-        np.testing.assert_allclose(points(star), [[2.0, 2.0, 2.0]])
-    else:
-        np.testing.assert_allclose(dots.get_offsets()[:, :m], run.q[5])
-        np.testing.assert_allclose(star.get_offsets()[:, :m], [[2.0] * m])
-
-
-def test_snapshot_of_bad_time_is_refused():
-    with pytest.raises(ArgumentError, match="time = nan: expected a finite number"):
-        plots.snapshot(a_run(), float("nan"), ax=axes())
 
 
 @pytest.mark.parametrize("m", [1, 2, 3])

@@ -27,7 +27,7 @@ from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.plots.animation import equal_times, film_view
 from flockana.plots.snapshot import draw_sample, in_view
 from flockana.scenarios import scenario
-from tests.plots.artists import axes, frame, segments, title
+from tests.plots.artists import a_run, axes, frame, points, segments, title
 
 EDGES = ((0, 1), (1, 2), (2, 1))
 
@@ -169,3 +169,46 @@ def test_a_law_of_ones_own_says_how_it_is_drawn():
     assert plots.snapshot(run, 0.6, ax=axes()).get_title() == "sample 1"
     film = plots.animation(run, seconds=0.4, fps=10)
     assert title(frame(film, 3)) == "sample 3"
+
+
+def test_links_are_coloured_by_strain():
+    q = np.array([[0.0, 0.0], [7.0, 0.0], [7.0, 7.7], [100.0, 0.0]])
+    ax = plots.configuration(q, d=7.0, r=8.4, ax=axes())
+    links = next(c for c in ax.collections if isinstance(c, LineCollection))
+    np.testing.assert_allclose(links.get_array(), [0.0, 0.1], atol=1e-12)
+    np.testing.assert_allclose(links.get_segments()[1], q[[1, 2]])
+    assert (links.norm.vmin, links.norm.vmax) == pytest.approx((-0.2, 0.2))
+
+
+def test_without_a_desired_distance_links_are_plain_and_without_a_range_there_are_none():
+    q = np.array([[0.0, 0.0], [1.0, 0.0]])
+    plain = plots.configuration(q, r=2.0, ax=axes())
+    assert next(c for c in plain.collections if isinstance(c, LineCollection)).get_array() is None
+    assert not any(isinstance(c, LineCollection) for c in plots.configuration(q, ax=axes()).collections)
+
+
+def test_the_longest_arrow_is_labelled_with_the_largest_speed_and_rest_has_no_arrows():
+    q, p = np.zeros((2, 2)), np.array([[3.0, 4.0], [1.0, 0.0]])
+    assert "longest arrow: 5 length/time" in plots.configuration(q, p, ax=axes()).get_title(loc="left") + (
+        plots.configuration(q, p, ax=axes()).get_title()
+    )
+    assert "arrow" not in plots.configuration(q, 0.0 * p, ax=axes()).get_title()
+
+
+@pytest.mark.parametrize("m", [1, 2, 3])
+def test_a_snapshot_shows_the_nearest_sample_and_the_target_then(m):
+    run = a_run(m)
+    ax = plots.snapshot(run, 0.52, ax=axes(m))
+    assert "t = 0.5" in ax.get_title(loc="left") + ax.get_title()
+    dots, star = (next(c for c in ax.collections if c.get_label() == name) for name in ("agents", "γ-agent"))
+    if m == 3:
+        np.testing.assert_allclose(points(dots), run.q[5])
+        np.testing.assert_allclose(points(star), [[2.0, 2.0, 2.0]])
+    else:
+        np.testing.assert_allclose(dots.get_offsets()[:, :m], run.q[5])
+        np.testing.assert_allclose(star.get_offsets()[:, :m], [[2.0] * m])
+
+
+def test_snapshot_of_bad_time_is_refused():
+    with pytest.raises(ArgumentError, match="time = nan: expected a finite number"):
+        plots.snapshot(a_run(), float("nan"), ax=axes())

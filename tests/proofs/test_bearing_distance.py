@@ -18,10 +18,6 @@ from flockana.theorems.bearing_distance.j03 import path_matrices
 from proofs import bearing_distance, bearing_distance_printed
 
 
-def failing(steps):
-    return [step.text for step in steps if step.holds is not True]
-
-
 def test_all_numberings_of_rooted_trees_are_tried():
     assert [len(list(bearing_distance.trees(agents))) for agents in (2, 3, 4, 5)] == [1, 2, 6, 24]
     assert set(bearing_distance.trees(3)) == {((0, 1), (0, 2)), ((0, 1), (1, 2))}

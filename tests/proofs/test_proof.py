@@ -18,10 +18,7 @@ from flockana.theorems import theorems, verify
 from proofs import cohesion, signs_of_phi, smoothness, structural_split, theorem6
 from proofs.proof import RIGOURS, Proof, Step, names, proofs
 from proofs.smt import implication, impossible
-
-
-def failing(module):
-    return [step.text for step in module.PROOF.steps() if step.holds is not True]
+from tests.proofs.steps import failing
 
 
 @pytest.mark.parametrize("proof", proofs(), ids=lambda proof: proof.id)
@@ -138,8 +135,8 @@ def wrong_taper(z, *, h=functions.AlphaSymbols.h):
 def test_a_wrong_bump_breaks_both_proofs_about_it(monkeypatch):
     for module in (signs_of_phi, smoothness):
         monkeypatch.setattr(module, "taper", wrong_taper)
-    assert failing(signs_of_phi)[0].startswith("the taper of ρ_h is a square")
-    assert "ρ_h at z = 1: value and slope agree from both sides" in failing(smoothness)
+    assert failing(signs_of_phi.PROOF.steps())[0].startswith("the taper of ρ_h is a square")
+    assert "ρ_h at z = 1: value and slope agree from both sides" in failing(smoothness.PROOF.steps())
 
 
 def test_a_wrong_sign_in_phi_breaks_its_signs(monkeypatch):
@@ -150,19 +147,19 @@ def test_a_wrong_sign_in_phi_breaks_its_signs(monkeypatch):
         )
 
     monkeypatch.setattr(signs_of_phi, "sigmoid", wrong)
-    assert failing(signs_of_phi) == ["φ(0) = 0 with the given c", "φ(s) < 0 for s < 0", "-b < φ < a"]
+    assert failing(signs_of_phi.PROOF.steps()) == ["φ(0) = 0 with the given c", "φ(s) < 0 for s < 0", "-b < φ < a"]
 
 
 def test_a_linear_gamma_force_would_split(monkeypatch):
     monkeypatch.setattr(structural_split, "gamma_force", lambda q, *rest: -structural_split.GAINS.c1_gamma * q)
-    assert len(failing(structural_split)) == 2
+    assert len(failing(structural_split.PROOF.steps())) == 2
 
 
 def test_cohesion_rests_on_its_lemmas(monkeypatch):
     monkeypatch.setattr(cohesion, "potential_signs", lambda: iter([Step("ψ_α >= 0", False)]))
-    assert failing(cohesion) == ["ψ_α >= 0"]
+    assert failing(cohesion.PROOF.steps()) == ["ψ_α >= 0"]
     monkeypatch.setattr(cohesion, "structural_identity", partial(structural_identity, lambda_=sp.Symbol("lambda")))
-    assert [text[:5] for text in failing(cohesion)] == ["m = 1", "m = 2", "m = 3", "ψ_α >"]
+    assert [text[:5] for text in failing(cohesion.PROOF.steps())] == ["m = 1", "m = 2", "m = 3", "ψ_α >"]
 
 
 def test_a_beta_agent_that_does_not_follow_breaks_theorem_6(monkeypatch):
@@ -173,6 +170,6 @@ def test_a_beta_agent_that_does_not_follow_breaks_theorem_6(monkeypatch):
         return position, 2 * rate
 
     monkeypatch.setattr(obstacles, "sphere_beta", too_fast)
-    broken = [step.text for step in theorem6.obstacle_steps() if step.holds is not True]
+    broken = failing(theorem6.obstacle_steps())
     # on a line the tangential part, which is twice too fast, is 0
     assert [text.partition(":")[0] for text in broken] == [f"sphere, m = {m}" for m in (2, 2, 3, 3)]

@@ -6,7 +6,8 @@ import numpy as np
 
 from flockana.base.units import rescale
 from flockana.dynamics.trajectory import Trajectory
-from flockana.theorems import Tolerances, Verdict, theorem
+from flockana.lattice import hexagonal_patch
+from flockana.theorems import Tolerances, Verdict, theorem, verify
 
 
 def made_up(law, q, p=None, t=None, u=None):
@@ -43,3 +44,14 @@ def hypothesis(verdict, part):
     """The hypothesis whose name holds this."""
     (found,) = [one for one in verdict.hypotheses if part in one.name]
     return found
+
+
+def said(name, run):
+    """Status by claim, as `verify` has it."""
+    return statuses(verify(name, run))
+
+
+def hexagon(seed=1, shake=0.2, speed=0.3):
+    """Seven agents near an α-lattice of length 7, and their velocities."""
+    rng, q = np.random.default_rng(seed), hexagonal_patch(1, 7.0)
+    return q + shake * rng.uniform(-1, 1, q.shape), speed * rng.uniform(-1, 1, q.shape)

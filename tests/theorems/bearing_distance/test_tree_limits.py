@@ -18,6 +18,7 @@ from flockana.theorems import verify
 from flockana.theorems.bearing_distance.tree_case import tree_case
 from flockana.theorems.bearing_distance.tree_limits import edge_shares, settles
 from flockana.theorems.bearing_distance.tree_spectrum import tree_spectrum
+from tests.theorems.made_up import said
 
 TREE = ((0, 1), (1, 2), (1, 3), (0, 4))
 PAIR = ((0, 1),)
@@ -29,10 +30,6 @@ UNITS = [
     (1e-3, 1e-3),
 ]  # metres to micrometres, kilometres; seconds to ms
 SIZES = [1e-1, 1e-3, 1e-6, 1e-9, 1e-12, 1e-15]
-
-
-def statuses(name, run):
-    return {claim.name: claim.status for claim in verify(name, run).claims}
 
 
 def oriented(law, n, seed=0, m=2, far=0.0):
@@ -87,7 +84,7 @@ def test_an_edge_with_too_little_energy_to_vanish_takes_its_length(length, time,
     law = rescale(law, length=length, time=time)
     q, p = np.array([[0.0, 0.0], [2.9, 0.3]]), np.array([[0.0, 0.0], [0.2, -0.4]])
     run = simulate(law, length * q, length / time * p, (0.0, time * end))
-    corrected, printed = statuses("zone-1-corrected", run), statuses("zone-1-printed", run)
+    corrected, printed = said("zone-1-corrected", run), said("zone-1-printed", run)
     assert corrected["lengths"] == corrected["velocities"] == corrected["spectrum"] == "verified"
     assert corrected["root-edge"] == "verified"
     assert corrected["exponential"] == ("verified" if end == 90.0 else "inconclusive")
@@ -105,8 +102,8 @@ def test_the_barrier_is_sharp_but_for_rounding(off, inside):
     run_2 = simulate(
         MinimalFlocking(edges=PAIR, spacing=1.0), [[0.0, 0.0], [1.0, 0.0]], [[0, 0], [0, rate]], (0.0, 1e-12)
     )
-    assert statuses("zone-1-corrected", run)["lengths"] in ("inconclusive", "verified")
-    status = statuses("zone-1-corrected", run_2)["lengths"]
+    assert said("zone-1-corrected", run)["lengths"] in ("inconclusive", "verified")
+    status = said("zone-1-corrected", run_2)["lengths"]
     if off >= 1e-9:
         assert status == ("verified" if inside else "inconclusive")
     assert status != "refuted"
@@ -121,10 +118,10 @@ def test_at_its_own_equilibrium_nothing_is_refuted(length, time, far, directed):
     law = rescale(MinimalFlocking(edges=edges, spacing=1.5, normalised=False), length=length, time=time)
     q = oriented(law, 5, far=length * far)
     run = simulate(law, q, 0.0 * q, (0.0, 20.0 * time))
-    corrected = statuses("zone-1-corrected", run)
+    corrected = said("zone-1-corrected", run)
     assert "refuted" not in corrected.values()
     assert corrected["lengths"] == corrected["velocities"] == corrected["spectrum"] == "verified"
-    printed = statuses("zone-1-printed", run)
+    printed = said("zone-1-printed", run)
     assert printed.get("edges") == ("refuted" if directed else "vacuous")
     assert printed["hurwitz"] != "verified"
 
@@ -135,7 +132,7 @@ def test_near_its_equilibrium_nothing_is_refuted_either(amplitude, directed):
     law = MinimalFlocking(edges=TREE if directed else both_ways(TREE), spacing=1.5, normalised=False)
     q, rng = oriented(law, 5), np.random.default_rng(1)
     run = simulate(law, q + amplitude * rng.normal(size=q.shape), amplitude * rng.normal(size=q.shape), (0.0, 40.0))
-    corrected = statuses("zone-1-corrected", run)
+    corrected = said("zone-1-corrected", run)
     assert "refuted" not in corrected.values()
     if amplitude <= 1e-3:
         assert corrected["lengths"] == corrected["velocities"] == "verified"
@@ -146,11 +143,11 @@ def test_a_bound_that_is_attained_is_kept(stretch):
     """At rest and pressed, |x| is at ρ - √(2V(0)/μ) at the start: the margin of the bound itself is 0 there."""
     law = MinimalFlocking(edges=PAIR, spacing=1.0, mu=4.0)
     run = simulate(law, [[0.0], [stretch]], [[0.0], [0.0]], (0.0, 20.0))
-    assert statuses("zone-1-corrected", run)["root-edge"] in ("verified", "inconclusive")
+    assert said("zone-1-corrected", run)["root-edge"] in ("verified", "inconclusive")
     if abs(stretch - 1.0) > 1e-3:
-        assert statuses("zone-1-corrected", run)["root-edge"] == "verified"
+        assert said("zone-1-corrected", run)["root-edge"] == "verified"
     both = MinimalFlocking(edges=both_ways(PAIR), spacing=1.0, mu=4.0, normalised=False)
-    found = statuses("zone-1-corrected", simulate(both, [[0.0], [stretch]], [[0.0], [0.0]], (0.0, 20.0)))
+    found = said("zone-1-corrected", simulate(both, [[0.0], [stretch]], [[0.0], [0.0]], (0.0, 20.0)))
     assert found["no-collision"] in ("verified", "inconclusive")
     if abs(stretch - 1.0) > 1e-3:
         assert found["no-collision"] == found["energy"] == "verified"
@@ -163,7 +160,7 @@ def test_hurwitz_is_decided_by_the_shortest_edge(off, sign):
     law = MinimalFlocking(edges=PAIR, spacing=1.0)
     run = simulate(law, [[0.0, 0.0], [1.0 + sign * off, 0.0]], [[0.0, 0.0], [1.0, 0.0]], (0.0, 0.5))
     right, wrong = ("verified", "refuted") if sign > 0.0 else ("refuted", "verified")
-    status = statuses("zone-1-printed", run)["hurwitz"]
+    status = said("zone-1-printed", run)["hurwitz"]
     assert status != wrong
     if off >= 1e-6:
         assert status == right
@@ -175,7 +172,7 @@ def test_a_passage_between_two_samples_is_not_missed():
     start = [[0.0, 0.0], [3.0, 0.2]], [[0.0, 0.0], [-6.0, 0.0]]
     run = simulate(law, *start, (0.0, 1.2), t_eval=[0.0, 1.2])
     assert (np.linalg.norm(edge_vectors(run.q, PAIR), axis=2) > 1.0).all()
-    assert statuses("zone-1-printed", run)["hurwitz"] in ("inconclusive", "refuted")
+    assert said("zone-1-printed", run)["hurwitz"] in ("inconclusive", "refuted")
 
 
 @pytest.mark.parametrize("n", [3, 20, 40])
@@ -212,11 +209,11 @@ def test_coincident_linked_agents_have_no_bearing_and_make_no_crash(name, m):
     law = MinimalFlocking(edges=TREE, spacing=1.0)
     q = oriented(law, 5, m=m)
     q[1] = q[0]
-    found = statuses(name, simulate(law, q, np.ones((5, m)), (0.0, 1.0)))
+    found = said(name, simulate(law, q, np.ones((5, m)), (0.0, 1.0)))
     assert "verified" not in {found.get("hurwitz"), found.get("edges")}
     assert found.get("lengths", "inconclusive") == "inconclusive"  # from x = 0 at rest an edge need not go anywhere
     all_at_one = simulate(law, np.zeros((5, m)), np.zeros((5, m)), (0.0, 1.0))
-    assert "verified" not in {statuses(name, all_at_one).get(k) for k in ("hurwitz", "edges", "lengths", "velocities")}
+    assert "verified" not in {said(name, all_at_one).get(k) for k in ("hurwitz", "edges", "lengths", "velocities")}
 
 
 def test_what_is_no_tree_with_springs_and_damping_is_none_of_its_business():
@@ -266,4 +263,4 @@ def test_verdicts_are_the_same_in_all_units(length, time, directed):
     law = MinimalFlocking(edges=edges, spacing=1.5, sigma=0.8, normalised=False)
     run = simulate(law, rng.uniform(-2.0, 2.0, (5, 2)), rng.uniform(-1.0, 1.0, (5, 2)), (0.0, 60.0))
     for name in ("zone-1-printed", "zone-1-corrected"):
-        assert statuses(name, rescale(run, length=length, time=time)) == statuses(name, run)
+        assert said(name, rescale(run, length=length, time=time)) == said(name, run)

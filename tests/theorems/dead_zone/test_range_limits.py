@@ -22,16 +22,13 @@ from flockana.theorems import verify
 from flockana.theorems.dead_zone.hold import hold
 from flockana.theorems.dead_zone.parting import components_of
 from flockana.theorems.dead_zone.range_limits import first_entry
+from tests.theorems.made_up import said
 
 UNITS = [(1.0, 1.0), (1e6, 1.0), (1e-3, 1.0), (1.0, 1e3), (1e-3, 1e-3)]  # metres to µm, km; seconds to ms, ks
 SIZES = [1e-1, 1e-3, 1e-6, 1e-9, 1e-12, 1e-15]
 LAW = DeadZoneFlocking()
 FAR = LAW.interaction.far_potential
 CONTACT = 3.4997320373195637  # where k1 presses two agents to
-
-
-def statuses(name, run):
-    return {claim.name: claim.status for claim in verify(name, run).claims}
 
 
 def run_in(units, law, q, p, end, **how):
@@ -57,9 +54,9 @@ def test_a_pair_that_cannot_break_up_matches_its_velocities(units, end):
     """H̄ < ψ̄(r): true from the first instant, however fast the two still are; and they end within r of the centre."""
     speed = np.sqrt(0.9 * FAR)  # each: K = ½(s² + s²)
     run = run_in(units, LAW, [[0.0, 0.0], [CONTACT, 0.0]], [[-speed, 0.0], [speed, 0.0]], end)
-    assert statuses("dead-zone-1-printed", run)["velocity"] == "verified"
-    assert statuses("dead-zone-1-printed", run)["cohesion"] == "verified"
-    assert statuses("dead-zone-1-corrected", run)["components"] == "verified"
+    assert said("dead-zone-1-printed", run)["velocity"] == "verified"
+    assert said("dead-zone-1-printed", run)["cohesion"] == "verified"
+    assert said("dead-zone-1-corrected", run)["components"] == "verified"
 
 
 @pytest.mark.parametrize("excess", [-s for s in SIZES] + SIZES)
@@ -68,7 +65,7 @@ def test_the_energy_that_breaks_a_pair_up_is_sharp_but_for_rounding(excess):
     pair = DeadZoneFlocking(k2=1e-3)
     speed = np.sqrt((1.0 + excess) * FAR - LAW.interaction.psi(CONTACT))
     run = simulate(pair, [[0.0], [CONTACT]], [[-speed], [speed]], (0.0, 1e-9))  # damping takes 4e-12 of H̄
-    status = statuses("dead-zone-1-printed", run)["velocity"]
+    status = said("dead-zone-1-printed", run)["velocity"]
     assert status in ("verified", "inconclusive")
     if abs(excess) >= 1e-9:
         assert status == ("verified" if excess < 0.0 else "inconclusive")
@@ -79,8 +76,8 @@ def test_without_damping_nothing_matches(units):
     run = run_in(units, DeadZoneFlocking(k2=0.0), [[0.0, 0.0], [5.0, 0.0]], [[-0.1, 0.0], [0.1, 0.0]], 60.0)
     turning = run.window(run.t[0], run.t[int(np.argmin(run.metric("velocity_mismatch")))])
     for one in (run, turning):
-        assert statuses("dead-zone-1-corrected", one)["components"] != "verified"
-        assert statuses("dead-zone-1-printed", one)["velocity"] != "verified"
+        assert said("dead-zone-1-corrected", one)["components"] != "verified"
+        assert said("dead-zone-1-printed", one)["velocity"] != "verified"
 
 
 @pytest.mark.parametrize("beyond", [s * sign for s in SIZES for sign in (1.0, -1.0)])
@@ -93,7 +90,7 @@ def test_a_pair_that_creeps_to_the_edge_of_its_range(beyond, end):
     law = DeadZoneFlocking(DeadZoneInteraction(r_b=12.0, k1=0.0))
     p = [[-0.5 * (5.0 + beyond) * 2.0], [0.5 * (5.0 + beyond) * 2.0]]
     run = simulate(law, [[0.0], [10.0]], p, (0.0, end))
-    printed = statuses("dead-zone-1-printed", run)
+    printed = said("dead-zone-1-printed", run)
     wrong = "verified" if beyond > 0.0 else "refuted"
     assert printed["velocity"] != wrong
     assert printed["cohesion"] != wrong
@@ -108,11 +105,11 @@ def test_two_contacts_that_part_however_slowly(drift, units):
     q = np.array([[0.0, 0.0], [CONTACT, 0.0], [100.0, 0.0], [100.0 + CONTACT, 0.0]])
     p = drift * np.array([[-1.0, 0.0], [-1.0, 0.0], [1.0, 0.0], [1.0, 0.0]])
     run = run_in(units, LAW, q, p, 1.0)
-    printed = statuses("dead-zone-1-printed", run)
+    printed = said("dead-zone-1-printed", run)
     assert "verified" not in (printed["velocity"], printed["cohesion"])
     if drift >= 1e-3:
         assert (printed["velocity"], printed["cohesion"]) == ("refuted", "refuted")
-    assert statuses("dead-zone-1-corrected", run)["components"] == "verified"
+    assert said("dead-zone-1-corrected", run)["components"] == "verified"
 
 
 @pytest.mark.parametrize("offset", [s * sign for s in (3.0, *SIZES) for sign in (1.0, -1.0)])
@@ -125,7 +122,7 @@ def test_two_agents_that_pass_at_the_edge_of_their_range(offset):
     else:
         assert not found.parting
     run = simulate(LAW, q, p, (0.0, 10.0))
-    assert statuses("dead-zone-1-printed", run)["velocity"] == ("refuted" if found.parting else "inconclusive")
+    assert said("dead-zone-1-printed", run)["velocity"] == ("refuted" if found.parting else "inconclusive")
 
 
 def shaken_hexagon(seed):
@@ -206,8 +203,8 @@ def test_a_map_that_chatters_is_not_taken_to_rest(dt):
     run = simulate(law, q, p, (0.0, 60.0))
     for k in (-1, len(run.t) - 2, len(run.t) // 2, int(np.argmin(run.metric("velocity_mismatch")))):
         one = run.window(run.t[0], run.t[k])
-        assert statuses("dead-zone-1-corrected", one)["components"] != "verified"
-        assert statuses("dead-zone-1-printed", one)["velocity"] != "verified"
+        assert said("dead-zone-1-corrected", one)["components"] != "verified"
+        assert said("dead-zone-1-printed", one)["velocity"] != "verified"
 
 
 # -- energies and distances -------------------------------------------------------------------------------------------
@@ -220,7 +217,7 @@ def test_an_encounter_between_samples_lifts_the_energy_of_neighbours(offset, sam
     """Two that pass each other at 40 m/s: in range for less than a second, or never, and out of it at every sample."""
     how = {} if samples is None else {"t_eval": samples}
     run = run_in(units, LAW, [[0.0, 0.0], [400.0, offset]], [[20.0, 0.0], [-20.0, 0.0]], 20.0, **how)
-    status = statuses("dead-zone-1-printed", run)["energy"]
+    status = said("dead-zone-1-printed", run)["energy"]
     assert status != ("verified" if offset < 15.0 else "refuted")
     if offset == 16.0:
         assert status == "verified"
@@ -231,22 +228,22 @@ def test_an_encounter_between_samples_lifts_the_energy_of_neighbours(offset, sam
 @pytest.mark.parametrize("units", UNITS)
 def test_leaving_does_not_lift_it_and_without_a_potential_at_r_nothing_does(units):
     leaves = run_in(units, LAW, [[0.0, 0.0], [14.0, 0.0]], [[-6.0, 0.0], [6.0, 0.0]], 5.0)
-    assert statuses("dead-zone-1-printed", leaves)["energy"] == "verified"
+    assert said("dead-zone-1-printed", leaves)["energy"] == "verified"
     flat = DeadZoneFlocking(DeadZoneInteraction(r_b=12.0, k1=0.0))
     assert flat.interaction.far_potential == 0.0
     enters = run_in(units, flat, [[0.0, 0.0], [16.0, 0.0]], [[1.0, 0.0], [-1.0, 0.0]], 2.0)
     assert first_entry(enters, enters.law.interaction.r).pair == (0, 1)
-    assert statuses("dead-zone-1-printed", enters)["energy"] == "verified"
+    assert said("dead-zone-1-printed", enters)["energy"] == "verified"
     same = run_in(units, LAW, [[0.0, 0.0], [16.0, 0.0]], [[1.0, 0.0], [-1.0, 0.0]], 2.0)
-    assert statuses("dead-zone-1-printed", same)["energy"] == "refuted"
+    assert said("dead-zone-1-printed", same)["energy"] == "refuted"
 
 
 def test_what_a_map_did_between_the_samples_that_were_kept_is_not_known():
     law = SemiImplicitEuler(LAW, 0.01)
     q, p = [[0.0, 0.0], [400.0, 14.0]], [[20.0, 0.0], [-20.0, 0.0]]
     whole, thin = (simulate(law, q, p, (0.0, 20.0), **how) for how in ({}, {"t_eval": [0.0, 9.0, 20.0]}))
-    assert statuses("dead-zone-1-printed", whole)["energy"] == "refuted"
-    assert statuses("dead-zone-1-printed", thin)["energy"] == "inconclusive"
+    assert said("dead-zone-1-printed", whole)["energy"] == "refuted"
+    assert said("dead-zone-1-printed", thin)["energy"] == "inconclusive"
 
 
 @pytest.mark.parametrize("speed", [1.0, 5.0, 20.0, 40.0, 60.0])
@@ -255,10 +252,10 @@ def test_the_distance_bound_is_kept_where_it_is_attained(speed, units):
     """Without damping two agents turn at the very bound: no margin, whatever the integrator makes of it."""
     law = DeadZoneFlocking(DeadZoneInteraction(ramp=0.0, k1=0.0, k_delta=0.0), k2=0.0)
     run = run_in(units, law, [[0.0], [6.0]], [[speed], [-speed]], 8.0 / speed)
-    assert statuses("dead-zone-1-corrected", run)["distance"] in ("verified", "inconclusive")
-    assert statuses("dead-zone-1-printed", run)["collision"] in ("verified", "inconclusive")
+    assert said("dead-zone-1-corrected", run)["distance"] in ("verified", "inconclusive")
+    assert said("dead-zone-1-printed", run)["collision"] in ("verified", "inconclusive")
     damped = run_in(units, DeadZoneFlocking(law.interaction, k2=0.2), [[0.0], [6.0]], [[speed], [-speed]], 8.0 / speed)
-    assert statuses("dead-zone-1-corrected", damped)["distance"] == "verified"
+    assert said("dead-zone-1-corrected", damped)["distance"] == "verified"
 
 
 # -- whatever else might be asked -------------------------------------------------------------------------------------
@@ -269,15 +266,15 @@ def judged(discrete):
     """A run in metres and seconds, and what is said of it."""
     law = SemiImplicitEuler(LAW, 0.01) if discrete else LAW
     run = simulate(law, *small_flock(3), (0.0, 80.0))
-    return run, {name: statuses(name, run) for name in ("dead-zone-1-printed", "dead-zone-1-corrected")}
+    return run, {name: said(name, run) for name in ("dead-zone-1-printed", "dead-zone-1-corrected")}
 
 
 @pytest.mark.parametrize("units", UNITS[1:])
 @pytest.mark.parametrize("discrete", [True, False])
 def test_verdicts_are_the_same_in_all_units(units, discrete):
-    run, said = judged(discrete)
+    run, expected = judged(discrete)
     there = rescale(run, length=units[0], time=units[1])
-    assert {name: statuses(name, there) for name in said} == said
+    assert {name: said(name, there) for name in expected} == expected
 
 
 @pytest.mark.parametrize("far", [0.0, 1e3, 1e6, 1e9])
@@ -285,7 +282,7 @@ def test_verdicts_are_the_same_in_all_units(units, discrete):
 def test_a_flock_far_from_the_origin_or_in_a_strong_wind_is_not_misjudged(far, wind):
     q = far + np.array([[0.0, 0.0], [CONTACT, 0.0], [0.5 * CONTACT, 0.8 * CONTACT]])
     run = simulate(LAW, q, np.full((3, 2), wind), (0.0, 20.0))
-    printed, corrected = statuses("dead-zone-1-printed", run), statuses("dead-zone-1-corrected", run)
+    printed, corrected = said("dead-zone-1-printed", run), said("dead-zone-1-corrected", run)
     assert "refuted" not in (*printed.values(), *corrected.values())
     if far <= 1e3 and wind == 0.0:
         assert (printed["velocity"], printed["cohesion"], corrected["components"]) == ("verified",) * 3
@@ -323,14 +320,14 @@ def test_steps_of_a_subclass_are_its_own():
 
 def test_one_agent_is_a_flock():
     run = simulate(LAW, [[1.0, 2.0]], [[3.0, 4.0]], (0.0, 1.0))
-    printed = statuses("dead-zone-1-printed", run)
+    printed = said("dead-zone-1-printed", run)
     assert (printed["cohesion"], printed["velocity"], printed["collision"]) == ("verified",) * 3
-    assert statuses("dead-zone-1-corrected", run)["components"] == "verified"
+    assert said("dead-zone-1-corrected", run)["components"] == "verified"
     one_sample = run.window(0.0, 0.0)  # shows no motion, by which its samples could be told to be the law's
     for name in ("dead-zone-1-printed", "dead-zone-1-corrected"):
-        assert not {"verified", "refuted"} & set(statuses(name, one_sample).values())
+        assert not {"verified", "refuted"} & set(said(name, one_sample).values())
 
 
 def test_one_sample_shows_nothing_of_what_happens():
     run = simulate(LAW, [[0.0, 0.0], [16.0, 0.0]], [[1.0, 0.0], [-1.0, 0.0]], (0.0, 2.0)).window(0.0, 0.0)
-    assert statuses("dead-zone-1-printed", run)["energy"] == "inconclusive"
+    assert said("dead-zone-1-printed", run)["energy"] == "inconclusive"

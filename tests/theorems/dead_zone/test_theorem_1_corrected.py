@@ -11,10 +11,7 @@ from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.theorems import verify
-
-
-def statuses(verdict):
-    return {claim.name: claim.status for claim in verdict.claims}
+from tests.theorems.made_up import statuses
 
 
 @pytest.fixture(scope="module")

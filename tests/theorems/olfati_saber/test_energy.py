@@ -11,20 +11,13 @@ from flockana.dynamics.simulate import simulate
 from flockana.environment.obstacles import Sphere
 from flockana.environment.targets import StaticTarget, Target
 from flockana.interactions import Gains
-from flockana.lattice import hexagonal_patch
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems import Tolerances, verify
 from flockana.theorems.olfati_saber.energy import balance, never_rises
-from tests.theorems.made_up import SCALINGS, hypothesis, judged, same_in_all_units, statuses
+from tests.theorems.made_up import SCALINGS, hexagon, hypothesis, judged, same_in_all_units, statuses
 
 LAW = Algorithm1()
-
-
-def hexagon(shake=0.2, speed=0.3):
-    rng = np.random.default_rng(1)
-    q = hexagonal_patch(1, 7.0)
-    return q + shake * rng.uniform(-1, 1, q.shape), speed * rng.uniform(-1, 1, q.shape)
 
 
 def bounce(**options):

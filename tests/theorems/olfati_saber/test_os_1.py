@@ -17,16 +17,10 @@ from flockana.theorems.asymptotics import lattice_limit
 from flockana.theorems.olfati_saber.os_1 import disconnected_energy
 from flockana.theorems.slides.e03 import rhombus_with_double_agent
 from flockana.theorems.theorem import Hypothesis
-from tests.theorems.made_up import SCALINGS, hypothesis, judged, made_up, same_in_all_units, statuses
+from tests.theorems.made_up import SCALINGS, hexagon, hypothesis, judged, made_up, same_in_all_units, statuses
 
 LAW = Algorithm1()
 CLAIMS = ("i", "ii", "iii", "iii-barrier")
-
-
-def hexagon(seed: int = 1, shake: float = 0.2, speed: float = 0.3):
-    rng = np.random.default_rng(seed)
-    q = hexagonal_patch(1, 7.0)
-    return q + shake * rng.uniform(-1, 1, q.shape), speed * rng.uniform(-1, 1, q.shape)
 
 
 @pytest.fixture(scope="module")

@@ -15,7 +15,7 @@ from flockana.interactions import Gains
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.theorems import Tolerances, verify
-from tests.theorems.made_up import SCALINGS, hypothesis, judged, made_up, same_in_all_units, statuses
+from tests.theorems.made_up import SCALINGS, hexagon, hypothesis, judged, made_up, same_in_all_units, statuses
 
 LAW = Algorithm2(target=LinearTarget((20.0, 0.0), (1.0, 0.0)))
 ORIGIN = StaticTarget((0.0, 0.0))
@@ -24,12 +24,6 @@ ORIGIN = StaticTarget((0.0, 0.0))
 def start(seed: int = 3, n: int = 12):
     rng = np.random.default_rng(seed)
     return rng.normal(0.0, 12.0, (n, 2)), rng.uniform(-2, -1, (n, 2))
-
-
-def hexagon(seed: int = 1):
-    rng = np.random.default_rng(seed)
-    q = hexagonal_patch(1, 7.0)
-    return q + 0.2 * rng.uniform(-1, 1, q.shape), 0.3 * rng.uniform(-1, 1, q.shape)
 
 
 @pytest.fixture(scope="module")

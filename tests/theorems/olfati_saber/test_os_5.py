@@ -30,12 +30,9 @@ from flockana.laws.olfati_saber import Algorithm1
 from flockana.theorems import Tolerances, verify
 from flockana.theorems.olfati_saber import os_5
 from flockana.theorems.olfati_saber.os_5 import CLAIMS
+from tests.theorems.made_up import statuses
 
 D, R = 7.0, 8.4
-
-
-def statuses(verdict) -> dict[str, str]:
-    return {claim.name: claim.status for claim in verdict.claims}
 
 
 def expected(**found: str) -> dict[str, str]:
