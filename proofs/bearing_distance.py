@@ -56,18 +56,20 @@ def linearised(edges: Tree, d: int) -> sp.Matrix:
     matrix = sp.zeros(2 * d * len(edges))
     for parent, child in edges:
         rows = slice(2 * d * (child - 1), 2 * d * child)
-        matrix[rows, rows] = own_block(_curvature(child, d))
+        matrix[rows, rows] = own_block(link_curvature(child, d))
         if parent:
-            matrix[rows, slice(2 * d * (parent - 1), 2 * d * parent)] = parent_block(_curvature(parent, d))
+            matrix[rows, slice(2 * d * (parent - 1), 2 * d * parent)] = parent_block(link_curvature(parent, d))
     return matrix
 
 
-def _curvature(agent: int, d: int) -> sp.Matrix:
+def link_curvature(agent: int, d: int) -> sp.Matrix:
+    """Stiffness matrix of an agent's link to its parent, at its length."""
     length = sp.Integer(agent)
-    return stiffness(length * _unit(agent, d), length, length / 2, length)
+    return stiffness(length * unit_edge(agent, d), length, length / 2, length)
 
 
-def _unit(agent: int, d: int) -> sp.Matrix:
+def unit_edge(agent: int, d: int) -> sp.Matrix:
+    """Direction of an agent's link to its parent, in rational numbers."""
     return sp.Matrix([*_HEADINGS[agent % len(_HEADINGS)], *(0,) * (d - 2)])
 
 
@@ -165,13 +167,14 @@ def _manifold() -> Iterator[Step]:
     for agents, d in ((2, 2), (3, 2), (4, 2), (2, 3), (3, 3)):
         yield Step(
             f"(ii) d = {d}: likewise all trees of {agents} agents; 0 is semisimple, {(agents - 1) * (d - 1)} times",
-            all(_spectrum_holds(edges, d) for edges in trees(agents)),
+            all(spectrum_holds(edges, d) for edges in trees(agents)),
             r"\prod_i (s^2 + s + \mu_i)(s^2 + s)^{d-1},\quad \dim\ker = (n-1)(d-1) = \dim M",
             "characteristic polynomial and rank in rational numbers",
         )
 
 
-def _spectrum_holds(edges: Tree, d: int) -> bool:
+def spectrum_holds(edges: Tree, d: int) -> bool:
+    """Whether the characteristic polynomial of the linearised tree is the product over its edges."""
     matrix, size = linearised(edges, d), len(edges)
     expected = sp.prod([S**2 + S + sp.Rational(child, 2) for _, child in edges]) * (S**2 + S) ** (size * (d - 1))
     return bool(matrix.charpoly(S) == sp.Poly(sp.expand(expected), S) and matrix.rank() == size * (d + 1))
@@ -243,7 +246,7 @@ def _undirected_trees() -> Iterator[Step]:
 def _zero_modes(edges: Tree, d: int) -> int:
     """Of the Hessian Σ μ x̂x̂ᵀ at edges of length ρ: the kernel of the rows x̂ᵀ of the rigidity matrix."""
     matrix = incidence_matrix(edges)
-    rows = [sp.kronecker_product(matrix[:, e].T, _unit(e, d).T) for e in range(len(edges))]
+    rows = [sp.kronecker_product(matrix[:, e].T, unit_edge(e, d).T) for e in range(len(edges))]
     return int(matrix.rows * d - sp.Matrix.vstack(*rows).rank())
 
 

@@ -61,7 +61,7 @@ class Flock:
         """c1α φ_α/√(1 + εs) (q_j - q_i) of each pair, and c1γ q_i."""
         total = [self.c1_gamma * x for x in q]
         for i, j, x, s in self.pairs(q):
-            pull = self._pull(s)
+            pull = self.pull(s)
             for axis in (0, 1):
                 total[2 * j + axis] += pull * x[axis]
                 total[2 * i + axis] -= pull * x[axis]
@@ -71,7 +71,7 @@ class Flock:
         """The pairs' f 1 + g xxᵀ, and c1γ; f the pull, g its derivative by s, doubled."""
         total = [[self.c1_gamma * int(i == j) for j in range(2 * self.n)] for i in range(2 * self.n)]
         for i, j, x, s in self.pairs(q):
-            pull, change = self._pull(s), self._change(s)
+            pull, change = self.pull(s), self._change(s)
             for a in (0, 1):
                 for b in (0, 1):
                     block = change * (square(x[a]) if a == b else x[a] * x[b]) + pull * int(a == b)
@@ -89,7 +89,8 @@ class Flock:
         """Of the links."""
         return [s.sqrt() for *_, s in self.pairs(q)]
 
-    def _pull(self, s: arb) -> arb:
+    def pull(self, s: arb) -> arb:
+        """Enclosed force of a link over its vector, by the square of its length."""
         return self.c1_alpha * phi_alpha(sigma_of_square(s, self.par.eps), self.par) / self._root(s)
 
     def _change(self, s: arb) -> arb:

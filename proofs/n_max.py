@@ -43,7 +43,8 @@ def mean_or_crossing(signs: tuple[int, ...]) -> bool:
     return sides[0] == 1 or sides == [2, 2]
 
 
-def _four_points() -> Iterator[Step]:
+def four_points() -> Iterator[Step]:
+    """Of four points of the plane some two are √2 times as far apart as some two others."""
     x, y = sp.symbols("x_1:5"), sp.symbols("y_1:5")
     places = sp.Matrix([x, y, (1,) * 4])
     signs = [s for s in product((-1, 0, 1), repeat=4) if 1 in s and -1 in s]
@@ -163,7 +164,7 @@ def every_lattice(par: AlphaParameters) -> Step:
 
 def _steps() -> Iterator[Step]:
     yield from potential_signs()
-    yield from _four_points()
+    yield from four_points()
     yield from _turan()
     with ctx.workdps(DIGITS):
         for par in parameter_sets():

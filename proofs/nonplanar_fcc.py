@@ -143,7 +143,7 @@ def _images(sites: tuple[Site, ...]) -> set[tuple[Site, ...]]:
     return {_placed((s * site[i], t * site[j], u * site[k]) for site in sites) for (i, j, k), (s, t, u) in _SYMMETRIES}
 
 
-def _grown(shapes: Iterable[tuple[Site, ...]]) -> Iterator[tuple[Site, ...]]:
+def grown(shapes: Iterable[tuple[Site, ...]]) -> Iterator[tuple[Site, ...]]:
     """All fragments with one more site: each connected one comes from a connected one, as a tree has a leaf."""
     for sites in shapes:
         new = {(a + x, b + y, c + z) for a, b, c in sites for x, y, z in _STEPS} - set(sites)
@@ -156,7 +156,7 @@ def shapes(size: int) -> dict[tuple[Site, ...], int]:
     for _ in range(size - 1):
         larger: dict[tuple[Site, ...], int] = {}
         seen: set[tuple[Site, ...]] = set()
-        for sites in _grown(found):
+        for sites in grown(found):
             if sites not in seen:
                 images = _images(sites)
                 seen |= images
@@ -207,7 +207,7 @@ def _steps() -> Iterator[Step]:
             sum(known.values()) == sum(1 for _ in fragments(size)),
             evidence=f"{sum(known.values())} up to translation, as many as Redelmeier's algorithm finds",
         )
-    graphs = {links_of(sites) for sites in _grown(shapes(_LARGEST - 1))}
+    graphs = {links_of(sites) for sites in grown(shapes(_LARGEST - 1))}
     yield Step(
         f"every connected fragment of {_LARGEST} sites has a planar graph, and so have smaller ones, as parts",
         all(embeds(_LARGEST, links) for links in graphs),

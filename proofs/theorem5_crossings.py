@@ -30,7 +30,7 @@ def weighted_mean(m: int) -> sp.Expr:
     return sp.expand(mean - s * (1 - s) * w.dot(w) - t * (1 - t) * z.dot(z))
 
 
-def _sides(a: Any, b: Any, c: Any, e: Any, k: Any) -> tuple[Any, Any, Any, Any]:
+def squared_sides(a: Any, b: Any, c: Any, e: Any, k: Any) -> tuple[Any, Any, Any, Any]:
     """Squares of AB, BC, CD, DA where AX = a, XC = b, BX = c, XD = e and k is the cosine; of sympy or of z3."""
     return (
         a**2 + c**2 - 2 * a * c * k,
@@ -44,7 +44,7 @@ def cosine_mean() -> tuple[sp.Expr, sp.Expr]:
     """Left minus right side of the mean by the law of cosines, ab + ce, and of the sum of its weights."""
     a, b, c, e, k = sp.symbols("a b c e k")
     weights = (b * e, a * e, a * c, b * c)
-    total = sum(f * side for f, side in zip(weights, _sides(a, b, c, e, k), strict=True))
+    total = sum(f * side for f, side in zip(weights, squared_sides(a, b, c, e, k), strict=True))
     whole = (a + b) * (c + e)
     return sp.expand(total - (a * b + c * e) * whole), sp.expand(sum(weights) - whole)
 
@@ -53,7 +53,7 @@ def short_side(text: str, square: Any, *given: Any) -> Step:
     """The step that of crossing links of lengths at most 1 some side is at most the root of `square`."""
     a, b, c, e, k = z3.Reals("a b c e k")
     crossing = (a >= 0, b >= 0, c >= 0, e >= 0, a + b <= 1, c + e <= 1, k >= -1, k <= 1)
-    return implication(text, z3.Or(*(side <= square for side in _sides(a, b, c, e, k))), *crossing, *given)
+    return implication(text, z3.Or(*(side <= square for side in squared_sides(a, b, c, e, k))), *crossing, *given)
 
 
 def _in_every_dimension() -> Iterator[Step]:
@@ -94,7 +94,7 @@ def _in_the_plane() -> Iterator[Step]:
     plane = a * sp.Matrix([1, 0]) - c * sp.Matrix([k, sp.sqrt(1 - k**2)])
     yield Step(
         "links that meet in space lie in one plane: directions (1, 0) and (k, √(1 - k²)) give the same distances",
-        sp.expand(plane.dot(plane) - _sides(a, 0, c, 0, k)[0]) == 0,
+        sp.expand(plane.dot(plane) - squared_sides(a, 0, c, 0, k)[0]) == 0,
     )
     residual, weights = cosine_mean()
     yield Step(
@@ -151,7 +151,7 @@ def _sharp() -> Iterator[Step]:
     half = sp.Rational(1, 2)
     yield Step(
         "a square with diagonals d has all sides d/√2: the constant is the best",
-        _sides(half, half, half, half, 0) == (half,) * 4,
+        squared_sides(half, half, half, half, 0) == (half,) * 4,
     )
     kappa, side = z3.Reals("κ² side²")
     yield implication(

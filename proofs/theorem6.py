@@ -20,7 +20,8 @@ BRAKING = {
 }
 
 
-def _obstacles() -> Iterator[Step]:
+def obstacle_steps() -> Iterator[Step]:
+    """β-agents of every kind of obstacle, in every dimension."""
     for kind in KINDS:
         for m in DIMENSIONS:
             envelope, braking = derive_envelope(kind, m), derive_braking(kind, m)
@@ -116,7 +117,7 @@ def _printed() -> Iterator[Step]:
 
 
 def _steps() -> Iterator[Step]:
-    for part in (_obstacles, _identity, _sign, _printed):
+    for part in (obstacle_steps, _identity, _sign, _printed):
         yield from part()
 
 

@@ -80,7 +80,7 @@ def off_the_edges(z: arb, par: AlphaParameters) -> bool:
     return bool(z < knee or knee < z < cutoff)
 
 
-def _least_curvature(sites: tuple[Site, ...], links: Links) -> arb | None:
+def least_curvature(sites: tuple[Site, ...], links: Links) -> arb | None:
     """A lower bound of the eigenvalues of Σ uuᵀ over the links plus projections on the rigid motions."""
     size = 2 * len(sites)
     places = [(arb(x) / 2, arb(3).sqrt() * y / 2) for x, y in sites]
@@ -173,7 +173,7 @@ def _patch(rings: int) -> Iterator[Step]:
         laplacian_rank(n, links) == n - 1,
         r"v^\top \hat L v = a \sum_{(i,j)} \|v_j - v_i\|^2",
     )
-    least = _least_curvature(sites, links)
+    least = least_curvature(sites, links)
     yield Step(
         f"n = {n}: quantitatively, off the rigid motions the eigenvalues of ∇²V are at least as many k as this",
         True if least else None,
@@ -181,7 +181,8 @@ def _patch(rings: int) -> Iterator[Step]:
     )
 
 
-def _stiff(par: AlphaParameters) -> Step:
+def stiffness_step(par: AlphaParameters) -> Step:
+    """Links at their length d are stiff, none but those of the lattice are in range, and φ_α is smooth there."""
     k, a, here = stiffness(par), adjacency(d_alpha(par), par), d_alpha(par)
     smooth = off_the_edges(here, par)
     return Step(
@@ -197,7 +198,7 @@ def _steps() -> Iterator[Step]:
     with ctx.workdps(DIGITS):
         for par in parameter_sets():
             if isinstance(par, AlphaParameters):
-                yield _stiff(par)
+                yield stiffness_step(par)
         for rings in RINGS:
             yield from _patch(rings)
     yield from modes_decay()

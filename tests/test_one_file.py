@@ -20,9 +20,9 @@ def toys():
     """The toys' folders joined to the package's own, as if their files had been put there."""
     packages = {room: importlib.import_module(f"flockana.{room}") for room in ROOMS}
     caches = (
-        importlib.import_module("flockana.theorems.catalogue")._catalogue,
+        importlib.import_module("flockana.theorems.catalogue").catalogue,
         importlib.import_module("flockana.scenarios.scenario").catalogue,
-        importlib.import_module("flockana.report.figures")._own,
+        importlib.import_module("flockana.report.figures").pictures_of_laws,
         importlib.import_module("flockana.base.serialize").parameter_classes,
         importlib.import_module("flockana.measures.measure").measures,
     )

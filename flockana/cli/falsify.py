@@ -80,7 +80,7 @@ def falsify_command(
         show_files(picture=plot)
     if search.ended == "interrupted":
         return INTERRUPTED
-    return OK if all(_known_false(search.theorem, name) for name in search.broken) else UNEXPECTED
+    return OK if all(known_false(search.theorem, name) for name in search.broken) else UNEXPECTED
 
 
 def read_ranges(texts: list[str]) -> dict[str, tuple[float, float]]:
@@ -121,7 +121,7 @@ def _replay(path: Path) -> int:
     return OK if status == "refuted" else UNEXPECTED
 
 
-def _known_false(theorem: str, claim: str) -> bool:
+def known_false(theorem: str, claim: str) -> bool:
     """Whether a claim is printed wrongly, or is no theorem: one of the catalogue's own runs is expected to break it."""
     from flockana.scenarios import scenario, scenarios
 
@@ -145,7 +145,7 @@ def _show(search: Falsification) -> None:
     if search.failures:
         runs += f", {search.failures} failed ({search.message})"
     if search.found:
-        known = "known to be false" if _known_false(search.theorem, search.claim) else "NOT known to be false"
+        known = "known to be false" if known_false(search.theorem, search.claim) else "NOT known to be false"
         text = f"found: {search.claim} is broken, and it is {known}; {runs}"
     else:
         text = f"nothing found, which proves nothing: {search.claim} came nearest; {runs}"

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from flockana.stability import Linearisation, Mode
 
-_DENSE = 1200  # n m above which only the slowest modes are sought, without a dense matrix
+DENSE = 1200  # n m above which only the slowest modes are sought, without a dense matrix
 
 
 def stability_command(
@@ -81,7 +81,7 @@ def slowest(linear: Linearisation, count: int) -> tuple[Mode, ...]:
     """The slowest modes; of a large flock without its whole spectrum."""
     from flockana.stability import slowest_modes
 
-    return linear.modes[:count] if linear.q.size <= _DENSE else slowest_modes(linear, count).modes
+    return linear.modes[:count] if linear.q.size <= DENSE else slowest_modes(linear, count).modes
 
 
 def summary(linear: Linearisation, slow: Iterable[Mode], name: str) -> dict[str, Any]:
@@ -89,7 +89,7 @@ def summary(linear: Linearisation, slow: Iterable[Mode], name: str) -> dict[str,
     from flockana.stability.translational import CentreOfMass
 
     slow, (n, m) = tuple(slow), linear.q.shape
-    whole = linear.q.size <= _DENSE
+    whole = linear.q.size <= DENSE
     invariant = linear.second_order.invariant if whole else linear.second_order.rigid_invariant
     law: Any = linear.law
     centre = CentreOfMass(law.gains) if _follows(law) else None
@@ -157,13 +157,13 @@ def _draw(figure: Any, linear: Linearisation, slow: tuple[Mode, ...]) -> None:
     space = "3d" if linear.q.shape[1] == 3 else None
     follows = _follows(law)
     target = None if law.target is None else law.target.position(linear.t)
-    known = linear.modes if linear.q.size <= _DENSE else slow
+    known = linear.modes if linear.q.size <= DENSE else slow
     inner = [mode for mode in known if not mode.name.startswith("translation")] or list(known)
     halves = figure.subfigures(1, 2)
     left = halves[0].subfigures(2, 1) if follows else [halves[0]]
     poles = (
         linear.eigenvalues
-        if linear.q.size <= _DENSE
+        if linear.q.size <= DENSE
         else [v for m in slow for v in (m.eigenvalue, np.conj(m.eigenvalue))]
     )
     plots.pole_map(poles, ax=left[0].subplots())

@@ -30,7 +30,7 @@ from flockana.kernels.paths import bernstein, centred
 from flockana.laws.law import Law
 
 SHARE = 0.5  # of the law's length: as far may two agents go within each other's range between two evaluations
-_DENSE = 400  # agents up to which all pairs are looked at rather than searched
+DENSE = 400  # agents up to which all pairs are looked at rather than searched
 _SLACK = 1.1  # a step that is too long by less than this is not worth another
 _MARCHES = 60  # towards an obstacle, each as far as it is away
 _TOUCH = 1e-6  # of the range: so near counts as in range
@@ -110,7 +110,7 @@ class Encounters:
         if not self.radii.size or len(reach) == 1:
             return share
         reach = centred(points, allowance)
-        if len(reach) <= _DENSE:
+        if len(reach) <= DENSE:
             return float(min(share, share_of_all(points, reach, allowance, self.radii, self.far)))
         search = (float(self.radii.max()) + 2.0 * float(reach.max() + allowance.max())) * (1.0 + 1e-9)
         for i, j in pair_blocks(before.q, search):

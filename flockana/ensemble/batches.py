@@ -17,7 +17,7 @@ from flockana.ensemble.executors import Crew
 
 _TICK = 0.2  # seconds between looks around
 _QUEUED = 2  # batches per worker that are out at once: one at work, one ready
-_HOPELESS = 3  # workers that died in a row, without one batch done in between
+HOPELESS = 3  # workers that died in a row, without one batch done in between
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -52,7 +52,7 @@ def work_through(
     try:
         while waiting or suspects or pending:
             width = workers.width()
-            for batch in _next_batches(waiting, suspects, len(pending), width, size):
+            for batch in next_batches(waiting, suspects, len(pending), width, size):
                 watch((*_under_way(pending), *batch)[:width])
                 try:
                     sent = workers.executor.submit(function, batch)
@@ -75,7 +75,7 @@ def work_through(
                         suspects.extend(suspected)
                         break  # what else is done is still pending, or under suspicion
                     dead.append((batch[0], None))
-                    if len(dead) == _HOPELESS:
+                    if len(dead) == HOPELESS:
                         raise _hopeless() from error
                 else:
                     size = batch_size(results)
@@ -89,7 +89,7 @@ def work_through(
         raise
 
 
-def _next_batches(
+def next_batches(
     waiting: deque[Any], suspects: deque[Any], out: int, width: int, size: int
 ) -> Iterator[tuple[Any, ...]]:
     """Batches to send now: a few per worker; one item alone while some are suspected of ending workers."""
@@ -122,6 +122,6 @@ def _suspected(error: BaseException, batch: Batch, pending: Pending, workers: Cr
 
 def _hopeless() -> SolverError:
     return SolverError(
-        f"{_HOPELESS} worker processes died one after the other: a script that starts them must do so under "
+        f"{HOPELESS} worker processes died one after the other: a script that starts them must do so under "
         "`if __name__ == '__main__':`; if memory is short, use jobs=1 (--jobs 1)"
     )

@@ -16,9 +16,9 @@ from flockana.base.errors import ArgumentError, SolverError
 from flockana.base.interrupts import interrupts_held, interrupts_hidden, interrupts_recognised
 from flockana.ensemble.processes import single_threaded_children
 
-_CONNECT = 10.0  # seconds to find a scheduler and a worker
-_START = 120.0  # seconds for worker processes of our own to stand
-_ALONE = 60.0  # seconds without an answer of the scheduler, or without any worker, until a cluster at work is given up
+CONNECT = 10.0  # seconds to find a scheduler and a worker
+START = 120.0  # seconds for worker processes of our own to stand
+ALONE = 60.0  # seconds without an answer of the scheduler, or without any worker, until a cluster at work is given up
 _CLOSE = 10.0  # seconds to say goodbye
 _GRACE = 1.0  # seconds more for Dask to say itself what is wrong
 _LOOK = 0.05  # seconds between looks for a first worker
@@ -61,7 +61,7 @@ def _own_cluster(count: int) -> Any:
             host="127.0.0.1",
             dashboard_address="127.0.0.1:0",
             silence_logs=50,
-            death_timeout=_START,
+            death_timeout=START,
         )
         return cluster
     except Exception as error:
@@ -84,7 +84,7 @@ def _client(target: Any, address: str) -> Any:
         reason = _reason(error)
     gc.collect()  # what is left of a client goes now, when no lock of Dask's is held
     raise SolverError(
-        f"cluster = {address!r}: no scheduler with a worker answers within {_CONNECT:g} s ({reason}); start "
+        f"cluster = {address!r}: no scheduler with a worker answers within {CONNECT:g} s ({reason}); start "
         "them with `dask scheduler` and `dask worker ADDRESS --nthreads 1`, and give the scheduler's address"
     )
 
@@ -97,15 +97,15 @@ def _opened(target: Any) -> Any:
         def start(self, **options: Any) -> None:
             try:
                 # its own limit does not hold for a server that takes the call and says nothing
-                super().start(callback_timeout=_CONNECT + _GRACE, **options)
+                super().start(callback_timeout=CONNECT + _GRACE, **options)
             except BaseException:  # of a constructor that fails nobody else has the client
                 _end(self)
                 raise
 
-    client = LimitedClient(target, timeout=_CONNECT, set_as_default=False)
+    client = LimitedClient(target, timeout=CONNECT, set_as_default=False)
     try:
-        deadline = time.monotonic() + _CONNECT
-        while not _threads(client, _CONNECT):
+        deadline = time.monotonic() + CONNECT
+        while not _threads(client, CONNECT):
             if time.monotonic() > deadline:
                 raise TimeoutError("it has no workers")
             time.sleep(_LOOK)
@@ -128,7 +128,7 @@ class _Width:
 
     def __call__(self) -> int:
         try:
-            threads = _threads(self.client, _ALONE)
+            threads = _threads(self.client, ALONE)
         except Exception as error:  # whatever Dask makes of a scheduler that is gone
             raise SolverError(
                 f"the executor failed: Dask's scheduler does not answer ({_reason(error)}); runs in a store are kept, "
@@ -137,9 +137,9 @@ class _Width:
         now = time.monotonic()
         if threads:
             self.seen = now
-        elif now - self.seen > _ALONE:
+        elif now - self.seen > ALONE:
             raise SolverError(
-                f"the executor failed: the cluster has had no worker for {_ALONE:g} s; runs in a store are kept, so "
+                f"the executor failed: the cluster has had no worker for {ALONE:g} s; runs in a store are kept, so "
                 "start workers and go on"
             )
         return max(1, threads)

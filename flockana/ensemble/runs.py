@@ -10,7 +10,7 @@ from flockana.ensemble.batches import work_through
 from flockana.ensemble.executors import Crew
 from flockana.ensemble.work import DIED, Job, Record, Request, run_batch
 
-_BATCH_SECONDS = 0.5  # runs shorter than this travel together
+BATCH_SECONDS = 0.5  # runs shorter than this travel together
 _LONGEST_BATCH = 256
 
 
@@ -35,4 +35,4 @@ def _died(job: Job) -> Record:
 def _batch_size(records: tuple[Record, ...]) -> int:
     """How many runs make a batch of about half a second, by the last ones that were made."""
     each = sum(record.seconds for record in records) / len(records)
-    return int(min(_LONGEST_BATCH, max(1.0, _BATCH_SECONDS / max(each, 1e-6))))
+    return int(min(_LONGEST_BATCH, max(1.0, BATCH_SECONDS / max(each, 1e-6))))

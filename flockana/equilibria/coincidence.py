@@ -13,7 +13,7 @@ from flockana.symbolic.pair import ensure_dimension
 _ABOVE = 1e-9  # relative: the greatest trace is flat where it is found, so it is missed by far less
 
 
-def _trace(alpha: AlphaInteraction, lengths: FloatArray, m: int) -> FloatArray:
+def hessian_trace(alpha: AlphaInteraction, lengths: FloatArray, m: int) -> FloatArray:
     """Trace over R^m of the Hessian block of a pair at each length: φ_α' σ' ² along it, the stress m times."""
     z, root = alpha.sigma_norm(lengths), np.sqrt(1.0 + alpha.eps * lengths**2)
     phi, slope = alpha.phi_alpha(z), alpha.phi_alpha_slope(z)
@@ -36,8 +36,8 @@ def least_with_coincidence(alpha: AlphaInteraction, m: int = 2) -> int:
 
     m, repulsion = ensure_dimension(m), -float(alpha.phi_alpha(0.0))
     lengths = np.linspace(0.0, alpha.r, 4001)
-    top = int(np.argmax(_trace(alpha, lengths, m)))
+    top = int(np.argmax(hessian_trace(alpha, lengths, m)))
     window = lengths[max(top - 1, 0)], lengths[min(top + 1, lengths.size - 1)]
-    best = minimize_scalar(lambda s: -float(_trace(alpha, np.array([s]), m)[0]), bounds=window, method="bounded")
+    best = minimize_scalar(lambda s: -float(hessian_trace(alpha, np.array([s]), m)[0]), bounds=window, method="bounded")
     most = -float(best.fun) * (1.0 + _ABOVE)  # no less than the top, of which the search may stop short
     return 2 + max(1, ceil(2.0 * m * repulsion / most))  # c = 2 needs the fewest others; at d the trace is positive

@@ -19,7 +19,7 @@ from flockana.measures.nets import LinkArray, link_lengths, links
 
 METHODS = ("minimise", "root")
 RESIDUAL = 1e-9  # of the force scale: what counts as an equilibrium
-_ALL_PAIRS = 48  # up to here every pair is listed, and the program is used again
+ALL_PAIRS = 48  # up to here every pair is listed, and the program is used again
 _MARGIN = 1.0  # of d, beyond the range, for the listed pairs; agents move by half of it before the next list
 _ROUNDS = 200
 _INSIDE = 0.999  # of the box: what ends nearer to its faces goes on
@@ -233,8 +233,8 @@ def _minimise(potential: Potential, q: FloatArray, margin: float, max_iter: int)
         basis = potential.symmetries(q)
         if basis.shape[1] == q.size:
             return q, True, "nothing to solve: every motion is a rigid one"
-        if program is None or n > _ALL_PAIRS or program.gauge != basis.shape[1]:
-            listed = all_pairs(n) if n <= _ALL_PAIRS else links(q, potential.pair.range + margin)
+        if program is None or n > ALL_PAIRS or program.gauge != basis.shape[1]:
+            listed = all_pairs(n) if n <= ALL_PAIRS else links(q, potential.pair.range + margin)
             program = Program(potential, (n, m), listed, basis.shape[1])
         reach, start = margin / (2.0 * sqrt(m)), q
         q, converged, status = program.solve(q, basis=basis, reach=reach, max_iter=max_iter)

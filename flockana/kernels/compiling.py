@@ -21,10 +21,11 @@ from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.core.serialize import dumps
 
 
-class _NamedByContent(IndexDataCacheFile):
+class NamedByContent(IndexDataCacheFile):
     """An index, and files whose names no two functions, signatures, processors or versions of a source share."""
 
     def save(self, key: Any, data: Any) -> None:
+        """Write the file, then the index that names it."""
         digest = hashlib.sha256(repr((key, self._source_stamp)).encode()).hexdigest()[:16]
         name = f"{self._index_name.removesuffix('.nbi')}.{digest}.nbc"
         self._save_data(name, data)
@@ -38,7 +39,7 @@ class _Cache(FunctionCache):
         super().__init__(function)
         own: IndexDataCacheFile = self._cache_file  # type: ignore[has-type]
         base = own._index_name.removesuffix(".nbi")
-        self._cache_file = _NamedByContent(own._cache_path, base, own._source_stamp)
+        self._cache_file = NamedByContent(own._cache_path, base, own._source_stamp)
 
 
 def _named_for_its_cells(function: Callable[..., Any]) -> Callable[..., Any]:

@@ -149,11 +149,11 @@ def _by_inertia(matrix: csr_array, tol: float) -> tuple[int, int]:
     largest = float(abs(gram).sum(axis=0).max())  # at least σ_max², on a lattice at most about twice that
     if largest == 0.0:
         return matrix.shape[1], 0
-    zero, more = (_eigenvalues_below(gram, (factor * tol) ** 2 * largest) for factor in (1.0, 10.0))
+    zero, more = (eigenvalues_below(gram, (factor * tol) ** 2 * largest) for factor in (1.0, 10.0))
     return zero, more - zero
 
 
-def _eigenvalues_below(gram: Any, shift: float) -> int:
+def eigenvalues_below(gram: Any, shift: float) -> int:
     """Sylvester's law: the negative pivots of a symmetric elimination count the eigenvalues below the shift."""
     from scipy.sparse import eye_array
     from scipy.sparse.linalg import splu

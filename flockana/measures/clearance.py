@@ -97,7 +97,7 @@ def clearance(
         for obstacle, least in zip(obstacles, least_of, strict=True):
             near = np.maximum(least.at_samples[part] - reach[0], least.at_samples[after] - reach[1]) < least.lower
             row, agent = np.nonzero(near)
-            bound = _refine(obstacle, points[row, agent], allowance[row, agent], least.lower, tol)
+            bound = refine(obstacle, points[row, agent], allowance[row, agent], least.lower, tol)
             least.update(bound, t, row + part.start, agent)
     k = min(range(len(least_of)), key=lambda each: least_of[each].reached, default=-1)
     bounds = np.array([least.lower for least in least_of])
@@ -131,7 +131,7 @@ class _Least:
             self.reached, self.time = bound.value, float(t[k] + bound.parameter * (t[k + 1] - t[k]))
 
 
-def _refine(obstacle: Obstacle, curves: FloatArray, allowance: FloatArray, best: float, tol: float) -> _Bound:
+def refine(obstacle: Obstacle, curves: FloatArray, allowance: FloatArray, best: float, tol: float) -> _Bound:
     """Bound the clearance along curves by halving; the bound is `best` if nothing lower is possible."""
     proven, value, where, which = best, inf, 0.0, -1
     source, start, width = np.arange(len(curves)), np.zeros(len(curves)), 1.0
@@ -140,7 +140,7 @@ def _refine(obstacle: Obstacle, curves: FloatArray, allowance: FloatArray, best:
             break
         left, right = _halves(curves)
         middle = np.ascontiguousarray(left[:, 5])
-        here, bound = _at_once(obstacle, curves, middle, tol)
+        here, bound = at_once(obstacle, curves, middle, tol)
         bound -= allowance
         lowest = int(np.argmin(here))
         if here[lowest] < value:
@@ -157,7 +157,7 @@ def _refine(obstacle: Obstacle, curves: FloatArray, allowance: FloatArray, best:
     return _Bound(proven, value, where, which)
 
 
-def _at_once(obstacle: Obstacle, curves: FloatArray, middle: FloatArray, tol: float) -> tuple[FloatArray, FloatArray]:
+def at_once(obstacle: Obstacle, curves: FloatArray, middle: FloatArray, tol: float) -> tuple[FloatArray, FloatArray]:
     """(signed distance at a point of each curve's hull, lower bound of it over the hull), without halving."""
     gap, _, here = obstacle._project(middle, np.zeros_like(middle))
     hull = curves - middle[:, None, :]

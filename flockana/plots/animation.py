@@ -83,14 +83,14 @@ def animation(
     from matplotlib.figure import Figure
 
     frames = frame_count(seconds, fps)
-    film, view = equal_times(trajectory, frames), _view(trajectory)
+    film, view = equal_times(trajectory, frames), film_view(trajectory)
     times = np.linspace(trajectory.t[0], trajectory.t[-1], frames)  # of a map, some frames may show the same step
     # outside the style, whose layout engine would fit each frame anew and make the view tremble
-    figure = Figure(figsize=_size(view), dpi=_DPI)
+    figure = Figure(figsize=film_size(view), dpi=_DPI)
     FigureCanvasAgg(figure)
     with style():
         ax: Any = figure.add_subplot(projection="3d" if trajectory.m == 3 else None)
-        height = _size(view)[1]
+        height = film_size(view)[1]
         edges = (0.0, 0.0, 0.95, 0.95) if trajectory.m == 3 else (0.09, 0.6 / height, 0.98, 1.0 - 0.35 / height)
         figure.subplots_adjust(*edges)
 
@@ -188,7 +188,7 @@ def frame_count(seconds: float, fps: float) -> int:
     return max(1, round(frames))
 
 
-def _view(trajectory: Trajectory) -> FloatArray:
+def film_view(trajectory: Trajectory) -> FloatArray:
     """Two opposite corners of a box about all that the film shows, with a margin."""
     points = in_view(drawn_law(trajectory), trajectory)
     low, high = points.min(axis=0), points.max(axis=0)
@@ -196,7 +196,7 @@ def _view(trajectory: Trajectory) -> FloatArray:
     return np.array([low - margin, high + margin])
 
 
-def _size(view: FloatArray) -> tuple[float, float]:
+def film_size(view: FloatArray) -> tuple[float, float]:
     """Width and height in inches that suit the view, in even numbers of pixels, as MP4 wants them."""
     extent = view[1] - view[0]
     if extent.size == 3:

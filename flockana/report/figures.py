@@ -38,14 +38,14 @@ class Picture:
 
 
 @cache
-def _own() -> tuple[tuple[tuple[type, ...], Callable[[Trajectory], tuple[Picture, ...]]], ...]:
+def pictures_of_laws() -> tuple[tuple[tuple[type, ...], Callable[[Trajectory], tuple[Picture, ...]]], ...]:
     """Laws with figures of their own: (laws, pictures) of every module of this package that ends in _figures."""
     return tuple((module.LAWS, module.pictures) for module in modules("flockana.report", ending="_figures"))
 
 
 def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
     """Draw a run: by the ``*_figures`` module that names its law among its ``LAWS``, else as any flock is drawn."""
-    draw = next((own for laws, own in _own() if isinstance(trajectory.law, laws)), flock_pictures)
+    draw = next((own for laws, own in pictures_of_laws() if isinstance(trajectory.law, laws)), flock_pictures)
     return draw(trajectory)
 
 
@@ -115,13 +115,13 @@ def png(draw: Callable[[Figure], None], size: tuple[float, float]) -> str:
 
 
 def _snapshots(figure: Figure, run: Trajectory) -> None:
-    times = run.t[[0, _middle(run), -1]]
+    times = run.t[[0, middle_sample(run), -1]]
     for k, time in enumerate(times.tolist()):
         ax = figure.add_subplot(1, 3, k + 1, projection="3d" if run.m == 3 else None)
         plots.snapshot(run, time, ax=ax, bar=k == 2)
 
 
-def _middle(run: Trajectory) -> int:
+def middle_sample(run: Trajectory) -> int:
     """The sample halfway in time; among obstacles the one where a flock, once connected, is most split."""
     if run.law.obstacles:
         counts = component_counts(run)

@@ -89,12 +89,12 @@ def stability_section(pages: Iterable[Page]) -> StabilitySection | None:
     margins = [v for _, v in verdicts if v.theorem in _MARGINS]
     if not decays and not margins:
         return None
-    pictures = (_range([v for _, v in decays]), _bode(verdicts))
+    pictures = (_range([v for _, v in decays]), bode_picture(verdicts))
     margin_texts = [claim.detail for v in margins for claim in v.claims]
     if any(v.theorem == "heterogeneous-gains" for v in margins):
         margin_texts.append(_LONGER)
     return StabilitySection(
-        _flocks(),
+        flock_pictures(),
         tuple(row for name, v in decays for row in _rows(name, v)),
         tuple(picture for picture in pictures if picture is not None),
         tuple(margin_texts),
@@ -124,7 +124,7 @@ def _rows(name: str, verdict: Verdict) -> list[Row]:
     ]
 
 
-def _flocks() -> tuple[Picture, ...]:
+def flock_pictures() -> tuple[Picture, ...]:
     """Poles and the three slowest modes of the shape of 19 agents, under both algorithms."""
     pictures = []
     for law in (Algorithm1(), Algorithm2(target=StaticTarget((0.0, 0.0)))):
@@ -170,7 +170,7 @@ def _range(verdicts: Sequence[Verdict]) -> Picture | None:
     return Picture(text, png(draw, (6.5, 4.0)))
 
 
-def _bode(verdicts: Sequence[tuple[str, Verdict]]) -> Picture | None:
+def bode_picture(verdicts: Sequence[tuple[str, Verdict]]) -> Picture | None:
     """The project's γ-agent, with the p_r that it hands over and with the true one; what its runs show."""
     points, centres, words = {}, {}, []
     for name, verdict in verdicts:

@@ -121,15 +121,15 @@ def decay(flock: Linearisation, *, name: str = "", amplitude: float = AMPLITUDE,
         )
     t = np.linspace(0.0, count * half, count * _SAMPLES + 1)
     start = mode_motion(flock, mode, amplitude=size, samples=2)
-    mismatch = _mismatch(_run(flock, start.q[0] - flock.q, start.p[0], t)[1])
-    slopes = _slopes(mismatch, half)
+    mismatch = velocity_mismatch(_run(flock, start.q[0] - flock.q, start.p[0], t)[1])
+    slopes = logarithmic_slopes(mismatch, half)
     rng = np.random.default_rng(seed)
     dq = moving_frame(rng.standard_normal(flock.q.shape))
     dq *= size / float(np.linalg.norm(dq, axis=1).max())
     late = int(_LATE * t.size)
     late_linear, late_measured = (
-        float(-0.5 * _slopes(_mismatch(p)[late:], half).mean())
-        for p in (_linear(flock, dq, 0.0 * dq, t)[1], _run(flock, dq, 0.0 * dq, t)[1])
+        float(-0.5 * logarithmic_slopes(velocity_mismatch(p)[late:], half).mean())
+        for p in (linear_motion(flock, dq, 0.0 * dq, t)[1], _run(flock, dq, 0.0 * dq, t)[1])
     )
     measured, error = -0.5 * float(slopes.mean()), 0.5 * float(slopes.std())
     law, (n, m) = type(flock.law).__name__, flock.q.shape
@@ -284,7 +284,7 @@ def _run(flock: Linearisation, dq: FloatArray, dp: FloatArray, t: FloatArray) ->
     return run.q - t[:, None, None] * flock.p, run.p - flock.p
 
 
-def _linear(flock: Linearisation, dq: FloatArray, dp: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
+def linear_motion(flock: Linearisation, dq: FloatArray, dp: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
     """δq, δp of the linear flock at equally spaced times."""
     from scipy.linalg import expm
 
@@ -302,14 +302,14 @@ def _off_centre(flock: Linearisation, x: FloatArray) -> FloatArray:
     return x - x.mean(axis=1, keepdims=True) if free else x
 
 
-def _mismatch(p: FloatArray) -> FloatArray:
+def velocity_mismatch(p: FloatArray) -> FloatArray:
     """K̃ at every sample."""
     relative = p - p.mean(axis=1, keepdims=True)
     mismatch: FloatArray = 0.5 * np.sum(relative**2, axis=(1, 2))
     return mismatch
 
 
-def _slopes(mismatch: FloatArray, half: float) -> FloatArray:
+def logarithmic_slopes(mismatch: FloatArray, half: float) -> FloatArray:
     """Slope of the logarithm of sums over half periods, each against the next."""
     sums = np.convolve(mismatch, np.ones(_SAMPLES), mode="valid")
     with np.errstate(divide="ignore", invalid="ignore"):  # where all has come to rest there is no slope

@@ -106,7 +106,7 @@ def alpha_antiderivative(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
     return HALF * ((alpha.a + alpha.b) * area * root + (alpha.a - alpha.b) * z)
 
 
-def _alpha(alpha: AlphaSymbols) -> _Potential:
+def alpha_potential(alpha: AlphaSymbols) -> _Potential:
     """Return the pieces that make psi_alpha."""
     return _Potential(
         smooth=lambda z: phi(z - alpha.d_alpha, alpha=alpha),
@@ -163,7 +163,7 @@ def psi_alpha(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
     52.383811786644864
     """
     _refuse_indicator(alpha.h)
-    return _alpha(alpha).expression(sp.sympify(z))
+    return alpha_potential(alpha).expression(sp.sympify(z))
 
 
 def psi_beta(z: sp.Expr, *, beta: BetaSymbols = BETA) -> sp.Expr:
@@ -224,7 +224,7 @@ def derive_psi_alpha() -> Derivation:
     True
     """
     alpha = ALPHA_NAMED
-    potential = _alpha(alpha)
+    potential = alpha_potential(alpha)
     zero, phi_at_zero = _phi_at_zero()
     plateau = sp.Ge(potential.edge, potential.zero)
     antiderivative = sp.Derivative(potential.closed(Z), Z)

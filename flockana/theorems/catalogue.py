@@ -16,7 +16,8 @@ from flockana.theorems.theorem import Theorem, Tolerances, Verdict
 
 
 @cache
-def _catalogue() -> dict[str, Theorem]:
+def catalogue() -> dict[str, Theorem]:
+    """All theorems by id: what the modules of this room call THEOREM."""
     by_id: dict[str, Theorem] = {}
     for module in modules("flockana.theorems"):
         defined = getattr(module, "THEOREM", None)
@@ -38,7 +39,7 @@ def theorems() -> tuple[str, ...]:
     >>> "os-1" in theorems() and "E1" in theorems()
     True
     """
-    return tuple(_catalogue())
+    return tuple(catalogue())
 
 
 def theorem(name: str) -> Theorem:
@@ -60,7 +61,7 @@ def theorem(name: str) -> Theorem:
     'trajectory'
     """
     try:
-        return _catalogue()[name]
+        return catalogue()[name]
     except (KeyError, TypeError):
         raise UnknownNameError("theorem", name, theorems()) from None
 

@@ -7,7 +7,7 @@ import pytest
 from PIL import Image
 
 from flockana.base.errors import ArgumentError
-from flockana.cli.falsify import _known_false, read_ranges
+from flockana.cli.falsify import known_false, read_ranges
 from flockana.falsify import evaluate
 from flockana.theorems import Claim, theorems
 from tests.programs import Starts
@@ -115,5 +115,5 @@ def test_what_is_known_to_be_false():
     true = {("os-3", "i"), ("os-1", "iii"), ("energy", "rate"), ("collision-energy", "below"), ("E13", "corrected")}
     true |= {("zone-1-corrected", "lengths"), ("dead-zone-1-corrected", "rate")}
     assert {name for name, _ in false | true} <= set(theorems())
-    assert all(_known_false(*one) for one in false)
-    assert not any(_known_false(*one) for one in true)
+    assert all(known_false(*one) for one in false)
+    assert not any(known_false(*one) for one in true)

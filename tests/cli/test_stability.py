@@ -68,7 +68,7 @@ def test_a_large_flock_is_not_made_dense(found, monkeypatch):
     from flockana.cli import stability
 
     whole = found("hexagonal-spiral:30", "--modes", 3)
-    monkeypatch.setattr(stability, "_DENSE", 10)
+    monkeypatch.setattr(stability, "DENSE", 10)
     one = found("hexagonal-spiral:30", "--modes", 3)
     assert one["zero modes sought"] == "rigid motions only"
     assert one["zero modes"] == whole["zero modes"]

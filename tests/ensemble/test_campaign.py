@@ -148,7 +148,7 @@ def test_a_run_that_ends_its_worker_is_found_and_the_others_are_made():
 
 
 def test_workers_that_all_die_end_the_ensemble_with_the_remedy(monkeypatch):
-    monkeypatch.setattr(batches, "_HOPELESS", 2)
+    monkeypatch.setattr(batches, "HOPELESS", 2)
     with pytest.raises(SolverError, match=r"2 worker processes died .*__main__.*jobs=1"):
         ensemble(tiny_flocks.lethal, range(9), theorems=[], jobs=2)
 
@@ -218,7 +218,7 @@ def test_a_worker_with_other_mathematics_is_refused():
 
 def test_the_mathematics_change_with_what_computes_and_with_nothing_else(monkeypatch):
     root = digests.Path(digests.__file__).resolve().parent.parent
-    names = {path.relative_to(root).as_posix() for path in digests._sources(root)}
+    names = {path.relative_to(root).as_posix() for path in digests.source_files(root)}
     assert {"kernels/alpha.py", "dynamics/adaptive.py", "theorems/olfati_saber/os_1.py", "base/errors.py"} <= names
     assert {"scenarios/msn.py", "measures/standard.py", "equilibria/strained13.json"} <= names
     assert not any(name.startswith(("plots/", "report/", "cli/", "falsify/")) for name in names)
@@ -328,8 +328,8 @@ def test_a_users_executor_is_kept_as_busy_as_it_is_wide():
 def test_batches_grow_with_short_runs_and_shrink_towards_the_end():
     """1000 runs of a millisecond for 2 workers: batches of 250, then ever fewer, four of them out at once."""
     waiting = deque(range(1000))
-    sent = [len(batch) for batch in batches._next_batches(waiting, deque(), 0, 2, 500)]
+    sent = [len(batch) for batch in batches.next_batches(waiting, deque(), 0, 2, 500)]
     assert sent == [250, 187, 140, 105]
-    assert [len(batch) for batch in batches._next_batches(waiting, deque(), 3, 2, 10)] == [10]
-    assert list(batches._next_batches(waiting, deque([7]), 1, 2, 10)) == []
-    assert list(batches._next_batches(waiting, deque([7]), 0, 2, 10)) == [(7,)]
+    assert [len(batch) for batch in batches.next_batches(waiting, deque(), 3, 2, 10)] == [10]
+    assert list(batches.next_batches(waiting, deque([7]), 1, 2, 10)) == []
+    assert list(batches.next_batches(waiting, deque([7]), 0, 2, 10)) == [(7,)]

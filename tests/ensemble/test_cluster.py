@@ -29,7 +29,7 @@ RUNS = 40
 @pytest.fixture(autouse=True)
 def patient(monkeypatch):
     """Who is there answers in the end, however busy the machine; the tests of who is not there set limits of theirs."""
-    for limit in ("_CONNECT", "_START", "_ALONE"):
+    for limit in ("CONNECT", "START", "ALONE"):
         monkeypatch.setattr(cluster, limit, 500.0)
 
 
@@ -89,7 +89,7 @@ def meanwhile(condition, act, *alive):
 def test_a_worker_killed_in_mid_run_loses_nothing(running, tmp_path, monkeypatch):
     """Batches of one run each, so that many are out when the worker dies; it is held in one of them."""
     address, log, gate, _ = running
-    monkeypatch.setattr(runs, "_BATCH_SECONDS", 0.0)
+    monkeypatch.setattr(runs, "BATCH_SECONDS", 0.0)
     killed = []
 
     def held():
@@ -122,8 +122,8 @@ def test_the_same_runs_are_made_again_when_they_are_asked_for_again(running):
 
 def test_a_scheduler_lost_in_mid_run_ends_the_ensemble_and_what_was_done_is_kept(running, tmp_path, monkeypatch):
     address, _, _, master = running
-    monkeypatch.setattr(runs, "_BATCH_SECONDS", 0.0)
-    monkeypatch.setattr(cluster, "_CONNECT", 20.0)  # after which Dask gives up a scheduler that it has lost
+    monkeypatch.setattr(runs, "BATCH_SECONDS", 0.0)
+    monkeypatch.setattr(cluster, "CONNECT", 20.0)  # after which Dask gives up a scheduler that it has lost
     path = tmp_path / "s.sqlite"
 
     def some_are_kept():
@@ -145,7 +145,7 @@ def test_a_scheduler_lost_in_mid_run_ends_the_ensemble_and_what_was_done_is_kept
 def test_a_scheduler_that_falls_silent_ends_the_ensemble(running, monkeypatch):
     """Stopped, not ended: its connections stay open."""
     address, log, _, master = running
-    monkeypatch.setattr(cluster, "_ALONE", 5.0)
+    monkeypatch.setattr(cluster, "ALONE", 5.0)
     with (
         meanwhile(lambda: any(seed >= 24 for _, seed in begun(log)), lambda: os.kill(master.pid, signal.SIGSTOP)),
         pytest.raises(SolverError, match=r"the executor failed: Dask's scheduler does not answer .*are kept"),
@@ -155,8 +155,8 @@ def test_a_scheduler_that_falls_silent_ends_the_ensemble(running, monkeypatch):
 
 def test_a_cluster_whose_workers_are_gone_for_good_is_given_up(running, monkeypatch):
     address, log, _, _ = running
-    monkeypatch.setattr(cluster, "_ALONE", 5.0)
-    monkeypatch.setattr(runs, "_BATCH_SECONDS", 0.0)
+    monkeypatch.setattr(cluster, "ALONE", 5.0)
+    monkeypatch.setattr(runs, "BATCH_SECONDS", 0.0)
 
     def both_at_work():
         return len({process for process, _ in begun(log)}) == 2 and any(seed >= 24 for _, seed in begun(log))
@@ -226,7 +226,7 @@ def of_another_kind(connection):
 
 @pytest.mark.parametrize("answer", [silent, closing, of_another_kind])
 def test_a_server_that_is_no_scheduler_is_told_with_the_remedy(answer, monkeypatch):
-    monkeypatch.setattr(cluster, "_CONNECT", 0.5)
+    monkeypatch.setattr(cluster, "CONNECT", 0.5)
     message = r"no scheduler with a worker answers within 0\.5 s \(.+\); .*dask scheduler"
     with server(answer) as (address, _), nothing_left(), pytest.raises(SolverError, match=message):
         ensemble(tiny_flocks.trio, [0], cluster=address)
@@ -234,7 +234,7 @@ def test_a_server_that_is_no_scheduler_is_told_with_the_remedy(answer, monkeypat
 
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nowhere-at-all:x", "no such address", "odd://127.0.0.1:8"])
 def test_no_scheduler_is_told_with_the_remedy(address, monkeypatch):
-    monkeypatch.setattr(cluster, "_CONNECT", 0.5)
+    monkeypatch.setattr(cluster, "CONNECT", 0.5)
     with nothing_left(), pytest.raises(SolverError, match=r"no scheduler with a worker .*dask scheduler"):
         ensemble(tiny_flocks.trio, [0], cluster=address)
 
@@ -249,14 +249,14 @@ def idle(tmp_path):
 
 
 def test_workers_that_never_come_are_told_with_the_remedy(idle, monkeypatch):
-    monkeypatch.setattr(cluster, "_CONNECT", 3.0)
+    monkeypatch.setattr(cluster, "CONNECT", 3.0)
     with nothing_left(), pytest.raises(SolverError, match=r"answers within 3 s \(.*it has no workers\).*dask worker"):
         ensemble(tiny_flocks.trio, [0], cluster=idle)
 
 
 def test_what_a_failure_leaves_is_collected_under_dasks_own_lock(idle, monkeypatch):
     """Dask holds this lock when it starts or stops a loop; a client left open would wait for it in its own thread."""
-    monkeypatch.setattr(cluster, "_CONNECT", 0.5)
+    monkeypatch.setattr(cluster, "CONNECT", 0.5)
     for address in (idle, "tcp://127.0.0.1:1", "nowhere-at-all:x"):
         with pytest.raises(SolverError):
             ensemble(tiny_flocks.trio, [0], cluster=address)
@@ -292,7 +292,7 @@ def test_a_cluster_of_ones_own_starts_and_ends():
 
 @pytest.mark.parametrize("python", ["exit 1", "sleep 1000"], ids=["ends", "hangs"])
 def test_worker_processes_that_do_not_start_are_told_with_the_remedy(python, tmp_path, monkeypatch):
-    monkeypatch.setattr(cluster, "_START", 3.0)
+    monkeypatch.setattr(cluster, "START", 3.0)
     broken = tmp_path / "python"
     broken.write_text(f"#!/bin/sh\nexec {python}\n")
     broken.chmod(0o755)

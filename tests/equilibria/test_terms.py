@@ -18,7 +18,7 @@ from flockana.equilibria.program import Program
 from flockana.equilibria.solve import all_pairs
 from flockana.equilibria.terms import obstacle_term, pair_term
 from flockana.equilibria.translate import to_casadi
-from flockana.interactions import AlphaInteraction, BetaInteraction
+from flockana.interactions import AlphaInteraction, BetaInteraction, DeadZoneInteraction
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 
@@ -132,3 +132,18 @@ def test_derivatives_by_the_kernels_are_those_by_the_formulas(name, monkeypatch)
         if name == "2" and theirs.shape[1] == 1:  # the pull of the centre is the gauge's to take out
             theirs = theirs - np.tile(theirs.reshape(q.shape).mean(axis=0), len(q))[:, None]
         np.testing.assert_allclose(np.array(ours), theirs, rtol=1e-9, atol=1e-9 * np.abs(theirs).max())
+
+
+@pytest.mark.parametrize("s", [0.5, 3.3, 3.4, 8.0, 12.6, 14.0, 16.0])
+def test_the_generated_gradient_and_hessian_are_those_of_the_kernels(s):
+    pair = DeadZoneInteraction(k1=0.03)
+    delta = s * np.array([0.6, 0.8])
+    gradient, hessian = (np.array(part) for part in pair_term(pair, 2)(delta))
+    assert gradient.ravel() == pytest.approx(pair.force(s) * np.array([0.6, 0.8]), rel=1e-12, abs=1e-13)
+    block = pair.hessian(np.array([[0.0, 0.0], delta])).toarray()[2:, 2:]
+    assert hessian == pytest.approx(block, rel=1e-11, abs=1e-11 * np.abs(block).max() + 1e-13)
+
+
+def test_a_pair_law_without_symbols_is_refused():
+    with pytest.raises(ArgumentError, match="no other has a symbolic form"):
+        pair_term(BetaInteraction(), 2)

@@ -8,7 +8,7 @@ import sys
 import numpy as np
 from numba.core.caching import IndexDataCacheFile
 
-from flockana.kernels.compiling import _NamedByContent, njit
+from flockana.kernels.compiling import NamedByContent, njit
 
 MODULE = """
 from flockana.kernels.compiling import njit
@@ -61,7 +61,7 @@ def saved_at_once(kind, folder):
 
 def test_two_that_save_at_once_lose_an_entry_at_most(tmp_path):
     """In numba's own files the code of the one stands under the name of the other."""
-    found = saved_at_once(_NamedByContent, tmp_path)
+    found = saved_at_once(NamedByContent, tmp_path)
     assert all(code in (None, f"code of {key}") for key, code in found.items())
     assert any(found.values())
     (tmp_path / "numba").mkdir()
@@ -69,7 +69,7 @@ def test_two_that_save_at_once_lose_an_entry_at_most(tmp_path):
 
 
 def test_another_version_of_the_source_is_another_file(tmp_path):
-    old, new = (_NamedByContent(str(tmp_path), "kernel", stamp) for stamp in ("old", "new"))
+    old, new = (NamedByContent(str(tmp_path), "kernel", stamp) for stamp in ("old", "new"))
     old.save("a", 1)
     assert new.load("a") is None
     new.save("a", 2)

@@ -19,7 +19,7 @@ from flockana.lattice import (
     square,
     triangular,
 )
-from flockana.lattice.rigidity import _eigenvalues_below, rigid_motion_count
+from flockana.lattice.rigidity import eigenvalues_below, rigid_motion_count
 
 OCTAHEDRON = np.concatenate([np.eye(3), -np.eye(3)])
 CASES = {
@@ -95,4 +95,4 @@ def test_a_zero_pivot_is_a_failure_and_no_answer():
     from scipy.sparse import csc_array
 
     with pytest.raises(SolverError, match="use another tol, or dense=True"):
-        _eigenvalues_below(csc_array(np.eye(2)), 1.0)
+        eigenvalues_below(csc_array(np.eye(2)), 1.0)

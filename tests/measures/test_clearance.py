@@ -12,7 +12,7 @@ from flockana.environment.obstacles import Obstacle, Sphere, Wall
 from flockana.environment.polygon import Polygon
 from flockana.interactions import AlphaInteraction, BetaInteraction
 from flockana.lattice import hexagonal_patch
-from flockana.measures.clearance import _at_once, _refine, clearance, constrained_lattice
+from flockana.measures.clearance import at_once, clearance, constrained_lattice, refine
 
 OBSTACLES: tuple[Obstacle, ...] = (
     Sphere((1.0, -2.0), 1.5),
@@ -94,7 +94,7 @@ def test_one_tangent_plane_bounds_a_whole_curve(obstacle: Obstacle) -> None:
     for curve in rng.uniform(-8.0, 8.0, (200, 1, 6, 2)):
         least = obstacle.clearance(bernstein.T @ curve[0]).min()
         middle = (bernstein.T @ curve[0])[1000:1001]
-        here, (bound,) = _at_once(obstacle, curve, middle, 1e-9)
+        here, (bound,) = at_once(obstacle, curve, middle, 1e-9)
         lipschitz = here[0] - np.linalg.norm(curve[0] - middle, axis=1).max()
         assert lipschitz - 1e-9 <= bound <= least + 1e-9
         better += bound > lipschitz + 0.1
@@ -103,7 +103,7 @@ def test_one_tangent_plane_bounds_a_whole_curve(obstacle: Obstacle) -> None:
 
 def test_the_allowance_is_taken_off() -> None:
     curve = np.linspace((-5.0, 3.0), (6.0, 3.0), 6)[None]
-    found = _refine(Wall((0.0, 0.0), (0.0, 1.0)), curve, np.array([0.25]), np.inf, 1e-9)
+    found = refine(Wall((0.0, 0.0), (0.0, 1.0)), curve, np.array([0.25]), np.inf, 1e-9)
     assert found.lower == pytest.approx(2.75, abs=1e-12)
     assert found.value == pytest.approx(3.0, abs=1e-12)
 

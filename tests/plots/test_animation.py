@@ -18,7 +18,8 @@ from flockana.environment.targets import StaticTarget
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.olfati_saber import Algorithm1
-from flockana.plots.animation import _size, _view, ensure_film, equal_times
+from flockana.plots.animation import ensure_film, equal_times, film_size, film_view
+from tests.plots.artists import frame, title
 
 
 @dataclass(frozen=True)
@@ -87,11 +88,9 @@ def test_the_view_holds_still_and_holds_everything(m):
     film = plots.animation(run, seconds=0.4, fps=10)
     views = []
     for k in (0, 3):
-        film._func(k)
-        (ax,) = film._fig.axes
-        film._fig.canvas.draw()
+        ax = frame(film, k)
         views.append([getattr(ax, f"get_{name}lim")() for name in "xyz"[:m]])
-        assert ax.get_title(loc="left") + ax.get_title() == f"t = {[0, None, None, 2][k]}"
+        assert title(ax) == f"t = {[0, None, None, 2][k]}"
     assert views[0] == views[1]
     low, high = np.array(views[0]).T
     everything = np.vstack([run.q.reshape(-1, m), np.zeros((1, m))])
@@ -102,12 +101,12 @@ def test_the_view_holds_still_and_holds_everything(m):
 
 def test_sizes_are_whole_even_numbers_of_pixels():
     for view in ([[0.0, 0.0], [100.0, 33.3]], [[0.0, 0.0], [1.0, 50.0]], [[0.0], [1.0]], [[0.0] * 3, [1.0] * 3]):
-        width, height = (100.0 * side for side in _size(np.array(view)))
+        width, height = (100.0 * side for side in film_size(np.array(view)))
         assert width % 2 == pytest.approx(0.0, abs=1e-9)
         assert round(height) % 2 == 0
         assert height == pytest.approx(round(height), abs=1e-9)
     still = Trajectory(np.array([0.0]), *(np.zeros((1, 1, 2)),) * 3, Algorithm1())
-    assert np.all(_view(still)[1] > _view(still)[0])
+    assert np.all(film_view(still)[1] > film_view(still)[0])
 
 
 @pytest.mark.parametrize(

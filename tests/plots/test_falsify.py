@@ -2,20 +2,16 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 
 from flockana import plots
 from flockana.base.errors import ArgumentError
 from flockana.falsify import falsify
 from flockana.plots.falsify import search_history
 from flockana.scenarios import scenario
+from tests.plots.artists import axes
 
 MARGINS = np.array([3.0, np.nan, 1.0, 2.0, -0.5])
 BEST = np.fmin.accumulate(MARGINS)
-
-
-def axes():
-    return Figure().add_subplot()
 
 
 def drawn(ax):

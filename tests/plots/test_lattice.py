@@ -3,16 +3,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from matplotlib.collections import LineCollection
-from matplotlib.figure import Figure
 
 from flockana import plots
 from flockana.equilibria.collapse import CollapseDiagram
 from flockana.lattice import coordination, hexagonal_patch, links
-from flockana.plots.lattice import _LOOKS, _MOST
-
-
-def axes(m=2):
-    return Figure().add_subplot(projection="3d" if m == 3 else None)
+from tests.plots.artists import axes
 
 
 def groups(ax):
@@ -57,9 +52,11 @@ def test_no_links_and_crowds_are_drawn():
 
 
 def test_no_two_numbers_of_neighbours_look_alike():
-    assert len(_LOOKS) == _MOST + 2
-    assert len({(str(marker), colour) for marker, colour in _LOOKS}) == len(_LOOKS)
-    assert len({str(marker) for marker, _ in _LOOKS[:9]}) == 9  # in the plane: in grey too
+    ax = plots.defect_map(np.zeros((14, 2)), np.empty((0, 2), int), range(14), strain=[], ax=axes())
+    drawn = [c for c in ax.collections if "neighbour" in c.get_label()]
+    markers = [c.get_paths()[0].vertices.tobytes() for c in drawn]
+    assert len({(marker, c.get_facecolor().tobytes()) for marker, c in zip(markers, drawn, strict=True)}) == 14
+    assert len(set(markers[:9])) == 9  # in the plane: in grey too
 
 
 def test_the_collapse_diagram_shows_lengths_coincidence_failure_and_onset():

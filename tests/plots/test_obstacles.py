@@ -6,7 +6,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from matplotlib.collections import LineCollection
-from matplotlib.figure import Figure
 from matplotlib.patches import Polygon as Outline
 
 from flockana import plots
@@ -22,17 +21,14 @@ from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.measures.reynolds import reynolds
 from flockana.plots.obstacles import bounds
-from flockana.report.figures import _middle, pictures
+from flockana.report.figures import middle_sample, pictures
+from tests.plots.artists import axes, segments
 
 
 @pytest.fixture(autouse=True)
 def _nothing_left_open():
     yield
     plt.close("all")
-
-
-def axes(m=2):
-    return Figure().add_subplot(projection="3d" if m == 3 else None)
 
 
 def outline(solid, **options):
@@ -76,12 +72,12 @@ def test_on_a_line_an_obstacle_is_an_interval_and_in_space_a_mesh_on_the_surface
     assert (patch.get_xy()[:, 0].min(), patch.get_xy()[:, 0].max()) == (2.5, 5.5)
     solid = Sphere((1.0, 2.0, 3.0), 2.0)
     (mesh,) = plots.obstacles([solid], ax=axes(3)).collections
-    lines = np.concatenate(mesh._segments3d)
+    lines = np.concatenate(segments(mesh))
     np.testing.assert_allclose(solid.clearance(lines), 0.0, atol=1e-12)
     assert np.ptp(lines[:, 2]) == pytest.approx(4.0)
     wall = Wall((0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
     (mesh,) = plots.obstacles([wall], ax=axes(3), view=np.array([[-5.0, -5.0, 0.0], [5.0, 5.0, 5.0]])).collections
-    lines = np.concatenate(mesh._segments3d)
+    lines = np.concatenate(segments(mesh))
     np.testing.assert_allclose(lines[~np.isnan(lines[:, 2]), 2], 1.0)
 
 
@@ -134,7 +130,7 @@ def test_clearances_and_components_are_those_of_the_run():
     assert (distance.get_ydata()[0], zero.get_ydata()[0]) == (pytest.approx(4.2), 0.0)
     (steps,) = plots.components(run, ax=axes()).get_lines()
     assert steps.get_ydata().tolist() == [1, 2, 1]
-    assert _middle(run) == 1
+    assert middle_sample(run) == 1
     free = simulate(Algorithm1(), [[0.0, 0.0], [7.0, 0.0]], np.zeros((2, 2)), (0.0, 1.0))
     assert "no obstacles" in plots.clearances(free, ax=axes()).texts[0].get_text()
 

@@ -16,6 +16,7 @@ from flockana.interactions import AlphaInteraction
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from tests.plots.artists import axes, points
 
 
 @dataclass(frozen=True)
@@ -42,10 +43,6 @@ def _nothing_left_open():
     yield
     plt.close("all")
     assert dict(mpl.rcParams) == before, "a figure changed matplotlib's global settings"
-
-
-def axes(m=2):
-    return Figure().add_subplot(projection="3d" if m == 3 else None)
 
 
 def a_run(m=2, n=4):
@@ -89,8 +86,8 @@ def test_a_snapshot_shows_the_nearest_sample_and_the_target_then(m):
     assert "t = 0.5" in ax.get_title(loc="left") + ax.get_title()
     dots, star = (next(c for c in ax.collections if c.get_label() == name) for name in ("agents", "γ-agent"))
     if m == 3:
-        np.testing.assert_allclose(np.column_stack(dots._offsets3d), run.q[5])
-        np.testing.assert_allclose(np.column_stack(star._offsets3d), [[2.0, 2.0, 2.0]])
+        np.testing.assert_allclose(points(dots), run.q[5])
+        np.testing.assert_allclose(points(star), [[2.0, 2.0, 2.0]])
     else:
         np.testing.assert_allclose(dots.get_offsets()[:, :m], run.q[5])
         np.testing.assert_allclose(star.get_offsets()[:, :m], [[2.0] * m])

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 from matplotlib.collections import LineCollection, PolyCollection
-from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
 from matplotlib.quiver import Quiver
 from mpl_toolkits.mplot3d.art3d import Line3DCollection
@@ -25,9 +24,10 @@ from flockana.laws.law import Law
 from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.laws.semi_implicit import SemiImplicitEuler
-from flockana.plots.animation import _view, equal_times
+from flockana.plots.animation import equal_times, film_view
 from flockana.plots.snapshot import draw_sample, in_view
 from flockana.scenarios import scenario
+from tests.plots.artists import axes, frame, segments, title
 
 EDGES = ((0, 1), (1, 2), (2, 1))
 
@@ -36,10 +36,6 @@ EDGES = ((0, 1), (1, 2), (2, 1))
 def hunted():
     entry = scenario("zone-52")
     return simulate(entry.law, entry.q0, entry.p0, (0.0, 5.0))
-
-
-def axes(m=2):
-    return Figure().add_subplot(projection="3d" if m == 3 else None)
 
 
 def of(ax, kind):
@@ -57,10 +53,6 @@ def at_rest(law, q):
     return Trajectory(np.zeros(1), q, 0.0 * q, 0.0 * q, law)
 
 
-def titled(ax):
-    return ax.get_title(loc="left") + ax.get_title()
-
-
 def test_a_snapshot_of_a_zone_law_shows_its_world(hunted):
     ax = plots.snapshot(hunted, 2.0, ax=axes())
     assert [type(patch) for patch in ax.patches] == [Polygon, Polygon, Rectangle]
@@ -69,7 +61,7 @@ def test_a_snapshot_of_a_zone_law_shows_its_world(hunted):
         triangles.get_paths()[3].vertices[0], hunted.q[20, 3] + 3.0 * hunted.extra["heading"][20, 3]
     )
     fastest = np.linalg.norm(hunted.p[20], axis=1).max()
-    assert titled(ax) == f"t = 2   longest arrow: {fastest:.3g} length/time"
+    assert title(ax) == f"t = 2   longest arrow: {fastest:.3g} length/time"
     assert len(of(ax, Quiver)) == 1
     assert not of(plots.snapshot(hunted, ax=axes(), velocities=False), Quiver)
 
@@ -84,9 +76,7 @@ def test_a_film_of_a_map_keeps_what_its_memory_holds(hunted):
 
 def test_the_film_of_a_zone_run_holds_box_and_alien(hunted):
     film = plots.animation(hunted, seconds=0.2, fps=10)
-    film._func(1)
-    film._draw_was_started = True  # else matplotlib warns of a film that nobody saw
-    (ax,) = film._fig.axes
+    ax = frame(film, 1)
     assert [type(patch) for patch in ax.patches] == [Polygon, Polygon, Rectangle]
     (low_x, high_x), (low_y, high_y) = ax.get_xlim(), ax.get_ylim()
     assert low_x < 0.0 < 50.0 < high_x
@@ -98,7 +88,7 @@ def test_in_view_are_all_places_of_an_alien():
     """Of a flock that stays at the origin, without obstacles or box, only the alien is far away."""
     law = ZoneFlocking(world=ZoneWorld(aliens=(Alien((40.0, -30.0)),)))
     run = simulate(law, [[0.0, 0.0], [1.0, 0.0]], np.zeros((2, 2)), (0.0, 0.5))
-    low, high = _view(run)
+    low, high = film_view(run)
     assert high[0] > 40.0
     assert low[1] < -30.0
 
@@ -108,8 +98,8 @@ def test_zones_in_space_and_on_a_line():
     law = ZoneFlocking(world=ZoneWorld((Sphere((20.0,) * 3, 3.0),), Box((0.0,) * 3, (40.0,) * 3)))
     solid = simulate(law, rng.uniform(1.0, 9.0, (5, 3)), rng.uniform(0.0, 1.0, (5, 3)), (0.0, 0.5))
     ax = plots.snapshot(solid, ax=axes(3))
-    box = next(one for one in ax.collections if type(one) is Line3DCollection and len(one._segments3d) == 12)
-    lengths = np.linalg.norm(np.diff(np.array(box._segments3d), axis=1)[:, 0], axis=1)
+    box = next(one for one in ax.collections if type(one) is Line3DCollection and len(segments(one)) == 12)
+    lengths = np.linalg.norm(np.diff(np.array(segments(box)), axis=1)[:, 0], axis=1)
     np.testing.assert_array_equal(lengths, 40.0)
     np.testing.assert_allclose(in_view(law, solid).max(axis=0), 40.0)
     flat = at_rest(ZoneFlocking(), [[0.0], [4.0], [9.5]])
@@ -178,6 +168,4 @@ def test_a_law_of_ones_own_says_how_it_is_drawn():
     run = simulate(Still(), [[0.0, 0.0]], [[1.0, 0.0]], (0.0, 1.0), t_eval=[0.0, 0.5, 1.0])
     assert plots.snapshot(run, 0.6, ax=axes()).get_title() == "sample 1"
     film = plots.animation(run, seconds=0.4, fps=10)
-    film._func(3)
-    assert titled(film._fig.axes[0]) == "sample 3"
-    film._draw_was_started = True  # else matplotlib warns of a film that nobody saw
+    assert title(frame(film, 3)) == "sample 3"

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from matplotlib.collections import LineCollection
-from matplotlib.figure import Figure
 from matplotlib.quiver import Quiver
 from PIL import Image
 
@@ -14,12 +13,9 @@ from flockana.base.errors import ArgumentError
 from flockana.lattice import hexagonal_patch, links
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.stability import Mode, linearise, mode_motion
+from tests.plots.artists import axes
 
 POLES = np.array([0.0, 0.0, -1.0 + 2.0j, -1.0 - 2.0j, -4.0, 0.5])
-
-
-def axes(m=2):
-    return Figure().add_subplot(projection="3d" if m == 3 else None)
 
 
 def lines(ax):

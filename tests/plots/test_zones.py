@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from matplotlib.collections import PolyCollection
-from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon, Rectangle
 
 from flockana import plots
@@ -18,16 +17,13 @@ from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.report.figures import pictures
 from flockana.scenarios import scenario
+from tests.plots.artists import axes
 
 
 @pytest.fixture(scope="module")
 def run():
     entry = scenario("zone-52")
     return simulate(entry.law, entry.q0, entry.p0, (0.0, 3.0))
-
-
-def axes(m=2):
-    return Figure().add_subplot(projection="3d" if m == 3 else None)
 
 
 def test_triangles_point_ahead(run):

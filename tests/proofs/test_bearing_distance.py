@@ -35,7 +35,7 @@ def test_the_determinant_does_not_factor_off_trees():
 def test_the_linearised_tree_is_that_of_the_law():
     edges = ((0, 1), (1, 2), (1, 3))
     law = MinimalFlocking(edges=edges, spacing=(1.0, 1.0, 2.0, 3.0), mu=1.0)
-    units = [np.array(bearing_distance._unit(i, 2).T, dtype=float).ravel() for i in (1, 2, 3)]
+    units = [np.array(bearing_distance.unit_edge(i, 2).T, dtype=float).ravel() for i in (1, 2, 3)]
     q = np.zeros((4, 2))
     for (parent, child), unit in zip(edges, units, strict=True):
         q[child] = q[parent] - child * unit  # x is the vector to the parent
@@ -47,17 +47,17 @@ def test_the_linearised_tree_is_that_of_the_law():
 
 def test_a_coupling_that_feels_tangents_makes_zero_defective(monkeypatch):
     chain = ((0, 1), (1, 2))
-    assert bearing_distance._spectrum_holds(chain, 2)
+    assert bearing_distance.spectrum_holds(chain, 2)
     wrong = sp.diag(sp.zeros(2), sp.zeros(2))
     wrong[2:, :2] = sp.eye(2)
     monkeypatch.setattr(bearing_distance, "parent_block", lambda curvature: wrong)
-    assert not bearing_distance._spectrum_holds(chain, 2)
+    assert not bearing_distance.spectrum_holds(chain, 2)
 
 
 def test_a_repelling_spring_changes_the_spectrum(monkeypatch):
-    right = bearing_distance._curvature
-    monkeypatch.setattr(bearing_distance, "_curvature", lambda agent, d: -right(agent, d))
-    assert not bearing_distance._spectrum_holds(((0, 1),), 2)
+    right = bearing_distance.link_curvature
+    monkeypatch.setattr(bearing_distance, "link_curvature", lambda agent, d: -right(agent, d))
+    assert not bearing_distance.spectrum_holds(((0, 1),), 2)
 
 
 def test_energy_identities_notice_another_force(monkeypatch):

@@ -208,7 +208,7 @@ def test_a_stronger_count_than_turan_is_refuted():
 
 
 def test_four_points_need_their_root_of_two():
-    assert [step.holds for step in n_max._four_points()] == [True, True, True]
+    assert [step.holds for step in n_max.four_points()] == [True, True, True]
     assert n_max.short_side("a square's sides are no shorter", z3.Q(49, 100)).holds is False
     square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
     lengths = [np.linalg.norm(a - b) for k, a in enumerate(square) for b in square[:k]]

@@ -99,7 +99,7 @@ def test_the_stiffness_and_the_least_curvature_are_those_of_the_kernels(rings):
     q = hexagonal_patch(rings, 7.0)
     eigenvalues = np.linalg.eigvalsh(Potential(law).stiffness(q).toarray())
     sites = unstressed_patches.patch(rings)
-    least = float(unstressed_patches._least_curvature(sites, unstressed_patches.links_of(sites)))
+    least = float(unstressed_patches.least_curvature(sites, unstressed_patches.links_of(sites)))
     scale = law.gains.c1_alpha * float(unstressed_patches.stiffness(par))
     assert np.abs(eigenvalues[:3]).max() < 1e-9
     assert least * scale <= eigenvalues[3] * (1 + 1e-9)
@@ -107,9 +107,9 @@ def test_the_stiffness_and_the_least_curvature_are_those_of_the_kernels(rings):
 
 
 def test_a_range_that_reaches_second_neighbours_is_refused():
-    assert unstressed_patches._stiff(AlphaParameters()).holds is True
-    assert unstressed_patches._stiff(AlphaParameters(r="12.2")).holds is False  # √3 d = 12.12…
-    assert unstressed_patches._stiff(AlphaParameters(h="0.9")).holds is True  # d_α before the taper: a_ij = 1
+    assert unstressed_patches.stiffness_step(AlphaParameters()).holds is True
+    assert unstressed_patches.stiffness_step(AlphaParameters(r="12.2")).holds is False  # √3 d = 12.12…
+    assert unstressed_patches.stiffness_step(AlphaParameters(h="0.9")).holds is True  # d_α before the taper: a_ij = 1
     z, edge = unstressed_patches.d_alpha(AlphaParameters()), AlphaParameters(h="0.77734")  # d_α/r_α = 0.7773401
     assert unstressed_patches.off_the_edges(z, edge)
     assert not unstressed_patches.off_the_edges(z + arb(0, "1e-4"), edge)
@@ -157,8 +157,8 @@ def test_what_flockana_finds_from_a_disturbed_start_has_the_enclosed_lengths(sev
 
 def test_a_wrong_sign_of_the_pull_proves_nothing(seven, monkeypatch):
     u = flock(7)
-    right = type(u)._pull
-    monkeypatch.setattr(type(u), "_pull", lambda self, s: -right(self, s))
+    right = type(u).pull
+    monkeypatch.setattr(type(u), "pull", lambda self, s: -right(self, s))
     assert enclose(u, seven, arb(RADIUS)) is None
 
 

@@ -78,3 +78,12 @@ def test_the_jump_of_the_printed_energy_is_the_laws():
     far = next(step.evidence for step in dead_zone.PROOF.steps() if step.text.startswith("L5"))
     assert "from 36 to 41.8171" in far
     assert float(HARD.far_potential) == pytest.approx(5.81707270869363, abs=1e-12)
+
+
+def test_claims_of_the_errata_name_this_proof(verdict_of):
+    errata = [f"L{k}" for k in range(1, 9)]
+    named = {f"{key}:{claim.name}" for key in errata for claim in verdict_of(key).claims if claim.proof == "dead-zone"}
+    assert named == {
+        *("L2:printed", "L3:printed", "L3:corrected", "L4:printed", "L5:printed", "L5:corrected", "L6:printed"),
+        *("L6:bound", "L8:printed", "L8:contact"),
+    }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 from functools import partial
+from importlib import import_module
 
 import pytest
 
@@ -41,9 +42,7 @@ def test_helpers_and_the_template_are_no_proofs():
 
 
 def test_the_template_is_a_proof_that_holds():
-    from proofs import _template
-
-    assert [step.holds for step in _template.PROOF.steps()] == [True, True]
+    assert [step.holds for step in import_module("proofs._template").PROOF.steps()] == [True, True]
 
 
 def test_sampling_is_no_rigour():
@@ -174,6 +173,6 @@ def test_a_beta_agent_that_does_not_follow_breaks_theorem_6(monkeypatch):
         return position, 2 * rate
 
     monkeypatch.setattr(obstacles, "sphere_beta", too_fast)
-    broken = [step.text for step in theorem6._obstacles() if step.holds is not True]
+    broken = [step.text for step in theorem6.obstacle_steps() if step.holds is not True]
     # on a line the tangential part, which is twice too fast, is 0
     assert [text.partition(":")[0] for text in broken] == [f"sphere, m = {m}" for m in (2, 2, 3, 3)]

@@ -30,7 +30,7 @@ def subdivided(graph, link, new):
 
 
 def test_all_fragments_of_six_sites_are_planar():
-    graphs = {nonplanar_fcc.links_of(sites) for sites in nonplanar_fcc._grown(nonplanar_fcc.shapes(5))}
+    graphs = {nonplanar_fcc.links_of(sites) for sites in nonplanar_fcc.grown(nonplanar_fcc.shapes(5))}
     assert all(nonplanar_fcc.embeds(6, links) for links in graphs)
     assert len(graphs) > 500
 
@@ -56,8 +56,12 @@ def test_the_extension_needs_its_constant_too():
 
 def test_a_sign_in_the_law_of_cosines_breaks_both_identities(monkeypatch):
     assert theorem5_crossings.cosine_mean() == (0, 0)
-    right = theorem5_crossings._sides
-    monkeypatch.setattr(theorem5_crossings, "_sides", lambda a, b, c, e, k: (a**2 + c**2, *right(a, b, c, e, k)[1:]))
+    right = theorem5_crossings.squared_sides
+
+    def wrong(a, b, c, e, k):
+        return a**2 + c**2, *right(a, b, c, e, k)[1:]
+
+    monkeypatch.setattr(theorem5_crossings, "squared_sides", wrong)
     assert theorem5_crossings.cosine_mean()[0] != 0
 
 

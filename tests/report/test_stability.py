@@ -32,7 +32,7 @@ ROW = {
 
 @pytest.fixture
 def pages(monkeypatch):
-    monkeypatch.setattr(stability, "_flocks", tuple)
+    monkeypatch.setattr(stability, "flock_pictures", tuple)
     sizes = np.geomspace(1e-3, 0.1, 5)
     one = {
         "exponent": 1.998,
@@ -89,16 +89,17 @@ def test_measured_points_stand_on_the_bode_plot(pages, monkeypatch):
     claims += (Claim("consistent", "verified", computed=1.1093, stated=1.1093),)
     drawn = {}
     monkeypatch.setattr(stability.plots, "measured_gains", lambda points, ax: drawn.update(points))
-    picture = stability._bode([("msn-case4", Verdict("E12", (), claims))])
+    picture = stability.bode_picture([("msn-case4", Verdict("E12", (), claims))])
     omega = 2.0 * np.pi * 0.025 / 0.045
     assert drawn["msn-case4, p_r as handed over"] == (pytest.approx(omega), 0.8518)
     assert drawn["msn-case4, p_r true"] == (pytest.approx(omega), 1.1093)
     assert "ω_n = 8.367, ζ = 1" in picture.caption
-    assert stability._bode([("msn-case1", Verdict("E12", (), claims)), ("none", Verdict("E12", (), claims))]) is None
+    verdict = Verdict("E12", (), claims)
+    assert stability.bode_picture([("msn-case1", verdict), ("none", verdict)]) is None
 
 
 def test_the_flocks_are_drawn():
-    pictures = stability._flocks()
+    pictures = stability.flock_pictures()
     assert "Algorithm 1. Set apart: translation x, translation y, rotation" in pictures[0].caption
     assert "abscissa -1.0488, of the shape -1.9352" in pictures[1].caption
     assert all(one.source.startswith("data:image/png") for one in pictures)

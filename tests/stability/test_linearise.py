@@ -21,6 +21,7 @@ from flockana.equilibria.solve import finish
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_patch
 from flockana.laws.algorithm3 import Algorithm3
+from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.law import Law
 from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
@@ -363,3 +364,19 @@ def test_a_link_that_lets_go_at_r_is_a_soft_mode_as_the_equilibrium_says(gap):
     assert (found.index, found.zero_modes) == (4, 1)
     assert sum(mode.name.startswith("soft") for mode in flock.zero_modes) == 1
     assert sum(mode.decay_rate < 0.0 for mode in flock.modes) == 4
+
+
+def test_the_linearisation_has_the_roots_of_its_shape():
+    """All agents in range, so λ² + k₂ n λ + ω² = 0 for each eigenvalue ω² of K, 0 of the rotation among them.
+
+    The translations, which are not damped, give four zeros.
+    """
+    law, n = DeadZoneFlocking(), 7
+    found = find_equilibrium(law, hexagonal_patch(1, 3.5))
+    A = linearise(law, found).A
+    poles = np.linalg.eigvals(A.toarray() if hasattr(A, "toarray") else A)
+    stiff = np.sqrt(n**2 - 4.0 * found.hessian_eigenvalues + 0j)
+    expected = np.concatenate([[0.0] * 5, [-n], (-n + stiff) / 2, (-n - stiff) / 2])
+    for pole in expected:  # a double zero is computed to the root of the rounding
+        assert np.abs(poles - pole).min() < 1e-5
+    assert np.sum(np.abs(poles) < 1e-5) == 5

@@ -69,7 +69,7 @@ def test_a_wrong_antiderivative_leaves_a_residual(mutant: object, monkeypatch: p
 
 def test_a_wrong_constant_leaves_a_jump() -> None:
     """The case without the taper's share of the constant, where h r_alpha < d_alpha, must be caught."""
-    wrong = potentials._alpha(potentials.ALPHA_NAMED)
+    wrong = potentials.alpha_potential(potentials.ALPHA_NAMED)
     near, middle, _ = wrong.pieces(zero_on_plateau=False)
     level = wrong.integral(wrong.zero, wrong.edge)
     assert near(wrong.edge) - middle(wrong.edge) == 0
@@ -106,7 +106,7 @@ def test_psi_alpha_is_the_integral_of_phi_alpha(parameters: tuple[float, ...], f
 def test_the_two_cases_agree_where_they_meet() -> None:
     """h r_alpha = d_alpha = 2 exactly: the value at 0 is closed, from either case."""
     alpha = AlphaSymbols(eps=1, h=0.5, a=1, b=1, d=sp.sqrt(8), r=sp.sqrt(24))
-    both = [potentials._alpha(alpha).pieces(place)[0](sp.S.Zero) for place in (True, False)]
+    both = [potentials.alpha_potential(alpha).pieces(place)[0](sp.S.Zero) for place in (True, False)]
     assert both[0] == both[1] == sp.sqrt(5) - 1
     assert psi_alpha(sp.S.Zero, alpha=alpha) == sp.sqrt(5) - 1
 

@@ -17,7 +17,16 @@ from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.stability import decay as module
 from flockana.stability import linearise
-from flockana.stability.decay import LinearRange, decay, decay_table, linear_range, slowest_seen
+from flockana.stability.decay import (
+    LinearRange,
+    decay,
+    decay_table,
+    linear_motion,
+    linear_range,
+    logarithmic_slopes,
+    slowest_seen,
+    velocity_mismatch,
+)
 from flockana.theorems import Tolerances, verify
 
 
@@ -47,11 +56,11 @@ def test_the_slope_of_a_decaying_swing_is_exact():
     rate, half = 0.7, 0.25
     t = np.arange(5 * module._SAMPLES + 1) * half / module._SAMPLES
     mismatch = np.exp(-2.0 * rate * t) * (1.0 + 0.999 * np.cos(2.0 * np.pi * t / half))
-    np.testing.assert_allclose(module._slopes(mismatch, half), -2.0 * rate, rtol=1e-12)
+    np.testing.assert_allclose(logarithmic_slopes(mismatch, half), -2.0 * rate, rtol=1e-12)
 
 
 def test_the_mismatch_is_relative_to_the_centre():
-    assert module._mismatch(np.array([[[1.0], [3.0]], [[5.0], [5.0]]])).tolist() == [1.0, 0.0]
+    assert velocity_mismatch(np.array([[[1.0], [3.0]], [[5.0], [5.0]]])).tolist() == [1.0, 0.0]
 
 
 def test_the_linear_solution_is_the_matrix_exponential(hexagon):
@@ -60,7 +69,7 @@ def test_the_linear_solution_is_the_matrix_exponential(hexagon):
     rng = np.random.default_rng(1)
     dq, dp = rng.standard_normal((2, 7, 2))
     t = np.linspace(0.0, 0.6, 4)
-    q, p = module._linear(hexagon, dq, dp, t)
+    q, p = linear_motion(hexagon, dq, dp, t)
     expected = expm(0.6 * hexagon.A) @ np.concatenate([dq.ravel(), dp.ravel()])
     np.testing.assert_allclose(np.concatenate([q[-1].ravel(), p[-1].ravel()]), expected, atol=1e-12)
     np.testing.assert_array_equal(q[0], dq)
