@@ -21,6 +21,7 @@ EXTENSION = (
     "flockana.laws.terms.term",
     "flockana.theorems.theorem",
     "flockana.theorems.hypotheses",
+    "flockana.theorems.claims",
     "flockana.falsify.space",
 )
 RESULTS = ("flockana.falsify.counterexample", "flockana.stability.decay", "flockana.stability.tracking")

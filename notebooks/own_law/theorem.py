@@ -6,29 +6,25 @@ import numpy as np
 from scipy.spatial.distance import pdist
 
 from flockana import Tolerances, Trajectory
-from flockana.theorems import Claim, Hypothesis, Theorem
-from flockana.theorems.theorem import judge
+from flockana.theorems import Theorem
+from flockana.theorems.claims import judged
+from flockana.theorems.hypotheses import law_is
+from flockana.theorems.theorem import Checked
 from own_law.law import CuckerSmale
 
 
-def check(run: Trajectory, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+def check(run: Trajectory, tolerances: Tolerances) -> Checked:
     """K(t) ≤ K(0) exp(−2 s (1 + D²)^−β t), where D is the largest distance of a pair in the run."""
-    law, applies = run.law, isinstance(run.law, CuckerSmale)
-    hypotheses = [Hypothesis("the law is Cucker and Smale's", "met" if applies else "unmet", detail=type(law).__name__)]
-    if not applies:
-        return hypotheses, [Claim("decay", "vacuous")]
+    law = run.law
     D = max(float(pdist(q).max()) for q in run.q)
     rate = 2.0 * law.strength * (1.0 + D**2) ** -law.decay
     K, t = run.energy(), run.t - run.t[0]
     slack = K[0] * np.exp(-rate * t) - K  # 0 at the start, where the two sides are one
     error = float(np.abs(run.energy_residual).max())
     least = float(slack[1:].min()) if len(t) > 1 else float("nan")
-    status = "verified" if least >= -error else judge(least, error, hypotheses)
     measured = -np.log(K[-1] / K[0]) / t[-1]
     detail = f"D = {D:.4g} allows a rate of {rate:.4g}; the run shows {measured:.4g}"
-    return hypotheses, [
-        Claim("decay", status, computed=measured, stated=rate, margin=least, error=error, detail=detail)
-    ]
+    return [], [judged("decay", least, error, computed=measured, stated=rate, detail=detail)]
 
 
 THEOREM = Theorem(
@@ -39,4 +35,6 @@ THEOREM = Theorem(
     kind="trajectory",
     check=check,
     references=(),
+    law=law_is("Cucker and Smale's", CuckerSmale),
+    claims=("decay",),
 )

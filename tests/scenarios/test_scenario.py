@@ -12,7 +12,8 @@ from flockana.base.errors import ArgumentError
 from flockana.base.units import rescale
 from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.notebook import PushedAlgorithm1, PushedAlgorithm2
-from flockana.scenarios import scenario, scenarios
+from flockana.scenarios import Report, scenario, scenarios
+from flockana.scenarios.findings import finding, in_source_units
 from flockana.theorems import Tolerances, theorems
 
 OWN = [
@@ -148,3 +149,21 @@ def test_a_scenario_in_other_units_is_the_same_flight():
     np.testing.assert_array_equal(two.t, 0.5 * one.t)
     np.testing.assert_allclose(two.q, 4.0 * one.q, rtol=0.0, atol=1e-6 * np.abs(two.q).max())
     np.testing.assert_allclose(two.p, 8.0 * one.p, rtol=0.0, atol=1e-5 * np.abs(two.p).max())
+
+
+def test_a_report_judges_a_run_in_other_units_in_those_of_its_source():
+    item = scenario("hexagon")
+    seen = []
+
+    def check(run, tolerances):
+        seen.append(run)
+        return finding("seen", 0.5, "")
+
+    (report,) = in_source_units(item.law.scales, [Report("seen", "it was seen", check)])
+    run = item.run()
+    report.check(run, Tolerances())
+    report.check(rescale(run, length=1000.0, time=60.0), Tolerances())
+    assert seen[0] is run
+    assert report.text == "it was seen"
+    np.testing.assert_allclose(seen[1].q, run.q, rtol=1e-12)
+    np.testing.assert_allclose(seen[1].t, run.t, rtol=1e-12)

@@ -32,10 +32,9 @@ def _loop() -> Claim:
     error, undirected = (
         float(np.abs(-left * w @ D.T @ q - left @ D.T @ p - u).max()) for left in (D_in, D)
     )  # W^a = I on a tree
-    margin = _SAME - error / float(np.abs(u).max())
     return judged(
         "loop",
-        margin,
+        _SAME - error / float(np.abs(u).max()),
         _ROUNDING,
         computed=error,
         stated="u = -D_in W^s Dᵀ p - D_in W^a Dᵀ v, with D_in where the text says 'like the incidence matrix'",

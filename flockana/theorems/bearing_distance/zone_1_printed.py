@@ -71,11 +71,10 @@ def _hurwitz(case: TreeCase, run: Trajectory, needs: list[Hypothesis]) -> Claim:
     k = int(np.argmin(at.min(axis=1)))
     least = float(at[k].min())
     between = float((case.shortest(run) / case.rho).min()) if least > 1.0 else least
-    margin = nan if least > 1.0 >= between else between - 1.0
     error, abscissa = length_error(case, run), _abscissa(case, at[k] * case.rho)
     return judged(
         "hurwitz",
-        margin,
+        nan if least > 1.0 >= between else between - 1.0,
         error,
         needs,
         computed=abscissa,

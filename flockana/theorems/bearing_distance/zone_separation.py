@@ -40,10 +40,9 @@ def _pair(tolerances: Tolerances) -> Claim:
     measured = float(np.diff(_crossings(run.t, y)).mean())
     amplitude = float(np.abs(y[-400:]).max())
     worst = max(abs(measured / period - 1.0), abs(amplitude / _STRETCH - 1.0))
-    margin = tolerances.agreement - worst
     return judged(
         "alone",
-        margin,
+        tolerances.agreement - worst,
         _MEASURED,
         computed={"period": measured, "amplitude at the end": amplitude},
         stated={"period": period, "amplitude": _STRETCH},
@@ -64,10 +63,9 @@ def _conserved(tolerances: Tolerances) -> Claim:
     """Five agents on a frozen path: H is conserved without alignment, so nothing ever settles; with it H falls to 0."""
     alone, aligned = (run.energy() for run in map(_path_run, (0.0, 1.0)))
     drift, left = float(np.abs(alone / alone[0] - 1.0).max()), float(aligned[-1] / aligned[0])
-    margin = min(tolerances.energy - drift, tolerances.energy - left)
     return judged(
         "energy",
-        margin,
+        min(tolerances.energy - drift, tolerances.energy - left),
         _DRIFT,
         computed={"drift of H without alignment": drift, "H(T)/H(0) with it": left},
         stated="H is conserved by separation alone, and falls to 0 with alignment",
@@ -87,10 +85,9 @@ def _resonance(tolerances: Tolerances) -> Claim:
     run = simulate(law, start, 0.0 * start, (0.0, end), t_eval=times, **_TIGHT)
     y = np.abs(edge_vectors(run.q, law.edges or ())[:, 1, 0]) - _RHO
     ratio, stated = float(np.abs(y[-400:]).max()) / a, 0.5 * omega * (end - 0.5 * pi / omega)
-    margin = tolerances.agreement - abs(ratio / stated - 1.0)
     return judged(
         "chain",
-        margin,
+        tolerances.agreement - abs(ratio / stated - 1.0),
         _MEASURED,
         computed=ratio,
         stated=stated,

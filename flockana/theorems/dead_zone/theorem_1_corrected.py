@@ -16,10 +16,9 @@ from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Toler
 def _rate(run: Trajectory, rate: np.ndarray, needs: list[Hypothesis]) -> Claim:
     """−k₂ pᵀL̂p is a sum of squares: no rounding can change its sign, and samples where it has another are counted."""
     worst, rising = int(np.argmax(rate)), int(np.sum(~(rate <= 0.0)))
-    margin = float(-rising or 1)
     return judged(
         "rate",
-        margin,
+        float(-rising or 1),
         0.0,
         needs,
         computed=float(rate[worst]),

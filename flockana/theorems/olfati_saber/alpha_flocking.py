@@ -60,10 +60,9 @@ def _always(name: str, part: _Window, value: FloatArray, bound: float, error: Fl
         worst = int(np.argmax(value + error))
         between = np.maximum(between - value[worst], 0.0)
         error = error + float(between.max(initial=0.0))
-    margin = bound - float(value[worst])
     return judged(
         name,
-        margin,
+        bound - float(value[worst]),
         float(error[worst]),
         computed=float(value[worst]),
         stated=f"{symbol} <= {bound:.4g}",

@@ -145,11 +145,10 @@ def distinct_pairs(
     certain, possible = passed(run, tolerances), set().union(*near(run, tolerances))
     refuted = len(certain) > most
     counted = set(certain) if refuted else possible
-    margin = (most if refuted else least) + 0.5 - len(counted)
     first = [contact for contact in contacts_of(run, tolerances) if (contact.i, contact.j) in counted]
     return judged(
         name,
-        margin,
+        (most if refuted else least) + 0.5 - len(counted),
         0.0,
         [*needs, bites],
         verifies=len(run.t) > 1,
@@ -180,10 +179,9 @@ def pairs_at_one_instant(
     spare = np.minimum(allowed[:-1], allowed[1:]) - together
     worst, broken = (int(np.argmin(spare)) if spare.size else 0), int(np.argmin(at_most - exactly))
     refuted = bool(at_most[broken] < exactly[broken])
-    margin = float((at_most - exactly)[broken] if refuted else spare.min(initial=np.inf)) + 0.5
     return judged(
         name,
-        margin,
+        float((at_most - exactly)[broken] if refuted else spare.min(initial=np.inf)) + 0.5,
         0.0,
         needs,
         verifies=len(run.t) > 1,

@@ -186,10 +186,10 @@ def _quantitative(net: Net) -> Claim:
     name, stated = "extension-quantitative", "of two crossing links of lengths at most ℓ, two agents are within ℓ/√2"
     if not len(net.crossings):
         return Claim(name, "vacuous", computed=0, stated=stated, proof=_CROSSINGS, detail="no links cross")
-    longest, shortest = _of_crossing(net)
+    longest, shortest = crossing_lengths(net)
     spare = longest - 2.0 * shortest
     unclear = np.flatnonzero(np.abs(spare) <= _CERTAIN * longest)
-    exact = [_holds_exactly(net, net.links[net.crossings[k]]) for k in unclear]
+    exact = [holds_exactly(net, net.links[net.crossings[k]]) for k in unclear]
     failing = np.concatenate([np.flatnonzero(spare < -_CERTAIN * longest), unclear[~np.array(exact, dtype=bool)]])
     slack = np.sqrt(0.5 * longest) - np.sqrt(shortest)
     worst = int(failing[0]) if failing.size else int(np.argmin(slack))
@@ -206,7 +206,7 @@ def _quantitative(net: Net) -> Claim:
     )
 
 
-def _of_crossing(net: Net) -> tuple[FloatArray, FloatArray]:
+def crossing_lengths(net: Net) -> tuple[FloatArray, FloatArray]:
     """Squared length of the longer of two links that cross, and least squared distance of two of their agents."""
     agents = net.links[net.crossings].reshape(-1, 4)
     squared = [
@@ -216,7 +216,7 @@ def _of_crossing(net: Net) -> tuple[FloatArray, FloatArray]:
     return np.maximum(squared[0], squared[-1]), np.min(squared, axis=0)
 
 
-def _holds_exactly(net: Net, two: LinkArray) -> bool:
+def holds_exactly(net: Net, two: LinkArray) -> bool:
     """Whether two agents of two links are within ℓ/√2, in exact arithmetic."""
 
     def squared(i: Any, j: Any) -> Fraction:

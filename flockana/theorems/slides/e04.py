@@ -73,11 +73,10 @@ def _none(alpha: AlphaInteraction) -> Claim:
     """The claim that no state of 23 agents has V < c*: two distances of four points differ by a factor √2."""
     n = none_from(alpha)
     shortest, longest = bound_range(alpha)
-    margin = float("nan") if n is None else energy_floor(alpha, n) - alpha.c_star
     table = {name: {m: [lattice_reach(own, m), none_from(own, m)] for m in (1, 2, 3)} for name, own in _SETS.items()}
     return judged(
         "vacuous",
-        margin,
+        float("nan") if n is None else energy_floor(alpha, n) - alpha.c_star,
         _error(alpha, n or 1),
         rigour="numeric",
         computed=n,
@@ -92,12 +91,11 @@ def _none(alpha: AlphaInteraction) -> Claim:
 def _barrier(alpha: AlphaInteraction) -> Claim:
     """min{V : two agents coincide} by search, above c* as soon as a third of the pairs is out of range."""
     barriers = {n: collision_barrier(alpha, n, starts=_STARTS) for n in _SIZES}
-    margin = min(barrier.together - alpha.c_star for n, barrier in barriers.items() if n > _TRIANGLE)
     error = 1e-6 * alpha.c_star  # the search ends where the constraint is met to 1e-8 d, at forces of about c*/d
     heights = ", ".join(f"{barrier.height:.3f} at n = {n}" for n, barrier in barriers.items())
     return judged(
         "barrier",
-        margin,
+        min(barrier.together - alpha.c_star for n, barrier in barriers.items() if n > _TRIANGLE),
         error,
         computed={n: {"together": barrier.together, "ground": barrier.ground} for n, barrier in barriers.items()},
         stated="min{V : two agents coincide} > c*: a sharper certificate, and one that grows with min V",

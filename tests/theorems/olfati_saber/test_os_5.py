@@ -182,8 +182,8 @@ def test_the_quantitative_form_is_decided_as_by_fractions(seed, m):
     rng = np.random.default_rng(seed)
     q = rng.integers(0, 4, (9, m)) * D / 3.0
     net = os_5.Net(q, D, R)
-    longest, shortest = os_5._of_crossing(net)
-    exact = [os_5._holds_exactly(net, net.links[pair]) for pair in net.crossings]
+    longest, shortest = os_5.crossing_lengths(net)
+    exact = [os_5.holds_exactly(net, net.links[pair]) for pair in net.crossings]
     assert all(exact)
     assert (longest - 2.0 * shortest >= -1e-12 * longest).all()
 

@@ -11,7 +11,7 @@ from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import StaticTarget
 from flockana.equilibria.collapse import natural_ratio, threshold
-from flockana.interactions import AlphaInteraction, Gains
+from flockana.interactions import AlphaInteraction, DeadZoneInteraction, Gains
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.theorems import Tolerances, theorem, verify
@@ -87,6 +87,15 @@ def test_it_speaks_of_both_forces(gains):
     verdict = verify("E11", law=law, q0=hexagonal_patch(1, 7.0), p0=np.zeros((7, 2)), t_span=(0.0, 0.1))
     assert verdict.status == "vacuous"
     assert (verdict.hypotheses[-1].name, verdict.hypotheses[-1].status) == ("c1α > 0 and c1γ > 0", "unmet")
+
+
+def test_another_pair_law_is_another_law():
+    """Its brackets are those of an α-interaction: of another pair law it says nothing."""
+    law = Algorithm2(alpha=DeadZoneInteraction(), target=ORIGIN)
+    verdict = verify("E11", simulate(law, hexagonal_patch(1, 6.95), np.zeros((7, 2)), (0.0, 1.0)))
+    assert verdict.status == "vacuous"
+    assert [claim.name for claim in verdict.claims] == ["printed", "minimum", "threshold"]
+    assert verdict.claims[0].detail == "not so: Algorithm 2 is applied"
 
 
 def test_the_threshold_scales_with_the_force():
