@@ -32,13 +32,13 @@ def sigma_1(s):
 def taper(z, h):
     """ρ_h(z) for z ≥ 0: 1 up to h, a raised cosine on [h, 1], 0 from there on.
 
-    ½(1 + cos πt) = ½ − ½ sin π(t − ½) by the series of the sine, to rounding; a loop over it is vectorised.
+    ½(1 + cos πt) = sin² ½π(1 − t) by the series of the sine, to rounding of itself; a loop over it is vectorised.
     """
-    y = pi * ((z - h) / (1.0 - h) - 0.5)
+    y = 0.5 * pi * (1.0 - z) / (1.0 - h)
     x = y * y
     high = _S6 + x * (_S7 + x * (_S8 + x * (_S9 + x * _S10)))
-    rho = 0.5 - 0.5 * y * (1.0 + x * (_S1 + x * (_S2 + x * (_S3 + x * (_S4 + x * (_S5 + x * high))))))
-    rho = 1.0 if z < h else rho
+    sine = y * (1.0 + x * (_S1 + x * (_S2 + x * (_S3 + x * (_S4 + x * (_S5 + x * high))))))
+    rho = 1.0 if z < h else sine * sine
     return 0.0 if z >= 1.0 else rho
 
 
@@ -68,13 +68,13 @@ def phi(s, a, b, c):
 def phi_within(s, a, b, c):
     """φ(s) where |s| ≤ 1e140; a loop over it is vectorised.
 
-    It is ½(a+b)[σ₁(x) − σ₁(c)], x = s + c, whose difference (x√(1+c²) − c√(1+x²))/√… is rearranged where x > 0, so that
+    It is ½(a+b)[σ₁(x) − σ₁(c)], x = s + c, whose difference (x√(1+c²) − c√(1+x²))/√… is rearranged where x ≥ 0, so that
     nothing cancels. The last summand of g keeps 0/0 out; it is beyond all rounding elsewhere.
     """
     x = s + c
     at_x, at_c = sqrt(1.0 + x * x), sqrt(1.0 + c * c)
     g = abs(x) * at_c + c * at_x + 1e-300
-    difference = s * (s + 2.0 * c) if x > 0.0 else -g * g  # times g
+    difference = s * (s + 2.0 * c) if x >= 0.0 else -g * g  # times g
     return 0.5 * (a + b) * (difference / g) / (at_x * at_c)
 
 
