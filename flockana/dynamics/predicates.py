@@ -23,8 +23,7 @@ def is_flock(trajectory: Trajectory) -> BoolArray:
     trajectory : Trajectory
         A run of a law with an interaction range.
     """
-    result: BoolArray = trajectory.metrics().connectivity.values == 1.0
-    return result
+    return trajectory.metrics().connectivity.values == 1.0
 
 
 def is_quasi_flock(trajectory: Trajectory, *, share: float = 0.5) -> BoolArray:
@@ -37,8 +36,7 @@ def is_quasi_flock(trajectory: Trajectory, *, share: float = 0.5) -> BoolArray:
     share : float
         What counts as giant; the source gives no number.
     """
-    result: BoolArray = trajectory.metrics().giant_share.values > share
-    return result
+    return trajectory.metrics().giant_share.values > share
 
 
 def is_cohesive(trajectory: Trajectory, radius: float) -> bool:

@@ -106,8 +106,7 @@ class Obstacle(ABC):
         q : array_like, shape (n, m)
             Points.
         """
-        inside: npt.NDArray[np.bool_] = self.clearance(q) <= 0.0
-        return inside
+        return self.clearance(q) <= 0.0
 
     def check_dimension(self, m: int, name: str = "the obstacle") -> None:
         """Raise unless the obstacle lives in m dimensions.

@@ -162,8 +162,7 @@ class AlphaInteraction(PairInteraction):
         lengths : ndarray
             Distances.
         """
-        values: FloatArray = self.psi_alpha(self.sigma_norm(lengths))
-        return values
+        return self.psi_alpha(self.sigma_norm(lengths))
 
     @cached_property
     def _parts(self) -> tuple[FloatArray, FloatArray]:
@@ -174,8 +173,7 @@ class AlphaInteraction(PairInteraction):
         def taper(z: FloatArray) -> FloatArray:
             rho = 0.5 * (1.0 + np.cos(np.pi * (z / r_alpha - self.h) / (1.0 - self.h)))
             action = np.array([phi(s, self.a, self.b, self.c) for s in (z - d_alpha) / area])
-            tapered: FloatArray = rho * action
-            return tapered
+            return rho * action
 
         edges = area * panel_edges(knee / area, r_alpha / area, d_alpha / area - self.c)
         if knee < d_alpha:  # d_α lies on the taper: make it an edge, where ψ vanishes exactly

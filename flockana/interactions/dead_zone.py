@@ -180,8 +180,7 @@ class DeadZoneInteraction(PairInteraction):
         lengths : ndarray
             Distances.
         """
-        values: FloatArray = self.psi(lengths)
-        return values
+        return self.psi(lengths)
 
     @cached_property
     def far_potential(self) -> float:
@@ -199,8 +198,7 @@ class DeadZoneInteraction(PairInteraction):
             free[3] = 0.0
 
             def ramped(s: FloatArray) -> FloatArray:
-                forces: FloatArray = _FORCE(s, free)
-                return forces
+                return _FORCE(s, free)
 
             # F is analytic within each ramp: repulsion's pole at 0 is farther from [d1 - ramp, d1] than d1 - ramp, and
             # narrow panels near it keep the series short

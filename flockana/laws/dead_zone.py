@@ -165,10 +165,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         steps : int
             How many.
         """
-        stepped: tuple[FloatArray, FloatArray, FloatArray] = semi_implicit_steps(
-            q, p, self.interaction.par, self.k2, dt, steps
-        )
-        return stepped
+        return semi_implicit_steps(q, p, self.interaction.par, self.k2, dt, steps)
 
     @property
     def located(self) -> bool:
@@ -183,8 +180,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         q : ndarray, shape (n, m)
             Positions.
         """
-        pieces: Pieces = zones(q, self.interaction.par)
-        return pieces
+        return zones(q, self.interaction.par)
 
     def piece_flow(self, pieces: Pieces, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
         """As `flow`, every pair held in its zone.

@@ -246,8 +246,7 @@ def cohesion_radii(q: FloatArray) -> FloatArray:
     q : ndarray, shape (T, n, m)
         Positions.
     """
-    radii: FloatArray = np.linalg.norm(_centred(q), axis=2).max(axis=1)
-    return radii
+    return np.linalg.norm(_centred(q), axis=2).max(axis=1)
 
 
 def spreads(x: FloatArray) -> FloatArray:
@@ -258,8 +257,7 @@ def spreads(x: FloatArray) -> FloatArray:
     x : ndarray, shape (T, n, m)
         Positions or velocities.
     """
-    spread: FloatArray = 0.5 * np.sum(_centred(x) ** 2, axis=(1, 2))
-    return spread
+    return 0.5 * np.sum(_centred(x) ** 2, axis=(1, 2))
 
 
 def min_distances(q: FloatArray) -> FloatArray:
@@ -273,8 +271,7 @@ def min_distances(q: FloatArray) -> FloatArray:
     from scipy.spatial import KDTree
 
     if q.shape[1] < _TREE:
-        distances: FloatArray = least_distances(q)
-        return distances
+        return least_distances(q)
     return np.array([np.asarray(KDTree(x).query(x, k=2)[0])[:, 1].min() for x in q])
 
 
@@ -286,8 +283,7 @@ def orders(p: FloatArray) -> FloatArray:
     p : ndarray, shape (T, n, m)
         Velocities.
     """
-    lengths: FloatArray = np.linalg.norm(_headings(p).mean(axis=1), axis=1)
-    return lengths
+    return np.linalg.norm(_headings(p).mean(axis=1), axis=1)
 
 
 def coordinations(p: FloatArray) -> FloatArray:
@@ -301,17 +297,14 @@ def coordinations(p: FloatArray) -> FloatArray:
     k = np.count_nonzero(np.any(p != 0.0, axis=2), axis=1)
     # |Σ ĥ|² counts every pair twice and every agent once
     twice = np.sum(_headings(p).sum(axis=1) ** 2, axis=1) - k
-    cosines: FloatArray = np.divide(twice, k * (k - 1), out=np.full(len(p), np.nan), where=k > 1)
-    return cosines
+    return np.divide(twice, k * (k - 1), out=np.full(len(p), np.nan), where=k > 1)
 
 
 def _centred(x: FloatArray) -> FloatArray:
-    centred: FloatArray = x - x.mean(axis=1, keepdims=True)
-    return centred
+    return x - x.mean(axis=1, keepdims=True)
 
 
 def _headings(p: FloatArray) -> FloatArray:
     """Directions of motion; 0 of agents at rest."""
     speed = np.linalg.norm(p, axis=2, keepdims=True)
-    headings: FloatArray = np.divide(p, speed, out=np.zeros_like(p), where=speed > 0.0)
-    return headings
+    return np.divide(p, speed, out=np.zeros_like(p), where=speed > 0.0)

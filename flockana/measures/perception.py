@@ -110,8 +110,7 @@ def receivers(n: int, edges: Edges) -> FloatArray:
     >>> receivers(2, ((0, 1),)).tolist()
     [[0.0], [1.0]]
     """
-    heads: FloatArray = np.maximum(incidence(n, edges), 0.0)
-    return heads
+    return np.maximum(incidence(n, edges), 0.0)
 
 
 def edge_vectors(q: FloatArray, edges: Edges) -> FloatArray:
@@ -123,8 +122,7 @@ def edge_vectors(q: FloatArray, edges: Edges) -> FloatArray:
     [[-3.0]]
     """
     sender, receiver = _columns(edges)
-    x: FloatArray = q[..., sender, :] - q[..., receiver, :]
-    return x
+    return q[..., sender, :] - q[..., receiver, :]
 
 
 def _columns(edges: Edges) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:

@@ -17,8 +17,7 @@ if TYPE_CHECKING:
 
 def _mismatch(flock: Flock) -> FloatArray:
     """K̃ = K/n."""
-    mismatch: FloatArray = metrics.spreads(flock.p) / flock.p.shape[1]
-    return mismatch
+    return metrics.spreads(flock.p) / flock.p.shape[1]
 
 
 def _component_count(run: Trajectory) -> int:

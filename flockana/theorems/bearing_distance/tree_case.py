@@ -82,19 +82,16 @@ class TreeCase:
         m = q.shape[1]
         T = np.kron(-incidence(self.n, self.links).T, np.eye(m))
         twice = np.kron(np.eye(2), T)
-        A: FloatArray = twice @ linearise(self.law, q).A @ np.kron(np.eye(2), np.linalg.pinv(T))
-        return A
+        return twice @ linearise(self.law, q).A @ np.kron(np.eye(2), np.linalg.pinv(T))
 
     def lengths(self, q: FloatArray) -> FloatArray:
         """|x_e| of each edge, shape (..., n − 1)."""
-        lengths: FloatArray = np.linalg.norm(edge_vectors(q, self.links), axis=-1)
-        return lengths
+        return np.linalg.norm(edge_vectors(q, self.links), axis=-1)
 
     def energies(self, q: FloatArray, p: FloatArray) -> FloatArray:
         """V = ½‖x'‖² + ½μ(‖x‖ − ρ)² of each edge, shape (n − 1,). At the root it falls: V' = −a‖x'‖²."""
         rate = edge_vectors(p, self.links)
-        V: FloatArray = 0.5 * (np.sum(rate * rate, axis=1) + self.mu * (self.lengths(q) - self.rho) ** 2)
-        return V
+        return 0.5 * (np.sum(rate * rate, axis=1) + self.mu * (self.lengths(q) - self.rho) ** 2)
 
     def shortest(self, run: Trajectory) -> FloatArray:
         """A lower bound of the length of each edge over a run, between its samples too, shape (n − 1,)."""

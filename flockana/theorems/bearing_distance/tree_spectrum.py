@@ -71,8 +71,7 @@ def _in_units_of(A: FloatArray, unit: float) -> FloatArray:
     """A of (x, x') with times in a unit."""
     half = len(A) // 2
     scale = np.concatenate([np.ones(half), np.full(half, unit)])
-    scaled: FloatArray = A * (scale[:, None] * unit) / scale[None, :]
-    return scaled
+    return A * (scale[:, None] * unit) / scale[None, :]
 
 
 def _kernel(values: npt.NDArray[np.floating[Any]], expected: int) -> tuple[int, float, float]:

@@ -23,8 +23,7 @@ _PROOF = "bearing-distance"
 
 def _errors(case: TreeCase, run: Trajectory) -> np.ndarray:
     """Largest relative length error of an edge at each sample, shape (T,)."""
-    errors: np.ndarray = np.abs(case.lengths(run.q) / case.rho - 1.0).max(axis=1)
-    return errors
+    return np.abs(case.lengths(run.q) / case.rho - 1.0).max(axis=1)
 
 
 def _lengths(case: TreeCase, run: Trajectory, needs: list[Hypothesis]) -> Claim:
