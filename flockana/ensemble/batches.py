@@ -82,7 +82,8 @@ def work_through(
                     yield (*dead, *zip(batch, results, strict=True))
                     dead.clear()
             watch(_under_way(pending)[:width])
-        yield tuple(dead)
+        if dead:
+            yield tuple(dead)
     except BaseException:
         for future in pending:
             future.cancel()

@@ -89,6 +89,7 @@ def blocked(q: FloatArray, target: FloatArray, obstacles: Sequence[Obstacle]) ->
 
     Examples
     --------
+    >>> from flockana.environment.obstacles import Sphere
     >>> q = np.array([[0.0, 0.0], [0.0, 9.0]])
     >>> blocked(q, np.array([10.0, 0.0]), [Sphere((5.0, 0.0), 1.0)]).tolist()
     [True, False]

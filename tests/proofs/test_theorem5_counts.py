@@ -92,8 +92,8 @@ def test_the_spiral_is_the_librarys_and_another_order_has_fewer_links(monkeypatc
 
 
 def test_the_sites_are_those_of_the_erratum():
-    assert set(nonplanar_fcc.STAR) == set(e5._STAR)
-    assert set(nonplanar_fcc.EIGHT) == set(e5._EIGHT)
+    assert set(nonplanar_fcc.STAR) == set(e5.STAR)
+    assert set(nonplanar_fcc.EIGHT) == set(e5.EIGHT)
     assert len(nonplanar_fcc.links_of(nonplanar_fcc.EIGHT)) == 17
 
 
