@@ -42,8 +42,11 @@ class _Cache(FunctionCache):
         self._cache_file = NamedByContent(own._cache_path, base, own._source_stamp)
 
 
-def _named_for_its_cells(function: Callable[..., Any]) -> Callable[..., Any]:
-    """The same function, whose qualified name (and with it symbol and index) no other closure of its code shares."""
+def named_for_its_cells(function: Callable[..., Any]) -> Callable[..., Any]:
+    """The same function, whose qualified name (and with it symbol and index) no other closure of its code shares.
+
+    `njit` names so what it caches. A closure that such a function calls needs it as well: below `register_jitable`.
+    """
     if function.__closure__:
         cells = dumps(tuple(cell.cell_contents for cell in function.__closure__))
         function.__qualname__ += f".{hashlib.sha256(cells).hexdigest()[:16]}"
@@ -72,7 +75,7 @@ def njit(*, cache: bool = False, **options: Any) -> Callable[[Callable[..., Any]
     def compiled(function: Callable[..., Any]) -> Any:
         if not cache:
             return numba.njit(**options)(function)
-        made = numba.njit(**options)(_named_for_its_cells(function))
+        made = numba.njit(**options)(named_for_its_cells(function))
         made._cache = _Cache(function)
         return made
 

@@ -86,9 +86,17 @@ def meanwhile(condition, act, *alive):
     assert failures == []
 
 
-def test_a_worker_killed_in_mid_run_loses_nothing(running, tmp_path, monkeypatch):
-    """Batches of one run each, so that many are out when the worker dies; it is held in one of them."""
+def test_runs_asked_for_again_are_made_again_and_a_worker_killed_in_mid_run_loses_nothing(
+    running, tmp_path, monkeypatch
+):
+    """Dask would by default give the first call's results to the second.
+
+    Then in batches of one run each, so that many are out when the worker dies; it is held in one of them.
+    """
     address, log, gate, _ = running
+    for _ in range(2):
+        ensemble(tiny_flocks.trio, [3], theorems=[], metrics=[], cluster=address)
+    assert len(begun(log)) == 2
     monkeypatch.setattr(runs, "BATCH_SECONDS", 0.0)
     killed = []
 
@@ -110,14 +118,6 @@ def test_a_worker_killed_in_mid_run_loses_nothing(running, tmp_path, monkeypatch
     assert found.drop_vars("seconds").identical(here.drop_vars("seconds"))
     with Store(tmp_path / "s.sqlite") as kept:
         assert len(kept) == RUNS
-
-
-def test_the_same_runs_are_made_again_when_they_are_asked_for_again(running):
-    """Dask would by default give the first call's results to the second."""
-    address, log, _, _ = running
-    for _ in range(2):
-        ensemble(tiny_flocks.trio, [3], theorems=[], metrics=[], cluster=address)
-    assert len(begun(log)) == 2
 
 
 def test_a_scheduler_lost_in_mid_run_ends_the_ensemble_and_what_was_done_is_kept(running, tmp_path, monkeypatch):

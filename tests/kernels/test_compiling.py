@@ -8,7 +8,9 @@ import sys
 import numpy as np
 from numba.core.caching import IndexDataCacheFile
 
+from flockana.kernels import alpha, dead_zone
 from flockana.kernels.compiling import NamedByContent, njit
+from flockana.kernels.sweep import lift_sweep
 
 MODULE = """
 from flockana.kernels.compiling import njit
@@ -96,6 +98,18 @@ def test_what_processes_compiled_one_by_one_another_may_load_together(tmp_path):
     for program in ("ONE(z)", "ONE(z), TEN(z)", "assert (ONE(z)[0], TEN(z)[0]) == (1.0, 10.0)"):
         command = [sys.executable, "-c", f"from arrays import *; z = np.zeros(1); {program}"]
         subprocess.run(command, cwd=tmp_path, check=True, timeout=300)
+
+
+def test_what_the_sweeps_of_forces_call_has_a_symbol_of_its_own_in_each_dimension_and_law():
+    """Else a process that loads what two others compiled adds up m = 3 with the code for m = 2."""
+    names = [
+        cell.cell_contents.__qualname__
+        for pair in (alpha.pair_alpha, dead_zone.pair_dead_zone)
+        for m in (1, 2, 3)
+        for cell in lift_sweep(pair, m, 0)[0].py_func.__closure__
+        if getattr(cell.cell_contents, "__closure__", None)
+    ]
+    assert len(names) == len(set(names)) == 6
 
 
 def test_without_a_cache_it_is_numbas():
