@@ -48,6 +48,7 @@ PROOF = Proof(
     hypotheses="a, b >= 0",
     rigour="smt",  # the weakest of its steps: symbolic, smt or interval
     steps=_steps,
+    size=2,  # how many steps there are, so that a loop that runs short proves nothing
     theorems=(),  # entries of `flockana theorems` that it backs; their claims name it by proof="..."
     time_limit=120.0,  # seconds, after which it is killed and nothing is proved
 )

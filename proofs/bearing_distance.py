@@ -277,4 +277,5 @@ PROOF = Proof(
     rigour="smt",
     theorems=("zone-1-corrected", "J2", "J3", "J6"),
     steps=_steps,
+    size=35,
 )

@@ -247,4 +247,5 @@ PROOF = Proof(
     rigour="smt",
     theorems=("zone-1-printed", "J1", "J2", "J3", "J4", "J5"),
     steps=_steps,
+    size=25,
 )

@@ -30,7 +30,9 @@ def versions() -> dict[str, str]:
 
 def as_data(outcome: Outcome) -> dict[str, Any]:
     """A certificate as plain data."""
-    return {"schema": SCHEMA, "status": outcome.status} | asdict(outcome) | {"versions": versions()}
+    data = asdict(outcome)
+    del data["size"]  # that of its steps
+    return {"schema": SCHEMA, "status": outcome.status} | data | {"versions": versions()}
 
 
 def as_markdown(outcome: Outcome) -> str:

@@ -78,5 +78,6 @@ PROOF = Proof(
     hypotheses="c1γ > 0, c2γ >= 0, c2α >= 0, c1α >= 0; 0 < a <= b, 0 < h < 1, 0 < d < r, ε > 0",
     rigour="smt",
     steps=_steps,
+    size=16,
     theorems=("os-3",),
 )

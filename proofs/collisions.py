@@ -103,5 +103,6 @@ PROOF = Proof(
     hypotheses="c1α > 0, other gains >= 0 and common to all agents; 0 < a <= b, 0 < h < 1, 0 < d < r, ε > 0",
     rigour="smt",
     steps=_steps,
+    size=17,
     theorems=("os-1", "os-3", "E13"),
 )

@@ -248,5 +248,6 @@ PROOF = Proof(
     ),
     rigour="interval",
     steps=_steps,
+    size=16,
     theorems=("os-3", "E3"),
 )

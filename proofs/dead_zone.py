@@ -282,4 +282,5 @@ PROOF = Proof(
     rigour="smt",
     theorems=("dead-zone-1-printed", "dead-zone-1-corrected", "L2", "L3", "L4", "L5", "L6", "L7", "L8"),
     steps=_steps,
+    size=29,
 )

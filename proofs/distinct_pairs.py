@@ -249,5 +249,6 @@ PROOF = Proof(
     ),
     rigour="interval",
     steps=_steps,
+    size=8,
     theorems=("os-3", "E13"),
 )

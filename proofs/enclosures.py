@@ -111,4 +111,5 @@ PROOF = Proof(
     hypotheses="the parameters are the decimals that are printed; the gain c1α is not included",
     rigour="interval",
     steps=_steps,
+    size=9,
 )

@@ -127,5 +127,6 @@ PROOF = Proof(
     hypotheses="dψ/dz = φ and a_ij, b_ik >= 0, otherwise arbitrary; gains >= 0; agents outside obstacles",
     rigour="symbolic",
     steps=_steps,
+    size=41,
     theorems=("energy", "E1", "E2"),
 )

@@ -187,5 +187,6 @@ PROOF = Proof(
     ),
     rigour="interval",
     steps=_steps,
+    size=28,
     theorems=("E4",),
 )

@@ -227,4 +227,5 @@ PROOF = Proof(
     rigour="symbolic",
     theorems=("E5",),
     steps=_steps,
+    size=17,
 )

@@ -31,7 +31,8 @@ class Proof:
     """A theorem with the function that checks its steps, in order: all must hold.
 
     `rigour` is ``"symbolic"``, ``"smt"`` or ``"interval"``, the weakest of its steps: sampling is no proof. `id` is the
-    name of the file, with hyphens. `theorems` names the entries of the catalogue that it backs; a run that takes longer
+    name of the file, with hyphens. A proof that has other than `size` steps is none: a loop may have run short.
+    `theorems` names the entries of the catalogue that it backs; a run that takes longer
     than `time_limit` seconds, its import aside, is killed, and nothing is proved.
     """
 
@@ -43,6 +44,7 @@ class Proof:
     title: str = ""
     theorems: tuple[str, ...] = ()
     time_limit: float = 120.0
+    size: int | None = None
 
     def __post_init__(self) -> None:
         if self.rigour not in RIGOURS:

@@ -16,7 +16,7 @@ from proofs.proof import Proof, Step, load
 
 START_LIMIT = 300.0  # seconds to import a proof in; only then its own limit begins
 LIBRARIES = {"flint": "python-flint", "z3": "z3-solver"}
-_TOLD = ("title", "statement", "hypotheses", "rigour", "theorems", "time_limit")
+_TOLD = ("title", "statement", "hypotheses", "rigour", "theorems", "time_limit", "size")
 
 
 @dataclass
@@ -33,14 +33,15 @@ class Outcome:
     steps: list[Step] = field(default_factory=list)
     seconds: float = 0.0
     reason: str = ""
+    size: int | None = None
 
     @property
     def status(self) -> str:
         """``"failed"`` if a step does not hold, ``"proved"`` if all steps were checked and hold, else ``"unknown"``."""
         if any(step.holds is False for step in self.steps):
             return "failed"
-        complete = self.steps and not self.reason and all(step.holds for step in self.steps)
-        return "proved" if complete else "unknown"
+        complete = self.steps and not self.reason and self.size in (None, len(self.steps))
+        return "proved" if complete and all(step.holds for step in self.steps) else "unknown"
 
     def objections(self) -> Iterator[str]:
         """All that keeps it from being proved, in words."""
@@ -50,6 +51,8 @@ class Outcome:
                 yield f"{what}: {step.text}" + (f" ({step.evidence})" if step.evidence else "")
         if self.reason or not self.steps:
             yield self.reason or "it has no steps"
+        elif self.size not in (None, len(self.steps)):
+            yield f"{len(self.steps)} steps were checked: expected {self.size}"
 
 
 def check(

@@ -231,4 +231,5 @@ PROOF = Proof(
     hypotheses="0 < a <= b, 0 < h < 1, 0 < d < r, ε > 0",
     rigour="smt",
     steps=_steps,
+    size=37,
 )

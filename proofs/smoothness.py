@@ -125,5 +125,6 @@ PROOF = Proof(
     hypotheses="0 < h < 1, 0 < a <= b, 0 < d < r, ε > 0; V of n >= 2 agents",
     rigour="symbolic",
     steps=_steps,
+    size=14,
     theorems=("E10",),
 )

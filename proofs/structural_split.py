@@ -79,4 +79,5 @@ PROOF = Proof(
     hypotheses="ψ and the adjacency arbitrary functions of the σ-distance, dψ/dz = φ; for Algorithm 3, c1γ > 0",
     rigour="symbolic",
     steps=_steps,
+    size=6,
 )

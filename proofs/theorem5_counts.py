@@ -172,4 +172,5 @@ PROOF = Proof(
     rigour="smt",
     theorems=("os-5", "os-5-terminal", "E6"),
     steps=_steps,
+    size=21,
 )

@@ -186,4 +186,5 @@ PROOF = Proof(
     rigour="smt",
     theorems=("os-5", "os-5-terminal", "E5"),
     steps=_steps,
+    size=20,
 )

@@ -135,5 +135,6 @@ PROOF = Proof(
     ),
     rigour="smt",
     steps=_steps,
+    size=36,
     theorems=("os-6",),
 )

@@ -219,5 +219,6 @@ PROOF = Proof(
     ),
     rigour="interval",
     steps=_steps,
+    size=19,
     theorems=("os-1",),
 )

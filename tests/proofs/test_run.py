@@ -15,7 +15,7 @@ import pytest
 
 from flockana.cli.main import main
 from proofs import certificates, proof, run
-from proofs.proof import Step
+from proofs.proof import Step, proofs
 from proofs.run import Outcome, check
 from tests.programs import ANSWERS_CTRL_C, CLI, group, interrupt, posix, program, until
 
@@ -152,6 +152,14 @@ def test_a_false_step_outweighs_an_unknown_one():
     assert Outcome("x", steps=steps[:1], reason="stopped").status == "unknown"
     assert Outcome("x", steps=steps[:1]).status == "proved"
     assert Outcome("x").status == "unknown"
+
+
+def test_a_proof_with_other_than_its_steps_is_none():
+    steps = [Step("a", True), Step("b", True)]
+    assert Outcome("x", steps=steps, size=2).status == "proved"
+    short = Outcome("x", steps=steps[:1], size=2)
+    assert (short.status, list(short.objections())) == ("unknown", ["1 steps were checked: expected 2"])
+    assert all(proof.size for proof in proofs())
 
 
 def test_the_certificate_as_json(tmp_path):
