@@ -119,9 +119,9 @@ class TestDoesNotBreakWhatIsTrue:
         ],
     )
     def test_in_a_few_generations(self, name, case, claim, options):
-        found = falsify(name, case, claim=claim, budget=20, **options)
+        found = falsify(name, case, claim=claim, budget=40, **options)
         assert claim not in found.broken if claim else not found.broken
-        assert (found.evaluations, found.ended, found.failures) == (20, "budget", 0)
+        assert (found.evaluations, found.ended, found.failures) == (40, "budget", 0)
         judged = [status for status in found.statuses[found.claim] if status != "vacuous"]
         assert len(judged) > 5  # it was tested, not only vacuous
 
@@ -328,9 +328,9 @@ class TestTheOutcome:
         assert one.grade == Problem(space, "collision-energy", Tolerances(), "twice")(space.start).grade
 
     def test_the_budget_may_be_used_up_for_a_worse_one(self):
-        found = falsify(OWN, HEAD_ON, budget=30, deepen=True, vary="p", speed=40.0)
-        shallow = falsify(OWN, HEAD_ON, budget=30, vary="p", speed=40.0)
-        assert (found.evaluations, found.ended) == (30, "budget")
+        found = falsify(OWN, HEAD_ON, budget=60, deepen=True, vary="p", speed=40.0)
+        shallow = falsify(OWN, HEAD_ON, budget=60, vary="p", speed=40.0)
+        assert (found.evaluations, found.ended) == (60, "budget")
         assert shallow.evaluations < 30
         assert found.margin < shallow.margin < 0.0
 
