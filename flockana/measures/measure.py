@@ -10,14 +10,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache, cached_property
 from math import nan
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from flockana.base.checks import FloatArray
 from flockana.base.modules import modules
 from flockana.measures.metrics import nets
-
-if TYPE_CHECKING:
-    from flockana.dynamics.trajectory import Trajectory
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +94,7 @@ class Measure:
     text: str
     unit: str = "1"
     over_time: Callable[[Flock], FloatArray] | None = None
-    of_run: Callable[[Trajectory], float] | None = None
+    of_run: Callable[[Any], float] | None = None
     of_run_text: str = ""
     defined: Callable[[Any], bool] = any_law
     logarithmic: bool = False
@@ -113,7 +110,7 @@ class Measure:
         """What `number` is."""
         return self.of_run_text or f"{self.text}, at the end"
 
-    def number(self, run: Trajectory) -> float:
+    def number(self, run: Any) -> float:
         """The number that an ensemble keeps of a run; NaN where the measure makes no sense for the law.
 
         Parameters

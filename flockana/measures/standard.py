@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
@@ -11,26 +11,23 @@ from flockana.measures import metrics
 from flockana.measures.measure import Flock, Measure, has_lattice, has_range
 from flockana.measures.nets import components, link_lengths, links
 
-if TYPE_CHECKING:
-    from flockana.dynamics.trajectory import Trajectory
-
 
 def _mismatch(flock: Flock) -> FloatArray:
     """K̃ = K/n."""
     return metrics.spreads(flock.p) / flock.p.shape[1]
 
 
-def _component_count(run: Trajectory) -> int:
+def _component_count(run: Any) -> int:
     return int(components(run.n, links(run.q[-1], run.law.pair.range)).max()) + 1
 
 
-def _strain(run: Trajectory) -> float:
+def _strain(run: Any) -> float:
     d, r = run.law.lattice
     lengths = link_lengths(run.q[-1], links(run.q[-1], r))
     return float(np.abs(lengths - d).max()) / d if lengths.size else np.nan
 
 
-def _relative_residual(run: Trajectory) -> float:
+def _relative_residual(run: Any) -> float:
     if "work" not in run.extra:
         return np.nan
     largest = float(np.abs(run.energy()).max())
