@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flockana.interactions import AlphaInteraction
+from flockana.interactions import AlphaInteraction, DeadZoneInteraction
 from flockana.kernels.grid import sort_into_grid
 
 ALPHA = AlphaInteraction(d=2.0, r=2.6, a=2.0, b=5.0)
@@ -63,6 +63,13 @@ def test_a_pair_at_the_range_feels_nothing_and_one_inside_does():
         u, rate = ALPHA.forces(np.array([[0.0], [gap]]), np.array([[0.0], [1.0]]), stiffness=1.0, damping=1.0)
         assert bool(u.any()) == (moved or gap == 0.0)
         assert rate == pytest.approx({0.0: 1.0}.get(gap, 0.0), abs=1e-12)
+
+
+def test_the_range_is_open_where_the_force_jumps_there():
+    pair, p = DeadZoneInteraction(), np.array([[0.0, 0.0], [1.0, 0.0]])
+    for gap, rate in ((pair.r, 0.0), (np.nextafter(pair.r, 0.0), 1.0)):
+        q = np.array([[0.0, 0.0], [gap, 0.0]])
+        assert pair.forces(q, p, stiffness=1.0, damping=1.0)[1] == rate
 
 
 def test_an_agent_at_no_number_is_near_nobody_and_breaks_nothing():
