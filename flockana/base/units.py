@@ -45,7 +45,7 @@ def rescale(item: _Any, *, length: float = 1.0, time: float = 1.0) -> _Any:
     >>> rescale(LinearTarget(q=(1.0, 2.0), p=(3.0, 0.0)), length=1000.0, time=60.0)
     LinearTarget(q=(1000.0, 2000.0), p=(50.0, 0.0))
     """
-    return _rescaled(item, ensure_positive("length", length), ensure_positive("time", time))
+    return _rescaled(item, ensure_positive("length", length), ensure_positive("time", time))  # type: ignore[no-any-return]
 
 
 def _rescaled(item: Any, length: float, time: float) -> Any:

@@ -175,8 +175,10 @@ def _deviation(before: _Knot, middle: _Knot, after: _Knot) -> FloatArray:
     right = np.stack([row[:, -1] for row in reversed(rows)], axis=1)
     parts = ((left, before, middle), (right, middle, after))
     off = [np.linalg.norm(part - _points(a, b), axis=2).max(axis=1) + a.slack for part, a, b in parts]
-    return np.maximum(*off)
+    farthest: FloatArray = np.maximum(*off)
+    return farthest
 
 
 def _points(a: _Knot, b: _Knot) -> FloatArray:
-    return bernstein(b.t - a.t, a.q, a.p, a.u, b.q, b.p, b.u)[0]
+    points: FloatArray = bernstein(b.t - a.t, a.q, a.p, a.u, b.q, b.p, b.u)[0]
+    return points

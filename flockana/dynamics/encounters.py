@@ -174,7 +174,8 @@ def _point(curve: FloatArray, s: float) -> FloatArray:
     """The point of a Bézier curve (degree + 1, m) at s."""
     while len(curve) > 1:
         curve = curve[:-1] + s * (curve[1:] - curve[:-1])
-    return curve[0]
+    point: FloatArray = curve[0]
+    return point
 
 
 def _clearance(obstacle: Obstacle, q: FloatArray) -> FloatArray:

@@ -23,7 +23,8 @@ def is_flock(trajectory: Trajectory) -> BoolArray:
     trajectory : Trajectory
         A run of a law with an interaction range.
     """
-    return trajectory.metrics().connectivity.values == 1.0
+    result: BoolArray = trajectory.metrics().connectivity.values == 1.0
+    return result
 
 
 def is_quasi_flock(trajectory: Trajectory, *, share: float = 0.5) -> BoolArray:
@@ -36,7 +37,8 @@ def is_quasi_flock(trajectory: Trajectory, *, share: float = 0.5) -> BoolArray:
     share : float
         What counts as giant; the source gives no number.
     """
-    return trajectory.metrics().giant_share.values > share
+    result: BoolArray = trajectory.metrics().giant_share.values > share
+    return result
 
 
 def is_cohesive(trajectory: Trajectory, radius: float) -> bool:

@@ -64,7 +64,8 @@ class Frame:
 
     def start(self, q0: FloatArray, p0: FloatArray) -> FloatArray:
         """The vector of the start."""
-        return np.concatenate([q0.ravel(), p0.ravel(), np.zeros(int(self.energetic))]) - self.origin
+        y0: FloatArray = np.concatenate([q0.ravel(), p0.ravel(), np.zeros(int(self.energetic))]) - self.origin
+        return y0
 
     def state(self, t: float, y: FloatArray) -> tuple[FloatArray, FloatArray]:
         """(q, p) of a vector."""
@@ -262,4 +263,4 @@ class Stepper:
 
     def course(self) -> Callable[[float], FloatArray]:
         """The interpolant of the last step."""
-        return self._solver.dense_output()
+        return self._solver.dense_output()  # type: ignore[no-any-return]

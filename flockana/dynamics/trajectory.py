@@ -120,7 +120,7 @@ class Trajectory:
     def scales(self) -> Scales:
         """The law's natural length and time; under a law that has none, the flock's extent and the run's duration."""
         if self.law.scales is not None:
-            return self.law.scales
+            return self.law.scales  # type: ignore[no-any-return]
         extent = float(np.linalg.norm(self.q - self.q.mean(axis=1, keepdims=True), axis=2).max())
         travel = float(np.linalg.norm(self.q - self.q[0], axis=2).max())
         return Scales(extent or travel or 1.0, float(self.t[-1] - self.t[0]) or 1.0)
@@ -184,7 +184,8 @@ class Trajectory:
         if "work" not in self.extra:
             raise ArgumentError("this run has no energy balance: its law has no energy")
         energy = self.energy()
-        return energy - energy[0] - self.extra["work"]
+        residual: FloatArray = energy - energy[0] - self.extra["work"]
+        return residual
 
     def metrics(self) -> xarray.Dataset:
         """C, R, Ẽ, K̃ and their companions, and the law's own `measures`, over time: a Dataset of dimension ``time``."""
@@ -262,7 +263,7 @@ class Trajectory:
         """
         if name not in self._memory:
             self._memory[name] = compute()
-        return self._memory[name]
+        return self._memory[name]  # type: ignore[no-any-return]
 
     @cached_property
     def _memory(self) -> dict[str, Any]:
@@ -274,7 +275,7 @@ class Trajectory:
 
     @cached_property
     def _own(self) -> Mapping[str, Any]:
-        return self.law.measures(self.t, self.q, self.p, self.extra)
+        return self.law.measures(self.t, self.q, self.p, self.extra)  # type: ignore[no-any-return]
 
     @cached_property
     def _flock(self) -> Flock:
@@ -311,7 +312,8 @@ class Trajectory:
         """
         if self.between is None:
             return values
-        return reduce.reduceat(values, np.searchsorted(self.path.t, self.t[:-1]), axis=-1)
+        reduced: FloatArray = reduce.reduceat(values, np.searchsorted(self.path.t, self.t[:-1]), axis=-1)
+        return reduced
 
     def min_distance(self) -> float:
         """A lower bound of every distance between two agents at every time of the run.

@@ -106,7 +106,8 @@ class Obstacle(ABC):
         q : array_like, shape (n, m)
             Points.
         """
-        return self.clearance(q) <= 0.0
+        inside: npt.NDArray[np.bool_] = self.clearance(q) <= 0.0
+        return inside
 
     def check_dimension(self, m: int, name: str = "the obstacle") -> None:
         """Raise unless the obstacle lives in m dimensions.

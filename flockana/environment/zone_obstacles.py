@@ -85,7 +85,8 @@ class SimplePolygon:
 
         points = shapely.points(ensure_points("q", q))
         distance = shapely.distance(points, self._shape.boundary)
-        return np.where(shapely.contains(self._shape, points), -distance, distance)
+        signed: FloatArray = np.where(shapely.contains(self._shape, points), -distance, distance)
+        return signed
 
     def clearance_on_way(self, start: FloatArray, end: FloatArray) -> FloatArray:
         """Lower bound of the signed distance along straight ways, exact outside the polygon, shape (N,).
@@ -102,7 +103,8 @@ class SimplePolygon:
         ways, ends = shapely.linestrings(np.stack([start, end], axis=1)), (self.clearance(start), self.clearance(end))
         least = np.minimum(shapely.distance(ways, self._shape.boundary), np.minimum(*ends))
         deepest = 0.5 * (ends[0] + ends[1] - np.linalg.norm(end - start, axis=1))
-        return np.where(shapely.intersects(ways, self._shape), np.minimum(least, deepest), least)
+        bound: FloatArray = np.where(shapely.intersects(ways, self._shape), np.minimum(least, deepest), least)
+        return bound
 
     def enclosing_circle(self) -> Sphere:
         """The smallest disc that holds it: the buffer zone of the conventional method that the paper compares with."""
@@ -125,7 +127,8 @@ def ball_clearance_on_way(ball: Sphere, start: FloatArray, end: FloatArray) -> F
     length2 = np.sum(way**2, axis=1)
     share = np.divide(np.sum(way * away, axis=1), length2, out=np.zeros(len(way)), where=length2 > 0.0)
     nearest = np.clip(share, 0.0, 1.0)[:, None] * way - away
-    return np.linalg.norm(nearest, axis=1) - ball.radius
+    clearance: FloatArray = np.linalg.norm(nearest, axis=1) - ball.radius
+    return clearance
 
 
 @dataclass(frozen=True)
@@ -172,4 +175,5 @@ class Box:
             Points.
         """
         q = ensure_points("q", q)
-        return np.minimum(q - np.array(self.low), np.array(self.high) - q).min(axis=1)
+        inside: FloatArray = np.minimum(q - np.array(self.low), np.array(self.high) - q).min(axis=1)
+        return inside

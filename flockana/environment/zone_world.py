@@ -156,7 +156,8 @@ class ZoneWorld:
         q : ndarray, shape (N, m)
             Points.
         """
-        return np.min([o.clearance(q) for o in self.obstacles] or [np.full(len(q), np.inf)], axis=0)
+        least: FloatArray = np.min([o.clearance(q) for o in self.obstacles] or [np.full(len(q), np.inf)], axis=0)
+        return least
 
     def clearance_on_way(self, start: FloatArray, end: FloatArray) -> FloatArray:
         """Lower bound of the signed distance from all obstacles along straight ways, exact outside them, shape (N,).
@@ -172,7 +173,7 @@ class ZoneWorld:
                 bounds.append(ball_clearance_on_way(o, start, end))
             else:
                 bounds.append(o.clearance_on_way(start, end))
-        return np.min(bounds, axis=0)
+        return np.min(bounds, axis=0)  # type: ignore[no-any-return]
 
     def check_start(self, q: FloatArray) -> None:
         """Raise if an agent begins outside the box, in an obstacle, or at an alien.

@@ -17,7 +17,8 @@ def hessian_trace(alpha: AlphaInteraction, lengths: FloatArray, m: int) -> Float
     """Trace over R^m of the Hessian block of a pair at each length: φ_α' σ' ² along it, the stress m times."""
     z, root = alpha.sigma_norm(lengths), np.sqrt(1.0 + alpha.eps * lengths**2)
     phi, slope = alpha.phi_alpha(z), alpha.phi_alpha_slope(z)
-    return slope * (lengths / root) ** 2 + phi / root**3 + (m - 1) * phi / root
+    trace: FloatArray = slope * (lengths / root) ** 2 + phi / root**3 + (m - 1) * phi / root
+    return trace
 
 
 def least_with_coincidence(alpha: AlphaInteraction, m: int = 2) -> int:

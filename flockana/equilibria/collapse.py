@@ -72,7 +72,8 @@ def nudged(q: FloatArray, d: float) -> FloatArray:
     >>> bool(0.0 < np.abs(nudged(np.zeros((3, 2)), 7.0)).max() < 7e-3)
     True
     """
-    return q + _NUDGE * d * np.random.default_rng(0).standard_normal(q.shape)
+    disturbed: FloatArray = q + _NUDGE * d * np.random.default_rng(0).standard_normal(q.shape)
+    return disturbed
 
 
 def relaxed(alpha: AlphaInteraction, n: int, ratio: float) -> Equilibrium:

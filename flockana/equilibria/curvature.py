@@ -95,12 +95,14 @@ class Landscape:
     def values(self) -> FloatArray:
         """Eigenvalues off the rigid motions, rising; exact zeros where nothing is stiff."""
         count = self.q.size - self.rigid.shape[1]
-        return np.linalg.eigvalsh(self._matrix)[:count] if self.size else np.zeros(count)
+        values: FloatArray = np.linalg.eigvalsh(self._matrix)[:count] if self.size else np.zeros(count)
+        return values
 
     @cached_property
     def vectors(self) -> FloatArray:
         """Their eigenvectors, as columns."""
-        return np.linalg.eigh(self._matrix)[1][:, : self.values.size]
+        vectors: FloatArray = np.linalg.eigh(self._matrix)[1][:, : self.values.size]
+        return vectors
 
     def curvatures(self) -> Curvatures:
         """The eigenvalues with their signs: 0 where the residual force or rounding leaves none."""

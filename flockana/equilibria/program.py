@@ -192,7 +192,7 @@ class Program:
         rows, columns, scatter = _scatter(n, m, i, j)
         if not has_form(self.potential.pair, self.potential.others):
             self._kernels = _Derivatives(self, rows, columns)  # kept alive, as above
-            return self._kernels(x)
+            return self._kernels(x)  # type: ignore[no-any-return]
         gain = self.potential.gain
         q = self.d * ca.reshape(x, m, n)
         slope, blocks = ca.MX.zeros(m, n), []

@@ -123,7 +123,8 @@ def rigid_motions(q: FloatArray) -> FloatArray:
     basis, sizes, _ = np.linalg.svd(np.array(motions).T, full_matrices=False)
     # what stands on a line but for the rounding of its places does not turn about it
     rounding = EPS * np.sqrt(n) * float(np.abs(q).max()) / size if size > 0.0 else 0.0
-    return basis[:, sizes > max(_ON_A_LINE, _ROUNDINGS * rounding)]
+    independent: FloatArray = basis[:, sizes > max(_ON_A_LINE, _ROUNDINGS * rounding)]
+    return independent
 
 
 def surroundings(law: Any, q: FloatArray, *, force: float = 0.0) -> Landscape | None:

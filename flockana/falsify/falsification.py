@@ -127,7 +127,8 @@ class Falsification:
         claim : str
             Its name.
         """
-        return np.fmin.accumulate(self.margins[claim])
+        best: FloatArray = np.fmin.accumulate(self.margins[claim])
+        return best
 
     def refuting(self, claim: str) -> tuple[int, ...]:
         """Which evaluations refute a claim, counted from 0.

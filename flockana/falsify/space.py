@@ -53,7 +53,8 @@ class Space:
         x = np.concatenate([np.empty(0), *(state[name].ravel() for name in self.vary)])
         own = (float(law_parameter(self.scenario.law, name)) for name in self.parameters)
         shares = [_share(value, *ends) for value, ends in zip(own, self.parameters.values(), strict=True)]
-        return np.clip(np.concatenate([(x - self.low) / (self.high - self.low), shares]), 0.0, 1.0)
+        point: FloatArray = np.clip(np.concatenate([(x - self.low) / (self.high - self.low), shares]), 0.0, 1.0)
+        return point
 
     def case(self, point: FloatArray) -> Scenario:
         """The scenario with the state and the parameters of a point.

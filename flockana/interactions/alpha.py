@@ -162,7 +162,8 @@ class AlphaInteraction(PairInteraction):
         lengths : ndarray
             Distances.
         """
-        return self.psi_alpha(self.sigma_norm(lengths))
+        values: FloatArray = self.psi_alpha(self.sigma_norm(lengths))
+        return values
 
     @cached_property
     def _parts(self) -> tuple[FloatArray, FloatArray]:
@@ -173,7 +174,8 @@ class AlphaInteraction(PairInteraction):
         def taper(z: FloatArray) -> FloatArray:
             rho = 0.5 * (1.0 + np.cos(np.pi * (z / r_alpha - self.h) / (1.0 - self.h)))
             action = np.array([phi(s, self.a, self.b, self.c) for s in (z - d_alpha) / area])
-            return rho * action
+            tapered: FloatArray = rho * action
+            return tapered
 
         edges = area * panel_edges(knee / area, r_alpha / area, d_alpha / area - self.c)
         if knee < d_alpha:  # d_α lies on the taper: make it an edge, where ψ vanishes exactly

@@ -91,7 +91,8 @@ class BetaInteraction:
         def taper(z: FloatArray) -> FloatArray:
             rho = 0.5 * (1.0 + np.cos(np.pi * (z / d_beta - self.h) / (1.0 - self.h)))
             s = (z - d_beta) / area
-            return rho * (s / np.sqrt(1.0 + s**2) - 1.0)
+            repulsion: FloatArray = rho * (s / np.sqrt(1.0 + s**2) - 1.0)
+            return repulsion
 
         panels = integral_panels(
             taper, area * panel_edges(knee / area, d_beta / area, d_beta / area), value_at_right=0.0

@@ -180,7 +180,8 @@ class DeadZoneInteraction(PairInteraction):
         lengths : ndarray
             Distances.
         """
-        return self.psi(lengths)
+        values: FloatArray = self.psi(lengths)
+        return values
 
     @cached_property
     def far_potential(self) -> float:
@@ -198,7 +199,8 @@ class DeadZoneInteraction(PairInteraction):
             free[3] = 0.0
 
             def ramped(s: FloatArray) -> FloatArray:
-                return _FORCE(s, free)
+                forces: FloatArray = _FORCE(s, free)
+                return forces
 
             # F is analytic within each ramp: repulsion's pole at 0 is farther from [d1 - ramp, d1] than d1 - ramp, and
             # narrow panels near it keep the series short

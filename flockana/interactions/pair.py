@@ -209,7 +209,8 @@ class PairInteraction(ABC):
                     )
                 return np.zeros((i.size, q.shape[1], q.shape[1]))
             slope = slope_of(np.einsum("kc,kc->k", delta, delta), self.par)
-            return 2.0 * slope[:, None, None] * slip[:, :, None] * delta[:, None, :]
+            blocks: FloatArray = 2.0 * slope[:, None, None] * slip[:, :, None] * delta[:, None, :]
+            return blocks
 
         by_position = -stiffness * self.hessian(q)
         if damping:
@@ -220,7 +221,8 @@ class PairInteraction(ABC):
     def _stiffness_blocks(_i: Any, _j: Any, delta: FloatArray, terms: FloatArray) -> FloatArray:
         # gradient of w(s²) Δ in Δ: w I + 2 w' ΔΔᵀ
         w, slope = terms[0][:, None, None], terms[2][:, None, None]
-        return w * np.eye(delta.shape[1]) + 2.0 * slope * delta[:, :, None] * delta[:, None, :]
+        blocks: FloatArray = w * np.eye(delta.shape[1]) + 2.0 * slope * delta[:, :, None] * delta[:, None, :]
+        return blocks
 
     def _assemble(self, q: FloatArray, block_of: Any) -> csr_array:
         """Sum ±B over pairs: B on the two diagonal blocks, −B on the two others."""

@@ -32,7 +32,8 @@ def coordination(n: int, links: Any) -> IntArray:
     [1, 2, 1]
     """
     n = ensure_count("n", n)
-    return np.bincount(ensure_links(links, n).ravel(), minlength=n).astype(np.int64)
+    count: IntArray = np.bincount(ensure_links(links, n).ravel(), minlength=n).astype(np.int64)
+    return count
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,4 +102,5 @@ def _surrounded(q: FloatArray, links: LinkArray, count: IntArray) -> npt.NDArray
     place = np.minimum(np.searchsorted(codes, sought), max(len(codes) - 1, 0))
     closed = codes[place] == sought
     closed[closed] = turns_left(q, centre[closed], other[closed], other[following][closed])
-    return (np.bincount(centre[closed], minlength=n) == count) & (count >= 3)
+    interior: npt.NDArray[np.bool_] = (np.bincount(centre[closed], minlength=n) == count) & (count >= 3)
+    return interior

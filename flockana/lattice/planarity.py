@@ -172,7 +172,8 @@ def _ends_of_paths(links: LinkArray, corner: int, corners: set[int]) -> set[int]
 
 
 def _distinct(n: int, links: Any) -> LinkArray:
-    return np.unique(np.sort(ensure_links(links, n), axis=1), axis=0)
+    pairs: LinkArray = np.unique(np.sort(ensure_links(links, n), axis=1), axis=0)
+    return pairs
 
 
 def _planar(n: int, links: LinkArray) -> bool:
@@ -186,7 +187,8 @@ def _planar(n: int, links: LinkArray) -> bool:
         return False
     graph = networkx.Graph()
     graph.add_edges_from(links.tolist())
-    return networkx.check_planarity(graph)[0]
+    planar: bool = networkx.check_planarity(graph)[0]
+    return planar
 
 
 def ensure_plane(m: int) -> None:

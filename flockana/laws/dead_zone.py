@@ -165,7 +165,10 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         steps : int
             How many.
         """
-        return semi_implicit_steps(q, p, self.interaction.par, self.k2, dt, steps)
+        stepped: tuple[FloatArray, FloatArray, FloatArray] = semi_implicit_steps(
+            q, p, self.interaction.par, self.k2, dt, steps
+        )
+        return stepped
 
     @property
     def located(self) -> bool:
@@ -180,7 +183,8 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         q : ndarray, shape (n, m)
             Positions.
         """
-        return zones(q, self.interaction.par)
+        pieces: Pieces = zones(q, self.interaction.par)
+        return pieces
 
     def piece_flow(self, pieces: Pieces, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
         """As `flow`, every pair held in its zone.

@@ -14,4 +14,5 @@ def moving_frame(x: FloatArray) -> FloatArray:
     >>> moving_frame(np.array([[0.0], [4.0]])).tolist()
     [[-2.0], [2.0]]
     """
-    return x - x.mean(axis=0)
+    deviations: FloatArray = x - x.mean(axis=0)
+    return deviations

@@ -246,7 +246,8 @@ def cohesion_radii(q: FloatArray) -> FloatArray:
     q : ndarray, shape (T, n, m)
         Positions.
     """
-    return np.linalg.norm(_centred(q), axis=2).max(axis=1)
+    radii: FloatArray = np.linalg.norm(_centred(q), axis=2).max(axis=1)
+    return radii
 
 
 def spreads(x: FloatArray) -> FloatArray:
@@ -257,7 +258,8 @@ def spreads(x: FloatArray) -> FloatArray:
     x : ndarray, shape (T, n, m)
         Positions or velocities.
     """
-    return 0.5 * np.sum(_centred(x) ** 2, axis=(1, 2))
+    spread: FloatArray = 0.5 * np.sum(_centred(x) ** 2, axis=(1, 2))
+    return spread
 
 
 def min_distances(q: FloatArray) -> FloatArray:
@@ -271,7 +273,8 @@ def min_distances(q: FloatArray) -> FloatArray:
     from scipy.spatial import KDTree
 
     if q.shape[1] < _TREE:
-        return least_distances(q)
+        distances: FloatArray = least_distances(q)
+        return distances
     return np.array([np.asarray(KDTree(x).query(x, k=2)[0])[:, 1].min() for x in q])
 
 
@@ -283,7 +286,8 @@ def orders(p: FloatArray) -> FloatArray:
     p : ndarray, shape (T, n, m)
         Velocities.
     """
-    return np.linalg.norm(_headings(p).mean(axis=1), axis=1)
+    lengths: FloatArray = np.linalg.norm(_headings(p).mean(axis=1), axis=1)
+    return lengths
 
 
 def coordinations(p: FloatArray) -> FloatArray:
@@ -297,14 +301,17 @@ def coordinations(p: FloatArray) -> FloatArray:
     k = np.count_nonzero(np.any(p != 0.0, axis=2), axis=1)
     # |Σ ĥ|² counts every pair twice and every agent once
     twice = np.sum(_headings(p).sum(axis=1) ** 2, axis=1) - k
-    return np.divide(twice, k * (k - 1), out=np.full(len(p), np.nan), where=k > 1)
+    cosines: FloatArray = np.divide(twice, k * (k - 1), out=np.full(len(p), np.nan), where=k > 1)
+    return cosines
 
 
 def _centred(x: FloatArray) -> FloatArray:
-    return x - x.mean(axis=1, keepdims=True)
+    centred: FloatArray = x - x.mean(axis=1, keepdims=True)
+    return centred
 
 
 def _headings(p: FloatArray) -> FloatArray:
     """Directions of motion; 0 of agents at rest."""
     speed = np.linalg.norm(p, axis=2, keepdims=True)
-    return np.divide(p, speed, out=np.zeros_like(p), where=speed > 0.0)
+    headings: FloatArray = np.divide(p, speed, out=np.zeros_like(p), where=speed > 0.0)
+    return headings

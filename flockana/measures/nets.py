@@ -57,7 +57,8 @@ def link_lengths(q: FloatArray, pairs: LinkArray) -> FloatArray:
     >>> link_lengths(np.array([[0.0, 0.0], [3.0, 4.0]]), np.array([[0, 1]], dtype=np.int32)).tolist()
     [5.0]
     """
-    return np.linalg.norm(q[pairs[:, 1]] - q[pairs[:, 0]], axis=1)
+    lengths: FloatArray = np.linalg.norm(q[pairs[:, 1]] - q[pairs[:, 0]], axis=1)
+    return lengths
 
 
 def components(n: int, pairs: LinkArray) -> npt.NDArray[np.int32]:
@@ -79,7 +80,8 @@ def components(n: int, pairs: LinkArray) -> npt.NDArray[np.int32]:
     from scipy.sparse.csgraph import connected_components
 
     graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
-    return connected_components(graph, directed=False)[1]
+    labels: npt.NDArray[np.int32] = connected_components(graph, directed=False)[1]
+    return labels
 
 
 def laplacian(n: int, pairs: LinkArray, weights: FloatArray | None = None) -> csr_array:

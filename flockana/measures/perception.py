@@ -110,7 +110,8 @@ def receivers(n: int, edges: Edges) -> FloatArray:
     >>> receivers(2, ((0, 1),)).tolist()
     [[0.0], [1.0]]
     """
-    return np.maximum(incidence(n, edges), 0.0)
+    heads: FloatArray = np.maximum(incidence(n, edges), 0.0)
+    return heads
 
 
 def edge_vectors(q: FloatArray, edges: Edges) -> FloatArray:
@@ -122,7 +123,8 @@ def edge_vectors(q: FloatArray, edges: Edges) -> FloatArray:
     [[-3.0]]
     """
     sender, receiver = _columns(edges)
-    return q[..., sender, :] - q[..., receiver, :]
+    x: FloatArray = q[..., sender, :] - q[..., receiver, :]
+    return x
 
 
 def _columns(edges: Edges) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:

@@ -14,7 +14,8 @@ from flockana.measures.nets import components, link_lengths, links
 
 def _mismatch(flock: Flock) -> FloatArray:
     """K̃ = K/n."""
-    return metrics.spreads(flock.p) / flock.p.shape[1]
+    mismatch: FloatArray = metrics.spreads(flock.p) / flock.p.shape[1]
+    return mismatch
 
 
 def _component_count(run: Any) -> int:

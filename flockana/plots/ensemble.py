@@ -267,7 +267,7 @@ def phase_diagram(
     axes.legend([handles[name] for name in order], order, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=len(order))
     if title:
         axes.set_title(title, color=INK, pad=26)
-    return axes
+    return axes  # type: ignore[no-any-return]
 
 
 def _ensure_table(table: xarray.Dataset, parameters: set[str], claims: Iterable[str] | None, of: str) -> list[str]:
@@ -302,4 +302,4 @@ def _finish(axes: Any, title: str) -> Axes:
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, borderaxespad=0.2, fontsize=8)
     if title:
         axes.set_title(title, pad=10 + 14 * -(-len(labels) // columns))
-    return axes
+    return axes  # type: ignore[no-any-return]

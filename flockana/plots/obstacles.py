@@ -45,7 +45,7 @@ def obstacles(items: Iterable[Obstacle], *, ax: Axes | None = None, view: Any = 
     axes = ensure_axes(ax, m=solids[0].dimension if solids else 2)
     for solid in solids:
         _draw(axes, solid, np.zeros((1, solid.dimension)) if view is None else np.asarray(view, dtype=np.float64))
-    return axes  # the stubs have no three-dimensional axes
+    return axes  # type: ignore[no-any-return]  # the stubs have no three-dimensional axes
 
 
 def bounds(items: Iterable[Obstacle]) -> FloatArray:

@@ -128,7 +128,7 @@ def finish(ax: Any, x: str = "", y: str = "") -> Axes:
         ax.set_ylabel(y)
     if ax.get_legend_handles_labels()[0]:
         legend_above(ax)
-    return ax
+    return ax  # type: ignore[no-any-return]
 
 
 def finish_over_time(ax: Any, t: FloatArray, y: str) -> Axes:
@@ -185,17 +185,17 @@ def frame_space(ax: Any, points: FloatArray, m: int) -> Axes:
     """Label the axes of space and scale them equally: a cube about the points where m = 3; a line has no y."""
     if m == 1:
         ax.set(xlabel="x (length)", yticks=[], ylim=(-1.0, 1.0))
-        return ax
+        return ax  # type: ignore[no-any-return]
     names = "xyz"[:m]
     for name in names:
         getattr(ax, f"set_{name}label")(f"{name} (length)")
     if m == 2:
         ax.set_aspect("equal", adjustable="datalim")
-        return ax
+        return ax  # type: ignore[no-any-return]
     ax.set_box_aspect(None, zoom=0.82)  # room for the labels, which the layout does not measure
     low, high = points.min(axis=0), points.max(axis=0)
     middle, half = 0.5 * (low + high), 0.53 * float((high - low).max()) or 1.0
     for name, centre in zip(names, middle.tolist(), strict=True):
         getattr(ax, f"set_{name}lim")(centre - half, centre + half)
         getattr(ax, f"{name}axis").set_major_locator(MaxNLocator(4))
-    return ax
+    return ax  # type: ignore[no-any-return]

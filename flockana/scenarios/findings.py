@@ -89,4 +89,5 @@ def component_count(run: Trajectory, k: int = -1) -> int:
 
 def component_counts(run: Trajectory) -> npt.NDArray[np.int64]:
     """Number of components of the net at each sample of a run, shape (T,)."""
-    return np.rint(run.n - run.metric("connectivity") * (run.n - 1)).astype(np.int64)
+    counts: npt.NDArray[np.int64] = np.rint(run.n - run.metric("connectivity") * (run.n - 1)).astype(np.int64)
+    return counts

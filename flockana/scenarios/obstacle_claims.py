@@ -97,7 +97,8 @@ def blocked(q: FloatArray, target: FloatArray, obstacles: Sequence[Obstacle]) ->
     share = np.linspace(0.0, 1.0, _SEGMENT)[:, None, None]
     way = (q + share * (target - q)).reshape(-1, q.shape[1])
     hit = np.any([obstacle.contains(way) for obstacle in obstacles], axis=0)
-    return hit.reshape(_SEGMENT, len(q)).any(axis=0)
+    blocked_agents: FloatArray = hit.reshape(_SEGMENT, len(q)).any(axis=0)
+    return blocked_agents
 
 
 def traps(run: Trajectory, tolerances: Tolerances) -> Claim:

@@ -84,7 +84,8 @@ def complement(basis: FloatArray) -> FloatArray:
     """
     if basis.shape[1] == 0:
         return np.eye(basis.shape[0])
-    return np.linalg.svd(basis, full_matrices=True)[0][:, basis.shape[1] :]
+    rest: FloatArray = np.linalg.svd(basis, full_matrices=True)[0][:, basis.shape[1] :]
+    return rest
 
 
 def blocks(stiffness: FloatArray, damping: FloatArray, q: FloatArray) -> Blocks:
@@ -168,4 +169,5 @@ def _kernel(matrix: FloatArray, basis: FloatArray) -> FloatArray:
     if basis.shape[1] == 0:
         return basis
     _, sizes, rows = np.linalg.svd(matrix @ basis, full_matrices=False)
-    return basis @ rows[sizes <= NEUTRAL * float(np.abs(matrix).max())].T
+    small: FloatArray = basis @ rows[sizes <= NEUTRAL * float(np.abs(matrix).max())].T
+    return small

@@ -305,7 +305,8 @@ def _off_centre(flock: Linearisation, x: FloatArray) -> FloatArray:
 def velocity_mismatch(p: FloatArray) -> FloatArray:
     """K̃ at every sample."""
     relative = p - p.mean(axis=1, keepdims=True)
-    return 0.5 * np.sum(relative**2, axis=(1, 2))
+    mismatch: FloatArray = 0.5 * np.sum(relative**2, axis=(1, 2))
+    return mismatch
 
 
 def logarithmic_slopes(mismatch: FloatArray, half: float) -> FloatArray:

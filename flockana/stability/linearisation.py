@@ -68,7 +68,8 @@ class Linearisation:
     def A(self) -> FloatArray:  # noqa: N802  # what control engineers call it
         """The matrix as a dense array; refused where it would not fit in memory."""
         ensure_fits("A", self.A_sparse.shape, "use A_sparse and slowest_modes(...)")
-        return self.A_sparse.toarray()
+        dense: FloatArray = self.A_sparse.toarray()
+        return dense
 
     @property
     def stiffness(self) -> csr_array:

@@ -20,7 +20,8 @@ def translations(n: int, m: int) -> FloatArray:
     >>> translations(4, 1).ravel().tolist()
     [0.5, 0.5, 0.5, 0.5]
     """
-    return np.tile(np.eye(m), (n, 1)) / np.sqrt(n)
+    unit: FloatArray = np.tile(np.eye(m), (n, 1)) / np.sqrt(n)
+    return unit
 
 
 def normalised(vector: Any, *, real: bool) -> Any:
@@ -80,4 +81,5 @@ def _off(kernel: FloatArray, named: FloatArray) -> FloatArray:
     if kernel.shape[1] == 0:
         return kernel
     basis, sizes, _ = np.linalg.svd(kernel - named @ (named.T @ kernel), full_matrices=False)
-    return basis[:, sizes > 0.5]
+    rest: FloatArray = basis[:, sizes > 0.5]
+    return rest

@@ -210,7 +210,8 @@ class SecondOrder:
     def eigenvalues(self) -> npt.NDArray[np.complex128]:
         """All 2nm eigenvalues, the largest real part first; zeros exact."""
         whole = np.concatenate([self.invariant.eigenvalues, self._others[0]])
-        return whole[np.lexsort((whole.imag, abs(whole.imag), -whole.real))]
+        ordered: npt.NDArray[np.complex128] = whole[np.lexsort((whole.imag, abs(whole.imag), -whole.real))]
+        return ordered
 
     @cached_property
     def _others(self) -> tuple[npt.NDArray[np.complex128], npt.NDArray[np.complex128], FloatArray]:
@@ -299,7 +300,8 @@ class SecondOrder:
         push = damping @ motion
         if not push.size or np.abs(push).max() <= self.zero * self.damping_scale:
             return np.zeros_like(motion)
-        return -np.linalg.lstsq(matrix.toarray(), push, rcond=self.zero)[0]
+        solution: FloatArray = -np.linalg.lstsq(matrix.toarray(), push, rcond=self.zero)[0]
+        return solution
 
 
 def _roots(stiffness: float, damping: float, errors: tuple[float, float]) -> list[complex]:

@@ -250,4 +250,5 @@ def norms_against_size(law: Algorithm1 | Algorithm2, sizes: Sequence[int]) -> No
 
 
 def _relaxed(law: Any, n: int) -> FloatArray:
-    return find_equilibrium(law, hexagonal_spiral(n, law.alpha.d)).q
+    relaxed: FloatArray = find_equilibrium(law, hexagonal_spiral(n, law.alpha.d)).q
+    return relaxed

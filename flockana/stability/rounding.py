@@ -58,7 +58,8 @@ def _together(values: ComplexArray, size: float) -> FloatArray:
     """
     tight = _ROUNDINGS * EPS
     same = np.sum(np.abs(values[:, None] - values[None, :]) <= 2.0 * tight * size, axis=1)
-    return np.where(same > 1, size * tight ** (1.0 / same), np.inf)
+    bound: FloatArray = np.where(same > 1, size * tight ** (1.0 / same), np.inf)
+    return bound
 
 
 def root_error(value: complex, stiffness: float, damping: float, errors: tuple[float, float]) -> float:

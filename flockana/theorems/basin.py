@@ -184,4 +184,5 @@ def third_derivative(
     """
     step = np.diff(s, axis=1)
     change = np.divide(np.abs(np.diff(along, axis=1)), step, out=np.zeros_like(step), where=step > least_step)
-    return _SAFETY * change.max(axis=1) + noise + 2.0 / sqrt(3.0) * np.abs(across).max(axis=1)
+    norm: FloatArray = _SAFETY * change.max(axis=1) + noise + 2.0 / sqrt(3.0) * np.abs(across).max(axis=1)
+    return norm

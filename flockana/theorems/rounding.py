@@ -41,7 +41,8 @@ def spread_error(x: FloatArray) -> FloatArray:
     """
     size, off = x.shape[1] * x.shape[2], frame_error(x)
     norm = np.linalg.norm((x - x.mean(axis=1, keepdims=True)).reshape(len(x), size), axis=1)
-    return (size + 4) * EPS * norm**2 + sqrt(size) * off * norm + size * off**2
+    error: FloatArray = (size + 4) * EPS * norm**2 + sqrt(size) * off * norm + size * off**2
+    return error
 
 
 def pair_force_error(alpha: AlphaInteraction) -> float:
@@ -83,4 +84,5 @@ def energy_error(law: Any, q: FloatArray, p: FloatArray, energy: FloatArray) -> 
     for _ in law.obstacles:
         most, steepest = float(law.beta.psi_beta(0.0)), 2.0 / sqrt(law.beta.eps)
         error += gains.c1_beta * n * (_POTENTIAL * most + 16.0 * EPS * steepest * (law.beta.r + reach))
-    return error + (pairs + n * m + 8) * EPS * np.abs(energy) + 2.0 * spread_error(p)
+    bound: FloatArray = error + (pairs + n * m + 8) * EPS * np.abs(energy) + 2.0 * spread_error(p)
+    return bound

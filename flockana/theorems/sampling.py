@@ -47,7 +47,8 @@ def fastest_between(run: Trajectory) -> FloatArray:
     >>> bool(abs(fastest_between(run).max() - 1.0) < 1e-12)
     True
     """
-    return _motion(run)[0]
+    fastest: FloatArray = _motion(run)[0]
+    return fastest
 
 
 def radius_between(run: Trajectory) -> FloatArray:
@@ -63,7 +64,8 @@ def radius_between(run: Trajectory) -> FloatArray:
     """
     if isinstance(run.law, DiscreteLaw):
         radius = run.metric("cohesion_radius")
-        return np.maximum(radius[:-1], radius[1:])
+        ends: FloatArray = np.maximum(radius[:-1], radius[1:])
+        return ends
     return run.cohesion_bounds
 
 
@@ -132,7 +134,8 @@ def _nets_between(run: Trajectory) -> Nets:
 def _slack(low: FloatArray, r: float, h: float, speed: Any, force: Any) -> FloatArray:
     """How far a distance, `low` at the nearer end, may go beyond its ends, at relative speeds and accelerations."""
     straight, bent = 0.5 * speed * h, h**2 / 8.0 * (2.0 * speed**2 / r + force)
-    return np.where(low - straight >= 0.5 * r, np.minimum(straight, bent), straight)
+    slack: FloatArray = np.where(low - straight >= 0.5 * r, np.minimum(straight, bent), straight)
+    return slack
 
 
 def _relative(path: Course, steps: range, pairs: LinkArray) -> tuple[FloatArray, FloatArray]:

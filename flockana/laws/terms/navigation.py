@@ -65,7 +65,8 @@ class Navigation(Term):
         """√(1 + ‖x_i‖²/ℓ²), by which σ₁ bends the pull of each agent, shape (n,); 1 for the linear pull."""
         if self.unit is None:
             return np.ones(len(x))
-        return np.sqrt(1.0 + np.einsum("ij,ij->i", x, x) / self.unit**2)
+        bend: FloatArray = np.sqrt(1.0 + np.einsum("ij,ij->i", x, x) / self.unit**2)
+        return bend
 
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
         g, (q_r, p_r) = self.gains, self.target.state(t)

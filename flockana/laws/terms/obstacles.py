@@ -81,4 +81,5 @@ class ObstacleTerm(Term):
         return self.damping * by_position - self.stiffness * self.field.hessian_blocks(q), self.damping * by_velocity
 
     def hessian(self, t: float, q: FloatArray) -> FloatArray:  # noqa: D102
-        return self.stiffness * self.field.hessian_blocks(q)
+        blocks: FloatArray = self.stiffness * self.field.hessian_blocks(q)
+        return blocks

@@ -24,7 +24,8 @@ def _end(law: MinimalFlocking, seed: int) -> FloatArray:
     run = simulate(law, q, p, (0.0, _END), t_eval=(_END,))
     edges = run.q[-1, [0, 2]] - run.q[-1, 1]
     apart, lengths = np.linalg.norm(edges[0] - edges[1]), np.linalg.norm(edges, axis=1)
-    return np.array([apart, *lengths, *np.linalg.norm(run.u[-1], axis=1)])
+    measured: FloatArray = np.array([apart, *lengths, *np.linalg.norm(run.u[-1], axis=1)])
+    return measured
 
 
 def _runaway_attracts(law: MinimalFlocking, worst: float, tolerances: Tolerances) -> Certificate:

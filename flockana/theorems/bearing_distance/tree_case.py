@@ -82,16 +82,19 @@ class TreeCase:
         m = q.shape[1]
         T = np.kron(-incidence(self.n, self.links).T, np.eye(m))
         twice = np.kron(np.eye(2), T)
-        return twice @ linearise(self.law, q).A @ np.kron(np.eye(2), np.linalg.pinv(T))
+        A: FloatArray = twice @ linearise(self.law, q).A @ np.kron(np.eye(2), np.linalg.pinv(T))
+        return A
 
     def lengths(self, q: FloatArray) -> FloatArray:
         """|x_e| of each edge, shape (..., n − 1)."""
-        return np.linalg.norm(edge_vectors(q, self.links), axis=-1)
+        lengths: FloatArray = np.linalg.norm(edge_vectors(q, self.links), axis=-1)
+        return lengths
 
     def energies(self, q: FloatArray, p: FloatArray) -> FloatArray:
         """V = ½‖x'‖² + ½μ(‖x‖ − ρ)² of each edge, shape (n − 1,). At the root it falls: V' = −a‖x'‖²."""
         rate = edge_vectors(p, self.links)
-        return 0.5 * (np.sum(rate * rate, axis=1) + self.mu * (self.lengths(q) - self.rho) ** 2)
+        V: FloatArray = 0.5 * (np.sum(rate * rate, axis=1) + self.mu * (self.lengths(q) - self.rho) ** 2)
+        return V
 
     def shortest(self, run: Trajectory) -> FloatArray:
         """A lower bound of the length of each edge over a run, between its samples too, shape (n − 1,)."""

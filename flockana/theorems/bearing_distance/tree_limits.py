@@ -55,7 +55,8 @@ def _stretch_error(case: TreeCase, q: FloatArray) -> FloatArray:
     """Rounding of ½y² of each edge."""
     lengths = case.lengths(q)
     off = 4.0 * EPS * (lengths + case.rho)
-    return (np.abs(lengths - case.rho) + off) * off
+    error: FloatArray = (np.abs(lengths - case.rho) + off) * off
+    return error
 
 
 def _directed(case: TreeCase, q: FloatArray, p: FloatArray) -> FloatArray:

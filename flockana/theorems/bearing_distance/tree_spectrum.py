@@ -71,7 +71,8 @@ def _in_units_of(A: FloatArray, unit: float) -> FloatArray:
     """A of (x, x') with times in a unit."""
     half = len(A) // 2
     scale = np.concatenate([np.ones(half), np.full(half, unit)])
-    return A * (scale[:, None] * unit) / scale[None, :]
+    scaled: FloatArray = A * (scale[:, None] * unit) / scale[None, :]
+    return scaled
 
 
 def _kernel(values: npt.NDArray[np.floating[Any]], expected: int) -> tuple[int, float, float]:

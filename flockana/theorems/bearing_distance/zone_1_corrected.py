@@ -23,7 +23,8 @@ _PROOF = "bearing-distance"
 
 def _errors(case: TreeCase, run: Trajectory) -> np.ndarray:
     """Largest relative length error of an edge at each sample, shape (T,)."""
-    return np.abs(case.lengths(run.q) / case.rho - 1.0).max(axis=1)
+    errors: np.ndarray = np.abs(case.lengths(run.q) / case.rho - 1.0).max(axis=1)
+    return errors
 
 
 def _lengths(case: TreeCase, run: Trajectory, needs: list[Hypothesis]) -> Claim:

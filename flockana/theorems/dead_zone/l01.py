@@ -28,7 +28,8 @@ def _check(tolerances: Tolerances) -> list[Claim]:
         rho = np.linalg.norm(delta, axis=2)
         n = delta / np.sqrt(1.0 + pair.eta * rho**2)[:, :, None]
         f = np.where(rho > 0.0, pair.action(np.where(rho > 0.0, rho, 8.0)), 0.0)
-        return np.einsum("ij,ijc->ic", f, n) * n.sum(axis=1)
+        u: FloatArray = np.einsum("ij,ijc->ic", f, n) * n.sum(axis=1)
+        return u
 
     law = DeadZoneFlocking(pair)
 

@@ -137,7 +137,8 @@ def _common(part: _Window, tolerances: Tolerances) -> list[Claim]:
 def _between(value: FloatArray, *, steps: bool) -> FloatArray:
     """Bound of a smooth series between samples: beyond the larger end by half of what the ends differ."""
     ends = np.maximum(value[:-1], value[1:])
-    return ends if steps else ends + 0.5 * np.abs(np.diff(value))
+    between: FloatArray = ends if steps else ends + 0.5 * np.abs(np.diff(value))
+    return between
 
 
 def _cohesive(part: _Window, tolerances: Tolerances) -> Claim:

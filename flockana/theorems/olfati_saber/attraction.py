@@ -75,7 +75,8 @@ def final_basin(run: Trajectory) -> Basin:
 def _translations(q: FloatArray) -> FloatArray:
     """Orthonormal basis of the translations, shape (n m, m)."""
     n, m = q.shape
-    return np.tile(np.eye(m), (n, 1)) / sqrt(n)
+    basis: FloatArray = np.tile(np.eye(m), (n, 1)) / sqrt(n)
+    return basis
 
 
 def _force(law: Algorithm1 | Algorithm2, q: FloatArray) -> float:

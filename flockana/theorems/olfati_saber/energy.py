@@ -71,7 +71,8 @@ def cancelling(run: Trajectory, since: int = 0) -> FloatArray:
         size[k] = np.max(law.gains.c2_gamma) * float(speed[k] @ (speed[k] + np.linalg.norm(p_r)))
         size[k] += np.max(law.gains.c1_gamma) * float(np.linalg.norm(rate)) * float(away.sum())
     braking = law.gains.c2_beta * 2.0 * len(law.obstacles) if isinstance(law, Algorithm3) else 0.0
-    return size + braking * np.sum(speed**2, axis=1)
+    total: FloatArray = size + braking * np.sum(speed**2, axis=1)
+    return total
 
 
 def falling_share(run: Trajectory, rate: FloatArray, cancels: FloatArray) -> tuple[FloatArray, float]:

@@ -34,7 +34,8 @@ def _between(t: FloatArray) -> FloatArray:
     """Gauss nodes of both halves of every interval, shape (T − 1, 2, 3)."""
     middle, half = 0.5 * (t[:-1] + t[1:]), 0.25 * np.diff(t)
     halves = np.stack([middle - half, middle + half], axis=1)
-    return halves[:, :, None] + half[:, None, None] * _NODES
+    nodes: FloatArray = halves[:, :, None] + half[:, None, None] * _NODES
+    return nodes
 
 
 def target_rests(run: Trajectory, *, told: bool) -> Hypothesis:
@@ -98,7 +99,8 @@ def slip(run: Trajectory, velocity: Callable[[float], FloatArray]) -> Slip:
 def _mean(velocity: Callable[[float], FloatArray], nodes: FloatArray) -> FloatArray:
     """Mean of a velocity over intervals by its Gauss nodes, which are the last axis."""
     values = np.array([velocity(float(time)) for time in nodes.ravel()]).reshape(*nodes.shape, -1)
-    return np.einsum("...kc,k->...c", values, _WEIGHTS)
+    mean: FloatArray = np.einsum("...kc,k->...c", values, _WEIGHTS)
+    return mean
 
 
 def consistent(run: Trajectory) -> Hypothesis:

@@ -18,7 +18,8 @@ def condition_76(run: Trajectory) -> FloatArray:
     """T(t) − (n/2) ⟨p_c(t), p_r(t)⟩ at each sample, shape (T,): condition (76) holds where it is not negative."""
     told = np.array([run.law.target.state(t)[1] for t in run.t])
     kinetic = 0.5 * np.sum(run.p**2, axis=(1, 2))
-    return kinetic - 0.5 * np.einsum("tim,tm->t", run.p, told)
+    slack: FloatArray = kinetic - 0.5 * np.einsum("tim,tm->t", run.p, told)
+    return slack
 
 
 def _condition(run: Trajectory) -> tuple[Hypothesis, int]:
