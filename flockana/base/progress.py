@@ -21,10 +21,8 @@ def progress_bar(
     >>> with progress_bar(2, enabled=False) as advance:
     ...     advance(1, "second run")
     """
-    from rich.console import Console
-
-    console = Console(stderr=True)
-    if not (enabled and (console.is_terminal or console.is_jupyter)):
+    console = _console() if enabled else None
+    if console is None:
         yield lambda done, text: None
         return
     with _bar(console, counted, steady) as bar:
@@ -36,6 +34,14 @@ def progress_bar(
             bar.update(task, completed=done, description=text + rate)
 
         yield advance
+
+
+def _console() -> Any:
+    """The terminal or notebook to show a bar in; None elsewhere."""
+    from rich.console import Console
+
+    console = Console(stderr=True)
+    return console if console.is_terminal or console.is_jupyter else None
 
 
 def _bar(console: Any, counted: bool, steady: bool) -> Any:

@@ -71,7 +71,7 @@ def adaptive(
         if switch is not None:
             reached = sample(switch, course()(switch))
         t = reached.t
-        if beside is not None and beside.t < min([t, *list(due)[:1]]):
+        if beside is not None and beside.t < (min(t, due[0]) if due else t):
             yield beside
         beside = None
         while due and due[0] < t:

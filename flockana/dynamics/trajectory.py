@@ -220,8 +220,9 @@ class Trajectory:
         UnknownNameError
             If there is none of that name, neither for any flock nor for this law.
         """
-        if name in measures():
-            return measures()[name]
+        of_any = measures().get(name)
+        if of_any is not None and of_any.over_time is not None:
+            return of_any
         if name in self._own:
             text, _, logarithmic = Series(*self._own[name])
             return Measure(name, text, "", logarithmic=logarithmic)

@@ -36,7 +36,7 @@ class PairKernels:
         ``adjacency_slope(s2, par)`` returns da/d(s²) over an array of squared distances; None if the law gives none.
     """
 
-    sweeps: tuple[tuple[Callable[..., float], Callable[..., float]], ...]
+    sweeps: tuple[tuple[Callable[..., Any], Callable[..., float]], ...]
     potential: Callable[..., float]
     terms: Callable[..., Any]
     adjacency_slope: Callable[..., Any] | None = None

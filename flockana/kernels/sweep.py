@@ -19,12 +19,13 @@ from flockana.kernels.grid import sort_into_grid
 _BLOCK = 512  # pairs: what is known of them stays in the first-level cache
 
 
-def lift_sweep(pair: Callable[..., Any], m: int, digest: int) -> tuple[Callable[..., float], Callable[..., float]]:
+def lift_sweep(pair: Callable[..., Any], m: int, digest: int) -> tuple[Callable[..., Any], Callable[..., float]]:
     """Compile the sums of a pair law in m dimensions: over all pairs within a range, and over the pairs given.
 
     The first, ``forces(q, p, r, par, c1, c2, u)``, adds c1 w (q_j − q_i) + c2 a (p_j − p_i) to u_i, its opposite to
-    u_j, and returns Σ a ‖p_j − p_i‖², or −1 and adds nothing where the flock is too sparse for a grid; the second,
-    ``forces_of(q, p, i, j, par, c1, c2, u)``, does so for pairs that are within range. ``par`` is a tuple.
+    u_j, and returns (True, Σ a ‖p_j − p_i‖²), or (False, 0) and adds nothing where the flock is too sparse for a grid;
+    the second, ``forces_of(q, p, i, j, par, c1, c2, u)``, does so for pairs that are within range and returns the sum.
+    ``par`` is a tuple.
     """
 
     @register_jitable
@@ -50,7 +51,7 @@ def lift_sweep(pair: Callable[..., Any], m: int, digest: int) -> tuple[Callable[
         total = 0.0 * digest
         order, start, rows = sort_into_grid(q, r)
         if start.size == 0:
-            return -1.0
+            return False, 0.0
         x, v, forced, r2 = q[order], p[order], np.zeros(q.shape), max(r * r, 5e-324)
         first, second = np.empty(_BLOCK, np.uint64), np.empty(_BLOCK, np.uint64)
         d, s2, w, a = np.empty((m, _BLOCK)), np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK)
@@ -77,7 +78,7 @@ def lift_sweep(pair: Callable[..., Any], m: int, digest: int) -> tuple[Callable[
         for k in range(order.size):
             for c in range(m):
                 u[order[k], c] += forced[k, c]
-        return total
+        return True, total
 
     @njit(cache=True, error_model="numpy")
     def forces_of(q, p, first, second, par, c1, c2, u):

@@ -63,6 +63,9 @@ def test_one_metric_is_that_of_all_and_costs_no_other(monkeypatch):
         np.testing.assert_array_equal(run.metric(name), series)
     with pytest.raises(ArgumentError, match="unknown metric 'min_distanc'; did you mean 'min_distance'"):
         run.metric("min_distanc")
+    for measured_once in ("strain", "components"):  # numbers of a run, not series
+        with pytest.raises(ArgumentError, match=f"unknown metric '{measured_once}'"):
+            run.measure(measured_once)
 
 
 def test_a_measured_run_crosses_processes():

@@ -6,11 +6,28 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from numba.extending import register_jitable
 
 from flockana.interactions import AlphaInteraction, DeadZoneInteraction
 from flockana.kernels.grid import sort_into_grid
+from flockana.kernels.lift import lift
 
 ALPHA = AlphaInteraction(d=2.0, r=2.6, a=2.0, b=5.0)
+
+
+@register_jitable
+def _shun(s2, par):
+    return 0.0 * s2, -1.0
+
+
+@register_jitable
+def _shun_slope(s2, par):
+    return 0.0 * s2
+
+
+@register_jitable
+def _shun_potential(s2, par, panels):
+    return 0.0 * s2
 
 
 def dense(q, p, pair, c1, c2):
@@ -70,6 +87,14 @@ def test_the_range_is_open_where_the_force_jumps_there():
     for gap, rate in ((pair.r, 0.0), (np.nextafter(pair.r, 0.0), 1.0)):
         q = np.array([[0.0, 0.0], [gap, 0.0]])
         assert pair.forces(q, p, stiffness=1.0, damping=1.0)[1] == rate
+
+
+def test_a_law_may_have_a_negative_adjacency():
+    """Velocities that part: the dissipation is negative, and the forces are summed once all the same."""
+    shun = lift(_shun, _shun_slope, _shun_potential)
+    q, p, u = np.array([[0.0], [1.0]]), np.array([[0.0], [3.0]]), np.zeros((2, 1))
+    assert shun.sweeps[0][0](q, p, 2.0, (0.0,), 1.0, 1.0, u) == (True, -9.0)
+    np.testing.assert_array_equal(u, [[-3.0], [3.0]])
 
 
 def test_an_agent_at_no_number_is_near_nobody_and_breaks_nothing():
