@@ -75,8 +75,8 @@ class AlphaInteraction(PairInteraction):
     >>> alpha = AlphaInteraction(d=7.0, r=8.4)
     >>> round(alpha.c_star, 12), round(alpha.psi_alpha(alpha.r_alpha), 12)
     (52.383811786645, 0.735901134262)
-    >>> alpha.phi_alpha(alpha.d_alpha) == 0.0
-    True
+    >>> alpha.phi_alpha(alpha.d_alpha)
+    0.0
     """
 
     d: float = 7.0
