@@ -11,12 +11,10 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from numba import boolean, float64, int64
-from numba.core import types
 
 from flockana.kernels.compiling import njit
 from flockana.kernels.encounters import share_of_all, share_of_pairs
-from flockana.kernels.listed import ACTS, ENERGIES
+from flockana.kernels.listed import signatures
 from flockana.kernels.paths import bernstein, centred
 from flockana.kernels.runge_kutta import combine, energy_of, error_of, first_step, frame_at, rate_of
 from flockana.kernels.verlet import empty_list, list_pairs, spatial_order
@@ -236,10 +234,14 @@ def _advance(
 @cache
 def advance() -> Callable[..., Any]:
     """`_advance`, compiled when first asked for: what it is handed functions for, no two laws compile twice."""
+    from numba import boolean, float64, int64
+    from numba.core import types
+
+    act, energy = (types.FunctionType(signature) for signature in signatures())
     matrix, vector = float64[:, ::1], float64[::1]
     numbers, panels = types.UniTuple(vector, 3), types.UniTuple(matrix, 3)
     view, two, three = types.Tuple((float64, vector, vector)), types.UniTuple(float64, 2), types.UniTuple(float64, 3)
-    terms = (ACTS, ACTS, ACTS, ENERGIES, ENERGIES, ENERGIES, numbers, panels)
+    terms = (act, act, act, energy, energy, energy, numbers, panels)
     made = njit(cache=True, error_model="numpy", nogil=True)(_advance)
     made.compile(
         (*terms, types.UniTuple(int64, 2), view, boolean)
@@ -247,4 +249,4 @@ def advance() -> Callable[..., Any]:
         + (two, matrix, float64, float64, three, two, vector, float64, vector, vector, float64, vector, vector, int64)
     )
     made.disable_compile()
-    return made  # type: ignore[no-any-return]
+    return made.dispatcher  # type: ignore[no-any-return]

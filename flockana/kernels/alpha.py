@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from math import sqrt
 
-from numba.extending import register_jitable
-
+from flockana.kernels.compiling import register_jitable
 from flockana.kernels.scalars import (
     bump,
     bump_slope,

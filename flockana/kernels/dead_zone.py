@@ -11,9 +11,8 @@ from __future__ import annotations
 from math import inf, log, log1p, sqrt
 
 import numpy as np
-from numba.extending import register_jitable
 
-from flockana.kernels.compiling import njit
+from flockana.kernels.compiling import njit, register_jitable
 from flockana.kernels.scalars import on_panels
 
 REPULSION, DEAD, ATTRACTION, OUT = 0, 1, 2, 3

@@ -8,42 +8,55 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
-from numba import float64, int64, uint32, uint64
-from numba.core.types import FunctionType
-from numba.extending import register_jitable
-from numba.np.unsafe.ndarray import to_fixed_tuple
 
 from flockana.base.errors import ArgumentError
-from flockana.kernels.compiling import named_for_its_cells, njit
+from flockana.kernels.compiling import njit, register_jitable
 
 _BLOCK = 512  # pairs: what is known of them stays in the first-level cache
-_MATRIX, _VECTOR, _INDICES = float64[:, ::1], float64[::1], uint32[::1]
-
-# act(t, x, v, u, frame, numbers, panels, first, second, count, order) adds to u and returns the power;
-# energy(t, x, v, frame, numbers, panels, first, second, count, order) returns the potential energy. x and v are seen
-# from a frame whose place and velocity are the rows of `frame`; `order` has every agent's own number.
-_SHARED = (_MATRIX, _VECTOR, _MATRIX, _INDICES, _INDICES, int64, uint64[::1])
-ACT = float64(float64, _MATRIX, _MATRIX, _MATRIX, *_SHARED)
-ENERGY = float64(float64, _MATRIX, _MATRIX, *_SHARED)
-ACTS, ENERGIES = FunctionType(ACT), FunctionType(ENERGY)
 CompiledFunction = Callable[..., float]
 _PARAMETERS = 16  # of a pair law, at most: constants in registers, which no array can alias
 
 
-def compiled_as(signature: Any, function: Callable[..., float], *, allocates: bool = True) -> CompiledFunction:
-    """Compile a function so that compiled code may be handed it.
+class Signatures(NamedTuple):
+    """numba's types of what a term gives: x and v are seen from a frame, the agents in an order of their own.
 
-    One that allocates nothing need count no references: that costs more than a pair potential for each array that the
-    functions it calls are handed.
+    ``act(t, x, v, u, frame, numbers, panels, first, second, count, order)`` adds to u and returns the power,
+    ``energy(t, x, v, frame, numbers, panels, first, second, count, order)`` returns the potential energy. The rows of
+    `frame` are its place and velocity, `order` has every agent's own number.
     """
-    counted: dict[str, Any] = {} if allocates else {"_nrt": False}
-    made = njit(cache=True, error_model="numpy", nogil=True, **counted)(function)
-    made.compile(signature)
-    made.disable_compile()
-    return made  # type: ignore[no-any-return]
+
+    act: Any
+    energy: Any
+
+
+@cache
+def signatures() -> Signatures:
+    """Both, once numba is asked for."""
+    from numba import float64, int64, uint32, uint64
+
+    matrix, vector, indices = float64[:, ::1], float64[::1], uint32[::1]
+    shared = (matrix, vector, matrix, indices, indices, int64, uint64[::1])
+    act, energy = float64(float64, matrix, matrix, matrix, *shared), float64(float64, matrix, matrix, *shared)
+    return Signatures(act, energy)
+
+
+def term_functions(
+    act: Callable[..., float], energy: Callable[..., float]
+) -> tuple[CompiledFunction, CompiledFunction]:
+    """Force and energy of a term, compiled so that compiled code may be handed them; `energy` must not allocate.
+
+    What allocates nothing need count no references: for each array that is handed on, that costs as much as the
+    potential of a pair.
+    """
+    options: dict[str, Any] = {"cache": True, "error_model": "numpy", "nogil": True}
+    made = njit(**options)(act), njit(**options, _nrt=False)(energy)
+    for function, signature in zip(made, signatures(), strict=True):
+        function.compile(signature)
+        function.disable_compile()
+    return made[0].dispatcher, made[1].dispatcher
 
 
 def _no_force(t, x, v, u, frame, numbers, panels, first, second, size, order):
@@ -57,7 +70,7 @@ def _no_energy(t, x, v, frame, numbers, panels, first, second, size, order):
 @cache
 def no_term() -> tuple[CompiledFunction, CompiledFunction]:
     """Force and energy of nothing."""
-    return compiled_as(ACT, _no_force), compiled_as(ENERGY, _no_energy)
+    return term_functions(_no_force, _no_energy)
 
 
 def listed_numbers(c1: float, c2: float, r: float, far: float, par: Any) -> Any:
@@ -74,8 +87,9 @@ def lift_listed(
 
     @cache
     def of(m: int) -> tuple[CompiledFunction, CompiledFunction]:
+        from numba.np.unsafe.ndarray import to_fixed_tuple
+
         @register_jitable
-        @named_for_its_cells
         def gather(x, limit, first, second, begin, end, kept, d, s2):
             count = 0
             for k in range(begin, end):
@@ -90,7 +104,6 @@ def lift_listed(
             return count
 
         @register_jitable
-        @named_for_its_cells
         def law(count, s2, w, a, par):
             for k in range(count):
                 w[k], a[k] = pair(s2[k], par)
@@ -130,6 +143,6 @@ def lift_listed(
             n = x.shape[0]
             return numbers[0] * (total + (n * (n - 1) // 2 - near) * numbers[3])
 
-        return compiled_as(ACT, act), compiled_as(ENERGY, energy, allocates=False)
+        return term_functions(act, energy)
 
     return of

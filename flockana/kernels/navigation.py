@@ -11,7 +11,7 @@ from math import cos, sin, sqrt
 
 import numpy as np
 
-from flockana.kernels.listed import ACT, ENERGY, CompiledFunction, compiled_as
+from flockana.kernels.listed import CompiledFunction, term_functions
 from flockana.kernels.sums import column_means, pull_to, squared_differences
 
 _MOVING, _UNIT, _GAINS, _OMEGA, _FACTOR, _PATH = range(6)
@@ -72,4 +72,4 @@ def energy(t, x, v, frame, numbers, panels, first, second, size, order):
 @cache
 def compiled() -> tuple[CompiledFunction, CompiledFunction]:
     """Force and energy, compiled when first asked for."""
-    return compiled_as(ACT, act), compiled_as(ENERGY, energy)
+    return term_functions(act, energy)
