@@ -15,7 +15,7 @@ from pathlib import Path
 
 from benchmarks.machine import cores, facts, notice, pin
 
-STUDIES = ("right_hand_side", "pairs", "engines", "runs", "precision", "costs", "million", "search", "others")
+STUDIES = ("right_hand_side", "pairs", "engines", "runs", "precision", "costs", "million", "zones", "search", "others")
 
 
 def main() -> int:

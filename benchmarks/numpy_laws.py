@@ -64,7 +64,7 @@ def by_all_pairs(law: Any, q: FloatArray, p: FloatArray) -> FloatArray:
     delta, relative = q[None, :, :] - q[:, None, :], p[None, :, :] - p[:, None, :]
     s2 = np.sum(delta**2, axis=2)
     z = _sigma_norm(a, s2)
-    adjacency = _bump(a, z) * (1.0 - np.eye(len(q)))
+    adjacency = _bump(a, z)  # of an agent and itself too, whose differences are 0
     n_ij = delta / np.sqrt(1.0 + a.eps * s2)[:, :, None]
     pull = np.sum((adjacency * _phi(a, z))[:, :, None] * n_ij, axis=1)
     consensus = np.sum(adjacency[:, :, None] * relative, axis=1)

@@ -7,6 +7,7 @@ import pytest
 
 import flockana as fl
 from flockana.base.errors import ArgumentError, FileError
+from flockana.lammps.script import nearest_weight
 from flockana.lattice import hexagonal_spiral
 from flockana.scenarios import scenario
 from tests.lammps.emulator import Lammps, read_data, read_table
@@ -107,7 +108,8 @@ TARGETS = [
 @pytest.mark.parametrize("law_of", [fl.Algorithm2, fl.Algorithm3])
 @pytest.mark.parametrize("target", TARGETS)
 def test_every_path_of_the_gamma_agent_pulls_as_the_law_does(tmp_path, law_of, target):
-    ensure_follows(law_of(target=target, gains=NO_CONSENSUS), start(7), tmp_path, order=1)
+    alpha = fl.AlphaInteraction(unit=3.0)  # in which a bounded pull counts
+    ensure_follows(law_of(alpha=alpha, target=target, gains=NO_CONSENSUS), start(7), tmp_path, order=1)
 
 
 def test_a_consensus_of_constant_weight_is_exact(tmp_path):
@@ -130,6 +132,20 @@ def test_a_consensus_that_is_missing_shows_in_both_residuals_and_the_nearest_sty
     assert energy(nearest) < 0.6 * energy(without)
     with pytest.raises(ArgumentError, match="from the input of Algorithm1"):
         fl.verify("alpha-flocking", without)
+
+
+@pytest.mark.parametrize("m", [1, 2, 3])
+def test_the_nearest_weight_is_nearest_among_evenly_spread_agents(m):
+    law = fl.Algorithm1()
+    s, error = nearest_weight(law.terms[0], m)
+    r = np.linspace(0.0, law.pair.range, 2001)[1:-1]
+    adjacency, x = law.pair.adjacency(law.pair.sigma_norm(r)), r / law.pair.range
+
+    def apart(exponent):
+        return float(np.sum(x ** (m - 1) * ((1.0 - x) ** (2.0 * exponent) - adjacency) ** 2))
+
+    assert apart(s) < min(apart(s + 0.01), apart(s - 0.01))
+    assert error == pytest.approx(np.abs((1.0 - x) ** (2.0 * s) - adjacency).max(), rel=1e-2)
 
 
 def test_what_is_missing_stands_in_script_text_and_record(tmp_path):
