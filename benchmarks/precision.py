@@ -1,0 +1,52 @@
+"""Work and precision: what each method needs for each tolerance, and how far off it then is."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from benchmarks.rows import Found, Row
+from benchmarks.runs import methods
+from benchmarks.timing import seconds_of
+from flockana.base.checks import FloatArray
+from flockana.dynamics.simulate import simulate
+from flockana.scenarios import scenario
+
+STUDY = "Work and precision, Fig. 10"
+TOLERANCES = tuple(10.0**-k for k in range(4, 13))
+STEPS = (0.04, 0.02, 0.01, 0.005, 0.0025)
+FINEST = 1e-13  # of the reference
+_SAMPLES = 61
+
+
+def study(*, quick: bool) -> Found:
+    """Every method at nine tolerances, and RK4 at five steps; every third of them where a few minutes must do."""
+    case = scenario("paper-flocking")
+    reference = _run(case, {"rtol": FINEST}).q
+    choices = [(name, "rtol", tolerance) for name in methods() for tolerance in TOLERANCES[:: 3 if quick else 1]]
+    choices += [("RK4", "dt", dt) for dt in STEPS[:: 2 if quick else 1]]
+    series = []
+    for method, knob, setting in choices:
+        options = {"method": method, knob: setting}
+        run = _run(case, options)
+        seconds = float(np.median([seconds_of(lambda o=options: _run(case, o)) for _ in range(1 if quick else 3)]))
+        error = _error(run.q, reference, case.law.alpha.d) if run.status == "complete" else np.inf
+        series.append({"method": method, knob: setting, "error": error, "seconds": seconds})
+    return Found([_row(point) for point in series], (), {"work-precision": series})
+
+
+def _run(case: Any, options: dict[str, Any]) -> Any:
+    times = np.linspace(*case.t_span, _SAMPLES)
+    return simulate(case.law, case.q0, case.p0, case.t_span, t_eval=times, **options)
+
+
+def _error(q: FloatArray, reference: FloatArray, d: float) -> float:
+    """The farthest that any agent is, at any sample, from where the reference has it, in units of d."""
+    return float(np.linalg.norm(q - reference, axis=2).max() / d)
+
+
+def _row(point: dict[str, Any]) -> Row:
+    knob = "rtol" if "rtol" in point else "dt"
+    name = f"{point['method']}, {knob} {point[knob]:g}"
+    return Row(STUDY, name, 150, 1e3 * point["seconds"], "ms", note=f"farthest off by {point['error']:.2g} d")
