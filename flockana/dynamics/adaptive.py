@@ -47,9 +47,9 @@ def adaptive(
     switches = Switches(law, q0) if isinstance(law, SwitchedLaw) and law.located else None
     engine = None if switches is not None else engine_of(law, q0, p0, t_span[0], method, rtol, floor)
     if engine is not None:
-        wanted, end = None if keep is None else frozenset(keep.tolist()), np.array([t_span[1]])
-        due = np.empty(0) if keep is None else keep
-        yield from stepped(engine, q0, p0, end, due, wanted, tally, lambda status, t: _gave_up(method, status, t))
+        ends, between = np.array([t_span[1]]), np.empty(0) if keep is None else keep
+        marked = None if keep is None else frozenset(keep.tolist())
+        yield from stepped(engine, q0, p0, ends, between, marked, tally, lambda *at: _gave_up(method, *at))
         return
     method = method.removeprefix(SCIPY)
     flow: Flow = law.flow if switches is None else switches.flow

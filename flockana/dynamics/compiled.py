@@ -148,18 +148,16 @@ def stepped(
         yield first
     stops, due = stops[stops > first.t], due[due > first.t]
     while stops.size:
-        status, t, y, f, h, evaluations, redone, passed, sampled, steps, between, done = engine.run(
-            now, stops, due, ledger
-        )
+        status, t, y, f, h, evaluations, redone, passed, sampled, steps, between = engine.run(now, stops, due, ledger)
         tally.evaluations, tally.notes["redone"] = tally.evaluations + evaluations, tally.notes["redone"] + redone
-        on_the_way = deque((at, *one) for at, *one in zip(due.tolist(), between, done.tolist(), strict=False))
-        for at, q, p, u, work in zip(*steps, strict=True):
+        on_the_way = deque(zip(due.tolist(), *between, strict=False))
+        for at, (q, p, u), work in zip(steps[0].tolist(), *steps[1:], strict=True):
             while on_the_way and on_the_way[0][0] <= at:
-                between_at, state, change = on_the_way.popleft()
-                if between_at < at:
-                    yield Sample(between_at, *state, {"work": np.array(change)})
+                earlier, seen, done = on_the_way.popleft()
+                if earlier < at:
+                    yield Sample(earlier, seen[0], seen[1], seen[2], {"work": np.array(done)})
             tally.steps += 1
-            yield Sample(float(at), q, p, u, {"work": np.array(work)}, wanted is None or float(at) in wanted)
+            yield Sample(at, q, p, u, {"work": np.array(work)}, wanted is None or at in wanted)
         if status != RUNNING:
             tally.fail(reason(status, t + h))
             return

@@ -32,9 +32,9 @@ def rk4(
     """
     engine = engine_of(law, q0, p0, t_span[0], "RK4")
     if engine is not None:
-        times, kept = zip(*_stops(t_span, dt, keep), strict=True)
-        wanted, stops = frozenset(t for t, flag in zip(times, kept, strict=True) if flag), np.array(times)
-        yield from stepped(engine, q0, p0, stops, np.empty(0), wanted, tally, lambda _, t: _left(t, dt))
+        stops = dict(_stops(t_span, dt, keep))
+        marked = frozenset(t for t, wanted in stops.items() if wanted)
+        yield from stepped(engine, q0, p0, np.array(list(stops)), np.empty(0), marked, tally, lambda _, t: _left(t, dt))
         return
     energetic, encounters = has_energy(law, t_span[0], q0, p0), Encounters.of(law, len(q0))
     t, state, work = t_span[0], State(q0.copy(), p0.copy(), np.empty(0)), 0.0

@@ -1,4 +1,4 @@
-"""Integrate a law: adaptive solvers, compiled or scipy's, a fixed-step RK4 for large flocks, or the steps of a discrete law.
+"""Integrate a law: adaptive solvers, a fixed-step RK4 for large flocks, or the steps of a discrete law.
 
 Beside the state, ∫ dH/dt is integrated as one more variable, so that every run measures its own error: the residual
 of the energy balance is `Trajectory.energy_residual`.

@@ -44,15 +44,15 @@ def signatures() -> Signatures:
 
 
 def term_functions(
-    act: Callable[..., float], energy: Callable[..., float]
+    act: Callable[..., float], energy: Callable[..., float], *, allocates: bool = True
 ) -> tuple[CompiledFunction, CompiledFunction]:
-    """Force and energy of a term, compiled so that compiled code may be handed them; `energy` must not allocate.
+    """Force and energy of a term, compiled so that compiled code may be handed them.
 
-    What allocates nothing need count no references: for each array that is handed on, that costs as much as the
-    potential of a pair.
+    An energy that allocates nothing need count no references: for each array that it hands on, that costs as much as
+    the potential of a pair.
     """
     options: dict[str, Any] = {"cache": True, "error_model": "numpy", "nogil": True}
-    made = njit(**options)(act), njit(**options, _nrt=False)(energy)
+    made = njit(**options)(act), njit(**options, **({} if allocates else {"_nrt": False}))(energy)
     for function, signature in zip(made, signatures(), strict=True):
         function.compile(signature)
         function.disable_compile()
@@ -143,6 +143,6 @@ def lift_listed(
             n = x.shape[0]
             return numbers[0] * (total + (n * (n - 1) // 2 - near) * numbers[3])
 
-        return term_functions(act, energy)
+        return term_functions(act, energy, allocates=False)
 
     return of

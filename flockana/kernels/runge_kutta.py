@@ -45,18 +45,17 @@ def frame_at(t, start, origin, drift):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def rate_of(t, y, f, shape, acts, numbers, panels, view, reach, pairs, order):
+def rate_of(t, y, f, system, pairs):
     """Write the rate of the vector y into f; returns the pairs, listed anew if need be."""
-    n, m = shape
+    acts, _, numbers, panels, (n, m), view, _, reach, order = system
     size = n * m
-    x, v = y[:size].reshape(n, m), y[size : 2 * size].reshape(n, m)
+    x, v, u = y[:size].reshape(n, m), y[size : 2 * size].reshape(n, m), f[size : 2 * size].reshape(n, m)
     if reach[0] > 0.0:
         pairs = kept_up(x, reach[0], reach[1], pairs)
     first, second, count, _, _ = pairs
-    frame = frame_at(t, *view)
+    frame, power = frame_at(t, *view), 0.0
     for k in range(size):
         f[k], f[size + k] = y[size + k], 0.0
-    u, power = f[size : 2 * size].reshape(n, m), 0.0
     for k in range(len(acts)):
         power += acts[k](t, x, v, u, frame, numbers[k], panels[k], first, second, count, order)
     f[2 * size] = power
@@ -64,9 +63,9 @@ def rate_of(t, y, f, shape, acts, numbers, panels, view, reach, pairs, order):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def energy_of(t, y, shape, moving, energies, numbers, panels, view, pairs, order):
+def energy_of(t, y, system, pairs):
     """H of a vector whose pairs are listed: potential energies, and the kinetic one in the law's frame."""
-    n, m = shape
+    _, energies, numbers, panels, (n, m), view, moving, _, order = system
     x, v = y[: n * m].reshape(n, m), y[n * m : 2 * n * m].reshape(n, m)
     first, second, count, _, _ = pairs
     frame = frame_at(t, *view)
@@ -74,6 +73,28 @@ def energy_of(t, y, shape, moving, energies, numbers, panels, view, pairs, order
     for k in range(len(energies)):
         total += energies[k](t, x, v, frame, numbers[k], panels[k], first, second, count, order)
     return total
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def stages_of(t, h, y, rates, reached, trial, method, begin, end, system, pairs):
+    """Stages `begin` to `end` of a step; `reached` is its end once the last stage of the step itself is through."""
+    a, c, stages = method
+    for s in range(begin, end):
+        into = reached if s == stages else trial
+        combine(y, h, a[s], rates, s, into)
+        pairs = rate_of(t + c[s] * h, into, rates[s], system, pairs)
+    return pairs
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def interpolated(theta, h, y, rates, interpolant, trial):
+    """The vector at a share θ of the step."""
+    count, powers = interpolant.shape
+    weights = np.zeros(count)
+    for j in range(count):
+        for k in range(powers - 1, -1, -1):
+            weights[j] = (weights[j] + interpolant[j, k]) * theta
+    combine(y, h, weights, rates, count, trial)
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
@@ -106,16 +127,23 @@ def error_of(y, reached, h, estimates, rates, size, rtol, floor):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def first_step(h0, y, f, ahead, span, exponent, size, rtol, floor):
-    """(length to look ahead by, nan) or with the rate there (first step, its start), as scipy's solvers choose it."""
-    d0, d1, d2 = 0.0, 0.0, 0.0
+def _weighed(a, b, y, size, rtol, floor):
+    """The root mean square of a − b over what is allowed."""
+    total = 0.0
     for k in range(y.size):
-        scale = allowed(k, size, floor) + abs(y[k]) * rtol
-        d0, d1 = d0 + (y[k] / scale) ** 2, d1 + (f[k] / scale) ** 2
-        d2 += ((ahead[k] - f[k]) / scale) ** 2
-    d0, d1 = sqrt(d0 / y.size), sqrt(d1 / y.size)
-    if h0 == 0.0:
-        return min(1e-6 if d0 < 1e-5 or d1 < 1e-5 else 0.01 * d0 / d1, span)
-    d2 = sqrt(d2 / y.size) / h0
-    h1 = max(1e-6, h0 * 1e-3) if d1 <= 1e-15 and d2 <= 1e-15 else (0.01 / max(d1, d2)) ** -exponent
-    return min(100.0 * h0, h1, span)
+        total += ((a[k] - b[k]) / (allowed(k, size, floor) + abs(y[k]) * rtol)) ** 2
+    return sqrt(total / y.size)
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def first_step(t, span, y, rates, exponent, rtol, floor, trial, system, pairs):
+    """(first step, pairs), as scipy's solvers choose it; the second rate is overwritten."""
+    size, rest = y.size // 2, np.zeros(y.size)
+    d0, d1 = _weighed(y, rest, y, size, rtol, floor), _weighed(rates[0], rest, y, size, rtol, floor)
+    ahead = min(1e-6 if d0 < 1e-5 or d1 < 1e-5 else 0.01 * d0 / d1, span)
+    for k in range(y.size):
+        trial[k] = y[k] + ahead * rates[0, k]
+    pairs = rate_of(t + ahead, trial, rates[1], system, pairs)
+    d2 = _weighed(rates[1], rates[0], y, size, rtol, floor) / ahead
+    h = max(1e-6, ahead * 1e-3) if d1 <= 1e-15 and d2 <= 1e-15 else (0.01 / max(d1, d2)) ** -exponent
+    return min(100.0 * ahead, h, span), pairs

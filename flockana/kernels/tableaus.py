@@ -70,7 +70,7 @@ def _dop853(solver: Any) -> Tableau:
     interpolant, ways = np.zeros((count, len(rows))), ((0.0, 1.0), (1.0, -1.0))
     power = np.ones(1)
     for k, row in enumerate(rows):
-        power = polynomial.polymul(power, ways[k % 2])
+        power = np.asarray(polynomial.polymul(power, ways[k % 2]), dtype=np.float64)
         interpolant[:, : len(power) - 1] += np.outer(row, power[1:])
     estimates = np.array([solver.E5, solver.E3])
     exponent = -1.0 / (solver.error_estimator_order + 1)

@@ -35,7 +35,7 @@ def _grown(first, second, needed):
 @njit(cache=True, error_model="numpy", nogil=True)
 def _list_by_grid(q, reach, order, start, rows, first, second):
     """The pairs of a flock sorted into a grid: cell by cell, each with what follows it."""
-    n, m = q.shape
+    m = q.shape[1]
     x, limit, count = q[order], max(reach * reach, 5e-324), 0
     for cell in range(start.size - 2):
         begin, end = start[cell], start[cell + 1]
@@ -89,7 +89,7 @@ def list_pairs(q, reach, first, second):
 def strayed(q, reference, mean):
     """A bound of the squared distance that any agent has gone from its place, seen from the flock's mean motion.
 
-    `mean` is that of the places. The bound is the diagonal of the box of all ways, so at most m times the largest of their squares.
+    `mean` is that of the places. The bound is the diagonal of the box of all ways: at most m times the largest square.
     """
     n, m = q.shape
     a, b, lanes, whole = q.reshape(n * m), reference.reshape(n * m), np.zeros(LANES), n * m // LANES * LANES
@@ -112,7 +112,7 @@ def strayed(q, reference, mean):
 @njit(cache=True, error_model="numpy", nogil=True)
 def empty_list(n):
     """(first, second, count, places, their mean) of a list that is yet to be made."""
-    return np.empty(_ROOM * n, np.uint32), np.empty(_ROOM * n, np.uint32), 0, np.empty((0, 0)), np.empty(0)
+    return np.empty(_ROOM * n, np.uint32), np.empty(_ROOM * n, np.uint32), np.int64(0), np.empty((0, 0)), np.empty(0)
 
 
 @njit(cache=True, error_model="numpy", nogil=True)

@@ -49,7 +49,10 @@ class PairTerm(Term):
 
     def compiled(self, m: int) -> TermKernel | None:  # noqa: D102
         pair = self.pair
-        if not (np.isfinite(pair.range) and all(getattr(type(pair), name) is getattr(PairInteraction, name) for name in _SUMS)):
+        if not (
+            np.isfinite(pair.range)
+            and all(getattr(type(pair), name) is getattr(PairInteraction, name) for name in _SUMS)
+        ):
             return None
         numbers = listed_numbers(self.stiffness, self.damping, pair.range, pair.far_potential, pair.par)
         return TermKernel(*pair.kernels.listed(m), numbers, pair.panels, pair.range)
