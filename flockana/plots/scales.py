@@ -19,6 +19,7 @@ from matplotlib.transforms import IdentityTransform
 
 from flockana.base.checks import FloatArray
 
+Size = tuple[float, float, float]  # width, height, descent
 _RAISED = str.maketrans("0123456789-−", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁻")
 _POWER_PAD = 3.0  # points to the power of ten that numbers share
 _OUTSIDE = 0.5  # pixels by which a tick may lie outside the axes, from rounding
@@ -77,11 +78,18 @@ class PlainScale(Artist):
         The axes.
     name : {"x", "y"}
         Which scale; where its ticks are and how they look is what matplotlib would have drawn.
+    sizes : dict, optional
+        Sizes of texts that are known, for scales that share them.
     """
 
-    def __init__(self, ax: Any, name: str) -> None:
+    def __init__(self, ax: Any, name: str, sizes: dict[tuple[str, float], Size] | None = None) -> None:
         super().__init__()
-        self.ax, self.name, self.scale = ax, name, getattr(ax, f"{name}axis")
+        self.ax, self.name, self.scale, self._known = (
+            ax,
+            name,
+            getattr(ax, f"{name}axis"),
+            {} if sizes is None else sizes,
+        )
         self.side = "right" if name == "y" and self.scale.get_tick_params().get("right") else "left"
         self.set_zorder(0.5)  # below what is drawn, as the style has it
         self.scale.set_visible(False)
@@ -165,13 +173,19 @@ class PlainScale(Artist):
 
     def _sizes(self, renderer: Any) -> Any:
         font = self._font()
-        return lambda text: renderer.get_text_width_height_descent(text, font, ismath=False)
+        return lambda text: self._size(renderer, text, font)
 
-    def _label_size(self, renderer: Any) -> tuple[float, float, float]:
-        label = self.scale.label
-        width, _, _ = renderer.get_text_width_height_descent(label.get_text(), label.get_fontproperties(), ismath=False)
-        _, height, descent = renderer.get_text_width_height_descent("lp", label.get_fontproperties(), ismath=False)
-        return width, height, descent
+    def _size(self, renderer: Any, text: str, font: FontProperties) -> Size:
+        """Width, height and descent of a text, measured once."""
+        key = text, font.get_size_in_points()
+        if key not in self._known:
+            self._known[key] = renderer.get_text_width_height_descent(text, font, ismath=False)
+        return self._known[key]
+
+    def _label_size(self, renderer: Any) -> Size:
+        font = self.scale.label.get_fontproperties()
+        _, height, descent = self._size(renderer, "lp", font)
+        return self._size(renderer, self.scale.get_label_text(), font)[0], height, descent
 
     def _depth(self, renderer: Any, kinds: tuple[Ticks, ...]) -> float:
         """Pixels from the axes to the far side of marks and numbers."""
@@ -280,4 +294,5 @@ def plain_scales(figure: Any) -> dict[Any, tuple[PlainScale, ...]]:
         What is otherwise done.
     """
     flat = (ax for outer in figure.axes for ax in (outer, *outer.child_axes) if ax.name == "rectilinear")
-    return {ax: tuple(PlainScale(ax, name) for name in "xy") for ax in flat}
+    sizes: dict[tuple[str, float], Size] = {}
+    return {ax: tuple(PlainScale(ax, name, sizes) for name in "xy") for ax in flat}
