@@ -18,6 +18,7 @@ from flockana.plots.style import (
     PURPLE,
     STRAIN,
     VERMILLION,
+    colour_bar,
     ensure_axes,
     finish,
     frame_space,
@@ -120,16 +121,8 @@ def _draw_links(ax: Any, segments: Any, strain: Any, limit: float | None, raster
     coloured.set_array(values)
     ax.add_collection(coloured)
     extend = ("min" if values.min() < -end else "") + ("max" if values.max() > end else "")
-    scale = ax.get_figure().colorbar(
-        coloured,
-        ax=ax,
-        label="strain of links (length − d)/d",
-        shrink=0.75,
-        aspect=28,
-        pad=0.1 if segments.shape[2] == 3 else 0.03,
-        extend={"": "neither", "minmax": "both"}.get(extend, extend),
-    )
-    scale.outline.set_visible(False)
+    ends = {"": "neither", "minmax": "both"}.get(extend, extend)
+    colour_bar(ax, coloured, "strain of links (length − d)/d", extend=ends)
 
 
 def collapse(diagram: CollapseDiagram, *, ax: Axes | None = None) -> Axes:
@@ -157,7 +150,7 @@ def collapse(diagram: CollapseDiagram, *, ax: Axes | None = None) -> Axes:
         axes.scatter(n[failed], ratio[failed], marker="_", color=MUTED, s=30, label="no equilibrium found")
     onset = diagram.onset()
     axes.plot(diagram.sizes, onset, color=INK, linestyle="--", linewidth=1.0, label="onset")
-    axes.get_figure().colorbar(dots, ax=axes, label="least distance over d", aspect=28).outline.set_visible(False)
+    colour_bar(axes, dots, "least distance over d", share=1.0)
     return _over_size(axes, diagram.sizes.tolist(), "c1γ/c1α")
 
 

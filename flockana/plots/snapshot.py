@@ -27,6 +27,7 @@ from flockana.plots.style import (
     PURPLE,
     STRAIN,
     VERMILLION,
+    colour_bar,
     ensure_axes,
     frame_space,
     in_plane,
@@ -204,10 +205,7 @@ def _links(ax: Any, x: FloatArray, points: FloatArray, pairs: Any, d: Any, r: fl
     coloured.set_array(strain[order])
     ax.add_collection(coloured)
     if bar:
-        label, pad = "strain (length − d)/d", 0.12 if x.shape[1] == 3 else 0.03
-        ends = "min" if limit < 1.0 else "max"
-        scale = ax.get_figure().colorbar(coloured, ax=ax, extend=ends, shrink=0.75, aspect=28, pad=pad, label=label)
-        scale.outline.set_visible(False)
+        colour_bar(ax, coloured, "strain (length − d)/d", extend="min" if limit < 1.0 else "max")
 
 
 def _arrowheads(ax: Any, x: FloatArray, pairs: Any) -> None:

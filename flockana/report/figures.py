@@ -2,23 +2,19 @@
 
 from __future__ import annotations
 
-import base64
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from io import BytesIO
 
 import numpy as np
 from matplotlib.figure import Figure
-from PIL import Image
 
 from flockana import plots
 from flockana.base.modules import modules
 from flockana.dynamics.trajectory import Trajectory
 from flockana.plots.snapshot import drawn_law
+from flockana.report.image import png
 from flockana.scenarios.findings import component_counts
-
-_DPI = 125
 
 
 @dataclass(frozen=True)
@@ -98,20 +94,6 @@ def flock_pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
 
 def _png(draw: Callable[[Figure, Trajectory], None], run: Trajectory, size: tuple[float, float]) -> str:
     return png(lambda figure: draw(figure, run), size)
-
-
-def png(draw: Callable[[Figure], None], size: tuple[float, float]) -> str:
-    """A figure in flockana's look, as a ``data:`` address."""
-    with plots.style():
-        figure = Figure(figsize=size, layout="constrained")  # not pyplot's: nothing to close, safe in any process
-        draw(figure)
-        buffer = BytesIO()
-        figure.savefig(buffer, format="png", dpi=_DPI)
-    small = BytesIO()  # a palette makes drawings three times smaller, and no eye can tell
-    Image.open(buffer).convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(
-        small, "png", optimize=True
-    )
-    return "data:image/png;base64," + base64.b64encode(small.getvalue()).decode("ascii")
 
 
 def _snapshots(figure: Figure, run: Trajectory) -> None:

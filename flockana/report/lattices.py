@@ -10,7 +10,8 @@ from matplotlib.figure import Figure
 
 from flockana import plots
 from flockana.lattice import harborth, hexagonal_spiral, links
-from flockana.report.figures import Picture, png
+from flockana.report.figures import Picture
+from flockana.report.image import png
 from flockana.report.pages import Page
 from flockana.theorems import Verdict
 

@@ -15,7 +15,8 @@ from flockana.environment.targets import CircleTarget, SineTarget, StaticTarget
 from flockana.equilibria import find_equilibrium
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.report.figures import Picture, png
+from flockana.report.figures import Picture
+from flockana.report.image import png
 from flockana.report.pages import Page
 from flockana.scenarios import scenario, scenarios
 from flockana.stability import Linearisation, linearise

@@ -12,7 +12,8 @@ from flockana import plots
 from flockana.base.errors import ArgumentError
 from flockana.ensemble import shares
 from flockana.ensemble.dataset import to_dataset
-from flockana.report.figures import Picture, png
+from flockana.report.figures import Picture
+from flockana.report.image import png
 from flockana.report.surveys import Survey, SurveyResult, request
 from flockana.scenarios import Scenario, scenario, scenarios
 from flockana.scenarios.scenario import SOURCE

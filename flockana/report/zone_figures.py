@@ -7,7 +7,8 @@ from matplotlib.figure import Figure
 from flockana import plots
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.bearing_distance import ZoneFlocking
-from flockana.report.figures import Picture, png
+from flockana.report.figures import Picture
+from flockana.report.image import png
 from flockana.scenarios.findings import component_counts
 
 LAWS = (ZoneFlocking,)
