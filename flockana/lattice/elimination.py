@@ -48,11 +48,13 @@ class Elimination:
     least : float, optional
         Replace eigenvalues of fronts by their moduli, and by `least` where these are smaller: `solve` is then that of a
         positive definite matrix, A itself if A is positive definite enough.
+    definite : bool
+        Give up at the first front that is not positive definite: A is not either.
 
     Raises
     ------
     SolverError
-        Without `least`, if a pivot is zero to rounding, so that it has no sign.
+        Without `least`, if a pivot is zero to rounding, so that it has no sign; with `definite`, if A is not.
 
     Examples
     --------
@@ -64,7 +66,9 @@ class Elimination:
     (1, [-1.0, -2.0])
     """
 
-    def __init__(self, matrix: Any, q: FloatArray, *, keep: bool = True, least: float | None = None) -> None:
+    def __init__(
+        self, matrix: Any, q: FloatArray, *, keep: bool = True, least: float | None = None, definite: bool = False
+    ) -> None:
         n, m = q.shape
         depth = int(np.ceil(np.log2(max(n / _LEAF, 1.0))))
         nodes = list(_bottom_up(1, 2**depth))
@@ -73,7 +77,7 @@ class Elimination:
         turns = turn[_dissected(matrix, q, depth)]
         self._order = (m * np.argsort(turns, kind="stable")[:, None] + np.arange(m)).ravel()
         self._matrix = matrix.tocsr()[self._order][:, self._order].tocsr()
-        self._least, self._place = least, np.zeros(n * m, dtype=np.int64)
+        self._least, self._definite, self._place = least, definite, np.zeros(n * m, dtype=np.int64)
         self.negative, self._fronts = 0, list[_Front]()
         waiting: list[tuple[Indices, FloatArray]] = []  # what the last fronts left on their boundaries
         ends = m * np.cumsum(np.bincount(turns, minlength=len(nodes)))
@@ -136,6 +140,8 @@ class Elimination:
             factor, failed = dpotrf(block, lower=1)
             if not failed:
                 return dtrtri(factor, lower=1)[0], None
+            if self._definite:
+                raise SolverError("the matrix is not positive definite")
         sizes, vectors = np.linalg.eigh(block)
         self.negative += int(np.sum(sizes < 0.0))
         if self._least is not None:
