@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.rows import Found, Row
-from benchmarks.runs import methods
+from benchmarks.rows import Asked, Found, Row
+from benchmarks.runs import methods, peer
 from benchmarks.timing import seconds_of
 from flockana.base.checks import FloatArray
 from flockana.dynamics.simulate import simulate
@@ -33,7 +33,35 @@ def study(*, quick: bool) -> Found:
         seconds = float(np.median([seconds_of(lambda o=options: _run(case, o)) for _ in range(1 if quick else 3)]))
         error = _error(run.q, reference, case.law.alpha.d) if run.status == "complete" else np.inf
         series.append({"method": method, knob: setting, "error": error, "seconds": seconds})
-    return Found([_row(point) for point in series], (), {"work-precision": series})
+    rows = [_row(point) for point in series] + _at_equal_error(series)
+    return Found(rows, (), {"work-precision": series})
+
+
+def _at_equal_error(series: list[dict[str, Any]]) -> list[Row]:
+    """Each compiled method against solve_ivp's: what it takes, on its own line, for the errors that the other made."""
+    rows = []
+    for method in methods():
+        other = peer(method)
+        if other is None:
+            continue
+        ours, theirs = (
+            np.array(
+                sorted((p["error"], p["seconds"]) for p in series if p["method"] == name and p["error"] < np.inf)
+            ).T
+            for name in (method, other)
+        )
+        if not ours.size or not theirs.size:
+            continue
+        reached = (theirs[0] >= ours[0, 0]) & (theirs[0] <= ours[0, -1])
+        taken = np.exp(np.interp(np.log(theirs[0, reached]), *np.log(ours)))
+        gains = theirs[1, reached] / taken
+        if not gains.size:
+            continue
+        asked = Asked(">=", 10.0) if method == "DOP853" else None
+        name, worst = f"{method} at equal error: times faster, median of {len(gains)}", f"at least {gains.min():.3g}"
+        value = 1e3 * float(np.median(taken))
+        rows.append(Row(STUDY, name, 150, value, "ms", other, float(np.median(gains)), asked, worst))
+    return rows
 
 
 def _run(case: Any, options: dict[str, Any]) -> Any:
