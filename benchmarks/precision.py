@@ -17,6 +17,7 @@ STUDY = "Work and precision, Fig. 10"
 TOLERANCES = tuple(10.0**-k for k in range(4, 13))
 STEPS = (0.04, 0.02, 0.01, 0.005, 0.0025)
 FINEST = 1e-13  # of the reference
+LONGEST = 10.0  # seconds of a run, from which on a method is not asked for more
 _SAMPLES = 61
 
 
@@ -24,21 +25,32 @@ def study(*, quick: bool) -> Found:
     """Every method at nine tolerances, and RK4 at five steps; every third of them where a few minutes must do."""
     case = scenario("paper-flocking")
     reference = _run(case, {"rtol": FINEST}).q
-    choices = [(name, "rtol", tolerance) for name in methods() for tolerance in TOLERANCES[:: 3 if quick else 1]]
-    choices += [("RK4", "dt", dt) for dt in STEPS[:: 2 if quick else 1]]
-    series = []
-    for method, knob, setting in choices:
-        options = {"method": method, knob: setting}
-        run = _run(case, options)
-        seconds = float(np.median([seconds_of(lambda o=options: _run(case, o)) for _ in range(1 if quick else 3)]))
-        error = _error(run.q, reference, case.law.alpha.d) if run.status == "complete" else np.inf
-        series.append({"method": method, knob: setting, "error": error, "seconds": seconds})
-    rows = [_row(point) for point in series] + _at_equal_error(series)
-    return Found(rows, (), {"work-precision": series})
+    lines = [(name, "rtol", TOLERANCES[:: 3 if quick else 1]) for name in methods()]
+    lines.append(("RK4", "dt", STEPS[:: 2 if quick else 1]))
+    series, notices = list[dict[str, Any]](), list[str]()
+    for method, knob, settings in lines:
+        for setting in settings:
+            options = {"method": method, knob: setting}
+            run = _run(case, options)
+            seconds = float(np.median([seconds_of(lambda o=options: _run(case, o)) for _ in range(1 if quick else 3)]))
+            error = _error(run.q, reference, case.law.alpha.d) if run.status == "complete" else np.inf
+            series.append({"method": method, knob: setting, "error": error, "seconds": seconds})
+            if seconds > LONGEST and setting != settings[-1]:
+                notices.append(
+                    f"{method} below {knob} {setting:g}: a run takes {seconds:.0f} s, and more from there on"
+                )
+                break
+    return Found([_row(point) for point in series] + at_equal_error(series), notices, {"work-precision": series})
 
 
-def _at_equal_error(series: list[dict[str, Any]]) -> list[Row]:
-    """Each compiled method against solve_ivp's: what it takes, on its own line, for the errors that the other made."""
+def at_equal_error(series: list[dict[str, Any]]) -> list[Row]:
+    """Each compiled method against solve_ivp's: what it takes, on its own line, for the errors that the other made.
+
+    Parameters
+    ----------
+    series : list of dict
+        Method, error and seconds of each run.
+    """
     rows = []
     for method in methods():
         other = peer(method)

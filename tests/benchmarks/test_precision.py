@@ -15,7 +15,7 @@ def line(name, factor, exponents):
 def gain_of(monkeypatch, series):
     monkeypatch.setattr(precision, "methods", lambda: ("DOP853", "scipy-DOP853"))
     monkeypatch.setattr(precision, "peer", lambda name: "scipy-DOP853" if name == "DOP853" else None)
-    return precision._at_equal_error(series)
+    return precision.at_equal_error(series)
 
 
 def test_a_method_that_is_twelve_times_cheaper_is_told_so_whatever_its_tolerances_gave(monkeypatch):
