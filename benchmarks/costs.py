@@ -9,8 +9,9 @@ import time
 from pathlib import Path
 from typing import Any
 
-from benchmarks.flocks import lattice
+from benchmarks.flocks import Flock, lattice
 from benchmarks.rows import Asked, Found, Row
+from flockana.dynamics.simulate import simulate
 from flockana.environment.targets import StaticTarget
 from flockana.laws.olfati_saber import Algorithm2
 
@@ -42,22 +43,20 @@ def _measured(n: int) -> dict[str, Any]:
 
 def _measure(n: int) -> dict[str, float]:
     """CPU seconds and the growth of the peak of resident memory, in MB, of an evaluation and of a step."""
-    import flockana as fl
-
     law = Algorithm2(target=StaticTarget((0.0, 0.0)))
 
-    def flow(flock: Any, times: int) -> None:
+    def flow(flock: Flock, times: int) -> None:
         for _ in range(times):
             law.flow(0.0, *flock)
 
-    def steps(flock: Any, times: int) -> None:
+    def steps(flock: Flock, times: int) -> None:
         end = times * DT
-        fl.simulate(law, *flock, (0.0, end), method="RK4", dt=DT, t_eval=[end])
+        simulate(law, flock[0], flock[1], (0.0, end), method="RK4", dt=DT, t_eval=[end])
 
     small = lattice(100)
     flow(small, 1)
     steps(small, 1)
-    flock, found = lattice(n), {"n": n}
+    flock, found = lattice(n), dict[str, float](n=n)
     for name, work in (("flow", flow), ("step", steps)):
         before = _memory(peak=False)
         work(flock, 1)

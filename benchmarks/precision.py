@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -32,7 +33,7 @@ def study(*, quick: bool) -> Found:
         for setting in settings:
             options = {"method": method, knob: setting}
             run = _run(case, options)
-            seconds = float(np.median([seconds_of(lambda o=options: _run(case, o)) for _ in range(1 if quick else 3)]))
+            seconds = float(np.median([seconds_of(partial(_run, case, options)) for _ in range(1 if quick else 3)]))
             error = _error(run.q, reference, case.law.alpha.d) if run.status == "complete" else np.inf
             series.append({"method": method, knob: setting, "error": error, "seconds": seconds})
             if seconds > LONGEST and setting != settings[-1]:

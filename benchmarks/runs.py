@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from benchmarks.flocks import gas
@@ -44,7 +46,7 @@ def _figure_10(rounds: int) -> list[Row]:
     def run(method: str) -> object:
         return simulate(case.law, case.q0, case.p0, case.t_span, method=method, rtol=TOLERANCE)
 
-    found = interleaved({name: lambda name=name: run(name) for name in methods()}, rounds=rounds)
+    found = interleaved({name: partial(run, name) for name in methods()}, rounds=rounds)
     rows = []
     for name, seconds in found.items():
         other = peer(name)
