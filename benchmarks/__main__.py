@@ -16,7 +16,20 @@ from typing import Any
 
 from benchmarks.machine import cores, facts, notice, pin
 
-STUDIES = ("right_hand_side", "pairs", "engines", "runs", "precision", "costs", "million", "zones", "search", "others")
+STUDIES = (
+    "right_hand_side",
+    "pairs",
+    "laws",
+    "engines",
+    "runs",
+    "precision",
+    "costs",
+    "million",
+    "zones",
+    "search",
+    "commands",
+    "others",
+)
 
 
 def main() -> int:
