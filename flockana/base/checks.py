@@ -164,3 +164,16 @@ def ensure_count(name: str, value: Any) -> int:
     if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 1:
         raise ArgumentError(f"{name} = {value!r}: expected a whole number >= 1")
     return int(value)
+
+
+def ensure_dimension(m: int) -> int:
+    """Return the dimension m if it is 1, 2 or 3.
+
+    Examples
+    --------
+    >>> ensure_dimension(2)
+    2
+    """
+    if m not in (1, 2, 3):
+        raise ArgumentError(f"m = {m!r}: expected a dimension of 1, 2 or 3")
+    return int(m)

@@ -7,7 +7,7 @@ def scenarios_command() -> None:
     """List the catalogue of published simulations."""
     from rich.console import Console
 
-    from flockana.report.console import scenario_table
+    from flockana.report.catalogues import scenario_table
 
     Console(highlight=False).print(scenario_table())
 
@@ -16,6 +16,6 @@ def theorems_command() -> None:
     """List the theorems and errata that can be checked."""
     from rich.console import Console
 
-    from flockana.report.console import theorem_table
+    from flockana.report.catalogues import theorem_table
 
     Console(highlight=False).print(theorem_table())

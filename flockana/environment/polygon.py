@@ -8,12 +8,12 @@ from math import inf, sqrt
 from typing import Any, ClassVar
 
 import numpy as np
-from numba.extending import register_jitable
 
 from flockana.base.checks import FloatArray, ensure_points
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 from flockana.environment.obstacles import Obstacle
+from flockana.kernels.compiling import register_jitable
 from flockana.kernels.obstacles import lift_obstacle, no_turn
 
 

@@ -1,6 +1,5 @@
 """Equilibria of laws with a potential: solvers, classification, searches, and barriers against collisions."""
 
-from __future__ import annotations
+import lazy_loader
 
-from flockana.equilibria.solve import Equilibrium as Equilibrium
-from flockana.equilibria.solve import find_equilibrium as find_equilibrium
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -10,15 +10,13 @@ from math import ceil, floor, inf, isfinite, pi, sin, sqrt
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_count
+from flockana.base.checks import FloatArray, ensure_count, ensure_dimension
 from flockana.equilibria.potential import Potential
-from flockana.equilibria.program import Program
 from flockana.equilibria.search import lattice_starts, random_starts
 from flockana.equilibria.solve import all_pairs
 from flockana.interactions import AlphaInteraction
 from flockana.lattice import harborth, hexagonal_spiral
 from flockana.laws.olfati_saber import Algorithm1
-from flockana.symbolic.pair import ensure_dimension
 
 # Least ratio of the longest to the shortest distance among so many points, by dimension: in the plane 4 are at best a
 # square, 5 a regular pentagon (Bateman and Erdős 1951, who go up to 7); in space 5 are a bipyramid (Seidel 1969).
@@ -72,6 +70,8 @@ def collision_barrier(alpha: AlphaInteraction, n: int, *, m: int = 2, starts: in
     >>> round(collision_barrier(AlphaInteraction(), 3, starts=4).height, 3)
     52.384
     """
+    from flockana.equilibria.program import Program
+
     n, m = ensure_count("n", n), ensure_dimension(m)
     free = Program(Potential(Algorithm1(alpha)), (n, m), all_pairs(n), m)
     tied = Program(Potential(Algorithm1(alpha)), (n, m), all_pairs(n), 2 * m)

@@ -6,9 +6,8 @@ from math import ceil
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
+from flockana.base.checks import FloatArray, ensure_dimension
 from flockana.interactions import AlphaInteraction
-from flockana.symbolic.pair import ensure_dimension
 
 _ABOVE = 1e-9  # relative: the greatest trace is flat where it is found, so it is missed by far less
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.spatial import KDTree
-from scipy.spatial.distance import cdist, pdist
 
 from flockana.base.checks import FloatArray
+
+if TYPE_CHECKING:
+    from scipy.spatial import KDTree
 
 _FLAT = 1e-6  # of the extent: so near a line or a plane a configuration lies in it
 
@@ -21,6 +22,8 @@ def spectrum_of_distances(q: FloatArray) -> FloatArray:
     >>> spectrum_of_distances(np.array([[0.0], [3.0], [1.0]])).tolist()
     [1.0, 2.0, 3.0]
     """
+    from scipy.spatial.distance import pdist
+
     return np.sort(pdist(q))
 
 
@@ -39,6 +42,9 @@ def congruent(first: FloatArray, second: FloatArray, *, tol: float) -> bool:
     >>> congruent(first, second, tol=1e-9)  # the same distances all the same
     False
     """
+    from scipy.spatial import KDTree
+    from scipy.spatial.distance import cdist
+
     if first.shape != second.shape:
         return False
     if first.size and np.abs(spectrum_of_distances(first) - spectrum_of_distances(second)).max(initial=0.0) > 2.0 * tol:
@@ -91,6 +97,8 @@ def _maps(x: FloatArray, y: FloatArray, frame: list[int], image: tuple[int, ...]
 
 def _one_to_one(nearest: Any, y: FloatArray, tol: float) -> bool:
     """Whether as many agents go to each place as stand there (agents may coincide)."""
+    from scipy.spatial import KDTree
+
     if np.unique(nearest).size == len(nearest):
         return True
     place = np.array([min(group) for group in np.atleast_1d(KDTree(y).query_ball_point(y, 20.0 * tol)).tolist()])

@@ -13,7 +13,6 @@ from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_points
 from flockana.base.errors import SolverError, UnknownNameError
 from flockana.equilibria.classify import EquilibriumKind, ensure_small, falling, kind_of, spectrum
 from flockana.equilibria.potential import Potential, ensure_flock_law, inside_obstacle
-from flockana.equilibria.program import Program
 from flockana.laws.terms.navigation import Navigation
 from flockana.measures.nets import LinkArray, link_lengths, links
 
@@ -227,6 +226,8 @@ def _minimise(potential: Potential, q: FloatArray, margin: float, max_iter: int)
     The box is so small that no pair outside the list can come within range, and IPOPT's long steps along soft
     directions cannot scatter the flock. A point from which V falls is left along its most negative direction.
     """
+    from flockana.equilibria.program import Program
+
     (n, m), escapes = q.shape, 0
     program: Program | None = None
     for _ in range(_ROUNDS):
@@ -254,6 +255,8 @@ def _root(potential: Potential, q: FloatArray, margin: float, max_iter: int) -> 
     """Levenberg-Marquardt on the scaled gradient with the gauge as extra equations, over all pairs."""
     import casadi as ca
     from scipy.optimize import least_squares
+
+    from flockana.equilibria.program import Program
 
     basis = potential.symmetries(q)
     program = Program(potential, (len(q), q.shape[1]), all_pairs(len(q)), basis.shape[1])

@@ -1,60 +1,95 @@
-"""numba's `njit` with a cache on disk that any number of processes may fill at once.
+"""numba's `njit` and `register_jitable`, which load numba when something is first computed: to list needs no compiler.
 
-What numba compiles it numbers, from one on in each process, in two places:
-
-- The files of a function, by an index. Two processes that compile at once may take one number for two signatures: then
-  the index of the one names the code of the other, and what is loaded later is another function. Here a file is named
-  for what is in it, and is written before the index.
-- The symbols of the machine code. Two closures of one name that two processes compiled may get one symbol. A third that
-  loads both gives the second the constants of the first, and if it lacks one, every call fails ("'descr' is NULL").
-  Here the name of a closure says what it closes over.
+A kernel and a scalar function tell numba their type by its own protocol (``_numba_type_``), so kernels call either by
+name as they would call numba's. What is compiled is kept as `flockana.kernels.caching` says.
 """
 
 from __future__ import annotations
 
-import hashlib
+import sys
 from collections.abc import Callable
+from functools import cached_property
 from typing import Any
 
-import numba
-from numba.core.caching import FunctionCache, IndexDataCacheFile
-from numba.core.serialize import dumps
 
-
-class NamedByContent(IndexDataCacheFile):
-    """An index, and files whose names no two functions, signatures, processors or versions of a source share."""
-
-    def save(self, key: Any, data: Any) -> None:
-        """Write the file, then the index that names it."""
-        digest = hashlib.sha256(repr((key, self._source_stamp)).encode()).hexdigest()[:16]
-        name = f"{self._index_name.removesuffix('.nbi')}.{digest}.nbc"
-        self._save_data(name, data)
-        self._save_index({**self._load_index(), key: name})  # of two at once one is lost, and compiled again
-
-
-class _Cache(FunctionCache):
-    """numba's cache of a function, with such files."""
+class _Known:
+    """A function that numba learns of when it first meets it."""
 
     def __init__(self, function: Callable[..., Any]) -> None:
-        super().__init__(function)
-        own: IndexDataCacheFile = self._cache_file  # type: ignore[has-type]
-        base = own._index_name.removesuffix(".nbi")
-        self._cache_file = NamedByContent(own._cache_path, base, own._source_stamp)
+        self.function = function
+        self.__module__, self.__doc__ = function.__module__, function.__doc__
+        self.__name__, self.__qualname__ = function.__name__, function.__qualname__
+
+    def __reduce__(self) -> Any:
+        """By name where it has one: then what closes over it is the same in every process."""
+        named = getattr(sys.modules.get(self.__module__), self.__qualname__, None) is self
+        return self.__qualname__ if named else (type(self), self._arguments())
+
+    def _arguments(self) -> tuple[Any, ...]:
+        return (self.function,)
 
 
-def named_for_its_cells(function: Callable[..., Any]) -> Callable[..., Any]:
-    """The same function, whose qualified name (and with it symbol and index) no other closure of its code shares.
+class Kernel(_Known):
+    """A function that is compiled for the types that it is called with; what else numba's has, it has as well.
 
-    `njit` names so what it caches. A closure that such a function calls needs it as well: below `register_jitable`.
+    Parameters
+    ----------
+    function : callable
+        What to compile.
+    options : dict
+        Those of `numba.njit`, and ``cache``.
     """
-    if function.__closure__:
-        cells = dumps(tuple(cell.cell_contents for cell in function.__closure__))
-        function.__qualname__ += f".{hashlib.sha256(cells).hexdigest()[:16]}"
-    return function
+
+    def __init__(self, function: Callable[..., Any], options: dict[str, Any]) -> None:
+        super().__init__(function)
+        self.options = options
+
+    @cached_property
+    def dispatcher(self) -> Any:
+        """What numba made of it."""
+        from flockana.kernels.caching import dispatcher
+
+        return dispatcher(self.function, **self.options)
+
+    @property
+    def _numba_type_(self) -> Any:
+        return self.dispatcher._numba_type_
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Compute it, compiled."""
+        return self.dispatcher(*arguments)
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return getattr(self.dispatcher, name)
+
+    def _arguments(self) -> tuple[Any, ...]:
+        return self.function, self.options
 
 
-def njit(*, cache: bool = False, **options: Any) -> Callable[[Callable[..., Any]], Any]:
-    """`numba.njit`, whose cache may be filled by several processes at once.
+class Inlined(_Known):
+    """A function that is compiled into the kernels that call it; called from Python it is what it was.
+
+    Parameters
+    ----------
+    function : callable
+        A function of scalars.
+    """
+
+    @cached_property
+    def _numba_type_(self) -> Any:
+        from flockana.kernels.caching import inlined_type
+
+        return inlined_type(self.function)
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Compute it, interpreted."""
+        return self.function(*arguments)
+
+
+def njit(*, cache: bool = False, **options: Any) -> Callable[[Callable[..., Any]], Kernel]:
+    """`numba.njit`, whose cache may be filled by several processes at once, and which compiles what is called.
 
     Parameters
     ----------
@@ -71,12 +106,23 @@ def njit(*, cache: bool = False, **options: Any) -> Callable[[Callable[..., Any]
     >>> twice(21)
     42
     """
+    return lambda function: Kernel(function, {"cache": cache, **options})
 
-    def compiled(function: Callable[..., Any]) -> Any:
-        if not cache:
-            return numba.njit(**options)(function)
-        made = numba.njit(**options)(named_for_its_cells(function))
-        made._cache = _Cache(function)
-        return made
 
-    return compiled
+def register_jitable(function: Callable[..., Any]) -> Inlined:
+    """`numba.extending.register_jitable`, to which numba comes later.
+
+    Parameters
+    ----------
+    function : callable
+        A function of scalars, for compiled and interpreted use.
+
+    Examples
+    --------
+    >>> @register_jitable
+    ... def twice(x):
+    ...     return 2 * x
+    >>> twice(21), njit()(lambda x: twice(x) + 1)(21)
+    (42, 43)
+    """
+    return Inlined(function)

@@ -12,10 +12,9 @@ from dataclasses import dataclass
 from math import sqrt
 
 import numpy as np
-from numba.extending import register_jitable
 
 from flockana.kernels.alpha import BETA_AREA, D_BETA, EPS, H, pair_beta, psi_beta
-from flockana.kernels.compiling import njit
+from flockana.kernels.compiling import njit, register_jitable
 from flockana.kernels.lift import source_digest
 from flockana.kernels.scalars import bump, bump_slope, sigma_1, sigma_norm
 

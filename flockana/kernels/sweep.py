@@ -11,9 +11,8 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numba.extending import register_jitable
 
-from flockana.kernels.compiling import named_for_its_cells, njit
+from flockana.kernels.compiling import njit, register_jitable
 from flockana.kernels.grid import sort_into_grid
 
 _BLOCK = 512  # pairs: what is known of them stays in the first-level cache
@@ -29,7 +28,6 @@ def lift_sweep(pair: Callable[..., Any], m: int, digest: int) -> tuple[Callable[
     """
 
     @register_jitable
-    @named_for_its_cells
     def add(count, first, second, d, s2, w, a, v, u, par, c1, c2):
         for k in range(count):
             w[k], a[k] = pair(s2[k], par)

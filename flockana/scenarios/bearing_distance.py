@@ -22,6 +22,7 @@ from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.measures.nets import components, links
 from flockana.scenarios.findings import component_counts, finding, in_source_units
 from flockana.scenarios.scenario import Report, Scenario
+from flockana.scenarios.start import drawn_later
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.bearing_distance.random_starts import zone_start
 from flockana.theorems.theorem import Status
@@ -163,7 +164,11 @@ _THROUGH = (Report("passes", "the flock passes a narrow gap beside the obstacle"
 _BARRED = (Report("blocked", "with circular buffer zones none passes", _blocked), _BOUNDS, _CONTAINED)
 
 
-def _apart(seed: int, least: float = 2.0) -> tuple[FloatArray, FloatArray]:
+def _apart(seed: int) -> tuple[FloatArray, FloatArray]:
+    return drawn_later((N, 2), lambda: _drawn_apart(seed))
+
+
+def _drawn_apart(seed: int, least: float = 2.0) -> tuple[FloatArray, FloatArray]:
     """The printed start, drawn until all agents are more than `least` apart and the net within a is connected."""
     rng = np.random.default_rng(seed)
     while True:
@@ -275,7 +280,7 @@ def _build(name: str) -> Callable[..., Scenario]:
             (0.0, end),
             seed,
             _EXPECTED[name],
-            in_source_units(law.scales, reports),
+            in_source_units(lambda: law.scales, reports),
             references=("jond-2025",),
             seeds=200,
             settings="printed settings" if name.endswith("printed") else "recommended settings",

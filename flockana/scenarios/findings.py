@@ -61,12 +61,13 @@ def in_the_end(
     return limit_claim(name, [], [certificate], computed=computed, stated=stated, witness=witness, detail=detail)
 
 
-def in_source_units(scales: Scales, reports: Iterable[Report]) -> tuple[Report, ...]:
+def in_source_units(scales: Callable[[], Scales], reports: Iterable[Report]) -> tuple[Report, ...]:
     """The same reports of a run in any units: judged in the units of their source, whose figures they compare with."""
 
     def converted(check: Check) -> Check:
         def check_in_source_units(run: Trajectory, tolerances: Tolerances) -> Claim:
-            length, time = scales.length / run.scales.length, scales.time / run.scales.time
+            own = scales()
+            length, time = own.length / run.scales.length, own.time / run.scales.time
             same = abs(length - 1.0) < ROUNDING and abs(time - 1.0) < ROUNDING
             return check(run if same else rescale(run, length=length, time=time), tolerances)
 

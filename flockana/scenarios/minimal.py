@@ -98,7 +98,7 @@ def _flock(m: int, *, printed: bool) -> Callable[[int], Scenario]:
             (0.0, duration),
             seed,
             expected,
-            in_source_units(law.scales, _REPORTS),
+            in_source_units(lambda: law.scales, _REPORTS),
             references=_REFERENCES,
             seeds=200,
             settings=f"{'printed' if printed else 'recommended'} settings",

@@ -25,7 +25,6 @@ from flockana.measures.metrics import connectivity, giant_share
 from flockana.measures.nets import links, printed_rank_connectivity
 from flockana.scenarios.findings import as_tightly, component_count, finding, in_source_units
 from flockana.scenarios.scenario import Report, Scenario
-from flockana.stability.tracking import response_ratio
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.theorem import Status
 
@@ -132,6 +131,8 @@ def _fastest_at_target(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 def _smaller(name: str) -> Callable[[Trajectory, Tolerances], Claim]:
     def check(run: Trajectory, tolerances: Tolerances) -> Claim:
+        from flockana.stability.tracking import response_ratio
+
         ratio, error = response_ratio(run)
         text = f"the centre of mass describes {ratio:.3f} of the γ-agent's path; why: erratum E12"
         return finding(name, 1.0 - ratio, text, computed=ratio, stated="< 1", error=error)
@@ -250,7 +251,7 @@ def _expected(case: int, *, printed: bool) -> dict[str, Status]:
 def _case(case: int, *, printed: bool) -> Callable[[int], Scenario]:
     side = 50.0 if case <= 2 else 150.0
     continuous = _law(case)
-    reports = in_source_units(continuous.scales, _REPORTS[case])
+    reports = in_source_units(lambda: continuous.scales, _REPORTS[case])
     law: Law | DiscreteLaw = MSNDiscretisation(continuous, DT) if printed else continuous
     how = (
         "as the project ran it: agent by agent in place, with its position update (E9), 540 steps of 0.009"

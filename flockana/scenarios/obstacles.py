@@ -27,6 +27,7 @@ from flockana.scenarios.obstacle_claims import (
     traps,
 )
 from flockana.scenarios.scenario import SOURCE, Report, Scenario
+from flockana.scenarios.start import drawn_later
 from flockana.theorems.theorem import Status
 
 # The pull on an agent saturates at c1γ, so that it nears the γ-agent at c1γ/c2γ at most. With Algorithm 2's 1.1 and
@@ -110,10 +111,11 @@ def _entry(
     law = Algorithm3(gains=GAINS, target=target, obstacles=tuple(obstacles))
 
     def build(seed: int = 0) -> Scenario:
-        start = free_start(seed, n, centre, spread, law.obstacles, room=BetaInteraction().d)
+        room = BetaInteraction().d
+        start = drawn_later((n, len(centre)), lambda: free_start(seed, n, centre, spread, law.obstacles, room=room))
         text = f"{source} {_OURS}"
         options = _large(end) if n > 100 else {}
-        in_units = in_source_units(law.scales, (_CLEAR, *reports))
+        in_units = in_source_units(lambda: law.scales, (_CLEAR, *reports))
         span = (0.0, end)
         return Scenario(name, title, text, law, *start, span, seed, expected, in_units, options, shipped=shipped)
 

@@ -18,6 +18,7 @@ from flockana.measures.metrics import coincident_pairs, deviation_energy, giant_
 from flockana.measures.nets import components, link_lengths, links
 from flockana.scenarios.findings import ROUNDING, component_count, finding, in_the_end
 from flockana.scenarios.scenario import Report, Scenario
+from flockana.scenarios.start import later
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.asymptotics import velocities_match
 from flockana.theorems.limits import decay
@@ -260,7 +261,7 @@ def _three_agents(seed: int = 0) -> Scenario:
     """Erratum E13: energy for one coincident pair at a time, and two pairs that coincide, one after the other."""
     alpha = AlphaInteraction(a=5e4, b=5e4)
     gains = Gains(c1_alpha=1.0, c2_alpha=1.0, c1_gamma=0.01, c2_gamma=0.01)
-    p0 = np.array([[sqrt(5.6 * alpha.c_star)], [0.0], [0.0]])
+    p0 = later((3, 1), lambda: np.array([[sqrt(5.6 * alpha.c_star)], [0.0], [0.0]]))
     return Scenario(
         "three-agents-1d",
         "Three agents on a line: one agent runs through both others",

@@ -16,6 +16,7 @@ from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law
+from flockana.scenarios.start import given_later
 from flockana.theorems import Claim, Tolerances, Verdict, verify
 from flockana.theorems.second_run import corroborated
 from flockana.theorems.theorem import Status
@@ -42,6 +43,7 @@ class Report:
     check: Callable[[Trajectory, Tolerances], Claim]
 
 
+@given_later("q0", "p0")
 @dataclass(frozen=True)
 class Scenario:
     """One published simulation, ready to run.
@@ -55,7 +57,7 @@ class Scenario:
     law : Law or DiscreteLaw
         What moves the flock.
     q0, p0 : ndarray, shape (n, m)
-        Start.
+        Start; what takes long to draw may be given as `flockana.scenarios.start.later`.
     t_span : (float, float)
         Start and end.
     seed : int
@@ -100,6 +102,12 @@ class Scenario:
     def __post_init__(self) -> None:
         if self.seed == 0:
             object.__setattr__(self, "expected", {**self.expected, **self.shipped})
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(n, m), known before the start is."""
+        n, m = vars(self)["q0"].shape
+        return n, m
 
     @property
     def theorems(self) -> tuple[str, ...]:

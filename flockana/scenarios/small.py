@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import sqrt
 
 import numpy as np
 
+from flockana.base.checks import FloatArray
 from flockana.environment.obstacles import Sphere
 from flockana.environment.targets import StaticTarget
 from flockana.interactions import Gains
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1, paper_pair
 from flockana.scenarios.scenario import Scenario
+from flockana.scenarios.start import later
 from flockana.theorems.slides.e03 import rhombus_with_double_agent
 from flockana.theorems.theorem import Status
 
@@ -23,7 +26,12 @@ def _head_on(name: str, apart: float, share: float, expected: dict[str, Status])
 
     def build(seed: int = 0) -> Scenario:
         law, q = Algorithm1(), np.array([[0.0], [apart]])
-        speed = np.sqrt(share * law.gains.c1_alpha * paper_pair(law).c_star - law.energy(0.0, q, 0.0 * q))  # K = speed²
+
+        def velocities() -> FloatArray:
+            kinetic = share * law.gains.c1_alpha * paper_pair(law).c_star - law.energy(0.0, q, 0.0 * q)
+            speed = sqrt(kinetic)  # K = speed²
+            return np.array([[speed], [-speed]])
+
         return Scenario(
             name,
             f"Two agents head on, with {share:g} c* of energy",
@@ -31,7 +39,7 @@ def _head_on(name: str, apart: float, share: float, expected: dict[str, Status])
             "Algorithm 1 with the default gains. The start is fixed.",
             law,
             q,
-            np.array([[speed], [-speed]]),
+            later((2, 1), velocities),
             (0.0, 3.0),
             seed,
             {"energy": "verified", **expected},

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import sympy as sp
 
+from flockana.base.checks import ensure_dimension
 from flockana.symbolic.derivation import Derivation, Step
-from flockana.symbolic.pair import ensure_dimension, vector
+from flockana.symbolic.pair import vector
 from flockana.symbolic.parameters import exact
 
 C, GAIN, STEP = sp.symbols("c w delta", positive=True)

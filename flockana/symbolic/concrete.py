@@ -13,6 +13,7 @@ from itertools import combinations
 
 import sympy as sp
 
+from flockana.base.checks import ensure_dimension
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.symbolic import sums
 from flockana.symbolic.derivation import Step, latex_steps
@@ -21,7 +22,6 @@ from flockana.symbolic.norms import EPS, sigma_norm
 from flockana.symbolic.pair import (
     ADJACENCY,
     along_flow,
-    ensure_dimension,
     own_force,
     pair_force,
     pair_potential,

@@ -5,8 +5,9 @@ from __future__ import annotations
 import sympy as sp
 from sympy.core.function import UndefinedFunction
 
+from flockana.base.checks import ensure_dimension
 from flockana.symbolic.derivation import Derivation, Step
-from flockana.symbolic.pair import along_flow, ensure_dimension, vector
+from flockana.symbolic.pair import along_flow, vector
 
 RHO = sp.Symbol("rho", positive=True)
 ETA, ETA_POSITIVE = sp.Symbol("eta", nonnegative=True), sp.Symbol("eta", positive=True)

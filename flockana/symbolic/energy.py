@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
+from flockana.base.checks import ensure_dimension
 from flockana.symbolic.derivation import Step, latex_steps
 from flockana.symbolic.functions import HALF
 from flockana.symbolic.norms import EPS, sigma_norm
@@ -18,7 +19,6 @@ from flockana.symbolic.pair import (
     ADJACENCY,
     PHI,
     along_flow,
-    ensure_dimension,
     own_force,
     pair_force,
     pair_potential,

@@ -11,11 +11,12 @@ from typing import Any
 import sympy as sp
 from sympy.core.function import UndefinedFunction
 
+from flockana.base.checks import ensure_dimension
 from flockana.symbolic.derivation import Derivation, Step
 from flockana.symbolic.energy import GenericPair
 from flockana.symbolic.norms import EPS, sigma_norm
 from flockana.symbolic.obstacles import PHI_BETA, WEIGHT, GenericObstacle
-from flockana.symbolic.pair import ADJACENCY, PHI, ensure_dimension, own_force, vector
+from flockana.symbolic.pair import ADJACENCY, PHI, own_force, vector
 from flockana.symbolic.parameters import GAINS, GainSymbols
 from flockana.symbolic.theorem6 import gamma_force
 

@@ -12,11 +12,12 @@ from dataclasses import dataclass
 import sympy as sp
 from sympy.core.function import UndefinedFunction
 
+from flockana.base.checks import ensure_dimension
 from flockana.base.errors import UnknownNameError
 from flockana.symbolic.derivation import Derivation, Step
 from flockana.symbolic.functions import HALF
 from flockana.symbolic.norms import EPS, sigma_norm, sigma_norm_gradient
-from flockana.symbolic.pair import along_flow, ensure_dimension, vector
+from flockana.symbolic.pair import along_flow, vector
 from flockana.symbolic.parameters import GAINS, GainSymbols
 
 KINDS = ("wall", "sphere")

@@ -11,26 +11,12 @@ from collections.abc import Sequence
 import sympy as sp
 from sympy.core.function import UndefinedFunction
 
-from flockana.base.errors import ArgumentError
 from flockana.symbolic.norms import sigma_norm, sigma_norm_gradient
 from flockana.symbolic.parameters import GAINS, GainSymbols
 
 PHI = sp.Function("phi_alpha", real=True)
 ADJACENCY = sp.Function("a", real=True)
 PSI = UndefinedFunction("psi_alpha", real=True, __dict__={"fdiff": lambda self, argindex=1: PHI(self.args[0])})
-
-
-def ensure_dimension(m: int) -> int:
-    """Return the dimension m if it is 1, 2 or 3.
-
-    Examples
-    --------
-    >>> ensure_dimension(2)
-    2
-    """
-    if m not in (1, 2, 3):
-        raise ArgumentError(f"m = {m!r}: expected a dimension of 1, 2 or 3")
-    return int(m)
 
 
 def vector(name: str, m: int) -> sp.Matrix:

@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from numba.extending import register_jitable
 
 from flockana.base.errors import ArgumentError
 from flockana.base.serialize import from_data, to_data
@@ -20,6 +19,7 @@ from flockana.environment.capsule import Capsule
 from flockana.environment.obstacles import Obstacle, Sphere, Wall
 from flockana.environment.polygon import Polygon
 from flockana.interactions import BetaInteraction
+from flockana.kernels.compiling import register_jitable
 from flockana.kernels.obstacles import lift_obstacle
 
 SQUARE = Polygon([(-1.0, -1.0), (2.0, -1.0), (2.0, 2.0), (-1.0, 2.0)])

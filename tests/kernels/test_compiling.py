@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import pickle
 import subprocess
 import sys
 
+import numba
 import numpy as np
 from numba.core.caching import IndexDataCacheFile
+from numba.core.serialize import dumps, loads
 
 from flockana.kernels import alpha, dead_zone
-from flockana.kernels.compiling import NamedByContent, njit
+from flockana.kernels.caching import NamedByContent
+from flockana.kernels.compiling import Inlined, njit, register_jitable
 from flockana.kernels.sweep import lift_sweep
 
 MODULE = """
-from flockana.kernels.compiling import njit
+from flockana.kernels.compiling import Inlined, njit, register_jitable
 
 def lifted(offset):
     @njit(cache=True)
@@ -25,7 +29,7 @@ MADE = [lifted(k) for k in range(12)]
 """
 ARRAYS = """
 import numpy as np
-from flockana.kernels.compiling import njit
+from flockana.kernels.compiling import Inlined, njit, register_jitable
 
 def lifted(offset):
     @njit(cache=True)
@@ -102,14 +106,18 @@ def test_what_processes_compiled_one_by_one_another_may_load_together(tmp_path):
 
 def test_what_the_sweeps_of_forces_call_has_a_symbol_of_its_own_in_each_dimension_and_law():
     """Else a process that loads what two others compiled adds up m = 3 with the code for m = 2."""
-    names = [
-        cell.cell_contents.__qualname__
+    called = [
+        cell.cell_contents
         for pair in (alpha.pair_alpha, dead_zone.pair_dead_zone)
         for m in (1, 2, 3)
         for cell in lift_sweep(pair, m, 0)[0].py_func.__closure__
-        if getattr(cell.cell_contents, "__closure__", None)
+        if isinstance(cell.cell_contents, Inlined)
     ]
-    assert len(names) == len(set(names)) == 6
+    for inlined in called:
+        numba.typeof(inlined)  # now numba knows of it
+    closures = [inlined.function for inlined in called if inlined.function.__closure__]
+    names = {function.__qualname__ for function in closures}
+    assert len(names) == len(closures) == 6
 
 
 def test_without_a_cache_it_is_numbas():
@@ -119,3 +127,44 @@ def test_without_a_cache_it_is_numbas():
 
     np.testing.assert_array_equal(twice(np.arange(3.0)), [0.0, 2.0, 4.0])
     assert twice.py_func(4.0) == 8.0
+
+
+@register_jitable
+def doubled(x):
+    """Twice x."""
+    return 2.0 * x
+
+
+@njit()
+def raised(x):
+    """Twice x, and one."""
+    return doubled(x) + 1.0
+
+
+def test_kernels_call_kernels_and_scalar_functions_by_name_and_so_do_functions_of_numba():
+    @numba.njit
+    def of_numba(x):
+        return raised(x) - doubled(x)
+
+    @numba.njit
+    def of_a_function(f, x):
+        return f(x)
+
+    assert (raised(3.0), doubled(3.0), of_numba(3.0), of_a_function(raised, 3.0)) == (7.0, 6.0, 1.0, 7.0)
+    assert raised.signatures
+    assert (raised.__name__, raised.__doc__, doubled.__doc__) == ("raised", "Twice x, and one.", "Twice x.")
+
+
+def test_what_is_known_by_name_is_pickled_by_name():
+    """What a closure over it is called then depends on no address and no process."""
+    for known in (raised, doubled):
+        assert pickle.loads(pickle.dumps(known)) is known
+    local = loads(dumps(njit()(lambda x: doubled(x) - 1.0)))
+    assert local(3.0) == 5.0
+
+
+def test_kernels_load_numba_when_they_compute():
+    code = "import sys, flockana.kernels.{0}; print('numba' in sys.modules, end=' ')"
+    rooms = "".join(code.format(name) + "\n" for name in ("sweep", "dead_zone", "obstacles", "zones", "paths"))
+    run = subprocess.run([sys.executable, "-c", rooms], capture_output=True, text=True, check=True)
+    assert set(run.stdout.split()) == {"False"}

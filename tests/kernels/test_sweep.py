@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from numba.extending import register_jitable
 
 from flockana.interactions import AlphaInteraction, DeadZoneInteraction
+from flockana.kernels.compiling import register_jitable
 from flockana.kernels.grid import sort_into_grid
 from flockana.kernels.lift import lift
 

@@ -159,7 +159,7 @@ def test_a_report_judges_a_run_in_other_units_in_those_of_its_source():
         seen.append(run)
         return finding("seen", 0.5, "")
 
-    (report,) = in_source_units(item.law.scales, [Report("seen", "it was seen", check)])
+    (report,) = in_source_units(lambda: item.law.scales, [Report("seen", "it was seen", check)])
     run = item.run()
     report.check(run, Tolerances())
     report.check(rescale(run, length=1000.0, time=60.0), Tolerances())

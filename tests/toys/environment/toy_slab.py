@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba.extending import register_jitable
 
 from flockana.environment.obstacles import Obstacle
+from flockana.kernels.compiling import register_jitable
 from flockana.kernels.obstacles import lift_obstacle, no_turn
 
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from math import exp, sqrt
 
 import numpy as np
-from numba.extending import register_jitable
 
 from flockana.interactions.pair import PairInteraction
+from flockana.kernels.compiling import register_jitable
 from flockana.kernels.lift import lift
 
 

@@ -1,0 +1,83 @@
+"""numba's compiler with a cache on disk that any number of processes may fill at once.
+
+What numba compiles it numbers, from one on in each process, in two places:
+
+- The files of a function, by an index. Two processes that compile at once may take one number for two signatures: then
+  the index of the one names the code of the other, and what is loaded later is another function. Here a file is named
+  for what is in it, and is written before the index.
+- The symbols of the machine code. Two closures of one name that two processes compiled may get one symbol. A third that
+  loads both gives the second the constants of the first, and if it lacks one, every call fails ("'descr' is NULL").
+  Here the name of a closure says what it closes over.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from typing import Any
+
+import numba
+from numba.core.caching import FunctionCache, IndexDataCacheFile
+from numba.core.registry import cpu_target
+from numba.core.serialize import dumps
+
+
+class NamedByContent(IndexDataCacheFile):
+    """An index, and files whose names no two functions, signatures, processors or versions of a source share."""
+
+    def save(self, key: Any, data: Any) -> None:
+        """Write the file, then the index that names it."""
+        digest = hashlib.sha256(repr((key, self._source_stamp)).encode()).hexdigest()[:16]
+        name = f"{self._index_name.removesuffix('.nbi')}.{digest}.nbc"
+        self._save_data(name, data)
+        self._save_index({**self._load_index(), key: name})  # of two at once one is lost, and compiled again
+
+
+class _Cache(FunctionCache):
+    """numba's cache of a function, with such files."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        super().__init__(function)
+        own: IndexDataCacheFile = self._cache_file  # type: ignore[has-type]
+        base = own._index_name.removesuffix(".nbi")
+        self._cache_file = NamedByContent(own._cache_path, base, own._source_stamp)
+
+
+def _named_for_its_cells(function: Callable[..., Any]) -> Callable[..., Any]:
+    """The same function, whose qualified name (and with it symbol and index) no other closure of its code shares."""
+    if function.__closure__:
+        cells = dumps(tuple(cell.cell_contents for cell in function.__closure__))
+        function.__qualname__ += f".{hashlib.sha256(cells).hexdigest()[:16]}"
+    return function
+
+
+def dispatcher(function: Callable[..., Any], *, cache: bool, **options: Any) -> Any:
+    """numba's dispatcher of a function.
+
+    Parameters
+    ----------
+    function : callable
+        What to compile.
+    cache : bool
+        Keep what is compiled on disk.
+    **options
+        Those of `numba.njit`.
+    """
+    if not cache:
+        return numba.njit(**options)(function)
+    made = numba.njit(**options)(_named_for_its_cells(function))
+    made._cache = _Cache(function)
+    return made
+
+
+def inlined_type(function: Callable[..., Any]) -> Any:
+    """numba's type of a function that it compiles into those that call it.
+
+    Parameters
+    ----------
+    function : callable
+        What is called.
+    """
+    numba.extending.register_jitable(_named_for_its_cells(function))
+    cpu_target.typing_context.refresh()
+    return cpu_target.typing_context.resolve_value_type(function)
