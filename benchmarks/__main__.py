@@ -12,10 +12,24 @@ import sys
 import time
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 from benchmarks.machine import cores, facts, notice, pin
 
-STUDIES = ("right_hand_side", "pairs", "engines", "runs", "precision", "costs", "million", "zones", "search", "others")
+STUDIES = (
+    "right_hand_side",
+    "pairs",
+    "laws",
+    "engines",
+    "runs",
+    "precision",
+    "costs",
+    "million",
+    "zones",
+    "search",
+    "commands",
+    "others",
+)
 
 
 def main() -> int:
@@ -48,7 +62,8 @@ def _measured(names: tuple[str, ...] | list[str], *, quick: bool) -> dict[str, o
     available, core = cores(), pin()  # before numpy is imported, which counts the cores for its threads
     from benchmarks.rows import to_json
 
-    rows, notices, series = [], [], {}
+    rows, notices = list[dict[str, Any]](), list[str]()
+    series: dict[str, Any] = {}
     for name in names:
         started = time.perf_counter()
         found = import_module(f"benchmarks.{name}").study(quick=quick)

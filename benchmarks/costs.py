@@ -9,25 +9,27 @@ import time
 from pathlib import Path
 from typing import Any
 
-from benchmarks.flocks import lattice
+from benchmarks.flocks import Flock, lattice
 from benchmarks.rows import Asked, Found, Row
+from flockana.dynamics.simulate import simulate
 from flockana.environment.targets import StaticTarget
 from flockana.laws.olfati_saber import Algorithm2
 
 STUDY = "Cost against n"
 SIZES = (100, 300, 1000, 3000, 10_000, 30_000, 100_000, 300_000, 1_000_000)
-DT = 0.005
+WORK = {"flow": "evaluation", "step": "step of RK4", "adaptive": "short run of DOP853"}
+DT, RTOL = 0.005, 1e-6
 _STEPS = 3
 _GIGABYTE = 1000.0  # MB
 
 
 def study(*, quick: bool) -> Found:
-    """A flow evaluation and a step of RK4 of a lattice, from 10² to 10⁶ agents."""
+    """A flow evaluation, a step of RK4 and a short adaptive run of a lattice, from 10² to 10⁶ agents."""
     series = [_measured(n) for n in (SIZES[:-2] if quick else SIZES)]
     rows = []
     for point in series:
         asked = Asked("<=", _GIGABYTE, "value") if point["n"] == 1_000_000 else None
-        for name, key in (("evaluation", "flow"), ("step of RK4", "step")):
+        for key, name in WORK.items():
             rows.append(Row(STUDY, f"{name}: time", point["n"], 1e3 * point[key], "ms"))
             rows.append(Row(STUDY, f"{name}: peak memory", point["n"], point[f"{key}_memory"], "MB", asked=asked))
     return Found(rows, (), {"cost": series})
@@ -42,27 +44,29 @@ def _measured(n: int) -> dict[str, Any]:
 
 def _measure(n: int) -> dict[str, float]:
     """CPU seconds and the growth of the peak of resident memory, in MB, of an evaluation and of a step."""
-    import flockana as fl
-
     law = Algorithm2(target=StaticTarget((0.0, 0.0)))
 
-    def flow(flock: Any, times: int) -> None:
+    def flow(flock: Flock, times: int) -> None:
         for _ in range(times):
             law.flow(0.0, *flock)
 
-    def steps(flock: Any, times: int) -> None:
+    def steps(flock: Flock, times: int) -> None:
         end = times * DT
-        fl.simulate(law, *flock, (0.0, end), method="RK4", dt=DT, t_eval=[end])
+        simulate(law, flock[0], flock[1], (0.0, end), method="RK4", dt=DT, t_eval=[end])
 
-    small = lattice(100)
-    flow(small, 1)
-    steps(small, 1)
-    flock, found = lattice(n), {"n": n}
-    for name, work in (("flow", flow), ("step", steps)):
+    def adaptive(flock: Flock, times: int) -> None:
+        for _ in range(times):
+            simulate(law, flock[0], flock[1], (0.0, DT), rtol=RTOL, t_eval=[DT])
+
+    works = {"flow": flow, "step": steps, "adaptive": adaptive}
+    for work in works.values():
+        work(lattice(100), 1)
+    flock, found = lattice(n), dict[str, float](n=n)
+    for name, work in works.items():
         before = _memory(peak=False)
         work(flock, 1)
         found[f"{name}_memory"] = _memory(peak=True) - before
-        number = max(_STEPS, min(2000, 200_000 // n))
+        number = max(1 if name == "adaptive" else _STEPS, min(2000, 200_000 // n))
         started = time.process_time()
         work(flock, number)
         found[name] = (time.process_time() - started) / number

@@ -7,7 +7,7 @@ same list. An engine that is not installed is left out with a notice (`pip insta
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
@@ -69,7 +69,7 @@ def our_evaluations(flock: Flock) -> Callable[[], object]:
 
 
 def _compared(
-    kind: str, flock: Flock, engines: dict[str, Callable[[Flock], Callable[[], object]]], rounds: int
+    kind: str, flock: Flock, engines: Mapping[str, Callable[[Flock], Callable[[], object]]], rounds: int
 ) -> list[Row]:
     n, pairs = len(flock[0]), sum(i.size for i, _ in pair_blocks(flock[0], R))
     calls = {"ours": our_evaluations(flock)} | {name: build(flock) for name, build in engines.items()}

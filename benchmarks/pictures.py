@@ -12,6 +12,8 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+LINES = (("an evaluation", "flow", "o"), ("a step of RK4", "step", "s"), ("a short run of DOP853", "adaptive", "^"))
+
 Series = Sequence[Mapping[str, Any]]
 
 
@@ -32,7 +34,7 @@ def _cost(points: Series) -> Figure:
     figure = Figure(figsize=(9.0, 3.6), dpi=110, layout="tight")
     left, right = figure.subplots(1, 2)
     n = [point["n"] for point in points]
-    for label, key, marker in (("an evaluation", "flow", "o"), ("a step of RK4", "step", "s")):
+    for label, key, marker in LINES:
         left.plot(n, [point[key] for point in points], marker=marker, label=label)
         right.plot(n, [max(point[f"{key}_memory"], 0.01) for point in points], marker=marker, label=label)
     left.plot(n, [points[-1]["flow"] * k / n[-1] for k in n], color="0.7", linestyle=":", label="proportional to n")

@@ -7,6 +7,7 @@ import json
 from benchmarks.page import write
 from benchmarks.rows import Asked, Row, to_json
 
+ADAPTIVE = {"adaptive": 1e-3, "adaptive_memory": 5.0}
 RECORD = {
     "command": "python -m benchmarks --quick",
     "machine": {"processor": "one that computes", "cores": "2 available"},
@@ -14,8 +15,8 @@ RECORD = {
     "notices": ["no compiler"],
     "series": {
         "cost": [
-            {"n": 100, "flow": 1e-5, "step": 1e-4, "flow_memory": 0.0, "step_memory": 1.0},
-            {"n": 1000, "flow": 1e-4, "step": 1e-3, "flow_memory": 1.0, "step_memory": 10.0},
+            {"n": 100, "flow": 1e-5, "step": 1e-4, "flow_memory": 0.0, "step_memory": 1.0} | ADAPTIVE,
+            {"n": 1000, "flow": 1e-4, "step": 1e-3, "flow_memory": 1.0, "step_memory": 10.0} | ADAPTIVE,
         ],
         "work-precision": [
             {"method": "RK4", "dt": 0.1, "error": 1e-3, "seconds": 0.1},
