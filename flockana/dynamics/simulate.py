@@ -118,10 +118,21 @@ def simulate(
     counts = {"method": method, "steps": tally.steps, "evaluations": tally.evaluations}
     stats = counts | tally.notes | how | {"seconds": time.perf_counter() - started}
     kept = kept or [start_sample(law, q0, p0, t_span[0])]  # ended before the first time to keep
-    extra = {key: np.stack([s.extra[key] for s in kept]) for key in kept[0].extra}
-    q, p, u = (np.stack([getattr(s, name) for s in kept]) for name in ("q", "p", "u"))
-    t = np.array([s.t for s in kept])
+    t, q, p, u, extra = _stacked(kept)
     return Trajectory(t, q, p, u, law, extra, tally.status, tally.message, stats, between)
+
+
+def _stacked(kept: list[Sample]) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, dict[str, FloatArray]]:
+    """(t, q, p, u, extra) of a run; each sample is let go as soon as it is copied, so a run is not held twice."""
+    shape, t = (len(kept), *kept[0].q.shape), np.array([sample.t for sample in kept])
+    q, p, u = np.empty(shape), np.empty(shape), np.empty(shape)
+    extra = {key: np.empty((len(kept), *np.shape(value))) for key, value in kept[0].extra.items()}
+    for k in reversed(range(len(kept))):
+        sample = kept.pop()
+        q[k], p[k], u[k] = sample.q, sample.p, sample.u
+        for key, series in extra.items():
+            series[k] = sample.extra[key]
+    return t, q, p, u, extra
 
 
 def _ensure_step(name: str, dt: Any, t_span: tuple[float, float]) -> float:

@@ -17,6 +17,7 @@ from flockana.kernels.encounters import share_of_pairs
 from flockana.kernels.listed import signatures
 from flockana.kernels.paths import bernstein, centred
 from flockana.kernels.runge_kutta import energy_of, error_of, first_step, frame_at, interpolated, rate_of, stages_of
+from flockana.kernels.sums import finite
 from flockana.kernels.verlet import empty_list, list_pairs, spatial_order
 
 RUNNING, TOO_SMALL, NOT_FINITE = range(3)
@@ -40,7 +41,10 @@ def _met(h, y0, f0, y1, f1, encounters, system, pairs, scratch):
     q1, p1, u1 = y1[:size].reshape(n, m), y1[size : 2 * size].reshape(n, m), f1[size : 2 * size].reshape(n, m)
     points, _, allowance = bernstein(h, q0, p0, u0, q1, p1, u1)
     ways = centred(points, allowance)
-    search = (radii.max() + 2.0 * (ways.max() + allowance.max())) * (1.0 + 1e-9)
+    widest, farthest, blur = 0.0, 0.0, 0.0
+    for i in range(n):
+        widest, farthest, blur = max(widest, radii[i, -1]), max(farthest, ways[i]), max(blur, allowance[i])
+    search = (widest + 2.0 * (farthest + blur)) * (1.0 + 1e-9)
     first, second, count, places, _ = pairs
     if not (places.size and search <= system[7][0]):
         first, second, count = list_pairs(q0, search, scratch[0], scratch[1])
@@ -134,23 +138,27 @@ def _advance(
     system = (
         (act0, act1, act2), (energy0, energy1, energy2), numbers, panels, shape, view, moving, reach, order
     )  # fmt: skip
-    method, encounters, fixed = (tableau_a, tableau_c, stages), (radii[order], far), exponent == 0.0
+    method, encounters, fixed = (tableau_a, tableau_c, stages), (np.empty_like(radii), far), exponent == 0.0
+    for i in range(n):
+        encounters[0][i] = radii[np.int64(order[i])]
     rates = np.zeros((len(tableau_a) if due.size else stages + 1, y.size))
     now, reached, trial = np.empty(y.size), np.empty(y.size), np.empty(y.size)
     _moved(y, order, shape, False, now)
     _moved(f, order, shape, False, rates[0])
     pairs, scratch = empty_list(n), (np.empty(8 * n, np.uint32), np.empty(8 * n, np.uint32))
     times, states, work = np.empty(most), np.empty((most, 3, n, m)), np.empty(most)
-    between, work_between = np.empty((due.size, 3, n, m)), np.full(due.size, np.nan)
+    between, work_between = np.empty((due.size, 3, n, m)), np.empty(due.size)
     made, evaluations, redone, status, stop = 0, 0, 0, RUNNING, 0
     sampled, halved, first = np.int64(0), np.int64(0), np.int64(1)  # typed: literals would be compiled once more
-    tried, taken = np.empty(64), np.inf
-    if not fixed and h == 0.0:
+    tried = np.empty(64)
+    if fixed and h == 0.0:
+        h = np.inf
+    if h == 0.0:
         h, pairs = first_step(t, stops[-1] - t, now, rates, exponent, rtol, floor, trial, system, pairs)
         evaluations += 1
     while made < most and stop < stops.size and status == RUNNING:
         shortest, rejected, later, at, stands = 10.0 * _spacing(t), False, h, t, False
-        h = min(stops[stop] - t, _GROWTH * taken) if fixed else max(h, shortest)
+        h = min(stops[stop] - t, h) if fixed else max(h, shortest)
         while status == RUNNING and not stands:
             if h < shortest and not fixed:
                 status = TOO_SMALL
@@ -165,7 +173,7 @@ def _advance(
                 if not passes:
                     h, rejected = later, True
                     continue
-            if not (np.isfinite(reached).all() and np.isfinite(rates[stages]).all()):
+            if not (finite(reached) and finite(rates[stages])):
                 status = NOT_FINITE
                 break
             share = 1.0
@@ -188,11 +196,11 @@ def _advance(
             )  # fmt: skip
             evaluations += len(rates) - stages - 1 + sampled - before
         while sampled < due.size and due[sampled] == at:
-            sampled += 1  # the step itself is the sample
-        t, taken = at, h
-        if at == stops[stop]:
-            stop, taken = stop + 1, np.inf
-        h, now, reached = later, reached, now
+            work_between[sampled], sampled = np.nan, sampled + 1  # the step itself is the sample
+        if fixed:
+            later = np.inf if at == stops[stop] else _GROWTH * h
+        stop += at == stops[stop]
+        t, h, now, reached = at, later, reached, now
         rates[0] = rates[stages]
         times[made], work[made] = t, _record(t, now, rates[0], system, states[made])
         made += 1

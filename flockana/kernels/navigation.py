@@ -11,41 +11,50 @@ from math import cos, sin, sqrt
 
 import numpy as np
 
+from flockana.kernels.compiling import njit
 from flockana.kernels.listed import CompiledFunction, term_functions
 from flockana.kernels.sums import column_means, pull_to, squared_differences
 
 _MOVING, _UNIT, _GAINS, _OMEGA, _FACTOR, _PATH = range(6)
 
 
-def act(t, x, v, u, frame, numbers, panels, first, second, size, order):
-    """−c1γ ℓ σ₁((q − q_r)/ℓ) − c2γ (p − p_r), and its power."""
-    n, m = x.shape
-    omega, factor, unit = numbers[_OMEGA], numbers[_FACTOR], numbers[_UNIT]
-    gains, path = np.int64(numbers[_GAINS]), numbers[_PATH : _PATH + 5 * m].reshape(5, m)
-    c1, c2 = numbers[_PATH + 5 * m :][:gains], numbers[_PATH + 5 * m + gains :]
-    co, si = cos(omega * t), sin(omega * t)
-    q_r, p_r, rate = np.empty(m), np.empty(m), np.empty(m)
-    for k in range(m):
-        rate[k] = path[1, k] + omega * (path[3, k] * co - path[2, k] * si)
-        q_r[k] = path[0, k] + path[1, k] * t + path[2, k] * co + path[3, k] * si - frame[0, k]
-        p_r[k] = factor * rate[k] + path[4, k] - frame[1, k]
-    if numbers[_MOVING] != 0.0:
-        pull_to(u, x, v, q_r, p_r, c1[0], c2[0])
+@njit(cache=True, error_model="numpy", nogil=True)
+def navigate(x, v, u, target, velocity, c1, c2, unit, moving, order):
+    """Add −c1γ ℓ σ₁((q − q_r)/ℓ) − c2γ (p − p_r) to u, and return its power.
+
+    The rows of `target` are q_r and p_r, seen from a frame as x and v are, and the true dq_r/dt; `velocity` is that of
+    the frame. There is one gain each, or one per agent, whose own number `order` has. ℓ = 0 is the linear pull.
+    """
+    (n, m), power = x.shape, 0.0
+    if moving:
+        pull_to(u, x, v, target[0], target[1], c1[0], c2[0])
         return -c2[0] * squared_differences(v, column_means(v))
-    power = 0.0
     for i in range(n):
-        own = np.int64(order[i]) if gains > 1 else 0
+        own = np.int64(order[i]) if c1.size > 1 else 0
         bend = 1.0
         if unit > 0.0:
             square = 0.0
             for k in range(m):
-                square += (x[i, k] - q_r[k]) ** 2
+                square += (x[i, k] - target[0, k]) ** 2
             bend = sqrt(1.0 + square / (unit * unit))
         for k in range(m):
-            pull, slip = c1[own] * (x[i, k] - q_r[k]) / bend, v[i, k] - p_r[k]
+            pull, slip = c1[own] * (x[i, k] - target[0, k]) / bend, v[i, k] - target[1, k]
             u[i, k] -= pull + c2[own] * slip
-            power -= c2[own] * (v[i, k] + frame[1, k]) * slip + pull * rate[k]
+            power -= c2[own] * (v[i, k] + velocity[k]) * slip + pull * target[2, k]
     return power
+
+
+def act(t, x, v, u, frame, numbers, panels, first, second, size, order):
+    """`navigate` to the path that the numbers are of."""
+    m = x.shape[1]
+    omega, factor, gains = numbers[_OMEGA], numbers[_FACTOR], np.int64(numbers[_GAINS])
+    path, c = numbers[_PATH : _PATH + 5 * m].reshape(5, m), numbers[_PATH + 5 * m :]
+    co, si, target = cos(omega * t), sin(omega * t), np.empty((3, m))
+    for k in range(m):
+        rate = path[1, k] + omega * (path[3, k] * co - path[2, k] * si)
+        target[0, k] = path[0, k] + path[1, k] * t + path[2, k] * co + path[3, k] * si - frame[0, k]
+        target[1, k], target[2, k] = factor * rate + path[4, k] - frame[1, k], rate
+    return navigate(x, v, u, target, frame[1], c[:gains], c[gains:], numbers[_UNIT], numbers[_MOVING] != 0.0, order)
 
 
 def energy(t, x, v, frame, numbers, panels, first, second, size, order):

@@ -22,6 +22,15 @@ def repeated(row):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
+def finite(x):
+    """Whether all numbers are."""
+    known = True
+    for k in range(x.size):
+        known &= np.isfinite(x[k])
+    return known
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
 def column_means(x):
     """The mean over agents, shape (m,)."""
     n, m = x.shape

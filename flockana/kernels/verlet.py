@@ -36,7 +36,10 @@ def _grown(first, second, needed):
 def _list_by_grid(q, reach, order, start, rows, first, second):
     """The pairs of a flock sorted into a grid: cell by cell, each with what follows it."""
     m = q.shape[1]
-    x, limit, count = q[order], max(reach * reach, 5e-324), 0
+    x, limit, count = np.empty(q.shape), max(reach * reach, 5e-324), 0
+    for i in range(order.size):
+        for c in range(m):
+            x[i, c] = q[order[i], c]
     for cell in range(start.size - 2):
         begin, end = start[cell], start[cell + 1]
         if begin == end:

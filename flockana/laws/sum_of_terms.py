@@ -57,7 +57,7 @@ class SumOfTerms(Law):
             term.check_start(q)
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
-        u, rate = np.zeros_like(q), 0.0
+        u, rate = np.zeros(q.shape), 0.0
         for term in self.terms:
             rate += term.act(t, q, p, u)
         return u, rate

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -54,6 +55,12 @@ class Navigation(Term):
     def invariance(self) -> Invariance:  # noqa: D102
         return "rigid motions" if self.moving else "rotations about the target"
 
+    @cached_property
+    def _gains(self) -> tuple[FloatArray, FloatArray]:
+        """c1γ and c2γ, one each or one per agent."""
+        c1, c2 = np.broadcast_arrays(*(np.ravel(gain) for gain in (self.gains.c1_gamma, self.gains.c2_gamma)))
+        return c1.astype(np.float64), c2.astype(np.float64)
+
     def check_dimension(self, m: int) -> None:  # noqa: D102
         if self.target.dimension != m:
             raise ArgumentError(
@@ -71,24 +78,16 @@ class Navigation(Term):
         return bend
 
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
-        g, (q_r, p_r) = self.gains, self.target.state(t)
-        x, slip = q - q_r, p - p_r
-        pull = x if self.unit is None else x / self._bend(x)[:, None]
-        pulled = g.pull * pull
-        u -= pulled + g.drag * slip
-        if self.moving:
-            v = moving_frame(p)
-            return float(-g.c2_gamma * np.sum(v * v))
-        if g.per_agent:
-            return -float(np.vdot(g.drag * p, slip)) - float(pulled.sum(axis=0) @ self.target.rate(t))
-        carried = pull.sum(axis=0) @ self.target.rate(t)
-        return float(-g.c2_gamma * np.vdot(p, slip) - g.c1_gamma * carried)
+        target, (c1, c2) = np.array([*self.target.state(t), self.target.rate(t)]), self._gains
+        still, own = np.zeros(q.shape[1]), np.arange(len(q), dtype=np.uint64)
+        x, v = np.ascontiguousarray(q), np.ascontiguousarray(p)
+        return float(kernel.navigate(x, v, u, target, still, c1, c2, self.unit or 0.0, self.moving, own))
 
     def compiled(self, m: int) -> TermKernel | None:  # noqa: D102
         path = self.target.harmonic
         if path is None or not speaks_for(type(self.target), "harmonic", ("position", "rate", "state")):
             return None
-        c1, c2 = np.broadcast_arrays(np.ravel(self.gains.c1_gamma), np.ravel(self.gains.c2_gamma))
+        c1, c2 = self._gains
         head = [float(self.moving), self.unit or 0.0, c1.size, path.omega, path.factor]
         numbers = np.concatenate([head, path.terms.ravel(), c1, c2])
         return TermKernel(*kernel.compiled(), numbers, np.empty((0, 0)), 0.0)
