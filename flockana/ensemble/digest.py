@@ -13,12 +13,20 @@ import ast
 import hashlib
 import json
 import platform
+import re
+import sys
 from collections.abc import Mapping
+from contextlib import suppress
 from functools import cache
 from importlib.metadata import version
+from importlib.util import cache_from_source
 from pathlib import Path
 from typing import Any
 
+from flockana.base.errors import FileError
+from flockana.base.files import replacing
+
+_DIGEST = re.compile("[0-9a-f]{16}")
 _LIBRARIES = ("numpy", "scipy", "numba")
 _SILENT = ("plots", "report", "cli", "falsify", "ensemble", "base/references.py", "_version.py", "__init__.py")
 _ENSEMBLE = ("ensemble/work.py",)  # of the ensemble, what makes a record
@@ -34,7 +42,42 @@ def mathematics() -> str:
     16
     """
     root = Path(__file__).resolve().parent.parent
-    return digest_of_sources({str(p.relative_to(root)): p.read_bytes() for p in source_files(root)})
+    sources = {str(p.relative_to(root)): p.read_bytes() for p in source_files(root)}
+    return kept_digest(sources, Path(cache_from_source(__file__)).parent)
+
+
+def kept_digest(sources: Mapping[str, bytes], folder: Path) -> str:
+    """`digest_of_sources`, read from a folder where these very files were digested before.
+
+    To parse all sources takes most of a second, in every process; to read them, a hundredth of that. What is kept is
+    named for the files as they are, to the byte, and for what digests them. Where it cannot be kept, it is not.
+
+    Parameters
+    ----------
+    sources : mapping of str to bytes
+        Files by name.
+    folder : Path
+        Where Python keeps what it compiled.
+    """
+    exact = hashlib.sha256(repr((sys.version, _libraries(), Path(__file__).read_bytes())).encode())
+    for name, source in sorted(sources.items()):
+        exact.update(f"\0{name}\0{len(source)}\0".encode() + source)
+    kept = folder / f"mathematics.{exact.hexdigest()[:32]}.txt"
+    try:
+        digest = kept.read_text(encoding="ascii")
+    except (OSError, UnicodeDecodeError):
+        digest = ""
+    if _DIGEST.fullmatch(digest):
+        return digest
+    digest = digest_of_sources(sources)
+    if not sys.dont_write_bytecode and folder.is_dir():
+        with suppress(FileError), replacing(kept) as partial:
+            partial.write_text(digest, encoding="ascii")
+    return digest
+
+
+def _libraries() -> dict[str, str]:
+    return {name: version(name) for name in _LIBRARIES}
 
 
 def source_files(root: Path) -> list[Path]:
@@ -55,9 +98,8 @@ def digest_of_sources(sources: Mapping[str, bytes]) -> str:
     >>> digest_of_sources({"a.py": plain}) == digest_of_sources({"a.py": b"x = 2"})
     False
     """
-    libraries = {name: version(name) for name in _LIBRARIES}
     # the syntax tree is written differently by each version of Python, which is one of the things that compute
-    total = hashlib.sha256(json.dumps([platform.python_version_tuple()[:2], libraries]).encode())
+    total = hashlib.sha256(json.dumps([platform.python_version_tuple()[:2], _libraries()]).encode())
     for name, source in sorted(sources.items()):
         total.update(f"\0{name}\0".encode())
         total.update(_meaning(source) if name.endswith(".py") else source)

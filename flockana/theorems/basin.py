@@ -139,15 +139,19 @@ def barrier(
 ) -> float:
     """The highest barrier of step 2 over a choice of windows w: a wide one has a large L, a narrow one a small ρ.
 
+    The widest is taken first, and the rest are left out when even with L = 0 they were no better.
+
     Examples
     --------
     >>> barrier(2.0, 0.0, [1.0, 3.0], lambda window: 0.0)
     9.0
     """
     best = 0.0
-    for window in windows:
-        lipschitz = lipschitz_within(float(window))
+    for window in sorted(windows, reverse=True):
         reach = window - distance
+        if reach <= 0.0 or reach**2 * (0.5 * curvature) <= best:
+            break
+        lipschitz = lipschitz_within(float(window))
         if lipschitz > 0.0:
             reach = min(reach, 0.5 * curvature / lipschitz)
         inner = curvature - lipschitz * distance
