@@ -9,15 +9,20 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.equilibria.curvature import Landscape, downhill
+from flockana.equilibria.large import LargeLandscape
 from flockana.equilibria.potential import Potential
 
 EquilibriumKind = Literal["minimum", "saddle", "maximum", "degenerate"]
 
-MAX_SIZE = 6000  # n m: its whole spectrum takes a minute
+DENSE_SIZE = 6000  # n m: its whole spectrum takes a minute; beyond, the few eigenvalues that decide
+MAX_SIZE = 60_000  # n m
 
 
 class Spectrum(NamedTuple):
-    """Eigenvalues off the rigid motions, rising, the number of rigid motions, of negative and of zero eigenvalues."""
+    """Eigenvalues off the rigid motions, rising, the number of rigid motions, of negative and of zero eigenvalues.
+
+    Of a large flock the eigenvalues are some only, with all negative and zero ones and the largest among them.
+    """
 
     eigenvalues: FloatArray
     rigid: int
@@ -25,17 +30,22 @@ class Spectrum(NamedTuple):
     zero: int
 
 
-def ensure_small(n: int, m: int) -> None:
-    """Raise if the whole Hessian spectrum of n agents would take more than a minute.
+def ensure_small(n: int, m: int, *, most: int = MAX_SIZE) -> None:
+    """Raise if the equilibrium of n agents would take many minutes.
+
+    Parameters
+    ----------
+    n, m : int
+        Agents and dimensions.
+    most : int
+        Largest n m.
 
     Examples
     --------
     >>> ensure_small(1000, 3)
     """
-    if n * m > MAX_SIZE:
-        raise ArgumentError(
-            f"n = {n} agents in m = {m} dimensions: expected n m <= {MAX_SIZE}, or the spectrum takes minutes"
-        )
+    if n * m > most:
+        raise ArgumentError(f"n = {n} agents in m = {m} dimensions: expected n m <= {most}, or it takes many minutes")
 
 
 def landscape(potential: Potential, q: FloatArray) -> Landscape:
@@ -47,7 +57,8 @@ def landscape(potential: Potential, q: FloatArray) -> Landscape:
     >>> landscape(Potential(Algorithm1()), np.array([[0.0], [7.0]])).values.size
     1
     """
-    return Landscape(
+    kind = Landscape if q.size <= DENSE_SIZE else LargeLandscape
+    return kind(
         potential.stiffness,
         q,
         potential.symmetries(q),

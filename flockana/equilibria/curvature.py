@@ -85,18 +85,22 @@ class Landscape:
         self.size = _row_sum(self.here)
         self.rounding = _ROUNDING * EPS * float(np.sqrt(q.size)) * max(self.size, unit / length)
         self.force = force + self.rounding * length  # what a few eps of a length or of a force amount to
-        hessian = self.here.toarray()
-        off = hessian - rigid @ (rigid.T @ hessian)
-        off -= (off @ rigid) @ rigid.T
-        above = 2.0 * self.size or 1.0  # beyond every eigenvalue: where the rigid motions are put
-        self._matrix = 0.5 * (off + off.T) + above * (rigid @ rigid.T)
+
+    @cached_property
+    def _matrix(self) -> FloatArray:
+        """The Hessian off the rigid motions, which are put beyond every eigenvalue."""
+        hessian: FloatArray = self.here.toarray()
+        rigid = self.rigid
+        off: Any = hessian - rigid @ (rigid.T @ hessian)
+        off = off - (off @ rigid) @ rigid.T
+        above = 2.0 * self.size or 1.0
+        return np.asarray(0.5 * (off + off.T) + above * (rigid @ rigid.T))
 
     @cached_property
     def values(self) -> FloatArray:
         """Eigenvalues off the rigid motions, rising; exact zeros where nothing is stiff."""
         count = self.q.size - self.rigid.shape[1]
-        values: FloatArray = np.linalg.eigvalsh(self._matrix)[:count] if self.size else np.zeros(count)
-        return values
+        return np.asarray(np.linalg.eigvalsh(self._matrix)[:count] if self.size else np.zeros(count))
 
     @cached_property
     def vectors(self) -> FloatArray:

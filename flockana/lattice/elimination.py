@@ -136,12 +136,11 @@ class Elimination:
 
         if not len(block):
             return block, None
-        if self._least is None:
-            factor, failed = dpotrf(block, lower=1)
-            if not failed:
-                return dtrtri(factor, lower=1)[0], None
-            if self._definite:
-                raise SolverError("the matrix is not positive definite")
+        factor, failed = dpotrf(block, lower=1)
+        if not failed and (self._least is None or factor.diagonal().min() ** 2 > self._least):
+            return dtrtri(factor, lower=1)[0], None
+        if self._definite:
+            raise SolverError("the matrix is not positive definite")
         sizes, vectors = np.linalg.eigh(block)
         self.negative += int(np.sum(sizes < 0.0))
         if self._least is not None:

@@ -1,0 +1,210 @@
+"""Minima of large flocks: damped motion on the compiled forces, annealing where the net gave way, sparse Newton steps.
+
+A flock that its γ-agent presses so hard that agents slide onto each other has minima without number, and one that goes
+downhill at once stays in a poor one. So a flock whose neighbours parted on the way down is warmed up and cooled slowly
+(Langevin's equation, always with the same noise), and the lower of both ends is taken. A flock that keeps its
+neighbours is left alone: then the minimum is the one that belongs to the start.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.equilibria.potential import Potential, inside_obstacle
+from flockana.lattice.elimination import Elimination
+from flockana.measures.frame import moving_frame
+from flockana.measures.nets import links
+
+_ROUGH = 1e-3  # relative force at which basins are compared
+_COARSE = 1e-5  # at which Newton's method takes over
+_STEP, _LONGEST = 0.1, 1.0  # of the law's own time √(length/force): first and longest step of the damped motion
+_STRIDE = 0.35  # of d: how far an agent goes in a step at most
+_HEATS, _COOLING = (0.05, 0.02, 0.005), 1500  # first temperatures, of force times length; steps until none is left
+_QUIET, _DRAG = 0.5, 0.06  # of 1/ω, a time step that the fastest motion bears; of the velocity, what is lost in a step
+_PARTED = 1.0  # of d: neighbours that moved so far against each other are no longer neighbours of the same net
+_NEAR = 1e-7  # relative force below which only the force is compared: energies no longer tell
+_DONE = 1e-14  # and at which there is nothing left to refine
+_TRIES = 12
+_LEAST = 1e-10  # of the stiffness: eigenvalues below are taken for that
+_ENOUGH = 0.1  # of the fall of energy that a Newton step promises
+
+
+class Descent(NamedTuple):
+    """Where it ended, whether the force vanishes there, and in words what happened."""
+
+    q: FloatArray
+    converged: bool
+    message: str
+
+
+def descend(potential: Potential, q: FloatArray, max_iter: int) -> Descent:
+    """A minimum of the potential that is reached from q downhill, or a lower one if the net gives way on the way.
+
+    Parameters
+    ----------
+    potential : Potential
+        What is minimised.
+    q : ndarray, shape (n, m)
+        Start.
+    max_iter : int
+        Most Newton steps; of the cheap steps of the damped motion a hundred times as many.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> found = descend(Potential(Algorithm1()), np.array([[0.0], [6.5]]), 100)
+    >>> bool(abs(found.q[1, 0] - found.q[0, 0] - 7.0) < 1e-9), found.message
+    (True, 'Converged')
+    """
+    steps, message = 100 * max_iter, "Converged"
+    best = relax(potential, q, steps, tol=_ROUGH)
+    for heat in _HEATS if gave_way(potential, q, best) else ():
+        other = relax(potential, anneal(potential, best, heat), steps, tol=_ROUGH)
+        if potential.energy(other) < potential.energy(best):
+            best, message = other, "Converged, annealed"
+    best, converged = newton(potential, relax(potential, best, steps), max_iter)
+    return Descent(best, converged, message if converged else "Newton's method did not converge")
+
+
+def relax(potential: Potential, q: FloatArray, steps: int, *, tol: float = _COARSE) -> FloatArray:
+    """Follow x'' = −∇U with a drag that lets the motion go downhill only (FIRE: Bitzek et al. 2006).
+
+    Parameters
+    ----------
+    potential : Potential
+        U.
+    q : ndarray, shape (n, m)
+        Start.
+    steps : int
+        Most evaluations of the force.
+    tol : float
+        Relative force at which it ends.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> pair = relax(Potential(Algorithm1()), np.array([[0.0], [6.0]]), 10_000)
+    >>> bool(abs(pair[1, 0] - pair[0, 0] - 7.0) < 1e-3)
+    True
+    """
+    own, stride = sqrt(potential.pair.length / potential.force_scale), _STRIDE * potential.pair.length
+    step, mixing, downhill, v = _STEP * own, 0.1, 0, np.zeros_like(q)
+    for _ in range(steps):
+        force = potential.force(q)
+        if _largest(force) <= tol * potential.force_scale:
+            break
+        if float(np.vdot(force, v)) > 0.0:
+            v = (1.0 - mixing) * v + mixing * sqrt(float(np.vdot(v, v) / np.vdot(force, force))) * force
+            downhill += 1
+            if downhill > 5:
+                step, mixing = min(1.1 * step, _LONGEST * own), 0.99 * mixing
+        else:
+            v, step, mixing, downhill = np.zeros_like(q), 0.5 * step, 0.1, 0
+        v = v + step * force
+        far = step * _largest(v)
+        ahead = q + step * min(1.0, stride / far) * v
+        if inside_obstacle(potential.law, ahead):
+            v, step = np.zeros_like(q), 0.5 * step
+        else:
+            q = ahead
+    return q
+
+
+def gave_way(potential: Potential, start: FloatArray, end: FloatArray) -> bool:
+    """Whether neighbours at the start have moved against each other by more than the distance they are held at.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> gave_way(Potential(Algorithm1()), np.array([[0.0], [6.0]]), np.array([[9.0], [16.0]]))
+    False
+    """
+    i, j = links(start, potential.pair.range).T
+    moved = end - start
+    return bool(np.any(np.linalg.norm(moved[j] - moved[i], axis=1) > _PARTED * potential.pair.length))
+
+
+def anneal(potential: Potential, q: FloatArray, warm: float) -> FloatArray:
+    """Langevin's equation from a temperature that shakes agents out of their places down to none.
+
+    Parameters
+    ----------
+    potential : Potential
+        U.
+    q : ndarray, shape (n, m)
+        Start.
+    warm : float
+        First temperature, in units of the law's force times its length.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> pair = anneal(Potential(Algorithm1()), np.array([[0.0], [7.0]]), 1e-4)
+    >>> bool(abs(abs(pair[1, 0] - pair[0, 0]) - 7.0) < 1.0)
+    True
+    """
+    length, scale = potential.pair.length, potential.force_scale
+    step = _QUIET / sqrt(float(abs(potential.stiffness(q)).sum(axis=1).max()) or scale / length)
+    kept, rng, v = 1.0 - _DRAG, np.random.default_rng(0), np.zeros_like(q)
+    for k in range(_COOLING):
+        heat = warm * scale * length * (1.0 - k / _COOLING)
+        noise = rng.standard_normal(q.shape)
+        v = kept * v + step * potential.force(q)
+        v += sqrt(heat * (1.0 - kept**2)) * (noise if potential.pinned else moving_frame(noise))
+        ahead = q + step * v
+        if inside_obstacle(potential.law, ahead):
+            v = -v
+        else:
+            q = ahead
+    return q
+
+
+def newton(potential: Potential, q: FloatArray, steps: int) -> tuple[FloatArray, bool]:
+    """Newton's method downhill: where the Hessian is not positive, the moduli of its fronts' eigenvalues stand in.
+
+    A step is no longer than the trust in the quadratic model, which follows from how well it foretold the last one.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> pair, done = newton(Potential(Algorithm1()), np.array([[0.0], [6.9]]), 50)
+    >>> bool(abs(pair[1, 0] - pair[0, 0] - 7.0) < 1e-12), done
+    (True, True)
+    """
+    length, scale = potential.pair.length, potential.force_scale
+    trust, force = 0.1 * length, potential.force(q)
+    for _ in range(steps):
+        if _largest(force) <= _DONE * scale:
+            break
+        hessian = potential.stiffness(q)
+        least = _LEAST * float(abs(hessian).sum(axis=1).max() or scale / length)
+        step = Elimination(hessian, q, least=least).solve(force.ravel()).reshape(q.shape)
+        for _ in range(_TRIES):
+            step = step * min(1.0, trust / _largest(step))
+            ahead, after = q + step, potential.force(q + step)
+            if not inside_obstacle(potential.law, ahead) and _better(force, after, step, hessian, _NEAR * scale):
+                break
+            trust = 0.25 * _largest(step)
+        else:
+            break
+        q, force, trust = ahead, after, max(trust, 2.0 * _largest(step))
+    return q, _largest(force) <= _NEAR * scale
+
+
+def _better(force: FloatArray, after: FloatArray, step: FloatArray, hessian: Any, near: float) -> bool:
+    """Whether a step made good enough what it promised: the fall of energy, or near the end that of the force.
+
+    The fall of energy is the work of the force by the trapezoidal rule: no large energies to subtract.
+    """
+    if _largest(force) <= near:
+        return _largest(after) < _largest(force)
+    promised = float(np.vdot(force, step)) - 0.5 * float(step.ravel() @ (hessian @ step.ravel()))
+    return 0.5 * float(np.vdot(force + after, step)) > _ENOUGH * abs(promised)
+
+
+def _largest(vectors: FloatArray) -> float:
+    return float(np.sqrt(np.einsum("ij,ij->i", vectors, vectors).max()))

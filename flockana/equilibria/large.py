@@ -1,0 +1,102 @@
+"""The curvatures that decide about a large flock: the smallest of its Hessian, counted by elimination, and the largest.
+
+Lanczos' method finds eigenvalues and may miss one; the signs of an elimination's pivots count them all. So those found
+are held against the count, and more are asked for until what is not among them is surely positive.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.base.errors import SolverError
+from flockana.equilibria.curvature import Landscape
+from flockana.lattice.elimination import Elimination
+
+_FEW, _MOST = 12, 400  # eigenvalues asked for at first and at last
+_BELOW = 1e-7  # of the largest row sum: the shift below zero about which Lanczos' method looks
+_GAP = 1e-9  # of the largest row sum: eigenvalues between which there is no more are not counted apart
+
+
+class LargeLandscape(Landscape):
+    """A `Landscape` whose `values` are its smallest eigenvalues and its largest: all that are not surely positive.
+
+    Examples
+    --------
+    >>> from flockana.lattice import hexagonal_patch
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> from flockana.equilibria.terminal import rigid_motions
+    >>> q = hexagonal_patch(3, 7.0)
+    >>> ways = [kind(Algorithm1().stiffness, q, rigid_motions(q), force=0.0, length=7.0, unit=1.0)
+    ...         for kind in (Landscape, LargeLandscape)]
+    >>> bool(np.allclose(ways[0].values[:12], ways[1].values[:12])), ways[1].values.size
+    (True, 13)
+    """
+
+    @cached_property
+    def values(self) -> FloatArray:
+        """The smallest eigenvalues off the rigid motions, rising, and the largest."""
+        return self._extremes[0]
+
+    @cached_property
+    def vectors(self) -> FloatArray:
+        """Their eigenvectors, as columns."""
+        return self._extremes[1]
+
+    @cached_property
+    def _extremes(self) -> tuple[FloatArray, FloatArray]:
+        few = _FEW
+        while few <= _MOST:
+            values, vectors = self._smallest(few)
+            gaps = np.diff(values[few // 2 :])
+            last = few // 2 + int(np.argmax(gaps))  # what is beyond the widest gap is not needed
+            between = 0.5 * float(values[last] + values[last + 1])
+            clear = gaps.max() > _GAP * self.size and between > self.rounding
+            if clear and self._count(between) == last + 1 and self._keeps_all(float(values[last])):
+                top, its = self._largest()
+                return np.append(values, top), np.column_stack([vectors, its])
+            few *= 2
+        raise SolverError(
+            f"more than {_MOST // 2} of the {self.q.size} curvatures are zero, negative, or not to be told apart: "
+            "too many to classify so large a flock; take its connected parts one by one"
+        )
+
+    def _count(self, bound: float) -> int:
+        """How many eigenvalues off the rigid motions are below a positive bound; the rigid motions are, being zero."""
+        return Elimination(self._shifted(-bound), self.q, keep=False).negative - int(self.rigid.shape[1])
+
+    def _shifted(self, by: float) -> Any:
+        from scipy.sparse import eye_array
+
+        return (self.here + by * eye_array(self.q.size)).tocsr()
+
+    def _off(self, x: FloatArray) -> FloatArray:
+        """What is left of vectors off the rigid motions."""
+        rest: FloatArray = x - self.rigid @ (self.rigid.T @ x)
+        return rest
+
+    def _smallest(self, count: int) -> tuple[FloatArray, FloatArray]:
+        """Eigenvalues nearest to a little below zero, rising, by Rayleigh's quotient of their vectors."""
+        shift = _BELOW * self.size
+        solve = Elimination(self._shifted(shift), self.q).solve
+        return self._lanczos(lambda x: self._off(solve(self._off(x))), count, "LM")
+
+    def _largest(self) -> tuple[FloatArray, FloatArray]:
+        return self._lanczos(lambda x: self._off(self.here @ self._off(x)), 1, "LA")
+
+    def _lanczos(self, act: Any, count: int, which: Any) -> tuple[FloatArray, FloatArray]:
+        from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
+
+        size = self.q.size
+        operator: Any = LinearOperator((size, size), matvec=act, dtype=np.float64)
+        start = self._off(np.random.default_rng(0).standard_normal(size))
+        try:
+            _, vectors = eigsh(operator, k=count, which=which, v0=start, ncv=min(size, 2 * count + 20))
+        except ArpackError as error:
+            raise SolverError(f"ARPACK found no {count} curvatures of {size} ({error})") from error
+        vectors = np.linalg.qr(self._off(vectors))[0]
+        values, turns = np.linalg.eigh(vectors.T @ (self.here @ vectors))
+        return values, vectors @ turns
