@@ -49,7 +49,8 @@ def _work_precision(points: Series) -> Figure:
     axes = figure.subplots()
     for method, group in groupby(points, key=lambda point: str(point["method"])):
         reached = [point for point in group if isfinite(point["error"])]
-        axes.plot([p["error"] for p in reached], [p["seconds"] for p in reached], marker="o", label=method)
+        style = "--" if method.startswith("scipy-") else "-"
+        axes.plot([p["error"] for p in reached], [p["seconds"] for p in reached], style, marker="o", label=method)
     axes.invert_xaxis()
     _finish(axes, "farthest off, in units of d", "CPU time, s")
     axes.set_title("Fig. 10: 150 agents, 60 time units", fontsize=10)

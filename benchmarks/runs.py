@@ -27,7 +27,9 @@ def study(*, quick: bool) -> Found:
 
 def methods() -> tuple[str, ...]:
     """The adaptive methods that are worth a run of 150 agents."""
-    return tuple(method for method in METHODS if not method.endswith((*STIFF, "RK4")))
+    return tuple(
+        method for method in METHODS if not method.endswith((*STIFF, "RK4", "scipy-LSODA"))
+    )  # LSODA is scipy's
 
 
 def peer(method: str) -> str | None:

@@ -18,7 +18,7 @@ from flockana.kernels.compiling import njit
 FloatArray = npt.NDArray[np.float64]
 IndexArray = npt.NDArray[np.int32]
 
-DENSE_MAX = 128  # up to here the direct search is the faster one (benchmarks/test_kernels.py)
+DENSE_MAX = 128  # up to here the direct search is the faster one (benchmarks/search.py)
 BLOCK = 8192  # pairs in a block: two index arrays of 32 kB stay in the first-level cache
 _CLAMP = 2.0**40  # farthest cell: agents beyond it share one, which is slow and still right
 _MARGIN = 1.0 + 1e-6  # cells a little larger than the range, so that rounding in q/side never skips one

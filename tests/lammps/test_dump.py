@@ -110,7 +110,8 @@ def test_missing_columns_are_named(run, path, columns, message):
 def damage(text, how):
     lines = text.splitlines(keepends=True)
     return {
-        "cut within a line": text[:-20],
+        "cut within a line": "".join(lines[:-1]) + " ".join(lines[-1].split()[:5]),
+        "cut within a number": text.rstrip()[:-2],
         "cut within a snapshot": "".join(lines[:-3]),
         "cut after a step": text[: text.rindex("ITEM: NUMBER")],
         "not finite": text.replace(lines[-1], lines[-1].replace(lines[-1].split()[3], "nan")),
@@ -139,7 +140,8 @@ def _twice(text):
 @pytest.mark.parametrize(
     ("how", "message"),
     [
-        ("cut within a line", "the end of the file where 4 lines of 8 numbers were expected; was it cut off"),
+        ("cut within a line", r"'\d 1 .*' where 4 lines of 8 numbers were expected; was it cut off"),
+        ("cut within a number", "the end of the file where 4 lines of 8 numbers were expected; was it cut off"),
         ("cut within a snapshot", "the end of the file where 4 lines"),
         ("cut after a step", "ends within the snapshot of step 2000; was it cut off"),
         ("not finite", "a number that is not finite"),
