@@ -1,5 +1,5 @@
 # Everything lives in .venv; each target sets up what it needs. PYTHON chooses the interpreter (3.11 or newer), TESTS
-# what `lowest` and `newest` run, OPTIONS goes to `portability`.
+# what `lowest` and `newest` run, OPTIONS goes to `portability` and `bench`.
 PYTHON ?= python3
 BIN := .venv/bin
 TESTS ?=
@@ -21,8 +21,8 @@ check: .venv/.dev  ## format, lint, types, import direction
 	$(BIN)/mypy
 	$(BIN)/python tools/import_lint.py
 
-bench: .venv/.dev  ## ratios against baselines
-	$(BIN)/python -m pytest benchmarks --benchmark-only -p no:xdist
+bench: .venv/.dev  ## measure everything, write report/performance; OPTIONS="--quick" or "--out docs"
+	$(BIN)/python -m benchmarks $(OPTIONS)
 
 proofs: .venv/.dev  ## run every executable proof
 	$(BIN)/python -m proofs

@@ -11,7 +11,7 @@ from flockana.laws.olfati_saber import Algorithm1
 from flockana.scenarios import scenario
 
 from .conftest import best
-from .test_kernels import flock
+from .flocks import gas as flock
 
 CASES = ("phase", "paper-flocking", "spheres-3d")  # 40 agents, 150, 40 among obstacles
 

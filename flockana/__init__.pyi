@@ -40,6 +40,8 @@ from .interactions import Gains as Gains
 from .interactions import PairInteraction as PairInteraction
 from .interactions import ZoneRadii as ZoneRadii
 from .interactions import ZoneWeights as ZoneWeights
+from .lammps.dump import read_lammps as read_lammps
+from .lammps.export import export_lammps as export_lammps
 from .laws.algorithm3 import Algorithm3 as Algorithm3
 from .laws.bearing_distance import ZoneFlocking as ZoneFlocking
 from .laws.dead_zone import DeadZoneFlocking as DeadZoneFlocking

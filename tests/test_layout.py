@@ -6,7 +6,7 @@ from pathlib import Path
 
 TESTS = Path(__file__).parent
 ACROSS = ("adversarial", "properties", "reference")  # folders of tests that are about no one module
-OUTSIDE = ("proofs", "tools")  # folders of tests of what stands beside the package
+OUTSIDE = ("benchmarks", "proofs", "tools")  # folders of tests of what stands beside the package
 
 
 def test_each_file_is_named_for_the_module_that_it_tests():

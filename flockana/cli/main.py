@@ -18,6 +18,7 @@ from flockana.cli.animate import animate_command
 from flockana.cli.catalogue import scenarios_command, theorems_command
 from flockana.cli.ensemble import ensemble_command
 from flockana.cli.equilibrium import equilibrium_command
+from flockana.cli.export import export_command
 from flockana.cli.falsify import falsify_command
 from flockana.cli.lattice import lattice_command
 from flockana.cli.prove import prove_command
@@ -57,6 +58,7 @@ _COMMANDS: dict[str, Callable[..., Any]] = {
     "prove": prove_command,
     "ensemble": ensemble_command,
     "falsify": falsify_command,
+    "export": export_command,
 }
 for _name, _command in _COMMANDS.items():
     app.command(_name)(_command)

@@ -1,4 +1,6 @@
-"""scipy's adaptive solvers, step by step: no encounter leapt over, the energy balanced, every switch located.
+"""Adaptive solvers, step by step: no encounter leapt over, the energy balanced, every switch located.
+
+Those that are compiled take the laws that are (`flockana.dynamics.compiled`), scipy's all the others.
 
 Beside the state, ∫ dH/dt is integrated as one more variable.
 """
@@ -12,13 +14,17 @@ from functools import cache
 import numpy as np
 
 from flockana.base.checks import FloatArray
+from flockana.dynamics.compiled import engine_of, stepped
 from flockana.dynamics.encounters import Encounters
 from flockana.dynamics.sample import Sample, Tally, finite, has_energy
 from flockana.dynamics.stepping import ONE_STEP, Balance, Check, Flow, Frame, Meetings, Stepper
 from flockana.dynamics.switches import Switches
 from flockana.dynamics.tolerance import Floor
+from flockana.kernels.advance import TOO_SMALL
 from flockana.laws.law import Law
 from flockana.laws.switched import SwitchedLaw
+
+SCIPY = "scipy-"  # what the name of a method begins with if it is to be scipy's in any case
 
 
 def adaptive(
@@ -39,6 +45,13 @@ def adaptive(
     the run. `tally.notes` gets the numbers of steps made again and of switches.
     """
     switches = Switches(law, q0) if isinstance(law, SwitchedLaw) and law.located else None
+    engine = None if switches is not None else engine_of(law, q0, p0, t_span[0], method, rtol, floor)
+    if engine is not None:
+        ends, between = np.array([t_span[1]]), np.empty(0) if keep is None else keep
+        marked = None if keep is None else frozenset(keep.tolist())
+        yield from stepped(engine, q0, p0, ends, between, marked, tally, lambda *at: _gave_up(method, *at))
+        return
+    method = method.removeprefix(SCIPY)
     flow: Flow = law.flow if switches is None else switches.flow
     frame = Frame.of(t_span[0], q0, p0, energetic=has_energy(law, t_span[0], q0, p0))
     solver = _solver(frame, _counted(flow, tally, method), q0, p0, t_span, method, rtol, floor)
@@ -89,6 +102,12 @@ def adaptive(
         y = course()(switch)
         solver.begin(_counted(flow, tally, method), t, y)
         beside = _beside(sample(t, y))
+
+
+def _gave_up(method: str, status: int, t: float) -> str:
+    """Why a compiled run ended early, in the words of scipy's solvers."""
+    small = "Required step size is less than spacing between numbers."
+    return f"{method} gave up at t = {t:g}: {small if status == TOO_SMALL else 'the state is no longer finite'}"
 
 
 def _drop(due: deque[float], t: float) -> bool:

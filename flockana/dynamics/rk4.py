@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from flockana.base.checks import FloatArray
+from flockana.dynamics.compiled import engine_of, stepped
 from flockana.dynamics.encounters import Encounters, State
 from flockana.dynamics.iterate import count_steps
 from flockana.dynamics.sample import Sample, Tally, finite, has_energy
@@ -29,6 +30,12 @@ def rk4(
     A step that would leap over an encounter is made again, and shorter: dt is the longest step, and what a step does
     not see is not an error of its order. `tally.notes` gets how many were.
     """
+    engine = engine_of(law, q0, p0, t_span[0], "RK4")
+    if engine is not None:
+        stops = dict(_stops(t_span, dt, keep))
+        marked = frozenset(t for t, wanted in stops.items() if wanted)
+        yield from stepped(engine, q0, p0, np.array(list(stops)), np.empty(0), marked, tally, lambda _, t: _left(t, dt))
+        return
     energetic, encounters = has_energy(law, t_span[0], q0, p0), Encounters.of(law, len(q0))
     t, state, work = t_span[0], State(q0.copy(), p0.copy(), np.empty(0)), 0.0
     u, rate = law.flow(t, q0, p0)
@@ -48,7 +55,7 @@ def rk4(
                 h *= max(share, 1.0 / _GROWTH)  # what a step that is far too long foresees is no measure of the next
                 tally.notes["redone"] += 1
             if not finite(*later):
-                tally.fail(f"RK4 left the finite numbers at t = {t + h:g}: reduce dt = {dt:g}")
+                tally.fail(_left(t + h, dt))
                 return
             t, taken = (stop, np.inf) if h == remaining else (t + h, h)
             state, rate, work = later, rate_there, work + more
@@ -56,6 +63,10 @@ def rk4(
             if t < stop:
                 yield Sample(t, *state, {}, wanted=False)
         yield Sample(t, *state, {"work": np.array(work)} if energetic else {}, wanted=wanted)
+
+
+def _left(t: float, dt: float) -> str:
+    return f"RK4 left the finite numbers at t = {t:g}: reduce dt = {dt:g}"
 
 
 def _rk4_step(law: Law, t: float, state: State, rate: float, h: float) -> tuple[State, float, float]:

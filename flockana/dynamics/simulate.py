@@ -1,4 +1,4 @@
-"""Integrate a law: scipy's adaptive solvers, a fixed-step RK4 for large flocks, or the steps of a discrete law.
+"""Integrate a law: adaptive solvers, a fixed-step RK4 for large flocks, or the steps of a discrete law.
 
 Beside the state, ∫ dH/dt is integrated as one more variable, so that every run measures its own error: the residual
 of the energy balance is `Trajectory.energy_residual`.
@@ -16,7 +16,7 @@ from flockana.base.checks import FloatArray, ensure_positive, ensure_state, ensu
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.interrupts import interrupts_recognised
 from flockana.base.progress import progress_bar
-from flockana.dynamics.adaptive import adaptive
+from flockana.dynamics.adaptive import SCIPY, adaptive
 from flockana.dynamics.between import Between, Recorder
 from flockana.dynamics.first_call import check_first_call
 from flockana.dynamics.iterate import discrete, nearest
@@ -28,7 +28,7 @@ from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.laws.law import Law
 
 ADAPTIVE = ("DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA")
-METHODS = (*ADAPTIVE, "RK4")
+METHODS = (*ADAPTIVE, "RK4", *(SCIPY + method for method in ADAPTIVE))
 
 
 def simulate(
@@ -58,7 +58,9 @@ def simulate(
     t_span : (float, float)
         Start and end.
     method : str
-        One of scipy's solvers (DOP853, RK45, RK23, Radau, BDF, LSODA), or RK4 with a fixed step.
+        DOP853, RK45, RK23, Radau, BDF, LSODA, or RK4 with a fixed step. The first three and RK4 are compiled for laws
+        that are (Algorithms 1 and 2 and all sums of such terms); else they are scipy's, as `scipy-DOP853` and so on are
+        for every law. They make the same decisions with the same coefficients.
     rtol : float
         Relative tolerance of the adaptive solvers: relative to the state as seen from the mean motion of the start, so
         that neither the origin nor a common drift matters. The default keeps energy residuals well below 1e-6 of the

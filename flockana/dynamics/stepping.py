@@ -22,7 +22,7 @@ Flow = Callable[[float, FloatArray, FloatArray], tuple[FloatArray, float]]
 ONE_STEP = ("DOP853", "RK45", "RK23", "Radau")  # without a past: what they do next hangs on the state alone
 _ROUNDINGS = 64  # of the time: a step of so few is not made again
 _HALVINGS, _FALLS = 4, 0.04  # a residual that so many halvings leave above so much is not the integrator's to mend
-_BALANCED = 0.05  # of the relative tolerance: residual of the energy's balance that a step may leave, over |H|
+BALANCED = 0.05  # of the relative tolerance: residual of the energy's balance that a step may leave, over |H|
 _HELPS = 0.25  # of the residual, a halving: across a kink of the force it leaves an eighth, of a wrong rate one half
 _PATIENCE = 4  # steps in a row that halving did not mend, after which none is halved any more
 
@@ -137,7 +137,7 @@ class Balance:
     """
 
     def __init__(self, law: Law, rtol: float, floor: float) -> None:
-        self.law, self.share_of_energy, self.floor = law, _BALANCED * rtol, _BALANCED * floor
+        self.law, self.share_of_energy, self.floor = law, BALANCED * rtol, BALANCED * floor
         self._known, self._largest = (np.nan, 0.0), 0.0  # (time, H) where the step began; the largest |H|
         self._tried: list[float] = []  # residuals of the steps from here that were halved
         self._in_vain = 0  # steps in a row for which halving did nothing

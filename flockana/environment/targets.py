@@ -10,7 +10,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import cos, pi, sin
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -21,6 +21,22 @@ from flockana.base.units import Powers
 
 _STEP = 1e-5  # of the path's own time, for dq_r/dt by central difference: error about 1e-10 relative on smooth paths
 _RESOLVED = 2.0**-26  # of |t|: a shorter step would lose half its digits in the rounding of t
+
+
+class Harmonic(NamedTuple):
+    """The path q_r = a + bt + c cos ωt + s sin ωt, with p_r = factor · dq_r/dt + e, as compiled integrators take it.
+
+    Attributes
+    ----------
+    terms : ndarray, shape (5, m)
+        a, b, c, s, e.
+    omega, factor : float
+        ω and what p_r is of the true rate.
+    """
+
+    terms: FloatArray
+    omega: float = 0.0
+    factor: float = 1.0
 
 
 class Target(ABC):
@@ -56,6 +72,11 @@ class Target(ABC):
         """
         return self.position(t), self.rate(t)
 
+    @property
+    def harmonic(self) -> Harmonic | None:
+        """The path in closed form, for compiled integrators; None if it is of another form."""
+        return None
+
     def mismatch(self, times: npt.ArrayLike) -> float:
         """Largest ‖p_r − dq_r/dt‖ over the given times: 0 for a target that is consistent.
 
@@ -70,6 +91,11 @@ class Target(ABC):
     def dimension(self) -> int:
         """m."""
         return int(self.position(0.0).size)
+
+
+def _harmonic(a: Any, *, b: Any = 0.0, c: Any = 0.0, s: Any = 0.0, e: Any = 0.0, omega: float = 0.0) -> Harmonic:
+    """A path by its summands; those left out are zero."""
+    return Harmonic(np.array([np.broadcast_to(one, np.shape(a)) for one in (a, b, c, s, e)], dtype=np.float64), omega)
 
 
 def _freeze_vector(target: Target, name: str, m: int | None = None) -> FloatArray:
@@ -115,6 +141,10 @@ class StaticTarget(Target):
     def state(self, t: float) -> tuple[FloatArray, FloatArray]:  # noqa: D102
         return np.array(self.q), np.array(self.p)
 
+    @property
+    def harmonic(self) -> Harmonic:  # noqa: D102
+        return _harmonic(self.q, e=self.p)
+
 
 @dataclass(frozen=True)
 class LinearTarget(Target):
@@ -146,6 +176,10 @@ class LinearTarget(Target):
 
     def rate(self, t: float) -> FloatArray:  # noqa: D102
         return np.array(self.p)
+
+    @property
+    def harmonic(self) -> Harmonic:  # noqa: D102
+        return _harmonic(self.q, b=self.p)
 
 
 @dataclass(frozen=True)
@@ -209,6 +243,11 @@ class SineTarget(Target):
         omega = 2.0 * pi * self.frequency
         return np.array(self.velocity) + self._swing(self.amplitude * omega * cos(omega * t + self.phase))
 
+    @property
+    def harmonic(self) -> Harmonic:  # noqa: D102
+        c, s = (self._swing(self.amplitude * turn(self.phase)) for turn in (sin, cos))
+        return _harmonic(self.start, b=self.velocity, c=c, s=s, omega=2.0 * pi * self.frequency)
+
 
 @dataclass(frozen=True)
 class CircleTarget(Target):
@@ -257,6 +296,15 @@ class CircleTarget(Target):
         angle = omega * t + self.phase
         return self.radius * omega * self._plane(-sin(angle), cos(angle))
 
+    @property
+    def harmonic(self) -> Harmonic:  # noqa: D102
+        c, s = (self.radius * self._plane(*way) for way in self._turned())
+        return _harmonic(self.centre, c=c, s=s, omega=2.0 * pi * self.frequency)
+
+    def _turned(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Where it starts on the unit circle, and which way it goes from there."""
+        return (cos(self.phase), sin(self.phase)), (-sin(self.phase), cos(self.phase))
+
 
 @dataclass(frozen=True)
 class RescaledVelocity(Target):
@@ -291,6 +339,15 @@ class RescaledVelocity(Target):
 
     def state(self, t: float) -> tuple[FloatArray, FloatArray]:  # noqa: D102
         return self.target.position(t), self.factor * self.target.rate(t)
+
+    @property
+    def harmonic(self) -> Harmonic | None:  # noqa: D102
+        path = self.target.harmonic
+        if path is None:
+            return None
+        told = np.zeros_like(path.terms)  # only the true rate is told, whatever its own p_r is
+        told[:4] = path.terms[:4]
+        return Harmonic(told, path.omega, self.factor)
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from flockana.base.units import Powers
 from flockana.interactions.pair import PairInteraction, ensure_bump_start, ensure_resolved, evaluate
 from flockana.kernels import alpha as kernel
 from flockana.kernels.lift import lift, lift_scalar
-from flockana.kernels.scalars import bump, clenshaw, phi, phi_integral, sigma_norm
+from flockana.kernels.scalars import bump, on_panels, phi, phi_integral, sigma_norm
 from flockana.kernels.tables import integral_panels, panel_edges
 
 _STRENGTH_GRID = 2049
@@ -182,16 +182,16 @@ class AlphaInteraction(PairInteraction):
             edges = np.unique(np.append(edges, d_alpha))
         panels = integral_panels(taper, edges, value_at_right=0.0)
         at_knee = area * phi_integral((knee - d_alpha) / area, self.a, self.b, self.c)
-        left_end = clenshaw(knee, panels)
+        left_end = on_panels(knee, panels)
         if knee < d_alpha:
-            shift = -clenshaw(d_alpha, panels)
+            shift = -on_panels(d_alpha, panels)
             par[kernel.OFFSET] = left_end + shift - at_knee
         else:
             shift = at_knee - left_end
         panels[:, 2] += shift
         par[kernel.FAR] = shift
         if knee < d_alpha:  # what rounding of the sum leaves at d_α
-            rest = clenshaw(d_alpha, panels)
+            rest = on_panels(d_alpha, panels)
             panels[:, 2] -= rest
             par[[kernel.OFFSET, kernel.FAR]] -= rest
         for array in (par, panels):

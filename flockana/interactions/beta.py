@@ -15,7 +15,7 @@ from flockana.base.units import Powers
 from flockana.interactions.pair import ensure_bump_start, ensure_resolved, evaluate
 from flockana.kernels import alpha as kernel
 from flockana.kernels.lift import lift_scalar
-from flockana.kernels.scalars import clenshaw, sigma_norm
+from flockana.kernels.scalars import on_panels, sigma_norm
 from flockana.kernels.tables import integral_panels, panel_edges
 
 _ADJACENCY_BETA = lift_scalar(kernel.adjacency_beta)
@@ -98,7 +98,7 @@ class BetaInteraction:
             taper, area * panel_edges(knee / area, d_beta / area, d_beta / area), value_at_right=0.0
         )
         closed = area * sigma_norm(((knee - d_beta) / area) ** 2, 1.0) - knee
-        par[kernel.BETA_OFFSET] = clenshaw(knee, panels) - closed
+        par[kernel.BETA_OFFSET] = on_panels(knee, panels) - closed
         for array in (par, panels):
             array.setflags(write=False)
         return par, panels

@@ -16,7 +16,7 @@ from flockana.base.units import Powers
 from flockana.interactions.pair import PairInteraction, evaluate
 from flockana.kernels import dead_zone as kernel
 from flockana.kernels.lift import lift, lift_scalar
-from flockana.kernels.scalars import clenshaw
+from flockana.kernels.scalars import on_panels
 from flockana.kernels.tables import integral_panels
 
 _ACTION = lift_scalar(kernel.action)
@@ -206,15 +206,15 @@ class DeadZoneInteraction(PairInteraction):
             # narrow panels near it keep the series short
             inner = self.d1 - _fractions(self.ramp, self.d1)[::-1]
             panels = integral_panels(ramped, inner, value_at_right=0.0)
-            par[kernel.INNER] = clenshaw(inner[0], panels)
+            par[kernel.INNER] = on_panels(inner[0], panels)
             if self.d2 < self.r:
                 end = min(self.d2 + self.ramp, self.r)
                 # beyond r the kernel's force is 0, and at r the rule would meet that jump: stop just short of it
                 span = np.array([self.d2, end])
                 free[6] = inf
                 outer = integral_panels(ramped, span, value_at_right=0.0)
-                outer[:, 2] -= clenshaw(self.d2, outer)
-                par[kernel.OUTER] = clenshaw(end, outer)
+                outer[:, 2] -= on_panels(self.d2, outer)
+                par[kernel.OUTER] = on_panels(end, outer)
                 panels = np.vstack([panels, outer])
         for array in (par, panels):
             array.setflags(write=False)

@@ -167,7 +167,7 @@ class ZoneWeights:
             object.__setattr__(self, name, ensure_nonnegative(name, getattr(self, name)))
 
     def arrays(self, n: int, aliens: int = 0) -> dict[str, FloatArray]:
-        """The weights by name as arrays: (n, n) of pairs, (n, K) of aliens, (n,) of agents.
+        """The weights by name as arrays: (n, n) of pairs, (1, 1) if they are equal, (n, K) of aliens, (n,) of agents.
 
         Parameters
         ----------
@@ -190,6 +190,8 @@ class ZoneWeights:
             shape: tuple[int, ...] = (n, aliens if name == "alien" else n)
             if isinstance(value, tuple) and np.shape(value) != shape:
                 raise ArgumentError(f"{name} has shape {np.shape(value)}: expected one number, or {shape}")
+            if name in _PAIRS and not isinstance(value, tuple):
+                shape = (1, 1)  # a table for each of 10⁴ agents would be a gigabyte
             values[name] = np.array(np.broadcast_to(np.asarray(value, dtype=np.float64), shape))
         return values
 

@@ -12,11 +12,11 @@ from flockana.kernels.compiling import register_jitable
 from flockana.kernels.scalars import (
     bump,
     bump_slope,
-    clenshaw,
+    on_panels,
     phi,
     phi_integral,
+    phi_parts,
     phi_slope,
-    phi_within,
     sigma_1,
     sigma_norm,
     taper,
@@ -47,7 +47,7 @@ def psi_alpha(z, par, panels):
         return par[FAR]
     if z < par[H] * par[R_ALPHA]:
         return par[AREA] * phi_integral((z - par[D_ALPHA]) / par[AREA], par[A], par[B], par[C]) + par[OFFSET]
-    return clenshaw(z, panels)
+    return on_panels(z, panels)
 
 
 @register_jitable
@@ -61,8 +61,9 @@ def pair_alpha(s2, par):
     """(stress s_ij, adjacency a_ij) of a pair at squared distance s2."""
     root = sqrt(1.0 + par[EPS] * s2)
     z = s2 / (root + 1.0)  # the σ-norm, s2 being within range
-    rho = taper(z / par[R_ALPHA], par[H])
-    return rho * phi_within((z - par[D_ALPHA]) / par[AREA], par[A], par[B], par[C]) / root, rho
+    rho = taper(z * (1.0 / par[R_ALPHA]), par[H])
+    above, below = phi_parts((z - par[D_ALPHA]) * (1.0 / par[AREA]), par[A], par[B], par[C])
+    return rho * above / (below * root), rho
 
 
 @register_jitable
@@ -100,7 +101,7 @@ def psi_beta(z, par, panels):
     if z < par[H] * par[D_BETA]:
         s = (z - par[D_BETA]) / par[BETA_AREA]
         return par[BETA_AREA] * sigma_norm(s**2, 1.0) - z + par[BETA_OFFSET]  # √(1+s²) − 1 − z: no cancellation
-    return clenshaw(z, panels)
+    return on_panels(z, panels)
 
 
 @register_jitable

@@ -13,7 +13,7 @@ from math import inf, log, log1p, sqrt
 import numpy as np
 
 from flockana.kernels.compiling import njit, register_jitable
-from flockana.kernels.scalars import clenshaw
+from flockana.kernels.scalars import on_panels
 
 REPULSION, DEAD, ATTRACTION, OUT = 0, 1, 2, 3
 ETA, K_R, K_DELTA, K_1, D_1, D_2, R, R_D, RAMP, INNER, OUTER = range(11)
@@ -109,7 +109,7 @@ def potential(s, par, panels):
     if par[D_1] <= x <= par[D_2]:
         return pull
     if x < par[D_1] or x < outer:
-        return clenshaw(x, panels) + pull
+        return on_panels(x, panels) + pull
     return attractive_part(outer, x, par) + par[OUTER] + pull
 
 

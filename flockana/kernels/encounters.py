@@ -96,14 +96,19 @@ def _share(points, reach, allowance, radii, far, i, j, share, stack, spans):
 
 
 @njit(cache=True)
+def _band(reach, allowance, radii, far):
+    """Squared distances between which a pair may cut the step short: nearly all are let pass by theirs alone."""
+    travel = 2.0 * reach.max()
+    low = radii[:, 0].min() if travel <= far else 0.0
+    high = radii[:, -1].max() + 2.0 * allowance.max() + travel
+    return low * low, high * high
+
+
+@njit(cache=True)
 def share_of_all(points, reach, allowance, radii, far):
     """The largest share of the step, at most 1, within which no pair of the flock leaps over an encounter."""
     stack, spans, share = np.empty((_DEPTH + 2, 6, 3)), np.empty((_DEPTH + 2, 2)), 1.0
-    n, travel = radii.shape[0], 2.0 * reach.max()
-    # nearly all pairs are let pass by their distance alone
-    low = radii[:, 0].min() if travel <= far else 0.0
-    high = radii[:, -1].max() + 2.0 * allowance.max() + travel
-    low2, high2 = low * low, high * high
+    n, (low2, high2) = radii.shape[0], _band(reach, allowance, radii, far)
     x, y, z = points[:, 0, 0].copy(), points[:, 0, 1].copy(), points[:, 0, 2].copy()
     for i in range(n):
         for j in range(i + 1, n):
@@ -118,6 +123,9 @@ def share_of_all(points, reach, allowance, radii, far):
 def share_of_pairs(points, reach, allowance, radii, far, first, second, share):
     """As `share_of_all`, of the pairs given, if less than `share`."""
     stack, spans = np.empty((_DEPTH + 2, 6, 3)), np.empty((_DEPTH + 2, 2))
+    low2, high2 = _band(reach, allowance, radii, far)
     for k in range(first.size):
-        share = _share(points, reach, allowance, radii, far, first[k], second[k], share, stack, spans)
+        i, j = np.int64(first[k]), np.int64(second[k])
+        if low2 <= _apart2(points, i, j, 0) < high2:
+            share = _share(points, reach, allowance, radii, far, i, j, share, stack, spans)
     return share

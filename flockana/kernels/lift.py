@@ -17,17 +17,20 @@ from typing import Any
 import numpy as np
 
 from flockana.kernels.compiling import njit
+from flockana.kernels.listed import CompiledFunction, lift_listed
 from flockana.kernels.sweep import lift_sweep
 
 
 @dataclass(frozen=True)
 class PairKernels:
-    """Compiled sums over all pairs within range, or over a block of pairs (i, j).
+    """CompiledFunction sums over all pairs within range, or over a block of pairs (i, j).
 
     Attributes
     ----------
     sweeps : tuple of pairs of callables
         The forces of all pairs, and of those given, in one, two and three dimensions (`lift_sweep`).
+    listed : callable
+        By dimension, force and potential of the pairs of a list, for compiled integrators (`lift_listed`).
     potential : callable
         ``potential(q, i, j, par, panels)`` returns Σ ψ over the block.
     terms : callable
@@ -37,6 +40,7 @@ class PairKernels:
     """
 
     sweeps: tuple[tuple[Callable[..., Any], Callable[..., float]], ...]
+    listed: Callable[[int], tuple[CompiledFunction, CompiledFunction]]
     potential: Callable[..., float]
     terms: Callable[..., Any]
     adjacency_slope: Callable[..., Any] | None = None
@@ -105,7 +109,8 @@ def lift(
         return out
 
     sweeps = tuple(lift_sweep(pair, m, digest) for m in (1, 2, 3))
-    return PairKernels(sweeps, energy, terms, None if adjacency_slope is None else lift_scalar(adjacency_slope))
+    listed = lift_listed(pair, potential, digest)
+    return PairKernels(sweeps, listed, energy, terms, None if adjacency_slope is None else lift_scalar(adjacency_slope))
 
 
 def lift_scalar(function: Callable[..., float]) -> Callable[..., Any]:

@@ -34,7 +34,7 @@ def taper(z, h):
 
     ½(1 + cos πt) = sin² ½π(1 − t) by the series of the sine, to rounding of itself; a loop over it is vectorised.
     """
-    y = 0.5 * pi * (1.0 - z) / (1.0 - h)
+    y = (0.5 * pi / (1.0 - h)) * (1.0 - z)
     x = y * y
     high = _S6 + x * (_S7 + x * (_S8 + x * (_S9 + x * _S10)))
     sine = y * (1.0 + x * (_S1 + x * (_S2 + x * (_S3 + x * (_S4 + x * (_S5 + x * high))))))
@@ -61,12 +61,13 @@ def phi(s, a, b, c):
     """φ(s) = ½[(a+b) σ₁(s+c) + (a−b)] for c = (b−a)/√(4ab)."""
     if abs(s) > _FLAT:
         s = _FLAT if s > 0.0 else -_FLAT
-    return phi_within(s, a, b, c)
+    above, below = phi_parts(s, a, b, c)
+    return above / below
 
 
 @register_jitable
-def phi_within(s, a, b, c):
-    """φ(s) where |s| ≤ 1e140; a loop over it is vectorised.
+def phi_parts(s, a, b, c):
+    """φ(s) = above/below where |s| ≤ 1e140, without a division: a loop over it is vectorised.
 
     It is ½(a+b)[σ₁(x) − σ₁(c)], x = s + c, whose difference (x√(1+c²) − c√(1+x²))/√… is rearranged where x ≥ 0, so that
     nothing cancels. The last summand of g keeps 0/0 out; it is beyond all rounding elsewhere.
@@ -75,7 +76,7 @@ def phi_within(s, a, b, c):
     at_x, at_c = sqrt(1.0 + x * x), sqrt(1.0 + c * c)
     g = abs(x) * at_c + c * at_x + 1e-300
     difference = s * (s + 2.0 * c) if x >= 0.0 else -g * g  # times g
-    return 0.5 * (a + b) * (difference / g) / (at_x * at_c)
+    return 0.5 * (a + b) * difference, g * (at_x * at_c)
 
 
 @register_jitable
@@ -95,23 +96,23 @@ def phi_integral(s, a, b, c):
 
 
 @register_jitable
-def clenshaw(z, panels):
-    """A function given by Chebyshev panels at z: each row is (left, right, coefficients), rows in rising order.
+def on_panels(z, panels):
+    """A function given by panels of polynomials at z: each row is (left, right, coefficients), rows in rising order.
 
-    Points outside take the value at the nearest end.
+    A coefficient is that of a power of x, which is −1 at the left end and 1 at the right one; their number is odd.
+    Points outside take the value at the nearest end. No branch hangs on z: a loop over it runs ahead of itself.
     """
-    low, high = 0, panels.shape[0] - 1
-    while low < high:
-        middle = (low + high) // 2
-        if z < panels[middle, 1]:
-            high = middle
-        else:
-            low = middle + 1
-    left, right = panels[low, 0], panels[low, 1]
+    row, rest = 0, panels.shape[0]
+    while rest > 1:
+        half = rest // 2
+        row += half * (z >= panels[row + half - 1, 1])
+        rest -= half
+    left, right = panels[row, 0], panels[row, 1]
     x = (2.0 * z - left - right) / (right - left)
     if abs(x) > 1.0:  # not by min and max, which would turn a NaN into a number
         x = 1.0 if x > 0.0 else -1.0
-    b1, b2 = 0.0, 0.0
-    for k in range(panels.shape[1] - 1, 2, -1):
-        b1, b2 = panels[low, k] + 2.0 * x * b1 - b2, b1
-    return panels[low, 2] + x * b1 - b2
+    y, even, odd = x * x, 0.0, 0.0
+    for k in range(panels.shape[1] - 1, 2, -2):
+        even = y * even + panels[row, k]
+        odd = y * odd + panels[row, k - 1]
+    return y * even + panels[row, 2] + x * odd

@@ -1,4 +1,4 @@
-"""Chebyshev panels for an integral that has no closed form: built once, to rounding, and evaluated by `clenshaw`."""
+"""Panels of polynomials for an integral that has no closed form: built once, to rounding; `on_panels` evaluates."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 import numpy.typing as npt
-from numpy.polynomial import chebyshev
+from numpy.polynomial import chebyshev, polynomial  # noqa: F401  # the doctest's
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -39,7 +39,7 @@ def panel_edges(left: float, right: float, centre: float) -> FloatArray:
 def integral_panels(
     function: Callable[[FloatArray], FloatArray], edges: FloatArray, *, value_at_right: float
 ) -> FloatArray:
-    """Chebyshev panels of the antiderivative of `function` that equals `value_at_right` at the last edge.
+    """Panels of the antiderivative of `function` that equals `value_at_right` at the last edge.
 
     Parameters
     ----------
@@ -53,12 +53,13 @@ def integral_panels(
     Returns
     -------
     ndarray, shape (K, 3 + NODES)
-        A row per panel: left end, right end, Chebyshev coefficients.
+        A row per panel: left end, right end, coefficients of the powers of x, which is −1 and 1 there. The series falls
+        faster than those powers' Chebyshev coefficients grow, so that nothing is lost by them.
 
     Examples
     --------
     >>> panels = integral_panels(lambda z: 2.0 * z, np.array([0.0, 1.0, 3.0]), value_at_right=9.0)
-    >>> bool(abs(chebyshev.chebval(-1.0, panels[0, 2:])) < 1e-14)  # z² at 0
+    >>> bool(abs(polynomial.polyval(-1.0, panels[0, 2:])) < 1e-14)  # z² at 0
     True
     """
     nodes = chebyshev.chebpts1(NODES)
@@ -70,6 +71,6 @@ def integral_panels(
         series = chebyshev.chebfit(nodes, function(0.5 * (left + right) + half * nodes), NODES - 1)
         integral = half * chebyshev.chebint(series)
         integral[0] += value - chebyshev.chebval(1.0, integral)
-        panels[k, 0], panels[k, 1], panels[k, 2:] = left, right, integral
+        panels[k, 0], panels[k, 1], panels[k, 2:] = left, right, chebyshev.cheb2poly(integral)
         value = float(chebyshev.chebval(-1.0, integral))
     return panels

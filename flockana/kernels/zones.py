@@ -1,7 +1,8 @@
 """Zone-based flocking: the six behaviours of an agent in two forms, and whole runs of the map.
 
 Equation numbers are those of Jond's paper on bearing-distance flocking. The position form is (3) to (8); the bearing
-form is (14), (15) and (18) to (21), from distances, bearings b and their rates alone. All pairs are looked at.
+form is (14), (15) and (18) to (21), from distances, bearings b and their rates alone. Neighbours are looked for in
+cells and summed in the order of their indices, so that the sums are those over all agents.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from flockana.kernels.candidates import gather, sort_into_cells
 from flockana.kernels.compiling import njit
 from flockana.kernels.zone_obstacles import obstacle_terms, to_boundary
 
@@ -21,7 +23,7 @@ _NEAR_ZERO = 1e-4  # below it tanh(x)/x is 1 − x²/3 to rounding: the next ter
 
 
 class Zones(NamedTuple):
-    """Radii (n,), weights of pairs (n, n), of agents (n,) and of agents and aliens (n, K)."""
+    """Radii (n,), weights of pairs (n, n), or (1, 1) if equal, of agents (n,) and of agents and aliens (n, K)."""
 
     r: FloatArray
     c: FloatArray
@@ -92,12 +94,18 @@ def _length(x):
 
 
 @njit(cache=True)
-def _neighbours(i, q, p, zones, settings, bearing, out):
-    """Cohesion, alignment and separation of agent i."""
-    n, m = q.shape
+def _weight(table, i, j):
+    """That of a pair in a table, which is one number if all are equal."""
+    return table[0, 0] if table.size == 1 else table[i, j]
+
+
+@njit(cache=True)
+def _neighbours(i, near, q, p, zones, settings, bearing, out):
+    """Cohesion, alignment and separation of agent i; nobody but those in `near` is within its zones."""
+    m = q.shape[1]
     r, c, a = zones.r[i], zones.c[i], zones.a[i]
     total_c, total_a = 0.0, 0.0
-    for j in range(n):
+    for j in near:
         if j == i:
             continue
         d2 = 0.0
@@ -107,12 +115,12 @@ def _neighbours(i, q, p, zones, settings, bearing, out):
         if d > a or d == 0.0:
             continue
         if d <= c:
-            w = zones.separation[i, j] * (d - c)
+            w = _weight(zones.separation, i, j) * (d - c)
             for k in range(m):
                 out[SEPARATION, k] += w * ((q[j, k] - q[i, k]) / d)
         if d <= r:
             continue
-        w_c, w_a = zones.cohesion[i, j], zones.alignment[i, j]
+        w_c, w_a = _weight(zones.cohesion, i, j), _weight(zones.alignment, i, j)
         total_c += w_c
         total_a += w_a
         if not bearing:
@@ -149,11 +157,11 @@ def _aliens(i, q, alien, zones, annulus, out):
 
 
 @njit(cache=True)
-def behave(i, q, p, heading, estimate, alien, zones, settings, choices, world, out):
-    """Write the six behaviours of agent i into out (6, m); its heading and its velocity estimate move on."""
+def behave(i, near, q, p, heading, estimate, alien, zones, settings, choices, world, out):
+    """Write the six behaviours of agent i, who has `near` about it, into out (6, m); heading and estimate move on."""
     m = q.shape[1]
     out[:] = 0.0
-    _neighbours(i, q, p, zones, settings, choices.form == 1, out)
+    _neighbours(i, near, q, p, zones, settings, choices.form == 1, out)
     _aliens(i, q, alien, zones, choices.surveillance == 1, out)
     speed = _length(p[i])
     if speed > 0.0:
@@ -185,8 +193,10 @@ def behaviours(q, p, heading, estimate, alien, zones, settings, choices, world):
     """The six behaviours of all agents at one instant, shape (6, n, m); headings and estimates are changed."""
     n, m = q.shape
     components, out = np.empty((6, n, m)), np.empty((6, m))
+    cells, near = sort_into_cells(q, zones.a.max()), np.arange(n)
     for i in range(n):
-        behave(i, q, p, heading, estimate, alien, zones, settings, choices, world, out)
+        count = gather(i, q, zones.a[i], cells, near)
+        behave(i, near[:count], q, p, heading, estimate, alien, zones, settings, choices, world, out)
         components[:, i] = out
     return components
 
@@ -243,9 +253,14 @@ def run(q, p, heading, estimate, alien, zones, settings, choices, world, steps):
     aliens = np.empty((steps, alien.shape[0], m))
     u, out, total = np.empty((n, m)), np.empty((6, m)), np.empty(m)
     in_turn, literal = choices.order == 1, choices.speed_bound == 1
+    near, reach = np.arange(n), zones.a.max()
+    if in_turn:  # those before agent i have moved since the cells were made
+        reach += settings.dt * settings.v_max
     for step in range(steps):
+        cells = sort_into_cells(q, reach)
         for i in range(n):
-            behave(i, q, p, heading, estimate, alien, zones, settings, choices, world, out)
+            count = gather(i, q, zones.a[i], cells, near)
+            behave(i, near[:count], q, p, heading, estimate, alien, zones, settings, choices, world, out)
             total[:] = 0.0
             for term in range(6):
                 for k in range(m):
@@ -267,10 +282,11 @@ def run(q, p, heading, estimate, alien, zones, settings, choices, world, steps):
 def populations(q, r, c, a):
     """Mean number of agents in the zones of repulsion, conflict and attraction of an agent, (T, n, m) -> (T, 3)."""
     steps, n, m = q.shape
-    shares = np.zeros((steps, 3))
+    shares, near = np.zeros((steps, 3)), np.arange(n)
     for t in range(steps):
+        cells = sort_into_cells(q[t], a.max())
         for i in range(n):
-            for j in range(n):
+            for j in near[: gather(i, q[t], a[i], cells, near)]:
                 d2 = 0.0
                 for k in range(m):
                     d2 += (q[t, j, k] - q[t, i, k]) ** 2
@@ -286,8 +302,9 @@ def fragments(q, a):
     """(Components, agents in the largest) over time, (T, 2); linked are those of whom one attracts the other."""
     steps, n, m = q.shape
     counts = np.zeros((steps, 2), np.int64)
-    seen, stack = np.empty(n, np.bool_), np.empty(n, np.int64)
+    seen, stack, near, reach = np.empty(n, np.bool_), np.empty(n, np.int64), np.arange(n), a.max()
     for t in range(steps):
+        cells = sort_into_cells(q[t], reach)
         seen[:] = False
         for root in range(n):
             if seen[root]:
@@ -297,7 +314,7 @@ def fragments(q, a):
                 waiting -= 1
                 i = stack[waiting]
                 size += 1
-                for j in range(n):
+                for j in near[: gather(i, q[t], reach, cells, near)]:
                     d2 = 0.0
                     for k in range(m):
                         d2 += (q[t, j, k] - q[t, i, k]) ** 2

@@ -10,8 +10,11 @@ import numpy as np
 
 from flockana.base.checks import ensure_count
 from flockana.base.errors import ArgumentError
+from flockana.kernels.left_right import embedding
 from flockana.lattice.crossings import ensure_links
 from flockana.measures.nets import LinkArray
+
+_COMPILED = 3000  # links from which on the compiled search for an embedding is worth loading
 
 
 def harborth(n: int) -> int:
@@ -70,6 +73,8 @@ def is_complete(n: int, links: Any) -> bool:
 
 def is_planar(n: int, links: Any) -> bool:
     """Whether the graph of n agents can be drawn in the plane without crossings, however its agents stand.
+
+    That a large graph can is proved by an embedding that is found and checked; that one cannot is for networkx to say.
 
     Parameters
     ----------
@@ -177,18 +182,54 @@ def _distinct(n: int, links: Any) -> LinkArray:
 
 
 def _planar(n: int, links: LinkArray) -> bool:
-    """Few links are planar and many are not; between, the left-right test."""
-    import networkx
-
+    """Few links are planar and many are not; between, an embedding whose faces are counted, or networkx."""
     if len(links) < 9:  # K3,3 has nine; K5 ten
         return True
     agents = len(np.unique(links))
     if len(links) > planar_bound(agents):
         return False
+    if len(links) >= _COMPILED and _embeds(links):
+        return True
+    import networkx
+
     graph = networkx.Graph()
     graph.add_edges_from(links.tolist())
     planar: bool = networkx.check_planarity(graph)[0]
     return planar
+
+
+def _embeds(links: LinkArray) -> bool:
+    """Whether an order of links around each agent is found, and is one of a drawing without crossings.
+
+    Euler's formula proves it, however the order came about: over the connected components agents − links + faces falls
+    short of two each by twice the number of handles.
+    """
+    agents, numbers = np.unique(links, return_inverse=True)
+    pairs = numbers.reshape(-1, 2).astype(np.int32)
+    found = embedding(len(agents), pairs)
+    if found is None:
+        return False
+    owner, after = found
+    half = np.arange(2 * len(pairs))
+    ordered = np.array_equal(np.sort(after), half) and np.array_equal(owner[after], owner)
+    ends = np.array_equal(np.sort(owner.reshape(-1, 2), axis=1), np.sort(pairs, axis=1))
+    faces = _cycles(after[half ^ 1])
+    return ordered and ends and _cycles(after) == len(agents) and len(agents) - len(pairs) + faces == 2 * _parts(pairs)
+
+
+def _cycles(order: Any) -> int:
+    """How many cycles a permutation has."""
+    return _parts(np.column_stack([np.arange(len(order)), order]))
+
+
+def _parts(pairs: Any) -> int:
+    """How many connected components the graph of some pairs of 0, 1, … has."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    n = int(pairs.max()) + 1
+    count: int = connected_components(coo_array((np.ones(len(pairs)), tuple(pairs.T)), shape=(n, n)), directed=False)[0]
+    return count
 
 
 def ensure_plane(m: int) -> None:

@@ -10,11 +10,11 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_points, ensure_positive
 from flockana.base.errors import SolverError
 from flockana.lattice.crossings import ensure_links
+from flockana.lattice.elimination import Elimination
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
-_ZERO_PIVOT = "the sparse elimination met a zero pivot: use another tol, or dense=True"
 DENSE_MAX = 800  # coordinates up to which singular values take less than a second
 
 
@@ -104,7 +104,7 @@ def rigidity(q: Any, links: Any, *, tol: float = 1e-5, dense: bool | None = None
     Raises
     ------
     SolverError
-        If the sparse elimination met a zero pivot, so that its pivots do not tell the inertia.
+        If the sparse elimination met a pivot that is zero to rounding, so that its pivots do not tell the inertia.
 
     Examples
     --------
@@ -116,8 +116,8 @@ def rigidity(q: Any, links: Any, *, tol: float = 1e-5, dense: bool | None = None
     matrix = rigidity_matrix(q, links)
     if dense is None:
         dense = q.size <= DENSE_MAX
-    below, soft = _by_singular_values(matrix, tol) if dense else _by_inertia(matrix, max(tol, 1e-7))
     rigid = rigid_motion_count(q)
+    below, soft = _by_singular_values(matrix, tol) if dense else _by_inertia(matrix, max(tol, 1e-7), q, rigid)
     rank = q.size - below
     return Rigidity(rank, rigid, below - rigid, matrix.shape[0] - rank, soft)
 
@@ -144,26 +144,22 @@ def _by_singular_values(matrix: csr_array, tol: float) -> tuple[int, int]:
     return zero, more - zero
 
 
-def _by_inertia(matrix: csr_array, tol: float) -> tuple[int, int]:
-    gram = (matrix.T @ matrix).tocsc()
+def _by_inertia(matrix: csr_array, tol: float, q: FloatArray, rigid: int) -> tuple[int, int]:
+    gram = (matrix.T @ matrix).tocsr()
     largest = float(abs(gram).sum(axis=0).max())  # at least σ_max², on a lattice at most about twice that
     if largest == 0.0:
         return matrix.shape[1], 0
-    zero, more = (eigenvalues_below(gram, (factor * tol) ** 2 * largest) for factor in (1.0, 10.0))
+    more = eigenvalues_below(gram, (10.0 * tol) ** 2 * largest, q)
+    # rigid motions stretch nothing: if there is no other below the larger threshold, there is none below the smaller
+    zero = rigid if more == rigid else eigenvalues_below(gram, tol**2 * largest, q)
     return zero, more - zero
 
 
-def eigenvalues_below(gram: Any, shift: float) -> int:
+def eigenvalues_below(gram: Any, shift: float, q: FloatArray) -> int:
     """Sylvester's law: the negative pivots of a symmetric elimination count the eigenvalues below the shift."""
     from scipy.sparse import eye_array
-    from scipy.sparse.linalg import splu
 
-    shifted = (gram - shift * eye_array(gram.shape[0])).tocsc()
     try:
-        factor = splu(shifted, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    except RuntimeError:
-        raise SolverError(_ZERO_PIVOT) from None
-    if not np.array_equal(factor.perm_r, factor.perm_c):
-        raise SolverError(_ZERO_PIVOT)
-    pivots: Any = factor.U.diagonal()
-    return int(np.sum(pivots < 0.0))
+        return Elimination(gram - shift * eye_array(q.size), q, keep=False).negative
+    except SolverError as error:
+        raise SolverError(f"{error}; use another tol, or dense=True") from None

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from flockana.environment.beta import ObstacleField
     from flockana.environment.obstacles import Obstacle
     from flockana.environment.targets import Target
-    from flockana.laws.terms.term import Term
+    from flockana.laws.terms.term import Compiled, Term
 
 
 def block_diagonal(blocks: FloatArray) -> csr_array:
@@ -281,6 +281,16 @@ class Law(LawOfMotion):
             Positions and velocities.
         """
         return self.flow(*self._checked(t, q, p))[1]
+
+    def compiled(self, m: int) -> Compiled | None:
+        """The law for integrators that are compiled too (`flockana.dynamics.compiled`); None, unless it has that form.
+
+        Parameters
+        ----------
+        m : int
+            Dimension of the flock.
+        """
+        return None
 
     def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[sparray, sparray]:
         """(∂u/∂q, ∂u/∂p), sparse, in the order of ``q.ravel()``, unchecked; a law that has them overrides this.

@@ -8,12 +8,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_points
+from flockana.base.overrides import speaks_for
 from flockana.laws.law import Law, block_diagonal
-from flockana.laws.terms.term import Term
+from flockana.laws.terms.term import Compiled, Term
 from flockana.measures.frame import moving_frame
 
 if TYPE_CHECKING:
     from scipy.sparse import sparray
+
+MOST_TERMS = 3  # that a compiled integrator takes
 
 
 class SumOfTerms(Law):
@@ -58,6 +61,20 @@ class SumOfTerms(Law):
         for term in self.terms:
             rate += term.act(t, q, p, u)
         return u, rate
+
+    def compiled(self, m: int) -> Compiled | None:
+        """The terms for integrators that are compiled too; None if one has no such form, or there are too many.
+
+        Parameters
+        ----------
+        m : int
+            Dimension of the flock.
+        """
+        if not speaks_for(type(self), "compiled", ("flow", "hamiltonian", "potential_energy", "moving")):
+            return None
+        kernels = [term.compiled(m) for term in self.terms if speaks_for(type(term), "compiled", ("act", "energy"))]
+        known = [kernel for kernel in kernels if kernel is not None]
+        return Compiled(tuple(known), self.moving) if len(known) == len(self.terms) <= MOST_TERMS else None
 
     def potential_energy(self, t: float, q: FloatArray) -> float:
         """Σ U^T, unchecked.

@@ -24,6 +24,7 @@ from flockana.stability.rounding import eigen, root_error, slowest_first
 
 ZERO = 1e-8  # of the largest row sum: what K does to a motion that costs nothing
 _SPLIT = 1e-10  # relative: how much of the centre's motion may leak into the shape where the split is called exact
+_SYMMETRIC = 1e-10  # relative
 _PURE = 0.99  # cosine to a rotation or a uniform expansion from which on a mode is named for it
 _ROUNDINGS = 8.0  # of eps √N times the largest row sum, where rows are summed that cancel
 
@@ -165,6 +166,11 @@ class SecondOrder:
         self.damping_scale = float(abs(damping).sum(axis=1).max()) or 1.0
         fastest = max(sqrt(self.scale).real if abs(stiffness).max() else 0.0, float(abs(damping).sum(axis=1).max()))
         self.pace = float(2.0 ** np.round(np.log2(fastest))) if fastest else 1.0
+
+    @cached_property
+    def symmetric(self) -> bool:
+        """Whether K and D are symmetric but for rounding."""
+        return all(abs(part - part.T).max() <= _SYMMETRIC * abs(part).max() for part in (self.stiffness, self.damping))
 
     @cached_property
     def split(self) -> Split:

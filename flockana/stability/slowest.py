@@ -8,14 +8,24 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_count
 from flockana.base.errors import ArgumentError, SolverError
+from flockana.lattice.elimination import Elimination
 from flockana.stability.linearisation import Linearisation
 from flockana.stability.modes import Mode, SecondOrder
 from flockana.stability.rounding import mode_errors
 
 _SHIFT = 1e-3  # of the fastest rate: beside zero, where A itself is singular
 _ROUNDS = 3
-_SYMMETRIC = 1e-10  # relative
-_TRIES = (0.25, 0.5, 1.0, 2.0, 4.0)
+_TRIES = (
+    1.4,
+    2.0,
+    1.0,
+    2.8,
+    4.0,
+    0.7,
+    0.5,
+    0.25,
+)  # of the ratio of the scales of K and D: what serves best comes first
+_FIRST = 8  # eigenvalues asked for at first, for each mode that is wanted
 
 
 class SlowModes(NamedTuple):
@@ -78,51 +88,57 @@ def slowest_modes(linearisation: Linearisation, count: int = 12) -> SlowModes:
             f"count = {count}: expected fewer modes, 2 count < {free - 2} eigenvalues off the zero modes; "
             "a flock this small has its whole spectrum in `modes`"
         )
-    wanted = 3 * count
+    wanted = min(_FIRST * count, free - 2)
     for _ in range(_ROUNDS):
-        values, vectors, radius = _nearest_zero(problem, min(2 * wanted, free - 2))
+        values, vectors, radius = _nearest_zero(problem, wanted)
         kept = values.imag >= 0.0
         errors = mode_errors(problem.stiffness, problem.damping, values[kept], vectors[:, kept])
         modes = problem.named(values[kept], vectors[:, kept], errors, problem.rigid_invariant.translational)
         rising = np.maximum.accumulate([mode.decay_rate for mode in modes])  # but for the rounding of equal ones
-        known = _complete_to(problem, rising.tolist(), radius)
-        if not modes[count - 1].decay_rate > known or 2 * wanted >= free - 2:
+        known = _complete_to(problem, rising.tolist(), radius, count)
+        if not modes[count - 1].decay_rate > known or wanted == free - 2:
             break
-        wanted *= 2
+        wanted = min(2 * wanted, free - 2)
     return SlowModes(modes[:count], known)
 
 
-def _complete_to(problem: SecondOrder, rates: list[float], radius: float) -> float:
-    """The largest of the rates up to which every mode has |λ| <= radius: 0 if none, NaN if nothing can be said."""
-    for matrix in (problem.stiffness, problem.damping):
-        if abs(matrix - matrix.T).max() > _SYMMETRIC * abs(matrix).max():
-            return float("nan")
+def _complete_to(problem: SecondOrder, rates: list[float], radius: float, count: int) -> float:
+    """The largest of the rates up to which every mode has |λ| <= radius: 0 if none, NaN if nothing can be said.
+
+    Of the bounds K < a + b D one is looked for that serves the rate that matters, number `count`, or else the smallest;
+    how far it goes beyond is found by bisection.
+    """
+    if not problem.symmetric:
+        return float("nan")
     if abs(problem.damping).max() == 0.0:
         return 0.0
     ratio = problem.scale / problem.damping_scale
 
-    def complete(rate: float) -> bool:
-        bounds = ((radius**2 - 2.0 * b * rate, b) for b in (factor * ratio for factor in _TRIES))
-        return rate <= radius and any(a > 0.0 and _dominates(problem, a, b) for a, b in bounds)
+    def complete(rate: float, factor: float) -> bool:
+        b = factor * ratio
+        return rate <= radius and _dominates(problem, radius**2 - 2.0 * b * rate, b)
 
-    low, high = 0, len(rates)  # rates rise: bisect
-    while low < high:
-        middle = (low + high) // 2
-        low, high = (middle + 1, high) if complete(rates[middle]) else (low, middle)
-    return rates[low - 1] if low else 0.0
+    for first in (count, 1):
+        for factor in _TRIES:
+            if complete(rates[first - 1], factor):
+                low, high = first, len(rates)  # rates rise: bisect
+                while low < high:
+                    middle = (low + high) // 2
+                    low, high = (middle + 1, high) if complete(rates[middle], factor) else (low, middle)
+                return rates[low - 1]
+    return 0.0
 
 
 def _dominates(problem: SecondOrder, a: float, b: float) -> bool:
     """Whether K < a + b D: all pivots of a symmetric elimination are positive."""
-    from scipy.sparse import csc_array, eye_array
-    from scipy.sparse.linalg import splu
+    from scipy.sparse import eye_array
 
-    gap = csc_array(a * eye_array(problem.q.size) + b * problem.damping - problem.stiffness)
+    gap = a * eye_array(problem.q.size) + b * problem.damping - problem.stiffness
     try:
-        factor = splu(gap, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    except RuntimeError:  # a zero pivot
+        Elimination(gap, problem.q, keep=False, definite=True)
+    except SolverError:
         return False
-    return np.array_equal(factor.perm_r, factor.perm_c) and bool((factor.U.diagonal() > 0.0).all())
+    return True
 
 
 def _start(size: int) -> FloatArray:
@@ -137,7 +153,8 @@ def _nearest_zero(problem: SecondOrder, count: int) -> tuple[Any, Any, float]:
 
     size, shift = problem.q.size, _SHIFT * problem.pace
     damping = problem.damping + shift * eye_array(size)
-    solve = splu(csc_array(problem.stiffness + shift * damping)).solve
+    near = problem.stiffness + shift * damping
+    solve = Elimination(near, problem.q).solve if problem.symmetric else splu(csc_array(near)).solve
     right, left = problem.rigid_invariant.right, problem.rigid_invariant.left
     gram = left.T @ right
 
@@ -153,7 +170,9 @@ def _nearest_zero(problem: SecondOrder, count: int) -> tuple[Any, Any, float]:
 
     operator = LinearOperator((2 * size, 2 * size), matvec=inverse, dtype=np.float64)
     try:
-        inverted, vectors = eigs(operator, k=count, which="LM", v0=off(_start(2 * size)), ncv=min(2 * size, 3 * count))
+        inverted, vectors = eigs(
+            operator, k=count, which="LM", v0=off(_start(2 * size)), ncv=min(2 * size, 5 * count // 2)
+        )
     except ArpackError as error:
         raise SolverError(f"ARPACK found no {count} eigenvalues nearest to zero ({error}); ask for fewer") from error
     values = shift + 1.0 / inverted

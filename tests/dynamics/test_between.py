@@ -61,7 +61,8 @@ class TestBounds:
         assert run.between is not None
         assert len(run.between.t) >= run.stats["steps"] - 2
         u = np.array([LAW.flow(t, q, p)[0] for t, q, p in zip(run.path.t, run.path.q, run.path.p, strict=True)])
-        np.testing.assert_allclose(run.path.u, u, rtol=1e-12)
+        # an integrator knows q from a frame of its own: forces to the rounding of the largest
+        np.testing.assert_allclose(run.path.u, u, rtol=1e-12, atol=1e-13 * np.abs(u).max())
 
     def test_clearance_between_samples(self):
         law = Algorithm3(target=StaticTarget((60.0, 0.0)), obstacles=[Sphere((4.0, 9.0), 3.0)])

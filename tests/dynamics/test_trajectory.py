@@ -32,7 +32,8 @@ def test_series():
         t, q, p = RUN.t[k], RUN.q[k], RUN.p[k]
         assert RUN.energy()[k] == RUN.law.energy(t, q, p)
         assert RUN.energy_rate()[k] == RUN.law.energy_rate(t, q, p)
-        np.testing.assert_array_equal(RUN.u[k], RUN.law.acceleration(t, q, p))
+        u = RUN.law.acceleration(t, q, p)  # a run knows q from a frame of its own: to the rounding of the largest
+        np.testing.assert_allclose(RUN.u[k], u, rtol=1e-12, atol=1e-13 * np.abs(u).max())
     expected = RUN.energy() - RUN.energy()[0] - RUN.extra["work"]
     np.testing.assert_array_equal(RUN.energy_residual, expected)
     assert np.abs(RUN.energy_residual).max() <= 1e-6 * RUN.energy()[0]

@@ -131,13 +131,13 @@ def test_pair_beta_by_hand():
     assert law.pair_beta(24.0, par) == (0.0, 0.0)
 
 
-def test_clenshaw_is_the_polynomial_and_keeps_nan():
+def test_on_panels_is_the_polynomial_and_keeps_nan():
     panels = integral_panels(lambda z: 3.0 * z**2, np.array([-1.0, 0.5, 2.0]), value_at_right=8.0)
     for z in (-1.0, -0.3, 0.5, 1.1, 2.0):
-        assert scalars.clenshaw(z, panels) == pytest.approx(z**3, abs=3e-15)
-    assert scalars.clenshaw(9.0, panels) == pytest.approx(8.0, abs=3e-15)  # the nearest end
-    assert scalars.clenshaw(-9.0, panels) == pytest.approx(-1.0, abs=3e-15)
-    assert isnan(scalars.clenshaw(nan, panels))
+        assert scalars.on_panels(z, panels) == pytest.approx(z**3, abs=3e-15)
+    assert scalars.on_panels(9.0, panels) == pytest.approx(8.0, abs=3e-15)  # the nearest end
+    assert scalars.on_panels(-9.0, panels) == pytest.approx(-1.0, abs=3e-15)
+    assert isnan(scalars.on_panels(nan, panels))
 
 
 @given(st.floats(0, 1e4), st.floats(1e-6, 1e4), st.floats(-10, 1e4))

@@ -239,6 +239,15 @@ def test_a_slow_mode_that_swings_fast_is_not_missed_or_its_absence_not_claimed()
     assert slow.complete_to < slow.modes[0].decay_rate
 
 
+def test_how_far_the_list_is_complete_is_so_in_the_whole_spectrum():
+    """With a consensus and a pull to the γ-agent every bound K < a + b D that serves has a < 0."""
+    for found in (a_patch(6), linearise(Algorithm1(), hexagonal_patch(6, 7.0))):
+        slow = slowest_modes(found, 5)
+        assert slow.complete_to >= slow.modes[-1].decay_rate - 1e-9
+        slower = [mode for mode in found.modes if mode.decay_rate < slow.modes[-1].decay_rate - 1e-9]
+        assert len(slower) <= 5
+
+
 def test_two_thousand_agents():
     """Eigenpairs of a problem whose dense matrix would hold 60 million numbers, without forming it."""
     found = linearise(Algorithm1(), hexagonal_patch(25, 7.0))

@@ -8,9 +8,11 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
+from flockana.base.overrides import speaks_for
 from flockana.environment.targets import Target
 from flockana.interactions.gains import Gains, weighted
-from flockana.laws.terms.term import Invariance, Term
+from flockana.kernels import navigation as kernel
+from flockana.laws.terms.term import Invariance, Term, TermKernel
 from flockana.measures.frame import moving_frame
 
 
@@ -81,6 +83,15 @@ class Navigation(Term):
             return -float(np.vdot(g.drag * p, slip)) - float(pulled.sum(axis=0) @ self.target.rate(t))
         carried = pull.sum(axis=0) @ self.target.rate(t)
         return float(-g.c2_gamma * np.vdot(p, slip) - g.c1_gamma * carried)
+
+    def compiled(self, m: int) -> TermKernel | None:  # noqa: D102
+        path = self.target.harmonic
+        if path is None or not speaks_for(type(self.target), "harmonic", ("position", "rate", "state")):
+            return None
+        c1, c2 = np.broadcast_arrays(np.ravel(self.gains.c1_gamma), np.ravel(self.gains.c2_gamma))
+        head = [float(self.moving), self.unit or 0.0, c1.size, path.omega, path.factor]
+        numbers = np.concatenate([head, path.terms.ravel(), c1, c2])
+        return TermKernel(*kernel.compiled(), numbers, np.empty((0, 0)), 0.0)
 
     def energy(self, t: float, q: FloatArray) -> float:  # noqa: D102
         x = moving_frame(q) if self.moving else q - self.target.state(t)[0]

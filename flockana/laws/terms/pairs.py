@@ -5,12 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from flockana.base.checks import FloatArray
 from flockana.interactions.pair import PairInteraction
-from flockana.laws.terms.term import Term
+from flockana.kernels.listed import listed_numbers
+from flockana.laws.terms.term import Term, TermKernel
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
+
+_SUMS = ("forces", "potential_energy")  # as every pair law has them, from its scalar functions
 
 
 @dataclass(frozen=True)
@@ -41,6 +46,16 @@ class PairTerm(Term):
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
         _, dissipation = self.pair.forces(q, p, stiffness=self.stiffness, damping=self.damping, out=u)
         return -self.damping * dissipation
+
+    def compiled(self, m: int) -> TermKernel | None:  # noqa: D102
+        pair = self.pair
+        if not (
+            np.isfinite(pair.range)
+            and all(getattr(type(pair), name) is getattr(PairInteraction, name) for name in _SUMS)
+        ):
+            return None
+        numbers = listed_numbers(self.stiffness, self.damping, pair.range, pair.far_potential, pair.par)
+        return TermKernel(*pair.kernels.listed(m), numbers, pair.panels, pair.range)
 
     def energy(self, t: float, q: FloatArray) -> float:  # noqa: D102
         return self.stiffness * self.pair.potential_energy(q)

@@ -3,11 +3,41 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal, NamedTuple
 
 from flockana.base.checks import FloatArray
+from flockana.kernels.listed import CompiledFunction
 
 Invariance = Literal["rigid motions", "rotations about the target", "none"]
+
+
+class Compiled(NamedTuple):
+    """A law as compiled integrators take it: its terms, and whether its energy is that in the moving frame."""
+
+    terms: tuple[TermKernel, ...]
+    moving: bool
+
+
+class TermKernel(NamedTuple):
+    """A term as compiled integrators take it (`flockana.kernels.listed`).
+
+    Attributes
+    ----------
+    act, energy : callable
+        Force and power, and potential energy, of the signatures `ACT` and `ENERGY`.
+    numbers : ndarray, shape (K,)
+        What they read.
+    panels : ndarray, shape (L, M)
+        Chebyshev panels, if they read any.
+    reach : float
+        Within which they need all pairs; 0 if they need none.
+    """
+
+    act: CompiledFunction
+    energy: CompiledFunction
+    numbers: FloatArray
+    panels: FloatArray
+    reach: float
 
 
 class Term(ABC):
@@ -79,6 +109,16 @@ class Term(ABC):
         q : ndarray, shape (n, m)
             Positions.
         """
+
+    def compiled(self, m: int) -> TermKernel | None:
+        """The term for integrators that are compiled too; None, and the law is stepped by scipy's, unless it has one.
+
+        Parameters
+        ----------
+        m : int
+            Dimension of the flock.
+        """
+        return None
 
     def check_dimension(self, m: int) -> None:  # noqa: B027  # nothing to check unless a term says so
         """Raise if the term does not live in m dimensions.

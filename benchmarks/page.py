@@ -1,0 +1,52 @@
+"""The page of a record: what was measured where, the tables, and the two pictures."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from itertools import groupby
+from pathlib import Path
+from typing import Any
+
+from benchmarks.pictures import draw
+from benchmarks.rows import from_json, table
+
+_HEAD = """# Performance
+
+Written by `{command}`; nothing on this page is typed by hand. Times are CPU times on one core, medians over rounds in
+which all that is compared takes turns; a ratio is the median of the ratios of the rounds. Unless a row says "faster", a
+ratio is our time over that of what stands beside it. Flocks live in the plane, d = 7 and r = 8.4: a triangular lattice
+disturbed by 3 % of d (6 neighbours), the same with its agents in no order, and a uniform gas (12 neighbours on
+average). Times per pair count the pairs in range once each. The C loop (`benchmarks/pair_loop.c`) keeps a flat half
+list with a skin of 1, compiled by the machine's own compiler with -O3 -march=native -ffast-math.
+"""
+
+
+def write(record: Mapping[str, Any], folder: Path) -> list[Path]:
+    """Write performance.json, performance.md and the pictures that there are series for; returns the paths."""
+    folder.mkdir(parents=True, exist_ok=True)
+    raw, page = folder / "performance.json", folder / "performance.md"
+    pictures = draw(record["series"], folder)
+    raw.write_text(json.dumps(record, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    page.write_text(text(record, [path.name for path in pictures]), encoding="utf-8")
+    return [raw, page, *pictures]
+
+
+def text(record: Mapping[str, Any], pictures: list[str]) -> str:
+    """The page in Markdown.
+
+    Parameters
+    ----------
+    record : mapping
+        As `python -m benchmarks` writes it to performance.json.
+    pictures : list of str
+        File names beside the page.
+    """
+    machine = "".join(f"| {name} | {value} |\n" for name, value in record["machine"].items())
+    parts = [_HEAD.format(command=record["command"]), f"| machine | |\n|---|---|\n{machine}"]
+    parts += [f"![{name.removesuffix('.png')}]({name})\n" for name in pictures]
+    for study, rows in groupby(from_json(record["rows"]), key=lambda row: row.study):
+        parts.append(f"## {study}\n\n{table(list(rows))}")
+    if record["notices"]:
+        parts.append("## Left out\n\n" + "".join(f"- {line}\n" for line in record["notices"]))
+    return "\n".join(parts)

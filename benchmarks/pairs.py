@@ -1,0 +1,87 @@
+"""Time per pair in range against a C loop, for three flocks from 10⁴ to 10⁶ agents."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from benchmarks.c_loop import MISSING, Loop, compiled
+from benchmarks.flocks import FLOCKS, Flock, R
+from benchmarks.rows import Asked, Found, Row
+from benchmarks.timing import interleaved, ratio
+from flockana.base.checks import FloatArray
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.trajectory import Trajectory
+from flockana.environment.targets import StaticTarget
+from flockana.kernels.neighbours import pair_blocks
+from flockana.laws.olfati_saber import Algorithm2
+
+STUDY = "Time per pair"
+SKIN = 1.0  # of the list that the C loop keeps
+STEPS, DT = 10, 0.005  # of the run whose evaluations are counted
+_SIZES = (10_000, 100_000, 1_000_000)
+_WITHIN = Asked("<=", 1.5)
+
+
+def study(*, quick: bool) -> Found:
+    """Every flock at every size; the largest is left out where a few minutes must do."""
+    law, library = Algorithm2(target=StaticTarget((0.0, 0.0))), compiled()
+    rows: list[Row] = []
+    for name, build in FLOCKS.items():
+        per_agent: dict[int, float] = {}
+        for n in _SIZES[: 2 if quick else 3]:
+            found, pairs = _timed(law, library, build(n), rounds=3 if quick or n > 100_000 else 7)
+            rows += _rows(name, n, pairs, found)
+            per_agent[n] = float(np.median(found["ours"])) / n
+        largest = max(per_agent)
+        growth = per_agent[largest] / per_agent[10_000]
+        asked = _WITHIN if largest == 1_000_000 else None
+        value = 1e9 * per_agent[largest]
+        rows.append(Row(STUDY, f"{name}: time per agent", largest, value, "ns", "that at n = 10 000", growth, asked))
+    return Found(rows, () if library else (MISSING,))
+
+
+def _timed(law: Algorithm2, library: Any, flock: Flock, rounds: int) -> tuple[dict[str, FloatArray], int]:
+    """CPU seconds of an evaluation, of one in a run, and of the C loop; and how many pairs are in range."""
+    q, p = flock
+    pairs = sum(i.size for i, _ in pair_blocks(q, R))
+    calls: dict[str, Any] = {"ours": lambda: law.flow(0.0, q, p), "run": lambda: _steps(law, q, p)}
+    if library is not None:
+        kept, fresh = Loop(library, law, len(q)), Loop(library, law, len(q))
+        kept.build(q, p, SKIN)
+        (u, rate), exact = kept.flow(q, p), law.flow(0.0, q, p)
+        np.testing.assert_allclose(u, exact[0], rtol=0.0, atol=1e-11 * np.abs(u).max())
+        np.testing.assert_allclose(rate, exact[1], rtol=1e-9)
+        calls |= {"kept": lambda: kept.flow(q, p), "rebuilt": lambda: fresh.rebuilt_flow(q, p)}
+    found = interleaved(calls, rounds=rounds)
+    found["run"] = found["run"] / _steps(law, q, p).stats["evaluations"]
+    if library is not None:
+        kept.close()
+        fresh.close()
+    return found, pairs
+
+
+def _steps(law: Algorithm2, q: FloatArray, p: FloatArray) -> Trajectory:
+    return simulate(law, q, p, (0.0, STEPS * DT), method="RK4", dt=DT, t_eval=[STEPS * DT])
+
+
+_COMPARED = (
+    ("ours", "one evaluation", "rebuilt", "C, list rebuilt", _WITHIN),
+    ("ours", "one evaluation", "kept", "C, list kept", None),
+    ("run", "an evaluation in a run of RK4, its steps included", "kept", "C, list kept", _WITHIN),
+)
+
+
+def _rows(name: str, n: int, pairs: int, found: dict[str, FloatArray]) -> list[Row]:
+    rows = []
+    for ours, what, theirs, text, asked in _COMPARED:
+        value, unit = 1e9 * float(np.median(found[ours])) / pairs, "ns per pair"
+        if theirs in found:
+            against = f"{text}: {1e9 * float(np.median(found[theirs])) / pairs:.3g} ns"
+            rows.append(
+                Row(STUDY, f"{name}: {what}", n, value, unit, against, ratio(found[ours], found[theirs]), asked)
+            )
+        else:
+            rows.append(Row(STUDY, f"{name}: {what}", n, value, unit))
+    return list(dict.fromkeys(rows))  # without a baseline two of them are one

@@ -1,0 +1,53 @@
+"""`flockana export`: hand a scenario to another program."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from flockana.cli.options import ScenarioName, Seed
+from flockana.cli.show import show, show_files
+from flockana.cli.status import OK
+
+
+def export_command(
+    to: Annotated[Literal["lammps"], typer.Argument(metavar="PROGRAM", help="To whom: lammps.")],
+    name: ScenarioName,
+    out: Annotated[Path, typer.Option("--out", "-o", metavar="FOLDER", help="Folder to write to.")],
+    seed: Seed = 0,
+    points: Annotated[int, typer.Option(min=2, help="Distances in the table of the pair force.")] = 20_000,
+    inner: Annotated[float | None, typer.Option(help="First distance of the table.")] = None,
+    dt: Annotated[float | None, typer.Option(help="Longest step; by default a fiftieth of the law's time.")] = None,
+    samples: Annotated[int, typer.Option(min=1, help="Snapshots to write.")] = 200,
+    consensus: Annotated[
+        Literal["missing", "nearest"], typer.Option(help="Leave a consensus without a style out, or take the nearest.")
+    ] = "missing",
+) -> int:
+    """Write law, start and run of a scenario for LAMMPS: input script, data file, tabulated pair style, README.txt."""
+    from flockana.lammps.export import export_lammps
+    from flockana.scenarios import scenario
+
+    item = scenario(name, seed)
+    told = export_lammps(
+        item.law,
+        item.q0,
+        item.p0,
+        item.t_span,
+        out,
+        points=points,
+        inner=inner,
+        dt=dt,
+        samples=samples,
+        consensus=consensus,
+    )
+    console = show(f"{item.name} for LAMMPS: {told.steps} steps of {told.dt:.6g}")
+    for word, texts in (("exact", told.exact), ("nearly", told.near), ("missing", told.missing)):
+        for text in texts:
+            console.print(f"{word}: {text}", markup=False)
+    console.print(
+        f"table: force off by at most {told.force_error:.3g}, energy by {told.energy_error:.3g}", markup=False
+    )
+    show_files(**{path.name: path for path in told.files})
+    return OK

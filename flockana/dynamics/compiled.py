@@ -1,0 +1,164 @@
+"""Runs whose integrator is compiled with the law: many steps in one call (`flockana.kernels.advance`).
+
+What it decides, it decides as the step-by-step integrators do (`adaptive`, `rk4`), which take every law.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.dynamics.encounters import Encounters
+from flockana.dynamics.sample import Sample, Tally, has_energy
+from flockana.dynamics.stepping import BALANCED, ONE_STEP, Frame
+from flockana.dynamics.tolerance import Floor
+from flockana.kernels.advance import RUNNING, advance
+from flockana.kernels.listed import no_term
+from flockana.kernels.tableaus import Tableau, tableau
+from flockana.laws.law import Law
+from flockana.laws.sum_of_terms import MOST_TERMS
+from flockana.laws.terms.term import Compiled, TermKernel
+
+METHODS = ("DOP853", "RK45", "RK23", "RK4")  # that there are compiled
+_SKIN = 0.15  # of the range: what a list of pairs holds beyond it, so that it lasts some steps
+_STEPS, _NUMBERS = 128, 2_000_000  # in one call, at most: steps, and numbers kept of them
+
+
+EXACT = Floor(0.0, 0.0, 0.0)
+
+
+class Allowed(NamedTuple):
+    """Relative tolerance, absolute ones, and (share of the energy, energy) that a step's balance may be off by."""
+
+    rtol: float
+    floor: Floor
+    balance: tuple[float, float]
+
+
+class Point(NamedTuple):
+    """Where a run is: time, vector, its rate, the next step's length (0 if yet to be chosen)."""
+
+    t: float
+    y: FloatArray
+    f: FloatArray
+    h: float
+
+
+@dataclass(frozen=True, eq=False)
+class Engine:
+    """A law and a method, compiled.
+
+    Parameters
+    ----------
+    law : Law
+        With an energy.
+    form : Compiled
+        The same, compiled.
+    frame : Frame
+        Of the vectors.
+    method : Tableau
+        The coefficients.
+    encounters : Encounters
+        What no step may leap over.
+    allowed : Allowed
+        Tolerances.
+    """
+
+    law: Law
+    form: Compiled
+    frame: Frame
+    method: Tableau
+    encounters: Encounters
+    allowed: Allowed
+
+    def start(self, q0: FloatArray, p0: FloatArray) -> tuple[Sample, Point]:
+        """The start as a sample and as a point."""
+        t0, y0, size = self.frame.t0, self.frame.start(q0, p0), self.frame.size
+        u, power = self.law.flow(t0, q0, p0)
+        rate = np.concatenate([y0[size : 2 * size], u.ravel(), [power]])
+        return Sample(t0, q0, p0, u, {"work": np.array(0.0)}), Point(t0, y0, rate, 0.0)
+
+    def run(self, now: Point, stops: FloatArray, due: FloatArray, ledger: FloatArray) -> tuple[Any, ...]:
+        """Some steps from here (`flockana.kernels.advance`)."""
+        frame, size = self.frame, self.frame.shape[1]
+        nothing = TermKernel(*no_term(), np.empty(0), np.empty((0, 0)), 0.0)
+        terms = (*self.form.terms, *(nothing,) * (MOST_TERMS - len(self.form.terms)))
+        reach = max(term.reach for term in terms)
+        result: tuple[Any, ...] = advance()(
+            *(term.act for term in terms),
+            *(term.energy for term in terms),
+            tuple(np.array(term.numbers) for term in terms),
+            tuple(np.array(term.panels) for term in terms),
+            frame.shape,
+            (frame.t0, frame.origin[:size].copy(), frame.drift[:size].copy()),
+            self.form.moving,
+            *self.method,
+            (reach, _SKIN * reach),
+            self.encounters.radii,
+            self.encounters.far,
+            self.allowed.rtol,
+            tuple(self.allowed.floor),
+            self.allowed.balance,
+            ledger,
+            *now,
+            stops,
+            due,
+            int(np.clip(_NUMBERS // (3 * frame.size), 1, _STEPS)),
+        )
+        return result
+
+
+def engine_of(
+    law: Law, q0: FloatArray, p0: FloatArray, t0: float, method: str, rtol: float = 0.0, floor: Floor = EXACT
+) -> Engine | None:
+    """The law and the method, compiled; None where one of them has no such form. RK4 has no tolerances."""
+    form = law.compiled(q0.shape[1]) if method in METHODS else None
+    encounters = Encounters.of(law, len(q0))
+    if form is None or encounters.bodies is not None or not has_energy(law, t0, q0, p0):
+        return None
+    balance = (BALANCED * rtol, BALANCED * floor.energy) if method in ONE_STEP else (0.0, 0.0)
+    frame = Frame.of(t0, q0, p0, energetic=True)
+    return Engine(law, form, frame, tableau(method), encounters, Allowed(rtol, floor, balance))
+
+
+def stepped(
+    engine: Engine,
+    q0: FloatArray,
+    p0: FloatArray,
+    stops: FloatArray,
+    due: FloatArray,
+    wanted: frozenset[float] | None,
+    tally: Tally,
+    reason: Callable[[int, float], str],
+) -> Iterator[Sample]:
+    """Steps to the last of the stops, and samples at the times that are due, in order of time.
+
+    A step, and the start, is wanted if its time is among those given; None: every step is. `reason` says in words why
+    a run ended early, of its status and time.
+    """
+    first, now = engine.start(q0, p0)
+    ledger = np.array([np.nan, 0.0, 0.0, 0.0])
+    tally.evaluations, tally.notes["redone"] = tally.evaluations + 1, 0
+    if wanted is None or first.t in wanted:
+        yield first
+    stops, due = stops[stops > first.t], due[due > first.t]
+    while stops.size:
+        status, t, y, f, h, evaluations, redone, passed, sampled, steps, between = engine.run(now, stops, due, ledger)
+        tally.evaluations, tally.notes["redone"] = tally.evaluations + evaluations, tally.notes["redone"] + redone
+        on_the_way = deque(zip(due.tolist(), *between, strict=False))
+        for at, (q, p, u), work in zip(steps[0].tolist(), *steps[1:], strict=True):
+            while on_the_way and on_the_way[0][0] <= at:
+                earlier, seen, done = on_the_way.popleft()
+                if earlier < at:
+                    yield Sample(earlier, seen[0], seen[1], seen[2], {"work": np.array(done)})
+            tally.steps += 1
+            yield Sample(at, q, p, u, {"work": np.array(work)}, wanted is None or at in wanted)
+        if status != RUNNING:
+            tally.fail(reason(status, t + h))
+            return
+        now, stops, due = Point(t, y, f, h), stops[passed:], due[sampled:]

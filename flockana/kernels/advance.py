@@ -1,0 +1,225 @@
+"""Many steps of a run in one compiled call: error control, encounters, the energy's balance, samples between steps.
+
+What is decided is decided as in `flockana.dynamics.stepping`, which steps scipy's solvers: the same constants, the same
+checks in the same order. Agents are sorted by cell for the time of a call; what goes in and out is in their own order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from flockana.kernels.compiling import njit
+from flockana.kernels.encounters import share_of_pairs
+from flockana.kernels.listed import signatures
+from flockana.kernels.paths import bernstein, centred
+from flockana.kernels.runge_kutta import energy_of, error_of, first_step, frame_at, interpolated, rate_of, stages_of
+from flockana.kernels.verlet import empty_list, list_pairs, spatial_order
+
+RUNNING, TOO_SMALL, NOT_FINITE = range(3)
+_SAFETY, _LEAST, _MOST = 0.9, 0.2, 10.0  # scipy's: factors of a step
+_ROUNDINGS = 64.0  # of the time: a step of so few is not made again
+_HALVINGS, _FALLS, _HELPS, _PATIENCE = 4, 0.04, 0.25, 4  # see `flockana.dynamics.stepping`
+_GROWTH = 8.0  # see `flockana.dynamics.rk4`
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def _spacing(t):
+    return np.nextafter(abs(t), np.inf) - abs(t)
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def _met(h, y0, f0, y1, f1, encounters, system, pairs, scratch):
+    """How much of a step may be taken so that no encounter of two agents is leapt over, and room for a list."""
+    (n, m), (radii, far) = system[4], encounters
+    size, share = n * m, 1.0
+    q0, p0, u0 = y0[:size].reshape(n, m), y0[size : 2 * size].reshape(n, m), f0[size : 2 * size].reshape(n, m)
+    q1, p1, u1 = y1[:size].reshape(n, m), y1[size : 2 * size].reshape(n, m), f1[size : 2 * size].reshape(n, m)
+    points, _, allowance = bernstein(h, q0, p0, u0, q1, p1, u1)
+    ways = centred(points, allowance)
+    search = (radii.max() + 2.0 * (ways.max() + allowance.max())) * (1.0 + 1e-9)
+    first, second, count, places, _ = pairs
+    if not (places.size and search <= system[7][0]):
+        first, second, count = list_pairs(q0, search, scratch[0], scratch[1])
+        scratch = (first, second)
+    return share_of_pairs(points, ways, allowance, radii, far, first[:count], second[:count], share), scratch
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def _balanced(t, at, y, reached, balance, ledger, tried, halved, system, pairs):
+    """(how much of a step may be taken, halvings so far) by the energy's balance; the ledger is kept."""
+    if ledger[0] != t:
+        ledger[0], ledger[1] = t, energy_of(t, y, system, pairs)
+    first, last = ledger[1], energy_of(at, reached, system, pairs)
+    residual, largest = abs(last - first - (reached[-1] - y[-1])), max(ledger[2], abs(first), abs(last))
+    worst = 0.0
+    for k in range(halved + 1 - _HALVINGS):
+        worst = max(worst, tried[k])
+    off = residual > max(balance[0] * largest, balance[1])
+    if off and halved < tried.size and (halved < _HALVINGS or residual <= _FALLS * worst):
+        tried[halved] = residual
+        return 0.5, halved + 1
+    if halved:
+        ledger[3] = 0.0 if residual <= tried[0] * _HELPS**halved else ledger[3] + 1.0
+    ledger[0], ledger[1], ledger[2] = at, last, largest
+    return 1.0, 0
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def _moved(vector, order, shape, back, out):
+    """The vector in the order given, or from there back."""
+    n, m = shape
+    for i in range(n):
+        own = np.int64(order[i])
+        a, b = (i, own) if back else (own, i)
+        for c in range(m):
+            out[b * m + c], out[n * m + b * m + c] = vector[a * m + c], vector[n * m + a * m + c]
+    out[2 * n * m] = vector[2 * n * m]
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def _record(t, y, f, system, out):
+    """Positions, velocities and accelerations as they are, in the agents' own order; returns the work."""
+    (n, m), view, order = system[4], system[5], system[8]
+    frame = frame_at(t, *view)
+    for i in range(n):
+        own = np.int64(order[i])
+        for c in range(m):
+            out[0, own, c] = y[i * m + c] + frame[0, c]
+            out[1, own, c] = y[n * m + i * m + c] + frame[1, c]
+            out[2, own, c] = f[n * m + i * m + c]
+    return y[2 * n * m]
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def _sampled(t, h, at, y, rates, trial, due, begin, method, interpolant, between, work, system, pairs):
+    """Samples at the times due before the end of a step: (samples so far, pairs)."""
+    stages, slope = method[2], np.empty(y.size)
+    pairs = stages_of(t, h, y, rates, trial, trial, method, stages + 1, len(rates), system, pairs)
+    k = begin
+    while k < due.size and due[k] < at:
+        interpolated((due[k] - t) / h, h, y, rates, interpolant, trial)
+        pairs = rate_of(due[k], trial, slope, system, pairs)
+        work[k] = _record(due[k], trial, slope, system, between[k])
+        k += 1
+    return k, pairs
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def _controlled(h, error, exponent, rejected):
+    """(next step, whether this one stands), as scipy's solvers choose."""
+    factor = _SAFETY * error**exponent
+    if error < 1.0:
+        factor = _MOST if error == 0.0 else min(_MOST, factor)
+        return h * (min(1.0, factor) if rejected else factor), True
+    return h * (factor if factor > _LEAST else _LEAST), False  # of an error that is no number too
+
+
+def _advance(
+    act0, act1, act2, energy0, energy1, energy2, numbers, panels, shape, view, moving,
+    tableau_a, tableau_c, estimates, interpolant, stages, exponent,
+    reach, radii, far, rtol, floor, balance, ledger, t, y, f, h, stops, due, most,
+):  # fmt: skip
+    """Make up to `most` steps that stand, to the last of `stops`.
+
+    Returns (status, t, y, f, h, evaluations, steps made again, stops and due times passed, times, states and work of
+    the steps, states and work at the due times, NaN where a step ended).
+    """
+    n, m = shape
+    start = y[: n * m].copy().reshape(n, m)
+    order = spatial_order(start, reach[0] + reach[1]) if reach[0] > 0.0 else np.arange(n).astype(np.uint64)
+    system = (
+        (act0, act1, act2), (energy0, energy1, energy2), numbers, panels, shape, view, moving, reach, order
+    )  # fmt: skip
+    method, encounters, fixed = (tableau_a, tableau_c, stages), (radii[order], far), exponent == 0.0
+    rates = np.zeros((len(tableau_a) if due.size else stages + 1, y.size))
+    now, reached, trial = np.empty(y.size), np.empty(y.size), np.empty(y.size)
+    _moved(y, order, shape, False, now)
+    _moved(f, order, shape, False, rates[0])
+    pairs, scratch = empty_list(n), (np.empty(8 * n, np.uint32), np.empty(8 * n, np.uint32))
+    times, states, work = np.empty(most), np.empty((most, 3, n, m)), np.empty(most)
+    between, work_between = np.empty((due.size, 3, n, m)), np.full(due.size, np.nan)
+    made, evaluations, redone, status, stop = 0, 0, 0, RUNNING, 0
+    sampled, halved, first = np.int64(0), np.int64(0), np.int64(1)  # typed: literals would be compiled once more
+    tried, taken = np.empty(64), np.inf
+    if not fixed and h == 0.0:
+        h, pairs = first_step(t, stops[-1] - t, now, rates, exponent, rtol, floor, trial, system, pairs)
+        evaluations += 1
+    while made < most and stop < stops.size and status == RUNNING:
+        shortest, rejected, later, at, stands = 10.0 * _spacing(t), False, h, t, False
+        h = min(stops[stop] - t, _GROWTH * taken) if fixed else max(h, shortest)
+        while status == RUNNING and not stands:
+            if h < shortest and not fixed:
+                status = TOO_SMALL
+                break
+            at = stops[stop] if h == stops[stop] - t else min(t + h, stops[stop])
+            h = at - t
+            pairs = stages_of(t, h, now, rates, reached, trial, method, first, stages + 1, system, pairs)
+            evaluations += stages
+            if not fixed:
+                error = error_of(now, reached, h, estimates, rates, n * m, rtol, floor)
+                later, passes = _controlled(h, error, exponent, rejected)
+                if not passes:
+                    h, rejected = later, True
+                    continue
+            if not (np.isfinite(reached).all() and np.isfinite(rates[stages]).all()):
+                status = NOT_FINITE
+                break
+            share = 1.0
+            if radii.size and n > 1:
+                share, scratch = _met(
+                    h, now, rates[0], reached, rates[stages], encounters, system, pairs, scratch
+                )  # fmt: skip
+            if share == 1.0 and balance[0] > 0.0 and ledger[3] < _PATIENCE:
+                share, halved = _balanced(t, at, now, reached, balance, ledger, tried, halved, system, pairs)
+            least = 0.0 if fixed else _ROUNDINGS * _spacing(max(abs(t), abs(at)))
+            stands = share == 1.0 or (t + share * h == t if fixed else share * h <= least)
+            if not stands:
+                h, rejected, redone = h * (max(share, 1.0 / _GROWTH) if fixed else share), False, redone + 1
+        if status != RUNNING:
+            break
+        if sampled < due.size and due[sampled] < at:
+            before = sampled
+            sampled, pairs = _sampled(
+                t, h, at, now, rates, trial, due, sampled, method, interpolant, between, work_between, system, pairs
+            )  # fmt: skip
+            evaluations += len(rates) - stages - 1 + sampled - before
+        while sampled < due.size and due[sampled] == at:
+            sampled += 1  # the step itself is the sample
+        t, taken = at, h
+        if at == stops[stop]:
+            stop, taken = stop + 1, np.inf
+        h, now, reached = later, reached, now
+        rates[0] = rates[stages]
+        times[made], work[made] = t, _record(t, now, rates[0], system, states[made])
+        made += 1
+    last, slope = np.empty(y.size), np.empty(y.size)
+    _moved(now, order, shape, True, last)
+    _moved(rates[0], order, shape, True, slope)
+    steps, passed = (times[:made], states[:made], work[:made]), (between[:sampled], work_between[:sampled])
+    return status, t, last, slope, h, evaluations, redone, stop, sampled, steps, passed
+
+
+@cache
+def advance() -> Callable[..., Any]:
+    """`_advance`, compiled when first asked for: what it is handed functions for, no two laws compile twice."""
+    from numba import boolean, float64, int64, types
+
+    def several(kind: Any, count: int) -> Any:
+        return types.containers.UniTuple(kind, count)
+
+    act, energy = (types.FunctionType(signature) for signature in signatures())
+    matrix, vector = float64[:, ::1], float64[::1]
+    law = (act, act, act, energy, energy, energy, several(vector, 3), several(matrix, 3))
+    view = (several(int64, 2), types.containers.Tuple((float64, vector, vector)), boolean)
+    method = (matrix, vector, matrix, matrix, int64, float64)
+    limits = (several(float64, 2), matrix, float64, float64, several(float64, 3), several(float64, 2), vector)
+    point = (float64, vector, vector, float64)
+    made = njit(cache=True, error_model="numpy", nogil=True)(_advance)
+    made.compile((*law, *view, *method, *limits, *point, vector, vector, int64))
+    made.disable_compile()
+    compiled: Callable[..., Any] = made.dispatcher
+    return compiled

@@ -1,0 +1,105 @@
+"""Who may be near an agent, in the order of indices: sums over them are those over all agents, to the last bit."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.kernels.compiling import njit
+from flockana.kernels.grid import sort_into_grid
+
+IndexArray = npt.NDArray[np.int64]
+
+_FEW = 64  # agents that are looked through one by one
+_CROWDED = 4  # as many blocks of adjacent cells at least, or most agents are near each other
+_WIDER = 64  # times that cells are made twice as wide, where the box is sparse
+_SLACK = 1.0 + 1e-9  # for who is near by the rounding of a root
+
+
+class Cells(NamedTuple):
+    """Agents by cell, first agent of each cell, where the later adjacent rows of cells are, and each agent's cell."""
+
+    order: IndexArray
+    start: IndexArray
+    rows: IndexArray
+    cell: IndexArray
+
+
+@njit(cache=True)
+def sort_into_cells(q, reach):
+    """The cells of a flock; all four are empty where looking at all agents is as good.
+
+    Parameters
+    ----------
+    q : ndarray, shape (n, m)
+        Positions.
+    reach : float
+        Those within it of each other are in the same or in adjacent cells.
+    """
+    n, m = q.shape
+    none = np.empty(0, np.int64)
+    if n <= _FEW:
+        return Cells(none, none, none, none)
+    side = reach
+    order, start, rows = sort_into_grid(q, side)
+    for _ in range(_WIDER):
+        if start.size > 0:
+            break
+        side *= 2.0
+        order, start, rows = sort_into_grid(q, side)
+    if start.size <= _CROWDED * 3**m:
+        return Cells(none, none, none, none)
+    cell = np.empty(n, np.int64)
+    for c in range(start.size - 1):
+        for k in range(start[c], start[c + 1]):
+            cell[order[k]] = c
+    return Cells(order.astype(np.int64), start.astype(np.int64), rows.astype(np.int64), cell)
+
+
+@njit(cache=True)
+def gather(i, q, reach, cells, near):
+    """Bring the indices of all that may be within reach of agent i, itself included, into `near`; how many they are.
+
+    Parameters
+    ----------
+    i : int
+        The agent.
+    q : ndarray, shape (n, m)
+        Positions now.
+    reach : float
+        How far.
+    cells : Cells
+        Of positions that nobody has left by more than half of what the cells' reach exceeds this one by.
+    near : ndarray of int64, shape (n,)
+        Where to write, in rising order; 0 to n − 1 at first, and that is what it stays where there are no cells.
+    """
+    n, m = q.shape
+    if cells.start.size == 0:
+        return n
+    count, c, most = 0, cells.cell[i], reach * reach * _SLACK
+    for row in range(-cells.rows.size, cells.rows.size + 1):
+        to = 0 if row == 0 else cells.rows[row - 1] if row > 0 else -cells.rows[-row - 1]
+        for k in range(cells.start[c + to - 1], cells.start[c + to + 2]):
+            j, d2 = cells.order[k], 0.0
+            for axis in range(m):
+                d2 += (q[j, axis] - q[i, axis]) ** 2
+            near[count] = j
+            count += d2 <= most
+    _sort(near, count)
+    return count
+
+
+@njit(cache=True)
+def _sort(near, count):
+    """By insertion where they are few, as they are in rows that are sorted each."""
+    if count > _FEW:
+        near[:count].sort()
+        return
+    for k in range(1, count):
+        j, at = near[k], k
+        while at > 0 and near[at - 1] > j:
+            near[at] = near[at - 1]
+            at -= 1
+        near[at] = j

@@ -1,0 +1,148 @@
+"""Forces and potential of the pairs of a list, for integrators that are compiled too.
+
+Pairs pass in blocks, each in three phases: gather differences and keep those within range without a branch; the pair
+law in a loop that the compiler turns into vector instructions; add to both agents. One dimension, one loop.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from flockana.base.errors import ArgumentError
+from flockana.kernels.compiling import njit, register_jitable
+
+_BLOCK = 512  # pairs: what is known of them stays in the first-level cache
+CompiledFunction = Callable[..., float]
+_PARAMETERS = 16  # of a pair law, at most: constants in registers, which no array can alias
+
+
+class Signatures(NamedTuple):
+    """numba's types of what a term gives: x and v are seen from a frame, the agents in an order of their own.
+
+    ``act(t, x, v, u, frame, numbers, panels, first, second, count, order)`` adds to u and returns the power,
+    ``energy(t, x, v, frame, numbers, panels, first, second, count, order)`` returns the potential energy. The rows of
+    `frame` are its place and velocity, `order` has every agent's own number.
+    """
+
+    act: Any
+    energy: Any
+
+
+@cache
+def signatures() -> Signatures:
+    """Both, once numba is asked for."""
+    from numba import float64, int64, uint32, uint64
+
+    matrix, vector, indices = float64[:, ::1], float64[::1], uint32[::1]
+    shared = (matrix, vector, matrix, indices, indices, int64, uint64[::1])
+    act, energy = float64(float64, matrix, matrix, matrix, *shared), float64(float64, matrix, matrix, *shared)
+    return Signatures(act, energy)
+
+
+def term_functions(
+    act: Callable[..., float], energy: Callable[..., float], *, allocates: bool = True
+) -> tuple[CompiledFunction, CompiledFunction]:
+    """Force and energy of a term, compiled so that compiled code may be handed them.
+
+    An energy that allocates nothing need count no references: for each array that it hands on, that costs as much as
+    the potential of a pair.
+    """
+    options: dict[str, Any] = {"cache": True, "error_model": "numpy", "nogil": True}
+    made = njit(**options)(act), njit(**options, **({} if allocates else {"_nrt": False}))(energy)
+    for function, signature in zip(made, signatures(), strict=True):
+        function.compile(signature)
+        function.disable_compile()
+    return made[0].dispatcher, made[1].dispatcher
+
+
+def _no_force(t, x, v, u, frame, numbers, panels, first, second, size, order):
+    return 0.0
+
+
+def _no_energy(t, x, v, frame, numbers, panels, first, second, size, order):
+    return 0.0
+
+
+@cache
+def no_term() -> tuple[CompiledFunction, CompiledFunction]:
+    """Force and energy of nothing."""
+    return term_functions(_no_force, _no_energy)
+
+
+def listed_numbers(c1: float, c2: float, r: float, far: float, par: Any) -> Any:
+    """The numbers of a pair term: gains, range, potential beyond it, and the law's parameters, padded."""
+    if len(par) > _PARAMETERS:
+        raise ArgumentError(f"{len(par)} parameters of a pair law: expected {_PARAMETERS} at most")
+    return np.concatenate([[c1, c2, r, far], par, np.zeros(_PARAMETERS - len(par))])
+
+
+def lift_listed(
+    pair: Callable[..., Any], potential: Callable[..., Any], digest: int
+) -> Callable[[int], tuple[CompiledFunction, CompiledFunction]]:
+    """By dimension: force and potential of a pair law, compiled when first asked for; `listed_numbers` are theirs."""
+
+    @cache
+    def of(m: int) -> tuple[CompiledFunction, CompiledFunction]:
+        from numba.np.unsafe.ndarray import to_fixed_tuple
+
+        @register_jitable
+        def gather(x, limit, first, second, begin, end, kept, d, s2):
+            count = 0
+            for k in range(begin, end):
+                i, j = np.uint64(first[k]), np.uint64(second[k])
+                square = 0.0
+                for c in range(m):
+                    gap = x[j, c] - x[i, c]
+                    d[c, count] = gap
+                    square += gap * gap
+                s2[count], kept[count] = square, k
+                count += square < limit
+            return count
+
+        @register_jitable
+        def law(count, s2, w, a, par):
+            for k in range(count):
+                w[k], a[k] = pair(s2[k], par)
+
+        def act(t, x, v, u, frame, numbers, panels, first, second, size, order):
+            total, c1, c2, r = 0.0 * digest, numbers[0], numbers[1], numbers[2]
+            par, limit = to_fixed_tuple(numbers[4:], _PARAMETERS), max(r * r, 5e-324)
+            d, s2, w, a = np.empty((m, _BLOCK)), np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK)
+            kept = np.empty(_BLOCK, np.uint64)
+            for begin in range(0, size, _BLOCK):
+                count = gather(x, limit, first, second, begin, min(begin + _BLOCK, size), kept, d, s2)
+                law(count, s2, w, a, par)
+                for k in range(count):
+                    i, j = np.uint64(first[kept[k]]), np.uint64(second[kept[k]])
+                    v2 = 0.0
+                    for c in range(m):
+                        slip = v[j, c] - v[i, c]
+                        v2 += slip * slip
+                        f = c1 * w[k] * d[c, k] + c2 * a[k] * slip
+                        u[i, c] += f
+                        u[j, c] -= f
+                    total += a[k] * v2
+            return -c2 * total
+
+        def energy(t, x, v, frame, numbers, panels, first, second, size, order):
+            total, near, r, par = 0.0 * digest, 0, numbers[2], numbers[4:]
+            limit = max(r * r, 5e-324)
+            for k in range(size):
+                i, j = np.uint64(first[k]), np.uint64(second[k])
+                square = 0.0
+                for c in range(m):
+                    gap = x[j, c] - x[i, c]
+                    square += gap * gap
+                if square < limit:
+                    total += potential(square, par, panels)
+                    near += 1
+            n = x.shape[0]
+            return numbers[0] * (total + (n * (n - 1) // 2 - near) * numbers[3])
+
+        return term_functions(act, energy, allocates=False)
+
+    return of

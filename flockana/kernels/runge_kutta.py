@@ -1,0 +1,149 @@
+"""One step of an explicit Runge-Kutta pair on (positions, velocities, work), its error estimate and its interpolant.
+
+A tableau is (A, C, E, P): row s of A has the weights of the step itself, so that stage s is the rate at its end; rows
+beyond it are stages of the interpolant alone. E has one row, the error estimate, or two, those of DOP853; P the
+interpolant, y(θ) = y + h Σ_jk P_jk θᵏ⁺¹ K_j.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+import numpy as np
+
+from flockana.kernels.compiling import njit
+from flockana.kernels.sums import column_means, squared_differences
+from flockana.kernels.verlet import kept_up
+
+_STRIP = 1024  # components at once: what is summed over the stages stays in the first-level cache
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def combine(y, h, weights, rates, count, out):
+    """y + h Σ weights_j rates_j over the first `count` rates."""
+    for begin in range(0, y.size, _STRIP):
+        end = min(begin + _STRIP, y.size)
+        total = out[begin:end]
+        total[:] = 0.0
+        for j in range(count):
+            if weights[j] != 0.0:
+                rate, weight = rates[j, begin:end], weights[j]
+                for k in range(end - begin):
+                    total[k] += weight * rate[k]
+        start = y[begin:end]
+        for k in range(end - begin):
+            total[k] = start[k] + h * total[k]
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def frame_at(t, start, origin, drift):
+    """Place and velocity of the frame that the vectors are seen from."""
+    frame = np.empty((2, origin.size))
+    for c in range(origin.size):
+        frame[0, c], frame[1, c] = origin[c] + drift[c] * (t - start), drift[c]
+    return frame
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def rate_of(t, y, f, system, pairs):
+    """Write the rate of the vector y into f; returns the pairs, listed anew if need be."""
+    acts, _, numbers, panels, (n, m), view, _, reach, order = system
+    size = n * m
+    x, v, u = y[:size].reshape(n, m), y[size : 2 * size].reshape(n, m), f[size : 2 * size].reshape(n, m)
+    if reach[0] > 0.0:
+        pairs = kept_up(x, reach[0], reach[1], pairs)
+    first, second, count, _, _ = pairs
+    frame, power = frame_at(t, *view), 0.0
+    for k in range(size):
+        f[k], f[size + k] = y[size + k], 0.0
+    for k in range(len(acts)):
+        power += acts[k](t, x, v, u, frame, numbers[k], panels[k], first, second, count, order)
+    f[2 * size] = power
+    return pairs
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def energy_of(t, y, system, pairs):
+    """H of a vector whose pairs are listed: potential energies, and the kinetic one in the law's frame."""
+    _, energies, numbers, panels, (n, m), view, moving, _, order = system
+    x, v = y[: n * m].reshape(n, m), y[n * m : 2 * n * m].reshape(n, m)
+    first, second, count, _, _ = pairs
+    frame = frame_at(t, *view)
+    total = 0.5 * squared_differences(v, column_means(v) if moving else -frame[1])
+    for k in range(len(energies)):
+        total += energies[k](t, x, v, frame, numbers[k], panels[k], first, second, count, order)
+    return total
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def stages_of(t, h, y, rates, reached, trial, method, begin, end, system, pairs):
+    """Stages `begin` to `end` of a step; `reached` is its end once the last stage of the step itself is through."""
+    a, c, stages = method
+    for s in range(begin, end):
+        into = reached if s == stages else trial
+        combine(y, h, a[s], rates, s, into)
+        pairs = rate_of(t + c[s] * h, into, rates[s], system, pairs)
+    return pairs
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def interpolated(theta, h, y, rates, interpolant, trial):
+    """The vector at a share θ of the step."""
+    count, powers = interpolant.shape
+    weights = np.zeros(count)
+    for j in range(count):
+        for k in range(powers - 1, -1, -1):
+            weights[j] = (weights[j] + interpolant[j, k]) * theta
+    combine(y, h, weights, rates, count, trial)
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def allowed(k, size, floor):
+    """The absolute tolerance of component k: a position, a velocity, or the work."""
+    return floor[0] if k < size else (floor[1] if k < 2 * size else floor[2])
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def error_of(y, reached, h, estimates, rates, size, rtol, floor):
+    """The estimated error of a step over what is allowed, as scipy's solvers weigh it."""
+    squares, stages, strip = np.zeros(2), estimates.shape[1], np.empty(_STRIP)
+    for begin in range(0, y.size, _STRIP):
+        end = min(begin + _STRIP, y.size)
+        for row in range(estimates.shape[0]):
+            strip[:] = 0.0
+            for j in range(stages):
+                rate, weight = rates[j, begin:end], estimates[row, j]
+                for k in range(end - begin):
+                    strip[k] += weight * rate[k]
+            for k in range(begin, end):
+                scale = allowed(k, size, floor) + max(abs(y[k]), abs(reached[k])) * rtol
+                squares[row] += (strip[k - begin] / scale) ** 2
+    square, other = squares
+    if estimates.shape[0] == 1:
+        return abs(h) * sqrt(square / y.size)
+    if square == 0.0 and other == 0.0:
+        return 0.0
+    return abs(h) * square / sqrt((square + 0.01 * other) * y.size)
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def _weighed(a, b, y, size, rtol, floor):
+    """The root mean square of a − b over what is allowed."""
+    total = 0.0
+    for k in range(y.size):
+        total += ((a[k] - b[k]) / (allowed(k, size, floor) + abs(y[k]) * rtol)) ** 2
+    return sqrt(total / y.size)
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def first_step(t, span, y, rates, exponent, rtol, floor, trial, system, pairs):
+    """(first step, pairs), as scipy's solvers choose it; the second rate is overwritten."""
+    size, rest = y.size // 2, np.zeros(y.size)
+    d0, d1 = _weighed(y, rest, y, size, rtol, floor), _weighed(rates[0], rest, y, size, rtol, floor)
+    ahead = min(1e-6 if d0 < 1e-5 or d1 < 1e-5 else 0.01 * d0 / d1, span)
+    for k in range(y.size):
+        trial[k] = y[k] + ahead * rates[0, k]
+    pairs = rate_of(t + ahead, trial, rates[1], system, pairs)
+    d2 = _weighed(rates[1], rates[0], y, size, rtol, floor) / ahead
+    h = max(1e-6, ahead * 1e-3) if d1 <= 1e-15 and d2 <= 1e-15 else (0.01 / max(d1, d2)) ** -exponent
+    return min(100.0 * ahead, h, span), pairs

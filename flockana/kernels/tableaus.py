@@ -1,0 +1,77 @@
+"""The coefficients of the explicit Runge-Kutta methods, from scipy's, as `flockana.kernels.runge_kutta` reads them."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from numpy.polynomial import polynomial
+
+FloatArray = npt.NDArray[np.float64]
+
+
+class Tableau(NamedTuple):
+    """A method: (A, C, E, P), the number of stages of a step, and the power of the error that a step goes with.
+
+    The power is 0 for a method of fixed steps.
+    """
+
+    a: FloatArray
+    c: FloatArray
+    estimates: FloatArray
+    interpolant: FloatArray
+    stages: int
+    exponent: float
+
+
+@cache
+def tableau(method: str) -> Tableau:
+    """That of DOP853, RK45, RK23, or RK4.
+
+    Parameters
+    ----------
+    method : str
+        Its name.
+
+    Examples
+    --------
+    >>> classical = tableau("RK4")
+    >>> classical.a[4].tolist() == [1 / 6, 1 / 3, 1 / 3, 1 / 6, 0.0]
+    True
+    """
+    if method == "RK4":
+        a = np.zeros((5, 5))
+        a[1, 0], a[2, 1], a[3, 2] = 0.5, 0.5, 1.0
+        a[4, :4] = np.array([1.0, 2.0, 2.0, 1.0]) / 6.0
+        return Tableau(a, np.array([0.0, 0.5, 0.5, 1.0, 1.0]), np.zeros((1, 5)), np.zeros((5, 1)), 4, 0.0)
+    import scipy.integrate
+
+    solver = getattr(scipy.integrate, method)
+    if method == "DOP853":
+        return _dop853(solver)
+    stages = solver.n_stages
+    a = np.zeros((stages + 1, stages + 1))
+    a[:stages, : solver.A.shape[1]], a[stages, :stages] = solver.A, solver.B
+    exponent = -1.0 / (solver.error_estimator_order + 1)
+    return Tableau(a, np.append(solver.C, 1.0), solver.E[None].copy(), solver.P.copy(), stages, exponent)
+
+
+def _dop853(solver: Any) -> Tableau:
+    """DOP853, its interpolant in powers of θ: that of scipy goes by θ and 1 − θ in turns."""
+    stages, extra = solver.n_stages, len(solver.A_EXTRA)
+    count = stages + 1 + extra
+    a = np.zeros((count, count))
+    a[:stages, :stages], a[stages, :stages] = solver.A, solver.B
+    a[stages + 1 :] = solver.A_EXTRA
+    whole, first, last = np.append(solver.B, np.zeros(1 + extra)), np.eye(count)[0], np.eye(count)[stages]
+    rows = np.vstack([whole, first - whole, 2.0 * whole - (first + last), solver.D])
+    interpolant, ways = np.zeros((count, len(rows))), ((0.0, 1.0), (1.0, -1.0))
+    power = np.ones(1)
+    for k, row in enumerate(rows):
+        power = np.asarray(polynomial.polymul(power, ways[k % 2]), dtype=np.float64)
+        interpolant[:, : len(power) - 1] += np.outer(row, power[1:])
+    estimates = np.array([solver.E5, solver.E3])
+    exponent = -1.0 / (solver.error_estimator_order + 1)
+    return Tableau(a, np.concatenate([solver.C, [1.0], solver.C_EXTRA]), estimates, interpolant, stages, exponent)

@@ -1,0 +1,125 @@
+"""A Verlet list: the pairs within a range and a skin, good until an agent has moved half the skin in the flock's frame.
+
+A list is a half list of two index arrays with room to spare. Agents sorted by cell keep what a pair needs close in
+memory; the list itself needs no order.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flockana.kernels.compiling import njit
+from flockana.kernels.grid import sort_into_grid
+from flockana.kernels.neighbours import _FORWARD, _MARGIN, _fill_cells, _pad, _sort_into_cells
+from flockana.kernels.sums import LANES, column_means, repeated
+
+_ROOM = 8  # pairs an agent, to begin with
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def spatial_order(q, side):
+    """An order of the agents in which those in one cell follow each other; as they come where the box is too sparse."""
+    order, start, _ = sort_into_grid(q, side)
+    return order if start.size else np.arange(q.shape[0]).astype(np.uint64)
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def _grown(first, second, needed):
+    """The same pairs with room for so many, or twice as many as now."""
+    room = max(np.int64(needed), 2 * first.size)
+    more_first, more_second = np.empty(room, np.uint32), np.empty(room, np.uint32)
+    more_first[: first.size], more_second[: first.size] = first, second
+    return more_first, more_second
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def _list_by_grid(q, reach, order, start, rows, first, second):
+    """The pairs of a flock sorted into a grid: cell by cell, each with what follows it."""
+    m = q.shape[1]
+    x, limit, count = q[order], max(reach * reach, 5e-324), 0
+    for cell in range(start.size - 2):
+        begin, end = start[cell], start[cell + 1]
+        if begin == end:
+            continue
+        candidates = np.int64(start[cell + 2] - begin)
+        for row in range(rows.size):
+            there = np.int64(cell) + np.int64(rows[row])
+            candidates += np.int64(start[there + 2] - start[there - 1])
+        needed = count + candidates * np.int64(end - begin)
+        if needed > first.size:
+            first, second = _grown(first, second, needed)
+        for i in range(begin, end):
+            for row in range(-1, np.int64(rows.size)):
+                low, high = i + np.uint64(1), start[cell + 2]
+                if row >= 0:
+                    there = np.int64(cell) + np.int64(rows[row])
+                    low, high = start[there - 1], start[there + 2]
+                for j in range(low, high):
+                    square = 0.0
+                    for c in range(m):
+                        gap = x[j, c] - x[i, c]
+                        square += gap * gap
+                    first[count], second[count] = order[i], order[j]
+                    count += square < limit
+    return first, second, count
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def list_pairs(q, reach, first, second):
+    """(first, second, count): the pairs closer than `reach`, written into the arrays given, or longer ones."""
+    n, m = q.shape
+    order, start, rows = sort_into_grid(q, reach)
+    if start.size:
+        return _list_by_grid(q, reach, order, start, rows, first, second)
+    x, limit, row, count = _pad(q), max(reach * reach, 5e-324), 0, 0
+    size = 1
+    while size < 4 * n:
+        size *= 2
+    forward = _FORWARD[: (1, 4, 13)[m - 1]]
+    parts = _sort_into_cells(x, reach * _MARGIN, size)
+    while True:
+        row, more = _fill_cells(*parts, forward, limit, row, first[count:], second[count:])
+        count += more
+        if row == n:
+            return first, second, count
+        first, second = _grown(first, second, count + n)
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def strayed(q, reference, mean):
+    """A bound of the squared distance that any agent has gone from its place, seen from the flock's mean motion.
+
+    `mean` is that of the places. The bound is the diagonal of the box of all ways: at most m times the largest square.
+    """
+    n, m = q.shape
+    a, b, lanes, whole = q.reshape(n * m), reference.reshape(n * m), np.zeros(LANES), n * m // LANES * LANES
+    wide = repeated(column_means(q) - mean)
+    for begin in range(0, whole, LANES):
+        for k in range(LANES):
+            way = abs(a[begin + k] - b[begin + k] - wide[k])
+            lanes[k] = way if way > lanes[k] else lanes[k]
+    for k in range(whole, n * m):
+        lanes[k - whole] = max(lanes[k - whole], abs(a[k] - b[k] - wide[k - whole]))
+    diagonal = 0.0
+    for c in range(m):
+        longest = 0.0
+        for k in range(c, LANES, m):
+            longest = max(longest, lanes[k])
+        diagonal += longest * longest
+    return diagonal
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def empty_list(n):
+    """(first, second, count, places, their mean) of a list that is yet to be made."""
+    return np.empty(_ROOM * n, np.uint32), np.empty(_ROOM * n, np.uint32), np.int64(0), np.empty((0, 0)), np.empty(0)
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def kept_up(q, reach, skin, pairs):
+    """The list itself while it holds every pair closer than `reach`, or else a new one. What is not finite keeps it."""
+    first, second, count, places, mean = pairs
+    if places.size and not 4.0 * strayed(q, places, mean) > skin * skin:
+        return pairs
+    first, second, count = list_pairs(q, reach + skin, first, second)
+    return first, second, count, q.copy(), column_means(q)

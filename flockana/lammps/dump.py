@@ -1,0 +1,235 @@
+"""A run that LAMMPS dumped, as a `Trajectory` that says how far it is from a law."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+from typing import Any, TextIO
+
+import numpy as np
+
+from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive
+from flockana.base.errors import ArgumentError, FileError
+from flockana.dynamics.trajectory import Trajectory
+from flockana.laws.discrete import ensure_law
+
+_AXES = "xyz"
+
+
+@dataclass(frozen=True, eq=False)
+class Snapshot:
+    """One snapshot of a dump: step, time if it is there, and its columns by name, agents in the order of their ids."""
+
+    step: int
+    time: float | None
+    columns: dict[str, FloatArray]
+
+
+def read_lammps(
+    path: str | os.PathLike[str], law: Any, *, start: float = 0.0, dt: float | None = None, m: int | None = None
+) -> Trajectory:
+    """Read a text dump of style custom (id, x ..., vx ..., and fx ... if it is there) as a run of a law.
+
+    What LAMMPS integrated need not be the law, and the run says so: ``extra["force_residual"]`` is the largest
+    difference between LAMMPS's forces and the law's inputs at a sample, relative to the largest input of the law in the
+    run (only if the dump has forces), and `Trajectory.energy_residual` how far the energy is from where the law's own
+    dH/dt takes it, integrated by a spline through the samples. `verify` refuses a run whose inputs are not its law's.
+
+    Parameters
+    ----------
+    path : path
+        The dump.
+    law : Law
+        The law to hold it against, such as the one that was exported; a continuous one.
+    start : float
+        Time of step 0 (LAMMPS counts from 0).
+    dt : float, optional
+        Step, for a dump without times (``dump_modify ... time yes`` writes them).
+    m : int, optional
+        Dimension; by default that of the positions in the dump.
+
+    Returns
+    -------
+    Trajectory
+        With the forces as inputs u (masses are 1), or the law's own inputs where the dump has none.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be read, is no dump, is damaged, or its snapshots are not of the same agents.
+    ArgumentError
+        If times or columns are missing, or the flock is not one for this law.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> text = "ITEM: TIMESTEP\\n0\\nITEM: NUMBER OF ATOMS\\n1\\nITEM: BOX BOUNDS ss ff pp\\n0 1\\n0 1\\n0 1\\n"
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = (Path(folder) / "one.dump").write_text(text + "ITEM: ATOMS id x vx fx\\n1 3.0 0.5 0.0\\n")
+    ...     run = read_lammps(Path(folder) / "one.dump", Algorithm1(), dt=0.01)
+    >>> run.q.tolist(), float(run.extra["force_residual"][0])
+    ([[[3.0]]], 0.0)
+    """
+    ensure_law(law)
+    if law.continuous is not law:
+        raise ArgumentError(
+            f"{type(law).__name__} is a map from step to step: expected a continuous law, as LAMMPS's is"
+        )
+    start = ensure_finite_scalar("start", start)
+    step = None if dt is None else ensure_positive("dt", dt)
+    snapshots = _snapshots(Path(path))
+    t = np.array([start + _time(snapshot, step, path) for snapshot in snapshots])
+    _ensure_rising(t, path)
+    dimension = _dimension(snapshots[0], m, path)
+    q, p = (_stacked(snapshots, names, dimension, path) for names in (("x", "xu"), ("vx",)))
+    law.check_dimension(dimension)
+    law.check_agents(q.shape[1])
+    flows = [law.flow(*state) for state in zip(t.tolist(), q, p, strict=True)]
+    own, rates = np.array([u for u, _ in flows]), np.array([rate for _, rate in flows])
+    u, extra = own, dict[str, FloatArray]()
+    if "fx" in snapshots[0].columns:
+        u = _stacked(snapshots, ("fx",), dimension, path)
+        largest = float(np.abs(own).max())
+        extra["force_residual"] = np.abs(u - own).max(axis=(1, 2)) / (largest if largest > 0.0 else 1.0)
+    if np.isfinite(rates).all():
+        extra["work"] = _integral(t, rates)
+    steps = snapshots[-1].step - snapshots[0].step
+    stats = {"method": "LAMMPS", "steps": steps, "evaluations": steps}
+    return Trajectory(t, q, p, u, law, extra, "complete", f"read from {Path(path).name}", stats)
+
+
+def _integral(t: FloatArray, rates: FloatArray) -> FloatArray:
+    """∫ from the first sample, of the cubic spline through them."""
+    from scipy.interpolate import CubicSpline
+
+    if len(t) == 1:
+        return np.zeros(1)
+    whole = CubicSpline(t, rates).antiderivative()
+    values: FloatArray = whole(t) - whole(t[0])
+    return values
+
+
+def _time(snapshot: Snapshot, dt: float | None, path: object) -> float:
+    if snapshot.time is not None:
+        return snapshot.time
+    if dt is None:
+        raise ArgumentError(f"dt = None: {path} has no times; give the step, or dump with `dump_modify ... time yes`")
+    return snapshot.step * dt
+
+
+def _ensure_rising(t: FloatArray, path: object) -> None:
+    if not (np.diff(t) > 0.0).all():
+        k = int(np.argmin(np.diff(t)))
+        raise FileError(f"{path}: snapshot {k + 1} at t = {t[k + 1]:g} follows t = {t[k]:g}; expected rising times")
+
+
+def _dimension(snapshot: Snapshot, m: int | None, path: object) -> int:
+    there = 0
+    while there < 3 and ({_AXES[there], f"{_AXES[there]}u"} & snapshot.columns.keys()):
+        there += 1
+    if there == 0:
+        raise ArgumentError(
+            f"{path} has the columns {', '.join(snapshot.columns)}: expected positions x, y, z or xu, yu, zu "
+            "(not scaled ones), such as `dump ... custom N FILE id x y vx vy fx fy`"
+        )
+    if m is None:
+        return there
+    if m not in range(1, there + 1):
+        raise ArgumentError(f"m = {m!r}: expected 1 to {there}, of which {path} has positions")
+    return m
+
+
+def _stacked(snapshots: list[Snapshot], names: tuple[str, ...], m: int, path: object) -> FloatArray:
+    """One of q, p, u over time, (T, n, m), from the first of some names for its columns that is there."""
+    for name in names:
+        axes = [name.replace("x", axis) for axis in _AXES[:m]]
+        if all(axis in snapshots[0].columns for axis in axes):
+            return np.stack([np.stack([s.columns[axis] for axis in axes], axis=1) for s in snapshots])
+    wanted = " ".join(names[0].replace("x", axis) for axis in _AXES[:m])
+    raise ArgumentError(f"{path} has the columns {', '.join(snapshots[0].columns)}: expected {wanted} among them")
+
+
+def _snapshots(path: Path) -> list[Snapshot]:
+    try:
+        with path.open(encoding="utf-8") as file:
+            found = list(_parsed(file, path))
+    except (OSError, UnicodeDecodeError) as error:
+        if isinstance(error, FileError):
+            raise
+        reason = getattr(error, "strerror", None) or error
+        raise FileError(f"cannot read {str(path)!r}: {reason}; expected a text dump of LAMMPS") from error
+    if not found:
+        raise FileError(f"{path} holds no snapshot: expected a text dump of LAMMPS, style custom")
+    ids = found[0].columns["id"]
+    for k, snapshot in enumerate(found):
+        if snapshot.columns.keys() != found[0].columns.keys() or not np.array_equal(snapshot.columns["id"], ids):
+            raise FileError(
+                f"{path}: snapshot {k} has {len(snapshot.columns['id'])} agents or columns that are not those of the "
+                f"first ({len(ids)}); were agents lost? expected the same agents throughout"
+            )
+    return found
+
+
+def _parsed(file: TextIO, path: Path) -> Iterator[Snapshot]:
+    """The snapshots of a dump, each a series of items that ends with its atoms."""
+    step, time, count = None, None, None
+    for line in file:
+        if not line.startswith("ITEM:"):
+            if line.strip():
+                raise FileError(f"{path}: {line.strip()[:40]!r} where an ITEM was expected; is it a damaged dump?")
+            continue
+        item = line[len("ITEM:") :].split()
+        if item[:1] == ["TIMESTEP"]:
+            step = int(_numbers(file, 1, 1, path)[0, 0])
+        elif item[:1] == ["TIME"]:
+            time = float(_numbers(file, 1, 1, path)[0, 0])
+        elif item[:3] == ["NUMBER", "OF", "ATOMS"]:
+            count = int(_numbers(file, 1, 1, path)[0, 0])
+        elif item[:2] == ["BOX", "BOUNDS"]:
+            _numbers(file, 3, None, path)
+        elif item[:1] == ["UNITS"]:
+            next(file, "")
+        elif item[:1] == ["ATOMS"]:
+            if step is None or count is None or "id" not in item:
+                raise FileError(
+                    f"{path}: atoms without a step, a number or ids; expected a dump of style custom with id"
+                )
+            yield Snapshot(step, time, _columns(file, item[1:], count, path))
+            step, time, count = None, None, None
+        else:
+            raise FileError(f"{path}: unknown item {line.strip()[:40]!r}; expected a dump of atoms, style custom")
+    if step is not None:
+        raise FileError(f"{path} ends within the snapshot of step {step}; was it cut off? expected its atoms")
+
+
+def _columns(file: TextIO, names: list[str], count: int, path: Path) -> dict[str, FloatArray]:
+    """Columns by name, the agents in the order of their ids."""
+    values = _numbers(file, count, len(names), path)
+    columns = {name: values[:, k] for k, name in enumerate(names)}
+    order = np.argsort(columns["id"], kind="stable")
+    if count == 0 or (np.diff(columns["id"][order]) == 0.0).any():
+        raise FileError(f"{path}: a snapshot has no agents, or two of one id; expected each once")
+    return {name: column[order] for name, column in columns.items()}
+
+
+def _numbers(file: TextIO, rows: int, width: int | None, path: Path) -> FloatArray:
+    """The next lines as numbers, (rows, width), or an error that says what is wrong."""
+    lines = list(islice(file, rows))
+    cells = [line.split() for line in lines]
+    width = len(cells[0]) if width is None and cells else width
+    bad = next((line for line, row in zip(lines, cells, strict=True) if len(row) != width), None)
+    cut = bool(lines) and not lines[-1].endswith("\n")  # LAMMPS ends every line: the last number may be half of one
+    if len(lines) < rows or bad is not None or cut:
+        shown = "the end of the file" if bad is None else repr(bad.strip()[:60])
+        raise FileError(f"{path}: {shown} where {rows} lines of {width} numbers were expected; was it cut off?")
+    try:
+        values = np.array(cells, dtype=np.float64)
+    except ValueError as error:
+        raise FileError(f"{path}: {error}; expected numbers in every column") from error
+    if not np.isfinite(values).all():
+        raise FileError(f"{path}: a number that is not finite; the run of LAMMPS blew up")
+    return values

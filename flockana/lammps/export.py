@@ -1,0 +1,211 @@
+"""Write a folder that LAMMPS runs: data file, tabulated pair style, input script, and what is missing in words."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from math import ceil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive, ensure_state, ensure_time_span
+from flockana.base.errors import ArgumentError, FileError, UnknownNameError
+from flockana.base.files import replacing
+from flockana.lammps.script import (
+    DATA,
+    README,
+    SCRIPT,
+    TABLE,
+    Clock,
+    Translation,
+    data_text,
+    readme_text,
+    script_text,
+    translated,
+)
+from flockana.lammps.table import PairTable, inner_cutoff, pair_table
+from flockana.laws.discrete import ensure_law
+from flockana.laws.law import Law
+from flockana.laws.terms.pairs import PairTerm
+from flockana.measures.metrics import min_distance
+
+CONSENSUS = ("missing", "nearest")
+_STEP = 0.02  # by default, in the law's own time
+_MOST_POINTS = 10**7
+
+
+@dataclass(frozen=True)
+class LammpsExport:
+    """What `export_lammps` wrote.
+
+    Attributes
+    ----------
+    folder : Path
+        Where.
+    files : tuple of Path
+        Input script, data file, table, and a text on what they hold.
+    force_error, energy_error : float
+        Largest error of a pair's tabulated force and energy, as LAMMPS interpolates them.
+    exact, near, missing : tuple of str
+        What the script does of the law exactly, nearly, and not at all.
+    dt : float
+        Step of the script.
+    steps : int
+        How many.
+    """
+
+    folder: Path
+    files: tuple[Path, ...]
+    force_error: float
+    energy_error: float
+    exact: tuple[str, ...]
+    near: tuple[str, ...]
+    missing: tuple[str, ...]
+    dt: float
+    steps: int
+
+
+def export_lammps(
+    law: Any,
+    q0: Any,
+    p0: Any,
+    t_span: Any,
+    folder: str | os.PathLike[str],
+    *,
+    points: int = 20_000,
+    inner: float | None = None,
+    dt: float | None = None,
+    samples: int = 200,
+    consensus: str = "missing",
+) -> LammpsExport:
+    """Write law, start and run for LAMMPS: data file, tabulated pair style, input script, README.txt.
+
+    The pair force and the pull to a γ-agent are the law's own but for the errors stated. A velocity consensus of
+    constant weight is dpd/ext/tstat at temperature 0; any other is left out and said to be, or replaced by the nearest
+    of that kind. `read_lammps` reads the run back.
+
+    Parameters
+    ----------
+    law : Law
+        A sum of terms with a pair term, such as Algorithm 1, 2 or 3.
+    q0, p0 : array_like, shape (n, m)
+        Initial positions and velocities.
+    t_span : (float, float)
+        Start and end.
+    folder : path
+        Folder to write to; it is made if it is not there.
+    points : int
+        Distances in the table.
+    inner : float, optional
+        First distance of the table, in the user's length unit; by default next to nothing, or a quarter of the
+        pair law's length where its force is infinite at 0. LAMMPS stops where two agents come nearer.
+    dt : float, optional
+        Step, at most; by default a fiftieth of the law's own time. The last step ends on time.
+    samples : int
+        Snapshots to write, beside the start.
+    consensus : {"missing", "nearest"}
+        What to do with a velocity consensus that LAMMPS has no style for.
+
+    Returns
+    -------
+    LammpsExport
+
+    Raises
+    ------
+    ArgumentError
+        On a law without a pair term, bad input, or two agents nearer than the table's first distance.
+    FileError
+        If the folder cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     told = export_lammps(Algorithm1(), [[0.0, 0.0], [8.0, 0.0]], [[0.0, 0.0]] * 2, (0.0, 1.0), folder)
+    >>> [path.name for path in told.files], told.force_error < 1e-4, len(told.missing)
+    (['in.flock', 'flock.data', 'pair.table', 'README.txt'], True, 1)
+    """
+    law, term = _translatable(law)
+    q0, p0 = ensure_state(q0, p0)
+    law.check_dimension(q0.shape[1])
+    law.check_start(q0, p0)
+    points, samples = _count("points", points, 2, _MOST_POINTS), _count("samples", samples, 1, 10**9)
+    if consensus not in CONSENSUS:
+        raise UnknownNameError("choice of consensus", consensus, CONSENSUS)
+    first = _first_distance(term, q0, inner)
+    start, end = ensure_time_span(t_span)
+    clock = _clock(law, start, end, dt, samples)
+    table = pair_table(term, points, first)
+    told = translated(law, q0.shape[1], table, nearest=consensus == "nearest")
+    title = f"{len(q0)} agents of {type(law).__name__}, t = {start:g} to {end:g}"
+    texts = {
+        SCRIPT: script_text(title, q0.shape[1], table, clock, told),
+        DATA: data_text(q0, p0, term.pair.range, title),
+        TABLE: table.text(),
+        README: readme_text(title, table, clock, told),
+    }
+    return _recorded(Path(folder), _written(Path(folder), texts), table, clock, told)
+
+
+def _translatable(law: Any) -> tuple[Law, PairTerm]:
+    """The continuous law and its pair term, or an error."""
+    ensure_law(law)
+    continuous = law.continuous
+    term = None if continuous is None else continuous.term(PairTerm)
+    if continuous is None or term is None:
+        raise ArgumentError(
+            f"{type(law).__name__} has no pair term for LAMMPS to tabulate: expected a sum of terms with one, such as "
+            "Algorithm1, Algorithm2 or DeadZoneFlocking"
+        )
+    if not np.isfinite(term.pair.range):
+        raise ArgumentError(f"the pair law reaches to {term.pair.range}: expected a finite range, where a table ends")
+    return continuous, term
+
+
+def _count(name: str, value: Any, least: int, most: int) -> int:
+    number = ensure_finite_scalar(name, value)
+    if number != int(number) or not least <= number <= most:
+        raise ArgumentError(f"{name} = {value!r}: expected a whole number from {least} to {most}")
+    return int(number)
+
+
+def _first_distance(term: PairTerm, q: FloatArray, inner: float | None) -> float:
+    first = inner_cutoff(term) if inner is None else ensure_positive("inner", inner)
+    if first >= term.pair.range:
+        raise ArgumentError(f"inner = {first:g}: expected less than the range {term.pair.range:g}")
+    nearest = min_distance(q) if len(q) > 1 else np.inf
+    if nearest < first:
+        raise ArgumentError(
+            f"two agents start {nearest:.3g} apart, nearer than the table's first distance {first:.3g}: give a smaller "
+            "inner, or move them apart"
+        )
+    return first
+
+
+def _clock(law: Law, start: float, end: float, dt: float | None, samples: int) -> Clock:
+    """Steps of equal length, none longer than dt, that end on time, with equally many between samples."""
+    if dt is None and law.scales is None:
+        raise ArgumentError(f"dt = None: {type(law).__name__} has no time of its own; give a step")
+    longest = _STEP * law.scales.time if dt is None and law.scales is not None else ensure_positive("dt", dt)
+    every = max(1, ceil((end - start) / (longest * samples) * (1.0 - 1e-12)))
+    return Clock(start, (end - start) / (samples * every), samples * every, every)
+
+
+def _written(folder: Path, texts: dict[str, str]) -> tuple[Path, ...]:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise FileError(f"cannot make {str(folder)!r}: {error.strerror or error}; choose another folder") from error
+    for name, text in texts.items():
+        with replacing(folder / name, remedy="choose another folder") as partial:
+            partial.write_text(text, encoding="utf-8")
+    return tuple(folder / name for name in texts)
+
+
+def _recorded(folder: Path, files: tuple[Path, ...], table: PairTable, clock: Clock, told: Translation) -> LammpsExport:
+    exact, near, missing = (tuple(each) for each in (told.exact, told.near, told.missing))
+    errors = table.force_error, table.energy_error
+    return LammpsExport(folder, files, *errors, exact, near, missing, clock.dt, clock.steps)

@@ -1,0 +1,112 @@
+"""The pull to a γ-agent as formulas of LAMMPS: variables of each agent, added to its force, and a viscous drag."""
+
+from __future__ import annotations
+
+from functools import singledispatch
+
+from flockana.environment.targets import CircleTarget, LinearTarget, RescaledVelocity, SineTarget, StaticTarget, Target
+from flockana.laws.terms.navigation import Navigation
+
+AXES = "xyz"
+TIME = "v_t"  # the equal-style variable of the script
+
+Formulas = tuple[tuple[str, str], ...]  # (q_r, p_r) along each axis
+
+
+@singledispatch
+def path(target: Target) -> Formulas | None:
+    """(q_r, p_r) along each axis as formulas in the time; None for a path that no formula is known of.
+
+    Examples
+    --------
+    >>> path(LinearTarget((200.0, 30.0), (5.0, 0.0)))
+    (('200.0+5.0*v_t', '5.0'), ('30.0+0.0*v_t', '0.0'))
+    """
+    return None
+
+
+@path.register
+def _static(target: StaticTarget) -> Formulas:
+    return tuple((repr(q), repr(p)) for q, p in zip(target.q, target.p, strict=True))
+
+
+@path.register
+def _linear(target: LinearTarget) -> Formulas:
+    return tuple((_line(q, p), repr(p)) for q, p in zip(target.q, target.p, strict=True))
+
+
+@path.register
+def _sine(target: SineTarget) -> Formulas:
+    omega = f"2.0*PI*{_number(target.frequency)}"
+    angle = f"{omega}*{TIME}+{_number(target.phase)}"
+    formulas = [(_line(q, p), repr(p)) for q, p in zip(target.start, target.velocity, strict=True)]
+    q, p = formulas[target.axis]
+    a = _number(target.amplitude)
+    formulas[target.axis] = (f"{q}+{a}*sin({angle})", f"{p}+{a}*{omega}*cos({angle})")
+    return tuple(formulas)
+
+
+@path.register
+def _circle(target: CircleTarget) -> Formulas:
+    omega = f"2.0*PI*{_number(target.frequency)}"
+    angle, r = f"{omega}*{TIME}+{_number(target.phase)}", repr(target.radius)
+    swing = [(f"{r}*cos({angle})", f"-{r}*{omega}*sin({angle})"), (f"{r}*sin({angle})", f"{r}*{omega}*cos({angle})")]
+    swing += [("0.0", "0.0")] * (len(target.centre) - 2)
+    return tuple((f"{c!r}+{q}", p) for c, (q, p) in zip(target.centre, swing, strict=True))
+
+
+@path.register
+def _rescaled(target: RescaledVelocity) -> Formulas | None:
+    inner, true = path(target.target), target.target
+    if inner is None or isinstance(true, StaticTarget):  # whose p_r need not be its rate, which is 0
+        return None if inner is None else tuple((q, "0.0") for q, _ in inner)
+    if isinstance(true, RescaledVelocity):
+        return None
+    return tuple((q, f"{_number(target.factor)}*({p})") for q, p in inner)
+
+
+def _number(x: float) -> str:
+    """A number that may stand after an operator."""
+    return repr(x) if x >= 0.0 else f"({x!r})"
+
+
+def _line(q: float, p: float) -> str:
+    return f"{q!r}+{_number(p)}*{TIME}"
+
+
+def pull_commands(term: Navigation) -> list[str] | None:
+    """Commands that add the term to the forces, or None if LAMMPS has no formula of it.
+
+    Parameters
+    ----------
+    term : Navigation
+        The pull and the drag.
+
+    Examples
+    --------
+    >>> from flockana.interactions import Gains
+    >>> for line in pull_commands(Navigation(StaticTarget((5.0,)), Gains(c1_gamma=2.0, c2_gamma=3.0))):
+    ...     print(line)
+    variable target_x equal 5.0
+    variable target_vx equal 0.0
+    variable pull_x atom "-2.0*(x-v_target_x)+3.0*v_target_vx"
+    fix drag all viscous 3.0
+    fix pull all addforce v_pull_x 0.0 0.0
+    """
+    formulas, gains = path(term.target), term.gains
+    if formulas is None or gains.per_agent:
+        return None
+    axes = AXES[: len(formulas)]
+    lines = []
+    for axis, (q, p) in zip(axes, formulas, strict=True):
+        lines += [f"variable target_{axis} equal {q}", f"variable target_v{axis} equal {p}"]
+    bend = ""
+    if term.unit is not None:
+        squares = "+".join(f"({axis}-v_target_{axis})^2" for axis in axes)
+        lines.append(f'variable bend atom "sqrt(1.0+({squares})/{term.unit!r}^2)"')
+        bend = "/v_bend"
+    k, c = repr(float(gains.c1_gamma)), repr(float(gains.c2_gamma))
+    for axis in axes:
+        lines.append(f'variable pull_{axis} atom "-{k}*({axis}-v_target_{axis}){bend}+{c}*v_target_v{axis}"')
+    forces = " ".join([f"v_pull_{axis}" for axis in axes] + ["0.0"] * (3 - len(axes)))
+    return [*lines, f"fix drag all viscous {c}", f"fix pull all addforce {forces}"]

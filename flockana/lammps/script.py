@@ -1,0 +1,212 @@
+"""What LAMMPS does of a law, and does not: the input script, the data file, and the words that go with them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.lammps.pull import AXES, pull_commands
+from flockana.lammps.table import KEYWORD, PairTable, adjacency
+from flockana.laws.law import Law
+from flockana.laws.terms.navigation import Navigation
+from flockana.laws.terms.pairs import PairTerm
+
+DATA, TABLE, SCRIPT, DUMP, README = "flock.data", "pair.table", "in.flock", "flock.dump", "README.txt"
+_SKIN = 0.2  # of the neighbour list, in ranges of the pair law
+_SHELLS, _STEEPEST = 4000, 10.0  # distances at which a weight is fitted to an adjacency, and its largest exponent
+
+
+@dataclass(frozen=True)
+class Clock:
+    """When a run starts, its step, how many there are, and how many lie between two samples."""
+
+    start: float
+    dt: float
+    steps: int
+    every: int
+
+
+@dataclass
+class Translation:
+    """What of a law is in the script.
+
+    Attributes
+    ----------
+    fixes : list of str
+        Commands that add forces.
+    consensus : tuple of (gain, exponent) or None
+        A pairwise damping of weight (1 − r/range)^(2 exponent), if one is in the script.
+    exact, near, missing : list of str
+        What is the law's own, to the table's error and the step's; what is nearly; what is left out.
+    """
+
+    fixes: list[str] = field(default_factory=list)
+    consensus: tuple[float, float] | None = None
+    exact: list[str] = field(default_factory=list)
+    near: list[str] = field(default_factory=list)
+    missing: list[str] = field(default_factory=list)
+
+
+def translated(law: Law, m: int, table: PairTable, *, nearest: bool) -> Translation:
+    """Each term of a law in LAMMPS's terms; `nearest` puts a damping in place of a consensus that has no style."""
+    told = Translation()
+    for term in law.terms:
+        if isinstance(term, PairTerm):
+            told.exact.append(f"pair forces: a table, off by at most {table.force_error:.2g}")
+            if table.jumps:
+                told.near.append(f"jumps of the force at {', '.join(f'{x:g}' for x in table.jumps)}: over one interval")
+            _translate_consensus(term, m, told, nearest=nearest)
+        elif isinstance(term, Navigation):
+            commands = pull_commands(term)
+            if commands is None:
+                told.missing.append("the pull to the γ-agent: gains for each agent, or a path that has no formula")
+            else:
+                told.fixes += commands
+                told.exact.append("pull to the γ-agent: fix addforce and fix viscous")
+        elif not _is_empty(term):
+            told.missing.append(f"{type(term).__name__}: no style of LAMMPS is this force")
+    return told
+
+
+def _is_empty(term: object) -> bool:
+    """Whether a term of obstacles has none."""
+    own = getattr(term, "field", None)
+    return own is not None and not own.obstacles
+
+
+def _translate_consensus(term: PairTerm, m: int, told: Translation, *, nearest: bool) -> None:
+    """Velocity consensus: dpd/ext/tstat at temperature 0 damps relative velocities with constant weight."""
+    if term.damping == 0.0:
+        return
+    exponent, off = nearest_weight(term, m)
+    weight = f"dpd/ext/tstat at temperature 0 with weight (1 - r/{term.pair.range:g})^{2.0 * exponent:.4g}"
+    if off == 0.0:
+        told.consensus = term.damping, 0.0
+        told.exact.append("velocity consensus: dpd/ext/tstat at temperature 0, whose weight is 1 as the law's is")
+    elif nearest:
+        told.consensus = term.damping, exponent
+        told.near.append(f"velocity consensus: {weight}, off the law's adjacency by up to {off:.2g}")
+    else:
+        told.missing.append(
+            f"velocity consensus: no style has this adjacency; the nearest is {weight}, off by up to {off:.2g} "
+            "(consensus nearest)"
+        )
+
+
+def nearest_weight(term: PairTerm, m: int) -> tuple[float, float]:
+    """(s, largest error) of the weight (1 − r/range)^2s that is nearest to the adjacency, among evenly spread agents.
+
+    Examples
+    --------
+    >>> from flockana.interactions.dead_zone import DeadZoneInteraction
+    >>> nearest_weight(PairTerm(DeadZoneInteraction(), 1.0, 1.0), 2)
+    (0.0, 0.0)
+    """
+    from scipy.optimize import minimize_scalar
+
+    x = (np.arange(_SHELLS) + 0.5) / _SHELLS
+    weight = adjacency(term, x * term.pair.range)
+    if np.all(weight == 1.0):
+        return 0.0, 0.0
+    shells = x ** (m - 1)
+
+    def apart(s: float) -> float:
+        return float(np.sum(shells * ((1.0 - x) ** (2.0 * s) - weight) ** 2))
+
+    s = float(minimize_scalar(apart, bounds=(0.0, _STEEPEST), method="bounded").x)
+    return s, float(np.abs((1.0 - x) ** (2.0 * s) - weight).max())
+
+
+def data_text(q: FloatArray, p: FloatArray, reach: float, title: str) -> str:
+    """The data file: header, box, one mass, positions and velocities in space."""
+    n, m = q.shape
+    low, high = np.full(3, -0.5), np.full(3, 0.5)
+    low[:m], high[:m] = q.min(axis=0) - reach, q.max(axis=0) + reach
+    if m == 1:
+        low[1], high[1] = -reach, reach
+    box = "".join(f"{a!r} {b!r} {x}lo {x}hi\n" for a, b, x in zip(low.tolist(), high.tolist(), AXES, strict=True))
+    flat = [0.0] * (3 - m)
+    places = "".join(f"{k} 1 {_row(x + flat)}\n" for k, x in enumerate(q.tolist(), 1))
+    speeds = "".join(f"{k} {_row(v + flat)}\n" for k, v in enumerate(p.tolist(), 1))
+    header = f"{title}\n\n{n} atoms\n1 atom types\n\n{box}\n"
+    return f"{header}Masses\n\n1 1.0\n\nAtoms # atomic\n\n{places}\nVelocities\n\n{speeds}"
+
+
+def _row(values: list[float]) -> str:
+    return " ".join(map(repr, values))
+
+
+def script_text(title: str, m: int, table: PairTable, clock: Clock, told: Translation) -> str:
+    """The input script: units lj with masses of 1, so that forces are accelerations."""
+    points, reach = len(table.r), float(table.r[-1])
+    columns = " ".join([*AXES[:m], *(f"v{x}" for x in AXES[:m]), *(f"f{x}" for x in AXES[:m])])
+    boundary = ("s f p", "s s p", "s s s")[m - 1]
+    lines = [
+        f"# {title}",
+        *(f"# exact: {text}" for text in told.exact),
+        *(f"# nearly: {text}" for text in told.near),
+        *(f"# MISSING: {text}" for text in told.missing),
+        "units lj",
+        f"dimension {3 if m == 3 else 2}",
+        f"boundary {boundary}",
+        "atom_style atomic",
+        f"read_data {DATA}",
+        *_pair_commands(points, reach, told),
+        f"neighbor {_SKIN * reach!r} bin",
+        "neigh_modify every 1 delay 0 check yes",
+        f"timestep {clock.dt!r}",
+        f"variable t equal {clock.start!r}+step*{clock.dt!r}",
+        "fix move all nve",
+        *told.fixes,
+        *([] if m == 3 else ["fix plane all enforce2d"]),
+        f"dump flock all custom {clock.every} {DUMP} id type {columns}",
+        "dump_modify flock sort id format float %.17g time yes",
+        f"thermo {clock.every}",
+        f"run {clock.steps}",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _pair_commands(points: int, reach: float, told: Translation) -> list[str]:
+    table = f"{TABLE} {KEYWORD} {reach!r}"
+    if told.consensus is None:
+        return [f"pair_style table linear {points}", f"pair_coeff 1 1 {table}"]
+    gain, s = told.consensus
+    return [
+        "comm_modify vel yes",
+        f"pair_style hybrid/overlay table linear {points} dpd/ext/tstat 0.0 0.0 {reach!r} 1",
+        f"pair_coeff 1 1 table {table}",
+        f"pair_coeff 1 1 dpd/ext/tstat {gain!r} {gain!r} {s!r} {s!r} {reach!r}",
+    ]
+
+
+def readme_text(title: str, table: PairTable, clock: Clock, told: Translation) -> str:
+    """What is in the folder, what LAMMPS computes of the law, and how to read its run back."""
+    sections = [("Exact", told.exact), ("Nearly", told.near), ("Missing", told.missing)]
+    listed = "".join(f"{head}:\n" + "".join(f"  - {text}\n" for text in texts) for head, texts in sections if texts)
+    stop = "" if table.r[0] < 1e-3 * table.r[-1] else " LAMMPS stops where two agents come nearer than that."
+    return f"""{title}
+
+Run `lmp -in {SCRIPT}` in this folder, or `mpirun -np 8 lmp -in {SCRIPT}`; it writes {DUMP}.
+{"Needs the package DPD-BASIC." if told.consensus else "Needs no package beyond the basic ones."}
+
+{SCRIPT}    input script, units lj, all masses 1: lengths and times are those of the law
+{DATA}  positions and velocities at the start
+{TABLE}  the pair force at {len(table.r)} distances from {table.r[0]:.6g} to {table.r[-1]:.6g}, their squares evenly \
+spaced.{stop}
+
+{listed}
+Interpolated linearly, as LAMMPS does it, the table's force is off by at most {table.force_error:.3g} (of at most \
+{np.abs(table.force).max():.4g}),
+its energy by {table.energy_error:.3g}{", but where the force jumps" if table.jumps else ""}.
+
+LAMMPS integrates by velocity Verlet in {clock.steps} steps of {clock.dt:.6g}: of second order, but of first where \
+velocities act,
+which it knows half a step late. Halve the step to see what that is worth. Read the run back with
+
+  run = flockana.read_lammps("{DUMP}", law, start={clock.start!r})
+  run.extra["force_residual"]   # how far LAMMPS's forces are from the law's, relative to the largest
+  run.energy_residual           # how far the energy is from where the law takes it
+"""

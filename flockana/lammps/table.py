@@ -1,0 +1,145 @@
+"""A pair term as LAMMPS reads it: energy and force at distances with evenly spaced squares, and what that is off by.
+
+`pair_style table linear` interpolates the energy and the force over the distance linearly in the squared distance.
+With as many points in the file as in the style, and the parameter RSQ, it takes the file's values as they are.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.laws.terms.pairs import PairTerm
+
+KEYWORD = "PAIR"
+_WITHIN = (0.125, 0.25, 0.5, 0.75, 0.875)  # where the error is looked at between two points
+_BESIDE, _JUMP = 1e-9, 1e-6  # where a jump is looked for, in distances, and how large it is, in largest forces
+_INNER, _INNER_SINGULAR = 1e-6, 0.25  # first distance: of the range, and of the length of a law that is infinite at 0
+
+
+@dataclass(frozen=True, eq=False)
+class PairTable:
+    """Energy and force of a pair against its distance.
+
+    Attributes
+    ----------
+    r : ndarray, shape (N,)
+        Distances, from the inner cutoff to the range; their squares are evenly spaced.
+    energy, force : ndarray, shape (N,)
+        Potential, 0 at the range, and force, positive where it repels.
+    force_error, energy_error : float
+        Largest error of the linear interpolation between the points, but where the force jumps.
+    jumps : tuple of float
+        Distances within at which the force jumps: there the table rises over one of its intervals.
+    """
+
+    r: FloatArray
+    energy: FloatArray
+    force: FloatArray
+    force_error: float
+    energy_error: float
+    jumps: tuple[float, ...]
+
+    def text(self) -> str:
+        """The file for `pair_coeff`: a comment, the keyword, the parameters, and a line for each distance."""
+        n, (inner, outer) = len(self.r), (float(self.r[0]), float(self.r[-1]))
+        head = f"# UNITS: lj CONTRIBUTOR: flockana\n\n{KEYWORD}\nN {n} RSQ {inner!r} {outer!r}\n\n"
+        rows = zip(self.r.tolist(), self.energy.tolist(), self.force.tolist(), strict=True)
+        return head + "".join(f"{k} {r!r} {e!r} {f!r}\n" for k, (r, e, f) in enumerate(rows, 1))
+
+
+def pair_table(term: PairTerm, points: int, inner: float) -> PairTable:
+    """Tabulate a pair term from a distance to its range.
+
+    Parameters
+    ----------
+    term : PairTerm
+        What to tabulate, its gain included.
+    points : int
+        Distances in the table.
+    inner : float
+        The first distance.
+
+    Examples
+    --------
+    >>> from flockana.interactions import AlphaInteraction
+    >>> table = pair_table(PairTerm(AlphaInteraction(), 30.0, 0.0), 1000, 1e-5)
+    >>> bool(table.force[0] > 0.0), float(abs(table.force[-1])) < 1e-12, table.energy_error < 1e-2
+    (True, True, True)
+    """
+    outer = term.pair.range
+    s2 = np.linspace(inner**2, outer**2, points)
+    r = np.sqrt(s2)
+    r[0], r[-1] = inner, outer
+    energy, force = energy_and_force(term, r)
+    shares = np.array(_WITHIN)[:, None]
+    between = np.sqrt(s2[:-1] + shares * np.diff(s2))
+    exact_energy, exact_force = (x.reshape(between.shape) for x in energy_and_force(term, between.ravel()))
+    over = force / r
+    read_force = (over[:-1] + shares * np.diff(over)) * between
+    read_energy = energy[:-1] + shares * np.diff(energy)
+    jumps = tuple(x for x in term.pair.surfaces if inner < x < outer and _jumps(term, x, float(np.abs(force).max())))
+    smooth = np.ones(points - 1, bool)
+    smooth[np.searchsorted(r, jumps) - 1] = False
+    off = [np.abs(a - b)[:, smooth].max() for a, b in ((read_force, exact_force), (read_energy, exact_energy))]
+    return PairTable(r, energy, force, float(off[0]), float(off[1]), jumps)
+
+
+def _jumps(term: PairTerm, x: float, largest: float) -> bool:
+    """Whether the force jumps at a distance, not only bends."""
+    sides = energy_and_force(term, x * np.array([1.0 - _BESIDE, 1.0 + _BESIDE]))[1]
+    return bool(abs(sides[1] - sides[0]) > _JUMP * largest)
+
+
+def inner_cutoff(term: PairTerm) -> float:
+    """The first distance of a table: next to nothing, or a quarter of the law's length if the force is infinite at 0.
+
+    Examples
+    --------
+    >>> from flockana.interactions import AlphaInteraction
+    >>> inner_cutoff(PairTerm(AlphaInteraction(r=8.0), 1.0, 1.0))
+    8e-06
+    """
+    bounded = bool(np.isfinite(term.pair.energy_at(np.zeros(1))).all())
+    return _INNER * term.pair.range if bounded else _INNER_SINGULAR * term.pair.length
+
+
+def energy_and_force(term: PairTerm, r: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Energy, 0 at the range, and force, positive where it repels, of a pair at each distance up to the range.
+
+    Parameters
+    ----------
+    term : PairTerm
+        The term.
+    r : ndarray, shape (N,)
+        Distances.
+    """
+    pair = term.pair
+    energy = term.stiffness * (pair.energy_at(r) - pair.far_potential)
+    return energy, -term.stiffness * _pull_and_adjacency(term, r)[0]
+
+
+def adjacency(term: PairTerm, r: FloatArray) -> FloatArray:
+    """a(r) of the term's velocity consensus at each distance up to the range.
+
+    Parameters
+    ----------
+    term : PairTerm
+        The term.
+    r : ndarray, shape (N,)
+        Distances.
+    """
+    return _pull_and_adjacency(term, r)[1]
+
+
+def _pull_and_adjacency(term: PairTerm, r: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """(φ ‖n_ij‖, a_ij): many pairs, each out of reach of the others, along the first axis and in motion across it."""
+    n, reach = len(r), term.pair.range
+    below = np.minimum(r, np.nextafter(reach, 0.0))  # at the range itself the limit from within
+    q, p = np.zeros((2 * n, 2)), np.zeros((2 * n, 2))
+    q[:, 1] = np.repeat(3.0 * reach * np.arange(n), 2)
+    q[1::2, 0], p[1::2, 1] = below, 1.0
+    u, _ = term.pair.forces(q, p, stiffness=1.0, damping=1.0)
+    return u[::2, 0], u[::2, 1]

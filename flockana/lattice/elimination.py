@@ -1,0 +1,193 @@
+"""Elimination of a sparse symmetric matrix whose rows belong to agents with places: nested dissection, dense fronts.
+
+The agents are halved by the median of their wider coordinate again and again; those of one half that are linked to the
+other are the separator, eliminated after both. So every elimination is one of small dense matrices, at the speed of
+dense linear algebra. Where a front is not positive definite its own eigenvalues are taken: by Sylvester's law, applied
+front by front (Haynsworth 1968), their signs count those of the whole matrix, and with their moduli in their stead the
+elimination is that of a positive definite matrix near it, which Newton's method needs to go downhill.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.base.checks import FloatArray
+from flockana.base.errors import SolverError
+
+Indices = npt.NDArray[np.int64]
+
+_LEAF = 64  # agents that are eliminated at once
+_ZERO = 2.0 * float(np.finfo(np.float64).eps)  # of the largest entry of a front: a pivot below has no sign
+
+
+class _Front(NamedTuple):
+    """B⁻¹ = TᵀST of the rows that a front eliminates, X = TC with C their coupling to the `boundary`; S is ±1."""
+
+    rows: slice
+    boundary: Indices
+    t: FloatArray
+    x: FloatArray
+    signs: FloatArray | None
+
+
+class Elimination:
+    """A symmetric matrix A, eliminated front by front: the signs of its eigenvalues, and A⁻¹ b.
+
+    Parameters
+    ----------
+    matrix : sparse array, shape (n m, n m)
+        Symmetric, in the order of ``q.ravel()``.
+    q : ndarray, shape (n, m)
+        Places by which the agents are halved; they decide about the time taken and nothing else.
+    keep : bool
+        Keep what `solve` needs.
+    least : float, optional
+        Replace eigenvalues of fronts by their moduli, and by `least` where these are smaller: `solve` is then that of a
+        positive definite matrix, A itself if A is positive definite enough.
+    definite : bool
+        Give up at the first front that is not positive definite: A is not either.
+
+    Raises
+    ------
+    SolverError
+        Without `least`, if a pivot is zero to rounding, so that it has no sign; with `definite`, if A is not.
+
+    Examples
+    --------
+    >>> from scipy.sparse import csr_array
+    >>> spring = csr_array([[1.0, -2.0], [-2.0, 1.0]])
+    >>> q = np.array([[0.0], [1.0]])
+    >>> found = Elimination(spring, q)
+    >>> found.negative, found.solve(np.array([3.0, 0.0])).round(12).tolist()
+    (1, [-1.0, -2.0])
+    """
+
+    def __init__(
+        self, matrix: Any, q: FloatArray, *, keep: bool = True, least: float | None = None, definite: bool = False
+    ) -> None:
+        n, m = q.shape
+        depth = int(np.ceil(np.log2(max(n / _LEAF, 1.0))))
+        nodes = list(_bottom_up(1, 2**depth))
+        turn = np.zeros(2 ** (depth + 1), dtype=np.int64)
+        turn[nodes] = np.arange(len(nodes))
+        turns = turn[_dissected(matrix, q, depth)]
+        self._order = (m * np.argsort(turns, kind="stable")[:, None] + np.arange(m)).ravel()
+        self._matrix = matrix.tocsr()[self._order][:, self._order].tocsr()
+        self._least, self._definite, self._place = least, definite, np.zeros(n * m, dtype=np.int64)
+        self.negative, self._fronts = 0, list[_Front]()
+        waiting: list[tuple[Indices, FloatArray]] = []  # what the last fronts left on their boundaries
+        ends = m * np.cumsum(np.bincount(turns, minlength=len(nodes)))
+        for node, start, end in zip(nodes, [0, *ends[:-1].tolist()], ends.tolist(), strict=True):
+            below = [waiting.pop(), waiting.pop()] if node < 2**depth else []
+            front, left = self._eliminated(start, end, below)
+            waiting.append((front.boundary, left))
+            if keep:
+                self._fronts.append(front)
+
+    def solve(self, b: FloatArray) -> FloatArray:
+        """A⁻¹ b of a vector, or of the columns of a matrix.
+
+        Parameters
+        ----------
+        b : ndarray, shape (n m,) or (n m, k)
+            Right-hand sides.
+        """
+        x = np.array(b[self._order], dtype=np.float64)
+        for rows, boundary, t, coupling, signs in self._fronts:
+            y = t @ x[rows]
+            x[rows] = y if signs is None else (signs * y.T).T
+            x[boundary] -= coupling.T @ x[rows]
+        for rows, boundary, t, coupling, signs in reversed(self._fronts):
+            y = coupling @ x[boundary]
+            x[rows] = t.T @ (x[rows] - (y if signs is None else (signs * y.T).T))
+        result = np.empty_like(x)
+        result[self._order] = x
+        return result
+
+    def _eliminated(self, start: int, end: int, below: list[tuple[Indices, FloatArray]]) -> tuple[_Front, FloatArray]:
+        """Assemble one front from its rows and what is left below it; eliminate; hand on what that leaves."""
+        begin, stop = self._matrix.indptr[start], self._matrix.indptr[end]
+        columns, values = self._matrix.indices[begin:stop], self._matrix.data[begin:stop]
+        rows = np.repeat(np.arange(end - start), np.diff(self._matrix.indptr[start : end + 1]))
+        later = columns >= start
+        columns, values, rows = columns[later], values[later], rows[later]
+        touched = np.concatenate([columns[columns >= end], *(at[at >= end] for at, _ in below)])
+        boundary = np.unique(touched).astype(np.int64)
+        own, size = end - start, end - start + boundary.size
+        self._place[start:end] = np.arange(own)
+        self._place[boundary] = np.arange(own, size)
+        front = np.zeros((size, size))
+        front[rows, self._place[columns]] = values
+        for at, rest in below:
+            here = self._place[at]
+            front[here[:, None], here] += rest
+        t, signs = self._pivots(front[:own, :own], float(np.abs(front).max(initial=0.0)))
+        x = t @ front[:own, own:]
+        left = front[own:, own:] - x.T @ (x if signs is None else signs[:, None] * x)
+        return _Front(slice(start, end), boundary, t, x, signs), left
+
+    def _pivots(self, block: FloatArray, largest: float) -> tuple[FloatArray, FloatArray | None]:
+        """T and S with B⁻¹ = TᵀST: by Cholesky where B is positive definite, else by its eigenvalues."""
+        from scipy.linalg.lapack import dpotrf, dtrtri
+
+        if not len(block):
+            return block, None
+        if self._least is None:
+            factor, failed = dpotrf(block, lower=1)
+            if not failed:
+                return dtrtri(factor, lower=1)[0], None
+            if self._definite:
+                raise SolverError("the matrix is not positive definite")
+        sizes, vectors = np.linalg.eigh(block)
+        self.negative += int(np.sum(sizes < 0.0))
+        if self._least is not None:
+            return (vectors / np.sqrt(np.maximum(np.abs(sizes), self._least))).T, None
+        if np.abs(sizes).min() <= _ZERO * largest:
+            raise SolverError("the sparse elimination met a pivot that is zero to rounding: it has no sign")
+        return (vectors / np.sqrt(np.abs(sizes))).T, np.sign(sizes)
+
+
+def _bottom_up(node: int, leaves: int) -> Iterator[int]:
+    """The nodes of a binary tree, 1 the root and 2k, 2k + 1 below k, each after those below it."""
+    if node < leaves:
+        yield from _bottom_up(2 * node, leaves)
+        yield from _bottom_up(2 * node + 1, leaves)
+    yield node
+
+
+def _dissected(matrix: Any, q: FloatArray, depth: int) -> Indices:
+    """The node of each agent: a leaf, or the lowest of which it is in the separator."""
+    n, m = q.shape
+    i, j = _agents_linked(matrix, m)
+    node = np.ones(n, dtype=np.int64)
+    for level in range(depth):
+        live = np.flatnonzero(node >= 2**level)
+        part = node[live] - 2**level
+        low, high = np.full((2**level, m), np.inf), np.full((2**level, m), -np.inf)
+        np.minimum.at(low, part, q[live])
+        np.maximum.at(high, part, q[live])
+        along = q[live, np.argmax(high - low, axis=1)[part]]
+        count = np.bincount(part, minlength=2**level)
+        rank = np.empty(live.size, dtype=np.int64)
+        rank[np.lexsort((along, part))] = np.arange(live.size) - np.repeat(np.cumsum(count) - count, count)
+        node[live] = 2 * node[live] + (2 * rank >= count[part])
+        parted = node[i] != node[j]
+        node[np.where(node[i] % 2, i, j)[parted]] //= 2
+        inside = (node[i] >= 2 ** (level + 1)) & (node[j] >= 2 ** (level + 1))
+        i, j = i[inside], j[inside]
+    return node
+
+
+def _agents_linked(matrix: Any, m: int) -> tuple[Indices, Indices]:
+    """Pairs i < j of agents that a matrix couples, each once."""
+    from scipy.sparse import coo_array
+
+    entries, n = matrix.tocoo(), matrix.shape[0] // m
+    pattern = coo_array((np.ones(entries.nnz, dtype=bool), (entries.row // m, entries.col // m)), shape=(n, n))
+    once = pattern.tocsr().tocoo()
+    upper = once.row < once.col
+    return once.row[upper].astype(np.int64), once.col[upper].astype(np.int64)

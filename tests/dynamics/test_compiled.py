@@ -1,0 +1,183 @@
+"""Compiled runs: the same law to rounding, the same decisions as step by step, and only where both are the same."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+from flockana.dynamics import compiled
+from flockana.dynamics.compiled import engine_of
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.tolerance import Floor
+from flockana.environment.obstacles import Sphere
+from flockana.environment.targets import (
+    CallableTarget,
+    CircleTarget,
+    LinearTarget,
+    RescaledVelocity,
+    SineTarget,
+    StaticTarget,
+)
+from flockana.interactions import AlphaInteraction, DeadZoneInteraction, Gains
+from flockana.laws.algorithm3 import Algorithm3
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.laws.terms.pairs import PairTerm
+
+TARGETS = [
+    StaticTarget((5.0, -3.0), (0.3, 0.1)),
+    LinearTarget((20.0, 3.0), (1.5, -0.5)),
+    SineTarget((0.0, 4.0), (1.0, 0.2), amplitude=2.0, frequency=0.3, phase=0.7),
+    CircleTarget((5.0, 1.0), 8.0, frequency=0.2, phase=-0.4),
+    RescaledVelocity(StaticTarget((5.0, -3.0), (0.3, 0.1)), 0.4),
+    RescaledVelocity(CircleTarget((5.0, 1.0), 8.0, frequency=0.2), 0.25),
+]
+PER_AGENT = Gains(c1_gamma=np.linspace(0.5, 2.0, 12), c2_gamma=np.linspace(1.0, 3.0, 12))
+
+
+@dataclass(frozen=True)
+class Plain(Algorithm2):
+    """Algorithm 2, which the library must take for another law."""
+
+    def flow(self, t, q, p):
+        """As it was."""
+        return super().flow(t, q, p)
+
+
+def start(n=12, m=2, seed=0, spread=18.0):
+    rng = np.random.default_rng(seed)
+    return rng.uniform(0.0, spread, (n, m)), rng.normal(0.0, 2.0, (n, m)) + 1.0
+
+
+def calm(n=7):
+    """A disturbed triangular patch, almost at rest: no step of its run hangs on rounding."""
+    rng = np.random.default_rng(n)
+    corners = [(7.0 * (i + 0.5 * (j % 2)), 7.0 * 0.75**0.5 * j) for j in range(n) for i in range(n)]
+    return np.array(corners) + rng.normal(0.0, 0.2, (n * n, 2)), rng.normal(0.0, 0.05, (n * n, 2)) + 1.0
+
+
+def laws():
+    for target in TARGETS:
+        yield 2, Algorithm2(target=target, gains=Gains(c1_gamma=0.7))
+    yield 2, Algorithm2(target=TARGETS[3], gains=PER_AGENT)
+    yield 2, Algorithm2(target=TARGETS[3], gains=Gains(c1_gamma=np.linspace(0.5, 2.0, 12)))
+    yield 2, Algorithm1(DeadZoneInteraction(ramp=0.5))
+    for m in (1, 2, 3):
+        yield m, Algorithm1(AlphaInteraction(unit=2.0, a=2.0, b=5.0))
+        yield m, Algorithm2(target=LinearTarget((1.0, 2.0, 3.0)[:m], (0.5, 0.25, 1.0)[:m]))
+
+
+@pytest.mark.parametrize(("m", "law"), list(laws()))
+def test_the_compiled_form_is_the_law_to_rounding(m, law):
+    q0, p0 = start(m=m)
+    engine = engine_of(law, q0, p0, 0.5, "DOP853", 1e-10, Floor(1e-10, 1e-10, 1e-10))
+    ledger = np.array([np.nan, 0.0, 0.0, 0.0])
+    _, t, y, f, *_ = engine.run(engine.start(q0, p0)[1], np.array([0.7]), np.empty(0), ledger)
+    q, p = engine.frame.state(t, y)
+    (u, power), energy = law.flow(t, q, p), law.hamiltonian(t, q, p)
+    np.testing.assert_allclose(engine.frame.input(f), u, rtol=1e-12, atol=1e-13 * np.abs(u).max())
+    assert f[-1] == pytest.approx(power, rel=1e-12, abs=1e-13 * float(np.abs(u * p).sum()))
+    assert ledger[0] == t > 0.5
+    assert ledger[1] == pytest.approx(energy, rel=1e-12)
+    assert y[-1] == pytest.approx(energy - law.hamiltonian(0.5, q0, p0), abs=1e-9 * abs(energy))
+
+
+@pytest.mark.parametrize("method", ["DOP853", "RK45", "RK23"])
+def test_it_decides_as_step_by_step(method):
+    law, times = Algorithm2(target=TARGETS[3]), [0.0, 0.11, 0.25, 1.0]
+    for sampled in (None, times):
+        ours, theirs = (
+            simulate(law, *calm(), (0.0, 1.0), method=name, rtol=1e-6, t_eval=sampled)
+            for name in (method, f"scipy-{method}")
+        )
+        assert ours.stats["steps"] == theirs.stats["steps"]
+        assert ours.stats["redone"] == theirs.stats["redone"]
+        np.testing.assert_allclose(ours.t, theirs.t, rtol=1e-6)
+        np.testing.assert_allclose(ours.path.t, theirs.path.t, rtol=1e-6)
+        np.testing.assert_allclose(ours.q, theirs.q, atol=1e-8)
+        work = theirs.extra["work"]  # a step's length is known to the rounding of the error that it is chosen by
+        np.testing.assert_allclose(ours.extra["work"], work, atol=1e-6 * np.abs(work).max())
+
+
+def test_rk4_makes_the_same_steps_compiled_or_not():
+    for sampled in (None, [0.0, 0.11, 1.0], [0.5]):
+        ours, plain = (
+            simulate(kind(target=TARGETS[3]), *calm(), (0.0, 1.0), method="RK4", dt=0.013, t_eval=sampled)
+            for kind in (Algorithm2, Plain)
+        )
+        assert ours.stats["steps"] == plain.stats["steps"]
+        np.testing.assert_array_equal(ours.t, plain.t)
+        np.testing.assert_allclose(ours.q, plain.q, atol=1e-10)
+        np.testing.assert_allclose(ours.extra["work"], plain.extra["work"], atol=1e-8)
+        np.testing.assert_array_equal(ours.path.t, plain.path.t)
+
+
+def test_no_encounter_is_leapt_over():
+    q, p = np.array([[0.0, 0.0], [300.0, 0.1]]), np.array([[20.0, 0.0], [-20.0, 0.0]])
+    for options in ({}, {"method": "RK4", "dt": 20.0}):
+        run = simulate(Algorithm1(), q, p, (0.0, 20.0), **options)
+        assert run.stats["redone"] > 0
+        assert run.min_distance() < 8.4
+        assert np.abs(run.path.u).max() > 1.0
+
+
+def test_calls_of_one_step_make_the_same_run(monkeypatch):
+    law = Algorithm2(target=TARGETS[1])
+    many = simulate(law, *calm(), (0.0, 0.3), t_eval=[0.0, 0.1, 0.3])
+    monkeypatch.setattr(compiled, "_NUMBERS", 1)
+    one = simulate(law, *calm(), (0.0, 0.3), t_eval=[0.0, 0.1, 0.3])
+    assert one.stats["steps"] == many.stats["steps"]
+    np.testing.assert_allclose(one.q, many.q, atol=1e-9)
+
+
+def test_a_law_that_changes_what_its_form_stands_for_is_stepped():
+    class Told(LinearTarget):
+        """A γ-agent that lies about its velocity."""
+
+        def state(self, t):
+            q, p = super().state(t)
+            return q, 2.0 * p
+
+    class Stronger(PairTerm):
+        """Twice the force."""
+
+        def act(self, t, q, p, u):
+            return super().act(t, q, p, u)
+
+    class Strong(Algorithm1):
+        """With that term."""
+
+        @property
+        def terms(self):
+            return (Stronger(self.alpha, 1.0, 1.0),)
+
+    class Weighed(AlphaInteraction):
+        """Sums of its own."""
+
+        def forces(self, *arguments, **options):
+            return super().forces(*arguments, **options)
+
+    q, p = start()
+    plain = [
+        Plain(target=TARGETS[1]),
+        Algorithm2(target=Told((0.0, 0.0), (1.0, 0.0))),
+        Algorithm2(target=RescaledVelocity(CallableTarget(lambda t: ((t, 0.0), (1.0, 0.0))), 0.5)),
+        Strong(),
+        Algorithm1(Weighed()),
+        Algorithm3(target=TARGETS[0], obstacles=[Sphere((50.0, 50.0), 1.0)]),
+    ]
+    for law in plain:
+        assert engine_of(law, q, p, 0.0, "DOP853", 1e-8, Floor(1e-8, 1e-8, 1e-8)) is None, law
+    assert engine_of(Algorithm1(), q, p, 0.0, "LSODA", 1e-8, Floor(1e-8, 1e-8, 1e-8)) is None
+    lied = simulate(plain[1], q, p, (0.0, 0.5), rtol=1e-9)
+    np.testing.assert_allclose(lied.u[-1], plain[1].acceleration(0.5, lied.q[-1], lied.p[-1]), rtol=1e-9, atol=1e-9)
+
+
+def test_a_run_that_fails_says_why():
+    wild = Algorithm1(gains=Gains(c1_alpha=1e300, c2_alpha=1e300))
+    run = simulate(wild, *start(), (0.0, 10.0), method="RK4", dt=1.0)
+    assert run.status == "failed"
+    assert "RK4 left the finite numbers at t = " in run.message
+    assert np.isfinite(run.q).all()
+    run = simulate(Algorithm1(gains=Gains(c1_alpha=1e60)), *start(), (1e9, 1e9 + 1.0))
+    assert run.status == "failed"
+    assert "DOP853 gave up at t = 1e+09: Required step size is less than spacing" in run.message

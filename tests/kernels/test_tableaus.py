@@ -1,0 +1,40 @@
+"""The coefficients: what every Runge-Kutta method fulfils, and scipy's own interpolants."""
+
+import numpy as np
+import pytest
+from scipy.integrate import DOP853, RK23, RK45
+
+from flockana.kernels.runge_kutta import combine, interpolated
+from flockana.kernels.tableaus import tableau
+
+ORDERS = {"DOP853": 8, "RK45": 5, "RK23": 3, "RK4": 4}
+
+
+@pytest.mark.parametrize("method", ORDERS)
+def test_quadrature_conditions_up_to_the_order(method):
+    a, c, estimates, _, stages, _ = tableau(method)
+    np.testing.assert_allclose(a.sum(axis=1), c, atol=1e-14)
+    weights = a[stages, : stages + 1]
+    for power in range(ORDERS[method]):
+        assert weights @ c[: stages + 1] ** power == pytest.approx(1 / (power + 1), abs=1e-14)
+    for power in range(3 if method in ("DOP853", "RK45") else 1):  # an estimate is of a difference of two methods
+        np.testing.assert_allclose(estimates @ c[: stages + 1] ** power, 0.0, atol=1e-14)
+
+
+@pytest.mark.parametrize("solver", [DOP853, RK45, RK23])
+def test_steps_errors_and_interpolants_are_those_of_scipy(solver):
+    rng = np.random.default_rng(3)
+    matrix, y0 = rng.normal(size=(4, 4)), rng.normal(size=4)
+    theirs = solver(lambda t, y: matrix @ y + np.sin(t), 0.3, y0, 9.0, first_step=0.2, rtol=1e-1, atol=1e-1)
+    theirs.step()
+    a, c, _, interpolant, stages, _ = tableau(solver.__name__)
+    h, rates, out = theirs.t - 0.3, np.zeros((len(a), 4)), np.empty(4)
+    for s in range(len(a)):
+        combine(y0, h, a[s], rates, s, out)
+        rates[s] = matrix @ out + np.sin(0.3 + c[s] * h)
+        if s == stages:
+            np.testing.assert_allclose(out, theirs.y, rtol=1e-14)
+    dense = theirs.dense_output()
+    for theta in (0.1, 0.5, 0.93, 1.0):
+        interpolated(theta, h, y0, rates, interpolant, out)
+        np.testing.assert_allclose(out, dense(0.3 + theta * h), rtol=1e-13, atol=1e-14)

@@ -1,0 +1,177 @@
+"""Dumps of LAMMPS, read: whole ones as a run of a law, damaged ones with an error that says what is wrong."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import flockana as fl
+from flockana.base.errors import ArgumentError, FileError
+
+BOX = "ITEM: BOX BOUNDS ss ss pp\n-9 9\n-9 9\n-0.5 0.5\n"
+
+
+def dumped(run, path, *, columns="id type x y vx vy fx fy", times=True, shift=0.0):
+    """A run of the law's own, written as LAMMPS writes it; agents in no order, forces off by a shift."""
+    text, rng = "", np.random.default_rng(0)
+    for k, t in enumerate(run.t.tolist()):
+        text += "ITEM: UNITS\nlj\n" if k == 0 else ""
+        text += f"ITEM: TIME\n{t!r}\n" if times else ""
+        text += f"ITEM: TIMESTEP\n{10 * k}\nITEM: NUMBER OF ATOMS\n{run.n}\n{BOX}ITEM: ATOMS {columns} \n"
+        for i in rng.permutation(run.n).tolist():
+            data = {"id": i + 1, "type": 1, "z": 0.0, "vz": 0.0, "mass": 1.0}
+            for j, axis in enumerate("xy"):
+                data |= {f"v{axis}": float(run.p[k, i, j]), f"f{axis}": float(run.u[k, i, j]) + shift}
+                data[axis] = data[f"{axis}u"] = float(run.q[k, i, j])
+            text += " ".join(repr(data[name]) for name in columns.split()) + " \n"
+    path.write_text(text)
+    return path
+
+
+@pytest.fixture(scope="module")
+def run():
+    q0 = np.array([[0.0, 0.0], [6.0, 1.0], [2.0, 7.0], [9.0, 6.0]])
+    law = fl.Algorithm2(target=fl.LinearTarget((1.0, 2.0), (1.0, 0.0)))
+    return fl.simulate(law, q0, np.zeros((4, 2)), (0.0, 2.0), rtol=1e-11, t_eval=np.linspace(0.0, 2.0, 201))
+
+
+@pytest.fixture
+def path(tmp_path):
+    return tmp_path / "flock.dump"
+
+
+def test_a_run_of_the_law_itself_comes_back_to_the_last_bit_and_leaves_no_residual(run, path):
+    back = fl.read_lammps(dumped(run, path), run.law)
+    for name in ("t", "q", "p", "u"):
+        np.testing.assert_array_equal(getattr(back, name), getattr(run, name))
+    assert back.law == run.law
+    assert back.stats["steps"] == 2000
+    assert back.extra["force_residual"].max() < 1e-13
+    np.testing.assert_allclose(back.extra["work"], run.extra["work"], rtol=0.0, atol=1e-4 * np.abs(run.energy()).max())
+    assert np.abs(back.energy_residual).max() < 1e-4 * np.abs(run.energy()).max()
+
+
+def test_such_a_run_can_be_verified_and_one_with_other_forces_is_refused(run, path):
+    assert fl.verify("os-3", fl.read_lammps(dumped(run, path), run.law)).status in ("verified", "inconclusive")
+    largest = float(np.abs(run.u).max())
+    off = fl.read_lammps(dumped(run, path, shift=0.01 * largest), run.law)
+    np.testing.assert_allclose(off.extra["force_residual"], 0.01, rtol=1e-9)
+    with pytest.raises(ArgumentError, match=r"u at t = .* is off by .* from the input of Algorithm2"):
+        fl.verify("os-3", off)
+
+
+def test_another_law_shows_in_both_residuals(run, path):
+    other = fl.Algorithm2(target=fl.LinearTarget((1.0, 2.0), (1.0, 0.0)), gains=fl.Gains(c1_alpha=20.0))
+    back = fl.read_lammps(dumped(run, path), other)
+    assert back.extra["force_residual"].max() > 0.1
+    assert np.abs(back.energy_residual).max() > 0.05 * np.abs(run.energy()).max()
+
+
+def test_start_shifts_the_times_and_steps_make_them_where_there_are_none(run, path):
+    back = fl.read_lammps(dumped(run, path, times=False), run.law, dt=0.001, start=3.0)
+    np.testing.assert_allclose(back.t, run.t + 3.0, rtol=0.0, atol=1e-12)
+    with pytest.raises(ArgumentError, match=r"dt = None: .* has no times; give the step"):
+        fl.read_lammps(path, run.law)
+
+
+def test_unwrapped_positions_and_the_plane_of_a_dump_in_space(run, path):
+    back = fl.read_lammps(dumped(run, path, columns="type id xu yu vx vy"), run.law)
+    np.testing.assert_array_equal(back.q, run.q)
+    assert "force_residual" not in back.extra
+    np.testing.assert_allclose(back.u, run.u, rtol=0.0, atol=1e-12 * np.abs(run.u).max())
+    dumped(run, path, columns="id x y z vx vy vz")
+    np.testing.assert_array_equal(fl.read_lammps(path, run.law, m=2).q, run.q)
+    with pytest.raises(ArgumentError, match="2 components but the agents have 3"):
+        fl.read_lammps(path, run.law)
+    with pytest.raises(ArgumentError, match="m = 4: expected 1 to 3"):
+        fl.read_lammps(path, run.law, m=4)
+
+
+@pytest.mark.parametrize(
+    ("columns", "message"),
+    [
+        ("id type xs ys vx vy", "expected positions x, y, z or xu, yu, zu"),
+        ("id type x y", "expected vx vy among them"),
+        ("id type x y vx vy fx", "expected fx fy among them"),
+    ],
+)
+def test_missing_columns_are_named(run, path, columns, message):
+    dumped(run, path, columns="id type x y vx vy fx fy")
+    text = path.read_text().replace("id type x y vx vy fx fy", columns)
+    lines = [
+        " ".join(row.split()[: len(columns.split())]) if row[:1].isdigit() and " 1 " in row else row
+        for row in text.splitlines()
+    ]
+    path.write_text("\n".join(lines) + "\n")
+    with pytest.raises(ArgumentError, match=message):
+        fl.read_lammps(path, run.law)
+
+
+def damage(text, how):
+    lines = text.splitlines(keepends=True)
+    return {
+        "cut within a line": text[:-20],
+        "cut within a snapshot": "".join(lines[:-3]),
+        "cut after a step": text[: text.rindex("ITEM: NUMBER")],
+        "not finite": text.replace(lines[-1], lines[-1].replace(lines[-1].split()[3], "nan")),
+        "a word": text.replace(lines[-1], lines[-1].replace(lines[-1].split()[3], "far")),
+        "an agent lost": _without_last(text),
+        "one id twice": _twice(text),
+        "times fall": text + text,
+        "an unknown item": text + "ITEM: ENTRIES\n1\n",
+        "stray text": "Step Temp\n" + text,
+        "nothing": "",
+        "no ids": text.replace("ATOMS id", "ATOMS mol"),
+    }[how]
+
+
+def _without_last(text):
+    cut = text.rindex("ITEM: NUMBER OF ATOMS\n4")
+    last = text[cut:].replace("ATOMS\n4", "ATOMS\n3", 1)
+    return text[:cut] + last[: last.rstrip("\n").rindex("\n") + 1]
+
+
+def _twice(text):
+    lines = text.splitlines(keepends=True)
+    return "".join([*lines[:-1], lines[-2]])
+
+
+@pytest.mark.parametrize(
+    ("how", "message"),
+    [
+        ("cut within a line", "the end of the file where 4 lines of 8 numbers were expected; was it cut off"),
+        ("cut within a snapshot", "the end of the file where 4 lines"),
+        ("cut after a step", "ends within the snapshot of step 2000; was it cut off"),
+        ("not finite", "a number that is not finite"),
+        ("a word", "expected numbers in every column"),
+        ("an agent lost", "snapshot 200 has 3 agents .* were agents lost"),
+        ("one id twice", "two of one id; expected each once"),
+        ("times fall", "expected rising times"),
+        ("an unknown item", "unknown item 'ITEM: ENTRIES'"),
+        ("stray text", "'Step Temp' where an ITEM was expected"),
+        ("nothing", "holds no snapshot: expected a text dump"),
+        ("no ids", "expected a dump of style custom with id"),
+    ],
+)
+def test_damaged_dumps_are_refused(run, path, how, message):
+    dumped(run, path)
+    path.write_text(damage(path.read_text(), how))
+    with pytest.raises(FileError, match=message):
+        fl.read_lammps(path, run.law)
+
+
+def test_what_is_no_text_or_not_there_is_refused(run, path):
+    with pytest.raises(FileError, match=r"cannot read .*flock\.dump"):
+        fl.read_lammps(path, run.law)
+    path.write_bytes(b"\xff\xfe\x00\x01")
+    with pytest.raises(FileError, match="expected a text dump of LAMMPS"):
+        fl.read_lammps(path, run.law)
+
+
+def test_a_law_for_other_agents_and_a_map_are_refused(run, path):
+    dumped(run, path)
+    each = fl.Algorithm2(target=fl.StaticTarget((0.0, 0.0)), gains=fl.Gains(c1_gamma=np.arange(1.0, 6.0)))
+    with pytest.raises(ArgumentError, match="5"):
+        fl.read_lammps(path, each)
+    with pytest.raises(ArgumentError, match="is a map from step to step"):
+        fl.read_lammps(path, fl.DiscreteMinimalFlocking(fl.MinimalFlocking(), 0.1))
