@@ -69,6 +69,23 @@ def measure(trajectory: Trajectory, name: str, *, ax: Axes | None = None) -> Axe
     return finish_over_time(ax, trajectory.t, drawn.label)
 
 
+def has_metric(trajectory: Trajectory, name: str) -> bool:
+    """Whether a run has a metric, asked without all the others (which xarray holds, whose import takes longer).
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The run.
+    name : str
+        Of the metric.
+    """
+    try:
+        trajectory.metric(name)
+    except UnknownNameError:
+        return False
+    return True
+
+
 def panel(trajectory: Trajectory, *, axes: Any = None) -> Any:
     """Draw C, R, Ẽ and K̃ (logarithmic) side by side.
 
@@ -154,7 +171,7 @@ def distances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     label = "least distance (length)"
     if trajectory.n == 1:
         return finish_empty(ax, label, "one agent has no distances")
-    t, least = trajectory.t, trajectory.metrics()["min_distance"].values
+    t, least = trajectory.t, trajectory.metric("min_distance")
     ax.plot(t, least, color=BLUE, linestyle="-", linewidth=2.4, alpha=0.6, label="at the samples")
     if len(t) > 1 and not isinstance(trajectory.law, DiscreteLaw):
         bound = trajectory.closest_approach().lower_by_interval
@@ -183,7 +200,7 @@ def components(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     """
     ax = ensure_axes(ax)
     label = "components of the net"
-    if "connectivity" not in trajectory.metrics():
+    if not has_metric(trajectory, "connectivity"):
         return finish_empty(ax, label, "not defined for this law")
     counts = component_counts(trajectory)
     ax.plot(trajectory.t, counts, color=BLUE, linestyle="-", drawstyle="steps-post")

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from flockana import plots
 from flockana.base.modules import modules
 from flockana.dynamics.trajectory import Trajectory
+from flockana.plots.series import has_metric
 from flockana.plots.snapshot import drawn_law
 from flockana.report.image import png
 from flockana.scenarios.findings import component_counts
@@ -48,7 +49,7 @@ def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
 def flock_pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
     """Draw snapshots, paths, C R Ẽ K̃, energy with its balance, distances and speeds; among obstacles, clearance."""
     law = drawn_law(trajectory)
-    linked = law.pair is not None or "edge_error" in trajectory.metrics()
+    linked = law.pair is not None or has_metric(trajectory, "edge_error")
     blocked = bool(law.obstacles)
     drawn = (
         Picture(

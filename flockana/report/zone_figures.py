@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 from flockana import plots
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.bearing_distance import ZoneFlocking
+from flockana.plots.series import has_metric
 from flockana.report.figures import Picture
 from flockana.report.image import png
 from flockana.scenarios.findings import component_counts
@@ -52,10 +53,11 @@ def _snapshots(figure: Figure, run: Trajectory) -> None:
 
 def _middle(run: Trajectory) -> int:
     """Where a flock, once together, is most split; else where it is nearest to an obstacle; else half way in time."""
-    counts, metrics = component_counts(run), run.metrics()
+    counts = component_counts(run)
     if counts[0] == 1 and counts.max() > 1:
         return int(counts.argmax())
-    return int(metrics.obstacle_clearance.values.argmin()) if "obstacle_clearance" in metrics else len(run.t) // 2
+    near = has_metric(run, "obstacle_clearance")
+    return int(run.metric("obstacle_clearance").argmin()) if near else len(run.t) // 2
 
 
 def _motion(figure: Figure, run: Trajectory) -> None:

@@ -8,6 +8,7 @@ comes out as 0, and a double one does not smear over ±√(rounding).
 from __future__ import annotations
 
 from cmath import sqrt
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -185,6 +186,10 @@ class SecondOrder:
             unit = translations(*self.q.shape)
             away = self.scale - self.split.stiffness  # translations are dealt with by themselves
             stiffness = stiffness + unit * away @ unit.T
+        if self.symmetric:
+            values, vectors = np.linalg.eigh(0.5 * (stiffness + stiffness.T))
+            kernel = vectors[:, np.abs(values) <= self.zero * self.scale]
+            return self._set_apart(kernel, kernel)
         left, sizes, right = np.linalg.svd(stiffness)
         flat = sizes <= self.zero * self.scale
         return self._set_apart(right[flat].T, left[:, flat])
@@ -228,10 +233,14 @@ class SecondOrder:
         """
         left, size, pace = self.invariant.left.copy(), self.q.size, self.pace
         left[:size] /= pace
-        rest = np.linalg.qr(left, mode="complete")[0][:, left.shape[1] :]  # A maps it into itself
-        push = -(self.stiffness @ rest[:size]) / pace - self.damping @ rest[size:]
-        values, vectors, errors = eigen(rest.T @ np.vstack([pace * rest[size:], push]))
-        return values, (rest[:size] @ vectors).astype(np.complex128), errors
+        apart, turn = left.shape[1], _turn(left)
+        push = np.hstack([self.stiffness.toarray() / -pace, -self.damping.toarray()])
+        whole = np.vstack([np.eye(size, 2 * size, size) * pace, push])
+        # A maps what is orthogonal to `left` into itself
+        values, vectors, errors = eigen(turn("R", "N", turn("L", "T", whole))[apart:, apart:])
+        parts = (np.vstack([np.zeros((apart, len(values))), part]) for part in (vectors.real, vectors.imag))
+        real, imag = (turn("L", "N", part)[:size] for part in parts)
+        return values, real + 1j * imag, errors
 
     def named(self, values: Any, vectors: Any, errors: Any, others: tuple[Mode, ...]) -> tuple[Mode, ...]:
         """Modes from eigenvalues and columns of displacements, with `others` among them, in order, named."""
@@ -308,6 +317,24 @@ class SecondOrder:
             return np.zeros_like(motion)
         solution: FloatArray = -np.linalg.lstsq(matrix.toarray(), push, rcond=self.zero)[0]
         return solution
+
+
+def _turn(basis: FloatArray) -> Callable[[str, str, FloatArray], FloatArray]:
+    """Multiply by Q, or its transpose, of which the first columns span the basis, from the left or the right.
+
+    Q is never formed: a few reflections cost a few passes over what they act on.
+    """
+    from scipy.linalg.lapack import dgeqrf, dormqr
+
+    if not basis.shape[1]:
+        return lambda side, how, x: x
+    factors, scales = dgeqrf(basis)[:2]
+
+    def turn(side: str, how: str, x: FloatArray) -> FloatArray:
+        turned: FloatArray = dormqr(side, how, factors, scales, x, 64 * max(x.shape))[0]
+        return turned
+
+    return turn
 
 
 def _roots(stiffness: float, damping: float, errors: tuple[float, float]) -> list[complex]:

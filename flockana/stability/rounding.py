@@ -56,8 +56,10 @@ def _together(values: ComplexArray, size: float) -> FloatArray:
 
     Of coalesced roots that came out apart the eigenvectors tell; where they came out exactly equal, yᴴx may be 0.
     """
-    tight = _ROUNDINGS * EPS
-    same = np.sum(np.abs(values[:, None] - values[None, :]) <= 2.0 * tight * size, axis=1)
+    from scipy.spatial import cKDTree
+
+    tight, plane = _ROUNDINGS * EPS, np.column_stack([values.real, values.imag])
+    same = np.asarray(cKDTree(plane).query_ball_point(plane, 2.0 * tight * size, return_length=True))
     bound: FloatArray = np.where(same > 1, size * tight ** (1.0 / same), np.inf)
     return bound
 

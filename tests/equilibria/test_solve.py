@@ -159,7 +159,7 @@ def test_the_pair_list_is_checked_again_and_renewed(monkeypatch):
             listed.append(len(pairs))
             super().__init__(potential, shape, pairs, gauge)
 
-    monkeypatch.setattr(solve_module, "Program", Counted)
+    monkeypatch.setattr("flockana.equilibria.program.Program", Counted)
     monkeypatch.setattr(solve_module, "ALL_PAIRS", 2)
     law = Algorithm2(target=StaticTarget((0.0,)), gains=Gains(c1_gamma=0.5))
     start = np.array([[-20.0], [0.0], [20.0], [40.0]])  # nothing is in range until the target has pulled them in

@@ -38,3 +38,9 @@ def test_a_figure_is_an_image_in_a_page():
     head, data = text.split(",")
     assert head == "data:image/png;base64"
     assert Image.open(BytesIO(base64.b64decode(data))).size == (500, 375)
+
+
+def test_paper_stays_white_beside_what_is_nearly_white():
+    pixels = np.full((20, 20, 4), 255, dtype=np.uint8)
+    pixels[-1, -1, :3] = 253
+    assert rgb(reduced(pixels))[0, 0].tolist() == [255, 255, 255]

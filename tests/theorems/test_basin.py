@@ -88,3 +88,15 @@ def test_a_net_is_connected_within_its_reach():
     assert connected_within(q, 2.5)
     assert not connected_within(q, 1.5)
     assert not connected_within(q, -inf)
+
+
+@pytest.mark.parametrize("rise", [0.0, 0.3, 2.0, 8.0])
+@pytest.mark.parametrize("distance", [0.0, 0.02])
+def test_of_many_windows_the_best_is_taken_as_if_each_were_looked_into(rise, distance):
+    windows = np.geomspace(0.01, 3.0, 25)
+
+    def lipschitz(window):
+        return rise * (1.0 + window**2)
+
+    each = [barrier(2.0, distance, [window], lipschitz) for window in windows.tolist()]
+    assert barrier(2.0, distance, windows, lipschitz) == max(each) > 0.0
