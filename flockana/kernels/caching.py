@@ -8,12 +8,21 @@ What numba compiles it numbers, from one on in each process, in two places:
 - The symbols of the machine code. Two closures of one name that two processes compiled may get one symbol. A third that
   loads both gives the second the constants of the first, and if it lacks one, every call fails ("'descr' is NULL").
   Here the name of a closure says what it closes over.
+
+numba looks at the time of the one file that a function is in. What it calls may be in others: here a function is as old
+as the contents of its file and of all files of the package that this imports, so an edited kernel is compiled again
+with all that call it.
 """
 
 from __future__ import annotations
 
 import hashlib
+import re
+import sys
 from collections.abc import Callable
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numba
@@ -40,7 +49,40 @@ class _Cache(FunctionCache):
         super().__init__(function)
         own: IndexDataCacheFile = self._cache_file  # type: ignore[has-type]
         base = own._index_name.removesuffix(".nbi")
-        self._cache_file = NamedByContent(own._cache_path, base, own._source_stamp)
+        file = getattr(sys.modules.get(function.__module__), "__file__", None)
+        stamp = own._source_stamp if file is None else sources_digest(file)
+        self._cache_file = NamedByContent(own._cache_path, base, stamp)
+
+
+def _imported(file: Path) -> set[Path]:
+    """The files of the package that a file imports, whatever it is itself."""
+    root, text = Path(__file__).parents[1], file.read_text("utf-8")
+    names = re.findall(r"^\s*(?:from|import) flockana\.([\w.]+)(?: import (.+))?", text, re.MULTILINE)
+    paths = set()
+    for module, things in names:
+        paths.add(root.joinpath(*module.split(".")).with_suffix(".py"))
+        for thing in re.findall(r"\w+", things):  # it may be a module itself
+            paths.add(root.joinpath(*module.split("."), thing).with_suffix(".py"))
+    return {path for path in paths if path.is_file()}
+
+
+@cache
+def sources_digest(file: str) -> str:
+    """Of the contents of a file and of all that it imports of the package, and these again.
+
+    Parameters
+    ----------
+    file : str
+        Its path.
+    """
+    known, found = set[Path](), {Path(file)}
+    while found:
+        known |= found
+        found = {other for path in found for other in _imported(path)} - known
+    digest = hashlib.sha256()
+    for path in sorted(known):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()
 
 
 def _named_for_its_cells(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -66,7 +108,8 @@ def dispatcher(function: Callable[..., Any], *, cache: bool, **options: Any) -> 
     if not cache:
         return numba.njit(**options)(function)
     made = numba.njit(**options)(_named_for_its_cells(function))
-    made._cache = _Cache(function)
+    with suppress(RuntimeError):  # there is no folder to write to: it is compiled in every process
+        made._cache = _Cache(function)
     return made
 
 

@@ -73,7 +73,7 @@ def lift(
     Parameters
     ----------
     pair : callable
-        ``pair(s2, par) -> (w, a)``, a `numba.extending.register_jitable` function.
+        ``pair(s2, par) -> (w, a)``, a `flockana.kernels.compiling.register_jitable` function.
     slope : callable
         ``slope(s2, par)`` = dw/d(s²).
     potential : callable

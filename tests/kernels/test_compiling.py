@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import pickle
+import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import numba
 import numpy as np
 from numba.core.caching import IndexDataCacheFile
 from numba.core.serialize import dumps, loads
 
-from flockana.kernels import alpha, dead_zone
+from flockana.kernels import alpha, caching, dead_zone
 from flockana.kernels.caching import NamedByContent
 from flockana.kernels.compiling import Inlined, njit, register_jitable
 from flockana.kernels.sweep import lift_sweep
@@ -168,3 +170,45 @@ def test_kernels_load_numba_when_they_compute():
     rooms = "".join(code.format(name) + "\n" for name in ("sweep", "dead_zone", "obstacles", "zones", "paths"))
     run = subprocess.run([sys.executable, "-c", rooms], capture_output=True, text=True, check=True)
     assert set(run.stdout.split()) == {"False"}
+
+
+CALLER = """
+from flockana.kernels.compiling import njit
+from flockana.{name} import inner
+
+@njit(cache=True)
+def outer(x):
+    return inner(x) + 1
+"""
+
+
+def test_an_edit_in_what_a_kernel_imports_compiles_it_again(tmp_path):
+    """A copy of the package, so that a kernel of it can be edited."""
+    package = tmp_path / "flockana"
+    shutil.copytree(Path(caching.__file__).parents[1], package, ignore=shutil.ignore_patterns("__pycache__", "report"))
+    (package / "between.py").write_text("from flockana.innermost import inner\n")
+    (tmp_path / "caller.py").write_text(CALLER.format(name="between"))
+    for factor, told in ((2, 7), (5, 16)):
+        (package / "innermost.py").write_text(
+            "from flockana.kernels.compiling import njit\n\n@njit(cache=True)\ndef inner(x):\n"
+            f"    return {factor} * x\n"
+        )
+        command = [
+            sys.executable,
+            "-B",
+            "-c",
+            "import caller; print(caller.outer(3), len(caller.outer.stats.cache_hits))",
+        ]
+        for hits in (0, 1):
+            found = subprocess.run(command, cwd=tmp_path, check=True, capture_output=True, text=True, timeout=300)
+            assert found.stdout.split() == [str(told), str(hits)]
+
+
+def test_where_nothing_can_be_written_kernels_are_compiled_all_the_same(monkeypatch):
+    monkeypatch.setattr(caching.FunctionCache, "__init__", lambda *_: (_ for _ in ()).throw(RuntimeError("no locator")))
+
+    @njit(cache=True)
+    def twice(x):
+        return 2.0 * x
+
+    assert twice(2.0) == 4.0
