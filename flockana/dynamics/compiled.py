@@ -20,6 +20,7 @@ from flockana.dynamics.tolerance import Floor
 from flockana.kernels.advance import RUNNING, advance
 from flockana.kernels.listed import no_term
 from flockana.kernels.tableaus import Tableau, tableau
+from flockana.kernels.verlet import search_of_pairs
 from flockana.laws.law import Law
 from flockana.laws.sum_of_terms import MOST_TERMS
 from flockana.laws.terms.term import Compiled, TermKernel
@@ -90,6 +91,7 @@ class Engine:
         terms = (*self.form.terms, *(nothing,) * (MOST_TERMS - len(self.form.terms)))
         reach = max(term.reach for term in terms)
         result: tuple[Any, ...] = advance()(
+            search_of_pairs()[0],
             *(term.act for term in terms),
             *(term.energy for term in terms),
             tuple(np.array(term.numbers) for term in terms),

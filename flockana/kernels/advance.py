@@ -18,7 +18,7 @@ from flockana.kernels.listed import signatures
 from flockana.kernels.paths import bernstein, centred
 from flockana.kernels.runge_kutta import energy_of, error_of, first_step, frame_at, interpolated, rate_of, stages_of
 from flockana.kernels.sums import finite
-from flockana.kernels.verlet import empty_list, list_pairs, spatial_order
+from flockana.kernels.verlet import empty_list, search_of_pairs, spatial_order
 
 RUNNING, TOO_SMALL, NOT_FINITE = range(3)
 _SAFETY, _LEAST, _MOST = 0.9, 0.2, 10.0  # scipy's: factors of a step
@@ -44,10 +44,10 @@ def _met(h, y0, f0, y1, f1, encounters, system, pairs, scratch):
     widest, farthest, blur = 0.0, 0.0, 0.0
     for i in range(n):
         widest, farthest, blur = max(widest, radii[i, -1]), max(farthest, ways[i]), max(blur, allowance[i])
-    search = (widest + 2.0 * (farthest + blur)) * (1.0 + 1e-9)
+    within = (widest + 2.0 * (farthest + blur)) * (1.0 + 1e-9)
     first, second, count, places, _ = pairs
-    if not (places.size and search <= system[7][0]):
-        first, second, count = list_pairs(q0, search, scratch[0], scratch[1])
+    if not (places.size and within <= system[7][0]):
+        first, second, count = system[9](q0, within, scratch[0], scratch[1])
         scratch = (first, second)
     return share_of_pairs(points, ways, allowance, radii, far, first[:count], second[:count], share), scratch
 
@@ -123,7 +123,7 @@ def _controlled(h, error, exponent, rejected):
 
 
 def _advance(
-    act0, act1, act2, energy0, energy1, energy2, numbers, panels, shape, view, moving,
+    search, act0, act1, act2, energy0, energy1, energy2, numbers, panels, shape, view, moving,
     tableau_a, tableau_c, estimates, interpolant, stages, exponent,
     reach, radii, far, rtol, floor, balance, ledger, t, y, f, h, stops, due, most,
 ):  # fmt: skip
@@ -136,7 +136,7 @@ def _advance(
     start = y[: n * m].copy().reshape(n, m)
     order = spatial_order(start, reach[0] + reach[1]) if reach[0] > 0.0 else np.arange(n).astype(np.uint64)
     system = (
-        (act0, act1, act2), (energy0, energy1, energy2), numbers, panels, shape, view, moving, reach, order
+        (act0, act1, act2), (energy0, energy1, energy2), numbers, panels, shape, view, moving, reach, order, search
     )  # fmt: skip
     method, encounters, fixed = (tableau_a, tableau_c, stages), (np.empty_like(radii), far), exponent == 0.0
     for i in range(n):
@@ -221,7 +221,8 @@ def advance() -> Callable[..., Any]:
 
     act, energy = (types.FunctionType(signature) for signature in signatures())
     matrix, vector = float64[:, ::1], float64[::1]
-    law = (act, act, act, energy, energy, energy, several(vector, 3), several(matrix, 3))
+    search = types.FunctionType(search_of_pairs()[1])
+    law = (search, act, act, act, energy, energy, energy, several(vector, 3), several(matrix, 3))
     view = (several(int64, 2), types.containers.Tuple((float64, vector, vector)), boolean)
     method = (matrix, vector, matrix, matrix, int64, float64)
     limits = (several(float64, 2), matrix, float64, float64, several(float64, 3), several(float64, 2), vector)

@@ -95,7 +95,7 @@ def lift_obstacle(project: Callable[..., float], turn: Callable[..., None] | Non
     Parameters
     ----------
     project : callable
-        ``project(q, p, par, gap, rate) -> clearance``, a `flockana.kernels.compiling.register_jitable` function of one agent.
+        ``project(q, p, par, gap, rate) -> clearance``, a `register_jitable` function of one agent.
     turn : callable, optional
         ``turn(q, p, e, par, out)`` writes the derivative of dq̂/dt in q along e, at fixed p, into out: `no_turn` for
         flat faces. Only the Jacobian of a law at moving agents needs it.

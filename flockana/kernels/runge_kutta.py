@@ -47,11 +47,11 @@ def frame_at(t, start, origin, drift):
 @njit(cache=True, error_model="numpy", nogil=True)
 def rate_of(t, y, f, system, pairs):
     """Write the rate of the vector y into f; returns the pairs, listed anew if need be."""
-    acts, _, numbers, panels, (n, m), view, _, reach, order = system
+    acts, _, numbers, panels, (n, m), view, _, reach, order, search = system
     size = n * m
     x, v, u = y[:size].reshape(n, m), y[size : 2 * size].reshape(n, m), f[size : 2 * size].reshape(n, m)
     if reach[0] > 0.0:
-        pairs = kept_up(x, reach[0], reach[1], pairs)
+        pairs = kept_up(x, reach[0], reach[1], pairs, search)
     first, second, count, _, _ = pairs
     frame, power = frame_at(t, *view), 0.0
     for k in range(size):
@@ -65,7 +65,7 @@ def rate_of(t, y, f, system, pairs):
 @njit(cache=True, error_model="numpy", nogil=True)
 def energy_of(t, y, system, pairs):
     """H of a vector whose pairs are listed: potential energies, and the kinetic one in the law's frame."""
-    _, energies, numbers, panels, (n, m), view, moving, _, order = system
+    _, energies, numbers, panels, (n, m), view, moving, _, order, _ = system
     x, v = y[: n * m].reshape(n, m), y[n * m : 2 * n * m].reshape(n, m)
     first, second, count, _, _ = pairs
     frame = frame_at(t, *view)

@@ -6,6 +6,9 @@ memory; the list itself needs no order.
 
 from __future__ import annotations
 
+from functools import cache
+from typing import Any
+
 import numpy as np
 
 from flockana.kernels.compiling import njit
@@ -119,10 +122,24 @@ def empty_list(n):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def kept_up(q, reach, skin, pairs):
-    """The list itself while it holds every pair closer than `reach`, or else a new one. What is not finite keeps it."""
+def kept_up(q, reach, skin, pairs, search):
+    """The list itself while it holds every pair closer than `reach`, or else a new one by `search`, that is `list_pairs`.
+
+    It is handed in so that it is compiled once, not into all that keeps lists.
+    """
     first, second, count, places, mean = pairs
     if places.size and not 4.0 * strayed(q, places, mean) > skin * skin:
         return pairs
-    first, second, count = list_pairs(q, reach + skin, first, second)
+    first, second, count = search(q, reach + skin, first, second)
     return first, second, count, q.copy(), column_means(q)
+
+
+@cache
+def search_of_pairs() -> tuple[Any, Any]:
+    """`list_pairs`, compiled so that compiled code may be handed it, and its signature."""
+    from numba import float64, int64, types, uint32
+
+    indices = uint32[::1]
+    signature = types.containers.Tuple((indices, indices, int64))(float64[:, ::1], float64, indices, indices)
+    list_pairs.compile(signature)
+    return list_pairs.dispatcher, signature

@@ -41,14 +41,14 @@ def test_the_bound_of_ways_holds_and_is_not_far_off(seed, n, m):
 
 def test_a_list_is_kept_until_an_agent_has_gone_half_the_skin_in_the_moving_frame():
     q = np.array([[0.0, 0.0], [9.0, 0.0], [30.0, 0.0], [39.5, 0.0]])
-    pairs = kept_up(q, 9.0, 1.0, empty_list(4))
+    pairs = kept_up(q, 9.0, 1.0, empty_list(4), list_pairs)
     assert pairs[2] == 2  # both within range and skin
     moved = q + np.array([100.0, -50.0])
-    assert kept_up(moved, 9.0, 1.0, pairs)[3] is pairs[3]  # a common motion is none
+    assert kept_up(moved, 9.0, 1.0, pairs, list_pairs)[3] is pairs[3]  # a common motion is none
     moved[3] += [0.6, 0.0]  # 0.45 from the mean of all
-    assert kept_up(moved, 9.0, 1.0, pairs)[3] is pairs[3]
+    assert kept_up(moved, 9.0, 1.0, pairs, list_pairs)[3] is pairs[3]
     moved[3] += [0.1, 0.0]
-    later = kept_up(moved, 9.0, 1.0, pairs)
+    later = kept_up(moved, 9.0, 1.0, pairs, list_pairs)
     assert later[3] is not pairs[3]
     assert later[2] == 1  # the second pair is beyond both now
 
@@ -64,4 +64,4 @@ def test_the_order_is_one_of_all_agents_and_neighbours_follow_each_other():
 
 def test_what_is_not_finite_ends_no_list():
     q = np.array([[0.0], [0.5], [np.nan]])
-    assert kept_up(q, 1.0, 0.1, empty_list(3))[2] == pytest.approx(1)
+    assert kept_up(q, 1.0, 0.1, empty_list(3), list_pairs)[2] == pytest.approx(1)
