@@ -123,7 +123,7 @@ def empty_list(n):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def kept_up(q, reach, skin, pairs, search):
-    """The list itself while it holds every pair closer than `reach`, or else a new one by `search`, that is `list_pairs`.
+    """The list itself while it holds every pair closer than `reach`, or else a new one by `search` (`list_pairs`).
 
     It is handed in so that it is compiled once, not into all that keeps lists.
     """
