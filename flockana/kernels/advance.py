@@ -113,6 +113,17 @@ def _sampled(t, h, at, y, rates, trial, due, begin, method, interpolant, between
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
+def _with_room(kept, due, at):
+    """Room for the samples due before a time, and those kept so far."""
+    needed = np.searchsorted(due, at)
+    if needed <= len(kept):
+        return kept
+    more = np.empty((max(needed, 2 * len(kept)), *kept.shape[1:]))
+    more[: len(kept)] = kept
+    return more
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
 def _controlled(h, error, exponent, rejected):
     """(next step, whether this one stands), as scipy's solvers choose."""
     factor = _SAFETY * error**exponent
@@ -147,7 +158,7 @@ def _advance(
     _moved(f, order, shape, False, rates[0])
     pairs, scratch = empty_list(n), (np.empty(8 * n, np.uint32), np.empty(8 * n, np.uint32))
     times, states, work = np.empty(most), np.empty((most, 3, n, m)), np.empty(most)
-    between, work_between = np.empty((due.size, 3, n, m)), np.empty(due.size)
+    between, work_between = np.empty((0, 3, n, m)), np.empty(due.size)
     made, evaluations, redone, status, stop = 0, 0, 0, RUNNING, 0
     sampled, halved, first = np.int64(0), np.int64(0), np.int64(1)  # typed: literals would be compiled once more
     tried = np.empty(64)
@@ -190,7 +201,7 @@ def _advance(
         if status != RUNNING:
             break
         if sampled < due.size and due[sampled] < at:
-            before = sampled
+            before, between = sampled, _with_room(between, due, at)
             sampled, pairs = _sampled(
                 t, h, at, now, rates, trial, due, sampled, method, interpolant, between, work_between, system, pairs
             )  # fmt: skip
@@ -207,6 +218,7 @@ def _advance(
     last, slope = np.empty(y.size), np.empty(y.size)
     _moved(now, order, shape, True, last)
     _moved(rates[0], order, shape, True, slope)
+    between = _with_room(between, due[:sampled], np.inf)  # where steps ended there is nothing in it
     steps, passed = (times[:made], states[:made], work[:made]), (between[:sampled], work_between[:sampled])
     return status, t, last, slope, h, evaluations, redone, stop, sampled, steps, passed
 

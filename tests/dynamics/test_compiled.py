@@ -19,6 +19,9 @@ from flockana.environment.targets import (
     StaticTarget,
 )
 from flockana.interactions import AlphaInteraction, DeadZoneInteraction, Gains
+from flockana.kernels import alpha
+from flockana.kernels.compiling import register_jitable
+from flockana.kernels.lift import lift
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.laws.terms.pairs import PairTerm
@@ -118,6 +121,34 @@ def test_no_encounter_is_leapt_over():
         assert run.stats["redone"] > 0
         assert run.min_distance() < 8.4
         assert np.abs(run.path.u).max() > 1.0
+
+
+def test_rk4_grows_back_after_an_encounter_as_step_by_step():
+    q, p = np.array([[0.0, 0.0], [300.0, 0.1]]), np.array([[20.0, 0.0], [-20.0, 0.0]])
+    still = {"target": StaticTarget((0.0, 0.0)), "gains": Gains(c1_gamma=0.0, c2_gamma=0.0)}
+    ours, plain = (simulate(kind(**still), q, p, (0.0, 20.0), method="RK4", dt=20.0) for kind in (Algorithm2, Plain))
+    assert (ours.stats["steps"], ours.stats["redone"]) == (plain.stats["steps"], plain.stats["redone"])
+    np.testing.assert_allclose(ours.path.t, plain.path.t, rtol=1e-9)
+
+
+def test_a_balance_that_no_halving_mends_is_left_alone():
+    """An interaction whose potential is not that of its force: halved a few times, then no more."""
+
+    @register_jitable
+    def doubled(s2, par, panels):
+        return 2.0 * alpha.pair_alpha_potential(s2, par, panels)
+
+    class Doubled(AlphaInteraction):
+        """With twice the energy."""
+
+        kernels = lift(alpha.pair_alpha, alpha.pair_alpha_slope, doubled)
+
+    ours, theirs = (
+        simulate(Algorithm1(Doubled()), *calm(3), (0.0, 2.0), method=name, rtol=1e-6)
+        for name in ("DOP853", "scipy-DOP853")
+    )
+    assert 0 < ours.stats["redone"] < 40
+    assert (ours.stats["steps"], ours.stats["redone"]) == (theirs.stats["steps"], theirs.stats["redone"])
 
 
 def test_calls_of_one_step_make_the_same_run(monkeypatch):
