@@ -18,7 +18,7 @@ from flockana.kernels.listed import signatures
 from flockana.kernels.paths import bernstein, centred
 from flockana.kernels.runge_kutta import energy_of, error_of, first_step, frame_at, interpolated, rate_of, stages_of
 from flockana.kernels.sums import finite
-from flockana.kernels.verlet import empty_list, search_of_pairs, spatial_order
+from flockana.kernels.verlet import empty_list, search_of_pairs, spatial_order, strayed
 
 RUNNING, TOO_SMALL, NOT_FINITE = range(3)
 _SAFETY, _LEAST, _MOST = 0.9, 0.2, 10.0  # scipy's: factors of a step
@@ -45,8 +45,9 @@ def _met(h, y0, f0, y1, f1, encounters, system, pairs, scratch):
     for i in range(n):
         widest, farthest, blur = max(widest, radii[i, -1]), max(farthest, ways[i]), max(blur, allowance[i])
     within = (widest + 2.0 * (farthest + blur)) * (1.0 + 1e-9)
-    first, second, count, places, _ = pairs
-    if not (places.size and within <= system[7][0]):
+    first, second, count, places, mean = pairs
+    held = system[7][0] + system[7][1] - 2.0 * np.sqrt(strayed(q0, places, mean)) if places.size else 0.0
+    if within > held:  # the list may lack a pair that was so near where the step began
         first, second, count = system[9](q0, within, scratch[0], scratch[1])
         scratch = (first, second)
     return share_of_pairs(points, ways, allowance, radii, far, first[:count], second[:count], share), scratch
