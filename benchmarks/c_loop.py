@@ -13,7 +13,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 
-FLAGS = ("-O3", "-march=native", "-ffast-math", "-shared", "-fPIC")
+FLAGS = ("-O3", "-march=native", "-ffast-math", "-fPIC", "-c")
 MISSING = "no C compiler (cc) here: the comparison with the C loop is left out"
 _DOUBLES = np.ctypeslib.ndpointer(np.float64, flags="C_CONTIGUOUS")
 
@@ -24,8 +24,14 @@ def compiled() -> ctypes.CDLL | None:
     if cc is None:
         return None
     with tempfile.TemporaryDirectory() as folder:
-        library, source = Path(folder) / "pair_loop.so", Path(__file__).with_name("pair_loop.c")
-        subprocess.run([cc, *FLAGS, str(source), "-o", str(library), "-lm"], check=True)
+        library, parts, source = (
+            Path(folder) / "pair_loop.so",
+            Path(folder) / "pair_loop.o",
+            Path(__file__).with_name("pair_loop.c"),
+        )
+        subprocess.run([cc, *FLAGS, str(source), "-o", str(parts)], check=True)
+        # linked without -ffast-math, which would set the whole process to flush subnormal numbers to zero
+        subprocess.run([cc, "-shared", str(parts), "-o", str(library), "-lm"], check=True)
         loaded = ctypes.CDLL(str(library))
     loaded.flock_new.argtypes, loaded.flock_new.restype = [ctypes.c_long], ctypes.c_void_p
     loaded.flock_free.argtypes, loaded.flock_free.restype = [ctypes.c_void_p], None

@@ -23,6 +23,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
+from types import FunctionType
 from typing import Any
 
 import numba
@@ -85,12 +86,20 @@ def sources_digest(file: str) -> str:
     return digest.hexdigest()
 
 
-def _named_for_its_cells(function: Callable[..., Any]) -> Callable[..., Any]:
-    """The same function, whose qualified name (and with it symbol and index) no other closure of its code shares."""
-    if function.__closure__:
-        cells = dumps(tuple(cell.cell_contents for cell in function.__closure__))
-        function.__qualname__ += f".{hashlib.sha256(cells).hexdigest()[:16]}"
-    return function
+def _named_for_its_cells(function: Callable[..., Any]) -> Any:
+    """The same function, whose qualified name (and with it symbol and index) no other closure of its code shares.
+
+    A closure itself keeps its name: what closes over it is looked up in the cache by what it closes over, before it is
+    compiled and after.
+    """
+    if not function.__closure__:
+        return function
+    known: Any = function
+    named = FunctionType(known.__code__, known.__globals__, known.__name__, known.__defaults__, known.__closure__)
+    cells = dumps(tuple(cell.cell_contents for cell in known.__closure__))
+    named.__qualname__ = f"{known.__qualname__}.{hashlib.sha256(cells).hexdigest()[:16]}"
+    named.__module__, named.__doc__ = known.__module__, known.__doc__
+    return named
 
 
 def dispatcher(function: Callable[..., Any], *, cache: bool, **options: Any) -> Any:
@@ -107,9 +116,10 @@ def dispatcher(function: Callable[..., Any], *, cache: bool, **options: Any) -> 
     """
     if not cache:
         return numba.njit(**options)(function)
-    made = numba.njit(**options)(_named_for_its_cells(function))
+    named = _named_for_its_cells(function)
+    made = numba.njit(**options)(named)
     with suppress(RuntimeError):  # there is no folder to write to: it is compiled in every process
-        made._cache = _Cache(function)
+        made._cache = _Cache(named)
     return made
 
 
@@ -121,6 +131,7 @@ def inlined_type(function: Callable[..., Any]) -> Any:
     function : callable
         What is called.
     """
-    numba.extending.register_jitable(_named_for_its_cells(function))
+    named = _named_for_its_cells(function)
+    numba.extending.register_jitable(named)
     cpu_target.typing_context.refresh()
-    return cpu_target.typing_context.resolve_value_type(function)
+    return cpu_target.typing_context.resolve_value_type(named)

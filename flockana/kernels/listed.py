@@ -17,7 +17,7 @@ from flockana.kernels.compiling import njit, register_jitable
 
 _BLOCK = 512  # pairs: what is known of them stays in the first-level cache
 CompiledFunction = Callable[..., float]
-_PARAMETERS = 16  # of a pair law, at most: constants in registers, which no array can alias
+_PARAMETERS = 16  # of a pair law, at most
 
 
 class Signatures(NamedTuple):
@@ -80,6 +80,13 @@ def listed_numbers(c1: float, c2: float, r: float, far: float, par: Any) -> Any:
     return np.concatenate([[c1, c2, r, far], par, np.zeros(_PARAMETERS - len(par))])
 
 
+@register_jitable
+def _as_tuple(par):
+    """The parameters in registers, which no array can alias: what the compiler knows of lets it vectorise the law."""
+    first = par[0], par[1], par[2], par[3], par[4], par[5], par[6], par[7]
+    return (*first, par[8], par[9], par[10], par[11], par[12], par[13], par[14], par[15])
+
+
 def lift_listed(
     pair: Callable[..., Any], potential: Callable[..., Any], digest: int
 ) -> Callable[[int], tuple[CompiledFunction, CompiledFunction]]:
@@ -87,8 +94,6 @@ def lift_listed(
 
     @cache
     def of(m: int) -> tuple[CompiledFunction, CompiledFunction]:
-        from numba.np.unsafe.ndarray import to_fixed_tuple
-
         @register_jitable
         def gather(x, limit, first, second, begin, end, kept, d, s2):
             count = 0
@@ -110,7 +115,7 @@ def lift_listed(
 
         def act(t, x, v, u, frame, numbers, panels, first, second, size, order):
             total, c1, c2, r = 0.0 * digest, numbers[0], numbers[1], numbers[2]
-            par, limit = to_fixed_tuple(numbers[4:], _PARAMETERS), max(r * r, 5e-324)
+            par, limit = _as_tuple(numbers[4:]), max(r * r, 5e-324)
             d, s2, w, a = np.empty((m, _BLOCK)), np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK)
             kept = np.empty(_BLOCK, np.uint64)
             for begin in range(0, size, _BLOCK):
