@@ -55,6 +55,12 @@ def test_submodules_are_still_reachable():
     assert python(code) == "flockana.measures.nets flockana.measures.metrics"
 
 
+def test_derivations_by_source_are_reachable_whatever_else_was_imported():
+    """Lecture 9 asks for one of them so."""
+    code = "from flockana import symbolic as s; print(*(len(vars(m)) > 9 for m in (s.dead_zone, s.bearing_distance)))"
+    assert python(code) == "True True"
+
+
 def test_a_name_that_does_not_exist_is_an_attribute_error():
     with pytest.raises(AttributeError, match="No flockana attribute flock"):
         flockana.flock  # noqa: B018

@@ -1,3 +1,6 @@
+from . import bearing_distance as bearing_distance
+from . import dead_zone as dead_zone
+from . import spanning_trees as spanning_trees
 from .concrete import ConcreteFlock as ConcreteFlock
 from .derivation import Derivation as Derivation
 from .derivation import Step as Step
