@@ -38,7 +38,7 @@ def adaptive(
     keep: FloatArray | None,
     tally: Tally,
 ) -> Iterator[Sample]:
-    """Step one of scipy's solvers, as `solve_ivp` does, but so that each step is kept as soon as it is made.
+    """Samples and steps of a run, each kept as soon as it is made.
 
     A step that leaps over an encounter, or (with a method that has no past) breaks the energy's balance by more than
     `rtol` of it, is made again, and shorter. A law with jumps is integrated from switch to switch; one that slides ends
@@ -46,12 +46,27 @@ def adaptive(
     """
     switches = Switches(law, q0) if isinstance(law, SwitchedLaw) and law.located else None
     engine = None if switches is not None else engine_of(law, q0, p0, t_span[0], method, rtol, floor)
-    if engine is not None:
-        ends, between = np.array([t_span[1]]), np.empty(0) if keep is None else keep
-        marked = None if keep is None else frozenset(keep.tolist())
-        yield from stepped(engine, q0, p0, ends, between, marked, tally, lambda *at: _gave_up(method, *at))
+    if engine is None:
+        yield from _by_scipy(law, q0, p0, t_span, method.removeprefix(SCIPY), rtol, floor, keep, tally, switches)
         return
-    method = method.removeprefix(SCIPY)
+    ends, due = np.array([t_span[1]]), np.empty(0) if keep is None else keep
+    wanted = None if keep is None else frozenset(keep.tolist())
+    yield from stepped(engine, q0, p0, ends, due, wanted, tally, lambda *at: _gave_up(method, *at))
+
+
+def _by_scipy(
+    law: Law,
+    q0: FloatArray,
+    p0: FloatArray,
+    t_span: tuple[float, float],
+    method: str,
+    rtol: float,
+    floor: Floor,
+    keep: FloatArray | None,
+    tally: Tally,
+    switches: Switches | None,
+) -> Iterator[Sample]:
+    """The same by one of scipy's solvers, stepped as `solve_ivp` does."""
     flow: Flow = law.flow if switches is None else switches.flow
     frame = Frame.of(t_span[0], q0, p0, energetic=has_energy(law, t_span[0], q0, p0))
     solver = _solver(frame, _counted(flow, tally, method), q0, p0, t_span, method, rtol, floor)

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,10 +18,10 @@ from flockana.dynamics.encounters import Encounters
 from flockana.dynamics.sample import Sample, Tally, has_energy
 from flockana.dynamics.stepping import BALANCED, ONE_STEP, Frame
 from flockana.dynamics.tolerance import Floor
-from flockana.kernels.advance import RUNNING, advance
+from flockana.kernels.advance import CROWDED, RUNNING, advance
 from flockana.kernels.listed import no_term
 from flockana.kernels.tableaus import Tableau, tableau
-from flockana.kernels.verlet import search_of_pairs
+from flockana.kernels.verlet import list_pairs, search_of_pairs
 from flockana.laws.law import Law
 from flockana.laws.sum_of_terms import MOST_TERMS
 from flockana.laws.terms.term import Compiled, TermKernel
@@ -28,8 +29,7 @@ from flockana.laws.terms.term import Compiled, TermKernel
 METHODS = ("DOP853", "RK45", "RK23", "RK4")  # that there are compiled
 _SKIN = 0.15  # of the range: what a list of pairs holds beyond it, so that it lasts some steps
 _STEPS, _NUMBERS = 128, 2_000_000  # in one call, at most: steps, and numbers kept of them
-
-
+_UNLISTED = "scipy-DOP853"  # which looks at pairs in blocks
 EXACT = Floor(0.0, 0.0, 0.0)
 
 
@@ -84,48 +84,48 @@ class Engine:
         rate = np.concatenate([y0[size : 2 * size], u.ravel(), [power]])
         return Sample(t0, q0, p0, u, {"work": np.array(0.0)}), Point(t0, y0, rate, 0.0)
 
-    def run(self, now: Point, stops: FloatArray, due: FloatArray, ledger: FloatArray) -> tuple[Any, ...]:
-        """Some steps from here (`flockana.kernels.advance`)."""
+    @cached_property
+    def _system(self) -> tuple[Any, ...]:
+        """What stays the same from call to call (`flockana.kernels.advance`)."""
         frame, size = self.frame, self.frame.shape[1]
         nothing = TermKernel(*no_term(), np.empty(0), np.empty((0, 0)), 0.0)
         terms = (*self.form.terms, *(nothing,) * (MOST_TERMS - len(self.form.terms)))
-        reach = max(term.reach for term in terms)
-        result: tuple[Any, ...] = advance()(
-            search_of_pairs()[0],
-            *(term.act for term in terms),
-            *(term.energy for term in terms),
-            tuple(np.array(term.numbers) for term in terms),
-            tuple(np.array(term.panels) for term in terms),
-            frame.shape,
-            (frame.t0, frame.origin[:size].copy(), frame.drift[:size].copy()),
-            self.form.moving,
-            *self.method,
-            (reach, _SKIN * reach),
-            self.encounters.radii,
-            self.encounters.far,
-            self.allowed.rtol,
-            tuple(self.allowed.floor),
-            self.allowed.balance,
-            ledger,
-            *now,
-            stops,
-            due,
-            int(np.clip(_NUMBERS // (3 * frame.size), 1, _STEPS)),
-        )
+        view = (frame.t0, frame.origin[:size].copy(), frame.drift[:size].copy())
+        arrays = (tuple(np.array(getattr(term, name)) for term in terms) for name in ("numbers", "panels"))
+        functions = (search_of_pairs()[0], *(term.act for term in terms), *(term.energy for term in terms))
+        around = ((self.reach, _SKIN * self.reach), self.encounters.radii, self.encounters.far)
+        allowed = (self.allowed.rtol, tuple(self.allowed.floor), self.allowed.balance)
+        return (*functions, *arrays, frame.shape, view, self.form.moving, *self.method, *around, *allowed)
+
+    @property
+    def reach(self) -> float:
+        """Within which the law needs all pairs."""
+        return max((term.reach for term in self.form.terms), default=0.0)
+
+    def run(self, now: Point, stops: FloatArray, due: FloatArray, ledger: FloatArray) -> tuple[Any, ...]:
+        """Some steps from here."""
+        most = int(np.clip(_NUMBERS // (3 * self.frame.size), 1, _STEPS))
+        result: tuple[Any, ...] = advance()(*self._system, ledger, *now, stops, due, most)
         return result
+
+    def crowded(self, q: FloatArray) -> bool:
+        """Whether there are more pairs within reach than a list has room for."""
+        few = np.empty(1, np.uint32)
+        return bool(list_pairs(q, (1.0 + _SKIN) * self.reach, few, few)[2] < 0)
 
 
 def engine_of(
     law: Law, q0: FloatArray, p0: FloatArray, t0: float, method: str, rtol: float = 0.0, floor: Floor = EXACT
 ) -> Engine | None:
-    """The law and the method, compiled; None where one of them has no such form. RK4 has no tolerances."""
+    """The law and the method, compiled; None where one has no such form, or pairs are too many (RK4: no tolerances)."""
     form = law.compiled(q0.shape[1]) if method in METHODS else None
     encounters = Encounters.of(law, len(q0))
     if form is None or encounters.bodies is not None or not has_energy(law, t0, q0, p0):
         return None
     balance = (BALANCED * rtol, BALANCED * floor.energy) if method in ONE_STEP else (0.0, 0.0)
     frame = Frame.of(t0, q0, p0, energetic=True)
-    return Engine(law, form, frame, tableau(method), encounters, Allowed(rtol, floor, balance))
+    engine = Engine(law, form, frame, tableau(method), encounters, Allowed(rtol, floor, balance))
+    return None if engine.crowded(q0) else engine
 
 
 def stepped(
@@ -160,7 +160,10 @@ def stepped(
                     yield Sample(earlier, seen[0], seen[1], seen[2], {"work": np.array(done)})
             tally.steps += 1
             yield Sample(at, q, p, u, {"work": np.array(work)}, wanted is None or at in wanted)
-        if status != RUNNING:
+        if status == CROWDED:
+            tally.fail(f"more pairs within reach at t = {t:g} than a list has room for: try method='{_UNLISTED}'")
+        elif status != RUNNING:
             tally.fail(reason(status, t + h))
+        if status != RUNNING:
             return
         now, stops, due = Point(t, y, f, h), stops[passed:], due[sampled:]

@@ -11,9 +11,8 @@ from flockana.dynamics.compiled import engine_of, stepped
 from flockana.dynamics.encounters import Encounters, State
 from flockana.dynamics.iterate import count_steps
 from flockana.dynamics.sample import Sample, Tally, finite, has_energy
+from flockana.kernels.advance import GROWTH
 from flockana.laws.law import Law
-
-_GROWTH = 8.0  # times its last length may a step grow, and by so much it is shortened at once
 
 
 def rk4(
@@ -45,14 +44,14 @@ def rk4(
     for stop, wanted in _stops(t_span, dt, keep):
         while t < stop:
             remaining = stop - t
-            h = remaining if remaining <= _GROWTH * taken else _GROWTH * taken
+            h = remaining if remaining <= GROWTH * taken else GROWTH * taken
             while True:
                 later, more, rate_there = _rk4_step(law, t, state, rate, h)
                 tally.evaluations += 4
                 share = encounters.share(h, state, later) if encounters.any and finite(*later) else 1.0
                 if share == 1.0 or t + share * h == t:
                     break
-                h *= max(share, 1.0 / _GROWTH)  # what a step that is far too long foresees is no measure of the next
+                h *= max(share, 1.0 / GROWTH)  # what a step that is far too long foresees is no measure of the next
                 tally.notes["redone"] += 1
             if not finite(*later):
                 tally.fail(_left(t + h, dt))

@@ -15,16 +15,13 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.encounters import Encounters, State
+from flockana.kernels.advance import FALLS, HALVINGS, HELPS, PATIENCE, ROUNDINGS
 from flockana.laws.law import Law
 
 Flow = Callable[[float, FloatArray, FloatArray], tuple[FloatArray, float]]
 
 ONE_STEP = ("DOP853", "RK45", "RK23", "Radau")  # without a past: what they do next hangs on the state alone
-_ROUNDINGS = 64  # of the time: a step of so few is not made again
-_HALVINGS, _FALLS = 4, 0.04  # a residual that so many halvings leave above so much is not the integrator's to mend
 BALANCED = 0.05  # of the relative tolerance: residual of the energy's balance that a step may leave, over |H|
-_HELPS = 0.25  # of the residual, a halving: across a kink of the force it leaves an eighth, of a wrong rate one half
-_PATIENCE = 4  # steps in a row that halving did not mend, after which none is halved any more
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,18 +141,18 @@ class Balance:
 
     def share(self, before: Moment, after: Moment) -> float:
         """How much of a step may be taken."""
-        if self._in_vain == _PATIENCE:
+        if self._in_vain == PATIENCE:
             return 1.0
         first = self._known[1] if self._known[0] == before.t else self._energy(before)
         last = self._energy(after)
         residual = abs(last - first - float(after.y[-1] - before.y[-1]))
         largest = max(self._largest, abs(first), abs(last))
         off, tried = residual > max(self.share_of_energy * largest, self.floor), self._tried
-        if off and (len(tried) < _HALVINGS or residual <= _FALLS * max(tried[: 1 - _HALVINGS])):
+        if off and (len(tried) < HALVINGS or residual <= FALLS * max(tried[: 1 - HALVINGS])):
             self._known, self._tried = (before.t, first), [*tried, residual]
             return 0.5
         if tried:
-            helped = residual <= tried[0] * _HELPS ** len(tried)
+            helped = residual <= tried[0] * HELPS ** len(tried)
             self._in_vain = 0 if helped else self._in_vain + 1
         self._known, self._largest, self._tried = (after.t, last), largest, []
         return 1.0
@@ -237,7 +234,7 @@ class Stepper:
             reached = self._attempt()
             if reached is None:
                 return False
-            h, shortest = reached.t - start.t, _ROUNDINGS * float(np.spacing(max(abs(start.t), abs(reached.t))))
+            h, shortest = reached.t - start.t, ROUNDINGS * float(np.spacing(max(abs(start.t), abs(reached.t))))
             share = next((share for check in checks if (share := check.share(start, reached)) < 1.0), 1.0)
             if share == 1.0 or share * h <= shortest:
                 self.now = reached

@@ -20,11 +20,13 @@ from flockana.kernels.runge_kutta import energy_of, error_of, first_step, frame_
 from flockana.kernels.sums import finite
 from flockana.kernels.verlet import empty_list, search_of_pairs, spatial_order, strayed
 
-RUNNING, TOO_SMALL, NOT_FINITE = range(3)
+RUNNING, TOO_SMALL, NOT_FINITE, CROWDED = range(4)
 _SAFETY, _LEAST, _MOST = 0.9, 0.2, 10.0  # scipy's: factors of a step
-_ROUNDINGS = 64.0  # of the time: a step of so few is not made again
-_HALVINGS, _FALLS, _HELPS, _PATIENCE = 4, 0.04, 0.25, 4  # see `flockana.dynamics.stepping`
-_GROWTH = 8.0  # see `flockana.dynamics.rk4`
+ROUNDINGS = 64.0  # of the time: a step of so few is not made again
+HALVINGS, FALLS = 4, 0.04  # a residual that so many halvings leave above so much is not the integrator's to mend
+HELPS = 0.25  # of the residual, a halving: across a kink of the force it leaves an eighth, of a wrong rate one half
+PATIENCE = 4  # steps in a row that halving did not mend, after which none is halved any more
+GROWTH = 8.0  # times its last length may a step of RK4 grow, and by so much it is shortened at once
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
@@ -34,7 +36,10 @@ def _spacing(t):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def _met(h, y0, f0, y1, f1, encounters, system, pairs, scratch):
-    """How much of a step may be taken so that no encounter of two agents is leapt over, and room for a list."""
+    """How much of a step may be taken so that no encounter of two agents is leapt over, and room for a list.
+
+    NaN where there are too many pairs to look at.
+    """
     (n, m), (radii, far) = system[4], encounters
     size, share = n * m, 1.0
     q0, p0, u0 = y0[:size].reshape(n, m), y0[size : 2 * size].reshape(n, m), f0[size : 2 * size].reshape(n, m)
@@ -50,6 +55,8 @@ def _met(h, y0, f0, y1, f1, encounters, system, pairs, scratch):
     if within > held:  # the list may lack a pair that was so near where the step began
         first, second, count = system[9](q0, within, scratch[0], scratch[1])
         scratch = (first, second)
+        if count < 0:
+            return np.nan, scratch
     return share_of_pairs(points, ways, allowance, radii, far, first[:count], second[:count], share), scratch
 
 
@@ -61,14 +68,14 @@ def _balanced(t, at, y, reached, balance, ledger, tried, halved, system, pairs):
     first, last = ledger[1], energy_of(at, reached, system, pairs)
     residual, largest = abs(last - first - (reached[-1] - y[-1])), max(ledger[2], abs(first), abs(last))
     worst = 0.0
-    for k in range(halved + 1 - _HALVINGS):
+    for k in range(halved + 1 - HALVINGS):
         worst = max(worst, tried[k])
     off = residual > max(balance[0] * largest, balance[1])
-    if off and halved < tried.size and (halved < _HALVINGS or residual <= _FALLS * worst):
+    if off and halved < tried.size and (halved < HALVINGS or residual <= FALLS * worst):
         tried[halved] = residual
         return 0.5, halved + 1
     if halved:
-        ledger[3] = 0.0 if residual <= tried[0] * _HELPS**halved else ledger[3] + 1.0
+        ledger[3] = 0.0 if residual <= tried[0] * HELPS**halved else ledger[3] + 1.0
     ledger[0], ledger[1], ledger[2] = at, last, largest
     return 1.0, 0
 
@@ -179,6 +186,9 @@ def _advance(
             h = at - t
             pairs = stages_of(t, h, now, rates, reached, trial, method, first, stages + 1, system, pairs)
             evaluations += stages
+            if pairs[2] < 0:
+                status = CROWDED
+                break
             if not fixed:
                 error = error_of(now, reached, h, estimates, rates, n * m, rtol, floor)
                 later, passes = _controlled(h, error, exponent, rejected)
@@ -193,12 +203,15 @@ def _advance(
                 share, scratch = _met(
                     h, now, rates[0], reached, rates[stages], encounters, system, pairs, scratch
                 )  # fmt: skip
-            if share == 1.0 and balance[0] > 0.0 and ledger[3] < _PATIENCE:
+            if np.isnan(share):
+                status = CROWDED
+                break
+            if share == 1.0 and balance[0] > 0.0 and ledger[3] < PATIENCE:
                 share, halved = _balanced(t, at, now, reached, balance, ledger, tried, halved, system, pairs)
-            least = 0.0 if fixed else _ROUNDINGS * _spacing(max(abs(t), abs(at)))
+            least = 0.0 if fixed else ROUNDINGS * _spacing(max(abs(t), abs(at)))
             stands = share == 1.0 or (t + share * h == t if fixed else share * h <= least)
             if not stands:
-                h, rejected, redone = h * (max(share, 1.0 / _GROWTH) if fixed else share), False, redone + 1
+                h, rejected, redone = h * (max(share, 1.0 / GROWTH) if fixed else share), False, redone + 1
         if status != RUNNING:
             break
         if sampled < due.size and due[sampled] < at:
@@ -210,7 +223,7 @@ def _advance(
         while sampled < due.size and due[sampled] == at:
             work_between[sampled], sampled = np.nan, sampled + 1  # the step itself is the sample
         if fixed:
-            later = np.inf if at == stops[stop] else _GROWTH * h
+            later = np.inf if at == stops[stop] else GROWTH * h
         stop += at == stops[stop]
         t, h, now, reached = at, later, reached, now
         rates[0] = rates[stages]

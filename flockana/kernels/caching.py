@@ -58,7 +58,7 @@ class _Cache(FunctionCache):
 def _imported(file: Path) -> set[Path]:
     """The files of the package that a file imports, whatever it is itself."""
     root, text = Path(__file__).parents[1], file.read_text("utf-8")
-    names = re.findall(r"^\s*(?:from|import) flockana\.([\w.]+)(?: import (.+))?", text, re.MULTILINE)
+    names = re.findall(r"^\s*(?:from|import) flockana\.([\w.]+)(?: import (\([^)]*\)|.+))?", text, re.MULTILINE)
     paths = set()
     for module, things in names:
         paths.add(root.joinpath(*module.split(".")).with_suffix(".py"))

@@ -1,23 +1,22 @@
 """Forces and potential of the pairs of a list, for integrators that are compiled too.
 
-Pairs pass in blocks, each in three phases: gather differences and keep those within range without a branch; the pair
-law in a loop that the compiler turns into vector instructions; add to both agents. One dimension, one loop.
+Pairs pass in blocks: differences are gathered, those within range kept without a branch; the rest is `lift_block`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.base.errors import ArgumentError
 from flockana.kernels.compiling import njit, register_jitable
+from flockana.kernels.sweep import BLOCK, lift_block
 
-_BLOCK = 512  # pairs: what is known of them stays in the first-level cache
 CompiledFunction = Callable[..., float]
-_PARAMETERS = 16  # of a pair law, at most
+PARAMETERS = 16  # of a pair law, at most
 
 
 class Signatures(NamedTuple):
@@ -49,14 +48,22 @@ def term_functions(
     """Force and energy of a term, compiled so that compiled code may be handed them.
 
     An energy that allocates nothing need count no references: for each array that it hands on, that costs as much as
-    the potential of a pair.
+    the potential of a pair. If it does allocate after all, they are counted.
     """
-    options: dict[str, Any] = {"cache": True, "error_model": "numpy", "nogil": True}
-    made = njit(**options)(act), njit(**options, **({} if allocates else {"_nrt": False}))(energy)
-    for function, signature in zip(made, signatures(), strict=True):
-        function.compile(signature)
-        function.disable_compile()
-    return made[0].dispatcher, made[1].dispatcher
+    from numba.core.errors import NumbaError
+
+    force, potential = signatures()
+    if not allocates:
+        with suppress(NumbaError):
+            return _compiled(act, force), _compiled(energy, potential, _nrt=False)
+    return _compiled(act, force), _compiled(energy, potential)
+
+
+def _compiled(function: Callable[..., float], signature: Any, **options: Any) -> CompiledFunction:
+    made = njit(cache=True, error_model="numpy", nogil=True, **options)(function)
+    made.compile(signature)
+    made.disable_compile()
+    return made.dispatcher
 
 
 def _no_force(t, x, v, u, frame, numbers, panels, first, second, size, order):
@@ -75,9 +82,7 @@ def no_term() -> tuple[CompiledFunction, CompiledFunction]:
 
 def listed_numbers(c1: float, c2: float, r: float, far: float, par: Any) -> Any:
     """The numbers of a pair term: gains, range, potential beyond it, and the law's parameters, padded."""
-    if len(par) > _PARAMETERS:
-        raise ArgumentError(f"{len(par)} parameters of a pair law: expected {_PARAMETERS} at most")
-    return np.concatenate([[c1, c2, r, far], par, np.zeros(_PARAMETERS - len(par))])
+    return np.concatenate([[c1, c2, r, far], par, np.zeros(PARAMETERS - len(par))])
 
 
 @register_jitable
@@ -94,8 +99,10 @@ def lift_listed(
 
     @cache
     def of(m: int) -> tuple[CompiledFunction, CompiledFunction]:
+        add = lift_block(pair, m)
+
         @register_jitable
-        def gather(x, limit, first, second, begin, end, kept, d, s2):
+        def gather(x, limit, first, second, begin, end, near, d, s2):
             count = 0
             for k in range(begin, end):
                 i, j = np.uint64(first[k]), np.uint64(second[k])
@@ -104,33 +111,18 @@ def lift_listed(
                     gap = x[j, c] - x[i, c]
                     d[c, count] = gap
                     square += gap * gap
-                s2[count], kept[count] = square, k
+                s2[count], near[0, count], near[1, count] = square, i, j
                 count += square < limit
             return count
-
-        @register_jitable
-        def law(count, s2, w, a, par):
-            for k in range(count):
-                w[k], a[k] = pair(s2[k], par)
 
         def act(t, x, v, u, frame, numbers, panels, first, second, size, order):
             total, c1, c2, r = 0.0 * digest, numbers[0], numbers[1], numbers[2]
             par, limit = _as_tuple(numbers[4:]), max(r * r, 5e-324)
-            d, s2, w, a = np.empty((m, _BLOCK)), np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK)
-            kept = np.empty(_BLOCK, np.uint64)
-            for begin in range(0, size, _BLOCK):
-                count = gather(x, limit, first, second, begin, min(begin + _BLOCK, size), kept, d, s2)
-                law(count, s2, w, a, par)
-                for k in range(count):
-                    i, j = np.uint64(first[kept[k]]), np.uint64(second[kept[k]])
-                    v2 = 0.0
-                    for c in range(m):
-                        slip = v[j, c] - v[i, c]
-                        v2 += slip * slip
-                        f = c1 * w[k] * d[c, k] + c2 * a[k] * slip
-                        u[i, c] += f
-                        u[j, c] -= f
-                    total += a[k] * v2
+            d, s2, w, a = np.empty((m, BLOCK)), np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
+            near = np.empty((2, BLOCK), np.uint64)
+            for begin in range(0, size, BLOCK):
+                count = gather(x, limit, first, second, begin, min(begin + BLOCK, size), near, d, s2)
+                total += add(count, near[0], near[1], d, s2, w, a, v, u, par, c1, c2)
             return -c2 * total
 
         def energy(t, x, v, frame, numbers, panels, first, second, size, order):

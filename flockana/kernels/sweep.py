@@ -15,16 +15,13 @@ import numpy as np
 from flockana.kernels.compiling import njit, register_jitable
 from flockana.kernels.grid import sort_into_grid
 
-_BLOCK = 512  # pairs: what is known of them stays in the first-level cache
+BLOCK = 512  # pairs: what is known of them stays in the first-level cache
 
 
-def lift_sweep(pair: Callable[..., Any], m: int, digest: int) -> tuple[Callable[..., Any], Callable[..., float]]:
-    """Compile the sums of a pair law in m dimensions: over all pairs within a range, and over the pairs given.
+def lift_block(pair: Callable[..., Any], m: int) -> Callable[..., Any]:
+    """What a block of pairs adds to u, from their differences d and squared distances s2; returns Σ a ‖p_j − p_i‖².
 
-    The first, ``forces(q, p, r, par, c1, c2, u)``, adds c1 w (q_j − q_i) + c2 a (p_j − p_i) to u_i, its opposite to
-    u_j, and returns (True, Σ a ‖p_j − p_i‖²), or (False, 0) and adds nothing where the flock is too sparse for a grid;
-    the second, ``forces_of(q, p, i, j, par, c1, c2, u)``, does so for pairs that are within range and returns the sum.
-    ``par`` is a tuple.
+    w and a are room for what the law gives; `par` is a tuple: constants in registers, which no array can alias.
     """
 
     @register_jitable
@@ -44,6 +41,19 @@ def lift_sweep(pair: Callable[..., Any], m: int, digest: int) -> tuple[Callable[
             total += a[k] * v2
         return total
 
+    return add
+
+
+def lift_sweep(pair: Callable[..., Any], m: int, digest: int) -> tuple[Callable[..., Any], Callable[..., float]]:
+    """Compile the sums of a pair law in m dimensions: over all pairs within a range, and over the pairs given.
+
+    The first, ``forces(q, p, r, par, c1, c2, u)``, adds c1 w (q_j − q_i) + c2 a (p_j − p_i) to u_i, its opposite to
+    u_j, and returns (True, Σ a ‖p_j − p_i‖²), or (False, 0) and adds nothing where the flock is too sparse for a grid;
+    the second, ``forces_of(q, p, i, j, par, c1, c2, u)``, does so for pairs that are within range and returns the sum.
+    ``par`` is a tuple.
+    """
+    add = lift_block(pair, m)
+
     @njit(cache=True, error_model="numpy")
     def forces(q, p, r, par, c1, c2, u):
         total = 0.0 * digest
@@ -51,8 +61,8 @@ def lift_sweep(pair: Callable[..., Any], m: int, digest: int) -> tuple[Callable[
         if start.size == 0:
             return False, 0.0
         x, v, forced, r2 = q[order], p[order], np.zeros(q.shape), max(r * r, 5e-324)
-        first, second = np.empty(_BLOCK, np.uint64), np.empty(_BLOCK, np.uint64)
-        d, s2, w, a = np.empty((m, _BLOCK)), np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK)
+        first, second = np.empty(BLOCK, np.uint64), np.empty(BLOCK, np.uint64)
+        d, s2, w, a = np.empty((m, BLOCK)), np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
         count = 0
         for cell in range(start.size - 2):
             for i in range(start[cell], start[cell + 1]):
@@ -69,7 +79,7 @@ def lift_sweep(pair: Callable[..., Any], m: int, digest: int) -> tuple[Callable[
                             square += gap * gap
                         s2[count], first[count], second[count] = square, i, j
                         count += square < r2
-                        if count == _BLOCK:
+                        if count == BLOCK:
                             total += add(count, first, second, d, s2, w, a, v, forced, par, c1, c2)
                             count = 0
         total += add(count, first, second, d, s2, w, a, v, forced, par, c1, c2)
@@ -81,9 +91,9 @@ def lift_sweep(pair: Callable[..., Any], m: int, digest: int) -> tuple[Callable[
     @njit(cache=True, error_model="numpy")
     def forces_of(q, p, first, second, par, c1, c2, u):
         total = 0.0 * digest
-        d, s2, w, a = np.empty((m, _BLOCK)), np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK)
-        for begin in range(0, first.size, _BLOCK):
-            i, j = first[begin : begin + _BLOCK], second[begin : begin + _BLOCK]
+        d, s2, w, a = np.empty((m, BLOCK)), np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
+        for begin in range(0, first.size, BLOCK):
+            i, j = first[begin : begin + BLOCK], second[begin : begin + BLOCK]
             for k in range(i.size):
                 s2[k] = 0.0
                 for c in range(m):

@@ -17,6 +17,7 @@ from flockana.kernels.neighbours import _FORWARD, _MARGIN, _fill_cells, _pad, _s
 from flockana.kernels.sums import LANES, column_means, repeated
 
 _ROOM = 8  # pairs an agent, to begin with
+MOST = 2**27  # room for pairs, at most: a gigabyte
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
@@ -52,6 +53,8 @@ def _list_by_grid(q, reach, order, start, rows, first, second):
             there = np.int64(cell) + np.int64(rows[row])
             candidates += np.int64(start[there + 2] - start[there - 1])
         needed = count + candidates * np.int64(end - begin)
+        if needed > MOST:
+            return first, second, -1
         if needed > first.size:
             first, second = _grown(first, second, needed)
         for i in range(begin, end):
@@ -72,7 +75,10 @@ def _list_by_grid(q, reach, order, start, rows, first, second):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def list_pairs(q, reach, first, second):
-    """(first, second, count): the pairs closer than `reach`, written into the arrays given, or longer ones."""
+    """(first, second, count): the pairs closer than `reach`, written into the arrays given, or longer ones.
+
+    The count is −1, and nothing is listed, where there are too many for memory.
+    """
     n, m = q.shape
     order, start, rows = sort_into_grid(q, reach)
     if start.size:
@@ -88,6 +94,8 @@ def list_pairs(q, reach, first, second):
         count += more
         if row == n:
             return first, second, count
+        if count + n > MOST:
+            return first, second, -1
         first, second = _grown(first, second, count + n)
 
 

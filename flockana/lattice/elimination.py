@@ -21,6 +21,7 @@ from flockana.base.errors import SolverError
 Indices = npt.NDArray[np.int64]
 
 _LEAF = 64  # agents that are eliminated at once
+_GROWN = 1e5  # times the largest entry of the matrix: beyond, signs of pivots are those of a matrix 1e-11 of it away
 _ZERO = 2.0 * float(np.finfo(np.float64).eps)  # of the largest entry of a front: a pivot below has no sign
 
 
@@ -77,6 +78,7 @@ class Elimination:
         turns = turn[_dissected(matrix, q, depth)]
         self._order = (m * np.argsort(turns, kind="stable")[:, None] + np.arange(m)).ravel()
         self._matrix = matrix.tocsr()[self._order][:, self._order].tocsr()
+        self._largest = float(abs(self._matrix).max())
         self._least, self._definite, self._place = least, definite, np.zeros(n * m, dtype=np.int64)
         self.negative, self._fronts = 0, list[_Front]()
         waiting: list[tuple[Indices, FloatArray]] = []  # what the last fronts left on their boundaries
@@ -125,7 +127,11 @@ class Elimination:
         for at, rest in below:
             here = self._place[at]
             front[here[:, None], here] += rest
-        t, signs = self._pivots(front[:own, :own], float(np.abs(front).max(initial=0.0)))
+        largest = float(np.abs(front).max(initial=0.0))
+        if self._least is None and largest > _GROWN * self._largest:
+            growth = largest / self._largest
+            raise SolverError(f"the sparse elimination grew entries {growth:.3g} times: signs of pivots no longer count")
+        t, signs = self._pivots(front[:own, :own], largest)
         x = t @ front[:own, own:]
         left = front[own:, own:] - x.T @ (x if signs is None else signs[:, None] * x)
         return _Front(slice(start, end), boundary, t, x, signs), left

@@ -203,6 +203,44 @@ def test_a_law_that_changes_what_its_form_stands_for_is_stepped():
     np.testing.assert_allclose(lied.u[-1], plain[1].acceleration(0.5, lied.q[-1], lied.p[-1]), rtol=1e-9, atol=1e-9)
 
 
+def test_a_crowd_is_stepped_and_one_that_gathers_on_the_way_is_told(monkeypatch):
+    q, p = start()
+    monkeypatch.setattr(compiled, "list_pairs", lambda q, *_: (None, None, -1))
+    assert engine_of(Algorithm1(), q, p, 0.0, "DOP853", 1e-8, Floor(1e-8, 1e-8, 1e-8)) is None
+    monkeypatch.undo()
+    run = compiled.Engine.run
+    monkeypatch.setattr(compiled.Engine, "run", lambda *arguments: (compiled.CROWDED, *run(*arguments)[1:]))
+    told = simulate(Algorithm1(), q, p, (0.0, 0.01))
+    assert told.status == "failed"
+    assert "than a list has room for: try method='scipy-DOP853'" in told.message
+
+
+def test_a_pair_law_of_many_parameters_or_one_that_allocates_is_integrated_all_the_same():
+    class Long(AlphaInteraction):
+        """With parameters that nothing reads."""
+
+        @property
+        def par(self):
+            return np.concatenate([super().par, np.zeros(9)])
+
+    @register_jitable
+    def through_an_array(s2, par, panels):
+        held = np.empty(1)
+        held[0] = alpha.pair_alpha_potential(s2, par, panels)
+        return held[0]
+
+    class Allocating(AlphaInteraction):
+        """With a potential that needs memory."""
+
+        kernels = lift(alpha.pair_alpha, alpha.pair_alpha_slope, through_an_array)
+
+    plain = simulate(Algorithm1(), *calm(3), (0.0, 0.2))
+    for pair, form in ((Long(), False), (Allocating(), True)):
+        law = Algorithm1(pair)
+        assert (law.compiled(2) is not None) == form
+        np.testing.assert_allclose(simulate(law, *calm(3), (0.0, 0.2)).q[-1], plain.q[-1], atol=1e-9)
+
+
 def test_a_run_that_fails_says_why():
     wild = Algorithm1(gains=Gains(c1_alpha=1e300, c2_alpha=1e300))
     run = simulate(wild, *start(), (0.0, 10.0), method="RK4", dt=1.0)

@@ -43,14 +43,22 @@ def test_a_list_is_kept_until_an_agent_has_gone_half_the_skin_in_the_moving_fram
     q = np.array([[0.0, 0.0], [9.0, 0.0], [30.0, 0.0], [39.5, 0.0]])
     pairs = kept_up(q, 9.0, 1.0, empty_list(4), list_pairs)
     assert pairs[2] == 2  # both within range and skin
+
+    def kept(places):
+        return np.array_equal(kept_up(places, 9.0, 1.0, pairs, list_pairs)[3], q)  # where it was made
+
     moved = q + np.array([100.0, -50.0])
-    assert kept_up(moved, 9.0, 1.0, pairs, list_pairs)[3] is pairs[3]  # a common motion is none
+    assert kept(moved)  # a common motion is none
     moved[3] += [0.6, 0.0]  # 0.45 from the mean of all
-    assert kept_up(moved, 9.0, 1.0, pairs, list_pairs)[3] is pairs[3]
+    assert kept(moved)
     moved[3] += [0.1, 0.0]
-    later = kept_up(moved, 9.0, 1.0, pairs, list_pairs)
-    assert later[3] is not pairs[3]
-    assert later[2] == 1  # the second pair is beyond both now
+    assert not kept(moved)
+    assert kept_up(moved, 9.0, 1.0, pairs, list_pairs)[2] == 1  # the second pair is beyond both now
+
+
+def test_too_many_pairs_are_told_before_memory_is_full():
+    few = np.empty(1, np.uint32)
+    assert list_pairs(np.zeros((12_000, 2)), 1.0, few, few)[2] == -1
 
 
 def test_the_order_is_one_of_all_agents_and_neighbours_follow_each_other():

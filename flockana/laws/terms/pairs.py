@@ -9,7 +9,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.interactions.pair import PairInteraction
-from flockana.kernels.listed import listed_numbers
+from flockana.kernels.listed import PARAMETERS, listed_numbers
 from flockana.laws.terms.term import Term, TermKernel
 
 if TYPE_CHECKING:
@@ -53,6 +53,8 @@ class PairTerm(Term):
             np.isfinite(pair.range)
             and all(getattr(type(pair), name) is getattr(PairInteraction, name) for name in _SUMS)
         ):
+            return None
+        if pair.par.size > PARAMETERS:
             return None
         numbers = listed_numbers(self.stiffness, self.damping, pair.range, pair.far_potential, pair.par)
         return TermKernel(*pair.kernels.listed(m), numbers, pair.panels, pair.range)
