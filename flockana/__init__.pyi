@@ -17,13 +17,13 @@ from .environment.obstacles import Obstacle as Obstacle
 from .environment.obstacles import Sphere as Sphere
 from .environment.obstacles import Wall as Wall
 from .environment.polygon import Polygon as Polygon
+from .environment.target import Target as Target
 from .environment.targets import CallableTarget as CallableTarget
 from .environment.targets import CircleTarget as CircleTarget
 from .environment.targets import LinearTarget as LinearTarget
 from .environment.targets import RescaledVelocity as RescaledVelocity
 from .environment.targets import SineTarget as SineTarget
 from .environment.targets import StaticTarget as StaticTarget
-from .environment.targets import Target as Target
 from .environment.zone_obstacles import Box as Box
 from .environment.zone_obstacles import SimplePolygon as SimplePolygon
 from .environment.zone_world import Alien as Alien

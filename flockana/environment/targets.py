@@ -6,91 +6,20 @@ a p_r that is not that rate, which is allowed here and reported where a theorem 
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import cos, pi, sin
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar
 
 import numpy as np
-import numpy.typing as npt
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive, ensure_vector
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
+from flockana.environment.target import Harmonic, Target
 
 _STEP = 1e-5  # of the path's own time, for dq_r/dt by central difference: error about 1e-10 relative on smooth paths
 _RESOLVED = 2.0**-26  # of |t|: a shorter step would lose half its digits in the rounding of t
-
-
-class Harmonic(NamedTuple):
-    """The path q_r = a + bt + c cos ωt + s sin ωt, with p_r = factor · dq_r/dt + e, as compiled integrators take it.
-
-    Attributes
-    ----------
-    terms : ndarray, shape (5, m)
-        a, b, c, s, e.
-    omega, factor : float
-        ω and what p_r is of the true rate.
-    """
-
-    terms: FloatArray
-    omega: float = 0.0
-    factor: float = 1.0
-
-
-class Target(ABC):
-    """A γ-agent; a subclass is a frozen dataclass with `position`, `rate` and, where p_r differs from it, `state`."""
-
-    @abstractmethod
-    def position(self, t: float) -> FloatArray:
-        """q_r(t), shape (m,).
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        """
-
-    @abstractmethod
-    def rate(self, t: float) -> FloatArray:
-        """The true dq_r/dt, shape (m,).
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        """
-
-    def state(self, t: float) -> tuple[FloatArray, FloatArray]:
-        """(q_r(t), p_r(t)) as handed to the law, two vectors of shape (m,).
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        """
-        return self.position(t), self.rate(t)
-
-    @property
-    def harmonic(self) -> Harmonic | None:
-        """The path in closed form, for compiled integrators; None if it is of another form."""
-        return None
-
-    def mismatch(self, times: npt.ArrayLike) -> float:
-        """Largest ‖p_r − dq_r/dt‖ over the given times: 0 for a target that is consistent.
-
-        Parameters
-        ----------
-        times : array_like, shape (T,)
-            Times to look at.
-        """
-        return max((float(np.linalg.norm(self.state(t)[1] - self.rate(t))) for t in np.ravel(times)), default=0.0)
-
-    @property
-    def dimension(self) -> int:
-        """m."""
-        return int(self.position(0.0).size)
 
 
 def _harmonic(a: Any, *, b: Any = 0.0, c: Any = 0.0, s: Any = 0.0, e: Any = 0.0, omega: float = 0.0) -> Harmonic:

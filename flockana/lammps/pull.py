@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from functools import singledispatch
 
-from flockana.environment.targets import CircleTarget, LinearTarget, RescaledVelocity, SineTarget, StaticTarget, Target
+from flockana.environment.target import Target
+from flockana.environment.targets import CircleTarget, LinearTarget, RescaledVelocity, SineTarget, StaticTarget
 from flockana.laws.terms.navigation import Navigation
 
 AXES = "xyz"

@@ -130,7 +130,7 @@ class Elimination:
         largest = float(np.abs(front).max(initial=0.0))
         if self._least is None and largest > _GROWN * self._largest:
             growth = largest / self._largest
-            raise SolverError(f"the sparse elimination grew entries {growth:.3g} times: signs of pivots no longer count")
+            raise SolverError(f"elimination grew entries {growth:.3g} times: signs of pivots no longer tell")
         t, signs = self._pivots(front[:own, :own], largest)
         x = t @ front[:own, own:]
         left = front[own:, own:] - x.T @ (x if signs is None else signs[:, None] * x)

@@ -9,7 +9,7 @@ from functools import cached_property
 from flockana.base.scales import Scales
 from flockana.environment.beta import ObstacleField
 from flockana.environment.obstacles import Obstacle
-from flockana.environment.targets import Target
+from flockana.environment.target import Target
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains, PairInteraction
 from flockana.laws.olfati_saber import GAINS, PAIR, TARGET, alpha_scales, ensure_part
 from flockana.laws.sum_of_terms import SumOfTerms

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from flockana.environment.beta import ObstacleField
     from flockana.environment.obstacles import Obstacle
-    from flockana.environment.targets import Target
+    from flockana.environment.target import Target
     from flockana.laws.terms.term import Compiled, Term
 
 

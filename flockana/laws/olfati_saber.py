@@ -11,7 +11,7 @@ import numpy as np
 from flockana.base.checks import ensure_state
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
-from flockana.environment.targets import Target
+from flockana.environment.target import Target
 from flockana.interactions import AlphaInteraction, Gains, PairInteraction
 from flockana.laws.sum_of_terms import SumOfTerms
 from flockana.laws.terms.navigation import Navigation

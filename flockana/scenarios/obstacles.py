@@ -11,7 +11,8 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.environment.capsule import Capsule
 from flockana.environment.obstacles import Obstacle, Sphere
-from flockana.environment.targets import LinearTarget, StaticTarget, Target
+from flockana.environment.target import Target
+from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.interactions import BetaInteraction, Gains
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.scenarios.findings import in_source_units

@@ -11,7 +11,8 @@ import numpy.typing as npt
 
 from flockana.base.checks import FloatArray, ensure_vector
 from flockana.base.errors import ArgumentError
-from flockana.environment.targets import CircleTarget, LinearTarget, RescaledVelocity, SineTarget, StaticTarget, Target
+from flockana.environment.target import Target
+from flockana.environment.targets import CircleTarget, LinearTarget, RescaledVelocity, SineTarget, StaticTarget
 from flockana.interactions import Gains
 from flockana.stability.translational import CentreOfMass
 

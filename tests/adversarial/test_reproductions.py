@@ -10,13 +10,13 @@ import pytest
 
 from flockana import Tolerances, Trajectory, simulate, theorem, theorems, verify
 from flockana.base.errors import ArgumentError, FileError
+from flockana.environment.target import Target
 from flockana.environment.targets import (
     CallableTarget,
     CircleTarget,
     LinearTarget,
     RescaledVelocity,
     StaticTarget,
-    Target,
 )
 from flockana.interactions import AlphaInteraction, DeadZoneInteraction, Gains
 from flockana.laws.algorithm3 import Algorithm3

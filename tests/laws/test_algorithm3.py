@@ -17,6 +17,7 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.capsule import Capsule
 from flockana.environment.obstacles import Obstacle, Sphere, Wall
 from flockana.environment.polygon import Polygon
+from flockana.environment.target import Target
 from flockana.environment.targets import (
     CallableTarget,
     CircleTarget,
@@ -24,7 +25,6 @@ from flockana.environment.targets import (
     RescaledVelocity,
     SineTarget,
     StaticTarget,
-    Target,
 )
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
 from flockana.laws.algorithm3 import Algorithm3

@@ -10,7 +10,7 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.overrides import speaks_for
-from flockana.environment.targets import Target
+from flockana.environment.target import Target
 from flockana.interactions.gains import Gains, weighted
 from flockana.kernels import navigation as kernel
 from flockana.laws.terms.term import Invariance, Term, TermKernel

@@ -15,7 +15,8 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.targets import CircleTarget, LinearTarget, RescaledVelocity, SineTarget, StaticTarget, Target
+from flockana.environment.target import Target
+from flockana.environment.targets import CircleTarget, LinearTarget, RescaledVelocity, SineTarget, StaticTarget
 from flockana.theorems.rounding import EPS
 from flockana.theorems.theorem import Hypothesis, HypothesisStatus
 

@@ -9,7 +9,8 @@ import pytest
 
 from flockana.dynamics.simulate import simulate
 from flockana.environment.obstacles import Sphere
-from flockana.environment.targets import StaticTarget, Target
+from flockana.environment.target import Target
+from flockana.environment.targets import StaticTarget
 from flockana.interactions import Gains
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2

@@ -11,7 +11,8 @@ import pytest
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.obstacles import Sphere, Wall
-from flockana.environment.targets import LinearTarget, RescaledVelocity, StaticTarget, Target
+from flockana.environment.target import Target
+from flockana.environment.targets import LinearTarget, RescaledVelocity, StaticTarget
 from flockana.interactions import Gains
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm2

@@ -1,0 +1,81 @@
+"""What a γ-agent is: where it is, how it moves, and what it tells the law."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.base.checks import FloatArray
+
+
+class Harmonic(NamedTuple):
+    """The path q_r = a + bt + c cos ωt + s sin ωt, with p_r = factor · dq_r/dt + e, as compiled integrators take it.
+
+    Attributes
+    ----------
+    terms : ndarray, shape (5, m)
+        a, b, c, s, e.
+    omega, factor : float
+        ω and what p_r is of the true rate.
+    """
+
+    terms: FloatArray
+    omega: float = 0.0
+    factor: float = 1.0
+
+
+class Target(ABC):
+    """A γ-agent; a subclass is a frozen dataclass with `position`, `rate` and, where p_r differs from it, `state`."""
+
+    @abstractmethod
+    def position(self, t: float) -> FloatArray:
+        """q_r(t), shape (m,).
+
+        Parameters
+        ----------
+        t : float
+            Time.
+        """
+
+    @abstractmethod
+    def rate(self, t: float) -> FloatArray:
+        """The true dq_r/dt, shape (m,).
+
+        Parameters
+        ----------
+        t : float
+            Time.
+        """
+
+    def state(self, t: float) -> tuple[FloatArray, FloatArray]:
+        """(q_r(t), p_r(t)) as handed to the law, two vectors of shape (m,).
+
+        Parameters
+        ----------
+        t : float
+            Time.
+        """
+        return self.position(t), self.rate(t)
+
+    @property
+    def harmonic(self) -> Harmonic | None:
+        """The path in closed form, for compiled integrators; None if it is of another form."""
+        return None
+
+    def mismatch(self, times: npt.ArrayLike) -> float:
+        """Largest ‖p_r − dq_r/dt‖ over the given times: 0 for a target that is consistent.
+
+        Parameters
+        ----------
+        times : array_like, shape (T,)
+            Times to look at.
+        """
+        return max((float(np.linalg.norm(self.state(t)[1] - self.rate(t))) for t in np.ravel(times)), default=0.0)
+
+    @property
+    def dimension(self) -> int:
+        """m."""
+        return int(self.position(0.0).size)
