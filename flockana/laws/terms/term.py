@@ -5,8 +5,10 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import Any, ClassVar, Literal, NamedTuple
 
+import numpy as np
+
 from flockana.base.checks import FloatArray
-from flockana.kernels.listed import CompiledFunction
+from flockana.kernels.listed import CompiledFunction, no_term
 
 Invariance = Literal["rigid motions", "rotations about the target", "none"]
 
@@ -31,6 +33,8 @@ class TermKernel(NamedTuple):
         Chebyshev panels, if they read any.
     reach : float
         Within which they need all pairs; 0 if they need none.
+    guard : callable, optional
+        What share of a step may be taken (`flockana.kernels.bodies`), of the same numbers.
     """
 
     act: CompiledFunction
@@ -38,6 +42,12 @@ class TermKernel(NamedTuple):
     numbers: FloatArray
     panels: FloatArray
     reach: float
+    guard: CompiledFunction | None = None
+
+
+def nothing() -> TermKernel:
+    """A term that does nothing."""
+    return TermKernel(*no_term(), np.empty(0), np.empty((0, 0)), 0.0)
 
 
 class Term(ABC):
