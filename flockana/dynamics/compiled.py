@@ -21,13 +21,11 @@ from flockana.dynamics.tolerance import Floor
 from flockana.kernels.advance import CROWDED, RUNNING, advance
 from flockana.kernels.bodies import no_guard
 from flockana.kernels.tableaus import Tableau, tableau
-from flockana.kernels.verlet import list_pairs, search_of_pairs
+from flockana.kernels.verlet import SKIN, list_pairs, search_of_pairs
 from flockana.laws.law import Law
-from flockana.laws.sum_of_terms import MOST_TERMS
-from flockana.laws.terms.term import Compiled, nothing
+from flockana.laws.terms.term import Compiled
 
 METHODS = ("DOP853", "RK45", "RK23", "RK4")  # that there are compiled
-_SKIN = 0.15  # of the range: what a list of pairs holds beyond it, so that it lasts some steps
 _STEPS, _NUMBERS = 128, 2_000_000  # in one call, at most: steps, and numbers kept of them
 _UNLISTED = "scipy-DOP853"  # which looks at pairs in blocks
 EXACT = Floor(0.0, 0.0, 0.0)
@@ -88,20 +86,15 @@ class Engine:
     def _system(self) -> tuple[Any, ...]:
         """What stays the same from call to call (`flockana.kernels.advance`)."""
         frame, size = self.frame, self.frame.shape[1]
-        terms = (*self.form.terms, *(nothing(),) * (MOST_TERMS - len(self.form.terms)))
+        terms = self.form.padded
         view = (frame.t0, frame.origin[:size].copy(), frame.drift[:size].copy())
         arrays = (tuple(np.array(getattr(term, name)) for term in terms) for name in ("numbers", "panels"))
         functions = (search_of_pairs()[0], *(term.act for term in terms), *(term.energy for term in terms))
         guard, bodies = next(((term.guard, term.numbers) for term in terms if term.guard), (no_guard(), np.empty(0)))
         met = self.encounters
-        around = ((self.reach, _SKIN * self.reach), met.radii, met.far, guard, bodies, (met.shell, met.skirt))
+        around = ((self.form.reach, SKIN * self.form.reach), met.radii, met.far, guard, bodies, (met.shell, met.skirt))
         allowed = (self.allowed.rtol, tuple(self.allowed.floor), self.allowed.balance)
         return (*functions, *arrays, frame.shape, view, self.form.moving, *self.method, *around, *allowed)
-
-    @property
-    def reach(self) -> float:
-        """Within which the law needs all pairs."""
-        return max((term.reach for term in self.form.terms), default=0.0)
 
     def run(self, now: Point, stops: FloatArray, due: FloatArray, ledger: FloatArray) -> tuple[Any, ...]:
         """Some steps from here."""
@@ -112,7 +105,7 @@ class Engine:
     def crowded(self, q: FloatArray) -> bool:
         """Whether there are more pairs within reach than a list has room for."""
         few = np.empty(1, np.uint32)
-        return bool(list_pairs(q, (1.0 + _SKIN) * self.reach, few, few)[2] < 0)
+        return bool(list_pairs(q, (1.0 + SKIN) * self.form.reach, few, few)[2] < 0)
 
 
 def engine_of(

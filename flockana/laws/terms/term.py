@@ -10,14 +10,8 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.kernels.listed import CompiledFunction, no_term
 
+MOST_TERMS = 3  # that a compiled integrator takes
 Invariance = Literal["rigid motions", "rotations about the target", "none"]
-
-
-class Compiled(NamedTuple):
-    """A law as compiled integrators take it: its terms, and whether its energy is that in the moving frame."""
-
-    terms: tuple[TermKernel, ...]
-    moving: bool
 
 
 class TermKernel(NamedTuple):
@@ -48,6 +42,23 @@ class TermKernel(NamedTuple):
 def nothing() -> TermKernel:
     """A term that does nothing."""
     return TermKernel(*no_term(), np.empty(0), np.empty((0, 0)), 0.0)
+
+
+class Compiled(NamedTuple):
+    """A law as compiled integrators take it: its terms, and whether its energy is that in the moving frame."""
+
+    terms: tuple[TermKernel, ...]
+    moving: bool
+
+    @property
+    def reach(self) -> float:
+        """Within which it needs all pairs."""
+        return max((term.reach for term in self.terms), default=0.0)
+
+    @property
+    def padded(self) -> tuple[TermKernel, ...]:
+        """`MOST_TERMS` of them: the others do nothing."""
+        return (*self.terms, *(nothing(),) * (MOST_TERMS - len(self.terms)))
 
 
 class Term(ABC):
