@@ -62,7 +62,7 @@ def discrete(
         q, p, memory = qs[-1], ps[-1], copied({name: values[-1] for name, values in series.items()})
 
 
-def _nearest(times: FloatArray, keep: FloatArray, dt: float) -> IndexArray:
+def _nearest(times: npt.NDArray[np.floating], keep: FloatArray, dt: float) -> IndexArray:
     """Which steps are nearest to a time to keep, each once; of two as near the earlier."""
     nearest = np.searchsorted(times + 0.5 * dt, keep)
     return np.unique(nearest[nearest < times.size])

@@ -107,13 +107,15 @@ def lift_obstacle(project: Callable[..., float], turn: Callable[..., None] | Non
     def forces(q, p, pars, starts, balls, beta, reach, c1, c2, u):
         total = 0.0 * digest
         n, m = q.shape
-        gap, rate = np.empty(m), np.empty(m)
+        x, v, gap, rate = np.empty(m), np.empty(m), np.empty(m), np.empty(m)  # no slices: a view costs as much as a sum
         for k in range(balls.shape[0]):
             par = pars[starts[k] : starts[k + 1]]
             for i in range(n):
-                if out_of_reach(q[i], balls[k], reach):
+                if out_of_reach(q, i, balls, k, reach):
                     continue
-                clearance = project(q[i], p[i], par, gap, rate)
+                for c in range(m):
+                    x[c], v[c] = q[i, c], p[i, c]
+                clearance = project(x, v, par, gap, rate)
                 if abs(clearance) >= reach:
                     continue
                 w, b = pair_beta(clearance * clearance, beta)
@@ -127,19 +129,27 @@ def lift_obstacle(project: Callable[..., float], turn: Callable[..., None] | Non
     def potential(q, pars, starts, balls, beta, panels, reach):
         total = 0.0 * digest
         n, m = q.shape
-        still, gap, rate = np.zeros(m), np.empty(m), np.empty(m)
+        x, still, gap, rate = np.empty(m), np.zeros(m), np.empty(m), np.empty(m)
         for k in range(balls.shape[0]):
             par = pars[starts[k] : starts[k + 1]]
             for i in range(n):
-                if not out_of_reach(q[i], balls[k], reach):
-                    clearance = project(q[i], still, par, gap, rate)
+                if not out_of_reach(q, i, balls, k, reach):
+                    for c in range(m):
+                        x[c] = q[i, c]
+                    clearance = project(x, still, par, gap, rate)
                     total += psi_beta(sigma_norm(clearance * clearance, beta[0]), beta, panels)
         return total
 
     @njit(cache=True)
     def agents(q, p, par, gap, rate, clearance):
-        for i in range(q.shape[0]):
-            clearance[i] = project(q[i], p[i], par, gap[i], rate[i]) + 0.0 * digest
+        n, m = q.shape
+        x, v, g, w = np.empty(m), np.empty(m), np.empty(m), np.empty(m)
+        for i in range(n):
+            for c in range(m):
+                x[c], v[c] = q[i, c], p[i, c]
+            clearance[i] = project(x, v, par, g, w) + 0.0 * digest
+            for c in range(m):
+                gap[i, c], rate[i, c] = g[c], w[c]
 
     @njit(cache=True)
     def slopes(q, par, beta, reach, blocks):
@@ -187,7 +197,7 @@ def lift_obstacle(project: Callable[..., float], turn: Callable[..., None] | Non
 def project_ball(q, p, centre, radius, along, gap, rate):
     """The β-agent on a sphere about `centre`, which itself moves at `along`: spheres and the rims of other bodies.
 
-    `along` must be tangent to the sphere at the agent's foot (or zero).
+    `along` must be tangent to the sphere at the agent's foot (or zero); of `centre` the first m components are read.
     """
     s2, radial = 0.0, 0.0
     for c in range(q.size):
@@ -195,8 +205,8 @@ def project_ball(q, p, centre, radius, along, gap, rate):
         radial += (q[c] - centre[c]) * p[c]
     distance = sqrt(s2)
     if distance == 0.0:  # the centre has no closest point
-        gap[:] = np.nan
-        rate[:] = np.nan
+        for c in range(q.size):
+            gap[c], rate[c] = np.nan, np.nan
         return -radius
     mu = radius / distance
     for c in range(q.size):

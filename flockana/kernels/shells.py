@@ -19,12 +19,12 @@ _LOOKS = 16  # along the way within an obstacle's range, for the closest approac
 
 
 @register_jitable
-def out_of_reach(q, ball, reach):
-    """Whether a point is farther than `reach` from a ball (centre, radius)."""
-    s2, m = 0.0, ball.size - 1
+def out_of_reach(q, i, balls, k, reach):
+    """Whether point i is farther than `reach` from ball k (centre, radius)."""
+    s2, m = 0.0, balls.shape[1] - 1
     for c in range(m):
-        s2 += (q[c] - ball[c]) ** 2
-    return s2 > (ball[m] + reach) ** 2
+        s2 += (q[i, c] - balls[k, c]) ** 2
+    return s2 > (balls[k, m] + reach) ** 2
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
@@ -93,13 +93,15 @@ def lift_shells(project: Callable[..., float], digest: int) -> Callable[..., flo
     def share_of_bodies(points, allowance, pars, starts, balls, shell, far, share):
         m = balls.shape[1] - 1
         here, room = np.empty(m), np.zeros((3, m))  # a place, and for the projection: rest, gap and rate
+        begin, end = points[:, 0], points[:, 5]
         for i in range(points.shape[0]):
             way, edge = reach_of(points[i]), shell + allowance[i]
             reach = way + allowance[i]
             for k in range(balls.shape[0]):
-                here[:] = points[i, 0, :m]
-                if out_of_reach(here, balls[k], shell + reach):
+                if out_of_reach(begin, i, balls, k, shell + reach):
                     continue
+                for c in range(m):
+                    here[c] = begin[i, c]
                 par = pars[starts[k] : starts[k + 1]]
                 beyond = distance(here, par, room) - edge
                 if beyond < 0.0:
@@ -108,7 +110,8 @@ def lift_shells(project: Callable[..., float], digest: int) -> Callable[..., flo
                     continue
                 if beyond >= reach:
                     continue
-                here[:] = points[i, 5, :m]
+                for c in range(m):
+                    here[c] = end[i, c]
                 if way <= far and distance(here, par, room) < edge:
                     continue  # the evaluation at the end of the step meets it
                 share = min(share, visit(points[i], edge, far, par, here, room))
