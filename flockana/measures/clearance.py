@@ -110,7 +110,7 @@ def _least_clearances(obstacle: Obstacle, points: FloatArray) -> FloatArray:
     """Signed distances wherever they may be the least; elsewhere lower bounds, those of the ball about the obstacle."""
     centre, radius = obstacle.ball
     off = points - centre
-    distance = np.sqrt(np.einsum("km,km->k", off, off)) - radius
+    distance: FloatArray = np.sqrt(np.einsum("km,km->k", off, off)) - radius
     distance -= 4.0 * ROUNDING * (np.abs(points).max() + np.abs(centre).max() + (radius if radius < inf else 0.0))
     best = obstacle.clearance(points[np.argmin(distance)][None])[0]
     maybe = distance <= best
