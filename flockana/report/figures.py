@@ -64,7 +64,8 @@ def _captures(run: Trajectory, instants: Sequence[float]) -> Picture:
             ax = figure.add_subplot(rows, columns, k + 1, projection="3d" if run.m == 3 else None)
             plots.snapshot(run, time, ax=ax, bar=(k + 1) % columns == 0)
 
-    caption = f"As many instants as the source shows, {len(instants)}: the sample nearest to each, drawn as in the next figure."
+    shown = f"As many instants as the source shows, {len(instants)}"
+    caption = f"{shown}: the sample nearest to each, drawn as in the next figure."
     return Picture(caption, png(draw, (13.0, rows * (13.0 / columns))))
 
 
