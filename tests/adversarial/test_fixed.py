@@ -21,6 +21,8 @@ TRUTHS = {
     "E8": {"r": "printed", "v": "corrected"},
     "E9": {"r": "printed", "v": "corrected excess"},
     "E10": {"r": "printed", "v": "corrected"},
+    "E15": {"r": "printed-start printed-speed faster-true", "v": "predicted faster faster-as-run condition"},
+    "E16": {"r": "sufficient necessary", "v": "minima lattice"},
     "J1": {"r": "printed", "v": "corrected"},
     "J2": {"r": "hurwitz positive-definite", "v": "outside"},
     "J3": {"r": "printed hurwitz", "v": "trees"},

@@ -18,7 +18,7 @@ from flockana.theorems import Tolerances, theorems
 
 OWN = [
     *("paper-flocking", "paper-dynamic-topology", "paper-fragmentation", "paper-rendezvous-3d"),
-    *("collapse", "hexagon", "three-agents-1d", "notebook-algorithm1", "notebook-algorithm2"),
+    *("collapse", "hexagon", "three-agents-1d", "notebook-algorithm1", "notebook-algorithm2", "msn-static"),
     *(f"msn-case{case}{suffix}" for case in (1, 2, 3, 4) for suffix in ("", "-printed")),
 ]
 SHAPES = {
