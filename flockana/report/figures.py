@@ -50,7 +50,9 @@ def pictures(trajectory: Trajectory, instants: Sequence[float] = ()) -> tuple[Pi
     instants : sequence of float
         Times at which its source shows the flock: they come first, the sample nearest to each.
     """
-    draw = next((own for laws, own in pictures_of_laws() if isinstance(trajectory.law, laws)), flock_pictures)
+    drawn = trajectory.law, drawn_law(trajectory)  # of a map that steps another law, that one's figures will do
+    owners = ((law, laws, own) for law in drawn for laws, own in pictures_of_laws())
+    draw = next((own for law, laws, own in owners if isinstance(law, laws)), flock_pictures)
     return (*((_captures(trajectory, instants),) if len(instants) else ()), *draw(trajectory))
 
 

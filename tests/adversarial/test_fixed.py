@@ -43,6 +43,8 @@ TRUTHS = {
     "L6": {"v": "printed bound"},
     "L7": {"r": "printed", "v": "components chatter sliding ramp"},
     "L8": {"r": "printed balance-distance", "v": "contact"},
+    "L9": {"r": "printed fraction", "v": "energy one-leader different-leaders acceleration acceleration-needed"},
+    "L10": {"r": "printed-sufficient printed-necessary", "v": "sufficient not-necessary"},
     "delay-margin": {"v": "algorithm-1-all algorithm-1-pairs algorithm-2-all algorithm-2-pairs"},
     "linearised-decay": {"v": "decay random range"},
     "zone-separation": {"r": "close-encounters", "v": "alone energy chain"},
