@@ -47,6 +47,7 @@ from .laws.bearing_distance import ZoneFlocking as ZoneFlocking
 from .laws.dead_zone import DeadZoneFlocking as DeadZoneFlocking
 from .laws.discrete import DiscreteLaw as DiscreteLaw
 from .laws.law import Law as Law
+from .laws.led_dead_zone import LedDeadZoneFlocking as LedDeadZoneFlocking
 from .laws.minimal import DiscreteMinimalFlocking as DiscreteMinimalFlocking
 from .laws.minimal import MinimalFlocking as MinimalFlocking
 from .laws.olfati_saber import Algorithm1 as Algorithm1

@@ -132,16 +132,16 @@ case4 = assignment("msn-case4")
 # %% [markdown]
 # ## Why is the circle smaller?
 #
-# The project saw that, and held the turning of the γ-agent responsible. The filter knows better (erratum E12). The
-# project moves its γ-agent by iterations of 0.009 time units, but the $p_r$ that it hands over is *per iteration*:
-# $\kappa = 0.009$.
+# The project saw that, and laid the sine of its case 3 to the turning of the γ-agent, and the circle of case 4 to a
+# start inside it and to the speed. The filter knows better (errata E12 and E15). The project moves its γ-agent by
+# iterations of 0.009 time units, but the $p_r$ that it hands over is *per iteration*: $\kappa = 0.009$.
 
 # %%
 gains, circle = case4.law.gains, case4.law.target.target
 omega = 2 * np.pi * circle.frequency
 for kappa in (0.009, 1.0):
     print(f"p_r = {kappa:5} dq_r/dt: predicted ratio {predicted_gain(gains, omega, factor=kappa):.3f}")
-true = fl.simulate(fl.Algorithm2(case4.law.alpha, gains, circle), case4.q[0], case4.p[0], (0.0, 4.86))
+true = fl.simulate(fl.Algorithm2(case4.law.alpha, gains, circle), case4.q[0], case4.p[0], case4.t[[0, -1]])
 print(f"measured: {response_ratio(case4)[0]:.3f}, and {response_ratio(true)[0]:.3f} with the true p_r")
 print(tracking(case4))
 

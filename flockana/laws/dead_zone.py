@@ -87,7 +87,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
             Initial positions and velocities.
         """
         super().check_start(q, p)
-        _ensure_apart(q)
+        ensure_apart(q)
 
     def acceleration(self, t: float, q: Any, p: Any) -> FloatArray:
         """Control input u(q, p).
@@ -105,7 +105,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
             On wrong shapes, values that are not finite, or two agents at one place.
         """
         t, q, p = self._checked(t, q, p)
-        _ensure_apart(q)
+        ensure_apart(q)
         return self.flow(t, q, p)[0]
 
     @cached_property
@@ -142,7 +142,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
             Time (it does not depend on it).
         """
         q = ensure_points("q", q)
-        _ensure_apart(q)
+        ensure_apart(q)
         return super().stiffness(q, t)
 
     def measures(  # noqa: D102
@@ -262,7 +262,13 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         return None
 
 
-def _ensure_apart(q: FloatArray) -> None:
+def ensure_apart(q: FloatArray) -> None:
+    """Raise if two agents coincide: their force has no direction.
+
+    Examples
+    --------
+    >>> ensure_apart(np.array([[0.0], [1.0]]))
+    """
     from scipy.spatial import KDTree
 
     if len(q) > 1:

@@ -134,7 +134,7 @@ def printed_edge_share(n: int, pairs: LinkArray) -> float:
     return float(np.mean(labels[pairs[:, 0]] == giant))
 
 
-def printed_rank_connectivity(n: int, pairs: LinkArray) -> float:
+def printed_rank_connectivity(n: int, pairs: LinkArray, *, typeset: bool = False) -> float:
     """The MSN project's C = rank(A)/n of the adjacency matrix, as printed (erratum E8); dense, for small n.
 
     Parameters
@@ -143,14 +143,20 @@ def printed_rank_connectivity(n: int, pairs: LinkArray) -> float:
         Number of agents.
     pairs : int array, shape (M, 2)
         Links.
+    typeset : bool
+        The matrix that the code as typeset keeps: a unit diagonal but for the last agent, not a zero one.
 
     Examples
     --------
     A path of three agents is connected, yet:
 
-    >>> round(printed_rank_connectivity(3, np.array([[0, 1], [1, 2]], dtype=np.int32)), 3)
+    >>> path = np.array([[0, 1], [1, 2]], dtype=np.int32)
+    >>> round(printed_rank_connectivity(3, path), 3)
     0.667
+    >>> printed_rank_connectivity(3, path[:0], typeset=True) == 2 / 3  # of three agents without a link
+    True
     """
-    adjacency = np.zeros((n, n))
+    adjacency = np.eye(n) if typeset else np.zeros((n, n))
+    adjacency[-1, -1] = 0.0
     adjacency[pairs[:, 0], pairs[:, 1]] = adjacency[pairs[:, 1], pairs[:, 0]] = 1.0
-    return float(np.linalg.matrix_rank(adjacency)) / n
+    return float(np.linalg.matrix_rank(adjacency, hermitian=True)) / n

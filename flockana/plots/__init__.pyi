@@ -25,6 +25,7 @@ from .obstacles import obstacles as obstacles
 from .pair import action as action
 from .pair import potential as potential
 from .phase import phase_portrait as phase_portrait
+from .rank import rank_connectivity as rank_connectivity
 from .reynolds import rules as rules
 from .series import centre_of_mass as centre_of_mass
 from .series import clearances as clearances

@@ -1,14 +1,29 @@
-"""The force of the dead-zone law with its jumps, and the two energies of a run."""
+"""The force of the dead-zone law with its jumps, the two energies of a run, and a flock with its leaders."""
 
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.plots.style import BLUE, MUTED, VERMILLION, ensure_axes, finish
+from flockana.laws.led_dead_zone import LedDeadZoneFlocking
+from flockana.plots.snapshot import configuration, draw_sample, in_view
+from flockana.plots.style import (
+    BLUE,
+    GREEN,
+    INK,
+    MUTED,
+    ORANGE,
+    PURPLE,
+    VERMILLION,
+    ensure_axes,
+    finish,
+    frame_space,
+    in_plane,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -17,6 +32,7 @@ if TYPE_CHECKING:
     from flockana.interactions import DeadZoneInteraction
 
 _SAMPLES = 300
+_GROUPS = (ORANGE, PURPLE, GREEN, BLUE, VERMILLION)  # colours of leaders and their agents, again from the first
 
 
 def dead_zone_force(interaction: DeadZoneInteraction, *, nearest: float | None = None, ax: Axes | None = None) -> Axes:
@@ -90,3 +106,28 @@ def dead_zone_energies(trajectory: Trajectory, *, ax: Axes | None = None) -> Axe
     printed = metrics.literal_energy.values
     ax.plot(trajectory.t, printed, color=VERMILLION, linestyle="--", label="H, neighbours only (printed)")
     return finish(ax, "t (time)", "energy (length²/time²)")
+
+
+@draw_sample.register(LedDeadZoneFlocking)
+def _led(
+    law: LedDeadZoneFlocking, trajectory: Trajectory, k: int, *, ax: Axes | None, velocities: bool, bar: bool
+) -> Axes:
+    """Each agent in the colour of its leader, a star; the pinned ringed; links join agents within 1.1 d1."""
+    q, t = trajectory.q[k], float(trajectory.t[k])
+    p, contact = trajectory.p[k] if velocities else None, 1.1 * law.interaction.d1
+    axes: Any = configuration(q, p, r=contact, ax=ax, title=f"t = {t:.4g}")
+    places = in_plane(np.array([leader.position(t) for leader in law.leaders]))
+    x, size = in_plane(q), float(np.clip(900.0 / len(q), 3.0, 26.0))
+    for number, (own, place) in enumerate(zip(law.ties.members, places, strict=True)):
+        colour = _GROUPS[number % len(_GROUPS)]
+        rings = [INK if i in law.pinned else colour for i in own.tolist()]
+        axes.scatter(*x[own].T, s=1.6 * size, color=colour, edgecolors=rings, linewidths=1.0, zorder=3.5)
+        axes.scatter(*place[:, None], s=110, marker="*", color=colour, edgecolors="white", linewidths=0.6, zorder=4)
+    framed: Axes = frame_space(axes, np.vstack([x, places]), trajectory.m)
+    return framed
+
+
+@in_view.register(LedDeadZoneFlocking)
+def _led_in_view(law: LedDeadZoneFlocking, trajectory: Trajectory) -> FloatArray:
+    paths = [np.array([leader.position(t) for t in trajectory.t.tolist()]) for leader in law.leaders]
+    return np.concatenate([trajectory.q.reshape(-1, trajectory.m), *paths])

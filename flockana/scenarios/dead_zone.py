@@ -11,6 +11,7 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.discrete import DiscreteLaw
+from flockana.laws.led_dead_zone import LedDeadZoneFlocking
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.scenarios.findings import finding
 from flockana.scenarios.scenario import Report, Scenario
@@ -20,12 +21,32 @@ from flockana.theorems.dead_zone.range_limits import thinned
 from flockana.theorems.rounding import EPS
 from flockana.theorems.theorem import Status
 
-_PRINTED = (
-    "Li, Yuan and Liu, section V: n = 50, r = 15, δ = 4.5, k_δ = 1.3, no more. Ours: r_b = 8, so that the flock fits "
-    "within r, r_d = 40, k_r = 200, η = 1, k1 = 0.01, k2 = 1, q uniform in a box, p uniform in [-1, 1]², semi-implicit "
-    "Euler steps of 0.01 for 200 time units."
-)
+_PRINTED = "Li, Yuan and Liu, section V: n = 50, r = 15, δ = 4.5, k_δ = 1.3, no more."
+DT = 0.01
 _SAMPLES = 401
+_FIGURE_3 = (0.0, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0)  # shares of the run: Fig. 3 (a)-(h) are eight, times ours
+
+
+def ours(law: DeadZoneFlocking | LedDeadZoneFlocking, box: float, t_end: float, *, flow: bool = False) -> str:
+    """Every parameter that the paper does not print, in words.
+
+    Examples
+    --------
+    >>> ours(DeadZoneFlocking(), 40.0, 200.0)[:34]
+    'Ours: r_b = 8 (d1 = 3.5, d2 = 12.5'
+    """
+    pair = law.interaction
+    ramp = (
+        f"a ramp of width {pair.ramp:g} in place of the jumps beside the dead zone"
+        if pair.ramp
+        else "the force jumps beside the dead zone, as printed"
+    )
+    steps = "the flow itself" if flow else f"semi-implicit Euler steps of {DT:g}"
+    return (
+        f"Ours: r_b = {pair.r_b:g} (d1 = {pair.d1:g}, d2 = {pair.d2:g}), r_d = {pair.r_d:g}, k_r = {pair.k_r:g}, "
+        f"η = {pair.eta:g}, k1 = {pair.k1:g}, k2 = {law.k2:g}, a_ij = 1 within r, {ramp}; q uniform in a box of side "
+        f"{box:g}, p uniform in [-1, 1]², {steps}, for {t_end:g} time units."
+    )
 
 
 def _law(run: Trajectory) -> DeadZoneFlocking:
@@ -116,12 +137,13 @@ def _scenario(
 ) -> Scenario:
     generator = np.random.default_rng(seed)
     box, law = ensure_positive("box", box), DeadZoneFlocking(interaction)
+    told = f"{source} {ours(law, box, t_end, flow=flow)}" + ("" if flow else " The eight instants shown are ours.")
     options: dict[str, Any] = {} if flow else {"t_eval": np.linspace(0.0, t_end, _SAMPLES)}
     return Scenario(
         name,
         title,
-        source,
-        law if flow else SemiImplicitEuler(law, 0.01),
+        told,
+        law if flow else SemiImplicitEuler(law, DT),
         generator.uniform(0.0, box, (n, 2)),
         generator.uniform(-1.0, 1.0, (n, 2)),
         (0.0, t_end),
@@ -132,6 +154,7 @@ def _scenario(
         ("li-dead-zone",),
         seeds,
         settings,
+        instants=() if flow else tuple(share * t_end for share in _FIGURE_3),
     )
 
 
@@ -155,8 +178,9 @@ def _default(seed: int = 0, n: int = 50, box: float = 40.0, ramp: float = 0.25) 
             "source:together": "verified",
         }
     title = "Dead zone: 50 agents contract to a lattice of contacts"
+    source = _PRINTED + " r_b is chosen so that the flock fits within r."
     many: dict[str, Any] = {"seeds": 200, "settings": "recommended settings: force ramped"}
-    return _scenario("dead-zone", title, _PRINTED, DeadZoneInteraction(ramp=ramp), seed, n, box, expected, **many)
+    return _scenario("dead-zone", title, source, DeadZoneInteraction(ramp=ramp), seed, n, box, expected, **many)
 
 
 def _wide_lattice(seed: int = 0, n: int = 50, box: float = 40.0, ramp: float = 0.25) -> Scenario:
@@ -164,7 +188,7 @@ def _wide_lattice(seed: int = 0, n: int = 50, box: float = 40.0, ramp: float = 0
     if (n, box, ramp) == (50, 40.0, 0.25):
         expected |= _CONTRACTS | {"source:together": "verified"}
     interaction = DeadZoneInteraction(r_b=12.0, k_r=60.0, k1=0.02, ramp=ramp)
-    source = _PRINTED + " Here r_b = 12, k_r = 60, k1 = 0.02: the dead zone ends beyond r, and only k1 attracts."
+    source = _PRINTED + " Here the dead zone ends beyond r, and only k1 attracts."
     title = "Dead zone, large spacing: only k1 attracts, and the flock is wider than r"
     return _scenario("dead-zone-wide-lattice", title, source, interaction, seed, n, box, expected)
 
@@ -174,7 +198,7 @@ def _wide_start(seed: int = 0, n: int = 50, box: float = 150.0, ramp: float = 0.
     if (n, box, ramp) == (50, 150.0, 0.25):
         expected |= _CONTRACTS | {"source:together": "refuted"}
     title = "Dead zone, wide start: the flock stays in pieces"
-    source = _PRINTED + " Here the box has side 150."
+    source = _PRINTED + " Here the start is wide."
     interaction = DeadZoneInteraction(ramp=ramp)
     return _scenario("dead-zone-wide-start", title, source, interaction, seed, n, box, expected, t_end=800.0)
 
@@ -189,7 +213,7 @@ def _hard(seed: int = 0, n: int = 50, box: float = 40.0) -> Scenario:
             "source:together": "verified",
         }
     title = "Dead zone with the printed jumps: contacts chatter"
-    source = _PRINTED + " Here without the ramp: the force jumps, as printed."
+    source = _PRINTED + " Here the jumps are as printed."
     many: dict[str, Any] = {"seeds": 200, "settings": "printed settings: force jumps"}
     return _scenario("dead-zone-hard", title, source, DeadZoneInteraction(ramp=0.0), seed, n, box, expected, **many)
 
@@ -204,7 +228,7 @@ def _flow(seed: int = 0, n: int = 16, box: float = 20.0, ramp: float = 0.25) -> 
             "source:together": "verified",
         }
     title = "Dead zone, the flow itself: 16 agents, energy balance and distances between samples"
-    source = "Ours: the continuous law that the other dead-zone runs step by semi-implicit Euler."
+    source = f"The continuous law that the other dead-zone runs step: n = {n}; r = 15, δ = 4.5, k_δ = 1.3 as printed."
     interaction = DeadZoneInteraction(ramp=ramp)
     return _scenario("dead-zone-flow", title, source, interaction, seed, n, box, expected, flow=True, t_end=120.0)
 

@@ -73,6 +73,12 @@ class CentreOfMass:
         return 0.0 if abs(square) <= 4.0 * EPS * c1 else square
 
     @property
+    def falling(self) -> float:
+        """c2γ²(1 − factor²)/2c1γ: if >= 1, |G(jω)| falls with every ω, the faster the γ-agent, the smaller (E15)."""
+        c1, c2 = self.gains.c1_gamma, self.gains.c2_gamma
+        return float(0.5 * c2 * c2 * (1.0 - self.factor**2) / c1) if c1 > 0.0 else inf
+
+    @property
     def poles(self) -> npt.NDArray[np.complex128]:
         """Roots of s² + c2γ s + c1γ, the slower one last; both without cancellation."""
         c1, c2 = self.gains.c1_gamma, self.gains.c2_gamma

@@ -9,6 +9,7 @@ from flockana.symbolic.parameters import GAINS, GainSymbols, exact
 
 S = sp.Symbol("s")
 OMEGA = sp.Symbol("omega", positive=True)
+SQUARE = sp.Symbol("w", nonnegative=True)  # ω²
 
 
 def natural_frequency(gains: GainSymbols = GAINS) -> sp.Expr:
@@ -91,10 +92,55 @@ def frequency_gain(scale: sp.Expr = sp.S.One, *, gains: GainSymbols = GAINS, ome
     2/3
     """
     omega = exact("omega", omega)
-    numerator, denominator = sp.fraction(transfer_function(scale, gains=gains))
+    numerator, denominator = _squared_moduli(scale, gains, omega**2)
+    return sp.sqrt(numerator / denominator)
 
-    def square(polynomial: sp.Expr) -> sp.Expr:
+
+def _squared_moduli(scale: sp.Expr, gains: GainSymbols, square: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
+    """Squared moduli of numerator and denominator of G(jω), polynomials in ω²."""
+
+    def modulus(polynomial: sp.Expr) -> sp.Expr:
         even, odd = ((polynomial + sign * polynomial.subs(S, -S)) / 2 for sign in (1, -1))
-        return sp.expand(even.subs(S, sp.I * omega) ** 2 - odd.subs(S, sp.I * omega) ** 2)
+        return sp.expand(sp.expand(even**2 - odd**2).subs(S, sp.I * sp.sqrt(square)))
 
-    return sp.sqrt(square(numerator) / square(denominator))
+    numerator, denominator = (modulus(part) for part in sp.fraction(transfer_function(scale, gains=gains)))
+    return numerator, denominator
+
+
+def gain_slope(scale: sp.Expr = sp.S.One, *, gains: GainSymbols = GAINS, square: sp.Expr = SQUARE) -> sp.Expr:
+    """Return the numerator of d|G(j omega)|^2 / d(omega^2), whose sign is that of the slope over the speed.
+
+    Parameters
+    ----------
+    scale : number or sympy.Expr
+        As in `transfer_function`, real.
+    gains : GainSymbols
+        Gains; all symbolic if not given.
+    square : sympy.Symbol
+        omega^2.
+
+    Examples
+    --------
+    >>> gain_slope(0, gains=GainSymbols(c1_gamma=4, c2_gamma=4))
+    -32*w - 128
+    """
+    numerator, denominator = _squared_moduli(scale, gains, square)
+    return sp.expand(sp.diff(numerator, square) * denominator - numerator * sp.diff(denominator, square))
+
+
+def falling_condition(scale: sp.Expr = sp.S.One, *, gains: GainSymbols = GAINS) -> sp.Expr:
+    """Return c2_gamma^2 (1 - scale^2) - 2 c1_gamma: |G(j omega)| falls with every omega iff it is >= 0 (erratum E15).
+
+    Parameters
+    ----------
+    scale : number or sympy.Expr
+        As in `transfer_function`, real.
+    gains : GainSymbols
+        Gains; all symbolic if not given.
+
+    Examples
+    --------
+    >>> falling_condition(0, gains=GainSymbols(c1_gamma=4, c2_gamma=4))
+    8
+    """
+    return gains.c2_gamma**2 * (1 - exact("scale", scale) ** 2) - 2 * gains.c1_gamma

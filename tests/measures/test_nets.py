@@ -54,6 +54,8 @@ def test_e7_share_of_edges_against_share_of_nodes():
 def test_e8_rank_of_adjacency_against_rank_of_laplacian():
     pairs = nets.links(PATH, 1.5)
     assert nets.printed_rank_connectivity(3, pairs) == pytest.approx(2 / 3, rel=1e-15)  # as printed
+    assert nets.printed_rank_connectivity(3, pairs, typeset=True) == 1.0  # diag(1, 1, 0) and the path: determinant -1
+    assert nets.printed_rank_connectivity(2, pairs[:0], typeset=True) == 0.5
     assert metrics.connectivity(PATH, 1.5) == 1.0  # as meant
 
 

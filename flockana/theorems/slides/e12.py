@@ -90,8 +90,9 @@ THEOREM = Theorem(
     id="E12",
     title="The flock's path is smaller than the γ-agent's because p_r is wrong",
     statement=(
-        "The MSN project finds the flock's circle and sine smaller than the γ-agent's and blames the reversal of its "
-        "velocity. The centre of mass is a linear filter of (q_r, p_r), and the project's p_r is per iteration, 0.009 "
+        "The MSN project finds the flock's sine (case 3) and circle (case 4) smaller than the γ-agent's. It lays the "
+        "sine to the reversal of the γ-agent's velocity (what it lays the circle to: E15). The cause of both is one: "
+        "the centre of mass is a linear filter of (q_r, p_r), and the project's p_r is per iteration, 0.009 "
         "of dq_r/dt: at its gains the ratio is then 0.852, and 1.109 with the true p_r."
     ),
     source="MSN project, conclusion, cases 3 and 4",

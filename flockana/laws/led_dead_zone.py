@@ -1,0 +1,160 @@
+"""The dead-zone law with the leaders that the paper's text speaks of and its equation (9) lacks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+
+from flockana.base.checks import FloatArray, ensure_finite_scalar
+from flockana.base.errors import ArgumentError
+from flockana.base.scales import Scales
+from flockana.base.units import Powers
+from flockana.environment.target import Target
+from flockana.interactions.dead_zone import DeadZoneInteraction
+from flockana.laws.dead_zone import ensure_apart
+from flockana.laws.sum_of_terms import SumOfTerms
+from flockana.laws.terms.leaders import Leaders, known_path
+from flockana.laws.terms.pairs import PairTerm
+from flockana.laws.terms.term import Term
+
+
+@dataclass(frozen=True)
+class LedDeadZoneFlocking(SumOfTerms):
+    """Eq. (9) with several leaders and pinned agents, as section IV and the conclusion have it (erratum L9).
+
+    u_i = Σ_{j∈N_i} [f(ρ_ij) n_ij + k₁ (q_j − q_i)] + k₂ Σ_{j∈N_i, l(j)=l(i)} (p_j − p_i)
+    + h_i [c₁ (q_l − q_i) + c₂ (p_l − p_i)] + dp_l/dt: all neighbours keep their distances, velocities match among the
+    agents of one leader l(i), a pinned agent (h_i = 1) feels its leader's place and velocity, and every agent knows
+    its leader's acceleration. The paper prints none of the three terms; this is our reading of its words.
+
+    The energy is that in the frames of the leaders, ½ Σ ‖p_i − p_l‖² + Σ_{i<j} ψ(min(ρ_ij, r)) + ½ c₁ Σ h_i
+    ‖q_i − q_l‖². With one leader, or several of one velocity, it never rises; else agents of different leaders that
+    are neighbours exchange the power −Σ_i f_i·p_l, f_i the pair force on i.
+
+    Parameters
+    ----------
+    interaction : DeadZoneInteraction
+        The pair law, with a ramp.
+    k2 : float
+        Gain k₂ ≥ 0 of velocity consensus within a group.
+    leaders : tuple of Target
+        One or more static, linear, sine or circle targets that say their true velocity.
+    group : sequence of int
+        The number l(i) of each agent's leader, from 0.
+    pinned : sequence of int
+        The agents that feel their leader.
+    c1, c2 : float
+        Gains ≥ 0 of the pinned.
+    told : bool
+        Whether the leaders' accelerations are known to their agents, as the paper assumes.
+
+    Raises
+    ------
+    ArgumentError
+        On an interaction without a ramp, a negative gain, no leader or one of unknown acceleration, or a number in
+        `group` or `pinned` that there is none of.
+
+    Examples
+    --------
+    Two agents that follow different leaders do not match:
+
+    >>> from flockana.environment.targets import LinearTarget
+    >>> leaders = LinearTarget((0.0, 0.0), (1.0, 0.0)), LinearTarget((8.0, 0.0), (-1.0, 0.0))
+    >>> law = LedDeadZoneFlocking(DeadZoneInteraction(k1=0.0), leaders=leaders, group=(0, 1))
+    >>> law.acceleration(0.0, [[0.0, 0.0], [8.0, 0.0]], [[1.0, 0.0], [-1.0, 0.0]]).tolist()
+    [[0.0, 0.0], [0.0, 0.0]]
+    """
+
+    interaction: DeadZoneInteraction = field(default_factory=DeadZoneInteraction)
+    k2: float = 1.0
+    leaders: Any = ()
+    group: Any = ()
+    pinned: Any = ()
+    c1: float = 1.0
+    c2: float = 2.0
+    told: bool = True
+
+    units: ClassVar[Mapping[str, Powers]] = {"k2": (0, -1), "c1": (0, -2), "c2": (0, -1)}
+
+    references = ("li-dead-zone",)
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.interaction, DeadZoneInteraction):
+            raise ArgumentError(f"interaction = {self.interaction!r}: expected DeadZoneInteraction(...)")
+        if self.interaction.ramp == 0.0:
+            raise ArgumentError("interaction.ramp = 0: expected a ramp such as 0.25; only DeadZoneFlocking takes jumps")
+        for name in ("k2", "c1", "c2"):
+            gain = ensure_finite_scalar(name, getattr(self, name))
+            if gain < 0.0:
+                raise ArgumentError(f"{name} = {gain:g}: expected a gain >= 0; a negative one feeds energy in")
+            object.__setattr__(self, name, gain)
+        if isinstance(self.leaders, Target) or len(self.leaders) == 0:
+            raise ArgumentError(f"leaders = {self.leaders!r}: expected one or more, such as (LinearTarget(...),)")
+        object.__setattr__(self, "leaders", tuple(self.leaders))
+        for leader in self.leaders:
+            known_path(leader)
+        self._freeze_numbers("group", len(self.leaders), "the number of a leader")
+        self._freeze_numbers("pinned", len(self.group), "an agent")
+
+    def _freeze_numbers(self, name: str, count: int, what: str) -> None:
+        values = tuple(int(value) for value in getattr(self, name))
+        wrong = [value for value in values if not 0 <= value < count]
+        if wrong:
+            raise ArgumentError(f"{name} has {wrong[0]}: expected {what}, 0 to {count - 1}")
+        object.__setattr__(self, name, values)
+
+    @property
+    def scales(self) -> Scales:
+        """As those of `DeadZoneFlocking`."""
+        length = self.interaction.d1
+        return Scales(length, float(np.sqrt(length / self.interaction.contact_force)))
+
+    def check_start(self, q: FloatArray, p: FloatArray) -> None:
+        """Raise if two agents coincide, or there are others than `group` has.
+
+        Parameters
+        ----------
+        q, p : ndarray, shape (n, m)
+            Initial positions and velocities.
+        """
+        super().check_start(q, p)
+        ensure_apart(q)
+
+    @cached_property
+    def terms(self) -> tuple[Term, ...]:
+        """Pairs without consensus, and what ties agents to their leaders."""
+        ties = (self.leaders, self.group, self.pinned, self.c1, self.c2, self.told)
+        return PairTerm(self.interaction, 1.0, 0.0), Leaders(self.interaction, self.k2, *ties)
+
+    @property
+    def ties(self) -> Leaders:
+        """The second of the terms."""
+        ties = self.term(Leaders)
+        assert ties is not None
+        return ties
+
+    def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
+        u = np.zeros(q.shape)
+        self.terms[0].act(t, q, p, u)
+        exchanged = -float(np.sum(u * self.ties.led(t)[1]))
+        return u, exchanged + self.ties.act(t, q, p, u)
+
+    def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:  # noqa: D102
+        return self.potential_energy(t, q) + 0.5 * float(np.sum((p - self.ties.led(t)[1]) ** 2))
+
+    def measures(  # noqa: D102
+        self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
+    ) -> Mapping[str, tuple[str, FloatArray]]:
+        led = [self.ties.led(float(time)) for time in t]
+        off, slip = (
+            np.array([np.linalg.norm(own - each[k], axis=1).max() for own, each in zip(state, led, strict=True)])
+            for k, state in enumerate((q, p))
+        )
+        return {
+            "leader_distance": ("largest distance of an agent from its leader", off),
+            "leader_slip": ("largest difference of velocity from one's leader", slip),
+        }

@@ -1,0 +1,166 @@
+"""What ties agents to leaders: velocities match among those of one leader, and a fraction of them is pinned to it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import cos, sin
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError
+from flockana.environment.target import Harmonic, Target
+from flockana.interactions.pair import PairInteraction
+from flockana.laws.law import block_diagonal
+from flockana.laws.terms.term import Invariance, Term
+
+
+@dataclass(frozen=True)
+class Leaders(Term):
+    """u_i = k₂ Σ_{j∈N_i, l(j)=l(i)} a_ij (p_j − p_i) + h_i [c₁ (q_l − q_i) + c₂ (p_l − p_i)] + dp_l/dt, l = l(i).
+
+    Its power is that in the frames of the leaders: −k₂ pᵀL̂p of each group, −c₂ Σ h_i ‖p_i − p_l‖², and, if
+    accelerations are not told, −Σ (p_i − p_l)·dp_l/dt.
+
+    Parameters
+    ----------
+    pair : PairInteraction
+        Its range and adjacency say who are neighbours.
+    damping : float
+        k₂.
+    leaders : tuple of Target
+        The leaders, each with a harmonic path, so that its acceleration is known.
+    group : tuple of int
+        l(i), the number of each agent's leader.
+    pinned : tuple of int
+        The agents with h_i = 1; the others know of their leader no more than its acceleration.
+    pull, drag : float
+        c₁ and c₂ of the pinned.
+    told : bool
+        Whether the leaders' accelerations are known.
+    """
+
+    pair: PairInteraction
+    damping: float
+    leaders: tuple[Target, ...]
+    group: tuple[int, ...]
+    pinned: tuple[int, ...]
+    pull: float
+    drag: float
+    told: bool = True
+
+    @property
+    def invariance(self) -> Invariance:  # noqa: D102
+        return "none"
+
+    @cached_property
+    def members(self) -> tuple[npt.NDArray[np.int64], ...]:
+        """The agents of each leader."""
+        return tuple(np.flatnonzero(np.array(self.group) == leader) for leader in range(len(self.leaders)))
+
+    @cached_property
+    def _pins(self) -> FloatArray:
+        """h_i, a column."""
+        pins = np.zeros((len(self.group), 1))
+        pins[list(self.pinned)] = 1.0
+        return pins
+
+    def led(self, t: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Position, velocity and acceleration of each agent's own leader, three arrays of shape (n, m).
+
+        Parameters
+        ----------
+        t : float
+            Time.
+        """
+        states = np.array([_motion(leader, t) for leader in self.leaders])
+        q, p, a = states[list(self.group)].transpose(1, 0, 2)
+        return q, p, a
+
+    def check_dimension(self, m: int) -> None:  # noqa: D102
+        for leader in self.leaders:
+            if leader.dimension != m:
+                raise ArgumentError(f"a leader has {leader.dimension} components but the agents have {m}: expected {m}")
+
+    def check_agents(self, n: int) -> None:  # noqa: D102
+        if len(self.group) != n:
+            raise ArgumentError(f"group has {len(self.group)} entries but there are {n} agents: expected one for each")
+
+    def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
+        q_l, p_l, a_l = self.led(t)
+        slip, power = p - p_l, 0.0
+        for own in self.members:
+            matched, dissipation = self.pair.forces(q[own], p[own], stiffness=0.0, damping=self.damping)
+            u[own] += matched
+            power -= self.damping * dissipation
+        u -= self._pins * (self.pull * (q - q_l) + self.drag * slip)
+        power -= self.drag * float(np.sum(self._pins * slip * slip))
+        if not self.told:
+            return power - float(np.sum(slip * a_l))
+        u += a_l
+        return power
+
+    def energy(self, t: float, q: FloatArray) -> float:  # noqa: D102
+        return 0.5 * self.pull * float(np.sum(self._pins * (q - self.led(t)[0]) ** 2))
+
+    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[Any, Any]:  # noqa: D102
+        from scipy.sparse import lil_array
+
+        n, m = q.shape
+        by_position, by_velocity = lil_array((n * m, n * m)), lil_array((n * m, n * m))
+        for own in self.members:
+            rows = (own[:, None] * m + np.arange(m)).ravel()
+            parts = self.pair.jacobian(q[own], p[own], stiffness=0.0, damping=self.damping)
+            for whole, part in zip((by_position, by_velocity), parts, strict=True):
+                whole[np.ix_(rows, rows)] = part.toarray()
+        pins = self._pins[:, :, None] * np.eye(m)
+        return by_position.tocsr() - self.pull * block_diagonal(pins), by_velocity.tocsr() - self.drag * block_diagonal(
+            pins
+        )
+
+    def hessian(self, t: float, q: FloatArray) -> FloatArray:
+        """Second derivative of `energy`.
+
+        Parameters
+        ----------
+        t : float
+            Time.
+        q : ndarray, shape (n, m)
+            Positions.
+        """
+        blocks: FloatArray = self.pull * self._pins[:, :, None] * np.eye(q.shape[1])
+        return blocks
+
+
+def known_path(leader: Any) -> Harmonic:
+    """The path of a leader, whose acceleration is known and who says its true velocity.
+
+    Raises
+    ------
+    ArgumentError
+        If it is no target of such a path.
+
+    Examples
+    --------
+    >>> from flockana.environment.targets import LinearTarget
+    >>> known_path(LinearTarget((0.0,), (2.0,))).factor
+    1.0
+    """
+    path = leader.harmonic if isinstance(leader, Target) else None
+    if path is None or path.factor != 1.0 or path.terms[4].any():
+        raise ArgumentError(
+            f"leader {leader!r}: expected a StaticTarget, LinearTarget, SineTarget or CircleTarget with its true "
+            "velocity, whose acceleration is known"
+        )
+    return path
+
+
+def _motion(leader: Target, t: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Position, velocity and acceleration of a leader."""
+    path = known_path(leader)
+    c, s = path.terms[2:4]
+    bend: FloatArray = -(path.omega**2) * (c * cos(path.omega * t) + s * sin(path.omega * t))
+    return leader.position(t), leader.rate(t), bend

@@ -1,0 +1,52 @@
+"""The MSN project's connectivity over time, rank(A)/n, beside what tells whether a net is connected."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flockana.base.errors import ArgumentError
+from flockana.measures.nets import links, printed_rank_connectivity
+from flockana.plots.style import BLUE, INK, VERMILLION, ensure_axes, finish_over_time
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from flockana.dynamics.trajectory import Trajectory
+
+_SAMPLES = 271  # every other of the project's 540 iterations
+
+
+def rank_connectivity(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
+    """Draw rank(A)/n over time, with a zero diagonal and as typeset, and C = rank(L)/(n − 1) (erratum E8).
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        A run of a law with an interaction range.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    ArgumentError
+        If the law has no such range.
+    """
+    pair = trajectory.law.pair
+    if pair is None or not np.isfinite(pair.range):
+        raise ArgumentError(f"law = {trajectory.law!r}: expected one whose agents interact within a range")
+    ax, t = ensure_axes(ax), trajectory.t
+    shown = np.unique(np.linspace(0, len(t) - 1, min(len(t), _SAMPLES)).round().astype(int))
+    nets = [links(trajectory.q[k], pair.range) for k in shown]
+    for typeset, colour, name in ((False, BLUE, "rank(A)/n"), (True, VERMILLION, "rank(A)/n as typeset")):
+        ranks = [printed_rank_connectivity(trajectory.n, net, typeset=typeset) for net in nets]
+        ax.plot(t[shown], ranks, color=colour, linewidth=1.0, label=name)
+    ax.plot(t, trajectory.metric("connectivity"), color=INK, linestyle="--", label="C = rank(L)/(n − 1)")
+    ax.set_ylim(-0.03, 1.05)
+    ax.legend(loc="lower right")
+    return finish_over_time(ax, t, "connectivity, three ways")

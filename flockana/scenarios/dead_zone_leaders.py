@@ -1,0 +1,129 @@
+"""Several leaders and pinned agents in the dead-zone law: what the paper's conclusion says, run (erratum L9)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flockana.base.checks import FloatArray, ensure_finite_scalar
+from flockana.dynamics.trajectory import Trajectory
+from flockana.environment.targets import LinearTarget
+from flockana.laws.led_dead_zone import LedDeadZoneFlocking
+from flockana.laws.semi_implicit import SemiImplicitEuler
+from flockana.scenarios.dead_zone import DT, ours
+from flockana.scenarios.findings import component_count, finding
+from flockana.scenarios.scenario import Report, Scenario
+from flockana.theorems import Claim, Tolerances
+from flockana.theorems.theorem import Status
+
+_N, _PINNED, _BOX, _SPEED, _END = 30, 10, 25.0, 1.0, 60.0
+
+
+def _law(run: Trajectory) -> LedDeadZoneFlocking:
+    law = run.law.continuous
+    assert isinstance(law, LedDeadZoneFlocking)
+    return law
+
+
+def _slip(run: Trajectory) -> FloatArray:
+    """How far each agent's velocity is from its leader's at the end, over half of that at which the leaders part."""
+    law = _law(run)
+    told = law.ties.led(float(run.t[-1]))[1]
+    parting = 0.5 * float(np.linalg.norm(law.leaders[1].rate(0.0) - law.leaders[0].rate(0.0)))
+    slip: FloatArray = np.linalg.norm(run.p[-1] - told, axis=1) / parting
+    return slip
+
+
+def _carried_off(run: Trajectory) -> int:
+    """Number of agents whose velocity is nearer to that of the other leader: they move with the wrong group."""
+    return int((_slip(run) > 1.0).sum())
+
+
+def _same(run: Trajectory, tolerances: Tolerances) -> Claim:
+    lost = _carried_off(run)
+    detail = f"{lost} of {run.n} agents, none of them pinned, move with the other leader's group at the end"
+    return finding("same-leader", 0.5 - lost, detail, computed=lost, stated="0 agents away from their leader")
+
+
+def _different(run: Trajectory, tolerances: Tolerances) -> Claim:
+    lost = _carried_off(run)
+    mixed = lost * (run.n - lost) > 0
+    detail = (
+        f"{lost} agents match their neighbours of the other leader, as pair forces hold together whoever is near"
+        if mixed
+        else "no agent moves with one of another leader"
+    )
+    return finding("different-leaders", -0.5 if mixed else 0.5, detail, computed=lost, stated="they do not match")
+
+
+def _pinned(run: Trajectory, tolerances: Tolerances) -> Claim:
+    worst = float(_slip(run)[list(_law(run).pinned)].max())
+    detail = f"a pinned agent's velocity is off its leader's by {worst:.2g} at most, of half that at which leaders part"
+    return finding("pinned", 1.0 - worst, detail, computed=worst, stated="pinned agents follow their leader")
+
+
+def _parts(run: Trajectory, tolerances: Tolerances) -> Claim:
+    count = component_count(run)
+    detail = f"{count} component(s) at t = {run.t[-1]:g}"
+    return finding("parts", 0.5 - abs(count - 2), detail, computed=count, stated="one part for each leader")
+
+
+def _within_r(run: Trajectory, tolerances: Tolerances) -> Claim:
+    off = run.metric("leader_distance")
+    r = _law(run).interaction.r
+    k = int(off.argmax())
+    detail = f"an agent is {off[k]:.4g} from its leader at t = {run.t[k]:g}, {off[-1]:.4g} at the end; r = {r:g}"
+    return finding("within-r", 1.0 - float(off[k]) / r, detail, computed=float(off[k]), stated="never more than r")
+
+
+_REPORTS = (
+    Report("same-leader", "agents with the same leader match velocities", _same),
+    Report("different-leaders", "agents with different leaders do not match", _different),
+    Report("pinned", "pinned agents follow their leaders", _pinned),
+    Report("parts", "the flock ends in one part for each leader", _parts),
+    Report("within-r", "no agent is farther than r from its leader (Theorem 1)", _within_r),
+)
+
+
+def _leaders(seed: int = 0, gap: float = -_BOX) -> Scenario:
+    """Two groups in one box, or side by side with a gap between their boxes."""
+    shift = max(0.0, _BOX + ensure_finite_scalar("gap", gap))
+    generator, group = np.random.default_rng(seed), np.arange(_N) % 2
+    q, p = generator.uniform(0.0, _BOX, (_N, 2)), generator.uniform(-1.0, 1.0, (_N, 2))
+    q[group == 1, 0] += shift
+    start = [(0.5 * _BOX + number * shift, 0.5 * _BOX) for number in (0, 1)]
+    law = LedDeadZoneFlocking(
+        leaders=[LinearTarget(at, (way * _SPEED, 0.0)) for at, way in zip(start, (-1.0, 1.0), strict=True)],
+        group=group.tolist(),
+        pinned=range(_PINNED),
+        c1=2.0,
+        c2=3.0,
+    )
+    mixed: dict[str, Status] = {"source:same-leader": "refuted", "source:different-leaders": "refuted"}
+    apart: dict[str, Status] = {"source:same-leader": "verified", "source:different-leaders": "verified"}
+    expected: dict[str, Status] = {"source:pinned": "verified", "source:parts": "verified"}
+    if shift == 0.0:
+        expected |= mixed | {"source": "refuted", "source:within-r": "refuted"}
+    elif gap >= law.interaction.r:
+        expected |= apart
+    where = "in one box" if shift == 0.0 else f"in boxes of side {_BOX:g}, {gap:g} apart"
+    return Scenario(
+        "dead-zone-leaders",
+        "Dead zone, two leaders: a third of the agents pinned, and the others go with whom they are near",
+        "Li, Yuan and Liu, sections IV and VI, in words only: agents with different leaders do not match, and to pin a "
+        "fraction is enough where the leaders' acceleration is known. Equation (9) has neither; the three terms are "
+        f"ours, and so are: {_N} agents, every other one with the second leader, {where}, {_PINNED} pinned with c1 = 2 "
+        f"and c2 = 3, leaders that start in the middle and part at {_SPEED:g} each way. r = 15, δ = 4.5, k_δ = 1.3 as "
+        f"printed. {ours(law, _BOX, _END)}",
+        SemiImplicitEuler(law, DT),
+        q,
+        p,
+        (0.0, _END),
+        seed,
+        expected,
+        _REPORTS,
+        {"t_eval": np.linspace(0.0, _END, 121)},
+        ("li-dead-zone",),
+    )
+
+
+SCENARIOS = {"dead-zone-leaders": _leaders}

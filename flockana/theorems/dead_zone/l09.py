@@ -1,0 +1,163 @@
+"""Erratum L9: leaders and pinned agents, which the text has and (9) has not."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.trajectory import Trajectory
+from flockana.environment.targets import CircleTarget, LinearTarget
+from flockana.interactions.dead_zone import DeadZoneInteraction
+from flockana.lattice import hexagonal_patch
+from flockana.laws.dead_zone import DeadZoneFlocking
+from flockana.laws.led_dead_zone import LedDeadZoneFlocking
+from flockana.laws.semi_implicit import SemiImplicitEuler
+from flockana.theorems.claims import equal, erratum, judged
+from flockana.theorems.dead_zone.parting import components_of
+from flockana.theorems.theorem import Claim, Tolerances
+
+_CLOSE = 0.02  # of a leader's speed: within it an agent's velocity is its leader's
+_APART = 30.0  # between two groups
+_ROUNDING = 1e-9  # of what steps of a fixed size come to, relative
+
+
+def led_run(leaders: tuple[Any, ...], centres: tuple[tuple[float, float], ...], *, told: bool = True) -> Trajectory:
+    """Seven agents about each centre, the middle one pinned to the leader of that number; for 60 time units."""
+    pair = DeadZoneInteraction()
+    q = np.concatenate([hexagonal_patch(1, pair.d1) + np.array(centre) for centre in centres])
+    middle = [k for k, centre in enumerate(np.repeat(np.array(centres), 7, axis=0)) if np.allclose(q[k], centre)]
+    group = np.arange(len(q)) // 7
+    law = LedDeadZoneFlocking(pair, leaders=leaders, group=group, pinned=middle, c1=2.0, c2=3.0, told=told)
+    return simulate(SemiImplicitEuler(law, 0.01), q, 0.0 * q, (0.0, 60.0), t_eval=[0.0, 54.0, 60.0])
+
+
+def _slip(run: Trajectory) -> FloatArray:
+    """‖p_i − p_l‖ at the last samples over the leader's speed, the largest of each sample."""
+    law = run.law.continuous
+    rows = []
+    for t, p in zip(run.t[1:], run.p[1:], strict=True):
+        told = law.ties.led(float(t))[1]
+        rows.append((np.linalg.norm(p - told, axis=1) / np.linalg.norm(told, axis=1)).max())
+    return np.array(rows)
+
+
+def _printed() -> Claim:
+    """Two agents that have different leaders, under (9): it has none, and bonds them."""
+    law, q, p = DeadZoneFlocking(), np.array([[0.0, 0.0], [8.0, 0.0]]), np.array([[-0.2, 0.0], [0.2, 0.0]])
+    bond = components_of(q, p, law).members[0].bond
+    return judged(
+        "printed",
+        -bond.margin,
+        bond.error,
+        stated="under (9) agents with different leaders do not match",
+        detail=f"(9) has no leader: two agents 8 m apart that should part at 0.4 m/s match for ever, as {bond.text}",
+    )
+
+
+@lru_cache(maxsize=1)
+def _runs() -> dict[str, Trajectory]:
+    straight, circle = LinearTarget((3.0, 0.0), (0.5, 0.0)), CircleTarget((-4.0, 0.0), 4.0, frequency=0.05)
+    apart = LinearTarget((0.0, 0.0), (-1.0, 0.0)), LinearTarget((_APART, 0.0), (1.0, 0.0))
+    return {
+        "one": led_run((straight,), ((0.0, 0.0),)),
+        "two": led_run(apart, ((0.0, 0.0), (_APART, 0.0))),
+        "told": led_run((circle,), ((0.0, 0.0),)),
+        "not told": led_run((circle,), ((0.0, 0.0),), told=False),
+    }
+
+
+def _follow(name: str, run: Trajectory, stated: str, what: str) -> Claim:
+    slip = float(_slip(run).max())
+    detail = f"{what} velocities are within {slip:.2g} of the leader's speed of it at t = {run.t[-1]:g}"
+    return judged(name, _CLOSE - slip, _ROUNDING, refutes=False, computed=slip, stated=stated, detail=detail)
+
+
+def _apart(run: Trajectory) -> Claim:
+    group = np.array(run.law.continuous.group)
+    first, second = (run.p[-1][group == leader].mean(axis=0) for leader in (0, 1))
+    difference = float(np.linalg.norm(first - second))
+    return judged(
+        "different-leaders",
+        difference / 2.0 - (1.0 - _CLOSE),
+        _ROUNDING,
+        computed=difference,
+        stated="agents with different leaders do not match, by the law with leaders",
+        detail=f"two groups {_APART:g} m apart whose leaders part at 2 m/s part at {difference:.4g}; of groups that "
+        "start mixed, agents that are not pinned are carried off by the other (scenario dead-zone-leaders)",
+    )
+
+
+def _fraction() -> Claim:
+    """A pinned agent on its leader, and one that is not pinned out of its range: neither ever feels a force."""
+    law = LedDeadZoneFlocking(leaders=(LinearTarget((0.0, 0.0), (-1.0, 0.0)),), group=(0, 0), pinned=(0,))
+    q, p = np.array([[0.0, 0.0], [20.0, 0.0]]), np.array([[-1.0, 0.0], [0.0, 0.0]])
+    force = float(np.abs(law.flow(0.0, q, p)[0]).max())
+    r = law.interaction.r
+    return judged(
+        "fraction",
+        -1.0 if force == 0.0 and q[1, 0] >= r else 1.0,
+        0.0,
+        stated="to pin a fraction of the agents makes all follow",
+        witness={"force": force, "distance": float(q[1, 0])},
+        detail=f"an agent at rest {q[1, 0]:g} m from the only pinned one, which leaves with its leader, feels nothing "
+        f"and never will: r = {r:g}. What counts is that each has a path in the net to a pinned one",
+    )
+
+
+def _check(tolerances: Tolerances) -> list[Claim]:
+    """What (9) does, the energy of a law with leaders, and that law with one leader, two, and one that turns."""
+    from flockana.symbolic.led_dead_zone import led_energy_identity
+
+    runs, identity = _runs(), led_energy_identity(2)
+    deaf = float(_slip(runs["not told"]).min())
+    return [
+        _printed(),
+        equal(
+            "energy",
+            list(identity.residuals),
+            stated="dH/dt = -k₂ pᵀL̂p within groups - c₂ Σ h_i ‖p_i - p_l‖² - Σ f_i·p_l, in the frames of the leaders",
+            detail="with one leader Σ f_i = 0 and H never rises; of different leaders neighbours feed or drain it",
+        ),
+        _follow(
+            "one-leader", runs["one"], "one agent of seven pinned makes all follow one leader", "with 1 of 7 pinned"
+        ),
+        _apart(runs["two"]),
+        _fraction(),
+        _follow("acceleration", runs["told"], "a leader that turns is followed if its acceleration is known", "told,"),
+        judged(
+            "acceleration-needed",
+            deaf - _CLOSE,
+            _ROUNDING,
+            computed=deaf,
+            stated="and it is not, if its acceleration is not known",
+            detail=f"without it some velocity is {deaf:.2g} of the leader's speed off, at t = 54 and t = 60",
+        ),
+    ]
+
+
+THEOREM = erratum(
+    "L9",
+    title="Leaders and pinned agents appear in the text, not in (9)",
+    statement=(
+        "Agents with different leaders are said not to match, and a pinned fraction of the agents to follow leaders "
+        "whose acceleration is known. (9) has neither leader nor pin: under it all neighbours match. A law with these "
+        "terms does so while each agent has a path in the net to a pinned one and groups keep out of each other's "
+        "range; that a fraction is pinned does not do."
+    ),
+    source="Li, Yuan and Liu, sections IV and VI",
+    check=_check,
+    references=("li-dead-zone",),
+    expected={
+        "printed": "refuted",
+        "energy": "verified",
+        "one-leader": "verified",
+        "different-leaders": "verified",
+        "fraction": "refuted",
+        "acceleration": "verified",
+        "acceleration-needed": "verified",
+    },
+)

@@ -1,0 +1,110 @@
+"""Erratum L10: the conclusion's necessary and sufficient conditions, of which the paper states none."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.dynamics.simulate import simulate
+from flockana.interactions.dead_zone import DeadZoneInteraction
+from flockana.laws.dead_zone import DeadZoneFlocking
+from flockana.measures.metrics import min_distance
+from flockana.theorems.claims import erratum, exact, judged
+from flockana.theorems.dead_zone.motions import parting_pair
+from flockana.theorems.dead_zone.parting import Component, components_of
+from flockana.theorems.rounding import EPS
+from flockana.theorems.theorem import Claim, Tolerances
+
+_INTEGRATED = 1e-6  # of an energy over ψ̄(r) after an integration to the usual tolerances
+_TIMES = 2.0  # as much energy as can put the pair out of range
+
+
+def wild_pair() -> tuple[DeadZoneFlocking, FloatArray, FloatArray]:
+    """Two agents in contact that leave each other with twice the energy that can put them out of range, much damped."""
+    law = DeadZoneFlocking(DeadZoneInteraction(), k2=10.0)
+    q = np.array([[0.0, 0.0], [law.interaction.d1, 0.0]])
+    rest = law.hamiltonian(0.0, q, np.zeros_like(q))
+    speed = float(np.sqrt(_TIMES * law.interaction.far_potential - rest))  # each: H = 2 · ½ v² + rest
+    return law, q, np.array([[-speed, 0.0], [speed, 0.0]])
+
+
+def energy_share(law: DeadZoneFlocking, q: FloatArray, p: FloatArray) -> float:
+    """H̄ over (n − 1) ψ̄(r): a connected flock stays so for ever if it is below 1."""
+    return law.hamiltonian(0.0, q, p) / ((len(q) - 1) * law.interaction.far_potential)
+
+
+def _excludes_nothing() -> bool:
+    """Whether the potential of a pair is finite at every distance > 0, so that every start has an energy H0."""
+    import sympy as sp
+
+    from flockana.symbolic.dead_zone import ETA_POSITIVE, K_DELTA, K_R, repulsive_primitive
+
+    s = sp.Symbol("s", positive=True)
+    values = [repulsive_primitive(s, eta=eta).subs({K_R: 1, K_DELTA: 1}) for eta in (ETA_POSITIVE, sp.Integer(0))]
+    return all(value.is_finite for value in values)
+
+
+def _check(tolerances: Tolerances) -> list[Claim]:
+    """The paper's condition on a pair that parts, and that of an energy, sufficient but not necessary."""
+    law, q, p = parting_pair()
+    run = simulate(law, q, p, (0.0, 10.0))
+    away = components_of(run.q[-1], run.p[-1], law)
+    wild, x, v = wild_pair()
+    share = energy_share(wild, x, v)
+    later = simulate(wild, x, v, (0.0, 10.0))
+    kept = components_of(later.q[-1], later.p[-1], wild).members[0].bond
+    calm = Component(law, x, 0.1 * v)
+    return [
+        judged(
+            "printed-sufficient",
+            -away.separation.margin,
+            away.separation.error,
+            stated="limited mismatch, inertia and energy H0 suffice for Theorem 1",
+            detail=f"two agents meet them, at H0 = {law.hamiltonian(0.0, q, p):.4g}, and part for ever: neither "
+            "cohesion nor one velocity (L4, L7)",
+        ),
+        exact(
+            "printed-necessary",
+            not _excludes_nothing(),
+            stated="the condition leaves some start out",
+            detail="a pair's potential is finite at every distance > 0: every start from distinct places meets it, so "
+            "that as a necessary condition it says nothing. No other is stated, nor the particular case",
+        ),
+        judged(
+            "sufficient",
+            calm.bond.margin,
+            calm.bond.error,
+            computed=energy_share(law, x, 0.1 * v),
+            stated="a condition that suffices: a connected flock with H̄ < (n - 1) ψ̄(r) stays connected and matches",
+            detail=f"two agents in contact that leave at {0.2 * v[1, 0]:.3g} m/s: {calm.bond.text}",
+        ),
+        judged(
+            "not-necessary",
+            min(share - 1.0, kept.margin),
+            kept.error + 64.0 * EPS + _INTEGRATED,
+            computed=share,
+            stated="and is not necessary: a flock with more energy may stay together all the same",
+            detail=f"two agents with H̄ = {share:.4g} ψ̄(r) leave at {2.0 * v[1, 0]:.3g} m/s, k₂ = 10; at t = 10 "
+            f"they are {min_distance(later.q[-1]):.3g} apart, and {kept.text.replace('its energy', 'the energy left')}",
+        ),
+    ]
+
+
+THEOREM = erratum(
+    "L10",
+    title="No necessary and sufficient conditions are obtained",
+    statement=(
+        "The conclusion has necessary and sufficient conditions for the particular case. The paper states one "
+        "condition, in Theorem 1: velocity mismatch, inertias and energy are limited. It does not suffice, and every "
+        "start from distinct places meets it. H̄(0) < (n - 1) ψ̄(r) suffices for a connected flock, and is not necessary."
+    ),
+    source="Li, Yuan and Liu, section VI",
+    check=_check,
+    references=("li-dead-zone",),
+    expected={
+        "printed-sufficient": "refuted",
+        "printed-necessary": "refuted",
+        "sufficient": "verified",
+        "not-necessary": "verified",
+    },
+)

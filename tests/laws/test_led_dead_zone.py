@@ -1,0 +1,147 @@
+"""The dead-zone law with leaders: against a transcription in plain loops, its energy, derivatives, what it refuses."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import cos, pi, sin
+
+import numpy as np
+import pytest
+
+from flockana import CircleTarget, LedDeadZoneFlocking, LinearTarget, RescaledVelocity, StaticTarget, rescale, simulate
+from flockana.base.errors import ArgumentError
+from flockana.dynamics.trajectory import Trajectory
+from flockana.interactions.dead_zone import DeadZoneInteraction
+from flockana.laws.dead_zone import DeadZoneFlocking
+from flockana.laws.semi_implicit import SemiImplicitEuler
+from flockana.symbolic.led_dead_zone import led_energy_identity
+
+LEADERS = CircleTarget((1.0, 2.0), 3.0, frequency=0.1, phase=0.4), LinearTarget((9.0, 0.0), (-0.5, 1.0))
+GROUP, PINNED = (0, 1, 0, 1, 0, 1), (0, 1, 4)
+LAW = LedDeadZoneFlocking(leaders=LEADERS, group=GROUP, pinned=PINNED, c1=0.7, c2=1.3, k2=0.9)
+
+
+def a_state(seed=3, box=12.0):
+    generator = np.random.default_rng(seed)
+    return generator.uniform(0.0, box, (6, 2)), generator.uniform(-1.0, 1.0, (6, 2))
+
+
+def transcribed(t, q, p, *, told=True):
+    """u_i by loops over agents; the circle's acceleration by hand."""
+    angle, rate = 2.0 * pi * 0.1 * t + 0.4, 2.0 * pi * 0.1
+    turn = np.array((cos(angle), sin(angle)))
+    led = [
+        (np.array((1.0, 2.0)) + 3.0 * turn, 3.0 * rate * np.array((-turn[1], turn[0])), -3.0 * rate**2 * turn),
+        (np.array((9.0, 0.0)) + t * np.array((-0.5, 1.0)), np.array((-0.5, 1.0)), np.zeros(2)),
+    ]
+    u = np.zeros_like(q)
+    for i in range(6):
+        place, velocity, bend = led[GROUP[i]]
+        for j in range(6):
+            rho = float(np.linalg.norm(q[j] - q[i]))
+            if j == i or rho >= 15.0:
+                continue
+            u[i] += LAW.interaction.force(rho) * (q[j] - q[i]) / rho
+            if GROUP[i] == GROUP[j]:
+                u[i] += 0.9 * (p[j] - p[i])
+        if i in PINNED:
+            u[i] += 0.7 * (place - q[i]) + 1.3 * (velocity - p[i])
+        if told:
+            u[i] += bend
+    return u
+
+
+@pytest.mark.parametrize("told", [True, False])
+@pytest.mark.parametrize("seed", [3, 4])
+def test_the_input_is_that_of_its_formula(told, seed):
+    q, p = a_state(seed)
+    law = replace(LAW, told=told)
+    np.testing.assert_allclose(law.acceleration(0.7, q, p), transcribed(0.7, q, p, told=told), rtol=1e-11, atol=1e-11)
+
+
+@pytest.mark.parametrize("told", [True, False])
+def test_the_rate_is_that_of_the_energy_along_the_flow(told):
+    q, p = a_state()
+    law, t, h = replace(LAW, told=told), 0.7, 1e-5
+    u, rate = law.flow(t, q, p)
+    ahead, back = (law.energy(t + s, q + s * p + 0.5 * s * s * u, p + s * u) for s in (h, -h))
+    assert rate == pytest.approx((ahead - back) / (2.0 * h), rel=1e-7)
+
+
+@pytest.mark.parametrize("m", [1, 2, 3])
+@pytest.mark.parametrize("told", [True, False])
+def test_the_identity_of_the_energy_is_derived(m, told):
+    assert led_energy_identity(m, told=told).holds
+
+
+def test_with_one_leader_the_energy_falls_by_the_dissipation_alone():
+    law = replace(LAW, leaders=LEADERS[:1], group=(0,) * 6)
+    q, p = a_state()
+    slip = p - law.ties.led(0.3)[1]
+    near = np.linalg.norm(q[:, None] - q[None], axis=2) < 15.0
+    matched = sum(0.5 * near[i, j] * np.sum((p[i] - p[j]) ** 2) for i in range(6) for j in range(6))
+    lost = 0.9 * matched + 1.3 * sum(np.sum(slip[i] ** 2) for i in PINNED)
+    assert law.energy_rate(0.3, q, p) == pytest.approx(-lost, rel=1e-9)
+
+
+def test_without_leaders_that_move_or_pins_it_is_equation_9():
+    law = LedDeadZoneFlocking(k2=0.9, leaders=(StaticTarget((3.0, 3.0)),), group=(0,) * 6)
+    plain, (q, p) = DeadZoneFlocking(k2=0.9), a_state()
+    np.testing.assert_allclose(law.acceleration(0.0, q, p), plain.acceleration(0.0, q, p), rtol=1e-12, atol=1e-12)
+
+
+def test_the_derivatives_are_those_of_the_input():
+    q, p = a_state()
+    by_position, by_velocity = (each.toarray() for each in LAW.derivatives(0.2, q, p))
+    way = np.random.default_rng(0).standard_normal(q.shape)
+    h = 1e-6
+    found = (LAW.flow(0.2, q + h * way, p)[0] - LAW.flow(0.2, q - h * way, p)[0]).ravel() / (2.0 * h)
+    np.testing.assert_allclose(by_position @ way.ravel(), found, rtol=1e-6, atol=1e-5)
+    found = (LAW.flow(0.2, q, p + way)[0] - LAW.flow(0.2, q, p - way)[0]).ravel() / 2.0
+    np.testing.assert_allclose(by_velocity @ way.ravel(), found, rtol=1e-10, atol=1e-10)
+
+
+def test_other_units_and_files_keep_it(tmp_path):
+    q, p = a_state()
+    scaled = rescale(LAW, length=1000.0, time=60.0)
+    here, there = LAW.acceleration(0.7, q, p), scaled.acceleration(42.0, 1000.0 * q, 1000.0 / 60.0 * p)
+    np.testing.assert_allclose(there, here * 1000.0 / 3600.0, rtol=1e-9)
+    run = simulate(SemiImplicitEuler(LAW, 0.01), q, p, (0.0, 1.0))
+    run.save(tmp_path / "led.nc")
+    assert Trajectory.load(tmp_path / "led.nc").law == run.law
+
+
+def test_what_it_measures():
+    q = np.array([[[0.0, 0.0], [4.0, 0.0]]])
+    law = LedDeadZoneFlocking(leaders=(StaticTarget((0.0, 3.0)),), group=(0, 0))
+    run = Trajectory(np.array([0.0]), q, np.array([[[0.0, 0.0], [0.0, 2.0]]]), 0.0 * q, law)
+    assert (run.metric("leader_distance")[0], run.metric("leader_slip")[0]) == (5.0, 2.0)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"interaction": DeadZoneInteraction(ramp=0.0)}, "ramp = 0: expected a ramp"),
+        ({"interaction": 3.0}, "interaction = 3.0: expected DeadZoneInteraction"),
+        ({"c1": -1.0}, "c1 = -1: expected a gain >= 0"),
+        ({"leaders": ()}, r"leaders = \(\): expected one or more"),
+        ({"leaders": LEADERS[0]}, "expected one or more"),
+        ({"leaders": (RescaledVelocity(LEADERS[0], 0.5), LEADERS[1])}, "with its true velocity"),
+        ({"leaders": (StaticTarget((0.0, 0.0), (1.0, 0.0)), LEADERS[1])}, "with its true velocity"),
+        ({"group": (0, 2, 0, 1, 0, 1)}, "group has 2: expected the number of a leader, 0 to 1"),
+        ({"pinned": (6,)}, "pinned has 6: expected an agent, 0 to 5"),
+    ],
+)
+def test_what_it_refuses(change, words):
+    with pytest.raises(ArgumentError, match=words):
+        replace(LAW, **change)
+
+
+def test_flocks_it_is_not_for():
+    q, p = a_state()
+    with pytest.raises(ArgumentError, match="group has 6 entries but there are 5 agents"):
+        LAW.acceleration(0.0, q[:5], p[:5])
+    with pytest.raises(ArgumentError, match="a leader has 2 components but the agents have 3"):
+        LAW.acceleration(0.0, np.zeros((6, 3)), np.zeros((6, 3)))
+    with pytest.raises(ArgumentError, match="agents 0 and 1 coincide"):
+        simulate(LAW, np.zeros((6, 2)), p, (0.0, 1.0))

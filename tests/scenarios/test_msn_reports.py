@@ -1,0 +1,62 @@
+"""What the MSN project reports, judged on planted runs whose truth is plain."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from flockana.dynamics.trajectory import Trajectory
+from flockana.environment.targets import StaticTarget
+from flockana.interactions import AlphaInteraction, Gains
+from flockana.laws.olfati_saber import Algorithm2
+from flockana.scenarios.msn_reports import DT, REPORTS, STATIC
+from flockana.theorems import Tolerances
+
+LAW = Algorithm2(AlphaInteraction(d=15.0, r=18.0), Gains(), StaticTarget((0.0, 0.0)))
+
+
+def judged(case, name, q, p=None):
+    """A report's claim on places (T, n, 2) at iterations 0, 100, 200 ..."""
+    check = next(report.check for report in (*REPORTS.get(case, ()), *STATIC) if report.name == name)
+    q = np.asarray(q, dtype=float)
+    run = Trajectory(100 * DT * np.arange(len(q)), q, 0.0 * q if p is None else p, 0.0 * q, LAW)
+    return check(run, Tolerances())
+
+
+def row(*x):
+    return [(each, 0.0) for each in x]
+
+
+@pytest.mark.parametrize(("case", "last"), [(3, 1), (4, 1)])
+def test_an_agent_that_leaves_the_net_for_one_sample_has_separated(case, last):
+    together, apart = row(0.0, 15.0, 30.0), row(0.0, 15.0, 34.0)
+    claim = judged(case, "separated", [apart, together, apart, together])
+    assert (claim.status, claim.computed) == ("verified", last)
+    assert judged(case, "separated", [apart, together, together]).status == "refuted"  # the start does not count
+
+
+def test_the_fast_agent_is_told_with_its_neighbours():
+    q = np.array([row(0.0, 15.0, 30.0)] * 3)
+    p = np.zeros_like(q)
+    p[2, 1] = (9.0, 0.0)
+    assert "has 2 neighbours, 15 from the γ-agent, where the flock is 0 to 30" in judged(4, "separated", q, p).detail
+
+
+@pytest.mark.parametrize(
+    ("width", "status"), [(30.0, "verified"), (40.0, "verified"), (61.0, "refuted"), (19.0, "refuted")]
+)
+def test_width_against_the_period(width, status):
+    claim = judged(3, "width", [row(0.0, 999.0), row(0.0, width), row(5.0, 5.0 + width)])
+    assert (claim.status, claim.computed) == (status, pytest.approx(width / 40.0))
+
+
+def test_full_rank_counts_every_sample():
+    assert judged(2, "full-rank", [row(0.0, 15.0)] * 3).status == "verified"
+    claim = judged(2, "full-rank", [row(0.0, 15.0), row(0.0, 20.0), row(0.0, 15.0)])
+    assert (claim.status, claim.computed) == ("refuted", 0.0)
+
+
+def test_coincident_pairs_mean_that_it_does_not_work():
+    assert judged(0, "alpha-exceeds-gamma", [row(0.0, 15.0, 15.0)]).computed == 1
+    assert judged(0, "alpha-exceeds-gamma", [row(0.0, 15.0, 15.0)]).status == "refuted"
+    assert judged(0, "alpha-exceeds-gamma", [row(0.0, 15.0, 15.1)]).status == "verified"
