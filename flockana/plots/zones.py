@@ -85,7 +85,7 @@ def zones(
     if m == 2:
         _world(axes, law.world, buffer=law.obstacle_zone == "buffer")
         if law.obstacle_zone == "triangle":
-            _triangles(axes, q, heading, law)
+            _triangles(axes, q, trajectory.p[k], heading, law)
     else:
         _space(axes, law.world)
     pairs = links(q, float(np.nextafter(law.radii.reach[2], np.inf)))
@@ -127,10 +127,10 @@ def _corners(world: ZoneWorld, m: int) -> FloatArray:
     return np.vstack(seen)
 
 
-def _triangles(ax: Any, q: FloatArray, heading: FloatArray, law: ZoneFlocking) -> None:
+def _triangles(ax: Any, q: FloatArray, p: FloatArray, heading: FloatArray, law: ZoneFlocking) -> None:
     """The obstacle zone ahead of every agent that has a heading."""
-    _, c, a, _ = law.radii.arrays(len(q))
-    ahead = heading * (a if law.zone_length == "attraction" else c)[:, None]
+    _, c, _, _ = law.radii.arrays(len(q))
+    ahead = heading * law.altitudes(p)[:, None]
     aside = law.base * c[:, None] * np.column_stack([heading[:, 1], -heading[:, 0]])
     corners = np.stack([q + ahead, q + aside, q - aside], axis=1)[heading.any(axis=1)]
     ax.add_collection(PolyCollection(list(corners), facecolors=BLUE, edgecolors=BLUE, alpha=0.25, linewidths=0.6))
