@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
 
@@ -40,10 +40,33 @@ def pictures_of_laws() -> tuple[tuple[tuple[type, ...], Callable[[Trajectory], t
     return tuple((module.LAWS, module.pictures) for module in modules("flockana.report", ending="_figures"))
 
 
-def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
-    """Draw a run: by the ``*_figures`` module that names its law among its ``LAWS``, else as any flock is drawn."""
+def pictures(trajectory: Trajectory, instants: Sequence[float] = ()) -> tuple[Picture, ...]:
+    """Draw a run: by the ``*_figures`` module that names its law among its ``LAWS``, else as any flock is drawn.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The run.
+    instants : sequence of float
+        Times at which its source shows the flock: they come first, the sample nearest to each.
+    """
     draw = next((own for laws, own in pictures_of_laws() if isinstance(trajectory.law, laws)), flock_pictures)
-    return draw(trajectory)
+    return (*((_captures(trajectory, instants),) if len(instants) else ()), *draw(trajectory))
+
+
+def _captures(run: Trajectory, instants: Sequence[float]) -> Picture:
+    """The flock at so many instants, in rows of three or four."""
+    columns = 3 if len(instants) <= 6 else 4
+    rows = -(-len(instants) // columns)
+
+    def draw(figure: Figure) -> None:
+        for k, time in enumerate(instants):
+            ax = figure.add_subplot(rows, columns, k + 1, projection="3d" if run.m == 3 else None)
+            plots.snapshot(run, time, ax=ax, bar=(k + 1) % columns == 0)
+
+    shown = f"As many instants as the source shows, {len(instants)}"
+    caption = f"{shown}: the sample nearest to each, drawn as in the next figure."
+    return Picture(caption, png(draw, (13.0, rows * (13.0 / columns))))
 
 
 def flock_pictures(trajectory: Trajectory) -> tuple[Picture, ...]:

@@ -164,7 +164,7 @@ def page(result: ScenarioResult | FixedResult, *, figures: bool = True) -> Page:
         scenario.source,
         _facts(scenario, run),
         tuple(_scenario_finding(scenario, verdict) for verdict in result.verdicts),
-        pictures(run) if figures else (),
+        pictures(run, scenario.instants) if figures else (),
         trouble,
     )
 

@@ -26,6 +26,7 @@ _PRINTED = (
     "Euler steps of 0.01 for 200 time units."
 )
 _SAMPLES = 401
+_FIGURE_3 = (0.0, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0)  # shares of the run: Fig. 3 (a)-(h) are eight, times ours
 
 
 def _law(run: Trajectory) -> DeadZoneFlocking:
@@ -132,6 +133,7 @@ def _scenario(
         ("li-dead-zone",),
         seeds,
         settings,
+        instants=() if flow else tuple(share * t_end for share in _FIGURE_3),
     )
 
 

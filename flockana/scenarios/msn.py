@@ -28,7 +28,8 @@ from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.theorem import Status
 
-DT, ITERATIONS = 0.009, 540
+DT, UPDATES = 0.009, 539  # range(540), whose first iteration moves nobody
+CAPTURES = (0, 90, 180, 270, 360, 450)  # iterations: every 540/6
 _ALPHA = AlphaInteraction(d=15.0, r=18.0, eps=0.1, h=0.1, a=3.0, b=3.0)
 _N, _CENTRE = 100, (50.0, 50.0)
 _FREQUENCY = 0.025 / 5.0 / DT  # 0.025 cycles per unit of i/5
@@ -235,7 +236,7 @@ def _expected(case: int, *, printed: bool) -> dict[str, Status]:
     source: dict[str, Status] = {"source": spikes, "source:spikes": spikes, "source:connected": "verified"}
     source["source:amplitude" if case == 3 else "source:circle"] = "verified"
     theorems: dict[str, Status] = {
-        "os-3": "inconclusive",  # 4.86 time units are too short for a limit; nothing that can be refuted is
+        "os-3": "inconclusive",  # 4.851 time units are too short for a limit; nothing that can be refuted is
         "os-3:i": "verified",
         "os-3:ii": "inconclusive",
         "os-3:iii": "inconclusive",
@@ -254,9 +255,10 @@ def _case(case: int, *, printed: bool) -> Callable[[int], Scenario]:
     reports = in_source_units(lambda: continuous.scales, _REPORTS[case])
     law: Law | DiscreteLaw = MSNDiscretisation(continuous, DT) if printed else continuous
     how = (
-        "as the project ran it: agent by agent in place, with its position update (E9), 540 steps of 0.009"
+        "as the project ran it: agent by agent in place, with its position update (E9), 539 steps of 0.009 (the first "
+        "of its 540 iterations moves nobody)"
         if printed
-        else "as a continuous system, over the same 4.86 time units"
+        else "as a continuous system, over the same 4.851 time units"
     )
 
     def build(seed: int = 0) -> Scenario:
@@ -269,12 +271,13 @@ def _case(case: int, *, printed: bool) -> Callable[[int], Scenario]:
             law,
             q,
             np.zeros_like(q),
-            (0.0, ITERATIONS * DT),
+            (0.0, UPDATES * DT),
             seed,
             _expected(case, printed=printed),
             reports,
             references=("isola-2024", "olfati-saber-2006"),
             shipped={"source": "verified"} if case == 2 else {},  # of some starts the swing is another
+            instants=tuple(i * DT for i in CAPTURES),
         )
 
     return build

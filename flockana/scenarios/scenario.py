@@ -76,6 +76,13 @@ class Scenario:
         Whose settings they are, beside these shares.
     shipped : mapping of str to str
         Statuses expected of the start with seed 0 alone, as other starts come to others: there `expected` has them too.
+    instants : tuple of float
+        Times within t_span at which the report shows the flock, because its source does so; empty for the usual three.
+
+    Raises
+    ------
+    ArgumentError
+        If an instant lies outside t_span.
 
     Examples
     --------
@@ -98,8 +105,12 @@ class Scenario:
     seeds: int = 0
     settings: str = ""
     shipped: Mapping[str, Status] = field(default_factory=dict)
+    instants: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
+        outside = [time for time in self.instants if not self.t_span[0] <= time <= self.t_span[1]]
+        if outside:
+            raise ArgumentError(f"instants = {self.instants!r}: expected times within t_span = {self.t_span}")
         if self.seed == 0:
             object.__setattr__(self, "expected", {**self.expected, **self.shipped})
 
@@ -173,6 +184,7 @@ class Scenario:
             q0=self.q0 * length,
             p0=self.p0 * (length / time),
             t_span=times(self.t_span, time),
+            instants=times(self.instants, time),
             options={
                 key: times(value, factors[key]) if key in factors else value for key, value in self.options.items()
             },

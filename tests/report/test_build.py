@@ -3,6 +3,7 @@ from __future__ import annotations
 import base64
 import json
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 from io import BytesIO
 
@@ -110,6 +111,13 @@ def test_the_page_is_whole_self_contained_and_escaped(result, tmp_path):
     ):
         assert words in text
     assert not list(written.parent.glob(".*partial"))
+
+
+def test_a_scenarios_own_instants_come_first(result):
+    assert "instants" not in page(result).pictures[0].caption
+    shown = page(replace(result, scenario=replace(result.scenario, instants=(0.0, 0.2, 0.5, 1.0)))).pictures
+    assert len(shown) == 1 + len(page(result).pictures)
+    assert "as the source shows, 4" in shown[0].caption
 
 
 def test_json_holds_every_verdict_and_is_strict(result):

@@ -71,7 +71,8 @@ def test_the_msn_cases_are_as_printed(suffix):
         assert entry.q0.shape == (100, 2)
         assert 0.9 * side < entry.q0.max() < side
         assert not entry.p0.any()
-        assert entry.t_span == (0.0, pytest.approx(4.86))
+        assert entry.t_span == (0.0, pytest.approx(4.851))  # range(540), of which i = 0 only draws
+        assert entry.instants == tuple(i * 0.009 for i in (0, 90, 180, 270, 360, 450))
         alpha = entry.law.alpha
         assert (alpha.d, alpha.r, alpha.eps, alpha.h, alpha.a, alpha.b) == (15.0, 18.0, 0.1, 0.1, 3.0, 3.0)
         gains[case] = entry.law.gains
@@ -94,6 +95,19 @@ def test_the_msn_gamma_agents_at_iteration_i(i):
     q, p = scenario("msn-case4").law.target.state(0.009 * i)
     np.testing.assert_allclose(q, (50 + 100 * np.cos(angle), 50 + 100 * np.sin(angle)), atol=1e-9)
     np.testing.assert_allclose(p, 100 * 2 * pi * 0.025 / 5 * np.array((-np.sin(angle), np.cos(angle))), atol=1e-9)
+
+
+def test_the_projects_map_makes_539_updates():
+    run = scenario("msn-case2-printed").run()
+    assert len(run.t) == 540
+    np.testing.assert_allclose(run.t, 0.009 * np.arange(540), rtol=1e-14)
+
+
+def test_instants_lie_within_the_run_and_follow_its_unit_of_time():
+    entry = replace(scenario("hexagon"), t_span=(0.0, 2.0), instants=(0.0, 2.0))
+    assert rescale(entry, time=1000.0).instants == (0.0, 2000.0)
+    with pytest.raises(ArgumentError, match=r"instants = \(0.0, 2.5\): expected times within t_span = \(0.0, 2.0\)"):
+        replace(entry, instants=(0.0, 2.5))
 
 
 def test_three_agents_have_the_energy_of_the_erratum():
