@@ -337,12 +337,17 @@ class ZoneFlocking(DiscreteLaw):
         """
         speeds = np.linalg.norm(ensure_points("p", p), axis=1)
         r, c, a, _ = self.radii.arrays(len(speeds))
-        by_speed = r + (a - r) * np.minimum(1.0, speeds / self.v_max)
-        return {"conflict": c, "attraction": a, "speed": by_speed}[self.zone_length]
+        by_speed: FloatArray = r + (a - r) * np.minimum(1.0, speeds / self.v_max)
+        lengths = {"conflict": c, "attraction": a, "speed": by_speed}
+        return lengths[self.zone_length]
 
     def _state(self, q: FloatArray, memory: Mapping[str, Any]) -> tuple[Any, ...]:
         """Fresh copies of (heading, estimate, reach, alien), and the number of the next step."""
-        whole = {"reach": self.radii.arrays(len(q))[2], "alien": np.empty((0, q.shape[1])), "step": 0} | dict(memory)
+        whole: dict[str, Any] = {
+            "reach": self.radii.arrays(len(q))[2],
+            "alien": np.empty((0, q.shape[1])),
+            "step": 0,
+        } | dict(memory)
         names = ("heading", "estimate", "reach", "alien")
         return *(np.array(whole[name], float) for name in names), int(whole["step"])
 
@@ -352,8 +357,8 @@ class ZoneFlocking(DiscreteLaw):
     def _constants(self, n: int, m: int) -> tuple[compiled.Zones, compiled.Settings, compiled.Choices, compiled.World]:
         """What the compiled step reads beside the state."""
         gains = self.weights.cohesion_gain, self.weights.alignment_gain
-        chance = self.noise.weights, self.noise.velocities, self.noise.seed
+        chance = self.noise.weights, self.noise.velocities
         own = self.dt, self.desired_speed, self.u_max, self.v_max
-        settings = compiled.Settings(*own, *gains, self.base, self.growth, *chance)
+        settings = compiled.Settings(*own, *gains, self.base, self.growth, *chance, seed=self.noise.seed)
         choices = compiled.Choices(**{name: names.index(getattr(self, name)) for name, names in CHOICES.items()})
         return self._zones(n), settings, choices, self.world.arrays(m, buffer=self.obstacle_zone == "buffer")
