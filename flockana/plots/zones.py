@@ -17,6 +17,7 @@ from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.measures.nets import links
 from flockana.plots.obstacles import bounds
 from flockana.plots.obstacles import obstacles as draw_obstacles
+from flockana.plots.series import pair_distances
 from flockana.plots.snapshot import configuration, draw_sample, in_view, velocity_arrows
 from flockana.plots.style import (
     BLUE,
@@ -38,6 +39,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from flockana.dynamics.trajectory import Trajectory
+
+_AS_LINES = 5000  # pairs
 
 
 def _law(trajectory: Trajectory) -> ZoneFlocking:
@@ -169,6 +172,8 @@ def _space(ax: Any, world: ZoneWorld) -> None:
 def zone_distances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     """Draw the distances of all pairs over time, the least of them, and the radii of the zones.
 
+    Of more than some hundred agents the profile is drawn (`pair_distances`), as lines would be one blot.
+
     Parameters
     ----------
     trajectory : Trajectory
@@ -182,12 +187,15 @@ def zone_distances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     """
     law, ax = _law(trajectory), ensure_axes(ax)
     first, second = np.triu_indices(trajectory.n, 1)
-    apart = np.linalg.norm(trajectory.q[:, first] - trajectory.q[:, second], axis=2)
-    width, alpha = hairline(2 * max(1, first.size))
-    ax.plot(trajectory.t, apart, color=BLUE, linestyle="-", linewidth=width, alpha=alpha)
-    ax.plot([], [], color=BLUE, linestyle="-", linewidth=0.8, label="pairs")
-    if first.size:
-        ax.plot(trajectory.t, apart.min(axis=1), color=INK, linestyle="-", linewidth=1.3, label="least (D)")
+    if first.size > _AS_LINES:
+        pair_distances(trajectory, ax=ax)
+    else:
+        apart = np.linalg.norm(trajectory.q[:, first] - trajectory.q[:, second], axis=2)
+        width, alpha = hairline(2 * max(1, first.size))
+        ax.plot(trajectory.t, apart, color=BLUE, linestyle="-", linewidth=width, alpha=alpha)
+        ax.plot([], [], color=BLUE, linestyle="-", linewidth=0.8, label="pairs")
+        if first.size:
+            ax.plot(trajectory.t, apart.min(axis=1), color=INK, linestyle="-", linewidth=1.3, label="least (D)")
     looks = (("r", VERMILLION, "--"), ("c", PURPLE, "-."), ("a", GREEN, ":"))
     for radius, (name, colour, dash) in zip(law.radii.reach, looks, strict=True):
         ax.axhline(radius, color=colour, linestyle=dash, linewidth=1.1, label=name)

@@ -41,7 +41,8 @@ _UNBOUNDED = 1e6  # an input bound that never acts
 _INFORMED = 2
 _HAZARD = (12.0, 15.0, 20.0)  # w^ss of three agents that meet an alien
 _GIVES_WAY = ((2.0, 20.0), (20.0, 2.0))  # w^ls of each of a pair
-_DRIVE, _SPEED, _SEEN, _FAR = 10.0, 3.0, 6.0, 200.0  # w^ga, v^d, s, and how far off the pairs are
+_DRIVE, _SPEED, _SEEN = 10.0, 3.0, 6.0  # w^ga, v^d, s
+_OFF, _LANES = 20.0, (-20.0, -35.0)  # how far from the alien they begin, and where the pairs meet
 _AS_FAR = 1e-3  # of s: how exactly an agent keeps its distance
 _MOVED = 1e-3  # of a: what counts as another run
 
@@ -129,10 +130,10 @@ def _two_fragments(seed: int) -> tuple[FloatArray, FloatArray]:
 
 def _head_on() -> tuple[FloatArray, FloatArray]:
     """Three agents that run at the origin, and far off two pairs that run at each other."""
-    at = [(-_FAR / 10.0, 0.0), (_FAR / 10.0, 0.0), (0.0, _FAR / 10.0)]
-    q = [*at, *((x, y) for y in (_FAR, 2.0 * _FAR) for x in (-10.0, 10.0))]
-    p = [(-x / (_FAR / 10.0) * _SPEED, -y / (_FAR / 10.0) * _SPEED) for x, y in at]
-    return np.array(q), np.array([*p, *((way * _SPEED, 0.0) for _ in range(2) for way in (1.0, -1.0))])
+    directions = np.array([[-1.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+    pairs = [(x, y) for y in _LANES for x in (-10.0, 10.0)]
+    ways = [(way * _SPEED, 0.0) for _ in _LANES for way in (1.0, -1.0)]
+    return np.vstack([_OFF * directions, pairs]), np.vstack([-_SPEED * directions, ways])
 
 
 def _own_weights() -> ZoneFlocking:
@@ -271,7 +272,7 @@ def _individual(seed: int = 0) -> Scenario:
         "v^d = 3, neither cohesion nor alignment. Nothing is random.",
         _own_weights(),
         _head_on(),
-        30.0,
+        20.0,
         seed,
         _INDIVIDUAL,
         {"source": "verified"},
