@@ -38,7 +38,7 @@ def _at_rest() -> Claim:
         stated="in a box separated agents eventually reunite",
         witness={"q": q.tolist(), "p": "0"},
         detail="two agents at rest, farther apart than a_i and than c_i from the walls: every behaviour is exactly "
-        "zero, and they stay where they are",
+        "zero (at rest (5) is 0/0, and read as 0), and they stay where they are",
     )
 
 
