@@ -60,7 +60,10 @@ def test_two_fragments_run_apart():
 def test_own_weights_are_heard():
     """Doctored: equal weights for all give way to nobody, and other distances from the alien."""
     run = ran("zone-individual")
-    assert claim_of("zone-individual", run, "hazards").computed == pytest.approx([3.5, 4.0, 4.5], abs=1e-6)
+    kept, way = (claim_of("zone-individual", run, name) for name in ("hazards", "gives-way"))
+    assert kept.status == way.status == "verified"
+    assert kept.computed == pytest.approx([6.0 - 30.0 / w for w in (12.0, 15.0, 20.0)], abs=1e-6)
+    np.testing.assert_allclose(way.computed, [[3.0, 3.0], [-3.0, -3.0]], rtol=1e-6)  # as who heeds less began
     turned = run.p.copy()
     turned[-1, 4] *= -1.0
     assert claim_of("zone-individual", replace(run, p=turned), "gives-way").status == "refuted"
