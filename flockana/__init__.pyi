@@ -38,6 +38,7 @@ from .interactions import BetaInteraction as BetaInteraction
 from .interactions import DeadZoneInteraction as DeadZoneInteraction
 from .interactions import Gains as Gains
 from .interactions import PairInteraction as PairInteraction
+from .interactions import ZoneNoise as ZoneNoise
 from .interactions import ZoneRadii as ZoneRadii
 from .interactions import ZoneWeights as ZoneWeights
 from .lammps.dump import read_lammps as read_lammps

@@ -118,7 +118,7 @@ class ZoneWorld:
     @property
     def alien_starts(self) -> FloatArray:
         """Where the aliens begin, shape (K, m); without any, (0, 0)."""
-        return np.array([alien.start for alien in self.aliens]).reshape(len(self.aliens), -1)
+        return np.array([alien.start for alien in self.aliens]) if self.aliens else np.empty((0, 0))
 
     def arrays(self, m: int, *, buffer: bool = False) -> World:
         """The world as the compiled step reads it.

@@ -5,6 +5,7 @@ from flockana.interactions.beta import BetaInteraction
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.interactions.gains import Gains
 from flockana.interactions.pair import PairInteraction
+from flockana.interactions.zone_noise import ZoneNoise
 from flockana.interactions.zones import ZoneRadii, ZoneWeights
 
 __all__ = [
@@ -13,6 +14,7 @@ __all__ = [
     "DeadZoneInteraction",
     "Gains",
     "PairInteraction",
+    "ZoneNoise",
     "ZoneRadii",
     "ZoneWeights",
 ]

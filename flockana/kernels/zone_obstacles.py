@@ -121,7 +121,7 @@ def obstacle_terms(x, h, moving, depth, half, c, world, choices, out):
         Position and unit heading; `moving` is False where there is no heading, and then there is no zone either.
     """
     m, buffer = x.size, choices.obstacle_zone == 1
-    outward, repulsive, literal = choices.inside == 0, choices.obstacle_force == 0, choices.trigger == 1
+    outward, repulsive, literal = choices.inside == 0, choices.obstacle_force != 2, choices.trigger == 1
     for k in range(m):
         out[k] = 0.0
     for o in range(world.starts.size - 1):
@@ -162,7 +162,7 @@ def obstacle_terms(x, h, moving, depth, half, c, world, choices, out):
 def _walls(x, h, moving, depth, half, c, box, choices, out):
     """Add one term for each wall that the zone reaches, or for the nearest of them."""
     buffer, nearest, least = choices.obstacle_zone == 1, choices.walls == 1, inf
-    outward, repulsive = choices.inside == 0, choices.obstacle_force == 0
+    outward, repulsive = choices.inside == 0, choices.obstacle_force != 2
     axis, force = -1, 0.0
     for k in range(x.size):
         for side in range(2):

@@ -7,7 +7,7 @@ cells and summed in the order of their indices, so that the sums are those over 
 
 from __future__ import annotations
 
-from math import sqrt, tanh
+from math import inf, sqrt, tanh
 from typing import NamedTuple
 
 import numpy as np
@@ -15,10 +15,13 @@ import numpy.typing as npt
 
 from flockana.kernels.candidates import gather, sort_into_cells
 from flockana.kernels.compiling import njit
+from flockana.kernels.noise import noise
 from flockana.kernels.zone_obstacles import obstacle_terms, to_boundary
 
 FloatArray = npt.NDArray[np.float64]
 COHESION, ALIGNMENT, SEPARATION, STRATEGIC, OBSTACLE, SPEED = range(6)
+_VELOCITY = 6  # the channel of noise that is no behaviour's
+_ROOT_3 = sqrt(3.0)  # over the deviation of what is uniform in (−1, 1)
 _NEAR_ZERO = 1e-4  # below it tanh(x)/x is 1 − x²/3 to rounding: the next term is 2x⁴/15
 
 
@@ -47,6 +50,10 @@ class Settings(NamedTuple):
     cohesion_gain: float
     alignment_gain: float
     base: float
+    growth: float
+    weight_noise: float
+    velocity_noise: float
+    seed: int
 
 
 class Choices(NamedTuple):
@@ -100,10 +107,21 @@ def _weight(table, i, j):
 
 
 @njit(cache=True)
-def _neighbours(i, near, q, p, zones, settings, bearing, out):
-    """Cohesion, alignment and separation of agent i; nobody but those in `near` is within its zones."""
+def _trembling(settings, step, i, j, behaviour):
+    """Factor of a weight in this step."""
+    if settings.weight_noise == 0.0:
+        return 1.0
+    return 1.0 + settings.weight_noise * noise(settings.seed, step, i, j, behaviour)
+
+
+@njit(cache=True)
+def _neighbours(i, near, q, p, a, step, zones, settings, bearing, out):
+    """Cohesion, alignment and separation of agent i; nobody but those in `near` is within its zones.
+
+    Returns the least distance of those who attract it, infinite without any.
+    """
     m = q.shape[1]
-    r, c, a = zones.r[i], zones.c[i], zones.a[i]
+    r, c, nearest = zones.r[i], zones.c[i], inf
     total_c, total_a = 0.0, 0.0
     for j in near:
         if j == i:
@@ -115,12 +133,14 @@ def _neighbours(i, near, q, p, zones, settings, bearing, out):
         if d > a or d == 0.0:
             continue
         if d <= c:
-            w = _weight(zones.separation, i, j) * (d - c)
+            w = _weight(zones.separation, i, j) * _trembling(settings, step, i, j, SEPARATION) * (d - c)
             for k in range(m):
                 out[SEPARATION, k] += w * ((q[j, k] - q[i, k]) / d)
         if d <= r:
             continue
-        w_c, w_a = _weight(zones.cohesion, i, j), _weight(zones.alignment, i, j)
+        nearest = min(nearest, d)
+        w_c = _weight(zones.cohesion, i, j) * _trembling(settings, step, i, j, COHESION)
+        w_a = _weight(zones.alignment, i, j) * _trembling(settings, step, i, j, ALIGNMENT)
         total_c += w_c
         total_a += w_a
         if not bearing:
@@ -140,10 +160,11 @@ def _neighbours(i, near, q, p, zones, settings, bearing, out):
         own_q, own_p = (0.0, 0.0) if bearing else (q[i, k], p[i, k])
         out[COHESION, k] = settings.cohesion_gain * (out[COHESION, k] / total_c - own_q) if total_c > 0.0 else 0.0
         out[ALIGNMENT, k] = settings.alignment_gain * (out[ALIGNMENT, k] / total_a - own_p) if total_a > 0.0 else 0.0
+    return nearest
 
 
 @njit(cache=True)
-def _aliens(i, q, alien, zones, annulus, out):
+def _aliens(i, q, alien, step, zones, settings, annulus, out):
     """Strategic separation (7) of agent i from the aliens that it watches."""
     m = q.shape[1]
     for e in range(alien.shape[0]):
@@ -152,28 +173,50 @@ def _aliens(i, q, alien, zones, annulus, out):
             d2 += (alien[e, k] - q[i, k]) ** 2
         d = sqrt(d2)
         if 0.0 < d <= zones.s[i] and not (annulus and d <= zones.a[i]):
+            w = zones.alien[i, e] * _trembling(settings, step, i, e, STRATEGIC)
             for k in range(m):
-                out[STRATEGIC, k] += zones.alien[i, e] * (d - zones.s[i]) * ((alien[e, k] - q[i, k]) / d)
+                out[STRATEGIC, k] += w * (d - zones.s[i]) * ((alien[e, k] - q[i, k]) / d)
 
 
 @njit(cache=True)
-def behave(i, near, q, p, heading, estimate, alien, zones, settings, choices, world, out):
-    """Write the six behaviours of agent i, who has `near` about it, into out (6, m); heading and estimate move on."""
+def altitude(speed, r, c, a, settings, choices):
+    """Length of the obstacle zone along the heading: c, a, or from r at rest to a at the greatest speed."""
+    if choices.zone_length == 2:
+        return r + (a - r) * min(1.0, speed / settings.v_max)
+    return a if choices.zone_length == 1 else c
+
+
+@njit(cache=True)
+def _grown(reach, a, nearest, settings):
+    """Radius of attraction in the next step: a once somebody is within it, as it is with another, else a step more."""
+    if nearest <= a:
+        return a
+    return reach if nearest <= reach else reach + settings.dt * settings.growth
+
+
+@njit(cache=True)
+def behave(i, near, q, p, heading, estimate, reach, alien, step, zones, settings, choices, world, out):
+    """Write the six behaviours of agent i, who has `near` about it, into out (6, m); what it remembers moves on."""
     m = q.shape[1]
     out[:] = 0.0
-    _neighbours(i, near, q, p, zones, settings, choices.form == 1, out)
-    _aliens(i, q, alien, zones, choices.surveillance == 1, out)
+    nearest = _neighbours(i, near, q, p, reach[i], step, zones, settings, choices.form == 1, out)
+    if settings.growth > 0.0:
+        reach[i] = _grown(reach[i], zones.a[i], nearest, settings)
+    _aliens(i, q, alien, step, zones, settings, choices.surveillance == 1, out)
     speed = _length(p[i])
     if speed > 0.0:
         for k in range(m):
             heading[i, k] = p[i, k] / speed
     moving = _length(heading[i]) > 0.0
     c = zones.c[i]
-    depth = zones.a[i] if choices.zone_length == 1 else c
-    obstacle_terms(q[i], heading[i], moving, depth, settings.base * c, c, world, choices, out[OBSTACLE])
+    depth = altitude(speed, zones.r[i], c, zones.a[i], settings, choices)
+    rest = depth if choices.obstacle_force == 1 else c  # where the repulsion ends
+    obstacle_terms(q[i], heading[i], moving, depth, settings.base * c, rest, world, choices, out[OBSTACLE])
+    w_o = zones.obstacle[i] * _trembling(settings, step, i, 0, OBSTACLE)
+    w_s = zones.speed[i] * _trembling(settings, step, i, 0, SPEED)
     own2 = 0.0
     for k in range(m):
-        out[OBSTACLE, k] *= zones.obstacle[i]
+        out[OBSTACLE, k] *= w_o
         others = (
             out[COHESION, k] + out[ALIGNMENT, k] + out[SEPARATION, k] + out[STRATEGIC, k] + out[OBSTACLE, k]
         )  # (16)
@@ -185,28 +228,30 @@ def behave(i, near, q, p, heading, estimate, alien, zones, settings, choices, wo
     if own2 > 0.0:
         for k in range(m):
             wanted = settings.desired_speed * estimate[i, k] / sqrt(own2)
-            out[SPEED, k] = zones.speed[i] * (wanted - estimate[i, k])
+            out[SPEED, k] = w_s * (wanted - estimate[i, k])
 
 
 @njit(cache=True)
-def behaviours(q, p, heading, estimate, alien, zones, settings, choices, world):
-    """The six behaviours of all agents at one instant, shape (6, n, m); headings and estimates are changed."""
+def behaviours(q, p, heading, estimate, reach, alien, step, zones, settings, choices, world):
+    """The six behaviours of all agents at one instant, shape (6, n, m); what they remember is changed."""
     n, m = q.shape
     components, out = np.empty((6, n, m)), np.empty((6, m))
-    cells, near = sort_into_cells(q, zones.a.max()), np.arange(n)
+    cells, near = sort_into_cells(q, reach.max()), np.arange(n)
     for i in range(n):
-        count = gather(i, q, zones.a[i], cells, near)
-        behave(i, near[:count], q, p, heading, estimate, alien, zones, settings, choices, world, out)
+        count = gather(i, q, reach[i], cells, near)
+        behave(i, near[:count], q, p, heading, estimate, reach, alien, step, zones, settings, choices, world, out)
         components[:, i] = out
     return components
 
 
 @njit(cache=True)
-def _move(i, q, p, u, settings, literal):
-    """(j), (k): agent i takes its input, is bounded in speed, and moves with its new velocity."""
+def _move(i, q, p, u, step, settings, literal):
+    """(j), (k): agent i takes its input and a gust, is bounded in speed, and moves with its new velocity."""
     m = q.shape[1]
     for k in range(m):
         p[i, k] += settings.dt * u[i, k]
+        if settings.velocity_noise > 0.0:
+            p[i, k] += settings.velocity_noise * _ROOT_3 * noise(settings.seed, step, i, k, _VELOCITY)
     speed = _length(p[i])
     factor = saturation(speed, settings.v_max) if literal else min(1.0, settings.v_max / max(speed, 1e-300))
     for k in range(m):
@@ -240,8 +285,11 @@ def _hunt(alien, q, dt, world):
 
 
 @njit(cache=True)
-def run(q, p, heading, estimate, alien, zones, settings, choices, world, steps):
-    """Take `steps` steps; the five arrays of state are changed. Returns all six over time, each (steps, ...)."""
+def run(q, p, heading, estimate, reach, alien, first, zones, settings, choices, world, steps):
+    """Take `steps` steps from the one of this number; the six arrays of state are changed.
+
+    Returns (q, p, u, heading, estimate, reach, alien) over time, each (steps, ...).
+    """
     n, m = q.shape
     qs, ps, us, hs, es = (
         np.empty((steps, n, m)),
@@ -250,17 +298,19 @@ def run(q, p, heading, estimate, alien, zones, settings, choices, world, steps):
         np.empty((steps, n, m)),
         np.empty((steps, n, m)),
     )
-    aliens = np.empty((steps, alien.shape[0], m))
+    aliens, reaches = np.empty((steps, alien.shape[0], m)), np.empty((steps, n))
     u, out, total = np.empty((n, m)), np.empty((6, m)), np.empty(m)
     in_turn, literal = choices.order == 1, choices.speed_bound == 1
-    near, reach = np.arange(n), zones.a.max()
-    if in_turn:  # those before agent i have moved since the cells were made
-        reach += settings.dt * settings.v_max
-    for step in range(steps):
-        cells = sort_into_cells(q, reach)
+    near = np.arange(n)
+    further = (
+        settings.dt * settings.v_max if in_turn else 0.0
+    )  # those before agent i have moved since the cells' making
+    for taken in range(steps):
+        step = first + taken
+        cells = sort_into_cells(q, reach.max() + further)
         for i in range(n):
-            count = gather(i, q, zones.a[i], cells, near)
-            behave(i, near[:count], q, p, heading, estimate, alien, zones, settings, choices, world, out)
+            count = gather(i, q, reach[i], cells, near)
+            behave(i, near[:count], q, p, heading, estimate, reach, alien, step, zones, settings, choices, world, out)
             total[:] = 0.0
             for term in range(6):
                 for k in range(m):
@@ -269,13 +319,14 @@ def run(q, p, heading, estimate, alien, zones, settings, choices, world, steps):
             for k in range(m):
                 u[i, k] = factor * total[k]
             if in_turn:
-                _move(i, q, p, u, settings, literal)
+                _move(i, q, p, u, step, settings, literal)
         if not in_turn:
             for i in range(n):
-                _move(i, q, p, u, settings, literal)
+                _move(i, q, p, u, step, settings, literal)
         _hunt(alien, q, settings.dt, world)
-        qs[step], ps[step], us[step], hs[step], es[step], aliens[step] = q, p, u, heading, estimate, alien
-    return qs, ps, us, hs, es, aliens
+        qs[taken], ps[taken], us[taken], hs[taken], es[taken] = q, p, u, heading, estimate
+        reaches[taken], aliens[taken] = reach, alien
+    return qs, ps, us, hs, es, reaches, aliens
 
 
 @njit(cache=True)

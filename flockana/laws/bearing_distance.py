@@ -1,7 +1,8 @@
 """Zone-based flocking from bearings and distances (Jond): a map from step to step, and every reading of its text.
 
 Where the paper is silent, or its letter misbehaves, the law has a choice by name: the first of `CHOICES` is the
-recommended one and the default, the last is the letter of the paper (`ZoneFlocking.printed`).
+recommended one and the default, the last is the letter of the paper (`ZoneFlocking.printed`). Of walls there are two
+letters: (8) names the closest point, (21) sums over all edges, and each goes with its form.
 """
 
 from __future__ import annotations
@@ -12,12 +13,12 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_positive, ensure_state
+from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_points, ensure_positive, ensure_state
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
 from flockana.environment.zone_world import ZoneWorld
-from flockana.interactions import ZoneRadii, ZoneWeights
+from flockana.interactions import ZoneNoise, ZoneRadii, ZoneWeights
 from flockana.kernels import zones as compiled
 from flockana.laws.discrete import DiscreteLaw
 
@@ -28,9 +29,9 @@ CHOICES: dict[str, tuple[str, ...]] = {
     "own_velocity": ("measured", "predicted", "estimated"),
     "surveillance": ("disc", "annulus"),
     "obstacle_zone": ("triangle", "buffer"),
-    "zone_length": ("conflict", "attraction"),
+    "zone_length": ("conflict", "attraction", "speed"),
     "trigger": ("exact", "three-segments"),
-    "obstacle_force": ("repulsive", "literal"),
+    "obstacle_force": ("repulsive", "reaching", "literal"),
     "inside": ("outward", "literal"),
     "walls": ("each", "nearest"),
 }
@@ -48,7 +49,8 @@ class ZoneFlocking(DiscreteLaw):
 
     One step: u_i from (22), bounded by tanh (9); v_i += dt u_i, bounded (10); p_i += dt v_i. Then the aliens move.
     Each alternative below names, after its default, the letter of the paper; spec letters A1 to A18 are its list of
-    ambiguities. The memory is each agent's heading, its estimate of its own velocity, and where the aliens are.
+    ambiguities. The memory is each agent's heading, its estimate of its own velocity, and where the aliens are; with
+    `growth` its radius of attraction, with `noise` the number of the next step.
 
     Parameters
     ----------
@@ -64,6 +66,11 @@ class ZoneFlocking(DiscreteLaw):
         Bounds of input and speed.
     dt : float
         Step.
+    growth : float
+        How fast the radius of attraction of an agent grows while nobody is in its zones of conflict and attraction
+        (Remark 2); it is a again as soon as somebody is within a. By default 0: it stays a.
+    noise : ZoneNoise
+        What is left to chance; nothing by default.
     base : float
         Half base of the obstacle zone over the radius of conflict, 0 < base <= 1 (called α, not printed). Beyond
         1/√3 the heading is no longer the longest altitude of the triangle.
@@ -80,16 +87,18 @@ class ZoneFlocking(DiscreteLaw):
     obstacle_zone : {"triangle", "buffer"}
         Directed zone (a cone in space), or the conventional method that section 5.2 compares with: each polygon in
         its smallest disc, and all within c repels whatever the heading.
-    zone_length : {"conflict", "attraction"}
-        Altitude of the zone: c, or a as the paper suggests for fast agents.
+    zone_length : {"conflict", "attraction", "speed"}
+        Altitude of the zone: c; a, as the paper suggests for fast agents; or from r at rest to a at v^max, in
+        proportion to the speed between them.
     trigger : {"exact", "three-segments"}
         The zone meets the obstacle, or one of its segments from the agent does, which misses some corners (A12).
-    obstacle_force : {"repulsive", "literal"}
-        min(0, d − c), or d − c, which attracts where the zone is longer than c (A11).
+    obstacle_force : {"repulsive", "reaching", "literal"}
+        min(0, d − c); or min(0, d − h), which reaches as far as the zone's altitude h; or d − c, which attracts where
+        the zone is longer than c (A11, J13).
     inside : {"outward", "literal"}
         Of an agent in an obstacle or beyond a wall: pushed out by d + c, or by the letter deeper in (A13, J12).
     walls : {"each", "nearest"}
-        One term for each wall that the zone reaches, or the nearest only (A14).
+        One term for each wall that the zone reaches, (21), or the nearest only, (8) (A14).
 
     Raises
     ------
@@ -115,6 +124,8 @@ class ZoneFlocking(DiscreteLaw):
     v_max: float = 4.0
     dt: float = 0.1
     base: float = 0.5
+    growth: float = 0.0
+    noise: ZoneNoise = field(default_factory=ZoneNoise)
     form: str = "position"
     order: str = "synchronous"
     speed_bound: str = "clip"
@@ -131,11 +142,12 @@ class ZoneFlocking(DiscreteLaw):
         "desired_speed": (1, -1),
         "u_max": (1, -2),
         "v_max": (1, -1),
+        "growth": (1, -1),
         "dt": (0, 1),
     }
 
     references = ("jond-2025",)
-    extra_units: ClassVar[Mapping[str, Powers]] = {"estimate": (1, -1), "alien": (1, 0)}
+    extra_units: ClassVar[Mapping[str, Powers]] = {"estimate": (1, -1), "reach": (1, 0), "alien": (1, 0)}
     steps_at_once = 256  # a step of ten agents takes microseconds
 
     @property
@@ -147,6 +159,8 @@ class ZoneFlocking(DiscreteLaw):
     @classmethod
     def printed(cls, radii: ZoneRadii | None = None, weights: ZoneWeights | None = None, **options: Any) -> Self:
         """The law by the letter of the paper, with gains 1; what is given goes before the letter.
+
+        Its form is (14)-(21), unless another is given; walls are summed with (21), and the nearest counts with (8).
 
         Parameters
         ----------
@@ -163,15 +177,19 @@ class ZoneFlocking(DiscreteLaw):
         'tanh'
         """
         letter: dict[str, Any] = {name: names[-1] for name, names in CHOICES.items() if name not in _OURS}
+        if options.get("form", letter["form"]) == "bearing":
+            letter["walls"] = "each"  # (21) is a sum over edges
         gains = ZoneWeights(cohesion_gain=1.0, alignment_gain=1.0)
         return cls(radii or _radii_of_section_5(), weights or gains, **(letter | options))
 
     def __post_init__(self) -> None:
-        for name, kind in (("radii", ZoneRadii), ("weights", ZoneWeights), ("world", ZoneWorld)):
+        parts = (("radii", ZoneRadii), ("weights", ZoneWeights), ("world", ZoneWorld), ("noise", ZoneNoise))
+        for name, kind in parts:
             if not isinstance(getattr(self, name), kind):
                 raise ArgumentError(f"{name} = {getattr(self, name)!r}: expected a {kind.__name__}")
         for name in ("desired_speed", "u_max", "v_max", "dt", "base"):
             object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
+        object.__setattr__(self, "growth", ensure_nonnegative("growth", self.growth))
         if self.base > 1.0:
             raise ArgumentError(f"base = {self.base:g}: expected at most 1, so that the zone lies in that of conflict")
         for name, names in CHOICES.items():
@@ -201,6 +219,8 @@ class ZoneFlocking(DiscreteLaw):
     def start(self, q: FloatArray, p: FloatArray) -> Mapping[str, FloatArray]:
         """Headings along the velocities (none at rest), velocity estimates that are right, aliens where they begin.
 
+        With `growth` the radii of attraction as given, with `noise` step 0.
+
         Parameters
         ----------
         q, p : ndarray, shape (n, m)
@@ -209,7 +229,13 @@ class ZoneFlocking(DiscreteLaw):
         speed = np.linalg.norm(p, axis=1, keepdims=True)
         heading = np.divide(p, speed, out=np.zeros_like(p), where=speed > 0.0)
         memory = {"heading": heading, "estimate": np.array(p)}
-        return memory | ({"alien": self.world.alien_starts} if self.world.aliens else {})
+        radii = self.radii.arrays(len(q))[2]
+        return memory | self._kept(radii, np.array(0.0), self.world.alien_starts)
+
+    def _kept(self, reach: FloatArray, step: FloatArray, alien: FloatArray) -> dict[str, FloatArray]:
+        """What is remembered only where it is needed."""
+        needed = {"reach": self.growth > 0.0, "step": not self.noise.quiet, "alien": bool(self.world.aliens)}
+        return {name: x for name, x in (("reach", reach), ("step", step), ("alien", alien)) if needed[name]}
 
     def step(
         self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
@@ -223,7 +249,7 @@ class ZoneFlocking(DiscreteLaw):
         q, p : ndarray, shape (n, m)
             Positions and velocities; left as they are.
         memory : mapping of str to ndarray
-            ``heading``, ``estimate`` and, if there are aliens, ``alien``.
+            ``heading``, ``estimate`` and, if there are aliens, ``alien``; as `start` gives it.
         """
         q, p, u, after = self.iterate(t, q, p, memory, 1)
         return q[0], p[0], u[0], {name: values[0] for name, values in after.items()}
@@ -232,9 +258,10 @@ class ZoneFlocking(DiscreteLaw):
         self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray], steps: int
     ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
         state, constants = self._state(q, memory), self._constants(*q.shape)
-        qs, ps, us, headings, estimates, aliens = compiled.run(np.array(q), np.array(p), *state, *constants, steps)
-        after = {"heading": headings, "estimate": estimates} | ({"alien": aliens} if self.world.aliens else {})
-        return qs, ps, us, after
+        qs, ps, us, *own = compiled.run(np.array(q), np.array(p), *state, *constants, steps)
+        headings, estimates, reach, aliens = own
+        numbers = state[-1] + 1.0 + np.arange(steps)
+        return qs, ps, us, {"heading": headings, "estimate": estimates} | self._kept(reach, numbers, aliens)
 
     def behaviours(self, q: Any, p: Any, memory: Mapping[str, Any] | None = None) -> dict[str, FloatArray]:
         """The six accelerations at one instant by name, each of shape (n, m), before the bound (9).
@@ -295,10 +322,34 @@ class ZoneFlocking(DiscreteLaw):
             "obstacle_clearance_bound": ("lower bound of it on the way to the sample", on_way),
         }
 
-    def _state(self, q: FloatArray, memory: Mapping[str, Any]) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Fresh copies of (heading, estimate, alien)."""
-        alien = memory.get("alien", np.empty((0, q.shape[1])))
-        return np.array(memory["heading"], float), np.array(memory["estimate"], float), np.array(alien, float)
+    def altitudes(self, p: Any) -> FloatArray:
+        """Length of each agent's obstacle zone along its heading, shape (n,).
+
+        Parameters
+        ----------
+        p : array_like, shape (n, m)
+            Velocities.
+
+        Examples
+        --------
+        >>> ZoneFlocking(zone_length="speed").altitudes([[0.0, 0.0], [2.0, 0.0], [0.0, 4.0]]).tolist()
+        [1.5, 3.25, 5.0]
+        """
+        speeds = np.linalg.norm(ensure_points("p", p), axis=1)
+        r, c, a, _ = self.radii.arrays(len(speeds))
+        by_speed: FloatArray = r + (a - r) * np.minimum(1.0, speeds / self.v_max)
+        lengths = {"conflict": c, "attraction": a, "speed": by_speed}
+        return lengths[self.zone_length]
+
+    def _state(self, q: FloatArray, memory: Mapping[str, Any]) -> tuple[Any, ...]:
+        """Fresh copies of (heading, estimate, reach, alien), and the number of the next step."""
+        whole: dict[str, Any] = {
+            "reach": self.radii.arrays(len(q))[2],
+            "alien": np.empty((0, q.shape[1])),
+            "step": 0,
+        } | dict(memory)
+        names = ("heading", "estimate", "reach", "alien")
+        return *(np.array(whole[name], float) for name in names), int(whole["step"])
 
     def _zones(self, n: int) -> compiled.Zones:
         return compiled.Zones(*self.radii.arrays(n), **self.weights.arrays(n, len(self.world.aliens)))
@@ -306,6 +357,8 @@ class ZoneFlocking(DiscreteLaw):
     def _constants(self, n: int, m: int) -> tuple[compiled.Zones, compiled.Settings, compiled.Choices, compiled.World]:
         """What the compiled step reads beside the state."""
         gains = self.weights.cohesion_gain, self.weights.alignment_gain
-        settings = compiled.Settings(self.dt, self.desired_speed, self.u_max, self.v_max, *gains, self.base)
+        chance = self.noise.weights, self.noise.velocities
+        own = self.dt, self.desired_speed, self.u_max, self.v_max
+        settings = compiled.Settings(*own, *gains, self.base, self.growth, *chance, seed=self.noise.seed)
         choices = compiled.Choices(**{name: names.index(getattr(self, name)) for name, names in CHOICES.items()})
         return self._zones(n), settings, choices, self.world.arrays(m, buffer=self.obstacle_zone == "buffer")

@@ -21,6 +21,7 @@ from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.measures.measure import Series
 from flockana.measures.nets import components
 from flockana.measures.perception import Edges, ensure_edges
+from flockana.measures.profiles import pair_distance_profile
 
 if TYPE_CHECKING:
     from scipy.sparse import sparray
@@ -256,7 +257,11 @@ class MinimalFlocking(Law):
             head, tail, _, rho, _ = self._frozen
             errors = np.abs(np.linalg.norm(q[:, tail] - q[:, head], axis=2) - rho)
             text = "largest edge error | ‖x_e‖ − ρ_e | (length)"
-            return {"edge_error": Series(text, errors.max(axis=1), logarithmic=True)}
+            return {"edge_error": Series(text, errors.max(axis=1), logarithmic=True)} | _profile(q)
+        return self._net_series(q) | _profile(q)
+
+    def _net_series(self, q: FloatArray) -> dict[str, Any]:
+        """Connectivity of who perceives whom, and the share of the largest component."""
         labels = [components(q.shape[1], np.column_stack(self.edge_data(one)[:2])) for one in q]
         parts, largest = (np.array([f(np.bincount(one)) for one in labels], float) for f in (np.size, np.max))
         n = q.shape[1]
@@ -316,6 +321,15 @@ class MinimalFlocking(Law):
             Step.
         """
         return DiscreteMinimalFlocking(self, dt)
+
+
+def _profile(q: FloatArray) -> dict[str, Any]:
+    """Of the distances of all pairs, as Fig. 10 shows them: their median and the largest."""
+    middle, largest = pair_distance_profile(q, (0.5, 1.0)).T
+    return {
+        "median_distance": ("median distance of two agents (length)", middle),
+        "largest_distance": ("largest distance of two agents (length)", largest),
+    }
 
 
 @dataclass(frozen=True)

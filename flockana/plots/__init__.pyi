@@ -34,6 +34,7 @@ from .series import distances as distances
 from .series import energy as energy
 from .series import energy_residual as energy_residual
 from .series import measure as measure
+from .series import pair_distances as pair_distances
 from .series import panel as panel
 from .series import speeds as speeds
 from .snapshot import configuration as configuration

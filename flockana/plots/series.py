@@ -9,6 +9,7 @@ from matplotlib.ticker import FormatStrFormatter, MaxNLocator, NullFormatter
 
 from flockana.base.errors import UnknownNameError
 from flockana.laws.discrete import DiscreteLaw
+from flockana.measures.profiles import pair_distance_profile
 from flockana.plots.style import (
     BLUE,
     GREEN,
@@ -180,6 +181,32 @@ def distances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
         "dr", trajectory.law.lattice or (), (GREEN, PURPLE), (":", "-."), strict=False
     ):
         ax.axhline(length, color=colour, linestyle=dash, linewidth=1.1, label=name)
+    ax.set_ylim(bottom=0.0)
+    return finish_over_time(ax, trajectory.t, label)
+
+
+def pair_distances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
+    """Draw the profile of all pairs' distances over time: least, quarters, median and largest.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The run.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    ax, label = ensure_axes(ax), "distance of two agents (length)"
+    if trajectory.n == 1:
+        return finish_empty(ax, label, "one agent has no distances")
+    least, low, middle, high, largest = pair_distance_profile(trajectory.q).T
+    ax.fill_between(trajectory.t, least, largest, color=BLUE, alpha=0.15, linewidth=0.0, label="all pairs")
+    ax.fill_between(trajectory.t, low, high, color=BLUE, alpha=0.3, linewidth=0.0, label="half of them")
+    ax.plot(trajectory.t, middle, color=BLUE, linestyle="-", linewidth=1.4, label="median")
+    ax.plot(trajectory.t, least, color=INK, linestyle="-", linewidth=1.3, label="least (D)")
     ax.set_ylim(bottom=0.0)
     return finish_over_time(ax, trajectory.t, label)
 

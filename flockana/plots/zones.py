@@ -17,6 +17,7 @@ from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.measures.nets import links
 from flockana.plots.obstacles import bounds
 from flockana.plots.obstacles import obstacles as draw_obstacles
+from flockana.plots.series import pair_distances
 from flockana.plots.snapshot import configuration, draw_sample, in_view, velocity_arrows
 from flockana.plots.style import (
     BLUE,
@@ -38,6 +39,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from flockana.dynamics.trajectory import Trajectory
+
+_AS_LINES = 5000  # pairs
 
 
 def _law(trajectory: Trajectory) -> ZoneFlocking:
@@ -85,7 +88,7 @@ def zones(
     if m == 2:
         _world(axes, law.world, buffer=law.obstacle_zone == "buffer")
         if law.obstacle_zone == "triangle":
-            _triangles(axes, q, heading, law)
+            _triangles(axes, q, trajectory.p[k], heading, law)
     else:
         _space(axes, law.world)
     pairs = links(q, float(np.nextafter(law.radii.reach[2], np.inf)))
@@ -127,10 +130,10 @@ def _corners(world: ZoneWorld, m: int) -> FloatArray:
     return np.vstack(seen)
 
 
-def _triangles(ax: Any, q: FloatArray, heading: FloatArray, law: ZoneFlocking) -> None:
+def _triangles(ax: Any, q: FloatArray, p: FloatArray, heading: FloatArray, law: ZoneFlocking) -> None:
     """The obstacle zone ahead of every agent that has a heading."""
-    _, c, a, _ = law.radii.arrays(len(q))
-    ahead = heading * (a if law.zone_length == "attraction" else c)[:, None]
+    _, c, _, _ = law.radii.arrays(len(q))
+    ahead = heading * law.altitudes(p)[:, None]
     aside = law.base * c[:, None] * np.column_stack([heading[:, 1], -heading[:, 0]])
     corners = np.stack([q + ahead, q + aside, q - aside], axis=1)[heading.any(axis=1)]
     ax.add_collection(PolyCollection(list(corners), facecolors=BLUE, edgecolors=BLUE, alpha=0.25, linewidths=0.6))
@@ -169,6 +172,8 @@ def _space(ax: Any, world: ZoneWorld) -> None:
 def zone_distances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     """Draw the distances of all pairs over time, the least of them, and the radii of the zones.
 
+    Of more than some hundred agents the profile is drawn (`pair_distances`), as lines would be one blot.
+
     Parameters
     ----------
     trajectory : Trajectory
@@ -182,12 +187,15 @@ def zone_distances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     """
     law, ax = _law(trajectory), ensure_axes(ax)
     first, second = np.triu_indices(trajectory.n, 1)
-    apart = np.linalg.norm(trajectory.q[:, first] - trajectory.q[:, second], axis=2)
-    width, alpha = hairline(2 * max(1, first.size))
-    ax.plot(trajectory.t, apart, color=BLUE, linestyle="-", linewidth=width, alpha=alpha)
-    ax.plot([], [], color=BLUE, linestyle="-", linewidth=0.8, label="pairs")
-    if first.size:
-        ax.plot(trajectory.t, apart.min(axis=1), color=INK, linestyle="-", linewidth=1.3, label="least (D)")
+    if first.size > _AS_LINES:
+        pair_distances(trajectory, ax=ax)
+    else:
+        apart = np.linalg.norm(trajectory.q[:, first] - trajectory.q[:, second], axis=2)
+        width, alpha = hairline(2 * max(1, first.size))
+        ax.plot(trajectory.t, apart, color=BLUE, linestyle="-", linewidth=width, alpha=alpha)
+        ax.plot([], [], color=BLUE, linestyle="-", linewidth=0.8, label="pairs")
+        if first.size:
+            ax.plot(trajectory.t, apart.min(axis=1), color=INK, linestyle="-", linewidth=1.3, label="least (D)")
     looks = (("r", VERMILLION, "--"), ("c", PURPLE, "-."), ("a", GREEN, ":"))
     for radius, (name, colour, dash) in zip(law.radii.reach, looks, strict=True):
         ax.axhline(radius, color=colour, linestyle=dash, linewidth=1.1, label=name)

@@ -1,4 +1,4 @@
-"""Zone-based flocking of one pair in sympy: both forms of the behaviours, the bound, the drag, the stand-off.
+"""Zone-based flocking of one pair in sympy: both forms of the behaviours, bounds, distances of rest, common speed.
 
 Equation numbers are those of Jond's paper. A sum over a zone is a sum of these pairs, divided by the sum of the
 weights where the behaviour is a mean, so that a pair shows the equality of the two forms for every number of agents.
@@ -156,3 +156,45 @@ def stand_off(*, desired_speed: sp.Expr = SPEED, drive: sp.Expr | None = None, w
     )
     (distance,) = sp.solve(sp.Eq(forward + push, 0), d)
     return sp.expand(distance)
+
+
+def rest_distance(*, separation: sp.Expr = GAIN, cohesion: sp.Expr | None = None) -> sp.Expr:
+    """Return the distance of a pair at rest in the zone of conflict: separation and cohesion balance there (J15).
+
+    Examples
+    --------
+    >>> rest_distance(), rest_distance(separation=5, cohesion=1).subs(C, 3)
+    (c*w/(g + w), 5/2)
+    """
+    d = sp.Symbol("d", positive=True)
+    pull = (sp.Symbol("g", positive=True) if cohesion is None else exact("cohesion", cohesion)) * d
+    (distance,) = sp.solve(sp.Eq(exact("separation", separation) * (d - C) + pull, 0), d)
+    return sp.factor(distance)
+
+
+def altitude(speed: sp.Expr | None = None) -> sp.Expr:
+    """Return the altitude of an obstacle zone that goes from r at rest to a at the greatest speed m (J13).
+
+    Examples
+    --------
+    >>> altitude(0), altitude(BOUND), altitude(2 * BOUND)
+    (r, a, a)
+    """
+    r, a = sp.symbols("r a", positive=True)
+    v = sp.Symbol("v", nonnegative=True) if speed is None else exact("speed", speed)
+    return sp.expand(r + (a - r) * sp.Min(1, v / BOUND))
+
+
+def informed_pair() -> tuple[sp.Matrix, sp.Expr]:
+    """Return (M, its characteristic polynomial) of x' = M x, the speeds of a pair less v^d, of which one is informed.
+
+    g is the gain of alignment, w that of the desired speed. All coefficients are positive: both take over v^d (J14).
+
+    Examples
+    --------
+    >>> informed_pair()[1]
+    g*w + lambda**2 + lambda*(2*g + w)
+    """
+    g, rate = sp.Symbol("g", positive=True), sp.Symbol("lambda")
+    matrix = sp.Matrix([[-g - GAIN, g], [g, -g]])
+    return matrix, sp.collect(sp.expand(matrix.charpoly(rate).as_expr()), rate)

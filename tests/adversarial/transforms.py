@@ -47,6 +47,8 @@ def in_units(case, length, time):
 
 def rigid(case, turn, shift):
     """Turned (or reflected) and moved, with everything that stands in the plane."""
+    if getattr(getattr(case.law, "world", None), "dimension", None) is not None:
+        raise UnchangedError("obstacles, box and aliens stay where they are")
     law, (q, p) = _world(case.law, turn, shift), (np.asarray(state, float) @ turn for state in (case.q0, case.p0))
     return replace(case, law=law, q0=q + shift, p0=p)
 
@@ -68,6 +70,9 @@ def renumbered(case, order):
     law = case.law
     if getattr(getattr(law, "gains", None), "per_agent", False):
         raise UnchangedError("gains by agent")
+    weights = getattr(law, "weights", None)
+    if weights is not None and any(isinstance(value, tuple) for value in vars(weights).values()):
+        raise UnchangedError("weights by agent")
     if isinstance(law, MinimalFlocking) and law.edges is not None:
         place = np.argsort(order)
         law = replace(law, edges=tuple((int(place[j]), int(place[i])) for j, i in law.edges))

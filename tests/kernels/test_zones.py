@@ -7,10 +7,12 @@ from math import isclose, tanh
 import numpy as np
 import pytest
 
+from flockana.environment.zone_obstacles import Box
 from flockana.environment.zone_world import Alien, ZoneWorld
-from flockana.interactions import ZoneRadii, ZoneWeights
+from flockana.interactions import ZoneNoise, ZoneRadii, ZoneWeights
 from flockana.kernels.zones import fragments, populations, saturation
 from flockana.laws.bearing_distance import BEHAVIOURS, ZoneFlocking
+from tests.kernels.test_noise import uniform
 
 R, C, A, S = 1.5, 3.0, 5.0, 6.0
 RADII = ZoneRadii(R, c=C, a=A, s=S)
@@ -186,3 +188,105 @@ def test_detection_is_closed():
         memory = law.start(q, 0.0 * q)
         # the agent is at rest and nobody pushes it: it is where it was when the alien looks
         assert bool(law.step(0.0, q, 0.0 * q, memory)[3]["alien"].any()) is moves
+
+
+def trembling(w, n, aliens, seed, step, share):
+    """The weights of a step: a number of its own for each agent, whom it is about, and behaviour."""
+
+    def factor(i, j, behaviour):
+        return 1.0 + share * uniform(seed, step, i, j, BEHAVIOURS.index(behaviour))
+
+    def pairs(name, of, many):
+        return tuple(tuple(of[i][j] * factor(i, j, name) for j in range(many)) for i in range(n))
+
+    return ZoneWeights(
+        separation=pairs("separation", w.separation, n),
+        cohesion=pairs("cohesion", w.cohesion, n),
+        alignment=pairs("alignment", w.alignment, n),
+        alien=pairs("strategic", w.alien, aliens),
+        speed=tuple(w.speed[i] * factor(i, 0, "speed") for i in range(n)),
+        obstacle=tuple(w.obstacle[i] * factor(i, 0, "obstacle") for i in range(n)),
+        cohesion_gain=w.cohesion_gain,
+        alignment_gain=w.alignment_gain,
+    )
+
+
+def test_trembling_weights_are_other_weights():
+    q, v, aliens, rng = a_state(2, 4)
+    w, world = weights_of(len(q), 2, rng), ZoneWorld((), Box((-1.0, -1.0), (8.0, 8.0)), tuple(map(Alien, aliens)))
+    noise = ZoneNoise(weights=0.8, seed=11)
+    law = ZoneFlocking(RADII, w, world, noise=noise)
+    for step in (0, 5):
+        other = trembling(w, len(q), 2, 11, step, 0.8)
+        found = law.behaviours(q, v, dict(law.start(q, v)) | {"step": step})
+        wanted = transcription(q, v, aliens, other, printed=False)
+        wanted["obstacle"] = ZoneFlocking(RADII, other, world).behaviours(q, v)["obstacle"]
+        for name in BEHAVIOURS:
+            assert np.abs(wanted[name]).max() > 0.1
+            np.testing.assert_allclose(found[name], wanted[name], rtol=1e-12, atol=2e-14, err_msg=name)
+
+
+def test_gusts_come_before_the_bound():
+    law = ZoneFlocking(RADII, v_max=1.5, noise=ZoneNoise(velocities=0.3, seed=2))
+    q, v, _, _ = a_state(2, 6)
+    new_q, new_p, u, memory = law.step(0.0, q, v, dict(law.start(q, v)) | {"step": np.array(4.0)})
+    gust = [[0.3 * 3.0**0.5 * uniform(2, 4, i, k, 6) for k in range(2)] for i in range(len(q))]
+    p = v + 0.1 * u + np.array(gust)
+    speed = np.linalg.norm(p, axis=1, keepdims=True)
+    assert (speed > 1.5).any()
+    np.testing.assert_allclose(new_p, p * np.minimum(1.0, 1.5 / speed), rtol=1e-13)
+    np.testing.assert_allclose(new_q, q + 0.1 * new_p, rtol=1e-13)
+    assert memory["step"] == 5.0
+
+
+def test_radii_grow_while_nobody_is_in_them():
+    """Remark 2, by its definition in plain loops; what a radius attracts is what a law with that radius attracts."""
+    law = ZoneFlocking(ZoneRadii(R, c=C, a=A), growth=4.0)
+    q = np.array([[0.0, 0.0], [1.0, 0.0], [13.0, 0.0], [40.0, 3.0], [44.0, 3.0]])
+    v = np.array([[1.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, 1.0]])
+    x, memory, reach, grown = q, law.start(q, v), np.full(5, A), 0.0
+    for _ in range(120):
+        fixed = ZoneFlocking(ZoneRadii(R, c=C, a=tuple(reach.tolist())))
+        for name, part in law.behaviours(x, v, memory).items():
+            np.testing.assert_array_equal(part, fixed.behaviours(x, v)[name])
+        d = np.linalg.norm(x[:, None] - x, axis=2)
+        for i in range(5):
+            seen = [d[i, j] for j in range(5) if R < d[i, j] <= reach[i]]
+            reach[i] = A if seen and min(seen) <= A else reach[i] if seen else reach[i] + 0.1 * 4.0
+        x, v, _, memory = law.step(0.0, x, v, memory)
+        np.testing.assert_allclose(memory["reach"], reach, rtol=1e-14)
+        grown = max(grown, reach.max())
+    assert grown > 1.5 * A
+    assert (memory["reach"] == A).any(), "nobody came back to a"
+
+
+@pytest.mark.parametrize("length", ["conflict", "attraction", "speed"])
+@pytest.mark.parametrize("force", ["repulsive", "reaching", "literal"])
+def test_walls_by_the_altitude_of_the_zone(length, force):
+    """The triangle of each agent against each wall, corner by corner."""
+    low, high, half = 0.0, 20.0, 0.5 * C
+    law = ZoneFlocking(
+        RADII, world=ZoneWorld(box=Box((low, low), (high, high))), zone_length=length, obstacle_force=force
+    )
+    rng = np.random.default_rng(1)
+    q, angle = rng.uniform(low, high, (60, 2)), rng.uniform(0.0, 2.0 * np.pi, 60)
+    h = np.column_stack([np.cos(angle), np.sin(angle)])
+    v = h * rng.uniform(0.1, 5.0, (60, 1))  # of some more than v^max = 4
+    speed = np.linalg.norm(v, axis=1)
+    depth = {"conflict": C + 0.0 * speed, "attraction": A + 0.0 * speed}.get(
+        length, np.array([R + (A - R) * min(1.0, x / 4.0) for x in speed])
+    )
+    np.testing.assert_allclose(law.altitudes(v), depth, rtol=1e-14)
+    wanted = np.zeros_like(q)
+    for i in range(60):
+        across = half * np.array([h[i, 1], -h[i, 0]])
+        corners = [q[i] + depth[i] * h[i], q[i] + across, q[i] - across]
+        for axis in range(2):
+            for wall, normal in ((low, -1.0), (high, 1.0)):
+                if not any(normal * (corner[axis] - wall) > 0.0 for corner in corners):
+                    continue
+                gap = normal * (wall - q[i, axis]) - (depth[i] if force == "reaching" else C)
+                wanted[i, axis] += 5.0 * normal * (gap if force == "literal" else min(0.0, gap))
+    found = law.behaviours(q, v)["obstacle"]
+    np.testing.assert_allclose(found, wanted, rtol=1e-12, atol=1e-13)
+    assert np.abs(wanted).max() > 1.0

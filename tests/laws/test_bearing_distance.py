@@ -13,7 +13,7 @@ from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.zone_obstacles import Box, SimplePolygon
 from flockana.environment.zone_world import Alien, ZoneWorld
-from flockana.interactions import ZoneRadii, ZoneWeights
+from flockana.interactions import ZoneNoise, ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import CHOICES, ZoneFlocking
 from flockana.laws.discrete import DiscreteLaw
 from flockana.measures.metrics import coordination
@@ -43,7 +43,14 @@ class OneByOne(ZoneFlocking):
         return q[0], p[0], u[0], {name: values[0] for name, values in after.items()}
 
 
-@pytest.mark.parametrize("options", [{}, {name: names[-1] for name, names in CHOICES.items()}])
+@pytest.mark.parametrize(
+    "options",
+    [
+        {},
+        {name: names[-1] for name, names in CHOICES.items()},
+        {"growth": 3.0, "noise": ZoneNoise(weights=1.0, velocities=0.2)},
+    ],
+)
 def test_whole_runs_and_single_steps_agree_to_the_bit(options):
     q, p = a_start()
     fast = simulate(ZoneFlocking(RADII, world=WORLD, **options), q, p, (0.0, 30.0))
@@ -51,7 +58,8 @@ def test_whole_runs_and_single_steps_agree_to_the_bit(options):
     assert len(fast.t) == 301 > ZoneFlocking.steps_at_once
     for name in ("t", "q", "p", "u"):
         np.testing.assert_array_equal(getattr(fast, name), getattr(slow, name))
-    assert set(fast.extra) == {"heading", "estimate", "alien"} == set(slow.extra)
+    own = {"reach", "step"} if "noise" in options else set()
+    assert set(fast.extra) == {"heading", "estimate", "alien"} | own == set(slow.extra)
     for name, series in fast.extra.items():
         np.testing.assert_array_equal(series, slow.extra[name])
     assert fast.stats["steps"] == 300
@@ -211,10 +219,13 @@ def test_a_run_is_saved_with_its_law(tmp_path, printed):
 
 
 def test_the_letter_is_the_last_of_every_choice():
-    law = ZoneFlocking.printed(walls="each")
-    assert (law.order, law.own_velocity, law.inside, law.walls) == ("sequential", "estimated", "literal", "each")
+    law = ZoneFlocking.printed()
+    assert (law.order, law.own_velocity, law.inside) == ("sequential", "estimated", "literal")
     assert (law.obstacle_zone, law.zone_length) == ("triangle", "conflict")
     assert (law.weights.cohesion_gain, law.weights.alignment_gain) == (1.0, 1.0)
+    assert law.walls == "each"  # (21) is a sum over edges
+    assert ZoneFlocking.printed(form="position").walls == "nearest"  # (8) has one closest point
+    assert ZoneFlocking.printed(walls="nearest").walls == "nearest"
     assert all(getattr(ZoneFlocking(), name) == names[0] for name, names in CHOICES.items())
 
 

@@ -313,3 +313,11 @@ def test_the_number_of_agents_must_fit():
 def test_edges_are_given_in_any_form():
     assert ensure_edges(np.array(TREE)) == TREE
     assert ensure_edges(iter([[0, 1]])) == ((0, 1),)
+
+
+@pytest.mark.parametrize("edges", [None, [(0, 1), (1, 2)]])
+def test_distances_of_all_pairs_are_in_the_metrics(edges):
+    q = np.array([[0.0, 0.0], [3.0, 0.0], [3.0, 4.0]])
+    run = simulate(MinimalFlocking(edges=edges), q, 0.0 * q, (0.0, 0.1))
+    assert run.metric("median_distance")[0] == 4.0
+    assert run.metric("largest_distance")[0] == 5.0

@@ -126,3 +126,17 @@ def test_a_backend_that_turns_interactive_mode_on_inside_the_style_keeps_it():
         assert mpl.is_interactive()
     finally:
         mpl.interactive(before)
+
+
+def test_the_profile_of_all_pairs_holds_their_distances():
+    run = a_run()
+    ax = plots.pair_distances(run, ax=axes())
+    least, middle = line(ax, "least (D)").get_ydata(), line(ax, "median").get_ydata()
+    np.testing.assert_allclose(least, run.metric("min_distance"), rtol=1e-12)
+    i, j = np.triu_indices(4, 1)
+    apart = np.linalg.norm(run.q[:, i] - run.q[:, j], axis=2)
+    np.testing.assert_allclose(middle, np.median(apart, axis=1), rtol=1e-12)
+    heights = ax.collections[0].get_paths()[0].vertices[:, 1]
+    assert heights.max() == pytest.approx(apart.max())
+    lone = simulate(Algorithm1(), [[0.0, 0.0]], [[1.0, 0.0]], (0.0, 1.0))
+    assert "one agent" in plots.pair_distances(lone, ax=axes()).texts[0].get_text()

@@ -17,6 +17,7 @@ from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.report.figures import pictures
 from flockana.scenarios import scenario
+from flockana.theorems.bearing_distance.random_starts import crowd_start
 from tests.plots.artists import axes
 
 
@@ -98,3 +99,19 @@ def test_the_report_draws_a_law_by_its_own_module(run):
     assert len(own) == 4
     assert "obstacles" in own[0].caption
     assert all(picture.source.startswith("data:image/png;base64,") for picture in own)
+
+
+def test_a_crowd_is_drawn_by_its_profile():
+    crowd = simulate(ZoneFlocking(), *crowd_start(0, 110), (0.0, 0.3))
+    lines = {line.get_label(): line for line in plots.zone_distances(crowd, ax=axes()).get_lines()}
+    np.testing.assert_allclose(lines["least (D)"].get_ydata(), crowd.metric("min_distance"), rtol=1e-12)
+    assert {"median", "r", "c", "a"} < set(lines)
+    assert len(lines) == 5
+
+
+def test_triangles_are_as_long_as_the_speed_makes_them():
+    q, p = [[0.0, 0.0], [20.0, 0.0], [40.0, 0.0]], [[1e-9, 0.0], [2.0, 0.0], [4.0, 0.0]]
+    start = simulate(ZoneFlocking(zone_length="speed"), q, p, (0.0, 0.1))
+    (found,) = (c for c in plots.zones(start, 0.0, ax=axes()).collections if isinstance(c, PolyCollection))
+    tips = [path.vertices[0, 0] - x for path, (x, _) in zip(found.get_paths(), q, strict=True)]
+    assert tips == pytest.approx([1.5, 3.25, 5.0])

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from flockana.dynamics.simulate import simulate
+from flockana.laws.bearing_distance import CHOICES
 from flockana.measures.nets import components, links
 from flockana.scenarios import scenario, scenarios
 from flockana.scenarios.bearing_distance import SCENARIOS, passed
@@ -32,7 +33,27 @@ def claim_of(entry, run, name):
 
 def test_all_are_in_the_catalogue():
     assert set(SCENARIOS) <= set(scenarios())
-    assert {"zone-51", "zone-51-printed", "zone-52", "zone-52-printed", "zone-gap", "zone-gap-buffer"} == set(SCENARIOS)
+    sections = {f"zone-{section}{how}" for section in (51, 52) for how in ("", "-printed", "-charitable")}
+    assert sections | {"zone-gap", "zone-gap-buffer"} == set(SCENARIOS)
+
+
+def test_readings_are_told_and_each_letter_has_its_charitable_one():
+    for section in ("zone-51", "zone-52"):
+        letter, kind = scenario(f"{section}-printed"), scenario(f"{section}-charitable")
+        assert "least charitable reading" in letter.source
+        assert "The charitable reading" in kind.source
+        assert letter.law.weights == kind.law.weights
+        assert letter.law.radii == kind.law.radii
+        np.testing.assert_array_equal(letter.q0, kind.q0)
+        assert all(getattr(kind.law, name) == names[0] for name, names in CHOICES.items())
+        assert letter.law.walls == "each"  # (21) is a sum over edges
+
+
+def test_instants_are_those_of_the_figures():
+    assert scenario("zone-51").instants == (0.1, 7.5, 15.0, 20.0)
+    for name in ("zone-52", "zone-52-printed", "zone-52-charitable"):
+        assert scenario(name).instants == (0.1, 12.5, 25.0, 37.5, 50.0, 75.0, 87.5, 100.0)
+    assert scenario("zone-gap").instants == ()
 
 
 @pytest.mark.parametrize("seed", [0, 7])

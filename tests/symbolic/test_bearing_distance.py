@@ -69,3 +69,37 @@ def test_stand_off():
     assert symbolic.stand_off(desired_speed=3, drive=5, weight=20).subs(symbolic.C, 3) == sp.Rational(9, 4)
     general = symbolic.stand_off()
     assert sp.simplify(general - (symbolic.C - symbolic.SPEED * sp.Symbol("w^ga", positive=True) / symbolic.GAIN)) == 0
+
+
+@pytest.mark.parametrize(("weight", "gain"), [(5.0, 1.0), (2.0, 1.5)])
+def test_a_pair_rests_where_the_compiled_forces_vanish(weight, gain):
+    distance = float(symbolic.rest_distance(separation=weight, cohesion=gain).subs(symbolic.C, 3))
+    law = ZoneFlocking(weights=ZoneWeights(separation=weight, cohesion_gain=gain))
+    parts = law.behaviours([[0.0], [distance]], [[0.0], [0.0]])
+    np.testing.assert_allclose(parts["separation"] + parts["cohesion"], 0.0, atol=1e-14)
+    assert np.abs(parts["cohesion"]).min() > 1.0
+    general = symbolic.rest_distance()
+    w, g = (next(s for s in general.free_symbols if s.name == name) for name in "wg")
+    assert sp.simplify(general.subs({symbolic.C: 3, w: weight, g: gain}) - distance) < 1e-12
+    assert sp.ask(sp.Q.positive(sp.simplify((symbolic.C - general) * (w + g))))  # below c for every cohesion
+
+
+@pytest.mark.parametrize("speed", [0.0, 1.0, 3.0, 4.0, 7.0])
+def test_the_altitude_is_the_compiled_laws(speed):
+    numbers = {symbolic.BOUND: 4, sp.Symbol("r", positive=True): 1.5, sp.Symbol("a", positive=True): 5}
+    law = ZoneFlocking(zone_length="speed")
+    assert law.altitudes([[0.0, speed]])[0] == pytest.approx(float(symbolic.altitude(speed).subs(numbers)), rel=1e-14)
+
+
+def test_speeds_of_a_pair_of_whom_one_is_informed():
+    """The matrix is the Jacobian of the compiled law; its polynomial is Hurwitz, as all coefficients are positive."""
+    matrix, polynomial = symbolic.informed_pair()
+    g = next(s for s in polynomial.free_symbols if s.name == "g")
+    numbers = np.array(matrix.subs({g: 2, symbolic.GAIN: 5}), dtype=float)
+    law = ZoneFlocking(weights=ZoneWeights(speed=(5.0, 0.0), cohesion_gain=0.0, alignment_gain=2.0))
+    x = np.array([0.3, -0.2])
+    parts = law.behaviours([[0.0, 0.0], [0.0, 4.0]], np.column_stack([3.0 + x, [0.0, 0.0]]))
+    np.testing.assert_allclose(sum(parts.values())[:, 0], numbers @ x, atol=1e-14)
+    rate = next(s for s in polynomial.free_symbols if s.name == "lambda")
+    assert all(c.is_positive for c in sp.Poly(polynomial, rate).all_coeffs())
+    assert (np.linalg.eigvals(numbers).real < 0.0).all()

@@ -46,6 +46,26 @@ def separated_start(seed: int, n: int = 10, *, least: float = 2.0, reach: float 
             return q, rng.uniform(0.0, 1.0, (n, 2))
 
 
+def crowd_start(seed: int, n: int, *, least: float = 2.0, any_direction: bool = False) -> tuple[FloatArray, FloatArray]:
+    """A start of n agents as dense as ten in (0, 10)² m, no two closer than `least`.
+
+    Velocities are in (0, 1)² m/s, as printed, or in (−1, 1)².
+
+    Examples
+    --------
+    >>> crowd_start(0, 1000)[0].max() < 100.0
+    True
+    """
+    rng = np.random.default_rng(seed)
+    side = 10.0 * np.sqrt(n / 10.0)
+    q = rng.uniform(0.0, side, (1, 2))
+    while len(q) < n:
+        x = rng.uniform(0.0, side, 2)
+        if np.linalg.norm(q - x, axis=1).min() > least:
+            q = np.vstack([q, x])
+    return q, rng.uniform(-1.0 if any_direction else 0.0, 1.0, (n, 2))
+
+
 def runs_from_random_starts(
     law: ZoneFlocking, start: Callable[[int], tuple[FloatArray, FloatArray]] = zone_start
 ) -> list[Trajectory]:

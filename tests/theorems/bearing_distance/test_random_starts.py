@@ -8,7 +8,12 @@ from flockana.dynamics.simulate import simulate
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.measures.metrics import min_distance
 from flockana.measures.nets import components, links
-from flockana.theorems.bearing_distance.random_starts import runs_from_random_starts, separated_start, zone_start
+from flockana.theorems.bearing_distance.random_starts import (
+    crowd_start,
+    runs_from_random_starts,
+    separated_start,
+    zone_start,
+)
 
 
 def test_starts_are_what_they_say():
@@ -28,3 +33,11 @@ def test_one_run_of_twenty_seconds_from_each_start():
         np.testing.assert_array_equal(run.q[0], separated_start(seed)[0])
         assert run.t[-1] == 20.0
     np.testing.assert_array_equal(runs[3].q, simulate(law, *separated_start(3), (0.0, 20.0)).q)
+
+
+def test_crowds_are_as_dense_and_apart():
+    q, p = crowd_start(3, 200)
+    assert q.shape == p.shape == (200, 2)
+    assert min_distance(q) > 2.0
+    assert 43.0 < q.max() < 10.0 * 20.0**0.5
+    assert p.min() > 0.0 > crowd_start(3, 200, any_direction=True)[1].min()

@@ -1,0 +1,62 @@
+"""Chance in zone-based flocking: weights that tremble and gusts, the same in every run with the same seed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import KW_ONLY, dataclass
+from typing import ClassVar
+
+from flockana.base.checks import ensure_nonnegative
+from flockana.base.errors import ArgumentError
+from flockana.base.units import Powers
+
+_MOST = 2**63  # seeds are whole numbers below it
+
+
+@dataclass(frozen=True)
+class ZoneNoise:
+    """The stochastic elements that Jond's conclusions propose: weights and velocities that chance perturbs.
+
+    Every number is a function of (seed, step, agent, whom it is about, behaviour) and of nothing else
+    (`flockana.kernels.noise`): runs repeat to the bit, whatever was computed before or beside them.
+
+    Parameters
+    ----------
+    weights : float
+        s, at most 1: in each step each weight is multiplied by a number of its own, uniform in (1 − s, 1 + s).
+    velocities : float
+        Standard deviation of what each component of each velocity gets in each step, before its bound (10). It is
+        uniform, at most √3 times that.
+    seed : int
+        Which of the runs, >= 0.
+
+    Raises
+    ------
+    ArgumentError
+        On numbers out of range.
+
+    Examples
+    --------
+    >>> ZoneNoise(weights=0.5).quiet, ZoneNoise().quiet
+    (False, True)
+    """
+
+    _: KW_ONLY
+    weights: float = 0.0
+    velocities: float = 0.0
+    seed: int = 0
+
+    units: ClassVar[Mapping[str, Powers]] = {"velocities": (1, -1)}
+
+    def __post_init__(self) -> None:
+        for name in ("weights", "velocities"):
+            object.__setattr__(self, name, ensure_nonnegative(name, getattr(self, name)))
+        if self.weights > 1.0:
+            raise ArgumentError(f"weights = {self.weights:g}: expected at most 1, so that no weight becomes negative")
+        if isinstance(self.seed, bool) or not isinstance(self.seed, int) or not 0 <= self.seed < _MOST:
+            raise ArgumentError(f"seed = {self.seed!r}: expected a whole number, 0 <= seed < 2**63")
+
+    @property
+    def quiet(self) -> bool:
+        """Whether nothing is left to chance."""
+        return self.weights == 0.0 and self.velocities == 0.0

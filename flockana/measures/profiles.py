@@ -1,0 +1,46 @@
+"""Distances of all pairs over time, by their quantiles: what a figure of all shows, for any number of agents."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError
+
+QUARTERS = (0.0, 0.25, 0.5, 0.75, 1.0)
+
+
+def pair_distance_profile(q: Any, shares: Sequence[float] = QUARTERS) -> FloatArray:
+    """Quantiles of the distances of all pairs at each instant, shape (T, number of shares); NaN for one agent.
+
+    Parameters
+    ----------
+    q : array_like, shape (T, n, m)
+        Positions over time.
+    shares : sequence of float
+        Shares of the pairs, in [0, 1]: 0 is the least distance, 0.5 the median, 1 the largest distance.
+
+    Raises
+    ------
+    ArgumentError
+        If q has another shape, or a share is outside [0, 1].
+
+    Examples
+    --------
+    >>> pair_distance_profile([[[0.0], [1.0], [3.0]]], (0.0, 0.5, 1.0)).tolist()
+    [[1.0, 2.0, 3.0]]
+    """
+    from scipy.spatial.distance import pdist
+
+    positions, wanted = np.asarray(q, dtype=np.float64), np.asarray(shares, dtype=np.float64)
+    if positions.ndim != 3:
+        raise ArgumentError(f"q has shape {positions.shape}: expected (T, n, m), positions over time")
+    if wanted.ndim != 1 or not ((wanted >= 0.0) & (wanted <= 1.0)).all():
+        raise ArgumentError(f"shares = {shares!r}: expected numbers from 0 to 1")
+    if positions.shape[1] < 2:
+        return np.full((len(positions), wanted.size), np.nan)
+    profile: FloatArray = np.array([np.quantile(pdist(instant), wanted) for instant in positions])
+    return profile.reshape(len(positions), wanted.size)

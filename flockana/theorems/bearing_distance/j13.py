@@ -1,0 +1,133 @@
+"""Erratum J13: an obstacle zone that grows with speed makes no agent react earlier, as (8) measures from c_i."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.environment.zone_obstacles import Box
+from flockana.environment.zone_world import ZoneWorld
+from flockana.interactions import ZoneRadii, ZoneWeights
+from flockana.laws.bearing_distance import ZoneFlocking
+from flockana.theorems.claims import erratum, judged
+from flockana.theorems.theorem import Claim, Tolerances
+
+_ROUNDING = 1e-11  # relative: of a few hundred steps
+_R, _C, _A, _V_MAX, _SIDE = 1.5, 3.0, 5.0, 4.0, 50.0
+_RADII = ZoneRadii(_R, c=_C, a=_A)
+_UNBOUNDED = 1e6  # an input bound that never acts
+_DRIVE, _WEIGHT, _DESIRED = 5.0, 12.0, 3.0
+_STEP, _STEPS = 0.02, 2000  # s; with the zone's own the approach is damped, and with 0.1 s it would overshoot
+_NEAR = 1e-3  # relative: on either side of where the zone ends
+
+
+def _law(zone_length: str, obstacle_force: str = "repulsive") -> ZoneFlocking:
+    return ZoneFlocking(
+        _RADII,
+        ZoneWeights(obstacle=_WEIGHT, speed=_DRIVE),
+        ZoneWorld(box=Box((0.0, 0.0), (_SIDE, _SIDE))),
+        u_max=_UNBOUNDED,
+        v_max=_V_MAX,
+        dt=_STEP,
+        zone_length=zone_length,
+        obstacle_force=obstacle_force,
+    )
+
+
+def _braking(law: ZoneFlocking, distance: float, speed: float) -> float:
+    """The obstacle term of an agent that heads for a wall, away from it, over w^oa c."""
+    force = law.behaviours([[_SIDE - distance, 0.5 * _SIDE]], [[speed, 0.0]])["obstacle"][0, 0]
+    return -float(force) / (_WEIGHT * _C)
+
+
+def _head_on(law: ZoneFlocking) -> FloatArray:
+    """Distances from the wall over time of an agent that runs head on at it."""
+    q, p = np.array([[30.0, 0.5 * _SIDE]]), np.array([[_DESIRED, 0.0]])
+    distances: FloatArray = _SIDE - law.iterate(0.0, q, p, law.start(q, p), _STEPS)[0][:, 0, 0]
+    return distances
+
+
+def _letter() -> Claim:
+    between = 0.5 * (_C + _A)
+    braking = _braking(_law("attraction", "literal"), between, _DESIRED)
+    return judged(
+        "letter",
+        braking,
+        _ROUNDING,
+        computed=braking,
+        stated="with an altitude of a_i an agent is repelled by what comes within it",
+        witness={"distance from the wall": between, "c": _C, "a": _A},
+        detail=f"(8) is w (d - c): at d = {between:g}, beyond c = {_C:g}, it attracts, by {-braking:.3g} w c",
+    )
+
+
+def _clamped() -> Claim:
+    long, short = (_head_on(_law(name)) for name in ("attraction", "conflict"))
+    different = np.flatnonzero(np.abs(long - short) > _ROUNDING * _SIDE).size
+    return judged(
+        "clamped",
+        different - 0.5,
+        0.0,
+        computed={"steps in which the two runs differ": different},
+        stated="more reaction space: with the altitude a_i an agent brakes earlier than with c_i",
+        witness={"q(0)": (30.0, 0.5 * _SIDE), "p(0)": (_DESIRED, 0.0), "steps": long.size},
+        detail=f"with min(0, d - c) nothing acts beyond c: head on the runs with a_i and with c_i are the same in "
+        f"{long.size - different} of {long.size} steps (oblique to a wall it acts longer, not farther off)",
+    )
+
+
+def _reaching() -> Claim:
+    """Just within its altitude an agent brakes and just beyond it does not, at every speed."""
+    law = _law("speed", "reaching")
+    wrong, rows = 0.0, {}
+    for speed in (0.5, 1.0, 2.0, 3.0, _V_MAX):
+        reach = _R + (_A - _R) * min(1.0, speed / _V_MAX)
+        within, beyond = (_braking(law, (1.0 + side * _NEAR) * reach, speed) for side in (-1.0, 1.0))
+        expected = _NEAR * reach / _C  # of w (h − d) over w c
+        wrong = max(wrong, abs(within / expected - 1.0), abs(beyond) / expected)
+        rows[speed] = reach
+    return judged(
+        "reaching",
+        1e-6 - wrong,
+        1e-8,  # relative: of a difference of positions, a thousandth of their distance
+        computed=rows,
+        stated="an agent at speed v reacts from h = r + (a - r) v/v^max on",
+        witness={"speeds": list(rows), "force": "w min(0, d - h)"},
+        detail=f"measured from the zone's end, w min(0, d - h), the reaction begins at h(v): {_R:g} m when slow, "
+        f"{_A:g} m at v^max",
+    )
+
+
+def _slow() -> Claim:
+    """An agent at rest before a wall has the short zone: it stands off at r − v^d w^ga/w^oa."""
+    measured = float(_head_on(_law("speed", "reaching"))[-1])
+    stated = _R - _DESIRED * _DRIVE / _WEIGHT
+    return judged(
+        "stand-off",
+        1e-6 - abs(measured - stated) / _C,
+        _ROUNDING,
+        computed=measured,
+        stated=stated,
+        witness={"w^ga": _DRIVE, "w^oa": _WEIGHT, "v^d": _DESIRED},
+        detail=f"braked, the zone contracts to r: the agent stops {measured:.4f} m from the wall, at "
+        "r - v^d w^ga/w^oa, nearer than at c - v^d w^ga/w^oa",
+    )
+
+
+def _check(tolerances: Tolerances) -> list[Claim]:
+    return [_letter(), _clamped(), _reaching(), _slow()]
+
+
+THEOREM = erratum(
+    "J13",
+    title="A longer obstacle zone does not react earlier",
+    statement=(
+        "The altitude of the obstacle zone may extend to a_i at speed, for more reaction space, and contract to r_i "
+        "when slow. But (8) measures from c_i: beyond it the force attracts, or, cut off there, is zero, so that head "
+        "on the longer zone changes nothing. Measured from the zone's own end it does what is said."
+    ),
+    source="Jond, bearing-distance flocking, section 2.2, Fig. 4 and (8)",
+    check=_check,
+    references=("jond-2025",),
+    expected={"letter": "refuted", "clamped": "refuted", "reaching": "verified", "stand-off": "verified"},
+)

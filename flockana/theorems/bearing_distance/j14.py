@@ -1,0 +1,114 @@
+"""Erratum J14: a new global speed emerges, and it is the desired one as soon as somebody is informed of it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.dynamics.simulate import simulate
+from flockana.interactions import ZoneRadii, ZoneWeights
+from flockana.laws.bearing_distance import ZoneFlocking
+from flockana.theorems.bearing_distance.random_starts import separated_start
+from flockana.theorems.claims import erratum, judged
+from flockana.theorems.shares import always, mostly
+from flockana.theorems.theorem import Claim, Tolerances
+
+_SAME, _ROUNDING = 1e-9, 1e-11  # relative: speeds that differ by less are the same; of a few hundred steps
+_RADII = ZoneRadii(1.5, c=3.0, a=5.0)
+_UNBOUNDED = 1e6  # an input bound that never acts
+_APART, _STEPS = 4.0, 1000  # m, in the zone of attraction; steps of 0.1 s
+_GAIN, _DRIVE, _DESIRED = 2.0, 1.0, 3.0
+_AGENTS, _SEEDS, _DURATION = 10, 12, 60.0
+_NEAR = 0.05  # a mean speed this close, relative, is "about" the desired one
+
+
+def _pair(informed: int, speeds: tuple[float, float]) -> tuple[FloatArray, FloatArray]:
+    """(speeds over time of two agents side by side of whom so many are informed, the same by x' = M x in steps)."""
+    drives = tuple(_DRIVE if k < informed else 0.0 for k in range(2))
+    weights = ZoneWeights(speed=drives, cohesion_gain=0.0, alignment_gain=_GAIN)
+    law = ZoneFlocking(_RADII, weights, u_max=_UNBOUNDED, v_max=_UNBOUNDED, desired_speed=_DESIRED)
+    q, p = np.array([[0.0, 0.0], [0.0, _APART]]), np.column_stack([speeds, [0.0, 0.0]])
+    run = law.iterate(0.0, q, p, law.start(q, p), _STEPS)[1][:, :, 0]
+    matrix = np.array([[-_GAIN - drives[0], _GAIN], [_GAIN, -_GAIN - drives[1]]])
+    predicted, x = [], np.array(speeds)
+    for _ in range(_STEPS):
+        x = x + law.dt * (matrix @ x + _DESIRED * np.array(drives))
+        predicted.append(x)
+    return run, np.array(predicted)
+
+
+def _told_and_not() -> list[Claim]:
+    told, predicted = _pair(1, (1.0, 1.0))
+    off = float(np.abs(told - predicted).max()) / _DESIRED
+    left = float(np.abs(told[-1] - _DESIRED).max()) / _DESIRED
+    alone, _ = _pair(0, (1.0, 2.0))
+    spread = float(np.abs(alone[-1] - 1.5).max()) / 1.5
+    return [
+        judged(
+            "one-informed",
+            _SAME - max(off, left),
+            _ROUNDING,
+            computed=told[-1].tolist(),
+            stated=_DESIRED,
+            witness={"informed": "one of two", "p(0)": (1.0, 1.0)},
+            detail=f"of two at 1 m/s one is told v^d = {_DESIRED:g}: both take it over, as x' = M x has it, whose "
+            f"polynomial λ² + (2g + w) λ + g w is Hurwitz (off by {off:.1g})",
+        ),
+        judged(
+            "none-informed",
+            _SAME - spread,
+            _ROUNDING,
+            computed=alone[-1].tolist(),
+            stated=1.5,
+            witness={"informed": "none", "p(0)": (1.0, 2.0)},
+            detail="two of whom none is informed, at 1 and at 2 m/s, agree on 1.5: alignment alone keeps a mean",
+        ),
+    ]
+
+
+def _speeds(informed: int) -> list[float]:
+    """Mean speed over the second half of runs of ten agents of whom so many are informed, by seed."""
+    weights = ZoneWeights(speed=tuple([5.0] * informed + [0.0] * (_AGENTS - informed)))
+    runs = (simulate(ZoneFlocking(_RADII, weights), *separated_start(k), (0.0, _DURATION)) for k in range(_SEEDS))
+    return [float(np.linalg.norm(run.p[len(run.t) // 2 :], axis=2).mean()) for run in runs]
+
+
+def _check(tolerances: Tolerances) -> list[Claim]:
+    two, none = _speeds(2), _speeds(0)
+    return [
+        *_told_and_not(),
+        mostly(
+            "two-of-ten",
+            [abs(v / _DESIRED - 1.0) <= _NEAR for v in two],
+            "with two informed agents of ten the mean speed is about v^d",
+            "the flock takes over the speed of those who are informed",
+            witness={"mean speed by seed": two},
+        ),
+        always(
+            "none-of-ten",
+            [abs(v / _DESIRED - 1.0) <= _NEAR for v in none],
+            f"with none informed the mean speed is about v^d ({np.median(none):.2f} in the median)",
+            "a flock of which nobody is informed flies at the desired speed",
+            witness={"mean speed by seed": none},
+        ),
+    ]
+
+
+THEOREM = erratum(
+    "J14",
+    title="The new global speed is that of the informed",
+    statement=(
+        "When some agents alter their speeds their neighbours follow, and a new global speed results; w^ga = 0 for "
+        "agents that are not informed of v^d. True: whom alignment reaches takes over v^d from a single informed "
+        "agent. Without any the flock agrees on a mean of its own velocities, and not on v^d."
+    ),
+    source="Jond, bearing-distance flocking, section 2.1 and (5)",
+    check=_check,
+    references=("jond-2025",),
+    expected={
+        "one-informed": "verified",
+        "none-informed": "verified",
+        "two-of-ten": "verified",
+        "none-of-ten": "refuted",
+    },
+)

@@ -1,0 +1,94 @@
+"""Erratum J15: separation ensures no minimum distance c_i, since cohesion pulls within the zone of conflict."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flockana.interactions import ZoneRadii, ZoneWeights
+from flockana.laws.bearing_distance import ZoneFlocking
+from flockana.measures.metrics import min_distance
+from flockana.theorems.bearing_distance.random_starts import runs_from_random_starts, separated_start
+from flockana.theorems.claims import erratum, judged
+from flockana.theorems.shares import always
+from flockana.theorems.theorem import Claim, Tolerances
+
+_SAME, _ROUNDING = 1e-6, 1e-11  # relative: distances that differ by less are the same; of a thousand steps
+_C = 3.0
+_RADII = ZoneRadii(1.5, c=_C, a=5.0)
+_UNBOUNDED = 1e6  # an input bound that never acts
+_STEPS = 1000
+_CASES = ((5.0, 1.0), (5.0, 0.25), (20.0, 0.5), (2.0, 1.5))  # (w^ls, g_c)
+
+
+def _rest(separation: float, cohesion: float, start: float = 3.5) -> float:
+    """Distance at which two agents without a desired speed come to rest."""
+    weights = ZoneWeights(separation=separation, speed=0.0, cohesion_gain=cohesion, alignment_gain=4.0)
+    law = ZoneFlocking(_RADII, weights, u_max=_UNBOUNDED)
+    q, p = np.array([[0.0, 0.0], [start, 0.0]]), np.zeros((2, 2))
+    return float(np.diff(law.iterate(0.0, q, p, law.start(q, p), _STEPS)[0][-1, :, 0])[0])
+
+
+def _pair() -> list[Claim]:
+    rows = {f"w^ls = {w:g}, g_c = {g:g}": [_C * w / (w + g), _rest(w, g)] for w, g in _CASES}
+    error = max(abs(stated - found) for stated, found in rows.values())
+    printed, alone = next(iter(rows.values()))[1], _rest(5.0, 0.0, 2.0)
+    return [
+        judged(
+            "printed",
+            printed / _C - 1.0,
+            _ROUNDING,
+            computed=printed,
+            stated=f"a separation of at least c = {_C:g} m is maintained",
+            witness={"w^ls": 5.0, "w^lc": "any, as it cancels", "c": _C},
+            detail=f"cohesion acts in the zone of conflict as well: a pair as printed rests {printed:.4g} "
+            f"m apart, not {_C:g}",
+        ),
+        judged(
+            "rest",
+            _SAME - error / _C,
+            _ROUNDING,
+            computed={case: pair[1] for case, pair in rows.items()},
+            stated={case: pair[0] for case, pair in rows.items()},
+            witness="two agents at rest, 3.5 m apart at first",
+            detail=f"a pair rests at c w^ls/(w^ls + g_c) in {len(rows)} cases (off by {error:.1g} m): below c for any "
+            "cohesion",
+        ),
+        judged(
+            "alone",
+            _SAME - abs(alone / _C - 1.0),
+            _ROUNDING,
+            computed=alone,
+            stated=_C,
+            witness={"g_c": 0.0, "q(0)": "2 m apart"},
+            detail="without cohesion (6) drives a pair towards c, where it vanishes, as is said",
+        ),
+    ]
+
+
+def _check(tolerances: Tolerances) -> list[Claim]:
+    least = [min_distance(run.q[-1]) for run in runs_from_random_starts(ZoneFlocking(_RADII), separated_start)]
+    return [
+        *_pair(),
+        always(
+            "flock",
+            [distance >= _C for distance in least],
+            f"after 20 s ten agents are c apart ({np.median(least):.3g} m in the median)",
+            f"a settled flock keeps its agents c = {_C:g} m apart",
+            witness={"least distance by seed": least},
+        ),
+    ]
+
+
+THEOREM = erratum(
+    "J15",
+    title="Separation ensures no minimum distance c_i",
+    statement=(
+        "(6) is said to drive distances to c_i and so to ensure a minimum separation of c_i. In the zone of conflict "
+        "cohesion acts as well: a pair rests at c w^ls/(w^ls + g_c), below c whenever there is cohesion. (On the way "
+        "there agents come closer still: J12.)"
+    ),
+    source="Jond, bearing-distance flocking, (6)",
+    check=_check,
+    references=("jond-2025",),
+    expected={"printed": "refuted", "rest": "verified", "alone": "verified", "flock": "refuted"},
+)

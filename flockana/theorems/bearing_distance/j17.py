@@ -1,0 +1,78 @@
+"""The bearing-distance paper's delayed reaction: agents that see an alien later than it sees them lose distance."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flockana.environment.zone_world import Alien, ZoneWorld
+from flockana.interactions import ZoneRadii, ZoneWeights
+from flockana.laws.bearing_distance import ZoneFlocking
+from flockana.theorems.claims import erratum, judged
+from flockana.theorems.theorem import Claim, Tolerances
+
+_DETECTION, _PURSUIT, _SPEED, _AT = 9.0, 1.5, 3.0, 20.0
+_SHORT, _STEPS = 6.0, 200
+_ROUNDING = 1e-9  # relative: of a few hundred steps
+
+
+def _meeting(s: float) -> tuple[float, float, float]:
+    """(when the alien first moves, when the agent first heeds it, their least distance) of an agent head on at it."""
+    world = ZoneWorld(aliens=(Alien((_AT, 0.0), detection=_DETECTION, speed=_PURSUIT),))
+    law = ZoneFlocking(ZoneRadii(1.5, c=3.0, a=5.0, s=s), ZoneWeights(), world, u_max=1e6)
+    q, p = np.array([[0.0, 0.0]]), np.array([[_SPEED, 0.0]])
+    qs, ps, _, memory = law.iterate(0.0, q, p, law.start(q, p), _STEPS)
+    gap = np.abs(memory["alien"][:, 0, 0] - qs[:, 0, 0])
+    hunted = int(np.argmax(memory["alien"][:, 0, 0] != _AT))
+    # the input of step k is that of the state after step k − 1
+    heeded = int(np.argmax(ps[:, 0, 0] < _SPEED * (1.0 - _ROUNDING)))
+    return law.dt * hunted, law.dt * heeded, float(gap.min())
+
+
+def _check(tolerances: Tolerances) -> list[Claim]:
+    (hunted, heeded, near), (hunted_too, at_once, far) = _meeting(_SHORT), _meeting(_DETECTION)
+    delay, none = heeded - hunted, at_once - hunted_too
+    predicted, step = (_DETECTION - _SHORT) / (_SPEED + _PURSUIT), 0.1
+    return [
+        judged(
+            "delay",
+            1.75 * step - abs(delay - predicted),
+            _ROUNDING,
+            computed=delay,
+            stated=predicted,
+            witness={"s": _SHORT, "detection": _DETECTION, "approach": _SPEED + _PURSUIT},
+            detail=f"head on, an agent that sees {_SHORT:g} m heeds the alien {delay:.2g} s after it was detected: "
+            f"(9 - s)/(v + v_alien) = {predicted:.2g} s, to a step of {step:g} s",
+        ),
+        judged(
+            "none",
+            1.75 * step - abs(none),
+            _ROUNDING,
+            computed=none,
+            stated=0.0,
+            witness={"s": _DETECTION, "detection": _DETECTION},
+            detail=f"with s = {_DETECTION:g}, the alien's own range, it reacts within {abs(none):.2g} s: the next step",
+        ),
+        judged(
+            "nearer",
+            (far - near) / _DETECTION,
+            _ROUNDING,
+            computed={"least distance, s = 6": near, "least distance, s = 9": far},
+            stated="the delay costs distance",
+            witness={"q(0)": (0.0, 0.0), "p(0)": (_SPEED, 0.0), "alien": (_AT, 0.0)},
+            detail=f"the alien comes to {near:.3g} m of the agent that sees 6 m, to {far:.3g} m of the one that sees 9",
+        ),
+    ]
+
+
+THEOREM = erratum(
+    "J17",
+    title="A shorter surveillance radius delays the reaction to an alien",
+    statement=(
+        "Section 5.2: the shorter surveillance radius of the agents, 6 m against the alien's 9 m, causes a delayed "
+        "reaction. True: by (9 - s)/(v + v_alien) head on, and the alien comes that much nearer."
+    ),
+    source="Jond, bearing-distance flocking, section 5.2",
+    check=_check,
+    references=("jond-2025",),
+    expected={"delay": "verified", "none": "verified", "nearer": "verified"},
+)

@@ -1,0 +1,91 @@
+"""The bearing-distance paper's "scalable": flocks of 10 to 500 agents at one density, and what grows with them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.dynamics.simulate import simulate
+from flockana.interactions import ZoneRadii
+from flockana.laws.bearing_distance import ZoneFlocking
+from flockana.measures.metrics import coordination, min_distance
+from flockana.measures.nets import components, links
+from flockana.theorems.bearing_distance.random_starts import crowd_start
+from flockana.theorems.claims import erratum, judged
+from flockana.theorems.shares import always, mostly
+from flockana.theorems.theorem import Claim, Tolerances
+
+_LAW = ZoneFlocking(ZoneRadii(1.5, c=3.0, a=5.0))
+_SEEDS = {10: 20, 100: 20, 500: 6}  # by number of agents; of 6 none may fail, so that half of all are sure to hold
+_SIZES, _DURATION = tuple(_SEEDS), 20.0
+_SAFE, _IN_ORDER = 1.5, 0.99  # m; what counts as C = 1
+_MORE = 1.25  # times as many neighbours in a flock five times as large are as many
+_ROUNDING = 1e-9
+
+
+def _ends(n: int, *, any_direction: bool = False) -> FloatArray:
+    """Coordination, components, least distance and mean number of neighbours after 20 s, one row for each seed."""
+    rows = []
+    for seed in range(_SEEDS[n]):
+        start = crowd_start(seed, n, any_direction=any_direction)
+        run = simulate(_LAW, *start, (0.0, _DURATION), t_eval=(_DURATION,))
+        q, p = run.q[-1], run.p[-1]
+        edges = links(q, _LAW.radii.reach[2])
+        rows.append([coordination(p), components(n, edges).max() + 1, min_distance(q), 2.0 * len(edges) / n])
+    return np.array(rows)
+
+
+def _flocks(n: int, ends: FloatArray) -> Claim:
+    return mostly(
+        f"flock-{n}",
+        (ends[:, 0] >= _IN_ORDER) & (ends[:, 1] == 1) & (ends[:, 2] > _SAFE),
+        f"{n} agents are one flock after {_DURATION:g} s, C >= {_IN_ORDER:g}, all more than r apart",
+        "flocks of every size order, hold together and keep apart",
+        witness={"least C": float(ends[:, 0].min()), "least distance": float(ends[:, 2].min())},
+    )
+
+
+def _check(tolerances: Tolerances) -> list[Claim]:
+    ends = {n: _ends(n) for n in _SIZES}
+    some, many = (float(ends[n][:, 3].mean()) for n in _SIZES[1:])
+    turned = _ends(_SIZES[-1], any_direction=True)
+    return [
+        *(_flocks(n, ends[n]) for n in _SIZES),
+        judged(
+            "local",
+            _MORE - many / some,
+            _ROUNDING,
+            computed={n: float(ends[n][:, 3].mean()) for n in _SIZES},
+            stated="an agent interacts with no more agents in a flock five times as large",
+            witness={"agents within a_i, mean over seeds": (some, many)},
+            detail=f"an agent has {some:.3g} others within a_i among {_SIZES[1]}, and {many:.3g} among {_SIZES[2]}: "
+            "the work of an agent does not grow with the flock",
+        ),
+        always(
+            "any-direction",
+            turned[:, 0] >= _IN_ORDER,
+            f"{_SIZES[-1]} agents that begin in all directions are in order after {_DURATION:g} s "
+            f"(C = {np.median(turned[:, 0]):.2f} in the median, {np.median(turned[:, 1]):g} components)",
+            "a large flock comes to order whatever its first velocities",
+            witness={"C by seed": turned[:, 0].tolist(), "components by seed": turned[:, 1].astype(int).tolist()},
+        ),
+    ]
+
+
+THEOREM = erratum(
+    "J18",
+    title="Scalable in work, and in order only where the start is",
+    statement=(
+        "The behaviour is said to be scalable. At the density of section 5.1, 10, 100 and 500 agents order, hold "
+        "together and keep apart, and an agent heeds as many others whatever the size. But first velocities in (0, 1) "
+        "are half aligned already: from all directions a large flock falls into many, each in its own direction."
+    ),
+    source="Jond, bearing-distance flocking, abstract and conclusions",
+    check=_check,
+    references=("jond-2025",),
+    expected={
+        **{f"flock-{n}": "verified" for n in _SIZES},
+        "local": "verified",
+        "any-direction": "refuted",
+    },
+)

@@ -1,0 +1,32 @@
+"""Quantiles of the distances of all pairs, against a sort of them in plain loops."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from flockana.base.errors import ArgumentError
+from flockana.measures.metrics import min_distance
+from flockana.measures.profiles import pair_distance_profile
+
+
+def test_quantiles_of_all_pairs():
+    q = np.random.default_rng(0).uniform(0.0, 9.0, (3, 7, 2))
+    found = pair_distance_profile(q)
+    for k in range(3):
+        apart = sorted(float(np.hypot(*(q[k, i] - q[k, j]))) for i in range(7) for j in range(i))
+        assert len(apart) == 21  # quarters of 20 steps fall on distances of their own
+        np.testing.assert_allclose(found[k], [apart[0], apart[5], apart[10], apart[15], apart[20]], rtol=1e-14)
+        assert found[k, 0] == pytest.approx(min_distance(q[k]), rel=1e-14)
+
+
+def test_one_agent_has_no_distances():
+    assert np.isnan(pair_distance_profile(np.zeros((4, 1, 3)))).all()
+    assert pair_distance_profile(np.zeros((4, 1, 3))).shape == (4, 5)
+
+
+def test_bad_arguments():
+    with pytest.raises(ArgumentError, match=r"q has shape \(2, 2\): expected \(T, n, m\)"):
+        pair_distance_profile(np.zeros((2, 2)))
+    with pytest.raises(ArgumentError, match="expected numbers from 0 to 1"):
+        pair_distance_profile(np.zeros((1, 2, 2)), (0.5, 1.5))

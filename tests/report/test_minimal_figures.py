@@ -1,0 +1,16 @@
+"""The minimal model's runs are drawn as any flock's, and with the profiles of Fig. 10."""
+
+from __future__ import annotations
+
+from flockana.dynamics.simulate import simulate
+from flockana.report.figures import flock_pictures, pictures
+from flockana.scenarios import scenario
+
+
+def test_the_profiles_come_last():
+    entry = scenario("minimal-3d")
+    run = simulate(entry.law, entry.q0, entry.p0, (0.0, 1.0))
+    drawn = pictures(run)
+    assert len(drawn) == len(flock_pictures(run)) + 1
+    assert drawn[-1].caption.startswith("As in Fig. 10")
+    assert drawn[-1].source.startswith("data:image/png;base64,")

@@ -1,0 +1,31 @@
+"""Erratum J16: who stays apart in a box, and why."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from flockana.environment.zone_obstacles import Box
+from flockana.environment.zone_world import ZoneWorld
+from flockana.interactions import ZoneRadii, ZoneWeights
+from flockana.laws.bearing_distance import ZoneFlocking
+
+RADII = ZoneRadii(1.5, c=3.0, a=5.0)
+
+
+def test_nobody_moves_and_pairs_go_straight_on(verdict_of):
+    verdict = verdict_of("J16")
+    assert verdict.claim("at-rest").computed == 0.0
+    assert verdict.claim("fragments").computed == pytest.approx(380.0, rel=1e-12)
+    growing = verdict.claim("growing").computed
+    assert list(growing.values())[:2] == [pytest.approx(740.0, rel=1e-3)] * 2  # 5 m/s is less than they part by
+    assert list(growing.values())[2] < 5.0
+
+
+def test_the_mirror_image_of_an_agent_never_meets_it():
+    """Why: the box and the law are symmetric about its centre, and a lone agent keeps clear of the centre later on."""
+    law = ZoneFlocking(RADII, ZoneWeights(cohesion_gain=1.0, alignment_gain=1.0), ZoneWorld(box=Box((0, 0), (50, 50))))
+    q, p = np.array([[12.0, 40.0], [38.0, 10.0]]), np.array([[2.0, 1.5], [-2.0, -1.5]])
+    path = law.iterate(0.0, q, p, law.start(q, p), 3000)[0]
+    np.testing.assert_allclose(path[:50, 0] + path[:50, 1], 50.0, atol=1e-12)
+    assert np.linalg.norm(path[:, 1] - path[:, 0], axis=1).min() > 20.0
