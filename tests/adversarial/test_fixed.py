@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from flockana import Tolerances, verify
+from flockana.stability.delay import DELAYED
 from tests.adversarial.cases import FALSE, REFUTED, TRUE, VERIFIED
 
 # from the list of errata: `r` what is printed and false, `v` what is true; a search may come back without an answer
@@ -41,7 +42,7 @@ TRUTHS = {
     "L6": {"v": "printed bound"},
     "L7": {"r": "printed", "v": "components chatter sliding ramp"},
     "L8": {"r": "printed balance-distance", "v": "contact"},
-    "delay-margin": {"v": "algorithm-1-all algorithm-1-pairs algorithm-2-all algorithm-2-pairs"},
+    "delay-margin": {"v": " ".join(f"algorithm-{k}-{late}" for k in (1, 2) for late in DELAYED)},
     "linearised-decay": {"v": "decay random range"},
     "zone-separation": {"r": "close-encounters", "v": "alone energy chain"},
     "heterogeneous-gains": {"v": "printed simplified", "maybe": "apart"},
