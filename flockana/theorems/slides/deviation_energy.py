@@ -54,7 +54,7 @@ def _jump(name: str, energy: Callable[[float], float], r: float, stated: float, 
 def _corner(
     name: str, energy: Callable[[float], float], stated: float, units: tuple[float, float], symbol: str
 ) -> Claim:
-    """The change of slope as one agent passes through the other, by a difference quotient; `units`: of slope, length."""
+    """The change of slope as one agent passes through the other, by a difference quotient; units: of slope, length."""
     step = _NEAR * units[1]
     change = -2.0 * (energy(step) - energy(0.0)) / step  # of |x|: the slope on the left is the opposite
     return judged(
