@@ -17,6 +17,9 @@ from .environment.obstacles import Obstacle as Obstacle
 from .environment.obstacles import Sphere as Sphere
 from .environment.obstacles import Wall as Wall
 from .environment.polygon import Polygon as Polygon
+from .environment.system import Copies as Copies
+from .environment.system import Spring as Spring
+from .environment.system import SystemTarget as SystemTarget
 from .environment.target import Target as Target
 from .environment.targets import CallableTarget as CallableTarget
 from .environment.targets import CircleTarget as CircleTarget
@@ -53,6 +56,7 @@ from .laws.minimal import DiscreteMinimalFlocking as DiscreteMinimalFlocking
 from .laws.minimal import MinimalFlocking as MinimalFlocking
 from .laws.olfati_saber import Algorithm1 as Algorithm1
 from .laws.olfati_saber import Algorithm2 as Algorithm2
+from .laws.peer_to_peer import PeerToPeer as PeerToPeer
 from .laws.sum_of_terms import SumOfTerms as SumOfTerms
 from .laws.terms.navigation import Navigation as Navigation
 from .laws.terms.obstacles import ObstacleTerm as ObstacleTerm

@@ -76,6 +76,16 @@ ax.plot(z, pair.psi_alpha(z))
 _ = ax.set(xlabel="z = ‖q_j − q_i‖_σ", ylabel="ψ_α(z)")
 
 # %% [markdown]
+# ## Why not the deviation energy itself?
+#
+# A lattice is where the deviation energy $E(q)$, a mean of $(\|q_j - q_i\| - d)^2$ over the links, is zero. But $E$ is
+# no potential to descend: it jumps where a pair comes into range, and has a corner where two agents coincide. The
+# collective potential $V$ is smooth at both (`python -m proofs deviation-energy`).
+
+# %%
+_ = plots.deviation(alpha)
+
+# %% [markdown]
 # ## Three witnesses
 #
 # The kernel, the symbolic expression and plain quadrature are three independent routes to one number.

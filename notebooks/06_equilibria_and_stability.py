@@ -71,7 +71,7 @@ for ax, mode in zip(axes, shapes, strict=True):
 slow = shapes[0]
 push = 1e-4 * slow.shape.real
 run = fl.simulate(law, rest.q + push, np.zeros_like(push), (0.0, 4.0), rtol=1e-12, atol=1e-14)
-K = run.metrics()["velocity_mismatch"].values
+K = run.metrics()["normalised_velocity_mismatch"].values
 peaks = [k for k in range(1, len(K) - 1) if K[k - 1] < K[k] > K[k + 1] and run.t[k] > 0.2]
 measured = -0.5 * np.polyfit(run.t[peaks], np.log(K[peaks]), 1)[0]
 print(f"predicted {slow.decay_rate:.4f}, measured {measured:.4f}")

@@ -59,7 +59,7 @@ def test_a_run_with_its_energy_and_metrics(run, toys):
     found = run.metrics()
     assert float(found["toy_speed"][-1]) < 1e-4
     assert float(found["connectivity"][-1]) == 1.0
-    assert float(found["deviation_energy"][-1]) < 1e-3
+    assert float(found["normalised_deviation_energy"][-1]) < 1e-3
 
 
 def test_a_measure(run, toys):

@@ -197,7 +197,11 @@ def _rows(facts: dict[str, Any]) -> list[tuple[str, str]]:
     if facts["centre poles"] is not None:
         poles = ", ".join(f"{re:.5g}{f' {im:+.5g}i' if im else ''}" for re, im in facts["centre poles"])
         rows.append(("centre's poles", poles))
-    for kind, words in (("all", "all terms delayed"), ("pairs", "terms between agents delayed")):
+    for kind, words in (
+        ("all", "all terms delayed"),
+        ("pairs", "terms between agents delayed"),
+        ("neighbours", "what is heard of others delayed"),
+    ):
         margin = facts.get(f"delay margin, {kind}")
         if margin is not None:
             at = "" if margin["frequency"] is None else f", then a swing at {margin['frequency']:.4g} rad per time unit"

@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 
 PHASES = ("flocking", "fragmentation", "collapse", "other")
 CONTACT = 0.05  # of d
-_NEEDED = ("end_distance", "components", "slip", "deviation_energy")
+_NEEDED = ("end_distance", "components", "slip", "normalised_deviation_energy")
+_FORMER = {"deviation_energy": "normalised_deviation_energy"}  # what saved ensembles called Ẽ once
 
 
 def phases(
@@ -35,11 +36,12 @@ def phases(
     --------
     >>> import xarray
     >>> end = {"end_distance": [0.9, 0.9, 0.01], "components": [1.0, 3.0, 1.0]}
-    >>> end |= {"slip": [0.0] * 3, "deviation_energy": [0.001] * 3}
+    >>> end |= {"slip": [0.0] * 3, "normalised_deviation_energy": [0.001] * 3}
     >>> runs = xarray.Dataset({name: ("seed", values) for name, values in end.items()})
     >>> [PHASES[code] for code in phases(runs).values]
     ['flocking', 'fragmentation', 'collapse']
     """
+    dataset = dataset.rename({old: new for old, new in _FORMER.items() if old in dataset and new not in dataset})
     missing = [name for name in _NEEDED if name not in dataset]
     if missing:
         raise ArgumentError(f"the dataset lacks {', '.join(missing)}: call ensemble with these metrics")

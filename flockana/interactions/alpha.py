@@ -178,22 +178,17 @@ class AlphaInteraction(PairInteraction):
             return tapered
 
         edges = area * panel_edges(knee / area, r_alpha / area, d_alpha / area - self.c)
-        if knee < d_alpha:  # d_α lies on the taper: make it an edge, where ψ vanishes exactly
-            edges = np.unique(np.append(edges, d_alpha))
-        panels = integral_panels(taper, edges, value_at_right=0.0)
+        doublings = d_alpha * (1.0 + 2.0 ** np.arange(max(0.0, np.ceil(np.log2(r_alpha / d_alpha)))))
+        marks = np.append(d_alpha, doublings)  # between them ψ grows by a few times only, from 0 and from at most c*
+        edges = np.unique(np.concatenate([edges, marks[(marks > knee) & (marks < r_alpha)]]))
         at_knee = area * phi_integral((knee - d_alpha) / area, self.a, self.b, self.c)
-        left_end = on_panels(knee, panels)
-        if knee < d_alpha:
-            shift = -on_panels(d_alpha, panels)
-            par[kernel.OFFSET] = left_end + shift - at_knee
+        if knee < d_alpha:  # d_α lies on the taper: ψ vanishes there, exactly
+            panels = integral_panels(taper, edges, anchor=d_alpha)
+            panels[np.searchsorted(edges, d_alpha), 2] -= on_panels(d_alpha, panels)
+            par[kernel.OFFSET] = on_panels(knee, panels) - at_knee
         else:
-            shift = at_knee - left_end
-        panels[:, 2] += shift
-        par[kernel.FAR] = shift
-        if knee < d_alpha:  # what rounding of the sum leaves at d_α
-            rest = on_panels(d_alpha, panels)
-            panels[:, 2] -= rest
-            par[[kernel.OFFSET, kernel.FAR]] -= rest
+            panels = integral_panels(taper, edges, anchor=edges[0], value=at_knee)
+        par[kernel.FAR] = on_panels(r_alpha, panels)
         for array in (par, panels):
             array.setflags(write=False)
         return par, panels
@@ -260,7 +255,7 @@ class AlphaInteraction(PairInteraction):
         return evaluate(_PHI_ALPHA_SLOPE, z, self.par)
 
     def psi_alpha(self, z: Any) -> Any:
-        """ψ_α(z) = ∫_{d_α}^{z} φ_α, to 1e-13 c* absolute.
+        """ψ_α(z) = ∫_{d_α}^{z} φ_α, to 1e-13 c* absolute, and to rounding of itself where it is hundreds of c*.
 
         Parameters
         ----------

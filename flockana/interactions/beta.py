@@ -94,9 +94,8 @@ class BetaInteraction:
             repulsion: FloatArray = rho * (s / np.sqrt(1.0 + s**2) - 1.0)
             return repulsion
 
-        panels = integral_panels(
-            taper, area * panel_edges(knee / area, d_beta / area, d_beta / area), value_at_right=0.0
-        )
+        edges = area * panel_edges(knee / area, d_beta / area, d_beta / area)
+        panels = integral_panels(taper, edges, anchor=edges[-1])
         closed = area * sigma_norm(((knee - d_beta) / area) ** 2, 1.0) - knee
         par[kernel.BETA_OFFSET] = on_panels(knee, panels) - closed
         for array in (par, panels):

@@ -205,14 +205,14 @@ class DeadZoneInteraction(PairInteraction):
             # F is analytic within each ramp: repulsion's pole at 0 is farther from [d1 - ramp, d1] than d1 - ramp, and
             # narrow panels near it keep the series short
             inner = self.d1 - _fractions(self.ramp, self.d1)[::-1]
-            panels = integral_panels(ramped, inner, value_at_right=0.0)
+            panels = integral_panels(ramped, inner, anchor=self.d1)
             par[kernel.INNER] = on_panels(inner[0], panels)
             if self.d2 < self.r:
                 end = min(self.d2 + self.ramp, self.r)
                 # beyond r the kernel's force is 0, and at r the rule would meet that jump: stop just short of it
                 span = np.array([self.d2, end])
                 free[6] = inf
-                outer = integral_panels(ramped, span, value_at_right=0.0)
+                outer = integral_panels(ramped, span, anchor=self.d2)
                 outer[:, 2] -= on_panels(self.d2, outer)
                 par[kernel.OUTER] = on_panels(end, outer)
                 panels = np.vstack([panels, outer])

@@ -37,9 +37,11 @@ def panel_edges(left: float, right: float, centre: float) -> FloatArray:
 
 
 def integral_panels(
-    function: Callable[[FloatArray], FloatArray], edges: FloatArray, *, value_at_right: float
+    function: Callable[[FloatArray], FloatArray], edges: FloatArray, *, anchor: float, value: float = 0.0
 ) -> FloatArray:
-    """Panels of the antiderivative of `function` that equals `value_at_right` at the last edge.
+    """Panels of the antiderivative of `function` that equals `value` at the edge `anchor`.
+
+    It is summed from there to both sides: what rounds far away, where the integral may be large, stays there.
 
     Parameters
     ----------
@@ -47,8 +49,10 @@ def integral_panels(
         Analytic within each panel; takes and returns a one-dimensional array.
     edges : ndarray, shape (K + 1,)
         Rising panel boundaries.
-    value_at_right : float
-        Value of the antiderivative at ``edges[-1]``.
+    anchor : float
+        One of the edges.
+    value : float
+        Value of the antiderivative there.
 
     Returns
     -------
@@ -58,19 +62,22 @@ def integral_panels(
 
     Examples
     --------
-    >>> panels = integral_panels(lambda z: 2.0 * z, np.array([0.0, 1.0, 3.0]), value_at_right=9.0)
+    >>> panels = integral_panels(lambda z: 2.0 * z, np.array([0.0, 1.0, 3.0]), anchor=3.0, value=9.0)
     >>> bool(abs(polynomial.polyval(-1.0, panels[0, 2:])) < 1e-14)  # z² at 0
     True
     """
     nodes = chebyshev.chebpts1(NODES)
-    panels = np.empty((edges.size - 1, 3 + NODES))
-    value = value_at_right
-    for k in range(edges.size - 2, -1, -1):
-        left, right = edges[k], edges[k + 1]
-        half = 0.5 * (right - left)
-        series = chebyshev.chebfit(nodes, function(0.5 * (left + right) + half * nodes), NODES - 1)
-        integral = half * chebyshev.chebint(series)
-        integral[0] += value - chebyshev.chebval(1.0, integral)
-        panels[k, 0], panels[k, 1], panels[k, 2:] = left, right, chebyshev.cheb2poly(integral)
-        value = float(chebyshev.chebval(-1.0, integral))
+    panels = np.zeros((edges.size - 1, 3 + NODES))
+    first = int(np.searchsorted(edges, anchor))
+    for rows, start in ((range(first - 1, -1, -1), 1.0), (range(first, edges.size - 1), -1.0)):
+        reached = value
+        for k in rows:
+            left, right = edges[k], edges[k + 1]
+            half = 0.5 * (right - left)
+            series = chebyshev.chebfit(nodes, function(0.5 * (left + right) + half * nodes), NODES - 1)
+            integral = half * chebyshev.chebint(series)
+            integral[0] += reached - chebyshev.chebval(start, integral)
+            powers = chebyshev.cheb2poly(integral)  # without the zeros at its end
+            panels[k, 0], panels[k, 1], panels[k, 2 : 2 + powers.size] = left, right, powers
+            reached = float(chebyshev.chebval(-start, integral))
     return panels

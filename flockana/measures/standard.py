@@ -58,14 +58,16 @@ MEASURES = (
         defined=has_range,
     ),
     Measure(
-        "deviation_energy",
-        "Ẽ, deviation energy",
+        "normalised_deviation_energy",
+        "Ẽ, normalised deviation energy",
         over_time=lambda flock: flock.nets[2] / flock.law.lattice[0] ** 2,
         defined=has_lattice,
     ),
     Measure("strain", "δ/d, largest |link − d|/d", of_run=_strain, defined=has_lattice),
     Measure("cohesion_radius", "R, cohesion radius", "length", lambda flock: metrics.cohesion_radii(flock.q)),
-    Measure("velocity_mismatch", "K̃, velocity mismatch", "length²/time²", _mismatch, logarithmic=True),
+    Measure(
+        "normalised_velocity_mismatch", "K̃, normalised velocity mismatch", "length²/time²", _mismatch, logarithmic=True
+    ),
     Measure(
         "slip",
         "K̃ over the square of the law's speed scale",

@@ -23,6 +23,7 @@ from .lattice import defect_map as defect_map
 from .minimal import perception as perception
 from .obstacles import obstacles as obstacles
 from .pair import action as action
+from .pair import deviation as deviation
 from .pair import potential as potential
 from .phase import phase_portrait as phase_portrait
 from .rank import rank_connectivity as rank_connectivity

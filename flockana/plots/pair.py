@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from flockana.measures.metrics import deviation_energy
 from flockana.plots.style import BLUE, MUTED, VERMILLION, ensure_axes, finish
 
 if TYPE_CHECKING:
@@ -56,6 +57,45 @@ def potential(interaction: AlphaInteraction, *, ax: Axes | None = None) -> Axes:
     ax.plot(x, interaction.psi_alpha(interaction.sigma_norm(x)), color=VERMILLION, linestyle="-")
     ax.annotate(f"c* = {interaction.c_star:.4g}", (0.0, interaction.c_star), (30, -4), textcoords="offset points")
     return _frame(ax, interaction, "ψ_α, the pair's potential")
+
+
+def deviation(interaction: AlphaInteraction, *, ax: Axes | None = None) -> Axes:
+    """Draw E and V of a pair over its distance, each in its value at 0: E jumps at r and has a corner at 0, V neither.
+
+    To the left of 0 one agent has passed through the other.
+
+    Parameters
+    ----------
+    interaction : AlphaInteraction
+        The pair law.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    ax, d, r = ensure_axes(ax), interaction.d, interaction.r
+    x = np.linspace(-0.5 * d, 1.15 * r, _SAMPLES)
+    ax.plot(
+        x,
+        interaction.psi_alpha(interaction.sigma_norm(np.abs(x))) / interaction.c_star,
+        color=VERMILLION,
+        linestyle="--",
+        label="V, the pair's potential, over c*",
+    )
+    zero, within = deviation_energy([[0.0], [0.0]], d, r), np.nextafter(r, 0.0)
+    inside = np.append(x[x < r], within)
+    values = np.array([deviation_energy([[0.0], [at]], d, r) for at in inside]) / zero
+    ax.plot(inside, values, color=BLUE, linestyle="-", label="E, deviation energy, over E(0)")
+    ax.plot([r, x[-1]], [0.0, 0.0], color=BLUE, linestyle="-")
+    ax.plot([r], [values[-1]], "o", color=BLUE, markerfacecolor="white", markersize=5)
+    ax.plot([r], [0.0], "o", color=BLUE, markersize=5)
+    _frame(ax, interaction, "energy, in its value at 0")
+    ax.set_xlim(x[0], x[-1])
+    ax.set_xlabel("place of one agent, seen from the other (length)")
+    ax.legend()
+    return ax
 
 
 def _frame(ax: Axes, interaction: AlphaInteraction, label: str) -> Axes:

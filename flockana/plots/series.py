@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from flockana.dynamics.trajectory import Trajectory
 
 _FEW = 12  # components that a linear scale shows as well
-PANEL = ("connectivity", "cohesion_radius", "deviation_energy", "velocity_mismatch")
+PANEL = ("connectivity", "cohesion_radius", "normalised_deviation_energy", "normalised_velocity_mismatch")
 
 
 def measure(trajectory: Trajectory, name: str, *, ax: Axes | None = None) -> Axes:

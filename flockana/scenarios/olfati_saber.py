@@ -88,12 +88,12 @@ def _fragments(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 def _stays_mismatched(run: Trajectory, tolerances: Tolerances) -> Claim:
     """K̃ stays away from 0: in the second half of the run it never falls to a small share of what it was."""
-    series = run.metric("velocity_mismatch")
+    series = run.metric("normalised_velocity_mismatch")
     late = series[run.t >= 0.5 * (run.t[0] + run.t[-1])]
     share = float(late.min() / series[0])
     detail = (
-        f"velocity mismatch K̃ is {series[-1]:.3g} at t = {run.t[-1]:g}, and never below {share:.2g} of its start in "
-        "the second half: the fragments move apart"
+        f"normalised velocity mismatch K̃ is {series[-1]:.3g} at t = {run.t[-1]:g}, and never below {share:.2g} of "
+        "its start in the second half: the fragments move apart"
     )
     stated = f"K̃ > {tolerances.agreement:g} K̃(0)"
     margin = share - tolerances.agreement

@@ -1,7 +1,9 @@
 """Delayed interactions: how much delay the flock bears, and where its characteristic roots go.
 
-x''(t) = −K₀ x(t) − D₀ x'(t) − K₁ x(t − τ) − D₁ x'(t − τ): all that an agent hears is τ old ("all": K₀ = D₀ = 0), or
-only what it hears of other agents ("pairs": the γ-terms act at once).
+x''(t) = −K₀ x(t) − D₀ x'(t) − K₁ x(t − τ) − D₁ x'(t − τ): all that an agent hears is τ old, and so is its own state
+("all": K₀ = D₀ = 0); or the terms between agents, its own state in them included ("pairs": the γ-terms act at once); or
+only what it hears of other agents ("neighbours": it knows its own state at once, so that the blocks of an agent with
+itself are prompt).
 """
 
 from __future__ import annotations
@@ -17,13 +19,14 @@ from flockana.base.checks import FloatArray, ensure_count, ensure_positive
 from flockana.base.errors import UnknownNameError
 from flockana.equilibria.curvature import EPS
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.stability.blocks import law_blocks
+from flockana.stability.blocks import NEUTRAL, law_blocks
 from flockana.stability.rounding import eigen
 
 ComplexArray = npt.NDArray[np.complex128]
 
-DELAYED = ("all", "pairs")
+DELAYED = ("all", "pairs", "neighbours")
 _CHECK = 0.3  # of the smallest estimate: crossings that come so close to it are located exactly
+_ALIKE = 1e-8  # moduli that differ by no more pass 1 together: of modes that a symmetry of the flock couples
 _ROUNDINGS = 16.0  # of eps times the terms of the characteristic matrix
 _LOWEST = 1e-4  # of the highest frequency at which roots can cross: the sweep begins there
 
@@ -84,8 +87,9 @@ def delay_system(law: Algorithm1 | Algorithm2, q: Any, *, delayed: str = "all", 
         The law.
     q : array_like, shape (n, m)
         Equilibrium.
-    delayed : {"all", "pairs"}
-        Everything, an agent's own state included, or the terms between agents only.
+    delayed : {"all", "pairs", "neighbours"}
+        Everything, an agent's own state included; the terms between agents, its own state in them included; or only
+        what these terms hear of other agents.
     strict : bool
         Refuse a state that is no equilibrium.
 
@@ -108,7 +112,14 @@ def delay_system(law: Algorithm1 | Algorithm2, q: Any, *, delayed: str = "all", 
     if delayed == "all":
         return DelaySystem((zero, zero), (flock.stiffness, flock.damping), neutral)
     prompt_k, prompt_d = zero.copy(), zero.copy()
-    if law.target is not None:
+    if delayed == "neighbours":
+        m = np.shape(q)[1]
+        itself = np.kron(np.eye(len(zero) // m), np.ones((m, m))) > 0.0  # each agent's own block
+        prompt_k[itself], prompt_d[itself] = flock.stiffness[itself], flock.damping[itself]
+        # a flock that drifts sees its neighbours lag behind, and is slowed down unless nothing binds it that way
+        held = np.linalg.matrix_rank(flock.drifting.T @ prompt_k @ flock.drifting, tol=NEUTRAL * np.abs(prompt_k).max())
+        neutral -= int(held)
+    elif law.target is not None:
         shape, own = np.shape(q), np.diag_indices(len(zero))
         prompt_k[own] = np.broadcast_to(law.gains.pull, shape).ravel()
         prompt_d[own] = np.broadcast_to(law.gains.drag, shape).ravel()
@@ -180,7 +191,8 @@ def delay_margin(system: DelaySystem, *, grid: int = 200) -> DelayMargin:
         omega = float(
             brentq(lambda w, i=i: float(abs(_phases(system, w)[i])) - 1.0, omegas[k], omegas[k + 1], xtol=1e-14 * top)
         )
-        delay = _angle(_phases(system, omega)[i]) / omega
+        phases = _phases(system, omega)
+        delay = min(map(_angle, (phases[i], *phases[np.abs(np.abs(phases) - 1.0) <= _ALIKE]))) / omega
         if delay < best.delay:
             best = DelayMargin(delay, omega)
     return best

@@ -42,9 +42,11 @@ def simulate_delayed(
 ) -> DelayedRun:
     """Integrate the nonlinear flock with delayed interactions: RK4, `steps` steps per delay.
 
-    Before the start the flock moved with its initial velocities. What an agent hears, the γ-agent's position and
-    velocity included, is τ old; with ``delayed="pairs"`` only what it hears of other agents. Steps divide the delay, so
-    that kinks of the solution fall on steps; halfway between, the past is a Hermite cubic: the order is four.
+    Before the start the flock moved with its initial velocities. Each agent acts on a state of the flock and the
+    γ-agent that is τ old, its own included (``"all"``); in the terms between agents alone, where its own state is as
+    old as theirs (``"pairs"``); or on what is τ old of other agents and its own state at once (``"neighbours"``: then
+    action is no longer reaction, and the centre of mass is pushed). Steps divide the delay, so that kinks of the
+    solution fall on steps; halfway between, the past is a Hermite cubic: the order is four.
 
     Parameters
     ----------
@@ -58,7 +60,7 @@ def simulate_delayed(
         τ > 0.
     steps : int
         Steps per delay.
-    delayed : {"all", "pairs"}
+    delayed : {"all", "pairs", "neighbours"}
         As in `delay_system`.
 
     Raises
@@ -108,7 +110,12 @@ def simulate_delayed(
             return law.flow(t - delay, q_old, p_old)[0]
         heard = np.zeros_like(q)
         for term in law.terms:
-            term.act(t, *((q_old, p_old) if isinstance(term, PairTerm) else (q, p)), heard)
+            if not isinstance(term, PairTerm):
+                term.act(t, q, p, heard)
+            elif delayed == "pairs":
+                term.act(t, q_old, p_old, heard)
+            else:
+                heard += _heard_of_others(term, q, p, q_old, p_old)
         return heard
 
     for k in range(steps):
@@ -129,3 +136,14 @@ def simulate_delayed(
         us[k + 1] = push(t + h, qs[k + 1], ps[k + 1], qs[old + 1], ps[old + 1])
         check_step(k, us[k + 1])
     return DelayedRun(t0 + h * np.arange(total + 1.0), qs[steps:], ps[steps:], delay)
+
+
+def _heard_of_others(term: PairTerm, q: FloatArray, p: FloatArray, q_old: FloatArray, p_old: FloatArray) -> FloatArray:
+    """What a pair term makes of an agent's own state now and of the others' as they were, shape (n, m)."""
+    n, u = len(q), np.zeros_like(q)
+    apart = np.linalg.norm(q_old[None, :, :] - q[:, None, :], axis=2) < term.pair.range
+    i, j = np.nonzero(apart & ~np.eye(n, dtype=bool))
+    weight, adjacency, _ = term.pair.kernels.terms(np.vstack([q, q_old]), i, n + j, term.pair.par)
+    force = term.stiffness * weight[:, None] * (q_old[j] - q[i]) + term.damping * adjacency[:, None] * (p_old[j] - p[i])
+    np.add.at(u, i, force)
+    return u

@@ -8,10 +8,13 @@ Which modes are set apart. Translation is no zero mode here: c1γ holds it, and 
 for; it counts. Rotation about the γ-agent is neutral at every equilibrium of the law, for any gains, because the stress
 in the pressed links cancels what c1γ seems to hold. At a lattice that is no equilibrium of the law, an unstressed one
 above all, the printed matrix does hold it, which no flock at rest does. So rotation="counted" reads the matrix as
-printed, and rotation="apart" divides the rotation about the centre out, as `blocks.Blocks.quotient` does.
+printed; rotation="neutral" divides the angle of the rotation about the centre out, as `blocks.Blocks.quotient` does,
+so that the speed of turning is still to die out, as it is in a flock at rest; and rotation="apart" projects out angle
+and speed alike: what is rated is the flock's shape and its centre, and nothing of how it turns.
 
 Found for the hexagonal spiral of 30 agents, c1α = 30, c2α = 2√30, gains within [0, 5], as decay rates per time unit:
-1.740 alike and 2.061 per agent with the rotation counted (18 % faster); 2.236 = √5 and 2.247 with it apart (0.5 %);
+1.740 alike and 2.061 per agent with the rotation counted (18 % faster); 2.236 = √5 and 2.247 with it neutral (0.5 %);
+2.236 and 2.251 with it apart (0.7 %);
 0.2962 and 0.3067 in the simplified form (3.5 %). At the equilibria that these gains have, where rotation is neutral,
 critical damping alike, (5, 2√5), keeps 2.236, and the two per-agent designs decay at 2.064 and 2.147; designed with
 that equilibrium's own stiffness, c1γ = 5 for all and c2γ per agent reach 2.249 (0.6 %).
@@ -37,7 +40,7 @@ from flockana.stability.blocks import complement
 ComplexArray = npt.NDArray[np.complex128]
 
 FORMS = ("full", "simplified")
-ROTATIONS = ("apart", "counted")
+ROTATIONS = ("apart", "neutral", "counted")
 _ROUNDS = 200
 _ACTIVE = 40  # eigenvalues with the largest real parts that a step looks at
 _SMALLEST = 2e-9  # trust region at which a search ends, of the interval of gains
@@ -56,9 +59,11 @@ class GainProblem:
     damping : ndarray, shape (N, N)
         c2α L̂.
     apart : ndarray, shape (N, k)
-        Orthonormal motions whose position is divided out.
+        Orthonormal motions that are projected out.
     agents : int
         n; each has N/n coordinates.
+    speeds : bool
+        Whether their velocities are projected out too, or their positions alone.
 
     Examples
     --------
@@ -73,14 +78,22 @@ class GainProblem:
     damping: FloatArray
     apart: FloatArray
     agents: int
+    speeds: bool = True
+
+    @property
+    def _kept(self) -> tuple[FloatArray, FloatArray]:
+        """Bases of the positions and of the velocities that are left."""
+        kept = complement(self.apart)
+        return kept, kept if self.speeds else np.eye(len(self.stiffness))
 
     def matrix(self, gains: FloatArray) -> FloatArray:
         """The state matrix for gains (c1γ_1 … c1γ_n, c2γ_1 … c2γ_n), without what is set apart."""
         each = len(self.stiffness) // self.agents
         pull, drag = np.repeat(gains, each).reshape(2, -1)
-        kept = complement(self.apart)
-        top = np.hstack([np.zeros((kept.shape[1],) * 2), kept.T])
-        return np.vstack([top, np.hstack([-(self.stiffness + np.diag(pull)) @ kept, -self.damping - np.diag(drag)])])
+        positions, velocities = self._kept
+        top = np.hstack([np.zeros((positions.shape[1],) * 2), positions.T @ velocities])
+        forces = (self.stiffness + np.diag(pull)) @ positions, (self.damping + np.diag(drag)) @ velocities
+        return np.vstack([top, -velocities.T @ np.hstack(forces)])
 
     def eigenvalues(self, gains: FloatArray) -> ComplexArray:
         """Eigenvalues of `matrix`, largest real part first."""
@@ -99,11 +112,12 @@ class GainProblem:
         from scipy.linalg import eig
 
         values, left, right = eig(self.matrix(gains), left=True, right=True)  # type: ignore[misc]
-        kept, size = complement(self.apart), len(self.stiffness)
-        force = left[-size:].conj()
+        positions, velocities = self._kept
+        k = positions.shape[1]
+        force = velocities @ left[k:].conj()
         scale = np.einsum("ij,ij->j", left.conj(), right)
         scale = np.where(np.abs(scale) > 1e-14, scale, 1e-14)
-        moved = np.vstack([kept @ right[: kept.shape[1]], right[-size:]]).reshape(2, self.agents, -1, values.size)
+        moved = np.vstack([positions @ right[:k], velocities @ right[k:]]).reshape(2, self.agents, -1, values.size)
         slope = -np.einsum("aim,gaim->gam", force.reshape(self.agents, -1, values.size), moved)
         return values, (slope.reshape(2 * self.agents, -1) / scale).real.T
 
@@ -180,8 +194,9 @@ def gain_problem(
     form : {"full", "simplified"}
         With c1α ∇²V or without. Without it coordinates decouple into m copies of one problem of n, and nothing knows
         of rotations.
-    rotation : {"apart", "counted"}
-        Whether the rotation about the centre is divided out; no matter in the simplified form.
+    rotation : {"apart", "neutral", "counted"}
+        Whether the rotation about the centre is projected out, angle and speed; or its angle alone, as where it is
+        neutral; or neither. No matter in the simplified form.
 
     Raises
     ------
@@ -206,8 +221,8 @@ def gain_problem(
     translations = np.tile(np.eye(m), (n, 1)) / sqrt(n)
     inside = rigid - translations @ (translations.T @ rigid)
     basis, sizes, _ = np.linalg.svd(inside, full_matrices=False)
-    turns = basis[:, sizes > 0.5] if rotation == "apart" else np.zeros((q.size, 0))
-    return GainProblem(gains.c1_alpha * alpha.hessian(q).toarray(), damping, turns, n)
+    turns = basis[:, sizes > 0.5] if rotation != "counted" else np.zeros((q.size, 0))
+    return GainProblem(gains.c1_alpha * alpha.hessian(q).toarray(), damping, turns, n, rotation == "apart")
 
 
 def design_gains(

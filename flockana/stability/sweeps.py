@@ -195,7 +195,7 @@ def margin_sweep(
         The gain.
     values : array_like, shape (L,)
         Its values, rising.
-    delayed : {"all", "pairs"}
+    delayed : {"all", "pairs", "neighbours"}
         As in `delay_system`.
     grid : int
         As in `delay_margin`.

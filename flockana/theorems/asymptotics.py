@@ -35,7 +35,11 @@ def _numerical_noise(run: Trajectory, scale: float) -> float:
 
 def rest_certificate(run: Trajectory, tolerances: Tolerances) -> Certificate:
     """Certificate that all relative motion dies out: the rms relative velocity decays to what counts as 0."""
-    speed = np.sqrt(run.metric("velocity_mismatch")) + frame_error(run.p) + _numerical_noise(run, run.scales.speed)
+    speed = (
+        np.sqrt(run.metric("normalised_velocity_mismatch"))
+        + frame_error(run.p)
+        + _numerical_noise(run, run.scales.speed)
+    )
     falls = decay(run.t, speed, floor=float(np.sqrt(tolerances.velocity)) * run.scales.speed).certificate
     return replace(falls, text=f"√K̃: {falls.text}")
 
@@ -49,7 +53,7 @@ def velocities_match(
     caught: Iterable[Certificate] = (),
 ) -> Claim:
     """The claim that velocities match in the moving frame: K̃ decays steadily, or another certificate says so."""
-    series = run.metric("velocity_mismatch")
+    series = run.metric("normalised_velocity_mismatch")
     return limit_claim(
         name,
         needs,

@@ -17,7 +17,11 @@ from flockana.stability.rounding import eigen
 from flockana.theorems.claims import judged
 from flockana.theorems.theorem import Checked, Claim, Theorem, Tolerances
 
-_WHAT = {"all": "all terms delayed", "pairs": "terms between agents delayed"}
+_WHAT = {
+    "all": "all terms delayed",
+    "pairs": "terms between agents delayed",
+    "neighbours": "only what is heard of other agents delayed",
+}
 _WORTH = 0.01  # gain in the rate that counts: both searches end at roots that coalesce, and near the best only
 _CUSP = 1e-4  # relative error of a rate at coalescing roots
 _AROUND = 0.02  # of the margin: how far to either side stability is looked at
@@ -30,7 +34,7 @@ _DESIGNS: tuple[tuple[str, int, dict[str, Any], str], ...] = (
 
 def _check_delays(tolerances: Tolerances) -> Checked:
     laws = Algorithm1(), Algorithm2(target=StaticTarget((0.0, 0.0)))
-    return [], [_delay(law, delayed) for law in laws for delayed in ("all", "pairs")]
+    return [], [_delay(law, delayed) for law in laws for delayed in _WHAT]
 
 
 def _delay(law: Algorithm1 | Algorithm2, delayed: str) -> Claim:

@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from flockana import Tolerances, verify
+from flockana.stability.delay import DELAYED
 from tests.adversarial.cases import FALSE, REFUTED, TRUE, VERIFIED
 
 # from the list of errata: `r` what is printed and false, `v` what is true; a search may come back without an answer
@@ -17,12 +18,14 @@ TRUTHS = {
     "E4": {"v": "printed found vacuous barrier"},
     "E5": {"r": "printed-13 printed-8", "v": "uncrossed-13 uncrossed-8 six"},
     "E6": {"r": "printed", "v": "corrected sharp"},
-    "E7": {"r": "printed", "v": "corrected"},
+    "E7": {"r": "printed", "v": "corrected connectivity-1 connectivity-2 share-2"},
     "E8": {"r": "printed", "v": "corrected"},
     "E9": {"r": "printed", "v": "corrected excess"},
     "E10": {"r": "printed", "v": "corrected"},
+    "E14": {"r": "printed translation", "v": "corrected state"},
     "E15": {"r": "printed-start printed-speed faster-true", "v": "predicted faster faster-as-run condition"},
     "E16": {"r": "sufficient necessary", "v": "minima lattice"},
+    "deviation-energy": {"v": "jump corner potential-continuous potential-smooth"},
     "J1": {"r": "printed", "v": "corrected"},
     "J2": {"r": "hurwitz positive-definite", "v": "outside"},
     "J3": {"r": "printed hurwitz", "v": "trees"},
@@ -51,7 +54,7 @@ TRUTHS = {
     "L8": {"r": "printed balance-distance", "v": "contact"},
     "L9": {"r": "printed fraction", "v": "energy one-leader different-leaders acceleration acceleration-needed"},
     "L10": {"r": "printed-sufficient printed-necessary", "v": "sufficient not-necessary"},
-    "delay-margin": {"v": "algorithm-1-all algorithm-1-pairs algorithm-2-all algorithm-2-pairs"},
+    "delay-margin": {"v": " ".join(f"algorithm-{k}-{late}" for k in (1, 2) for late in DELAYED)},
     "linearised-decay": {"v": "decay random range"},
     "zone-separation": {"r": "close-encounters", "v": "alone energy chain"},
     "heterogeneous-gains": {"v": "printed simplified", "maybe": "apart"},

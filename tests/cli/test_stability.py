@@ -44,6 +44,7 @@ def test_margins_and_norms_of_a_pair(found):
     rate, omega = one["modes"][0]["decay rate"], one["modes"][0]["frequency"]
     stiffness, damping = rate**2 + omega**2, 2.0 * rate
     margin = scalar_margin(stiffness, damping)
+    assert one["delay margin, neighbours"]["delay"] > 2.0 * margin.delay
     for kind in ("all", "pairs"):
         assert one[f"delay margin, {kind}"]["delay"] == pytest.approx(margin.delay, rel=1e-9)
         assert one[f"delay margin, {kind}"]["frequency"] == pytest.approx(margin.frequency, rel=1e-9)

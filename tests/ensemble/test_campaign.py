@@ -74,7 +74,13 @@ def test_every_entry_is_that_of_a_run_made_by_hand(alone):
             assert STATUSES[int(entry.status)] == claim.status
             assert (float(entry.margin), float(entry.error)) == (claim.margin, claim.error)
     metrics = run.metrics().isel(time=-1)
-    for name in ("giant_share", "deviation_energy", "velocity_mismatch", "cohesion_radius", "order"):
+    for name in (
+        "giant_share",
+        "normalised_deviation_energy",
+        "normalised_velocity_mismatch",
+        "cohesion_radius",
+        "order",
+    ):
         assert float(found[name]) == float(metrics[name]), name
     assert float(found.min_distance) == run.min_distance() < float(metrics.min_distance) == 7.0 * found.end_distance
     assert float(found.components) == 1 + round((1.0 - float(metrics.connectivity)) * 4)
@@ -254,13 +260,15 @@ def test_phases_in_their_order():
         ("other", 0.9, 1.0, 2e-4, 0.01),
         ("other", 0.9, 1.0, 1e-5, 0.06),
     ]
-    names = ("end_distance", "components", "slip", "deviation_energy")
+    names = ("end_distance", "components", "slip", "normalised_deviation_energy")
     runs = xarray.Dataset({name: ("seed", [case[k + 1] for case in cases] + [np.nan]) for k, name in enumerate(names)})
     assert phases(runs).values.tolist() == [*(PHASES.index(case[0]) for case in cases), -1]
     assert PHASES[phases(runs, contact=0.04).values[2]] == "fragmentation"
     assert PHASES[phases(runs, tolerances=Tolerances(mismatch=1e-3)).values[3]] == "flocking"
     with pytest.raises(ArgumentError, match="lacks components"):
         phases(runs.drop_vars("components"))
+    saved_once = runs.rename(normalised_deviation_energy="deviation_energy")
+    np.testing.assert_array_equal(phases(saved_once), phases(runs))
 
 
 def test_the_family_of_phases_holds_what_it_says():

@@ -132,7 +132,7 @@ def test_pair_beta_by_hand():
 
 
 def test_on_panels_is_the_polynomial_and_keeps_nan():
-    panels = integral_panels(lambda z: 3.0 * z**2, np.array([-1.0, 0.5, 2.0]), value_at_right=8.0)
+    panels = integral_panels(lambda z: 3.0 * z**2, np.array([-1.0, 0.5, 2.0]), anchor=2.0, value=8.0)
     for z in (-1.0, -0.3, 0.5, 1.1, 2.0):
         assert scalars.on_panels(z, panels) == pytest.approx(z**3, abs=3e-15)
     assert scalars.on_panels(9.0, panels) == pytest.approx(8.0, abs=3e-15)  # the nearest end

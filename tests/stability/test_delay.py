@@ -78,7 +78,7 @@ def test_roots_of_a_first_order_equation_are_lambert_w(tau):
     np.testing.assert_allclose(found, exact, rtol=1e-9)
 
 
-@pytest.mark.parametrize("delayed", ["all", "pairs"])
+@pytest.mark.parametrize("delayed", ["all", "pairs", "neighbours"])
 def test_at_the_margin_the_rightmost_roots_are_on_the_axis(delayed):
     system = delay_system(LAW, find_equilibrium(LAW, hexagonal_spiral(3, 7.0)).q, delayed=delayed)
     margin = delay_margin(system)
@@ -93,10 +93,21 @@ def test_at_the_margin_the_rightmost_roots_are_on_the_axis(delayed):
 def test_a_flocks_margin_lies_between_those_of_its_numerical_range():
     """Frozen: n = 7 under the default gains, by sweep and by collocation; damping by the γ-agent delayed or not."""
     q = find_equilibrium(LAW, hexagonal_spiral(7, 7.0)).q
-    margins = [delay_margin(delay_system(LAW, q, delayed=name)).delay for name in ("all", "pairs")]
-    assert margins == pytest.approx([0.0127827452, 0.0129921726], rel=1e-8)
+    margins = [delay_margin(delay_system(LAW, q, delayed=name)).delay for name in ("all", "pairs", "neighbours")]
+    assert margins[:2] == pytest.approx([0.0127827452, 0.0129921726], rel=1e-8)
+    assert margins[2] == pytest.approx(0.0303, abs=5e-5)
     lattice = delay_margin(delay_system(Algorithm1(), hexagonal_spiral(7, 7.0)))
     assert lattice.delay == pytest.approx(0.0086924950, rel=1e-8)
+
+
+@pytest.mark.parametrize("grid", [100, 200, 201, 400])
+def test_modes_that_pass_together_are_all_asked_for_their_delay(grid):
+    """Under Algorithm 1 the hexagon's symmetry makes moduli coincide whose phases are 0.0238 and 0.148 apart."""
+    system = delay_system(Algorithm1(), hexagonal_spiral(7, 7.0), delayed="neighbours")
+    assert system.neutral == 3  # to be seen late slows a drift: only places and orientation stay neutral
+    margin = delay_margin(system, grid=grid)
+    assert margin.delay == pytest.approx(0.0238327387, rel=1e-8)
+    assert abs(rightmost_roots(system, margin.delay, count=1)[0] - 1j * margin.frequency) < 1e-8
 
 
 def test_the_integrator_is_of_fourth_order():
@@ -130,7 +141,7 @@ def test_a_moving_past_is_heard():
     assert (run.p[1, 0, 0] - 4.0) / run.t[1] == pytest.approx(u, abs=5e-3)
 
 
-@pytest.mark.parametrize("delayed", ["all", "pairs"])
+@pytest.mark.parametrize("delayed", ["all", "pairs", "neighbours"])
 def test_a_short_delay_is_none(delayed):
     q = hexagonal_spiral(4, 7.0) + 0.2
     p = np.random.default_rng(1).standard_normal(q.shape)
@@ -139,7 +150,21 @@ def test_a_short_delay_is_none(delayed):
     np.testing.assert_allclose(late.q[-1], prompt.q[-1], atol=5e-3)
 
 
-def grown(system, q, share, law):
+def test_what_is_heard_by_hand():
+    """Two agents on a line, the first step from rest: each sees where the other was, "neighbours" itself where it is.
+
+    Drifting together at speed 2 for τ = 0.25 the one behind finds the other half a length nearer, the one ahead finds
+    it half a length farther off; both are pushed backwards, and the centre of mass with them. "pairs" has its own past.
+    """
+    law, q, p = Algorithm1(gains=Gains(c1_alpha=1.0, c2_alpha=0.0)), [[0.0], [7.0]], [[2.0], [2.0]]
+    for delayed, seen in (("neighbours", (6.5, 7.5)), ("pairs", (7.0, 7.0))):
+        run = simulate_delayed(law, q, p, (0.0, 1e-5), delay=0.25, steps=25_000, delayed=delayed)
+        pulls = [law.acceleration(0.0, [[0.0], [x]], [[0.0], [0.0]])[0, 0] for x in seen]
+        u = (run.p[1] - run.p[0])[:, 0] / run.t[1]
+        np.testing.assert_allclose(u, [pulls[0], -pulls[1]], atol=1e-4)
+
+
+def grown(system, q, share, law, delayed="all"):
     """(slope of log amplitude of the nonlinear delayed flock, rightmost real part), started in the rightmost mode."""
     tau = share * delay_margin(system).delay
     root = rightmost_roots(system, tau, nodes=10, count=1)[0]
@@ -150,7 +175,7 @@ def grown(system, q, share, law):
         q + size * (s * mode).real.reshape(q.shape) if k == 0 else size * (s * mode).real.reshape(q.shape)
         for k, s in enumerate((1.0, root))
     )
-    run = simulate_delayed(law, q0, p0, (0.0, span), delay=tau, steps=steps)
+    run = simulate_delayed(law, q0, p0, (0.0, span), delay=tau, steps=steps, delayed=delayed)
     amplitude = np.linalg.norm((run.p @ np.eye(q.shape[1])).reshape(len(run.t), -1), axis=1)
     period = 2 * pi / abs(root.imag)
     centres = np.arange(0.4 * span, span - period, period)
@@ -158,14 +183,34 @@ def grown(system, q, share, law):
     return np.polyfit(centres, tops, 1)[0], root.real
 
 
-@pytest.mark.parametrize("share", [0.85, 1.15])
-def test_the_nonlinear_flock_decays_below_the_margin_and_grows_above(share):
+@pytest.mark.parametrize(
+    ("delayed", "share"),
+    [("all", 0.85), ("all", 1.15), ("pairs", 0.85), ("pairs", 1.15), ("neighbours", 1.15)],
+)
+def test_the_nonlinear_flock_decays_below_the_margin_and_grows_above(delayed, share):
     q = find_equilibrium(LAW, hexagonal_spiral(3, 7.0)).q
-    slope, predicted = grown(delay_system(LAW, q), q, share, LAW)
+    slope, predicted = grown(delay_system(LAW, q, delayed=delayed), q, share, LAW, delayed)
     assert np.sign(slope) == np.sign(share - 1.0)
     assert slope == pytest.approx(
         predicted, rel=0.1
     )  # the past before the start is a line, no mode: others are excited
+
+
+def test_knowing_its_own_state_at_once_an_agent_bears_more_than_twice_the_delay():
+    """τ = 0.02 is beyond the margin 0.0130 of "pairs" and below the 0.0303 of "neighbours"; 0.05 beyond both."""
+    q = find_equilibrium(LAW, hexagonal_spiral(7, 7.0)).q
+    p = 1e-6 * np.random.default_rng(5).standard_normal(q.shape)
+
+    def gain(delay, delayed):
+        """Kinetic energy in the shape at the end over that in the middle."""
+        run = simulate_delayed(LAW, q, p, (0.0, 1.6), delay=delay, steps=4, delayed=delayed)
+        energy = np.sum((run.p - run.p.mean(axis=1, keepdims=True)) ** 2, axis=(1, 2))
+        half, tail = len(run.t) // 2, len(run.t) // 8
+        return energy[-tail:].mean() / energy[half : half + tail].mean()
+
+    assert gain(0.02, "pairs") > 10.0
+    assert gain(0.02, "neighbours") < 0.5
+    assert gain(0.05, "neighbours") > 3.0
 
 
 @pytest.mark.parametrize(

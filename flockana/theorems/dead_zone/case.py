@@ -55,7 +55,7 @@ def settling(end: Components) -> Certificate:
 
 def velocities_match(run: Trajectory, end: Components, needs: list[Hypothesis], *, name: str) -> Claim:
     """K̃ → 0: certain of one component that settles, refuted where components part, each at its own velocity."""
-    series = run.metric("velocity_mismatch")
+    series = run.metric("normalised_velocity_mismatch")
     claim = limit_claim(
         name,
         needs,

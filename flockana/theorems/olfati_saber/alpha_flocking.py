@@ -73,8 +73,8 @@ def _always(name: str, part: _Window, value: FloatArray, bound: float, error: Fl
 
 _SYMBOLS = {
     "cohesive": ("R", "cohesion radius"),
-    "deviation": ("Ẽ", "deviation energy"),
-    "mismatch": ("K̃", "velocity mismatch, over the law's speed²,"),
+    "deviation": ("Ẽ", "normalised deviation energy"),
+    "mismatch": ("K̃", "normalised velocity mismatch, over the law's speed²,"),
 }
 
 
@@ -120,7 +120,7 @@ def _common(part: _Window, tolerances: Tolerances) -> list[Claim]:
     """The claims Ẽ <= ε₁ and K̃ <= ε₂; a link that may come or go between samples, or by rounding, adds to Ẽ."""
     run = part.run
     (d, r), units, steps = run.law.lattice, run.scales.energy, isinstance(run.law, DiscreteLaw)
-    deviation, mismatch = run.metric("deviation_energy"), run.metric("velocity_mismatch") / units
+    deviation, mismatch = run.metric("normalised_deviation_energy"), run.metric("normalised_velocity_mismatch") / units
     rounding = 8.0 * EPS * (float(np.abs(run.q).max()) / d + 1.0)
     error = 2.0 * np.sqrt(deviation) * rounding + rounding**2 + 4.0 * EPS * run.n * deviation
     one_link = 2.0 * (r / d - 1.0) ** 2

@@ -4,28 +4,53 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.measures.metrics import giant_share
+from flockana.base.checks import FloatArray
+from flockana.measures.metrics import connectivity, giant_share
 from flockana.measures.nets import links, printed_edge_share
 from flockana.theorems.claims import erratum, judged
 from flockana.theorems.theorem import Claim, Tolerances
 
+_SPACE = 1000.0  # between components; within one, neighbours are 1 apart and the range is 1.5
+
+
+def _components(*sizes: int) -> FloatArray:
+    """Rows of agents, each within range of the next, the rows out of range of each other."""
+    rows = [_SPACE * k + np.arange(float(size)) for k, size in enumerate(sizes)]
+    return np.concatenate(rows)[:, None]
+
 
 def _check(tolerances: Tolerances) -> list[Claim]:
-    """The slides' own example: components of 1, 1, 1, 1 and 96 agents."""
-    q = np.concatenate([np.arange(96.0), 1000.0 * np.arange(1.0, 5.0)])[:, None]
-    printed, true = printed_edge_share(100, links(q, 1.5)), giant_share(q, 1.5)
+    """The slides' own examples: components of 1, 1, 1, 1 and 96 agents, and five of 20 each."""
+    uneven, even = _components(1, 1, 1, 1, 96), _components(20, 20, 20, 20, 20)
+    printed, true = printed_edge_share(100, links(uneven, 1.5)), giant_share(uneven, 1.5)
+    few, both = "components of 1, 1, 1, 1 and 96 agents", "five components of 20 agents"
     return [
-        _share("printed", printed, f"as printed, the share of edges in the giant component is {printed:g}, not 0.96"),
-        _share("corrected", true, f"the share of nodes is {true:g}, the example's number"),
+        _share("printed", printed, few, f"as printed, the share of edges in the giant component is {printed:g}"),
+        _share("corrected", true, few, f"the share of nodes is {true:g}, the example's number"),
+        _relative("connectivity-1", connectivity(uneven, 1.5), few),
+        _relative("connectivity-2", connectivity(even, 1.5), both),
+        _share(
+            "share-2",
+            giant_share(even, 1.5),
+            both,
+            f"C* = {giant_share(even, 1.5):g}; the share of edges, {printed_edge_share(100, links(even, 1.5)):g}, is "
+            "the same here, for the components are alike",
+            stated=20,
+        ),
     ]
 
 
-def _share(name: str, share: float, detail: str) -> Claim:
-    """Whether a share of the hundred agents is the source's: 96 of them, as a whole number."""
-    margin = 0.5 - abs(round(100.0 * share) - 96)
-    return judged(
-        name, margin, 0.0, computed=share, stated=0.96, witness="components of 1, 1, 1, 1 and 96 agents", detail=detail
-    )
+def _share(name: str, share: float, witness: str, detail: str, *, stated: int = 96) -> Claim:
+    """Whether a share of the hundred agents is the source's, as a whole number."""
+    margin = 0.5 - abs(round(100.0 * share) - stated)
+    return judged(name, margin, 0.0, computed=share, stated=stated / 100.0, witness=witness, detail=detail)
+
+
+def _relative(name: str, share: float, witness: str) -> Claim:
+    """Whether C is 95/99: both nets have five components, and C cannot tell them apart."""
+    margin = 0.5 - abs(round(99.0 * share) - 95)
+    detail = f"C = {round(99.0 * share)}/99 for {witness}: five components, whatever their sizes"
+    return judged(name, margin, 0.0, computed=share, stated="95/99", witness=witness, detail=detail)
 
 
 THEOREM = erratum(
@@ -33,10 +58,17 @@ THEOREM = erratum(
     title="C* is a share of nodes, not of edges",
     statement=(
         "The slides define C* = |E(Γ*)|/|E(G)| and give 0.96 for components of 1, 1, 1, 1, 96 agents. Isolated agents "
-        "have no edges, so that formula gives 1; the example counts nodes."
+        "have no edges, so that formula gives 1; the example counts nodes. C = 95/99 there and for five components of "
+        "20 agents, where C* = 0.2, as printed."
     ),
     source="slides, 'more accurate measure of connectivity'",
     check=_check,
     references=("geschwender-2016", "olfati-saber-2006"),
-    expected={"printed": "refuted", "corrected": "verified"},
+    expected={
+        "printed": "refuted",
+        "corrected": "verified",
+        "connectivity-1": "verified",
+        "connectivity-2": "verified",
+        "share-2": "verified",
+    },
 )

@@ -74,7 +74,7 @@ def test_the_energy_that_breaks_a_pair_up_is_sharp_but_for_rounding(excess):
 @pytest.mark.parametrize("units", UNITS)
 def test_without_damping_nothing_matches(units):
     run = run_in(units, DeadZoneFlocking(k2=0.0), [[0.0, 0.0], [5.0, 0.0]], [[-0.1, 0.0], [0.1, 0.0]], 60.0)
-    turning = run.window(run.t[0], run.t[int(np.argmin(run.metric("velocity_mismatch")))])
+    turning = run.window(run.t[0], run.t[int(np.argmin(run.metric("normalised_velocity_mismatch")))])
     for one in (run, turning):
         assert said("dead-zone-1-corrected", one)["components"] != "verified"
         assert said("dead-zone-1-printed", one)["velocity"] != "verified"
@@ -147,7 +147,9 @@ def test_what_is_certain_at_one_instant_comes_true(seed, start):
     for k in range(60):
         if held[k].certificate.margin > 0.0:
             assert abs(cohesion_radius(run.q[k]) - end) <= held[k].reach + integrated
-            assert run.metric("velocity_mismatch")[-1] < max(1e-12, run.metric("velocity_mismatch")[k])
+            assert run.metric("normalised_velocity_mismatch")[-1] < max(
+                1e-12, run.metric("normalised_velocity_mismatch")[k]
+            )
             assert held[k + 1].certificate.margin > 0.0 or held[k + 1].excess < held[k].barrier
         if bound[k].count == 1 and bound[k].members[0].radius < np.inf:
             assert max(map(cohesion_radius, run.q[k:])) <= bound[k].members[0].radius + integrated
@@ -201,7 +203,7 @@ def test_a_map_that_chatters_is_not_taken_to_rest(dt):
     law = SemiImplicitEuler(DeadZoneFlocking(DeadZoneInteraction(ramp=0.0)), dt)
     q, p = small_flock(0)
     run = simulate(law, q, p, (0.0, 60.0))
-    for k in (-1, len(run.t) - 2, len(run.t) // 2, int(np.argmin(run.metric("velocity_mismatch")))):
+    for k in (-1, len(run.t) - 2, len(run.t) // 2, int(np.argmin(run.metric("normalised_velocity_mismatch")))):
         one = run.window(run.t[0], run.t[k])
         assert said("dead-zone-1-corrected", one)["components"] != "verified"
         assert said("dead-zone-1-printed", one)["velocity"] != "verified"

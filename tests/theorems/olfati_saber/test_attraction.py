@@ -96,7 +96,7 @@ def test_what_is_caught_stays_and_comes_to_rest(law, seed):
     moved = max(np.abs(one - lengths[-1]).max() for one in lengths)
     reach = np.sqrt(2.0 * found.barrier / found.curvature)  # of the quadratic well of that height
     assert moved <= 4.0 * reach
-    assert run.metric("velocity_mismatch")[-1] < 1e-12
+    assert run.metric("normalised_velocity_mismatch")[-1] < 1e-12
     assert attraction(law, run.q[-1], run.p[-1]).excess < 1e-9 * found.barrier
 
 

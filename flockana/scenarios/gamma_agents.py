@@ -1,0 +1,162 @@
+"""γ-agents that are systems: one leader with a motion of its own, and peers that each follow a copy of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.dynamics.trajectory import Trajectory
+from flockana.environment.system import Copies, Spring, SystemTarget
+from flockana.interactions import AlphaInteraction
+from flockana.lattice.builders import hexagonal_spiral
+from flockana.laws.olfati_saber import Algorithm2
+from flockana.laws.peer_to_peer import PeerToPeer
+from flockana.scenarios.findings import component_count, finding
+from flockana.scenarios.scenario import Report, Scenario
+from flockana.theorems import Claim, Tolerances
+from flockana.theorems.olfati_saber.energy import balance
+from flockana.theorems.olfati_saber.gamma_agent import consistent
+
+_N = 8
+_REFERENCES = ("olfati-saber-2006", "flockana")
+_DRIFT = 4.0  # by which the copies of the two halves differ from the true velocity, across the way
+
+
+def _tells_the_truth(run: Trajectory, tolerances: Tolerances) -> Claim:
+    found = consistent(run)
+    margin = 0.5 if found.status == "met" else -0.5
+    off = -float(found.margin or 0.0)
+    return finding("consistent", margin, f"mean dq_r/dt is p_r to {off:.2g}", computed=off, stated="dq_r/dt = p_r")
+
+
+def _copies_as_predicted(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """Where the copies are against d'' = −(k + k₁) d − (b + k₂) d' for each one's distance from the mean."""
+    copies, t = run.law.copies, float(run.t[-1] - run.t[0])
+    place, speed = (np.array(x) - np.mean(x, axis=0) for x in (copies.q, copies.p))
+    k, b = copies.position_coupling, copies.velocity_coupling  # f_r = 0
+    predicted = place + speed * t
+    if k > 0.0:  # critically damped, b² = 4k
+        predicted = (place + (speed + 0.5 * b * place) * t) * np.exp(-0.5 * b * t)
+    found = copies.state(float(run.t[-1]))[0]
+    found = found - found.mean(axis=0)
+    off, size = float(np.abs(found - predicted).max()), run.scales.length
+    apart = float(np.linalg.norm(found, axis=1).max())
+    detail = f"copies end up to {apart:.3g} from their mean, as the linear theory says to {off:.1g}"
+    return finding("predicted", 1e-6 - off / size, detail, computed=apart, stated="the linear theory's, to 1e-6 d")
+
+
+def _two_halves(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """Whether the flock has parted as its copies have: the halves are out of range of each other."""
+    components = component_count(run)
+    detail = f"{components} component(s) at t = {run.t[-1]:g}"
+    return finding("apart", components - 1.5, detail, computed=components, stated="more than 1")
+
+
+def _one_flock(run: Trajectory, tolerances: Tolerances) -> Claim:
+    components = component_count(run)
+    detail = f"{components} component(s) at t = {run.t[-1]:g}"
+    return finding("together", 1.5 - components, detail, computed=components, stated=1)
+
+
+def _centre_follows(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """The centre of mass against the mean of the copies: a critically damped pair of poles, whatever the flock does."""
+    law = run.law
+    places, speeds = (x.mean(axis=0) for x in law.copies.state(float(run.t[0])))
+    away, slip = run.q[0].mean(axis=0) - places, run.p[0].mean(axis=0) - speeds
+    rate, t = 0.5 * float(law.gains.c2_gamma), float(run.t[-1] - run.t[0])
+    predicted = (away + (slip + rate * away) * t) * np.exp(-rate * t)
+    found = run.q[-1].mean(axis=0) - law.copies.state(float(run.t[-1]))[0].mean(axis=0)
+    off = float(np.abs(found - predicted).max()) / run.scales.length
+    detail = (
+        f"the centre of mass ends {float(np.linalg.norm(found)):.2g} from the mean of the copies, as a critically "
+        f"damped follower does to {off:.1g} d"
+    )
+    return finding("centre", 1e-4 - off, detail, computed=off, stated="q_c'' = −c1γ (q_c − q̄_r) − c2γ (p_c − p̄_r)")
+
+
+def _balanced(run: Trajectory, tolerances: Tolerances) -> Claim:
+    return balance(run, [], tolerances)
+
+
+def _start(seed: int) -> tuple[FloatArray, FloatArray]:
+    """Eight agents near a patch of the lattice, almost at rest, those ahead in y last."""
+    generator, d = np.random.default_rng(seed), AlphaInteraction().d
+    q = hexagonal_spiral(_N, d) + generator.uniform(-0.2, 0.2, (_N, 2))
+    return q[np.argsort(q[:, 1])], generator.uniform(-0.3, 0.3, (_N, 2))
+
+
+def _system(seed: int = 0) -> Scenario:
+    target = SystemTarget((30.0, 0.0), (0.0, 6.0), Spring((0.0, 0.0), 1.0, reach=8.0))
+    return Scenario(
+        "gamma-system",
+        "A γ-agent that is a system of its own leads eight agents round",
+        "Ours, on the γ-agent q_r' = p_r, p_r' = f_r(q_r, p_r): f_r = −x/√(1 + ‖x‖²/64), a spring whose pull is "
+        "bounded, from (30, 0) at (0, 6); Algorithm 2 with the default gains, eight agents near a lattice about the "
+        "origin, each coordinate displaced by up to 0.2, velocities up to 0.3.",
+        Algorithm2(target=target),
+        *_start(seed),
+        (0.0, 30.0),
+        seed,
+        {"energy": "verified", "os-3:i": "verified", "source": "verified"},
+        (Report("consistent", "p_r is the true velocity of q_r", _tells_the_truth),),
+        references=_REFERENCES,
+    )
+
+
+def _peers(name: str, title: str, *, coupling: float) -> Callable[[int], Scenario]:
+    """Copies that agree about the place and, the two halves of the flock, not about the velocity."""
+    parted = coupling == 0.0
+
+    def build(seed: int = 0) -> Scenario:
+        q, p = _start(seed)
+        sides = np.where(np.arange(_N) < _N // 2, -_DRIFT, _DRIFT)
+        copies = Copies(
+            np.tile([10.0, 0.0], (_N, 1)),
+            np.column_stack([np.full(_N, 2.0), sides]),
+            Spring((0.0, 0.0), 0.0),
+            position_coupling=coupling,
+            velocity_coupling=2.0 * np.sqrt(coupling),
+        )
+        report = (
+            Report("apart", "the flock falls into two halves", _two_halves)
+            if parted
+            else Report("together", "the flock stays one", _one_flock)
+        )
+        return Scenario(
+            name,
+            title,
+            "Ours, on Fig. 7 (a virtual leader against peer-to-peer copies of the γ-agent): eight agents near a "
+            "lattice, each with a copy of the γ-agent of its own, f_r = 0, all copies from (10, 0) at (2, 0), but for "
+            "-4 across the way in one half of the flock and +4 in the other; default gains. "
+            + (
+                "The copies are not coupled, and part."
+                if parted
+                else f"Each copy is drawn to the mean of all by k₁ = {coupling:g}, k₂ = {2.0 * np.sqrt(coupling):g}."
+            ),
+            PeerToPeer(copies),
+            q,
+            p,
+            (0.0, 25.0),
+            seed,
+            {"source": "verified"},
+            (
+                Report("predicted", "copies part, or meet, as the linear theory says", _copies_as_predicted),
+                report,
+                Report("centre", "the centre of mass follows the mean of the copies", _centre_follows),
+                Report("balance", "H with the true velocities of the copies balances", _balanced),
+            ),
+            references=_REFERENCES,
+        )
+
+    return build
+
+
+SCENARIOS: dict[str, Callable[..., Scenario]] = {
+    "gamma-system": _system,
+    "gamma-copies-apart": _peers("gamma-copies-apart", "Copies of the γ-agent that part tear the flock", coupling=0.0),
+    "gamma-copies-coupled": _peers(
+        "gamma-copies-coupled", "Coupled copies of the γ-agent keep the flock", coupling=1.0
+    ),
+}

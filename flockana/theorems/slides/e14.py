@@ -1,0 +1,103 @@
+"""Erratum E14: in Reynolds' form of Algorithm 1 the slides lose −S_i q_i, and with it invariance under translation."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.interactions import AlphaInteraction, Gains
+from flockana.laws.olfati_saber import Algorithm1
+from flockana.measures.reynolds import reynolds
+from flockana.theorems.claims import equal, erratum, judged
+from flockana.theorems.theorem import Claim, Tolerances
+
+_SHIFT = 10.0  # of d
+
+
+def _check(tolerances: Tolerances) -> list[Claim]:
+    from flockana.symbolic.reynolds import reynolds_form
+
+    printed, true = reynolds_form(printed=True), reynolds_form()
+    return [
+        equal(
+            "printed",
+            list(printed.residuals),
+            stated="u_i^g = S_i⁺⟨q⟩⁺ + S_i⁻⟨q⟩⁻",
+            detail="what is left over is −S_i q_i, S_i = S_i⁺ + S_i⁻; moved by w, the printed force grows by S_i w",
+        ),
+        _example(),
+        equal(
+            "corrected",
+            list(true.residuals),
+            stated="u_i^g = S_i⁺(⟨q⟩⁺ − q_i) + S_i⁻(⟨q⟩⁻ − q_i), the same wherever the origin is",
+            detail="for any numbers of positive and negative friends, by sympy",
+        ),
+        _state(),
+    ]
+
+
+def _three() -> tuple[AlphaInteraction, FloatArray]:
+    """Three agents in a row: the middle one has a negative friend behind it and a positive one ahead."""
+    alpha = AlphaInteraction()
+    return alpha, np.array([[0.0], [5.0], [13.0]]) * alpha.d / 7.0
+
+
+def _forces(alpha: AlphaInteraction, q: FloatArray, *, printed: bool) -> FloatArray:
+    """u^g by the friends' form of every agent: Σ S^± (⟨q⟩^± − q_i), or without the −S_i q_i."""
+    rules, forces = reynolds(q, np.zeros_like(q), alpha=alpha, gains=Gains(c1_alpha=1.0)), np.zeros_like(q)
+    for ends in (rules.links, rules.links[:, ::-1]):
+        np.add.at(forces, ends[:, 0], rules.stress[:, None] * (q[ends[:, 1]] - (0.0 if printed else q[ends[:, 0]])))
+    return forces
+
+
+def _example() -> Claim:
+    """The printed force on the middle agent, here and ten lengths further on."""
+    alpha, q = _three()
+    here, there = (float(_forces(alpha, q + w, printed=True)[1, 0]) for w in (0.0, _SHIFT * alpha.d))
+    size = float(np.abs(q).max() + _SHIFT * alpha.d) * alpha.strength
+    return judged(
+        "translation",
+        -abs(there - here),
+        16.0 * np.finfo(float).eps * size,
+        computed={"here": here, "there": there},
+        stated="the force does not depend on where the origin is",
+        witness={"q": q.tolist(), "moved by": _SHIFT * alpha.d},
+        detail=f"three agents at 0, 5, 13: on the middle one {here:.4g} as printed, {there:.4g} with all moved by "
+        f"{_SHIFT * alpha.d:g}; the law gives {float(_law(alpha, q)[1, 0]):.4g} in both places",
+    )
+
+
+def _law(alpha: AlphaInteraction, q: FloatArray) -> FloatArray:
+    return Algorithm1(alpha, Gains(c1_alpha=1.0)).acceleration(0.0, q, np.zeros_like(q))
+
+
+def _state() -> Claim:
+    """The corrected form against the law itself on the same agents, here and moved."""
+    alpha, q = _three()
+    bound = 64.0 * np.finfo(float).eps * (1.0 + _SHIFT) * alpha.strength * 2.0
+    worst = max(
+        float(np.abs(_forces(alpha, q + w, printed=False) - _law(alpha, q + w)).max()) for w in (0.0, _SHIFT * alpha.d)
+    )
+    return judged(
+        "state",
+        bound - worst,
+        0.0,
+        computed=worst,
+        stated=f"the law's own force, to rounding ({bound:.2g})",
+        witness={"q": q.tolist()},
+        detail=f"the corrected form is the force that the law computes, to {worst:.2g}",
+    )
+
+
+THEOREM = erratum(
+    "E14",
+    title="Reynolds' form keeps −S_i q_i",
+    statement=(
+        "The slides rewrite u_i^g = Σ_j s_ij q_j − S_i q_i as S_i⁺⟨q⟩⁺ + S_i⁻⟨q⟩⁻, the pull to the mean of positive "
+        "friends and the push from that of the negative ones. −S_i q_i is lost, and the force depends on the origin. "
+        "True is S_i⁺(⟨q⟩⁺ − q_i) + S_i⁻(⟨q⟩⁻ − q_i)."
+    ),
+    source="slides, Algorithm 1 against Reynolds' rules",
+    check=_check,
+    expected={"printed": "refuted", "translation": "refuted", "corrected": "verified", "state": "verified"},
+)

@@ -1,0 +1,75 @@
+"""Agents that follow copies: Algorithm 2 where these are alike, the energy's balance, and how flocks part with them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from flockana.base.errors import ArgumentError
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.trajectory import Trajectory
+from flockana.environment.system import Copies, Spring
+from flockana.environment.targets import LinearTarget
+from flockana.interactions import Gains
+from flockana.lattice import hexagonal_spiral
+from flockana.laws.olfati_saber import Algorithm2
+from flockana.laws.peer_to_peer import PeerToPeer
+
+FREE, RNG = Spring((0.0, 0.0), 0.0), np.random.default_rng(4)
+Q, P = hexagonal_spiral(6, 7.0) + RNG.uniform(-0.5, 0.5, (6, 2)), RNG.uniform(-1.0, 1.0, (6, 2))
+DIFFERENT = Copies(Q + RNG.normal(0.0, 2.0, (6, 2)), RNG.normal(0.0, 1.0, (6, 2)), Spring((3.0, 1.0), 0.2, 0.1))
+
+
+@pytest.mark.parametrize("gains", [Gains(), Gains(c1_gamma=np.linspace(0.5, 2.0, 6), c2_gamma=1.0)])
+def test_copies_that_are_alike_make_it_algorithm_2(gains):
+    alike = Copies(np.tile([20.0, 5.0], (6, 1)), np.tile([3.0, -1.0], (6, 1)), FREE)
+    one, leader = PeerToPeer(alike, gains=gains), Algorithm2(gains=gains, target=LinearTarget((20.0, 5.0), (3.0, -1.0)))
+    for t in (0.0, 9.0):
+        u = leader.acceleration(t, Q, P)
+        np.testing.assert_allclose(one.acceleration(t, Q, P), u, atol=1e-11 * np.abs(u).max())
+    ends = [simulate(law, Q, P, (0.0, 5.0), t_eval=[5.0], rtol=1e-10).q[-1] for law in (one, leader)]
+    np.testing.assert_allclose(*ends, atol=1e-7)
+
+
+def test_the_closed_rate_is_that_of_the_energy():
+    """Along the flow, by fourth-order differences: with the true velocities of the copies, drifting or not."""
+    law, h = PeerToPeer(DIFFERENT), 1e-4
+    run = simulate(law, Q, P, (0.0, 1.0 + 2 * h), t_eval=1.0 + h * np.arange(-2.0, 3.0), rtol=1e-12, atol=1e-13)
+    energy = run.energy()
+    difference = (8 * (energy[3] - energy[1]) - (energy[4] - energy[0])) / (12 * h)
+    assert law.energy_rate(1.0, run.q[2], run.p[2]) == pytest.approx(difference, rel=1e-6)
+    whole = simulate(law, Q, P, (0.0, 20.0))
+    assert np.abs(whole.energy_residual).max() < 1e-7 * np.abs(whole.energy()).max()
+
+
+def test_the_jacobian_is_the_derivative():
+    law, x = (
+        PeerToPeer(DIFFERENT, gains=Gains(c1_gamma=np.linspace(1.0, 2.0, 6))),
+        np.concatenate([Q.ravel(), P.ravel()]),
+    )
+    found, h = law.jacobian(2.0, Q, P), 1e-6
+    for k in (0, 5, 13, 22):
+        step = np.zeros(24)
+        step[k] = h
+        up, down = (law.acceleration(2.0, *np.reshape(x + s * step, (2, 6, 2))).ravel() for s in (1.0, -1.0))
+        np.testing.assert_allclose(found[12:, k], (up - down) / (2.0 * h), atol=1e-5)
+
+
+def test_a_saved_run_is_the_run(tmp_path):
+    run = simulate(PeerToPeer(DIFFERENT), Q, P, (0.0, 1.0))
+    again = Trajectory.load(run.save(tmp_path / "run.nc"))
+    assert again.law == run.law
+    np.testing.assert_array_equal(again.metrics().copies_apart, run.metrics().copies_apart)
+
+
+def test_copies_must_be_as_many_as_agents():
+    with pytest.raises(ArgumentError, match="there are 6 copies and 5 agents"):
+        simulate(PeerToPeer(DIFFERENT), Q[:5], P[:5], (0.0, 1.0))
+    with pytest.raises(ArgumentError, match="the copies have 2 components but the agents have 3"):
+        PeerToPeer(DIFFERENT).acceleration(0.0, np.zeros((6, 3)), np.zeros((6, 3)))
+    with pytest.raises(ArgumentError, match="copies = 3: expected Copies"):
+        PeerToPeer(3)
+    with pytest.raises(ArgumentError, match="c1_gamma has 2 gains"):
+        replace(PeerToPeer(DIFFERENT), gains=Gains(c1_gamma=(1.0, 2.0))).acceleration(0.0, Q, P)
