@@ -87,7 +87,9 @@ def replacing(path: str | os.PathLike[str], *, remedy: str = "choose another fil
             partial.unlink(missing_ok=True)
 
 
-def write_whole(path: str | os.PathLike[str], content: str | bytes, *, remedy: str = "choose another file") -> Path:
+def write_whole(
+    path: str | os.PathLike[str], content: str | bytes | memoryview, *, remedy: str = "choose another file"
+) -> Path:
     """Write a file, text as UTF-8, that takes the place of another when it is whole.
 
     Examples
@@ -98,7 +100,7 @@ def write_whole(path: str | os.PathLike[str], content: str | bytes, *, remedy: s
     'whole'
     """
     with replacing(path, remedy=remedy) as partial:
-        partial.write_bytes(content if isinstance(content, bytes) else content.encode("utf-8"))
+        partial.write_bytes(content.encode("utf-8") if isinstance(content, str) else content)
     return Path(path)
 
 

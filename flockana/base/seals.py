@@ -63,9 +63,9 @@ def opened(data: Mapping[str, Any]) -> dict[str, Any]:
     --------
     >>> opened({**sealed({"x": 1.5}), "x": 2.5})
     Traceback (most recent call last):
-    flockana.base.errors.FileError: its digest is not that of its contents
+    flockana.base.errors.FileError: its digest is not that of its contents (after a change on purpose, take it out)
     """
     rest = {key: value for key, value in data.items() if key != SEAL}
     if data.get(SEAL) != digest(rest):
-        raise FileError("its digest is not that of its contents")
+        raise FileError("its digest is not that of its contents (after a change on purpose, take it out)")
     return rest
