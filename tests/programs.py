@@ -78,6 +78,18 @@ def _state(path):
     return state, of, path.parent.name
 
 
+@contextmanager
+def full_disk(room=0):
+    """No file may grow beyond so many bytes: what a full disk says, in this process alone."""
+    resource = pytest.importorskip("resource")
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (room, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
 def out_of_a_kernel():
     """What numba makes of Ctrl-C now and then."""
     error = SystemError("CPUDispatcher returned a result with an exception set")

@@ -23,7 +23,7 @@ def ensure_finite_scalar(name: str, value: Any) -> float:
     7.0
     """
     try:
-        number = float(value)
+        number = float(_real(value))
     except (TypeError, ValueError, OverflowError):
         raise ArgumentError(f"{name} = {value!r}: expected one real number") from None
     if not np.isfinite(number):
@@ -47,11 +47,31 @@ def ensure_nonnegative(name: str, value: Any) -> float:
     return number
 
 
-def _real_array(value: Any) -> FloatArray:
-    """A contiguous float64 array; a complex one is refused rather than cut to its real part."""
-    array = np.asarray(value)
-    if array.dtype.kind == "c":
-        raise TypeError("complex numbers")
+def _real(value: Any) -> Any:
+    """The value itself, unless it only looks like a number: a text, a truth value, a time, a masked entry."""
+    if isinstance(value, str | bytes | bool | np.bool_ | np.datetime64 | np.timedelta64) or np.ma.is_masked(value):
+        raise TypeError(f"{value!r} is no number")
+    return value
+
+
+def real_array(value: Any) -> FloatArray:
+    """A contiguous float64 array of real numbers; raises TypeError or ValueError on what merely converts to them.
+
+    Texts, truth values, times, masked entries and complex numbers are refused rather than turned into numbers.
+
+    Examples
+    --------
+    >>> real_array([1, 2.5])
+    array([1. , 2.5])
+    >>> real_array(["1", "2.5"])
+    Traceback (most recent call last):
+    TypeError: <U3 are no real numbers
+    """
+    array = np.asarray(_real(value))
+    if array.dtype.kind == "O":
+        array = np.array([float(_real(one)) for one in array.ravel()]).reshape(array.shape)
+    if array.dtype.kind not in "fiu" and array.size:
+        raise TypeError(f"{array.dtype.str} are no real numbers")
     return np.asarray(array, dtype=np.float64, order="C")
 
 
@@ -64,7 +84,7 @@ def ensure_points(name: str, value: Any) -> FloatArray:
     (2, 2)
     """
     try:
-        points = _real_array(value)
+        points = real_array(value)
     except (TypeError, ValueError, OverflowError):
         raise ArgumentError(f"{name}: expected numbers in an (n, m) array, got {type(value).__name__}") from None
     if points.ndim != 2:
@@ -106,7 +126,7 @@ def ensure_vector(name: str, value: Any, m: int | None = None) -> FloatArray:
     [150.0, 30.0]
     """
     try:
-        vector = _real_array(value)
+        vector = real_array(value)
     except (TypeError, ValueError, OverflowError):
         raise ArgumentError(f"{name} = {value!r}: expected a vector of numbers") from None
     if vector.ndim != 1 or vector.size not in (1, 2, 3):
@@ -116,6 +136,44 @@ def ensure_vector(name: str, value: Any, m: int | None = None) -> FloatArray:
     if not np.isfinite(vector).all():
         raise ArgumentError(f"{name} = {vector}: expected finite numbers")
     return vector
+
+
+def ensure_series(name: str, value: Any, length: int | None = None) -> FloatArray:
+    """Return a finite float64 series, of so many numbers if `length` is given.
+
+    Examples
+    --------
+    >>> ensure_series("weights", (1, 2), 2).tolist()
+    [1.0, 2.0]
+    """
+    try:
+        series = real_array(value)
+    except (TypeError, ValueError, OverflowError):
+        raise ArgumentError(f"{name} = {value!r}: expected a series of numbers") from None
+    if series.ndim != 1 or (length is not None and len(series) != length):
+        wanted = "a series" if length is None else f"a series of {length} numbers"
+        raise ArgumentError(f"{name} has shape {series.shape}: expected {wanted}")
+    if not np.isfinite(series).all():
+        raise ArgumentError(f"{name} = {series}: expected finite numbers")
+    return series
+
+
+def ensure_links(n: Any, pairs: Any) -> tuple[int, npt.NDArray[np.int32]]:
+    """Return a number of agents and links between them: whole numbers of shape (M, 2) from 0 to n − 1.
+
+    Examples
+    --------
+    >>> ensure_links(3, [[0, 1]])[1].shape
+    (1, 2)
+    """
+    n, links = ensure_count("n", n), np.asarray(pairs)
+    if links.size == 0 and links.ndim in (1, 2):
+        links = np.zeros((0, 2), np.int32)
+    if links.dtype.kind not in "iu" or links.ndim != 2 or links.shape[1] != 2:
+        raise ArgumentError(f"links: expected whole numbers of shape (M, 2), got {links.dtype} of shape {links.shape}")
+    if len(links) and (links.min() < 0 or links.max() >= n):
+        raise ArgumentError(f"links name agents {links.min()} to {links.max()}: expected 0 to {n - 1}, as n = {n}")
+    return n, np.asarray(links, dtype=np.int32)
 
 
 def ensure_fits(name: str, shape: tuple[int, ...], remedy: str) -> None:

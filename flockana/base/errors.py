@@ -5,6 +5,9 @@ Every message names the value it got, what was expected, and the remedy. Anythin
 
 from __future__ import annotations
 
+_NEAREST = 3  # names that are suggested
+_FEW = 16  # names that are all told
+
 
 class FlockanaError(Exception):
     """Base class of every error that flockana raises on purpose."""
@@ -24,12 +27,12 @@ class UnknownNameError(ArgumentError):
     name : str
         The name that was given.
     known : iterable of str
-        The names that exist; the closest ones are suggested.
+        The names that exist; the closest is suggested, whatever the case. Of many only the three nearest are told.
 
     Examples
     --------
-    >>> str(UnknownNameError("scenario", "colapse", ["collapse", "msn-case1"]))
-    "unknown scenario 'colapse'; did you mean 'collapse'? Known: collapse, msn-case1"
+    >>> str(UnknownNameError("scenario", "Colapse", ["collapse", "msn-case1"]))
+    "unknown scenario 'Colapse'; did you mean 'collapse'? Known: collapse, msn-case1"
     """
 
     def __init__(self, kind: str, name: object, known: object) -> None:
@@ -37,9 +40,14 @@ class UnknownNameError(ArgumentError):
         from difflib import get_close_matches
 
         names = sorted(str(k) for k in known) if isinstance(known, Iterable) else [str(known)]
-        close = get_close_matches(str(name), names, n=1)
+        folded = {known_name.casefold(): known_name for known_name in names}
+        wanted = str(name).casefold()
+        close = [folded[one] for one in get_close_matches(wanted, folded, n=1)]
         hint = f"did you mean {close[0]!r}? " if close else ""
-        super().__init__(f"unknown {kind} {name!r}; {hint}Known: {', '.join(names)}")
+        nearest = [folded[one] for one in get_close_matches(wanted, folded, n=_NEAREST, cutoff=0.0)]
+        many = len(names) > _FEW
+        told = f"The nearest of {len(names)}: {', '.join(nearest)}" if many else f"Known: {', '.join(names)}"
+        super().__init__(f"unknown {kind} {name!r}; {hint}{told}")
         self._arguments = (str(kind), str(name), names)
 
     def __reduce__(self) -> tuple[type[UnknownNameError], tuple[str, str, list[str]]]:

@@ -1,4 +1,4 @@
-"""Files that are whole or not there."""
+"""Files that are whole or not there; and paths that are none, told before anything is read or written."""
 
 from __future__ import annotations
 
@@ -6,8 +6,56 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Any
 
 from flockana.base.errors import FileError
+
+
+def ensure_path(path: Any, *, action: str = "read", remedy: str = "choose another name") -> Path:
+    """Return a path, or raise if it is none, or holds what no file's name can hold.
+
+    Examples
+    --------
+    >>> ensure_path("runs/one.nc").name
+    'one.nc'
+    """
+    name = os.fspath(path) if isinstance(path, str | os.PathLike) else None
+    if not isinstance(name, str):
+        raise FileError(f"cannot {action} {path!r}: it is no path; {remedy}")
+    if "\0" in name:  # HDF5 would take what precedes it
+        raise FileError(f"cannot {action} {name!r}: null byte; {remedy}")
+    return Path(name)
+
+
+def ensure_target(path: Any, *, remedy: str = "choose another file") -> Path:
+    """Return the file that a path leads to, links followed; raise if something is there that no file may replace.
+
+    A device or a pipe is left alone, and so is a link: what it points to is written.
+
+    Examples
+    --------
+    >>> ensure_target(os.devnull)
+    Traceback (most recent call last):
+    flockana.base.errors.FileError: cannot write '/dev/null': it is no regular file; choose another file
+    """
+    given = ensure_path(path, action="write", remedy=remedy)
+    target = Path(os.path.realpath(given))
+    try:
+        reason = _in_the_way(target)
+    except OSError as error:
+        raise FileError(f"cannot write {str(given)!r}: {error.strerror or error}; {remedy}") from error
+    if reason:
+        raise FileError(f"cannot write {str(given)!r}: {reason}; {remedy}")
+    return target
+
+
+def _in_the_way(target: Path) -> str:
+    """What is there that is no file, in words; nothing if a file may be written."""
+    if target.is_symlink():
+        return "its links lead in a circle"
+    if target.is_dir():
+        return "it is a folder"
+    return "it is no regular file" if target.exists() and not target.is_file() else ""
 
 
 @contextmanager
@@ -24,14 +72,56 @@ def replacing(path: str | os.PathLike[str], *, remedy: str = "choose another fil
     ...     target.read_text(), partial.exists()
     ('whole', False)
     """
-    target = Path(path)
+    target = ensure_target(path, remedy=remedy)
     # the suffix stays last: writers of pictures and films go by it
     partial = target.parent / f".{target.stem}.{os.getpid()}.partial{target.suffix}"
     try:
         yield partial
         os.replace(partial, target)
+    except FileError:  # told already
+        raise
     except OSError as error:
-        raise FileError(f"cannot write {str(target)!r}: {error.strerror or error}; {remedy}") from error
+        raise FileError(f"cannot write {str(path)!r}: {error.strerror or error}; {remedy}") from error
     finally:
         with suppress(OSError, ValueError):  # one that could not be written cannot be removed either
             partial.unlink(missing_ok=True)
+
+
+def write_whole(
+    path: str | os.PathLike[str], content: str | bytes | memoryview, *, remedy: str = "choose another file"
+) -> Path:
+    """Write a file, text as UTF-8, that takes the place of another when it is whole.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_whole(Path(folder) / "it.txt", "whole").read_text()
+    'whole'
+    """
+    with replacing(path, remedy=remedy) as partial:
+        partial.write_bytes(content.encode("utf-8") if isinstance(content, str) else content)
+    return Path(path)
+
+
+def read_whole(path: Any) -> str:
+    """The text of a regular file in UTF-8; raise on anything else, such as a device that never ends.
+
+    What is no UTF-8 raises UnicodeDecodeError, a ValueError, as what is no JSON does.
+
+    Examples
+    --------
+    >>> read_whole(os.devnull)
+    Traceback (most recent call last):
+    flockana.base.errors.FileError: cannot read /dev/null: it is no regular file; expected a file
+    """
+    source = ensure_path(path)
+    try:
+        if source.exists() and not source.is_file():
+            reason = "it is a folder" if source.is_dir() else "it is no regular file"
+            raise FileError(f"cannot read {source}: {reason}; expected a file")
+        return source.read_text(encoding="utf-8")
+    except FileError:
+        raise
+    except OSError as error:
+        raise FileError(f"cannot read {source}: {error.strerror or error}; expected a file") from error

@@ -7,6 +7,7 @@ is read.
 
 from __future__ import annotations
 
+import json
 import sys
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
@@ -91,6 +92,21 @@ def from_data(data: Any) -> Any:
         return cls(**{key: from_data(v) for key, v in data.items() if key != "type"})
     except (AttributeError, TypeError, ValueError) as error:
         raise FileError(f"cannot rebuild {name} from the file: {error}") from error
+
+
+def read_json(text: str) -> Any:
+    """What a JSON text says; one nested too deeply to read raises ValueError, as one that is no JSON does.
+
+    Examples
+    --------
+    >>> read_json("[" * 100_000)
+    Traceback (most recent call last):
+    ValueError: it is nested too deeply
+    """
+    try:
+        return json.loads(text)
+    except RecursionError:
+        raise ValueError("it is nested too deeply") from None
 
 
 def _own_class(module: str, qualname: str) -> Any:

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from flockana.base.files import ensure_target
 from flockana.base.progress import progress_bar
 from flockana.cli.options import ScenarioName, Seed, output
 from flockana.cli.show import show_files
@@ -27,6 +28,7 @@ def animate_command(
     from flockana.scenarios import scenario
 
     item = scenario(name, seed)
+    ensure_target(film)
     ensure_directory(film.parent)
     ensure_film(film, seconds=seconds, fps=fps)
     run = item.run(progress=sys.stdout.isatty())

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from flockana.base.files import replacing
+from flockana.base.files import write_whole
 from flockana.cli.options import Drawing, Jobs, ScenarioName, output
 from flockana.cli.show import show, show_files
 from flockana.cli.status import OK, UNEXPECTED
@@ -71,10 +71,9 @@ def ensemble_command(
         progress=True,
     )
     table = shares(runs, level=level)
-    if save_to is not None:
-        with replacing(save_to) as partial:
-            runs.to_netcdf(partial, engine="h5netcdf")
     _show(runs, table, axes)
+    if save_to is not None:  # in memory first: HDF5 tears itself apart on a disk that fills
+        write_whole(save_to, runs.to_netcdf(None, engine="h5netcdf"))
     if plot is not None:
         write_picture(lambda ax: _draw(ax, runs, table, axes), plot, m=2)
     show_files(store=store, saved=save_to, picture=plot)

@@ -6,7 +6,7 @@ from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-from flockana.cli.options import Algorithm, AsJson, Drawing, Range, Scale, Seed, SourceName, Start, Time, output
+from flockana.cli.options import Algorithm, AnySeed, AsJson, Drawing, Range, Scale, SourceName, Start, Time, output
 from flockana.cli.show import show, show_files, show_json
 from flockana.cli.status import OK, UNEXPECTED, complain
 
@@ -18,8 +18,8 @@ _LOWEST = 6  # eigenvalues that are printed
 
 def equilibrium_command(
     source: SourceName,
-    start: Start = "end",
-    seed: Seed = 0,
+    start: Start = None,
+    seed: AnySeed = None,
     algorithm: Algorithm = None,
     d: Scale = None,
     r: Range = None,
@@ -54,15 +54,16 @@ def equilibrium_command(
     except SolverError as error:
         complain(error)
         return UNEXPECTED
-    if save_to is not None:
-        write_equilibrium(equilibrium, save_to)
-    if picture is not None:
-        write_picture(lambda ax: _draw(ax, equilibrium, source), picture, m=equilibrium.q.shape[1])
     facts = summary(equilibrium, source)
     if as_json:
         show_json(facts)
     else:
         show(f"{source}: {equilibrium.kind}", fact_table(_rows(equilibrium, facts)))
+    if save_to is not None:
+        write_equilibrium(equilibrium, save_to)
+    if picture is not None:
+        write_picture(lambda ax: _draw(ax, equilibrium, source), picture, m=equilibrium.q.shape[1])
+    if not as_json:
         show_files(saved=save_to, picture=picture)
     return OK
 

@@ -12,8 +12,8 @@ if TYPE_CHECKING:
 def read_flock(
     source: str,
     *,
-    start: str = "end",
-    seed: int = 0,
+    start: str | None = None,
+    seed: int | None = None,
     algorithm: int | None = None,
     d: float | None = None,
     r: float | None = None,
@@ -33,8 +33,9 @@ def read_flock(
 
     if source in scenarios():
         _ensure_free(source, time=time, algorithm=algorithm, d=d, r=r)
-        return _of_scenario(source, start, seed, potential)
+        return _of_scenario(source, start or "end", seed or 0, potential)
     ensure_source(source, scenarios())
+    _ensure_no_scenario(source, seed=seed, start=start)
     law, q = _of_source(source, algorithm=algorithm, d=d, r=r, time=time, potential=potential)
     return law, q
 
@@ -45,6 +46,14 @@ def _ensure_free(name: str, **given: object) -> None:
     for option, value in given.items():
         if value is not None:
             raise ArgumentError(f"--{option} {value}: {name} has a law of its own, and no such choice; leave it out")
+
+
+def _ensure_no_scenario(name: str, **given: object) -> None:
+    from flockana.base.errors import ArgumentError
+
+    for option, value in given.items():
+        if value is not None:
+            raise ArgumentError(f"--{option} {value}: {name} is no scenario, and has no such choice; leave it out")
 
 
 def _of_scenario(name: str, start: str, seed: int, potential: bool) -> tuple[Any, FloatArray]:

@@ -49,12 +49,13 @@ def lattice_command(
     pairs = links(given.q, given.r)
     verdict = verify("os-5", q=given.q, d=given.d, r=given.r, subject=given.name)
     facts = lattice_facts(given, pairs, verdict)
-    if picture is not None:
-        write_picture(lambda ax: _draw(ax, given, pairs), picture, m=given.q.shape[1])
     if as_json:
         show_json(facts | {"verdict": verdict.to_dict()})
     else:
         show(given.name, fact_table(_rows(facts)), details(verdict))
+    if picture is not None:
+        write_picture(lambda ax: _draw(ax, given, pairs), picture, m=given.q.shape[1])
+    if not as_json:
         show_files(picture=picture)
     return OK
 

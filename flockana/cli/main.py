@@ -25,13 +25,18 @@ from flockana.cli.prove import prove_command
 from flockana.cli.run import run_command
 from flockana.cli.stability import stability_command
 from flockana.cli.status import BAD_INPUT, INTERRUPTED, OK, complain
+from flockana.cli.streams import finish_output, prepare_output
 from flockana.cli.verify import verify_command
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+_NAME = "flockana"
 app = typer.Typer(
-    name="flockana", help="Do these flocks do what the theorems say?", no_args_is_help=False, add_completion=False
+    name=_NAME,
+    help="Do these flocks do what the theorems say?",
+    no_args_is_help=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
 )
 
 
@@ -66,9 +71,11 @@ for _name, _command in _COMMANDS.items():
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line and exit with its status."""
+    prepare_output()
     try:
         with interrupts_recognised():
-            code = app(args=None if arguments is None else list(arguments), standalone_mode=False)
+            code = app(args=None if arguments is None else list(arguments), prog_name=_NAME, standalone_mode=False)
+        finish_output()
     except FlockanaError as error:
         complain(error)
         code = BAD_INPUT

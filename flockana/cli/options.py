@@ -11,7 +11,12 @@ import typer
 ScenarioName = Annotated[str, typer.Argument(metavar="SCENARIO", help="Its name in the catalogue.")]
 SourceName = Annotated[str, typer.Argument(metavar="SOURCE", help="A scenario, a file, or a builder with its size.")]
 Start = Annotated[
-    Literal["end", "start"], typer.Option(help="Of a scenario: begin at the end of its run, or at its start.")
+    Literal["end", "start"] | None,
+    typer.Option(help="Of a scenario: begin at the end of its run (by default), or at its start.", show_default=False),
+]
+AnySeed = Annotated[
+    int | None,
+    typer.Option("--seed", min=0, help="Seed of a scenario's random start; by default 0.", show_default=False),
 ]
 Seed = Annotated[int, typer.Option(min=0, help="Seed of the random starts.")]
 Time = Annotated[float | None, typer.Option(help="Time in a saved run; by default its end.")]

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from flockana.base.errors import ArgumentError
-from flockana.base.files import replacing
+from flockana.base.files import ensure_target, write_whole
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -28,6 +29,7 @@ def ensure_file(path: Path | None, kinds: tuple[str, ...]) -> None:
         raise ArgumentError(f"{path} is a folder: expected a file name, such as {path / ('it' + kinds[0])}")
     if path.suffix.lower() not in kinds:
         raise ArgumentError(f"{path}: expected a file name that ends in {' or '.join(kinds)}")
+    ensure_target(path)
     ensure_directory(path.parent)
 
 
@@ -42,8 +44,9 @@ def write_figure(draw: Callable[[Figure], object], path: Path, *, size: tuple[fl
 
     from flockana.plots.style import style
 
+    drawing = BytesIO()  # in memory first: writers of PDF fall over a disk that fills
     with style():
         figure = Figure(figsize=size, layout="constrained")
         draw(figure)
-        with replacing(path) as partial:
-            figure.savefig(partial, dpi=_DPI)
+        figure.savefig(drawing, dpi=_DPI, format=path.suffix[1:].lower())
+    write_whole(path, drawing.getvalue())

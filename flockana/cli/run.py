@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from flockana.base.errors import ArgumentError
+from flockana.base.files import ensure_target
 from flockana.cli.options import ScenarioName, Seed, output
 from flockana.cli.show import show, show_files
 from flockana.cli.status import INTERRUPTED, OK, UNEXPECTED
@@ -27,10 +28,11 @@ def run_command(
     item = scenario(name, seed)
     if save_to.is_dir():
         raise ArgumentError(f"{save_to} is a folder: expected a file name, such as {save_to / name}.nc")
+    ensure_target(save_to)
     ensure_directory(save_to.parent)
     run = item.run(progress=progress)
-    run.save(save_to)
     console = show(f"{item.name}: {item.title}", run_table(run))
     console.print(f"{run.status}: {run.message}; {run.stats['seconds']:.2f} s", markup=False)
+    run.save(save_to)  # last: what was computed is told even if it cannot be written
     show_files(saved=save_to)
     return {"complete": OK, "interrupted": INTERRUPTED}.get(run.status, UNEXPECTED)

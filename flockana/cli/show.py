@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
+from flockana.cli.streams import in_output_encoding
+
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType
 
@@ -32,4 +34,4 @@ def show_files(**files: Path | None) -> None:
 
 def show_json(data: Any) -> None:
     """Print plain data as JSON."""
-    typer.echo(json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False))
+    typer.echo(in_output_encoding(json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False)))

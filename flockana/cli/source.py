@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 from collections.abc import Callable
 from dataclasses import dataclass
+from io import StringIO
 from math import isfinite, prod
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ import numpy as np
 from flockana import lattice
 from flockana.base.checks import FloatArray, ensure_positive
 from flockana.base.errors import ArgumentError, FileError, UnknownNameError
+from flockana.base.files import read_whole
 
 D, KAPPA = 7.0, 1.2  # where neither the user nor a law says
 _MOST = 10**6  # agents that a builder makes at most
@@ -182,11 +184,10 @@ def build(text: str, d: float) -> tuple[FloatArray, float]:
 def read_csv(path: Path) -> FloatArray:
     """Positions from a CSV: a row for each agent, one to three columns, a header or none."""
     try:
-        with path.open(newline="", encoding="utf-8-sig") as file:
-            lines = [(k, row) for k, row in enumerate(csv.reader(file), 1) if any(cell.strip() for cell in row)]
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise FileError(f"cannot read {path}: {reason}; expected a CSV of positions") from error
+        rows = csv.reader(StringIO(read_whole(path).removeprefix("\ufeff"), newline=""))
+        lines = [(k, row) for k, row in enumerate(rows, 1) if any(cell.strip() for cell in row)]
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise FileError(f"cannot read {path}: {error}; expected a CSV of positions") from error
     if lines and not any(_is_number(cell) for cell in lines[0][1]):
         lines = lines[1:]
     if not lines:

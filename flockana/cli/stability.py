@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from flockana.cli.options import Algorithm, AsJson, Range, Scale, Seed, SourceName, Start, Time
+from flockana.cli.options import Algorithm, AnySeed, AsJson, Range, Scale, SourceName, Start, Time
 from flockana.cli.show import show, show_files, show_json
 from flockana.cli.status import OK, UNEXPECTED, complain
 
@@ -23,8 +23,8 @@ DENSE = 1200  # n m above which only the slowest modes are sought, without a den
 
 def stability_command(
     source: SourceName,
-    start: Start = "end",
-    seed: Seed = 0,
+    start: Start = None,
+    seed: AnySeed = None,
     algorithm: Algorithm = None,
     d: Scale = None,
     r: Range = None,
@@ -67,12 +67,13 @@ def stability_command(
     except SolverError as error:
         complain(error)
         return UNEXPECTED
-    if plot is not None:
-        write_figure(lambda figure: _draw(figure, linear, slow), plot, size=(10.4, 7.6))
     if as_json:
         show_json(facts)
     else:
         show(_title(facts), fact_table(_rows(facts)), *([_mode_table(slow)] if slow else []))
+    if plot is not None:
+        write_figure(lambda figure: _draw(figure, linear, slow), plot, size=(10.4, 7.6))
+    if not as_json:
         show_files(picture=plot)
     return OK
 

@@ -10,9 +10,10 @@ import typer
 
 from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.base.progress import progress_bar
-from flockana.cli.options import Jobs, Seed
+from flockana.cli.options import AnySeed, Jobs
 from flockana.cli.show import show_files
 from flockana.cli.status import BAD_INPUT, INTERRUPTED, OK, UNEXPECTED
+from flockana.cli.streams import in_output_encoding
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,12 +29,19 @@ def verify_command(
         str | None,
         typer.Argument(help="A scenario, a theorem, or 'errata'; by default the whole catalogue.", metavar="[NAME]"),
     ] = None,
-    seed: Seed = 0,
+    seed: AnySeed = None,
     on: Annotated[
         Path | None,
         typer.Option(metavar="FILE", help="Check a saved run instead of simulating; NAME says what to check."),
     ] = None,
-    report: Annotated[Path, typer.Option(metavar="DIR", help="Folder of the report.")] = Path("report"),
+    report: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="DIR",
+            help="Folder of the report; by default report, or report/NAME where one on all is kept.",
+            show_default=False,
+        ),
+    ] = None,
     no_report: Annotated[bool, typer.Option("--no-report", help="Write no report.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the verdicts as JSON, and nothing else.")] = False,
     seeds: Annotated[
@@ -52,7 +60,7 @@ def verify_command(
     Exit status: 0 all as expected, 2 bad input, 3 some verdict differs from the expected, 130 interrupted.
     """
     from flockana.ensemble.processes import cores
-    from flockana.report.build import ensure_directory, verdicts_json, write_report
+    from flockana.report.build import ensure_directory, report_folder, verdicts_json, write_report
     from flockana.report.statistics import gather
     from flockana.report.surveys import SurveyResult, surveys
     from flockana.report.work import plan
@@ -61,12 +69,14 @@ def verify_command(
     if on is not None:
         tasks: tuple[Task, ...] = ()
         many: tuple[Survey, ...] = ()
-        _ensure_checkable(name, seeds)
+        _ensure_checkable(name, seeds, seed)
+        seed = 0
     else:
+        seed = seed or 0
         tasks = plan(name, seed=seed, figures=not no_report)
         many = () if no_report and seeds is None else surveys(name, seeds, seed=seed)
     if not no_report:
-        ensure_directory(report)
+        report = ensure_directory(report or report_folder(name))
     results, code, failure = (
         ([_saved(name, on, not no_report)], OK, None) if on else _check_all((*tasks, *many), jobs or cores())
     )
@@ -77,11 +87,13 @@ def verify_command(
         code = UNEXPECTED
     seconds, complete = time.perf_counter() - started, code in (OK, UNEXPECTED)
     written = None
-    if not no_report and (pages or complete):
-        written = write_report(pages, report, seed=seed, seconds=seconds, complete=complete, statistics=statistics)
+    if report is not None and not no_report and (pages or complete):
+        written = write_report(
+            pages, report, seed=seed, seconds=seconds, complete=complete, statistics=statistics, of=name
+        )
     if as_json:
         text = verdicts_json(pages, seed=seed, seconds=seconds, complete=complete, statistics=statistics)
-        typer.echo(text, nl=False)
+        typer.echo(in_output_encoding(text), nl=False)
     else:
         _print_verdicts(pages, statistics, seconds, written, in_full=name is not None and name != "errata")
     if failure is not None:
@@ -112,13 +124,15 @@ def _check_all(
     return [results[task.name] for task in tasks if task.name in results], code, failure
 
 
-def _ensure_checkable(name: str | None, seeds: int | None) -> None:
+def _ensure_checkable(name: str | None, seeds: int | None, seed: int | None) -> None:
     from flockana.base.errors import UnknownNameError
     from flockana.scenarios import scenarios
     from flockana.theorems import theorem, theorems
 
     if seeds:
         raise ArgumentError(f"--seeds {seeds}: a saved run has one seed; leave out --seeds or --on")
+    if seed is not None:
+        raise ArgumentError(f"--seed {seed}: a saved run was started already; leave out --seed or --on")
     if name is None:
         raise ArgumentError("--on FILE needs a NAME: the scenario that was run, or the theorem to check")
     if name not in (*scenarios(), *theorems()):

@@ -9,7 +9,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import ensure_positive
+from flockana.base.checks import ensure_nonnegative, ensure_positive
+from flockana.base.errors import ArgumentError
 from flockana.dynamics.trajectory import Trajectory
 
 BoolArray = npt.NDArray[np.bool_]
@@ -36,8 +37,15 @@ def is_quasi_flock(trajectory: Trajectory, *, share: float = 0.5) -> BoolArray:
         A run of a law with an interaction range.
     share : float
         What counts as giant; the source gives no number.
+
+    Raises
+    ------
+    ArgumentError
+        If it is no share from 0 to below 1.
     """
-    result: BoolArray = trajectory.metrics().giant_share.values > share
+    if (giant := ensure_nonnegative("share", share)) >= 1.0:
+        raise ArgumentError(f"share = {giant:g}: expected a share from 0 to below 1, such as 0.5")
+    result: BoolArray = trajectory.metrics().giant_share.values > giant
     return result
 
 

@@ -1,10 +1,17 @@
-"""Runs as labelled data and as netCDF-4 files, and back."""
+"""Runs as labelled data and as netCDF-4 files, and back.
+
+A saved run carries a checksum of every variable and a digest of these and of its attributes; after the netCDF comes one
+line with the digest of all bytes before it, which HDF5 does not read. That line is looked at first, so that HDF5 never
+sees damaged bytes; the checksums hold where another program wrote the file anew, too. Files that flockana wrote before,
+and those written from `to_xarray`, have neither: they are read, and validated like a run that is made.
+"""
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -12,7 +19,8 @@ import numpy as np
 
 from flockana._version import __version__
 from flockana.base.errors import FileError
-from flockana.base.files import replacing
+from flockana.base.files import ensure_path, replacing
+from flockana.base.seals import checksum, digest
 from flockana.base.serialize import from_data, to_data, to_data_mapping
 from flockana.dynamics.between import Between
 from flockana.laws.discrete import ensure_law
@@ -24,6 +32,9 @@ _Run = TypeVar("_Run")
 
 FORMAT = "flockana-trajectory"
 FORMAT_VERSION = 1
+_LINE = b"\nflockana sha256 %s\n"
+_BLOCK = 2**20  # bytes read at once
+_MARK, _LENGTH = b"\nflockana sha256", len(_LINE % (b"0" * 64))
 _BETWEEN = {"t": ("step",), "slack": ("interval", "agent")} | dict.fromkeys("qpu", ("step", "agent", "axis"))
 
 
@@ -52,24 +63,71 @@ def to_xarray(run: Any) -> xarray.Dataset:
 
 def save(dataset: xarray.Dataset, path: str | os.PathLike[str]) -> Path:
     """See `Trajectory.save`."""
-    target = Path(path)
-    if "\0" in str(target):  # HDF5 would write to what precedes it
-        raise FileError(f"cannot write {str(target)!r}: null byte; choose a file name and folder to write to")
-    with replacing(target, remedy="choose a file name and folder to write to") as partial:
-        dataset.to_netcdf(partial, engine="h5netcdf")
-    return target
+    # in memory first: HDF5 tears itself apart on a disk that fills
+    netcdf = _with_checksums(dataset).to_netcdf(None, engine="h5netcdf")
+    total = hashlib.sha256(netcdf).hexdigest()
+    with replacing(path, remedy="choose a file name and folder to write to") as partial, partial.open("wb") as file:
+        file.write(netcdf)
+        file.write(_LINE % total.encode())
+    return Path(path)
+
+
+def _with_checksums(dataset: xarray.Dataset) -> xarray.Dataset:
+    sums = {str(name): checksum(variable.values) for name, variable in dataset.variables.items()}
+    with_sums = dataset.assign_attrs(checksums=json.dumps(sums))
+    return with_sums.assign_attrs(digest=_digest_of_attributes(with_sums.attrs))
+
+
+def _digest_of_attributes(attributes: Mapping[Any, Any]) -> str:
+    return digest({str(key): str(value) for key, value in attributes.items() if key != "digest"})
+
+
+def _ensure_unharmed(data: xarray.Dataset, source: Path) -> None:
+    """Raise unless variables and attributes are those that were saved."""
+    sums = json.loads(data.attrs["checksums"])
+    found = {str(name): checksum(variable.values) for name, variable in data.variables.items()}
+    differing = sorted(name for name in {*sums, *found} if sums.get(name) != found.get(name))
+    if data.attrs["digest"] != _digest_of_attributes(data.attrs):
+        differing.append("attributes")
+    if differing:
+        raise FileError(
+            f"{source} is damaged: {', '.join(differing)} not as saved, by the checksums; run the simulation again"
+        )
+
+
+def _ensure_whole(source: Path) -> None:
+    """Raise if the file ends in the digest of its bytes, or in a part of that line, and they are others."""
+    size = source.stat().st_size
+    with source.open("rb") as file:
+        file.seek(max(0, size - 2 * _LENGTH))
+        end = file.read()
+        if _MARK not in end:
+            return  # another program wrote it, or flockana before there was such a line
+        file.seek(0)
+        total, left = hashlib.sha256(), size - _LENGTH
+        while left > 0 and (block := file.read(min(left, _BLOCK))):
+            total.update(block)
+            left -= len(block)
+    if end[-_LENGTH:] != _LINE % total.hexdigest().encode():
+        raise FileError(
+            f"cannot read {source} as netCDF-4: it was cut short or altered, by the digest at its end; "
+            "run the simulation again"
+        )
 
 
 def load(run_of: Callable[..., _Run], path: str | os.PathLike[str]) -> _Run:
     """See `Trajectory.load`."""
     import xarray
 
-    source = Path(path)
+    source = ensure_path(path)
     if not source.is_file():
         raise FileError(f"no file {source}: expected one written by Trajectory.save")
     try:
+        _ensure_whole(source)
         with xarray.open_dataset(source, engine="h5netcdf") as dataset:
             data = dataset.load()
+    except FileError:
+        raise
     except Exception as error:  # h5py raises many kinds on damaged bytes
         raise FileError(f"cannot read {source} as netCDF-4: {error}; was it written by Trajectory.save?") from error
     if data.attrs.get("format") != FORMAT:
@@ -78,6 +136,10 @@ def load(run_of: Callable[..., _Run], path: str | os.PathLike[str]) -> _Run:
         version = int(data.attrs["format_version"])
         if version > FORMAT_VERSION:
             raise FileError(f"{source} is of format {version}, newer than {FORMAT_VERSION}: update flockana")
+        if version < 1:
+            raise FileError(f"{source} is damaged: there is no format {version}; run the simulation again")
+        if {"checksums", "digest"} & {*data.attrs}:
+            _ensure_unharmed(data, source)
         return run_of(
             t=np.array(data["time"]),
             q=np.array(data["q"]),

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_positive, ensure_state, ensure_time_span
+from flockana.base.checks import FloatArray, ensure_positive, ensure_state, ensure_time_span, real_array
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.interrupts import interrupts_recognised
 from flockana.base.progress import progress_bar
@@ -155,7 +155,7 @@ def _check_t_eval(t_eval: Any, t_span: tuple[float, float]) -> FloatArray | None
     if t_eval is None:
         return None
     try:
-        times = np.atleast_1d(np.asarray(t_eval, dtype=np.float64))
+        times = np.atleast_1d(real_array(t_eval))
     except (TypeError, ValueError, OverflowError):
         times = np.array([np.nan])
     good = times.ndim == 1 and times.size > 0 and np.isfinite(times).all() and (np.diff(times) > 0.0).all()

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
+from flockana.base.checks import FloatArray, real_array
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.scales import Scales
 from flockana.base.units import rescale, times
@@ -36,6 +36,8 @@ STATUSES = ("complete", "interrupted", "failed")
 def _frozen_series(name: str, values: Any, samples: int) -> FloatArray:
     """A read-only view of a series of finite real numbers; the caller's array stays as it was."""
     array = np.asarray(values)
+    if np.ma.is_masked(values):
+        raise ArgumentError(f"{name}: expected numbers at all samples, got masked ones")
     if array.dtype.kind not in "fiu" or array.shape[:1] != (samples,):
         raise ArgumentError(f"{name}: expected real numbers at {samples} samples, got {array.dtype} {array.shape}")
     array = np.ascontiguousarray(array, dtype=np.float64).view()
@@ -373,6 +375,10 @@ class Trajectory:
         ArgumentError
             If no sample lies between them.
         """
+        try:
+            start, end = real_array((start, end)).tolist()  # either may be infinite
+        except (TypeError, ValueError):
+            raise ArgumentError(f"start = {start!r}, end = {end!r}: expected two times") from None
         keep = (self.t >= start) & (self.t <= end)
         if not keep.any():
             raise ArgumentError(

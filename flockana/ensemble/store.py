@@ -19,6 +19,7 @@ from types import TracebackType
 
 from flockana._version import __version__
 from flockana.base.errors import FileError
+from flockana.base.files import ensure_path
 from flockana.ensemble.digest import mathematics
 from flockana.ensemble.work import COMPLETE, Record
 
@@ -67,7 +68,7 @@ class Store:
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
-        self.path = Path(path)
+        self.path = ensure_path(path, action="write")
         _ensure_place(self.path)
         with self._explained():
             self._file = sqlite3.connect(self.path, timeout=_PATIENCE, isolation_level=None)
@@ -146,15 +147,15 @@ class Store:
                 rows = self._file.execute(f"SELECT key, record FROM runs WHERE key IN ({marks})", part)
                 for key, text in rows:
                     try:
-                        records[key] = Record.from_json(text)
-                    except (ValueError, KeyError, TypeError) as error:
+                        records[key] = Record.from_json(text, key)
+                    except (ValueError, KeyError, TypeError, AttributeError, FileError, RecursionError) as error:
                         raise sqlite3.DatabaseError(f"run {key[:8]} cannot be read, {error!r}") from error
         return records
 
     def add(self, scenario: str, records: Mapping[str, Record]) -> None:
         """Write runs, all of them or none; a run that is there already stays as it is."""
         rows = [
-            (key, scenario, r.job.seed, json.dumps(dict(r.job.options)), r.status, r.to_json())
+            (key, scenario, r.job.seed, json.dumps(dict(r.job.options)), r.status, r.to_json(key))
             for key, r in records.items()
         ]
         with self._explained(), self._transaction():
@@ -195,6 +196,8 @@ class Store:
 def _ensure_place(path: Path) -> None:
     if path.is_dir():
         raise FileError(f"{path} is a folder: expected a file name, such as {path / 'runs.sqlite'}")
+    if path.exists() and not path.is_file():
+        raise FileError(f"{path} is no regular file: expected a file name, such as runs.sqlite")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:

@@ -9,8 +9,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
-from flockana.base.errors import ArgumentError, SolverError
+from flockana.base.errors import ArgumentError, FileError, SolverError
 from flockana.base.interrupts import interrupts_recognised
+from flockana.base.seals import SEAL, digest
 from flockana.dynamics.trajectory import Trajectory
 from flockana.ensemble.digest import mathematics
 from flockana.measures.measure import measures
@@ -100,13 +101,32 @@ class Record:
     stats: Mapping[str, int] = field(default_factory=dict)
     seconds: float = 0.0
 
-    def to_json(self) -> str:
-        """As text that gives every number back to the bit (NaN and infinities in Python's spelling)."""
-        return json.dumps(asdict(self), ensure_ascii=False)
+    def to_json(self, key: str = "") -> str:
+        """As text that gives every number back to the bit (NaN and infinities in Python's spelling), with a digest.
+
+        Parameters
+        ----------
+        key : str
+            What it is kept under; the digest covers it, too.
+        """
+        data = asdict(self)
+        return json.dumps({**data, SEAL: digest([key, data])}, ensure_ascii=False)
 
     @classmethod
-    def from_json(cls, text: str) -> Record:
+    def from_json(cls, text: str, key: str = "") -> Record:
         """Read what `to_json` wrote.
+
+        Parameters
+        ----------
+        text : str
+            What it wrote.
+        key : str
+            What it was kept under.
+
+        Raises
+        ------
+        FileError
+            If the digest is not that of the contents.
 
         Examples
         --------
@@ -115,6 +135,8 @@ class Record:
         True
         """
         data = json.loads(text)
+        if data.pop(SEAL) != digest([key, data]):
+            raise FileError("its digest is not that of its contents")
         job, claims = data.pop("job"), data.pop("claims")
         options = tuple((name, value) for name, value in job["options"])
         return cls(Job(job["seed"], options), claims={k: tuple(v) for k, v in claims.items()}, **data)

@@ -11,12 +11,14 @@ from typing import Any
 import numpy as np
 
 from flockana.base.errors import FileError, FlockanaError
-from flockana.base.files import replacing
-from flockana.base.serialize import from_data, to_data
+from flockana.base.files import read_whole, write_whole
+from flockana.base.seals import SEAL, opened, sealed
+from flockana.base.serialize import from_data, read_json, to_data
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.solve import Equilibrium, finish
 
 _FORMAT = "flockana equilibrium 1"
+_KEYS = ("format", "law", "q", "energy", "kind", "strain", "links", "rigid_modes", "hessian_eigenvalues")
 _AGREE = 1e-6  # relative: eigenvalues written on one machine and computed on another
 
 
@@ -33,22 +35,31 @@ def write_equilibrium(equilibrium: Equilibrium, path: str | Path) -> None:
         "rigid_modes": equilibrium.rigid_modes,
         "hessian_eigenvalues": equilibrium.hessian_eigenvalues.tolist(),
     }
-    with replacing(path) as partial:
-        partial.write_text(json.dumps(data, indent=1) + "\n")
+    write_whole(path, json.dumps(sealed(data), indent=1) + "\n")
 
 
 def read_equilibrium(path: str | Path) -> Equilibrium:
     """Read an equilibrium; everything is computed anew from its positions and must agree with the file."""
     try:
-        data = json.loads(Path(path).read_text())
+        data = read_json(read_whole(path))
         if data["format"] != _FORMAT:
             raise ValueError(f"its format is {data['format']!r}, expected {_FORMAT!r}")
         law, q = from_data(data["law"]), np.array(data["q"], dtype=np.float64)
         equilibrium = finish(Potential(law), q, True, "read from a file and verified")
         _compare(equilibrium, data)
-    except (OSError, ValueError, KeyError, TypeError, AttributeError, FlockanaError) as error:
+        _ensure_unharmed(data)
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError, FlockanaError) as error:
         raise FileError(f"{path} holds no equilibrium: {error}") from error
     return equilibrium
+
+
+def _ensure_unharmed(data: dict[str, Any]) -> None:
+    """Raise unless the file is as it was written; one without a digest is of before there were any."""
+    unknown = sorted({*data} - {*_KEYS, SEAL})
+    if unknown:
+        raise ValueError(f"it holds {', '.join(unknown)}, which no equilibrium has")
+    if SEAL in data:
+        opened(data)
 
 
 def _compare(equilibrium: Equilibrium, data: dict[str, Any]) -> None:

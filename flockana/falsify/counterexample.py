@@ -13,8 +13,9 @@ from typing import Any
 from flockana._version import __version__
 from flockana.base.checks import FloatArray, ensure_state, ensure_time_span
 from flockana.base.errors import FileError, FlockanaError
-from flockana.base.files import replacing
-from flockana.base.serialize import from_data, to_data, to_data_mapping
+from flockana.base.files import read_whole, write_whole
+from flockana.base.seals import SEAL, opened, sealed
+from flockana.base.serialize import from_data, read_json, to_data, to_data_mapping
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.falsify.confirm import confirmed
@@ -24,6 +25,11 @@ from flockana.theorems import Theorem, Tolerances, Verdict, verify
 
 FORMAT = "flockana-counterexample"
 FORMAT_VERSION = 1
+_OPTIONS = ("method", "rtol", "atol", "dt", "t_eval")  # of `simulate`, as a file may give them
+_KEYS = (
+    *("format", "format_version", "flockana_version", "theorem", "claim", "scenario", "margin", "error"),
+    *("law", "q0", "p0", "t_span", "options", "tolerances"),
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,11 +147,7 @@ class Counterexample:
             "options": to_data_mapping(self.options),
             "tolerances": asdict(self.tolerances),
         }
-        text = json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
-        target = Path(path)
-        with replacing(target) as partial:
-            partial.write_text(text, encoding="utf-8")
-        return target
+        return write_whole(path, json.dumps(sealed(data), indent=1, ensure_ascii=False, allow_nan=False) + "\n")
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Counterexample:
@@ -162,9 +164,7 @@ class Counterexample:
             If it cannot be read, is not one of ours, is of another format, or is damaged.
         """
         try:
-            data = json.loads(Path(path).read_text(encoding="utf-8"))
-        except OSError as error:
-            raise FileError(f"cannot read {path}: {error.strerror or error}") from error
+            data = read_json(read_whole(path))
         except ValueError as error:
             raise FileError(f"{path} is no JSON ({error}): expected a file that `flockana falsify -o` wrote") from error
         if not isinstance(data, dict) or data.get("format") != FORMAT:
@@ -176,21 +176,23 @@ class Counterexample:
                 f"wrote it ({data.get('flockana_version')}), or search again"
             )
         try:
-            return cls(
+            found = cls(
                 theorem=_text(data["theorem"]),
                 claim=_text(data["claim"]),
                 scenario=_text(data["scenario"]),
                 law=ensure_law(from_data(data["law"])),
                 **dict(zip(("q0", "p0"), ensure_state(data["q0"], data["p0"]), strict=True)),
                 t_span=ensure_time_span(data["t_span"]),
-                options={key: from_data(value) for key, value in data["options"].items()},
+                options=_options(data["options"]),
                 tolerances=Tolerances(**data["tolerances"]),
                 margin=_number(data["margin"]),
                 error=_number(data["error"]),
                 version=_text(data["flockana_version"]),
             )
-        except (KeyError, TypeError, ValueError, AttributeError, FlockanaError) as error:
+            _ensure_unharmed(data)
+        except (KeyError, TypeError, ValueError, AttributeError, RecursionError, FlockanaError) as error:
             raise FileError(f"{path} is damaged: {error}; search again with `flockana falsify`") from error
+        return found
 
 
 def replay(path: str | os.PathLike[str], *, theorem: Theorem | None = None) -> Verdict:
@@ -222,6 +224,23 @@ def _text(value: Any) -> str:
     if not isinstance(value, str):
         raise TypeError(f"{value!r} is no text")
     return value
+
+
+def _options(data: Any) -> dict[str, Any]:
+    """Keyword arguments of `simulate`, none that it does not have."""
+    unknown = sorted({*data} - {*_OPTIONS})
+    if unknown:
+        raise ValueError(f"options {', '.join(unknown)}: expected some of {', '.join(_OPTIONS)}")
+    return {key: from_data(value) for key, value in data.items()}
+
+
+def _ensure_unharmed(data: Mapping[str, Any]) -> None:
+    """Raise unless the file is as it was written; one without a digest is of before there were any."""
+    unknown = sorted({*data} - {*_KEYS, SEAL})
+    if unknown:
+        raise ValueError(f"it holds {', '.join(unknown)}, which no counterexample has")
+    if SEAL in data:
+        opened(data)
 
 
 def _number(value: Any) -> float:

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from math import isqrt, sqrt
+from math import isqrt, prod, sqrt
 from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_count, ensure_positive
+from flockana.base.checks import FloatArray, ensure_count, ensure_fits, ensure_positive
 from flockana.base.errors import UnknownNameError
 
 _STEPS = np.array(
     [(1.0, 0.0), (0.5, 0.75**0.5), (-0.5, 0.75**0.5), (-1.0, 0.0), (-0.5, -(0.75**0.5)), (0.5, -(0.75**0.5))]
 )
+_WORK = 4  # arrays of the lattice's size that are there at once while it is made
 _MAX_RATIO = {
     "line": 2.0,
     "triangular": sqrt(3.0),
@@ -53,9 +54,15 @@ def max_ratio(name: str) -> float:
     return _MAX_RATIO[name]
 
 
+def _ensure_fits(n: int, m: int) -> None:
+    """Raise before a lattice is built that does not fit into memory."""
+    ensure_fits(f"a lattice of {n} agents, with what its making takes,", (_WORK, n, m), "ask for fewer agents")
+
+
 def _sites(basis: Any, cell: Any, counts: dict[str, int], d: float) -> FloatArray:
     """The sites `basis` in each of counts[0] × counts[1] ... cells of edge vectors `cell`, in units of d."""
     sizes = [ensure_count(name, value) for name, value in counts.items()]
+    _ensure_fits(len(basis) * prod(sizes), len(counts))
     corners = np.stack(np.meshgrid(*map(np.arange, sizes), indexing="ij"), axis=-1).reshape(-1, len(sizes))
     offsets = corners @ np.asarray(cell, dtype=float)
     sites = offsets[:, None] + np.asarray(basis, dtype=float)[None]
@@ -97,6 +104,7 @@ def triangular(n: int, d: float) -> FloatArray:
     [[0.0, 0.0], [2.0, 0.0], [1.0, 1.7320508075688772]]
     """
     n, d = ensure_count("n", n), ensure_positive("d", d)
+    _ensure_fits(n, 2)
     width = isqrt(n - 1) + 1
     row, column = np.divmod(np.arange(n), width)
     return np.column_stack([d * (column + 0.5 * (row % 2)), d * sqrt(0.75) * row])
@@ -123,6 +131,7 @@ def hexagonal_spiral(n: int, d: float) -> FloatArray:
     True
     """
     n, d = ensure_count("n", n), ensure_positive("d", d)
+    _ensure_fits(n, 2)
     rings = [np.zeros((1, 2))]
     for ring in range(1, (isqrt(12 * n) + 3) // 6 + 1):  # the last ring has 3 ring (ring + 1) + 1 >= n points
         steps = np.repeat(_STEPS[[2, 3, 4, 5, 0, 1]], ring, axis=0)
@@ -149,7 +158,7 @@ def hexagonal_patch(k: int, d: float) -> FloatArray:
     >>> hexagonal_patch(1, 7.0).shape
     (7, 2)
     """
-    k = ensure_count("k", k) if k != 0 else 0
+    k = 0 if k == 0 and not isinstance(k, bool) else ensure_count("k", k)
     return hexagonal_spiral(3 * k * (k + 1) + 1, d)
 
 

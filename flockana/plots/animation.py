@@ -14,7 +14,8 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_positive
 from flockana.base.errors import ArgumentError, FileError
-from flockana.base.files import replacing
+from flockana.base.files import ensure_path, ensure_target, replacing
+from flockana.base.interrupts import interrupts_held
 from flockana.laws.discrete import DiscreteLaw
 from flockana.plots.snapshot import drawn_law, in_view, snapshot
 from flockana.plots.style import style
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from flockana.dynamics.trajectory import Trajectory
 
 _DPI = 100
+_STILL: dict[Any, Any] = {"figure.constrained_layout.use": False}
 _WIDTH, _LEAST, _MOST = 8.0, 3.2, 7.0  # inches: of the film, and between what its height lies
 _FRAMES = 20_000  # a longer film is a slip of the pen
 _SUFFIXES = ".gif", ".mp4"
@@ -146,9 +148,16 @@ def animate(
     target = ensure_film(path, seconds=seconds, fps=fps)
     film = animation(trajectory, seconds=seconds, fps=fps, velocities=velocities)
     writer = PillowWriter(fps=fps) if target.suffix.lower() == ".gif" else FFMpegWriter(fps=fps)  # type: ignore[arg-type]
-    # saving a figure asks for a layout anew, and one that fits each frame by itself makes the view tremble
-    with replacing(target) as partial, style(), mpl.rc_context({"figure.constrained_layout.use": False}):
-        film.save(partial, writer, dpi=_DPI, progress_callback=lambda k, total: progress(k + 1, total))
+    # Ctrl-C is heard between frames: before the first one the writer has nothing to end, and a callback may swallow it.
+    # Saving a figure asks for a layout anew, and one that fits each frame by itself makes the view tremble.
+    with replacing(target) as partial, interrupts_held() as came, style(), mpl.rc_context(_STILL):
+
+        def drawn(k: int, total: int) -> None:
+            if came:
+                raise KeyboardInterrupt
+            progress(k + 1, total)
+
+        film.save(partial, writer, dpi=_DPI, progress_callback=drawn)
     return target
 
 
@@ -156,12 +165,13 @@ def ensure_film(path: str | os.PathLike[str], *, seconds: float, fps: float) -> 
     """Raise unless a film of that name, length and rate can be written, before any work for it is done."""
     from matplotlib.animation import FFMpegWriter
 
-    target = Path(path)
+    target = ensure_path(path, action="write")
     frame_count(seconds, fps)
     if target.suffix.lower() not in _SUFFIXES:
         raise ArgumentError(f"{target}: expected a file name that ends in .gif or .mp4")
     if target.is_dir():
         raise ArgumentError(f"{target} is a folder: expected a file name")
+    ensure_target(target)
     if target.suffix.lower() == ".mp4" and not FFMpegWriter.isAvailable():
         raise FileError(f"cannot write {target}: MP4 needs the program ffmpeg; install it, or write a .gif")
     try:

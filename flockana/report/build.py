@@ -8,6 +8,7 @@ import platform
 import tempfile
 from collections import Counter
 from collections.abc import Iterable
+from contextlib import ExitStack
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -17,21 +18,22 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from flockana._version import __version__
 from flockana.base.errors import FileError
-from flockana.base.files import replacing
+from flockana.base.files import ensure_path, replacing
 from flockana.report.lattices import lattice_section
 from flockana.report.pages import FixedPage, FixedResult, Page, ScenarioPage, ScenarioResult, page
 from flockana.report.stability import stability_section
 from flockana.report.statistics import StatisticsSection
 from flockana.report.text import MARKS, deciding_claim, show, tolerance_rows
 
-HTML, JSON = "index.html", "verdicts.json"
+FOLDER, HTML, JSON = Path("report"), "index.html", "verdicts.json"
+_REMEDY = "choose another folder"
 _LIBRARIES = ("numpy", "scipy", "numba", "sympy", "xarray", "matplotlib")
 _STATUSES = ("verified", "refuted", "vacuous", "inconclusive")
 
 
 def ensure_directory(directory: str | os.PathLike[str]) -> Path:
     """Make a folder that can be written to, before any work whose results should go there."""
-    path = Path(directory)
+    path = ensure_path(directory, action="write to", remedy="choose a folder you may write to")
     try:
         path.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=path):
@@ -42,6 +44,24 @@ def ensure_directory(directory: str | os.PathLike[str]) -> Path:
     return path
 
 
+def report_folder(name: str | None) -> Path:
+    """Where a report goes unless told otherwise: one on a part takes no other's place that is on the whole catalogue.
+
+    Examples
+    --------
+    >>> report_folder(None)
+    PosixPath('report')
+    """
+    if name is None:
+        return FOLDER
+    try:
+        data = json.loads((FOLDER / JSON).read_text(encoding="utf-8"))
+        whole = data.get("of") is None
+    except (OSError, ValueError, AttributeError, RecursionError):
+        return FOLDER
+    return FOLDER / name if whole else FOLDER
+
+
 def write_report(
     results: Iterable[ScenarioResult | FixedResult | Page],
     directory: str | os.PathLike[str],
@@ -50,13 +70,21 @@ def write_report(
     seconds: float | None = None,
     complete: bool = True,
     statistics: StatisticsSection | None = None,
+    of: str | None = None,
 ) -> Path:
-    """Write ``index.html`` and ``verdicts.json``; existing ones are replaced only when the new ones are whole."""
+    """Write ``index.html`` and ``verdicts.json``; existing ones are replaced only when the new ones are whole.
+
+    `of` is what was checked, by name; None for the whole catalogue.
+    """
     folder = ensure_directory(directory)
     pages = [page(r) if isinstance(r, ScenarioResult | FixedResult) else r for r in results]
-    run = _run_facts(seed, seconds, complete)
-    _write(folder / JSON, _json(pages, run, statistics))
-    return _write(folder / HTML, _html(pages, run, statistics))
+    run = _run_facts(seed, seconds, complete) | {"of": of}
+    texts = {JSON: _json(pages, run, statistics), HTML: _html(pages, run, statistics)}
+    with ExitStack() as both:  # neither takes its place before both are whole
+        partials = {name: both.enter_context(replacing(folder / name, remedy=_REMEDY)) for name in texts}
+        for name, text in texts.items():
+            partials[name].write_text(text, encoding="utf-8")
+    return folder / HTML
 
 
 def verdicts_json(
@@ -118,9 +146,3 @@ def _html(pages: list[Page], run: dict[str, Any], statistics: StatisticsSection 
         marks=MARKS,
         tolerances=[tolerance_rows(t) for t in dict.fromkeys(f.verdict.tolerances for f in findings)],
     )
-
-
-def _write(path: Path, text: str) -> Path:
-    with replacing(path, remedy="choose another folder") as partial:
-        partial.write_text(text, encoding="utf-8")
-    return path

@@ -36,8 +36,12 @@ def test_a_false_claim_is_found_written_drawn_and_replayed(call, tmp_path):
 
 def test_a_replay_on_which_the_claim_holds_is_3(call, tmp_path):
     call(*TWICE, "-o", "c.json")
-    data = json.loads((tmp_path / "c.json").read_text())
-    (tmp_path / "c.json").write_text(json.dumps(data | {"p0": [[0.0], [0.0]]}))
+    data = json.loads((tmp_path / "c.json").read_text()) | {"p0": [[0.0], [0.0]]}
+    (tmp_path / "c.json").write_text(json.dumps(data))
+    code, _, err = call("--replay", "c.json")
+    assert (code, "after a change on purpose, take it out" in err) == (2, True)
+    del data["digest"]
+    (tmp_path / "c.json").write_text(json.dumps(data))
     code, out, _ = call("--replay", "c.json")
     assert code == 3
     assert "it does not break here" in out

@@ -16,6 +16,7 @@ from flockana.environment.targets import CallableTarget, CircleTarget
 from flockana.interactions import Gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.measures import measure, metrics
+from tests.programs import full_disk
 
 
 def make(n=5, m=2, **options):
@@ -129,16 +130,11 @@ def test_other_tools_can_read_it(tmp_path):
     data.close()
 
 
-def test_a_save_that_fails_keeps_the_old_file(tmp_path, monkeypatch):
+@pytest.mark.parametrize("room", [0, 1000, 15_000])
+def test_a_save_onto_a_full_disk_keeps_the_old_file(tmp_path, room):
     path = RUN.save(tmp_path / "run.nc")
     before = path.read_bytes()
-
-    def full(self, partial, **options):
-        partial.write_bytes(b"half")
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(xarray.Dataset, "to_netcdf", full)
-    with pytest.raises(FileError, match="No space left on device; choose a file name and folder"):
+    with full_disk(room), pytest.raises(FileError, match="File too large; choose a file name and folder"):
         RUN.save(path)
     assert path.read_bytes() == before
     assert list(tmp_path.iterdir()) == [path]
@@ -190,17 +186,21 @@ def tampered(path, **attributes):
     [
         ({"format": None}, "holds no flockana run (format None, expected 'flockana-trajectory')"),
         ({"format": "other"}, "holds no flockana run (format 'other'"),
+        ({"format_version": 0}, "is damaged: there is no format 0"),
+        ({"format_version": -1}, "is damaged: there is no format -1"),
         ({"format_version": 2}, "is of format 2, newer than 1: update flockana"),
         ({"format_version": None}, "is damaged: KeyError('format_version'); run the simulation again"),
         ({"format_version": "x"}, "is damaged"),
         ({"law": None}, "is damaged"),
         ({"law": "{"}, "is damaged"),
+        ({"law": "[" * 100_000}, "is damaged"),
         ({"law": "null"}, "expected a law"),
         ({"law": '{"type": "flockana.interactions:Gains"}'}, "expected a law"),
         ({"law": '{"type": "flockana.laws.olfati_saber:Algorithm9"}'}, "cannot rebuild"),
         ({"law": '{"type": "my.laws:Mine"}'}, "the file needs my.laws:Mine, which is not part of flockana"),
         ({"stats": "x"}, "is damaged"),
         ({"status": None}, "is damaged"),
+        ({"status": "fine"}, "status = 'fine': expected one of complete"),
     ],
 )
 def test_files_with_other_contents(tmp_path, attributes, message):

@@ -1,0 +1,222 @@
+"""Damaged files: every one is refused in words, or gives what was written; none crashes, hangs or is believed."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from flockana.base.errors import FileError
+from flockana.cli.source import read_csv
+from flockana.ensemble.store import Store
+from flockana.ensemble.work import Job, Record
+from flockana.equilibria import find_equilibrium
+from flockana.equilibria.record import read_equilibrium, write_equilibrium
+from flockana.falsify import Counterexample
+from flockana.laws.olfati_saber import Algorithm1
+
+LAW = Algorithm1()
+NESTED = ("[" * 100_000, '{"a":' * 100_000, '{"format": ' + "[" * 100_000 + "]" * 100_000 + "}")
+
+
+def flipped(content, count, seed=0):
+    """The content with one bit changed, at so many random places."""
+    rng = np.random.default_rng(seed)
+    for place, bit in zip(rng.integers(len(content), size=count).tolist(), rng.integers(8, size=count), strict=True):
+        one = bytearray(content)
+        one[place] ^= 1 << int(bit)
+        yield bytes(one)
+
+
+def shortened(content, count):
+    for length in np.linspace(0, len(content) - 2, count).astype(int).tolist():
+        yield content[:length]
+
+
+def outcomes(read, path, contents, same):
+    """How many of the contents are refused; every other one must be what was written."""
+    refused = 0
+    for content in contents:
+        path.write_bytes(content)
+        try:
+            found = read(path)
+        except FileError as error:
+            refused += str(path) in str(error)
+        else:
+            assert same(found)
+    return refused
+
+
+def records():
+    for k in range(12):
+        claims = {"os-1:i": ("verified", 0.1 * k, None)}
+        metrics = {"cohesion_radius": 1.0 / (k + 3), "order": float("inf")}
+        yield f"key {k:02d} " * 8, Record(Job(k, (("n", 7),)), "complete", "", {"os-1": "verified"}, claims, metrics)
+
+
+def test_a_store_gives_the_runs_that_were_stored_or_fewer(tmp_path):
+    path, kept = tmp_path / "runs.sqlite", dict(records())
+    with Store(path) as store:
+        store.add("pair", kept)
+    whole = path.read_bytes()
+
+    def read(path):
+        with Store(path) as store:
+            return store.read(kept)
+
+    def same(found):
+        return found.items() <= kept.items()
+
+    records_begin = whole.index(b"key ")
+    refused = outcomes(read, path, flipped(whole, 60), same)
+    in_records = (whole[:records_begin] + part for part in flipped(whole[records_begin:], 90))
+    assert refused + outcomes(read, path, in_records, same) > 20
+    assert outcomes(read, path, shortened(whole, 12), same) >= 11  # an empty file is a new store
+
+
+@pytest.mark.parametrize("text", [*NESTED, "null", "3", '{"digest": 1}'])
+def test_a_record_that_is_none_is_told(tmp_path, text, monkeypatch):
+    monkeypatch.setattr(Record, "to_json", lambda self, key="": text)
+    with Store(tmp_path / "runs.sqlite") as store:
+        store.add("pair", {"k": Record(Job(1), "complete")})
+        with pytest.raises(FileError, match="run k cannot be read"):
+            store.read(["k"])
+
+
+COUNTEREXAMPLE = Counterexample("os-1", "i", "made up", LAW, np.array([[0.0], [8.0]]), np.zeros((2, 1)), (0.0, 1.0))
+
+
+def test_a_counterexample_is_that_which_was_written(tmp_path):
+    path = tmp_path / "c.json"
+    whole = COUNTEREXAMPLE.save(path).read_bytes()
+
+    def same(found):
+        return COUNTEREXAMPLE.save(path) == path and found.save(path).read_bytes() == whole
+
+    assert same(Counterexample.load(path))
+    flips = outcomes(Counterexample.load, path, flipped(whole, 400), same)
+    assert flips > 350  # a flip in white space changes nothing
+    assert outcomes(Counterexample.load, path, shortened(whole, 60), same) == 60
+
+
+def test_a_counterexample_of_before_there_were_digests_loads(tmp_path):
+    data = json.loads(COUNTEREXAMPLE.save(tmp_path / "c.json").read_text())
+    del data["digest"]
+    (tmp_path / "c.json").write_text(json.dumps(data))
+    np.testing.assert_array_equal(Counterexample.load(tmp_path / "c.json").q0, COUNTEREXAMPLE.q0)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"options": {"progress": True}}, "options progress: expected some of method, rtol, atol, dt, t_eval"),
+        ({"options": {"law": 1, "q0": 2}}, "options law, q0: expected some of"),
+        ({"tolerances": {"energy": float("nan")}}, "tolerances.energy = nan: expected a finite number"),
+        ({"tolerances": {"quasi": "0.1"}}, "tolerances.quasi = '0.1': expected one real number"),
+        ({"tolerances": {"giant": 2.0}}, "tolerances.giant = 2: expected a share below 1"),
+        ({"margin": [1.0]}, "is damaged"),
+        ({"eigest": "0"}, "it holds eigest, which no counterexample has"),
+        ({"q0": [[0.0], [8.5]]}, "its digest is not that of its contents"),
+    ],
+)
+def test_what_a_counterexample_may_hold(tmp_path, change, message):
+    path = COUNTEREXAMPLE.save(tmp_path / "c.json")
+    path.write_text(json.dumps(json.loads(path.read_text()) | change))
+    with pytest.raises(FileError, match=re.escape(message)):
+        Counterexample.load(path)
+
+
+@pytest.fixture(scope="module")
+def pair():
+    return find_equilibrium(LAW, [[0.0], [6.9]])
+
+
+def test_an_equilibrium_is_that_which_was_written(tmp_path, pair):
+    path = tmp_path / "e.json"
+    write_equilibrium(pair, path)
+    whole = path.read_bytes()
+
+    def same(found):
+        return np.array_equal(found.q, pair.q) and found.law == pair.law
+
+    assert same(read_equilibrium(path))
+    assert outcomes(read_equilibrium, path, flipped(whole, 200), same) > 150
+    assert outcomes(read_equilibrium, path, shortened(whole, 30), same) == 30
+    moved = json.loads(whole)
+    moved["q"][0][0] += 1e-12
+    path.write_text(json.dumps(moved))
+    with pytest.raises(FileError, match="its digest is not that of its contents"):
+        read_equilibrium(path)
+    path.write_text(json.dumps({key: value for key, value in moved.items() if key != "digest"}))
+    assert read_equilibrium(path).kind == "minimum"  # of before there were digests: verified anew
+
+
+@pytest.mark.parametrize("read", [Counterexample.load, read_equilibrium])
+@pytest.mark.parametrize("text", NESTED)
+def test_what_is_nested_too_deeply_is_told(tmp_path, read, text):
+    path = tmp_path / "it.json"
+    path.write_text(text)
+    with pytest.raises(FileError, match="nested too deeply"):
+        read(path)
+
+
+@pytest.mark.parametrize("read", [Counterexample.load, read_equilibrium, read_csv])
+def test_what_is_no_file_is_not_read(tmp_path, read):
+    os.mkfifo(tmp_path / "pipe")
+    for path, message in (
+        (tmp_path / "pipe", "no regular file"),
+        (tmp_path, "folder|Is a directory"),
+        (tmp_path / "none", "No such file"),
+        ("a\0b", "null byte"),
+        (None, "it is no path"),
+    ):
+        with pytest.raises(FileError, match=message):
+            read(path)
+
+
+def test_positions_from_a_damaged_csv_are_finite_or_refused(tmp_path):
+    path = tmp_path / "q.csv"
+    whole = b"x,y\n0.0,0.0\n7.0,0.5\n3.5,6.0\n-1e3,2.5e-3\n"
+
+    def finite(q):
+        return q.ndim == 2 and 1 <= q.shape[1] <= 3 and len(q) >= 1 and np.isfinite(q).all()
+
+    contents = [
+        *flipped(whole, 300),
+        *shortened(whole, 30),
+        b"",
+        b"\0",
+        b"\xff" * 9,
+        b'"',
+        b"1," * 9,
+        b"nan\n",
+        b"1e999",
+    ]
+    assert outcomes(read_csv, path, contents, finite) > 100
+
+
+def test_loading_makes_no_object_but_parameters(tmp_path):
+    """Files are data: nothing that a file names is imported or called unless it is a parameter class."""
+    path = COUNTEREXAMPLE.save(tmp_path / "c.json")
+    for name in (
+        "os:system",
+        "builtins:eval",
+        "subprocess:Popen",
+        "flockana:simulate",
+        "flockana.base.files:replacing",
+    ):
+        data = json.loads(path.read_text()) | {"law": {"type": name, "command": "touch ran"}}
+        path.write_text(json.dumps(data))
+        with pytest.raises(FileError, match=r"cannot rebuild|which is not part of flockana"):
+            Counterexample.load(path)
+    assert "antigravity" not in sys.modules
+    replace(COUNTEREXAMPLE).save(path)
+    path.write_text(path.read_text().replace("flockana:Algorithm1", "antigravity:fly"))
+    with pytest.raises(FileError, match="which is not part of flockana"):
+        Counterexample.load(path)
+    assert "antigravity" not in sys.modules

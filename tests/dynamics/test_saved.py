@@ -1,0 +1,150 @@
+"""Files of runs against damage: whatever happens to the bytes, the numbers are those that were saved, or none."""
+
+from __future__ import annotations
+
+import json
+import os
+
+import numpy as np
+import pytest
+import xarray
+
+from flockana.base.errors import FileError
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.trajectory import Trajectory
+from flockana.laws.olfati_saber import Algorithm1
+
+SERIES = ("t", "q", "p", "u")
+RUN = simulate(Algorithm1(), [[0.0], [8.0], [15.0]], np.zeros((3, 1)), (0.0, 1.0), t_eval=np.linspace(0.0, 1.0, 5))
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    return RUN.save(tmp_path_factory.mktemp("saved") / "run.nc").read_bytes()
+
+
+def same(run, other):
+    assert all(np.array_equal(getattr(run, name), getattr(other, name)) for name in SERIES)
+    assert all(np.array_equal(getattr(run.between, name), getattr(other.between, name)) for name in SERIES)
+    assert np.array_equal(run.extra["work"], other.extra["work"])
+    assert (run.law, run.status, run.message) == (other.law, other.status, other.message)
+    assert dict(run.stats) == dict(other.stats)
+
+
+def refused(path, content):
+    """Whether such a file is refused; if not, it holds the same run."""
+    path.write_bytes(content)
+    try:
+        run = Trajectory.load(path)
+    except FileError as error:
+        return "run the simulation again" in str(error) or "was it written by Trajectory.save" in str(error)
+    same(run, RUN)
+    return False
+
+
+def test_no_flipped_bit_gives_other_numbers(whole, tmp_path):
+    path, line = tmp_path / "run.nc", len(whole) - 90
+    places = [*range(0, line, line // 250), *range(line, len(whole))]
+    bits = np.random.default_rng(0).integers(8, size=len(places)).tolist()
+    outcomes = []
+    for place, bit in zip(places, bits, strict=True):
+        flipped = bytearray(whole)
+        flipped[place] ^= 1 << bit
+        outcomes.append(refused(path, bytes(flipped)))
+    assert all(outcomes[: len(outcomes) - 90])  # within the netCDF every one is seen
+    assert sum(outcomes) >= len(outcomes) - 20  # in the line after it, those that leave it no such line do no harm
+
+
+def test_no_shortened_or_longer_file_gives_other_numbers(whole, tmp_path):
+    path = tmp_path / "run.nc"
+    assert all(refused(path, whole[:length]) for length in range(0, len(whole) - 100, len(whole) // 40))
+    assert all(refused(path, whole[:-cut]) for cut in range(1, 65))
+    assert refused(path, whole + b"\n")
+    assert refused(path, whole + whole)
+
+
+@pytest.mark.parametrize("bit", [0, 7, 31, 62])
+def test_without_that_line_the_checksums_name_what_is_damaged(tmp_path, bit):
+    """As where another program wrote the file anew."""
+    RUN.save(tmp_path / "run.nc")
+    with xarray.open_dataset(tmp_path / "run.nc", engine="h5netcdf") as opened:
+        data = opened.load()
+    path = tmp_path / "anew.nc"
+    data.to_netcdf(path, engine="h5netcdf")
+    same(Trajectory.load(path), RUN)
+    data.q.values.view(np.int64)[2, 1, 0] ^= 1 << bit
+    data.to_netcdf(path, engine="h5netcdf")
+    with pytest.raises(FileError, match="is damaged: q not as saved, by the checksums"):
+        Trajectory.load(path)
+
+
+@pytest.mark.parametrize(
+    ("change", "named"),
+    [
+        (lambda data: data.drop_vars("extra_work"), "extra_work"),
+        (lambda data: data.drop_vars([f"between_{name}" for name in SERIES]), "between_q"),
+        (lambda data: data.assign(extra_more=("time", data.time.values)), "extra_more"),
+        (lambda data: data.assign_attrs(message="all is well"), "attributes"),
+        (lambda data: data.assign_attrs(status="interrupted"), "attributes"),
+        (lambda data: data.assign_attrs(law=data.attrs["law"].replace("7.0", "7.5")), "attributes"),
+        (lambda data: data.assign_attrs(checksums=json.dumps({})), "attributes"),
+    ],
+)  # fmt: skip
+def test_what_is_left_out_added_or_told_otherwise_is_named(tmp_path, change, named):
+    RUN.save(tmp_path / "run.nc")
+    with xarray.open_dataset(tmp_path / "run.nc", engine="h5netcdf") as opened:
+        data = opened.load()
+    change(data).to_netcdf(tmp_path / "changed.nc", engine="h5netcdf")
+    with pytest.raises(FileError, match=f"is damaged: .*{named}.* not as saved"):
+        Trajectory.load(tmp_path / "changed.nc")
+
+
+def test_files_without_checksums_load_and_are_validated(tmp_path):
+    """Those of before there were any, and those that xarray wrote from `to_xarray`."""
+    data, path = RUN.to_xarray(), tmp_path / "old.nc"
+    data.to_netcdf(path, engine="h5netcdf")
+    same(Trajectory.load(path), RUN)
+    for values, message in ((np.nan, "expected finite"), (1e400, "expected finite")):
+        edited = data.copy(deep=True)
+        edited.q.values[1, 0, 0] = values
+        edited.to_netcdf(path, engine="h5netcdf")
+        with pytest.raises(FileError, match=message):
+            Trajectory.load(path)
+    data.isel(time=slice(None, None, -1)).to_netcdf(path, engine="h5netcdf")
+    with pytest.raises(FileError, match="expected rising times"):
+        Trajectory.load(path)
+    data.isel(agent=slice(0, 0)).to_netcdf(path, engine="h5netcdf")
+    with pytest.raises(FileError, match="expected T >= 1 samples of n >= 1 agents"):
+        Trajectory.load(path)
+
+
+def test_what_is_no_file_is_left_alone(tmp_path):
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    with pytest.raises(FileError, match="it is no regular file; choose a file name and folder to write to"):
+        RUN.save(pipe)
+    assert pipe.is_fifo()
+    with pytest.raises(FileError, match="no file"):
+        Trajectory.load(pipe)
+    for nothing in (None, 3, b"run.nc"):
+        with pytest.raises(FileError, match="it is no path"):
+            RUN.save(nothing)
+        with pytest.raises(FileError, match="it is no path"):
+            Trajectory.load(nothing)
+    with pytest.raises(FileError, match="null byte"):
+        Trajectory.load("a\0b")
+
+
+def test_through_a_link_what_it_points_to_is_written(tmp_path):
+    (tmp_path / "there").mkdir()
+    target, link = tmp_path / "there" / "run.nc", tmp_path / "link.nc"
+    target.write_bytes(b"before")
+    link.symlink_to(target)
+    assert RUN.save(link) == link
+    assert link.is_symlink()
+    same(Trajectory.load(target), RUN)
+    (tmp_path / "a").symlink_to(tmp_path / "b")
+    (tmp_path / "b").symlink_to(tmp_path / "a")
+    with pytest.raises(FileError, match="cannot write"):
+        RUN.save(tmp_path / "a")
+    assert (tmp_path / "a").is_symlink()
