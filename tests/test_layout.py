@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 TESTS = Path(__file__).parent
-ACROSS = ("adversarial", "properties", "reference")  # folders of tests that are about no one module
+ACROSS = ("adversarial", "bad_input", "properties", "reference")  # folders of tests that are about no one module
 OUTSIDE = ("benchmarks", "proofs", "tools")  # folders of tests of what stands beside the package
 
 

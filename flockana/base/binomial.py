@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar
+from flockana.base.checks import FloatArray, ensure_finite_scalar, real_array
 from flockana.base.errors import ArgumentError
 
 
@@ -51,7 +51,10 @@ def clopper_pearson(successes: Any, trials: Any, *, level: float = 0.95) -> tupl
     """
     from scipy.special import betaincinv
 
-    k, n = np.broadcast_arrays(np.asarray(successes, dtype=np.float64), np.asarray(trials, dtype=np.float64))
+    try:
+        k, n = np.broadcast_arrays(real_array(successes), real_array(trials))
+    except (TypeError, ValueError):
+        raise ArgumentError(f"successes = {successes!r}, trials = {trials!r}: expected counts") from None
     if not ((k >= 0.0) & (k <= n)).all():
         raise ArgumentError(f"successes = {successes}, trials = {trials}: expected 0 <= successes <= trials")
     tail = 0.5 * (1.0 - ensure_level(level))

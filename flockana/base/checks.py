@@ -158,22 +158,25 @@ def ensure_series(name: str, value: Any, length: int | None = None) -> FloatArra
     return series
 
 
-def ensure_links(n: Any, pairs: Any) -> tuple[int, npt.NDArray[np.int32]]:
-    """Return a number of agents and links between them: whole numbers of shape (M, 2) from 0 to n − 1.
+def ensure_links(links: Any, n: int) -> npt.NDArray[np.int32]:
+    """Return links as an int32 array (M, 2) of agents 0 … n − 1.
 
     Examples
     --------
-    >>> ensure_links(3, [[0, 1]])[1].shape
-    (1, 2)
+    >>> ensure_links([[0, 1]], 2).tolist()
+    [[0, 1]]
     """
-    n, links = ensure_count("n", n), np.asarray(pairs)
-    if links.size == 0 and links.ndim in (1, 2):
-        links = np.zeros((0, 2), np.int32)
-    if links.dtype.kind not in "iu" or links.ndim != 2 or links.shape[1] != 2:
-        raise ArgumentError(f"links: expected whole numbers of shape (M, 2), got {links.dtype} of shape {links.shape}")
-    if len(links) and (links.min() < 0 or links.max() >= n):
-        raise ArgumentError(f"links name agents {links.min()} to {links.max()}: expected 0 to {n - 1}, as n = {n}")
-    return n, np.asarray(links, dtype=np.int32)
+    ensure_fits(f"what is told of n = {n} agents,", (3, n), "ask for fewer agents")
+    array = np.asarray(links)
+    if array.size == 0:
+        return np.empty((0, 2), dtype=np.int32)
+    if array.ndim != 2 or array.shape[1] != 2 or array.dtype.kind not in "iu":
+        raise ArgumentError(f"links has shape {array.shape} of {array.dtype}: expected (M, 2) whole numbers")
+    bad = ((array < 0) | (array >= n)).any(axis=1) | (array[:, 0] == array[:, 1])
+    if bad.any():
+        k = int(np.argmax(bad))
+        raise ArgumentError(f"links[{k}] = {array[k].tolist()}: expected two different agents of 0 … {n - 1}")
+    return np.ascontiguousarray(array, dtype=np.int32)
 
 
 def ensure_fits(name: str, shape: tuple[int, ...], remedy: str) -> None:
@@ -203,7 +206,7 @@ def ensure_time_span(t_span: Any) -> tuple[float, float]:
     (0.0, 5.0)
     """
     try:
-        t0, t1 = (float(t) for t in t_span)
+        t0, t1 = (float(_real(t)) for t in t_span)
     except (TypeError, ValueError, OverflowError):
         raise ArgumentError(f"t_span = {t_span!r}: expected two numbers (t0, t1)") from None
     if not (np.isfinite(t0) and np.isfinite(t1) and t0 < t1):
@@ -232,6 +235,6 @@ def ensure_dimension(m: int) -> int:
     >>> ensure_dimension(2)
     2
     """
-    if m not in (1, 2, 3):
+    if isinstance(m, bool) or m not in (1, 2, 3):
         raise ArgumentError(f"m = {m!r}: expected a dimension of 1, 2 or 3")
     return int(m)

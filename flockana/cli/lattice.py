@@ -31,9 +31,12 @@ def lattice_command(
     """Measure a configuration: α-lattice or not, links, crossings, planarity, rigidity, defects, Theorem 5.
 
     SOURCE is a run that was saved (.nc), a CSV of positions (a row for each agent, one to three columns, a header or
-    none), an equilibrium's file (.json), or a builder with its size: line:5, triangular:25, hexagonal-spiral:19,
-    hexagonal-patch:2 (rings), square:4x5, honeycomb:3x4 (cells), simple-cubic:2x2x2, fcc:2x2x2, hcp:2x2x2, bcc:2x2x2
-    (cells).
+    none), an equilibrium's file (.json), or a builder with its size:
+
+    \b
+    line:5         triangular:25           hexagonal-spiral:19
+    square:4x5     honeycomb:3x4 (cells)   hexagonal-patch:2 (rings)
+    fcc:2x2x2, hcp:2x2x2, bcc:2x2x2 (cells), simple-cubic:2x2x2
 
     Exit status: 0 measured, 2 bad input, 130 interrupted.
     """

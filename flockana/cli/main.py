@@ -36,6 +36,7 @@ app = typer.Typer(
     name=_NAME,
     help="Do these flocks do what the theorems say?",
     no_args_is_help=False,
+    rich_markup_mode=None,  # its tables break sentences, and name types that say nothing
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 

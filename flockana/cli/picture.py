@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
@@ -25,7 +26,7 @@ def ensure_file(path: Path | None, kinds: tuple[str, ...]) -> None:
 
     if path is None:
         return
-    if path.is_dir():
+    if os.path.isdir(path):
         raise ArgumentError(f"{path} is a folder: expected a file name, such as {path / ('it' + kinds[0])}")
     if path.suffix.lower() not in kinds:
         raise ArgumentError(f"{path}: expected a file name that ends in {' or '.join(kinds)}")

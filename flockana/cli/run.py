@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Annotated
 
@@ -26,7 +27,7 @@ def run_command(
     from flockana.scenarios import scenario
 
     item = scenario(name, seed)
-    if save_to.is_dir():
+    if os.path.isdir(save_to):
         raise ArgumentError(f"{save_to} is a folder: expected a file name, such as {save_to / name}.nc")
     ensure_target(save_to)
     ensure_directory(save_to.parent)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from io import StringIO
@@ -82,7 +83,7 @@ def read_source(name: str, *, d: float | None = None, r: float | None = None, ti
 
         equilibrium = read_equilibrium(path)
         return _scaled(name, equilibrium.q, equilibrium.law, 0.0, d=d, r=r)
-    if path.suffix in _FILES or path.exists():
+    if path.suffix in _FILES or os.path.exists(path):
         return _scaled(name, read_csv(path), None, 0.0, d=d, r=r)
     ensure_source(name)
     scale = D if d is None else d
@@ -147,7 +148,7 @@ def ensure_source(name: str, more: tuple[str, ...] = ()) -> None:
     >>> ensure_source("line:3")
     """
     path, builder = Path(name), name.partition(":")[0]
-    if path.suffix not in _FILES and builder not in _BUILDERS and not path.exists():
+    if path.suffix not in _FILES and builder not in _BUILDERS and not os.path.exists(path):
         raise UnknownNameError("scenario, file or builder" if more else "file or builder", builder, (*more, *_BUILDERS))
 
 

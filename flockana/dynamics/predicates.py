@@ -16,6 +16,12 @@ from flockana.dynamics.trajectory import Trajectory
 BoolArray = npt.NDArray[np.bool_]
 
 
+def _ensure_run(trajectory: Trajectory) -> Trajectory:
+    if not isinstance(trajectory, Trajectory):
+        raise ArgumentError(f"trajectory = {trajectory!r}: expected a run, as simulate(...) gives it")
+    return trajectory
+
+
 def is_flock(trajectory: Trajectory) -> BoolArray:
     """At which samples the net G(q) is connected, shape (T,).
 
@@ -24,7 +30,7 @@ def is_flock(trajectory: Trajectory) -> BoolArray:
     trajectory : Trajectory
         A run of a law with an interaction range.
     """
-    result: BoolArray = trajectory.metrics().connectivity.values == 1.0
+    result: BoolArray = _ensure_run(trajectory).metrics().connectivity.values == 1.0
     return result
 
 
@@ -45,7 +51,7 @@ def is_quasi_flock(trajectory: Trajectory, *, share: float = 0.5) -> BoolArray:
     """
     if (giant := ensure_nonnegative("share", share)) >= 1.0:
         raise ArgumentError(f"share = {giant:g}: expected a share from 0 to below 1, such as 0.5")
-    result: BoolArray = trajectory.metrics().giant_share.values > giant
+    result: BoolArray = _ensure_run(trajectory).metrics().giant_share.values > giant
     return result
 
 
@@ -59,7 +65,7 @@ def is_cohesive(trajectory: Trajectory, radius: float) -> bool:
     radius : float
         In the unit of q.
     """
-    return bool(trajectory.metrics().cohesion_radius.max() <= ensure_positive("radius", radius))
+    return bool(_ensure_run(trajectory).metrics().cohesion_radius.max() <= ensure_positive("radius", radius))
 
 
 def is_dynamic_flock(trajectory: Trajectory) -> bool:

@@ -120,7 +120,7 @@ def load(run_of: Callable[..., _Run], path: str | os.PathLike[str]) -> _Run:
     import xarray
 
     source = ensure_path(path)
-    if not source.is_file():
+    if not os.path.isfile(source):
         raise FileError(f"no file {source}: expected one written by Trajectory.save")
     try:
         _ensure_whole(source)

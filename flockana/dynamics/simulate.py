@@ -12,14 +12,14 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_positive, ensure_state, ensure_time_span, real_array
+from flockana.base.checks import FloatArray, ensure_fits, ensure_positive, ensure_state, ensure_time_span, real_array
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.interrupts import interrupts_recognised
 from flockana.base.progress import progress_bar
 from flockana.dynamics.adaptive import SCIPY, adaptive
 from flockana.dynamics.between import Between, Recorder
 from flockana.dynamics.first_call import check_first_call
-from flockana.dynamics.iterate import discrete
+from flockana.dynamics.iterate import count_steps, discrete
 from flockana.dynamics.rk4 import rk4
 from flockana.dynamics.sample import Sample, Tally, start_sample
 from flockana.dynamics.tolerance import error_floor
@@ -104,9 +104,11 @@ def simulate(
         if dt is not None or method != "DOP853":
             raise ArgumentError("a discrete law brings its own step: expected neither dt nor method")
         method, how = "discrete", {"dt": _ensure_step("law.dt", law.dt, t_span)}
+        _ensure_samples_fit(how["dt"], t_span, q0, keep)
         samples = discrete(law, q0, p0, t_span, keep, tally)
     elif _ensure_method(method, dt) == "RK4":
         how = {"dt": _ensure_step("dt", dt, t_span)}
+        _ensure_samples_fit(how["dt"], t_span, q0, keep)
         samples = rk4(law, q0, p0, t_span, how["dt"], keep, tally)
     else:
         how = {"rtol": ensure_positive("rtol", rtol), "atol": None if atol is None else ensure_positive("atol", atol)}
@@ -139,6 +141,13 @@ def _ensure_step(name: str, dt: Any, t_span: tuple[float, float]) -> float:
     if far + 0.5 * step == far:
         raise ArgumentError(f"{name} = {step:g}: too small to change t = {far:g}; start the clock near t = 0")
     return step
+
+
+def _ensure_samples_fit(dt: float, t_span: tuple[float, float], q0: FloatArray, keep: FloatArray | None) -> None:
+    """Raise before a run whose steps, all of them kept, would not fit into memory."""
+    if keep is None:
+        samples = count_steps(*t_span, dt) + 1
+        ensure_fits(f"a sample at each step of {dt:g}", (samples, 3, *q0.shape), "take longer steps, or give t_eval")
 
 
 def _ensure_method(method: str, dt: float | None) -> str:

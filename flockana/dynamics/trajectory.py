@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 _Value = TypeVar("_Value")
 
 PLOTS = "flockana.plots"  # who draws is named, not imported: this room lies below
+_KINDS = {"extra": "series by name", "stats": "facts by name", "between": "a Between, or None"}
 STATUSES = ("complete", "interrupted", "failed")
 
 
@@ -93,12 +94,19 @@ class Trajectory:
 
     def __post_init__(self) -> None:
         ensure_law(self.law)
+        for name, kind in (("extra", Mapping), ("stats", Mapping), ("between", Between | None)):
+            if not isinstance(getattr(self, name), kind):
+                raise ArgumentError(f"{name} = {getattr(self, name)!r}: expected {_KINDS[name]}")
         if self.status not in STATUSES:
             raise ArgumentError(f"status = {self.status!r}: expected one of {', '.join(STATUSES)}")
-        shape = np.shape(self.q)
-        if len(shape) != 3 or np.shape(self.t) != shape[:1] or np.shape(self.p) != shape or np.shape(self.u) != shape:
+        try:
+            shape = np.shape(self.q)
+            others = [np.shape(each) for each in (self.t, self.p, self.u)]
+        except ValueError:
+            raise ArgumentError("t, q, p, u: expected arrays, got rows of different lengths") from None
+        if len(shape) != 3 or others != [shape[:1], shape, shape]:
             raise ArgumentError(
-                f"t {np.shape(self.t)}, q {shape}, p {np.shape(self.p)}, u {np.shape(self.u)}: "
+                f"t {others[0]}, q {shape}, p {others[1]}, u {others[2]}: "
                 "expected shapes (T,), (T, n, m), (T, n, m), (T, n, m)"
             )
         if 0 in shape or shape[2] > 3:

@@ -194,9 +194,9 @@ class Store:
 
 
 def _ensure_place(path: Path) -> None:
-    if path.is_dir():
+    if os.path.isdir(path):
         raise FileError(f"{path} is a folder: expected a file name, such as {path / 'runs.sqlite'}")
-    if path.exists() and not path.is_file():
+    if os.path.exists(path) and not os.path.isfile(path):
         raise FileError(f"{path} is no regular file: expected a file name, such as runs.sqlite")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -155,7 +155,7 @@ class SineTarget(Target):
         _freeze_vector(self, "velocity", m)
         for name in ("amplitude", "frequency", "phase"):
             object.__setattr__(self, name, ensure_finite_scalar(name, getattr(self, name)))
-        if self.axis not in range(m):
+        if isinstance(self.axis, bool) or self.axis not in range(m):
             raise ArgumentError(f"axis = {self.axis!r}: expected a coordinate of the flock, 0 to {m - 1}")
         object.__setattr__(self, "axis", int(self.axis))
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_points, ensure_positive
+from flockana.base.checks import FloatArray, ensure_count, ensure_finite_scalar, ensure_points, ensure_positive
 from flockana.base.errors import SolverError, UnknownNameError
 from flockana.equilibria.classify import (
     DENSE_SIZE,
@@ -24,6 +24,7 @@ from flockana.equilibria.classify import (
 from flockana.equilibria.descent import descend
 from flockana.equilibria.potential import Potential, ensure_flock_law, inside_obstacle
 from flockana.laws.terms.navigation import Navigation
+from flockana.measures.metrics import pairs_at_one_place
 from flockana.measures.nets import LinkArray, link_lengths, links
 
 METHODS = ("minimise", "ipopt", "descent", "root")
@@ -169,12 +170,14 @@ def find_equilibrium(
         method = "ipopt" if q.size <= _SMALL else "descent"
     ensure_small(*q.shape, most=MAX_SIZE if method == "descent" else DENSE_SIZE)
     potential = Potential(law, ensure_finite_scalar("t", t))
-    margin = ensure_positive("margin", margin) * potential.pair.length
+    margin, max_iter = ensure_positive("margin", margin) * potential.pair.length, ensure_count("max_iter", max_iter)
     law.check_start(q, np.zeros_like(q))
     if method == "descent":
         last, converged, message = descend(potential, q, max_iter)
     else:
         last, converged, message = (_minimise if method == "ipopt" else _root)(potential, q, margin, max_iter)
+    if shared := pairs_at_one_place(q):  # no force parts them: where they end says little of other starts
+        message += f"; {shared} pair{'s' * (shared > 1)} of agents began at one place"
     return finish(potential, last, converged, message, strict=strict)
 
 

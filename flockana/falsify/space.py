@@ -112,7 +112,7 @@ def search_space(
     >>> search_space(scenario("hexagon"), vary=["p"], parameters={"gains.c1_alpha": (1.0, 100.0)}).dimension
     15
     """
-    chosen = (vary,) if isinstance(vary, str) else tuple(vary)
+    chosen = (vary,) if isinstance(vary, str) else tuple(vary) if isinstance(vary, Iterable) else (repr(vary),)
     if not set(chosen) <= set(STATE) or len(set(chosen)) < len(chosen):
         raise ArgumentError(f"vary = {vary!r}: expected 'q', 'p', both, or () for parameters alone")
     ranges = {name: _range(scenario.law, name, ends) for name, ends in (parameters or {}).items()}

@@ -13,6 +13,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive
 from flockana.base.errors import ArgumentError, FileError
+from flockana.base.files import ensure_path
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import ensure_law
 
@@ -81,7 +82,7 @@ def read_lammps(
         )
     start = ensure_finite_scalar("start", start)
     step = None if dt is None else ensure_positive("dt", dt)
-    snapshots = _snapshots(Path(path))
+    snapshots = _snapshots(ensure_path(path))
     t = np.array([start + _time(snapshot, step, path) for snapshot in snapshots])
     _ensure_rising(t, path)
     dimension = _dimension(snapshots[0], m, path)
@@ -154,6 +155,8 @@ def _stacked(snapshots: list[Snapshot], names: tuple[str, ...], m: int, path: ob
 
 
 def _snapshots(path: Path) -> list[Snapshot]:
+    if os.path.exists(path) and not os.path.isfile(path):
+        raise FileError(f"cannot read {str(path)!r}: it is no regular file; expected a text dump of LAMMPS")
     try:
         with path.open(encoding="utf-8") as file:
             found = list(_parsed(file, path))

@@ -12,7 +12,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive, ensure_state, ensure_time_span
 from flockana.base.errors import ArgumentError, FileError, UnknownNameError
-from flockana.base.files import replacing
+from flockana.base.files import ensure_path, replacing
 from flockana.lammps.script import (
     DATA,
     README,
@@ -129,6 +129,7 @@ def export_lammps(
     (['in.flock', 'flock.data', 'pair.table', 'README.txt'], True, 1)
     """
     law, term = _translatable(law)
+    folder = ensure_path(folder, action="write to", remedy="choose another folder")
     q0, p0 = ensure_state(q0, p0)
     law.check_dimension(q0.shape[1])
     law.check_start(q0, p0)
@@ -147,7 +148,7 @@ def export_lammps(
         TABLE: table.text(),
         README: readme_text(title, table, clock, told),
     }
-    return _recorded(Path(folder), _written(Path(folder), texts), table, clock, told)
+    return _recorded(folder, _written(folder, texts), table, clock, told)
 
 
 def _translatable(law: Any) -> tuple[Law, PairTerm]:

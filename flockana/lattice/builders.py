@@ -49,7 +49,7 @@ def max_ratio(name: str) -> float:
     >>> round(max_ratio("bcc"), 4)  # below the usual 1.2
     1.1547
     """
-    if name not in _MAX_RATIO:
+    if not isinstance(name, str) or name not in _MAX_RATIO:
         raise UnknownNameError("lattice", name, _MAX_RATIO)
     return _MAX_RATIO[name]
 

@@ -22,33 +22,13 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_points, ensure_positive
+from flockana.base.checks import FloatArray, ensure_links, ensure_points, ensure_positive
 from flockana.base.errors import ArgumentError
 from flockana.kernels.crossings import crossing_blocks, nearest_links
 from flockana.kernels.segments import meet
 from flockana.measures.nets import LinkArray
 
 _ROUNDINGS = 8.0  # of eps: two subtractions and a product on either side
-
-
-def ensure_links(links: Any, n: int) -> LinkArray:
-    """Return links as an int32 array (M, 2) of agents 0 … n − 1.
-
-    Examples
-    --------
-    >>> ensure_links([[0, 1]], 2).tolist()
-    [[0, 1]]
-    """
-    array = np.asarray(links)
-    if array.size == 0:
-        return np.empty((0, 2), dtype=np.int32)
-    if array.ndim != 2 or array.shape[1] != 2 or array.dtype.kind not in "iu":
-        raise ArgumentError(f"links has shape {array.shape} of {array.dtype}: expected (M, 2) whole numbers")
-    bad = ((array < 0) | (array >= n)).any(axis=1) | (array[:, 0] == array[:, 1])
-    if bad.any():
-        k = int(np.argmax(bad))
-        raise ArgumentError(f"links[{k}] = {array[k].tolist()}: expected two different agents of 0 … {n - 1}")
-    return np.ascontiguousarray(array, dtype=np.int32)
 
 
 def crossings(q: Any, links: Any, *, limit: int | None = None) -> LinkArray:

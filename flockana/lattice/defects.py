@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_count, ensure_points
-from flockana.lattice.crossings import ensure_links, turns_left
+from flockana.base.checks import FloatArray, ensure_count, ensure_links, ensure_points
+from flockana.lattice.crossings import turns_left
 from flockana.lattice.planarity import ensure_plane
 from flockana.measures.nets import LinkArray
 

@@ -8,10 +8,9 @@ from typing import Any, Literal
 
 import numpy as np
 
-from flockana.base.checks import ensure_count
+from flockana.base.checks import ensure_count, ensure_links
 from flockana.base.errors import ArgumentError
 from flockana.kernels.left_right import embedding
-from flockana.lattice.crossings import ensure_links
 from flockana.measures.nets import LinkArray
 
 _COMPILED = 3000  # links from which on the compiled search for an embedding is worth loading

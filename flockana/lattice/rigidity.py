@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_points, ensure_positive
+from flockana.base.checks import FloatArray, ensure_links, ensure_points, ensure_positive
 from flockana.base.errors import SolverError
-from flockana.lattice.crossings import ensure_links
 from flockana.lattice.elimination import Elimination
 
 if TYPE_CHECKING:

@@ -222,6 +222,23 @@ def coincident_pairs(q: Any, tol: float) -> int:
     return sum(i.size for i, _ in pair_blocks(q, ensure_positive("tol", tol)))
 
 
+def pairs_at_one_place(q: Any) -> int:
+    """Number of unordered pairs at exactly the same place: no pair force parts them.
+
+    Parameters
+    ----------
+    q : array_like, shape (n, m)
+        Positions.
+
+    Examples
+    --------
+    >>> pairs_at_one_place([[0.0], [0.0], [0.0], [1.0]])
+    3
+    """
+    sizes = np.unique(ensure_points("q", q), axis=0, return_counts=True)[1]
+    return int((sizes * (sizes - 1) // 2).sum())
+
+
 # The same at every instant of a run, unchecked: x has shape (T, n, m), the result (T,).
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_links, ensure_points, ensure_positive, ensure_series
+from flockana.base.checks import FloatArray, ensure_count, ensure_links, ensure_points, ensure_positive, ensure_series
 from flockana.kernels.neighbours import pair_list
 
 if TYPE_CHECKING:
@@ -79,7 +79,8 @@ def components(n: int, pairs: LinkArray) -> npt.NDArray[np.int32]:
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
-    n, pairs = ensure_links(n, pairs)
+    n = ensure_count("n", n)
+    pairs = ensure_links(pairs, n)
     graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
     labels: npt.NDArray[np.int32] = connected_components(graph, directed=False)[1]
     return labels
@@ -104,7 +105,8 @@ def laplacian(n: int, pairs: LinkArray, weights: FloatArray | None = None) -> cs
     """
     from scipy.sparse import coo_array, diags_array
 
-    n, pairs = ensure_links(n, pairs)
+    n = ensure_count("n", n)
+    pairs = ensure_links(pairs, n)
     a = np.ones(len(pairs)) if weights is None else ensure_series("weights", weights, len(pairs))
     half = coo_array((a, (pairs[:, 0], pairs[:, 1])), shape=(n, n))
     adjacency = (half + half.T).tocsr()

@@ -169,7 +169,7 @@ def ensure_film(path: str | os.PathLike[str], *, seconds: float, fps: float) -> 
     frame_count(seconds, fps)
     if target.suffix.lower() not in _SUFFIXES:
         raise ArgumentError(f"{target}: expected a file name that ends in .gif or .mp4")
-    if target.is_dir():
+    if os.path.isdir(target):
         raise ArgumentError(f"{target} is a folder: expected a file name")
     ensure_target(target)
     if target.suffix.lower() == ".mp4" and not FFMpegWriter.isAvailable():

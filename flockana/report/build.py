@@ -39,7 +39,11 @@ def ensure_directory(directory: str | os.PathLike[str]) -> Path:
         with tempfile.TemporaryFile(dir=path):
             pass
     except OSError as error:
-        reason = "there is a file of that name" if path.exists() and not path.is_dir() else error.strerror or error
+        reason = (
+            "there is a file of that name"
+            if os.path.exists(path) and not os.path.isdir(path)
+            else error.strerror or error
+        )
         raise FileError(f"cannot write to {path}: {reason}; choose a folder you may write to") from error
     return path
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_count, ensure_positive, ensure_state, ensure_time_span
+from flockana.base.checks import FloatArray, ensure_count, ensure_fits, ensure_positive, ensure_state, ensure_time_span
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.dynamics.encounters import Encounters, State
 from flockana.dynamics.iterate import count_steps
@@ -90,6 +90,8 @@ def simulate_delayed(
     delay, steps = ensure_positive("delay", delay), ensure_count("steps", steps)
     h = delay / steps
     total = count_steps(t0, t1, h)
+    samples = (steps + 1 + total, 3, *q.shape)
+    ensure_fits(f"the run in steps of {h:g}, {steps} a delay,", samples, "take a longer delay or fewer steps")
     past = np.arange(-steps, 1)[:, None, None] * h
     qs, ps, us = (np.empty((steps + 1 + total, *q.shape)) for _ in range(3))
     qs[: steps + 1], ps[: steps + 1], us[:steps] = q + past * p, p, 0.0

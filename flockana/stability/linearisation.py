@@ -12,6 +12,7 @@ import numpy.typing as npt
 from flockana.base.checks import FloatArray, ensure_fits, ensure_state
 from flockana.base.errors import ArgumentError
 from flockana.laws.law import Law
+from flockana.measures.metrics import pairs_at_one_place
 from flockana.measures.nets import LinkArray
 from flockana.stability.modes import Mode, SecondOrder
 from flockana.stability.signals import structural_system, translational_system, whole_system
@@ -82,6 +83,11 @@ class Linearisation:
         """D = −∂u/∂p, sparse."""
         size = self.q.size
         return -self.A_sparse[size:, size:]
+
+    @property
+    def coincident_pairs(self) -> int:
+        """Pairs of agents at exactly one place: their force on each other has no direction there."""
+        return pairs_at_one_place(self.q)
 
     @cached_property
     def second_order(self) -> SecondOrder:

@@ -10,12 +10,12 @@ import numpy as np
 from flockana.base.checks import (
     FloatArray,
     ensure_finite_scalar,
+    ensure_links,
     ensure_points,
     ensure_positive,
     ensure_state,
 )
 from flockana.base.errors import ArgumentError
-from flockana.lattice.crossings import ensure_links
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law
 from flockana.measures.frame import moving_frame

@@ -80,6 +80,8 @@ def slowest_modes(linearisation: Linearisation, count: int = 12) -> SlowModes:
     >>> bool(abs(slow.modes[0].decay_rate - patch.decay_rate) < 1e-9 * patch.decay_rate), slow.complete_to > 1.0
     (True, True)
     """
+    if not isinstance(linearisation, Linearisation):
+        raise ArgumentError(f"linearisation = {linearisation!r}: expected what linearise(law, equilibrium) gives")
     count = ensure_count("count", count)
     problem = linearisation.second_order
     free = 2 * problem.q.size - problem.rigid_invariant.left.shape[1]

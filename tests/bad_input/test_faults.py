@@ -1,4 +1,4 @@
-"""Full disks, readers that leave, encodings without Greek, Ctrl-C at the worst moment: what is done is kept and told."""
+"""Full disks, readers that leave, encodings without Greek, Ctrl-C at the worst moment: what is done is kept."""
 
 from __future__ import annotations
 
