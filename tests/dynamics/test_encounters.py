@@ -170,6 +170,12 @@ class TestObstaclesInOneStep:
         assert among(wall).share(*flight([[0.0, 4.0]], [[2.0, 0.0]])) == 1.0
         assert among(wall).share(*flight([[0.0, 6.0]], [[1e4, 0.0]])) == 1.0
 
+    def test_who_comes_in_goes_no_farther_within_either(self):
+        wall, edge = Wall((0.0, 0.0), (0.0, 1.0)), SHELL + 0.5
+        deep = among(wall).share(*flight([[0.0, edge]], [[0.0, -4.5]]))
+        assert 4.5 * deep == pytest.approx(0.5 + SKIRT, rel=1e-5)
+        assert among(wall).share(*flight([[0.0, edge]], [[0.0, -SKIRT]])) == 1.0
+
     def test_the_nearest_of_many_decides(self):
         spheres = [Sphere((x, 0.0), 1.0) for x in (90.0, 60.0, 30.0)]
         share = among(*spheres, Wall((0.0, -20.0), (0.0, 1.0))).share(*flight([[0.0, 0.0]], [[1000.0, 0.0]]))
