@@ -71,7 +71,13 @@ def test_expected_statuses(name, change):
         pytest.skip(str(why))
     span = (other.since, other.since + other.until)
     changed = replace(
-        entry, law=other.law, q0=np.asarray(other.q0), p0=np.asarray(other.p0), t_span=span, options=other.options
+        entry,
+        law=other.law,
+        q0=np.asarray(other.q0),
+        p0=np.asarray(other.p0),
+        t_span=span,
+        options=other.options,
+        instants=(),  # of the entry's own span
     )
     lines = [line for verdict in changed.verify(changed.run()) for line in changed.surprises(verdict)]
     assert lines == []
