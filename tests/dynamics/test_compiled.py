@@ -224,9 +224,15 @@ def test_a_law_that_changes_what_its_form_stands_for_is_stepped():
         def forces(self, *arguments, **options):
             return super().forces(*arguments, **options)
 
+    class Fenced(Algorithm2):
+        """With an obstacle that none of its terms knows of."""
+
+        obstacle_field = Algorithm3(target=TARGETS[0], obstacles=[Sphere((50.0, 50.0), 1.0)]).obstacle_field
+
     q, p = start()
     plain = [
         Plain(target=TARGETS[1]),
+        Fenced(target=TARGETS[1]),
         Algorithm2(target=Told((0.0, 0.0), (1.0, 0.0))),
         Algorithm2(target=RescaledVelocity(CallableTarget(lambda t: ((t, 0.0), (1.0, 0.0))), 0.5)),
         Strong(),
