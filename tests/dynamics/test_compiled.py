@@ -224,6 +224,11 @@ def test_a_law_that_changes_what_its_form_stands_for_is_stepped():
         def forces(self, *arguments, **options):
             return super().forces(*arguments, **options)
 
+    class Fenced(Algorithm2):
+        """With an obstacle that none of its terms knows of."""
+
+        obstacle_field = Algorithm3(target=TARGETS[0], obstacles=[Sphere((50.0, 50.0), 1.0)]).obstacle_field
+
     q, p = start()
     plain = [
         Plain(target=TARGETS[1]),
@@ -232,6 +237,7 @@ def test_a_law_that_changes_what_its_form_stands_for_is_stepped():
         Strong(),
         Algorithm1(Weighed()),
         Algorithm3(target=TARGETS[0], obstacles=[Sphere((50.0, 50.0), 1.0), Wall((0.0, -9.0), (0.0, 1.0))]),
+        Fenced(target=TARGETS[1]),
     ]
     for law in plain:
         assert engine_of(law, q, p, 0.0, "DOP853", 1e-8, Floor(1e-8, 1e-8, 1e-8)) is None, law
