@@ -238,6 +238,7 @@ def test_a_law_that_changes_what_its_form_stands_for_is_stepped():
         Strong(),
         Algorithm1(Weighed()),
         Algorithm3(target=TARGETS[0], obstacles=[Sphere((50.0, 50.0), 1.0), Wall((0.0, -9.0), (0.0, 1.0))]),
+        Fenced(target=TARGETS[1]),
     ]
     for law in plain:
         assert engine_of(law, q, p, 0.0, "DOP853", 1e-8, Floor(1e-8, 1e-8, 1e-8)) is None, law
