@@ -232,7 +232,6 @@ def test_a_law_that_changes_what_its_form_stands_for_is_stepped():
     q, p = start()
     plain = [
         Plain(target=TARGETS[1]),
-        Fenced(target=TARGETS[1]),
         Algorithm2(target=Told((0.0, 0.0), (1.0, 0.0))),
         Algorithm2(target=RescaledVelocity(CallableTarget(lambda t: ((t, 0.0), (1.0, 0.0))), 0.5)),
         Strong(),
