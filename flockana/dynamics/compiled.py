@@ -19,15 +19,13 @@ from flockana.dynamics.sample import Sample, Tally, has_energy
 from flockana.dynamics.stepping import BALANCED, ONE_STEP, Frame
 from flockana.dynamics.tolerance import Floor
 from flockana.kernels.advance import CROWDED, RUNNING, advance
-from flockana.kernels.listed import no_term
+from flockana.kernels.bodies import no_guard
 from flockana.kernels.tableaus import Tableau, tableau
-from flockana.kernels.verlet import list_pairs, search_of_pairs
+from flockana.kernels.verlet import SKIN, list_pairs, search_of_pairs
 from flockana.laws.law import Law
-from flockana.laws.sum_of_terms import MOST_TERMS
-from flockana.laws.terms.term import Compiled, TermKernel
+from flockana.laws.terms.term import Compiled
 
 METHODS = ("DOP853", "RK45", "RK23", "RK4")  # that there are compiled
-_SKIN = 0.15  # of the range: what a list of pairs holds beyond it, so that it lasts some steps
 _STEPS, _NUMBERS = 128, 2_000_000  # in one call, at most: steps, and numbers kept of them
 _UNLISTED = "scipy-DOP853"  # which looks at pairs in blocks
 EXACT = Floor(0.0, 0.0, 0.0)
@@ -88,19 +86,15 @@ class Engine:
     def _system(self) -> tuple[Any, ...]:
         """What stays the same from call to call (`flockana.kernels.advance`)."""
         frame, size = self.frame, self.frame.shape[1]
-        nothing = TermKernel(*no_term(), np.empty(0), np.empty((0, 0)), 0.0)
-        terms = (*self.form.terms, *(nothing,) * (MOST_TERMS - len(self.form.terms)))
+        terms = self.form.padded
         view = (frame.t0, frame.origin[:size].copy(), frame.drift[:size].copy())
         arrays = (tuple(np.array(getattr(term, name)) for term in terms) for name in ("numbers", "panels"))
         functions = (search_of_pairs()[0], *(term.act for term in terms), *(term.energy for term in terms))
-        around = ((self.reach, _SKIN * self.reach), self.encounters.radii, self.encounters.far)
+        guard, bodies = next(((term.guard, term.numbers) for term in terms if term.guard), (no_guard(), np.empty(0)))
+        met = self.encounters
+        around = ((self.form.reach, SKIN * self.form.reach), met.radii, met.far, guard, bodies, (met.shell, met.skirt))
         allowed = (self.allowed.rtol, tuple(self.allowed.floor), self.allowed.balance)
         return (*functions, *arrays, frame.shape, view, self.form.moving, *self.method, *around, *allowed)
-
-    @property
-    def reach(self) -> float:
-        """Within which the law needs all pairs."""
-        return max((term.reach for term in self.form.terms), default=0.0)
 
     def run(self, now: Point, stops: FloatArray, due: FloatArray, ledger: FloatArray) -> tuple[Any, ...]:
         """Some steps from here."""
@@ -111,7 +105,7 @@ class Engine:
     def crowded(self, q: FloatArray) -> bool:
         """Whether there are more pairs within reach than a list has room for."""
         few = np.empty(1, np.uint32)
-        return bool(list_pairs(q, (1.0 + _SKIN) * self.reach, few, few)[2] < 0)
+        return bool(list_pairs(q, (1.0 + SKIN) * self.form.reach, few, few)[2] < 0)
 
 
 def engine_of(
@@ -120,8 +114,10 @@ def engine_of(
     """The law and the method, compiled; None where one has no such form, or pairs are too many (RK4: no tolerances)."""
     form = law.compiled(q0.shape[1]) if method in METHODS else None
     encounters = Encounters.of(law, len(q0))
-    if form is None or encounters.bodies is not None or not has_energy(law, t0, q0, p0):
+    if form is None or not has_energy(law, t0, q0, p0):
         return None
+    if sum(term.guard is not None for term in form.terms) != (encounters.bodies is not None):
+        return None  # obstacles that no term, or more than one, keeps from being leapt over
     balance = (BALANCED * rtol, BALANCED * floor.energy) if method in ONE_STEP else (0.0, 0.0)
     frame = Frame.of(t0, q0, p0, energetic=True)
     engine = Engine(law, form, frame, tableau(method), encounters, Allowed(rtol, floor, balance))

@@ -23,7 +23,6 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.environment.beta import ObstacleField
-from flockana.environment.obstacles import Obstacle
 from flockana.kernels.encounters import share_of_all, share_of_pairs
 from flockana.kernels.neighbours import pair_blocks
 from flockana.kernels.paths import bernstein, centred
@@ -31,10 +30,6 @@ from flockana.laws.law import Law
 
 SHARE = 0.5  # of the law's length: as far may two agents go within each other's range between two evaluations
 DENSE = 400  # agents up to which all pairs are looked at rather than searched
-_SLACK = 1.1  # a step that is too long by less than this is not worth another
-_MARCHES = 60  # towards an obstacle, each as far as it is away
-_TOUCH = 1e-6  # of the range: so near counts as in range
-_LOOKS = 16  # along the way within an obstacle's range, for the closest approach
 
 
 class State(NamedTuple):
@@ -105,9 +100,9 @@ class Encounters:
         >>> 200.0 - 8.4 < 30.0 * h < 200.0 - 4.8
         True
         """
-        points, reach, allowance = bernstein(h, *before, *after)
-        share = 1.0 if self.bodies is None else self._share_of_bodies(self.bodies, points, reach, allowance)
-        if not self.radii.size or len(reach) == 1:
+        points, _, allowance = bernstein(h, *before, *after)
+        share = 1.0 if self.bodies is None else self._share_of_bodies(self.bodies, points, allowance)
+        if not self.radii.size or len(points) == 1:
             return share
         reach = centred(points, allowance)
         if len(reach) <= DENSE:
@@ -117,67 +112,9 @@ class Encounters:
             share = share_of_pairs(points, reach, allowance, self.radii, self.far, i, j, share)
         return share
 
-    def _share_of_bodies(
-        self, field: ObstacleField, points: FloatArray, reach: FloatArray, allowance: FloatArray
-    ) -> float:
+    def _share_of_bodies(self, field: ObstacleField, points: FloatArray, allowance: FloatArray) -> float:
         """The share of the step that the obstacles allow."""
-        share, m = 1.0, field.obstacles[0].dimension
-        for kind in field.kinds:
-            agents, bodies = np.empty((2, len(points) * len(kind.balls)), np.int64)
-            band = (self.shell, self.skirt, agents, bodies)
-            count = kind.kernels.near(points, reach, allowance, kind.pars, kind.starts, kind.balls, *band)
-            for k in np.unique(bodies[:count]).tolist():
-                some = agents[:count][bodies[:count] == k]
-                curves, edge = np.ascontiguousarray(points[some, :, :m]), self.shell + allowance[some]
-                share = min(share, _share_of_body(kind.obstacles[k], curves, reach[some], edge, self.skirt))
+        share = 1.0
+        for kernels, _, pars, starts, balls in field.kinds:
+            share = kernels.share(points, allowance, pars, starts, balls, self.shell, self.skirt, share)
         return share
-
-
-def _share_of_body(obstacle: Obstacle, curves: FloatArray, reach: FloatArray, edge: FloatArray, far: float) -> float:
-    """The share of the step that one obstacle allows the agents on some curves (k, 6, m)."""
-    gap = np.abs(_clearance(obstacle, curves[:, 0])) - edge
-    way = np.linalg.norm(curves - curves[:, :1], axis=2).max(axis=1)
-    too_far = (gap < 0.0) & (way > _SLACK * far)
-    share = float((far / way[too_far]).min(initial=1.0))
-    may_meet = (gap >= 0.0) & (gap < reach)
-    # who comes in and has not gone too far by the end is met by the evaluation there
-    may_meet &= (way > far) | (np.abs(_clearance(obstacle, curves[:, 5])) >= edge)
-    for curve, limit in zip(curves[may_meet], edge[may_meet].tolist(), strict=True):
-        share = min(share, _visit(obstacle, curve, limit, far))
-    return share
-
-
-def _visit(obstacle: Obstacle, curve: FloatArray, edge: float, far: float) -> float:
-    """As `kernels.encounters._visit`: when an agent is well within `edge` of an obstacle; 1 if it never is, or ends so.
-
-    The distance from an obstacle changes by no more than the way: as far as it is beyond the edge may be gone safely.
-    """
-    legs = 5.0 * np.diff(curve, axis=0)
-    fastest, s = float(np.linalg.norm(legs, axis=1).max()), 0.0
-    if fastest == 0.0:
-        return 1.0
-    for _ in range(_MARCHES):
-        gap = abs(float(_clearance(obstacle, _point(curve, s)[None])[0])) - edge
-        if gap <= _TOUCH * edge:
-            break
-        s += gap / fastest
-        if s >= 1.0:
-            return 1.0
-    speed = float(np.linalg.norm(_point(legs, s)))
-    looks = np.linspace(s, min(1.0, s + far / speed) if speed > 0.0 else 1.0, _LOOKS)
-    distance = np.abs(_clearance(obstacle, np.array([_point(curve, look) for look in looks])))
-    stop = float(looks[int(np.argmin(distance))])
-    return 1.0 if s + _SLACK * (stop - s) >= 1.0 or stop <= s else stop
-
-
-def _point(curve: FloatArray, s: float) -> FloatArray:
-    """The point of a Bézier curve (degree + 1, m) at s."""
-    while len(curve) > 1:
-        curve = curve[:-1] + s * (curve[1:] - curve[:-1])
-    point: FloatArray = curve[0]
-    return point
-
-
-def _clearance(obstacle: Obstacle, q: FloatArray) -> FloatArray:
-    q = np.ascontiguousarray(q)
-    return obstacle._project(q, np.zeros_like(q))[2]

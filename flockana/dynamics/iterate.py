@@ -5,10 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 import numpy as np
+import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
 from flockana.dynamics.sample import Sample, Tally, copied
 from flockana.laws.discrete import DiscreteLaw
+
+IndexArray = npt.NDArray[np.int64]
+_NUMBERS = 6_000_000  # kept of the steps made at once, at most
 
 
 def count_steps(start: float, stop: float, dt: float, rounded: Callable[[float], float] = np.ceil) -> int:
@@ -24,34 +28,41 @@ def count_steps(start: float, stop: float, dt: float, rounded: Callable[[float],
 
 
 def discrete(
-    law: DiscreteLaw, q0: FloatArray, p0: FloatArray, t_span: tuple[float, float], tally: Tally
+    law: DiscreteLaw,
+    q0: FloatArray,
+    p0: FloatArray,
+    t_span: tuple[float, float],
+    keep: FloatArray | None,
+    tally: Tally,
 ) -> Iterator[Sample]:
-    """Iterate the map; sample k holds the state at t0 + k dt and the input that brought it there."""
-    q, p, memory = q0, p0, law.start(q0, p0)
-    yield Sample(t_span[0], q, p, np.zeros_like(q), copied(memory))
-    steps = count_steps(*t_span, law.dt, np.floor)
-    for first in range(0, steps, law.steps_at_once):
-        some = min(law.steps_at_once, steps - first)
-        qs, ps, us, series = law.iterate(t_span[0] + first * law.dt, q, p, memory, some)
-        known = np.logical_and(np.isfinite(qs).all(axis=(1, 2)), np.isfinite(ps).all(axis=(1, 2)))
-        for k in range(some):
-            t = t_span[0] + (first + k + 1) * law.dt
-            tally.steps += 1
-            tally.evaluations += 1
-            if not known[k]:
-                tally.fail(f"the map left the finite numbers at t = {t:g}")
-                return
-            yield Sample(t, qs[k], ps[k], us[k], {name: values[k] for name, values in series.items()})
+    """Iterate the map; sample k holds the state at t0 + k dt and the input that brought it there.
+
+    Of times to keep the nearest steps are given, each once: between its steps a map has no state.
+    """
+    q, p, memory, t0, dt = q0, p0, law.start(q0, p0), t_span[0], law.dt
+    steps = count_steps(*t_span, dt, np.floor)
+    if keep is None or _nearest(np.array([t0]), keep, dt).size:
+        yield Sample(t0, q, p, np.zeros_like(q), copied(memory))
+    at_once = max(1, min(law.steps_at_once, _NUMBERS // (3 * q0.size)))
+    for first in range(0, steps, at_once):
+        some = min(at_once, steps - first)
+        qs, ps, us, series = law.iterate(t0 + first * dt, q, p, memory, some)
+        known = np.isfinite(qs).all(axis=(1, 2)) & np.isfinite(ps).all(axis=(1, 2))
+        good = some if known.all() else int(np.argmin(known))
+        times = t0 + np.arange(first, first + good + 1) * dt  # with the step before: what is nearest to it is done
+        wanted = np.arange(1, good + 1) if keep is None else _nearest(times, keep, dt)
+        for k in (wanted[wanted > 0] - 1).tolist():
+            extra = {name: values[k] for name, values in series.items()}
+            yield Sample(float(times[k + 1]), qs[k], ps[k], us[k], extra)
+        tally.steps, tally.evaluations = tally.steps + good, tally.evaluations + good
+        if good < some:
+            tally.fail(f"the map left the finite numbers at t = {t0 + (first + good + 1) * dt:g}")
+            return
         # a copy: a law may change its memory in place
         q, p, memory = qs[-1], ps[-1], copied({name: values[-1] for name, values in series.items()})
 
 
-def nearest(samples: Iterator[Sample], keep: FloatArray, dt: float) -> Iterator[Sample]:
-    """The steps nearest to the wanted times: between its steps a map has no state."""
-    wanted = 0
-    for sample in samples:
-        while wanted < keep.size and keep[wanted] <= sample.t + 0.5 * dt:
-            yield sample
-            wanted += 1
-            while wanted < keep.size and keep[wanted] <= sample.t + 0.5 * dt:
-                wanted += 1  # two wanted times in one step are one sample
+def _nearest(times: npt.NDArray[np.floating], keep: FloatArray, dt: float) -> IndexArray:
+    """Which steps are nearest to a time to keep, each once; of two as near the earlier."""
+    nearest = np.searchsorted(times + 0.5 * dt, keep)
+    return np.unique(nearest[nearest < times.size])

@@ -19,7 +19,7 @@ from flockana.base.progress import progress_bar
 from flockana.dynamics.adaptive import SCIPY, adaptive
 from flockana.dynamics.between import Between, Recorder
 from flockana.dynamics.first_call import check_first_call
-from flockana.dynamics.iterate import discrete, nearest
+from flockana.dynamics.iterate import discrete
 from flockana.dynamics.rk4 import rk4
 from flockana.dynamics.sample import Sample, Tally, start_sample
 from flockana.dynamics.tolerance import error_floor
@@ -104,8 +104,7 @@ def simulate(
         if dt is not None or method != "DOP853":
             raise ArgumentError("a discrete law brings its own step: expected neither dt nor method")
         method, how = "discrete", {"dt": _ensure_step("law.dt", law.dt, t_span)}
-        samples = discrete(law, q0, p0, t_span, tally)
-        samples = samples if keep is None else nearest(samples, keep, law.dt)
+        samples = discrete(law, q0, p0, t_span, keep, tally)
     elif _ensure_method(method, dt) == "RK4":
         how = {"dt": _ensure_step("dt", dt, t_span)}
         samples = rk4(law, q0, p0, t_span, how["dt"], keep, tally)

@@ -135,8 +135,9 @@ def freeze_vector(obstacle: Obstacle, name: str, m: int | None = None) -> FloatA
 @register_jitable
 def _onto_sphere(q, p, par, gap, rate):  # type: ignore[no-untyped-def]
     """q̂ = μq + (1 − μ)y, p̂ = μPp with μ = R/‖q − y‖."""
-    rate[:] = 0.0
-    return project_ball(q, p, par[:-1], par[-1], rate, gap, rate)
+    for c in range(q.size):  # no slices: a view costs as much as all else
+        rate[c] = 0.0
+    return project_ball(q, p, par, par[q.size], rate, gap, rate)
 
 
 @register_jitable

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from flockana.kernels.bodies import guard_signature
 from flockana.kernels.compiling import njit
 from flockana.kernels.encounters import share_of_pairs
 from flockana.kernels.listed import signatures
@@ -35,16 +36,32 @@ def _spacing(t):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def _met(h, y0, f0, y1, f1, encounters, system, pairs, scratch):
-    """How much of a step may be taken so that no encounter of two agents is leapt over, and room for a list.
+def _at_rest(t, h, points, view):
+    """The same paths, seen from where the obstacles are at rest."""
+    seen, m = points.copy(), view[1].size
+    for k in range(6):
+        place = frame_at(t + 0.2 * k * h, *view)[0]
+        for i in range(len(points)):
+            for c in range(m):
+                seen[i, k, c] += place[c]
+    return seen
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def _met(t, h, y0, f0, y1, f1, encounters, system, pairs, scratch):
+    """How much of a step may be taken so that no encounter is leapt over, and room for a list.
 
     NaN where there are too many pairs to look at.
     """
-    (n, m), (radii, far) = system[4], encounters
+    (n, m), (radii, far, guard, bodies, shell) = system[4], encounters
     size, share = n * m, 1.0
     q0, p0, u0 = y0[:size].reshape(n, m), y0[size : 2 * size].reshape(n, m), f0[size : 2 * size].reshape(n, m)
     q1, p1, u1 = y1[:size].reshape(n, m), y1[size : 2 * size].reshape(n, m), f1[size : 2 * size].reshape(n, m)
     points, _, allowance = bernstein(h, q0, p0, u0, q1, p1, u1)
+    if bodies.size:
+        share = guard(_at_rest(t, h, points, system[5]), allowance, bodies, shell[0], shell[1], share)
+    if not radii.size or n == 1:
+        return share, scratch
     ways = centred(points, allowance)
     widest, farthest, blur = 0.0, 0.0, 0.0
     for i in range(n):
@@ -144,7 +161,7 @@ def _controlled(h, error, exponent, rejected):
 def _advance(
     search, act0, act1, act2, energy0, energy1, energy2, numbers, panels, shape, view, moving,
     tableau_a, tableau_c, estimates, interpolant, stages, exponent,
-    reach, radii, far, rtol, floor, balance, ledger, t, y, f, h, stops, due, most,
+    reach, radii, far, guard, bodies, shell, rtol, floor, balance, ledger, t, y, f, h, stops, due, most,
 ):  # fmt: skip
     """Make up to `most` steps that stand, to the last of `stops`.
 
@@ -157,7 +174,8 @@ def _advance(
     system = (
         (act0, act1, act2), (energy0, energy1, energy2), numbers, panels, shape, view, moving, reach, order, search
     )  # fmt: skip
-    method, encounters, fixed = (tableau_a, tableau_c, stages), (np.empty_like(radii), far), exponent == 0.0
+    method, fixed = (tableau_a, tableau_c, stages), exponent == 0.0
+    encounters = (np.empty_like(radii), far, guard, bodies, shell)
     for i in range(n):
         encounters[0][i] = radii[np.int64(order[i])]
     rates = np.zeros((len(tableau_a) if due.size else stages + 1, y.size))
@@ -199,9 +217,9 @@ def _advance(
                 status = NOT_FINITE
                 break
             share = 1.0
-            if radii.size and n > 1:
+            if bodies.size or (radii.size and n > 1):
                 share, scratch = _met(
-                    h, now, rates[0], reached, rates[stages], encounters, system, pairs, scratch
+                    t, h, now, rates[0], reached, rates[stages], encounters, system, pairs, scratch
                 )  # fmt: skip
             if np.isnan(share):
                 status = CROWDED
@@ -251,10 +269,11 @@ def advance() -> Callable[..., Any]:
     law = (search, act, act, act, energy, energy, energy, several(vector, 3), several(matrix, 3))
     view = (several(int64, 2), types.containers.Tuple((float64, vector, vector)), boolean)
     method = (matrix, vector, matrix, matrix, int64, float64)
-    limits = (several(float64, 2), matrix, float64, float64, several(float64, 3), several(float64, 2), vector)
+    around = (several(float64, 2), matrix, float64, types.FunctionType(guard_signature()), vector, several(float64, 2))
+    limits = (float64, several(float64, 3), several(float64, 2), vector)
     point = (float64, vector, vector, float64)
     made = njit(cache=True, error_model="numpy", nogil=True)(_advance)
-    made.compile((*law, *view, *method, *limits, *point, vector, vector, int64))
+    made.compile((*law, *view, *method, *around, *limits, *point, vector, vector, int64))
     made.disable_compile()
     compiled: Callable[..., Any] = made.dispatcher
     return compiled

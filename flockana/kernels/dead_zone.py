@@ -115,8 +115,13 @@ def potential(s, par, panels):
 
 @register_jitable
 def pair_dead_zone(s2, par):
-    """(weight of q_j − q_i, a_ij) of a pair at squared distance s2 within the range."""
-    return action(sqrt(s2), par) / sqrt(1.0 + par[ETA] * s2) + par[K_1], 1.0
+    """(weight of q_j − q_i, a_ij) of a pair at squared distance s2 within the range: `action` without its branches."""
+    s, steep = sqrt(s2), 1.0 / par[RAMP] if par[RAMP] > 0.0 else 1e300
+    ramped = max(0.0, min(1.0, (s - par[D_2]) * steep)) - max(0.0, min(1.0, (par[D_1] - s) * steep))
+    gap = s if s < par[D_1] else par[R_D] - s
+    gap2 = gap * gap
+    weight = ramped * (2.0 * par[K_R] + par[K_DELTA] * gap2) / (gap2 * sqrt(1.0 + par[ETA] * s2)) + par[K_1]
+    return weight, 1.0
 
 
 @register_jitable

@@ -11,7 +11,7 @@ import numpy as np
 from flockana.kernels.compiling import njit
 from flockana.kernels.paths import _DEPTH, _first_touch, _hull_bound
 
-_SLACK = 1.1  # a step that is too long by less than this is not worth another
+SLACK = 1.1  # a step that is too long by less than this is not worth another
 
 
 @njit(cache=True)
@@ -59,7 +59,7 @@ def _visit(points, i, j, edge, far, stack, spans):
     if s < 0.0:
         return 1.0
     ahead = _ahead(points, i, j, s, far)
-    return 1.0 if ahead < 0.0 or s + _SLACK * ahead >= 1.0 else s + ahead
+    return 1.0 if ahead < 0.0 or s + SLACK * ahead >= 1.0 else s + ahead
 
 
 @njit(cache=True)
@@ -79,7 +79,7 @@ def _share(points, reach, allowance, radii, far, i, j, share, stack, spans):
         return share
     if travel > far and s2 < outer * outer:
         way = _load(points, i, j, stack[0])
-        if way > _SLACK * far:
+        if way > SLACK * far:
             share = min(share, far / way)
     for k in range(last + 1):
         for whose in range(2):

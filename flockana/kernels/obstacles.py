@@ -14,9 +14,11 @@ from math import sqrt
 import numpy as np
 
 from flockana.kernels.alpha import BETA_AREA, D_BETA, EPS, H, pair_beta, psi_beta
+from flockana.kernels.bodies import BodyFunctions, lift_bodies
 from flockana.kernels.compiling import njit, register_jitable
 from flockana.kernels.lift import source_digest
 from flockana.kernels.scalars import bump, bump_slope, sigma_1, sigma_norm
+from flockana.kernels.shells import lift_shells, out_of_reach
 
 
 @dataclass(frozen=True)
@@ -40,10 +42,11 @@ class ObstacleKernels:
     braking : callable
         ``braking(q, p, par, beta, reach, by_position, by_velocity)`` adds the derivatives of b_ik (p̂_ik − p_i) of one
         obstacle to every agent's blocks.
-    near : callable
-        ``near(points, reach, allowance, pars, starts, balls, shell, far, agents, bodies)`` fills in which agent, on a
-        path with these control points, may pass the distance `shell` of which obstacle, or go farther than `far` within
-        it, and returns how many there are (`flockana.dynamics.encounters`).
+    share : callable
+        ``share(points, allowance, pars, starts, balls, shell, far, share)`` returns how much of a step may be taken so
+        that no agent leaps over the distance `shell` (`lift_shells`).
+    listed : callable
+        Forces, potential and guard for compiled integrators, compiled when first asked for (`lift_bodies`).
     turns : bool
         Whether the kind says how p̂ turns as an agent moves; if not, `braking` is right where p = 0 alone.
     """
@@ -53,7 +56,8 @@ class ObstacleKernels:
     agents: Callable[..., None]
     slopes: Callable[..., None]
     braking: Callable[..., None]
-    near: Callable[..., int]
+    share: Callable[..., float]
+    listed: Callable[[], BodyFunctions]
     turns: bool
 
 
@@ -73,14 +77,6 @@ def pair_beta_slope(s2, par):
     phi = bump(x, h) * (sigma_1(s) - 1.0)
     slope = bump_slope(x, h) / d_beta * (sigma_1(s) - 1.0) + bump(x, h) / area / sqrt(1.0 + s * s) ** 3
     return 0.5 * (slope - eps * phi / sqrt(g)) / g
-
-
-@register_jitable
-def _out_of_reach(q, ball, reach):
-    s2, m = 0.0, q.size
-    for c in range(m):
-        s2 += (q[c] - ball[c]) ** 2
-    return s2 > (ball[m] + reach) ** 2
 
 
 @register_jitable
@@ -111,13 +107,15 @@ def lift_obstacle(project: Callable[..., float], turn: Callable[..., None] | Non
     def forces(q, p, pars, starts, balls, beta, reach, c1, c2, u):
         total = 0.0 * digest
         n, m = q.shape
-        gap, rate = np.empty(m), np.empty(m)
+        x, v, gap, rate = np.empty(m), np.empty(m), np.empty(m), np.empty(m)  # no slices: a view costs as much as a sum
         for k in range(balls.shape[0]):
             par = pars[starts[k] : starts[k + 1]]
             for i in range(n):
-                if _out_of_reach(q[i], balls[k], reach):
+                if out_of_reach(q, i, balls, k, reach):
                     continue
-                clearance = project(q[i], p[i], par, gap, rate)
+                for c in range(m):
+                    x[c], v[c] = q[i, c], p[i, c]
+                clearance = project(x, v, par, gap, rate)
                 if abs(clearance) >= reach:
                     continue
                 w, b = pair_beta(clearance * clearance, beta)
@@ -131,19 +129,27 @@ def lift_obstacle(project: Callable[..., float], turn: Callable[..., None] | Non
     def potential(q, pars, starts, balls, beta, panels, reach):
         total = 0.0 * digest
         n, m = q.shape
-        still, gap, rate = np.zeros(m), np.empty(m), np.empty(m)
+        x, still, gap, rate = np.empty(m), np.zeros(m), np.empty(m), np.empty(m)
         for k in range(balls.shape[0]):
             par = pars[starts[k] : starts[k + 1]]
             for i in range(n):
-                if not _out_of_reach(q[i], balls[k], reach):
-                    clearance = project(q[i], still, par, gap, rate)
+                if not out_of_reach(q, i, balls, k, reach):
+                    for c in range(m):
+                        x[c] = q[i, c]
+                    clearance = project(x, still, par, gap, rate)
                     total += psi_beta(sigma_norm(clearance * clearance, beta[0]), beta, panels)
         return total
 
     @njit(cache=True)
     def agents(q, p, par, gap, rate, clearance):
-        for i in range(q.shape[0]):
-            clearance[i] = project(q[i], p[i], par, gap[i], rate[i]) + 0.0 * digest
+        n, m = q.shape
+        x, v, g, w = np.empty(m), np.empty(m), np.empty(m), np.empty(m)
+        for i in range(n):
+            for c in range(m):
+                x[c], v[c] = q[i, c], p[i, c]
+            clearance[i] = project(x, v, par, g, w) + 0.0 * digest
+            for c in range(m):
+                gap[i, c], rate[i, c] = g[c], w[c]
 
     @njit(cache=True)
     def slopes(q, par, beta, reach, blocks):
@@ -182,31 +188,16 @@ def lift_obstacle(project: Callable[..., float], turn: Callable[..., None] | Non
                     by_position[i, e, c] += b * bend[e] - 2.0 * slope * slip[e] * gap[c]
                 axis[c] = 0.0
 
-    @njit(cache=True)
-    def near(points, reach, allowance, pars, starts, balls, shell, far, agents, bodies):
-        count, m = 0, balls.shape[1] - 1
-        here, still, gap, rate = np.empty(m), np.zeros(m), np.empty(m), np.empty(m)
-        for k in range(balls.shape[0]):
-            par = pars[starts[k] : starts[k + 1]]
-            for i in range(points.shape[0]):
-                for c in range(m):
-                    here[c] = points[i, 0, c]
-                if _out_of_reach(here, balls[k], shell + reach[i]):
-                    continue
-                beyond = abs(project(here, still, par, gap, rate) + 0.0 * digest) - shell - allowance[i]
-                if 0.0 <= beyond < reach[i] or (beyond < 0.0 and reach[i] > far):
-                    agents[count], bodies[count] = i, k
-                    count += 1
-        return count
-
-    return ObstacleKernels(forces, potential, agents, slopes, braking, near, turns)
+    share = lift_shells(project, digest)
+    listed = lift_bodies(forces, potential, share)
+    return ObstacleKernels(forces, potential, agents, slopes, braking, share, listed, turns)
 
 
 @register_jitable
 def project_ball(q, p, centre, radius, along, gap, rate):
     """The β-agent on a sphere about `centre`, which itself moves at `along`: spheres and the rims of other bodies.
 
-    `along` must be tangent to the sphere at the agent's foot (or zero).
+    `along` must be tangent to the sphere at the agent's foot (or zero); of `centre` the first m components are read.
     """
     s2, radial = 0.0, 0.0
     for c in range(q.size):
@@ -214,8 +205,8 @@ def project_ball(q, p, centre, radius, along, gap, rate):
         radial += (q[c] - centre[c]) * p[c]
     distance = sqrt(s2)
     if distance == 0.0:  # the centre has no closest point
-        gap[:] = np.nan
-        rate[:] = np.nan
+        for c in range(q.size):
+            gap[c], rate[c] = np.nan, np.nan
         return -radius
     mu = radius / distance
     for c in range(q.size):

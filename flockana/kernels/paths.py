@@ -48,12 +48,13 @@ def bernstein(h, q0, p0, u0, q1, p1, u1):
             off2 += (points[i, 2, k] - (a + 6.0 * c1 + 3.0 * c2) / 10.0) ** 2
             off3 += (points[i, 3, k] - (3.0 * c1 + 6.0 * c2 + b) / 10.0) ** 2
         allowance[i] = ALLOWED * (np.sqrt(off2) + np.sqrt(off3))
-        reach[i] = _reach(points[i]) + allowance[i]
+        reach[i] = reach_of(points[i]) + allowance[i]
     return points, reach, allowance
 
 
 @njit(cache=True)
-def _reach(c):
+def reach_of(c):
+    """How far a curve's control points (6, 3) get from the first: a bound for the curve."""
     s2 = 0.0
     for k in range(1, 6):
         s2 = max(s2, (c[k, 0] - c[0, 0]) ** 2 + (c[k, 1] - c[0, 1]) ** 2 + (c[k, 2] - c[0, 2]) ** 2)
@@ -76,7 +77,7 @@ def centred(points, allowance):
             for i in range(n):
                 points[i, c, k] -= drift
     for i in range(n):
-        reach[i] = _reach(points[i]) + allowance[i]
+        reach[i] = reach_of(points[i]) + allowance[i]
     return reach
 
 

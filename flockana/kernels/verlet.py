@@ -17,6 +17,7 @@ from flockana.kernels.neighbours import _FORWARD, _MARGIN, _fill_cells, _pad, _s
 from flockana.kernels.sums import LANES, column_means, repeated
 
 _ROOM = 8  # pairs an agent, to begin with
+SKIN = 0.15  # of the range: what a list holds beyond it, so that it lasts some steps
 MOST = 2**27  # room for pairs, at most: a gigabyte
 
 
@@ -135,7 +136,7 @@ def kept_up(q, reach, skin, pairs, search):
 
     It is handed in so that it is compiled once, not into all that keeps lists.
     """
-    first, second, count, places, mean = pairs
+    first, second, _, places, mean = pairs
     if places.size and not 4.0 * strayed(q, places, mean) > skin * skin:
         return pairs
     first, second, count = search(q, reach + skin, first, second)

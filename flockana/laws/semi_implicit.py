@@ -50,7 +50,7 @@ class SemiImplicitEuler(DiscreteLaw):
     units: ClassVar[Mapping[str, Powers]] = {"dt": (0, 1)}
 
     approximates = True
-    steps_at_once = 200  # of the dead-zone law, whose loop is compiled: 5 µs a step of 50 agents
+    steps_at_once = 500  # of the dead-zone law, whose loop is compiled: 5 µs a step of 50 agents
 
     def __post_init__(self) -> None:
         if not isinstance(self.law, Law):

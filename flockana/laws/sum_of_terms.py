@@ -10,13 +10,11 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_points
 from flockana.base.overrides import speaks_for
 from flockana.laws.law import Law, block_diagonal
-from flockana.laws.terms.term import Compiled, Term
+from flockana.laws.terms.term import MOST_TERMS, Compiled, Term
 from flockana.measures.frame import moving_frame
 
 if TYPE_CHECKING:
     from scipy.sparse import sparray
-
-MOST_TERMS = 3  # that a compiled integrator takes
 
 
 class SumOfTerms(Law):
@@ -70,7 +68,7 @@ class SumOfTerms(Law):
         m : int
             Dimension of the flock.
         """
-        if not speaks_for(type(self), "compiled", ("flow", "hamiltonian", "potential_energy", "moving")):
+        if not speaks_for(type(self), "compiled", ("flow", "hamiltonian", "potential_energy")):
             return None
         kernels = [term.compiled(m) for term in self.terms if speaks_for(type(term), "compiled", ("act", "energy"))]
         known = [kernel for kernel in kernels if kernel is not None]

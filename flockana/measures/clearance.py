@@ -81,7 +81,7 @@ def clearance(
     (0.5, 0.5, 0.5)
     """
     n, m = q.shape[1:]
-    least_of = [_Least(t, obstacle.clearance(q.reshape(-1, m)).reshape(len(t), n)) for obstacle in obstacles]
+    least_of = [_Least(t, _least_clearances(obstacle, q.reshape(-1, m)).reshape(len(t), n)) for obstacle in obstacles]
     extent, rows = float(np.ptp(q.reshape(-1, m), axis=0).max()), max(1, _CHUNK // n)
     tol = max(RELATIVE_TOL * extent, ROUNDING * float(np.abs(q).max()))
     for first in range(0, len(t) - 1 if obstacles else 0, rows):
@@ -104,6 +104,18 @@ def clearance(
     if k < 0:
         return Clearance(inf, inf, float(t[0]), -1, -1, bounds)
     return Clearance(float(bounds.min()), least_of[k].reached, least_of[k].time, least_of[k].agent, k, bounds)
+
+
+def _least_clearances(obstacle: Obstacle, points: FloatArray) -> FloatArray:
+    """Signed distances wherever they may be the least; elsewhere lower bounds, those of the ball about the obstacle."""
+    centre, radius = obstacle.ball
+    off = points - centre
+    distance: FloatArray = np.sqrt(np.einsum("km,km->k", off, off)) - radius
+    distance -= 4.0 * ROUNDING * (np.abs(points).max() + np.abs(centre).max() + (radius if radius < inf else 0.0))
+    best = obstacle.clearance(points[np.argmin(distance)][None])[0]
+    maybe = distance <= best
+    distance[maybe] = obstacle.clearance(points[maybe])
+    return distance
 
 
 class _Bound(NamedTuple):

@@ -119,8 +119,10 @@ def _ensure_fits(run: Trajectory) -> bool:
     difference = np.abs(run.u - run._flows[0]).max(axis=(1, 2))
     if isinstance(run.law, SwitchedLaw):
         difference[_at_switches(run.law, run)] = 0.0
-    k = int(np.argmax(difference))
-    if not difference[k] <= SAME_INPUT * max(float(np.abs(run.u).max()), run.scales.force):
+    allowed = SAME_INPUT * max(float(np.abs(run.u).max()), run.scales.force)
+    for k in np.flatnonzero(~(difference <= allowed)).tolist():
+        if difference[k] <= allowed + _rounded_input(run, k):
+            continue
         raise ArgumentError(
             f"u at t = {run.t[k]:g} is off by {difference[k]:.3g} from the input of {type(run.law).__name__} at that "
             "state: expected a run as simulate returned it; was it edited, or is it of another law?"
@@ -128,6 +130,14 @@ def _ensure_fits(run: Trajectory) -> bool:
     for k in _suspicious_intervals(run):
         _ensure_leads_on(run, k)
     return True
+
+
+def _rounded_input(run: Trajectory, k: int) -> float:
+    """How much of a force comes from the rounding of a sample: compiled runs compute it in a frame of their own."""
+    if run.law.compiled(run.m) is None:
+        return 0.0
+    forces = zip(run.law.derivatives(run.t[k], run.q[k], run.p[k]), (run.q[k], run.p[k]), strict=True)
+    return float(sum(abs(slope) @ np.spacing(np.abs(x).ravel()) for slope, x in forces).max())
 
 
 def _at_switches(law: SwitchedLaw, run: Trajectory) -> list[bool]:

@@ -9,7 +9,9 @@ from flockana.dynamics import compiled
 from flockana.dynamics.compiled import engine_of
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.tolerance import Floor
-from flockana.environment.obstacles import Sphere
+from flockana.environment.capsule import Capsule
+from flockana.environment.obstacles import Sphere, Wall
+from flockana.environment.polygon import Polygon
 from flockana.environment.targets import (
     CallableTarget,
     CircleTarget,
@@ -34,12 +36,30 @@ TARGETS = [
     RescaledVelocity(StaticTarget((5.0, -3.0), (0.3, 0.1)), 0.4),
     RescaledVelocity(CircleTarget((5.0, 1.0), 8.0, frequency=0.2), 0.25),
 ]
+BODIES = [  # near a flock between 0 and 18, none of them in its way
+    (2, ()),
+    (2, (Sphere((-3.0, 6.0), 2.0), Sphere((12.0, 24.0), 4.0), Sphere((900.0, 0.0), 1.0))),
+    (3, (Sphere((-3.0, 6.0, 8.0), 2.0), Sphere((9.0, 9.0, 22.0), 3.0))),
+    (2, (Wall((0.0, -1.0), (0.3, 1.0)),)),
+    (3, (Wall((-1.0, 0.0, 0.0), (1.0, 0.2, 0.0)),)),
+    (2, (Capsule((-3.0, 0.0), (-2.0, 15.0), 1.0),)),
+    (2, (Polygon([(-6.0, 0.0), (-1.0, 2.0), (-2.0, 16.0)]),)),
+]
 PER_AGENT = Gains(c1_gamma=np.linspace(0.5, 2.0, 12), c2_gamma=np.linspace(1.0, 3.0, 12))
 
 
 @dataclass(frozen=True)
 class Plain(Algorithm2):
     """Algorithm 2, which the library must take for another law."""
+
+    def flow(self, t, q, p):
+        """As it was."""
+        return super().flow(t, q, p)
+
+
+@dataclass(frozen=True)
+class Stepped(Algorithm3):
+    """Algorithm 3, which the library must take for another law."""
 
     def flow(self, t, q, p):
         """As it was."""
@@ -67,6 +87,8 @@ def laws():
     for m in (1, 2, 3):
         yield m, Algorithm1(AlphaInteraction(unit=2.0, a=2.0, b=5.0))
         yield m, Algorithm2(target=LinearTarget((1.0, 2.0, 3.0)[:m], (0.5, 0.25, 1.0)[:m]))
+    for m, bodies in BODIES:
+        yield m, Algorithm3(target=LinearTarget((1.0, 2.0, 3.0)[:m], (0.5, 0.25, 1.0)[:m]), obstacles=bodies)
 
 
 @pytest.mark.parametrize(("m", "law"), list(laws()))
@@ -121,6 +143,21 @@ def test_no_encounter_is_leapt_over():
         assert run.stats["redone"] > 0
         assert run.min_distance() < 8.4
         assert np.abs(run.path.u).max() > 1.0
+
+
+@pytest.mark.parametrize("body", [Sphere((45.0, 1.0), 1.5), Wall((45.0, 0.0), (-1.0, 0.1))], ids=["sphere", "wall"])
+def test_no_obstacle_is_leapt_over(body):
+    """RK4's steps hang on encounters alone; the force's kink at d' makes others differ by rounding."""
+    q, p = np.array([[0.0, 0.0], [0.0, 8.0]]), np.array([[21.0, 0.5], [20.0, 0.0]])
+    law = Algorithm3(target=LinearTarget((0.0, 3.5), (20.0, 0.0)), obstacles=[body])
+    stepped = Stepped(law.alpha, law.gains, law.target, law.beta, law.obstacles)
+    ours, plain = (simulate(one, q, p, (0.0, 3.0), method="RK4", dt=2.0) for one in (law, stepped))
+    assert (ours.stats["steps"], ours.stats["redone"]) == (plain.stats["steps"], plain.stats["redone"])
+    np.testing.assert_allclose(ours.path.t, plain.path.t, rtol=1e-9)
+    assert ours.stats["redone"] > 3
+    ours, plain = (simulate(one, q, p, (0.0, 3.0), rtol=1e-7) for one in (law, stepped))
+    np.testing.assert_allclose(ours.q[-1], plain.q[-1], atol=1e-5)
+    assert body.clearance(ours.path.q.reshape(-1, 2)).min() < law.beta.d
 
 
 def test_rk4_grows_back_after_an_encounter_as_step_by_step():
@@ -194,7 +231,7 @@ def test_a_law_that_changes_what_its_form_stands_for_is_stepped():
         Algorithm2(target=RescaledVelocity(CallableTarget(lambda t: ((t, 0.0), (1.0, 0.0))), 0.5)),
         Strong(),
         Algorithm1(Weighed()),
-        Algorithm3(target=TARGETS[0], obstacles=[Sphere((50.0, 50.0), 1.0)]),
+        Algorithm3(target=TARGETS[0], obstacles=[Sphere((50.0, 50.0), 1.0), Wall((0.0, -9.0), (0.0, 1.0))]),
     ]
     for law in plain:
         assert engine_of(law, q, p, 0.0, "DOP853", 1e-8, Floor(1e-8, 1e-8, 1e-8)) is None, law

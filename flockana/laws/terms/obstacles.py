@@ -7,7 +7,10 @@ from dataclasses import dataclass
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.environment.beta import ObstacleField, check_free
-from flockana.laws.terms.term import Invariance, Term
+from flockana.kernels.bodies import body_numbers
+from flockana.laws.terms.term import Invariance, Term, TermKernel, nothing
+
+_SUMS = ("kinds", "forces", "potential_energy")  # as every field has them, from its obstacles' kernels
 
 
 @dataclass(frozen=True)
@@ -69,6 +72,16 @@ class ObstacleTerm(Term):
             Initial positions.
         """
         check_free(q, self.field.obstacles)
+
+    def compiled(self, m: int) -> TermKernel | None:  # noqa: D102
+        kinds, beta = self.field.kinds, self.field.beta
+        if len(kinds) > 1 or not all(getattr(type(self.field), name) is getattr(ObstacleField, name) for name in _SUMS):
+            return None
+        if not kinds:
+            return nothing()
+        numbers = body_numbers(beta.r, self.stiffness, self.damping, beta.par, *kinds[0][2:])
+        act, energy, guard = kinds[0].kernels.listed()
+        return TermKernel(act, energy, numbers, beta.panels, 0.0, guard)
 
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
         return self.damping * self.field.forces(q, p, u, stiffness=self.stiffness, damping=self.damping)

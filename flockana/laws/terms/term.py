@@ -5,17 +5,13 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import Any, ClassVar, Literal, NamedTuple
 
+import numpy as np
+
 from flockana.base.checks import FloatArray
-from flockana.kernels.listed import CompiledFunction
+from flockana.kernels.listed import CompiledFunction, no_term
 
+MOST_TERMS = 3  # that a compiled integrator takes
 Invariance = Literal["rigid motions", "rotations about the target", "none"]
-
-
-class Compiled(NamedTuple):
-    """A law as compiled integrators take it: its terms, and whether its energy is that in the moving frame."""
-
-    terms: tuple[TermKernel, ...]
-    moving: bool
 
 
 class TermKernel(NamedTuple):
@@ -31,6 +27,8 @@ class TermKernel(NamedTuple):
         Chebyshev panels, if they read any.
     reach : float
         Within which they need all pairs; 0 if they need none.
+    guard : callable, optional
+        What share of a step may be taken (`flockana.kernels.bodies`), of the same numbers.
     """
 
     act: CompiledFunction
@@ -38,6 +36,29 @@ class TermKernel(NamedTuple):
     numbers: FloatArray
     panels: FloatArray
     reach: float
+    guard: CompiledFunction | None = None
+
+
+def nothing() -> TermKernel:
+    """A term that does nothing."""
+    return TermKernel(*no_term(), np.empty(0), np.empty((0, 0)), 0.0)
+
+
+class Compiled(NamedTuple):
+    """A law as compiled integrators take it: its terms, and whether its energy is that in the moving frame."""
+
+    terms: tuple[TermKernel, ...]
+    moving: bool
+
+    @property
+    def reach(self) -> float:
+        """Within which it needs all pairs."""
+        return max((term.reach for term in self.terms), default=0.0)
+
+    @property
+    def padded(self) -> tuple[TermKernel, ...]:
+        """`MOST_TERMS` of them: the others do nothing."""
+        return (*self.terms, *(nothing(),) * (MOST_TERMS - len(self.terms)))
 
 
 class Term(ABC):
