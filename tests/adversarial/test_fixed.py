@@ -24,6 +24,7 @@ TRUTHS = {
     "E10": {"r": "printed", "v": "corrected"},
     "E14": {"r": "printed translation", "v": "corrected state"},
     "deviation-energy": {"v": "jump corner potential-continuous potential-smooth"},
+    "directed-nets": {"r": "momentum energy", "v": "undirected follower leader"},
     "J1": {"r": "printed", "v": "corrected"},
     "J2": {"r": "hurwitz positive-definite", "v": "outside"},
     "J3": {"r": "printed hurwitz", "v": "trees"},
