@@ -1,10 +1,14 @@
-"""A progress bar on the terminal's error stream, or in a notebook; elsewhere there is none."""
+"""A progress bar on the terminal's error stream, or in a notebook; elsewhere a line now and then."""
 
 from __future__ import annotations
 
+import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
+
+_EVERY = 60.0  # seconds between lines off a terminal
 
 
 @contextmanager
@@ -12,6 +16,8 @@ def progress_bar(
     total: float, *, enabled: bool = True, counted: bool = True, steady: bool = False
 ) -> Iterator[Callable[[float, str], None]]:
     """Show a bar; gives a function to call with how much of the total is done, and with a text beside the bar.
+
+    Off a terminal, where a bar would be rubbish, work that takes long is told in a line a minute.
 
     `counted` shows both numbers, for a total of runs or tasks; `steady` shows the time left and, if counted, the rate,
     for work of which each part takes about as long.
@@ -23,7 +29,7 @@ def progress_bar(
     """
     console = _console() if enabled else None
     if console is None:
-        yield lambda done, text: None
+        yield _lines(total) if enabled else lambda done, text: None
         return
     with _bar(console, counted, steady) as bar:
         task = bar.add_task("starting", total=total)
@@ -34,6 +40,24 @@ def progress_bar(
             bar.update(task, completed=done, description=text + rate)
 
         yield advance
+
+
+def _lines(total: float) -> Callable[[float, str], None]:
+    """Tells on the error stream how far it is, each time that so many seconds have passed."""
+    started = told = time.monotonic()
+
+    def advance(done: float, text: str) -> None:
+        nonlocal told
+        now = time.monotonic()
+        if now - told < _EVERY or not 0.0 < done < total:
+            return
+        told = now
+        spent = now - started
+        left = spent * (total - done) / done
+        sys.stderr.write(f"{done:.4g} of {total:.4g} in {spent:.0f} s, about {left:.0f} s left: {text}\n")
+        sys.stderr.flush()
+
+    return advance
 
 
 def _console() -> Any:

@@ -34,7 +34,8 @@ def ensemble_command(
     store: Annotated[Path | None, typer.Option(metavar="FILE", help="Keeps runs as they are done.")] = None,
     retry: Annotated[bool, typer.Option("--retry", help="Make runs anew that the store holds as failed.")] = False,
     cluster: Annotated[
-        str | None, typer.Option(metavar="ADDRESS", help="A Dask scheduler's address, or 'local' to start one.")
+        str | None,
+        typer.Option(metavar="ADDRESS", help="A Dask scheduler's address, or 'local' to start one."),
     ] = None,
     jobs: Jobs = None,
     level: Annotated[float, typer.Option(help="Confidence of the intervals.")] = 0.95,
@@ -45,6 +46,9 @@ def ensemble_command(
 
     With --store, runs are kept as they are done: after Ctrl-C, or anything worse, the same command goes on from there.
     --plot draws the shares; over one --set option with several values, against it; over two, the phase diagram.
+
+    A Dask cluster: `dask scheduler` on one machine, `dask worker tcp://HOST:8786 --nworkers auto --nthreads 1` on each,
+    with the same flockana everywhere (pip install 'flockana[cluster]'); then --cluster tcp://HOST:8786.
 
     Exit status: 0 done, 2 bad input, 3 some run did not complete, 130 interrupted.
     """
@@ -152,8 +156,8 @@ def _show(runs: xarray.Dataset, table: xarray.Dataset, axes: list[str]) -> None:
     console = show(f"{runs.attrs['scenario']}: {bad.size} runs", *tables)
     if tables:
         console.print(
-            f"shares of the runs on which a claim was checked, vacuous and inconclusive ones included, with their "
-            f"{100 * table.attrs['level']:g} % Clopper-Pearson intervals",
+            f"shares of the runs on which a claim was checked, vacuous (vac.) and inconclusive (inc.) ones included, "
+            f"with their {100 * table.attrs['level']:g} % Clopper-Pearson intervals",
             style="bright_black",
         )
     seconds = runs.seconds.values
@@ -168,16 +172,16 @@ def _show(runs: xarray.Dataset, table: xarray.Dataset, axes: list[str]) -> None:
 
 
 def share_table(table: xarray.Dataset, axes: list[str]) -> Table:
-    """A row per claim, for every combination of the parameters: how often verified, how often refuted."""
+    """A row per claim, for every combination of the parameters: how often verified, refuted, and neither."""
     from itertools import product
 
     from rich.text import Text
 
     from flockana.report.tables import column, headed_table
 
-    widths = {"runs": 4, "verified, %": 19, "refuted, %": 19, "vacuous": 7}
+    widths = {"runs": 4, "verified, %": 19, "refuted, %": 19, "vac.": 4, "inc.": 4}
     columns = (column(heading, right=True, width=width) for heading, width in widths.items())
-    grid = headed_table(column("claim"), *columns)
+    grid = headed_table(column("claim", wraps=True), *columns)
     for values in product(*(table[name].values.tolist() for name in axes)):
         part = table.sel(dict(zip(axes, values, strict=True)))
         if axes:
@@ -192,8 +196,9 @@ def share_table(table: xarray.Dataset, axes: list[str]) -> Table:
             if theorem != before:
                 grid.add_row(Text(theorem))
             before = theorem
+            neither = (str(int(counts[of]) or "") for of in ("vacuous", "inconclusive"))
             cells = [interval_text(counts.sel(of=of)) for of in ("verified", "refuted")]
-            grid.add_row(f"  {claim}", str(int(counts.runs)), *cells, str(int(counts.vacuous) or ""))
+            grid.add_row(f"  {claim}", str(int(counts.runs)), *cells, *neither)
     return grid
 
 

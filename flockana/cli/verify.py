@@ -95,7 +95,7 @@ def verify_command(
         text = verdicts_json(pages, seed=seed, seconds=seconds, complete=complete, statistics=statistics)
         typer.echo(in_output_encoding(text), nl=False)
     else:
-        _print_verdicts(pages, statistics, seconds, written, in_full=name is not None and name != "errata")
+        _print_verdicts(pages, statistics, seconds, written, name)
     if failure is not None:
         raise failure
     return code
@@ -165,19 +165,21 @@ def _print_verdicts(
     statistics: StatisticsSection | None,
     seconds: float,
     written: Path | None,
-    *,
-    in_full: bool,
+    name: str | None,
 ) -> None:
     from rich.console import Console
 
-    from flockana.report.console import details, statistics_table, summary, verdict_table
+    from flockana.report.console import details, statistics_table, summary, titles, verdict_table
+    from flockana.report.work import ERRATA
 
-    console = Console(highlight=False)
+    console, in_full = Console(highlight=False), name not in (None, ERRATA)
     if in_full:
         for page in pages:
             for finding in page.findings:
                 console.print(details(finding.verdict))
-    console.print(verdict_table(pages))
+    console.print(verdict_table(pages, width=console.width))
+    if name == ERRATA:
+        console.print(titles(pages))
     for page in pages:
         for text in page.surprises:
             console.print(f"  {page.name}: {text}", style="bold red", markup=False)

@@ -17,10 +17,14 @@ with all that call it.
 from __future__ import annotations
 
 import hashlib
+import logging
+import os
 import re
+import stat
 import sys
-from collections.abc import Callable
-from contextlib import suppress
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
 from types import FunctionType
@@ -118,9 +122,42 @@ def dispatcher(function: Callable[..., Any], *, cache: bool, **options: Any) -> 
         return numba.njit(**options)(function)
     named = _named_for_its_cells(function)
     made = numba.njit(**options)(named)
-    with suppress(RuntimeError):  # there is no folder to write to: it is compiled in every process
+    try:
         made._cache = _Cache(named)
+    except RuntimeError:  # neither beside the sources nor at home is there a folder to write to
+        with suppress(RuntimeError, OSError), _cached_in(temporary_folder()):
+            made._cache = _Cache(named)
     return made
+
+
+@contextmanager
+def _cached_in(folder: Path) -> Iterator[None]:
+    """Have numba cache in a folder; what it caches knows the folder later, too."""
+    before = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = str(folder)
+    try:
+        yield
+    finally:
+        numba.config.CACHE_DIR = before
+
+
+@cache
+def temporary_folder() -> Path:
+    """A folder for compiled kernels that nobody else may write to, as they are code; raises OSError if there is none.
+
+    Where it is, is logged once: a container with a read-only install and no home compiles into it.
+    """
+    if not hasattr(os, "getuid"):
+        raise OSError("a system without users to tell apart")
+    folder = Path(tempfile.gettempdir()) / f"flockana-kernels-{os.getuid()}"
+    folder.mkdir(mode=0o700, exist_ok=True)
+    found = folder.lstat()
+    if not stat.S_ISDIR(found.st_mode) or found.st_uid != os.getuid() or found.st_mode & 0o077:
+        raise PermissionError(f"{folder} is not this user's alone")
+    logging.getLogger("flockana").warning(
+        "compiled kernels are kept in %s, as nothing else can be written; set NUMBA_CACHE_DIR for another place", folder
+    )
+    return folder
 
 
 def inlined_type(function: Callable[..., Any]) -> Any:

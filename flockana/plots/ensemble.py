@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import PercentFormatter
 
+from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.plots.style import BLUE, FAINT, GREEN, INK, MUTED, ORANGE, VERMILLION, ensure_axes
 
@@ -71,23 +72,44 @@ def share_against(
         )
     axes = ensure_axes(ax)
     values = table[parameter].values
-    place = values if values.dtype.kind in "iuf" else np.arange(len(values))
-    spread = float(np.ptp(place)) or 1.0
+    numbers = values.dtype.kind in "iuf"
+    place: FloatArray = values.astype(np.float64) if numbers else np.arange(float(len(values)))
+    logarithmic = numbers and _geometric(place)
+    scaled = np.log(place) if logarithmic else place
+    spread = float(np.ptp(scaled)) or 1.0
     for k, claim in enumerate(chosen):
         part = table.sel(claim=claim, of=of)
         shift = _DODGE * spread * (k - 0.5 * (len(chosen) - 1))
+        at = np.exp(scaled + shift) if logarithmic else place + shift
         share = part.share.values
         bars = np.abs(np.stack([share - part.low.values, part.high.values - share]))
         axes.errorbar(
-            place + shift, share, yerr=bars, marker=_MARKS[k], markersize=4, capsize=2, elinewidth=0.9, label=claim
+            at,
+            share,
+            yerr=bars,
+            marker=_MARKS[k],
+            markersize=4,
+            capsize=2,
+            elinewidth=0.9,
+            label=claim,
         )
-    if place is not values:
+    if logarithmic:
+        axes.set_xscale("log")
+    if not numbers:
         axes.set_xticks(place, [str(value) for value in values.tolist()])
     axes.set_xlabel(parameter)
     axes.set_ylim(-0.03, 1.03)
     axes.yaxis.set_major_formatter(PercentFormatter(1.0))
     axes.set_ylabel(f"share of runs {of}, {100 * table.attrs['level']:g} % intervals")
     return _finish(axes, title)
+
+
+def _geometric(places: FloatArray) -> bool:
+    """Whether numbers > 0 are spaced more evenly by their ratios than by their differences, over a decade or more."""
+    if len(places) < 3 or not (places > 0.0).all() or places.max() < 10.0 * places.min():
+        return False
+    even, ratios = np.diff(np.sort(places)), np.diff(np.log(np.sort(places)))
+    return bool(even.max() * ratios.min() > ratios.max() * even.min())
 
 
 def share_bars(

@@ -14,10 +14,11 @@ from rich.text import Text
 from flockana.dynamics.trajectory import Trajectory
 from flockana.report.pages import Finding, Page, ScenarioPage
 from flockana.report.statistics import StatisticsSection
-from flockana.report.tables import column, headed_table
+from flockana.report.tables import column, fact_table, headed_table
 from flockana.report.text import MARKS, deciding_claim, show
-from flockana.theorems import Verdict
+from flockana.theorems import Verdict, theorem, theorems
 
+_NARROW = 72  # columns below which a table of verdicts leaves out how they are known
 _COLOURS = {"verified": "green", "refuted": "dark_orange3", "vacuous": "bright_black", "inconclusive": "yellow"}
 
 
@@ -31,10 +32,14 @@ def _expectation(finding: Finding) -> Text:
     return Text("yes", style="bright_black") if finding.as_expected else Text("NO", style="bold red")
 
 
-def verdict_table(pages: Iterable[Page]) -> Table:
-    """A row per verdict, grouped by what it was checked on."""
-    widths = {"theorem": None, "status": 14, "rigour": 8, "decided by": None, "expected": 8}
-    columns = (column(heading, width=width) for heading, width in widths.items())
+def verdict_table(pages: Iterable[Page], *, width: int = 80) -> Table:
+    """A row per verdict, grouped by what it was checked on; names are never cut, and a narrow table leaves out how."""
+    pages = list(pages)
+    longest = max((len(f.verdict.theorem) for page in pages for f in page.findings), default=0) + 2
+    widths = {"theorem": longest, "status": 14, "rigour": 8, "decided by": None, "expected": 8}
+    if width < _NARROW:
+        del widths["rigour"], widths["decided by"]
+    columns = (column(heading, width=width, wraps=width is None) for heading, width in widths.items())
     table = headed_table(*columns, collapse_padding=True)
     for page in pages:
         if isinstance(page, ScenarioPage):
@@ -42,14 +47,21 @@ def verdict_table(pages: Iterable[Page]) -> Table:
         for finding in page.findings:
             verdict, claim = finding.verdict, deciding_claim(finding.verdict)
             indent = "  " if isinstance(page, ScenarioPage) else ""
-            table.add_row(
-                Text(indent + verdict.theorem),
-                _status(verdict.status),
-                verdict.rigour,
-                Text("" if claim is None else claim.name, style="bright_black"),
-                _expectation(finding),
-            )
+            cells = {
+                "theorem": Text(indent + verdict.theorem),
+                "status": _status(verdict.status),
+                "rigour": Text(verdict.rigour),
+                "decided by": Text("" if claim is None else claim.name, style="bright_black"),
+                "expected": _expectation(finding),
+            }
+            table.add_row(*(cells[heading] for heading in widths))
     return table
+
+
+def titles(pages: Iterable[Page]) -> Table:
+    """What each theorem that was checked says, by its name."""
+    names = dict.fromkeys(finding.verdict.theorem for page in pages for finding in page.findings)
+    return fact_table((name, theorem(name).title) for name in names if name in theorems())
 
 
 def statistics_table(section: StatisticsSection) -> Table:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, Literal
 
 from rich import box
 from rich.table import Column, Table
@@ -21,9 +21,11 @@ def headed_table(*columns: Column | str, **options: Any) -> Table:
     return Table(*columns, box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), **options)
 
 
-def column(heading: str, *, right: bool = False, width: int | None = None) -> Column:
-    """A column that does not wrap; one with a width keeps it on a narrow terminal, where the others give way."""
-    return Column(heading, justify="right" if right else "left", no_wrap=True, min_width=width)
+def column(heading: str, *, right: bool = False, width: int | None = None, wraps: bool = False) -> Column:
+    """A column that does not wrap unless told to; one with a width keeps it on a narrow terminal: others give way."""
+    overflow: Literal["fold", "ellipsis"] = "fold" if wraps else "ellipsis"
+    justify: Literal["left", "right"] = "right" if right else "left"
+    return Column(heading, justify=justify, no_wrap=not wraps, min_width=width, overflow=overflow)
 
 
 def fact_table(facts: Iterable[tuple[str, str]]) -> Table:

@@ -4,6 +4,7 @@ import re
 
 import pytest
 
+from flockana.base import progress
 from flockana.base.progress import progress_bar
 
 
@@ -53,3 +54,22 @@ def test_there_is_none_in_a_pipe_or_where_it_is_not_wanted(capsys, shown):
         advance(1, "half")
     assert capsys.readouterr() == ("", "")
     assert shown(2, (1, "half"), enabled=False) == ""
+
+
+def test_off_a_terminal_long_work_is_told_in_a_line_now_and_then(capsys, monkeypatch):
+    clock = [100.0]
+    monkeypatch.setattr(progress.time, "monotonic", lambda: clock[0])
+    with progress_bar(8) as advance:
+        for seconds, done in ((0.0, 0), (59.0, 1), (60.0, 2), (61.0, 3), (119.0, 3), (120.0, 4), (240.0, 8)):
+            clock[0] = 100.0 + seconds
+            advance(done, f"task {done}")
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.splitlines() == [
+        "2 of 8 in 60 s, about 180 s left: task 2",
+        "4 of 8 in 120 s, about 120 s left: task 4",
+    ]
+    with progress_bar(8, enabled=False) as advance:
+        clock[0] += 1000.0
+        advance(4, "")
+    assert capsys.readouterr().err == ""

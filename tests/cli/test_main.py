@@ -20,7 +20,7 @@ from flockana.report import work
 from flockana.report.surveys import Survey
 from flockana.report.work import Task, check_all, plan
 from flockana.scenarios import Report, Scenario
-from flockana.theorems import Claim
+from flockana.theorems import Claim, theorem
 from tests.programs import ANSWERS_CTRL_C, CLI, IGNORES_CTRL_C, group, interrupt, out_of_a_kernel, posix, program, until
 
 
@@ -257,9 +257,42 @@ def test_lists_fit_in_80_columns(call):
     assert "E13" in call("theorems")[1]
 
 
+@pytest.mark.parametrize("width", [60, 80])
+def test_no_name_is_cut_and_what_was_expected_is_seen_at_any_width(call, offer, monkeypatch, width):
+    run = replace(tiny("tiny", "verified")(), expected={"alpha-flocking-strict": "refuted"})
+    offer(tiny=lambda seed=0: run)
+    monkeypatch.setenv("COLUMNS", str(width))
+    _, out, _ = call("verify", "tiny", "--no-report")
+    table = out[out.rindex("theorem ") :]
+    assert max(map(len, table.splitlines())) <= width
+    assert "expected" in table.splitlines()[0]
+    assert "alpha-flocking-strict " in table
+    assert "…" not in table
+    assert ("rigour" in table) == (width == 80)
+
+
+def test_errata_come_with_their_titles(call, monkeypatch):
+    monkeypatch.setattr("flockana.report.work.theorems", lambda: ("E8",))
+    _, out, _ = call("verify", "errata", "--no-report", "--jobs", 1)
+    assert " ".join(theorem("E8").title.split()) in " ".join(out.split())
+
+
+@pytest.mark.parametrize(
+    ("given", "near"), [("OS-3", "os-3"), ("e1", "E1"), ("paper-flock", "paper-flocking"), ("zzz", "")]
+)
+def test_an_unknown_name_gets_the_three_nearest_in_any_case(refused, call, given, near):
+    _, _, err = call("verify", given, "--no-report")
+    assert len(err) < 200
+    assert err.count(",") == 2
+    assert near == "" or f"did you mean {near!r}?" in err
+
+
 def test_version_and_help(call):
     assert call("--version")[1].startswith("flockana 0")
+    assert call("--help") == call("-h")
     assert call("--help")[0] == 0
+    assert "<bool>" not in call("verify", "--help")[1]
+    assert "--install-completion" in call("--help")[1]
     code, out, _ = call()
     assert (code, "verify" in out) == (0, True)
 

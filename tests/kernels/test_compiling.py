@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import pickle
 import shutil
 import subprocess
@@ -10,6 +11,7 @@ from pathlib import Path
 
 import numba
 import numpy as np
+import pytest
 from numba.core.caching import IndexDataCacheFile
 from numba.core.serialize import dumps, loads
 
@@ -31,6 +33,7 @@ MADE = [lifted(k) for k in range(12)]
 """
 ARRAYS = """
 import numpy as np
+import pytest
 from flockana.kernels.compiling import Inlined, njit, register_jitable
 
 def lifted(offset):
@@ -210,3 +213,47 @@ def test_where_nothing_can_be_written_kernels_are_compiled_all_the_same(monkeypa
         return 2.0 * x
 
     assert twice(2.0) == 4.0
+
+
+@pytest.mark.skipif(not hasattr(os, "getuid"), reason="users are not told apart")
+def test_where_nothing_can_be_written_kernels_are_kept_in_a_private_temporary_folder(monkeypatch, tmp_path, caplog):
+    """A container with a read-only install and no home."""
+    real = caching.FunctionCache.__init__
+
+    def only_where_told(self, function):
+        if not numba.config.CACHE_DIR:
+            raise RuntimeError("no locator")
+        real(self, function)
+
+    monkeypatch.setattr(numba.config, "CACHE_DIR", "")
+    monkeypatch.setattr(caching.FunctionCache, "__init__", only_where_told)
+    monkeypatch.setattr(caching.tempfile, "gettempdir", lambda: str(tmp_path))
+    caching.temporary_folder.cache_clear()
+    try:
+
+        @njit(cache=True)
+        def plus(x):
+            return x + 1.0
+
+        @njit(cache=True)
+        def twice(x):
+            return 2.0 * x
+
+        assert (plus(2.0), twice(2.0)) == (3.0, 4.0)
+        (folder,) = tmp_path.iterdir()
+        assert len(list(folder.rglob("*.nbc"))) == 2
+        assert folder.stat().st_mode & 0o777 == 0o700
+        assert len(caplog.records) == 1
+        assert str(folder) in caplog.text
+        assert numba.config.CACHE_DIR == ""
+        folder.chmod(0o777)  # whoever may write there could have us run what they like
+        caching.temporary_folder.cache_clear()
+
+        @njit(cache=True)
+        def minus(x):
+            return x - 1.0
+
+        assert minus(2.0) == 1.0
+        assert len(list(folder.rglob("*.nbc"))) == 2
+    finally:
+        caching.temporary_folder.cache_clear()

@@ -117,3 +117,14 @@ def test_more_curves_than_can_be_told_apart_are_refused(ax):
     many = xarray.concat([table.assign_coords(claim=[f"{k}:i", f"{k}:ii"]) for k in range(4)], dim="claim")
     with pytest.raises(ArgumentError, match="8 claims: expected at most 7"):
         plots.share_against(many, "n", ax=ax)
+
+
+@pytest.mark.parametrize(
+    ("values", "scale"),
+    [([0.01, 0.1, 1.0, 10.0], "log"), ([1, 10, 100], "log"), ([2, 8, 14, 20], "linear"), ([0.0, 1.0, 10.0], "linear")],
+)
+def test_marks_stand_at_their_values_on_an_axis_that_suits_them(ax, values, scale):
+    plots.share_against(a_table(n=values), "n", claims=["a:i"], ax=ax)
+    assert ax.get_xscale() == scale
+    marks = ax.lines[0].get_xdata()
+    np.testing.assert_allclose(marks, values, rtol=1e-12)
