@@ -36,7 +36,7 @@ def ensure_target(path: Any, *, remedy: str = "choose another file") -> Path:
     --------
     >>> ensure_target(os.devnull)
     Traceback (most recent call last):
-    flockana.base.errors.FileError: cannot write '/dev/null': it is no regular file; choose another file
+    flockana.base.errors.FileError: cannot write ...: it is no regular file; choose another file
     """
     given = ensure_path(path, action="write", remedy=remedy)
     target = Path(os.path.realpath(given))
@@ -113,7 +113,7 @@ def read_whole(path: Any) -> str:
     --------
     >>> read_whole(os.devnull)
     Traceback (most recent call last):
-    flockana.base.errors.FileError: cannot read /dev/null: it is no regular file; expected a file
+    flockana.base.errors.FileError: cannot read ...: it is no regular file; expected a file
     """
     source = ensure_path(path)
     try:

@@ -53,8 +53,8 @@ def report_folder(name: str | None) -> Path:
 
     Examples
     --------
-    >>> report_folder(None)
-    PosixPath('report')
+    >>> report_folder(None).name
+    'report'
     """
     if name is None:
         return FOLDER
