@@ -49,6 +49,7 @@ from .lammps.export import export_lammps as export_lammps
 from .laws.algorithm3 import Algorithm3 as Algorithm3
 from .laws.bearing_distance import ZoneFlocking as ZoneFlocking
 from .laws.dead_zone import DeadZoneFlocking as DeadZoneFlocking
+from .laws.directed import DirectedNet as DirectedNet
 from .laws.discrete import DiscreteLaw as DiscreteLaw
 from .laws.law import Law as Law
 from .laws.led_dead_zone import LedDeadZoneFlocking as LedDeadZoneFlocking

@@ -13,7 +13,7 @@ from flockana.interactions import AlphaInteraction
 from flockana.lattice.builders import hexagonal_spiral
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.laws.peer_to_peer import PeerToPeer
-from flockana.scenarios.findings import component_count, finding
+from flockana.scenarios.findings import ROUNDING, component_count, finding
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.olfati_saber.energy import balance
@@ -44,7 +44,9 @@ def _copies_as_predicted(run: Trajectory, tolerances: Tolerances) -> Claim:
     off, size = float(np.abs(found - predicted).max()), run.scales.length
     apart = float(np.linalg.norm(found, axis=1).max())
     detail = f"copies end up to {apart:.3g} from their mean, as the linear theory says to {off:.1g}"
-    return finding("predicted", 1e-6 - off / size, detail, computed=apart, stated="the linear theory's, to 1e-6 d")
+    return finding(
+        "predicted", 1e-6 - off / size, detail, computed=apart, stated="the linear theory's, to 1e-6 d", error=ROUNDING
+    )
 
 
 def _two_halves(run: Trajectory, tolerances: Tolerances) -> Claim:
@@ -73,7 +75,9 @@ def _centre_follows(run: Trajectory, tolerances: Tolerances) -> Claim:
         f"the centre of mass ends {float(np.linalg.norm(found)):.2g} from the mean of the copies, as a critically "
         f"damped follower does to {off:.1g} d"
     )
-    return finding("centre", 1e-4 - off, detail, computed=off, stated="q_c'' = −c1γ (q_c − q̄_r) − c2γ (p_c − p̄_r)")
+    return finding(
+        "centre", 1e-4 - off, detail, computed=off, stated="q_c'' = −c1γ (q_c − q̄_r) − c2γ (p_c − p̄_r)", error=ROUNDING
+    )
 
 
 def _balanced(run: Trajectory, tolerances: Tolerances) -> Claim:

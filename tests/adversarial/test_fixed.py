@@ -26,6 +26,7 @@ TRUTHS = {
     "E15": {"r": "printed-start printed-speed faster-true", "v": "predicted faster faster-as-run condition"},
     "E16": {"r": "sufficient necessary", "v": "minima lattice"},
     "deviation-energy": {"v": "jump corner potential-continuous potential-smooth"},
+    "directed-nets": {"r": "momentum energy", "v": "undirected follower leader"},
     "J1": {"r": "printed", "v": "corrected"},
     "J2": {"r": "hurwitz positive-definite", "v": "outside"},
     "J3": {"r": "printed hurwitz", "v": "trees"},

@@ -1,0 +1,73 @@
+"""α-forces on directed nets: every agent has a range of its own, and may look ahead only."""
+
+from __future__ import annotations
+
+from math import sqrt
+
+import numpy as np
+
+from flockana.kernels.alpha import EPS, R_ALPHA, H, pair_alpha
+from flockana.kernels.compiling import njit
+from flockana.kernels.scalars import sigma_norm, taper
+
+
+@njit(cache=True)
+def sight(q, p, i, j, s2, reach2, width, slow2, h):
+    """How well agent i sees j, from 0 to 1: within its range, and within its cone by the bump of the angle's 1 − cos.
+
+    `width` is 1 − cos of half the angle of view; 2 is all round. An agent much slower than √slow2 looks all round.
+    """
+    if s2 >= reach2:
+        return 0.0
+    if width >= 2.0:
+        return 1.0
+    ahead, speed2 = 0.0, 0.0
+    for c in range(q.shape[1]):
+        ahead += (q[j, c] - q[i, c]) * p[i, c]
+        speed2 += p[i, c] ** 2
+    if speed2 == 0.0 or s2 == 0.0:
+        return 1.0
+    cone = taper(max(0.0, 1.0 - ahead / sqrt(s2 * speed2)) / width, h)
+    return (slow2 + speed2 * cone) / (slow2 + speed2)
+
+
+@njit(cache=True)
+def directed_forces(q, p, first, second, reach, par, stiffness, damping, width, slow2, u):
+    """Add w_ij (c1 s_ij (q_j − q_i) + c2 a_ij (p_j − p_i)) to u_i, with the bump of its range and its `sight` w_ij.
+
+    `first` and `second` hold unordered pairs that are at least all within the largest range.
+    """
+    n, own = reach.size, par.copy()
+    sigma = np.empty(n)
+    for i in range(n):
+        sigma[i] = sigma_norm(reach[i] * reach[i], par[EPS])
+    for k in range(first.size):
+        for way in range(2):
+            i, j = (first[k], second[k]) if way == 0 else (second[k], first[k])
+            s2 = 0.0
+            for c in range(q.shape[1]):
+                s2 += (q[j, c] - q[i, c]) ** 2
+            seen = sight(q, p, i, j, s2, reach[i] * reach[i], width, slow2, par[H])
+            if seen == 0.0:
+                continue
+            own[R_ALPHA] = sigma[i]
+            stress, adjacency = pair_alpha(s2, own)
+            pull, drag = stiffness * stress * seen, damping * adjacency * seen
+            for c in range(q.shape[1]):
+                u[i, c] += pull * (q[j, c] - q[i, c]) + drag * (p[j, c] - p[i, c])
+
+
+@njit(cache=True)
+def seen_edges(q, p, first, second, reach, width, slow2, h, least):
+    """(head, tail) of the directed edges among some pairs: head sees tail, with more than the least sight."""
+    head, tail, count = np.empty(2 * first.size, np.int64), np.empty(2 * first.size, np.int64), 0
+    for k in range(first.size):
+        s2 = 0.0
+        for c in range(q.shape[1]):
+            s2 += (q[second[k], c] - q[first[k], c]) ** 2
+        for way in range(2):
+            i, j = (first[k], second[k]) if way == 0 else (second[k], first[k])
+            if sight(q, p, i, j, s2, reach[i] * reach[i], width, slow2, h) > least:
+                head[count], tail[count] = i, j
+                count += 1
+    return head[:count], tail[:count]

@@ -1,0 +1,208 @@
+"""Algorithms 1 to 3 on directed nets: ranges of each agent, and conic neighbourhoods.
+
+The source allows for directed nets, "if agents have different ranges or a conic neighbourhood", and does not follow
+them up. Where i sees j and j does not see i, action is not reaction: momentum is not conserved, no energy is known, and
+none of the theorems applies. What still holds is in the theorem `directed-nets`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from math import cos, pi
+from typing import Any, ClassVar
+
+import numpy as np
+
+from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive, ensure_state
+from flockana.base.errors import ArgumentError
+from flockana.base.scales import Scales
+from flockana.base.units import Powers
+from flockana.environment.beta import ObstacleField
+from flockana.environment.obstacles import Obstacle
+from flockana.environment.target import Target
+from flockana.interactions import AlphaInteraction
+from flockana.kernels.directed import directed_forces, seen_edges
+from flockana.kernels.neighbours import pair_list
+from flockana.laws.algorithm3 import Algorithm3
+from flockana.laws.law import Law
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2, paper_pair
+from flockana.laws.terms.pairs import PairTerm
+from flockana.measures.perception import Edges
+
+_ALL_ROUND = 2.0 * pi
+_SLOW = 0.01  # of the law's own speed
+_SEEN = 0.5  # sight from which on an agent counts as seen, where edges are counted
+
+
+@dataclass(frozen=True)
+class DirectedNet(Law):
+    """A law of Olfati-Saber whose agents see what is within a range of their own, and in a cone ahead of them.
+
+    u_i = Σ w_ij (c1α φ_α n_ij + c2α a_ij (p_j − p_i)) over the j that i sees, in which the bump ends at agent i's own
+    range (a_ij ≠ a_ji then), and the other terms as they are. A range at most d makes an agent that repels and never
+    attracts. The source does not say how a cone ends: here as a range does, w_ij = ρ_h((1 − cos θ)/(1 − cos ½view)) of
+    the angle θ between p_i and q_j − q_i, so that the force is continuous. An agent at rest has no way ahead and looks
+    all round, one much slower than `slow` nearly so: 1 − w_ij shrinks by ‖p_i‖²/(slow² + ‖p_i‖²).
+
+    Parameters
+    ----------
+    law : Algorithm1, Algorithm2 or Algorithm3
+        The law on undirected nets, with the paper's pair law.
+    ranges : float or array_like, shape (n,), optional
+        Range of each agent, > 0; by default that of the pair law, for all.
+    view : float
+        Whole angle of view in radians, 0 < view <= 2π; 2π, all round, by default.
+    slow : float, optional
+        Speed below which an agent looks round, > 0; a hundredth of the law's own by default.
+
+    Raises
+    ------
+    ArgumentError
+        On another law, ranges that are not positive, or an angle that is none.
+
+    Examples
+    --------
+    Agent 0 sees agent 1 and is drawn to it, which does not see agent 0:
+
+    >>> law = DirectedNet(Algorithm1(), ranges=(8.4, 3.0))
+    >>> u = law.acceleration(0.0, [[0.0], [8.0]], [[0.0], [0.0]])
+    >>> bool(u[0, 0] > 0.0), float(u[1, 0])
+    (True, 0.0)
+    """
+
+    law: Algorithm1 | Algorithm2 | Algorithm3
+    ranges: Any = None
+    view: float = _ALL_ROUND
+    slow: float | None = None
+
+    units: ClassVar[Mapping[str, Powers]] = {"ranges": (1, 0), "slow": (1, -1)}
+
+    references = ("olfati-saber-2006",)
+
+    def __post_init__(self) -> None:
+        if type(self.law) not in (Algorithm1, Algorithm2, Algorithm3):
+            raise ArgumentError(f"law = {self.law!r}: expected Algorithm1(...), Algorithm2(...) or Algorithm3(...)")
+        paper_pair(self.law)
+        given = self.ranges
+        if given is not None:
+            each = [ensure_positive(f"ranges[{i}]", x) for i, x in enumerate(np.ravel(given).tolist())]
+            if not each:
+                raise ArgumentError("ranges is empty: expected one range, or one per agent")
+            object.__setattr__(self, "ranges", each[0] if np.ndim(given) == 0 else tuple(each))
+        object.__setattr__(self, "view", ensure_finite_scalar("view", self.view))
+        if not 0.0 < self.view <= _ALL_ROUND * (1.0 + 1e-12):
+            raise ArgumentError(f"view = {self.view:g}: expected an angle in radians, 0 < view <= 2π")
+        if self.slow is not None:
+            object.__setattr__(self, "slow", ensure_positive("slow", self.slow))
+
+    @property
+    def alpha(self) -> AlphaInteraction:
+        """The pair law."""
+        return paper_pair(self.law)
+
+    @property
+    def target(self) -> Target | None:  # type: ignore[override]
+        """The γ-agent of the law."""
+        return self.law.target
+
+    @property
+    def obstacles(self) -> tuple[Obstacle, ...]:  # type: ignore[override]
+        """What the law's agents keep off."""
+        return self.law.obstacles
+
+    @property
+    def obstacle_field(self) -> ObstacleField | None:
+        """How they do."""
+        return self.law.obstacle_field
+
+    @property
+    def scales(self) -> Scales:  # noqa: D102
+        return self.law.scales
+
+    @property
+    def lattice(self) -> None:
+        """None: which links there are is not the same for both of their ends."""
+        return
+
+    @property
+    def surfaces(self) -> tuple[float | tuple[float, ...], ...]:  # noqa: D102
+        return (self.alpha.r if self.ranges is None else self.ranges,)
+
+    def check_dimension(self, m: int) -> None:  # noqa: D102
+        self.law.check_dimension(m)
+
+    def check_agents(self, n: int) -> None:  # noqa: D102
+        self.law.check_agents(n)
+        if isinstance(self.ranges, tuple) and len(self.ranges) != n:
+            raise ArgumentError(f"there are {len(self.ranges)} ranges and {n} agents: expected one range each")
+
+    def check_start(self, q: FloatArray, p: FloatArray) -> None:  # noqa: D102
+        super().check_start(q, p)
+        self.law.check_start(q, p)
+
+    def _reach(self, n: int) -> FloatArray:
+        return np.full(n, self.alpha.r if self.ranges is None else self.ranges, dtype=np.float64)
+
+    @cached_property
+    def _width(self) -> float:
+        """1 − cos of half the angle of view; 2 for all round."""
+        return 2.0 if self.view >= _ALL_ROUND * (1.0 - 1e-12) else 1.0 - cos(0.5 * self.view)
+
+    @cached_property
+    def _slow2(self) -> float:
+        return float((_SLOW * self.scales.speed if self.slow is None else self.slow) ** 2)
+
+    def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
+        """The input, and NaN: no energy is known.
+
+        Parameters
+        ----------
+        t : float
+            Time.
+        q, p : ndarray, shape (n, m)
+            Positions and velocities.
+        """
+        u, reach = np.zeros(q.shape), self._reach(len(q))
+        for term in self.law.terms:
+            if isinstance(term, PairTerm):
+                pairs = pair_list(q, float(reach.max()))
+                numbers = (self.alpha.par, term.stiffness, term.damping, self._width, self._slow2)
+                directed_forces(q, p, *pairs, reach, *numbers, u)
+            else:
+                term.act(t, q, p, u)
+        return u, float("nan")
+
+    def perceived(self, q: Any, p: Any) -> Edges:
+        """The directed edges (j, i) of a state: i sees j.
+
+        Parameters
+        ----------
+        q, p : array_like, shape (n, m)
+            Positions and velocities.
+
+        Examples
+        --------
+        >>> DirectedNet(Algorithm1(), view=3.0).perceived([[0.0], [5.0]], [[1.0], [1.0]])
+        ((1, 0),)
+        """
+        q, p = ensure_state(q, p)
+        self.check_agents(len(q))
+        reach = self._reach(len(q))
+        sight = (self._width, self._slow2, self.alpha.h, _SEEN)
+        head, tail = seen_edges(q, p, *pair_list(q, float(reach.max())), reach, *sight)
+        return tuple(sorted(zip(tail.tolist(), head.tolist(), strict=True)))
+
+    def measures(  # noqa: D102
+        self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
+    ) -> Mapping[str, Any]:
+        momentum = np.linalg.norm(p.sum(axis=1), axis=1)
+        edges = [self.perceived(*state) for state in zip(q, p, strict=True)]
+        one_way = [sum((i, j) not in {*seen} for j, i in seen) / max(1, len(seen)) for seen in edges]
+        energy = [self.law.hamiltonian(float(time), *state) for time, *state in zip(t, q, p, strict=True)]
+        return {
+            "momentum": ("‖Σ p_i‖ (length/time)", momentum),
+            "one_way": ("share of the directed edges that have no counterpart", np.array(one_way)),
+            "undirected_energy": ("energy of the law on an undirected net (length²/time²)", np.array(energy)),
+        }

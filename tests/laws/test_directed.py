@@ -1,0 +1,119 @@
+"""Directed nets: the ordinary laws where all see alike, forces by hand where not, and the follower's energy."""
+
+from __future__ import annotations
+
+from math import cos, pi, sin
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from flockana.base.errors import ArgumentError
+from flockana.base.serialize import from_data, to_data
+from flockana.base.units import rescale
+from flockana.dynamics.simulate import simulate
+from flockana.environment.obstacles import Sphere
+from flockana.environment.targets import LinearTarget
+from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
+from flockana.laws.algorithm3 import Algorithm3
+from flockana.laws.directed import DirectedNet
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+
+UNIT = Gains(c1_alpha=1.0, c2_alpha=1.0)
+
+
+@pytest.mark.parametrize("m", [1, 2, 3])
+def test_with_one_range_all_round_it_is_the_law(m):
+    rng = np.random.default_rng(m)
+    q, p = rng.uniform(-12.0, 12.0, (30, m)), rng.normal(0.0, 1.0, (30, m))
+    target = LinearTarget((0.0,) * m, (1.0,) * m)
+    laws = [Algorithm1(), Algorithm2(target=target)]
+    if m > 1:
+        laws.append(Algorithm3(target=target, beta=BetaInteraction(), obstacles=(Sphere((40.0,) * m, 5.0),)))
+    for law in laws:
+        u = law.acceleration(1.0, q, p)
+        for directed in (DirectedNet(law), DirectedNet(law, 8.4), DirectedNet(law, [8.4] * 30, 2.0 * pi)):
+            np.testing.assert_allclose(directed.acceleration(1.0, q, p), u, atol=1e-13 * np.abs(u).max())
+
+
+def test_each_agent_has_the_bump_of_its_own_range():
+    """Two agents 6 apart: each feels the pair law that ends at its own range; one that is too far off, nothing."""
+    q, p = np.array([[0.0], [6.0]]), np.array([[0.0], [2.0]])
+    u = DirectedNet(Algorithm1(gains=UNIT), (7.5, 20.0)).acceleration(0.0, q, p)[:, 0]
+    for k, (r, sign) in enumerate(((7.5, 1.0), (20.0, -1.0))):
+        own = AlphaInteraction(r=r)
+        z = own.sigma_norm(6.0)
+        expected = sign * (own.phi_alpha(z) * 6.0 / np.sqrt(1.0 + 0.1 * 36.0) + 2.0 * own.adjacency(z))
+        assert u[k] == pytest.approx(expected, rel=1e-13)
+    assert DirectedNet(Algorithm1(), (5.9, 20.0)).acceleration(0.0, q, p)[0, 0] == 0.0
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.3, 0.9, 1.04, 1.06, 2.0, pi])
+def test_a_cone_fades_as_a_range_does(angle):
+    """An agent that moves along x, another at an angle from there, view 120°: ρ_h((1 − cos θ)/(1 − cos 60°))."""
+    alpha, slow = AlphaInteraction(), 1e-3
+    law, whole = DirectedNet(Algorithm1(gains=UNIT), view=2.0 * pi / 3.0, slow=slow), Algorithm1(gains=UNIT)
+    q, p = [[0.0, 0.0], [6.0 * cos(angle), 6.0 * sin(angle)]], [[2.0, 0.0], [2.0, 0.0]]
+    cone = alpha.bump((1.0 - cos(angle)) / 0.5)
+    share = (slow**2 + 4.0 * cone) / (slow**2 + 4.0)
+    np.testing.assert_allclose(
+        law.acceleration(0.0, q, p)[0], share * whole.acceleration(0.0, q, p)[0], atol=1e-12, rtol=1e-10
+    )
+    still = [[0.0, 0.0], [0.0, 0.0]]
+    np.testing.assert_allclose(law.acceleration(0.0, q, still), whole.acceleration(0.0, q, still), atol=1e-13)
+
+
+def test_edges_by_hand():
+    law = DirectedNet(Algorithm1(), (8.0, 3.0, 8.0), view=pi)
+    q, p = [[0.0, 0.0], [5.0, 0.0], [-2.0, 0.0]], [[1.0, 0.0], [1.0, 0.0], [1.0, 0.0]]
+    assert law.perceived(q, p) == ((0, 2), (1, 0), (1, 2))  # (j, i): i sees j; agent 1 sees nobody behind it
+    measures = simulate(law, q, p, (0.0, 0.1)).metrics()
+    assert measures.one_way[0] == 1.0
+    assert measures.momentum[0] == pytest.approx(3.0)
+
+
+def test_the_followers_energy_falls_as_algebra_says():
+    """d/dt [c1 ψ(z(x)) + ½ s²], x' = s, s' = −c1 ψ'(z) z'(x) − c2 a s, is −c2 a s²; and along a run."""
+    t, c1, c2, a = sp.symbols("t c1 c2 a")
+    x, psi = sp.Function("x")(t), sp.Function("psi")
+    energy = c1 * psi(x) + x.diff(t) ** 2 / 2
+    along = energy.diff(t).subs(x.diff(t, 2), -c1 * psi(x).diff(x) - c2 * a * x.diff(t)).doit()
+    assert sp.simplify(along + c2 * a * x.diff(t) ** 2) == 0
+    law = DirectedNet(Algorithm1(), (8.4, 3.0))
+    run = simulate(law, [[0.0], [6.5]], [[0.5], [1.0]], (0.0, 2.0), t_eval=np.linspace(0.0, 2.0, 401), rtol=1e-11)
+    slip, length = run.p[:, 0, 0] - run.p[:, 1, 0], run.q[:, 1, 0] - run.q[:, 0, 0]
+    alpha, gains = law.alpha, law.law.gains
+    own = gains.c1_alpha * alpha.energy_at(length) + 0.5 * slip**2
+    rate = -gains.c2_alpha * alpha.adjacency(alpha.sigma_norm(length)) * slip**2
+    lost = np.trapezoid(rate, run.t)
+    assert own[-1] - own[0] == pytest.approx(lost, rel=1e-3)
+    np.testing.assert_array_equal(run.p[:, 1, 0], 1.0)
+
+
+def test_written_read_and_rescaled():
+    law = DirectedNet(Algorithm1(), (8.4, 3.0), view=2.0, slow=0.5)
+    assert from_data(to_data(law)) == law
+    there = rescale(law, length=1000.0, time=60.0)
+    q, p = np.array([[0.0, 1.0], [2.0, 0.0]]), np.array([[1.0, 0.5], [0.0, 1.0]])
+    u, u2 = law.acceleration(0.0, q, p), there.acceleration(0.0, 1000.0 * q, 1000.0 / 60.0 * p)
+    np.testing.assert_allclose(u2, u * 1000.0 / 3600.0, rtol=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: DirectedNet(3), "law = 3: expected Algorithm1"),
+        (lambda: DirectedNet(Algorithm1(), (1.0, -1.0)), r"ranges\[1\] = -1: expected a number > 0"),
+        (lambda: DirectedNet(Algorithm1(), ()), "ranges is empty"),
+        (lambda: DirectedNet(Algorithm1(), view=7.0), "view = 7: expected an angle in radians"),
+        (lambda: DirectedNet(Algorithm1(), slow=0.0), "slow = 0: expected a number > 0"),
+        (
+            lambda: DirectedNet(Algorithm1(), (1.0, 2.0)).acceleration(0.0, [[0.0]], [[0.0]]),
+            "2 ranges and 1 agents: expected one range each",
+        ),
+        (lambda: DirectedNet(Algorithm1()).jacobian(0.0, [[0.0]], [[0.0]]), "DirectedNet gives no derivatives"),
+    ],
+)
+def test_refusals(make, message):
+    with pytest.raises(ArgumentError, match=message):
+        make()
