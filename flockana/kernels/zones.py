@@ -114,14 +114,14 @@ def _trembling(settings, step, i, j, behaviour):
     return 1.0 + settings.weight_noise * noise(settings.seed, step, i, j, behaviour)
 
 
-@njit(cache=True)
+@njit(cache=True, forceinline=True)  # a call would hand over a hundred numbers
 def _neighbours(i, near, q, p, a, step, zones, settings, bearing, out):
     """Cohesion, alignment and separation of agent i; nobody but those in `near` is within its zones.
 
     Returns the least distance of those who attract it, infinite without any.
     """
     m = q.shape[1]
-    r, c, nearest = zones.r[i], zones.c[i], inf
+    r, c, nearest, chance = zones.r[i], zones.c[i], inf, settings.weight_noise > 0.0
     total_c, total_a = 0.0, 0.0
     for j in near:
         if j == i:
@@ -133,14 +133,19 @@ def _neighbours(i, near, q, p, a, step, zones, settings, bearing, out):
         if d > a or d == 0.0:
             continue
         if d <= c:
-            w = _weight(zones.separation, i, j) * _trembling(settings, step, i, j, SEPARATION) * (d - c)
+            w = _weight(zones.separation, i, j) * (d - c)
+            if chance:
+                w *= _trembling(settings, step, i, j, SEPARATION)
             for k in range(m):
                 out[SEPARATION, k] += w * ((q[j, k] - q[i, k]) / d)
         if d <= r:
             continue
-        nearest = min(nearest, d)
-        w_c = _weight(zones.cohesion, i, j) * _trembling(settings, step, i, j, COHESION)
-        w_a = _weight(zones.alignment, i, j) * _trembling(settings, step, i, j, ALIGNMENT)
+        if d < nearest:
+            nearest = d
+        w_c, w_a = _weight(zones.cohesion, i, j), _weight(zones.alignment, i, j)
+        if chance:
+            w_c *= _trembling(settings, step, i, j, COHESION)
+            w_a *= _trembling(settings, step, i, j, ALIGNMENT)
         total_c += w_c
         total_a += w_a
         if not bearing:
@@ -194,14 +199,15 @@ def _grown(reach, a, nearest, settings):
     return reach if nearest <= reach else reach + settings.dt * settings.growth
 
 
-@njit(cache=True)
-def behave(i, near, q, p, heading, estimate, reach, alien, step, zones, settings, choices, world, out):
-    """Write the six behaviours of agent i, who has `near` about it, into out (6, m); what it remembers moves on."""
+@njit(cache=True, forceinline=True)  # a call would hand over a hundred numbers
+def behave(i, near, q, p, heading, estimate, a, alien, step, zones, settings, choices, world, out):
+    """Write the six behaviours of agent i, who has `near` about it and is attracted up to a, into out (6, m).
+
+    Its heading and its estimate move on. Returns how near the nearest is of those who attract it.
+    """
     m = q.shape[1]
     out[:] = 0.0
-    nearest = _neighbours(i, near, q, p, reach[i], step, zones, settings, choices.form == 1, out)
-    if settings.growth > 0.0:
-        reach[i] = _grown(reach[i], zones.a[i], nearest, settings)
+    nearest = _neighbours(i, near, q, p, a, step, zones, settings, choices.form == 1, out)
     _aliens(i, q, alien, step, zones, settings, choices.surveillance == 1, out)
     speed = _length(p[i])
     if speed > 0.0:
@@ -229,17 +235,18 @@ def behave(i, near, q, p, heading, estimate, reach, alien, step, zones, settings
         for k in range(m):
             wanted = settings.desired_speed * estimate[i, k] / sqrt(own2)
             out[SPEED, k] = w_s * (wanted - estimate[i, k])
+    return nearest
 
 
 @njit(cache=True)
 def behaviours(q, p, heading, estimate, reach, alien, step, zones, settings, choices, world):
-    """The six behaviours of all agents at one instant, shape (6, n, m); what they remember is changed."""
+    """The six behaviours of all agents at one instant, shape (6, n, m); headings and estimates are changed."""
     n, m = q.shape
     components, out = np.empty((6, n, m)), np.empty((6, m))
     cells, near = sort_into_cells(q, reach.max()), np.arange(n)
     for i in range(n):
         count = gather(i, q, reach[i], cells, near)
-        behave(i, near[:count], q, p, heading, estimate, reach, alien, step, zones, settings, choices, world, out)
+        behave(i, near[:count], q, p, heading, estimate, reach[i], alien, step, zones, settings, choices, world, out)
         components[:, i] = out
     return components
 
@@ -310,7 +317,11 @@ def run(q, p, heading, estimate, reach, alien, first, zones, settings, choices, 
         cells = sort_into_cells(q, reach.max() + further)
         for i in range(n):
             count = gather(i, q, reach[i], cells, near)
-            behave(i, near[:count], q, p, heading, estimate, reach, alien, step, zones, settings, choices, world, out)
+            nearest = behave(
+                i, near[:count], q, p, heading, estimate, reach[i], alien, step, zones, settings, choices, world, out
+            )
+            if settings.growth > 0.0:
+                reach[i] = _grown(reach[i], zones.a[i], nearest, settings)
             total[:] = 0.0
             for term in range(6):
                 for k in range(m):
