@@ -21,6 +21,7 @@ def animate_command(
     seed: Seed = 0,
     fps: Annotated[float, typer.Option(help="Frames per second.")] = 15.0,
     seconds: Annotated[float, typer.Option(help="Length of the film.")] = 10.0,
+    ranges: Annotated[bool, typer.Option("--ranges", help="Draw circles at the range of interaction.")] = False,
 ) -> int:
     """Simulate a scenario and write a film of it: GIF, or MP4 where ffmpeg is installed."""
     from flockana.plots.animation import animate, ensure_film, frame_count
@@ -35,7 +36,9 @@ def animate_command(
     if run.status == "interrupted":
         return INTERRUPTED
     with progress_bar(frame_count(seconds, fps)) as advance:
-        animate(run, film, seconds=seconds, fps=fps, progress=lambda done, total: advance(done, "drawing"))
+        animate(
+            run, film, seconds=seconds, fps=fps, ranges=ranges, progress=lambda done, total: advance(done, "drawing")
+        )
     typer.echo(f"{item.name}, {run.status}: {run.message}")
     show_files(written=film)
     return OK if run.status == "complete" else UNEXPECTED

@@ -344,7 +344,9 @@ class Trajectory:
         path, obstacles = self.path, self.law.obstacles
         return clearance(path.t, path.q, path.p, path.u, obstacles, path.slack)
 
-    def animate(self, *, seconds: float = 10.0, fps: float = 15.0, velocities: bool = False) -> Any:
+    def animate(
+        self, *, seconds: float = 10.0, fps: float = 15.0, velocities: bool = False, ranges: bool = False
+    ) -> Any:
         """The run as a film: a notebook shows it, ``.save(path)`` writes GIF or MP4.
 
         Parameters
@@ -355,12 +357,14 @@ class Trajectory:
             Frames per second.
         velocities : bool
             Draw arrows.
+        ranges : bool
+            Draw circles at the range of interaction about the agents, in the plane.
 
         Returns
         -------
         flockana.plots.Film
         """
-        return import_module(PLOTS).Film(self, seconds, fps, velocities)
+        return import_module(PLOTS).Film(self, seconds, fps, velocities, ranges)
 
     def window(self, start: float, end: float) -> Trajectory:
         """The samples with start ≤ t ≤ end, as a run of their own.

@@ -56,7 +56,7 @@ def equal_times(trajectory: Trajectory, count: int) -> Trajectory:
 
 
 def animation(
-    trajectory: Trajectory, *, seconds: float = 10.0, fps: float = 15.0, velocities: bool = False
+    trajectory: Trajectory, *, seconds: float = 10.0, fps: float = 15.0, velocities: bool = False, ranges: bool = False
 ) -> FuncAnimation:
     """Make a film of a run: `snapshot` after `snapshot`; in a notebook show it by its ``to_jshtml()``.
 
@@ -70,6 +70,8 @@ def animation(
         Frames per second.
     velocities : bool
         Draw arrows.
+    ranges : bool
+        Draw circles at the range of interaction about the agents, in the plane.
 
     Returns
     -------
@@ -99,7 +101,7 @@ def animation(
     def draw(k: int) -> list[Any]:
         with style():
             ax.clear()
-            snapshot(film, float(times[k]), ax=ax, velocities=velocities, bar=False)
+            snapshot(film, float(times[k]), ax=ax, velocities=velocities, bar=False, ranges=ranges)
         _hold(ax, view)
         return []
 
@@ -113,6 +115,7 @@ def animate(
     seconds: float = 10.0,
     fps: float = 15.0,
     velocities: bool = False,
+    ranges: bool = False,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> Path:
     """Write a film of a run: GIF always, MP4 where the program ffmpeg is installed.
@@ -129,6 +132,8 @@ def animate(
         Frames per second; a GIF rounds the time of a frame to hundredths of a second.
     velocities : bool
         Draw arrows.
+    ranges : bool
+        Draw circles at the range of interaction about the agents, in the plane.
     progress : callable
         Is told the number of frames drawn and their total.
 
@@ -146,7 +151,7 @@ def animate(
     from matplotlib.animation import FFMpegWriter, PillowWriter
 
     target = ensure_film(path, seconds=seconds, fps=fps)
-    film = animation(trajectory, seconds=seconds, fps=fps, velocities=velocities)
+    film = animation(trajectory, seconds=seconds, fps=fps, velocities=velocities, ranges=ranges)
     writer = PillowWriter(fps=fps) if target.suffix.lower() == ".gif" else FFMpegWriter(fps=fps)  # type: ignore[arg-type]
     # Ctrl-C is heard between frames: before the first one the writer has nothing to end, and a callback may swallow it.
     # Saving a figure asks for a layout anew, and one that fits each frame by itself makes the view tremble.

@@ -27,6 +27,8 @@ class Film:
         Frames per second.
     velocities : bool
         Draw arrows.
+    ranges : bool
+        Draw circles at the range of interaction about the agents, in the plane.
 
     Raises
     ------
@@ -38,6 +40,7 @@ class Film:
     seconds: float = 10.0
     fps: float = 15.0
     velocities: bool = False
+    ranges: bool = False
 
     def __post_init__(self) -> None:
         frame_count(self.seconds, self.fps)
@@ -59,9 +62,18 @@ class Film:
         ArgumentError, FileError
             As `flockana.plots.animate`.
         """
-        return animate(self.trajectory, path, seconds=self.seconds, fps=self.fps, velocities=self.velocities)
+        return animate(
+            self.trajectory,
+            path,
+            seconds=self.seconds,
+            fps=self.fps,
+            velocities=self.velocities,
+            ranges=self.ranges,
+        )
 
     def _repr_html_(self) -> str:
         """The player, with the frames inside it."""
-        film = animation(self.trajectory, seconds=self.seconds, fps=self.fps, velocities=self.velocities)
+        film = animation(
+            self.trajectory, seconds=self.seconds, fps=self.fps, velocities=self.velocities, ranges=self.ranges
+        )
         return str(film.to_jshtml(fps=round(self.fps), default_mode="loop"))

@@ -14,6 +14,7 @@ import numpy as np
 from matplotlib.colors import Normalize
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_points
+from flockana.base.errors import ArgumentError
 from flockana.environment.beta import ObstacleField
 from flockana.environment.obstacles import Obstacle
 from flockana.interactions import BetaInteraction
@@ -51,6 +52,7 @@ def snapshot(
     ax: Axes | None = None,
     velocities: bool = True,
     bar: bool = True,
+    ranges: bool = False,
 ) -> Axes:
     """Draw the sample of a run nearest to a time, with its links if agents interact within a range.
 
@@ -68,14 +70,52 @@ def snapshot(
         Draw arrows.
     bar : bool
         Draw the colour bar of the strain.
+    ranges : bool
+        Draw a circle about each agent at the distance within which it interacts, in the plane.
 
     Returns
     -------
     matplotlib.axes.Axes
+
+    Raises
+    ------
+    ArgumentError
+        If circles are asked for where there are none: of a law without a range, or on a line or in space.
     """
     when = trajectory.t[-1] if time is None else ensure_finite_scalar("time", time)
     k = int(np.argmin(np.abs(trajectory.t - when)))
-    return draw_sample(drawn_law(trajectory), trajectory, k, ax=ax, velocities=velocities, bar=bar)
+    law = drawn_law(trajectory)
+    drawn = draw_sample(law, trajectory, k, ax=ax, velocities=velocities, bar=bar)
+    if ranges:
+        _range_circles(drawn, trajectory.q[k], law)
+    return drawn
+
+
+def _range_circles(ax: Any, q: FloatArray, law: Any) -> None:
+    """Circles at the range of the pair law, or at that of each agent."""
+    from matplotlib.collections import EllipseCollection
+
+    if law.pair is None or q.shape[1] != 2:
+        raise ArgumentError(
+            f"ranges = True: expected a law with a range in the plane, not {law!r} for m = {q.shape[1]}"
+        )
+    own = getattr(law, "ranges", None)
+    widths = np.broadcast_to(2.0 * np.asarray(law.pair.range if own is None else own), len(q))
+    turned = np.zeros(len(q))
+    ax.add_collection(
+        EllipseCollection(
+            widths,
+            widths,
+            turned,
+            units="xy",
+            offsets=q,
+            offset_transform=ax.transData,
+            facecolor="none",
+            edgecolor=MUTED,
+            linewidth=0.5,
+            alpha=0.6,
+        )
+    )
 
 
 def drawn_law(trajectory: Trajectory) -> Any:

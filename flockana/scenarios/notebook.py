@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,13 +14,18 @@ from flockana.environment.targets import StaticTarget
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.notebook import MIN_DISTANCE, PushedAlgorithm1, PushedAlgorithm2
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.laws.taylor_step import TaylorStep
+from flockana.measures.nets import link_lengths, links
 from flockana.measures.path_bounds import contacts
-from flockana.scenarios.findings import ROUNDING, as_tightly, finding, in_source_units, in_the_end
+from flockana.scenarios.findings import ROUNDING, as_tightly, component_count, finding, in_source_units, in_the_end
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.limits import Certificate
 from flockana.theorems.theorem import Status
 
+_FOLLOWED = 0.01  # of d: how near to the flow steps are that follow it
+_RELAXED = 0.1  # of ‖u_α‖ at the start
+_UNIT_FORCE = {"stiffness": 1.0, "damping": 1.0}
 _FOLLOWS = 0.01  # ‖u_γ‖ in the notebook's units that counts as following
 _UNIT = {"c1_alpha": 1.0, "c2_alpha": 1.0}
 _SWITCH: dict[Any, Any] = {
@@ -77,6 +84,70 @@ def _velocity_follows(run: Trajectory, tolerances: Tolerances) -> Claim:
     return in_the_end("follows", certificate, detail, computed=middle, stated=f"below {_FOLLOWS:g}")
 
 
+def _unit_directions(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """The notebook calls n_ij a normalised direction vector: its length is ‖Δ‖/√(1 + ε‖Δ‖²), below 1/√ε."""
+    alpha = run.law.alpha
+    lengths = link_lengths(run.q[0], links(run.q[0], alpha.r))
+    n = lengths / np.sqrt(1.0 + alpha.eps * lengths**2)
+    off = float(np.abs(n - 1.0).max())
+    detail = (
+        f"‖n_ij‖ of the {n.size} links at the start is {n.min():.3g} to {n.max():.3g}; it is 0 at coincidence and "
+        f"could come near 1/√ε = {1.0 / np.sqrt(alpha.eps):.3g}"
+    )
+    return finding("unit-direction", -off, detail, computed=off, stated="‖n_ij‖ = 1")
+
+
+def _goal(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """The notebook has its agents move toward a common goal; with c1γ = 0 the place q_r is not in the law at all."""
+    place = run.law.target.position(0.0)
+    first, last = (float(np.linalg.norm(run.q[k].mean(axis=0) - place)) for k in (0, -1))
+    detail = (
+        f"the centre of mass is {first:.3g} from q_r at the start and {last:.3g} at the end: with c1γ = 0 nothing "
+        "draws it there, and it drifts away with p_r"
+    )
+    return finding("goal", (first - last) / run.scales.length, detail, computed=last, stated=f"below {first:.4g}")
+
+
+def _pairs_relax(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """The notebook prints u_α of one agent falling from about 5 to about 0.03; here its mean length over all agents."""
+    law = run.law
+    first, last = (
+        float(np.linalg.norm(law.terms[0].pair.forces(run.q[k], run.p[k], **_UNIT_FORCE)[0], axis=1).mean())
+        for k in (0, -1)
+    )
+    detail = f"mean ‖u_α‖ falls from {first:.3g} to {last:.2g}"
+    return finding("relaxes", _RELAXED - last / first, detail, computed=last / first, stated=f"<= {_RELAXED:g}")
+
+
+def _departs(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """Whether the notebook's own steps follow the flow of the same law from the same start, to 1 % of d."""
+    law, flow = (
+        run.law.law,
+        simulate(
+            run.law.law,
+            run.q[0],
+            run.p[0],
+            (float(run.t[0]), float(run.t[-1])),
+            t_eval=run.t,
+            **_integrator(run.law.law),
+        ),
+    )
+    apart = np.linalg.norm(run.q - flow.q, axis=2).max(axis=1) / law.alpha.d
+    k = int(np.argmax(apart > _FOLLOWED))
+    energy, true = run.energy()[-1], flow.energy()[-1]
+    detail = (
+        f"an agent is more than {_FOLLOWED:.0%} of d from the flow's from t = {run.t[k]:.3g} on, and up to "
+        f"{apart.max():.3g} d later; the run ends in {component_count(run)} components, the flow in "
+        f"{component_count(flow)}, at energies of {energy:.5g} and {true:.5g}"
+    )
+    worst = float(apart.max())
+    return finding("flow", _FOLLOWED - worst, detail, computed=worst, stated=f"within {_FOLLOWED:g} d of the flow")
+
+
+_UNIT_DIRECTIONS = Report("unit-direction", "n_ij is a normalised direction", _unit_directions)
+_GOAL = Report("goal", "agents move toward the common goal", _goal)
+_RELAXES = Report("relaxes", "‖u_α‖ shrinks to about a hundredth", _pairs_relax)
+_FLOW = Report("flow", "the notebook's own steps follow the flow", _departs)
 _PUSHES = Report("push", "a tenfold push below 0.05 keeps agents apart", _push)
 _VELOCITY = Report("follows", "agents take on the γ-agent's velocity", _velocity_follows)
 
@@ -86,7 +157,11 @@ def _algorithm1(seed: int = 0, push: bool = False) -> Scenario:
     law = PushedAlgorithm1(alpha, gains) if push else Algorithm1(alpha, gains)
     generator = np.random.default_rng(seed)
     # the start is not connected, so Theorem 1 says nothing; whether the push ever acts differs from start to start
-    expected: dict[str, Status] = {"os-1": "vacuous", "os-5-terminal:i": "vacuous"}
+    expected: dict[str, Status] = {
+        "os-1": "vacuous",
+        "os-5-terminal:i": "vacuous",
+        "source:unit-direction": "refuted",
+    }
     if not push:
         expected["energy"] = "verified"
     return Scenario(
@@ -100,7 +175,7 @@ def _algorithm1(seed: int = 0, push: bool = False) -> Scenario:
         (0.0, 5.0),
         seed,
         expected,
-        in_source_units(lambda: law.scales, (_PUSHES,)),
+        in_source_units(lambda: law.scales, (_PUSHES, _UNIT_DIRECTIONS)),
         options=_integrator(law),
         references=("notebook-r2", "olfati-saber-2006"),
         shipped={"alpha-flocking-strict": "refuted", "alpha-flocking-strict:flock": "refuted"},
@@ -117,6 +192,7 @@ def _algorithm2(seed: int = 0, push: bool = False) -> Scenario:
     expected: dict[str, Status] = {
         "alpha-flocking-strict:deviation": "verified",
         "os-5-terminal:i": "vacuous",
+        "source:goal": "refuted",
     }
     if not push:
         expected |= {f"os-3:{claim}": "vacuous" for claim in ("i", "ii", "iii")}
@@ -133,11 +209,43 @@ def _algorithm2(seed: int = 0, push: bool = False) -> Scenario:
         (0.0, 15.0),
         seed,
         expected,
-        in_source_units(lambda: law.scales, (_PUSHES, _VELOCITY)),
+        in_source_units(lambda: law.scales, (_PUSHES, _VELOCITY, _RELAXES, _GOAL)),
         options=_integrator(law),
         references=("notebook-r2", "olfati-saber-2006"),
-        shipped={"alpha-flocking-strict:mismatch": "verified", "source:follows": "verified"},
+        shipped={
+            "alpha-flocking-strict:mismatch": "verified",
+            "source:follows": "verified",
+            "source:relaxes": "verified",
+        },
     )
 
 
-SCENARIOS = {"notebook-algorithm1": _algorithm1, "notebook-algorithm2": _algorithm2}
+def _map(number: int, dt: float) -> Callable[[int], Scenario]:
+    """A run of the notebook as it was published: its own steps, with its push."""
+
+    def build(seed: int = 0) -> Scenario:
+        flow = (_algorithm1, _algorithm2)[number - 1](seed, push=True)
+        law = flow.law
+        assert isinstance(law, PushedAlgorithm1 | PushedAlgorithm2)
+        return replace(
+            flow,
+            name=f"{flow.name}-map",
+            title=f"{flow.title}, by the notebook's own steps",
+            source=flow.source.rpartition(". ")[0]
+            + f". As published: q + p dt + ½ u dt², p + u dt with dt = {dt:g}, and the tenfold push below 0.05.",
+            law=TaylorStep(law, dt),
+            expected={"source:flow": "refuted"},
+            shipped={},
+            reports=in_source_units(lambda: law.scales, (_FLOW,)),
+            options={},
+        )
+
+    return build
+
+
+SCENARIOS: dict[str, Callable[..., Scenario]] = {
+    "notebook-algorithm1": _algorithm1,
+    "notebook-algorithm2": _algorithm2,
+    "notebook-algorithm1-map": _map(1, 0.05),
+    "notebook-algorithm2-map": _map(2, 0.1),
+}

@@ -100,6 +100,23 @@ def _stays_mismatched(run: Trajectory, tolerances: Tolerances) -> Claim:
     return finding("mismatched", margin, detail, computed=share, stated=stated, error=ROUNDING)
 
 
+def _expands(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """R grows all through the second half: what has parted does not come back."""
+    radius = run.metric("cohesion_radius")
+    late = radius[run.t >= 0.5 * (run.t[0] + run.t[-1])]
+    rise = float(np.diff(late).min() / run.scales.length)
+    detail = f"R goes from {radius[0]:.4g} to {radius[-1]:.4g}, and rises at every sample of the second half"
+    return finding("expands", rise, detail, computed=float(radius[-1]), stated="R rises")
+
+
+def _links_settle(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """Ẽ of the links that the fragments keep: each of them is a lattice of its own."""
+    deviation = run.metric("normalised_deviation_energy")
+    detail = f"Ẽ goes from {deviation[0]:.3g} to {deviation[-1]:.2g}: the fragments keep links of length d"
+    margin, end = tolerances.deviation - float(deviation[-1]), float(deviation[-1])
+    return finding("links", margin, detail, computed=end, stated=f"Ẽ <= {tolerances.deviation:g}", error=ROUNDING)
+
+
 def _meets(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Place and velocity of the centre of mass go to those of the γ-agent, each in the law's own scale."""
     target = [run.law.target.state(float(t)) for t in run.t]
@@ -190,7 +207,10 @@ def _fragmentation(seed: int = 0) -> Scenario:
         (
             Report("fragments", "the net ends in several components", _fragments),
             Report("mismatched", "velocities do not match (Fig. 18(b): K̃ stays away from 0)", _stays_mismatched),
+            Report("expands", "the cohesion radius grows (Fig. 18(b): R)", _expands),
+            Report("links", "the deviation energy of the fragments is small (Fig. 18(b): Ẽ)", _links_settle),
         ),
+        shipped={"source:expands": "verified", "source:links": "verified"},
     )
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
 from matplotlib.patches import Polygon, Rectangle
 from matplotlib.quiver import Quiver
 from mpl_toolkits.mplot3d.art3d import Line3DCollection
@@ -20,6 +20,7 @@ from flockana.environment.zone_obstacles import Box
 from flockana.environment.zone_world import Alien, ZoneWorld
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.laws.dead_zone import DeadZoneFlocking
+from flockana.laws.directed import DirectedNet
 from flockana.laws.law import Law
 from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.olfati_saber import Algorithm1
@@ -212,3 +213,16 @@ def test_a_snapshot_shows_the_nearest_sample_and_the_target_then(m):
 def test_snapshot_of_bad_time_is_refused():
     with pytest.raises(ArgumentError, match="time = nan: expected a finite number"):
         plots.snapshot(a_run(), float("nan"), ax=axes())
+
+
+def test_circles_of_interaction_stand_about_the_agents():
+    """Radius r about each; that of each agent on a directed net; refused where there is none to draw."""
+    q, p = [[0.0, 0.0], [6.0, 1.0]], [[1.0, 0.0], [0.0, 0.0]]
+    for law, radii in ((Algorithm1(), [8.4, 8.4]), (DirectedNet(Algorithm1(), (5.0, 3.0)), [5.0, 3.0])):
+        ax = plots.snapshot(simulate(law, q, p, (0.0, 0.1)), 0.0, ranges=True)
+        (circles,) = (drawn for drawn in ax.collections if isinstance(drawn, EllipseCollection))
+        np.testing.assert_allclose(circles.get_widths(), 2.0 * np.array(radii))
+        np.testing.assert_allclose(circles.get_heights(), circles.get_widths())
+        np.testing.assert_allclose(circles.get_offsets(), q)
+    with pytest.raises(ArgumentError, match="ranges = True: expected a law with a range in the plane"):
+        plots.snapshot(simulate(Algorithm1(), [[0.0]], [[1.0]], (0.0, 0.1)), ranges=True)

@@ -1,0 +1,71 @@
+"""How often Algorithm 1 flocks, and Algorithm 2: the paper's start of 40 agents, over many seeds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from flockana.dynamics.trajectory import Trajectory
+from flockana.environment.targets import LinearTarget
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.measures.metrics import velocity_mismatch
+from flockana.scenarios.findings import ROUNDING, component_count, finding
+from flockana.scenarios.olfati_saber import random_start
+from flockana.scenarios.scenario import Report, Scenario
+from flockana.theorems import Claim, Tolerances
+
+_N, _SEEDS = 40, 50  # 200 take 50 s of a processor: `flockana verify algorithm1-flocks --seeds 200`
+
+
+def _flocks(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """Whether the run ends as a flock: one component, whose velocities match."""
+    components = component_count(run)
+    mismatch = velocity_mismatch(run.p[-1]) / (run.n * run.scales.energy)
+    text = f"{components} component(s) at t = {run.t[-1]:g}, K̃ = {mismatch:.2g} of the square of the law's speed"
+    stated = f"one component, K̃ <= {tolerances.mismatch:g}"
+    if components > 1:
+        return finding("flocks", 1.5 - components, text, computed=components, stated=stated)
+    return finding("flocks", tolerances.mismatch - mismatch, text, computed=components, stated=stated, error=ROUNDING)
+
+
+def _share(
+    name: str, law: Algorithm1 | Algorithm2, text: str, *, end: float, flocks: bool
+) -> Callable[[int], Scenario]:
+    def build(seed: int = 0) -> Scenario:
+        return Scenario(
+            name,
+            f"{_N} agents, {type(law).__name__[:-1]} {type(law).__name__[-1]}: in how many seeds do they flock?",
+            f"Olfati-Saber 2006 says that {text}; nothing is printed of how often. The start is that of Fig. 12 (n = "
+            f"40, q normal with variance 2500, p uniform in [-2, -1]²), {end:g} time units; gains and seeds are ours.",
+            law,
+            *random_start(seed, _N, 2),
+            (0.0, end),
+            seed,
+            {},
+            (Report("flocks", "the run ends as one flock with matched velocities", _flocks),),
+            {"t_eval": np.array([0.0, end])},
+            seeds=_SEEDS,
+            settings="parameters of Fig. 12, gains ours",
+            shipped={"source:flocks": "verified" if flocks else "refuted"},
+        )
+
+    return build
+
+
+SCENARIOS: dict[str, Callable[..., Scenario]] = {
+    "algorithm1-flocks": _share(
+        "algorithm1-flocks",
+        Algorithm1(),
+        "Algorithm 1 rarely flocks and often fragments",
+        end=15.0,
+        flocks=False,
+    ),
+    "algorithm2-flocks": _share(
+        "algorithm2-flocks",
+        Algorithm2(target=LinearTarget((200.0, 30.0), (5.0, 0.0))),
+        "Algorithm 2 flocks",
+        end=40.0,
+        flocks=True,
+    ),
+}

@@ -1,0 +1,65 @@
+"""The plainest step: exact for constant inputs, of first order, and the notebook's own loop written out."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from flockana.base.errors import ArgumentError
+from flockana.base.units import rescale
+from flockana.dynamics.simulate import simulate
+from flockana.environment.targets import StaticTarget
+from flockana.interactions import AlphaInteraction, Gains
+from flockana.laws.notebook import PushedAlgorithm2
+from flockana.laws.olfati_saber import Algorithm1
+from flockana.laws.taylor_step import TaylorStep
+
+UNIT = Gains(c1_alpha=1.0, c2_alpha=1.0, c1_gamma=0.0, c2_gamma=0.5)
+LAW = PushedAlgorithm2(AlphaInteraction(1.7, 2.5, 0.01, 0.2, 7.0, 15.0), UNIT, StaticTarget((5.0, 5.0), (0.7, 0.1)))
+
+
+def as_written(q, p, dt):
+    """One pass of the notebook's loop: agent by agent, neighbours by a_ij > 0, pairs below 0.05 times ten."""
+    alpha, u = LAW.alpha, np.zeros_like(q)
+    for i in range(len(q)):
+        delta, slip = np.delete(q - q[i], i, axis=0), np.delete(p - p[i], i, axis=0)
+        z = alpha.sigma_norm(np.linalg.norm(delta, axis=1))
+        adjacency = alpha.adjacency(z)
+        delta[np.linalg.norm(delta, axis=1) < 0.05] *= 10.0
+        near = adjacency > 0.0
+        n = delta / np.sqrt(1.0 + alpha.eps * np.sum(delta**2, axis=1))[:, None]
+        u[i] = np.sum((alpha.phi_alpha(z)[:, None] * n)[near], axis=0) + np.sum(
+            (adjacency[:, None] * slip)[near], axis=0
+        )
+        u[i] -= 0.5 * (p[i] - (0.7, 0.1))
+    return q + p * dt + 0.5 * u * dt**2, p + u * dt
+
+
+def test_the_notebooks_loop():
+    rng = np.random.default_rng(3)
+    q, p = rng.uniform(0.0, 6.0, (14, 2)), rng.standard_normal((14, 2))
+    q[1] = q[0] + (0.02, 0.01)  # pushed
+    run = simulate(TaylorStep(LAW, 0.1), q, p, (0.0, 1.0))
+    for k in range(10):
+        q, p = as_written(q, p, 0.1)
+        np.testing.assert_allclose(run.q[k + 1], q, atol=1e-11)
+        np.testing.assert_allclose(run.p[k + 1], p, atol=1e-11)
+
+
+def test_it_is_of_first_order():
+    q, p = [[0.0, 0.0], [6.0, 0.0], [3.0, 5.0]], [[0.3, 0.0], [0.0, 0.1], [0.0, 0.0]]
+    true = simulate(Algorithm1(), q, p, (0.0, 1.0), t_eval=[1.0], rtol=1e-11).q[-1]
+    errors = [np.abs(simulate(TaylorStep(Algorithm1(), h), q, p, (0.0, 1.0)).q[-1] - true).max() for h in (4e-3, 2e-3)]
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(1.0, abs=0.15)
+
+
+def test_units_and_refusals():
+    there = rescale(TaylorStep(LAW, 0.1), length=1000.0, time=60.0)
+    q, p = np.array([[0.0, 0.0], [1.0, 0.5]]), np.array([[1.0, 0.0], [0.0, 1.0]])
+    here = TaylorStep(LAW, 0.1).step(0.0, q, p, {})
+    moved = there.step(0.0, 1000.0 * q, 1000.0 / 60.0 * p, {})
+    np.testing.assert_allclose(moved[0], 1000.0 * here[0], rtol=1e-12)
+    with pytest.raises(ArgumentError, match="dt = 0: expected a number > 0"):
+        TaylorStep(LAW, 0.0)
+    with pytest.raises(ArgumentError, match="expected a continuous law"):
+        TaylorStep(TaylorStep(LAW))
