@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from flockana.base.checks import FloatArray, ensure_links, ensure_points, ensure_positive, ensure_series
 from flockana.kernels.neighbours import pair_list
+from flockana.kernels.rank import rank_modulo
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -158,7 +159,7 @@ def printed_rank_connectivity(n: int, pairs: LinkArray, *, typeset: bool = False
     >>> printed_rank_connectivity(3, path[:0], typeset=True) == 2 / 3  # of three agents without a link
     True
     """
-    adjacency = np.eye(n) if typeset else np.zeros((n, n))
-    adjacency[-1, -1] = 0.0
-    adjacency[pairs[:, 0], pairs[:, 1]] = adjacency[pairs[:, 1], pairs[:, 0]] = 1.0
-    return float(np.linalg.matrix_rank(adjacency, hermitian=True)) / n
+    adjacency = np.eye(n, dtype=np.int64) if typeset else np.zeros((n, n), dtype=np.int64)
+    adjacency[-1, -1] = 0
+    adjacency[pairs[:, 0], pairs[:, 1]] = adjacency[pairs[:, 1], pairs[:, 0]] = 1
+    return float(rank_modulo(adjacency)) / n

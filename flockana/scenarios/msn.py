@@ -37,8 +37,10 @@ _TITLES = {
     4: "Algorithm 2, circle: follows on a smaller circle",
 }
 _SOURCE = {
-    1: "c1α = 50, c2α = 2√50.",
-    2: "γ-agent at rest at (150, 150) and 'no coefficients': unit gains (our reading) and no damping (c2γ = 0).",
+    1: "No γ-agent; 'alpha coefficients 50': c1α = 50, c2α = 2√50 (our reading, after the printed c2 = 2√c1; with "
+    "c2α = 50 speeds of thousands, not 200, and rank(A)/n at 0.7 are reached).",
+    2: "γ-agent at rest at (150, 150) and 'no coefficients': c1α = c2α = c1γ = 1 and no damping, c2γ = 0 (our reading; "
+    "with c2γ = 1 the flock reaches 197, not 300).",
     3: "c1α = 100, c2α = 20, c1γ = 70, c2γ = 2√70; γ-agent (50 + i/5, 50 + 100 sin(2π 0.025 i/5)) at iteration i.",
     4: "c1α = 100, c2α = 20, c1γ = 70, c2γ = 2√70; γ-agent on a circle of radius 100 about (50, 50) at 2π 0.025 i/5.",
 }

@@ -111,6 +111,14 @@ def test_other_units_and_files_keep_it(tmp_path):
     assert Trajectory.load(tmp_path / "led.nc").law == run.law
 
 
+def test_the_flow_keeps_its_balance_of_energy():
+    q, p = a_state(box=8.0)  # all pairs in range, and so they stay
+    run = simulate(LAW, q, p, (0.0, 5.0))
+    assert np.abs(run.energy_residual).max() < 1e-6 * np.abs(run.energy()).max()
+    assert not LAW.conservative
+    assert not LAW.splits
+
+
 def test_what_it_measures():
     q = np.array([[[0.0, 0.0], [4.0, 0.0]]])
     law = LedDeadZoneFlocking(leaders=(StaticTarget((0.0, 3.0)),), group=(0, 0))

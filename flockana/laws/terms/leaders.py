@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from math import cos, sin
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -51,6 +51,8 @@ class Leaders(Term):
     pull: float
     drag: float
     told: bool = True
+
+    conservative: ClassVar[bool] = False  # a leader that moves drags and bends those at rest
 
     @property
     def invariance(self) -> Invariance:  # noqa: D102
