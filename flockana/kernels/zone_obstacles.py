@@ -65,6 +65,42 @@ def to_boundary(x, y, edges, first, last):
 
 
 @njit(cache=True)
+def zone_meets_edge(x, y, hx, hy, depth, half, cx, cy, dx, dy, literal):
+    """Whether the triangular zone at (x, y) with unit heading (hx, hy) meets the segment from (cx, cy) to (dx, dy).
+
+    Literal: one of the segments from the agent to the three corners meets it. Else exact: a side does, or the zone
+    holds it.
+    """
+    ax, ay = x + depth * hx, y + depth * hy
+    rx, ry, lx, ly = x + half * hy, y - half * hx, x - half * hy, y + half * hx
+    if literal:
+        return segments_meet(x, y, ax, ay, cx, cy, dx, dy) or segments_meet(rx, ry, lx, ly, cx, cy, dx, dy)
+    along, across = (cx - x) * hx + (cy - y) * hy, abs((cx - x) * hy - (cy - y) * hx)
+    return (
+        segments_meet(ax, ay, rx, ry, cx, cy, dx, dy)
+        or segments_meet(rx, ry, lx, ly, cx, cy, dx, dy)
+        or segments_meet(lx, ly, ax, ay, cx, cy, dx, dy)
+        or (along >= 0.0 and along / depth + across / half <= 1.0)
+    )
+
+
+@njit(cache=True)
+def _edge_terms(x, h, depth, half, c, world, first, last, inside, choices, out):
+    """Add one term for each edge of a polygon that the zone meets."""
+    outward, repulsive, literal = choices.inside == 0, choices.obstacle_force != 2, choices.trigger == 1
+    for k in range(first, last):
+        cx, cy, dx, dy = world.edges[k, 0], world.edges[k, 1], world.edges[k, 2], world.edges[k, 3]
+        if not zone_meets_edge(x[0], x[1], h[0], h[1], depth, half, cx, cy, dx, dy, literal):
+            continue
+        gx, gy = to_segment(x[0], x[1], cx, cy, dx, dy)
+        distance = sqrt(gx * gx + gy * gy)
+        if distance > 0.0:
+            factor = push(distance, c, inside, outward, repulsive) / distance
+            out[0] += factor * gx
+            out[1] += factor * gy
+
+
+@njit(cache=True)
 def zone_meets_polygon(x, y, hx, hy, depth, half, edges, first, last, literal):
     """Whether the triangular zone at (x, y) with unit heading (hx, hy) meets a polygon.
 
@@ -129,6 +165,10 @@ def obstacle_terms(x, h, moving, depth, half, c, world, choices, out):
         gx, gy, inside = to_boundary(x[0], x[1], world.edges, first, last)
         s2 = gx * gx + gy * gy
         if s2 == 0.0 or (s2 > (depth + half) ** 2 and not inside):
+            continue
+        if choices.polygons == 1 and not (inside and outward and not literal):  # (21); out of one the nearest leads
+            if moving:
+                _edge_terms(x, h, depth, half, c, world, first, last, inside, choices, out)
             continue
         if (inside and not literal) or (
             moving and zone_meets_polygon(x[0], x[1], h[0], h[1], depth, half, world.edges, first, last, literal)

@@ -70,6 +70,7 @@ class Choices(NamedTuple):
     obstacle_force: int
     inside: int
     walls: int
+    polygons: int
 
 
 class World(NamedTuple):

@@ -1,8 +1,8 @@
 """Zone-based flocking from bearings and distances (Jond): a map from step to step, and every reading of its text.
 
 Where the paper is silent, or its letter misbehaves, the law has a choice by name: the first of `CHOICES` is the
-recommended one and the default, the last is the letter of the paper (`ZoneFlocking.printed`). Of walls there are two
-letters: (8) names the closest point, (21) sums over all edges, and each goes with its form.
+recommended one and the default, the last is the letter of the paper (`ZoneFlocking.printed`). Of walls and
+edges there are two letters: (8) names the closest point, (21) sums over all edges, and each goes with its form.
 """
 
 from __future__ import annotations
@@ -34,6 +34,7 @@ CHOICES: dict[str, tuple[str, ...]] = {
     "obstacle_force": ("repulsive", "reaching", "literal"),
     "inside": ("outward", "literal"),
     "walls": ("each", "nearest"),
+    "polygons": ("nearest", "each"),
 }
 _OURS = ("obstacle_zone", "zone_length")  # choices that are no readings of the printed law
 BEHAVIOURS = ("cohesion", "alignment", "separation", "strategic", "obstacle", "speed")  # in the kernel's order
@@ -99,6 +100,8 @@ class ZoneFlocking(DiscreteLaw):
         Of an agent in an obstacle or beyond a wall: pushed out by d + c, or by the letter deeper in (A13, J12).
     walls : {"each", "nearest"}
         One term for each wall that the zone reaches, (21), or the nearest only, (8) (A14).
+    polygons : {"nearest", "each"}
+        One term for each polygon that the zone meets, at its closest point, (8), or for each of its edges, (21).
 
     Raises
     ------
@@ -137,6 +140,7 @@ class ZoneFlocking(DiscreteLaw):
     obstacle_force: str = "repulsive"
     inside: str = "outward"
     walls: str = "each"
+    polygons: str = "nearest"
 
     units: ClassVar[Mapping[str, Powers]] = {
         "desired_speed": (1, -1),
@@ -160,7 +164,7 @@ class ZoneFlocking(DiscreteLaw):
     def printed(cls, radii: ZoneRadii | None = None, weights: ZoneWeights | None = None, **options: Any) -> Self:
         """The law by the letter of the paper, with gains 1; what is given goes before the letter.
 
-        Its form is (14)-(21), unless another is given; walls are summed with (21), and the nearest counts with (8).
+        Its form is (14)-(21), unless another is given: (21) sums over walls and edges, (8) takes the closest point.
 
         Parameters
         ----------
@@ -177,8 +181,8 @@ class ZoneFlocking(DiscreteLaw):
         'tanh'
         """
         letter: dict[str, Any] = {name: names[-1] for name, names in CHOICES.items() if name not in _OURS}
-        if options.get("form", letter["form"]) == "bearing":
-            letter["walls"] = "each"  # (21) is a sum over edges
+        summed = options.get("form", letter["form"]) == "bearing"  # (21) is a sum over edges, (8) has one point
+        letter |= dict.fromkeys(("walls", "polygons"), "each" if summed else "nearest")
         gains = ZoneWeights(cohesion_gain=1.0, alignment_gain=1.0)
         return cls(radii or _radii_of_section_5(), weights or gains, **(letter | options))
 

@@ -193,7 +193,7 @@ def in_column(seed: int, n: int = 5) -> tuple[FloatArray, FloatArray]:
 PRINTED = "n = 10, r = 1.5, c = 3, w^ls = 5, w^lc = 0.75, w^la = 0.25, w^ga = 5, v^d = 3, v^max = 4, dt = 0.1. "
 _LETTER = (
     "The least charitable reading: agents move one after the other, (9) and (10) as they stand, the estimate (17), "
-    "aliens at a < d <= s, three segments, d - c, no way out of an obstacle; walls are summed, as (21) says. "
+    "aliens at a < d <= s, three segments, d - c, no way out of an obstacle; walls and edges are summed, as (21) says. "
 )
 _CHARITABLE = (
     "The charitable reading of the same: all agents at once, a plain clip of the speed, the true velocity, aliens at "

@@ -7,7 +7,7 @@ from math import isclose, tanh
 import numpy as np
 import pytest
 
-from flockana.environment.zone_obstacles import Box
+from flockana.environment.zone_obstacles import Box, SimplePolygon
 from flockana.environment.zone_world import Alien, ZoneWorld
 from flockana.interactions import ZoneNoise, ZoneRadii, ZoneWeights
 from flockana.kernels.zones import fragments, populations, saturation
@@ -166,8 +166,6 @@ def test_one_who_sees_farther_links_both():
 
 
 def test_an_alien_hunts_the_nearest_in_reach_and_keeps_to_its_triangle():
-    from flockana.environment.zone_obstacles import SimplePolygon
-
     home = SimplePolygon([(0.0, 0.0), (4.0, 0.0), (0.0, 4.0)])
     law = ZoneFlocking(
         RADII, world=ZoneWorld(aliens=(Alien((1.0, 1.0), home), Alien((30.0, 30.0)))), desired_speed=1e-9
@@ -290,3 +288,55 @@ def test_walls_by_the_altitude_of_the_zone(length, force):
     found = law.behaviours(q, v)["obstacle"]
     np.testing.assert_allclose(found, wanted, rtol=1e-12, atol=1e-13)
     assert np.abs(wanted).max() > 1.0
+
+
+def meet(a, b, c, d):
+    """Whether two segments in general position cross, by their parameters."""
+    s, t = np.linalg.solve(np.column_stack([b - a, c - d]), c - a)
+    return 0.0 <= s <= 1.0 and 0.0 <= t <= 1.0
+
+
+@pytest.mark.parametrize("trigger", ["exact", "three-segments"])
+def test_edges_are_summed_with_21(trigger):
+    """Each edge that the zone meets has a term at its own closest point; (8) has one for the whole polygon."""
+    corners = np.array([(0.0, 0.0), (2.5, -0.4), (3.0, 3.0), (0.3, 2.2)])
+    world = ZoneWorld((SimplePolygon(corners.tolist()),))
+    laws = {
+        name: ZoneFlocking(RADII, world=world, trigger=trigger, polygons=name, obstacle_force="literal")
+        for name in ("each", "nearest")
+    }
+    rng = np.random.default_rng(0)
+    q, angle = rng.uniform(-4.0, 7.0, (400, 2)), rng.uniform(0.0, 2.0 * np.pi, 400)
+    q, angle = (x[world.clearance(q) > 0.01] for x in (q, angle))
+    h, counted = np.column_stack([np.cos(angle), np.sin(angle)]), []
+    wanted = np.zeros_like(q)
+    for i, x in enumerate(q):
+        across = 0.5 * C * np.array([h[i, 1], -h[i, 0]])
+        tip, right, left = x + C * h[i], x + across, x - across
+        sides = [(x, tip), (right, left)] if trigger != "exact" else [(tip, right), (right, left), (left, tip)]
+        terms = []
+        for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+            inner = np.linalg.solve(np.column_stack([right - tip, left - tip]), start - tip)
+            held = trigger == "exact" and inner.min() >= 0.0 and inner.sum() <= 1.0
+            if held or any(meet(start, end, *side) for side in sides):
+                share = np.clip((x - start) @ (end - start) / ((end - start) @ (end - start)), 0.0, 1.0)
+                gap = start + share * (end - start) - x
+                terms.append((np.linalg.norm(gap), gap))
+        counted.append(len(terms))
+        wanted[i] = sum(5.0 * (d - C) * gap / d for d, gap in terms) if terms else 0.0
+    found, one = (laws[name].behaviours(q, 0.1 * h)["obstacle"] for name in ("each", "nearest"))
+    np.testing.assert_allclose(found, wanted, rtol=1e-11, atol=1e-11)
+    assert {0, 1, 2} < set(counted)
+    several = np.array(counted) > 1
+    assert np.abs(found - one)[several].max() > 1.0
+    assert not one[np.array(counted) == 0].any()
+
+
+def test_a_zone_that_holds_a_whole_polygon_meets_its_edges():
+    speck = SimplePolygon([(1.0, -0.1), (1.2, -0.1), (1.1, 0.1)])
+    parts = [
+        ZoneFlocking(RADII, world=ZoneWorld((speck,)), polygons=name).behaviours([[0.0, 0.0]], [[1.0, 0.0]])
+        for name in ("each", "nearest")
+    ]
+    each, nearest = (part["obstacle"][0, 0] for part in parts)
+    assert each < 2.0 * nearest < 0.0  # three edges, two of them as near as the polygon

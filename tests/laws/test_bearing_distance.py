@@ -223,8 +223,9 @@ def test_the_letter_is_the_last_of_every_choice():
     assert (law.order, law.own_velocity, law.inside) == ("sequential", "estimated", "literal")
     assert (law.obstacle_zone, law.zone_length) == ("triangle", "conflict")
     assert (law.weights.cohesion_gain, law.weights.alignment_gain) == (1.0, 1.0)
-    assert law.walls == "each"  # (21) is a sum over edges
-    assert ZoneFlocking.printed(form="position").walls == "nearest"  # (8) has one closest point
+    assert (law.walls, law.polygons) == ("each", "each")  # (21) is a sum over edges
+    point = ZoneFlocking.printed(form="position")  # (8) has one closest point
+    assert (point.walls, point.polygons) == ("nearest", "nearest")
     assert ZoneFlocking.printed(walls="nearest").walls == "nearest"
     assert all(getattr(ZoneFlocking(), name) == names[0] for name, names in CHOICES.items())
 
