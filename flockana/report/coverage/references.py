@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -110,11 +110,9 @@ def _walked(kind: str, name: str) -> tuple[Any, Any]:
 
 
 def _file(found: Any, holder: Any) -> str:
-    """Source file of a function, class, property or compiled function; of a constant, that of what holds it."""
+    """Source file of a function, class, property or compiled function; of anything else, that of what holds it."""
     if isinstance(found, property):
         found = found.fget
-    elif isinstance(found, cached_property):
-        found = found.func
     found = inspect.unwrap(getattr(found, "py_func", found))
     try:
         return inspect.getsourcefile(found) or ""

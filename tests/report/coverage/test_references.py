@@ -12,6 +12,7 @@ from flockana.report.coverage import Reference, locate, references
         ("function", "flockana.Algorithm2", "flockana/laws/olfati_saber.py"),
         ("function", "flockana.AlphaInteraction.kappa", "flockana/interactions/alpha.py"),  # a property
         ("function", "flockana.Algorithm1.terms", "flockana/laws/olfati_saber.py"),  # a cached one
+        ("function", "flockana.Algorithm1.surfaces", "flockana/laws/law.py"),  # an inherited property
         ("function", "flockana.measures.reynolds.Reynolds.stress", "flockana/measures/reynolds.py"),  # a field
         ("function", "flockana.kernels.neighbours.pair_list", "flockana/kernels/neighbours.py"),
         ("function", "flockana.falsify", "flockana/falsify/campaign.py"),  # a function and a folder
