@@ -27,7 +27,8 @@ def section():
 
 def test_a_row_counts_what_each_run_says_by_itself(section):
     (entry,) = section.entries
-    (row,) = entry.rows
+    row, directions = entry.rows
+    assert (directions.claim, directions.refuted.count) == ("unit-direction", 3)  # false of every start
     found = []
     for seed in range(3):
         item = scenario("notebook-algorithm1", seed)
@@ -46,7 +47,7 @@ def test_the_page_holds_every_row(section):
     row = section.entries[0].rows[0]
     for words in ("95 % interval", "notebook-algorithm1", row.text, str(row.verified), str(row.refuted), "3 seeds"):
         assert words in text
-    assert text.count("<tr>") == text.count("</tr>") == 2
+    assert text.count("<tr>") == text.count("</tr>") == 3
 
 
 def test_expectations_and_options_of_the_scenario_are_shown():
