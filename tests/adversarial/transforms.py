@@ -18,6 +18,7 @@ from flockana.environment.targets import (
     SineTarget,
     StaticTarget,
 )
+from flockana.laws.led_dead_zone import LedDeadZoneFlocking
 from flockana.laws.minimal import MinimalFlocking
 from tests.adversarial.cases import Case
 
@@ -76,13 +77,17 @@ def renumbered(case, order):
     if isinstance(law, MinimalFlocking) and law.edges is not None:
         place = np.argsort(order)
         law = replace(law, edges=tuple((int(place[j]), int(place[i])) for j, i in law.edges))
+    if _led(law):
+        place, led = np.argsort(order), law.law
+        group, pinned = np.asarray(led.group)[order], place[list(led.pinned)]
+        law = replace(law, law=replace(led, group=group.tolist(), pinned=pinned.tolist()))
     return replace(case, law=law, q0=np.asarray(case.q0)[order], p0=np.asarray(case.p0)[order])
 
 
 def later(case, by):
     """The clock started earlier: only where nothing in the law tells the time."""
     target = getattr(case.law, "target", None)
-    if not isinstance(target, StaticTarget | None):
+    if not isinstance(target, StaticTarget | None) or _led(case.law):
         raise UnchangedError("the γ-agent tells the time")
     options = dict(case.options)
     if options.get("t_eval") is not None:
@@ -90,8 +95,15 @@ def later(case, by):
     return replace(case, since=case.since + by, options=options)
 
 
+def _led(law):
+    """Whether it is a map of a law with leaders."""
+    return isinstance(getattr(law, "law", None), LedDeadZoneFlocking)
+
+
 def _world(law, turn, shift):
     changes = {}
+    if _led(law):
+        changes["law"] = replace(law.law, leaders=[_target(leader, turn, shift) for leader in law.law.leaders])
     if law.target is not None:
         changes["target"] = _target(law.target, turn, shift)
     if getattr(law, "obstacles", ()):
