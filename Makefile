@@ -4,7 +4,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 TESTS ?=
 
-.PHONY: verify test attack check bench proofs notebooks course portability lowest newest clean
+.PHONY: verify test attack check bench proofs notebooks course coverage portability lowest newest clean
 
 verify: .venv/.installed  ## run the catalogue, check every theorem, write report/index.html
 	$(BIN)/flockana verify
@@ -15,11 +15,12 @@ test: .venv/.dev  ## the whole test suite
 attack: .venv/.dev  ## attack the verdicts with thousands of new cases, for hours; ATTACK=N examples a test
 	$(BIN)/python -m pytest tests/adversarial --attack=$(or $(ATTACK),2000) -n 2
 
-check: .venv/.dev  ## format, lint, types, import direction
+check: .venv/.dev  ## format, lint, types, import direction, the coverage page
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/python tools/import_lint.py
+	$(BIN)/python -m tools.coverage_page --check
 
 bench: .venv/.dev  ## measure everything, write report/performance; OPTIONS="--quick" or "--out docs"
 	$(BIN)/python -m benchmarks $(OPTIONS)
@@ -32,6 +33,9 @@ notebooks: .venv/.dev  ## execute every notebook with its solutions
 
 course: .venv/.dev  ## write course/student and course/solutions as .ipynb
 	$(BIN)/python tools/course.py
+
+coverage: .venv/.dev  ## write docs/coverage.md: what holds each item of each source
+	$(BIN)/python -m tools.coverage_page
 
 portability: .venv/.installed  ## which verdicts change on other machine code, from moved starts, at other tolerances
 	$(BIN)/python -m tools.portability $(OPTIONS)

@@ -19,6 +19,8 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from flockana._version import __version__
 from flockana.base.errors import FileError
 from flockana.base.files import ensure_path, replacing
+from flockana.report.coverage import coverage
+from flockana.report.coverage.anchors import anchors, verdict_id
 from flockana.report.lattices import lattice_section
 from flockana.report.pages import FixedPage, FixedResult, Page, ScenarioPage, ScenarioResult, page
 from flockana.report.stability import stability_section
@@ -145,6 +147,8 @@ def _html(pages: list[Page], run: dict[str, Any], statistics: StatisticsSection 
         lattices=lattice_section(pages),
         statistics=statistics,
         stability=stability_section(pages),
+        coverage={"sources": coverage(), "anchors": anchors(pages)} if run["of"] is None else None,
+        verdict_id=verdict_id,
         counts=[(status, counts[status]) for status in _STATUSES],
         surprises=[text for page in pages for text in page.surprises],
         marks=MARKS,

@@ -15,6 +15,7 @@ from flockana.base.errors import FileError
 from flockana.environment.targets import CallableTarget, StaticTarget
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.report.build import ensure_directory, verdicts_json, write_report
+from flockana.report.coverage import coverage
 from flockana.report.pages import FixedResult, ScenarioPage, ScenarioResult, page
 from flockana.report.text import deciding_claim, parameters, show, tolerance_rows
 from flockana.scenarios import Report, Scenario
@@ -111,6 +112,20 @@ def test_the_page_is_whole_self_contained_and_escaped(result, tmp_path):
     ):
         assert words in text
     assert not list(written.parent.glob(".*partial"))
+
+
+def test_the_coverage_is_in_reports_on_the_whole_catalogue_and_links_what_they_show(tmp_path):
+    results = [FixedResult(theorem("E8"), verify("E8"))]
+    whole = write_report(results, tmp_path / "whole").read_text(encoding="utf-8")
+    section = whole[whole.index('id="coverage"') : whole.index('id="tolerances"')]
+    assert 'erratum <a href="#fixed-E8">E8</a>' in section
+    assert "scenario msn-static" in section  # not in this report
+    assert section.count("<details>") == len(coverage())
+    assert section.count("<tr><td>") == sum(len(source.rows) for source in coverage())
+    assert 'href="#coverage"' in whole
+    part = write_report(results, tmp_path / "part", of="E8").read_text(encoding="utf-8")
+    assert "#coverage" not in part
+    assert 'id="coverage"' not in part
 
 
 def test_a_scenarios_own_instants_come_first(result):

@@ -1,0 +1,57 @@
+"""Where in a report a reference is shown: the scenario, the verdict on a theorem, or what a source reports."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from flockana.report.coverage.references import is_erratum
+from flockana.report.pages import Page, ScenarioPage
+from flockana.scenarios.scenario import SOURCE
+
+
+def anchors(pages: Iterable[Page]) -> dict[str, str]:
+    """Id in the report by reference; of a theorem that is checked on several runs, that of the first.
+
+    Parameters
+    ----------
+    pages : iterable of ScenarioPage or FixedPage
+        All that the report shows.
+
+    Examples
+    --------
+    >>> anchors([])
+    {}
+    """
+    found: dict[str, str] = {}
+    for page in pages:
+        run = isinstance(page, ScenarioPage)
+        if run:
+            found[f"scenario:{page.name}"] = page.name
+        for finding in page.findings:
+            verdict, subject = finding.verdict, page.name if run else "fixed"
+            shown = verdict_id(subject, verdict.theorem)
+            if verdict.theorem == SOURCE:
+                found |= {f"report:{subject}/{claim.name}": shown for claim in verdict.claims}
+                continue
+            found.setdefault(f"{'erratum' if is_erratum(verdict.theorem) else 'theorem'}:{verdict.theorem}", shown)
+            for claim in verdict.claims:
+                found.setdefault(f"claim:{verdict.theorem}/{claim.name}", shown)
+    return found
+
+
+def verdict_id(subject: str, theorem: str) -> str:
+    """The id of a verdict in the report.
+
+    Parameters
+    ----------
+    subject : str
+        What it is on: a scenario, or ``"fixed"``.
+    theorem : str
+        Its theorem.
+
+    Examples
+    --------
+    >>> verdict_id("fixed", "E1")
+    'fixed-E1'
+    """
+    return f"{subject}-{theorem}".replace(" ", "-")

@@ -1,0 +1,227 @@
+"""References such as ``theorem:os-1``: what kinds there are, and the file in which each finds what it names."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cache
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import flockana
+from flockana.base.errors import ArgumentError, FileError, UnknownNameError
+from flockana.base.modules import modules
+from flockana.scenarios import scenario, scenarios
+from flockana.theorems import theorem, theorems
+from flockana.theorems.theorem import Theorem
+
+_CHECKOUT = Path(__file__).resolve().parents[3]  # the folder that holds the package
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A name in flockana, and what it is the name of.
+
+    Parameters
+    ----------
+    kind : str
+        One of `KINDS`.
+    name : str
+        Such as ``"flockana.Algorithm2"``, ``"os-1"``, ``"os-3/iv-barrier"`` or ``"01"``.
+
+    Raises
+    ------
+    ArgumentError
+        If there is no such kind, or no name.
+
+    Examples
+    --------
+    >>> locate(Reference("erratum", "E4"))
+    'flockana/theorems/slides/e04.py'
+    """
+
+    kind: str
+    name: str
+
+    def __post_init__(self) -> None:
+        if self.kind not in KINDS or not self.name:
+            raise ArgumentError(
+                f"reference '{self}': expected kind:name, such as theorem:os-1; the kinds are {', '.join(KINDS)}"
+            )
+
+    def __str__(self) -> str:
+        return f"{self.kind}:{self.name}"
+
+
+def locate(reference: Reference) -> str:
+    """The file that holds what a reference names, from the folder of the package on; nothing is run to find it.
+
+    Parameters
+    ----------
+    reference : Reference
+        What to look up.
+
+    Raises
+    ------
+    UnknownNameError
+        If there is nothing of that name; the closest names are told.
+    FileError
+        Of a proof or a notebook, which stand beside the package, where there is no checkout.
+    """
+    return KINDS[reference.kind](reference.name)
+
+
+def _function(name: str) -> str:
+    return _relative(_file(*_walked("function", name)))
+
+
+def _plot(name: str) -> str:
+    path = _relative(_file(*_walked("plot", name)))
+    if not path.startswith("flockana/plots/"):
+        raise ArgumentError(
+            f"plot {name!r} is defined in {path}: expected one of flockana.plots; else call it function"
+        )
+    return path
+
+
+def _walked(kind: str, name: str) -> tuple[Any, Any]:
+    """(what a dotted name of the package means, what holds it)."""
+    first, *parts = name.split(".")
+    if first != flockana.__name__ or not parts:
+        raise UnknownNameError(kind, name, [f"flockana.{known}" for known in dir(flockana)])
+    holder: Any = flockana
+    found: Any = flockana
+    for k, part in enumerate(parts):
+        holder = found
+        if hasattr(holder, part):
+            found = getattr(holder, part)
+        elif part in getattr(holder, "__dataclass_fields__", {}):
+            found = holder  # a field without a default is no attribute of its class
+        else:
+            path = ".".join([first, *parts[:k]])
+            try:
+                found = import_module(f"{path}.{part}")
+            except ModuleNotFoundError:
+                known = [f"{path}.{other}" for other in dir(holder) if not other.startswith("_")]
+                raise UnknownNameError(kind, name, known) from None
+    return found, holder
+
+
+def _file(found: Any, holder: Any) -> str:
+    """Source file of a function, class, property or compiled function; of anything else, that of what holds it."""
+    if isinstance(found, property):
+        found = found.fget
+    found = inspect.unwrap(getattr(found, "py_func", found))
+    try:
+        return inspect.getsourcefile(found) or ""
+    except TypeError:
+        return inspect.getsourcefile(holder) or ""
+
+
+@cache
+def _theorem_files() -> dict[str, str]:
+    return dict(_defined("flockana.theorems", "THEOREM", _theorem_ids))
+
+
+@cache
+def _scenario_files() -> dict[str, str]:
+    return dict(_defined("flockana.scenarios", "SCENARIOS", tuple))
+
+
+def _defined(package: str, attribute: str, ids: Callable[[Any], tuple[str, ...]]) -> Iterator[tuple[str, str]]:
+    """(name, file) of all that the modules of a package define under that attribute."""
+    for module in modules(package):
+        for name in ids(getattr(module, attribute, ())):
+            yield name, str(module.__file__)
+
+
+def _theorem_ids(defined: Any) -> tuple[str, ...]:
+    several = defined if isinstance(defined, tuple) else (defined,)
+    return tuple(item.id for item in several if isinstance(item, Theorem))
+
+
+def _scenario(name: str) -> str:
+    if name not in scenarios():
+        raise UnknownNameError("scenario", name, scenarios())
+    return _relative(_scenario_files()[name])
+
+
+def _report(name: str) -> str:
+    """What a source reports of a scenario: ``scenario/report``."""
+    of, _, report = name.partition("/")
+    path = _scenario(of)
+    known = [f"{of}/{one.name}" for one in scenario(of).reports]
+    if name not in known:
+        raise UnknownNameError("report", f"{of}/{report}", known)
+    return path
+
+
+def is_erratum(name: str) -> bool:
+    """Whether a theorem's id is that of an erratum: they begin with a capital letter."""
+    return name[:1].isupper()
+
+
+def _theorem(name: str) -> str:
+    return _of_catalogue("theorem", name, [known for known in theorems() if not is_erratum(known)])
+
+
+def _erratum(name: str) -> str:
+    return _of_catalogue("erratum", name, [known for known in theorems() if is_erratum(known)])
+
+
+def _of_catalogue(kind: str, name: str, known: list[str]) -> str:
+    if name not in known:
+        raise UnknownNameError(kind, name, known)
+    return _relative(_theorem_files()[name])
+
+
+def _claim(name: str) -> str:
+    """A claim of a theorem or erratum: ``id/claim``, by the names that the catalogue declares."""
+    of, _, _ = name.partition("/")
+    path = _of_catalogue("theorem or erratum", of, list(theorems()))
+    item = theorem(of)
+    declared = (*item.claims, *(key.partition(":")[2] for key in item.expected if ":" in key))
+    if name not in (known := [f"{of}/{claim}" for claim in dict.fromkeys(declared)]):
+        raise UnknownNameError("claim", name, known)
+    return path
+
+
+def _proof(name: str) -> str:
+    known = {path.stem: path for path in _beside("proofs") if "\nPROOF = " in path.read_text(encoding="utf-8")}
+    if name not in known:
+        raise UnknownNameError("proof", name, known)
+    return _relative(str(known[name]))
+
+
+def _notebook(number: str) -> str:
+    known = {path.stem.partition("_")[0]: path for path in _beside("notebooks")}
+    if number not in known:
+        raise UnknownNameError("notebook", number, known)
+    return _relative(str(known[number]))
+
+
+def _beside(folder: str) -> list[Path]:
+    """The Python files of a folder of the checkout, but for templates."""
+    found = sorted(path for path in (_CHECKOUT / folder).glob("*.py") if not path.name.startswith("_"))
+    if not found:
+        raise FileError(f"there is no folder {folder} in {_CHECKOUT}: expected a checkout, which has one")
+    return found
+
+
+def _relative(file: str) -> str:
+    return Path(file).resolve().relative_to(_CHECKOUT).as_posix()
+
+
+KINDS: dict[str, Callable[[str], str]] = {
+    "function": _function,
+    "plot": _plot,
+    "scenario": _scenario,
+    "report": _report,
+    "theorem": _theorem,
+    "claim": _claim,
+    "erratum": _erratum,
+    "proof": _proof,
+    "notebook": _notebook,
+}

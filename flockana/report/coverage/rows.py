@@ -1,0 +1,189 @@
+"""The tables of what is held: a row is an item of a source, where it stands there, and what in flockana holds it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal, get_args
+
+from flockana.base.errors import ArgumentError, FlockanaError
+from flockana.base.references import bibliography
+from flockana.report.coverage.references import Reference, locate
+
+Standing = Literal["held", "weaker", "prose"]
+
+OURS = "flockana"  # the key of what is in no source
+_COLUMNS = ("place", "what", "standing", "held by", "remark")
+_MARK = "|"  # between columns; texts write a norm as ‖
+
+
+@dataclass(frozen=True)
+class Row:
+    """An item of a source and what holds it.
+
+    Parameters
+    ----------
+    place : str
+        Where it stands in the source: section, slide, equation, figure, theorem.
+    what : str
+        What it is, in our words.
+    standing : {"held", "weaker", "prose"}
+        Whether it is held, held in part or not at all, or a text that says nothing which could be.
+    held_by : tuple of Reference
+        What holds it; of prose, what has to do with it.
+    remark : str
+        Of what is weaker or prose, why; else empty, or what a reader should know.
+
+    Raises
+    ------
+    ArgumentError
+        If what is held names nothing that holds it, or what is weaker gives no reason.
+
+    Examples
+    --------
+    >>> Row("Theorem 1", "flocks of Algorithm 1", "held", (Reference("theorem", "os-1"),)).held_by[0].name
+    'os-1'
+    """
+
+    place: str
+    what: str
+    standing: Standing
+    held_by: tuple[Reference, ...] = ()
+    remark: str = ""
+
+    def __post_init__(self) -> None:
+        if not self.place or not self.what:
+            raise ArgumentError(f"a row says {self.place!r}, {self.what!r}: expected a place and what stands there")
+        if self.standing not in get_args(Standing):
+            known = ", ".join(get_args(Standing))
+            raise ArgumentError(f"{self.place}: {self.what}: standing = {self.standing!r}, expected one of {known}")
+        if self.standing == "held" and not self.held_by:
+            raise ArgumentError(f"{self.place}: {self.what}: held by nothing; name what holds it, or call it weaker")
+        if self.standing != "held" and not self.remark:
+            raise ArgumentError(f"{self.place}: {self.what}: {self.standing}, without a remark that says why")
+        if len(set(self.held_by)) < len(self.held_by):
+            raise ArgumentError(f"{self.place}: {self.what}: a reference is given twice; leave one out")
+
+
+@dataclass(frozen=True)
+class Source:
+    """A source and its rows, in its order.
+
+    Parameters
+    ----------
+    key : str
+        Of the bibliography.
+    title : str
+        What it is.
+    rows : tuple of Row
+        Its items.
+
+    Examples
+    --------
+    >>> Source("jond-2025", "A paper", (Row("section 1", "related work", "prose", remark="no claim"),)).count("prose")
+    1
+    """
+
+    key: str
+    title: str
+    rows: tuple[Row, ...]
+
+    def count(self, standing: Standing) -> int:
+        """How many rows are so.
+
+        Parameters
+        ----------
+        standing : {"held", "weaker", "prose"}
+            How.
+        """
+        return sum(row.standing == standing for row in self.rows)
+
+
+def coverage() -> tuple[Source, ...]:
+    """Every table beside this file, the longest first, and last what is in no source. No reference is looked up.
+
+    Examples
+    --------
+    >>> [source.key for source in coverage()][-1]
+    'flockana'
+    """
+    tables = [read_table(path) for path in sorted(Path(__file__).parent.glob("*.csv"))]
+    return tuple(sorted(tables, key=lambda source: (source.key == OURS, -len(source.rows))))
+
+
+def read_table(path: str | os.PathLike[str]) -> Source:
+    """Read one table: ``# title``, the names of the columns, then a row a line, with | between its columns.
+
+    Parameters
+    ----------
+    path : path-like
+        The file; its name is the source's key.
+
+    Raises
+    ------
+    ArgumentError
+        On a line that is no row, a row twice, or a key that the bibliography does not have; file and line are named.
+    """
+    path = Path(path)
+    if path.stem not in bibliography():
+        raise ArgumentError(f"{path.name}: expected a key of the bibliography: {', '.join(bibliography())}")
+    title, *lines = path.read_text(encoding="utf-8").splitlines() or [""]
+    if not title.startswith("# ") or not lines or _cells(lines[0]) != _COLUMNS:
+        raise ArgumentError(f"{path.name}: expected '# title' and '{f' {_MARK} '.join(_COLUMNS)}' to begin with")
+    return Source(path.stem, title.removeprefix("# "), tuple(_rows(path.name, lines[1:])))
+
+
+def faults(sources: Iterable[Source]) -> tuple[str, ...]:
+    """Every reference that leads nowhere, one line each, with its source and place; empty if all lead somewhere.
+
+    Parameters
+    ----------
+    sources : iterable of Source
+        Their rows' references are looked up.
+
+    Examples
+    --------
+    >>> faults([Source("a", "A", (Row("Fig. 1", "a run", "held", (Reference("theorem", "os-0"),)),))])[0][:40]
+    "a, Fig. 1: unknown theorem 'os-0'; did y"
+    """
+    found = []
+    for source in sources:
+        for row in source.rows:
+            for reference in row.held_by:
+                try:
+                    locate(reference)
+                except FlockanaError as error:
+                    found.append(f"{source.key}, {row.place}: {error}")
+    return tuple(found)
+
+
+def _rows(name: str, lines: list[str]) -> Iterator[Row]:
+    seen: dict[tuple[str, str], int] = {}
+    for number, line in enumerate(lines, 3):
+        try:
+            row = _row(line)
+        except ArgumentError as error:
+            raise ArgumentError(f"{name}, line {number}: {error}") from None
+        if (first := seen.setdefault((row.place, row.what), number)) != number:
+            raise ArgumentError(f"{name}, line {number}: the same as line {first}; leave one out")
+        yield row
+
+
+def _row(line: str) -> Row:
+    cells = _cells(line)
+    if len(cells) != len(_COLUMNS):
+        raise ArgumentError(f"{len(cells)} columns, expected {len(_COLUMNS)}: {', '.join(_COLUMNS)}")
+    place, what, standing, held_by, remark = cells
+    references = tuple(Reference(*_parted(one)) for one in held_by.split())
+    return Row(place, what, standing, references, remark)  # type: ignore[arg-type]  # checked by the row itself
+
+
+def _parted(text: str) -> tuple[str, str]:
+    kind, _, name = text.partition(":")
+    return kind, name
+
+
+def _cells(line: str) -> tuple[str, ...]:
+    return tuple(cell.strip() for cell in line.split(_MARK))

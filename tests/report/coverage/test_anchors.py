@@ -1,0 +1,31 @@
+from __future__ import annotations
+
+from flockana.report.coverage.anchors import anchors
+from flockana.report.pages import Finding, FixedPage, ScenarioPage
+from flockana.theorems import Claim, Verdict
+
+
+def finding(theorem, *claims):
+    return Finding(Verdict(theorem, (), tuple(Claim(name, "verified") for name in claims)), "t", "s", "p")
+
+
+def test_what_a_report_shows_is_found_there():
+    pages = [
+        ScenarioPage("pair", "t", "s", (), (finding("os-3", "i"), finding("source", "saw"))),
+        ScenarioPage("other", "t", "s", (), (finding("os-3", "i", "ii"), finding("E12", "printed"))),
+        FixedPage(finding("E8", "corrected")),
+        FixedPage(finding("delay-margin")),
+    ]
+    assert anchors(pages) == {
+        "scenario:pair": "pair",
+        "theorem:os-3": "pair-os-3",  # the first run
+        "claim:os-3/i": "pair-os-3",
+        "report:pair/saw": "pair-source",
+        "scenario:other": "other",
+        "claim:os-3/ii": "other-os-3",
+        "erratum:E12": "other-E12",
+        "claim:E12/printed": "other-E12",
+        "erratum:E8": "fixed-E8",
+        "claim:E8/corrected": "fixed-E8",
+        "theorem:delay-margin": "fixed-delay-margin",
+    }
