@@ -46,7 +46,7 @@ def _share(
             (Report("flocks", "the run ends as one flock with matched velocities", _flocks),),
             {"t_eval": np.array([0.0, end])},
             seeds=_SEEDS,
-            settings="parameters of Fig. 12, gains ours",
+            settings="printed parameters of Fig. 12, gains ours",
             shipped={"source:flocks": "verified" if flocks else "refuted"},
         )
 
