@@ -15,7 +15,7 @@ from flockana.scenarios.olfati_saber import random_start
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
 
-_N, _SEEDS = 40, 30  # 200 take 45 s of a processor: `flockana verify algorithm1-flocks --seeds 200`
+_N, _SEEDS = 40, 200  # a tenth of a second each
 
 
 def _flocks(run: Trajectory, tolerances: Tolerances) -> Claim:
