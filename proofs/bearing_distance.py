@@ -15,7 +15,7 @@ import z3
 
 from flockana.symbolic.spanning_trees import MU, RHO, S, incidence_matrix, tree_characteristic
 from proofs.proof import Proof, Step
-from proofs.smt import implication
+from proofs.smt import implication, real
 
 Tree = tuple[tuple[int, int], ...]
 
@@ -180,10 +180,18 @@ def spectrum_holds(edges: Tree, d: int) -> bool:
     return bool(matrix.charpoly(S) == sp.Poly(sp.expand(expected), S) and matrix.rank() == size * (d + 1))
 
 
+SQUARE, LENGTH = sp.Symbol("v_squared", nonnegative=True), sp.Symbol("length", positive=True)
+
+
+def edge_energy(square: sp.Expr = SQUARE, length: sp.Expr = LENGTH) -> sp.Expr:
+    """V = |x'|²/2 + μ(|x| - ρ)²/2, of the square of the speed and of the length: all steps about it are of this one."""
+    return square / 2 + MU * (length - RHO) ** 2 / 2
+
+
 def energy_rate(d: int, *, damping: sp.Expr = sp.S.One) -> sp.Expr:
     """dV/dt + damping·|x'|² along x'' = -g(x) - damping·x', with V = |x'|²/2 + μ(|x| - ρ)²/2."""
     x, v = _vectors(d, "xv")
-    energy = v.dot(v) / 2 + MU * (sp.sqrt(x.dot(x)) - RHO) ** 2 / 2
+    energy = edge_energy(v.dot(v), sp.sqrt(x.dot(x)))
     rate = sum(energy.diff(a) * b for a, b in zip([*x, *v], [*v, *(-spring(x) - damping * v)], strict=True))
     return sp.simplify(rate + damping * v.dot(v))
 
@@ -192,19 +200,22 @@ def pair_rate(d: int) -> sp.Expr:
     """What a pair adds to dH/dt of the reciprocal law, with σ|v_i - v_j|² added: 0."""
     p, q, v, w = _vectors(d, "pqvw")
     force = spring(q - p) + SIGMA * (w - v)  # on the first; minus that on the second
-    potential = MU * (sp.sqrt((q - p).dot(q - p)) - RHO) ** 2 / 2
+    potential = edge_energy(sp.S.Zero, sp.sqrt((q - p).dot(q - p)))
     stored = sum(potential.diff(a) * b for a, b in zip([*p, *q], [*v, *w], strict=True))
     return sp.simplify(stored + force.dot(v) - force.dot(w) + SIGMA * (w - v).dot(w - v))
 
 
 def no_collision(text: str) -> Step:
     """Of V = kinetic + μ(|x| - ρ)²/2 that does not rise above V(0) < μρ²/2."""
-    x, mu, rho, start, kinetic, gap = z3.Reals("|x| μ ρ V(0) kinetic gap")
+    x, mu, rho, start, kinetic, gap = z3.Reals("|x| μ ρ V(0) |x'|² gap")
+    names = {SQUARE: kinetic, LENGTH: x, MU: mu, RHO: rho}
+    at_gap = real(edge_energy(sp.S.Zero, RHO - LENGTH), {**names, LENGTH: gap})  # V of an edge at rest, shorter by that
+    collided = real(edge_energy(sp.S.Zero, sp.S.Zero), names)
     return implication(
         text,
         z3.And(x >= rho - gap, rho - gap > 0),
-        *(mu > 0, rho > 0, x >= 0, kinetic >= 0, 2 * start < mu * rho**2, gap >= 0, mu * gap**2 == 2 * start),
-        2 * kinetic + mu * (x - rho) ** 2 <= 2 * start,
+        *(mu > 0, rho > 0, x >= 0, kinetic >= 0, start < collided, gap >= 0, at_gap == start),
+        real(edge_energy(), names) <= start,
         latex=r"|x(t)| \ge \rho - \sqrt{2V(0)/\mu} > 0",
     )
 

@@ -19,6 +19,9 @@ from fractions import Fraction
 import sympy as sp
 from flint import arb, ctx
 
+from flockana.environment.targets import StaticTarget
+from flockana.interactions import Gains
+from flockana.laws.olfati_saber import Algorithm2
 from flockana.scenarios import scenario
 from proofs.decimals import at_most, first_digits, interval
 from proofs.intervals import AlphaParameters, adjacency, ball, c_star, exact, hull, psi_alpha, sigma_norm, square
@@ -193,14 +196,15 @@ def _reduction() -> Iterator[Step]:
 
 
 def is_the_scenario(start: Start) -> bool:
-    """Whether the catalogue's run is one of these, its p₁(0) a float."""
+    """Whether the catalogue's run is one of these: its law, target and start, its p₁(0) a float, and long enough."""
     run = scenario("three-agents-1d")
-    gains = {name: getattr(run.law.gains, name) for name in ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma")}
-    same = gains == {"c1_alpha": 1.0, **{name: float(getattr(start, name)) for name in list(gains)[1:]}}
-    alike = AlphaParameters.of(run.law.alpha) == start.par and run.q0.ravel().tolist() == list(start.positions)
-    return (
-        same and alike and all(p.contains(v) for (_, p), v in zip(start.agents(), run.p0.ravel().tolist(), strict=True))
-    )
+    numbers = {name: float(getattr(start, name)) for name in ("c2_alpha", "c1_gamma", "c2_gamma")}
+    law = Algorithm2(run.law.alpha, Gains(c1_alpha=1.0, **numbers), StaticTarget((0.0,)))
+    same = type(run.law) is Algorithm2 and run.law == law and AlphaParameters.of(run.law.alpha) == start.par
+    placed = run.q0.shape == run.p0.shape == (3, 1) and run.q0.ravel().tolist() == list(start.positions)
+    long = run.t_span[0] == 0.0 and run.t_span[1] >= float(LATEST)
+    paces = zip(start.agents(), run.p0.ravel().tolist(), strict=True)
+    return same and placed and long and all(bool(p.contains(v)) for (_, p), v in paces)
 
 
 def _steps() -> Iterator[Step]:

@@ -193,7 +193,7 @@ PROOF = Proof(
     ),
     rigour="interval",
     steps=_steps,
-    size=28,
+    size=29,
     values=SIZES,
     theorems=("E4",),
 )

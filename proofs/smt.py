@@ -22,6 +22,7 @@ class Lemma:
     step: Step
     given: tuple[Any, ...]
     goal: Any
+    when: Any = None
 
     def at(self, values: Mapping[Any, Any] | None = None) -> Any:
         """It as a hypothesis, with other terms for some of its variables; nothing, if it was not proved."""
@@ -30,10 +31,18 @@ class Lemma:
         pairs = [(variable, z3.RealVal(0) + term) for variable, term in (values or {}).items()]
         return z3.substitute(z3.Implies(z3.And(*self.given), self.goal), *pairs)
 
+    def then(self, values: Mapping[Any, Any] | None = None) -> Any:
+        """Its conclusion, on its condition `when`, of things that meet the rest of its hypotheses by what they are."""
+        if self.step.holds is not True:
+            return z3.BoolVal(True)
+        pairs = [(variable, z3.RealVal(0) + term) for variable, term in (values or {}).items()]
+        return z3.substitute(self.goal if self.when is None else z3.Implies(self.when, self.goal), *pairs)
 
-def lemma(text: str, goal: Any, *given: Any, latex: str = "", seconds: float = 60.0) -> Lemma:
+
+def lemma(text: str, goal: Any, *given: Any, when: Any = None, latex: str = "", seconds: float = 60.0) -> Lemma:
     """An implication that others rest on; yield its `step`."""
-    return Lemma(implication(text, goal, *given, latex=latex, seconds=seconds), given, goal)
+    known = given if when is None else (*given, when)
+    return Lemma(implication(text, goal, *known, latex=latex, seconds=seconds), known, goal, when)
 
 
 def real(expression: sp.Expr, names: Mapping[sp.Expr, Any]) -> Any:

@@ -101,6 +101,24 @@ def test_the_enclosed_energy_is_that_of_the_run():
     assert not is_the_scenario(replace(start, c2_alpha="2"))
 
 
+def test_another_target_law_or_time_is_another_run(monkeypatch):
+    from flockana.environment.targets import LinearTarget, StaticTarget
+    from flockana.laws.algorithm3 import Algorithm3
+
+    case = scenario("three-agents-1d")
+    others = [
+        replace(case, law=replace(case.law, target=StaticTarget((1.0,)))),
+        replace(case, law=replace(case.law, target=LinearTarget((0.0,), (1.0,)))),
+        replace(case, law=Algorithm3(case.law.alpha, case.law.gains, StaticTarget((0.0,)))),
+        replace(case, t_span=(0.0, 0.01)),
+    ]
+    for other in others:
+        monkeypatch.setattr(distinct_pairs, "scenario", lambda name, other=other: other)
+        assert not is_the_scenario(Start())
+    monkeypatch.setattr(distinct_pairs, "scenario", lambda name: case)
+    assert is_the_scenario(Start())
+
+
 @pytest.mark.parametrize(
     ("change", "first", "second"),
     [
