@@ -120,5 +120,5 @@ PROOF = Proof(
     rigour="smt",
     steps=_steps,
     size=18,
-    theorems=("os-1", "os-3", "E13"),
+    theorems=("os-1", "os-3", "E4", "E13"),
 )

@@ -250,5 +250,5 @@ PROOF = Proof(
     steps=_steps,
     size=16,
     values=SIZES,
-    theorems=("os-3", "E3"),
+    theorems=("E3",),
 )

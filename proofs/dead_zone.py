@@ -268,7 +268,7 @@ PROOF = Proof(
         "Filippov's sense. Not proved here: that velocities match within a component"
     ),
     rigour="smt",
-    theorems=("dead-zone-1-printed", "dead-zone-1-corrected", "L2", "L3", "L4", "L5", "L6", "L7", "L8"),
+    theorems=("dead-zone-1-printed", "dead-zone-1-corrected", "L2", "L3", "L4", "L5", "L6", "L8"),
     steps=_steps,
     size=58,
     values={"rests at": RESTS_AT},

@@ -255,5 +255,5 @@ PROOF = Proof(
     steps=_steps,
     size=8,
     values=STATED,
-    theorems=("os-3", "E13"),
+    theorems=("E13",),
 )

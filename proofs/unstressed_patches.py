@@ -226,5 +226,4 @@ PROOF = Proof(
     steps=_steps,
     size=19,
     values=SIZES,
-    theorems=("os-1",),
 )
