@@ -28,7 +28,7 @@ from flockana.measures.metrics import coincident_pairs
 from flockana.measures.path_bounds import contacts
 from flockana.scenarios import scenario
 from flockana.theorems import verify
-from proofs import collisions, distinct_pairs, n_max
+from proofs import barrier, collisions, distinct_pairs, n_max
 from proofs.distinct_pairs import Start, crossings, free, is_the_scenario, onward, potential
 from proofs.intervals import AlphaParameters, c_star, far_potential
 
@@ -264,3 +264,23 @@ def test_claims_name_these_proofs():
     assert verify("E13", other).claim("printed").proof is None
     names = {claim.name: claim.proof for claim in verify("os-3", run).claims}
     assert (names["iv-printed"], names["iv-instant"], names["iv-none"]) == (None, "collisions", "collisions")
+
+
+# the barrier of two coincident agents
+
+
+def test_the_induction_counts_what_the_library_counts(monkeypatch):
+    assert barrier.counts_agree(30, 3)
+    assert barrier.unbound(7, 3) == 21 - turan_pairs(7, 3) == 5
+    monkeypatch.setattr(barrier, "turan_pairs", lambda n, clique: turan_pairs(n, clique) + 1)
+    assert not barrier.counts_agree(30, 3)
+
+
+def test_the_claim_below_the_barrier_names_its_proof():
+    from flockana.laws.olfati_saber import Algorithm1
+
+    named = {}
+    for law in (Algorithm1(), Algorithm1(AlphaInteraction(h=0.3))):
+        run = simulate(law, [[0.0, 0.0], [7.0, 0.0]], [[0.0, 0.0], [0.0, 0.0]], (0.0, 0.2))
+        named[law.alpha.h] = verify("os-1", run).claim("iii-barrier").proof
+    assert named == {0.2: "barrier", 0.3: None}

@@ -17,7 +17,7 @@ from flockana.equilibria.potential import Potential
 from flockana.interactions import AlphaInteraction
 from flockana.lattice import hexagonal_patch, rigidity
 from flockana.laws.olfati_saber import Algorithm1
-from proofs import double_agent, krawczyk, unstressed_patches
+from proofs import double_agent, krawczyk, strained_thirteen, unstressed_patches
 from proofs.compressed_patches import LAW, NARROW, RADIUS, computed, curvature, enclose, flock
 from proofs.intervals import AlphaParameters
 
@@ -211,3 +211,19 @@ def test_another_place_of_the_second_agent_is_told(monkeypatch, site):
     monkeypatch.setattr(double_agent, "SITES", (*double_agent.SITES[:4], site))
     steps = double_agent.PROOF.steps()
     assert any(not step.holds for step in steps) is (site != (2, 0))  # the other end of the side will do
+
+
+def test_thirteen_strained_agents_are_enclosed_and_what_is_uncertain_is_not_claimed(monkeypatch):
+    u, q = strained_thirteen.flock()
+    found = strained_thirteen.enclose(u, q, arb(strained_thirteen.RADIUS))
+    eigenvalues = np.sort(np.linalg.eigvalsh(floats(u.hessian([x.mid() for x in found]))))
+    assert np.abs(eigenvalues[:3]).max() < 1e-8
+    assert float(strained_thirteen.curvature(u, found)) == pytest.approx(eigenvalues[3], rel=1e-5)
+    assert 1.3 < eigenvalues[3] < 1.4
+    assert strained_thirteen.enclose(u, q, arb("1e-17")) is None  # nearer than floats can be
+    assert strained_thirteen.enclose(u, [1.001 * x for x in q], arb(strained_thirteen.RADIUS)) is None
+    assert strained_thirteen.transversal(u, q, arb("1e-7"))
+    assert not strained_thirteen.transversal(u, q, arb(10))
+    right = type(u).pull
+    monkeypatch.setattr(type(u), "pull", lambda self, s: -right(self, s))
+    assert strained_thirteen.curvature(u, found) is None

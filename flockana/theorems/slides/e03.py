@@ -136,6 +136,7 @@ def _smallest(tolerances: Tolerances) -> Claim:
         computed={"strain": end.strain, "curvature": known.curvature, "agents": len(known.q)},
         stated="every strict local minimum of V with distinct agents is an α-lattice",
         witness=known.q,
+        proof="strained-thirteen",
         detail=f"{len(known.q)} distinct agents in a connected strict minimum with {len(known.links)} links, off d by "
         f"up to {100.0 * end.strain:.2g} %; least curvature {known.curvature:.3g} of the largest. With coincident "
         f"agents it takes {least_with_coincidence(known.law.alpha)} at least",
