@@ -224,6 +224,6 @@ def test_thirteen_strained_agents_are_enclosed_and_what_is_uncertain_is_not_clai
     assert strained_thirteen.enclose(u, [1.001 * x for x in q], arb(strained_thirteen.RADIUS)) is None
     assert strained_thirteen.transversal(u, q, arb("1e-7"))
     assert not strained_thirteen.transversal(u, q, arb(10))
-    right = type(u).pull
-    monkeypatch.setattr(type(u), "pull", lambda self, s: -right(self, s))
+    right = type(u)._change
+    monkeypatch.setattr(type(u), "_change", lambda self, s: -right(self, s))
     assert strained_thirteen.curvature(u, found) is None
