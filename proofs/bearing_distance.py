@@ -8,25 +8,17 @@ holds of one agent, and of a tree with a leaf added if of the tree without, hold
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import product
 
 import sympy as sp
 import z3
 
-from flockana.symbolic.spanning_trees import MU, RHO, S, incidence_matrix, tree_characteristic
+from flockana.symbolic.spanning_trees import MU, RHO, S, tree_characteristic
 from proofs.proof import Proof, Step
+from proofs.rooted_trees import Tree, trees, unit_edge
 from proofs.smt import implication, real
-
-Tree = tuple[tuple[int, int], ...]
+from proofs.undirected_trees import undirected_trees
 
 SIGMA = sp.Symbol("sigma", positive=True)
-_HEADINGS = ((sp.Rational(3, 5), sp.Rational(4, 5)), (sp.Rational(-5, 13), sp.Rational(12, 13)), (sp.S.Zero, sp.S.One))
-
-
-def trees(agents: int) -> Iterator[Tree]:
-    """Every way to number a rooted tree so that parents come first: edge i is (parent(i), i), i = 1, 2, ..."""
-    for parents in product(*(range(i) for i in range(1, agents))):
-        yield tuple((parent, i) for i, parent in enumerate(parents, start=1))
 
 
 def spring(x: sp.Matrix, stiffness: sp.Expr = MU, length: sp.Expr = RHO) -> sp.Matrix:
@@ -66,11 +58,6 @@ def link_curvature(agent: int, d: int) -> sp.Matrix:
     """Stiffness matrix of an agent's link to its parent, at its length."""
     length = sp.Integer(agent)
     return stiffness(length * unit_edge(agent, d), length, length / 2, length)
-
-
-def unit_edge(agent: int, d: int) -> sp.Matrix:
-    """Direction of an agent's link to its parent, in rational numbers."""
-    return sp.Matrix([*_HEADINGS[agent % len(_HEADINGS)], *(0,) * (d - 2)])
 
 
 def _vectors(d: int, names: str) -> tuple[sp.Matrix, ...]:
@@ -164,6 +151,17 @@ def _manifold() -> Iterator[Step]:
             r"Dg_\pi\, \delta x_\pi + \delta\dot x_\pi = 0",
             "so kernels add up from edge to edge, as characteristic polynomials multiply",
         )
+        within, into = z3.Reals("A_x C_x+B_y")
+        felt, own = z3.Reals("C_x B_y")
+        yield implication(
+            f"(ii) d = {d}, every n: of a tree with a leaf added, blocks A, 0, C, B, the kernel is that of A and "
+            "that of B "
+            "together, as C vanishes on tangents: its dimension grows by d - 1 with each leaf, and 0 stays semisimple",
+            own == 0,
+            *(within == 0, into == felt + own, into == 0, z3.Implies(within == 0, felt == 0)),
+            latex=r"\begin{pmatrix} A & 0 \\ C & B \end{pmatrix}\begin{pmatrix} x \\ y \end{pmatrix} = 0 \iff "
+            r"Ax = 0,\ By = 0",
+        )
     for agents, d in ((2, 2), (3, 2), (4, 2), (2, 3), (3, 3)):
         yield Step(
             f"(ii) d = {d}: likewise all trees of {agents} agents; 0 is semisimple, {(agents - 1) * (d - 1)} times",
@@ -238,36 +236,13 @@ def _energies() -> Iterator[Step]:
     yield no_collision("undirected: if H(0) < μρ²/2, then |x_e(t)| >= ρ - √(2H(0)/μ) > 0 on every edge")
 
 
-def _undirected_trees() -> Iterator[Step]:
-    yield Step(
-        "undirected: with all v equal, all u are 0; then a leaf's one spring is slack, and so are all of a tree",
-        all(incidence_matrix(edges).rank() == agents - 1 for agents in range(2, 7) for edges in trees(agents)),
-        r"\sum_e D_{ie}\, g(x_e) = 0 \text{ for all } i \implies g(x_e) = 0 \implies |x_e| = \rho",
-        "D has rank n - 1: computed for all trees of 2 to 6 agents",
-    )
-    for d in (2, 3):
-        yield Step(
-            f"undirected, d = {d}: then (n - 1)(d - 1) zero modes besides translations: each leaf adds one row",
-            all(_zero_modes(edges, d) == agents * (d - 1) + 1 for agents in range(2, 6) for edges in trees(agents)),
-            r"\dim\ker \sum_e \mu_e\, \hat x_e \hat x_e^\top = d + (n - 1)(d - 1)",
-            "computed for all trees of 2 to 5 agents, in rational directions",
-        )
-
-
-def _zero_modes(edges: Tree, d: int) -> int:
-    """Of the Hessian Σ μ x̂x̂ᵀ at edges of length ρ: the kernel of the rows x̂ᵀ of the rigidity matrix."""
-    matrix = incidence_matrix(edges)
-    rows = [sp.kronecker_product(matrix[:, e].T, unit_edge(e, d).T) for e in range(len(edges))]
-    return int(matrix.rows * d - sp.Matrix.vstack(*rows).rank())
-
-
 def _steps() -> Iterator[Step]:
     yield from _edges()
     yield from _frozen()
     yield from _hurwitz()
     yield from _manifold()
     yield from _energies()
-    yield from _undirected_trees()
+    yield from undirected_trees()
 
 
 PROOF = Proof(
@@ -288,5 +263,5 @@ PROOF = Proof(
     rigour="smt",
     theorems=("zone-1-corrected", "J2", "J3", "J6"),
     steps=_steps,
-    size=35,
+    size=40,
 )

@@ -37,8 +37,6 @@ from flockana.symbolic.dead_zone import (
 )
 from proofs.dead_zone_pairs import (
     DIGITS,
-    FROM,
-    LEAVING,
     RESTS_AT,
     STIFF,
     balls,
@@ -46,9 +44,9 @@ from proofs.dead_zone_pairs import (
     potential_steps,
     rest_steps,
     saturated,
-    separation_steps,
     zones,
 )
+from proofs.dead_zone_parting import FROM, LEAVING, separation_steps
 from proofs.decimals import interval
 from proofs.evaluate import enclosed
 from proofs.proof import Proof, Step

@@ -42,7 +42,6 @@ from proofs.proof import Step
 from proofs.smt import implication, lemma, real
 
 DIGITS = 30
-FROM, LEAVING, KEPT = 14, 12, 9  # m, m/s: a pair that leaves so fast, by default, keeps so much
 STIFF = 50  # k₁ with which a pair rests below d₁, the rest by default
 RESTS_AT = "1.93"
 _A, _B, _C, _E = sp.symbols("A B C E", positive=True)
@@ -118,13 +117,14 @@ def potential_steps() -> Iterator[Step]:
         )
 
 
-def _terms(place: str) -> dict[sp.Expr, Any]:
+def terms(place: str) -> dict[sp.Expr, Any]:
     """Variables of z3 for the library's symbols, the distance and its root being those of one place."""
     shared = dict(zip((K_R, K_DELTA, K_1, R_D), z3.Reals("k_r k_δ k₁ r_d"), strict=True))
     return {RHO: z3.Real(f"ρ_{place}"), sp.sqrt(1 + ETA * RHO**2): z3.Real(f"w_{place}"), **shared}
 
 
-def _root(place: str) -> tuple[Any, ...]:
+def root(place: str) -> tuple[Any, ...]:
+    """That w is √(1 + ηρ²) there."""
     s, w = z3.Reals(f"ρ_{place} w_{place}")
     eta = z3.Real("η")
     return eta >= 0, s > 0, w > 0, w**2 == 1 + eta * s**2
@@ -132,10 +132,10 @@ def _root(place: str) -> tuple[Any, ...]:
 
 def rest_steps() -> Iterator[Step]:
     """L8: two agents at rest within r of each other have one distance, for all parameters with k₁ > 0."""
-    near, far = _terms("s"), _terms("t")
+    near, far = terms("s"), terms("t")
     (s, w_s), (t, w_t) = (list(one.values())[:2] for one in (near, far))
     kr, kd, k1 = (near[symbol] for symbol in (K_R, K_DELTA, K_1))
-    roots = lemma("√(1 + ηρ²) does not fall", w_s <= w_t, *_root("s"), *_root("t"), s < t)
+    roots = lemma("√(1 + ηρ²) does not fall", w_s <= w_t, *root("s"), *root("t"), s < t)
     yield roots.step
     strength_s, strength_t = real(repulsion(), near), real(repulsion(), far)
     falls = lemma(
@@ -161,7 +161,7 @@ def rest_steps() -> Iterator[Step]:
         sp.simplify(below - (K_1 * sp.sqrt(1 + ETA * RHO**2) - repulsion()) * RHO) == 0,
     )
     used = (roots.at(), falls.at(), rises.at({p_s: strength_s, p_t: strength_t}))
-    known = (*_root("s"), *_root("t"), s < t, kr > 0, kd >= 0, k1 > 0, g_s == k1 * w_s - strength_s)
+    known = (*root("s"), *root("t"), s < t, kr > 0, kd >= 0, k1 > 0, g_s == k1 * w_s - strength_s)
     known += (theta_s == 1, theta_t == 1, g_t == k1 * w_t - strength_t)
     yield implication(
         "L8, no ramp: if F <= 0 just below d₁ (= t), F < 0 all below it: there F jumps through 0, and nowhere else",
@@ -179,13 +179,13 @@ def rest_steps() -> Iterator[Step]:
         "there; F is "
         "continuous and g rises, so that it has exactly one zero, below d₁",
         g_s < 0,
-        *(*_root("s"), kr > 0, kd >= 0, k1 > 0, g_s == k1 * w_s - strength_s),
+        *(*root("s"), kr > 0, kd >= 0, k1 > 0, g_s == k1 * w_s - strength_s),
         *(least > 0, k1 * least <= 2 * kr, s**2 * w_s < least),
     )
     yield implication(
         "L8: from d₁ up to r, r_b included, F >= k₁ρ > 0, for the attraction is not negative",
         k1 * s + theta_s * real(attraction(), near) * s / w_s > 0,
-        *(*_root("s"), k1 > 0, kr > 0, kd >= 0, theta_s >= 0, s < near[R_D]),
+        *(*root("s"), k1 > 0, kr > 0, kd >= 0, theta_s >= 0, s < near[R_D]),
     )
     yield from _rest_of_numbers()
 
@@ -224,83 +224,3 @@ def _rest_of_numbers() -> Iterator[Step]:
             evidence=f"at ρ in {interval(place, 5)}",
             found={"rests at": str(first_digits(place, 2))},
         )
-
-
-def separation_steps() -> Iterator[Step]:
-    """L4: when a pair in range parts for ever, for all parameters."""
-    near, far = _terms("s"), _terms("r")
-    (s, w_s), (r, w_r) = (list(one.values())[:2] for one in (near, far))
-    kr, kd, k1, pole = (near[symbol] for symbol in (K_R, K_DELTA, K_1, R_D))
-    turn = lemma("ρ/√(1 + ηρ²) rises", s / w_s <= r / w_r, *_root("s"), *_root("r"), s <= r)
-    yield turn.step
-    pull_s, pull_r = real(attraction(), near), real(attraction(), far)
-    grows = lemma(
-        "2k_r/(r_d - ρ)² + k_δ rises below r_d, and is not negative",
-        z3.And(pull_s <= pull_r, pull_s >= 0),
-        *(s > 0, s <= r, r < pole, kr > 0, kd >= 0),
-        latex=sp.latex(attraction()),
-    )
-    yield grows.step
-    theta, f, p, n, p_r, n_r = z3.Reals("θ F P N P_r N_r")
-    capped = lemma(
-        "so F <= F_max on (0, r): within r, F is k₁ρ and what repels, nothing, or θ times the attraction, θ <= 1",
-        f <= p_r * n_r + k1 * r,
-        *(
-            theta >= 0,
-            theta <= 1,
-            p >= 0,
-            p <= p_r,
-            n >= 0,
-            n <= n_r,
-            k1 >= 0,
-            s >= 0,
-            s <= r,
-            f <= theta * p * n + k1 * s,
-        ),
-        latex=r"F(\rho) \le F_{\max} = \frac{(2k_r/(r_d - r)^2 + k_\delta)\, r}{\sqrt{1 + \eta r^2}} + k_1 r",
-    )
-    yield capped.step
-    most = jumps()["r"][0]
-    yield Step(
-        "F_max is the library's F just below r, of d₂ < r; with d₂ >= r it is less, k₁r",
-        sp.simplify(most - (attraction(R) * direction(R) + K_1 * R)) == 0,
-        sp.latex(most),
-    )
-    speed, least, damping, bound, loss = z3.Reals("ρ' u k₂ F_max loss")
-    brakes = lemma(
-        "while two part faster than u, ρ' falls by at most 2F_max/u + 2k₂ per metre",
-        loss * least <= 2 * bound + 2 * damping * least,
-        *(
-            least > 0,
-            speed >= least,
-            z3.substitute(capped.goal, (p_r * n_r + k1 * r, bound)),
-            bound >= 0,
-            damping >= 0,
-            loss * speed == 2 * f + 2 * damping * speed,
-        ),
-        latex=r"\ddot\rho = -2F(\rho) - 2k_2\dot\rho,\quad \frac{d\dot\rho}{d\rho} = -\frac{2F}{\dot\rho} - 2k_2",
-    )
-    yield brakes.step
-    reach, way, start = z3.Reals("r-ρ(0) way ρ'(0)")
-    yield implication(
-        "L4: leaving with ρ'(0) >= u + (2F_max/u + 2k₂)(r - ρ(0)), of any u > 0, they are faster than u up to r, "
-        "and keep "
-        "that speed: they separate for ever, for all parameters, and neither distances nor velocities converge",
-        start - loss * way >= least,
-        *(brakes.at(), *brakes.given, reach > 0, way >= 0, way <= reach),
-        start * least >= least**2 + (2 * bound + 2 * damping * least) * reach,
-        latex=r"\dot\rho(0) \ge u + \left(\frac{2F_{\max}}{u} + 2k_2\right)(r - \rho(0)) \implies \dot\rho \ge u > 0",
-    )
-    with ctx.workdps(DIGITS):
-        enough = parting_speed(defaults(), FROM, KEPT)
-        yield Step(
-            f"L4: by default, from {FROM} m, u = {KEPT} m/s: {LEAVING} m/s is enough",
-            bool(enough <= LEAVING),
-            evidence=f"{interval(enough, 3)} m/s is",
-        )
-
-
-def parting_speed(values: Mapping[sp.Symbol, sp.Rational], start: int, kept: int) -> arb:
-    """u + (2F_max/u + 2k₂)(r - ρ(0))."""
-    way = values[R] - start
-    return enclosed((kept + (2 * jumps()["r"][0] / kept + 2 * K_2) * way).subs({**values})).real

@@ -13,7 +13,7 @@ from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.symbolic import dead_zone as symbolic
 from flockana.symbolic.dead_zone import D_1, D_2, K_1, R_D, RHO, R
-from proofs import dead_zone, dead_zone_pairs
+from proofs import dead_zone, dead_zone_pairs, dead_zone_parting
 from tests.proofs.steps import failing
 
 HARD = DeadZoneInteraction(ramp=0.0)
@@ -92,11 +92,11 @@ def test_a_strong_attraction_holds_a_pair_that_parts_at_12():
     from flockana.dynamics.simulate import simulate
 
     values = dead_zone_pairs.defaults()
-    assert dead_zone_pairs.parting_speed(values, 14, 9) <= 12
-    assert not dead_zone_pairs.parting_speed(values, 13, 9) <= 12
-    assert not dead_zone_pairs.parting_speed(values | {dead_zone_pairs.R_D: sp.Integer(16)}, 14, 9) <= 12
+    assert dead_zone_parting.parting_speed(values, 14, 9) <= 12
+    assert not dead_zone_parting.parting_speed(values, 13, 9) <= 12
+    assert not dead_zone_parting.parting_speed(values | {dead_zone_pairs.R_D: sp.Integer(16)}, 14, 9) <= 12
     strong = values | {dead_zone_pairs.K_R: sp.Integer(200_000)}
-    assert dead_zone_pairs.parting_speed(strong, 14, 9) > 12
+    assert dead_zone_parting.parting_speed(strong, 14, 9) > 12
     law = DeadZoneFlocking(DeadZoneInteraction(k_r=2e5))
     run = simulate(law, [[0.0, 0.0], [14.0, 0.0]], [[-6.0, 0.0], [6.0, 0.0]], (0.0, 0.1))
     assert np.linalg.norm(run.q[:, 1] - run.q[:, 0], axis=1).max() < 15.0
