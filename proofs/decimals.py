@@ -13,11 +13,15 @@ from flint import arb
 
 def at_least(x: arb, places: int = 6) -> str:
     """The largest decimal of so many places that is certainly not above x: print it as a lower bound."""
+    if not x.is_finite():
+        return "-∞"
     return _shifted(floor(_end(x.lower()) * 10**places), places)
 
 
 def at_most(x: arb, places: int = 6) -> str:
     """The smallest decimal of so many places that is certainly not below x: print it as an upper bound."""
+    if not x.is_finite():
+        return "∞"
     return _shifted(ceil(_end(x.upper()) * 10**places), places)
 
 

@@ -53,6 +53,7 @@ def test_the_bound_that_was_printed_inward():
     assert decimals.first_digits(arb("1.9089"), 3) == "1.908"
     assert decimals.first_digits(arb("1.909", "1e-9"), 3) is None
     assert decimals.decimal(Fraction("5.601")) == "5.601"
+    assert decimals.interval(arb(1) / arb(0, 1)) == "[-∞, ∞]"
     shown = decimals.plus_minus(arb(2).sqrt(), 10).split(r" \pm ")
     middle, radius = map(Fraction, shown)
     assert (middle - radius) ** 2 < 2 < (middle + radius) ** 2
