@@ -8,25 +8,17 @@ holds of one agent, and of a tree with a leaf added if of the tree without, hold
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import product
 
 import sympy as sp
 import z3
 
-from flockana.symbolic.spanning_trees import MU, RHO, S, incidence_matrix, tree_characteristic
+from flockana.symbolic.spanning_trees import MU, RHO, S, tree_characteristic
 from proofs.proof import Proof, Step
-from proofs.smt import implication
-
-Tree = tuple[tuple[int, int], ...]
+from proofs.rooted_trees import Tree, trees, unit_edge
+from proofs.smt import implication, real
+from proofs.undirected_trees import undirected_trees
 
 SIGMA = sp.Symbol("sigma", positive=True)
-_HEADINGS = ((sp.Rational(3, 5), sp.Rational(4, 5)), (sp.Rational(-5, 13), sp.Rational(12, 13)), (sp.S.Zero, sp.S.One))
-
-
-def trees(agents: int) -> Iterator[Tree]:
-    """Every way to number a rooted tree so that parents come first: edge i is (parent(i), i), i = 1, 2, ..."""
-    for parents in product(*(range(i) for i in range(1, agents))):
-        yield tuple((parent, i) for i, parent in enumerate(parents, start=1))
 
 
 def spring(x: sp.Matrix, stiffness: sp.Expr = MU, length: sp.Expr = RHO) -> sp.Matrix:
@@ -66,11 +58,6 @@ def link_curvature(agent: int, d: int) -> sp.Matrix:
     """Stiffness matrix of an agent's link to its parent, at its length."""
     length = sp.Integer(agent)
     return stiffness(length * unit_edge(agent, d), length, length / 2, length)
-
-
-def unit_edge(agent: int, d: int) -> sp.Matrix:
-    """Direction of an agent's link to its parent, in rational numbers."""
-    return sp.Matrix([*_HEADINGS[agent % len(_HEADINGS)], *(0,) * (d - 2)])
 
 
 def _vectors(d: int, names: str) -> tuple[sp.Matrix, ...]:
@@ -164,6 +151,17 @@ def _manifold() -> Iterator[Step]:
             r"Dg_\pi\, \delta x_\pi + \delta\dot x_\pi = 0",
             "so kernels add up from edge to edge, as characteristic polynomials multiply",
         )
+        within, into = z3.Reals("A_x C_x+B_y")
+        felt, own = z3.Reals("C_x B_y")
+        yield implication(
+            f"(ii) d = {d}, every n: of a tree with a leaf added, blocks A, 0, C, B, the kernel is that of A and "
+            "that of B "
+            "together, as C vanishes on tangents: its dimension grows by d - 1 with each leaf, and 0 stays semisimple",
+            own == 0,
+            *(within == 0, into == felt + own, into == 0, z3.Implies(within == 0, felt == 0)),
+            latex=r"\begin{pmatrix} A & 0 \\ C & B \end{pmatrix}\begin{pmatrix} x \\ y \end{pmatrix} = 0 \iff "
+            r"Ax = 0,\ By = 0",
+        )
     for agents, d in ((2, 2), (3, 2), (4, 2), (2, 3), (3, 3)):
         yield Step(
             f"(ii) d = {d}: likewise all trees of {agents} agents; 0 is semisimple, {(agents - 1) * (d - 1)} times",
@@ -180,10 +178,18 @@ def spectrum_holds(edges: Tree, d: int) -> bool:
     return bool(matrix.charpoly(S) == sp.Poly(sp.expand(expected), S) and matrix.rank() == size * (d + 1))
 
 
+SQUARE, LENGTH = sp.Symbol("v_squared", nonnegative=True), sp.Symbol("length", positive=True)
+
+
+def edge_energy(square: sp.Expr = SQUARE, length: sp.Expr = LENGTH) -> sp.Expr:
+    """V = |x'|²/2 + μ(|x| - ρ)²/2, of the square of the speed and of the length: all steps about it are of this one."""
+    return square / 2 + MU * (length - RHO) ** 2 / 2
+
+
 def energy_rate(d: int, *, damping: sp.Expr = sp.S.One) -> sp.Expr:
     """dV/dt + damping·|x'|² along x'' = -g(x) - damping·x', with V = |x'|²/2 + μ(|x| - ρ)²/2."""
     x, v = _vectors(d, "xv")
-    energy = v.dot(v) / 2 + MU * (sp.sqrt(x.dot(x)) - RHO) ** 2 / 2
+    energy = edge_energy(v.dot(v), sp.sqrt(x.dot(x)))
     rate = sum(energy.diff(a) * b for a, b in zip([*x, *v], [*v, *(-spring(x) - damping * v)], strict=True))
     return sp.simplify(rate + damping * v.dot(v))
 
@@ -192,19 +198,22 @@ def pair_rate(d: int) -> sp.Expr:
     """What a pair adds to dH/dt of the reciprocal law, with σ|v_i - v_j|² added: 0."""
     p, q, v, w = _vectors(d, "pqvw")
     force = spring(q - p) + SIGMA * (w - v)  # on the first; minus that on the second
-    potential = MU * (sp.sqrt((q - p).dot(q - p)) - RHO) ** 2 / 2
+    potential = edge_energy(sp.S.Zero, sp.sqrt((q - p).dot(q - p)))
     stored = sum(potential.diff(a) * b for a, b in zip([*p, *q], [*v, *w], strict=True))
     return sp.simplify(stored + force.dot(v) - force.dot(w) + SIGMA * (w - v).dot(w - v))
 
 
 def no_collision(text: str) -> Step:
     """Of V = kinetic + μ(|x| - ρ)²/2 that does not rise above V(0) < μρ²/2."""
-    x, mu, rho, start, kinetic, gap = z3.Reals("|x| μ ρ V(0) kinetic gap")
+    x, mu, rho, start, kinetic, gap = z3.Reals("|x| μ ρ V(0) |x'|² gap")
+    names = {SQUARE: kinetic, LENGTH: x, MU: mu, RHO: rho}
+    at_gap = real(edge_energy(sp.S.Zero, RHO - LENGTH), {**names, LENGTH: gap})  # V of an edge at rest, shorter by that
+    collided = real(edge_energy(sp.S.Zero, sp.S.Zero), names)
     return implication(
         text,
         z3.And(x >= rho - gap, rho - gap > 0),
-        *(mu > 0, rho > 0, x >= 0, kinetic >= 0, 2 * start < mu * rho**2, gap >= 0, mu * gap**2 == 2 * start),
-        2 * kinetic + mu * (x - rho) ** 2 <= 2 * start,
+        *(mu > 0, rho > 0, x >= 0, kinetic >= 0, start < collided, gap >= 0, at_gap == start),
+        real(edge_energy(), names) <= start,
         latex=r"|x(t)| \ge \rho - \sqrt{2V(0)/\mu} > 0",
     )
 
@@ -227,36 +236,13 @@ def _energies() -> Iterator[Step]:
     yield no_collision("undirected: if H(0) < μρ²/2, then |x_e(t)| >= ρ - √(2H(0)/μ) > 0 on every edge")
 
 
-def _undirected_trees() -> Iterator[Step]:
-    yield Step(
-        "undirected: with all v equal, all u are 0; then a leaf's one spring is slack, and so are all of a tree",
-        all(incidence_matrix(edges).rank() == agents - 1 for agents in range(2, 7) for edges in trees(agents)),
-        r"\sum_e D_{ie}\, g(x_e) = 0 \text{ for all } i \implies g(x_e) = 0 \implies |x_e| = \rho",
-        "D has rank n - 1: computed for all trees of 2 to 6 agents",
-    )
-    for d in (2, 3):
-        yield Step(
-            f"undirected, d = {d}: then (n - 1)(d - 1) zero modes besides translations: each leaf adds one row",
-            all(_zero_modes(edges, d) == agents * (d - 1) + 1 for agents in range(2, 6) for edges in trees(agents)),
-            r"\dim\ker \sum_e \mu_e\, \hat x_e \hat x_e^\top = d + (n - 1)(d - 1)",
-            "computed for all trees of 2 to 5 agents, in rational directions",
-        )
-
-
-def _zero_modes(edges: Tree, d: int) -> int:
-    """Of the Hessian Σ μ x̂x̂ᵀ at edges of length ρ: the kernel of the rows x̂ᵀ of the rigidity matrix."""
-    matrix = incidence_matrix(edges)
-    rows = [sp.kronecker_product(matrix[:, e].T, unit_edge(e, d).T) for e in range(len(edges))]
-    return int(matrix.rows * d - sp.Matrix.vstack(*rows).rank())
-
-
 def _steps() -> Iterator[Step]:
     yield from _edges()
     yield from _frozen()
     yield from _hurwitz()
     yield from _manifold()
     yield from _energies()
-    yield from _undirected_trees()
+    yield from undirected_trees()
 
 
 PROOF = Proof(
@@ -277,5 +263,5 @@ PROOF = Proof(
     rigour="smt",
     theorems=("zone-1-corrected", "J2", "J3", "J6"),
     steps=_steps,
-    size=35,
+    size=40,
 )

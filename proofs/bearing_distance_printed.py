@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import pairwise, permutations
+from fractions import Fraction
+from itertools import count, pairwise, permutations
 
 import sympy as sp
 import z3
@@ -18,13 +19,17 @@ from flockana.symbolic.spanning_trees import (
     receiver_matrix,
     separation_forms,
     stacked_form,
+    symmetric_part,
 )
 from proofs.bearing_distance import no_collision, spring
+from proofs.decimals import decimal
+from proofs.evaluate import differs
 from proofs.proof import Proof, Step
 from proofs.smt import implication
 
 EXCESS = sp.Symbol("epsilon", positive=True)  # of μ over the value from which A_cl is unstable
 _HALF = sp.Rational(1, 2)
+STATED = {"eigenvalue": "0.618", "children": "5"}
 _OUTER, _MIDDLE = sp.Rational(41, 20), sp.Rational(27, 10)
 _PATH = ((0, 1), (1, 0), (1, 2), (2, 1), (2, 3), (3, 2))
 _GRAPH = ((0, 1), (2, 1), (1, 2), (2, 3))  # agent 1 has two neighbours, agent 2 is one of them and sees it
@@ -43,6 +48,24 @@ def quadratic_factors(damping: sp.Matrix, stiffness: sp.Matrix) -> Iterator[sp.E
     mus, gammas = ([v for v, k in m.eigenvals().items() for _ in range(k) if v != 0] for m in (damping, stiffness))
     for order in permutations(gammas):
         yield sp.prod([S**2 + S * m + g for m, g in zip(mus, order, strict=True)])
+
+
+def star_rows_hold() -> bool:
+    """Whether (±√k, 1, ..., 1) are eigenvectors for every k, row by row.
+
+    With a = parent edge, S_aa = S_cc = 1, S_ac = S_ca = -1/2 for each child c, and 0 between children: the entries of
+    the matrix itself, which are read off that of two children and are the same for any two.
+    """
+    k = sp.Symbol("k", integer=True, positive=True)
+    edges = ((0, 1), (1, 2), (1, 3))
+    whole = incidence_matrix(edges).T * receiver_matrix(edges)
+    part = (whole + whole.T) / 2
+    own, child, between, (up, other) = part[0, 0], part[1, 1], part[1, 2], (part[0, 1], part[0, 2])
+    rows = [
+        (own * y + up * k - (1 - y / 2) * y, up * y + child + between * (k - 1) - (1 - y / 2))
+        for y in (sp.sqrt(k), -sp.sqrt(k))
+    ]
+    return up == other and part[2, 2] == child and all(sp.expand(row) == 0 for pair in rows for row in pair)
 
 
 def routh(coefficients: list[sp.Expr]) -> list[sp.Expr]:
@@ -84,8 +107,11 @@ def _signs() -> Iterator[Step]:
         ("identity-corrected", "J4: with the other sign it holds", True),
         ("34", "J4: the two errors cancel: (34) holds", True),
     ):
+        residuals = forms[name].residuals
         yield Step(
-            text, forms[name].holds is holds, evidence="every component, agents with one and with two neighbours"
+            text,
+            all(r == 0 for r in residuals) if holds else any(map(differs, residuals)),
+            evidence="every component, agents with one and with two neighbours",
         )
     yield Step("(35): u = -D_in W^s Dᵀp - D_in W^a Dᵀv", stacked_form(_GRAPH).holds)
     D, heads = incidence_matrix(((0, 1), (1, 2))), receiver_matrix(((0, 1), (1, 2)))
@@ -116,28 +142,28 @@ def _edges_do_not_vanish() -> Iterator[Step]:
 
 def _not_hurwitz() -> Iterator[Step]:
     yield Step(
-        "J2: two agents at half the spacing: A_cl has the eigenvalue (√5 - 1)/2 = 0.618",
+        f"J2: two agents at half the spacing: A_cl has the eigenvalue (√5 - 1)/2 = {STATED['eigenvalue']}…",
         frozen_eigenvalues(_HALF)[0] == (sp.sqrt(5) - 1) / 2,
         r"s^2 + s + \mu(1 - \rho/|x|) = s^2 + s - 1",
+        found={"eigenvalue": decimal(Fraction(int(sp.floor(1000 * frozen_eigenvalues(_HALF)[0])), 1000))},
     )
     yield Step("J2: at the spacing it has the eigenvalue 0: singular at the goal", frozen_eigenvalues(sp.S.One)[0] == 0)
-    k = sp.Symbol("k", positive=True)
-    quotient = sp.Matrix([[1, -k / 2], [-_HALF, 1]])  # on vectors (y, z, ..., z): the parent edge, and k equal children
-    eigen = [
-        sp.simplify(quotient * sp.Matrix([r, 1]) - (1 - r / 2) * sp.Matrix([r, 1])) for r in (sp.sqrt(k), -sp.sqrt(k))
-    ]
     root = z3.Real("√k")
+    least = next(k for k in count(1) if symmetric_part(k).result.is_negative)
     yield Step(
-        "J2: the symmetric part of DᵀD_in at root → a → {k children} has eigenvalues 1 - √k/2, 1 + √k/2 and 1",
-        eigen == [sp.zeros(2, 1)] * 2,
+        f"J2: the symmetric part of DᵀD_in at root → a → {{k children}} has eigenvalues 1 - √k/2, 1 + √k/2 and 1: of "
+        f"the matrix itself for k = 1 to {least + 2}, and of its rows for every k",
+        all(symmetric_part(k).holds for k in range(1, least + 3)) and star_rows_hold(),
         r"\begin{pmatrix} 1 & -\tfrac12 \mathbf 1^\top \\ -\tfrac12 \mathbf 1 & I\end{pmatrix}"
         r"\begin{pmatrix} \sqrt k \\ \mathbf 1\end{pmatrix} = \left(1 - \tfrac{\sqrt k}{2}\right)"
         r"\begin{pmatrix} \sqrt k \\ \mathbf 1\end{pmatrix}",
         "1 on the k - 1 dimensions of vectors (0, z) with Σz = 0",
+        {"children": str(least)},
     )
     yield implication(
-        "J2: negative if and only if k > 4: with five children it is not positive definite, though a spanning tree",
-        (1 - root / 2 < 0) == (root**2 > 4),
+        f"J2: negative if and only if k > {least - 1}: with {least} children it is not positive definite, though "
+        "a spanning tree",
+        (1 - root / 2 < 0) == (root**2 > least - 1),
         root > 0,
     )
 
@@ -153,8 +179,7 @@ def _no_pairing() -> Iterator[Step]:
     pairings = [sp.Poly(S**6 * product, S) for product in quadratic_factors(damping, stiffness)]
     yield Step(
         "J3: at μ = 400 no pairing λ² + λμ_i + γ_i = 0 of its eigenvalues with those of A^s gives those of A_cl",
-        pencil.monoms()[-1] == (6,)
-        and all(any(sp.simplify(c) != 0 for c in (pencil - one).all_coeffs()) for one in pairings),
+        pencil.monoms()[-1] == (6,) and all(any(map(differs, (pencil - one).all_coeffs())) for one in pairings),
         r"\det(s^2 I + s A^a + A^s) \ne \prod_i (s^2 + s\mu_i + \gamma_i)",
         f"{len(pairings)} pairings of the nonzero ones; 0 has to go with 0, as 0 is sixfold",
     )
@@ -238,7 +263,8 @@ PROOF = Proof(
     statement=(
         "On a spanning tree the edges need not vanish: two agents at rest at the desired spacing stay there, and an "
         "open set of starts keeps |x| away from 0. A_cl need not be Hurwitz: two agents at half the spacing have the "
-        "eigenvalue 0.618. DᵀD_in is not positive definite at a node of five children. Eigenvalues do not pair off on "
+        f"eigenvalue {STATED['eigenvalue']}…. DᵀD_in is not positive definite at a node of {STATED['children']} "
+        "children. Eigenvalues do not pair off on "
         "an undirected path, and A_cl is unstable there though every edge is longer than αr and A^s, A^a have "
         "nonnegative eigenvalues. With αr = |N_i| the frozen path of three runs, from an open set of states, into two "
         "coincident agents and acceleration for ever."
@@ -248,4 +274,5 @@ PROOF = Proof(
     theorems=("zone-1-printed", "J1", "J2", "J3", "J4", "J5"),
     steps=_steps,
     size=25,
+    values=STATED,
 )

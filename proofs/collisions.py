@@ -12,15 +12,31 @@ import sympy as sp
 import z3
 
 from flockana.symbolic.energy import algorithm1_identity, structural_identity
+from flockana.symbolic.pair import PSI
+from flockana.symbolic.parameters import GAINS
+from flockana.symbolic.sums import LAMBDA as WEIGHT
+from flockana.symbolic.sums import V as VELOCITY
+from flockana.symbolic.sums import X, Z, structural_hamiltonian, write_out
 from proofs.proof import Proof, Step
 from proofs.signs_of_phi import potential_signs
-from proofs.smt import implication
+from proofs.smt import implication, real
 
 C1, C_STAR, LAMBDA, H, H0 = z3.Reals("c1_alpha c_star lambda H H_0")
-TOGETHER, REST, J, K = z3.Reals("N rest J K")  # coincident pairs, what the other pairs add to V, J(x), K(v)
+TOGETHER, REST = z3.Reals("N rest")  # coincident pairs, what the other pairs add to V
+SQUARES = z3.Reals("x_1_squared x_2_squared v_1_squared v_2_squared")
 # all that is known at time t: V is c* for each coincident pair and at least 0 for each other one
-STATE = (C1 > 0, C_STAR > 0, LAMBDA >= 0, TOGETHER >= 0, REST >= 0, J >= 0, K >= 0)
-ENERGY = (H == C1 * (TOGETHER * C_STAR + REST) + LAMBDA * J + K, H <= H0)
+STATE = (C1 > 0, C_STAR > 0, LAMBDA >= 0, TOGETHER >= 0, REST >= 0, *(one >= 0 for one in SQUARES))
+
+
+def hamiltonian() -> z3.ArithRef:
+    """H_λ as the library has it, of two agents on a line, the pair's ψ standing for that of all pairs."""
+    symbols = (X[1, 1], X[2, 1], VELOCITY[1, 1], VELOCITY[2, 1])
+    squares = {symbol**2: one for symbol, one in zip(symbols, SQUARES, strict=True)}
+    pairs = {PSI(Z[1, 2]): TOGETHER * C_STAR + REST}
+    return real(write_out(structural_hamiltonian(1), 2), {**squares, **pairs, GAINS.c1_alpha: C1, WEIGHT: LAMBDA})
+
+
+ENERGY = (hamiltonian() == H, H <= H0)
 
 
 def _energy_falls() -> Iterator[Step]:
@@ -38,7 +54,7 @@ def _energy_falls() -> Iterator[Step]:
     )
     yield implication(
         "which is for ever: velocities stay bounded, K(v) <= H(0), and the right-hand side is Lipschitz where they are",
-        K <= H0,
+        SQUARES[2] + SQUARES[3] <= 2 * H0,
         *(*STATE, *ENERGY),
     )
 
@@ -103,6 +119,6 @@ PROOF = Proof(
     hypotheses="c1α > 0, other gains >= 0 and common to all agents; 0 < a <= b, 0 < h < 1, 0 < d < r, ε > 0",
     rigour="smt",
     steps=_steps,
-    size=17,
-    theorems=("os-1", "os-3", "E13"),
+    size=18,
+    theorems=("os-1", "os-3", "E4", "E13"),
 )

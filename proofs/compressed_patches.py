@@ -19,6 +19,7 @@ from flockana.environment.targets import StaticTarget
 from flockana.equilibria.solve import find_equilibrium
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm2
+from proofs.decimals import at_least, small
 from proofs.intervals import (
     AlphaParameters,
     ball,
@@ -31,7 +32,7 @@ from proofs.intervals import (
 )
 from proofs.krawczyk import enclose_zero, least_eigenvalue
 from proofs.proof import Proof, Step
-from proofs.unstressed_patches import RINGS, modes_decay, off_the_edges, pair_hessian
+from proofs.unstressed_patches import RINGS, SIZES, THE_SIZES, modes_decay, off_the_edges, pair_hessian
 
 DIGITS = 30
 RADIUS = "1e-6"  # of the box in which there is one equilibrium
@@ -197,7 +198,8 @@ def _patch(rings: int) -> Iterator[Step]:
         f"n = {n}: exactly one equilibrium is within {RADIUS} of the computed patch, not rotated against it (Krawczyk)",
         True if found else None,
         r"K = \bar x - Y F(\bar x) + (1 - Y F'(B))(B - \bar x) \subset \operatorname{int} B",
-        "not certain" if found is None else f"it is within {float(_radius(found, q)):.2g} of it",
+        "not certain" if found is None else f"it is within {small(_radius(found, q))} of it",
+        {f"n of {rings} rings": str(n)},
     )
     if found is None:
         return
@@ -213,14 +215,10 @@ def _patch(rings: int) -> Iterator[Step]:
         True if least and structural else None,
         evidence="not certain"
         if least is None or structural is None
-        else f"the other eigenvalues are at least {_down(least)}; those of the structure, off the translations, which "
-        f"have c1γ = {u.c1_gamma.str(3)}, at least {_down(structural)}",
+        else f"the other eigenvalues are at least {at_least(least)}; those of the structure, off the "
+        "translations, which "
+        f"have c1γ = {u.c1_gamma.str(3)}, at least {at_least(structural)}",
     )
-
-
-def _down(x: arb) -> str:
-    """Rounded down to six decimals."""
-    return f"{int(float((x * 10**6).floor().lower())) / 1e6:.6f}"
 
 
 def _steps() -> Iterator[Step]:
@@ -236,18 +234,21 @@ PROOF = Proof(
     id="compressed-patches",
     title="Algorithm 2: compressed hexagonal patches are stable equilibria",
     statement=(
-        "Within 1e-6 of each of the patches of n = 7 and 19 agents that flockana computes for Algorithm 2 lies exactly "
+        f"Within {RADIUS} of each of the patches of n = {THE_SIZES} agents that flockana computes for Algorithm 2 "
+        "lies exactly "
         "one true equilibrium not rotated against it; it is compressed, all links shorter than d, and ∇²U_λ there is "
         "positive definite but for the rotation. Modulo the rotation it is locally asymptotically stable."
     ),
     hypotheses=(
-        "m = 2; positions relative to the γ-agent, which moves uniformly, dq_r/dt = p_r; d = 7, r = 8.4, ε = 0.1, "
-        "h = 0.2, a = b = 5, c1α = 30, c1γ = 1.1, and any c2α >= 0, c2γ > 0. The last conclusion is cited: where all "
+        f"m = 2; positions relative to the γ-agent, which moves uniformly, dq_r/dt = p_r; "
+        f"{AlphaParameters.of(LAW.alpha)}, c1α = {LAW.gains.c1_alpha:g}, c1γ = {LAW.gains.c1_gamma}, and any c2α "
+        ">= 0, c2γ > 0. The last conclusion is cited: where all "
         "eigenvalues but those along a manifold of equilibria, here the rotated patches, have negative real parts, "
         "nearby solutions converge to one of them (centre manifold theorem; Carr 1981)"
     ),
     rigour="interval",
     steps=_steps,
     size=16,
-    theorems=("os-3", "E3"),
+    values=SIZES,
+    theorems=("E3",),
 )

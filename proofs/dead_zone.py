@@ -13,9 +13,9 @@ from collections.abc import Iterator
 
 import sympy as sp
 import z3
+from flint import ctx
 
 from flockana.symbolic.dead_zone import (
-    D_1,
     D_2,
     ETA,
     ETA_POSITIVE,
@@ -29,18 +29,31 @@ from flockana.symbolic.dead_zone import (
     attraction,
     attractive_primitive,
     direction,
+    force,
     jumps,
-    potential,
     repulsion,
     repulsive_primitive,
+    saturated_energy_identity,
 )
+from proofs.dead_zone_pairs import (
+    DIGITS,
+    RESTS_AT,
+    STIFF,
+    balls,
+    defaults,
+    potential_steps,
+    rest_steps,
+    saturated,
+    zones,
+)
+from proofs.dead_zone_parting import FROM, LEAVING, separation_steps
+from proofs.decimals import interval
+from proofs.evaluate import enclosed
 from proofs.proof import Proof, Step
-from proofs.smt import implication
+from proofs.smt import implication, real
 from proofs.theorem5_counts import equidistant_gram
 
 _ZERO = sp.Integer(0)
-# the default parameters: r, δ = 4.5 and k_δ are the paper's, the rest ours
-_DEFAULTS = {D_1: "7/2", D_2: "25/2", R: 15, R_D: 40, K_R: 200, K_DELTA: "13/10", ETA_POSITIVE: 1, K_1: "1/100"}
 
 
 def _primitives() -> Iterator[Step]:
@@ -55,13 +68,6 @@ def _primitives() -> Iterator[Step]:
                 sp.simplify(difference) == 0,
                 sp.latex(sp.Eq(sp.Symbol("P"), primitive(eta=eta))),
             )
-    pieces = [value for value, _ in potential().args]
-    ends = [pieces[1] - pieces[2], pieces[2] - pieces[3], pieces[3] - pieces[0]]
-    yield Step(
-        "ψ̄ is continuous at d₁, d₂ and r, and so is H̄ along every solution",
-        all(sp.expand(step.subs(RHO, end)) == 0 for step, end in zip(ends, (D_1, D_2, R), strict=True)),
-        r"\psi(\rho) = P_r(d_1) - P_r(\rho),\quad 0,\quad P_a(\rho) - P_a(d_2),\quad P_a(r) - P_a(d_2)",
-    )
     s, w, kr, kd, pole, reach, slope = z3.Reals("ρ √(1+ηρ²) k_r k_δ r_d r ψ'")
     given = (s > 0, w > 0, kr > 0, kd >= 0)
     yield implication(
@@ -80,22 +86,14 @@ def _primitives() -> Iterator[Step]:
     )
 
 
-def pair_rate(m: int, *, damping: sp.Expr = K_2) -> sp.Expr:
-    """What a pair in range adds to dH̄/dt, with damping·|p_j - p_i|² added, for any F = ψ̄': 0 if damping is k₂."""
-    q, o, p, v = (sp.Matrix(sp.symbols(f"{name}_1:{m + 1}")) for name in "qopv")
-    distance, force = sp.sqrt((o - q).dot(o - q)), sp.Symbol("F")
-    control = force * (o - q) / distance + K_2 * (v - p)  # on the first agent; minus that on the second
-    stored = force * sum(distance.diff(a) * b for a, b in zip([*q, *o], [*p, *v], strict=True))
-    return sp.simplify(stored + control.dot(p) - control.dot(v) + damping * (v - p).dot(v - p))
-
-
 def _energy() -> Iterator[Step]:
     for m in (1, 2, 3):
         yield Step(
             f"m = {m}: a pair in range adds -k₂|p_j - p_i|² to dH̄/dt, whatever F; one out of range adds nothing",
-            pair_rate(m) == 0,
+            saturated_energy_identity(m).holds,
             r"\dot{\bar H} = -k_2\, p^\top (L \otimes I)\, p \le 0",
-            "forces are opposite, so that p̄ is constant; while a pair stays on a jump its distance is constant, and so "
+            "forces are opposite, so that p̄ is constant; while a pair stays on a jump its distance is constant, "
+            "and so "
             "F does no work, whatever it is",
         )
     q = sp.symbols("q_1:6")
@@ -107,21 +105,29 @@ def _energy() -> Iterator[Step]:
     )
 
 
+def pole(end: sp.Expr) -> sp.Expr:
+    """2k_r[asinh(1/√ηρ) - asinh(1/√ηb)], what ψ(ρ) is at least for ρ < b, with k_δ and k₁ left out."""
+    far, near = (repulsive_primitive(at).subs(K_DELTA, 0) for at in (end, RHO))
+    return far - near
+
+
 def no_collision(text: str, *, factor: int = 2) -> Step:
     """The step from ψ̄(ρ) <= H̄(0) to asinh(1/√ηρ) <= H̄(0)/(factor·k_r) + asinh(1/√ηb), for ρ < b."""
     start, kr, near, end, rest = z3.Reals("H̄(0) k_r asinh(1/√ηρ) asinh(1/√ηb) rest")
-    given = (kr > 0, start >= 0, rest >= 0, 2 * kr * (near - end) + rest <= start)
+    b = sp.Symbol("b", positive=True)
+    names = {K_R: kr, **{sp.asinh(1 / (sp.sqrt(ETA_POSITIVE) * at)): z for at, z in ((RHO, near), (b, end))}}
+    given = (kr > 0, start >= 0, rest >= 0, real(pole(b), names) + rest <= start)
     return implication(text, factor * kr * (near - end) <= start, *given)
 
 
 def _collisions() -> Iterator[Step]:
     end, y = sp.symbols("b y", positive=True)
-    pole = 2 * K_R * (sp.asinh(1 / (sp.sqrt(ETA_POSITIVE) * RHO)) - sp.asinh(1 / (sp.sqrt(ETA_POSITIVE) * end)))
+    least = pole(end)
     roots = [sp.sqrt(1 + ETA_POSITIVE * s**2) for s in (end, RHO)]
     rise = repulsive_primitive(end) - repulsive_primitive(RHO)
     yield Step(
         "below b, η > 0: ψ(ρ) >= 2k_r[asinh(1/√ηρ) - asinh(1/√ηb)] and what k_δ adds, nothing negative",
-        sp.expand(rise - pole - K_DELTA * (roots[0] - roots[1]) / ETA_POSITIVE) == 0,
+        sp.expand(rise - least - K_DELTA * (roots[0] - roots[1]) / ETA_POSITIVE) == 0,
         r"\int_\rho^b \frac{k_\delta s\, ds}{\sqrt{1 + \eta s^2}} = \frac{k_\delta}{\eta}"
         r"\left(\sqrt{1 + \eta b^2} - \sqrt{1 + \eta\rho^2}\right) \ge 0",
         "between b and d₁ a ramp adds nothing negative either, nor does k₁",
@@ -136,7 +142,7 @@ def _collisions() -> Iterator[Step]:
     )
     yield Step(
         "L6: no better bound holds: with k_δ = k₁ = k₂ = 0, no ramp, two agents head-on turn where ψ(ρ) = H̄(0), at it",
-        sp.expand((rise - pole).subs(K_DELTA, 0)) == 0 and pair_rate(2, damping=_ZERO).subs(K_2, 0) == 0,
+        sp.expand((rise - least).subs(K_DELTA, 0)) == 0 and saturated_energy_identity(2).result.subs(K_2, 0) == 0,
     )
     rise = repulsive_primitive(end, eta=_ZERO) - repulsive_primitive(RHO, eta=_ZERO)
     yield Step(
@@ -165,65 +171,39 @@ def _jumps() -> Iterator[Step]:
         r" \frac{(2k_r/(r_d - d_2)^2 + k_\delta)\, d_2}{\sqrt{1 + \eta d_2^2}},\quad F(r^-) = "
         r"\frac{(2k_r/(r_d - r)^2 + k_\delta)\, r}{\sqrt{1 + \eta r^2}} + k_1 r",
     )
-    far = potential().args[0][0]
-    value = far.subs(_DEFAULTS)
     yield Step(
-        "L5: the H of neighbours alone is H̄ - ψ̄(r)·(pairs out of range): it rises by ψ̄(r) > 0 as a pair comes in",
-        value.is_positive,
-        rf"\bar\psi(r) = {sp.latex(far)}",
-        f"two that approach at 12: from 36 to {36 + value.evalf(6)}, default parameters without a ramp",
+        "with d₂ >= r it jumps at r down to 0 all the same, from k₁r",
+        sp.limit(force().subs(zones(wide=True)["on the dead zone"], simultaneous=True).doit(), RHO, R) == K_1 * R,
+        r"F(r^-) = k_1 r",
     )
+    yield from _printed_energy()
+
+
+def _printed_energy() -> Iterator[Step]:
+    far, wide = (saturated(wide=wide, eta=ETA_POSITIVE).args[0][0] for wide in (False, True))
+    yield Step(
+        "L5: the H of neighbours alone is H̄ - ψ̄(r)·(pairs out of range): it rises by ψ̄(r) as a pair comes in, "
+        "which is "
+        "positive: with d₂ < r, ψ rises to r and ½k₁r² is added; with d₂ >= r, ½k₁r² is left, positive if k₁ > 0",
+        sp.expand(far - K_1 * R**2 / 2 - (attractive_primitive(R) - attractive_primitive(D_2))) == 0
+        and sp.expand(wide - K_1 * R**2 / 2) == 0,
+        rf"\bar\psi(r) = {sp.latex(far)}",
+    )
+    with ctx.workdps(DIGITS):
+        value = enclosed(far, balls(defaults())).real
+        yield Step(
+            "L5: by default, no ramp, two that approach at 12 m/s come from H = 36 to 36 + ψ̄(r)",
+            bool(value > 0),
+            evidence=f"36 + ψ̄(r) in {interval(36 + value)}",
+        )
 
 
 def _contacts() -> Iterator[Step]:
-    s, w, end, w_end, kr, kd, k1 = z3.Reals("ρ √(1+ηρ²) d₁ √(1+ηd₁²) k_r k_δ k₁")
-    yield implication(
-        "L8: F = k₁ρ > 0 all over the dead zone, r_b included, and F < 0 all below d₁ if just below it, as by default: "
-        "the one distance within r of two agents at rest is d₁ = r_b - δ, where F jumps through 0",
-        -(2 * kr + kd * s**2) + k1 * s**2 * w < 0,
-        *(s > 0, s <= end, w > 0, w <= w_end, kr > 0, kd >= 0, k1 > 0),
-        -(2 * kr + kd * end**2) + k1 * end**2 * w_end < 0,
-        latex=r"F(\rho) = \frac{-(2k_r + k_δ \rho^2) + k_1 \rho^2 \sqrt{1 + \eta\rho^2}}{\rho\sqrt{1 + \eta\rho^2}}",
-    )
     yield Step(
         "L8: four agents of a plane are not all d apart, so that (1) has no solution for n > 3",
         equidistant_gram(3).det().is_positive,
         r"\det\left(\langle q_i - q_0, q_j - q_0\rangle\right)_{i,j=1,2,3} = \tfrac12 d^6 \ne 0 = "
         r"\det \text{ of any three vectors of the plane}",
-    )
-
-
-def _separate() -> Iterator[Step]:
-    s, w, pull, theta, speed = z3.Reals("ρ √(1+ρ²) F θ ρ'")
-    branch = pull * w * (40 - s) ** 2 == theta * (400 + z3.Q(13, 10) * (40 - s) ** 2) * s + s * w * (40 - s) ** 2 / 100
-    yield implication(
-        "L4: default parameters, ramp or none: two agents between 14 and r = 15 m apart attract with at most 2.1",
-        pull <= z3.Q(21, 10),
-        *(s >= 14, s < 15, theta >= 0, theta <= 1, w > s, w**2 == 1 + s**2, branch),
-    )
-    loss = z3.Real("loss")
-    yield implication(
-        "L4: while they part faster than 9 m/s, ρ' falls by less than 3 m/s per metre",
-        loss < 3,
-        *(speed >= 9, pull <= z3.Q(21, 10), loss * speed == 2 * pull + 2 * speed),
-        latex=r"\ddot\rho = -2F(\rho) - 2k_2\dot\rho,\quad \frac{d\dot\rho}{d\rho} = -\frac{2F}{\dot\rho} - 2k_2 > -3",
-    )
-    start, way = z3.Reals("ρ'(0) way")
-    yield implication(
-        "L4: leaving each other at 12 m/s or more from 14 m they are faster than 9 m/s up to r, and keep that speed: "
-        "they separate for ever, and neither distances nor velocities converge",
-        speed >= 9,
-        *(start >= 12, way >= 0, way <= 1, speed >= start - 3 * way),
-        latex=r"\dot\rho(t) \ge 9 \text{ while } \rho < r,\quad \ddot\rho = 0 \text{ beyond}",
-    )
-    least, damping, reach, bound, speed0 = z3.Reals("least k₂ r-ρ(0) F_max ρ'(0)")
-    drop = z3.Real("drop")
-    yield implication(
-        "L4: no parameters help: any pair in range separates if it leaves fast enough",
-        speed0 - drop >= least,
-        *(least > 0, damping >= 0, bound >= 0, reach > 0, drop * least <= (2 * bound + 2 * damping * least) * reach),
-        speed0 * least == least**2 + (2 * bound + 2 * damping * least) * reach,
-        latex=r"\dot\rho(0) = u + \left(\frac{2F_{\max}}{u} + 2k_2\right)(r - \rho(0)) \implies \dot\rho \ge u > 0",
     )
 
 
@@ -256,10 +236,12 @@ def _wrong_sign() -> Iterator[Step]:
 
 def _steps() -> Iterator[Step]:
     yield from _primitives()
+    yield from potential_steps()
     yield from _energy()
     yield from _collisions()
     yield from _jumps()
-    yield from _separate()
+    yield from separation_steps()
+    yield from rest_steps()
     yield from _contacts()
     yield from _wrong_sign()
 
@@ -268,19 +250,24 @@ PROOF = Proof(
     id="dead-zone",
     title="Dead-zone flocking: Theorem 1, repaired and refuted",
     statement=(
-        "The closed forms of ψ are potentials of the force, for η = 0 and η > 0. dH̄/dt = -k₂ pᵀL̂p for every n across "
-        "all switches if r_d > r; hence no collision: ρ_ij(t) >= 1/(√η sinh(H̄(0)/2k_r + asinh(1/√ηb))), for η = 0 "
-        "b exp(-H̄(0)/2k_r). The printed H jumps up by ψ̄(r) as a pair comes into range. Two agents 14 m apart that "
-        "leave each other at 12 m/s separate for ever: neither cohesion nor equal velocities follow. With n_ij "
-        "reversed, two agents at rest near each other collide. Two agents rest at r_b - δ, not at r_b, if k₁ > 0; and "
-        "(1) has no solution for n > 3 in the plane."
+        "ψ̄ is a potential of the force in every zone, continuous between them, for η = 0 and η > 0, with d₂ < r and "
+        "with d₂ >= r. dH̄/dt = -k₂ pᵀL̂p for every n across all switches if r_d > r; hence no collision: ρ_ij(t) >= "
+        "1/(√η sinh(H̄(0)/2k_r + asinh(1/√ηb))), for η = 0 b exp(-H̄(0)/2k_r). The printed H jumps up by ψ̄(r) "
+        "as a pair "
+        "comes into range, unless d₂ >= r and k₁ = 0. Two agents within r that leave each other at u + (2F_max/u + "
+        "2k₂)(r - ρ(0)), u > 0, or faster separate for ever, F_max being F just below r if d₂ < r: by default, "
+        f"{FROM} m apart, at {LEAVING} m/s; neither cohesion nor equal velocities follow. With n_ij reversed, two "
+        "agents at rest near each other collide. If k₁ > 0, two agents within r rest at one distance, never at r_b: "
+        "without a ramp at d₁ = r_b - δ if k₁d₁²√(1 + ηd₁²) <= 2k_r + k_δd₁², as by default, and else below d₁ (k₁ = "
+        f"{STIFF}: at {RESTS_AT}…), with a ramp always below d₁. (1) has no solution for n > 3 in the plane."
     ),
     hypotheses=(
-        "k_r > 0, k_δ, k₁, k₂, η >= 0, 0 < d₁ <= d₂, distinct starts; at jumps of F solutions in Filippov's sense. "
-        "Not proved here: that velocities match within a component"
+        "k_r > 0, k_δ, k₁, k₂, η >= 0, 0 < d₁ < r < r_d, d₁ <= d₂, distinct starts; at jumps of F solutions in "
+        "Filippov's sense. Not proved here: that velocities match within a component"
     ),
     rigour="smt",
-    theorems=("dead-zone-1-printed", "dead-zone-1-corrected", "L2", "L3", "L4", "L5", "L6", "L7", "L8"),
+    theorems=("dead-zone-1-printed", "dead-zone-1-corrected", "L2", "L3", "L4", "L5", "L6", "L8"),
     steps=_steps,
-    size=29,
+    size=58,
+    values={"rests at": RESTS_AT},
 )

@@ -19,13 +19,18 @@ from fractions import Fraction
 import sympy as sp
 from flint import arb, ctx
 
+from flockana.environment.targets import StaticTarget
+from flockana.interactions import Gains
+from flockana.laws.olfati_saber import Algorithm2
 from flockana.scenarios import scenario
+from proofs.decimals import at_most, first_digits, interval
 from proofs.intervals import AlphaParameters, adjacency, ball, c_star, exact, hull, psi_alpha, sigma_norm, square
 from proofs.proof import Proof, Step
 
 DIGITS = 20
 FINE = 12  # pieces of the way per unit of length: the finer, the narrower the enclosures
 LATEST = "0.03"
+STATED = {"ratio": "1.908", "latest": LATEST}
 Motion = tuple[arb, arb]  # position and velocity
 
 
@@ -191,14 +196,15 @@ def _reduction() -> Iterator[Step]:
 
 
 def is_the_scenario(start: Start) -> bool:
-    """Whether the catalogue's run is one of these, its p₁(0) a float."""
+    """Whether the catalogue's run is one of these: its law, target and start, its p₁(0) a float, and long enough."""
     run = scenario("three-agents-1d")
-    gains = {name: getattr(run.law.gains, name) for name in ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma")}
-    same = gains == {"c1_alpha": 1.0, **{name: float(getattr(start, name)) for name in list(gains)[1:]}}
-    alike = AlphaParameters.of(run.law.alpha) == start.par and run.q0.ravel().tolist() == list(start.positions)
-    return (
-        same and alike and all(p.contains(v) for (_, p), v in zip(start.agents(), run.p0.ravel().tolist(), strict=True))
-    )
+    numbers = {name: float(getattr(start, name)) for name in ("c2_alpha", "c1_gamma", "c2_gamma")}
+    law = Algorithm2(run.law.alpha, Gains(c1_alpha=1.0, **numbers), StaticTarget((0.0,)))
+    same = type(run.law) is Algorithm2 and run.law == law and AlphaParameters.of(run.law.alpha) == start.par
+    placed = run.q0.shape == run.p0.shape == (3, 1) and run.q0.ravel().tolist() == list(start.positions)
+    long = run.t_span[0] == 0.0 and run.t_span[1] >= float(LATEST)
+    paces = zip(start.agents(), run.p0.ravel().tolist(), strict=True)
+    return same and placed and long and all(bool(p.contains(v)) for (_, p), v in paces)
 
 
 def _steps() -> Iterator[Step]:
@@ -212,8 +218,8 @@ def _steps() -> Iterator[Step]:
         yield Step(
             "c* < H_λ(0) < 2c*: k = 1, and as printed one pair at most collides",
             1 < ratio < 2,
-            rf"H_\lambda(0) = {ratio.str(10, radius=False)}\,c^*",
-            ratio.str(12),
+            rf"H_\lambda(0) \in {interval(ratio, 10)}\,c^*",
+            found={"ratio": str(first_digits(ratio, 3))},
         )
         found = crossings(start)
         for pair, time in (("1 and 2", found.first), ("1 and 3", found.second)):
@@ -226,29 +232,28 @@ def _steps() -> Iterator[Step]:
             "one pair after the other: two distinct pairs, and k = 1",
             None if found.first is None or found.second is None else bool(found.first < found.second),
             r"t_{12} < t_{13}",
+            found={} if found.second is None else {"latest": at_most(found.second, 2)},
         )
 
 
-def interval(x: arb) -> str:
-    """[lower, upper], rounded outwards to six decimals."""
-    low, high = (x * 10**6).lower().floor(), (x * 10**6).upper().ceil()
-    return f"[{int(float(low)) / 1e6:.6f}, {int(float(high)) / 1e6:.6f}]"
-
-
+_START = Start()
+_GAINS = f"c1α = 1, c2α = {_START.c2_alpha}, c1γ = {_START.c1_gamma}, c2γ = {_START.c2_gamma}"
 PROOF = Proof(
     id="distinct-pairs",
     title="Erratum E13: more than k distinct pairs collide",
     statement=(
-        "Three agents on a line under Algorithm 2, H_λ(0) = 1.909… c*, so that k = 1: agents 1 and 2 coincide, and "
-        "later agents 1 and 3, both before t = 0.03. The printed Theorem 3(iv) is false of distinct pairs; what "
+        f"Three agents on a line under Algorithm 2, H_λ(0) = {STATED['ratio']}… c*, so that k = 1: agents 1 and 2 "
+        f"coincide, and later agents 1 and 3, both before t = {STATED['latest']}. The printed Theorem 3(iv) is "
+        "false of distinct pairs; what "
         "is true at each instant is proved in `collisions`."
     ),
     hypotheses=(
-        "q = (-12, 0, 30), p = (√(5.6 c*), 0, 0), give or take 1e-9; d = 7, r = 8.4, ε = 0.1, h = 0.2, a = b = 50000, "
-        "c1α = c2α = 1, c1γ = c2γ = 0.01, the γ-agent at rest at 0"
+        f"q = {_START.positions}, p = (√({_START.boost} c*), 0, 0), give or take {_START.slack}; {_START.par}, "
+        f"{_GAINS}, the γ-agent at rest at 0"
     ),
     rigour="interval",
     steps=_steps,
     size=8,
-    theorems=("os-3", "E13"),
+    values=STATED,
+    theorems=("E13",),
 )

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from flint import arb, ctx
 
 from flockana.scenarios import scenario, scenarios
+from proofs.decimals import plus_minus, small
 from proofs.intervals import (
     AlphaParameters,
     BetaParameters,
@@ -77,7 +78,7 @@ def _latex(constants: dict[str, arb]) -> str:
         "d_beta": r"d_\beta",
         "psi_beta_0": r"\psi_\beta(0)",
     }
-    rows = (rf"{names[name]} &= {value.str(DIGITS, radius=False)}" for name, value in constants.items())
+    rows = (rf"{names[name]} &= {plus_minus(value, DIGITS)}" for name, value in constants.items())
     return "\\begin{aligned}\n" + " \\\\\n".join(rows) + "\n\\end{aligned}"
 
 
@@ -85,12 +86,12 @@ def _steps() -> Iterator[Step]:
     with ctx.workdps(DIGITS + 15):
         for par, users in parameter_sets().items():
             constants = (alpha_constants if isinstance(par, AlphaParameters) else beta_constants)(par)
-            width = max(float(value.rad()) for value in constants.values())
+            width = max((value.rad() for value in constants.values()), key=float)
             yield Step(
                 f"{par} (in {users[0]}{f' and {len(users) - 1} more' if len(users) > 1 else ''}): to {DIGITS} digits",
                 to_digits(constants),
                 _latex(constants),
-                f"balls of radius at most {width:.1g}",
+                f"balls of radius at most {small(width)}",
             )
         for values, printed in REFERENCE.items():
             constants = alpha_constants(AlphaParameters(*values))
@@ -106,7 +107,7 @@ PROOF = Proof(
     title="The constants of every scenario, to 30 digits",
     statement=(
         "d_α, r_α, c* = ψ_α(0), ψ_α(r_α), d_β and ψ_β(0) of the parameters of every scenario lie in the balls of the "
-        "certificate, each narrower than a unit of its 30th digit."
+        f"certificate, each narrower than a unit of its digit number {DIGITS}."
     ),
     hypotheses="the parameters are the decimals that are printed; the gain c1α is not included",
     rigour="interval",

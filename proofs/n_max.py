@@ -15,6 +15,7 @@ import z3
 from flint import arb, ctx
 
 from flockana.lattice import harborth
+from proofs.decimals import at_least, at_most, decimal, interval
 from proofs.enclosures import parameter_sets
 from proofs.intervals import AlphaParameters, ball, c_star, far_potential, psi_alpha, sigma_norm
 from proofs.proof import Proof, Step
@@ -24,6 +25,8 @@ from proofs.theorem5_crossings import HALF, short_side
 
 DIGITS = 30
 PARTS = 1000  # of a unit of length, to which the shortest bound pair is enclosed
+STATED = AlphaParameters()  # the parameters of the statement
+SIZES = {"states": "23", "lattices": "14"}
 
 
 def least_ratio(points: int) -> arb:
@@ -130,10 +133,10 @@ def every_state(par: AlphaParameters) -> Iterator[Step]:
     ratio = ball(par.r) / ball(shortest)
     clique = largest_clique(ratio)
     yield Step(
-        f"{par}: bound pairs are longer than {float(shortest):g}, as ψ_α falls up to d, and shorter than r",
+        f"{par}: bound pairs are longer than {decimal(shortest)}, as ψ_α falls up to d, and shorter than r",
         bool(psi_alpha(sigma_norm(ball(shortest), par.eps), par) > far_potential(par) > beyond),
-        rf"\psi_\alpha(\|{float(shortest):g}\|_\sigma) > \psi_\alpha(r_\alpha) = {far_potential(par).str(10)}",
-        f"a ratio below {ratio.str(6, radius=False)}",
+        rf"\psi_\alpha(\|{decimal(shortest)}\|_\sigma) > \psi_\alpha(r_\alpha) \in {interval(far_potential(par), 10)}",
+        f"a ratio below {at_most(ratio)}",
     )
     if clique is None:
         yield Step("no more than six agents are pairwise bound", None, evidence=f"a ratio up to {ratio.str(6)}")
@@ -144,8 +147,9 @@ def every_state(par: AlphaParameters) -> Iterator[Step]:
         + ("" if clique == 3 else f" (the least ratio of {clique + 1} points is cited)"),
         bool(ratio < least_ratio(clique + 1) and floor_of(n, clique, par) > c_star(par)),
         rf"V \ge \psi_\alpha(r_\alpha)\Bigl(\tfrac{{n^2}}{{{2 * clique}}} - \tfrac n2\Bigr) \ge "
-        rf"{floor_of(n, clique, par).str(8, radius=False)} > {c_star(par).str(8, radius=False)} = c^*",
-        f"at n = {n - 1} it is {floor_of(n - 1, clique, par).str(8, radius=False)}",
+        rf"{at_least(floor_of(n, clique, par))} > {at_most(c_star(par))} \ge c^*",
+        f"at n = {n - 1} it is in {interval(floor_of(n - 1, clique, par))}",
+        {"states": str(n)} if par == STATED else {},
     )
 
 
@@ -157,8 +161,9 @@ def every_lattice(par: AlphaParameters) -> Step:
         f"{par}: an α-lattice of {n} agents has V < c*, none of {n + 1} has (Harborth's theorem, cited), nor of more: "
         "without one of its agents it still is one, and V is no larger",
         bool(below < c_star(par) < above and par.r**2 <= 3 * par.d**2),
-        rf"{below.str(8, radius=False)} < {c_star(par).str(8, radius=False)} < {above.str(8, radius=False)}",
+        rf"V \le {at_most(below)} < c^* \in {interval(c_star(par))} < {at_least(above)}",
         f"{harborth(n)} and {harborth(n + 1)} links; r² <= 3d², so that the hexagonal ones are α-lattices",
+        {"lattices": str(n)} if par == STATED else {},
     )
 
 
@@ -177,8 +182,9 @@ PROOF = Proof(
     id="n-max",
     title="Erratum E4: beyond some n no state is below c*",
     statement=(
-        "In the plane, with d = 7, r = 8.4, ε = 0.1, h = 0.2, a = b, no state of 23 agents or more has V <= c*, and "
-        "α-lattices of up to 14 agents only have V < c*; the two sizes of every scenario's parameters are in the "
+        f"In the plane, with {STATED}, no state of {SIZES['states']} agents or more has V <= c*, and "
+        f"α-lattices of up to {SIZES['lattices']} agents only have V < c*; the two sizes of every scenario's "
+        "parameters are in the "
         "certificate. With r the most agents that can be pairwise bound, V >= ψ_α(r_α)(n²/(2r) - n/2)."
     ),
     hypotheses=(
@@ -187,6 +193,7 @@ PROOF = Proof(
     ),
     rigour="interval",
     steps=_steps,
-    size=28,
+    size=29,
+    values=SIZES,
     theorems=("E4",),
 )

@@ -26,6 +26,7 @@ EIGHT: tuple[Site, ...] = (
 )
 _SYMMETRIES = tuple((order, signs) for order in permutations(range(3)) for signs in product((1, -1), repeat=3))
 _LARGEST = 7
+SIZES = {"neighbours": "12", "fragment": "8", "planar up to": str(_LARGEST)}
 
 
 def _minus(a: Site, b: Site) -> Site:
@@ -197,9 +198,19 @@ def _steps() -> Iterator[Step]:
         r"n - e + f = 2,\ 4f \le 2e",
     )
     yield from _counterexample(STAR, "site and neighbours")
-    yield Step("site and neighbours: 36 links are more than 3n - 6 = 33", len(links_of(STAR)) > planar_bound(13) == 33)
+    n, links = len(STAR), len(links_of(STAR))
+    yield Step(
+        f"site and neighbours: {links} links are more than 3n - 6 = {planar_bound(n)}",
+        links > planar_bound(n),
+        found={"neighbours": str(n - 1)},
+    )
     yield from _counterexample(EIGHT, "eight sites")
-    yield Step("eight sites have 17 links, within 3n - 6 = 18", len(links_of(EIGHT)) == 17 < planar_bound(8) == 18)
+    n, links = len(EIGHT), len(links_of(EIGHT))
+    yield Step(
+        f"{n} sites have {links} links, within 3n - 6 = {planar_bound(n)}: their count does not tell",
+        links < planar_bound(n) and n == _LARGEST + 1,
+        found={"fragment": str(n)},
+    )
     for size in range(1, _LARGEST):
         known = shapes(size)
         yield Step(
@@ -212,6 +223,7 @@ def _steps() -> Iterator[Step]:
         f"every connected fragment of {_LARGEST} sites has a planar graph, and so have smaller ones, as parts",
         all(embeds(_LARGEST, links) for links in graphs),
         evidence=f"{len(graphs)} graphs, with embeddings whose faces satisfy Euler's formula",
+        found={"planar up to": str(len(next(iter(shapes(_LARGEST - 1)))) + 1)},
     )
 
 
@@ -219,13 +231,15 @@ PROOF = Proof(
     id="nonplanar-fcc",
     title="Erratum E5: α-lattices in space need not have planar graphs",
     statement=(
-        "A face-centred cubic site and its twelve neighbours, and a fragment of eight sites, are α-lattices in space "
-        "for every 1 < κ <= √2 whose links do not cross and whose graphs are not planar. Eight is the least: the graph "
-        "of every connected face-centred cubic fragment of seven sites or fewer is planar."
+        f"A face-centred cubic site and its {SIZES['neighbours']} neighbours, and a fragment of {SIZES['fragment']} "
+        "sites, are α-lattices in space for every 1 < κ <= √2 whose links do not cross and whose graphs are not planar."
+        f" {SIZES['fragment']} is the least: the graph of every connected face-centred cubic fragment of "
+        f"{SIZES['planar up to']} sites or fewer is planar."
     ),
     hypotheses="links are the pairs closer than r = κd; cited: Euler's formula for plane graphs",
     rigour="symbolic",
     theorems=("E5",),
     steps=_steps,
     size=17,
+    values=SIZES,
 )

@@ -5,8 +5,8 @@ from __future__ import annotations
 import importlib
 import pkgutil
 import re
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 RIGOURS = ("symbolic", "smt", "interval")
@@ -17,13 +17,15 @@ _DEFINES_PROOF = re.compile(r"^PROOF\b", re.MULTILINE)
 class Step:
     """One checked step: what it says, and whether the check went through; None if the machine could not tell.
 
-    `latex` is the formula that was checked and `evidence` what the machine answered, both for the certificate.
+    `latex` is the formula that was checked and `evidence` what the machine answered, both for the certificate. `found`
+    holds the numbers that it computed and the statement prints.
     """
 
     text: str
     holds: bool | None
     latex: str = ""
     evidence: str = ""
+    found: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -32,7 +34,8 @@ class Proof:
 
     `rigour` is ``"symbolic"``, ``"smt"`` or ``"interval"``, the weakest of its steps: sampling is no proof. `id` is the
     name of the file, with hyphens. A proof that has other than `size` steps is none: a loop may have run short.
-    `theorems` names the entries of the catalogue that it backs; a run that takes longer
+    `values` holds the numbers that the statement and the hypotheses print, by name: a proof is none unless its steps
+    found each, the same. `theorems` names the entries of the catalogue that it backs; a run that takes longer
     than `time_limit` seconds, its import aside, is killed, and nothing is proved.
     """
 
@@ -45,6 +48,7 @@ class Proof:
     theorems: tuple[str, ...] = ()
     time_limit: float = 120.0
     size: int | None = None
+    values: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if self.rigour not in RIGOURS:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import signal
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from multiprocessing import get_context
 from multiprocessing.connection import Connection, wait
@@ -16,7 +16,7 @@ from proofs.proof import Proof, Step, load
 
 START_LIMIT = 300.0  # seconds to import a proof in; only then its own limit begins
 LIBRARIES = {"flint": "python-flint", "z3": "z3-solver"}
-_TOLD = ("title", "statement", "hypotheses", "rigour", "theorems", "time_limit", "size")
+_TOLD = ("title", "statement", "hypotheses", "rigour", "theorems", "time_limit", "size", "values")
 
 
 @dataclass
@@ -34,14 +34,23 @@ class Outcome:
     seconds: float = 0.0
     reason: str = ""
     size: int | None = None
+    values: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def status(self) -> str:
-        """``"failed"`` if a step does not hold, ``"proved"`` if all steps were checked and hold, else ``"unknown"``."""
-        if any(step.holds is False for step in self.steps):
+        """``"failed"`` if a step or a stated number is false, ``"proved"`` if all hold, else ``"unknown"``."""
+        if any(step.holds is False for step in self.steps) or any(self.misprints()):
             return "failed"
-        complete = self.steps and not self.reason and self.size in (None, len(self.steps))
+        found = {name for step in self.steps for name in step.found}
+        complete = self.steps and not self.reason and self.size in (None, len(self.steps)) and set(self.values) <= found
         return "proved" if complete and all(step.holds for step in self.steps) else "unknown"
+
+    def misprints(self) -> Iterator[str]:
+        """Numbers of the statement that are not those that the steps found."""
+        for step in self.steps:
+            for name, value in step.found.items():
+                if self.values.get(name) != value:
+                    yield f"{name} is {value}, and not {self.values.get(name)} as stated"
 
     def objections(self) -> Iterator[str]:
         """All that keeps it from being proved, in words."""
@@ -49,10 +58,14 @@ class Outcome:
             if not step.holds:
                 what = "could not tell" if step.holds is None else "does not hold"
                 yield f"{what}: {step.text}" + (f" ({step.evidence})" if step.evidence else "")
+        yield from self.misprints()
         if self.reason or not self.steps:
             yield self.reason or "it has no steps"
         elif self.size not in (None, len(self.steps)):
             yield f"{len(self.steps)} steps were checked: expected {self.size}"
+        else:
+            for name in self.values.keys() - {name for step in self.steps for name in step.found}:
+                yield f"no step finds {name}, stated as {self.values[name]}"
 
 
 def check(
@@ -113,7 +126,8 @@ class _Run:
                     outcome.steps.append(told)
                 elif kind == "proof":
                     vars(outcome).update(told)
-                    self.since, self.allowed = time.monotonic(), self.limit or outcome.time_limit
+                    self.since = time.monotonic()
+                    self.allowed = outcome.time_limit if self.limit is None else self.limit
                 else:
                     outcome.reason = told
                     return self.end()
@@ -143,7 +157,7 @@ def _work(name: str, package: str, pipe: Connection) -> None:
         pipe.send(("proof", _told(proof)))
         for step in proof.steps():
             holds = None if step.holds is None else bool(step.holds)
-            pipe.send(("step", Step(step.text, holds, str(step.latex), str(step.evidence))))
+            pipe.send(("step", Step(step.text, holds, str(step.latex), str(step.evidence), dict(step.found))))
         reason = ""
     except ImportError as error:
         library = LIBRARIES.get((error.name or "").partition(".")[0])
@@ -155,4 +169,4 @@ def _work(name: str, package: str, pipe: Connection) -> None:
 
 
 def _told(proof: Proof) -> dict[str, Any]:
-    return {name: getattr(proof, name) for name in _TOLD}
+    return {name: getattr(proof, name) for name in _TOLD} | {"values": dict(proof.values)}

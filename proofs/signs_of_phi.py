@@ -17,9 +17,16 @@ import sympy as sp
 import z3
 
 from flockana.symbolic.functions import taper
+from flockana.symbolic.pair import PSI
+from flockana.symbolic.parameters import GAINS
 from flockana.symbolic.potentials import derive_psi_alpha, derive_psi_beta
+from flockana.symbolic.sums import P as MOMENTUM
+from flockana.symbolic.sums import V as VELOCITY
+from flockana.symbolic.sums import X as PLACE
+from flockana.symbolic.sums import Z as DISTANCE
+from flockana.symbolic.sums import hamiltonian, structural_hamiltonian, write_out
 from proofs.proof import Proof, Step
-from proofs.smt import implication
+from proofs.smt import Lemma, implication, lemma, real
 
 A, B, C, EPS, D, R = z3.Reals("a b c epsilon d r")
 GIVEN = (A > 0, A <= B, C >= 0, 4 * A * B * C**2 == (B - A) ** 2)
@@ -59,49 +66,71 @@ def _bump() -> Iterator[Step]:
 
 
 def _lengths() -> Iterator[Step]:
-    u, v, x, y = z3.Reals("u v x y")
+    u, v = z3.Reals("u v")
     yield implication(
         "the σ-norm is increasing: 0 < d_α < r_α",
         z3.And((u - 1) / EPS > 0, (u - 1) / EPS < (v - 1) / EPS),
         *(EPS > 0, D > 0, R > D, *root(u, 1 + EPS * D**2), *root(v, 1 + EPS * R**2)),
         latex=r"0 < d_\alpha = (\sqrt{1+\epsilon d^2} - 1)/\epsilon < (\sqrt{1+\epsilon r^2} - 1)/\epsilon = r_\alpha",
     )
-    yield implication(
+    yield gradients_grow().step
+
+
+def gradients_grow() -> Lemma:
+    """Of x < y, with their roots u and v."""
+    u, v, x, y = z3.Reals("u v x y")
+    return lemma(
         "so is ‖n_ij‖ = x/√(1 + εx²), and it stays below 1/√ε",
         z3.And(x / u < y / v, EPS * (y / v) ** 2 < 1),
-        *(EPS > 0, x >= 0, y > x, *root(u, 1 + EPS * x**2), *root(v, 1 + EPS * y**2)),
+        *(EPS > 0, x >= 0, *root(u, 1 + EPS * x**2), *root(v, 1 + EPS * y**2)),
+        when=y > x,
         latex=r"\|n_{ij}\| = \frac{x}{\sqrt{1+\epsilon x^2}} < \frac{y}{\sqrt{1+\epsilon y^2}} < \frac1{\sqrt\epsilon}",
+    )
+
+
+def phi_lemmas() -> tuple[Lemma, ...]:
+    """What is used of f = φ(s): its value at 0, its signs, its bounds."""
+    s, f, w = z3.Reals("s f w")
+    known = (*GIVEN, *sigmoid(f, s, w))
+    definition = r"\varphi(s) = \tfrac12\Bigl[(a+b)\frac{s+c}{\sqrt{1+(s+c)^2}} + (a-b)\Bigr]"
+    return (
+        lemma("φ(0) = 0 with the given c", f == 0, *known, when=s == 0, latex=definition),
+        lemma("φ(s) < 0 for s < 0", f < 0, *known, when=s < 0),
+        lemma("φ(s) > 0 for s > 0", f > 0, *known, when=s > 0),
+        lemma("-b < φ < a", z3.And(f > -B, f < A), *known, latex=r"-b < \varphi(s) < a"),
     )
 
 
 def _phi() -> Iterator[Step]:
     s, t, f, g, w, v = z3.Reals("s t f g w v")
-    known = (*GIVEN, *sigmoid(f, s, w))
-    definition = r"\varphi(s) = \tfrac12\Bigl[(a+b)\frac{s+c}{\sqrt{1+(s+c)^2}} + (a-b)\Bigr]"
-    yield implication("φ(0) = 0 with the given c", f == 0, *known, s == 0, latex=definition)
+    zero, *others = phi_lemmas()
+    yield zero.step
     yield implication(
-        "φ is increasing", f < g, *known, *sigmoid(g, t, v), s < t, latex=r"s < t \implies \varphi(s) < \varphi(t)"
+        "φ is increasing",
+        f < g,
+        *(*GIVEN, *sigmoid(f, s, w), *sigmoid(g, t, v), s < t),
+        latex=r"s < t \implies \varphi(s) < \varphi(t)",
     )
-    yield implication("φ(s) < 0 for s < 0", f < 0, *known, s < 0)
-    yield implication("φ(s) > 0 for s > 0", f > 0, *known, s > 0)
-    yield implication("-b < φ < a", z3.And(f > -B, f < A), *known, latex=r"-b < \varphi(s) < a")
+    for one in others:
+        yield one.step
 
 
 Z, D_ALPHA, R_ALPHA = z3.Reals("z d_alpha r_alpha")
 SCALES = (D_ALPHA > 0, R_ALPHA > D_ALPHA)
 
 
-def action(g: z3.ArithRef, z: z3.ArithRef) -> tuple[z3.BoolRef, ...]:
+def action(g: z3.ArithRef, z: z3.ArithRef, lemmas: tuple[Lemma, ...]) -> tuple[z3.BoolRef, ...]:
     """g = φ_α(z) = ρ φ(z - d_α), with all that has been shown of ρ and φ and no more."""
+    shown = z3.Reals("s f")
     rho, f = z3.Reals(f"rho_{g} phi_{g}")
     bump = z3.If(z < R_ALPHA, z3.And(rho > 0, rho <= 1), rho == 0)
-    signs = z3.And((f < 0) == (z < D_ALPHA), (f > 0) == (z > D_ALPHA), f > -B, f < A)
-    return *SCALES, A > 0, A <= B, z >= 0, bump, signs, g == rho * f
+    signs = (one.then(dict(zip(shown, (z - D_ALPHA, f), strict=True))) for one in lemmas)
+    return *SCALES, A > 0, A <= B, z >= 0, bump, *signs, g == rho * f
 
 
 def _phi_alpha() -> Iterator[Step]:
     g, rho, f, least, most, x = z3.Reals("g rho f least most x")
-    known = action(g, Z)
+    known = action(g, Z, phi_lemmas())
     yield implication("φ_α < 0 below d_α", g < 0, *known, Z < D_ALPHA, latex=r"\phi_\alpha(z) < 0, \quad z < d_\alpha")
     yield implication("φ_α(d_α) = 0", g == 0, *known, Z == D_ALPHA)
     between = (Z > D_ALPHA, Z < R_ALPHA)
@@ -119,6 +148,7 @@ def _phi_alpha() -> Iterator[Step]:
         latex=r"-b < \varphi(-d_\alpha) = \phi_\alpha(0) \le \phi_\alpha(z) \le \varphi(r_\alpha - d_\alpha) < a",
     )
     size, w, u, v = z3.Reals("size w u v")
+    grow, y = gradients_grow(), z3.Real("y")
     at_d, at_r = B * D / u, A * R / v
     shown = (*root(u, 1 + EPS * D**2), *root(v, 1 + EPS * R**2), EPS > 0, D > 0, R > D)
     near = (x >= 0, x < D, g > -B, g < 0)  # x < d if and only if z < d_α, as the σ-norm is increasing
@@ -129,7 +159,7 @@ def _phi_alpha() -> Iterator[Step]:
             f"{'b d/√(1 + εd²)' if name == 'd' else 'a r/√(1 + εr²)'}",
             size < bound,
             *(*shown, A > 0, A <= B, *place, *root(w, 1 + EPS * x**2)),
-            *(x / w < (D / u if name == "d" else R / v), x / w >= 0),  # ‖n_ij‖ is increasing
+            *(grow.then({u: w, y: D if name == "d" else R, v: u if name == "d" else v}), x / w >= 0),
             size == z3.If(g < 0, -g, g) * x / w,
         )
 
@@ -143,7 +173,7 @@ def potential_signs() -> Iterator[Step]:
         "sympy differentiates every piece and compares the pieces where they meet",
     )
     x, y, xi, g, psi_x, psi_y, psi_r = z3.Reals("x y xi g psi_x psi_y psi_r")
-    known = (*action(g, xi), x >= 0, x < xi, xi < y, psi_y - psi_x == (y - x) * g)
+    known = (*action(g, xi, phi_lemmas()), x >= 0, x < xi, xi < y, psi_y - psi_x == (y - x) * g)
     yield implication("ψ_α is decreasing on [0, d_α]", psi_x > psi_y, *known, y <= D_ALPHA)
     yield implication("ψ_α is increasing on [d_α, r_α]", psi_x < psi_y, *known, x >= D_ALPHA, y <= R_ALPHA)
     yield implication("ψ_α is nondecreasing from d_α on", psi_x <= psi_y, *known, x >= D_ALPHA)
@@ -156,6 +186,22 @@ def potential_signs() -> Iterator[Step]:
         *known,
         *(x == R_ALPHA, psi_x == psi_r, psi_r > 0),
         latex=r"\psi_\alpha(z) \ge 0, \qquad \psi_\alpha(z) = 0 \iff z = d_\alpha",
+    )
+    yield potential_lemma().step
+
+
+PAIR = z3.Real("psi")
+
+
+def potential_lemma() -> Lemma:
+    """ψ_α >= 0 at every z, what energies rest on: by the mean value theorem between z and d_α."""
+    g, xi = z3.Reals("g xi")
+    between = z3.Or(Z == D_ALPHA, z3.And(xi > Z, xi < D_ALPHA), z3.And(xi > D_ALPHA, xi < Z))
+    return lemma(
+        "ψ_α(z) >= 0 for every z >= 0",
+        PAIR >= 0,
+        *(*action(g, xi, phi_lemmas()), Z >= 0, between, (Z - D_ALPHA) * g == PAIR),
+        latex=r"\psi_\alpha(z) = (z - d_\alpha)\,\phi_\alpha(\xi)",
     )
 
 
@@ -174,20 +220,34 @@ def _control() -> Iterator[Step]:
         "sizes of forces add up at most: ‖f + g‖ <= ‖f‖ + ‖g‖, and so on by induction", s <= x + y, *sizes
     )
     n, bound, c1, c2, energy, gap, u, p_i, p_j = z3.Reals("N_i F c1 c2 H gap u p_i p_j")
+    product, total = z3.Reals("product sum")
+    apart = lemma(
+        "‖q - p‖² <= 2‖p‖² + 2‖q‖², as ‖p + q‖² >= 0",
+        gap**2 <= 2 * p_i + 2 * p_j,
+        *(gap**2 == p_i + p_j - 2 * product, total**2 == p_i + p_j + 2 * product),
+    )
+    yield apart.step
+    gain, rest, positive = z3.Real("c1_alpha"), z3.Real("rest"), potential_lemma()
+    shown = {GAINS.c1_alpha: gain, PSI(DISTANCE[1, 2]): PAIR}
+    written = real(write_out(hamiltonian(1), 2), {MOMENTUM[1, 1] ** 2: p_i, MOMENTUM[2, 1] ** 2: p_j, **shown})
+    two = (energy == written + rest, gain >= 0, positive.then(), rest >= 0)  # the rest: other agents, other pairs
     gains = (n >= 0, bound >= 0, c1 >= 0, c2 >= 0, energy >= 0)
     yield implication(
         "Algorithm 1: ‖u_i‖ <= |N_i| (c1α F + 2 c2α √H(0)), as ½‖p_i‖² + ½‖p_j‖² <= H(t) <= H(0)",
         u <= n * (c1 * bound + 2 * c2 * s),
-        *(*gains, gap >= 0, gap**2 <= 2 * p_i + 2 * p_j, p_i >= 0, p_j >= 0, p_i + p_j <= 2 * energy),
+        *(*gains, gap >= 0, apart.then(), p_i >= 0, p_j >= 0, *two),
         *(s >= 0, s**2 == energy, u <= n * (c1 * bound + c2 * gap)),
         latex=r"\|u_i\| \le |N_i|\,\bigl(c_1^\alpha F + 2 c_2^\alpha \sqrt{H(0)}\bigr), \quad F = \max\Bigl("
         r"\frac{b\,d}{\sqrt{1+\epsilon d^2}}, \frac{a\,r}{\sqrt{1+\epsilon r^2}}\Bigr) < \frac{b}{\sqrt\epsilon}",
     )
     g1, g2, own = z3.Reals("c1_gamma c2_gamma own")
+    structural = write_out(structural_hamiltonian(1, lambda_=GAINS.c1_gamma), 2)
+    frame = {PLACE[1, 1] ** 2: x**2, PLACE[2, 1] ** 2: 0, VELOCITY[1, 1] ** 2: y**2, VELOCITY[2, 1] ** 2: 0}
+    moving = energy == real(structural, {**frame, **shown, GAINS.c1_gamma: g1}) + rest
     yield implication(
         "Algorithm 2, in the moving frame: its own term adds at most √(2 H_λ(0) (c1γ + c2γ²))",
         own**2 <= 2 * energy * (g1 + g2**2),
-        *(g1 > 0, g2 >= 0, energy >= 0, x >= 0, y >= 0, g1 * x**2 + y**2 <= 2 * energy),
+        *(g1 > 0, g2 >= 0, energy >= 0, x >= 0, y >= 0, moving, gain >= 0, positive.then(), rest >= 0),
         *(own >= 0, own <= g1 * x + g2 * y),
         latex=r"\|c_1^\gamma x_i + c_2^\gamma v_i\| \le \sqrt{2 H_\lambda(0)\,(c_1^\gamma + (c_2^\gamma)^2)}",
     )
@@ -231,5 +291,5 @@ PROOF = Proof(
     hypotheses="0 < a <= b, 0 < h < 1, 0 < d < r, ε > 0",
     rigour="smt",
     steps=_steps,
-    size=37,
+    size=39,
 )

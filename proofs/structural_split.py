@@ -72,7 +72,8 @@ PROOF = Proof(
     id="structural-split",
     title="Structural and translational dynamics",
     statement=(
-        "Under Algorithm 2 (and 1) x' = v, v' = -∇U_λ(x) - (c2γ I + c2α L̂(x)) v does not depend on q_c, p_c, q_r, p_r, "
+        "Under Algorithm 2 (and 1) x' = v, v' = -∇U_λ(x) - (c2γ I + c2α L̂(x)) v does not depend on q_c, p_c, "
+        "q_r, p_r, "
         "and q_c' = p_c, p_c' = -c1γ(q_c - q_r) - c2γ(p_c - p_r) not on x, v, for every n and m = 1, 2, 3. Under "
         "Algorithm 3 neither is so: a counterexample each."
     ),

@@ -18,6 +18,7 @@ from proofs.smt import implication
 Site = tuple[int, int]
 _TURN = ((1, 0), (0, 1), (-1, 1), (-1, 0), (0, -1), (1, -1))  # steps to the six neighbours, counter-clockwise
 _MOST = 60
+_LESS = 6  # than 3n: the links of a net of the plane that do not cross
 
 
 def equidistant_gram(size: int) -> sp.Matrix:
@@ -92,17 +93,17 @@ def planar(text: str, bound: int, *given: z3.BoolRef) -> Step:
 
 
 def _planar_bound() -> Iterator[Step]:
-    yield planar("(ii): two links or more, so that each face has three sides or more: at most 3n - 6 links", 6)
+    yield planar("(ii): two links or more, so that each face has three sides or more: at most 3n - 6 links", _LESS)
     n, links = z3.Reals("n links")
-    yield implication("(ii): one link or none: likewise, as n >= 3", links <= 3 * n - 6, n >= 3, links <= 1)
+    yield implication("(ii): one link or none: likewise, as n >= 3", links <= 3 * n - _LESS, n >= 3, links <= 1)
     yield Step(
         "E6: the printed bound fails for n = 1 (0 > -3) and n = 2 (1 > 0)",
-        all(len([s for s in squared_distances(spiral(n)) if s == 1]) > 3 * n - 6 for n in (1, 2)),
+        all(len([s for s in squared_distances(spiral(n)) if s == 1]) > 3 * n - _LESS for n in (1, 2)),
         evidence="one agent has no link; two at distance d have one",
     )
     yield Step(
         "it is met by three agents d apart",
-        squared_distances(spiral(3)) == [1, 1, 1] and planar_bound(3) == 3,
+        squared_distances(spiral(3)) == [1, 1, 1] and planar_bound(3) == 3 * 3 - _LESS,
     )
 
 
@@ -128,6 +129,7 @@ def _harborth() -> Iterator[Step]:
         all(squares.count(1) == harborth(n) for n, squares in found.items()),
         r"\lfloor 3n - \sqrt{12n - 3} \rfloor",
         "counted in whole numbers",
+        {"most": str(max(found))},
     )
     k = sp.Symbol("k", integer=True, nonnegative=True)
     n = 3 * k**2 + 3 * k + 1
@@ -161,9 +163,9 @@ PROOF = Proof(
     id="theorem5-counts",
     title="Theorem 5(ii), (iii) and erratum E6: how many links an α-lattice has",
     statement=(
-        "A net of the plane whose links do not cross has at most 3n - 6 links if n >= 3; as printed, without a "
+        f"A net of the plane whose links do not cross has at most 3n - {_LESS} links if n >= 3; as printed, without a "
         "condition on n, the bound fails for n = 1 and 2. Hexagonal spirals have ⌊3n - √(12n - 3)⌋ links for n = 1 to "
-        "60, and so has every full hexagon. No α-lattice of n > m + 1 agents is complete, m = 1, 2, 3."
+        f"{_MOST}, and so has every full hexagon. No α-lattice of n > m + 1 agents is complete, m = 1, 2, 3."
     ),
     hypotheses=(
         "links of an α-lattice do not cross (theorem5-crossings); cited, not proved: Euler's formula for plane graphs, "
@@ -173,4 +175,5 @@ PROOF = Proof(
     theorems=("os-5", "os-5-terminal", "E6"),
     steps=_steps,
     size=21,
+    values={"most": str(_MOST)},
 )

@@ -184,7 +184,7 @@ PROOF = Proof(
         "agent; for an α-lattice, all links have length d < r and positions are distinct"
     ),
     rigour="smt",
-    theorems=("os-5", "os-5-terminal", "E5"),
+    theorems=("os-5", "os-5-terminal"),
     steps=_steps,
     size=20,
 )

@@ -13,6 +13,7 @@ import sympy as sp
 import z3
 from flint import arb, arb_mat, ctx, fmpz_mat
 
+from proofs.decimals import at_least, plus_minus
 from proofs.enclosures import parameter_sets
 from proofs.intervals import AlphaParameters, adjacency, ball, d_alpha, phi_alpha_slope, r_alpha, square
 from proofs.krawczyk import least_eigenvalue
@@ -22,6 +23,8 @@ from proofs.smt import implication, impossible
 
 DIGITS = 30
 RINGS = (1, 2)
+SIZES = {"n of 1 rings": "7", "n of 2 rings": "19"}
+THE_SIZES = " and ".join(SIZES.values())
 Site = tuple[int, int]  # X, Y
 Links = tuple[tuple[int, int], ...]
 
@@ -158,6 +161,7 @@ def _patch(rings: int) -> Iterator[Step]:
         f"n = {n}: {len(links)} links of length d exactly, all other pairs at √3 d or more",
         n == 3 * rings * (rings + 1) + 1 and min(squares) == 4 and min(squares - {4}) >= 12,
         evidence=f"squared distances over d²: {sorted(s // 4 for s in squares)}",
+        found={f"n of {rings} rings": str(n)},
     )
     matrix, motions = rigidity_matrix(sites, links), rigid_motions(sites)
     rank = matrix.rank()
@@ -177,7 +181,7 @@ def _patch(rings: int) -> Iterator[Step]:
     yield Step(
         f"n = {n}: quantitatively, off the rigid motions the eigenvalues of ∇²V are at least as many k as this",
         True if least else None,
-        evidence="not certain" if least is None else f"{float(least):.6f}",
+        evidence="not certain" if least is None else at_least(least),
     )
 
 
@@ -188,7 +192,7 @@ def stiffness_step(par: AlphaParameters) -> Step:
     return Step(
         f"{par}: k > 0, a_ij(d) > 0; r² < 3d², and φ_α is smooth about d_α",
         bool(k > 0 and a > 0 and par.r**2 < 3 * par.d**2) and smooth,
-        rf"k = {k.str(15, radius=False)}\,c_1^\alpha, \qquad a_{{ij}} = {a.str(15, radius=False)}",
+        rf"k = ({plus_minus(k, 15)})\,c_1^\alpha, \qquad a_{{ij}} = {plus_minus(a, 15)}",
         f"k in {k.str(20)}, a_ij in {a.str(20)}",
     )
 
@@ -208,7 +212,8 @@ PROOF = Proof(
     id="unstressed-patches",
     title="Algorithm 1: hexagonal patches are stable equilibria",
     statement=(
-        "The hexagonal patches of n = 7 and 19 agents at distances d are equilibria of Algorithm 1, with ∇²V = Σ k uuᵀ "
+        f"The hexagonal patches of n = {THE_SIZES} agents at distances d are equilibria of Algorithm 1, with ∇²V "
+        "= Σ k uuᵀ "
         "over the links, k > 0, whose kernel is exactly the rigid motions; modulo these they are locally "
         "asymptotically stable, in the frame of the centre. For the parameters of every scenario."
     ),
@@ -220,5 +225,5 @@ PROOF = Proof(
     rigour="interval",
     steps=_steps,
     size=19,
-    theorems=("os-1",),
+    values=SIZES,
 )

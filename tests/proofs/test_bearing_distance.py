@@ -15,7 +15,7 @@ from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import both_ways
 from flockana.symbolic.spanning_trees import S, tree_characteristic
 from flockana.theorems.bearing_distance.j03 import path_matrices
-from proofs import bearing_distance, bearing_distance_printed
+from proofs import bearing_distance, bearing_distance_printed, undirected_trees
 
 
 def test_all_numberings_of_rooted_trees_are_tried():
@@ -133,3 +133,8 @@ def test_the_least_eigenvalue_of_five_children_is_negative_and_of_four_zero():
         least = np.linalg.eigvalsh(star)[0]
         assert np.sign(np.round(least, 12)) == sign
         assert least == pytest.approx(1 - np.sqrt(children) / 2, abs=1e-12)
+
+
+def test_a_leaf_without_length_adds_no_row():
+    assert undirected_trees.leaf_row("a row", 2).holds is True
+    assert undirected_trees.leaf_row("no row", 2, length=0).holds is False

@@ -28,7 +28,7 @@ from flockana.measures.metrics import coincident_pairs
 from flockana.measures.path_bounds import contacts
 from flockana.scenarios import scenario
 from flockana.theorems import verify
-from proofs import collisions, distinct_pairs, n_max
+from proofs import barrier, collisions, distinct_pairs, n_max
 from proofs.distinct_pairs import Start, crossings, free, is_the_scenario, onward, potential
 from proofs.intervals import AlphaParameters, c_star, far_potential
 
@@ -99,6 +99,24 @@ def test_the_enclosed_energy_is_that_of_the_run():
     assert is_the_scenario(start)
     assert not is_the_scenario(replace(start, boost="5.7"))
     assert not is_the_scenario(replace(start, c2_alpha="2"))
+
+
+def test_another_target_law_or_time_is_another_run(monkeypatch):
+    from flockana.environment.targets import LinearTarget, StaticTarget
+    from flockana.laws.algorithm3 import Algorithm3
+
+    case = scenario("three-agents-1d")
+    others = [
+        replace(case, law=replace(case.law, target=StaticTarget((1.0,)))),
+        replace(case, law=replace(case.law, target=LinearTarget((0.0,), (1.0,)))),
+        replace(case, law=Algorithm3(case.law.alpha, case.law.gains, StaticTarget((0.0,)))),
+        replace(case, t_span=(0.0, 0.01)),
+    ]
+    for other in others:
+        monkeypatch.setattr(distinct_pairs, "scenario", lambda name, other=other: other)
+        assert not is_the_scenario(Start())
+    monkeypatch.setattr(distinct_pairs, "scenario", lambda name: case)
+    assert is_the_scenario(Start())
 
 
 @pytest.mark.parametrize(
@@ -246,3 +264,23 @@ def test_claims_name_these_proofs():
     assert verify("E13", other).claim("printed").proof is None
     names = {claim.name: claim.proof for claim in verify("os-3", run).claims}
     assert (names["iv-printed"], names["iv-instant"], names["iv-none"]) == (None, "collisions", "collisions")
+
+
+# the barrier of two coincident agents
+
+
+def test_the_induction_counts_what_the_library_counts(monkeypatch):
+    assert barrier.counts_agree(30, 3)
+    assert barrier.unbound(7, 3) == 21 - turan_pairs(7, 3) == 5
+    monkeypatch.setattr(barrier, "turan_pairs", lambda n, clique: turan_pairs(n, clique) + 1)
+    assert not barrier.counts_agree(30, 3)
+
+
+def test_the_claim_below_the_barrier_names_its_proof():
+    from flockana.laws.olfati_saber import Algorithm1
+
+    named = {}
+    for law in (Algorithm1(), Algorithm1(AlphaInteraction(h=0.3))):
+        run = simulate(law, [[0.0, 0.0], [7.0, 0.0]], [[0.0, 0.0], [0.0, 0.0]], (0.0, 0.2))
+        named[law.alpha.h] = verify("os-1", run).claim("iii-barrier").proof
+    assert named == {0.2: "barrier", 0.3: None}

@@ -17,7 +17,7 @@ from flockana.equilibria.potential import Potential
 from flockana.interactions import AlphaInteraction
 from flockana.lattice import hexagonal_patch, rigidity
 from flockana.laws.olfati_saber import Algorithm1
-from proofs import krawczyk, unstressed_patches
+from proofs import double_agent, krawczyk, strained_thirteen, unstressed_patches
 from proofs.compressed_patches import LAW, NARROW, RADIUS, computed, curvature, enclose, flock
 from proofs.intervals import AlphaParameters
 
@@ -190,3 +190,40 @@ def test_pairs_at_the_edge_of_the_range_are_not_called_smooth(seven):
 def test_the_proof_is_of_the_default_law():
     assert AlphaInteraction() == LAW.alpha
     assert (LAW.gains.c1_alpha, LAW.gains.c1_gamma) == (30.0, 1.1)
+
+
+# Algorithm 1, strict minima that are no lattice
+
+
+def test_two_agents_on_a_corner_need_their_common_neighbours():
+    par = AlphaParameters()
+    q = double_agent.places(par)
+    found = float(double_agent.least_curvature(par, q))
+    law = Algorithm1()
+    stiffness = Potential(law).stiffness(np.array([float(x) for x in q]).reshape(-1, 2)).toarray()
+    assert found * law.gains.c1_alpha == pytest.approx(np.linalg.eigvalsh(stiffness)[3], rel=1e-6)
+    alone = double_agent.places(par, ((0, 0), (2, 0), (1, 1), (0, 0)))  # two common neighbours are too few
+    assert double_agent.least_curvature(par, alone) is None
+
+
+@pytest.mark.parametrize("site", [(2, 0), (4, 0), (3, 1)])
+def test_another_place_of_the_second_agent_is_told(monkeypatch, site):
+    monkeypatch.setattr(double_agent, "SITES", (*double_agent.SITES[:4], site))
+    steps = double_agent.PROOF.steps()
+    assert any(not step.holds for step in steps) is (site != (2, 0))  # the other end of the side will do
+
+
+def test_thirteen_strained_agents_are_enclosed_and_what_is_uncertain_is_not_claimed(monkeypatch):
+    u, q = strained_thirteen.flock()
+    found = strained_thirteen.enclose(u, q, arb(strained_thirteen.RADIUS))
+    eigenvalues = np.sort(np.linalg.eigvalsh(floats(u.hessian([x.mid() for x in found]))))
+    assert np.abs(eigenvalues[:3]).max() < 1e-8
+    assert float(strained_thirteen.curvature(u, found)) == pytest.approx(eigenvalues[3], rel=1e-5)
+    assert 1.3 < eigenvalues[3] < 1.4
+    assert strained_thirteen.enclose(u, q, arb("1e-17")) is None  # nearer than floats can be
+    assert strained_thirteen.enclose(u, [1.001 * x for x in q], arb(strained_thirteen.RADIUS)) is None
+    assert strained_thirteen.transversal(u, q, arb("1e-7"))
+    assert not strained_thirteen.transversal(u, q, arb(10))
+    right = type(u)._change
+    monkeypatch.setattr(type(u), "_change", lambda self, s: -right(self, s))
+    assert strained_thirteen.curvature(u, found) is None

@@ -12,12 +12,13 @@ pytest.importorskip("z3")  # the extra flockana[proofs]
 pytest.importorskip("flint")
 
 import sympy as sp
+import z3
 
 from flockana.symbolic import functions, obstacles, structural_identity
 from flockana.theorems import theorems, verify
 from proofs import cohesion, signs_of_phi, smoothness, structural_split, theorem6
 from proofs.proof import RIGOURS, Proof, Step, names, proofs
-from proofs.smt import implication, impossible
+from proofs.smt import implication, impossible, lemma
 from tests.proofs.steps import failing
 
 
@@ -112,8 +113,6 @@ RUNS = {"two-agents": two_agents, "pursuit": pursuit, "capsule": capsule, "spher
 
 
 def test_z3_decides_proves_refutes_and_distrusts_contradictions():
-    import z3
-
     x, y, z = z3.Reals("x y z")
     assert implication("square", x * x >= 0).holds is True
     false = implication("wrong", x > 0, x >= 0)
@@ -147,7 +146,9 @@ def test_a_wrong_sign_in_phi_breaks_its_signs(monkeypatch):
         )
 
     monkeypatch.setattr(signs_of_phi, "sigmoid", wrong)
-    assert failing(signs_of_phi.PROOF.steps()) == ["φ(0) = 0 with the given c", "φ(s) < 0 for s < 0", "-b < φ < a"]
+    broken = failing(signs_of_phi.PROOF.steps())
+    assert broken[:3] == ["φ(0) = 0 with the given c", "φ(s) < 0 for s < 0", "-b < φ < a"]
+    assert "φ_α < 0 below d_α" in broken  # which rests on these
 
 
 def test_a_linear_gamma_force_would_split(monkeypatch):
@@ -158,6 +159,10 @@ def test_a_linear_gamma_force_would_split(monkeypatch):
 def test_cohesion_rests_on_its_lemmas(monkeypatch):
     monkeypatch.setattr(cohesion, "potential_signs", lambda: iter([Step("ψ_α >= 0", False)]))
     assert failing(cohesion.PROOF.steps()) == ["ψ_α >= 0"]
+    x = z3.Real("x")
+    with monkeypatch.context() as patched:
+        patched.setattr(cohesion, "potential_lemma", lambda: lemma("ψ_α >= 0, unproved", x > 0, x >= 0))
+        assert any("V >= 0" in text for text in failing(cohesion._radius()))
     monkeypatch.setattr(cohesion, "structural_identity", partial(structural_identity, lambda_=sp.Symbol("lambda")))
     assert [text[:5] for text in failing(cohesion.PROOF.steps())] == ["m = 1", "m = 2", "m = 3", "ψ_α >"]
 

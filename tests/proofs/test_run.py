@@ -104,6 +104,12 @@ def test_a_limit_given_replaces_the_proofs_own(toys):
     assert outcome.seconds >= 1.5
 
 
+def test_a_limit_of_zero_is_a_limit(toys):
+    (outcome,) = check(["hangs"], package=toys, time_limit=0.0)
+    assert outcome.reason.startswith("stopped after 0 s, with ")
+    assert outcome.status == "unknown"
+
+
 def test_a_limit_counts_from_when_the_proof_is_imported(toys, tmp_path):
     """On a busy machine the import takes long, and says nothing of the proof."""
     slow = HEAD.format(name="slow", body="", limit=0.5)

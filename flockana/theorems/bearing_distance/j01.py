@@ -75,6 +75,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             computed={"trees whose edges might all vanish": vanished, "interval": [low, high]},
             stated="|x_e| -> 0 on every edge of every spanning tree (share 1)",
             witness=case | {"shortest edge at the end": float(lengths.min())},
+            proof="bearing-distance-printed",
             detail=f"of {_TREES} random directed trees {_TREES - vanished} keep an edge at a length > 0 for ever; the "
             f"shortest of all is {lengths.min():.8g} αr at the end",
         ),

@@ -7,6 +7,7 @@ from math import sqrt
 import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory
+from flockana.interactions import AlphaInteraction
 from flockana.lattice import harborth
 from flockana.laws.olfati_saber import Algorithm1, paper_pair
 from flockana.theorems.asymptotics import lattice_limit, velocities_match
@@ -51,6 +52,12 @@ def _stays_together(run: Trajectory) -> Hypothesis:
     return Hypothesis(name, "assumed", detail="this run is connected at every sample; the others are not known")
 
 
+def _barrier(run: Trajectory) -> str | None:
+    """The id of the proof of the barrier's bound, which counts up to 60 agents of the default law in the plane."""
+    counted = run.m == 2 and run.n <= 61 and run.law.alpha == AlphaInteraction()
+    return proved(run, "barrier") if counted else None
+
+
 def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
     needs = [positive(run, c1_alpha="c1α"), positive(run, c2_alpha="c2α")]
     if unmet(needs):
@@ -62,7 +69,7 @@ def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
         lattice_limit(run, needs, tolerances, name="i"),
         velocities_match(run, tolerances, needs, name="ii", caught=[final_basin(run).certificate]),
         no_collision(run, [*needs, low], tolerances, name="iii", proof=proved(run, "collisions")),
-        no_collision(run, [*needs, barrier], tolerances, name="iii-barrier"),
+        no_collision(run, [*needs, barrier], tolerances, name="iii-barrier", proof=_barrier(run)),
     ]
 
 

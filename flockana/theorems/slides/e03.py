@@ -85,6 +85,7 @@ def _double_agent(law: Algorithm1) -> Claim:
         computed=end.curvature,
         stated="every strict local minimum of V is an α-lattice of distinct agents",
         witness=q,
+        proof="double-agent",
         detail=f"n = 5: two agents on one corner of a rhombus are a strict minimum of V (least curvature "
         f"{end.curvature:.3g} of the largest, off rigid motions), with an open basin and a coincident pair",
     )
@@ -135,6 +136,7 @@ def _smallest(tolerances: Tolerances) -> Claim:
         computed={"strain": end.strain, "curvature": known.curvature, "agents": len(known.q)},
         stated="every strict local minimum of V with distinct agents is an α-lattice",
         witness=known.q,
+        proof="strained-thirteen",
         detail=f"{len(known.q)} distinct agents in a connected strict minimum with {len(known.links)} links, off d by "
         f"up to {100.0 * end.strain:.2g} %; least curvature {known.curvature:.3g} of the largest. With coincident "
         f"agents it takes {least_with_coincidence(known.law.alpha)} at least",
@@ -155,6 +157,7 @@ def _compressed(tolerances: Tolerances) -> Claim:
         computed=end.strain,
         stated="Algorithm 2 converges to an α-lattice (slides' summary of Theorem 3)",
         witness={"links": [end.shortest, end.longest]},
+        proof="compressed-patches",
         detail=f"a hexagon of 7 under Algorithm 2 rests with links of {end.shortest:.5g} to {end.longest:.5g}, not 7",
     )
 
