@@ -18,7 +18,7 @@ from flockana.lattice import hexagonal_patch
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.stability import Mode, linearise, slowest_modes
+from flockana.stability import Linearisation, Mode, linearise, slowest_modes
 from flockana.stability.modes import SecondOrder
 
 TETRAHEDRON = 7.0 / sqrt(8.0) * np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]], dtype=float)
@@ -232,8 +232,11 @@ def test_a_slow_mode_that_swings_fast_is_not_missed_or_its_absence_not_claimed()
     stiffness[0], damping[0] = 1e4, 0.02
     q = np.random.default_rng(0).standard_normal((n, 1))
 
-    class Given:
+    class Given(Linearisation):
         second_order = SecondOrder(q, csr_array(np.diag(stiffness)), csr_array(np.diag(damping)))
+
+        def __init__(self):
+            """Of no law."""
 
     slow = slowest_modes(Given(), 3)
     assert slow.complete_to < slow.modes[0].decay_rate
