@@ -43,6 +43,7 @@ class Copies:
     --------
     Two estimates that agree on the place and not on the velocity part without coupling:
 
+    >>> from flockana.environment.spring import Spring
     >>> free = Copies([[0.0], [0.0]], [[1.0], [1.2]], Spring((0.0,), 0.0))
     >>> q, p = free.state(10.0)
     >>> round(float(q[1, 0] - q[0, 0]), 9)

@@ -37,6 +37,7 @@ class SystemTarget(Target):
 
     Examples
     --------
+    >>> from flockana.environment.spring import Spring
     >>> swing = SystemTarget((1.0,), (0.0,), Spring((0.0,), 1.0))
     >>> q_r, p_r = swing.state(np.pi / 2)
     >>> bool(abs(q_r[0]) < 1e-10 and abs(p_r[0] + 1.0) < 1e-10)
