@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import is_dataclass
+from math import isfinite
 from threading import Lock
 from typing import Any
 
@@ -31,7 +32,9 @@ class Motion:
         self._lock = Lock()  # a piece begins where the one before ends: two threads must not add one each
 
     def at(self, t: float) -> FloatArray:
-        """y(t)."""
+        """y(t); raises SolverError at a time that is none, or that the motion does not reach."""
+        if not isfinite(t):
+            raise SolverError(f"the γ-agent's own motion was asked for at t = {t}: expected a finite time")
         ahead, k = t >= 0.0, int(abs(t) // self._piece)
         pieces = self._pieces[ahead]
         if len(pieces) <= k:

@@ -139,3 +139,9 @@ def test_another_process_takes_them_and_finds_the_same_motion():
 def test_a_stiffness_that_is_no_number_is_refused(stiffness):
     with pytest.raises(ArgumentError, match="stiffness = "):
         Spring((0.0,), stiffness)
+
+
+@pytest.mark.parametrize("t", [float("nan"), float("inf"), -float("inf")])
+def test_a_time_that_is_none_is_refused(t):
+    with pytest.raises(SolverError, match="expected a finite time"):
+        SystemTarget((1.0,), (0.0,), Spring((0.0,), 1.0)).position(t)
