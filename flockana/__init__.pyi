@@ -13,12 +13,12 @@ from .dynamics.trajectory import Trajectory as Trajectory
 from .ensemble.campaign import ensemble as ensemble
 from .ensemble.dataset import shares as shares
 from .environment.capsule import Capsule as Capsule
+from .environment.copies import Copies as Copies
 from .environment.obstacles import Obstacle as Obstacle
 from .environment.obstacles import Sphere as Sphere
 from .environment.obstacles import Wall as Wall
 from .environment.polygon import Polygon as Polygon
-from .environment.system import Copies as Copies
-from .environment.system import Spring as Spring
+from .environment.spring import Spring as Spring
 from .environment.system import SystemTarget as SystemTarget
 from .environment.target import Target as Target
 from .environment.targets import CallableTarget as CallableTarget

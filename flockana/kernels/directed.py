@@ -25,9 +25,10 @@ def sight(q, p, i, j, s2, reach2, width, slow2, h):
     for c in range(q.shape[1]):
         ahead += (q[j, c] - q[i, c]) * p[i, c]
         speed2 += p[i, c] ** 2
-    if speed2 == 0.0 or s2 == 0.0:
+    norms = sqrt(s2) * sqrt(speed2)  # of roots: the product of squares may underflow
+    if norms == 0.0:
         return 1.0
-    cone = taper(max(0.0, 1.0 - ahead / sqrt(s2 * speed2)) / width, h)
+    cone = taper(max(0.0, 1.0 - ahead / norms) / width, h)
     return (slow2 + speed2 * cone) / (slow2 + speed2)
 
 

@@ -194,7 +194,7 @@ def altitude(speed, r, c, a, settings, choices):
 
 @njit(cache=True)
 def _grown(reach, a, nearest, settings):
-    """Radius of attraction in the next step: a once somebody is within it, as it is with another, else a step more."""
+    """Radius of attraction in the next step: a with one who attracts within a, as it is with one beyond, else more."""
     if nearest <= a:
         return a
     return reach if nearest <= reach else reach + settings.dt * settings.growth
@@ -310,9 +310,7 @@ def run(q, p, heading, estimate, reach, alien, first, zones, settings, choices, 
     u, out, total = np.empty((n, m)), np.empty((6, m)), np.empty(m)
     in_turn, literal = choices.order == 1, choices.speed_bound == 1
     near = np.arange(n)
-    further = (
-        settings.dt * settings.v_max if in_turn else 0.0
-    )  # those before agent i have moved since the cells' making
+    further = settings.dt * settings.v_max if in_turn else 0.0  # those before agent i have moved since the cells
     for taken in range(steps):
         step = first + taken
         cells = sort_into_cells(q, reach.max() + further)

@@ -69,7 +69,7 @@ class ZoneFlocking(DiscreteLaw):
         Step.
     growth : float
         How fast the radius of attraction of an agent grows while nobody is in its zones of conflict and attraction
-        (Remark 2); it is a again as soon as somebody is within a. By default 0: it stays a.
+        (Remark 2), farther than r from it; it is a again as soon as somebody is there. By default 0: it stays a.
     noise : ZoneNoise
         What is left to chance; nothing by default.
     base : float

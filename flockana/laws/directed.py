@@ -88,6 +88,8 @@ class DirectedNet(Law):
         given = self.ranges
         if given is not None:
             each = [ensure_positive(f"ranges[{i}]", x) for i, x in enumerate(np.ravel(given).tolist())]
+            if np.ndim(given) > 1:
+                raise ArgumentError(f"ranges has shape {np.shape(given)}: expected one range, or one per agent")
             if not each:
                 raise ArgumentError("ranges is empty: expected one range, or one per agent")
             object.__setattr__(self, "ranges", each[0] if np.ndim(given) == 0 else tuple(each))
@@ -199,7 +201,7 @@ class DirectedNet(Law):
     ) -> Mapping[str, Any]:
         momentum = np.linalg.norm(p.sum(axis=1), axis=1)
         edges = [self.perceived(*state) for state in zip(q, p, strict=True)]
-        one_way = [sum((i, j) not in {*seen} for j, i in seen) / max(1, len(seen)) for seen in edges]
+        one_way = [len({*seen} - {(i, j) for j, i in seen}) / max(1, len(seen)) for seen in edges]
         energy = [self.law.hamiltonian(float(time), *state) for time, *state in zip(t, q, p, strict=True)]
         return {
             "momentum": ("‖Σ p_i‖ (length/time)", momentum),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, ClassVar
@@ -13,7 +13,6 @@ from flockana.base.checks import FloatArray, ensure_finite_scalar
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
-from flockana.environment.target import Target
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import ensure_apart
 from flockana.laws.sum_of_terms import SumOfTerms
@@ -92,20 +91,25 @@ class LedDeadZoneFlocking(SumOfTerms):
             if gain < 0.0:
                 raise ArgumentError(f"{name} = {gain:g}: expected a gain >= 0; a negative one feeds energy in")
             object.__setattr__(self, name, gain)
-        if isinstance(self.leaders, Target) or len(self.leaders) == 0:
+        leaders = tuple(self.leaders) if isinstance(self.leaders, Iterable) else ()
+        if not leaders:
             raise ArgumentError(f"leaders = {self.leaders!r}: expected one or more, such as (LinearTarget(...),)")
-        object.__setattr__(self, "leaders", tuple(self.leaders))
+        object.__setattr__(self, "leaders", leaders)
         for leader in self.leaders:
             known_path(leader)
         self._freeze_numbers("group", len(self.leaders), "the number of a leader")
         self._freeze_numbers("pinned", len(self.group), "an agent")
 
     def _freeze_numbers(self, name: str, count: int, what: str) -> None:
-        values = tuple(int(value) for value in getattr(self, name))
-        wrong = [value for value in values if not 0 <= value < count]
-        if wrong:
-            raise ArgumentError(f"{name} has {wrong[0]}: expected {what}, 0 to {count - 1}")
-        object.__setattr__(self, name, values)
+        given = getattr(self, name)
+        if isinstance(given, str | bytes) or not isinstance(given, Iterable):
+            raise ArgumentError(f"{name} = {given!r}: expected a sequence of whole numbers, such as (0, 1)")
+        values = tuple(given)
+        for value in values:
+            whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
+            if not whole or not 0 <= value < count:
+                raise ArgumentError(f"{name} has {value!r}: expected {what}, 0 to {count - 1}")
+        object.__setattr__(self, name, tuple(map(int, values)))
 
     @property
     def scales(self) -> Scales:

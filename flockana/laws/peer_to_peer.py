@@ -10,75 +10,14 @@ from typing import Any, ClassVar
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
-from flockana.environment.system import Copies
+from flockana.environment.copies import Copies
 from flockana.interactions import AlphaInteraction, Gains, PairInteraction
-from flockana.interactions.gains import weighted
 from flockana.laws.olfati_saber import GAINS, PAIR, alpha_scales, ensure_part
 from flockana.laws.sum_of_terms import SumOfTerms
+from flockana.laws.terms.copies import CopiesTerm
 from flockana.laws.terms.pairs import PairTerm
-from flockana.laws.terms.term import Invariance, Term
-
-
-@dataclass(frozen=True)
-class CopiesTerm(Term):
-    """u_i = −c1γ (q_i − q_r^i) − c2γ (p_i − p_r^i), (q_r^i, p_r^i) the copy of agent i.
-
-    Its energy is ½ Σ c1γ_i ‖q_i − q_r^i‖² in the given frame, and what it adds to dH/dt is
-    −Σ c2γ_i ⟨p_i, p_i − p_r^i⟩ − Σ c1γ_i ⟨q_i − q_r^i, p_r^i⟩.
-
-    Parameters
-    ----------
-    copies : Copies
-        The γ-agents.
-    gains : Gains
-        c1_gamma and c2_gamma are used.
-
-    Examples
-    --------
-    >>> from flockana.environment.system import Spring
-    >>> copies, u = Copies([[3.0]], [[1.0]], Spring((0.0,), 0.0)), np.zeros((1, 1))
-    >>> term = CopiesTerm(copies, Gains(c1_gamma=2.0, c2_gamma=1.0))
-    >>> term.act(0.0, np.zeros((1, 1)), np.zeros((1, 1)), u), u.tolist()
-    (6.0, [[7.0]])
-    """
-
-    copies: Copies
-    gains: Gains
-
-    @property
-    def invariance(self) -> Invariance:  # noqa: D102
-        return "none"
-
-    def check_dimension(self, m: int) -> None:  # noqa: D102
-        if self.copies.shape[1] != m:
-            raise ArgumentError(f"the copies have {self.copies.shape[1]} components but the agents have {m}")
-
-    def check_agents(self, n: int) -> None:  # noqa: D102
-        self.gains.check_agents(n)
-        if self.copies.shape[0] != n:
-            raise ArgumentError(f"there are {self.copies.shape[0]} copies and {n} agents: expected one copy each")
-
-    def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
-        q_r, p_r = self.copies.state(t)
-        pull, drag = self.gains.pull * (q - q_r), self.gains.drag * (p - p_r)
-        u -= pull + drag
-        return -float(np.sum(drag * p) + np.sum(pull * p_r))
-
-    def energy(self, t: float, q: FloatArray) -> float:  # noqa: D102
-        return 0.5 * weighted(self.gains.c1_gamma, np.sum((q - self.copies.state(t)[0]) ** 2, axis=1))
-
-    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray]:  # noqa: D102
-        return -self.hessian(t, q), -self._blocks(self.gains.drag, q)
-
-    def hessian(self, t: float, q: FloatArray) -> FloatArray:  # noqa: D102
-        return self._blocks(self.gains.pull, q)
-
-    @staticmethod
-    def _blocks(gain: Any, q: FloatArray) -> FloatArray:
-        n, m = q.shape
-        return np.broadcast_to(np.reshape(gain, (-1, 1, 1)) * np.eye(m), (n, m, m)).copy()
+from flockana.laws.terms.term import Term
 
 
 @dataclass(frozen=True)
@@ -104,7 +43,7 @@ class PeerToPeer(SumOfTerms):
 
     Examples
     --------
-    >>> from flockana.environment.system import Spring
+    >>> from flockana.environment.spring import Spring
     >>> law = PeerToPeer(Copies([[10.0, 0.0]], [[0.0, 0.0]], Spring((0.0, 0.0), 0.0)), gains=Gains(c1_gamma=1.0))
     >>> law.acceleration(0.0, [[0.0, 0.0]], [[0.0, 0.0]]).tolist()
     [[10.0, 0.0]]

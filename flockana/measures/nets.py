@@ -132,6 +132,8 @@ def printed_edge_share(n: int, pairs: LinkArray) -> float:
     >>> printed_edge_share(3, np.array([[0, 1]], dtype=np.int32))
     1.0
     """
+    n = ensure_count("n", n)
+    pairs = ensure_links(pairs, n)
     if len(pairs) == 0:
         return float("nan")
     labels = components(n, pairs)
@@ -161,6 +163,8 @@ def printed_rank_connectivity(n: int, pairs: LinkArray, *, typeset: bool = False
     >>> printed_rank_connectivity(3, path[:0], typeset=True) == 2 / 3  # of three agents without a link
     True
     """
+    n = ensure_count("n", n)
+    pairs = ensure_links(pairs, n)
     adjacency = np.eye(n, dtype=np.int64) if typeset else np.zeros((n, n), dtype=np.int64)
     adjacency[-1, -1] = 0
     adjacency[pairs[:, 0], pairs[:, 1]] = adjacency[pairs[:, 1], pairs[:, 0]] = 1

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
+from flockana.base.checks import FloatArray, real_array
 from flockana.base.errors import ArgumentError
 
 QUARTERS = (0.0, 0.25, 0.5, 0.75, 1.0)
@@ -35,7 +35,10 @@ def pair_distance_profile(q: Any, shares: Sequence[float] = QUARTERS) -> FloatAr
     """
     from scipy.spatial.distance import pdist
 
-    positions, wanted = np.asarray(q, dtype=np.float64), np.asarray(shares, dtype=np.float64)
+    try:
+        positions, wanted = real_array(q), real_array(shares)
+    except (TypeError, ValueError, OverflowError):
+        raise ArgumentError(f"q, shares = {shares!r}: expected numbers, in arrays") from None
     if positions.ndim != 3:
         raise ArgumentError(f"q has shape {positions.shape}: expected (T, n, m), positions over time")
     if wanted.ndim != 1 or not ((wanted >= 0.0) & (wanted <= 1.0)).all():

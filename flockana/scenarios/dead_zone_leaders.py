@@ -39,8 +39,10 @@ def _carried_off(run: Trajectory) -> int:
 
 
 def _same(run: Trajectory, tolerances: Tolerances) -> Claim:
-    lost = _carried_off(run)
-    detail = f"{lost} of {run.n} agents, none of them pinned, move with the other leader's group at the end"
+    lost, pinned = _carried_off(run), int((_slip(run)[list(_law(run).pinned)] > 1.0).sum())
+    detail = (
+        f"{lost} of {run.n} agents, {pinned or 'none'} of them pinned, move with the other leader's group at the end"
+    )
     return finding("same-leader", 0.5 - lost, detail, computed=lost, stated="0 agents away from their leader")
 
 

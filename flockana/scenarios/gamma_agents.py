@@ -8,7 +8,9 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.system import Copies, Spring, SystemTarget
+from flockana.environment.copies import Copies
+from flockana.environment.spring import Spring
+from flockana.environment.system import SystemTarget
 from flockana.interactions import AlphaInteraction
 from flockana.lattice.builders import hexagonal_spiral
 from flockana.laws.olfati_saber import Algorithm2

@@ -105,7 +105,8 @@ def _expands(run: Trajectory, tolerances: Tolerances) -> Claim:
     radius = run.metric("cohesion_radius")
     late = radius[run.t >= 0.5 * (run.t[0] + run.t[-1])]
     rise = float(np.diff(late).min() / run.scales.length)
-    detail = f"R goes from {radius[0]:.4g} to {radius[-1]:.4g}, and rises at every sample of the second half"
+    how = "rises" if rise > 0.0 else "does not rise"
+    detail = f"R goes from {radius[0]:.4g} to {radius[-1]:.4g}, and {how} at every sample of the second half"
     return finding("expands", rise, detail, computed=float(radius[-1]), stated="R rises")
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from math import cos, exp, sin
 
 import numpy as np
@@ -10,7 +11,9 @@ import pytest
 from flockana.base.errors import ArgumentError, SolverError
 from flockana.base.serialize import from_data, to_data
 from flockana.base.units import rescale
-from flockana.environment.system import Copies, Spring, SystemTarget
+from flockana.environment.copies import Copies
+from flockana.environment.spring import Spring
+from flockana.environment.system import SystemTarget
 
 FREE = Spring((0.0, 0.0), 0.0)
 
@@ -121,3 +124,24 @@ def test_a_motion_that_ends_is_no_motion():
     assert np.isfinite(target.position(0.05)).all()
     with pytest.raises(SolverError, match="own motion cannot be integrated beyond t = "), np.errstate(all="ignore"):
         target.position(10.0)
+
+
+def test_another_process_takes_them_and_finds_the_same_motion():
+    spring = Spring((0.0,), 1.0)
+    for one in (SystemTarget((1.0,), (0.0,), spring), Copies([[1.0], [2.0]], [[0.0], [0.5]], spring, 0.1, 0.2)):
+        here = one.state(20.0)
+        there = pickle.loads(pickle.dumps(one))
+        assert there == one
+        np.testing.assert_array_equal(there.state(20.0), here)
+
+
+@pytest.mark.parametrize("stiffness", ["1", float("nan"), None])
+def test_a_stiffness_that_is_no_number_is_refused(stiffness):
+    with pytest.raises(ArgumentError, match="stiffness = "):
+        Spring((0.0,), stiffness)
+
+
+@pytest.mark.parametrize("t", [float("nan"), float("inf"), -float("inf")])
+def test_a_time_that_is_none_is_refused(t):
+    with pytest.raises(SolverError, match="expected a finite time"):
+        SystemTarget((1.0,), (0.0,), Spring((0.0,), 1.0)).position(t)

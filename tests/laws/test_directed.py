@@ -90,6 +90,12 @@ def test_the_followers_energy_falls_as_algebra_says():
     np.testing.assert_array_equal(run.p[:, 1, 0], 1.0)
 
 
+def test_speeds_whose_squares_all_but_vanish_look_round():
+    law = DirectedNet(Algorithm1(), view=1.0)
+    u = law.acceleration(0.0, [[0.0], [1e-5]], [[1e-160], [1e-160]])
+    np.testing.assert_allclose(u, Algorithm1().acceleration(0.0, [[0.0], [1e-5]], np.zeros((2, 1))), rtol=1e-12)
+
+
 def test_written_read_and_rescaled():
     law = DirectedNet(Algorithm1(), (8.4, 3.0), view=2.0, slow=0.5)
     assert from_data(to_data(law)) == law
@@ -105,6 +111,7 @@ def test_written_read_and_rescaled():
         (lambda: DirectedNet(3), "law = 3: expected Algorithm1"),
         (lambda: DirectedNet(Algorithm1(), (1.0, -1.0)), r"ranges\[1\] = -1: expected a number > 0"),
         (lambda: DirectedNet(Algorithm1(), ()), "ranges is empty"),
+        (lambda: DirectedNet(Algorithm1(), ((8.0, 3.0),)), r"ranges has shape \(1, 2\): expected one range"),
         (lambda: DirectedNet(Algorithm1(), view=7.0), "view = 7: expected an angle in radians"),
         (lambda: DirectedNet(Algorithm1(), slow=0.0), "slow = 0: expected a number > 0"),
         (

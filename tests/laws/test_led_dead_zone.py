@@ -138,6 +138,11 @@ def test_what_it_measures():
         ({"leaders": (StaticTarget((0.0, 0.0), (1.0, 0.0)), LEADERS[1])}, "with its true velocity"),
         ({"group": (0, 2, 0, 1, 0, 1)}, "group has 2: expected the number of a leader, 0 to 1"),
         ({"pinned": (6,)}, "pinned has 6: expected an agent, 0 to 5"),
+        ({"leaders": 3}, "leaders = 3: expected one or more"),
+        ({"group": (0, 0.5, 0, 1, 0, 1)}, "group has 0.5: expected the number of a leader"),
+        ({"group": "010101"}, "group = '010101': expected a sequence of whole numbers"),
+        ({"group": 3}, "group = 3: expected a sequence of whole numbers"),
+        ({"pinned": (True,)}, "pinned has True: expected an agent"),
     ],
 )
 def test_what_it_refuses(change, words):

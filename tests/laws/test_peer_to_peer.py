@@ -10,7 +10,8 @@ import pytest
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.system import Copies, Spring
+from flockana.environment.copies import Copies
+from flockana.environment.spring import Spring
 from flockana.environment.targets import LinearTarget
 from flockana.interactions import Gains
 from flockana.lattice import hexagonal_spiral

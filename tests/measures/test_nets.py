@@ -72,3 +72,11 @@ def test_refusals():
         nets.links(PATH, 0.0)
     with pytest.raises(ArgumentError, match=re.escape("q has shape (3,): expected (n, m)")):
         nets.links([1.0, 2.0, 3.0], 1.0)
+
+
+@pytest.mark.parametrize("measure", [nets.printed_edge_share, nets.printed_rank_connectivity])
+def test_what_is_printed_is_of_links_among_the_agents(measure):
+    with pytest.raises(ArgumentError, match=r"links\[0\] = \[0, 5\]: expected two different agents"):
+        measure(3, [[0, 5]])
+    with pytest.raises(ArgumentError, match="n = 0: expected a whole number"):
+        measure(0, [])

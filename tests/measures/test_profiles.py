@@ -28,5 +28,8 @@ def test_one_agent_has_no_distances():
 def test_bad_arguments():
     with pytest.raises(ArgumentError, match=r"q has shape \(2, 2\): expected \(T, n, m\)"):
         pair_distance_profile(np.zeros((2, 2)))
+    for q in ("ab", [[["a"]]], [[[0.0], [1.0, 2.0]]]):
+        with pytest.raises(ArgumentError, match="expected numbers, in arrays"):
+            pair_distance_profile(q)
     with pytest.raises(ArgumentError, match="expected numbers from 0 to 1"):
         pair_distance_profile(np.zeros((1, 2, 2)), (0.5, 1.5))

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 import sympy as sp
 
-from flockana.environment.system import Copies, Spring
+from flockana.environment.copies import Copies
+from flockana.environment.spring import Spring
 from flockana.interactions import Gains
 from flockana.laws.peer_to_peer import PeerToPeer
 from flockana.symbolic import copies

@@ -118,10 +118,8 @@ class Leaders(Term):
             parts = self.pair.jacobian(q[own], p[own], stiffness=0.0, damping=self.damping)
             for whole, part in zip((by_position, by_velocity), parts, strict=True):
                 whole[np.ix_(rows, rows)] = part.toarray()
-        pins = self._pins[:, :, None] * np.eye(m)
-        return by_position.tocsr() - self.pull * block_diagonal(pins), by_velocity.tocsr() - self.drag * block_diagonal(
-            pins
-        )
+        pins = block_diagonal(self._pins[:, :, None] * np.eye(m))
+        return by_position.tocsr() - self.pull * pins, by_velocity.tocsr() - self.drag * pins
 
     def hessian(self, t: float, q: FloatArray) -> FloatArray:
         """Second derivative of `energy`.

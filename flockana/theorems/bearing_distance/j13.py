@@ -79,16 +79,16 @@ def _clamped() -> Claim:
 def _reaching() -> Claim:
     """Just within its altitude an agent brakes and just beyond it does not, at every speed."""
     law = _law("speed", "reaching")
-    wrong, rows = 0.0, {}
+    wrong, rows = [], {}
     for speed in (0.5, 1.0, 2.0, 3.0, _V_MAX):
         reach = _R + (_A - _R) * min(1.0, speed / _V_MAX)
         within, beyond = (_braking(law, (1.0 + side * _NEAR) * reach, speed) for side in (-1.0, 1.0))
         expected = _NEAR * reach / _C  # of w (h − d) over w c
-        wrong = max(wrong, abs(within / expected - 1.0), abs(beyond) / expected)
+        wrong += [abs(within / expected - 1.0), abs(beyond) / expected]
         rows[speed] = reach
     return judged(
         "reaching",
-        1e-6 - wrong,
+        1e-6 - float(np.max(wrong)),
         1e-8,  # relative: of a difference of positions, a thousandth of their distance
         computed=rows,
         stated="an agent at speed v reacts from h = r + (a - r) v/v^max on",

@@ -46,7 +46,7 @@ def _told_and_not() -> list[Claim]:
     return [
         judged(
             "one-informed",
-            _SAME - max(off, left),
+            _SAME - float(np.maximum(off, left)),
             _ROUNDING,
             computed=told[-1].tolist(),
             stated=_DESIRED,

@@ -30,7 +30,7 @@ def _rest(separation: float, cohesion: float, start: float = 3.5) -> float:
 
 def _pair() -> list[Claim]:
     rows = {f"w^ls = {w:g}, g_c = {g:g}": [_C * w / (w + g), _rest(w, g)] for w, g in _CASES}
-    error = max(abs(stated - found) for stated, found in rows.values())
+    error = float(np.max([abs(stated - found) for stated, found in rows.values()]))
     printed, alone = next(iter(rows.values()))[1], _rest(5.0, 0.0, 2.0)
     return [
         judged(

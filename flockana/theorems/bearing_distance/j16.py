@@ -68,7 +68,7 @@ def _lone() -> Claim:
     gap = {growth: _last_gap(growth, q, p) for growth in (0.0, _SLOWER, _GROWTH)}
     return judged(
         "growing",
-        min(gap[0.0] / _A - 1.0, gap[_SLOWER] / _A - 1.0, 1.0 - gap[_GROWTH] / _A),
+        float(np.min([gap[0.0] / _A - 1.0, gap[_SLOWER] / _A - 1.0, 1.0 - gap[_GROWTH] / _A])),
         _ROUNDING,
         computed={f"distance after two minutes, growth {growth:g} m/s": d for growth, d in gap.items()},
         stated="lone agents part, unless their radii of attraction grow faster than they do so",

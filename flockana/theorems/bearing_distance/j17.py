@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 
 from flockana.environment.zone_world import Alien, ZoneWorld
 from flockana.interactions import ZoneRadii, ZoneWeights
@@ -22,10 +23,15 @@ def _meeting(s: float) -> tuple[float, float, float]:
     q, p = np.array([[0.0, 0.0]]), np.array([[_SPEED, 0.0]])
     qs, ps, _, memory = law.iterate(0.0, q, p, law.start(q, p), _STEPS)
     gap = np.abs(memory["alien"][:, 0, 0] - qs[:, 0, 0])
-    hunted = int(np.argmax(memory["alien"][:, 0, 0] != _AT))
+    hunted = first_step(memory["alien"][:, 0, 0] != _AT)
     # the input of step k is that of the state after step k − 1
-    heeded = int(np.argmax(ps[:, 0, 0] < _SPEED * (1.0 - _ROUNDING)))
+    heeded = first_step(ps[:, 0, 0] < _SPEED * (1.0 - _ROUNDING))
     return law.dt * hunted, law.dt * heeded, float(gap.min())
+
+
+def first_step(happens: npt.NDArray[np.bool_]) -> float:
+    """Number of the first step in which it happens, NaN if it never does: then nothing is decided."""
+    return float(np.argmax(happens)) if happens.any() else float("nan")
 
 
 def _check(tolerances: Tolerances) -> list[Claim]:

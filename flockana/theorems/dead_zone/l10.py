@@ -80,7 +80,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
         ),
         judged(
             "not-necessary",
-            min(share - 1.0, kept.margin),
+            float(np.minimum(share - 1.0, kept.margin)),
             kept.error + 64.0 * EPS + _INTEGRATED,
             computed=share,
             stated="and is not necessary: a flock with more energy may stay together all the same",

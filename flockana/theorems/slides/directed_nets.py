@@ -27,10 +27,11 @@ def _undirected() -> Claim:
     generator, target = np.random.default_rng(0), LinearTarget((0.0, 0.0), (1.0, 0.0))
     q, p = generator.uniform(-20.0, 20.0, (40, 2)), generator.normal(0.0, 1.0, (40, 2))
     laws = Algorithm1(), Algorithm2(target=target), Algorithm3(target=target, obstacles=(Sphere((40.0, 0.0), 5.0),))
-    off = 0.0
+    each = []
     for law in laws:
         u, again = law.acceleration(0.0, q, p), DirectedNet(law, ranges=[law.alpha.range] * 40).acceleration(0.0, q, p)
-        off = max(off, float(np.abs(u - again).max() / np.abs(u).max()))
+        each.append(float(np.abs(u - again).max() / np.abs(u).max()))
+    off = float(np.max(each))
     return judged(
         "undirected",
         _ROUNDING - off,
@@ -95,7 +96,7 @@ def _following() -> list[Claim]:
         ),
         judged(
             "leader",
-            min(_NUMERICAL - swerve, 1e-3 - off),
+            float(np.minimum(_NUMERICAL - swerve, 1e-3 - off)),
             0.0,
             computed={"swerve": swerve, "length over d": float(lengths[-1]) / alpha.d},
             stated="the velocity of an agent that sees nobody is that of all who follow it, at the distance d",

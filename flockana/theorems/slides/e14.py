@@ -75,9 +75,8 @@ def _state() -> Claim:
     """The corrected form against the law itself on the same agents, here and moved."""
     alpha, q = _three()
     bound = 64.0 * np.finfo(float).eps * (1.0 + _SHIFT) * alpha.strength * 2.0
-    worst = max(
-        float(np.abs(_forces(alpha, q + w, printed=False) - _law(alpha, q + w)).max()) for w in (0.0, _SHIFT * alpha.d)
-    )
+    moved = [q + w for w in (0.0, _SHIFT * alpha.d)]
+    worst = float(np.max([np.abs(_forces(alpha, x, printed=False) - _law(alpha, x)).max() for x in moved]))
     return judged(
         "state",
         bound - worst,

@@ -1,0 +1,112 @@
+"""Motions q' = p, p' = f(q, p) that nobody acts on, integrated ahead of the times that are asked for.
+
+No agent acts on a γ-agent, so its motion is found beside the flock's, to far less than a run's own error.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import is_dataclass
+from math import isfinite
+from threading import Lock
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError, SolverError
+from flockana.base.units import rescale
+from flockana.environment.spring import Spring
+
+Force = Callable[[FloatArray, FloatArray], Any]
+_RTOL = 1e-12
+_PIECE = 8.0  # of the system's own time, integrated at once
+
+
+class Motion:
+    """The solution of y' = F(y) through y(0), as far as it was asked for; pieces are kept."""
+
+    def __init__(self, rate: Callable[[FloatArray], FloatArray], start: FloatArray, units: FloatArray, time: float):
+        self._rate, self._start, self._units, self._piece = rate, start, units, _PIECE * time
+        self._pieces: dict[bool, list[Any]] = {True: [], False: []}
+        self._lock = Lock()  # a piece begins where the one before ends: two threads must not add one each
+
+    def at(self, t: float) -> FloatArray:
+        """y(t); raises SolverError at a time that is none, or that the motion does not reach."""
+        if not isfinite(t):
+            raise SolverError(f"the γ-agent's own motion was asked for at t = {t}: expected a finite time")
+        ahead, k = t >= 0.0, int(abs(t) // self._piece)
+        pieces = self._pieces[ahead]
+        if len(pieces) <= k:
+            with self._lock:
+                while len(pieces) <= k:
+                    pieces.append(self._next(ahead, pieces))
+        y: FloatArray = pieces[k](t)
+        return y
+
+    def _next(self, ahead: bool, pieces: list[Any]) -> Any:
+        from scipy.integrate import solve_ivp
+
+        ends = np.array([len(pieces), len(pieces) + 1]) * (self._piece if ahead else -self._piece)
+        start = pieces[-1](ends[0]) if pieces else self._start
+        done = solve_ivp(
+            lambda _, y: self._rate(y),
+            tuple(ends.tolist()),
+            start,
+            method="DOP853",
+            dense_output=True,
+            rtol=_RTOL,
+            atol=1e-13 * self._units,
+        )
+        if not (done.success and np.isfinite(done.y).all()):
+            raise SolverError(
+                f"the γ-agent's own motion cannot be integrated beyond t = {done.t[-1]:.6g} ({done.message}): expected "
+                "a force f_r(q_r, p_r) that keeps it finite"
+            )
+        return done.sol
+
+
+def accelerations(force: Force, q: FloatArray, p: FloatArray) -> FloatArray:
+    """f_r of one place, or of each of several: a function of a user's own is asked for one at a time."""
+    if q.ndim == 1 or isinstance(force, Spring):
+        return np.asarray(force(q, p), dtype=np.float64)
+    return np.array([force(*each) for each in zip(q, p, strict=True)], dtype=np.float64)
+
+
+def motion_from(q: FloatArray, p: FloatArray, time: float, acceleration: Force) -> Motion:
+    """The motion of (q, p), of any shape, under an acceleration; its first value is checked."""
+    with np.errstate(all="ignore"):
+        first = acceleration(q, p)
+    if first.shape != q.shape or not np.isfinite(first).all():
+        raise ArgumentError(f"force gives {first!r} at the start: expected {q.shape[-1]} finite components")
+    length = max(float(np.abs(x).max()) * time**k for k, x in enumerate((q, p, first))) or 1.0
+    units = np.repeat([length, length / time], q.size)
+
+    def rate(y: FloatArray) -> FloatArray:
+        x, v = y.reshape(2, *q.shape)
+        return np.concatenate([v.ravel(), acceleration(x, v).ravel()])
+
+    return Motion(rate, np.concatenate([q.ravel(), p.ravel()]), units, time)
+
+
+def ensure_force(force: Any) -> None:
+    """Raise unless a force can be called.
+
+    Examples
+    --------
+    >>> ensure_force(Spring((0.0,), 1.0))
+    """
+    if not callable(force):
+        raise ArgumentError(f"force = {force!r}: expected Spring(...) or a function (q_r, p_r) -> p_r'")
+
+
+def force_in_units(force: Any, length: float, time: float) -> Any:
+    """f_r in other units: by its table of powers, or a user's function of what it was."""
+    if is_dataclass(force):
+        return rescale(force, length=length, time=time)
+
+    def scaled(q: FloatArray, p: FloatArray) -> FloatArray:
+        own: FloatArray = np.asarray(force(q / length, p * (time / length)), dtype=np.float64)
+        return own * (length / time**2)
+
+    return scaled

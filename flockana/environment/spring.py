@@ -1,0 +1,68 @@
+"""A spring with drag, whose pull may be bounded: the force on a γ-agent that is a system."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_nonnegative, ensure_positive, ensure_vector
+from flockana.base.units import Powers
+
+
+@dataclass(frozen=True)
+class Spring:
+    """f_r(q, p) = push − k x/√(1 + ‖x‖²/ℓ²) − b p, x = q − centre: a spring whose pull is bounded by kℓ, with drag.
+
+    Parameters
+    ----------
+    centre : array_like, shape (m,)
+        Where it pulls to.
+    stiffness : float
+        k; negative pushes away.
+    damping : float
+        b ≥ 0.
+    push : array_like, shape (m,), or 0
+        A constant acceleration.
+    reach : float, optional
+        ℓ > 0; without one the spring is linear.
+
+    Examples
+    --------
+    >>> Spring((0.0, 0.0), 2.0)(np.array([3.0, 0.0]), np.array([0.0, 1.0])).tolist()
+    [-6.0, 0.0]
+    """
+
+    centre: Any
+    stiffness: float
+    damping: float = 0.0
+    push: Any = 0.0
+    reach: float | None = None
+
+    units: ClassVar[Mapping[str, Powers]] = {
+        "centre": (1, 0),
+        "stiffness": (0, -2),
+        "damping": (0, -1),
+        "push": (1, -2),
+        "reach": (1, 0),
+    }
+
+    def __post_init__(self) -> None:
+        centre = ensure_vector("centre", self.centre)
+        push = np.zeros(centre.size) if np.isscalar(self.push) and self.push == 0 else self.push
+        object.__setattr__(self, "centre", tuple(centre.tolist()))
+        object.__setattr__(self, "push", tuple(ensure_vector("push", push, centre.size).tolist()))
+        object.__setattr__(self, "stiffness", ensure_finite_scalar("stiffness", self.stiffness))
+        object.__setattr__(self, "damping", ensure_nonnegative("damping", self.damping))
+        if self.reach is not None:
+            object.__setattr__(self, "reach", ensure_positive("reach", self.reach))
+
+    def __call__(self, q: FloatArray, p: FloatArray) -> FloatArray:
+        """The acceleration, of one place or of several (…, m)."""
+        x = q - np.array(self.centre)
+        if self.reach is not None:
+            x = x / np.sqrt(1.0 + np.sum(x * x, axis=-1, keepdims=True) / self.reach**2)
+        force: FloatArray = np.array(self.push) - self.stiffness * x - self.damping * p
+        return force
