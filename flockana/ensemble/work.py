@@ -135,7 +135,7 @@ class Record:
         True
         """
         data = json.loads(text)
-        if data.pop(SEAL) != digest([key, data]):
+        if data.pop(SEAL, None) != digest([key, data]):
             raise FileError("its digest is not that of its contents")
         job, claims = data.pop("job"), data.pop("claims")
         options = tuple((name, value) for name, value in job["options"])
