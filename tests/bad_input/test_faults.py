@@ -51,7 +51,7 @@ def outputs():
 
 
 @posix
-@pytest.mark.parametrize("arguments", outputs(), ids=lambda arguments: f"{arguments[0]}-{arguments[-1]}")
+@pytest.mark.parametrize("arguments", list(outputs()), ids=lambda arguments: f"{arguments[0]}-{arguments[-1]}")
 def test_a_full_disk_is_one_line_and_the_old_file_stays(call, request, tmp_path, arguments):
     if arguments[0] != "ensemble":  # which has names looked up by its workers
         request.getfixturevalue("catalogue")

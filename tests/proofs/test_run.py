@@ -174,7 +174,7 @@ def test_the_certificate_as_json(tmp_path):
     data = json.loads((tmp_path / "toy.json").read_text(encoding="utf-8"))
     assert list(data) == [
         *("schema", "status", "id", "title", "statement", "hypotheses", "rigour", "theorems", "time_limit"),
-        *("steps", "seconds", "reason", "versions"),
+        *("steps", "seconds", "reason", "values", "versions"),
     ]
     assert (data["schema"], data["status"], data["id"], data["rigour"]) == (1, "proved", "toy", "smt")
     assert data["steps"] == [{"text": "one", "holds": True, "latex": "x = x", "evidence": "said so"}]
