@@ -177,7 +177,7 @@ def test_the_certificate_as_json(tmp_path):
         *("steps", "seconds", "reason", "values", "versions"),
     ]
     assert (data["schema"], data["status"], data["id"], data["rigour"]) == (1, "proved", "toy", "smt")
-    assert data["steps"] == [{"text": "one", "holds": True, "latex": "x = x", "evidence": "said so"}]
+    assert data["steps"] == [{"text": "one", "holds": True, "latex": "x = x", "evidence": "said so", "found": {}}]
     assert set(data["versions"]) == {"python", "flockana", "sympy", "python-flint", "z3-solver"}
 
 
