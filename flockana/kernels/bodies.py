@@ -12,11 +12,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from flockana.kernels.alpha import BETA_AREA
 from flockana.kernels.compiling import njit, register_jitable
 from flockana.kernels.listed import CompiledFunction, term_functions
 
 _COUNT, _DIMENSION, _REACH, _C1, _C2, _BETA = range(6)
-_LAW = 5  # parameters of the law (`flockana.kernels.alpha`)
+_LAW = BETA_AREA + 1  # parameters of the law
 _STARTS = _BETA + _LAW
 
 

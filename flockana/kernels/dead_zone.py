@@ -214,9 +214,18 @@ def semi_implicit_steps(q, p, par, c2, dt, steps):
     all_q, all_p, all_u = np.empty((steps, n, m)), np.empty((steps, n, m)), np.empty((steps, n, m))
     x, v, u = q.T.copy(), p.T.copy(), np.empty((m, n))
     s2, w, a, f = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
-    eta, k_r2, k_delta, k1 = par[ETA], 2.0 * par[K_R], par[K_DELTA], par[K_1]
-    d1, d2, r, r_d = par[D_1], par[D_2], par[R], par[R_D]
-    steep = 1.0 / par[RAMP] if par[RAMP] > 0.0 else 1e300  # of the ramps
+    r = par[R]
+    held = (
+        par[0],
+        par[1],
+        par[2],
+        par[3],
+        par[4],
+        par[5],
+        par[6],
+        par[7],
+        par[8],
+    )  # in registers
     for step in range(steps):
         u[:] = 0.0
         for i in range(n):
@@ -228,13 +237,9 @@ def semi_implicit_steps(q, p, par, c2, dt, steps):
                     d = x_j[j] - x_i
                     s2[j] += d * d
             for j in range(others):
-                s = sqrt(s2[j])
-                gap = s if s < d1 else r_d - s
-                gap *= gap
-                share = max(0.0, min(1.0, (s - d2) * steep)) - max(0.0, min(1.0, (d1 - s) * steep))
-                pull = share * (k_r2 + k_delta * gap) / (gap * sqrt(1.0 + eta * s2[j])) + k1
-                w[j] = pull if s < r else 0.0
-                a[j] = c2 if s < r else 0.0
+                pull, near = pair_dead_zone(s2[j], held)[0], sqrt(s2[j]) < r
+                w[j] = pull if near else 0.0
+                a[j] = c2 if near else 0.0
             for c in range(m):
                 x_i, x_j, v_i, v_j, u_j = x[c, i], x[c, i + 1 :], v[c, i], v[c, i + 1 :], u[c, i + 1 :]
                 for j in range(others):

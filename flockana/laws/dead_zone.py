@@ -75,8 +75,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
     @property
     def scales(self) -> Scales:
         """d₁, and the time in which the force of a contact moves an agent by it."""
-        length = self.interaction.d1
-        return Scales(length, float(np.sqrt(length / self.interaction.contact_force)))
+        return contact_scales(self.interaction)
 
     def check_start(self, q: FloatArray, p: FloatArray) -> None:
         """Raise if two agents coincide: their force has no direction and their potential is infinite.
@@ -260,6 +259,11 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
                     "and back; give the interaction a ramp to go on"
                 )
         return None
+
+
+def contact_scales(interaction: DeadZoneInteraction) -> Scales:
+    """d₁, and the time in which the force of a contact moves an agent by it."""
+    return Scales(interaction.d1, float(np.sqrt(interaction.d1 / interaction.contact_force)))
 
 
 def ensure_apart(q: FloatArray) -> None:

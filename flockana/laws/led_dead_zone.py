@@ -14,7 +14,7 @@ from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
 from flockana.interactions.dead_zone import DeadZoneInteraction
-from flockana.laws.dead_zone import ensure_apart
+from flockana.laws.dead_zone import contact_scales, ensure_apart
 from flockana.laws.sum_of_terms import SumOfTerms
 from flockana.laws.terms.leaders import Leaders, known_path
 from flockana.laws.terms.pairs import PairTerm
@@ -114,8 +114,7 @@ class LedDeadZoneFlocking(SumOfTerms):
     @property
     def scales(self) -> Scales:
         """As those of `DeadZoneFlocking`."""
-        length = self.interaction.d1
-        return Scales(length, float(np.sqrt(length / self.interaction.contact_force)))
+        return contact_scales(self.interaction)
 
     def check_start(self, q: FloatArray, p: FloatArray) -> None:
         """Raise if two agents coincide, or there are others than `group` has.

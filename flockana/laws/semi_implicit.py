@@ -4,19 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar, TypeGuard
+from typing import TypeGuard
 
-from flockana.base.checks import FloatArray, ensure_positive
-from flockana.base.errors import ArgumentError
-from flockana.base.units import Powers
+from flockana.base.checks import FloatArray
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law
+from flockana.laws.scheme import Scheme
 
 
 @dataclass(frozen=True)
-class SemiImplicitEuler(DiscreteLaw):
+class SemiImplicitEuler(Scheme):
     """p' = p + dt u(t, q, p), q' = q + dt p': what sources mean that give a step and no integrator.
 
     A scheme of first order with a fixed step: where the law jumps it neither sees the jump nor resolves it, and where
@@ -44,23 +42,7 @@ class SemiImplicitEuler(DiscreteLaw):
     True
     """
 
-    law: Law
-    dt: float = 0.01
-
-    units: ClassVar[Mapping[str, Powers]] = {"dt": (0, 1)}
-
-    approximates = True
     steps_at_once = 500  # of the dead-zone law, whose loop is compiled: 5 µs a step of 50 agents
-
-    def __post_init__(self) -> None:
-        if not isinstance(self.law, Law):
-            raise ArgumentError(f"law = {self.law!r}: expected a continuous law such as DeadZoneFlocking()")
-        object.__setattr__(self, "dt", ensure_positive("dt", self.dt))
-
-    @property
-    def references(self) -> tuple[str, ...]:  # type: ignore[override]  # those of the law that is stepped
-        """Keys of the law's bibliography."""
-        return self.law.references
 
     def step(  # noqa: D102
         self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
@@ -78,10 +60,6 @@ class SemiImplicitEuler(DiscreteLaw):
         if _is_compiled(self.law):
             return (*self.law.semi_implicit(q, p, self.dt, steps), {})
         return super().iterate(t, q, p, memory, steps)
-
-    def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:  # noqa: D102
-        # the energy of the law that is stepped; the scheme does not keep its balance
-        return self.law.hamiltonian(t, q, p)
 
 
 def _is_compiled(law: Law) -> TypeGuard[DeadZoneFlocking]:

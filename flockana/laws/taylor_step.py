@@ -4,17 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
 
-from flockana.base.checks import FloatArray, ensure_positive
-from flockana.base.errors import ArgumentError
-from flockana.base.units import Powers
-from flockana.laws.discrete import DiscreteLaw
-from flockana.laws.law import Law
+from flockana.base.checks import FloatArray
+from flockana.laws.scheme import Scheme
 
 
 @dataclass(frozen=True)
-class TaylorStep(DiscreteLaw):
+class TaylorStep(Scheme):
     """q' = q + dt p + ½ dt² u(t, q, p), p' = p + dt u: what a constant input does, all agents at once.
 
     The R² notebook's iteration, and the plainest reading of a source that prints a step and no scheme. It is of first
@@ -46,29 +42,8 @@ class TaylorStep(DiscreteLaw):
     (0.25, 1.0, 2.0)
     """
 
-    law: Law
-    dt: float = 0.01
-
-    units: ClassVar[Mapping[str, Powers]] = {"dt": (0, 1)}
-
-    approximates = True
-
-    def __post_init__(self) -> None:
-        if not isinstance(self.law, Law):
-            raise ArgumentError(f"law = {self.law!r}: expected a continuous law such as Algorithm1()")
-        object.__setattr__(self, "dt", ensure_positive("dt", self.dt))
-
-    @property
-    def references(self) -> tuple[str, ...]:  # type: ignore[override]  # those of the law that is stepped
-        """Keys of the law's bibliography."""
-        return self.law.references
-
     def step(  # noqa: D102
         self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
     ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
         u, h = self.law.flow(t, q, p)[0], self.dt
         return q + h * p + (0.5 * h * h) * u, p + h * u, u, memory
-
-    def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:  # noqa: D102
-        # the energy of the law that is stepped; the scheme does not keep its balance
-        return self.law.hamiltonian(t, q, p)

@@ -95,7 +95,7 @@ def _range_circles(ax: Any, q: FloatArray, law: Any) -> None:
     """Circles at the range of the pair law, or at that of each agent."""
     from matplotlib.collections import EllipseCollection
 
-    if law.pair is None or q.shape[1] != 2:
+    if law.pair is None or not np.isfinite(law.pair.range) or q.shape[1] != 2:
         raise ArgumentError(
             f"ranges = True: expected a law with a range in the plane, not {law!r} for m = {q.shape[1]}"
         )

@@ -171,7 +171,7 @@ def _separated(iteration: int) -> Callable[[Trajectory, Tolerances], Claim]:
         apart = int((late.metric("connectivity") < 1.0).sum())
         k, i = np.unravel_index(int(np.linalg.norm(late.p, axis=2).argmax()), late.p.shape[:2])
         q, target = late.q[k], run.law.target.position(float(late.t[k]))
-        mates = int((np.linalg.norm(q - q[i], axis=1) <= run.law.alpha.r).sum()) - 1
+        mates = int((np.linalg.norm(q - q[i], axis=1) < run.law.alpha.r).sum()) - 1
         away = np.linalg.norm(q - target, axis=1)
         text = (
             f"after iteration {iteration} the net is not connected at {apart} of {len(late.t)} samples; the fastest "

@@ -133,10 +133,11 @@ def _departs(run: Trajectory, tolerances: Tolerances) -> Claim:
         ),
     )
     apart = np.linalg.norm(run.q - flow.q, axis=2).max(axis=1) / law.alpha.d
-    k = int(np.argmax(apart > _FOLLOWED))
+    beyond = np.flatnonzero(apart > _FOLLOWED)
+    since = f"from t = {run.t[beyond[0]]:.3g} on" if beyond.size else "at no time"
     energy, true = run.energy()[-1], flow.energy()[-1]
     detail = (
-        f"an agent is more than {_FOLLOWED:.0%} of d from the flow's from t = {run.t[k]:.3g} on, and up to "
+        f"an agent is more than {_FOLLOWED:.0%} of d from the flow's {since}, and up to "
         f"{apart.max():.3g} d later; the run ends in {component_count(run)} components, the flow in "
         f"{component_count(flow)}, at energies of {energy:.5g} and {true:.5g}"
     )
