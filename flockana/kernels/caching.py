@@ -40,11 +40,12 @@ class NamedByContent(IndexDataCacheFile):
     """An index, and files whose names no two functions, signatures, processors or versions of a source share."""
 
     def save(self, key: Any, data: Any) -> None:
-        """Write the file, then the index that names it."""
+        """Write the file, then the index that names it; on a full disk what is compiled is used and not kept."""
         digest = hashlib.sha256(repr((key, self._source_stamp)).encode()).hexdigest()[:16]
         name = f"{self._index_name.removesuffix('.nbi')}.{digest}.nbc"
-        self._save_data(name, data)
-        self._save_index({**self._load_index(), key: name})  # of two at once one is lost, and compiled again
+        with suppress(OSError):
+            self._save_data(name, data)
+            self._save_index({**self._load_index(), key: name})  # of two at once one is lost, and compiled again
 
 
 class _Cache(FunctionCache):

@@ -88,6 +88,17 @@ def test_another_version_of_the_source_is_another_file(tmp_path):
     assert len(list(tmp_path.glob("*.nbc"))) == 2
 
 
+def test_on_a_full_disk_what_is_compiled_is_used_and_not_kept(tmp_path, monkeypatch):
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    kept = NamedByContent(str(tmp_path), "kernel", "stamp")
+    monkeypatch.setattr(NamedByContent, "_save_data", full)
+    kept.save("a", "code")
+    assert kept.load("a") is None
+    assert not list(tmp_path.iterdir())
+
+
 def test_processes_that_compile_at_once_compute_what_they_should(tmp_path):
     """Twelve functions of one name and one index, compiled by three processes in two orders, then loaded."""
     (tmp_path / "many.py").write_text(MODULE)
