@@ -8,11 +8,11 @@ from functools import cache
 import z3
 from flint import ctx
 
+from flockana.certified.decimals import interval
+from flockana.certified.intervals import AlphaParameters, ball, c_star, far_potential
 from flockana.equilibria.barrier import turan_pairs
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.symbolic.energy import algorithm1_identity
-from proofs.decimals import interval
-from proofs.intervals import AlphaParameters, ball, c_star, far_potential
 from proofs.n_max import four_points, largest_clique, shortest_bound
 from proofs.proof import Proof, Step
 from proofs.signs_of_phi import PAIR, potential_lemma, potential_signs

@@ -9,6 +9,7 @@ from itertools import count, pairwise, permutations
 import sympy as sp
 import z3
 
+from flockana.certified.decimals import decimal
 from flockana.symbolic.spanning_trees import (
     MU,
     RHO,
@@ -22,7 +23,6 @@ from flockana.symbolic.spanning_trees import (
     symmetric_part,
 )
 from proofs.bearing_distance import no_collision, spring
-from proofs.decimals import decimal
 from proofs.evaluate import differs
 from proofs.proof import Proof, Step
 from proofs.smt import implication

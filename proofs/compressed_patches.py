@@ -15,12 +15,8 @@ import numpy as np
 import sympy as sp
 from flint import arb, arb_mat, ctx
 
-from flockana.environment.targets import StaticTarget
-from flockana.equilibria.solve import find_equilibrium
-from flockana.lattice import hexagonal_patch
-from flockana.laws.olfati_saber import Algorithm2
-from proofs.decimals import at_least, small
-from proofs.intervals import (
+from flockana.certified.decimals import at_least, small
+from flockana.certified.intervals import (
     AlphaParameters,
     ball,
     exact,
@@ -30,7 +26,11 @@ from proofs.intervals import (
     sigma_of_square,
     square,
 )
-from proofs.krawczyk import enclose_zero, least_eigenvalue
+from flockana.certified.krawczyk import enclose_zero, least_eigenvalue
+from flockana.environment.targets import StaticTarget
+from flockana.equilibria.solve import find_equilibrium
+from flockana.lattice import hexagonal_patch
+from flockana.laws.olfati_saber import Algorithm2
 from proofs.proof import Proof, Step
 from proofs.unstressed_patches import RINGS, SIZES, THE_SIZES, modes_decay, off_the_edges, pair_hessian
 

@@ -15,6 +15,7 @@ import sympy as sp
 import z3
 from flint import ctx
 
+from flockana.certified.decimals import interval
 from flockana.symbolic.dead_zone import (
     D_2,
     ETA,
@@ -47,7 +48,6 @@ from proofs.dead_zone_pairs import (
     zones,
 )
 from proofs.dead_zone_parting import FROM, LEAVING, separation_steps
-from proofs.decimals import interval
 from proofs.evaluate import enclosed
 from proofs.proof import Proof, Step
 from proofs.smt import implication, real

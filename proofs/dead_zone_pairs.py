@@ -15,6 +15,8 @@ import sympy as sp
 import z3
 from flint import arb, ctx
 
+from flockana.certified.decimals import first_digits, interval
+from flockana.certified.intervals import ball, exact
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.symbolic.dead_zone import (
     D_1,
@@ -35,9 +37,7 @@ from flockana.symbolic.dead_zone import (
     potential,
     repulsion,
 )
-from proofs.decimals import first_digits, interval
 from proofs.evaluate import enclosed
-from proofs.intervals import ball, exact
 from proofs.proof import Step
 from proofs.smt import implication, lemma, real
 

@@ -8,9 +8,9 @@ import sympy as sp
 import z3
 from flint import arb, ctx
 
+from flockana.certified.decimals import interval
 from flockana.symbolic.dead_zone import K_1, K_2, K_DELTA, K_R, R_D, R, attraction, direction, jumps
 from proofs.dead_zone_pairs import DIGITS, defaults, root, terms
-from proofs.decimals import interval
 from proofs.evaluate import enclosed
 from proofs.proof import Step
 from proofs.smt import implication, lemma, real

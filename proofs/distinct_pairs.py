@@ -19,12 +19,22 @@ from fractions import Fraction
 import sympy as sp
 from flint import arb, ctx
 
+from flockana.certified.decimals import at_most, first_digits, interval
+from flockana.certified.intervals import (
+    AlphaParameters,
+    adjacency,
+    ball,
+    c_star,
+    exact,
+    hull,
+    psi_alpha,
+    sigma_norm,
+    square,
+)
 from flockana.environment.targets import StaticTarget
 from flockana.interactions import Gains
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.scenarios import scenario
-from proofs.decimals import at_most, first_digits, interval
-from proofs.intervals import AlphaParameters, adjacency, ball, c_star, exact, hull, psi_alpha, sigma_norm, square
 from proofs.proof import Proof, Step
 
 DIGITS = 20

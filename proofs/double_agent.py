@@ -12,12 +12,12 @@ from itertools import combinations
 import sympy as sp
 from flint import arb, arb_mat, ctx
 
+from flockana.certified.decimals import at_least
+from flockana.certified.intervals import AlphaParameters, ball, phi_alpha, sigma_of_square, square
+from flockana.certified.krawczyk import least_eigenvalue
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.symbolic.norms import sigma_norm
 from proofs.compressed_patches import LIFT, Flock, rotation
-from proofs.decimals import at_least
-from proofs.intervals import AlphaParameters, ball, phi_alpha, sigma_of_square, square
-from proofs.krawczyk import least_eigenvalue
 from proofs.proof import Proof, Step
 from proofs.unstressed_patches import laplacian_rank, modes_decay, off_the_edges, pair_hessian, squared
 

@@ -6,9 +6,8 @@ from collections.abc import Iterator
 
 from flint import arb, ctx
 
-from flockana.scenarios import scenario, scenarios
-from proofs.decimals import plus_minus, small
-from proofs.intervals import (
+from flockana.certified.decimals import plus_minus, small
+from flockana.certified.intervals import (
     AlphaParameters,
     BetaParameters,
     c_star,
@@ -18,6 +17,7 @@ from proofs.intervals import (
     psi_beta,
     r_alpha,
 )
+from flockana.scenarios import scenario, scenarios
 from proofs.proof import Proof, Step
 
 DIGITS = 30

@@ -14,6 +14,7 @@ from typing import Any
 import sympy as sp
 from flint import arb, ctx
 
+from flockana.certified.decimals import small
 from flockana.kernels import dead_zone as dead_zone_kernel
 from flockana.kernels import scalars
 from flockana.kernels.compiling import Inlined
@@ -21,7 +22,6 @@ from flockana.symbolic.dead_zone import D_1, D_2, ETA, K_1, K_DELTA, K_R, R_D, R
 from flockana.symbolic.functions import taper
 from flockana.symbolic.norms import sigma_1, sigma_norm
 from proofs.dead_zone_pairs import zones
-from proofs.decimals import small
 from proofs.proof import Proof, Step
 
 DIGITS = 30

@@ -14,10 +14,10 @@ import sympy as sp
 import z3
 from flint import arb, ctx
 
+from flockana.certified.decimals import at_least, at_most, decimal, interval
+from flockana.certified.intervals import AlphaParameters, ball, c_star, far_potential, psi_alpha, sigma_norm
 from flockana.lattice import harborth
-from proofs.decimals import at_least, at_most, decimal, interval
 from proofs.enclosures import parameter_sets
-from proofs.intervals import AlphaParameters, ball, c_star, far_potential, psi_alpha, sigma_norm
 from proofs.proof import Proof, Step
 from proofs.signs_of_phi import potential_signs
 from proofs.smt import implication

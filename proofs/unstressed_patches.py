@@ -13,10 +13,10 @@ import sympy as sp
 import z3
 from flint import arb, arb_mat, ctx, fmpz_mat
 
-from proofs.decimals import at_least, plus_minus
+from flockana.certified.decimals import at_least, plus_minus
+from flockana.certified.intervals import AlphaParameters, adjacency, ball, d_alpha, phi_alpha_slope, r_alpha, square
+from flockana.certified.krawczyk import least_eigenvalue
 from proofs.enclosures import parameter_sets
-from proofs.intervals import AlphaParameters, adjacency, ball, d_alpha, phi_alpha_slope, r_alpha, square
-from proofs.krawczyk import least_eigenvalue
 from proofs.proof import Proof, Step
 from proofs.signs_of_phi import GIVEN, sigmoid
 from proofs.smt import implication, impossible

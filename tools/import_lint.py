@@ -25,6 +25,7 @@ STAGES: tuple[tuple[str, ...], ...] = (
     ("lammps",),
     ("equilibria",),
     ("stability",),
+    ("certified",),
     ("theorems",),
     ("scenarios",),
     ("ensemble",),

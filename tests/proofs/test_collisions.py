@@ -14,6 +14,7 @@ pytest.importorskip("flint")
 import z3
 from flint import arb, ctx
 
+from flockana.certified.intervals import AlphaParameters, c_star, far_potential
 from flockana.dynamics.simulate import simulate
 from flockana.equilibria.barrier import (
     bound_range,
@@ -30,7 +31,6 @@ from flockana.scenarios import scenario
 from flockana.theorems import verify
 from proofs import barrier, collisions, distinct_pairs, n_max
 from proofs.distinct_pairs import Start, crossings, free, is_the_scenario, onward, potential
-from proofs.intervals import AlphaParameters, c_star, far_potential
 
 SETS = {
     ("7", "8.4", "0.1", "0.2", "5", "5"): (23, 14),

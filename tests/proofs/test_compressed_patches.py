@@ -12,14 +12,15 @@ pytest.importorskip("flint")
 
 from flint import arb, arb_mat, ctx
 
+from flockana.certified import krawczyk
+from flockana.certified.intervals import AlphaParameters
 from flockana.equilibria import find_equilibrium
 from flockana.equilibria.potential import Potential
 from flockana.interactions import AlphaInteraction
 from flockana.lattice import hexagonal_patch, rigidity
 from flockana.laws.olfati_saber import Algorithm1
-from proofs import double_agent, krawczyk, strained_thirteen, unstressed_patches
+from proofs import double_agent, strained_thirteen, unstressed_patches
 from proofs.compressed_patches import LAW, NARROW, RADIUS, computed, curvature, enclose, flock
-from proofs.intervals import AlphaParameters
 
 RNG = np.random.default_rng(6)
 

@@ -9,9 +9,10 @@ pytest.importorskip("flint")  # the extra flockana[proofs]
 
 from flint import arb, ctx
 
+from flockana.certified import intervals
+from flockana.certified.intervals import AlphaParameters, BetaParameters
 from flockana.interactions import AlphaInteraction, BetaInteraction
-from proofs import enclosures, intervals
-from proofs.intervals import AlphaParameters, BetaParameters
+from proofs import enclosures
 
 EPS = np.finfo(float).eps
 SETS = enclosures.parameter_sets()

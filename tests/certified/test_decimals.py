@@ -16,8 +16,9 @@ pytest.importorskip("flint")
 from flint import arb, ctx
 
 import proofs as package
-from proofs import decimals, n_max, unstressed_patches
-from proofs.intervals import AlphaParameters
+from flockana.certified import decimals
+from flockana.certified.intervals import AlphaParameters
+from proofs import n_max, unstressed_patches
 from proofs.proof import Step, names, proofs
 from proofs.run import Outcome
 
