@@ -1,7 +1,7 @@
 """How many points can have all distances within a factor of each other: fewer than some number, by dimension.
 
-m + 2 points of m dimensions fall into two parts whose hulls meet (Radon). Where they meet, two weighted means agree, and
-then the mean squared distance between the parts is the sum of the variances within them.
+m + 2 points of m dimensions fall into two parts whose hulls meet (Radon). Where they meet, two weighted means agree,
+and then the mean squared distance between the parts is the sum of the variances within them.
 """
 
 from __future__ import annotations
@@ -106,6 +106,6 @@ def largest_clique(ratio: arb, m: int) -> int | None:
         least = least_ratio(points, m)
         if least is not None and ratio < least:
             return points - 1
-        if m == 2 and points > 7 or not ratio.is_finite():
+        if (m == 2 and points > 7) or not ratio.is_finite():
             return None
     return None
