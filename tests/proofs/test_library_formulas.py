@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from math import pi, sin, sqrt
 
 import pytest
 
@@ -11,16 +12,16 @@ pytest.importorskip("flint")
 
 from flint import ctx
 
+from flockana.kernels import alpha, obstacles, scalars
 from flockana.kernels import dead_zone as kernel
-from flockana.kernels import scalars
 from flockana.kernels.compiling import Inlined
-from proofs import library_formulas
+from proofs import library_formulas, library_pairs
 from proofs.dead_zone_pairs import zones
 from tests.proofs.steps import failing
 
 
 def wrong_sigma_norm(x2, eps):
-    return x2 / (sqrt(1.0 + eps * x2) + 2.0)  # noqa: F821 the kernel's root
+    return x2 / (sqrt(1.0 + eps * x2) + 2.0)
 
 
 def wrong_action(s, par):
@@ -28,7 +29,6 @@ def wrong_action(s, par):
 
 
 def test_a_slip_in_a_kernel_is_told(monkeypatch):
-    wrong_sigma_norm.__globals__["sqrt"] = math.sqrt
     monkeypatch.setattr(scalars, "sigma_norm", Inlined(wrong_sigma_norm))
     monkeypatch.setattr(scalars, "_S3", scalars._S3 * (1.0 + 2.0**-50))
     broken = failing(library_formulas._steps())
@@ -57,3 +57,42 @@ def test_the_error_of_the_taper_covers_what_is_measured():
     for z in (0.21, 0.5, 0.77, 0.999):
         exact = math.sin(0.5 * math.pi * (1.0 - z) / 0.8) ** 2
         assert scalars.taper(z, 0.2) == pytest.approx(exact, abs=bound + 4.0 * 2.0**-52)
+
+
+def wrong_phi_slope(s, a, b, c):
+    return 0.5 * (a + b) / sqrt(1.0 + (s + c) ** 2) ** 2
+
+
+def wrong_bump_slope(z, h):
+    return 0.5 * pi / (1.0 - h) * sin(pi * (z - h) / (1.0 - h))
+
+
+def wrong_phi_integral(s, a, b, c):
+    return 0.5 * (a + b) * (s / (sqrt(1.0 + (s + c) ** 2) + sqrt(1.0 + c * c))) ** 2
+
+
+SLIPS = {  # in what is executed, and the steps that tell
+    "another slope of the stress": (alpha, "pair_alpha_slope", alpha.pair_alpha_adjacency_slope, [5]),
+    "another slope of the adjacency": (alpha, "pair_alpha_adjacency_slope", alpha.pair_alpha_slope, [6]),
+    "a β-agent like an α-agent": (alpha, "pair_beta", alpha.pair_alpha, [7]),
+    "another slope of a β-agent's weight": (obstacles, "pair_beta_slope", obstacles.adjacency_beta_slope, [8]),
+    "another slope of its adjacency": (obstacles, "adjacency_beta_slope", obstacles.pair_beta_slope, [9]),
+    "another power": (scalars, "phi_slope", Inlined(wrong_phi_slope), [0]),
+    "another sign": (scalars, "bump_slope", Inlined(wrong_bump_slope), [1]),
+    "an integral without the gap": (scalars, "phi_integral", Inlined(wrong_phi_integral), [2, 3]),
+}
+
+
+@pytest.mark.parametrize("slip", SLIPS)
+def test_a_slip_in_a_pairs_kernel_is_told(slip, monkeypatch):
+    module, name, wrong, steps = SLIPS[slip]
+    monkeypatch.setattr(module, name, wrong)
+    holds = [step.holds for step in library_pairs._steps()]
+    assert len(holds) == library_pairs.PROOF.size
+    assert [k for k, held in enumerate(holds) if held is not True] == steps
+
+
+def test_slopes_of_pairs_are_derivatives_and_not_of_something_else():
+    assert all(step.holds is True for step in library_pairs._steps())
+    off = library_pairs.by_square(2 * library_pairs.stress())
+    assert library_pairs.residual(alpha.pair_alpha_slope, library_pairs.ALPHA, off) != 0
