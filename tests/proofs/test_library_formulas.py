@@ -10,12 +10,15 @@ import pytest
 pytest.importorskip("z3")  # the extra flockana[proofs]
 pytest.importorskip("flint")
 
-from flint import ctx
+import numpy as np
+from flint import arb, ctx
 
+from flockana.certified.intervals import AlphaParameters, BetaParameters, psi_alpha, psi_beta
+from flockana.interactions import AlphaInteraction, BetaInteraction
 from flockana.kernels import alpha, obstacles, scalars
 from flockana.kernels import dead_zone as kernel
 from flockana.kernels.compiling import Inlined
-from proofs import library_formulas, library_pairs
+from proofs import library_formulas, library_pairs, library_potentials
 from proofs.dead_zone_pairs import zones
 from tests.proofs.steps import failing
 
@@ -96,3 +99,43 @@ def test_slopes_of_pairs_are_derivatives_and_not_of_something_else():
     assert all(step.holds is True for step in library_pairs._steps())
     off = library_pairs.by_square(2 * library_pairs.stress())
     assert library_pairs.residual(alpha.pair_alpha_slope, library_pairs.ALPHA, off) != 0
+
+
+def test_the_bound_of_the_potentials_error_covers_what_is_measured():
+    for par, pair, exact, potential in (
+        (AlphaParameters(), AlphaInteraction(), psi_alpha, AlphaInteraction().psi_alpha),
+        (BetaParameters(), BetaInteraction(), psi_beta, BetaInteraction().psi_beta),
+    ):
+        with ctx.workdps(library_potentials.DIGITS):
+            top = float(exact(arb(0), par))
+            bound = float(library_potentials.error_of(par)) * top
+            end = float(pair.panels[-1, 1])
+            off = [abs(float(arb(float(potential(z))) - exact(arb(z), par))) for z in np.linspace(0.0, 1.1 * end, 40)]
+        assert 1e-17 * top < bound < 2e-15 * top
+        assert max(off) <= bound + 16.0 * 2.0**-53 * top  # of the evaluation
+
+
+def test_a_panel_that_is_off_is_told():
+    par, panels = AlphaParameters(), AlphaInteraction().panels
+    with ctx.workdps(library_potentials.DIGITS):
+        action = library_potentials.alpha_action(par)
+        right = library_potentials.slope_error(panels[2], action)
+        bent = panels[2].copy()
+        bent[4] += 1e-12  # the square's coefficient
+        assert float(right) < 2e-14
+        assert float(library_potentials.slope_error(bent, action)) > 1.9e-12 / (bent[1] - bent[0])
+        assert not library_potentials.on_circle(action, arb(14), arb(4)).is_finite()  # a pole of σ₁ is inside
+
+
+def test_powers_become_chebyshev_polynomials():
+    powers = [arb(3), arb(-1), arb(2), arb(5), arb(-7)]
+    expected = np.polynomial.chebyshev.poly2cheb([float(x) for x in powers])
+    assert [float(x) for x in library_potentials.chebyshev(powers)] == pytest.approx(expected.tolist(), rel=1e-15)
+
+
+def test_potentials_hold_as_stated():
+    steps = list(library_potentials.PROOF.steps())
+    assert failing(steps) == []
+    assert len(steps) == library_potentials.PROOF.size
+    assert {k: v for step in steps for k, v in step.found.items()} == library_potentials.STATED
+    assert ctx.cap == 10  # as it was
