@@ -12,6 +12,7 @@ from proofs.proof import Proof, Step
 from proofs.smt import implication
 
 UNEVEN, EVEN = (1, 1, 1, 1, 96), (20, 20, 20, 20, 20)  # the slides' components
+STATED = {"nodes": "24/25", "connectivity": "95/99"}
 
 
 def share_of_links(sizes: tuple[int, ...]) -> sp.Expr:
@@ -41,6 +42,7 @@ def _shares() -> Iterator[Step]:
         "components of 1, 1, 1, 1 and 96 agents: an agent alone has no link, so that the share of links is 1, however "
         "many there are; the share of nodes is 96/100, the slides' number",
         share_of_links(UNEVEN) == 1 and share_of_nodes(UNEVEN) == Fraction(96, 100),
+        found={"nodes": str(share_of_nodes(UNEVEN))},
     )
     yield Step("five components of 20: the share of nodes is 1/5", share_of_nodes(EVEN) == Fraction(1, 5))
 
@@ -62,6 +64,7 @@ def _ranks() -> Iterator[Step]:
     yield Step(
         "five components of 100 agents, whatever their sizes: rank L/(n - 1) = 95/99",
         connectivity(UNEVEN) == connectivity(EVEN) == Fraction(95, 99),
+        found={"connectivity": str(connectivity(UNEVEN))},
     )
     adjacency, laplacian = path_matrices()
     yield Step(
@@ -80,12 +83,14 @@ PROOF = Proof(
     id="net-measures",
     title="Errata E7 and E8: what C* and C count",
     statement=(
-        "Of components of 1, 1, 1, 1 and 96 agents the largest has all links, and 96 of 100 nodes; rank L/(n - 1) is "
-        "95/99 for any five components of 100 agents. On a path of three agents rank A/n = 2/3, rank L/(n - 1) = 1."
+        f"Of components of {', '.join(map(str, UNEVEN))} agents the largest has all links, and {STATED['nodes']} of the "
+        f"nodes; rank L/(n - 1) is {STATED['connectivity']} there, and for any five components of as many agents. On a "
+        "path of three agents rank A/n = 2/3, rank L/(n - 1) = 1."
     ),
     hypotheses="undirected nets",
     rigour="smt",
     steps=_steps,
     size=6,
     theorems=("E7", "E8"),
+    values=STATED,
 )

@@ -98,9 +98,9 @@ PROOF = Proof(
     title="Erratum J7: which speed the velocity bound leaves",
     statement=(
         "Applied to the velocity in every step, (10) lets no speed last above v*, the only one with v* = v^max "
-        "tanh((v* + δ u^max)/v^max). With v^max = 4, u^max = 2 and δ = 0.1 that is less than "
-        f"{STATED['lasting']}, with smaller steps less still; without an input 3 become less than 2.55 in one step, "
-        f"{STATED['one step']} cut off after two decimals."
+        f"tanh((v* + δ u^max)/v^max). With v^max = {LARGEST}, u^max = {THRUST} and δ = {float(STEP):g} that is less "
+        f"than {STATED['lasting']}, with smaller steps less still; without an input {DESIRED} become "
+        f"{STATED['one step']} in one step, cut off after two decimals."
     ),
     hypotheses="0 < v^max, 0 < δ u^max; inputs of at most u^max, m = 2 (as in every dimension, by the same inequality)",
     rigour="interval",
