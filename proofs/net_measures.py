@@ -83,9 +83,9 @@ PROOF = Proof(
     id="net-measures",
     title="Errata E7 and E8: what C* and C count",
     statement=(
-        f"Of components of {', '.join(map(str, UNEVEN))} agents the largest has all links, and {STATED['nodes']} of the "
-        f"nodes; rank L/(n - 1) is {STATED['connectivity']} there, and for any five components of as many agents. On a "
-        "path of three agents rank A/n = 2/3, rank L/(n - 1) = 1."
+        f"Of components of {', '.join(map(str, UNEVEN))} agents the largest has all links, and {STATED['nodes']} of "
+        f"the nodes; rank L/(n - 1) is {STATED['connectivity']} there, and for any {len(UNEVEN)} components of as many "
+        "agents. On a path of three agents rank A/n = 2/3, rank L/(n - 1) = 1."
     ),
     hypotheses="undirected nets",
     rigour="smt",
