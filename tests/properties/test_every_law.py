@@ -1,0 +1,121 @@
+"""The symmetries of every law: those that it has hold for any state, and those that it lacks are seen to fail.
+
+A new law is to be named here: a test fails until it is.
+"""
+
+from __future__ import annotations
+
+import inspect
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import flockana as fl
+from flockana.base.modules import modules
+from flockana.laws.discrete import DiscreteLaw
+from flockana.laws.law import LawOfMotion
+from flockana.laws.msn import MSNDiscretisation
+from flockana.laws.notebook import PushedAlgorithm1, PushedAlgorithm2
+from flockana.laws.semi_implicit import SemiImplicitEuler
+from flockana.laws.taylor_step import TaylorStep
+
+N, SPREAD, TIME = 9, 12.0, 0.7
+ORIGIN = fl.StaticTarget((0.0, 0.0))
+ROUND = {"rotation", "reflection"}
+PLACED = ROUND | {"permutation"}  # about a γ-agent or an obstacle at the origin
+FREE = PLACED | {"translation", "boost"}
+
+LAWS = {
+    "Algorithm1": (fl.Algorithm1(), FREE),
+    "Algorithm2": (fl.Algorithm2(target=ORIGIN), PLACED),
+    "Algorithm3": (fl.Algorithm3(target=ORIGIN, obstacles=[fl.Sphere((0.0, 0.0), 0.5)]), PLACED),
+    "PushedAlgorithm1": (PushedAlgorithm1(min_distance=2.0), FREE),
+    "PushedAlgorithm2": (PushedAlgorithm2(target=ORIGIN, min_distance=2.0), PLACED),
+    "PeerToPeer": (
+        fl.PeerToPeer(fl.Copies([[0.0, 0.0]] * N, [[0.0, 0.0]] * N, fl.Spring((0.0, 0.0), 1.0))),
+        PLACED,
+    ),
+    "DirectedNet": (fl.DirectedNet(fl.Algorithm1(), view=2.0), FREE - {"boost"}),
+    "DeadZoneFlocking": (fl.DeadZoneFlocking(), FREE),
+    "LedDeadZoneFlocking": (
+        fl.LedDeadZoneFlocking(
+            fl.DeadZoneInteraction(ramp=0.1), leaders=(ORIGIN,), group=(0,) * N, pinned=tuple(range(N))
+        ),
+        PLACED,
+    ),
+    "ZoneFlocking": (fl.ZoneFlocking(fl.ZoneRadii(1.5, c=3.0, a=8.0)), FREE - {"boost"}),
+    "MinimalFlocking": (fl.MinimalFlocking(radius=9.0), FREE),
+    "DiscreteMinimalFlocking": (fl.DiscreteMinimalFlocking(fl.MinimalFlocking(radius=9.0), dt=0.1), FREE),
+    "MSNDiscretisation": (
+        MSNDiscretisation(fl.Algorithm1(), dt=0.01),
+        FREE - {"permutation", "boost"},
+    ),  # one after another
+    "SemiImplicitEuler": (SemiImplicitEuler(fl.Algorithm1(), dt=0.01), FREE),
+    "TaylorStep": (TaylorStep(fl.Algorithm1(), dt=0.01), FREE),
+}
+
+
+def state(seed):
+    """Agents in range of each other, and how to turn, mirror, shift, hasten and rename them."""
+    rng = np.random.default_rng(seed)
+    q, p = rng.uniform(-SPREAD, SPREAD, (N, 2)), rng.normal(0.0, 2.0, (N, 2))
+    angle = rng.uniform(0.3, 2.8)
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    return q, p, turn, turn @ np.diag([1.0, -1.0]), rng.normal(0.0, 5.0, 2), rng.permutation(N)
+
+
+def answer(law, q, p):
+    """What the law makes of a state: accelerations, or places and velocities after a step."""
+    if isinstance(law, DiscreteLaw):
+        after = law.step(TIME, q, p, law.start(q, p))
+        return after[0], after[1]
+    return None, law.flow(TIME, q, p)[0]
+
+
+def off(law, symmetry, seed):
+    """How far the law is from commuting with the symmetry, relative to what it does."""
+    q, p, turn, mirror, shift, order = state(seed)
+    places, rates = answer(law, q, p)
+    later = law.dt if isinstance(law, DiscreteLaw) else 0.0
+    if symmetry in ROUND:
+        matrix = turn if symmetry == "rotation" else mirror
+        q2, p2 = q @ matrix.T, p @ matrix.T
+        places, rates = None if places is None else places @ matrix.T, rates @ matrix.T
+    elif symmetry == "permutation":
+        q2, p2 = q[order], p[order]
+        places, rates = None if places is None else places[order], rates[order]
+    elif symmetry == "translation":
+        q2, p2 = q + shift, p
+        places = None if places is None else places + shift
+    else:
+        q2, p2 = q, p + shift
+        places = None if places is None else places + shift * later
+        rates = rates + shift if places is not None else rates
+    there, speeds = answer(law, q2, p2)
+    apart = np.abs(speeds - rates).max() / (1.0 + np.abs(rates).max())
+    return apart if places is None else max(apart, np.abs(there - places).max() / SPREAD)
+
+
+def test_every_law_is_here():
+    kinds = [thing for module in modules("flockana.laws") for thing in vars(module).values() if inspect.isclass(thing)]
+    laws = {
+        k.__name__
+        for k in kinds
+        if issubclass(k, LawOfMotion) and hasattr(k, "__dataclass_fields__") and not inspect.isabstract(k)
+    }
+    assert laws == set(LAWS)
+    assert all(type(law).__name__ == name for name, (law, _) in LAWS.items())
+
+
+@pytest.mark.parametrize(("law", "symmetry"), [(law, s) for law, (_, has) in LAWS.items() for s in sorted(has)])
+@settings(max_examples=10)
+@given(st.integers(0, 2**32 - 1))
+def test_a_symmetry_holds_for_any_state(law, symmetry, seed):
+    assert off(LAWS[law][0], symmetry, seed) <= 1e-9
+
+
+@pytest.mark.parametrize(("law", "symmetry"), [(law, s) for law, (_, has) in LAWS.items() for s in sorted(FREE - has)])
+def test_a_symmetry_that_a_law_lacks_is_seen_to_fail(law, symmetry):
+    assert max(off(LAWS[law][0], symmetry, seed) for seed in range(8)) > 1e-4
