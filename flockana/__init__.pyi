@@ -63,12 +63,14 @@ from .laws.terms.navigation import Navigation as Navigation
 from .laws.terms.obstacles import ObstacleTerm as ObstacleTerm
 from .laws.terms.pairs import PairTerm as PairTerm
 from .laws.terms.term import Term as Term
+from .laws.vicsek import HeadingAveraging as HeadingAveraging
 from .measures import metrics as metrics
 from .measures import reynolds as reynolds
 from .measures.metrics import cohesion_radius as cohesion_radius
 from .measures.metrics import connectivity as connectivity
 from .measures.metrics import coordination as coordination
 from .measures.metrics import deviation_energy as deviation_energy
+from .measures.metrics import diameter as diameter
 from .measures.metrics import giant_share as giant_share
 from .measures.metrics import inertia as inertia
 from .measures.metrics import min_distance as min_distance
@@ -77,6 +79,7 @@ from .measures.metrics import velocity_mismatch as velocity_mismatch
 from .measures.nets import components as components
 from .measures.nets import laplacian as laplacian
 from .measures.nets import links as links
+from .measures.windows import joint_windows as joint_windows
 from .plots.animation import animate as animate
 from .scenarios.scenario import Scenario as Scenario
 from .scenarios.scenario import scenario as scenario
