@@ -207,5 +207,4 @@ def _mean_vectors(heading: FloatArray, pairs: LinkArray) -> FloatArray:
 
 def _sizes(pairs: LinkArray, n: int) -> FloatArray:
     """How many agents each averages over, itself included."""
-    sizes: FloatArray = 1.0 + np.bincount(pairs.ravel(), minlength=n)
-    return sizes
+    return np.bincount(pairs.ravel(), minlength=n).astype(np.float64) + 1.0

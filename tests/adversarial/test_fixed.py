@@ -58,6 +58,8 @@ TRUTHS = {
     "delay-margin": {"v": " ".join(f"algorithm-{k}-{late}" for k in (1, 2) for late in DELAYED)},
     "linearised-decay": {"v": "decay random range"},
     "zone-separation": {"r": "close-encounters", "v": "alone energy chain"},
+    "delayed-consensus": {"v": "margin below above root-below root-above average"},
+    "jlm-cut": {"r": "frame-free", "v": "clear-of-cut vectors"},
     "heterogeneous-gains": {"v": "printed simplified", "maybe": "apart"},
 }
 THEOREMS = tuple(TRUTHS)

@@ -7,12 +7,15 @@ from dataclasses import dataclass
 from math import inf
 
 import numpy as np
+import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
 from flockana.laws.vicsek import HeadingAveraging
 from flockana.measures.nets import LinkArray, components
 from flockana.theorems.limits import Certificate
 from flockana.theorems.rounding import EPS
+
+IndexArray = npt.NDArray[np.intp]
 
 _DIRECTIONS = 360  # along which two groups may be seen to part
 _TERMS = 4.0  # roundings of a difference, a length and a quotient
@@ -120,7 +123,7 @@ def for_ever_connected(law: HeadingAveraging, q: FloatArray, heading: FloatArray
     n, pairs = len(q), law.links(q)
     if components(n, pairs).max() > 0:
         return Certificate(-1.0, "the net is not connected")
-    weights = np.bincount(pairs.ravel(), minlength=n) + 1.0
+    weights = neighbourhoods(n, pairs)
     half = np.sqrt(weights)
     symmetric = averaging_matrix(n, pairs) * half[:, None] / half[None, :]
     moduli = np.sort(np.abs(np.linalg.eigvalsh(0.5 * (symmetric + symmetric.T))))
@@ -141,6 +144,24 @@ def for_ever_connected(law: HeadingAveraging, q: FloatArray, heading: FloatArray
     return Certificate(float(np.clip(margin, -1.0, 1.0)), text, error)
 
 
+def neighbourhoods(n: int, pairs: LinkArray) -> FloatArray:
+    """How many agents each averages over, itself included.
+
+    Parameters
+    ----------
+    n : int
+        Number of agents.
+    pairs : int array, shape (M, 2)
+        Links.
+
+    Examples
+    --------
+    >>> neighbourhoods(3, np.array([[0, 1]])).tolist()
+    [2.0, 2.0, 1.0]
+    """
+    return np.bincount(pairs.ravel(), minlength=n).astype(np.float64) + 1.0
+
+
 def final_heading(heading: FloatArray, weights: FloatArray) -> float:
     """The mean heading by weights: what a connected net that stays keeps, and tends to.
 
@@ -159,7 +180,7 @@ def final_heading(heading: FloatArray, weights: FloatArray) -> float:
     return float(weights @ heading / weights.sum())
 
 
-def _rooms(law: HeadingAveraging, q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _rooms(law: HeadingAveraging, q: FloatArray) -> tuple[FloatArray, IndexArray, IndexArray]:
     """How far the distance of each pair is from r, and the pairs (i, j)."""
     i, j = np.triu_indices(len(q), 1)
     return np.abs(np.linalg.norm(q[i] - q[j], axis=1) - law.range), i, j
@@ -205,7 +226,7 @@ def _advance(heading: FloatArray, angles: FloatArray) -> tuple[FloatArray, Float
     ends = np.cos(low - angles), np.cos(high - angles)
     turn = 2.0 * np.pi
 
-    def within(angle: FloatArray) -> FloatArray:
+    def within(angle: FloatArray) -> npt.NDArray[np.bool_]:
         return np.ceil((low - angle) / turn) * turn + angle <= high
 
     least = np.where(within(angles + np.pi), -1.0, np.minimum(*ends))

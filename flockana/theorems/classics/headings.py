@@ -11,7 +11,14 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.vicsek import HeadingAveraging
 from flockana.measures.windows import joint_windows
 from flockana.theorems.claims import judged
-from flockana.theorems.classics.averaging import Block, blocks, final_heading, for_ever_connected, for_ever_parted
+from flockana.theorems.classics.averaging import (
+    Block,
+    blocks,
+    final_heading,
+    for_ever_connected,
+    for_ever_parted,
+    neighbourhoods,
+)
 from flockana.theorems.hypotheses import condition, law_is
 from flockana.theorems.limits import Certificate, limit_claim
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
@@ -88,7 +95,7 @@ def _contraction(headings: FloatArray, found: tuple[Block, ...]) -> Claim:
 
 
 def _limit(run: Trajectory, heading: FloatArray, needs: list[Hypothesis], connected: Certificate) -> Claim:
-    weights = 1.0 + np.bincount(run.law.links(run.q[-1]).ravel(), minlength=run.n)
+    weights = neighbourhoods(run.n, run.law.links(run.q[-1]))
     return limit_claim(
         "agreement",
         needs,
@@ -123,9 +130,10 @@ THEOREM = Theorem(
     title="Nearest-neighbour averaging: headings agree under joint connectivity",
     statement=(
         "Let each agent's heading become the mean of its own and its neighbours' headings, all agents moving at one "
-        "speed. If there is an infinite sequence of contiguous, non-empty, bounded intervals of time from the start on, "
-        "across each of which the agents are linked together, all headings tend to a common one. No heading ever leaves "
-        "the span of those before, and over n - 1 such intervals the span shrinks by a factor that the nets guarantee."
+        "speed. If there is an infinite sequence of contiguous, non-empty, bounded intervals of time from the start "
+        "on, across each of which the agents are linked together, all headings tend to a common one. No heading ever "
+        "leaves the span of those before, and over n - 1 such intervals the span shrinks by a factor that the nets "
+        "guarantee."
     ),
     source="Jadbabaie, Lin and Morse, theorem on leaderless coordination; span and factor as its proofs have them",
     kind="trajectory",
