@@ -131,6 +131,7 @@ ENTRIES: tuple[Entry, ...] = (
         lambda q, p: Algorithm1(),
         "os-1",
         "the energy falls; if the flock stays together, velocities agree, and no two agents collide below the barrier",
+        "vacuous",
     ),
     Entry(
         "Algorithm 2",
