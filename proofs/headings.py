@@ -97,6 +97,14 @@ def _for_ever() -> Iterator[Step]:
         sp.simplify(similar - similar.T) == sp.zeros(3),
         r"\|\sqrt w(\theta - \theta_\infty)\|(t+1) \le \rho\,\|\sqrt w(\theta - \theta_\infty)\|(t)",
     )
+    one, other = sp.symbols("w_i w_j", positive=True)
+    y = sp.symbols("y_i y_j", real=True)
+    left = (y[0] ** 2 + y[1] ** 2) * (1 / one + 1 / other) - (y[0] / sp.sqrt(one) - y[1] / sp.sqrt(other)) ** 2
+    yield Step(
+        "two headings differ by √(1/w_i + 1/w_j) ‖√w (θ - θ∞)‖ at most (Cauchy and Schwarz: what is left is a square)",
+        sp.simplify(left - (y[0] / sp.sqrt(other) + y[1] / sp.sqrt(one)) ** 2) == 0,
+        r"|\theta_i - \theta_j| \le \sqrt{1/w_i + 1/w_j}\,\|\sqrt w(\theta - \theta_\infty)\|",
+    )
     rho, k = sp.symbols("rho k", positive=True)
     partial = (1 - rho ** (k + 1)) / (1 - rho)
     yield Step(
@@ -147,6 +155,6 @@ PROOF = Proof(
     hypotheses="θ_i becomes the mean over agent i and its neighbours, as numbers, without noise; one speed for all",
     rigour="smt",
     steps=_steps,
-    size=9,
+    size=10,
     theorems=("jlm-headings",),
 )

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import ensure_count
-from flockana.measures.measure import Measure, has_range
+from flockana.base.errors import ArgumentError
+from flockana.measures.measure import Measure
 from flockana.measures.nets import LinkArray, links
 
 
@@ -58,17 +59,29 @@ def _root(leader: list[int], i: int) -> int:
 
 
 def windows_of(run: Any) -> tuple[tuple[int, int], ...]:
-    """Windows of a run's samples over which its nets are jointly connected; of a law with a range.
+    """Windows of a run's samples over which its nets are jointly connected.
 
-    A law that has a net without a pair interaction tells it by `links(q)`.
+    A net is that of the law's pair interaction, or what a law without one tells by its own ``links(q)``.
 
     Parameters
     ----------
     run : Trajectory
         The run.
+
+    Raises
+    ------
+    ArgumentError
+        If the law has no net.
     """
+    if not hasattr(run.law, "links") and run.law.pair is None:
+        raise ArgumentError(f"{type(run.law).__name__} has no net: expected a run of a law with a range")
     own = getattr(run.law, "links", None)
     return joint_windows(run.n, (links(q, run.law.pair.range) if own is None else own(q) for q in run.q))
+
+
+def _tells_its_links(law: Any) -> bool:
+    """Laws whose theorems ask for windows; of others `windows_of` finds them, at the cost of a net for each sample."""
+    return hasattr(law, "links")
 
 
 MEASURES = (
@@ -77,6 +90,6 @@ MEASURES = (
         "windows of time over which the net is jointly connected",
         of_run=lambda run: len(windows_of(run)),
         of_run_text="contiguous windows of samples, each with a connected union of its nets",
-        defined=lambda law: has_range(law) or hasattr(law, "links"),
+        defined=_tells_its_links,
     ),
 )

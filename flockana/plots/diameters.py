@@ -6,9 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.base.errors import ArgumentError
 from flockana.measures.windows import windows_of
-from flockana.plots.series import has_metric
 from flockana.plots.style import BLUE, FAINT, INK, VERMILLION, ensure_axes, finish_over_time
 
 if TYPE_CHECKING:
@@ -64,10 +62,9 @@ def joint_windows(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     ArgumentError
         If the law has no net.
     """
-    if not has_metric(trajectory, "connectivity"):
-        raise ArgumentError(f"{type(trajectory.law).__name__} has no net: expected a run of a law with a range")
+    windows = windows_of(trajectory)
     axes: Any = ensure_axes(ax)
-    t, windows = trajectory.t, windows_of(trajectory)
+    t = trajectory.t
     ends = [float(t[min(stop, len(t) - 1)]) for _, stop in windows]
     starts = [float(t[0]), *ends[:-1]]
     for k, (start, end) in enumerate(zip(starts, ends, strict=False)):

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from math import isnan
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flockana import Algorithm1, components, diameter, joint_windows, simulate
+from flockana import Algorithm1, HeadingAveraging, MinimalFlocking, components, diameter, joint_windows, simulate
 from flockana.base.errors import ArgumentError
 from flockana.measures.measure import measures
+from flockana.measures.windows import windows_of
 
 pairs = st.tuples(st.integers(0, 3), st.integers(0, 3)).filter(lambda pair: pair[0] < pair[1])
 
@@ -32,7 +35,17 @@ def test_one_agent_is_connected_at_every_instant():
 
 def test_windows_of_a_run():
     run = simulate(Algorithm1(), [[0.0], [7.0]], [[0.0], [0.0]], (0.0, 1.0), t_eval=[0.0, 0.5, 1.0])
-    assert measures()["joint_windows"].number(run) == 3.0
+    assert windows_of(run) == ((0, 1), (1, 2), (2, 3))
+    assert isnan(measures()["joint_windows"].number(run))  # not of every law: it costs a net for each sample
+    law = HeadingAveraging(range=8.0)
+    flock = simulate(law, [[0.0, 0.0], [7.0, 0.0]], law.velocities([1.0, 1.0]), (0.0, 2.0))
+    assert measures()["joint_windows"].number(flock) == 3.0
+
+
+def test_a_law_without_a_net_has_no_windows():
+    law = MinimalFlocking(edges=[(0, 1)], spacing=1.0)
+    with pytest.raises(ArgumentError, match="MinimalFlocking has no net"):
+        windows_of(simulate(law, [[0.0], [1.0]], [[0.0], [0.0]], (0.0, 0.1)))
 
 
 def test_bad_numbers_of_agents():

@@ -108,7 +108,7 @@ def for_ever_connected(law: HeadingAveraging, q: FloatArray, heading: FloatArray
 
     With an unchanged net √w (θ − θ∞) shrinks by ρ in each step, w_i counting agent i and its neighbours, θ∞ the mean
     of θ by w, ρ the second largest modulus of the eigenvalues of a matrix similar to a symmetric one. Summed over all
-    steps to come, the distance of i and j changes by at most v dt (1/√w_i + 1/√w_j) ‖√w (θ − θ∞)‖/(1 − ρ). If that is
+    steps to come, the distance of i and j changes by at most v dt √(1/w_i + 1/w_j) ‖√w (θ − θ∞)‖/(1 − ρ). If that is
     less than what each distance is away from r, the net stays; by induction for ever.
 
     Parameters
@@ -133,7 +133,7 @@ def for_ever_connected(law: HeadingAveraging, q: FloatArray, heading: FloatArray
     off = half * (heading - final_heading(heading, weights))
     size = float(np.linalg.norm(off)) + (n + _TERMS) * EPS * float(np.linalg.norm(half * heading))
     room, i, j = _rooms(law, q)
-    drift = law.speed * law.dt * (1.0 / half[i] + 1.0 / half[j]) * size / gap
+    drift = law.speed * law.dt * np.sqrt(1.0 / weights[i] + 1.0 / weights[j]) * size / gap
     margin = float((room - drift).min(initial=inf)) / law.range
     error = _TERMS * EPS * (1.0 + float(np.abs(q).max()) / law.range)
     text = (

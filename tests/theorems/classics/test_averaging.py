@@ -45,9 +45,18 @@ def test_the_bound_of_what_may_change_is_near_what_does():
     q, step = np.array([[0.0, 0.0], [0.9, 0.0]]), 0.05
     alike = np.array([1.5, 1.5])
     assert certain(for_ever_connected(LAW, q, alike))
-    for half in (0.5, 2.1):  # v dt (1/√2 + 1/√2) √2 · half = 2 v dt half, against a room of 0.1
+    for half in (0.9, 1.1):  # v dt √(1/2 + 1/2) 2 half, against a room of 0.1
         heading = np.array([1.5 + half, 1.5 - half])
         assert certain(for_ever_connected(LAW, q, heading)) == (2.0 * step * half < 0.1)
+
+
+def test_a_net_that_averages_slowly_may_change_for_long():
+    """A path of three, w = (2, 3, 2), ρ = ½: headings (δ, 0, −δ) move two neighbours by 0.2 √(1/2 + 1/3) δ at most."""
+    q, room = np.array([[0.0, 0.0], [0.7, 0.0], [1.4, 0.0]]), 0.3
+    limit = room / (0.05 * np.sqrt(1.0 / 2.0 + 1.0 / 3.0) * 2.0 / 0.5)
+    for share in (0.98, 1.02):
+        heading = 1.5 + share * limit * np.array([1.0, 0.0, -1.0])
+        assert certain(for_ever_connected(LAW, q, heading)) == (share < 1.0)
 
 
 def test_no_certificate_on_the_circle_or_apart():
@@ -74,6 +83,13 @@ def test_who_meets_later_is_not_parted():
     assert not certain(for_ever_parted(LAW, q, np.array([0.0, np.pi])))
     assert not certain(for_ever_parted(LAW, q, np.array([1.0, 1.0])))
     assert certain(for_ever_parted(LAW, q, np.array([np.pi, 0.0])))
+
+
+def test_who_passes_within_range_is_not_parted():
+    """Ahead along x and faster there, but by less than r: the second comes down past the first and meets it."""
+    q, heading = np.array([[0.0, 0.0], [0.5, 1.5]]), np.radians([85.0, 280.0])
+    assert simulate(LAW, q, LAW.velocities(heading), (0.0, 20.0)).metric("connectivity").max() == 1.0
+    assert not certain(for_ever_parted(LAW, q, heading))
 
 
 def test_a_span_that_passes_a_turn_parts_from_nothing():
