@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import ensure_count, ensure_finite_scalar, ensure_nonnegative, ensure_positive
+from flockana.base.checks import ensure_count, ensure_finite_scalar, ensure_nonnegative, ensure_positive, ensure_state
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
@@ -23,6 +23,7 @@ from flockana.laws.olfati_saber import GAINS, PAIR, TARGET, Algorithm1, Algorith
 from flockana.laws.terms.obstacles import ensure_one_dimension
 from flockana.laws.terms.parts import parts
 from flockana.laws.terms.term import Term
+from flockana.measures.frame import moving_frame
 
 _PARTS = ("pair", "consensus", "navigation", "obstacles", "drag", "speed")
 _NO_GAIN = Gains(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -152,6 +153,18 @@ class Composition(GainedLaw):
             thrust=self.thrust,
             brake=self.brake,
         )
+
+    def structural_energy(self, q: Any, p: Any) -> float:
+        """The energy that never rises where no term adds any: seen from the centre of mass unless a place holds them.
+
+        Parameters
+        ----------
+        q, p : array_like, shape (n, m)
+            Positions and velocities in any frame; a γ-agent that holds the flock in the given frame is at rest.
+        """
+        q, p = ensure_state(q, p)
+        free = self.target is None and not self.obstacles and self.brake == 0.0
+        return self.hamiltonian(0.0, q, moving_frame(p) if free else p)
 
 
 def compose(
