@@ -53,7 +53,8 @@ def farthest(run: Trajectory, place: FloatArray) -> tuple[FloatArray, FloatArray
     return seen, most
 
 
-def _stays(run: Trajectory, needs: list[Hypothesis]) -> Claim:
+def stays_within(run: Trajectory, needs: list[Hypothesis], *, name: str = "bound", proof: str | None = None) -> Claim:
+    """The claim that each agent that is pulled stays within the distance that the energy at the start allows."""
     law, gains = run.law, gains_of(run)
     unit, pulled = law.term(Navigation).unit, gains > 0.0
     energy = float(run.energy()[0])
@@ -73,13 +74,14 @@ def _stays(run: Trajectory, needs: list[Hypothesis]) -> Claim:
     worst = int(np.argmin(np.where(allowed - seen > 0.0, allowed - seen - errors, allowed - seen)))
     agent, whose = int(np.flatnonzero(pulled)[worst]), "the centre of mass" if law.moving else "the γ-agent"
     return judged(
-        "bound",
+        name,
         float((allowed - seen)[worst]),
         float(errors[worst]),
         needs,
         computed=float(seen[worst]),
         stated=f"agent {agent} stays within {allowed[worst]:.5g} of {whose}",
         witness={"agent": agent},
+        proof=proof,
         detail=f"of {int(pulled.sum())} agents with c1γ > 0 the one nearest to its bound, agent {agent}, goes "
         f"{seen[worst]:.4g} from {whose}, and H(0) allows {allowed[worst]:.4g}",
     )
@@ -91,7 +93,7 @@ def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
     if unmet(needs):
         return needs, []
     needs += nothing_adds_energy(run) + ([] if run.law.alpha is None else least_is_known(run))
-    return needs, [_stays(run, needs)]
+    return needs, [stays_within(run, needs)]
 
 
 THEOREM = Theorem(

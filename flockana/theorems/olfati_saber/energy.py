@@ -84,19 +84,27 @@ def falling_share(run: Trajectory, rate: FloatArray, cancels: FloatArray) -> tup
     return share, (run.n**2 + 64) * EPS
 
 
-def never_rises(run: Trajectory, needs: Iterable[Hypothesis], *, since: int = 0, proof: str | None = None) -> Claim:
+def never_rises(
+    run: Trajectory,
+    needs: Iterable[Hypothesis],
+    *,
+    since: int = 0,
+    squares: bool = False,
+    name: str = "rate",
+    proof: str | None = None,
+) -> Claim:
     """The claim that dH/dt ≤ 0 at every sample from `since` on; the margin is the fall over its terms' magnitude.
 
     A sum of terms of one sign keeps it in floating point, so that Algorithms 1 and 2 have the margin 1 at every state;
     where terms may cancel (`cancelling`), the rest is held against their rounding. Where nothing moves, or nothing
-    damps, the rate is 0 without any term, and the claim holds.
+    damps, the rate is 0 without any term, and the claim holds. `squares` says that all terms are squares here.
     """
     rate = run.energy_rate()[since:]
-    share, error = falling_share(run, rate, cancelling(run, since))
+    share, error = falling_share(run, rate, np.zeros(rate.shape) if squares else cancelling(run, since))
     worst, highest = int(np.argmin(share)), float(rate.max())
     margin = float(share[worst])
     return judged(
-        "rate",
+        name,
         margin,
         error,
         needs,
