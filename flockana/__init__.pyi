@@ -48,6 +48,8 @@ from .lammps.dump import read_lammps as read_lammps
 from .lammps.export import export_lammps as export_lammps
 from .laws.algorithm3 import Algorithm3 as Algorithm3
 from .laws.bearing_distance import ZoneFlocking as ZoneFlocking
+from .laws.composition import Composition as Composition
+from .laws.composition import compose as compose
 from .laws.dead_zone import DeadZoneFlocking as DeadZoneFlocking
 from .laws.directed import DirectedNet as DirectedNet
 from .laws.discrete import DiscreteLaw as DiscreteLaw

@@ -21,6 +21,7 @@ from .falsify import falsification as falsification
 from .falsify import search_history as search_history
 from .film import Film as Film
 from .headings import headings as headings
+from .informed import informed_shares as informed_shares
 from .lattice import barrier as barrier
 from .lattice import collapse as collapse
 from .lattice import collapse_brackets as collapse_brackets

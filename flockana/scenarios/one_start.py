@@ -7,7 +7,7 @@ its runs, and what that promises in a few words.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from flockana.base.errors import UnknownNameError
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import LinearTarget
-from flockana.interactions import AlphaInteraction
+from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice.builders import hexagonal_spiral
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.discrete import DiscreteLaw
@@ -125,6 +125,12 @@ def _follower(q: FloatArray, p: FloatArray) -> LinearTarget:
     return LinearTarget((place[0], place[1]), (velocity[0], velocity[1]))
 
 
+def _informing(some: int, n: int) -> Gains:
+    """The default gains, those to the γ-agent for the first few agents only."""
+    gains, felt = Gains(), np.arange(n) < some
+    return replace(gains, c1_gamma=tuple(gains.c1_gamma * felt), c2_gamma=tuple(gains.c2_gamma * felt))
+
+
 ENTRIES: tuple[Entry, ...] = (
     Entry(
         "Algorithm 1",
@@ -138,6 +144,12 @@ ENTRIES: tuple[Entry, ...] = (
         lambda q, p: Algorithm2(target=_follower(q, p)),
         "os-3",
         "the flock stays within a bounded distance of the γ-agent, velocities agree, few pairs can collide",
+    ),
+    Entry(
+        "Few informed",
+        lambda q, p: Algorithm2(gains=_informing(3, len(q)), target=_follower(q, p)),
+        "su-informed",
+        "three of ten feel the γ-agent: they take on its velocity, and so do those who stay linked to them",
     ),
     Entry(
         "Dead zone",
