@@ -28,9 +28,9 @@ from flockana.measures.nets import components, links
 from flockana.theorems import Verdict, verify
 from flockana.theorems.theorem import Status
 
-_N, _SPEED, _HEADING = 10, 3.0, np.pi / 4.0
+_N, _SPEED, _HEADING = 10, 1.0, np.pi / 4.0
 _SHAKEN, _TURNED = 0.1, 0.6  # of d, and radians: what chance adds to places and headings
-UNTIL = 20.0
+UNTIL = 60.0
 RANGE = AlphaInteraction().r
 _INSTANTS = 201
 
@@ -110,7 +110,7 @@ def one_start(seed: int = 0) -> tuple[FloatArray, FloatArray]:
     Examples
     --------
     >>> q, p = one_start()
-    >>> q.shape, bool(np.allclose(np.linalg.norm(p, axis=1), 3.0))
+    >>> q.shape, bool(np.allclose(np.linalg.norm(p, axis=1), 1.0))
     ((10, 2), True)
     """
     generator, d = np.random.default_rng(seed), AlphaInteraction().d
