@@ -302,3 +302,15 @@ def harborth(n):
     """⌊3n − √(12n − 3)⌋ in integers."""
     root = isqrt(12 * n - 3)
     return 3 * n - root - (root * root < 12 * n - 3)
+
+
+# --- velocity consensus alone -----------------------------------------------------------------------------------------
+
+
+def weight_left(start, strength, length, decay):
+    """∫ K (1 + s²/ℓ²)^−β from a distance on, to 30 digits; infinite for β <= ½."""
+    if decay <= 0.5:
+        return float("inf")
+    with mpmath.workdps(_DIGITS):
+        y, beta = mpmath.mpf(start) / length, mpmath.mpf(decay)
+        return float(strength * length * mpmath.quad(lambda s: (1 + s * s) ** -beta, [y, y + 1, y + 100, mpmath.inf]))
