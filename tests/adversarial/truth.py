@@ -327,3 +327,13 @@ def two_headings(apart, one, other, step, steps):
     distance = hypot(*end)
     parting = float(end @ slip) / distance / step
     return False, sure, min(distance - 1.0, parting) if distance > 1.0 else 0.0
+# --- velocity consensus alone -----------------------------------------------------------------------------------------
+
+
+def weight_left(start, strength, length, decay):
+    """∫ K (1 + s²/ℓ²)^−β from a distance on, to 30 digits; infinite for β <= ½."""
+    if decay <= 0.5:
+        return float("inf")
+    with mpmath.workdps(_DIGITS):
+        y, beta = mpmath.mpf(start) / length, mpmath.mpf(decay)
+        return float(strength * length * mpmath.quad(lambda s: (1 + s * s) ** -beta, [y, y + 1, y + 100, mpmath.inf]))
