@@ -327,6 +327,8 @@ def two_headings(apart, one, other, step, steps):
     distance = hypot(*end)
     parting = float(end @ slip) / distance / step
     return False, sure, min(distance - 1.0, parting) if distance > 1.0 else 0.0
+
+
 # --- velocity consensus alone -----------------------------------------------------------------------------------------
 
 
