@@ -61,6 +61,7 @@ def verify_command(
     """
     from flockana.ensemble.processes import cores
     from flockana.report.build import ensure_directory, report_folder, verdicts_json, write_report
+    from flockana.report.comparison import comparison_section
     from flockana.report.statistics import gather
     from flockana.report.surveys import SurveyResult, surveys
     from flockana.report.work import plan
@@ -88,8 +89,16 @@ def verify_command(
     seconds, complete = time.perf_counter() - started, code in (OK, UNEXPECTED)
     written = None
     if report is not None and not no_report and (pages or complete):
+        comparison = comparison_section(seed) if complete and name is None else None
         written = write_report(
-            pages, report, seed=seed, seconds=seconds, complete=complete, statistics=statistics, of=name
+            pages,
+            report,
+            seed=seed,
+            seconds=seconds,
+            complete=complete,
+            statistics=statistics,
+            comparison=comparison,
+            of=name,
         )
     if as_json:
         text = verdicts_json(pages, seed=seed, seconds=seconds, complete=complete, statistics=statistics)

@@ -71,7 +71,7 @@ class Potential:
     @property
     def pinned(self) -> bool:
         """Whether a translation of the flock changes the potential."""
-        return not self.law.splits
+        return any(term.invariance != "rigid motions" for term in self.law.terms)
 
     @property
     def force_scale(self) -> float:
@@ -96,8 +96,8 @@ class Potential:
 
     @property
     def others(self) -> tuple[Term, ...]:
-        """All terms but the pair term."""
-        return tuple(term for term in self.law.terms if term is not self.pairs)
+        """All terms with a potential but the pair term."""
+        return tuple(term for term in self.law.terms if term is not self.pairs and not term.idle)
 
     @property
     def target(self) -> FloatArray | None:

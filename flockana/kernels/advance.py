@@ -15,7 +15,7 @@ import numpy as np
 from flockana.kernels.bodies import guard_signature
 from flockana.kernels.compiling import njit
 from flockana.kernels.encounters import share_of_pairs
-from flockana.kernels.listed import signatures
+from flockana.kernels.listed import MOST_TERMS, signatures
 from flockana.kernels.paths import bernstein, centred
 from flockana.kernels.runge_kutta import energy_of, error_of, first_step, frame_at, interpolated, rate_of, stages_of
 from flockana.kernels.sums import finite
@@ -159,7 +159,8 @@ def _controlled(h, error, exponent, rejected):
 
 
 def _advance(
-    search, act0, act1, act2, energy0, energy1, energy2, numbers, panels, shape, view, moving,
+    search, act0, act1, act2, act3, act4, energy0, energy1, energy2, energy3, energy4, numbers, panels, shape, view,
+    moving,
     tableau_a, tableau_c, estimates, interpolant, stages, exponent,
     reach, radii, far, guard, bodies, shell, rtol, floor, balance, ledger, t, y, f, h, stops, due, most,
 ):  # fmt: skip
@@ -172,7 +173,8 @@ def _advance(
     start = y[: n * m].copy().reshape(n, m)
     order = spatial_order(start, reach[0] + reach[1]) if reach[0] > 0.0 else np.arange(n).astype(np.uint64)
     system = (
-        (act0, act1, act2), (energy0, energy1, energy2), numbers, panels, shape, view, moving, reach, order, search
+        (act0, act1, act2, act3, act4), (energy0, energy1, energy2, energy3, energy4),
+        numbers, panels, shape, view, moving, reach, order, search,
     )  # fmt: skip
     method, fixed = (tableau_a, tableau_c, stages), exponent == 0.0
     encounters = (np.empty_like(radii), far, guard, bodies, shell)
@@ -266,7 +268,8 @@ def advance() -> Callable[..., Any]:
     act, energy = (types.FunctionType(signature) for signature in signatures())
     matrix, vector = float64[:, ::1], float64[::1]
     search = types.FunctionType(search_of_pairs()[1])
-    law = (search, act, act, act, energy, energy, energy, several(vector, 3), several(matrix, 3))
+    law = (search, *(act,) * MOST_TERMS, *(energy,) * MOST_TERMS)
+    law = (*law, several(vector, MOST_TERMS), several(matrix, MOST_TERMS))
     view = (several(int64, 2), types.containers.Tuple((float64, vector, vector)), boolean)
     method = (matrix, vector, matrix, matrix, int64, float64)
     around = (several(float64, 2), matrix, float64, types.FunctionType(guard_signature()), vector, several(float64, 2))

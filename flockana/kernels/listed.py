@@ -17,6 +17,7 @@ from flockana.kernels.sweep import BLOCK, lift_block
 
 CompiledFunction = Callable[..., float]
 PARAMETERS = 16  # of a pair law, at most
+MOST_TERMS = 5  # of a law: a compiled integrator takes their functions one by one (`flockana.kernels.advance`)
 
 
 class Signatures(NamedTuple):

@@ -5,22 +5,37 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 from flockana.base.scales import Scales
 from flockana.environment.beta import ObstacleField
 from flockana.environment.obstacles import Obstacle
 from flockana.environment.target import Target
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains, PairInteraction
+from flockana.laws.gained import GainedLaw
 from flockana.laws.olfati_saber import GAINS, PAIR, TARGET, alpha_scales, ensure_part
-from flockana.laws.sum_of_terms import SumOfTerms
-from flockana.laws.terms.navigation import Navigation
-from flockana.laws.terms.obstacles import ObstacleTerm
-from flockana.laws.terms.pairs import PairTerm
+from flockana.laws.terms.obstacles import ensure_one_dimension
+from flockana.laws.terms.parts import parts
 from flockana.laws.terms.term import Term
 
 
+def ensure_obstacles(given: Any) -> tuple[Obstacle, ...]:
+    """Return obstacles as a tuple, or raise if something among them is none.
+
+    Examples
+    --------
+    >>> ensure_obstacles([])
+    ()
+    """
+    ensure_part("obstacles", given, Iterable, "a sequence such as (Sphere((5, 0), 1),)")
+    obstacles = tuple(given)
+    for k, obstacle in enumerate(obstacles):
+        ensure_part(f"obstacles[{k}]", obstacle, Obstacle, "an obstacle such as Sphere((5, 0), 1)")
+    return obstacles
+
+
 @dataclass(frozen=True)
-class Algorithm3(SumOfTerms):
+class Algorithm3(GainedLaw):
     """u_i = u_i^α + u_i^β + u_i^γ: Algorithm 1, repulsion from obstacles, a bounded pull to the γ-agent.
 
     u_i^β = c1β Σ_k φ_β(‖q̂_ik−q_i‖_σ) n̂_ik + c2β Σ_k b_ik (p̂_ik − p_i) and
@@ -69,12 +84,9 @@ class Algorithm3(SumOfTerms):
         ensure_part("gains", self.gains, Gains, GAINS)
         ensure_part("beta", self.beta, BetaInteraction, "BetaInteraction(...)")
         ensure_part("target", self.target, Target, TARGET)
-        ensure_part("obstacles", self.obstacles, Iterable, "a sequence such as (Sphere((5, 0), 1),)")
-        obstacles = tuple(self.obstacles)
-        for k, obstacle in enumerate(obstacles):
-            ensure_part(f"obstacles[{k}]", obstacle, Obstacle, "an obstacle such as Sphere((5, 0), 1)")
+        obstacles = ensure_obstacles(self.obstacles)
         object.__setattr__(self, "obstacles", obstacles)
-        self._repulsion.ensure_dimension(self.target.dimension, "the target has")
+        ensure_one_dimension(obstacles, self.target.dimension, "the target has")
 
     @property
     def scales(self) -> Scales:  # noqa: D102
@@ -86,11 +98,7 @@ class Algorithm3(SumOfTerms):
         return ObstacleField(self.obstacles, self.beta)
 
     @cached_property
-    def _repulsion(self) -> ObstacleTerm:
-        return ObstacleTerm(self.obstacle_field, self.gains.c1_beta, self.gains.c2_beta)
-
-    @cached_property
     def terms(self) -> tuple[Term, ...]:
         """H = c1α V + c1β ΣΣ ψ_β + c1γ Σ ℓ²(√(1 + ‖q_i − q_r‖²/ℓ²) − 1) + ½ Σ‖p_i‖², every pair once (E2)."""
-        pairs = PairTerm(self.alpha, self.gains.c1_alpha, self.gains.c2_alpha)
-        return (pairs, self._repulsion, Navigation(self.target, self.gains, unit=self.alpha.bend_length))
+        own, unit = self.obstacle_field, self.alpha.bend_length
+        return parts(self.alpha, self.gains, field=own, target=self.target, unit=unit)

@@ -13,9 +13,8 @@ from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.environment.target import Target
 from flockana.interactions import AlphaInteraction, Gains, PairInteraction
-from flockana.laws.sum_of_terms import SumOfTerms
-from flockana.laws.terms.navigation import Navigation
-from flockana.laws.terms.pairs import PairTerm
+from flockana.laws.gained import GainedLaw
+from flockana.laws.terms.parts import parts
 from flockana.laws.terms.term import Term
 from flockana.measures.frame import moving_frame
 
@@ -78,7 +77,7 @@ def alpha_scales(alpha: PairInteraction, gains: Gains) -> Scales:
 
 
 @dataclass(frozen=True)
-class Algorithm1(SumOfTerms):
+class Algorithm1(GainedLaw):
     """u_i = c1α Σ_j φ_α(‖q_j−q_i‖_σ) n_ij + c2α Σ_j a_ij (p_j − p_i)   (Olfati-Saber 2006, eq. (23), (24)).
 
     Parameters
@@ -114,7 +113,7 @@ class Algorithm1(SumOfTerms):
     @cached_property
     def terms(self) -> tuple[Term, ...]:
         """Pairs alone: H(q, p) = c1α V(q) + ½ Σ‖p_i‖² in the given frame (with the ½ that the slides omit: E1)."""
-        return (PairTerm(self.alpha, self.gains.c1_alpha, self.gains.c2_alpha),)
+        return parts(self.alpha, self.gains)
 
     def structural_energy(self, q: Any, p: Any) -> float:
         """H(x, v) = c1α V(x) + K(v), the energy in the frame that moves with the centre of mass.
@@ -129,7 +128,7 @@ class Algorithm1(SumOfTerms):
 
 
 @dataclass(frozen=True)
-class Algorithm2(SumOfTerms):
+class Algorithm2(GainedLaw):
     """Algorithm 1 − c1γ (q_i − q_r) − c2γ (p_i − p_r): flocking with a γ-agent   (Olfati-Saber 2006, eq. (25), (26)).
 
     Parameters
@@ -176,8 +175,7 @@ class Algorithm2(SumOfTerms):
         With per-agent gains the flock's shape does not separate from its centre, and no frame but the given one will
         do for every target: H(t, q, p) = c1α V(q) + ½ Σ c1γ_i ‖q_i − q_r‖² + ½ Σ‖p_i‖², as under Algorithm 3.
         """
-        pairs = PairTerm(self.alpha, self.gains.c1_alpha, self.gains.c2_alpha)
-        return (pairs, Navigation(self.target, self.gains))
+        return parts(self.alpha, self.gains, target=self.target)
 
     def structural_energy(self, q: Any, p: Any) -> float:
         """H_λ(x, v): the same as `energy`, which lives in the moving frame already.

@@ -9,8 +9,9 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_points
 from flockana.base.overrides import speaks_for
+from flockana.kernels.listed import MOST_TERMS
 from flockana.laws.law import Law, block_diagonal
-from flockana.laws.terms.term import MOST_TERMS, Compiled, Term
+from flockana.laws.terms.term import Compiled, Term
 from flockana.measures.frame import moving_frame
 
 if TYPE_CHECKING:
@@ -39,7 +40,7 @@ class SumOfTerms(Law):
 
     @property
     def splits(self) -> bool:  # noqa: D102
-        return all(term.invariance == "rigid motions" for term in self.terms)
+        return all(term.splits for term in self.terms)
 
     def check_dimension(self, m: int) -> None:  # noqa: D102
         for term in self.terms:

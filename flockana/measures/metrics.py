@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_points, ensure_positive
-from flockana.kernels.instants import least_distances
+from flockana.kernels.instants import greatest_distances, least_distances
 from flockana.kernels.neighbours import pair_blocks, pair_list
 from flockana.measures.nets import components, link_lengths
 
@@ -169,6 +169,27 @@ def min_distance(q: Any) -> float:
     return float(min_distances(ensure_points("q", q)[None])[0])
 
 
+def diameter(x: Any) -> float:
+    """Greatest distance between two rows: the flock's diameter of positions, the velocity diameter of velocities.
+
+    Parameters
+    ----------
+    x : array_like, shape (n, m)
+        Positions or velocities.
+
+    Returns
+    -------
+    float
+        0 for one agent.
+
+    Examples
+    --------
+    >>> diameter([[0.0, 0.0], [3.0, 4.0], [1.0, 1.0]])
+    5.0
+    """
+    return float(diameters(ensure_points("x", x)[None])[0])
+
+
 def order(p: Any) -> float:
     """Polar order ‖Σ p_i/‖p_i‖‖/n: 1 when all move the same way; agents at rest count as 0.
 
@@ -293,6 +314,18 @@ def min_distances(q: FloatArray) -> FloatArray:
         distances: FloatArray = least_distances(q)
         return distances
     return np.array([np.asarray(KDTree(x).query(x, k=2)[0])[:, 1].min() for x in q])
+
+
+def diameters(x: FloatArray) -> FloatArray:
+    """`diameter` over time, unchecked: pair by pair, in time n² and no memory.
+
+    Parameters
+    ----------
+    x : ndarray, shape (T, n, m)
+        Positions or velocities.
+    """
+    distances: FloatArray = greatest_distances(np.ascontiguousarray(x))
+    return distances
 
 
 def orders(p: FloatArray) -> FloatArray:

@@ -73,6 +73,14 @@ MEASURES = (
         "K̃ over the square of the law's speed scale",
         of_run=lambda run: float(_mismatch(run.end)[0]) / run.scales.energy,
     ),
+    Measure("position_diameter", "greatest distance", "length", lambda flock: metrics.diameters(flock.q)),
+    Measure(
+        "velocity_diameter",
+        "greatest difference of velocities",
+        "length/time",
+        lambda flock: metrics.diameters(flock.p),
+        logarithmic=True,
+    ),
     Measure("inertia", "J, inertia", "length²", lambda flock: metrics.spreads(flock.q)),
     Measure(
         "min_distance",

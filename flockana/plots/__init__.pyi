@@ -1,5 +1,7 @@
 from .animation import animate as animate
 from .animation import animation as animation
+from .comparison import side_by_side as side_by_side
+from .comparison import velocity_diameters as velocity_diameters
 from .control import bode as bode
 from .control import delay_chart as delay_chart
 from .control import gain_sweep as gain_sweep
@@ -9,6 +11,8 @@ from .dead_zone import dead_zone_energies as dead_zone_energies
 from .dead_zone import dead_zone_force as dead_zone_force
 from .decay import linear_range as linear_range
 from .decay import measured_gains as measured_gains
+from .diameters import diameters as diameters
+from .diameters import joint_windows as joint_windows
 from .ensemble import distribution as distribution
 from .ensemble import phase_diagram as phase_diagram
 from .ensemble import share_against as share_against
@@ -16,6 +20,8 @@ from .ensemble import share_bars as share_bars
 from .falsify import falsification as falsification
 from .falsify import search_history as search_history
 from .film import Film as Film
+from .headings import headings as headings
+from .informed import informed_shares as informed_shares
 from .lattice import barrier as barrier
 from .lattice import collapse as collapse
 from .lattice import collapse_brackets as collapse_brackets

@@ -19,6 +19,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from flockana._version import __version__
 from flockana.base.errors import FileError
 from flockana.base.files import ensure_path, replacing
+from flockana.report.comparison import ComparisonSection
 from flockana.report.coverage import coverage
 from flockana.report.coverage.anchors import anchors, verdict_id
 from flockana.report.lattices import lattice_section
@@ -76,6 +77,7 @@ def write_report(
     seconds: float | None = None,
     complete: bool = True,
     statistics: StatisticsSection | None = None,
+    comparison: ComparisonSection | None = None,
     of: str | None = None,
 ) -> Path:
     """Write ``index.html`` and ``verdicts.json``; existing ones are replaced only when the new ones are whole.
@@ -85,7 +87,7 @@ def write_report(
     folder = ensure_directory(directory)
     pages = [page(r) if isinstance(r, ScenarioResult | FixedResult) else r for r in results]
     run = _run_facts(seed, seconds, complete) | {"of": of}
-    texts = {JSON: _json(pages, run, statistics), HTML: _html(pages, run, statistics)}
+    texts = {JSON: _json(pages, run, statistics), HTML: _html(pages, run, statistics, comparison)}
     with ExitStack() as both:  # neither takes its place before both are whole
         partials = {name: both.enter_context(replacing(folder / name, remedy=_REMEDY)) for name in texts}
         for name, text in texts.items():
@@ -133,7 +135,12 @@ def _version(name: str) -> str:
         return "unknown"
 
 
-def _html(pages: list[Page], run: dict[str, Any], statistics: StatisticsSection | None) -> str:
+def _html(
+    pages: list[Page],
+    run: dict[str, Any],
+    statistics: StatisticsSection | None,
+    comparison: ComparisonSection | None,
+) -> str:
     environment = Environment(
         loader=PackageLoader("flockana.report", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True
     )
@@ -146,6 +153,7 @@ def _html(pages: list[Page], run: dict[str, Any], statistics: StatisticsSection 
         fixed=[page for page in pages if isinstance(page, FixedPage)],
         lattices=lattice_section(pages),
         statistics=statistics,
+        comparison=comparison,
         stability=stability_section(pages),
         coverage={"sources": coverage(), "anchors": anchors(pages)} if run["of"] is None else None,
         verdict_id=verdict_id,

@@ -2,6 +2,8 @@ from .blocks import Blocks as Blocks
 from .blocks import blocks as blocks
 from .blocks import law_blocks as law_blocks
 from .centre_path import steady_error as steady_error
+from .consensus import consensus_root as consensus_root
+from .consensus import consensus_system as consensus_system
 from .decay import decay_table as decay_table
 from .decay import linear_range as linear_range
 from .delay import DelayMargin as DelayMargin

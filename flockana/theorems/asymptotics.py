@@ -25,7 +25,7 @@ from flockana.theorems.theorem import Claim, Hypothesis, Tolerances
 _NOISE = 10.0  # times the absolute tolerance
 
 
-def _numerical_noise(run: Trajectory, scale: float) -> float:
+def numerical_noise(run: Trajectory, scale: float) -> float:
     """Motion that an integrator leaves in a flock at rest: some of its absolute tolerances; a map leaves none."""
     if "rtol" not in run.stats:
         return 0.0
@@ -38,7 +38,7 @@ def rest_certificate(run: Trajectory, tolerances: Tolerances) -> Certificate:
     speed = (
         np.sqrt(run.metric("normalised_velocity_mismatch"))
         + frame_error(run.p)
-        + _numerical_noise(run, run.scales.speed)
+        + numerical_noise(run, run.scales.speed)
     )
     falls = decay(run.t, speed, floor=float(np.sqrt(tolerances.velocity)) * run.scales.speed).certificate
     return replace(falls, text=f"√K̃: {falls.text}")
@@ -93,7 +93,7 @@ def lattice_limit(run: Trajectory, needs: Iterable[Hypothesis], tolerances: Tole
     if caught.certificate.margin > 0.0:
         certificate, error = caught.certificate, _strain_error(run, caught)
     else:
-        strains = _strains(run) + _numerical_noise(run, run.scales.length) / run.law.alpha.d
+        strains = _strains(run) + numerical_noise(run, run.scales.length) / run.law.alpha.d
         falls = decay(run.t, strains, floor=tolerances.lattice).certificate
         both = rest_certificate(run, tolerances), replace(falls, text=f"strain: {falls.text}")
         certificate = min(both, key=lambda each: each.margin)

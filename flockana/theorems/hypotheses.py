@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable
 
 from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
+from flockana.laws.composition import Composition
 from flockana.theorems.theorem import Claim, Hypothesis
 
 _MEMBERS = {"alpha": AlphaInteraction, "beta": BetaInteraction, "gains": Gains}
@@ -52,6 +53,32 @@ def law_is(name: str, *laws: type) -> Callable[[Trajectory], Hypothesis]:
 
     def applied_to(run: Trajectory) -> Hypothesis:
         return applied(run, name, *laws)
+
+    return applied_to
+
+
+def law_is_or_composed(name: str, *laws: type) -> Callable[[Trajectory], Hypothesis]:
+    """As `law_is`, or any composition of the terms that these laws are made of (`flockana.compose`).
+
+    Parameters
+    ----------
+    name : str
+        The laws, as the hypothesis names them.
+    *laws : type
+        Classes of laws.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> law_is_or_composed("Algorithm 1", Algorithm1).__name__
+    'applied_to'
+    """
+
+    def applied_to(run: Trajectory) -> Hypothesis:
+        if type(run.law) is not Composition:
+            return applied(run, name, *laws)
+        terms = ", ".join(type(term).__name__ for term in run.law.terms)
+        return condition("a composition of terms is applied", True, detail=terms)
 
     return applied_to
 

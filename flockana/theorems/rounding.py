@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.interactions import AlphaInteraction
+from flockana.interactions import AlphaInteraction, PairInteraction
 
 EPS = float(np.finfo(float).eps)
 _POTENTIAL = 1e-13  # of c*: to which ψ_α is known (`AlphaInteraction.psi_alpha`), and ψ_β of its own largest value
@@ -63,7 +63,9 @@ def pair_force_error(alpha: AlphaInteraction) -> float:
 
 
 def energy_error(law: Any, q: FloatArray, p: FloatArray, energy: FloatArray) -> FloatArray:
-    """Bound of the rounding of the energy of Algorithm 1, 2 or 3, by instant: all its terms are >= 0.
+    """Bound of the rounding of the energy of Algorithm 1, 2 or 3, or of a composition of their terms, by instant.
+
+    All terms of the three are >= 0; those of another pair law may cancel, and count by their own size.
 
     Examples
     --------
@@ -78,11 +80,33 @@ def energy_error(law: Any, q: FloatArray, p: FloatArray, energy: FloatArray) -> 
     reach = float(np.abs(q).max())
     if pull:
         reach += float(np.abs(law.target.position(0.0)).max())
-    steepest = 1.01 * alpha.strength  # force of a pair: how much its potential moves with its distance
-    error = gains.c1_alpha * pairs * (_POTENTIAL * alpha.c_star + 8.0 * EPS * steepest * (alpha.r + reach))
+    error, size = 0.0, np.abs(energy)
+    if alpha is not None:
+        steepest = 1.01 * alpha.strength  # force of a pair: how much its potential moves with its distance
+        deepest = deepest_of(alpha)
+        error += gains.c1_alpha * pairs * (_POTENTIAL * deepest + 8.0 * EPS * steepest * (alpha.range + reach))
+        if not isinstance(alpha, AlphaInteraction):
+            size = size + 2.0 * gains.c1_alpha * pairs * deepest
     error += pull * (n + 8) * EPS * reach**2
     for _ in law.obstacles:
         most, steepest = float(law.beta.psi_beta(0.0)), 2.0 / sqrt(law.beta.eps)
         error += gains.c1_beta * n * (_POTENTIAL * most + 16.0 * EPS * steepest * (law.beta.r + reach))
-    bound: FloatArray = error + (pairs + n * m + 8) * EPS * np.abs(energy) + 2.0 * spread_error(p)
+    bound: FloatArray = error + (pairs + n * m + 8) * EPS * size + 2.0 * spread_error(p)
     return bound
+
+
+def deepest_of(pair: PairInteraction) -> float:
+    """The size of a pair's potential: c* of the paper's, else the largest of those at 0, d and the range.
+
+    A potential that has no bound at 0 counts by what it is at a tenth of d.
+
+    Examples
+    --------
+    >>> deepest_of(AlphaInteraction()) == AlphaInteraction().c_star
+    True
+    """
+    if isinstance(pair, AlphaInteraction):
+        return float(pair.c_star)
+    with np.errstate(all="ignore"):
+        sizes = np.abs(pair.energy_at(np.array([0.0, 0.1 * pair.length, pair.length])))
+    return float(np.max([abs(pair.far_potential), *sizes[np.isfinite(sizes)]]))

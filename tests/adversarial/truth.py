@@ -302,3 +302,40 @@ def harborth(n):
     """⌊3n − √(12n − 3)⌋ in integers."""
     root = isqrt(12 * n - 3)
     return 3 * n - root - (root * root < 12 * n - 3)
+
+
+# --- averaged headings ----------------------------------------------------------------------------------------------
+
+
+def two_headings(apart, one, other, step, steps):
+    """(whether two agents come within 1 of each other in so many steps, whether that is plain, the room that says so).
+
+    Where they meet the room is how far from 1 their distance is one step after, when they have one heading for ever,
+    or 0 if that is beyond 1; where they do not, how much faster than by a hundredth of the step they part at the end.
+    """
+    tiny = 1e-12
+    gap = np.array([apart, 0.0])
+    slip = step * np.array([cos(other) - cos(one), np.sin(other) - np.sin(one)])
+    sure = True
+    for k in range(steps):
+        distance = hypot(*(gap + k * slip))
+        sure = sure and abs(distance - 1.0) > tiny
+        if distance <= 1.0:
+            after = hypot(*(gap + (k + 1) * slip))
+            return True, sure, 1.0 - after
+    end = gap + steps * slip
+    distance = hypot(*end)
+    parting = float(end @ slip) / distance / step
+    return False, sure, min(distance - 1.0, parting) if distance > 1.0 else 0.0
+
+
+# --- velocity consensus alone -----------------------------------------------------------------------------------------
+
+
+def weight_left(start, strength, length, decay):
+    """∫ K (1 + s²/ℓ²)^−β from a distance on, to 30 digits; infinite for β <= ½."""
+    if decay <= 0.5:
+        return float("inf")
+    with mpmath.workdps(_DIGITS):
+        y, beta = mpmath.mpf(start) / length, mpmath.mpf(decay)
+        return float(strength * length * mpmath.quad(lambda s: (1 + s * s) ** -beta, [y, y + 1, y + 100, mpmath.inf]))

@@ -34,6 +34,8 @@ class Navigation(Term):
         c1_gamma and c2_gamma are used.
     unit : float, optional
         ℓ, the length that σ₁ counts in; None for the linear pull.
+    given : bool
+        Whether the energy is that in the given frame whatever the pull, as where the shape is tied to a place or speed.
 
     Examples
     --------
@@ -46,10 +48,11 @@ class Navigation(Term):
     target: Target
     gains: Gains
     unit: float | None = None
+    given: bool = False
 
     @property
     def moving(self) -> bool:  # noqa: D102
-        return self.unit is None and not self.gains.per_agent
+        return self.unit is None and not self.gains.per_agent and not self.given
 
     @property
     def invariance(self) -> Invariance:  # noqa: D102

@@ -2,15 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.environment.beta import ObstacleField, check_free
+from flockana.environment.obstacles import Obstacle
 from flockana.kernels.bodies import body_numbers
 from flockana.laws.terms.term import Invariance, Term, TermKernel, nothing
 
 _SUMS = ("kinds", "forces", "potential_energy")  # as every field has them, from its obstacles' kernels
+
+
+def ensure_one_dimension(obstacles: Iterable[Obstacle], m: int, whose: str) -> None:
+    """Raise unless every obstacle lives in m dimensions; `whose` they are goes into the message."""
+    for k, obstacle in enumerate(obstacles):
+        if obstacle.dimension != m:
+            raise ArgumentError(
+                f"obstacles[{k}] = {obstacle} has {obstacle.dimension} components but {whose} {m}: "
+                "expected equal dimensions"
+            )
 
 
 @dataclass(frozen=True)
@@ -44,24 +56,7 @@ class ObstacleTerm(Term):
         return "rotations about the target" if self.field.obstacles else "rigid motions"
 
     def check_dimension(self, m: int) -> None:  # noqa: D102
-        self.ensure_dimension(m, "the agents have")
-
-    def ensure_dimension(self, m: int, whose: str) -> None:
-        """Raise unless every obstacle lives in m dimensions.
-
-        Parameters
-        ----------
-        m : int
-            Expected.
-        whose : str
-            Of whom, for the message.
-        """
-        for k, obstacle in enumerate(self.field.obstacles):
-            if obstacle.dimension != m:
-                raise ArgumentError(
-                    f"obstacles[{k}] = {obstacle} has {obstacle.dimension} components but {whose} {m}: "
-                    "expected equal dimensions"
-                )
+        ensure_one_dimension(self.field.obstacles, m, "the agents have")
 
     def check_start(self, q: FloatArray) -> None:
         """Raise if an agent starts inside or on an obstacle.

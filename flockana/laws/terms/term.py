@@ -8,9 +8,8 @@ from typing import Any, ClassVar, Literal, NamedTuple
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.kernels.listed import CompiledFunction, no_term
+from flockana.kernels.listed import MOST_TERMS, CompiledFunction, no_term
 
-MOST_TERMS = 3  # that a compiled integrator takes
 Invariance = Literal["rigid motions", "rotations about the target", "none"]
 
 
@@ -71,10 +70,18 @@ class Term(ABC):
     conservative: ClassVar[bool] = True
     """Whether the force at rest is minus the gradient of `energy`."""
 
+    idle: ClassVar[bool] = False
+    """Whether it pushes nobody at rest and has no energy, wherever the agents are: equilibria do without it."""
+
     @property
     def invariance(self) -> Invariance:
         """What leaves the energy unchanged; rigid motions, as of everything that depends on distances alone."""
         return "rigid motions"
+
+    @property
+    def splits(self) -> bool:
+        """Whether it lets shape and centre of mass move apart: its forces cancel, or are one linear pull or drag."""
+        return self.invariance == "rigid motions"
 
     @property
     def moving(self) -> bool:

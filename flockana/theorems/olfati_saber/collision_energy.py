@@ -5,23 +5,37 @@ from __future__ import annotations
 import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory
+from flockana.laws.composition import Composition
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.theorems.hypotheses import alpha_gain, law_is
+from flockana.theorems.hypotheses import alpha_gain, condition, law_is_or_composed, positive
+from flockana.theorems.meeting import least_is_known, meeting
 from flockana.theorems.olfati_saber.collisions import below_multiple, no_collision
+from flockana.theorems.olfati_saber.energy import nothing_adds_energy
 from flockana.theorems.rounding import energy_error
-from flockana.theorems.theorem import Checked, Theorem, Tolerances, unmet
+from flockana.theorems.theorem import Checked, Hypothesis, Theorem, Tolerances, unmet
 
 _MULTIPLES = {"below": 1, "twice": 2}  # of c*, by claim
 
 
+def _needs(run: Trajectory) -> list[Hypothesis]:
+    """A pair potential, and an energy that never rises: under Algorithms 1 and 2 with common gains it does not."""
+    if type(run.law) is not Composition:
+        return alpha_gain(run)
+    has_pair = condition("agents have a pair potential", run.law.alpha is not None)
+    if run.law.alpha is None:
+        return [has_pair]
+    return [has_pair, positive(run, c1_alpha="c1α"), *nothing_adds_energy(run), *least_is_known(run)]
+
+
 def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
-    needs = alpha_gain(run)
+    needs = _needs(run)
     if unmet(needs):
         return needs, []
+    pairs = meeting(run)
     energy = run.law.structural_energy(run.q[0], run.p[0])
     error = float(energy_error(run.law, run.q[:1], run.p[:1], np.array([energy]))[0])
-    c_star = run.law.gains.c1_alpha * run.law.alpha.c_star
-    bounds = {name: below_multiple(energy, error, c_star, k) for name, k in _MULTIPLES.items()}
+    above = energy - pairs.floor
+    bounds = {name: below_multiple(above, error, pairs.c_star, k) for name, k in _MULTIPLES.items()}
     return [*needs, *bounds.values()], [
         no_collision(run, [*needs, bound], tolerances, name=name) for name, bound in bounds.items()
     ]
@@ -33,11 +47,13 @@ THEOREM = Theorem(
     statement=(
         "The energy of Algorithms 1 and 2 in the moving frame never rises, and a coincident pair alone holds c* = "
         "c1α ψ_α(0). So below c* no two agents ever meet, whether or not the flock stays together. The bound is sharp: "
-        "that none meet below 2 c* is false, as two agents show that approach head on."
+        "that none meet below 2 c* is false, as two agents show that approach head on. The "
+        "same holds of every composition whose terms add no energy, with the least energy of all other pairs taken off "
+        "H(0), and c* what a coincident pair has more than that."
     ),
     source="Olfati-Saber 2006, Theorems 1(iii) and 3(iv); that the bound is sharp is ours",
     kind="trajectory",
-    law=law_is("Algorithm 1 or 2", Algorithm1, Algorithm2),
+    law=law_is_or_composed("Algorithm 1 or 2", Algorithm1, Algorithm2),
     check=_check,
     claims=tuple(_MULTIPLES),
     references=("olfati-saber-2006", "flockana"),

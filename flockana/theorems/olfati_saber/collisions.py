@@ -19,6 +19,7 @@ from flockana.measures.metrics import coincident_pairs
 from flockana.measures.path_bounds import ROUNDING, Contact, contacts
 from flockana.theorems.claims import judged
 from flockana.theorems.hypotheses import below, condition
+from flockana.theorems.meeting import meeting
 from flockana.theorems.rounding import energy_error
 from flockana.theorems.theorem import Claim, Hypothesis, HypothesisStatus, Tolerances
 
@@ -27,7 +28,7 @@ Pair = tuple[int, int]
 
 def contacts_of(run: Trajectory, tolerances: Tolerances) -> tuple[Contact, ...]:
     """Contacts of a run: pairs whose interpolated paths come within the contact distance."""
-    return contacts(*run.path[:4], tol=tolerances.contact * run.law.alpha.d)
+    return contacts(*run.path[:4], tol=tolerances.contact * run.law.alpha.length)
 
 
 def passed(run: Trajectory, tolerances: Tolerances) -> dict[Pair, float]:
@@ -62,7 +63,7 @@ def near(run: Trajectory, tolerances: Tolerances) -> list[set[Pair]]:
 
 def _noise(run: Trajectory, tolerances: Tolerances) -> float:
     """Distance at which two agents count as coincident, the rounding of their coordinates added."""
-    return float(tolerances.contact * run.law.alpha.d + ROUNDING * np.abs(run.q).max())
+    return float(tolerances.contact * run.law.alpha.length + ROUNDING * np.abs(run.q).max())
 
 
 def below_the_barrier(run: Trajectory, energy: float, error: float) -> Hypothesis:
@@ -129,8 +130,9 @@ def _spare(run: Trajectory, pair: Pair, needs: Iterable[Hypothesis]) -> float:
     met_by = [need.margin for need in energies if need.margin is not None]
     apart = (run.q[:, pair[1]] - run.q[:, pair[0]]).sum(axis=1)  # on a line: the other components are 0
     before = max(int(np.argmax(apart * np.sign(apart[0]) < 0.0)) - 1, 0)
-    energy = run.law.structural_energy(run.q[before], run.p[before])
-    return float(min(*met_by, abs(energy - run.law.gains.c1_alpha * run.law.alpha.c_star), float("inf")))
+    pairs = meeting(run)
+    energy = run.law.structural_energy(run.q[before], run.p[before]) - pairs.floor
+    return float(min(*met_by, abs(energy - pairs.c_star), float("inf")))
 
 
 def distinct_pairs(

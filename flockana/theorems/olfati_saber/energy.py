@@ -10,9 +10,10 @@ from flockana.base.checks import FloatArray
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.obstacles import Sphere, Wall
 from flockana.laws.algorithm3 import Algorithm3
+from flockana.laws.composition import Composition
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.claims import judged
-from flockana.theorems.hypotheses import law_is
+from flockana.theorems.hypotheses import condition, law_is_or_composed
 from flockana.theorems.olfati_saber.gamma_agent import declared_rate_is_true, target_rests
 from flockana.theorems.rounding import EPS, energy_error
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, HypothesisStatus, Theorem, Tolerances
@@ -21,12 +22,12 @@ from flockana.theorems.theorem import Checked, Claim, Hypothesis, HypothesisStat
 def proved(run: Trajectory, proof: str = "energy-identities") -> str | None:
     """The id of the proof of this law's energy identity, which knows walls, spheres and gains common to all agents."""
     known = all(type(obstacle) in (Sphere, Wall) for obstacle in run.law.obstacles)
-    return proof if known and not run.law.gains.per_agent else None
+    return proof if known and not run.law.gains.per_agent and type(run.law) is not Composition else None
 
 
 def _rounding(run: Trajectory) -> float:
     """Of the energy, at worst over the run."""
-    known = isinstance(run.law, Algorithm1 | Algorithm2 | Algorithm3)
+    known = isinstance(run.law, Algorithm1 | Algorithm2 | Algorithm3 | Composition)
     largest = float(np.abs(run.energy()).max())
     own = float(energy_error(run.law, run.q, run.p, run.energy()).max()) if known else run.n**2 * EPS * largest
     return own + int(run.stats.get("steps", len(run.t))) * EPS * float(np.abs(run.extra["work"]).max())
@@ -59,18 +60,19 @@ def cancelling(run: Trajectory, since: int = 0) -> FloatArray:
     """Magnitude of those terms of dH/dt that are differences, and may cancel, at each sample from `since` on.
 
     They are c2β ΣΣ b ⟨p_i, p̂_ik − p_i⟩, of β-agents no faster than their agent, c2γ Σ⟨p_i, p_i − p_r⟩, and the work
-    of a γ-agent that moves. The others, −c2α pᵀL̂p and −c2γ‖v‖², are sums of squares.
+    of a γ-agent that moves, or whose acceleration is told. The others, −c2α pᵀL̂p, −c2γ‖v‖² and those of drag, are sums
+    of squares.
     """
     law, p, size = run.law, run.p[since:], np.zeros(len(run.t) - since)
-    if isinstance(law, Algorithm1) or (isinstance(law, Algorithm2) and not law.gains.per_agent):
+    if law.moving or (law.target is None and not law.obstacles):
         return size
     q, speed = run.q[since:], np.linalg.norm(p, axis=2)
-    for k, t in enumerate(run.t[since:]):
+    for k, t in enumerate(run.t[since:] if law.target is not None else ()):
         (q_r, p_r), rate = law.target.state(float(t)), law.target.rate(float(t))
         away = np.linalg.norm(q[k] - q_r, axis=1)
         size[k] = np.max(law.gains.c2_gamma) * float(speed[k] @ (speed[k] + np.linalg.norm(p_r)))
         size[k] += np.max(law.gains.c1_gamma) * float(np.linalg.norm(rate)) * float(away.sum())
-    braking = law.gains.c2_beta * 2.0 * len(law.obstacles) if isinstance(law, Algorithm3) else 0.0
+    braking = law.gains.c2_beta * 2.0 * len(law.obstacles)
     total: FloatArray = size + braking * np.sum(speed**2, axis=1)
     return total
 
@@ -82,19 +84,27 @@ def falling_share(run: Trajectory, rate: FloatArray, cancels: FloatArray) -> tup
     return share, (run.n**2 + 64) * EPS
 
 
-def never_rises(run: Trajectory, needs: Iterable[Hypothesis], *, since: int = 0, proof: str | None = None) -> Claim:
+def never_rises(
+    run: Trajectory,
+    needs: Iterable[Hypothesis],
+    *,
+    since: int = 0,
+    squares: bool = False,
+    name: str = "rate",
+    proof: str | None = None,
+) -> Claim:
     """The claim that dH/dt ≤ 0 at every sample from `since` on; the margin is the fall over its terms' magnitude.
 
     A sum of terms of one sign keeps it in floating point, so that Algorithms 1 and 2 have the margin 1 at every state;
     where terms may cancel (`cancelling`), the rest is held against their rounding. Where nothing moves, or nothing
-    damps, the rate is 0 without any term, and the claim holds.
+    damps, the rate is 0 without any term, and the claim holds. `squares` says that all terms are squares here.
     """
     rate = run.energy_rate()[since:]
-    share, error = falling_share(run, rate, cancelling(run, since))
+    share, error = falling_share(run, rate, np.zeros(rate.shape) if squares else cancelling(run, since))
     worst, highest = int(np.argmin(share)), float(rate.max())
     margin = float(share[worst])
     return judged(
-        "rate",
+        name,
         margin,
         error,
         needs,
@@ -121,14 +131,25 @@ def stays_outside(run: Trajectory) -> Hypothesis:
     return Hypothesis(name, status, least.lower if status == "assumed" else least.reached, text)
 
 
+def nothing_adds_energy(run: Trajectory) -> list[Hypothesis]:
+    """What it takes that no term of the law adds energy, in the frame that the energy is in."""
+    law, needs = run.law, []
+    if law.target is not None and not law.moving:
+        needs.append(target_rests(run, told=False))  # outside of the moving frame a moving γ-agent does work
+    if type(law) is Algorithm3 or law.obstacles:
+        needs.append(stays_outside(run))
+    if type(law) is Composition and law.thrust > 0.0:
+        needs.append(condition("no thrust: α <= 0", False, -law.thrust, f"α = {law.thrust:g}"))
+    return needs
+
+
+def declared(run: Trajectory) -> list[Hypothesis]:
+    """What the balance needs: outside of the moving frame, that the γ-agent's declared velocity is its own."""
+    return [declared_rate_is_true(run)] if run.law.target is not None and not run.law.moving else []
+
+
 def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
-    rest: list[Hypothesis] = []
-    rates: list[Hypothesis] = []
-    if type(run.law) is Algorithm3 or (run.law.gains.per_agent and type(run.law) is Algorithm2):
-        rest.append(target_rests(run, told=False))  # outside of the moving frame a moving γ-agent does work
-        rates.append(declared_rate_is_true(run))
-    if type(run.law) is Algorithm3:
-        rest.append(stays_outside(run))
+    rest, rates = nothing_adds_energy(run), declared(run)
     proof = proved(run)
     return [*rest, *rates], [never_rises(run, rest, proof=proof), balance(run, rates, tolerances, proof=proof)]
 
@@ -140,11 +161,12 @@ THEOREM = Theorem(
         "dH/dt = -c2α pᵀL̂p under Algorithm 1, dH_λ/dt = -c2γ‖v‖² - c2α vᵀL̂v in the moving frame under Algorithm 2, "
         "and the form of Theorem 6, with the work of a moving γ-agent, under Algorithm 3: the closed form agrees with "
         "the energy of the integrated run. It is never positive under Algorithms 1 and 2, nor under Algorithm 3 with "
-        "a γ-agent at rest and all agents outside the obstacles."
+        "a γ-agent at rest and all agents outside the obstacles. The same holds of every composition of their terms, "
+        "a consensus over a net of its own, a told acceleration and drag included; a thrust adds energy."
     ),
     source="Olfati-Saber 2006, proofs of Theorems 1, 3 and 6",
     kind="trajectory",
-    law=law_is("Algorithm 1, 2 or 3", Algorithm1, Algorithm2, Algorithm3),
+    law=law_is_or_composed("Algorithm 1, 2 or 3", Algorithm1, Algorithm2, Algorithm3),
     check=_check,
     claims=("rate", "balance"),
 )

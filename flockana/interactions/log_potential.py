@@ -1,0 +1,136 @@
+"""The potential of Tanner, Jadbabaie and Pappas: unbounded at contact, least at one distance, defined at every one."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import exp, inf, sqrt
+from typing import Any, ClassVar
+
+import numpy as np
+
+from flockana.base.checks import FloatArray, ensure_positive
+from flockana.base.units import Powers
+
+
+@dataclass(frozen=True)
+class LogPotential:
+    """V(s) = k (d²/s² − 1 + log(s²/d²)) >= 0, which is 0 at s = d alone and infinite at s = 0.
+
+    Parameters
+    ----------
+    strength : float
+        k > 0 (length²/time²).
+    d : float
+        d > 0, the distance at which it is least.
+
+    Raises
+    ------
+    ArgumentError
+        On numbers that are not positive.
+
+    Examples
+    --------
+    >>> potential = LogPotential(2.0, 3.0)
+    >>> float(potential.energy(9.0)), float(potential.weight(9.0))
+    (0.0, 0.0)
+    """
+
+    strength: float = 1.0
+    d: float = 1.0
+
+    units: ClassVar[Mapping[str, Powers]] = {"strength": (2, -2), "d": (1, 0)}
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "strength", ensure_positive("strength", self.strength))
+        object.__setattr__(self, "d", ensure_positive("d", self.d))
+
+    def energy(self, s2: Any) -> Any:
+        """V at a squared distance.
+
+        Parameters
+        ----------
+        s2 : float or ndarray
+            Squared distances > 0.
+        """
+        x = self.d**2 / np.asarray(s2)
+        return self.strength * (x - 1.0 - np.log(x))
+
+    def weight(self, s2: Any) -> Any:
+        """V′(s)/s at a squared distance: the pull on i is this times q_j − q_i.
+
+        Parameters
+        ----------
+        s2 : float or ndarray
+            Squared distances > 0.
+        """
+        return 2.0 * self.strength * (1.0 - self.d**2 / s2) / s2
+
+    def weight_slope(self, s2: Any) -> Any:
+        """Derivative of `weight` in the squared distance.
+
+        Parameters
+        ----------
+        s2 : float or ndarray
+            Squared distances > 0.
+        """
+        return 2.0 * self.strength * (2.0 * self.d**2 / s2 - 1.0) / s2**2
+
+    def nearest(self, energy: float) -> float:
+        """The distance below d at which V is this energy; none of less energy is nearer.
+
+        Parameters
+        ----------
+        energy : float
+            >= 0.
+
+        Examples
+        --------
+        >>> potential = LogPotential(2.0, 3.0)
+        >>> round(potential.nearest(float(potential.energy(1.0))), 12)
+        1.0
+        """
+        from scipy.optimize import brentq
+
+        level = energy / self.strength
+        if not 0.0 < level < inf:
+            return self.d if level <= 0.0 else 0.0
+        top = max(2.0 * level + 8.0, 8.0)  # x − 1 − log x >= x/2 − 1 >= level there
+        w = float(brentq(lambda w: exp(w) - 1.0 - w - level, 0.0, np.log(top), xtol=1e-14, rtol=1e-14))
+        return self.d * exp(-0.5 * w)
+
+
+def net_forces(
+    potential: LogPotential, damping: float, q: FloatArray, p: FloatArray, i: Any, j: Any, u: FloatArray
+) -> float:
+    """Add what acts along some edges to u, unchecked, and return its power −k₂ Σ ‖p_j − p_i‖²."""
+    delta, slip = q[j] - q[i], p[j] - p[i]
+    pull = potential.weight(np.einsum("kc,kc->k", delta, delta))[:, None] * delta + damping * slip
+    np.add.at(u, i, pull)
+    np.subtract.at(u, j, pull)
+    return -damping * float(np.sum(slip * slip))
+
+
+def net_derivatives(potential: LogPotential, damping: float, q: FloatArray, i: Any, j: Any) -> tuple[Any, Any]:
+    """(∂u/∂q, ∂u/∂p) of what acts along some edges, sparse."""
+    from scipy.sparse import coo_array
+
+    (n, m), delta, axes = q.shape, q[j] - q[i], np.arange(q.shape[1])
+    s2 = np.einsum("kc,kc->k", delta, delta)
+    bend = 2.0 * potential.weight_slope(s2)[:, None, None] * delta[:, :, None] * delta[:, None, :]
+    stiff = potential.weight(s2)[:, None, None] * np.eye(m) + bend
+    found = []
+    for blocks in (stiff, np.broadcast_to(damping * np.eye(m), stiff.shape)):
+        rows, columns, values = [], [], []
+        for a, b, sign in ((i, i, -1.0), (j, j, -1.0), (i, j, 1.0), (j, i, 1.0)):
+            rows.append(np.broadcast_to((a[:, None] * m + axes)[:, :, None], stiff.shape).ravel())
+            columns.append(np.broadcast_to((b[:, None] * m + axes)[:, None, :], stiff.shape).ravel())
+            values.append((sign * blocks).ravel())
+        entries = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
+        found.append(coo_array(entries, shape=(n * m, n * m)).tocsr())
+    return found[0], found[1]
+
+
+def length_scale_time(potential: LogPotential) -> float:
+    """The time d/√k in which the force of the potential moves an agent by about d."""
+    return potential.d / sqrt(potential.strength)

@@ -1,0 +1,76 @@
+"""Terms that an agent feels by itself, for integrators that are compiled too: drag and thrust, a told acceleration.
+
+They have no potential energy. `numbers` begin with whether the law's energy is that in the moving frame, where a push
+on all agents alike does no work and a drag works on the differences of velocity alone.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from math import cos, sin
+
+import numpy as np
+
+from flockana.kernels.compiling import njit
+from flockana.kernels.listed import CompiledFunction, term_functions
+from flockana.kernels.sums import column_means, squared_differences
+
+_MOVING, _THRUST, _BRAKE = range(3)
+_OMEGA, _PATH = 1, 2
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def push_along(v, u, velocity, thrust, brake, moving):
+    """Add (thrust − brake ‖p_i‖²) p_i to u, and return its power; `velocity` is that of the frame v is seen from."""
+    (n, m), power = v.shape, 0.0
+    centre = column_means(v) if moving else -velocity
+    for i in range(n):
+        square = 0.0
+        for k in range(m):
+            square += (v[i, k] + velocity[k]) ** 2
+        factor = thrust - brake * square
+        for k in range(m):
+            push = factor * (v[i, k] + velocity[k])
+            u[i, k] += push
+            power += push * (v[i, k] - centre[k])
+    # a drag alone, in the moving frame: squares, of which none cancels
+    return thrust * squared_differences(v, centre) if brake == 0.0 else power
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def push_all(v, u, velocity, push, moving):
+    """Add one acceleration to all, and return its power: 0 in the moving frame."""
+    (n, m), power = v.shape, 0.0
+    for i in range(n):
+        for k in range(m):
+            u[i, k] += push[k]
+            power += push[k] * (v[i, k] + velocity[k])
+    return 0.0 if moving else power
+
+
+def _act_along(t, x, v, u, frame, numbers, panels, first, second, size, order):
+    return push_along(v, u, frame[1], numbers[_THRUST], numbers[_BRAKE], numbers[_MOVING] != 0.0)
+
+
+def _act_all(t, x, v, u, frame, numbers, panels, first, second, size, order):
+    m, omega = x.shape[1], numbers[_OMEGA]
+    path, push = numbers[_PATH : _PATH + 5 * m].reshape(5, m), np.empty(m)
+    for k in range(m):
+        push[k] = -omega * omega * (path[2, k] * cos(omega * t) + path[3, k] * sin(omega * t))
+    return push_all(v, u, frame[1], push, numbers[_MOVING] != 0.0)
+
+
+def _no_energy(t, x, v, frame, numbers, panels, first, second, size, order):
+    return 0.0
+
+
+@cache
+def along() -> tuple[CompiledFunction, CompiledFunction]:
+    """Force of `push_along` and no energy, compiled when first asked for."""
+    return term_functions(_act_along, _no_energy)
+
+
+@cache
+def on_all() -> tuple[CompiledFunction, CompiledFunction]:
+    """Force of `push_all` and no energy, compiled when first asked for."""
+    return term_functions(_act_all, _no_energy)

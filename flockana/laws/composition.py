@@ -1,0 +1,324 @@
+"""A law from terms: whichever of gradient, consensus, γ-feedback, β-agents, drag and speed control one wants."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import KW_ONLY, dataclass, field
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+
+from flockana.base.checks import ensure_count, ensure_finite_scalar, ensure_nonnegative, ensure_positive, ensure_state
+from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.base.scales import Scales
+from flockana.base.units import Powers
+from flockana.environment.beta import ObstacleField
+from flockana.environment.obstacles import Obstacle
+from flockana.environment.target import Target
+from flockana.interactions import BetaInteraction, Gains, PairInteraction
+from flockana.laws.algorithm3 import Algorithm3, ensure_obstacles
+from flockana.laws.gained import GainedLaw
+from flockana.laws.olfati_saber import GAINS, PAIR, TARGET, Algorithm1, Algorithm2, alpha_scales, ensure_part
+from flockana.laws.terms.obstacles import ensure_one_dimension
+from flockana.laws.terms.parts import parts
+from flockana.laws.terms.term import Term
+from flockana.measures.frame import moving_frame
+
+_PARTS = ("pair", "consensus", "navigation", "obstacles", "drag", "speed")
+_NO_GAIN = Gains(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Composition(GainedLaw):
+    """A law of which `compose` puts the terms together; what it lacks is None, empty or has the gain 0.
+
+    u_i = c1α Σ_j φ n_ij + c2α Σ_j a_ij (p_j − p_i) + β-agents + γ-feedback + d²q_r/dt² (if told) + (α − β‖p_i‖²) p_i.
+
+    Parameters
+    ----------
+    alpha : PairInteraction, optional
+        Whose gradient acts between agents.
+    gains : Gains
+        Gains of all terms but the last.
+    net : PairInteraction, optional
+        Range and adjacency of the consensus, if they are not those of `alpha`.
+    target : Target, optional
+        The γ-agent.
+    unit : float, optional
+        ℓ of a bounded pull −c1γ ℓ σ₁((q_i − q_r)/ℓ); None for the linear one.
+    told : bool
+        Whether every agent is told the γ-agent's acceleration.
+    obstacles : sequence of Obstacle
+        What agents keep off.
+    beta : BetaInteraction
+        How they do.
+    thrust, brake : float
+        α, negative for a drag, and β >= 0.
+
+    Raises
+    ------
+    ArgumentError
+        On a part of another kind, parts of different dimensions, or a number out of range.
+
+    Examples
+    --------
+    >>> law = Composition(target=None, thrust=-0.5)
+    >>> law.acceleration(0.0, [[0.0]], [[2.0]]).tolist(), law.energy_rate(0.0, [[0.0]], [[2.0]])
+    ([[-1.0]], -2.0)
+    """
+
+    alpha: PairInteraction | None = None
+    gains: Gains = _NO_GAIN
+    _: KW_ONLY
+    net: PairInteraction | None = None
+    target: Target | None = None
+    unit: float | None = None
+    told: bool = False
+    obstacles: tuple[Obstacle, ...] = ()
+    beta: BetaInteraction = field(default_factory=BetaInteraction)
+    thrust: float = 0.0
+    brake: float = 0.0
+
+    units: ClassVar[Mapping[str, Powers]] = {"unit": (1, 0), "thrust": (0, -1), "brake": (-2, 1)}
+
+    def __post_init__(self) -> None:
+        optional = (("alpha", PairInteraction, PAIR), ("net", PairInteraction, PAIR), ("target", Target, TARGET))
+        for name, kind, example in optional:
+            if getattr(self, name) is not None:
+                ensure_part(name, getattr(self, name), kind, example)
+        ensure_part("gains", self.gains, Gains, GAINS)
+        ensure_part("beta", self.beta, BetaInteraction, "BetaInteraction(...)")
+        object.__setattr__(self, "obstacles", ensure_obstacles(self.obstacles))
+        for name, ensure in (
+            ("unit", ensure_positive),
+            ("thrust", ensure_finite_scalar),
+            ("brake", ensure_nonnegative),
+        ):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, ensure(name, getattr(self, name)))
+        if self.target is not None:
+            ensure_one_dimension(self.obstacles, self.target.dimension, "the target has")
+        elif self.obstacles:
+            ensure_one_dimension(self.obstacles, self.obstacles[0].dimension, "obstacles[0] has")
+        if not isinstance(self.told, bool):
+            raise ArgumentError(f"told = {self.told!r}: expected True or False")
+        if self.told and (self.target is None or self.target.harmonic is None):
+            raise ArgumentError(
+                f"told = True, target = {self.target!r}: expected a γ-agent whose acceleration is known, such as "
+                "SineTarget(...) or CircleTarget(...)"
+            )
+        if not self.terms:
+            raise ArgumentError(f"the law has no term: expected at least one of {', '.join(_PARTS)}")
+
+    @property
+    def scales(self) -> Scales | None:
+        """Of the pair law, or of the consensus net; the time is that of drag or thrust if nothing else has one."""
+        known = self.alpha or self.net
+        if known is None:
+            return None
+        own = alpha_scales(known, self.gains if self.alpha else Gains(0.0, self.gains.c2_alpha, 0.0, 0.0, *self._pull))
+        used = any(np.max(gain) > 0.0 for gain in (self.gains.c1_alpha, self.gains.c2_alpha, *self._pull))
+        return Scales(own.length, 1.0 / abs(self.thrust)) if not used and self.thrust else own
+
+    @property
+    def _pull(self) -> tuple[Any, Any]:
+        return self.gains.c1_gamma, self.gains.c2_gamma
+
+    @property
+    def lattice(self) -> tuple[float, float] | None:  # noqa: D102
+        return None if self.alpha is None or self.pair is None else self.pair.lattice
+
+    @property
+    def surfaces(self) -> tuple[float | tuple[float, ...], ...]:  # noqa: D102
+        pairs = [pair for pair in (self.alpha, self.net) if pair is not None]
+        return tuple(sorted({x for pair in pairs for x in pair.surfaces if np.isfinite(x)}))
+
+    @cached_property
+    def obstacle_field(self) -> ObstacleField | None:
+        """The obstacles with their interaction, None without obstacles."""
+        return ObstacleField(self.obstacles, self.beta) if self.obstacles else None
+
+    @cached_property
+    def terms(self) -> tuple[Term, ...]:
+        """H = c1α V + c1β ΣΣ ψ_β + the γ-agent's potential + kinetic energy, in the frame that `parts` tells."""
+        return parts(
+            self.alpha,
+            self.gains,
+            net=self.net,
+            field=self.obstacle_field,
+            target=self.target,
+            unit=self.unit,
+            told=self.told,
+            thrust=self.thrust,
+            brake=self.brake,
+        )
+
+    def structural_energy(self, q: Any, p: Any) -> float:
+        """The energy that never rises where no term adds any: seen from the centre of mass unless a place holds them.
+
+        Parameters
+        ----------
+        q, p : array_like, shape (n, m)
+            Positions and velocities in any frame; a γ-agent that holds the flock in the given frame is at rest.
+        """
+        q, p = ensure_state(q, p)
+        free = self.target is None and not self.obstacles and self.brake == 0.0
+        return self.hamiltonian(0.0, q, moving_frame(p) if free else p)
+
+
+def compose(
+    *,
+    pair: PairInteraction | None = None,
+    gradient: float | None = None,
+    consensus: float | None = None,
+    net: PairInteraction | None = None,
+    navigation: Target | None = None,
+    pull: Any = None,
+    match: Any = None,
+    informed: Iterable[int] | None = None,
+    agents: int | None = None,
+    bounded: bool | float = False,
+    told: bool = False,
+    obstacles: Iterable[Obstacle] = (),
+    repulsion: float | None = None,
+    braking: float | None = None,
+    beta: BetaInteraction | None = None,
+    drag: float | None = None,
+    speed: tuple[float, float] | None = None,
+    **unknown: Any,
+) -> Algorithm1 | Algorithm2 | Algorithm3 | Composition:
+    """A law from its terms, each given by its part and gains; gains not given are the defaults of `Gains`.
+
+    Parameters
+    ----------
+    pair : PairInteraction, optional
+        A gradient c1 Σ_j φ n_ij between agents.
+    gradient : float, optional
+        c1 of the pair, 1/time².
+    consensus : float, optional
+        c2 of the velocity consensus c2 Σ_j a_ij (p_j − p_i), 1/time; none by default.
+    net : PairInteraction, optional
+        Whose range and adjacency the consensus has; those of the pair by default.
+    navigation : Target, optional
+        A γ-agent.
+    pull, match : float or array_like, shape (n,), optional
+        c1 (1/time²) and c2 (1/time) of the feedback −c1 (q_i − q_r) − c2 (p_i − p_r), one each or per agent.
+    informed : sequence of int, optional
+        The agents that feel the γ-agent; all by default.
+    agents : int, optional
+        How many there are, needed with `informed`.
+    bounded : bool or float
+        A pull −c1 ℓ σ₁((q_i − q_r)/ℓ) instead, as under Algorithm 3: ℓ, or True for that of the pair.
+    told : bool
+        Whether all agents are told the γ-agent's acceleration.
+    obstacles : sequence of Obstacle
+        What agents keep off by β-agents.
+    repulsion, braking : float, optional
+        c1 and c2 of the obstacles.
+    beta : BetaInteraction, optional
+        The law between an agent and its β-agents.
+    drag : float, optional
+        c of −c p_i, 1/time.
+    speed : (float, float), optional
+        α and β of (α − β‖p_i‖²) p_i, which holds agents at the speed √(α/β).
+    **unknown
+        Any other name is an error.
+
+    Returns
+    -------
+    Algorithm1, Algorithm2, Algorithm3 or Composition
+        Algorithm 1, 2 or 3 itself where the terms are its own: then every theorem about it applies too.
+
+    Raises
+    ------
+    ArgumentError
+        On an unknown part, a gain without its part, dimensions that differ, or informed agents that there are not.
+
+    Examples
+    --------
+    >>> from flockana.environment.targets import LinearTarget
+    >>> from flockana.interactions import AlphaInteraction
+    >>> compose(pair=AlphaInteraction(), consensus=2.0 * 30.0**0.5) == Algorithm1()
+    True
+    >>> leader = LinearTarget((0.0, 0.0), (1.0, 0.0))
+    >>> law = compose(pair=AlphaInteraction(), consensus=2.0, navigation=leader, informed=(0, 2), agents=3, drag=0.1)
+    >>> law.gains.c1_gamma, law.thrust
+    ((1.1, 0.0, 1.1), -0.1)
+    """
+    for name in unknown:
+        raise UnknownNameError("part of a law", name, _PARTS)
+    obstacles = ensure_obstacles(obstacles)
+    _ensure_parts("pair", pair, gradient=gradient)
+    _ensure_parts("consensus", consensus, net=net)
+    _ensure_parts("navigation", navigation, pull=pull, match=match, informed=informed, bounded=bounded, told=told)
+    _ensure_parts("informed", informed, agents=agents)
+    _ensure_parts("obstacles", obstacles or None, repulsion=repulsion, braking=braking, beta=beta)
+    if consensus is not None and pair is None and net is None:
+        raise ArgumentError(f"consensus = {consensus!r} without a net: give net=AlphaInteraction(...), or a pair")
+    given = {
+        "c1_alpha": (pair, gradient),
+        "c2_alpha": (pair or net, consensus if consensus is not None else 0.0),
+        "c1_beta": (obstacles, repulsion),
+        "c2_beta": (obstacles, braking),
+        "c1_gamma": (navigation, pull),
+        "c2_gamma": (navigation, match),
+    }
+    own = {name: _of_informed(gain, name, informed, agents) for name, (part, gain) in given.items() if part}
+    unit = _bend(bounded, pair)
+    thrust, brake = _along(drag, speed)
+    plain = not (net or told or thrust or brake) and pair is not None
+    if plain and navigation is None and not obstacles:
+        return Algorithm1(pair, Gains(**own))  # type: ignore[arg-type]  # validated there
+    if plain and navigation is not None and not obstacles and unit is None:
+        return Algorithm2(pair, Gains(**own), navigation)  # type: ignore[arg-type]
+    beta = BetaInteraction() if beta is None else beta
+    if plain and navigation is not None and pair is not None and unit == pair.bend_length:
+        return Algorithm3(pair, Gains(**own), navigation, beta, obstacles)
+    gains = Gains(**(dict.fromkeys(given, 0.0) | own))
+    rest = {"told": told, "obstacles": obstacles, "beta": beta, "thrust": thrust, "brake": brake}
+    return Composition(pair, gains, net=net, target=navigation, unit=unit, **rest)  # type: ignore[arg-type]
+
+
+def _ensure_parts(part: str, value: Any, **belonging: Any) -> None:
+    """Raise if something is given that belongs to a part that is not."""
+    for name, gain in belonging.items():
+        if value is None and gain is not None and gain is not False:
+            raise ArgumentError(f"{name} = {gain!r} without its part: give {part}=..., or leave {name} out")
+
+
+def _of_informed(gain: Any, name: str, informed: Iterable[int] | None, agents: int | None) -> Any:
+    """The gain, or that of the informed agents and 0 of the others."""
+    gain = getattr(Gains(), name) if gain is None else gain
+    if informed is None or not name.endswith("gamma"):
+        return gain
+    if agents is None:
+        raise ArgumentError(f"informed = {informed!r} without agents: give agents=..., the number of all")
+    n, known = ensure_count("agents", agents), []
+    for i in informed:
+        if isinstance(i, bool) or not isinstance(i, int | np.integer) or not 0 <= i < n:
+            raise ArgumentError(f"informed has {i!r}: expected whole numbers from 0 to {n - 1}, of {n} agents")
+        known.append(int(i))
+    common = ensure_nonnegative("pull" if name.startswith("c1") else "match", gain)
+    return tuple(common if i in known else 0.0 for i in range(n))
+
+
+def _bend(bounded: bool | float, pair: PairInteraction | None) -> float | None:
+    """ℓ of a bounded pull, None for the linear one."""
+    if bounded is False:
+        return None
+    if bounded is True:
+        if pair is None:
+            raise ArgumentError("bounded = True without a pair: give the length that the pull is counted in")
+        return pair.bend_length
+    return ensure_positive("bounded", bounded)
+
+
+def _along(drag: float | None, speed: tuple[float, float] | None) -> tuple[float, float]:
+    """(α − c, β) of drag and speed control."""
+    thrust, brake = 0.0, 0.0
+    if speed is not None:
+        if not isinstance(speed, tuple | list) or len(speed) != 2:
+            raise ArgumentError(f"speed = {speed!r}: expected (α, β), as in (1.0, 0.25) for a speed of 2")
+        thrust, brake = (ensure_positive(f"speed[{k}]", value) for k, value in enumerate(speed))
+    return thrust - (0.0 if drag is None else ensure_nonnegative("drag", drag)), brake

@@ -1,0 +1,41 @@
+"""What Algorithms 1 to 3 and every composition share: gains, and how they change with the units."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any, Self
+
+from flockana.base.units import scaled_fields
+from flockana.interactions import Gains, PairInteraction
+from flockana.laws.sum_of_terms import SumOfTerms
+
+
+class GainedLaw(SumOfTerms):
+    """A sum of terms with `gains`, whose c1α is 1/time² unless its pair law carries a time of its own."""
+
+    gains: Gains
+
+    def in_units(self, length: float, time: float) -> Self:
+        """The same law in other units, see `flockana.rescale`.
+
+        Parameters
+        ----------
+        length, time : float
+            Factors of lengths and times.
+        """
+        changed: dict[str, Any] = scaled_fields(self, length, time)
+        if timed(getattr(self, "alpha", None)):
+            changed["gains"] = replace(changed["gains"], c1_alpha=self.gains.c1_alpha)
+        return type(self)(**changed)
+
+
+def timed(pair: PairInteraction | None) -> bool:
+    """Whether the forces of a pair law are accelerations already, by a time among its parameters' units.
+
+    Examples
+    --------
+    >>> from flockana.interactions import AlphaInteraction, DeadZoneInteraction
+    >>> timed(AlphaInteraction()), timed(DeadZoneInteraction())
+    (False, True)
+    """
+    return any(power for _, power in getattr(pair, "units", {}).values())

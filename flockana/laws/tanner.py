@@ -1,0 +1,294 @@
+"""The laws of Tanner, Jadbabaie and Pappas: potentials and velocity consensus along a net, fixed or of proximity."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.base.checks import FloatArray, ensure_positive
+from flockana.base.errors import ArgumentError
+from flockana.base.scales import Scales
+from flockana.base.units import Powers
+from flockana.interactions.log_potential import LogPotential, length_scale_time, net_derivatives, net_forces
+from flockana.laws.dead_zone import ensure_apart
+from flockana.laws.law import Law
+from flockana.laws.switched import Margins, Pieces, SwitchedLaw
+from flockana.measures.frame import moving_frame
+
+_NEAR, _FAR = 0, 1
+
+
+@dataclass(frozen=True)
+class FixedNetFlocking(Law):
+    """u_i = −k₂ Σ_{j~i} (p_i − p_j) − Σ_{j~i} ∇V_ij along the edges of a given net, whatever the distances.
+
+    Its energy is that in the frame of the centre of mass, ½ Σ‖p_i − p̄‖² + Σ over edges of V, and falls by
+    k₂ Σ over edges of ‖p_j − p_i‖². Agents that no edge joins do not feel each other, and may meet.
+
+    Parameters
+    ----------
+    edges : tuple of pairs of int
+        The net, each edge once.
+    potential : LogPotential
+        V.
+    k2 : float
+        k₂ > 0; the paper has 1.
+
+    Raises
+    ------
+    ArgumentError
+        On edges that are none, or a gain that is not positive.
+
+    Examples
+    --------
+    >>> law = FixedNetFlocking(edges=((0, 1),))
+    >>> law.acceleration(0.0, [[0.0], [1.0], [1.0]], [[0.0], [3.0], [0.0]]).tolist()
+    [[3.0], [-3.0], [0.0]]
+    """
+
+    edges: tuple[tuple[int, int], ...]
+    potential: LogPotential = field(default_factory=LogPotential)
+    k2: float = 1.0
+
+    units: ClassVar[Mapping[str, Powers]] = {"k2": (0, -1)}
+    references: ClassVar[tuple[str, ...]] = ("tanner-2007",)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "edges", _edges(self.edges))
+        _ensure_potential(self.potential)
+        object.__setattr__(self, "k2", ensure_positive("k2", self.k2))
+
+    @property
+    def scales(self) -> Scales:
+        """d and d/√k."""
+        return Scales(self.potential.d, length_scale_time(self.potential))
+
+    @property
+    def splits(self) -> bool:  # noqa: D102
+        return True
+
+    @cached_property
+    def _ends(self) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+        i, j = np.array(self.edges, dtype=np.int64).reshape(-1, 2).T
+        return i, j
+
+    def check_agents(self, n: int) -> None:  # noqa: D102
+        last = max(map(max, self.edges), default=0)
+        if last >= n:
+            raise ArgumentError(f"edges name agent {last} but there are {n} agents: expected numbers 0 to {n - 1}")
+
+    def check_start(self, q: FloatArray, p: FloatArray) -> None:  # noqa: D102
+        super().check_start(q, p)
+        i, j = self._ends
+        for a in np.flatnonzero((q[i] == q[j]).all(axis=1)):
+            raise ArgumentError(f"agents {i[a]} and {j[a]} are joined and coincide: expected distinct positions")
+
+    def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
+        u = np.zeros(q.shape)
+        return u, net_forces(self.potential, self.k2, q, p, *self._ends, u)
+
+    def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:  # noqa: D102
+        i, j = self._ends
+        delta, v = q[j] - q[i], moving_frame(p)
+        return float(np.sum(self.potential.energy(np.sum(delta * delta, axis=1)))) + 0.5 * float(np.sum(v * v))
+
+    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[Any, Any]:  # noqa: D102
+        return net_derivatives(self.potential, self.k2, q, *self._ends)
+
+
+@dataclass(frozen=True)
+class ProximityFlocking(SwitchedLaw):
+    """As `FixedNetFlocking`, along the net of all pairs nearer than R: V is constant from there on.
+
+    Where a pair comes within R its pull and its share of the consensus begin at once: the right-hand side jumps, and
+    solutions are Filippov's. `simulate` stops at each switch. The jump is a pull, and consensus vanishes along a pair
+    that neither approaches nor recedes: what drives a pair in from outside drives it in from inside, more so. No pair
+    is held at R by itself; several at once may be, which is reported as for every switched law.
+
+    Parameters
+    ----------
+    potential : LogPotential
+        V below R.
+    r : float
+        R > d, from which on there is neither pull nor consensus.
+    k2 : float
+        k₂ > 0; the paper has 1.
+
+    Raises
+    ------
+    ArgumentError
+        On R that is not beyond d, or a gain that is not positive.
+
+    Examples
+    --------
+    >>> law = ProximityFlocking(r=2.0)
+    >>> law.acceleration(0.0, [[0.0], [1.0], [4.0]], [[0.0], [3.0], [0.0]]).tolist()
+    [[3.0], [-3.0], [0.0]]
+    """
+
+    potential: LogPotential = field(default_factory=LogPotential)
+    r: float = 1.6
+    k2: float = 1.0
+
+    units: ClassVar[Mapping[str, Powers]] = {"r": (1, 0), "k2": (0, -1)}
+    references: ClassVar[tuple[str, ...]] = ("tanner-2007",)
+
+    def __post_init__(self) -> None:
+        _ensure_potential(self.potential)
+        for name in ("r", "k2"):
+            object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
+        if self.r <= self.potential.d:
+            raise ArgumentError(f"r = {self.r:g}: expected more than d = {self.potential.d:g}, where V is least")
+
+    @property
+    def scales(self) -> Scales:
+        """d and d/√k."""
+        return Scales(self.potential.d, length_scale_time(self.potential))
+
+    @property
+    def splits(self) -> bool:  # noqa: D102
+        return True
+
+    @property
+    def located(self) -> bool:
+        """True: the force always jumps."""
+        return True
+
+    @property
+    def surfaces(self) -> tuple[float, ...]:
+        """R."""
+        return (self.r,)
+
+    def check_start(self, q: FloatArray, p: FloatArray) -> None:  # noqa: D102
+        super().check_start(q, p)
+        ensure_apart(q)
+
+    def pieces(self, q: FloatArray) -> Pieces:
+        """Of every pair, 0 within R and 1 beyond.
+
+        Parameters
+        ----------
+        q : ndarray, shape (n, m)
+            Positions.
+        """
+        pieces: Pieces = np.where(_distances(q) < self.r, _NEAR, _FAR).astype(np.int8)
+        return pieces
+
+    def piece_flow(self, pieces: Pieces, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
+        """As `flow`, every pair held within R or beyond.
+
+        Parameters
+        ----------
+        pieces : ndarray of int8
+            Where each pair is held.
+        t : float
+            Time (the law does not depend on it).
+        q, p : ndarray, shape (n, m)
+            Positions and velocities.
+        """
+        u = np.zeros(q.shape)
+        return u, net_forces(self.potential, self.k2, q, p, *_held(pieces, len(q)), u)
+
+    def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
+        return self.piece_flow(self.pieces(q), t, q, p)
+
+    def margins(self, pieces: Pieces, q: FloatArray) -> Margins:
+        """How far each pair is inside its piece.
+
+        Parameters
+        ----------
+        pieces : ndarray of int8
+            Where each pair is held.
+        q : ndarray, shape (n, m)
+            Positions.
+        """
+        inside = self.r - _distances(q)
+        return Margins(np.where(pieces == _NEAR, inside, -inside), pieces == _NEAR)
+
+    def crossed(self, pieces: Pieces, margins: Margins) -> Pieces:
+        """The other piece for every pair with a negative margin.
+
+        Parameters
+        ----------
+        pieces : ndarray of int8
+            Before.
+        margins : Margins
+            At the switch.
+        """
+        after: Pieces = np.where(margins.inside < 0.0, _NEAR + _FAR - pieces, pieces).astype(np.int8)
+        return after
+
+    def sliding(self, before: Pieces, after: Pieces, t: float, q: FloatArray, p: FloatArray) -> str | None:
+        """The pair that both sides drive back, if several switch at once; by itself none is.
+
+        Parameters
+        ----------
+        before, after : ndarray of int8
+            Pieces on the two sides.
+        t : float
+            Time.
+        q, p : ndarray, shape (n, m)
+            Positions and velocities at the switch.
+        """
+        rows, columns = np.triu_indices(len(q), 1)
+        old, new = (self.piece_flow(side, t, q, p)[0] for side in (before, after))
+        for k in np.flatnonzero(before != after):
+            i, j = int(rows[k]), int(columns[k])
+            x, v = q[j] - q[i], p[j] - p[i]
+            rho, way = float(np.linalg.norm(x)), 1.0 if after[k] == _FAR else -1.0
+            speed = float(v @ x) / rho
+            bend = (float(v @ v) - speed**2) / rho
+            leaving, back = (way * (float((u[j] - u[i]) @ x) / rho + bend) for u in (old, new))
+            if leaving > 0.0 > back and abs(speed) <= 1e-9 * self.scales.speed:
+                return f"agents {i} and {j} slide at distance {rho:.6g} = R: each side drives them into the other"
+        return None
+
+    def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:  # noqa: D102
+        s, v = np.minimum(_distances(q), self.r), moving_frame(p)
+        return float(np.sum(self.potential.energy(s * s))) + 0.5 * float(np.sum(v * v))
+
+    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[Any, Any]:  # noqa: D102
+        return net_derivatives(self.potential, self.k2, q, *_held(self.pieces(q), len(q)))
+
+
+def _ensure_potential(potential: Any) -> None:
+    """Raise on anything else."""
+    if not isinstance(potential, LogPotential):
+        raise ArgumentError(f"potential = {potential!r}: expected LogPotential(strength, d)")
+
+
+def _edges(given: Any) -> tuple[tuple[int, int], ...]:
+    """Edges (i, j), i < j, each once."""
+    try:
+        pairs = [(a, b) for a, b in given]
+    except (TypeError, ValueError):
+        raise ArgumentError(f"edges = {given!r}: expected pairs of agents such as ((0, 1), (1, 2))") from None
+    for pair in pairs:
+        if not all(isinstance(end, int | np.integer) and not isinstance(end, bool) and end >= 0 for end in pair):
+            raise ArgumentError(f"edge {pair!r}: expected two whole numbers >= 0")
+        if pair[0] == pair[1]:
+            raise ArgumentError(f"edge {pair!r}: expected two different agents")
+    found = [(int(min(pair)), int(max(pair))) for pair in pairs]
+    twice = next((pair for k, pair in enumerate(found) if pair in found[:k]), None)
+    if twice is not None:
+        raise ArgumentError(f"edge {twice!r} is given twice: expected each edge once")
+    return tuple(sorted(found))
+
+
+def _held(pieces: Pieces, n: int) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+    """The pairs that are held within R."""
+    i, j = np.triu_indices(n, 1)
+    near = pieces == _NEAR
+    return i[near], j[near]
+
+
+def _distances(q: FloatArray) -> FloatArray:
+    """Of every pair i < j, in the order of `numpy.triu_indices`."""
+    i, j = np.triu_indices(len(q), 1)
+    distances: FloatArray = np.sqrt(np.sum((q[j] - q[i]) ** 2, axis=1))
+    return distances

@@ -1,0 +1,65 @@
+"""What acts along an agent's own velocity: drag, which brakes it, and speed control, which holds it at a speed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.kernels import own as kernel
+from flockana.laws.terms.term import Term, TermKernel
+
+
+@dataclass(frozen=True)
+class AlongVelocity(Term):
+    """u_i = (α − β‖p_i‖²) p_i: a drag where α < 0, else a thrust; with β > 0 it holds agents at the speed √(α/β).
+
+    It has no potential. Its power is Σ (α − β‖p_i‖²)‖p_i‖² under an energy in the given frame, and
+    Σ (α − β‖p_i‖²)⟨p_i, p_i − p_c⟩ under one in the moving frame, which of a drag −c p_i is −c Σ‖v_i‖². A drag takes
+    energy always; a thrust adds some wherever ‖p_i‖² < α/β, so that no energy is sure to fall.
+
+    Parameters
+    ----------
+    thrust : float
+        α, 1/time; negative for a drag.
+    brake : float
+        β >= 0, time/length².
+    moving : bool
+        Whether the law's energy is that in the moving frame.
+
+    Examples
+    --------
+    >>> u = np.zeros((1, 1))
+    >>> AlongVelocity(-0.5).act(0.0, np.zeros((1, 1)), np.array([[2.0]]), u), u.tolist()
+    (-2.0, [[-1.0]])
+    """
+
+    thrust: float
+    brake: float = 0.0
+    moving: bool = False
+
+    idle: ClassVar[bool] = True
+
+    @property
+    def splits(self) -> bool:
+        """A drag is the same for shape and centre; what depends on the speed is not."""
+        return self.brake == 0.0
+
+    def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
+        still = np.zeros(p.shape[1])
+        v = np.ascontiguousarray(p)
+        return float(kernel.push_along(v, u, still, self.thrust, self.brake, self.moving))
+
+    def compiled(self, m: int) -> TermKernel | None:  # noqa: D102
+        numbers = np.array([float(self.moving), self.thrust, self.brake])
+        return TermKernel(*kernel.along(), numbers, np.empty((0, 0)), 0.0)
+
+    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray]:  # noqa: D102
+        factor = self.thrust - self.brake * np.einsum("ij,ij->i", p, p)
+        by_velocity = factor[:, None, None] * np.eye(p.shape[1]) - 2.0 * self.brake * p[:, :, None] * p[:, None, :]
+        return self.hessian(t, q), by_velocity
+
+    def hessian(self, t: float, q: FloatArray) -> FloatArray:  # noqa: D102
+        return np.zeros((*q.shape, q.shape[1]))

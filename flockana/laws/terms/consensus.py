@@ -1,0 +1,62 @@
+"""Velocity consensus by itself, over a net other than that of the potential."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.interactions.pair import PairInteraction
+from flockana.kernels.listed import no_term
+from flockana.laws.terms.pairs import PairTerm
+from flockana.laws.terms.term import Term, TermKernel
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
+
+
+@dataclass(frozen=True)
+class Consensus(Term):
+    """u_i = c Σ_j a_ij (p_j − p_i) with the adjacency of a pair interaction, whose forces are left out.
+
+    It has no potential, and takes energy: its power is −c pᵀL̂p, in every frame.
+
+    Parameters
+    ----------
+    net : PairInteraction
+        Its range and adjacency.
+    damping : float
+        c.
+
+    Examples
+    --------
+    >>> from flockana.interactions import AlphaInteraction
+    >>> u, p = np.zeros((2, 1)), np.array([[1.0], [-1.0]])
+    >>> Consensus(AlphaInteraction(), 2.0).act(0.0, np.array([[0.0], [1.0]]), p, u), u.tolist()
+    (-8.0, [[-4.0], [4.0]])
+    """
+
+    net: PairInteraction
+    damping: float
+
+    idle: ClassVar[bool] = True
+
+    @cached_property
+    def _pairs(self) -> PairTerm:
+        return PairTerm(self.net, 0.0, self.damping)
+
+    def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
+        return self._pairs.act(t, q, p, u)
+
+    def compiled(self, m: int) -> TermKernel | None:  # noqa: D102
+        form = self._pairs.compiled(m)
+        return None if form is None else form._replace(energy=no_term()[1])
+
+    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[csr_array, csr_array]:  # noqa: D102
+        return self._pairs.derivatives(t, q, p)
+
+    def hessian(self, t: float, q: FloatArray) -> FloatArray:  # noqa: D102
+        return np.zeros((*q.shape, q.shape[1]))

@@ -1,0 +1,58 @@
+"""What Algorithms 1 to 3 and every composition are made of: the terms, and the frame that their energy is in."""
+
+from __future__ import annotations
+
+from flockana.environment.beta import ObstacleField
+from flockana.environment.target import Target
+from flockana.interactions import Gains, PairInteraction
+from flockana.laws.terms.along import AlongVelocity
+from flockana.laws.terms.consensus import Consensus
+from flockana.laws.terms.navigation import Navigation
+from flockana.laws.terms.obstacles import ObstacleTerm
+from flockana.laws.terms.pairs import PairTerm
+from flockana.laws.terms.term import Term
+from flockana.laws.terms.told import ToldAcceleration
+
+
+def parts(
+    pair: PairInteraction | None,
+    gains: Gains,
+    *,
+    net: PairInteraction | None = None,
+    field: ObstacleField | None = None,
+    target: Target | None = None,
+    unit: float | None = None,
+    told: bool = False,
+    thrust: float = 0.0,
+    brake: float = 0.0,
+) -> tuple[Term, ...]:
+    """The terms of a law, in the order in which they are added.
+
+    The energy is that of the shape, in the moving frame, where a γ-agent pulls all agents alike and linearly, and
+    nothing else ties the shape to a place (obstacles) or to a speed (β of speed control); else that in the given frame.
+
+    Examples
+    --------
+    >>> from flockana.environment.targets import StaticTarget
+    >>> from flockana.interactions import AlphaInteraction
+    >>> [type(term).__name__ for term in parts(AlphaInteraction(), Gains(), target=StaticTarget((0.0,)))]
+    ['PairTerm', 'Navigation']
+    """
+    terms: list[Term] = []
+    if pair is not None:
+        terms.append(PairTerm(pair, gains.c1_alpha, gains.c2_alpha if net is None else 0.0))
+    if net is not None:
+        terms.append(Consensus(net, gains.c2_alpha))
+    if field is not None:
+        terms.append(ObstacleTerm(field, gains.c1_beta, gains.c2_beta))
+    moving = False
+    if target is not None:
+        tied = brake != 0.0 or bool(field is not None and field.obstacles)
+        pull = Navigation(target, gains, unit, given=tied)
+        moving = pull.moving
+        terms.append(pull)
+    if target is not None and told:
+        terms.append(ToldAcceleration(target, moving))
+    if thrust != 0.0 or brake != 0.0:
+        terms.append(AlongVelocity(thrust, brake, moving))
+    return tuple(terms)

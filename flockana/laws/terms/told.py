@@ -1,0 +1,77 @@
+"""The γ-agent's acceleration, told to every agent: what followers of a varying velocity lack otherwise."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.environment.target import Harmonic, Target
+from flockana.kernels import own as kernel
+from flockana.laws.terms.term import Term, TermKernel
+
+
+def acceleration(path: Harmonic, t: float) -> FloatArray:
+    """d²q_r/dt² of a harmonic path, shape (m,).
+
+    Examples
+    --------
+    >>> from flockana.environment.targets import CircleTarget
+    >>> circle = CircleTarget((0.0, 0.0), radius=2.0, frequency=0.5 / np.pi)
+    >>> acceleration(circle.harmonic, 0.0).tolist()
+    [-2.0, 0.0]
+    """
+    turn = np.cos(path.omega * t) * path.terms[2] + np.sin(path.omega * t) * path.terms[3]
+    push: FloatArray = 0.0 - path.omega**2 * turn
+    return push
+
+
+@dataclass(frozen=True)
+class ToldAcceleration(Term):
+    """u_i = d²q_r/dt², the same for all agents.
+
+    It moves the centre of mass alone: its power is 0 under an energy in the moving frame, and Σ⟨p_i, d²q_r/dt²⟩ under
+    one in the given frame.
+
+    Parameters
+    ----------
+    target : Target
+        The γ-agent, with a harmonic path, so that its acceleration is known.
+    moving : bool
+        Whether the law's energy is that in the moving frame.
+
+    Examples
+    --------
+    >>> from flockana.environment.targets import CircleTarget
+    >>> circle, u = CircleTarget((0.0, 0.0), radius=2.0, frequency=0.5 / np.pi), np.zeros((1, 2))
+    >>> ToldAcceleration(circle, True).act(0.0, 0.0 * u, 0.0 * u, u), u.tolist()
+    (0.0, [[-2.0, 0.0]])
+    """
+
+    target: Target
+    moving: bool = False
+
+    conservative: ClassVar[bool] = False  # it pushes agents at rest, and is no gradient of the energy
+
+    @property
+    def path(self) -> Harmonic:
+        """The γ-agent's path in closed form."""
+        path = self.target.harmonic
+        assert path is not None  # as every law that has this term makes sure
+        return path
+
+    def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
+        v, still = np.ascontiguousarray(p), np.zeros(p.shape[1])
+        return float(kernel.push_all(v, u, still, acceleration(self.path, t), self.moving))
+
+    def compiled(self, m: int) -> TermKernel | None:  # noqa: D102
+        numbers = np.concatenate([[float(self.moving), self.path.omega], self.path.terms.ravel()])
+        return TermKernel(*kernel.on_all(), numbers, np.empty((0, 0)), 0.0)
+
+    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray]:  # noqa: D102
+        return self.hessian(t, q), self.hessian(t, q)
+
+    def hessian(self, t: float, q: FloatArray) -> FloatArray:  # noqa: D102
+        return np.zeros((*q.shape, q.shape[1]))

@@ -1,0 +1,210 @@
+"""Agents of one speed that turn to the mean heading of their neighbours: Jadbabaie, Lin and Morse, and Vicsek."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import KW_ONLY, dataclass
+from math import pi
+from typing import Any, ClassVar
+
+import numpy as np
+
+from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_nonnegative, ensure_positive
+from flockana.base.errors import ArgumentError
+from flockana.base.scales import Scales
+from flockana.base.units import Powers
+from flockana.kernels.neighbours import pair_list
+from flockana.kernels.noise import noise as random_number
+from flockana.laws.discrete import DiscreteLaw
+from flockana.measures.nets import LinkArray, components
+
+AVERAGES = ("headings", "vectors")
+_TURN = 2.0 * pi
+_SPEED = 1e-9  # relative: how far a start's speeds may be from the law's
+_SEARCH = 1.0 + 1e-9  # the neighbour search is strict, "in or on the circle" is not
+_CANCELS = 1e-12  # of the neighbours' number: a sum of unit vectors that points nowhere
+_MOST = 2**63  # seeds are whole numbers below it
+
+
+@dataclass(frozen=True)
+class HeadingAveraging(DiscreteLaw):
+    """θ_i becomes the mean of θ_j over agent i and all agents in or on the circle of radius r about it.
+
+    Positions move first, q_i + dt v (cos θ_i, sin θ_i), by the headings that they have; all agents turn at once. The
+    linear mean is that of Jadbabaie, Lin and Morse, with headings in [0, 2π): it depends on where angles are counted
+    from, and neighbours on both sides of that direction turn away from it. Vicsek's mean of unit vectors does not. A
+    start within rounding of the direction `zero` may come to either side of it.
+
+    Parameters
+    ----------
+    range : float
+        r > 0, in length.
+    speed : float
+        v > 0 of every agent, in length over time.
+    dt : float
+        Step, in time.
+    average : {"headings", "vectors"}
+        The mean of the angles, or the angle of the mean of the unit vectors (Vicsek and others); agents whose
+        neighbours' vectors cancel keep their heading.
+    zero : float
+        Direction from which headings are counted, in radians: those of a start lie in [zero, zero + 2π).
+    noise : float
+        η >= 0 of Vicsek and others, in radians: each new heading is turned by a number uniform in (−η/2, η/2).
+    seed : int
+        Of the noise, >= 0; every number is a function of (seed, step, agent).
+
+    Raises
+    ------
+    ArgumentError
+        On parameters out of range, or a start that is not in the plane or has another speed.
+
+    Examples
+    --------
+    Two neighbours at 0.2 and 0.4 radians agree after one step:
+
+    >>> law = HeadingAveraging(range=1.0, speed=1.0, dt=0.1)
+    >>> q = np.array([[0.0, 0.0], [0.5, 0.0]])
+    >>> after = law.step(0.0, q, q, {"heading": np.array([0.2, 0.4])})[3]
+    >>> [round(angle, 12) for angle in after["heading"].tolist()]
+    [0.3, 0.3]
+    """
+
+    range: float = 1.0
+    speed: float = 0.03
+    dt: float = 1.0
+    _: KW_ONLY
+    average: str = "headings"
+    zero: float = 0.0
+    noise: float = 0.0
+    seed: int = 0
+
+    units: ClassVar[Mapping[str, Powers]] = {"range": (1, 0), "speed": (1, -1), "dt": (0, 1)}
+
+    references = ("jadbabaie-lin-morse-2003", "vicsek-1995")
+
+    def __post_init__(self) -> None:
+        for name in ("range", "speed", "dt"):
+            object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
+        object.__setattr__(self, "zero", ensure_finite_scalar("zero", self.zero))
+        object.__setattr__(self, "noise", ensure_nonnegative("noise", self.noise))
+        if self.average not in AVERAGES:
+            raise ArgumentError(f"average = {self.average!r}: expected one of {', '.join(AVERAGES)}")
+        if self.noise > _TURN:
+            raise ArgumentError(f"noise = {self.noise:g}: expected radians, at most 2π, a heading that forgets itself")
+        if isinstance(self.seed, bool) or not isinstance(self.seed, int) or not 0 <= self.seed < _MOST:
+            raise ArgumentError(f"seed = {self.seed!r}: expected a whole number, 0 <= seed < 2**63")
+
+    @property
+    def scales(self) -> Scales:
+        """The radius r, and the time to cross it."""
+        return Scales(self.range, self.range / self.speed)
+
+    def check_dimension(self, m: int) -> None:  # noqa: D102
+        if m != 2:
+            raise ArgumentError(f"the agents live in {m} dimensions: a heading is an angle, expected the plane, m = 2")
+
+    def check_start(self, q: FloatArray, p: FloatArray) -> None:  # noqa: D102
+        off = np.abs(np.linalg.norm(p, axis=1) / self.speed - 1.0)
+        worst = int(np.argmax(off))
+        if off[worst] > _SPEED:
+            raise ArgumentError(
+                f"agent {worst} has the speed {np.linalg.norm(p[worst]):g}: expected speed = {self.speed:g} of all; "
+                "make velocities with law.velocities(headings)"
+            )
+
+    def velocities(self, headings: Any) -> FloatArray:
+        """The velocities of agents with these headings, shape (n, 2).
+
+        Parameters
+        ----------
+        headings : array_like, shape (n,)
+            In radians.
+
+        Examples
+        --------
+        >>> HeadingAveraging(speed=2.0).velocities([0.0]).tolist()
+        [[2.0, 0.0]]
+        """
+        angles = np.asarray(headings, dtype=np.float64)
+        velocities: FloatArray = self.speed * np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+        return velocities
+
+    def links(self, q: FloatArray) -> LinkArray:
+        """Unordered pairs in or on each other's circle, each once, unchecked.
+
+        Parameters
+        ----------
+        q : ndarray, shape (n, 2)
+            Positions.
+
+        Examples
+        --------
+        >>> HeadingAveraging(range=1.0).links(np.array([[0.0, 0.0], [1.0, 0.0], [2.5, 0.0]])).tolist()
+        [[0, 1]]
+        """
+        pairs = np.column_stack(pair_list(q, _SEARCH * self.range))
+        within: LinkArray = pairs[np.linalg.norm(q[pairs[:, 1]] - q[pairs[:, 0]], axis=1) <= self.range]
+        return within
+
+    def start(self, q: FloatArray, p: FloatArray) -> Mapping[str, FloatArray]:
+        """The headings of a start in [zero, zero + 2π); with noise, step 0.
+
+        Parameters
+        ----------
+        q, p : ndarray, shape (n, 2)
+            Initial positions and velocities.
+        """
+        heading = self.zero + np.mod(np.arctan2(p[:, 1], p[:, 0]) - self.zero, _TURN)
+        return {"heading": heading} | ({"step": np.array(0.0)} if self.noise else {})
+
+    def step(  # noqa: D102
+        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
+    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
+        heading = memory["heading"]
+        average = _mean_angles if self.average == "headings" else _mean_vectors
+        turned, after = average(heading, self.links(q)), dict(memory)
+        if self.noise:
+            k = int(memory["step"])
+            shaken = [random_number(self.seed, k, i, 0, 0) for i in range(len(q))]
+            turned = turned + 0.5 * self.noise * np.array(shaken)
+            after["step"] = memory["step"] + 1.0
+        before, velocities = self.velocities(heading), self.velocities(turned)
+        return q + self.dt * before, velocities, (velocities - before) / self.dt, after | {"heading": turned}
+
+    def measures(  # noqa: D102
+        self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
+    ) -> Mapping[str, Any]:
+        n = q.shape[1]
+        counts = np.array([components(n, self.links(x)).max() + 1 for x in q])
+        series: dict[str, Any] = {
+            "connectivity": ("C = rank(L)/(n − 1), of agents in or on the circle", (n - counts) / max(1, n - 1))
+        }
+        if "heading" in extra:
+            series["heading_spread"] = ("largest heading less the least (radians)", np.ptp(extra["heading"], axis=1))
+        return series
+
+
+def _mean_angles(heading: FloatArray, pairs: LinkArray) -> FloatArray:
+    """The mean angle of each agent and its neighbours, kept among these where rounding would put it outside."""
+    (i, j), n = pairs.T, heading.size
+    total = heading + np.bincount(i, heading[j], n) + np.bincount(j, heading[i], n)
+    least, most = heading.copy(), heading.copy()
+    for one, other in ((i, j), (j, i)):
+        np.minimum.at(least, one, heading[other])
+        np.maximum.at(most, one, heading[other])
+    means: FloatArray = np.clip(total / _sizes(pairs, n), least, most)
+    return means
+
+
+def _mean_vectors(heading: FloatArray, pairs: LinkArray) -> FloatArray:
+    """The angle of the mean unit vector; where they cancel, the agent's own heading."""
+    (i, j), n = pairs.T, heading.size
+    x, y = (f(heading) + np.bincount(i, f(heading)[j], n) + np.bincount(j, f(heading)[i], n) for f in (np.cos, np.sin))
+    cancels = np.hypot(x, y) <= _CANCELS * _sizes(pairs, n)
+    angles: FloatArray = np.where(cancels, heading, np.arctan2(y, x))
+    return angles
+
+
+def _sizes(pairs: LinkArray, n: int) -> FloatArray:
+    """How many agents each averages over, itself included."""
+    return np.bincount(pairs.ravel(), minlength=n).astype(np.float64) + 1.0

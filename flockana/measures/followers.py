@@ -1,0 +1,53 @@
+"""The share of a flock that follows its leader."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.measures.measure import Measure
+
+FOLLOWS = 1e-2  # of the law's own speed: who differs from the leader's velocity by no more follows it
+
+
+def _has_leader(law: Any) -> bool:
+    """Whether the law has a γ-agent."""
+    return law.target is not None
+
+
+def following(run: Any) -> FloatArray:
+    """Which agents move as their leader does at the end of a run, within 1/100 of the law's speed, shape (n,).
+
+    Parameters
+    ----------
+    run : Trajectory
+        A run of a law with a γ-agent.
+
+    Examples
+    --------
+    >>> from flockana import Algorithm2, StaticTarget, simulate
+    >>> run = simulate(Algorithm2(target=StaticTarget((0.0,))), [[0.0]], [[0.0]], (0.0, 1.0))
+    >>> following(run).tolist()
+    [True]
+    """
+    rate = run.law.target.rate(float(run.t[-1]))
+    same: FloatArray = np.linalg.norm(run.p[-1] - rate, axis=1) <= FOLLOWS * run.scales.speed
+    return same
+
+
+def _share(run: Any) -> float:
+    return float(np.mean(following(run)))
+
+
+MEASURES = (
+    Measure(
+        "followers",
+        "share of agents that follow the leader",
+        of_run=_share,
+        of_run_text="share of agents with the leader's velocity at the end, within 1/100 of the law's speed",
+        defined=_has_leader,
+        at_most_one=True,
+    ),
+)

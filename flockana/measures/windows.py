@@ -1,0 +1,95 @@
+"""Joint connectivity: spans of time over which the nets, taken together, connect all agents."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import ensure_count
+from flockana.base.errors import ArgumentError
+from flockana.measures.measure import Measure
+from flockana.measures.nets import LinkArray, links
+
+
+def joint_windows(n: int, nets: Iterable[LinkArray]) -> tuple[tuple[int, int], ...]:
+    """The shortest contiguous windows [start, stop) of a series of nets, each with a connected union, from the first.
+
+    A window ends as soon as the links seen in it connect all agents, and the next begins there: no other division into
+    contiguous windows has more of them. What is left over at the end is in none.
+
+    Parameters
+    ----------
+    n : int
+        Number of agents.
+    nets : iterable of int array, shape (M, 2)
+        Links at each instant.
+
+    Returns
+    -------
+    tuple of (int, int)
+        First instant of each window and the first after it.
+
+    Examples
+    --------
+    >>> one, other, none = np.array([[0, 1]]), np.array([[1, 2]]), np.empty((0, 2), dtype=int)
+    >>> joint_windows(3, [one, other, none, other, one, none])
+    ((0, 2), (2, 5))
+    """
+    n = ensure_count("n", n)
+    windows, start, leader, parts = [], 0, list(range(n)), n
+    for k, net in enumerate(nets):
+        for i, j in np.asarray(net).tolist():
+            one, other = _root(leader, i), _root(leader, j)
+            if one != other:
+                leader[one], parts = other, parts - 1
+        if parts == 1:
+            windows.append((start, k + 1))
+            start, leader, parts = k + 1, list(range(n)), n
+    return tuple(windows)
+
+
+def _root(leader: list[int], i: int) -> int:
+    """Whom agent i's group follows; the way there is halved for the next who asks."""
+    while leader[i] != i:
+        leader[i] = leader[leader[i]]
+        i = leader[i]
+    return i
+
+
+def windows_of(run: Any) -> tuple[tuple[int, int], ...]:
+    """Windows of a run's samples over which its nets are jointly connected.
+
+    A net is that of the law's pair interaction, or what a law without one tells by its own ``links(q)``.
+
+    Parameters
+    ----------
+    run : Trajectory
+        The run.
+
+    Raises
+    ------
+    ArgumentError
+        If the law has no net.
+    """
+    if not hasattr(run.law, "links") and run.law.pair is None:
+        raise ArgumentError(f"{type(run.law).__name__} has no net: expected a run of a law with a range")
+    own = getattr(run.law, "links", None)
+    return joint_windows(run.n, (links(q, run.law.pair.range) if own is None else own(q) for q in run.q))
+
+
+def _tells_its_links(law: Any) -> bool:
+    """Laws whose theorems ask for windows; of others `windows_of` finds them, at the cost of a net for each sample."""
+    return hasattr(law, "links")
+
+
+MEASURES = (
+    Measure(
+        "joint_windows",
+        "windows of time over which the net is jointly connected",
+        of_run=lambda run: len(windows_of(run)),
+        of_run_text="contiguous windows of samples, each with a connected union of its nets",
+        defined=_tells_its_links,
+    ),
+)

@@ -1,0 +1,121 @@
+"""One start under many laws, side by side: where the agents went, and how their velocities came together."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import cycle
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flockana.base.errors import ArgumentError
+from flockana.measures.nets import links
+from flockana.plots.style import (
+    BLUE,
+    FAINT,
+    GREEN,
+    INK,
+    MUTED,
+    PURPLE,
+    VERMILLION,
+    ensure_axes,
+    finish_over_time,
+    lines,
+    subplots,
+)
+from flockana.scenarios.one_start import RANGE
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from flockana.dynamics.trajectory import Trajectory
+    from flockana.scenarios.one_start import Outcome
+
+_COLUMNS = 4
+_LOOKS = tuple(
+    zip((BLUE, VERMILLION, GREEN, PURPLE, INK), ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1))), strict=True)
+)
+_MARKS = (None, "o", "s", "^")  # one for each time that the looks come round again
+_FLOOR = 1e-12  # of the start: below it a difference of velocities is rounding
+
+
+def side_by_side(outcomes: Sequence[Outcome], *, axes: Any = None) -> Any:
+    """Draw the paths of one start under each law, on the same scale: hollow where they start, links at the end.
+
+    Parameters
+    ----------
+    outcomes : sequence of Outcome
+        What `flockana.scenarios.one_start.compare` gave.
+    axes : sequence of Axes, optional
+        One for each; by default a new figure, four in a row.
+
+    Returns
+    -------
+    ndarray of matplotlib.axes.Axes
+        One for each outcome.
+
+    Raises
+    ------
+    ArgumentError
+        If there are no outcomes, or other than one Axes for each.
+    """
+    if not outcomes:
+        raise ArgumentError("outcomes is empty: expected those of flockana.scenarios.one_start.compare()")
+    if axes is None:
+        columns = min(_COLUMNS, len(outcomes))
+        rows = -(-len(outcomes) // columns)
+        axes = np.ravel(subplots(rows, columns, size=(3.1 * columns, 3.2 * rows))[1])
+        for unused in axes[len(outcomes) :]:
+            unused.remove()
+        axes = axes[: len(outcomes)]
+    panels = np.ravel(axes)
+    if len(panels) != len(outcomes):
+        raise ArgumentError(f"{len(panels)} axes for {len(outcomes)} laws: expected one for each")
+    reached = np.concatenate([outcome.run.q.reshape(-1, 2) for outcome in outcomes])
+    low, high = reached.min(axis=0), reached.max(axis=0)
+    middle, half = 0.5 * (low + high), 0.54 * float((high - low).max())
+    for outcome, ax in zip(outcomes, panels, strict=True):
+        _paths(ax, outcome.run)
+        ax.set_title(f"{outcome.entry.name}\n{outcome.entry.theorem}: {outcome.verdict.status}", fontsize=9)
+        ax.set(xlabel="x (length)", ylabel="y (length)", box_aspect=1.0)
+        ax.set(xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half))
+    return panels
+
+
+def _paths(ax: Any, run: Trajectory) -> None:
+    ax.add_collection(lines(run.q.transpose(1, 0, 2), colors=FAINT, linewidths=0.9, zorder=1))
+    for q, colour in ((run.q[0], MUTED), (run.q[-1], BLUE)):
+        ax.add_collection(lines(q[links(q, RANGE)], colors=colour, linewidths=0.8, zorder=2))
+    ax.scatter(*run.q[0].T, s=12, facecolors="white", edgecolors=MUTED, linewidths=0.8, zorder=3)
+    ax.scatter(*run.q[-1].T, s=12, color=INK, linewidths=0, zorder=3)
+
+
+def velocity_diameters(outcomes: Sequence[Outcome], *, ax: Axes | None = None) -> Axes:
+    """Draw the greatest difference of two velocities over that at the start, over time, for each law.
+
+    Parameters
+    ----------
+    outcomes : sequence of Outcome
+        What `flockana.scenarios.one_start.compare` gave.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    ArgumentError
+        If there are no outcomes.
+    """
+    if not outcomes:
+        raise ArgumentError("outcomes is empty: expected those of flockana.scenarios.one_start.compare()")
+    axes: Any = ensure_axes(ax)
+    for k, (outcome, (colour, dash)) in enumerate(zip(outcomes, cycle(_LOOKS), strict=False)):
+        values = outcome.run.metric("velocity_diameter")
+        share = np.maximum(values / values[0], _FLOOR)
+        look = {"marker": _MARKS[k // len(_LOOKS) % len(_MARKS)], "markevery": 0.1, "markersize": 3.5}
+        axes.plot(outcome.run.t, share, color=colour, linestyle=dash, label=outcome.entry.name, **look)
+    axes.set_yscale("log")
+    return finish_over_time(axes, outcomes[0].run.t, "velocity diameter over that at the start")

@@ -1,0 +1,76 @@
+"""The share of a flock that follows its leader against the share that is informed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.ticker import PercentFormatter
+
+from flockana.base.binomial import clopper_pearson
+from flockana.base.errors import ArgumentError
+from flockana.plots.style import BLUE, MUTED, ORANGE, ensure_axes, finish, legend_above
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.axes import Axes
+
+_CONFIDENCE = 0.95
+
+
+def informed_shares(
+    runs: xarray.Dataset, *, agents: int = 60, majority: float = 0.5, ax: Axes | None = None, title: str = ""
+) -> Axes:
+    """Draw the share of agents that follow, of each run, its mean, and how often a majority follows, with intervals.
+
+    Agents of one run are not independent of each other, so an exact interval (Clopper and Pearson, 95 %) is of the
+    share of runs in which more than a majority follows; the mean over runs has none.
+
+    Parameters
+    ----------
+    runs : xarray.Dataset
+        From `flockana.ensemble("informed-survey", seeds, parameters={"informed": ...}, metrics=["followers"])`.
+    agents : int
+        How many agents there are.
+    majority : float
+        The share of agents that a run must exceed to count, 0 <= majority < 1.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+    title : str
+        Above the axes.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    ArgumentError
+        If the dataset lacks the share of followers or the number of informed agents.
+    """
+    if "followers" not in runs or "informed" not in runs.get("followers", runs).dims:
+        raise ArgumentError(
+            f"the dataset has {', '.join(map(str, runs.data_vars)) or 'nothing'}: expected 'followers' over "
+            "'informed', as of ensemble('informed-survey', ..., parameters={'informed': ...}, metrics=['followers'])"
+        )
+    if not 0.0 <= majority < 1.0:
+        raise ArgumentError(f"majority = {majority!r}: expected a share, 0 <= majority < 1")
+    share = runs["followers"].transpose("informed", "seed").values
+    x = np.asarray(runs["informed"].values, dtype=np.float64) / agents
+    known = np.isfinite(share)  # a run that failed has none
+    counts, of = (share > majority).sum(axis=1), known.sum(axis=1)
+    low, high = (np.atleast_1d(end) for end in clopper_pearson(counts, of, level=_CONFIDENCE))
+    middle = counts / np.maximum(of, 1)
+    axes = ensure_axes(ax)
+    for place, row in zip(x, share, strict=True):
+        axes.plot(np.full(row.shape, place), row, ".", color=MUTED, alpha=0.5, zorder=1)
+    axes.plot(x, np.nanmean(share, axis=1), "-o", color=BLUE, label="agents that follow, mean of all runs")
+    bars = np.clip([middle - low, high - middle], 0.0, None)
+    label = f"runs in which more than {majority:.0%} follow, with 95 % intervals"
+    axes.errorbar(x, middle, bars, fmt="s", color=ORANGE, capsize=3.0, label=label)
+    axes.set_ylim(-0.03, 1.03)
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_formatter(PercentFormatter(1.0))
+    axes.set_title(title)
+    legend_above(axes)
+    return finish(axes, "share of agents that are informed", "share")

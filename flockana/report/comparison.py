@@ -1,0 +1,117 @@
+"""The report's section on one start under many laws: what each theorem promises, and what happened."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from matplotlib.figure import Figure
+
+from flockana import plots
+from flockana.report.figures import Picture
+from flockana.report.image import png
+from flockana.scenarios.one_start import UNTIL, Outcome, compare
+from flockana.theorems.theorem import unmet
+
+_COLUMNS = 4
+_SIZE = 3.1  # inches of a panel
+_SETTLED = 1e-9  # of the start: what a table calls 0
+
+
+@dataclass(frozen=True)
+class Row:
+    """A law, its theorem and what happened, as text.
+
+    Parameters
+    ----------
+    name, theorem, promise : str
+        Of the law and the theorem.
+    status : str
+        Of the verdict.
+    reason : str
+        The first unmet hypothesis; empty if there is none.
+    velocities, positions : str
+        Diameters at the end over those at the start.
+    groups, nearest : str
+        Components of the net at the end, and the least distance.
+    """
+
+    name: str
+    theorem: str
+    promise: str
+    status: str
+    reason: str
+    velocities: str
+    positions: str
+    groups: str
+    nearest: str
+
+
+@dataclass(frozen=True)
+class ComparisonSection:
+    """Rows and pictures of one start under many laws.
+
+    Parameters
+    ----------
+    rows : tuple of Row
+        One for each law.
+    pictures : tuple of Picture
+        Paths side by side, and velocity diameters.
+    """
+
+    rows: tuple[Row, ...]
+    pictures: tuple[Picture, ...]
+
+
+def comparison_section(seed: int = 0) -> ComparisonSection:
+    """Run the start under every law and judge it; seconds.
+
+    Parameters
+    ----------
+    seed : int
+        Of the start.
+    """
+    outcomes = compare(seed=seed)
+    return ComparisonSection(tuple(_row(outcome) for outcome in outcomes), _pictures(outcomes))
+
+
+def _row(outcome: Outcome) -> Row:
+    missed, share = unmet(outcome.verdict.hypotheses), outcome.velocity_share
+    return Row(
+        outcome.entry.name,
+        outcome.entry.theorem,
+        outcome.entry.promise,
+        outcome.verdict.status,
+        "" if missed is None else f"{missed.name}: {missed.detail}",
+        f"{share:.2g}" if share > _SETTLED else "0",
+        f"{outcome.position_share:.3g}",
+        str(outcome.groups),
+        f"{outcome.least_distance:.3g}",
+    )
+
+
+def _pictures(outcomes: Sequence[Outcome]) -> tuple[Picture, ...]:
+    columns = min(_COLUMNS, len(outcomes))
+    rows = -(-len(outcomes) // columns)
+
+    def paths(figure: Figure) -> None:
+        axes = figure.subplots(rows, columns, squeeze=False).ravel()
+        for unused in axes[len(outcomes) :]:
+            unused.remove()
+        plots.side_by_side(outcomes, axes=axes[: len(outcomes)])
+
+    def together(figure: Figure) -> None:
+        plots.velocity_diameters(outcomes, ax=figure.subplots())
+
+    names = ", ".join(outcome.entry.name for outcome in outcomes)
+    return (
+        Picture(
+            f"The same start under each law, until t = {UNTIL:g}, all on one scale: hollow and grey at the start, dots "
+            "with their links at the end. Above each the theorem and its verdict.",
+            png(paths, (_SIZE * columns, (_SIZE + 0.3) * rows)),
+        ),
+        Picture(
+            f"Greatest difference of two velocities over that at the start: {names}. Flocking is its fall to 0.",
+            png(together, (8.0, 4.2)),
+        ),
+    )

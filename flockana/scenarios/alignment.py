@@ -1,0 +1,89 @@
+"""The Cucker-Smale law: flocks that velocity consensus alone makes, and two agents on both sides of a threshold."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from flockana.interactions.weights import RationalWeight
+from flockana.laws.cucker_smale import CuckerSmale
+from flockana.scenarios.scenario import Scenario
+from flockana.theorems.theorem import Status
+
+_REFERENCES = ("cucker-smale-2007", "ha-liu-2009", "flockana")
+_N = 12
+
+
+def _flock(name: str, beta: float, speed: float, expected: dict[str, Status]) -> Callable[[int], Scenario]:
+    """Twelve agents in the plane, with velocities that are drawn and then given the spread that is said."""
+
+    def build(seed: int = 0) -> Scenario:
+        generator = np.random.default_rng(seed)
+        q, p = generator.uniform(-0.4, 0.4, (_N, 2)), generator.uniform(-1.0, 1.0, (_N, 2))
+        p -= p.mean(axis=0)
+        return Scenario(
+            name,
+            f"Twelve agents that match velocities alone, β = {beta:g}",
+            f"Ours: the law of Cucker and Smale in the form of Ha and Liu, K = 2, ℓ = 1, β = {beta:g}; positions "
+            f"uniform in a square of side 0.8, velocities uniform, then scaled to Σ‖p_i − p̄‖² = {speed:g}².",
+            CuckerSmale(RationalWeight(strength=2.0, decay=beta), mean=True),
+            q,
+            p * (speed / np.sqrt(np.sum(p * p))) + (1.0, 0.5),
+            (0.0, 4.0),
+            seed,
+            expected,
+            references=_REFERENCES,
+        )
+
+    return build
+
+
+def _pair(name: str, speed: float, expected: dict[str, Status]) -> Callable[[int], Scenario]:
+    """Two agents on a line, 1 apart; π/4 is the critical relative speed."""
+
+    def build(seed: int = 0) -> Scenario:
+        return Scenario(
+            name,
+            f"Two agents that part at {speed:g}, of π/4 at which they would part for ever",
+            "Ours: two agents on a line, 1 apart, the law of Cucker and Smale in the form of Ha and Liu, "
+            f"K = ℓ = β = 1, relative speed {speed:g}. ∫ds/(1 + s²) from 1 on is π/4. The start is fixed.",
+            CuckerSmale(RationalWeight(strength=1.0, decay=1.0), mean=True),
+            np.array([[0.0], [1.0]]),
+            np.array([[0.0], [speed]]),
+            (0.0, 20.0),
+            seed,
+            expected,
+            references=_REFERENCES,
+        )
+
+    return build
+
+
+_ALL: dict[str, Status] = {"ha-liu": "verified", "ha-liu-sharp": "verified"}
+SCENARIOS: dict[str, Callable[..., Scenario]] = {
+    "cucker-smale": _flock("cucker-smale", 0.25, 8.0, {"cucker-smale": "verified", **_ALL}),
+    "cucker-smale-steep": _flock("cucker-smale-steep", 1.0, 0.1, {"cucker-smale": "vacuous", **_ALL}),
+    "cucker-smale-critical-below": _pair(
+        "cucker-smale-critical-below",
+        0.76,
+        {
+            "ha-liu": "vacuous",
+            "ha-liu-sharp": "verified",
+            "cucker-smale-pair": "verified",
+            "cucker-smale-pair:bounded": "verified",
+            "cucker-smale-pair:parts": "vacuous",
+        },
+    ),
+    "cucker-smale-critical-above": _pair(
+        "cucker-smale-critical-above",
+        0.81,
+        {
+            "ha-liu": "vacuous",
+            "ha-liu-sharp": "vacuous",
+            "cucker-smale-pair": "verified",
+            "cucker-smale-pair:bounded": "vacuous",
+            "cucker-smale-pair:parts": "verified",
+        },
+    ),
+}

@@ -1,0 +1,120 @@
+"""Jadbabaie, Lin and Morse's agents: two groups that meet and agree, and two that part and never do."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.dynamics.trajectory import Trajectory
+from flockana.laws.vicsek import HeadingAveraging
+from flockana.scenarios.findings import finding, in_the_end
+from flockana.scenarios.scenario import Report, Scenario
+from flockana.theorems import Claim, Tolerances
+from flockana.theorems.classics.averaging import for_ever_connected, for_ever_parted
+from flockana.theorems.theorem import Status
+
+_REFERENCES = ("jadbabaie-lin-morse-2003", "flockana")
+_SIZE = 0.7  # spacing of a group's agents over r
+_SHAKEN = 0.05  # of r and of a radian: what chance adds to each coordinate and heading of a start
+
+
+def _group(centre: float, heading: float, generator: np.random.Generator) -> tuple[FloatArray, FloatArray]:
+    """Two by three agents, _SIZE r apart, near one heading; r = 1."""
+    grid = _SIZE * np.array([[x, y] for x in (-0.5, 0.5) for y in (-1.0, 0.0, 1.0)]) + (centre, 0.0)
+    shaken = generator.uniform(-_SHAKEN, _SHAKEN, (len(grid), 3))
+    return grid + shaken[:, :2], heading + shaken[:, 2]
+
+
+def _two_groups(heading: float, seed: int) -> tuple[HeadingAveraging, FloatArray, FloatArray]:
+    """A group on the left that heads so, and one on the right that heads to the mirror image."""
+    generator, law = np.random.default_rng(seed), HeadingAveraging(range=1.0, speed=0.05, dt=1.0)
+    left, right = _group(-1.5, heading, generator), _group(1.5, np.pi - heading, generator)
+    return law, np.vstack([left[0], right[0]]), law.velocities(np.concatenate([left[1], right[1]]))
+
+
+def _last(run: Trajectory) -> tuple[HeadingAveraging, FloatArray, FloatArray]:
+    return run.law, run.q[-1], run.extra["heading"][-1]
+
+
+def _apart_at_first(run: Trajectory, tolerances: Tolerances) -> Claim:
+    steps = int(np.sum(run.metric("connectivity") < 1.0))
+    text = f"the net is not connected at {steps} of {len(run.t)} instants"
+    return finding("apart-at-first", steps - 0.5, text, computed=steps, stated="at some")
+
+
+def _agrees(run: Trajectory, tolerances: Tolerances) -> Claim:
+    end = float(np.ptp(run.extra["heading"][-1]))
+    text = f"headings differ by {end:.2g} at the end"
+    return in_the_end("one-flock", for_ever_connected(*_last(run)), text, computed=end, stated="one heading")
+
+
+def _never_agrees(run: Trajectory, tolerances: Tolerances) -> Claim:
+    heading = run.extra["heading"][-1]
+    text = f"headings differ by {np.ptp(heading):.3g} radians at the end"
+    return in_the_end("two-flocks", for_ever_parted(*_last(run)), text, computed=float(np.ptp(heading)))
+
+
+def _build(
+    name: str,
+    title: str,
+    heading: float,
+    steps: int,
+    expected: dict[str, Status],
+    reports: tuple[Report, ...],
+) -> Callable[..., Scenario]:
+    def build(seed: int = 0) -> Scenario:
+        law, q, p = _two_groups(heading, seed)
+        return Scenario(
+            name,
+            title,
+            "Ours, on Jadbabaie, Lin and Morse's model: two groups of two by three agents, 0.7 r apart within a group, "
+            "3 r between the centres, headings mirrored, each coordinate and heading shaken by up to 0.05.",
+            law,
+            q,
+            p,
+            (0.0, float(steps)),
+            seed,
+            expected,
+            reports,
+            references=_REFERENCES,
+        )
+
+    return build
+
+
+_TOGETHER: dict[str, Status] = {
+    "jlm-headings": "verified",
+    "jlm-headings:contraction": "verified",
+    "jlm-headings:agreement": "verified",
+    "source": "verified",
+}
+_PARTED: dict[str, Status] = {
+    "jlm-headings:hull": "verified",
+    "jlm-headings:contraction": "vacuous",
+    "jlm-headings:agreement": "vacuous",
+    "source": "verified",
+}
+
+SCENARIOS = {
+    "headings-meet": _build(
+        "headings-meet",
+        "Two groups meet: linked together over a long window, then at every step",
+        1.2,
+        400,
+        _TOGETHER,
+        (
+            Report("apart-at-first", "the net is not connected at every instant", _apart_at_first),
+            Report("one-flock", "all headings agree in the end", _agrees),
+        ),
+    ),
+    "headings-part": _build(
+        "headings-part",
+        "Two groups part: never linked together, two headings for ever",
+        2.0,
+        100,
+        _PARTED,
+        (Report("two-flocks", "the groups never meet again, their headings never agree", _never_agrees),),
+    ),
+}

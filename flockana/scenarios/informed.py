@@ -1,0 +1,221 @@
+"""Su, Wang and Lin (2009): few informed agents, and a virtual leader of varying velocity. Numbers are ours."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import pi
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError
+from flockana.dynamics.trajectory import Trajectory
+from flockana.environment.targets import CircleTarget, LinearTarget
+from flockana.interactions import AlphaInteraction, Gains
+from flockana.lattice.builders import hexagonal_spiral
+from flockana.laws.composition import compose
+from flockana.laws.olfati_saber import Algorithm2
+from flockana.measures.followers import following
+from flockana.scenarios.findings import ROUNDING, finding
+from flockana.scenarios.scenario import Report, Scenario
+from flockana.theorems import Claim, Tolerances
+from flockana.theorems.theorem import Status
+
+_REFERENCES = ("su-2009", "olfati-saber-2006")
+_LEADER = LinearTarget((6.0, 0.0), (1.0, 0.5))
+_CIRCLE = CircleTarget((0.0, 0.0), radius=20.0, frequency=0.05)
+_CONSENSUS = Gains().c2_alpha
+_APART = 60.0  # of a group that nobody joins
+_BOX, _SPEED = 100.0, 1.0  # of the survey's start
+
+
+def _near_lattice(seed: int, n: int, shake: float) -> tuple[FloatArray, FloatArray]:
+    generator = np.random.default_rng(seed)
+    q = hexagonal_spiral(n, AlphaInteraction().d) + generator.uniform(-shake, shake, (n, 2))
+    return q, generator.uniform(-0.3, 0.3, (n, 2))
+
+
+def _others_drift(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """Whether those out of everybody's reach, the last four, keep their mean velocity."""
+    mean = run.p[:, -4:].mean(axis=1)
+    change = float(np.abs(mean[-1] - mean[0]).max()) / run.scales.speed
+    text = f"the mean velocity of the four agents out of reach changes by {change:.2g} of the law's speed"
+    return finding("others", 1e-6 - change, text, computed=change, stated="no change", error=ROUNDING)
+
+
+def _few(seed: int = 0) -> Scenario:
+    q, p = _near_lattice(seed, 7, 0.2)
+    others = hexagonal_spiral(4, AlphaInteraction().d) + np.array([_APART, 0.0])
+    law = compose(pair=AlphaInteraction(), consensus=_CONSENSUS, navigation=_LEADER, informed=(0, 2), agents=len(q) + 4)
+    return Scenario(
+        "informed-few",
+        "Two of eleven agents know the leader: those linked to them follow, the others drift on",
+        "Ours, on Su, Wang and Lin 2009: Algorithm 2 with default gains, seven agents near a patch of the lattice of "
+        "which two feel a leader of constant velocity (1, ½), and four more out of everybody's reach.",
+        law,
+        np.vstack([q, others]),
+        np.vstack([p, np.tile([0.1, -0.2], (4, 1))]),
+        (0.0, 90.0),
+        seed,
+        {
+            "su-informed:energy": "verified",
+            "su-informed:distance": "verified",
+            "su-informed:distinct-pairs": "verified",
+            "su-informed:one-instant": "verified",
+            "su-informed:no-collision": "verified",
+            "energy:balance": "verified",
+            "energy:rate": "vacuous",
+            "source": "verified",
+        },
+        (Report("others", "who is never linked to an informed agent goes its own way", _others_drift),),
+        references=_REFERENCES,
+        shipped={"su-informed:informed": "verified", "su-informed:linked": "verified"},
+    )
+
+
+def _through(seed: int = 0) -> Scenario:
+    """Erratum E13 with one informed agent, seen from a leader that moves as the centre of mass does at the start."""
+    alpha = AlphaInteraction(a=5e4, b=5e4)
+    speed = float(np.sqrt(5.6 * alpha.c_star))
+    gains = Gains(1.0, 1.0, 0.0, 0.0, (0.01, 0.0, 0.0), (0.01, 0.0, 0.0))
+    return Scenario(
+        "informed-through",
+        "One agent runs through two others: two pairs collide, with the energy of one",
+        "Ours, on Su, Wang and Lin 2009 and erratum E13: the start of E13 on a line; of three agents the fast one is "
+        "informed, and the leader moves at a third of its speed.",
+        Algorithm2(alpha, gains, LinearTarget((0.0,), (speed / 3.0,))),
+        np.array([[-12.0], [0.0], [30.0]]),
+        np.array([[speed], [0.0], [0.0]]),
+        (0.0, 0.03),
+        seed,
+        {
+            "su-informed": "refuted",
+            "su-informed:distinct-pairs": "refuted",
+            "su-informed:one-instant": "verified",
+            "su-informed:energy": "verified",
+            "su-informed:distance": "verified",
+            "su-informed:no-collision": "vacuous",
+        },
+        references=_REFERENCES,
+    )
+
+
+def _lag(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """How far the centre stays behind a leader that circles: |a_r|/|c1 − ω² + iωc2|, once it has settled."""
+    gains, path = run.law.gains, run.law.target
+    omega = 2.0 * pi * path.frequency
+    lag = path.radius * omega**2 / abs(gains.c1_gamma - omega**2 + 1j * omega * gains.c2_gamma)
+    found = float(np.linalg.norm(run.q[-1].mean(axis=0) - path.position(float(run.t[-1]))))
+    off = abs(found / lag - 1.0)
+    detail = f"the centre of mass ends {found:.6g} from the leader, where the transfer function says {lag:.6g}"
+    return finding("lag", 1e-6 - off, detail, computed=found, stated=lag, error=ROUNDING)
+
+
+def _varying(name: str, title: str, *, told: bool) -> Callable[[int], Scenario]:
+    expected: dict[str, Status] = {"energy": "verified", "cohesion": "verified"}
+    if told:
+        expected |= dict.fromkeys(("su-varying", "su-varying:centre", "su-varying:velocities"), "verified")
+        expected |= {"su-varying:distance": "verified", "collision-energy:below": "verified"}
+    else:
+        expected |= {"su-varying": "vacuous", "source": "verified"}
+
+    def build(seed: int = 0) -> Scenario:
+        q, p = _near_lattice(seed, 12, 0.2)
+        plain = Algorithm2(target=_CIRCLE)
+        law = compose(pair=AlphaInteraction(), consensus=_CONSENSUS, navigation=_CIRCLE, told=True) if told else plain
+        return Scenario(
+            name,
+            title,
+            "Ours, on Su, Wang and Lin 2009: twelve agents near a lattice, all of which feel a leader on a circle of "
+            + ("radius 20 and are told its acceleration." if told else "radius 20; its acceleration is not told."),
+            law,
+            q,
+            p,
+            (0.0, 40.0),
+            seed,
+            expected,
+            () if told else (Report("lag", "the centre of mass does not come to the leader", _lag),),
+            references=_REFERENCES,
+        )
+
+    return build
+
+
+def _some_follow(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """Whether all informed agents follow at the end."""
+    who = np.asarray(run.law.gains.c1_gamma) > 0.0
+    count, of = int(following(run)[who].sum()), int(who.sum())
+    text = (
+        f"{count} of {of} informed agents, and {int(following(run).sum())} of {run.n} in all, move as the leader does"
+    )
+    return finding("informed-follow", count - of + 0.5, text, computed=count, stated=of)
+
+
+def _most_follow(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """Whether more than half of all agents follow at the end: what `shares` makes a share of runs of."""
+    count = int(following(run).sum())
+    text = f"{count} of {run.n} agents move as the leader does"
+    return finding("most-follow", count - run.n // 2 - 0.5, text, computed=count, stated=f"more than {run.n // 2}")
+
+
+def informed_survey(seed: int = 0, *, informed: int = 12, n: int = 60) -> Scenario:
+    """n agents strewn over a square, of which some, the first, feel a leader of constant velocity.
+
+    Parameters
+    ----------
+    seed : int
+        Of the start.
+    informed : int
+        How many agents are informed, 1 to n.
+    n : int
+        How many there are.
+
+    Raises
+    ------
+    ArgumentError
+        If more are informed than there are, or none.
+
+    Examples
+    --------
+    >>> informed_survey(informed=6).law.gains.c1_gamma[5:7]
+    (1.1, 0.0)
+    """
+    if not 1 <= informed <= n:
+        raise ArgumentError(f"informed = {informed}: expected 1 to {n}, the number of agents")
+    generator, who = np.random.default_rng(seed), range(informed)
+    law = compose(pair=AlphaInteraction(), consensus=_CONSENSUS, navigation=_LEADER, informed=who, agents=n)
+    return Scenario(
+        "informed-survey",
+        f"{informed} of {n} agents, strewn over a square, know the leader: how many follow?",
+        f"Su, Wang and Lin 2009 say that few informed agents lead most of a flock, and more a larger share. Ours: "
+        f"n = {n}, q uniform in a square of side {_BOX:g}, p uniform in [-1, 1]², leader from (6, 0) at (1, ½), 80 "
+        "time units; an option of the scenario says how many are informed.",
+        law,
+        generator.uniform(-0.5 * _BOX, 0.5 * _BOX, (n, 2)),
+        generator.uniform(-_SPEED, _SPEED, (n, 2)),
+        (0.0, 80.0),
+        seed,
+        {"su-informed:energy": "verified", "su-informed:distance": "verified"},
+        (
+            Report("informed-follow", "all informed agents take on the leader's velocity", _some_follow),
+            Report("most-follow", "more than half of all agents follow", _most_follow),
+        ),
+        {"t_eval": np.linspace(0.0, 80.0, 81)},
+        references=_REFERENCES,
+        shipped={"source": "verified"},
+    )
+
+
+SCENARIOS: dict[str, Callable[..., Scenario]] = {
+    "informed-few": _few,
+    "informed-survey": informed_survey,
+    "informed-through": _through,
+    "leader-told": _varying(
+        "leader-told",
+        "A leader that circles, and tells its acceleration: the centre of mass converges to it",
+        told=True,
+    ),
+    "leader-untold": _varying(
+        "leader-untold", "A leader that circles, and tells nothing: Algorithm 2 lags behind", told=False
+    ),
+}

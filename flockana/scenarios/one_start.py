@@ -1,0 +1,203 @@
+"""One flock under many laws: what a theorem promises of each, and what comes of the same start.
+
+A further law is one more `Entry` of `ENTRIES`: its name, how it is built for this start, the theorem that speaks of
+its runs, and what that promises in a few words.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.base.errors import UnknownNameError
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.trajectory import Trajectory
+from flockana.environment.targets import LinearTarget
+from flockana.interactions import AlphaInteraction, Gains
+from flockana.lattice.builders import hexagonal_spiral
+from flockana.laws.dead_zone import DeadZoneFlocking
+from flockana.laws.discrete import DiscreteLaw
+from flockana.laws.law import Law
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.laws.vicsek import HeadingAveraging
+from flockana.measures.metrics import diameter
+from flockana.measures.nets import components, links
+from flockana.theorems import Verdict, verify
+from flockana.theorems.theorem import Status
+
+_N, _SPEED, _HEADING = 10, 1.0, np.pi / 4.0
+_SHAKEN, _TURNED = 0.1, 0.6  # of d, and radians: what chance adds to places and headings
+UNTIL = 60.0
+RANGE = AlphaInteraction().r
+_INSTANTS = 201
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A law for the common start, and what a theorem says of it.
+
+    Parameters
+    ----------
+    name : str
+        Of the law, for people.
+    law : callable
+        ``law(q0, p0)`` builds it.
+    theorem : str
+        Id of a theorem about its runs.
+    promise : str
+        What the theorem promises, in our words and few of them.
+    expected : {"verified", "refuted", "vacuous", "inconclusive"}, optional
+        Status that the theorem has from this start; None where nothing is expected.
+    """
+
+    name: str
+    law: Callable[[FloatArray, FloatArray], Law | DiscreteLaw]
+    theorem: str
+    promise: str
+    expected: Status | None = None
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of the start under one law.
+
+    Parameters
+    ----------
+    entry : Entry
+        The law and its theorem.
+    run : Trajectory
+        The run.
+    verdict : Verdict
+        Of the theorem on the run.
+    """
+
+    entry: Entry
+    run: Trajectory
+    verdict: Verdict
+
+    @property
+    def velocity_share(self) -> float:
+        """Greatest difference of two velocities at the end over that at the start."""
+        return diameter(self.run.p[-1]) / diameter(self.run.p[0])
+
+    @property
+    def position_share(self) -> float:
+        """Greatest distance of two agents at the end over that at the start."""
+        return diameter(self.run.q[-1]) / diameter(self.run.q[0])
+
+    @property
+    def groups(self) -> int:
+        """Components of the net within the common range at the end."""
+        return int(components(self.run.n, links(self.run.q[-1], RANGE)).max()) + 1
+
+    @property
+    def least_distance(self) -> float:
+        """Least distance of two agents at the samples."""
+        return float(self.run.metric("min_distance").min())
+
+
+def one_start(seed: int = 0) -> tuple[FloatArray, FloatArray]:
+    """Ten agents near a patch of a lattice, at one speed, with headings about one direction: (q0, p0).
+
+    Parameters
+    ----------
+    seed : int
+        Of what chance adds.
+
+    Examples
+    --------
+    >>> q, p = one_start()
+    >>> q.shape, bool(np.allclose(np.linalg.norm(p, axis=1), 1.0))
+    ((10, 2), True)
+    """
+    generator, d = np.random.default_rng(seed), AlphaInteraction().d
+    q = hexagonal_spiral(_N, d) + generator.uniform(-_SHAKEN * d, _SHAKEN * d, (_N, 2))
+    heading = _HEADING + generator.uniform(-_TURNED, _TURNED, _N)
+    return q, _SPEED * np.stack([np.cos(heading), np.sin(heading)], axis=1)
+
+
+def _follower(q: FloatArray, p: FloatArray) -> LinearTarget:
+    """A γ-agent that starts at the flock's centre and moves as it does."""
+    place, velocity = q.mean(axis=0).tolist(), p.mean(axis=0).tolist()
+    return LinearTarget((place[0], place[1]), (velocity[0], velocity[1]))
+
+
+def _informing(some: int, n: int) -> Gains:
+    """The default gains, those to the γ-agent for the first few agents only."""
+    gains, felt = Gains(), np.arange(n) < some
+    return replace(gains, c1_gamma=tuple(gains.c1_gamma * felt), c2_gamma=tuple(gains.c2_gamma * felt))
+
+
+ENTRIES: tuple[Entry, ...] = (
+    Entry(
+        "Algorithm 1",
+        lambda q, p: Algorithm1(),
+        "os-1",
+        "the energy falls; if the flock stays together, velocities agree, and no two agents collide below the barrier",
+        "vacuous",
+    ),
+    Entry(
+        "Algorithm 2",
+        lambda q, p: Algorithm2(target=_follower(q, p)),
+        "os-3",
+        "the flock stays within a bounded distance of the γ-agent, velocities agree, few pairs can collide",
+    ),
+    Entry(
+        "Few informed",
+        lambda q, p: Algorithm2(gains=_informing(3, len(q)), target=_follower(q, p)),
+        "su-informed",
+        "three of ten feel the γ-agent: they take on its velocity, and so do those who stay linked to them",
+    ),
+    Entry(
+        "Dead zone",
+        lambda q, p: DeadZoneFlocking(),
+        "dead-zone-1-corrected",
+        "the saturated energy falls; velocities agree within each component; distances keep above an explicit bound",
+    ),
+    Entry(
+        "Averaged headings",
+        lambda q, p: HeadingAveraging(range=RANGE, speed=_SPEED, dt=0.1),
+        "jlm-headings",
+        "headings agree if the nets are jointly connected over one bounded window of time after the other",
+        "verified",
+    ),
+)
+
+
+def compare(names: Iterable[str] | None = None, *, seed: int = 0) -> tuple[Outcome, ...]:
+    """The common start under each law, with the verdict of its theorem.
+
+    Parameters
+    ----------
+    names : iterable of str, optional
+        Laws by the names in `ENTRIES`; by default all.
+    seed : int
+        Of the start.
+
+    Raises
+    ------
+    UnknownNameError
+        If there is no such law.
+
+    Examples
+    --------
+    >>> [outcome.verdict.status for outcome in compare(["Averaged headings"])]
+    ['verified']
+    """
+    known = {entry.name: entry for entry in ENTRIES}
+    chosen = tuple(known) if names is None else tuple(names)
+    for name in chosen:
+        if name not in known:
+            raise UnknownNameError("law", name, tuple(known))
+    q, p = one_start(seed)
+    return tuple(_outcome(known[name], q, p) for name in chosen)
+
+
+def _outcome(entry: Entry, q: FloatArray, p: FloatArray) -> Outcome:
+    law = entry.law(q, p)
+    kept = None if isinstance(law, DiscreteLaw) else np.linspace(0.0, UNTIL, _INSTANTS)
+    run = simulate(law, q, p, (0.0, UNTIL), t_eval=kept)
+    return Outcome(entry, run, verify(entry.theorem, run, subject=f"{entry.name}, one start"))

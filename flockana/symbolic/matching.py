@@ -1,0 +1,50 @@
+"""Velocity consensus with any weight of the distance, and any pair potential, in sympy: how their energy changes."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import sympy as sp
+
+from flockana.base.checks import ensure_dimension
+from flockana.symbolic.derivation import Derivation, Step
+from flockana.symbolic.led_dead_zone import HALF_PULL, OF_SQUARE
+from flockana.symbolic.pair import along_flow, vector
+
+WEIGHT = sp.Function("a", nonnegative=True)  # of the squared distance
+
+
+def matching_identity(m: int = 2, *, potential: bool = True) -> Derivation:
+    """Derive dH/dt of three agents that match velocities: all that an identity in pairs needs for every n.
+
+    H = sum |p_i - p|^2/2 + sum psi(rho_ij^2), p the mean velocity; its rate is -sum a(rho_ij^2) |p_j - p_i|^2.
+
+    Parameters
+    ----------
+    m : int
+        Dimension.
+    potential : bool
+        Whether there is a pair potential too (Tanner, Jadbabaie and Pappas), or none (Cucker and Smale).
+
+    Examples
+    --------
+    >>> matching_identity(1).holds
+    True
+    """
+    ensure_dimension(m)
+    q, p = ([vector(f"{name}_{i}", m) for i in range(3)] for name in "qp")
+    mean = (p[0] + p[1] + p[2]) / 3
+    u, energy, lost = [sp.zeros(m, 1) for _ in q], sp.S.Zero, sp.S.Zero
+    for i, j in combinations(range(3), 2):
+        delta, slip = q[j] - q[i], p[j] - p[i]
+        square = delta.dot(delta)
+        push = WEIGHT(square) * slip
+        if potential:
+            energy += OF_SQUARE(square)
+            push += 2 * HALF_PULL(square) * delta
+        u[i], u[j] = u[i] + push, u[j] - push
+        lost -= WEIGHT(square) * slip.dot(slip)
+    energy += sum((v - mean).dot(v - mean) for v in p) / 2
+    rate = along_flow(energy, *([entry for column in columns for entry in column] for columns in (q, p, u)))
+    steps = (Step("The energy in the frame of the centre of mass,", energy), Step("changes at", lost))
+    return Derivation("Energy of agents that match velocities", steps, lost, (sp.expand(rate - lost),))

@@ -1,0 +1,233 @@
+"""What is certain of averaged headings: nets that never change again, groups that never meet again, contraction."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import inf
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.base.checks import FloatArray
+from flockana.laws.vicsek import HeadingAveraging
+from flockana.measures.nets import LinkArray, components
+from flockana.theorems.limits import Certificate
+from flockana.theorems.rounding import EPS
+
+IndexArray = npt.NDArray[np.intp]
+
+_DIRECTIONS = 360  # along which two groups may be seen to part
+_TERMS = 4.0  # roundings of a difference, a length and a quotient
+
+
+def averaging_matrix(n: int, pairs: LinkArray) -> FloatArray:
+    """Row-stochastic matrix of one step, θ' = M θ: each agent weighs itself and its neighbours alike.
+
+    Parameters
+    ----------
+    n : int
+        Number of agents.
+    pairs : int array, shape (M, 2)
+        Links.
+
+    Examples
+    --------
+    >>> averaging_matrix(2, np.array([[0, 1]])).tolist()
+    [[0.5, 0.5], [0.5, 0.5]]
+    """
+    matrix = np.eye(n)
+    matrix[pairs[:, 0], pairs[:, 1]] = matrix[pairs[:, 1], pairs[:, 0]] = 1.0
+    matrix /= matrix.sum(axis=1, keepdims=True)
+    return matrix
+
+
+def contraction(matrix: FloatArray) -> float:
+    """Dobrushin's coefficient ½ max_ij Σ_k |M_ik − M_jk|: no spread is multiplied by more.
+
+    Parameters
+    ----------
+    matrix : ndarray, shape (n, n)
+        Row-stochastic.
+
+    Examples
+    --------
+    >>> contraction(np.array([[0.75, 0.25], [0.25, 0.75]]))
+    0.5
+    """
+    return float(max(0.5 * np.abs(matrix - row).sum(axis=1).max() for row in matrix))
+
+
+@dataclass(frozen=True)
+class Block:
+    """As many jointly connected windows as there are agents, but one: enough to contract the headings.
+
+    Parameters
+    ----------
+    start, stop : int
+        First step and the first after it.
+    factor : float
+        By how much the nets contract every spread at least.
+    error : float
+        Rounding of the spread at its end.
+    """
+
+    start: int
+    stop: int
+    factor: float
+    error: float
+
+
+def blocks(nets: Sequence[LinkArray], headings: FloatArray, windows: Sequence[tuple[int, int]]) -> tuple[Block, ...]:
+    """Consecutive blocks of n − 1 windows, each with what its nets guarantee.
+
+    Parameters
+    ----------
+    nets : sequence of int array
+        Links at each step.
+    headings : ndarray, shape (T, n)
+        One more than there are steps.
+    windows : sequence of (int, int)
+        Jointly connected windows of steps.
+    """
+    n, found = headings.shape[1], []
+    size = max(1, n - 1)
+    for k in range(0, len(windows) - size + 1, size):
+        start, stop = windows[k][0], windows[k + size - 1][1]
+        product = np.eye(n)
+        for net in nets[start:stop]:
+            product = averaging_matrix(n, net) @ product
+        steps, spread = stop - start, float(np.ptp(headings[start]))
+        error = steps * (n + _TERMS) * EPS * (float(np.abs(headings[start]).max()) + n * spread)
+        found.append(Block(start, stop, contraction(product), error))
+    return tuple(found)
+
+
+def for_ever_connected(law: HeadingAveraging, q: FloatArray, heading: FloatArray) -> Certificate:
+    """Certificate that a connected net never changes again, so that all headings tend to one.
+
+    With an unchanged net √w (θ − θ∞) shrinks by ρ in each step, w_i counting agent i and its neighbours, θ∞ the mean
+    of θ by w, ρ the second largest modulus of the eigenvalues of a matrix similar to a symmetric one. Summed over all
+    steps to come, the distance of i and j changes by at most v dt √(1/w_i + 1/w_j) ‖√w (θ − θ∞)‖/(1 − ρ). If that is
+    less than what each distance is away from r, the net stays; by induction for ever.
+
+    Parameters
+    ----------
+    law : HeadingAveraging
+        The law, with the mean of headings and no noise.
+    q : ndarray, shape (n, 2)
+        Positions.
+    heading : ndarray, shape (n,)
+        Headings.
+    """
+    n, pairs = len(q), law.links(q)
+    if components(n, pairs).max() > 0:
+        return Certificate(-1.0, "the net is not connected")
+    weights = neighbourhoods(n, pairs)
+    half = np.sqrt(weights)
+    symmetric = averaging_matrix(n, pairs) * half[:, None] / half[None, :]
+    moduli = np.sort(np.abs(np.linalg.eigvalsh(0.5 * (symmetric + symmetric.T))))
+    gap = 1.0 - (float(moduli[-2]) if n > 1 else 0.0) - (n + _TERMS) * EPS
+    if gap <= 0.0:
+        return Certificate(-1.0, "rounding hides how fast the net averages")
+    off = half * (heading - final_heading(heading, weights))
+    size = float(np.linalg.norm(off)) + (n + _TERMS) * EPS * float(np.linalg.norm(half * heading))
+    room, i, j = _rooms(law, q)
+    drift = law.speed * law.dt * np.sqrt(1.0 / weights[i] + 1.0 / weights[j]) * size / gap
+    margin = float((room - drift).min(initial=inf)) / law.range
+    error = _TERMS * EPS * (1.0 + float(np.abs(q).max()) / law.range)
+    text = (
+        f"every distance is {room.min(initial=inf) / law.range:.2g} r or more from r and can still change by "
+        f"{drift.max(initial=0.0) / law.range:.2g} r: the net "
+        + ("stays as it is for ever" if margin > error else "may change again")
+    )
+    return Certificate(float(np.clip(margin, -1.0, 1.0)), text, error)
+
+
+def neighbourhoods(n: int, pairs: LinkArray) -> FloatArray:
+    """How many agents each averages over, itself included.
+
+    Parameters
+    ----------
+    n : int
+        Number of agents.
+    pairs : int array, shape (M, 2)
+        Links.
+
+    Examples
+    --------
+    >>> neighbourhoods(3, np.array([[0, 1]])).tolist()
+    [2.0, 2.0, 1.0]
+    """
+    return np.bincount(pairs.ravel(), minlength=n).astype(np.float64) + 1.0
+
+
+def final_heading(heading: FloatArray, weights: FloatArray) -> float:
+    """The mean heading by weights: what a connected net that stays keeps, and tends to.
+
+    Parameters
+    ----------
+    heading : ndarray, shape (n,)
+        Headings.
+    weights : ndarray, shape (n,)
+        1 and the number of neighbours of each agent.
+
+    Examples
+    --------
+    >>> final_heading(np.array([0.0, 1.0]), np.array([1.0, 3.0]))
+    0.75
+    """
+    return float(weights @ heading / weights.sum())
+
+
+def _rooms(law: HeadingAveraging, q: FloatArray) -> tuple[FloatArray, IndexArray, IndexArray]:
+    """How far the distance of each pair is from r, and the pairs (i, j)."""
+    i, j = np.triu_indices(len(q), 1)
+    return np.abs(np.linalg.norm(q[i] - q[j], axis=1) - law.range), i, j
+
+
+def for_ever_parted(law: HeadingAveraging, q: FloatArray, heading: FloatArray) -> Certificate:
+    """Certificate that a component of the net never meets the other agents again.
+
+    There is a direction in which all its agents are more than r ahead of all others, and in which each of its headings
+    advances faster than each of theirs. No heading leaves the span of those of its own side while the sides do not
+    meet, so that they never do, and the spans stay apart.
+
+    Parameters
+    ----------
+    law : HeadingAveraging
+        The law, with the mean of headings and no noise.
+    q : ndarray, shape (n, 2)
+        Positions.
+    heading : ndarray, shape (n,)
+        Headings.
+    """
+    labels = components(len(q), law.links(q))
+    angles = 2.0 * np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
+    places = q @ np.array([np.cos(angles), np.sin(angles)])
+    best = Certificate(-1.0, "the net is connected")
+    for label in range(labels.max() + 1 if labels.max() else 0):
+        own = labels == label
+        ahead = (places[own].min(axis=0) - places[~own].max(axis=0)) / law.range - 1.0
+        slowest, fastest = _advance(heading[own], angles)[0], _advance(heading[~own], angles)[1]
+        margins = np.minimum(ahead, slowest - fastest)
+        k = int(np.argmax(margins))
+        if best.margin == -1.0 or margins[k] > best.margin:
+            text = f"{int(own.sum())} of {len(q)} agents are {ahead[k] + 1.0:.3g} r ahead of the others at {k}°"
+            text += f" and advance faster there, by {slowest[k] - fastest[k]:.3g} v or more"
+            error = _TERMS * EPS * (2.0 + float(np.abs(q).max()) / law.range)
+            best = Certificate(float(np.clip(margins[k], -1.0, 1.0)), text, error)
+    return best
+
+
+def _advance(heading: FloatArray, angles: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Least and greatest cos(θ − φ) over all θ between the least and the greatest heading, for each φ."""
+    low, high = float(heading.min()), float(heading.max())
+    ends = np.cos(low - angles), np.cos(high - angles)
+    turn = 2.0 * np.pi
+
+    def within(angle: FloatArray) -> npt.NDArray[np.bool_]:
+        return np.ceil((low - angle) / turn) * turn + angle <= high
+
+    least = np.where(within(angles + np.pi), -1.0, np.minimum(*ends))
+    return least, np.where(within(angles), 1.0, np.maximum(*ends))

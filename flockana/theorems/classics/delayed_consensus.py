@@ -1,0 +1,176 @@
+"""Olfati-Saber and Murray: consensus bears a delay up to π/(2 λ_n), held against the library's delay margin."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from math import pi
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.interactions import Gains
+from flockana.lattice import hexagonal_patch
+from flockana.laws.olfati_saber import Algorithm1
+from flockana.measures.nets import laplacian
+from flockana.stability.consensus import consensus_root, consensus_system
+from flockana.stability.delay import DelaySystem, delay_margin, delay_system, rightmost_roots, root_error
+from flockana.theorems.claims import erratum, judged
+from flockana.theorems.rounding import EPS
+from flockana.theorems.theorem import Claim, Status, Tolerances
+
+_PROOF = "delayed-consensus"
+_AROUND = Fraction(1, 100)  # of the margin: how far to either side roots are looked at
+_DIGITS = 30
+_SWEEP = 1e-9  # relative: to which a sweep locates a crossing that double roots blur to √eps at most
+
+
+def _net(n: int, pairs: list[tuple[int, int]]) -> FloatArray:
+    dense: FloatArray = laplacian(n, np.array(pairs, dtype=np.int32)).toarray()
+    return dense
+
+
+def _nets() -> dict[str, tuple[DelaySystem, float]]:
+    """Nets with what is known of them: the system, and λ_n in closed form or, of the flock's own, from its matrix."""
+    path, ring = [(0, 1), (1, 2)], [(k, (k + 1) % 6) for k in range(6)]
+    star, whole = [(0, k) for k in range(1, 5)], [(i, j) for j in range(4) for i in range(j)]
+    known = {
+        "path of 3": (_net(3, path), 3.0),
+        "ring of 6": (_net(6, ring), 4.0),
+        "star of 5": (_net(5, star), 5.0),
+        "complete net of 4": (_net(4, whole), 4.0),
+    }
+    flock = delay_system(
+        Algorithm1(gains=Gains(c1_alpha=0.0, c2_alpha=1.0)), hexagonal_patch(1, Algorithm1().alpha.length)
+    )
+    top = float(np.linalg.eigvalsh(flock.late[1])[-1])
+    nets = {name: (consensus_system(matrix), largest) for name, (matrix, largest) in known.items()}
+    free = replace(flock, neutral=consensus_system(flock.late[1]).neutral)  # nothing holds any place, not only rigidly
+    return nets | {"hexagon of 7 under Algorithm 1 without its gradient": (free, top)}
+
+
+def _margin(nets: dict[str, tuple[DelaySystem, float]]) -> Claim:
+    """The library's margin, found by a sweep over frequency, against the closed form."""
+    off, listed = 0.0, {}
+    for name, (system, largest) in nets.items():
+        found = delay_margin(system)
+        listed[name] = found.delay
+        off = max(off, abs(found.delay * 2.0 * largest / pi - 1.0), abs(found.frequency / largest - 1.0))
+    return judged(
+        "margin",
+        _SWEEP - off,
+        0.0,
+        computed=listed,
+        stated="π/(2 λ_n), where the net swings at the frequency λ_n",
+        detail=f"of {len(nets)} nets the delay margin that a sweep over frequency finds is π/(2 λ_n), to {off:.1g}",
+    )
+
+
+def _side(name: str, sign: int, nets: dict[str, tuple[DelaySystem, float]]) -> Claim:
+    """The rightmost root a hundredth beside the margin, by discretising the delayed state."""
+    share = 1.0 + sign * float(_AROUND)
+    margin, error, off, listed = np.inf, 0.0, 0.0, {}
+    for net, (system, largest) in nets.items():
+        delay = share * pi / (2.0 * largest)
+        root = complex(rightmost_roots(system, delay, count=2)[0])
+        sharp = root_error(system, root, delay)
+        listed[net] = root.real
+        off = max(off, abs(abs(root) - abs(consensus_root(largest, delay))) / largest if sign > 0 else 0.0)
+        if sign * root.real / largest - sharp / largest < margin - error:
+            margin, error = sign * root.real / largest, sharp / largest
+    words = "grows" if sign > 0 else "decays"
+    closed = f"; it is Lambert's W(-λ_n τ)/τ, to {off:.1g}" if sign > 0 else ""
+    return judged(
+        name,
+        margin,
+        error,
+        computed=listed,
+        stated=f"at {share:g} times π/(2 λ_n) the slowest motion off the consensus {words}",
+        detail=f"the rightmost root of {len(nets)} nets off the consensus is {margin:.3g} λ_n or more on that side"
+        f"{closed}",
+    )
+
+
+def root_enclosure(share: Fraction) -> Any:
+    """A ball around the rightmost root of s + e^(−sτ) = 0 at so many times τ = π/2, from Lambert's W.
+
+    Of another λ the root is λ times this one, at τ over λ: λτ alone counts.
+
+    Parameters
+    ----------
+    share : Fraction
+        Of the margin.
+
+    Examples
+    --------
+    >>> bool(root_enclosure(Fraction(99, 100)).real < 0), bool(root_enclosure(Fraction(101, 100)).real > 0)
+    (True, True)
+    """
+    from flint import acb, arb, ctx
+
+    from flockana.certified.intervals import ball
+
+    with ctx.workdps(_DIGITS):
+        delay = ball(share) * arb.pi() / 2
+        return acb(-delay).lambertw() / delay
+
+
+def _exact(name: str, sign: int) -> Claim:
+    """The rightmost root of one mode, enclosed: W₀ has the greatest real part of all branches."""
+    share = 1 + sign * _AROUND
+    root = root_enclosure(share)
+    status: Status = "verified" if sign * root.real > 0 else "refuted" if sign * root.real < 0 else "inconclusive"
+    return Claim(
+        name,
+        status,
+        "interval",
+        computed=str(root.real),
+        stated=f"Re s {'>' if sign > 0 else '<'} 0 at λτ = {share} π/2",
+        witness=str(root),
+        proof=_PROOF,
+        detail=f"s = W(-λτ)/τ: Re s/λ in {root.real.str(8)}, Im s/λ in {root.imag.str(8)}",
+    )
+
+
+def _average(nets: dict[str, tuple[DelaySystem, float]]) -> Claim:
+    """Σ x_i' = −1ᵀL x(t − τ) = 0 whatever the delay: what is agreed on is the mean of the start."""
+    off = max(float(np.abs(system.late[1].sum(axis=0)).max()) / largest for system, largest in nets.values())
+    size = max(len(system.late[1]) for system, _ in nets.values())
+    return judged(
+        "average",
+        size * EPS - off,
+        0.0,
+        computed=off,
+        stated="the sum over the agents never changes, so that they agree on the average of the start",
+        proof=_PROOF,
+        detail=f"the columns of L sum to 0, to {off:.1g} λ_n",
+    )
+
+
+def _check(tolerances: Tolerances) -> list[Claim]:
+    nets = _nets()
+    return [
+        _margin(nets),
+        _side("below", -1, nets),
+        _side("above", 1, nets),
+        _exact("root-below", -1),
+        _exact("root-above", 1),
+        _average(nets),
+    ]
+
+
+THEOREM = erratum(
+    "delayed-consensus",
+    title="Consensus bears a delay below π/(2 λ_n), and none above",
+    statement=(
+        "Agents x' = -L x(t - τ) on a fixed, undirected, connected net agree on the average of their start, whatever "
+        "it is, if and only if 0 <= τ < π/(2 λ_n), λ_n the largest eigenvalue of L; at π/(2 λ_n) they swing at the "
+        "frequency λ_n. Held against the delay margin that the library finds for any flock, on nets whose spectrum is "
+        "known, and by the root itself just below and just above."
+    ),
+    source="Olfati-Saber and Murray, Theorem 10",
+    check=_check,
+    references=("olfati-saber-murray-2004",),
+    expected=dict.fromkeys(("margin", "below", "above", "root-below", "root-above", "average"), "verified"),
+)

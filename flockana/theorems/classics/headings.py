@@ -1,0 +1,144 @@
+"""Jadbabaie, Lin and Morse: headings agree if the nets are jointly connected over window after window of time."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.dynamics.trajectory import Trajectory
+from flockana.laws.vicsek import HeadingAveraging
+from flockana.measures.windows import joint_windows
+from flockana.theorems.claims import judged
+from flockana.theorems.classics.averaging import (
+    Block,
+    blocks,
+    final_heading,
+    for_ever_connected,
+    for_ever_parted,
+    neighbourhoods,
+)
+from flockana.theorems.hypotheses import condition, law_is
+from flockana.theorems.limits import Certificate, limit_claim
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
+
+_PROOF = "headings"
+_EVERY = 1e-6  # of a step: samples that are one step apart
+
+
+def _plain(law: HeadingAveraging) -> Hypothesis:
+    """The mean of the headings themselves, and no noise."""
+    plain = law.average == "headings" and law.noise == 0.0
+    return condition("headings are averaged as numbers, without noise", plain, detail=f"{law.average}, η = {law.noise}")
+
+
+def _every_step(run: Trajectory) -> Hypothesis:
+    steps = np.diff(run.t)
+    kept = "heading" in run.extra and bool(np.all(np.abs(steps - run.law.dt) <= _EVERY * run.law.dt))
+    return condition("every step is kept", kept, detail=f"{len(run.t)} samples")
+
+
+def _for_ever(windows: Any, connected: Certificate, parted: Certificate) -> Hypothesis:
+    """Joint connectivity over windows without end: shown, shown to fail, or seen so far."""
+    name = "the nets are jointly connected over contiguous bounded windows, for ever"
+    longest = max((stop - start for start, stop in windows), default=0)
+    seen = f"{len(windows)} windows seen, of {longest} steps at most"
+    if connected.margin > connected.error:
+        return Hypothesis(name, "met", connected.margin, f"{seen}; {connected.text}")
+    if parted.margin > parted.error:
+        return Hypothesis(name, "unmet", -parted.margin, f"{seen}, and no more: {parted.text}")
+    return Hypothesis(name, "assumed", None, f"{seen}; what comes after the run is not known")
+
+
+def _hull(headings: FloatArray) -> Claim:
+    """No heading leaves the span of those before: means are kept in it to the bit, so that no rounding counts."""
+    least, most = headings.min(axis=1), headings.max(axis=1)
+    out = np.flatnonzero((np.diff(least) < 0.0) | (np.diff(most) > 0.0))
+    return judged(
+        "hull",
+        float(-out.size or 1),
+        0.0,
+        computed=float(most[-1] - least[-1]),
+        stated="the greatest heading never rises, the least never falls",
+        witness={"steps at which one does": int(out.size), "first": int(out[0]) if out.size else None},
+        proof=_PROOF,
+        detail=f"the headings' span goes from {most[0] - least[0]:.4g} to {most[-1] - least[-1]:.4g} radians",
+    )
+
+
+def _contraction(headings: FloatArray, found: tuple[Block, ...]) -> Claim:
+    """Over each block of n − 1 windows the span shrinks by what its nets guarantee, but for rounding."""
+    n = headings.shape[1]
+    span = np.ptp(headings, axis=1)
+    missed = [b for b in found if not span[b.stop] <= b.factor * span[b.start] + b.error or b.factor >= 1.0]
+    enough = condition(
+        f"n - 1 = {n - 1} jointly connected windows in a row", bool(found), detail=f"{len(found)} times in the run"
+    )
+    slowest = max((b.factor for b in found), default=float("nan"))
+    return judged(
+        "contraction",
+        float(-len(missed) or 1),
+        0.0,
+        [enough],
+        computed=slowest,
+        stated="over n - 1 windows the span shrinks by a factor below 1 that the nets alone guarantee",
+        witness={
+            "blocks": len(found),
+            "steps of the first missed": (missed[0].start, missed[0].stop) if missed else None,
+        },
+        proof=_PROOF,
+        detail=f"{len(found)} blocks; the weakest guarantees {slowest:.4g} times the span"
+        if found
+        else f"{enough.name}: {enough.detail}",
+    )
+
+
+def _limit(run: Trajectory, heading: FloatArray, needs: list[Hypothesis], connected: Certificate) -> Claim:
+    weights = neighbourhoods(run.n, run.law.links(run.q[-1]))
+    return limit_claim(
+        "agreement",
+        needs,
+        [connected],
+        computed=float(np.ptp(heading)),
+        stated="all headings tend to a common one",
+        witness={"heading": final_heading(heading, weights)} if connected.margin > connected.error else None,
+        proof=_PROOF,
+        detail=f"at the end the headings differ by {np.ptp(heading):.3g} radians",
+    )
+
+
+def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
+    needs = [_plain(run.law), _every_step(run)]
+    if unmet(needs):
+        return needs, []
+    headings = run.extra["heading"]
+    nets = [run.law.links(q) for q in run.q[:-1]]
+    windows = joint_windows(run.n, nets)
+    at_end = run.law, run.q[-1], headings[-1]
+    connected = for_ever_connected(*at_end)
+    for_ever = _for_ever(windows, connected, for_ever_parted(*at_end))
+    return [*needs, for_ever], [
+        _hull(headings),
+        _contraction(headings, blocks(nets, headings, windows)),
+        _limit(run, headings[-1], [for_ever], connected),
+    ]
+
+
+THEOREM = Theorem(
+    id="jlm-headings",
+    title="Nearest-neighbour averaging: headings agree under joint connectivity",
+    statement=(
+        "Let each agent's heading become the mean of its own and its neighbours' headings, all agents moving at one "
+        "speed. If there is an infinite sequence of contiguous, non-empty, bounded intervals of time from the start "
+        "on, across each of which the agents are linked together, all headings tend to a common one. No heading ever "
+        "leaves the span of those before, and over n - 1 such intervals the span shrinks by a factor that the nets "
+        "guarantee."
+    ),
+    source="Jadbabaie, Lin and Morse, theorem on leaderless coordination; span and factor as its proofs have them",
+    kind="trajectory",
+    check=_check,
+    law=law_is("nearest-neighbour averaging of headings", HeadingAveraging),
+    claims=("hull", "contraction", "agreement"),
+    references=("jadbabaie-lin-morse-2003", "vicsek-1995"),
+)

@@ -1,0 +1,124 @@
+"""A run as seen from its virtual leader: who is informed, whose links last, and what of the motion dies out."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.dynamics.between import Between
+from flockana.dynamics.trajectory import Trajectory
+from flockana.environment.targets import LinearTarget, StaticTarget
+from flockana.laws.olfati_saber import Algorithm2
+from flockana.laws.terms.told import acceleration
+from flockana.measures.nets import components, links
+from flockana.theorems.asymptotics import numerical_noise
+from flockana.theorems.hypotheses import condition
+from flockana.theorems.limits import decay, limit_claim
+from flockana.theorems.rounding import EPS
+from flockana.theorems.theorem import Claim, Hypothesis, Tolerances
+
+WINDOWS = 4  # of equal length, of the last half of a run: in each of them an agent must be linked to the informed
+
+
+def gains_of(run: Trajectory) -> tuple[FloatArray, FloatArray]:
+    """c1γ and c2γ of each agent, two arrays of shape (n,)."""
+    gains = run.law.gains
+    pull, match = (np.broadcast_to(np.asarray(x, dtype=np.float64), (run.n,)) for x in (gains.c1_gamma, gains.c2_gamma))
+    return pull, match
+
+
+def informed(run: Trajectory) -> np.ndarray:
+    """Which agents feel the leader, a mask of shape (n,)."""
+    return gains_of(run)[0] > 0.0
+
+
+def some_informed(run: Trajectory) -> Hypothesis:
+    """The hypothesis that the informed have one c1 > 0 and one c2 > 0, and the others neither."""
+    pull, match = gains_of(run)
+    who = pull > 0.0
+    alike = (
+        who.any() and np.array_equal(who, match > 0.0) and np.unique(pull[who]).size == np.unique(match[who]).size == 1
+    )
+    detail = f"{int(who.sum())} of {run.n} agents are informed"
+    return condition(
+        "some agents are informed, with c1 > 0 and c2 > 0, the same for all of them", bool(alike), detail=detail
+    )
+
+
+def constant_velocity(run: Trajectory) -> Hypothesis:
+    """The hypothesis that the leader moves at a constant velocity, which it tells."""
+    target, name = run.law.target, "the leader's velocity is constant"
+    if type(target) in (LinearTarget, StaticTarget):
+        return Hypothesis(name, "met", detail=type(target).__name__)
+    told = np.array([[target.state(float(t))[1], target.rate(float(t))] for t in run.t])
+    spread = float(np.abs(told - told[0, 1]).max())
+    if spread > 64.0 * EPS * float(np.abs(told).max()):
+        return Hypothesis(name, "unmet", -spread, f"it changes by {spread:.3g}, or is not what is told")
+    return Hypothesis(name, "assumed", detail="it is, at all samples")
+
+
+def as_the_leader_sees(run: Trajectory) -> Trajectory:
+    """The same run in the frame of its leader, where Algorithm 2 has a γ-agent at rest; kept with the run.
+
+    Of a leader that accelerates, this is so where all agents are told: the acceleration of the frame takes theirs away.
+    """
+    return run.remembered("leader's frame", lambda: _seen(run))
+
+
+def _seen(run: Trajectory) -> Trajectory:
+    law, (pull, match) = run.law, gains_of(run)
+    gains = replace(law.gains, c1_gamma=tuple(pull.tolist()), c2_gamma=tuple(match.tolist()))
+    still = Algorithm2(law.alpha, gains, StaticTarget((0.0,) * run.m))
+    told = bool(getattr(law, "told", False))
+    between = (
+        None if run.between is None else Between(**_shifted(law.target, run.between, told), slack=run.between.slack)
+    )
+    return replace(run, **_shifted(law.target, run, told), law=still, extra={}, between=between)
+
+
+def _shifted(target: Any, course: Any, told: bool) -> dict[str, Any]:
+    """t, q, p and u of samples, or of the steps between them, less those of the leader."""
+    states = [(target.position(float(t)), target.rate(float(t))) for t in course.t]
+    shape = (len(course.t), course.q.shape[2])
+    place, speed = (np.array([state[k] for state in states]).reshape(shape) for k in (0, 1))
+    push = np.array([acceleration(target.harmonic, float(t)) if told else np.zeros(shape[1]) for t in course.t])
+    apart = {"q": course.q - place[:, None], "p": course.p - speed[:, None]}
+    return {"t": course.t, **apart, "u": course.u - push.reshape(shape)[:, None]}
+
+
+def linked_to_informed(run: Trajectory) -> np.ndarray:
+    """Which agents a chain of links joins to an informed one in each window of the last half of a run, a mask (n,).
+
+    A link counts in a window if it is there at one of its samples; the chain may be made of links of different times.
+    """
+    known, start = np.ones(run.n, dtype=bool), 0.5 * (run.t[0] + run.t[-1])
+    who, edges = informed(run), np.linspace(start, run.t[-1], WINDOWS + 1)
+    for low, high in pairwise(edges):
+        seen = [links(q, run.law.alpha.range) for q in run.q[(run.t >= low) & (run.t <= high)]]
+        label = components(run.n, np.concatenate(seen)) if seen else np.arange(run.n)
+        known &= np.isin(label, label[who])
+    return known
+
+
+def comes_to_rest(
+    run: Trajectory, who: np.ndarray, needs: list[Hypothesis], tolerances: Tolerances, name: str
+) -> Claim:
+    """The claim that the velocities of some agents, of a run in its leader's frame, die out."""
+    speeds = np.linalg.norm(run.p[:, who], axis=2).max(axis=1, initial=0.0)
+    scale = run.scales.speed
+    amplitude = speeds + numerical_noise(run, scale) + 4.0 * EPS * float(np.abs(run.p).max())
+    falls = decay(run.t, amplitude, floor=float(np.sqrt(tolerances.velocity)) * scale).certificate
+    return limit_claim(
+        name,
+        needs,
+        [falls],
+        computed=float(speeds[-1]),
+        stated="p_i - p_r -> 0",
+        witness={"time": float(run.t[-1]), "agents": int(np.count_nonzero(who))},
+        detail=f"the largest of {int(np.count_nonzero(who))} differences from the leader's velocity goes from "
+        f"{speeds[0]:.3g} to {speeds[-1]:.3g} at t = {run.t[-1]:g}",
+    )

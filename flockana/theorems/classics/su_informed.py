@@ -1,0 +1,77 @@
+"""Su, Wang and Lin (2009): Algorithm 2 when a few agents only know of the virtual leader, who keeps its velocity."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flockana.dynamics.trajectory import Trajectory
+from flockana.laws.olfati_saber import Algorithm2
+from flockana.theorems.classics.leader_frame import (
+    WINDOWS,
+    as_the_leader_sees,
+    comes_to_rest,
+    constant_velocity,
+    informed,
+    linked_to_informed,
+    some_informed,
+)
+from flockana.theorems.composed.cohesion import stays_within
+from flockana.theorems.hypotheses import law_is, positive
+from flockana.theorems.leads import pairs_apart
+from flockana.theorems.olfati_saber.collisions import below_multiple, distinct_pairs, no_collision, pairs_at_one_instant
+from flockana.theorems.olfati_saber.energy import never_rises
+from flockana.theorems.rounding import energy_error
+from flockana.theorems.theorem import Checked, Hypothesis, Theorem, Tolerances, unmet
+
+PROOF = "informed-agents"
+CLAIMS = ("energy", "distance", "informed", "linked", "distinct-pairs", "one-instant", "no-collision")
+
+
+def _lasting(run: Trajectory) -> tuple[Hypothesis, np.ndarray]:
+    """That uninformed agents are linked to informed ones again and again, and which: a run sees its own end only."""
+    who = linked_to_informed(run) & ~informed(run)
+    count, of = int(who.sum()), int((~informed(run)).sum())
+    text = f"{count} of {of} uninformed agents, in each of {WINDOWS} windows of the last half of the run"
+    name = "uninformed agents are joined to informed ones by links in each of endlessly many bounded windows of time"
+    return Hypothesis(name, "assumed" if count else "unmet", float(count), text), who
+
+
+def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
+    needs = [some_informed(run), positive(run, c1_alpha="c1α", c2_alpha="c2α"), constant_velocity(run)]
+    if unmet(needs):
+        return needs, []
+    seen = as_the_leader_sees(run)
+    energy = float(seen.energy()[0])
+    error = float(energy_error(seen.law, seen.q[:1], seen.p[:1], seen.energy()[:1])[0])
+    below = below_multiple(energy, error, run.law.gains.c1_alpha * run.law.alpha.c_star)
+    lasting, linked = _lasting(run)
+    return [*needs, lasting, below], [
+        never_rises(seen, needs, squares=True, name="energy", proof=PROOF),
+        stays_within(seen, needs, name="distance", proof=PROOF),
+        comes_to_rest(seen, informed(run), needs, tolerances, "informed"),
+        comes_to_rest(seen, linked, [*needs, lasting], tolerances, "linked"),
+        distinct_pairs(seen, needs, tolerances, name="distinct-pairs"),
+        pairs_at_one_instant(seen, needs, tolerances, name="one-instant"),
+        no_collision(seen, [*needs, below], tolerances, name="no-collision"),
+    ]
+
+
+THEOREM = Theorem(
+    id="su-informed",
+    title="Algorithm 2 with few informed agents: they follow, and so does who is linked to them",
+    statement=(
+        "The virtual leader keeps its velocity, a few agents feel it with c1, c2 > 0, the others do not. Let Q be the "
+        "energy seen from the leader, c1α V + ½ c1 Σ ‖q_i − q_r‖² of the informed + ½ Σ ‖p_i − p_r‖². Then Q never "
+        "rises; (i) every informed agent stays within sqrt(2 Q(0)/c1) of the leader; (ii) the informed take on its "
+        "velocity; (iii) so does an uninformed agent that is joined to an informed one by a chain of links in each of "
+        "endlessly many windows of bounded length; (iv) with Q(0) < (k+1) c*, at most k distinct pairs collide. (iv) "
+        "holds at each instant, and for k = 0; over time more pairs can (erratum E13)."
+    ),
+    source="Su, Wang and Lin 2009, on a minority of informed agents",
+    kind="trajectory",
+    law=law_is("Algorithm 2", Algorithm2),
+    check=_check,
+    claims=CLAIMS,
+    leads={"distinct-pairs": pairs_apart, "one-instant": pairs_apart},
+    references=("su-2009", "olfati-saber-2006"),
+)

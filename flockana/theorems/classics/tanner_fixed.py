@@ -1,0 +1,43 @@
+"""Tanner, Jadbabaie and Pappas (2007): potentials and velocity consensus along a fixed connected net."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flockana.dynamics.trajectory import Trajectory
+from flockana.laws.tanner import FixedNetFlocking
+from flockana.measures.nets import components
+from flockana.theorems.classics.tanner_claims import comes_to_rest, energy_falls, no_collision
+from flockana.theorems.hypotheses import condition, law_is
+from flockana.theorems.theorem import Checked, Theorem, Tolerances, unmet
+
+
+def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
+    edges = np.array(run.law.edges, dtype=np.int32).reshape(-1, 2)
+    parts = 1 + int(components(run.n, edges).max())
+    needs = [condition("the net is connected", parts == 1, 1.5 - parts, f"{parts} component(s)")]
+    if unmet(needs):
+        return needs, []
+    return needs, [
+        energy_falls(run, tolerances, "tanner"),
+        no_collision(run, edges[:, 0], edges[:, 1], "tanner"),
+        *comes_to_rest(run, tolerances, ("velocities", "critical")),
+    ]
+
+
+THEOREM = Theorem(
+    id="tanner-fixed",
+    title="A fixed connected net with potentials flocks",
+    statement=(
+        "Let agents steer by u_i = -Σ (p_i - p_j) - Σ ∇V_ij over their neighbours in a fixed connected net, V being "
+        "unbounded at contact, with one minimum. Then velocities become the same, neighbours do not collide, and the "
+        "flock tends to a state in which no force acts: the total potential is extremal. (The paper says that the "
+        "potentials of all agents are minimised: erratum T1.)"
+    ),
+    source="Tanner, Jadbabaie and Pappas 2007, on fixed networks",
+    kind="trajectory",
+    law=law_is("the law on a fixed net", FixedNetFlocking),
+    check=_check,
+    claims=("energy", "no-collision", "velocities", "critical"),
+    references=("tanner-2007",),
+)

@@ -1,0 +1,45 @@
+"""Erratum T1: what the flock tends to is extremal, and need not minimise any agent's potential."""
+
+from __future__ import annotations
+
+from flockana.theorems.claims import equal, erratum, exact
+from flockana.theorems.theorem import Claim, Tolerances
+
+
+def _check(tolerances: Tolerances) -> list[Claim]:
+    """Three agents, all joined, at rest on a line at spacing √3/2 d: no force acts, and the middle is on a hill."""
+    import sympy as sp
+
+    s, y = sp.symbols("s y", positive=True)
+    potential = 1 / s**2 - 1 + sp.log(s**2)  # d = k = 1
+    slope, spacing = sp.diff(potential, s), sp.sqrt(3) / 2
+    outer = sp.simplify(slope.subs(s, spacing) + slope.subs(s, 2 * spacing))
+    middle = 2 * potential.subs(s, sp.sqrt(spacing**2 + y**2))
+    hill = sp.simplify(sp.limit(sp.diff(middle, y, 2), y, 0))
+    return [
+        exact(
+            "printed",
+            bool(hill >= 0),
+            computed=str(hill),
+            stated="the potentials of all agents are minimised",
+            witness="three agents, all joined, at rest on a line, √3/2 d apart",
+            detail=f"the second derivative of the middle agent's potential to the side is {hill} k/d² < 0",
+        ),
+        equal("corrected", outer, stated="the total potential is extremal: no force acts", detail="and on no agent"),
+    ]
+
+
+THEOREM = erratum(
+    "T1",
+    title="Potentials become extremal, not minimal",
+    statement=(
+        "The theorem on fixed networks says that the flock approaches a state that minimises the potentials of "
+        "all agents. Its proof shows that no force acts in the limit. Three agents at rest on a line, all joined and "
+        "√3/2 d apart, stay there for ever, and the potential of the one in the middle falls to either side. With many "
+        "links even a stable limit presses agents off the minima of single pairs."
+    ),
+    source="Tanner, Jadbabaie and Pappas 2007, on fixed networks",
+    check=_check,
+    references=("tanner-2007", "flockana"),
+    expected={"printed": "refuted", "corrected": "verified"},
+)

@@ -1,0 +1,162 @@
+# ---
+# jupyter:
+#   jupytext:
+#     text_representation:
+#       extension: .py
+#       format_name: percent
+#   kernelspec:
+#     display_name: Python 3
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # Six theorems on one flock
+#
+# **Aims.** Put the field's classics side by side: one start, many laws. What does each theorem promise from there,
+# which hypothesis does the work, and what happens where it fails?
+#
+# Ten agents near a patch of a lattice, all at one speed, with headings about one direction:
+
+# %%
+import numpy as np
+
+import flockana as fl
+from flockana import plots
+from flockana.course import grade
+from flockana.scenarios.one_start import ENTRIES, compare, one_start
+
+q, p = one_start()
+ax = plots.configuration(q, p, r=8.4, title="the start of them all")
+print(f"{len(q)} agents, position diameter {fl.diameter(q):.3g}, velocity diameter {fl.diameter(p):.3g}")
+
+# %% [markdown]
+# ## What is promised
+#
+# Two kinds of promise. Some say what an **energy** does: it falls, so that velocities agree, *if* something keeps the
+# flock together. Others say what **averaging** does: a mean of neighbours never leaves their span, so that the spread
+# of velocities shrinks, *if* the nets connect the agents often enough, or the weights fall slowly enough with distance.
+# The if is the theorem.
+
+# %%
+for entry in ENTRIES:
+    print(f"{entry.name} ({entry.theorem}):\n    {entry.promise}\n")
+
+# %% [markdown]
+# ## What happened
+
+# %%
+outcomes = compare()
+axes = plots.side_by_side(outcomes)
+
+# %%
+for outcome in outcomes:
+    happened = f"velocity diameter x {outcome.velocity_share:.1e}, {outcome.groups} group(s)"
+    print(f"{outcome.entry.name:>20}  {outcome.verdict.status:12} {happened}")
+ax = plots.velocity_diameters(outcomes)
+
+# %% [markdown]
+# A **vacuous** verdict beside a flock that flocks is no contradiction: the theorem says nothing of this start, and the
+# flock does not read theorems. Which hypothesis failed stands in the verdict:
+
+# %%
+for outcome in outcomes:
+    for hypothesis in outcome.verdict.hypotheses:
+        if hypothesis.status != "met":
+            print(f"{outcome.entry.name}: {hypothesis.name} is {hypothesis.status}\n    {hypothesis.detail}\n")
+
+# %% [markdown]
+# ## A hypothesis about the whole run: joint connectivity
+#
+# Jadbabaie, Lin and Morse let each agent take the mean heading of its neighbours. No single net need be connected: it
+# is enough that the links seen over a window of time connect all, window after window, for ever. Over a run we can see
+# windows; "for ever" needs an argument. Two groups that meet:
+
+# %%
+meet = fl.scenario("headings-meet").run()
+figure, axes = plots.subplots(1, 2, size=(9.0, 3.4))
+plots.joint_windows(meet.window(0.0, 60.0), ax=axes[0])
+plots.diameters(meet, ax=axes[1])
+print(fl.verify("jlm-headings", meet))
+
+# %% [markdown]
+# The argument: once headings nearly agree, all that distances can still change adds up to less than what each of them
+# is away from $r$. So no link is ever made or lost again, and a net that stays connected averages its headings to one.
+#
+# Where the groups part, the same verdict shows that they never meet again:
+
+# %%
+print(fl.verify("jlm-headings", fl.scenario("headings-part").run()))
+
+# %% [markdown]
+# ## A hypothesis about time: delay
+#
+# Olfati-Saber and Murray: $\dot x = -Lx(t-\tau)$ agrees if and only if $\tau < \pi/(2\lambda_n)$. The root that decides
+# is Lambert's: $s = W(-\lambda_n\tau)/\tau$. Better connected nets bear *less* delay:
+
+# %%
+from flockana.stability import consensus_root, consensus_system, delay_margin
+
+for name, pairs in {"path": [(0, 1), (1, 2), (2, 3)], "complete": [(i, j) for j in range(4) for i in range(j)]}.items():
+    net = fl.laplacian(4, np.array(pairs)).toarray()
+    margin, largest = delay_margin(consensus_system(net)), np.linalg.eigvalsh(net)[-1]
+    print(f"{name:>9}: τ* = {margin.delay:.6f}, largest λ = {largest:.4g}")
+
+# %% [markdown] tags=["exercise"]
+# ## Exercises
+#
+# **1.** Two neighbours head 10° to the left and 10° to the right of due east. Under the mean of headings in
+# $[0, 2\pi)$, which way do they head after one step, in degrees?
+
+# %% tags=["answer"]
+degrees = ...
+
+# %% tags=["solution"]
+degrees = (10.0 + 350.0) / 2.0
+
+# %% tags=["check"]
+grade(degrees, 180.0, hint="10° to the right of east is 350°; `fl.verify('jlm-cut')` has more of it")
+
+# %% [markdown] tags=["exercise"]
+# **2.** What delay does consensus on a star of 6 agents bear? (Its largest eigenvalue is its number of agents.)
+
+# %% tags=["answer"]
+delay = ...
+
+# %% tags=["solution"]
+delay = np.pi / (2.0 * 6.0)
+
+# %% tags=["check"]
+star = fl.laplacian(6, np.array([(0, k) for k in range(1, 6)])).toarray()
+grade(delay, delay_margin(consensus_system(star)).delay, hint="π/(2 λ_n)")
+
+# %% [markdown] tags=["exercise"]
+# **3.** Nets of four agents: link 0-1, then 1-2, then nothing, then 2-3, then 0-1, 1-2 and 2-3 at once. Into how many
+# contiguous, jointly connected windows do the five instants divide, at most?
+
+# %% tags=["answer"]
+count = ...
+
+# %% tags=["solution"]
+nets = [[(0, 1)], [(1, 2)], [], [(2, 3)], [(0, 1), (1, 2), (2, 3)]]
+count = len(fl.joint_windows(4, [np.array(net, dtype=int).reshape(-1, 2) for net in nets]))
+
+# %% tags=["check"]
+grade(count, 2, hint="a window ends as soon as its links connect all four")
+
+# %% [markdown] tags=["exercise"]
+# **4.** At 1.5 times the delay margin of two agents that are linked ($\lambda_2 = 2$): at what rate does their
+# difference grow, per time unit?
+
+# %% tags=["answer"]
+rate = ...
+
+# %% tags=["solution"]
+rate = consensus_root(2.0, 1.5 * np.pi / 4.0).real
+
+# %% tags=["check"]
+grade(
+    rate,
+    lambda x: x > 0.0 and abs(x - consensus_root(2.0, 1.5 * np.pi / 4.0).real) < 1e-6,
+    hint="the real part of W(-λτ)/τ, with λτ = 1.5 π/2",
+)

@@ -1,0 +1,98 @@
+"""Few informed agents, leaders of varying velocity, and cohesion under compositions, against planted motions.
+
+One agent that feels a leader alone is a damped spring: it is where `truth.harmonic` says, never reaches its bound, and
+nobody else follows. Where nothing damps, it touches the bound, and no verdict may call that too far.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from flockana.environment.targets import CircleTarget, LinearTarget, StaticTarget
+from flockana.interactions import AlphaInteraction, Gains
+from flockana.laws.composition import Composition
+from flockana.laws.olfati_saber import Algorithm2
+from tests.adversarial import truth
+from tests.adversarial.cases import OPEN, REFUTED, TRUE, VACUOUS, VERIFIED, Case, effort, hold
+from tests.adversarial.strategies import seeds
+
+THEOREMS = ("cohesion", "su-informed", "su-varying")
+COLLISIONS = ("distinct-pairs", "one-instant", "no-collision")
+
+
+@effort(0.4)
+@given(
+    st.sampled_from((0.05, 1.0, 20.0)), st.sampled_from((0.0, 0.3, 1.0, 3.0)), st.sampled_from((None, 0.2, 5.0)), seeds
+)
+def test_one_agent_on_a_spring_stays_within_its_energy(pull, zeta, unit, seed):
+    """Without damping it comes back to the bound at rest, so the margin is 0: never refuted, whatever rounding does."""
+    rng = np.random.default_rng(seed)
+    gains = Gains(0.0, 0.0, 0.0, 0.0, (pull,), (2.0 * zeta * np.sqrt(pull),))
+    law = Composition(None, gains, target=StaticTarget((0.0, 0.0)), unit=unit)
+    at_rest = rng.random() < 0.5
+    q, p = 5.0 * rng.normal(size=(1, 2)), (0.0 if at_rest else 2.0) * rng.normal(size=(1, 2))
+    clear = zeta >= 0.3 and not at_rest
+    hold("cohesion", Case(law, q, p, 8.0 / np.sqrt(pull)), {"bound": VERIFIED if clear else TRUE})
+
+
+@effort(0.2)
+@given(st.sampled_from((0.3, 1.0, 3.0)), st.sampled_from((0.5, 1.0, 1.5)), st.booleans(), seeds)
+def test_who_is_informed_follows_and_who_is_far_does_not(pull, zeta, moving, seed):
+    """Agents out of each other's reach: the first is a damped spring, the second flies straight on for ever."""
+    rng = np.random.default_rng(seed)
+    leader = LinearTarget((0.0, 0.0), (1.5, -1.0)) if moving else StaticTarget((0.0, 0.0))
+    match = 2.0 * zeta * np.sqrt(pull)
+    law = Algorithm2(AlphaInteraction(), Gains(1.0, 1.0, 0.0, 0.0, (pull, 0.0), (match, 0.0)), leader)
+    q = np.array([[2.0, 1.0], [500.0, -400.0]]) + rng.uniform(-1.0, 1.0, (2, 2))
+    p = leader.rate(0.0) + np.array([[0.5, -0.5], [1.0, -1.0]]) * rng.uniform(0.5, 1.0, (2, 2))
+    until = min(20.0 / truth.decay_rate(pull, match), 60.0)
+    expected = dict.fromkeys(COLLISIONS, TRUE)
+    expected |= {"energy": VERIFIED, "distance": VERIFIED, "informed": TRUE, "linked": VACUOUS}
+    hold("su-informed", Case(law, q, p, until), expected)
+
+
+def test_without_damping_an_informed_agent_swings_for_ever():
+    """c2 > 0 is a hypothesis; hardly any damping dies out hardly: no limit is certified."""
+    gains = Gains(1.0, 1.0, 0.0, 0.0, (1.0, 0.0), (0.0, 0.0))
+    q, p = np.array([[2.0, 1.0], [50.0, -40.0]]), np.array([[0.5, -0.5], [1.0, -1.0]])
+    here = StaticTarget((0.0, 0.0))
+    none = dict.fromkeys(("energy", "distance", "informed", "linked", *COLLISIONS), VACUOUS)
+    hold("su-informed", Case(Algorithm2(AlphaInteraction(), gains, here), q, p, 9.0), none)
+    slight = Gains(1.0, 1.0, 0.0, 0.0, (1.0, 0.0), (1e-3, 0.0))
+    expected = none | dict.fromkeys(COLLISIONS, TRUE) | {"energy": TRUE, "distance": TRUE, "informed": OPEN}
+    hold("su-informed", Case(Algorithm2(AlphaInteraction(), slight, here), q, p, 9.0), expected)
+
+
+def test_one_agent_through_two_others_with_a_leader():
+    """The start of erratum E13, of whose pairs two meet (`test_planted_collisions`), with the energy of one."""
+    alpha = AlphaInteraction(a=5e4, b=5e4)
+    speed = float(np.sqrt(5.6 * float(truth.psi_alpha(0.0, alpha))))
+    for few in ((0.01, 0.0, 0.0), (0.01, 0.01, 0.01)):
+        law = Algorithm2(alpha, Gains(1.0, 1.0, 0.0, 0.0, few, few), LinearTarget((0.0,), (speed / 3.0,)))
+        case = Case(law, np.array([[-12.0], [0.0], [30.0]]), np.array([[speed], [0.0], [0.0]]), 0.03)
+        expected = {"distinct-pairs": REFUTED, "one-instant": TRUE, "no-collision": VACUOUS, "distance": VERIFIED}
+        hold("su-informed", case, expected | {"energy": VERIFIED, "informed": OPEN, "linked": OPEN})
+
+
+@effort(0.2)
+@given(
+    st.sampled_from((0.3, 1.0, 3.0)),
+    st.sampled_from((0.3, 1.0, 2.0)),
+    st.sampled_from((0.02, 0.3)),
+    st.booleans(),
+    seeds,
+)
+def test_a_centre_that_is_told_converges(pull, zeta, frequency, told, seed):
+    """Agents out of reach of each other, each a damped spring about the leader: all of it, or nothing if not told."""
+    rng = np.random.default_rng(seed)
+    match = 2.0 * zeta * np.sqrt(pull)
+    circle = CircleTarget((0.0, 0.0), 4.0, frequency)
+    law = Composition(AlphaInteraction(), Gains(1.0, 1.0, 0.0, 0.0, pull, match), target=circle, told=told)
+    q = np.array([[20.0, 0.0], [-20.0, 3.0]]) + rng.uniform(-1.0, 1.0, (2, 2))
+    p = rng.uniform(-1.0, 1.0, (2, 2))
+    expected = dict.fromkeys(("centre", "velocities", "distance", "no-collision"), VACUOUS)
+    if told:
+        expected = {"centre": VERIFIED, "distance": VERIFIED, "velocities": TRUE, "no-collision": TRUE}
+    hold("su-varying", Case(law, q, p, 6.0), expected)

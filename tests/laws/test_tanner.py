@@ -1,0 +1,102 @@
+"""The laws on nets: force against gradient, power, Jacobian, the jump at R, and what is refused."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import sympy as sp
+
+import flockana as fl
+from flockana.base.errors import ArgumentError
+from flockana.dynamics.trajectory import Trajectory
+from flockana.laws.tanner import FixedNetFlocking, ProximityFlocking
+from flockana.symbolic.matching import matching_identity
+
+RNG = np.random.default_rng(5)
+Q, P = RNG.normal(0.0, 1.0, (5, 2)), RNG.normal(0.0, 1.0, (5, 2))
+POTENTIAL = fl.LogPotential(2.0, 1.1)
+LAWS = {
+    "fixed": FixedNetFlocking(((0, 1), (2, 1), (3, 4), (0, 4)), POTENTIAL, 1.5),
+    "near": ProximityFlocking(POTENTIAL, 1.7, 1.5),
+}
+
+
+def test_the_potential_and_its_derivatives():
+    s2, k, d = sp.symbols("s2 k d", positive=True)
+    potential = k * (d**2 / s2 - 1 + sp.log(s2 / d**2))
+    at = {k: 2, d: sp.Rational(11, 10), s2: sp.Rational(7, 3)}
+    weight = 2 * sp.diff(potential, s2)  # V'/s = 2 dV/d(s²)
+    for found, exact in (
+        (POTENTIAL.energy(7 / 3), potential),
+        (POTENTIAL.weight(7 / 3), weight),
+        (POTENTIAL.weight_slope(7 / 3), sp.diff(weight, s2)),
+    ):
+        assert float(found) == pytest.approx(float(exact.subs(at)), rel=1e-13)
+    for energy in (1e-9, 0.3, 40.0, 1e6):
+        assert float(POTENTIAL.energy(POTENTIAL.nearest(energy) ** 2)) == pytest.approx(energy, rel=1e-6)
+    assert POTENTIAL.nearest(0.0) == POTENTIAL.d
+
+
+@pytest.mark.parametrize("m", [1, 2, 3])
+def test_the_energy_identity(m):
+    assert matching_identity(m).holds
+    assert matching_identity(m, potential=False).holds
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_force_rate_and_jacobian(name):
+    law, h = LAWS[name], 1e-6
+    gradient = np.zeros_like(Q)
+    for k in np.ndindex(*Q.shape):
+        e = np.zeros_like(Q)
+        e[k] = h
+        gradient[k] = (law.energy(0.0, Q + e, P) - law.energy(0.0, Q - e, P)) / (2.0 * h)
+    np.testing.assert_allclose(law.acceleration(0.0, Q, 0.0 * Q), -gradient, atol=1e-6 * np.abs(gradient).max())
+    power = float(np.sum(gradient * P) + np.sum((P - P.mean(axis=0)) * law.acceleration(0.0, Q, P)))
+    assert law.energy_rate(0.0, Q, P) == pytest.approx(power, rel=1e-5)
+    found, x = law.jacobian(0.0, Q, P), np.concatenate([Q.ravel(), P.ravel()])
+    for k in (0, 7, 10, 19):
+        e = np.zeros(20)
+        e[k] = h
+        up, down = (law.acceleration(0.0, *np.reshape(x + s * e, (2, 5, 2))).ravel() for s in (1.0, -1.0))
+        np.testing.assert_allclose(found[10:, k], (up - down) / (2.0 * h), atol=1e-5 * np.abs(found).max())
+
+
+def test_the_force_jumps_at_r_and_the_energy_does_not():
+    law, rest = ProximityFlocking(POTENTIAL, 1.7), np.zeros((2, 1))
+    near, far = np.array([[0.0], [1.7 * (1.0 - 1e-12)]]), np.array([[0.0], [1.7 * (1.0 + 1e-12)]])
+    assert law.acceleration(0.0, near, rest)[0, 0] == pytest.approx(2.0 * 2.0 * (1.0 - (1.1 / 1.7) ** 2) / 1.7)
+    assert not law.acceleration(0.0, far, rest).any()
+    assert law.energy(0.0, near, rest) == pytest.approx(law.energy(0.0, far, rest), rel=1e-10)
+    run = fl.simulate(law, [[0.0], [2.0]], [[0.5], [-0.5]], (0.0, 8.0))
+    assert run.status == "complete"
+    assert np.abs(run.energy_residual).max() < 1e-7
+    assert abs(run.q[-1, 1, 0] - run.q[-1, 0, 0]) < 1.7 < 2.0
+
+
+def test_saved_and_in_other_units(tmp_path):
+    run = fl.simulate(LAWS["fixed"], Q, P, (0.0, 0.5))
+    assert Trajectory.load(run.save(tmp_path / "run.nc")).law == LAWS["fixed"]
+    there = fl.rescale(run, length=10.0, time=3.0)
+    np.testing.assert_allclose(there.law.acceleration(0.0, there.q[0], there.p[0]), run.u[0] * 10.0 / 9.0, rtol=1e-11)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: FixedNetFlocking(3), "edges = 3: expected pairs"),
+        (lambda: FixedNetFlocking(((0, 0),)), r"edge \(0, 0\): expected two different agents"),
+        (lambda: FixedNetFlocking(((0, -1),)), r"edge \(0, -1\): expected two whole numbers >= 0"),
+        (lambda: FixedNetFlocking(((0, 1), (1, 0))), r"edge \(0, 1\) is given twice"),
+        (lambda: FixedNetFlocking(((0, 1),), k2=0.0), "k2 = 0: expected a number > 0"),
+        (lambda: FixedNetFlocking(((0, 1),), potential=1), "potential = 1: expected LogPotential"),
+        (lambda: fl.LogPotential(d=-1.0), "d = -1: expected a number > 0"),
+        (lambda: ProximityFlocking(r=1.0), "r = 1: expected more than d = 1"),
+        (lambda: FixedNetFlocking(((0, 7),)).acceleration(0.0, Q, P), "edges name agent 7 but there are 5 agents"),
+        (lambda: fl.simulate(LAWS["fixed"], 0.0 * Q, P, (0.0, 1.0)), "agents 0 and 1 are joined and coincide"),
+        (lambda: fl.simulate(LAWS["near"], 0.0 * Q, P, (0.0, 1.0)), "coincide"),
+    ],
+)
+def test_bad_input_is_named(make, message):
+    with pytest.raises(ArgumentError, match=message):
+        make()

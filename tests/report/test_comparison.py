@@ -1,0 +1,49 @@
+"""The section on one start: a row for each law, pictures, and its place in the page."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+
+from flockana.base.errors import UnknownNameError
+from flockana.report.build import write_report
+from flockana.report.comparison import comparison_section
+from flockana.scenarios.one_start import ENTRIES, compare, one_start
+from flockana.theorems import theorem
+
+
+@pytest.fixture(scope="module")
+def section():
+    return comparison_section()
+
+
+def test_a_row_for_each_law_with_its_theorem_and_verdict(section):
+    assert [row.name for row in section.rows] == [entry.name for entry in ENTRIES]
+    for entry, row in zip(ENTRIES, section.rows, strict=True):
+        assert theorem(entry.theorem).kind == "trajectory"
+        assert row.status == (entry.expected or row.status)
+        assert (row.status == "vacuous") == bool(row.reason)
+        assert int(row.groups) >= 1
+
+
+def test_it_is_part_of_the_page(section, tmp_path):
+    page = write_report([], tmp_path, comparison=section).read_text(encoding="utf-8")
+    assert 'id="one-start"' in page
+    assert 'href="#one-start"' in page
+    assert all(entry.promise.replace("'", "&#39;") in page for entry in ENTRIES)
+    assert len(re.findall(r"data:image/png", page)) == len(section.pictures) == 2
+    assert 'id="one-start"' not in write_report([], tmp_path).read_text(encoding="utf-8")
+
+
+def test_every_law_has_the_same_start():
+    q, p = one_start()
+    for outcome in compare(["Algorithm 1", "Averaged headings"]):
+        assert np.array_equal(outcome.run.q[0], q)
+        assert np.array_equal(outcome.run.p[0], p)
+
+
+def test_laws_that_are_not_there():
+    with pytest.raises(UnknownNameError, match="unknown law 'Algorithm 9'"):
+        compare(["Algorithm 9"])

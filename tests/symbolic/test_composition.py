@@ -1,0 +1,36 @@
+"""The energy balance of compositions in sympy, and the kernels' against it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from flockana import compose
+from flockana.environment.targets import CircleTarget, StaticTarget
+from flockana.symbolic import composition as symbolic
+
+
+@pytest.mark.parametrize("m", [1, 2, 3])
+def test_identities_hold_in_every_dimension(m):
+    assert all(symbolic.given_frame_identity(m, informed=k).holds for k in range(4))
+    assert symbolic.moving_frame_identity(m).holds
+
+
+Q = np.array([[1.0, 0.5], [-2.0, 1.0], [0.3, -1.7]])
+P = np.array([[0.4, -1.0], [1.5, 0.2], [-0.7, 0.9]])
+
+
+def test_the_kernels_have_these_rates():
+    numbers = {"alpha": 0.8, "beta": 0.3, "c_1": 1.2, "c_2": 0.7, "c": 0.0}
+    given = symbolic.given_frame_identity(2, informed=2).result
+    names = sorted(symbol.name for symbol in given.free_symbols if symbol.name[0] == "p")
+    table = dict(zip(names, P.ravel(), strict=True))
+    rate = given.subs({s: (numbers | table).get(s.name, 0.0) for s in given.free_symbols})
+    here = StaticTarget((2.0, -1.0))
+    law = compose(navigation=here, pull=1.2, match=0.7, informed=(0, 1), agents=3, speed=(0.8, 0.3))
+    assert law.energy_rate(0.0, Q, P) == pytest.approx(float(rate), rel=1e-14)
+    moving = symbolic.moving_frame_identity(2).result
+    rate = moving.subs({s: (numbers | table | {"alpha": -0.4}).get(s.name, 0.0) for s in moving.free_symbols})
+    circle = CircleTarget((2.0, -1.0), 3.0, 0.2)
+    dragged = compose(navigation=circle, pull=1.2, match=0.7, told=True, drag=0.4)
+    assert dragged.energy_rate(0.3, Q, P) == pytest.approx(float(rate), rel=1e-13)

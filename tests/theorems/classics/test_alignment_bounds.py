@@ -1,0 +1,66 @@
+"""Integrals of the weight, and what the theorems make of starts on both sides of their thresholds."""
+
+from __future__ import annotations
+
+from math import asinh, atan, inf, pi, sqrt
+
+import mpmath
+import pytest
+
+import flockana as fl
+from flockana.interactions.weights import RationalWeight
+from flockana.theorems.classics.alignment_bounds import Decline
+
+
+@pytest.mark.parametrize("start", [-2.0, 0.0, 0.7])
+def test_integrals_in_closed_form(start):
+    line = Decline(RationalWeight(decay=1.0, length=2.0), 3.0, 1.0)
+    assert line.between(start, 5.0) == pytest.approx(6.0 * (atan(2.5) - atan(start / 2.0)), rel=1e-12)
+    assert line.beyond(start) == pytest.approx(6.0 * (pi / 2.0 - atan(start / 2.0)), rel=1e-12)
+    half = Decline(RationalWeight(decay=0.5), 1.0, 2.0)
+    assert half.between(start, 5.0) == pytest.approx(0.5 * (asinh(10.0) - asinh(2.0 * start)), rel=1e-12)
+    assert half.beyond(start) == inf
+
+
+@pytest.mark.parametrize("decay", [0.51, 0.8, 3.0])
+def test_the_tail_by_quadrature(decay):
+    exact = mpmath.quad(lambda w: mpmath.cosh(w) ** (1 - 2 * mpmath.mpf(decay)), [asinh(2.0), 50, 2000, mpmath.inf])
+    assert Decline(RationalWeight(decay=decay), 1.0, 1.0).beyond(2.0) == pytest.approx(float(exact), rel=1e-9)
+
+
+@pytest.mark.parametrize("decay", [0.0, 0.25, 0.5, 1.0])
+def test_the_bound_is_where_the_integral_is_the_speed(decay):
+    line = Decline(RationalWeight(decay=decay), 2.0, sqrt(2.0))
+    speed = 0.9 * min(line.beyond(0.3), 4.0)
+    assert line.between(0.3, line.reached(0.3, speed)) == pytest.approx(speed, rel=1e-11)
+    assert line.reached(0.3, 0.0) == 0.3
+    if decay > 0.5:
+        assert line.reached(0.3, 1.01 * line.beyond(0.3)) == inf
+
+
+def test_a_flock_of_two_shows_that_the_larger_integral_is_sharp():
+    """The threshold of two agents on a line, π/4 here, is that of φ(s) = λψ(√2 s), and above that as printed."""
+    sharp, printed = (Decline(RationalWeight(decay=1.0), 1.0, c).beyond(1.0 / sqrt(2.0)) for c in (sqrt(2.0), 2.0))
+    assert sharp * sqrt(2.0) == pytest.approx(pi / 4.0, rel=1e-12)
+    assert printed * sqrt(2.0) == pytest.approx((pi / 2.0 - atan(sqrt(2.0))) / sqrt(2.0), rel=1e-12)
+
+
+@pytest.mark.parametrize("name", [name for name in fl.scenarios() if name.startswith(("cucker-smale", "tanner-"))])
+def test_scenarios_come_out_as_expected(name):
+    scenario = fl.scenario(name)
+    assert not [text for verdict in scenario.verify(scenario.run()) for text in scenario.surprises(verdict)]
+
+
+def test_an_approaching_pair_counts_the_way_past_each_other():
+    law = fl.CuckerSmale(RationalWeight(1.0, 1.0), mean=True)
+    for speed, fate in ((0.74 * pi, "bounded"), (0.76 * pi, "parts")):
+        run = fl.simulate(law, [[0.0], [-1.0]], [[0.0], [speed]], (0.0, 3.0))  # 3π/4 from −1 on
+        assert fl.verify("cucker-smale-pair", run).claim(fate).status == "verified"
+
+
+def test_a_matched_start_and_another_law():
+    run = fl.simulate(fl.CuckerSmale(), [[0.0], [1.0]], [[1.0], [1.0]], (0.0, 1.0))
+    assert fl.verify("cucker-smale-pair", run).status == "vacuous"
+    assert fl.verify("ha-liu", run).claim("rate").status == "inconclusive"
+    other = fl.simulate(fl.Algorithm1(), [[0.0], [7.0]], [[1.0], [1.0]], (0.0, 1.0))
+    assert fl.verify("ha-liu", other).status == fl.verify("tanner-fixed", other).status == "vacuous"

@@ -1,0 +1,120 @@
+"""Certificates of averaged headings: what they say lasts, and they say nothing where it does not."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from flockana import HeadingAveraging, simulate, verify
+from flockana.theorems.classics.averaging import (
+    averaging_matrix,
+    contraction,
+    for_ever_connected,
+    for_ever_parted,
+    neighbourhoods,
+)
+
+LAW = HeadingAveraging(range=1.0, speed=0.05, dt=1.0)
+
+
+def certain(certificate):
+    return certificate.margin > certificate.error
+
+
+def flock(seed, size, low, high, n=8):
+    rng = np.random.default_rng(seed)
+    return rng.uniform(0.0, size, (n, 2)), rng.uniform(low, high, n)
+
+
+def test_a_net_that_is_certified_stays_as_it_is():
+    seen = 0
+    for seed in range(60):
+        q, heading = flock(seed, 1.1, 1.0, 1.0 + 0.02 * (seed % 10))
+        if not certain(for_ever_connected(LAW, q, heading)):
+            continue
+        seen += 1
+        run = simulate(LAW, q, LAW.velocities(heading), (0.0, 200.0))
+        assert all(np.array_equal(LAW.links(x), LAW.links(q)) for x in run.q)
+        weights = neighbourhoods(len(q), LAW.links(q))
+        assert run.extra["heading"][-1] == pytest.approx(np.full(len(q), weights @ heading / weights.sum()), abs=1e-9)
+    assert seen > 10
+
+
+def test_the_bound_of_what_may_change_is_near_what_does():
+    """Two agents: headings agree after one step, so that only it counts, and ρ = 0."""
+    q, step = np.array([[0.0, 0.0], [0.9, 0.0]]), 0.05
+    alike = np.array([1.5, 1.5])
+    assert certain(for_ever_connected(LAW, q, alike))
+    for half in (0.9, 1.1):  # v dt √(1/2 + 1/2) 2 half, against a room of 0.1
+        heading = np.array([1.5 + half, 1.5 - half])
+        assert certain(for_ever_connected(LAW, q, heading)) == (2.0 * step * half < 0.1)
+
+
+def test_a_net_that_averages_slowly_may_change_for_long():
+    """A path of three, w = (2, 3, 2), ρ = ½: headings (δ, 0, −δ) move two neighbours by 0.2 √(1/2 + 1/3) δ at most."""
+    q, room = np.array([[0.0, 0.0], [0.7, 0.0], [1.4, 0.0]]), 0.3
+    limit = room / (0.05 * np.sqrt(1.0 / 2.0 + 1.0 / 3.0) * 2.0 / 0.5)
+    for share in (0.98, 1.02):
+        heading = 1.5 + share * limit * np.array([1.0, 0.0, -1.0])
+        assert certain(for_ever_connected(LAW, q, heading)) == (share < 1.0)
+
+
+def test_no_certificate_on_the_circle_or_apart():
+    heading = np.array([1.0, 1.0])
+    assert not certain(for_ever_connected(LAW, np.array([[0.0, 0.0], [1.0, 0.0]]), heading))
+    assert not certain(for_ever_connected(LAW, np.array([[0.0, 0.0], [1.5, 0.0]]), heading))
+
+
+def test_groups_that_are_certified_to_part_never_meet():
+    seen = 0
+    for seed in range(60):
+        q, heading = flock(seed, 3.0, 0.2, 6.0, n=4)
+        if not certain(for_ever_parted(LAW, q, heading)):
+            continue
+        seen += 1
+        run = simulate(LAW, q, LAW.velocities(heading), (0.0, 300.0))
+        assert run.metric("connectivity").max() < 1.0
+        assert np.ptp(run.extra["heading"][-1]) > 0.0
+    assert seen > 5
+
+
+def test_who_meets_later_is_not_parted():
+    q = np.array([[0.0, 0.0], [1.5, 0.0]])
+    assert not certain(for_ever_parted(LAW, q, np.array([0.0, np.pi])))
+    assert not certain(for_ever_parted(LAW, q, np.array([1.0, 1.0])))
+    assert certain(for_ever_parted(LAW, q, np.array([np.pi, 0.0])))
+
+
+def test_who_passes_within_range_is_not_parted():
+    """Ahead along x and faster there, but by less than r: the second comes down past the first and meets it."""
+    q, heading = np.array([[0.0, 0.0], [0.5, 1.5]]), np.radians([85.0, 280.0])
+    assert simulate(LAW, q, LAW.velocities(heading), (0.0, 20.0)).metric("connectivity").max() == 1.0
+    assert not certain(for_ever_parted(LAW, q, heading))
+
+
+def test_a_span_that_passes_a_turn_parts_from_nothing():
+    """The first two may come to head as the third does: nothing is certain."""
+    q = np.array([[0.0, 0.0], [0.5, 0.0], [3.0, 0.0]])
+    assert not certain(for_ever_parted(LAW, q, np.array([0.1, 6.2, 3.0])))
+
+
+def test_contraction_is_dobrushins():
+    assert contraction(np.eye(3)) == 1.0
+    assert contraction(np.full((3, 3), 1.0 / 3.0)) == 0.0
+    path = averaging_matrix(3, np.array([[0, 1], [1, 2]]))
+    assert path.tolist() == [[0.5, 0.5, 0.0], [1 / 3, 1 / 3, 1 / 3], [0.0, 0.5, 0.5]]
+    assert contraction(path) == 0.5
+
+
+@pytest.mark.parametrize("options", [{"average": "vectors"}, {"noise": 0.1}])
+def test_other_rules_are_not_the_theorems(options):
+    law = HeadingAveraging(1.0, 0.05, 1.0, **options)
+    q, heading = flock(0, 1.0, 1.0, 2.0)
+    verdict = verify("jlm-headings", simulate(law, q, law.velocities(heading), (0.0, 5.0)))
+    assert {claim.status for claim in verdict.claims} == {"vacuous"}
+
+
+def test_samples_that_leave_steps_out_say_nothing():
+    q, heading = flock(0, 1.0, 1.0, 2.0)
+    run = simulate(LAW, q, LAW.velocities(heading), (0.0, 6.0), t_eval=[0.0, 2.0, 4.0])
+    assert verify("jlm-headings", run).status == "vacuous"

@@ -1,0 +1,122 @@
+"""Su, Wang and Lin (2009): what few informed agents, and a leader of varying velocity, are promised."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from flockana import compose, scenario, simulate, verify
+from flockana.environment.targets import CircleTarget, LinearTarget
+from flockana.interactions import AlphaInteraction, Gains
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.theorems.classics import leader_frame
+from flockana.theorems.classics.su_varying import convergence_rate
+from tests.theorems.made_up import hexagon, statuses
+
+Q, P = hexagon(shake=0.3, speed=0.5)
+PAIR, LEADER, CIRCLE = AlphaInteraction(), LinearTarget((3.0, 0.0), (1.0, -0.5)), CircleTarget((0.0, 0.0), 9.0, 0.05)
+NOBODY, SOME = (0.0,) * 7, "some agents are informed"
+FEW = {"pair": PAIR, "consensus": 9.0, "navigation": LEADER, "informed": (0, 2), "agents": 7}
+
+
+def run_of(until: float = 4.0, **changes):
+    return simulate(compose(**(FEW | changes)), Q, P, (0.0, until))
+
+
+def hypothesis_status(verdict, text):
+    return next(h.status for h in verdict.hypotheses if text in h.name)
+
+
+def test_the_leader_s_frame_is_that_of_a_leader_at_rest():
+    """Galilei: the run seen from the leader is a run of the law with a leader at rest, its steps too."""
+    run = run_of()
+    seen = leader_frame.as_the_leader_sees(run)
+    again = simulate(seen.law, seen.q[0], seen.p[0], (0.0, 4.0), t_eval=run.t)
+    np.testing.assert_allclose(seen.q[-1], again.q[-1], atol=1e-5)
+    np.testing.assert_allclose(
+        [seen.law.flow(t, q, p)[0] for t, q, p in zip(seen.t, seen.q, seen.p, strict=True)], seen.u
+    )
+    assert seen.path.t.size == run.path.t.size
+
+
+def test_told_acceleration_makes_the_leader_s_frame_one_of_rest():
+    run = simulate(compose(pair=PAIR, consensus=9.0, navigation=CIRCLE, told=True), Q, P, (0.0, 3.0))
+    seen = leader_frame.as_the_leader_sees(run)
+    forces = [seen.law.flow(t, q, p)[0] for t, q, p in zip(seen.t, seen.q, seen.p, strict=True)]
+    np.testing.assert_allclose(forces, seen.u, atol=1e-9)
+
+
+def test_links_over_windows_join_who_is_near_an_informed_agent():
+    q = np.vstack([Q, [[100.0, 0.0], [107.0, 0.0]]])
+    law = compose(**(FEW | {"agents": 9}))
+    run = simulate(law, q, np.tile([1.0, -0.5], (9, 1)), (0.0, 2.0))
+    assert leader_frame.linked_to_informed(run).tolist() == [True] * 7 + [False] * 2
+    assert leader_frame.informed(run).tolist() == [True, False, True] + [False] * 6
+
+
+def test_few_lead_all_that_are_linked():
+    verdict = scenario("informed-few").verify(scenario("informed-few").run())[0]
+    assert {name: status for name, status in statuses(verdict).items() if name != "no-collision"} == dict.fromkeys(
+        ("energy", "distance", "informed", "linked", "distinct-pairs", "one-instant"), "verified"
+    )
+    assert hypothesis_status(verdict, "joined to informed") == "assumed"
+
+
+@pytest.mark.parametrize(
+    ("law", "text"),
+    [
+        (Algorithm1(), "Algorithm 2 is applied"),
+        (compose(**(FEW | {"navigation": CIRCLE})), "velocity is constant"),
+        (Algorithm2(gains=Gains(c1_gamma=(1.0, 2.0, *NOBODY[2:]), c2_gamma=(1.0, *NOBODY[1:])), target=LEADER), SOME),
+        (Algorithm2(gains=Gains(c1_gamma=NOBODY, c2_gamma=NOBODY), target=LEADER), SOME),
+        (Algorithm2(gains=Gains(c2_alpha=0.0), target=LEADER), "c2α > 0"),
+    ],
+)  # fmt: skip
+def test_vacuous_where_a_hypothesis_fails(law, text):
+    verdict = verify("su-informed", simulate(law, Q, P, (0.0, 1.0)))
+    assert {*statuses(verdict).values()} == {"vacuous"}
+    assert hypothesis_status(verdict, text) == "unmet"
+
+
+@pytest.mark.parametrize(("c1", "c2"), [(1.1, 2.0 * 1.1**0.5), (1.0, 5.0), (4.0, 0.5)])
+def test_the_centre_follows_its_closed_form(c1, c2):
+    law = compose(pair=PAIR, consensus=9.0, navigation=CIRCLE, told=True, pull=c1, match=c2)
+    claim = verify("su-varying", simulate(law, Q, P, (0.0, 6.0))).claim("centre")
+    assert (claim.status, claim.computed < 1e-8) == ("verified", True)
+    assert convergence_rate(law.gains) == pytest.approx(-np.roots([1.0, c2, c1]).real.max(), rel=1e-7)
+
+
+def test_a_wrong_acceleration_is_found(monkeypatch):
+    """Told 1 % too much, the centre leaves the closed form."""
+    from flockana.laws.terms import told
+
+    right = told.acceleration
+    law = compose(pair=PAIR, consensus=9.0, navigation=CIRCLE, told=True)
+    monkeypatch.setattr(told, "acceleration", lambda path, t: 1.01 * right(path, t))
+    run = simulate(law, Q, P, (0.0, 6.0), method="scipy-DOP853")
+    assert verify("su-varying", run).claim("centre").status == "refuted"
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        Algorithm2(target=CIRCLE),
+        compose(pair=PAIR, consensus=9.0, navigation=CIRCLE, told=True, informed=(0, 1), agents=7),
+        compose(pair=PAIR, consensus=9.0, navigation=CIRCLE, told=True, drag=0.1),
+        compose(pair=PAIR, consensus=9.0, navigation=CIRCLE, told=True, bounded=True),
+    ],
+)
+def test_varying_leader_is_vacuous_otherwise(law):
+    assert {*statuses(verify("su-varying", simulate(law, Q, P, (0.0, 1.0)))).values()} == {"vacuous"}
+
+
+def test_at_constant_velocity_nothing_need_be_told():
+    assert (
+        verify("su-varying", simulate(Algorithm2(target=LEADER), Q, P, (0.0, 5.0))).claim("centre").status == "verified"
+    )
+
+
+def test_as_printed_more_pairs_collide_over_time():
+    verdict = verify("su-informed", scenario("informed-through").run())
+    assert verdict.claim("distinct-pairs").computed == 2
+    assert (verdict.claim("distinct-pairs").status, verdict.claim("one-instant").status) == ("refuted", "verified")
