@@ -39,11 +39,13 @@ from .falsify import replay as replay
 from .interactions import AlphaInteraction as AlphaInteraction
 from .interactions import BetaInteraction as BetaInteraction
 from .interactions import DeadZoneInteraction as DeadZoneInteraction
+from .interactions import FormulaInteraction as FormulaInteraction
 from .interactions import Gains as Gains
 from .interactions import PairInteraction as PairInteraction
 from .interactions import ZoneNoise as ZoneNoise
 from .interactions import ZoneRadii as ZoneRadii
 from .interactions import ZoneWeights as ZoneWeights
+from .interactions import pair_law as pair_law
 from .lammps.dump import read_lammps as read_lammps
 from .lammps.export import export_lammps as export_lammps
 from .laws.algorithm3 import Algorithm3 as Algorithm3

@@ -72,6 +72,16 @@ class PairInteraction(ABC):
         return (self.range,)
 
     @property
+    def faults(self) -> tuple[str, ...]:
+        """What it lacks that theorems ask for, each in words: where it is not C¹, or does not end smoothly."""
+        return ()
+
+    @property
+    def coincidence(self) -> bool:
+        """Whether two agents may stand at one place; not where their force has no limit there."""
+        return True
+
+    @property
     @abstractmethod
     def strength(self) -> float:
         """The unit of forces: about the strongest between two agents, that of a contact where it is unbounded."""
@@ -143,7 +153,8 @@ class PairInteraction(ABC):
             near += self.kernels.potential(q, i, j, self.par, self.panels)
             pairs += i.size
         n = q.shape[0]
-        return float(near + (n * (n - 1) // 2 - pairs) * self.far_potential)
+        beyond = n * (n - 1) // 2 - pairs
+        return float(near + beyond * self.far_potential if beyond else near)  # it may be infinite there
 
     def hessian(self, q: FloatArray) -> csr_array:
         """∇²V(q), sparse and symmetric, in the order of ``q.ravel()``.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 
 from flockana.dynamics.trajectory import Trajectory
-from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
+from flockana.interactions import AlphaInteraction, BetaInteraction, FormulaInteraction, Gains
 from flockana.theorems.theorem import Claim, Hypothesis
 
 _MEMBERS = {"alpha": AlphaInteraction, "beta": BetaInteraction, "gains": Gains}
@@ -33,7 +33,7 @@ def condition(name: str, holds: bool, margin: float | None = None, detail: str =
     return Hypothesis(name, "met" if holds else "unmet", margin, detail)
 
 
-def law_is(name: str, *laws: type) -> Callable[[Trajectory], Hypothesis]:
+def law_is(name: str, *laws: type, formulas: bool = False) -> Callable[[Trajectory], Hypothesis]:
     """The hypothesis that a run is of one of these laws, to be declared as a theorem's `law`.
 
     Parameters
@@ -42,6 +42,8 @@ def law_is(name: str, *laws: type) -> Callable[[Trajectory], Hypothesis]:
         The laws, as the hypothesis names them.
     *laws : type
         Classes of laws; what descends from one of them may push otherwise and is another law.
+    formulas : bool
+        Whether the pair law may be a user's, by its formula (`flockana.pair_law`).
 
     Examples
     --------
@@ -51,7 +53,7 @@ def law_is(name: str, *laws: type) -> Callable[[Trajectory], Hypothesis]:
     """
 
     def applied_to(run: Trajectory) -> Hypothesis:
-        return applied(run, name, *laws)
+        return applied(run, name, *laws, formulas=formulas)
 
     return applied_to
 
@@ -80,7 +82,7 @@ def law_with_common_gains(name: str, *laws: type) -> Callable[[Trajectory], Hypo
     return applied_to
 
 
-def applied(run: Trajectory, name: str, *laws: type) -> Hypothesis:
+def applied(run: Trajectory, name: str, *laws: type, formulas: bool = False) -> Hypothesis:
     """The hypothesis that a run is of one of these laws, and not of a class derived from one, which may push otherwise.
 
     Parameters
@@ -91,15 +93,31 @@ def applied(run: Trajectory, name: str, *laws: type) -> Hypothesis:
         The laws, as the hypothesis names them.
     *laws : type
         Classes of laws.
+    formulas : bool
+        Whether the pair law may be a formula's.
     """
-    law = run.law
+    law, welcome = run.law, (FormulaInteraction,) if formulas else ()
     other = [
         f"{member} is {type(getattr(law, member)).__name__}"
         for member, known in _MEMBERS.items()
-        if hasattr(law, member) and type(getattr(law, member)) is not known
+        if hasattr(law, member) and type(getattr(law, member)) not in (known, *welcome)
     ]
     detail = ", ".join([type(law).__name__, *(other if type(law) in laws else [])])
     return condition(f"{name} is applied", type(law) in laws and not other, detail=detail)
+
+
+def smooth_pair(run: Trajectory) -> Hypothesis:
+    """The hypothesis that the pair law is C¹ wherever pairs stay apart, and ends smoothly at its range.
+
+    A force without a limit where two agents meet is no fault here: runs that come to that point end.
+
+    Parameters
+    ----------
+    run : Trajectory
+        A run of a law with a pair interaction.
+    """
+    faults = [] if run.law.pair is None else [x for x in run.law.pair.faults if not x.startswith("coincidence")]
+    return condition("the pair law is C¹ and vanishes at its range", not faults, detail="; ".join(faults))
 
 
 def positive(run: Trajectory, **gains: str) -> Hypothesis:

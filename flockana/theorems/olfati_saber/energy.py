@@ -12,7 +12,7 @@ from flockana.environment.obstacles import Sphere, Wall
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.claims import judged
-from flockana.theorems.hypotheses import law_is
+from flockana.theorems.hypotheses import law_is, smooth_pair
 from flockana.theorems.olfati_saber.gamma_agent import declared_rate_is_true, target_rests
 from flockana.theorems.rounding import EPS, energy_error
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, HypothesisStatus, Theorem, Tolerances
@@ -129,8 +129,12 @@ def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
         rates.append(declared_rate_is_true(run))
     if type(run.law) is Algorithm3:
         rest.append(stays_outside(run))
+    smooth = [smooth_pair(run)] if run.law.pair is not None and run.law.pair.faults else []
     proof = proved(run)
-    return [*rest, *rates], [never_rises(run, rest, proof=proof), balance(run, rates, tolerances, proof=proof)]
+    return [*smooth, *rest, *rates], [
+        never_rises(run, [*smooth, *rest], proof=proof),
+        balance(run, [*smooth, *rates], tolerances, proof=proof),
+    ]
 
 
 THEOREM = Theorem(
@@ -144,7 +148,7 @@ THEOREM = Theorem(
     ),
     source="Olfati-Saber 2006, proofs of Theorems 1, 3 and 6",
     kind="trajectory",
-    law=law_is("Algorithm 1, 2 or 3", Algorithm1, Algorithm2, Algorithm3),
+    law=law_is("Algorithm 1, 2 or 3", Algorithm1, Algorithm2, Algorithm3, formulas=True),
     check=_check,
     claims=("rate", "balance"),
 )
