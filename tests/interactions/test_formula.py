@@ -229,7 +229,7 @@ def test_ensembles_rebuild_the_law_in_other_processes():
 def test_falsification_varies_a_formula_s_flock():
     result = fl.falsify("energy", formula_flock(0), budget=2, seed=1)
     assert result.claim in ("rate", "balance")
-    assert result.verdict is None
+    assert "refuted" not in {status for each in result.statuses.values() for status in each}
 
 
 def test_derivation():

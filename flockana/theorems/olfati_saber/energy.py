@@ -62,7 +62,7 @@ def cancelling(run: Trajectory, since: int = 0) -> FloatArray:
     of a γ-agent that moves. The others, −c2α pᵀL̂p and −c2γ‖v‖², are sums of squares.
     """
     law, p, size = run.law, run.p[since:], np.zeros(len(run.t) - since)
-    if isinstance(law, Algorithm1) or (isinstance(law, Algorithm2) and not law.gains.per_agent):
+    if law.target is None or (isinstance(law, Algorithm2) and not law.gains.per_agent):
         return size
     q, speed = run.q[since:], np.linalg.norm(p, axis=2)
     for k, t in enumerate(run.t[since:]):

@@ -1,0 +1,1 @@
+"""Theorems of the field's classics, one file each."""
