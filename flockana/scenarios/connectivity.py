@@ -38,8 +38,8 @@ def _pairs(seed: int = 0) -> Scenario:
     return Scenario(
         "links-parted",
         "Two linked pairs that nothing joins: they part",
-        "Ours: two pairs of linked agents within r = 1 of each other, but not linked, that leave each other at 2; k = 1 "
-        "and c = 1. The start is fixed.",
+        "Ours: two pairs of linked agents within r = 1 of each other, but not linked, that leave each other at 2; k = "
+        "c = 1. The start is fixed.",
         LinkKeeping(((0, 1), (2, 3))),
         q,
         p,

@@ -20,7 +20,7 @@ _PROOF = "links-kept"
 
 def _joined(run: Trajectory) -> Hypothesis:
     """The hypothesis that the links join all agents."""
-    ends = np.array(run.law.links, dtype=np.int64).reshape(-1, 2)
+    ends = np.array(run.law.links, dtype=np.int32).reshape(-1, 2)
     parts = len({*components(run.n, ends).tolist()})
     return condition("the links join all agents", parts == 1, float(1 - parts), f"{parts} parts, {len(ends)} links")
 
