@@ -39,11 +39,13 @@ from .falsify import replay as replay
 from .interactions import AlphaInteraction as AlphaInteraction
 from .interactions import BetaInteraction as BetaInteraction
 from .interactions import DeadZoneInteraction as DeadZoneInteraction
+from .interactions import FormulaInteraction as FormulaInteraction
 from .interactions import Gains as Gains
 from .interactions import PairInteraction as PairInteraction
 from .interactions import ZoneNoise as ZoneNoise
 from .interactions import ZoneRadii as ZoneRadii
 from .interactions import ZoneWeights as ZoneWeights
+from .interactions import pair_law as pair_law
 from .interactions.log_potential import LogPotential as LogPotential
 from .interactions.weights import RationalWeight as RationalWeight
 from .interactions.weights import Weight as Weight

@@ -11,36 +11,95 @@
 # ---
 
 # %% [markdown]
-# # Your own law, verified end to end
+# # Your own law: five lines, its verdicts in three
 #
-# **Aims.** Add a law in one file, its theorem in a second and its proof in a third, and get integration, energy
-# balance, verdict and certificate without writing any of them.
+# **Aims.** Write a pair law as a formula; get force, energy, Jacobian, integration and verdicts from it; know what a
+# formula may lack, and what that costs. Then add a law of another kind in one file, its theorem in a second and its
+# proof in a third.
 #
-# The example is the law of Cucker and Smale (*IEEE TAC* 52(5), 2007), which has no potential at all:
+# ## A law in five lines
 #
-# $$u_i = \sum_j a_{ij}(p_j - p_i), \qquad a_{ij} = \frac{s}{n}\,\bigl(1 + \|q_j - q_i\|^2\bigr)^{-\beta}.$$
-#
-# The three files are in `notebooks/own_law/`. In the package they would go to `flockana/laws/`, `flockana/theorems/`
-# and `proofs/`, where they are found by themselves.
+# A double well: two agents repel each other within $d$, attract each other beyond it, and end smoothly at $r$.
 
 # %%
 import sys
 from pathlib import Path
 
 import numpy as np
+import sympy as sp
 
 import flockana as fl
 from flockana import plots
 from flockana.course import grade
 
+# %%
+s, d, r, k = sp.symbols("s d r k")
+well = fl.pair_law(
+    k * (s**2 - d**2) ** 2 * (r**2 - s**2) ** 2,
+    adjacency=(1 - s / r) ** 2,
+    range=3.0,
+    length=2.0,
+    parameters={"k": 0.01},
+)
+law = fl.Algorithm1(well)
+
+# %% [markdown]
+# `s` is the distance, `r` and `d` are range and length; every other name is a parameter. sympy derived the force, the
+# stiffness and the slope of the adjacency, and numba compiled them, as fast as a law written by hand.
+
+# %%
+figure, ax = plots.subplots(size=(6, 3.2))
+length = np.linspace(0.0, 3.4, 300)
+ax.plot(length, well.force(length), label="force")
+ax.plot(length, well.energy_at(length), label="potential")
+ax.axhline(0.0, color="0.8", zorder=0)
+ax.set(xlabel="distance (length)", ylabel="length/time², length²/time²")
+_ = ax.legend()
+
+# %% [markdown]
+# ## Its verdicts in three
+
+# %%
+q0 = np.random.default_rng(0).uniform(0.0, 5.0, (12, 2))
+run = fl.simulate(law, q0, 0.0 * q0, (0.0, 5.0))
+print(fl.verify("energy", run))
+
+# %% [markdown]
+# The identity behind that verdict is derived, for every number of agents: from one generic pair.
+
+# %%
+law.derivation()
+
+# %% [markdown]
+# ## What a formula may lack
+#
+# Every formula is taken, and what is missing is said. A theorem that needs it then claims nothing.
+
+# %%
+for potential in ("1/s + s", "(s - 1)**2*s**2", "Piecewise((s**2, s < 1), (s, True))", "s**2/(r - s)"):
+    print(f"{potential:38}", fl.pair_law(potential, adjacency=0, range=3.0, length=1.0).faults)
+
+# %%
+cut = fl.Algorithm1(fl.pair_law("(s - 1)**2*s**2", adjacency=0, range=3.0, length=1.0))
+print(fl.verify("energy", fl.simulate(cut, q0, 0.0 * q0, (0.0, 1.0))))
+
+# %% [markdown]
+# ## A law without a potential
+#
+# Not every law is a sum over a potential. That of Cucker and Smale (*IEEE TAC* 52(5), 2007) has none:
+#
+# $$u_i = \sum_j a_{ij}(p_j - p_i), \qquad a_{ij} = \frac{s}{n}\,\bigl(1 + \|q_j - q_i\|^2\bigr)^{-\beta}.$$
+#
+# The three files of this example are in `notebooks/own_law/`. In the package they would go to `flockana/laws/`,
+# `flockana/theorems/` and `proofs/`, where they are found by themselves.
+
+# %%
 sys.path.insert(0, str(Path.cwd().parent))  # the proofs live beside the package, not in it
 from own_law.law import CuckerSmale
 
 print(Path("own_law/law.py").read_text())
 
 # %% [markdown]
-# ## The law
-#
 # `flow` returns $u$ and, in closed form, the rate of what `hamiltonian` returns. That is a promise, and every run
 # checks it: the rate is integrated beside the state.
 
@@ -85,7 +144,35 @@ for step in PROOF.steps():
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** Leave out the factor ½ in the rate that `flow` returns. What is the largest energy residual then, relative to
+# **1.** Morse's potential $\psi(s) = e^{-2(s-1)} - 2e^{-(s-1)}$ holds two agents at 1. Give it as a formula with range
+# 4 and no adjacency. How many things does it lack?
+
+# %% tags=["answer"]
+lacking = ...
+
+# %% tags=["solution"]
+morse = fl.pair_law("exp(-2*(s - 1)) - 2*exp(-(s - 1))", adjacency=0, range=4.0, length=1.0)
+lacking = len(morse.faults)
+
+# %% tags=["check"]
+grade(lacking, 2, hint="look at the force at both ends of the range: morse.faults")
+
+# %% [markdown] tags=["exercise"]
+# **2.** How stiff is a link of the double well at its length $d$? That is the slope of the force there, by hand or by
+# `sympy`.
+
+# %% tags=["answer"]
+stiffness = ...
+
+# %% tags=["solution"]
+psi = k * (s**2 - d**2) ** 2 * (r**2 - s**2) ** 2
+stiffness = float(sp.diff(psi, s, 2).subs({s: 2, d: 2, r: 3, k: sp.Rational(1, 100)}))
+
+# %% tags=["check"]
+grade(stiffness, 8.0, rtol=1e-6, hint="only one of the two squares vanishes at d: 8 k d² (r² − d²)²")
+
+# %% [markdown] tags=["exercise"]
+# **3.** Leave out the factor ½ in the rate that `flow` returns. What is the largest energy residual then, relative to
 # $K(0)$? (Derive a class from `CuckerSmale` and override `flow`.) To the nearest integer.
 
 # %% tags=["answer"]
@@ -106,7 +193,7 @@ residual = round(abs(wrong.energy_residual).max() / wrong.energy()[0])
 grade(residual, 1, hint="H(t) − H(0) − ∫ dH/dt tends to K(0) when the rate is doubled")
 
 # %% [markdown] tags=["exercise"]
-# **2.** Ask the theorem about a run of `paper-fragmentation`. What is the status?
+# **4.** Ask the theorem about a run of `paper-fragmentation`. What is the status?
 
 # %% tags=["answer"]
 status = ...
@@ -118,7 +205,7 @@ status = fl.verify(THEOREM, fl.scenario("paper-fragmentation").run()).status
 grade(status, "vacuous", hint="is it a run of this law?")
 
 # %% [markdown] tags=["exercise"]
-# **3.** For $\beta > \tfrac12$ a flock may disperse: $D$ grows without bound and so does the theorem's patience. Take
+# **5.** For $\beta > \tfrac12$ a flock may disperse: $D$ grows without bound and so does the theorem's patience. Take
 # two agents on a line, 1 apart, leaving each other at relative speed $w$, with $s = 1$, $\beta = 1$. The relative
 # velocity obeys $\dot w = -w/(1+x^2)$, hence $w(t) = w(0) - \arctan x(t) + \arctan 1$. Above which $w(0)$ do they
 # never match velocities?

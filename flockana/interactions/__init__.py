@@ -3,6 +3,7 @@
 from flockana.interactions.alpha import AlphaInteraction
 from flockana.interactions.beta import BetaInteraction
 from flockana.interactions.dead_zone import DeadZoneInteraction
+from flockana.interactions.formula import FormulaInteraction, pair_law
 from flockana.interactions.gains import Gains
 from flockana.interactions.pair import PairInteraction
 from flockana.interactions.zone_noise import ZoneNoise
@@ -12,9 +13,11 @@ __all__ = [
     "AlphaInteraction",
     "BetaInteraction",
     "DeadZoneInteraction",
+    "FormulaInteraction",
     "Gains",
     "PairInteraction",
     "ZoneNoise",
     "ZoneRadii",
     "ZoneWeights",
+    "pair_law",
 ]

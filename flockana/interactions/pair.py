@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cached_property
 from math import inf
 from typing import TYPE_CHECKING, Any
@@ -18,6 +18,8 @@ from flockana.kernels.scalars import sigma_norm
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
+
+Pairs = Iterable[tuple[Any, Any]]
 
 
 def evaluate(compiled: Callable[..., Any], x: Any, *parameters: Any) -> Any:
@@ -70,6 +72,16 @@ class PairInteraction(ABC):
     def surfaces(self) -> tuple[float, ...]:
         """Distances at which the pair force begins, ends or jumps; the range alone, unless the law says otherwise."""
         return (self.range,)
+
+    @property
+    def faults(self) -> tuple[str, ...]:
+        """What it lacks that theorems ask for, each in words: where it is not C¹, or does not end smoothly."""
+        return ()
+
+    @property
+    def coincidence(self) -> bool:
+        """Whether two agents may stand at one place; not where their force has no limit there."""
+        return True
 
     @property
     @abstractmethod
@@ -143,38 +155,43 @@ class PairInteraction(ABC):
             near += self.kernels.potential(q, i, j, self.par, self.panels)
             pairs += i.size
         n = q.shape[0]
-        return float(near + (n * (n - 1) // 2 - pairs) * self.far_potential)
+        beyond = n * (n - 1) // 2 - pairs
+        return float(near + beyond * self.far_potential if beyond else near)  # it may be infinite there
 
-    def hessian(self, q: FloatArray) -> csr_array:
+    def hessian(self, q: FloatArray, pairs: Pairs | None = None) -> csr_array:
         """∇²V(q), sparse and symmetric, in the order of ``q.ravel()``.
 
         Parameters
         ----------
         q : ndarray, shape (n, m)
             Positions.
+        pairs : iterable of (ndarray, ndarray), optional
+            Blocks of pairs that interact, by default those within range.
 
         Returns
         -------
         scipy.sparse.csr_array, shape (n m, n m)
         """
-        return self._assemble(q, self._stiffness_blocks)
+        return self._assemble(q, self._stiffness_blocks, pairs)
 
-    def laplacian(self, q: FloatArray) -> csr_array:
+    def laplacian(self, q: FloatArray, pairs: Pairs | None = None) -> csr_array:
         """L̂(q) = L ⊗ I_m with the weights a_ij, sparse, in the order of ``q.ravel()``.
 
         Parameters
         ----------
         q : ndarray, shape (n, m)
             Positions.
+        pairs : iterable of (ndarray, ndarray), optional
+            As in `hessian`.
 
         Returns
         -------
         scipy.sparse.csr_array, shape (n m, n m)
         """
-        return self._assemble(q, lambda i, j, delta, terms: terms[1][:, None, None] * np.eye(delta.shape[1]))
+        return self._assemble(q, lambda i, j, delta, terms: terms[1][:, None, None] * np.eye(delta.shape[1]), pairs)
 
     def jacobian(
-        self, q: FloatArray, p: FloatArray, *, stiffness: float, damping: float
+        self, q: FloatArray, p: FloatArray, *, stiffness: float, damping: float, pairs: Pairs | None = None
     ) -> tuple[csr_array, csr_array]:
         """Derivatives of the accelerations of `forces` in q and in p, sparse, in the order of ``q.ravel()``.
 
@@ -184,6 +201,8 @@ class PairInteraction(ABC):
             Positions and velocities.
         stiffness, damping : float
             Gains c1 and c2, as in `forces`.
+        pairs : iterable of (ndarray, ndarray), optional
+            As in `hessian`.
 
         Returns
         -------
@@ -211,10 +230,10 @@ class PairInteraction(ABC):
             blocks: FloatArray = 2.0 * slope[:, None, None] * slip[:, :, None] * delta[:, None, :]
             return blocks
 
-        by_position = -stiffness * self.hessian(q)
+        by_position = -stiffness * self.hessian(q, pairs)
         if damping:
-            by_position = by_position - damping * self._assemble(q, consensus)
-        return by_position, -damping * self.laplacian(q)
+            by_position = by_position - damping * self._assemble(q, consensus, pairs)
+        return by_position, -damping * self.laplacian(q, pairs)
 
     @staticmethod
     def _stiffness_blocks(_i: Any, _j: Any, delta: FloatArray, terms: FloatArray) -> FloatArray:
@@ -223,14 +242,14 @@ class PairInteraction(ABC):
         blocks: FloatArray = w * np.eye(delta.shape[1]) + 2.0 * slope * delta[:, :, None] * delta[:, None, :]
         return blocks
 
-    def _assemble(self, q: FloatArray, block_of: Any) -> csr_array:
+    def _assemble(self, q: FloatArray, block_of: Any, pairs: Pairs | None = None) -> csr_array:
         """Sum ±B over pairs: B on the two diagonal blocks, −B on the two others."""
         from scipy.sparse import coo_array
 
         n, m = q.shape
         axes = np.arange(m)
         rows, columns, values = [], [], []
-        for i, j in pair_blocks(q, self.range):
+        for i, j in pair_blocks(q, self.range) if pairs is None else pairs:
             block = block_of(i, j, q[j] - q[i], self.kernels.terms(q, i, j, self.par))
             for a, b, sign in ((i, i, 1.0), (j, j, 1.0), (i, j, -1.0), (j, i, -1.0)):
                 shape = (i.size, m, m)

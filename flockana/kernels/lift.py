@@ -49,6 +49,8 @@ class PairKernels:
 def source_digest(*functions: Callable[..., Any]) -> int:
     """A number that changes when a file that defines one of `functions` (or what it imports from flockana) changes.
 
+    A function that no file has (`flockana.kernels.generated`) is known by its name, which tells its text.
+
     Parameters
     ----------
     *functions : callable
@@ -56,7 +58,8 @@ def source_digest(*functions: Callable[..., Any]) -> int:
     """
     names = {f.__module__ for f in functions} | {"flockana.kernels.scalars"}
     files = sorted({getattr(sys.modules.get(name), "__file__", None) or "" for name in names} - {""})
-    digest = hashlib.sha256()
+    made = sorted(f.__name__ for f in functions if not hasattr(sys.modules.get(f.__module__), f.__name__))
+    digest = hashlib.sha256("".join(made).encode())
     for file in files:
         digest.update(Path(file).read_bytes())
     return int.from_bytes(digest.digest()[:4], "big")
@@ -67,6 +70,8 @@ def lift(
     slope: Callable[..., Any],
     potential: Callable[..., Any],
     adjacency_slope: Callable[..., float] | None = None,
+    *,
+    error_model: str = "python",
 ) -> PairKernels:
     """Compile the pair sums of a law given by scalar functions of the squared distance s².
 
@@ -80,6 +85,8 @@ def lift(
         ``potential(s2, par, panels)`` = ψ, whose gradient in q_i is −w (q_j − q_i).
     adjacency_slope : callable, optional
         ``adjacency_slope(s2, par)`` = da/d(s²): only the Jacobian at unequal velocities needs it.
+    error_model : {"python", "numpy"}
+        numba's: whether a division by zero raises, outside the sums of forces, or gives an infinity or NaN.
 
     Returns
     -------
@@ -87,7 +94,7 @@ def lift(
     """
     digest = source_digest(pair, slope, potential)
 
-    @njit(cache=True)
+    @njit(cache=True, error_model=error_model)
     def energy(q, i, j, par, panels):
         total = 0.0 * digest
         for k in range(i.size):
@@ -97,7 +104,7 @@ def lift(
             total += potential(s2, par, panels)
         return total
 
-    @njit(cache=True)
+    @njit(cache=True, error_model=error_model)
     def terms(q, i, j, par):
         out = np.empty((3, i.size)) + 0.0 * digest
         for k in range(i.size):
@@ -110,20 +117,23 @@ def lift(
 
     sweeps = tuple(lift_sweep(pair, m, digest) for m in (1, 2, 3))
     listed = lift_listed(pair, potential, digest)
-    return PairKernels(sweeps, listed, energy, terms, None if adjacency_slope is None else lift_scalar(adjacency_slope))
+    slopes = None if adjacency_slope is None else lift_scalar(adjacency_slope, error_model=error_model)
+    return PairKernels(sweeps, listed, energy, terms, slopes)
 
 
-def lift_scalar(function: Callable[..., float]) -> Callable[..., Any]:
+def lift_scalar(function: Callable[..., float], *, error_model: str = "python") -> Callable[..., Any]:
     """Compile ``function(z, *parameters)`` to run over a one-dimensional array z.
 
     Parameters
     ----------
     function : callable
         A `register_jitable` scalar function.
+    error_model : {"python", "numpy"}
+        As in `lift`.
     """
     digest = source_digest(function)
 
-    @njit(cache=True)
+    @njit(cache=True, error_model=error_model)
     def over_array(z, *parameters):
         out = np.empty(z.size) + 0.0 * digest
         for k in range(z.size):

@@ -16,7 +16,7 @@ from flockana.kernels.compiling import njit, register_jitable
 from flockana.kernels.sweep import BLOCK, lift_block
 
 CompiledFunction = Callable[..., float]
-PARAMETERS = 16  # of a pair law, at most
+PARAMETERS = 32  # of a pair law, at most
 MOST_TERMS = 5  # of a law: a compiled integrator takes their functions one by one (`flockana.kernels.advance`)
 
 
@@ -90,7 +90,9 @@ def listed_numbers(c1: float, c2: float, r: float, far: float, par: Any) -> Any:
 def _as_tuple(par):
     """The parameters in registers, which no array can alias: what the compiler knows of lets it vectorise the law."""
     first = par[0], par[1], par[2], par[3], par[4], par[5], par[6], par[7]
-    return (*first, par[8], par[9], par[10], par[11], par[12], par[13], par[14], par[15])
+    second = par[8], par[9], par[10], par[11], par[12], par[13], par[14], par[15]
+    third = par[16], par[17], par[18], par[19], par[20], par[21], par[22], par[23]
+    return (*first, *second, *third, par[24], par[25], par[26], par[27], par[28], par[29], par[30], par[31])
 
 
 def lift_listed(
@@ -139,7 +141,8 @@ def lift_listed(
                     total += potential(square, par, panels)
                     near += 1
             n = x.shape[0]
-            return numbers[0] * (total + (n * (n - 1) // 2 - near) * numbers[3])
+            beyond = n * (n - 1) // 2 - near
+            return numbers[0] * (total + beyond * numbers[3] if beyond > 0 else total)  # it may be infinite there
 
         return term_functions(act, energy, allocates=False)
 

@@ -17,6 +17,8 @@ from flockana.measures.frame import moving_frame
 if TYPE_CHECKING:
     from scipy.sparse import sparray
 
+    from flockana.symbolic.energy import EnergyIdentity
+
 
 class SumOfTerms(Law):
     """u = Σ u^T over `terms`, with the energy H = Σ U^T + ½ Σ‖p_i‖² (½ Σ‖v_i‖² in the moving frame if a term asks).
@@ -94,6 +96,23 @@ class SumOfTerms(Law):
     def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[sparray, sparray]:  # noqa: D102
         by_position, by_velocity = zip(*(term.derivatives(t, q, p) for term in self.terms), strict=True)
         return _assembled(by_position), _assembled(by_velocity)
+
+    def derivation(self, m: int = 2) -> EnergyIdentity:
+        """Potential, force, energy and dH/dt with its closed form, for every number of agents; prints as LaTeX.
+
+        Parameters
+        ----------
+        m : int
+            Dimension, 1, 2 or 3.
+
+        Raises
+        ------
+        ArgumentError
+            If the law is no sum of a pair law with a formula and a linear pull common to all agents.
+        """
+        from flockana.laws.derivation import law_derivation
+
+        return law_derivation(self, m)
 
     def stiffness(self, q: Any, t: float = 0.0) -> Any:
         """Hessian of the potential energy, in the order of ``q.ravel()``, sparse.

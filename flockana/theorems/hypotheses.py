@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 
 from flockana.dynamics.trajectory import Trajectory
-from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
+from flockana.interactions import AlphaInteraction, BetaInteraction, FormulaInteraction, Gains
 from flockana.laws.composition import Composition
 from flockana.theorems.theorem import Claim, Hypothesis
 
@@ -34,7 +34,7 @@ def condition(name: str, holds: bool, margin: float | None = None, detail: str =
     return Hypothesis(name, "met" if holds else "unmet", margin, detail)
 
 
-def law_is(name: str, *laws: type) -> Callable[[Trajectory], Hypothesis]:
+def law_is(name: str, *laws: type, formulas: bool = False) -> Callable[[Trajectory], Hypothesis]:
     """The hypothesis that a run is of one of these laws, to be declared as a theorem's `law`.
 
     Parameters
@@ -43,6 +43,8 @@ def law_is(name: str, *laws: type) -> Callable[[Trajectory], Hypothesis]:
         The laws, as the hypothesis names them.
     *laws : type
         Classes of laws; what descends from one of them may push otherwise and is another law.
+    formulas : bool
+        Whether the pair law may be a user's, by its formula (`flockana.pair_law`).
 
     Examples
     --------
@@ -52,13 +54,13 @@ def law_is(name: str, *laws: type) -> Callable[[Trajectory], Hypothesis]:
     """
 
     def applied_to(run: Trajectory) -> Hypothesis:
-        return applied(run, name, *laws)
+        return applied(run, name, *laws, formulas=formulas)
 
     return applied_to
 
 
 def law_is_or_composed(name: str, *laws: type) -> Callable[[Trajectory], Hypothesis]:
-    """As `law_is`, or any composition of the terms that these laws are made of (`flockana.compose`).
+    """As `law_is`, or any composition of the terms that these laws are made of (`flockana.compose`), or a formula's pair.
 
     Parameters
     ----------
@@ -76,7 +78,7 @@ def law_is_or_composed(name: str, *laws: type) -> Callable[[Trajectory], Hypothe
 
     def applied_to(run: Trajectory) -> Hypothesis:
         if type(run.law) is not Composition:
-            return applied(run, name, *laws)
+            return applied(run, name, *laws, formulas=True)
         terms = ", ".join(type(term).__name__ for term in run.law.terms)
         return condition("a composition of terms is applied", True, detail=terms)
 
@@ -107,7 +109,7 @@ def law_with_common_gains(name: str, *laws: type) -> Callable[[Trajectory], Hypo
     return applied_to
 
 
-def applied(run: Trajectory, name: str, *laws: type) -> Hypothesis:
+def applied(run: Trajectory, name: str, *laws: type, formulas: bool = False) -> Hypothesis:
     """The hypothesis that a run is of one of these laws, and not of a class derived from one, which may push otherwise.
 
     Parameters
@@ -118,15 +120,31 @@ def applied(run: Trajectory, name: str, *laws: type) -> Hypothesis:
         The laws, as the hypothesis names them.
     *laws : type
         Classes of laws.
+    formulas : bool
+        Whether the pair law may be a formula's.
     """
-    law = run.law
+    law, welcome = run.law, (FormulaInteraction,) if formulas else ()
     other = [
         f"{member} is {type(getattr(law, member)).__name__}"
         for member, known in _MEMBERS.items()
-        if hasattr(law, member) and type(getattr(law, member)) is not known
+        if hasattr(law, member) and type(getattr(law, member)) not in (known, *welcome)
     ]
     detail = ", ".join([type(law).__name__, *(other if type(law) in laws else [])])
     return condition(f"{name} is applied", type(law) in laws and not other, detail=detail)
+
+
+def smooth_pair(run: Trajectory) -> Hypothesis:
+    """The hypothesis that the pair law is C¹ wherever pairs stay apart, and ends smoothly at its range.
+
+    A force without a limit where two agents meet is no fault here: runs that come to that point end.
+
+    Parameters
+    ----------
+    run : Trajectory
+        A run of a law with a pair interaction.
+    """
+    faults = [] if run.law.pair is None else [x for x in run.law.pair.faults if not x.startswith("coincidence")]
+    return condition("the pair law is C¹ and vanishes at its range", not faults, detail="; ".join(faults))
 
 
 def positive(run: Trajectory, **gains: str) -> Hypothesis:

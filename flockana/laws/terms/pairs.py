@@ -8,12 +8,32 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError
 from flockana.interactions.pair import PairInteraction
 from flockana.kernels.listed import PARAMETERS, listed_numbers
 from flockana.laws.terms.term import Term, TermKernel
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
+
+
+def ensure_apart(q: FloatArray) -> None:
+    """Raise if two agents stand at one place, for a force that has no limit there.
+
+    Examples
+    --------
+    >>> ensure_apart(np.array([[0.0], [0.0]]))
+    Traceback (most recent call last):
+    flockana.base.errors.ArgumentError: agents 0 and 1 coincide: the pair force has no limit there; ...
+    """
+    order = np.lexsort(q.T)
+    same = np.flatnonzero((q[order][1:] == q[order][:-1]).all(axis=1))
+    if same.size:
+        i, j = sorted(int(k) for k in order[same[0] : same[0] + 2])
+        raise ArgumentError(
+            f"agents {i} and {j} coincide: the pair force has no limit there; expected distinct positions"
+        )
+
 
 _SUMS = ("forces", "potential_energy")  # as every pair law has them, from its scalar functions
 
@@ -42,6 +62,17 @@ class PairTerm(Term):
     pair: PairInteraction
     stiffness: float
     damping: float
+
+    def check_start(self, q: FloatArray) -> None:
+        """Raise if two agents coincide whose force has no limit there.
+
+        Parameters
+        ----------
+        q : ndarray, shape (n, m)
+            Initial positions.
+        """
+        if not self.pair.coincidence:
+            ensure_apart(q)
 
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
         _, dissipation = self.pair.forces(q, p, stiffness=self.stiffness, damping=self.damping, out=u)

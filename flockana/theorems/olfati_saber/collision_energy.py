@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory
+from flockana.interactions import AlphaInteraction
 from flockana.laws.composition import Composition
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.hypotheses import alpha_gain, condition, law_is_or_composed, positive
@@ -19,7 +20,7 @@ _MULTIPLES = {"below": 1, "twice": 2}  # of c*, by claim
 
 def _needs(run: Trajectory) -> list[Hypothesis]:
     """A pair potential, and an energy that never rises: under Algorithms 1 and 2 with common gains it does not."""
-    if type(run.law) is not Composition:
+    if type(run.law) is not Composition and isinstance(run.law.alpha, AlphaInteraction):
         return alpha_gain(run)
     has_pair = condition("agents have a pair potential", run.law.alpha is not None)
     if run.law.alpha is None:

@@ -13,7 +13,7 @@ from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.composition import Composition
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.claims import judged
-from flockana.theorems.hypotheses import condition, law_is_or_composed
+from flockana.theorems.hypotheses import condition, law_is_or_composed, smooth_pair
 from flockana.theorems.olfati_saber.gamma_agent import declared_rate_is_true, target_rests
 from flockana.theorems.rounding import EPS, energy_error
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, HypothesisStatus, Theorem, Tolerances
@@ -131,9 +131,14 @@ def stays_outside(run: Trajectory) -> Hypothesis:
     return Hypothesis(name, status, least.lower if status == "assumed" else least.reached, text)
 
 
+def smooth_where_needed(run: Trajectory) -> list[Hypothesis]:
+    """The hypothesis that the pair law is C¹, of one that says that it is not."""
+    return [smooth_pair(run)] if run.law.pair is not None and run.law.pair.faults else []
+
+
 def nothing_adds_energy(run: Trajectory) -> list[Hypothesis]:
     """What it takes that no term of the law adds energy, in the frame that the energy is in."""
-    law, needs = run.law, []
+    law, needs = run.law, smooth_where_needed(run)
     if law.target is not None and not law.moving:
         needs.append(target_rests(run, told=False))  # outside of the moving frame a moving γ-agent does work
     if type(law) is Algorithm3 or law.obstacles:
@@ -149,9 +154,11 @@ def declared(run: Trajectory) -> list[Hypothesis]:
 
 
 def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
-    rest, rates = nothing_adds_energy(run), declared(run)
-    proof = proved(run)
-    return [*rest, *rates], [never_rises(run, rest, proof=proof), balance(run, rates, tolerances, proof=proof)]
+    rest, rates, proof = nothing_adds_energy(run), declared(run), proved(run)
+    return [*rest, *rates], [
+        never_rises(run, rest, proof=proof),
+        balance(run, [*smooth_where_needed(run), *rates], tolerances, proof=proof),
+    ]
 
 
 THEOREM = Theorem(

@@ -1,0 +1,135 @@
+"""A formula's law where two agents meet: as it stands, by a series where the formula cancels, or not at all."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf, isfinite
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError
+from flockana.kernels.tables import NODES
+
+if TYPE_CHECKING:
+    from flockana.symbolic.pair_formula import Cut
+
+TERMS = 12  # of the series
+_AGREED = 1e-8  # relative: two values of a limit
+_LOST = 1e-13  # relative: a formula that loses more is no formula near 0
+_EXACT = 3e-16  # relative error of a series, at most
+_SOLVED = 40  # digits
+_QUARTERS = range(1, 40)
+_CLOSE, _CLOSER = 1e-40, 1e-44  # of y at the range: where limits at 0 are read
+
+
+@dataclass(frozen=True)
+class Near:
+    """How the weight is computed near 0: ``plain``, by a ``series`` in y below a bound, or ``excluded`` at 0.
+
+    Parameters
+    ----------
+    kind : {"plain", "series", "excluded"}
+        Which of them.
+    bound : float
+        Of y = s² or z, below which the series holds; 0 without one.
+    coefficients : ndarray, shape (12,)
+        Of the powers of y/bound; none without a series.
+    panels : ndarray
+        One panel of the potential on [0, bound], or none.
+    """
+
+    kind: Literal["plain", "series", "excluded"]
+    bound: float
+    coefficients: FloatArray
+    panels: FloatArray
+
+
+def near_zero(cut: Cut, end: float) -> Near:
+    """Look at the first piece near 0, to many digits.
+
+    Parameters
+    ----------
+    cut : Cut
+        The formula.
+    end : float
+        y at the range.
+    """
+    piece, none = cut.pieces[0], np.zeros(0)
+    weight, slope = cut.function(piece.weight), cut.function(piece.slope)
+    closed = np.zeros((0, 0))
+    first, second = float(weight(end * _CLOSE)), float(weight(end * _CLOSER))
+    scale = max(abs(float(weight(end * share))) for share in (0.05, 0.25, 0.5) if isfinite(float(weight(end * share))))
+    scale = max(scale, abs(first)) if isfinite(first) else scale
+    if not (isfinite(first) and isfinite(second)) or abs(first - second) > _AGREED * max(scale, abs(first)):
+        return Near("excluded", 0.0, none, closed)
+    if not _cancels(cut, piece, end, scale):
+        return Near("plain", 0.0, none, closed)
+    bends = end * abs(float(slope(end * _CLOSER)) - float(slope(end * _CLOSE)))
+    if not bends <= _AGREED * scale:
+        return Near("plain", 0.0, none, closed)  # w has a limit and its slope has none: the formula, from a tiny s on
+    for k in _QUARTERS:
+        bound = min(end, cut.marks[1] if cut.marks[1] < cut.end else end) * 0.25**k
+        coefficients, error = _series(weight, bound)
+        if error <= _EXACT * scale:
+            return Near("series", bound, coefficients, _energy_panel(cut, bound))
+    raise ArgumentError("the formula has no series at s = 0 that converges: expected one that is smooth there")
+
+
+def _cancels(cut: Cut, piece: Any, end: float, scale: float) -> bool:
+    """Whether the formula, in floating point, loses digits near 0 or has no value there."""
+    import sympy as sp
+
+    from flockana.symbolic import pair_formula as pf
+
+    y = pf.Z if cut.formula.distance == pf.Z else pf.SQUARE
+    symbols = list(cut.numbers)
+    parts = [(piece.weight, scale), (piece.slope, scale / end)]
+    if piece.potential is not None:
+        parts.append((piece.potential, scale * end))
+    for part, size in parts:
+        plain = sp.lambdify(
+            [y, *symbols], part.subs(pf.ROOT, sp.sqrt(1 + pf.EPS * (2 * pf.Z + pf.EPS * pf.Z**2))), "math"
+        )
+        exact = cut.function(part)
+        for share in (0.0, *(0.25**j for j in range(2, 60))):
+            true = float(exact(max(end * share, end * _CLOSER)))
+            try:
+                found = float(plain(end * share, *cut.numbers.values()))
+            except (ZeroDivisionError, ValueError, OverflowError, TypeError):
+                return True
+            if not abs(found - true) <= _LOST * max(abs(true), size):
+                return True
+    return False
+
+
+def _series(function: Any, bound: float) -> tuple[FloatArray, float]:
+    """Coefficients of powers of y/bound on [0, bound], and the largest error that is found."""
+    import mpmath  # type: ignore[import-untyped]
+    from numpy.polynomial import chebyshev
+
+    with mpmath.workdps(_SOLVED):
+        nodes = [mpmath.mpf(x) for x in 0.5 * (1.0 + chebyshev.chebpts1(TERMS))]
+        powers_of = mpmath.matrix([[x**k for k in range(TERMS)] for x in nodes])
+        found = mpmath.lu_solve(powers_of, mpmath.matrix([function(bound * x) for x in nodes]))
+        powers = np.array([float(x) for x in found])
+    looks = np.linspace(0.0, 1.0, 23)[1:]
+    exact = np.array([float(function(bound * x)) for x in looks])
+    error = float(np.abs(np.polynomial.polynomial.polyval(looks, powers) - exact).max())
+    return powers, error if isfinite(error) else inf
+
+
+def _energy_panel(cut: Cut, bound: float) -> FloatArray:
+    """The potential on [0, bound] as one panel; none where the force was given."""
+    from numpy.polynomial import chebyshev
+
+    potential = cut.pieces[0].potential
+    if potential is None:
+        return np.zeros((0, 0))
+    nodes, exact = chebyshev.chebpts1(NODES), cut.function(potential)
+    values = np.array([float(exact(0.5 * bound * (1.0 + x))) for x in nodes])
+    panel = np.zeros((1, 3 + NODES))
+    powers = chebyshev.cheb2poly(chebyshev.chebfit(nodes, values, 11))
+    panel[0, :2], panel[0, 2 : 2 + powers.size] = (0.0, bound), powers
+    return panel

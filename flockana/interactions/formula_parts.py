@@ -1,0 +1,301 @@
+"""What a formula's law is made of: texts of its scalar functions, their parameters, and what it lacks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import pairwise
+from math import inf, isfinite, nan
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError
+from flockana.interactions.formula_near import TERMS, Near, near_zero
+from flockana.kernels.tables import NODES, integral_panels
+
+if TYPE_CHECKING:
+    from flockana.symbolic.pair_formula import Cut
+
+_KEPT = 64  # formulas
+_GRID = 257  # distances at which the force is looked at
+_SMALL = 1e-9  # of the strength: a jump below it is rounding of the parameters
+_HALVINGS = 12  # of a panel
+_TAIL = 4e-15  # last coefficients of a panel, relative to the strength, or to the largest where that is larger
+_ROUGH = 1e-9  # the same, where halving no longer helps
+_HEAD = 4  # r², ψ(r), ε, bound of the series; its coefficients follow if there is one
+Texts = tuple[str, str, str, str]
+
+
+@dataclass(frozen=True, eq=False)
+class FormulaParts:
+    """A formula with its numbers, ready to be compiled: see `FormulaInteraction`."""
+
+    cut: Cut
+    texts: Texts
+    par: FloatArray
+    panels: FloatArray
+    faults: tuple[str, ...]
+    surfaces: tuple[float, ...]
+    strength: float
+    coincidence: bool
+    holds: bool
+    looks: FloatArray
+    most_energy: float
+
+    def same_as(self, other: FormulaParts, length: float, force: float, tolerance: float) -> bool:
+        """Whether another formula's law is this one in other units: on the grid, its forces and weights scale."""
+        mine, theirs = self.looks * np.array([[force], [1.0]]), other.looks
+        least = np.nanmax(np.abs(mine), axis=1, keepdims=True) * tolerance
+        gap = np.abs(mine - theirs)
+        return bool(np.all((gap <= least + tolerance * np.abs(mine)) | (np.isnan(mine) & np.isnan(theirs))))
+
+
+@lru_cache(maxsize=_KEPT)
+def formula_parts(
+    main: str, forces: bool, adjacency: str, r: float, d: float, parameters: tuple[tuple[str, float], ...]
+) -> FormulaParts:
+    """Everything that follows from a formula and its numbers."""
+    import sympy as sp
+
+    from flockana.symbolic import pair_formula as pf
+
+    names = [name for name, _ in parameters]
+    formula = pf.read_pair("" if forces else main, main if forces else "", adjacency, names)
+    eps = dict(parameters).get("eps", nan) if formula.distance == pf.Z else 0.0
+    if formula.distance == pf.Z and not eps > 0.0:
+        raise ArgumentError(f"parameters['eps'] = {eps:g}: expected a number > 0, the ε of the σ-norm")
+    own = {"r": r, "d": d, "r_z": _norm(r, eps), "d_z": _norm(d, eps)}
+    numbers = {sp.Symbol(name, positive=True): value for name, value in own.items()}
+    numbers |= {pf.EPS if name == "eps" else sp.Symbol(name, real=True): value for name, value in parameters}
+    numbers.setdefault(pf.EPS, eps)
+    cut = pf.Cut(formula, numbers, own["r_z"] if eps else r)
+    view = _View(cut, eps, r)
+    near = near_zero(cut, view.y(r))
+    view.look(d, unbounded=near.kind == "excluded")
+    faults, jumps = view.faults(near)
+    panels = _panels(cut, view, d) if forces else near.panels
+    texts, constants = _texts(cut, near, forces=forces)
+    far = _far(cut, view, panels, forces=forces)
+    head = np.array([r * r, far, eps, near.bound, *near.coefficients])
+    marks = np.array([view.of_mark(mark) for mark in cut.marks[1:-1]])
+    par = np.concatenate([head, marks, [float(cut.value(each)) for each in constants]])
+    if not np.isfinite(np.delete(par, 1)).all() or np.isnan(far):
+        raise ArgumentError(f"{main!r} has a part that is not finite with these parameters: expected finite numbers")
+    for array in (par, panels, view.looks):
+        array.setflags(write=False)
+    surfaces = tuple(sorted({*jumps, r}))
+    return FormulaParts(
+        cut,
+        texts,
+        par,
+        panels,
+        faults,
+        surfaces,
+        view.strength,
+        near.kind != "excluded",
+        view.holds(d),
+        view.looks,
+        view.most_energy or view.strength * r,
+    )
+
+
+def _norm(x: float, eps: float) -> float:
+    """The σ-norm of a length; the length itself without ε."""
+    return x * x / (np.sqrt(1.0 + eps * x * x) + 1.0) if eps > 0.0 else x
+
+
+class _View:
+    """The force of a cut formula as a function of the Euclidean distance, to many digits."""
+
+    def __init__(self, cut: Cut, eps: float, r: float) -> None:
+        self.cut, self.eps, self.r = cut, eps, r
+        self._forces = [cut.function(piece.weight) for piece in cut.pieces]
+        self._weights = [cut.function(piece.adjacency) for piece in cut.pieces]
+        energies = [piece.potential for piece in cut.pieces]
+        self._energies = [None if each is None else cut.function(each) for each in energies]
+        self.most_energy = 0.0
+        self.strength, self.looks = 0.0, np.zeros((2, 0))
+
+    def y(self, s: float) -> float:
+        """s² or z at a distance."""
+        return float(_norm(s, self.eps)) if self.eps else s * s
+
+    def of_mark(self, mark: float) -> float:
+        """s² or z where pieces meet, given in s or z."""
+        return mark if self.eps else mark * mark
+
+    def distance(self, mark: float) -> float:
+        """Euclidean distance of a mark."""
+        return float(np.sqrt(mark * (2.0 + self.eps * mark))) if self.eps else mark
+
+    def piece(self, s: float) -> int:
+        """Which piece a distance is in."""
+        marks = self.cut.marks[1:-1]
+        return int(np.searchsorted([self.distance(mark) for mark in marks], s, side="right"))
+
+    def force(self, s: float, piece: int | None = None) -> float:
+        """Of a piece at a distance, NaN where there is none."""
+        return float(self._forces[self.piece(s) if piece is None else piece](self.y(s)) * s)
+
+    def weight(self, s: float, piece: int | None = None) -> float:
+        """The adjacency there."""
+        return float(self._weights[self.piece(s) if piece is None else piece](self.y(s)))
+
+    def energy(self, s: float) -> float:
+        """The potential there, 0 where the force was given."""
+        energy = self._energies[self.piece(s)]
+        return 0.0 if energy is None else float(energy(self.y(s)))
+
+    def look(self, d: float, *, unbounded: bool) -> None:
+        """Look at the force along the range, and refuse one that is not finite there."""
+        grid = np.linspace(0.0, self.r, _GRID)[1:-1]
+        self.looks = np.array([[self.force(s) for s in grid], [self.weight(s) for s in grid]])
+        energies = [self.energy(s) for s in grid]
+        if not np.isfinite([*self.looks, energies]).all():
+            at = grid[int(np.argmax(~np.isfinite([*self.looks, energies]).all(axis=0)))]
+            raise ArgumentError(f"the formula has no finite real value at s = {at:g}: expected one below the range")
+        poles = not isfinite(self.force(self.r, len(self.cut.pieces) - 1))
+        usual = (grid >= (0.5 * d if unbounded else 0.0)) & (grid <= (0.9 * self.r if poles else self.r))
+        self.most_energy = float(np.abs(np.array(energies)[usual]).max(initial=0.0))
+        self.strength = float(np.abs(self.looks[0][usual]).max()) or float(np.abs(self.looks[0]).max()) or 1.0
+
+    def holds(self, d: float) -> bool:
+        """Whether the force repels just below a distance and attracts just above."""
+        return d < self.r and self.force(d * (1.0 - 1e-3)) < 0.0 < self.force(min(d * (1.0 + 1e-3), 0.5 * (d + self.r)))
+
+    def faults(self, near: Near) -> tuple[tuple[str, ...], list[float]]:
+        """What theorems ask for and the formula lacks, and where its force jumps."""
+        found = ["coincidence is excluded: the force has no limit where two agents meet"] * (near.kind == "excluded")
+        jumps, last = [], len(self.cut.pieces) - 1
+        tallest = float(np.abs(self.looks[1]).max()) or 1.0
+        for k, mark in enumerate(self.cut.marks[1:-1]):
+            s = self.distance(mark)
+            if self._differ(s, k, self.force, self.strength):
+                found.append(f"the force jumps at s = {s:g}")
+                jumps.append(s)
+            if self._differ(s, k, self.weight, tallest):
+                found.append(f"the adjacency jumps at s = {s:g}")
+            if not self.cut.formula.forces and self._energies_differ(k, mark):
+                found.append(f"the potential jumps at s = {s:g}")
+        ends = self.force(self.r, last)
+        if not isfinite(ends):
+            found.append(f"the force has a pole at the range, s = {self.r:g}")
+        elif abs(ends) > _SMALL * self.strength:
+            found.append(f"the force does not vanish at the range, s = {self.r:g}")
+        if not abs(self.weight(self.r, last)) <= _SMALL * tallest:
+            found.append(f"the adjacency does not vanish at the range, s = {self.r:g}")
+        return tuple(found), jumps
+
+    @staticmethod
+    def _differ(s: float, k: int, of: Any, scale: float) -> bool:
+        return not abs(of(s, k) - of(s, k + 1)) <= _SMALL * scale
+
+    def _energies_differ(self, k: int, mark: float) -> bool:
+        left, right = (float(energy(self.of_mark(mark))) for energy in self._energies[k : k + 2] if energy is not None)
+        return not abs(left - right) <= _SMALL * self.strength * self.r
+
+
+def _panels(cut: Cut, view: _View, d: float) -> FloatArray:
+    """Panels of ψ, whose derivative in the distance of the formula is given, and which vanishes at the length."""
+    inner = view.y(d) if view.eps else d
+    rows, edges = [cut.function(piece.force) for piece in cut.pieces], sorted({*cut.marks, inner})
+
+    def values(z: FloatArray) -> FloatArray:
+        which = np.searchsorted(cut.marks[1:-1], z, side="right")
+        return np.array([float(rows[k](x if view.eps else x * x)) for k, x in zip(which, z, strict=True)])
+
+    whole: list[float] = [0.0]
+    for left, right in pairwise(edges):
+        whole += _resolved(values, left, right, view.strength, 0)
+    panels = integral_panels(values, np.array(whole), anchor=inner)
+    return panels
+
+
+def _resolved(values: Any, left: float, right: float, scale: float, depth: int) -> list[float]:
+    """Right ends of panels on which a function is a polynomial to rounding."""
+    from numpy.polynomial import chebyshev
+
+    half = 0.5 * (right - left)
+    found = values(0.5 * (left + right) + half * chebyshev.chebpts1(NODES))
+    nodes, refused = chebyshev.chebpts1(NODES), not np.isfinite(found).all()
+    series = np.abs(chebyshev.chebfit(nodes, np.nan_to_num(found), NODES - 1))
+    tail = series[-2:].max() / max(series.max(), scale)
+    if refused or (depth >= _HALVINGS and tail > _ROUGH):
+        raise ArgumentError("the force cannot be integrated within the range: expected the potential, by its formula")
+    if depth >= _HALVINGS or tail <= _TAIL:
+        return [right]
+    middle = 0.5 * (left + right)
+    halves = ((left, middle), (middle, right))
+    return [edge for half in halves for edge in _resolved(values, *half, scale, depth + 1)]
+
+
+def _far(cut: Cut, view: _View, panels: FloatArray, *, forces: bool) -> float:
+    """ψ at the range."""
+    if forces:
+        return float(panels[-1, 2:].sum())  # of powers of 1
+    potential = cut.pieces[-1].potential
+    far = float(cut.function(potential)(view.y(view.r)))
+    return far if isfinite(far) else inf
+
+
+def _texts(cut: Cut, near: Near, *, forces: bool) -> tuple[Texts, list[Any]]:
+    """Texts of pair, slope, potential and adjacency slope, and the constants that they read."""
+    from flockana.symbolic import pair_formula as pf
+    from flockana.symbolic.printing import Constants, function_text
+
+    in_norm = cut.formula.distance == pf.Z
+    head = _HEAD + near.coefficients.size
+    pieces, first = cut.pieces, head + len(cut.marks) - 2
+    taken = Constants([pf.SQUARE, pf.Z, pf.ROOT], first)
+
+    def each(name: str) -> list[Any]:
+        return [taken.taken_out(getattr(piece, name)) for piece in pieces]
+
+    rows = [[each("weight"), each("adjacency")], [each("slope")], [each("adjacency_slope")]]
+    if not forces:
+        rows.append([each("potential")])
+    floor = [] if near.kind == "excluded" else ["s2 = max(s2, par[0]*1e-60)"]  # a form 0/0 at 0 has its limit there
+    norm = ["root = sqrt(1.0 + par[2]*s2)", "z = s2/(root + 1.0)", "y = z"] if in_norm else ["y = s2"]
+    marks = [f"m{k} = par[{head + k}]" for k in range(len(cut.marks) - 2)]
+
+    def text(arguments: str, wanted: list[list[Any]], after: str) -> str:
+        used = {symbol for row in wanted for value in row for symbol in value.free_symbols}
+        names = (f"c{k}" for k in range(first, first + len(taken.values)))
+        constants = [f"{name} = par[{name[1:]}]" for name in names if any(str(s) == name for s in used)]
+        return function_text("NAME", arguments, [*floor, *norm, *marks, *constants], wanted, after)
+
+    weight, slope, energy = "v0", "v0", "v0"
+    if near.kind == "series":
+        inner = "0.5/(root*par[3])" if in_norm else "1.0/par[3]"
+        weight, slope = (_horner(at, order) for at, order in (("v0", 0), ("v0", 1)))
+        slope = slope.replace("UNIT", inner)
+        energy = "(on_panels(y, panels) if y < par[3] else v0)"
+    potential = (
+        text("s2, par, panels", rows[3], f"par[1] if s2 >= par[0] else {energy}")
+        if not forces
+        else _integrated(in_norm)
+    )
+    texts = (
+        text("s2, par", rows[0], f"{weight}, v1"),
+        text("s2, par", rows[1], slope),
+        potential,
+        text("s2, par", rows[2], "v0"),
+    )
+    return texts, taken.values
+
+
+def _horner(otherwise: str, order: int) -> str:
+    """The series of the weight near 0, or its derivative times UNIT, chosen below its bound."""
+    terms = [f"{float(k)}*par[{4 + k}]" if order else f"par[{4 + k}]" for k in range(order, TERMS)]
+    text = terms[-1]
+    for term in reversed(terms[:-1]):
+        text = f"{term} + (y/par[3])*({text})"
+    return f"(({text}){'*UNIT' if order else ''} if y < par[3] else {otherwise})"
+
+
+def _integrated(in_norm: bool) -> str:
+    """Text of a potential that panels give."""
+    at = "s2/(sqrt(1.0 + par[2]*s2) + 1.0)" if in_norm else "sqrt(s2)"
+    return f"def NAME(s2, par, panels):\n    return par[1] if s2 >= par[0] else on_panels({at}, panels)"

@@ -1,0 +1,151 @@
+"""Flocking that keeps its links: a potential without bound at the range, after Ji and Egerstedt and Zavlanos et al."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from math import sqrt
+from typing import ClassVar
+
+import numpy as np
+
+from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_positive
+from flockana.base.errors import ArgumentError
+from flockana.base.scales import Scales
+from flockana.base.units import Powers
+from flockana.interactions.formula import FormulaInteraction
+from flockana.laws.sum_of_terms import SumOfTerms
+from flockana.laws.terms.links import LinkTerm
+from flockana.laws.terms.term import Term
+
+
+@dataclass(frozen=True)
+class LinkKeeping(SumOfTerms):
+    """u_i = −Σ_j ∇_i ψ(‖q_j − q_i‖) + c Σ_j (p_j − p_i) over links {i, j}, with ψ(s) = k s²/(r − s).
+
+    The tension is that of Ji and Egerstedt (2007), the second-order law that of Zavlanos, Jadbabaie and Pappas (2007).
+    Both let links arise, with hysteresis; here the net is that of the start and does not change. H = Σ ψ + ½ Σ‖p_i‖².
+
+    Parameters
+    ----------
+    links : tuple of (int, int)
+        The net, each link once.
+    r : float
+        Range r > 0 that no link may reach.
+    k : float
+        Strength k > 0 of the tension, a length per time².
+    c : float
+        Gain c ≥ 0 of the velocity consensus, per time.
+
+    Raises
+    ------
+    ArgumentError
+        On numbers out of range, and links that are no pairs of agents or come twice.
+
+    Examples
+    --------
+    >>> law = LinkKeeping(((0, 1),), r=2.0)
+    >>> law.acceleration(0.0, [[0.0], [1.0], [5.0]], [[0.0], [0.0], [0.0]]).ravel().tolist()
+    [3.0, -3.0, 0.0]
+    """
+
+    links: tuple[tuple[int, int], ...]
+    r: float = 1.0
+    k: float = 1.0
+    c: float = 1.0
+
+    references: ClassVar[tuple[str, ...]] = ("ji-egerstedt-2007", "zavlanos-2007")
+    units: ClassVar[Mapping[str, Powers]] = {"r": (1, 0), "k": (1, -2), "c": (0, -1)}
+
+    def __post_init__(self) -> None:
+        for name in ("r", "k"):
+            object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
+        object.__setattr__(self, "c", ensure_nonnegative("c", self.c))
+        ends = np.asarray(self.links)
+        if ends.size and (ends.ndim != 2 or ends.shape[1] != 2 or ends.dtype.kind not in "iu" or ends.min() < 0):
+            raise ArgumentError(f"links = {self.links!r}: expected pairs of agents such as ((0, 1), (1, 2))")
+        links = tuple(sorted((min(i, j), max(i, j)) for i, j in ends.tolist()))
+        if len({*links}) < len(links) or any(i == j for i, j in links):
+            raise ArgumentError(f"links = {links}: expected different agents, and every link once")
+        object.__setattr__(self, "links", links)
+
+    @cached_property
+    def tension(self) -> FormulaInteraction:
+        """ψ and the adjacency 1, as a formula."""
+        return FormulaInteraction(
+            "k*s**2/(r - s)", adjacency="1", r=self.r, d=0.5 * self.r, parameters=(("k", self.k),)
+        )
+
+    @cached_property
+    def terms(self) -> tuple[Term, ...]:
+        """The links alone."""
+        return (LinkTerm(self.tension, self.links, 1.0, self.c),)
+
+    @property
+    def scales(self) -> Scales:
+        """r, and the time in which k moves an agent by it."""
+        return Scales(self.r, sqrt(self.r / self.k))
+
+    @property
+    def lattice(self) -> None:
+        """None: links hold at no length."""
+        return
+
+    @property
+    def surfaces(self) -> tuple[float, ...]:
+        """None: no force begins or ends."""
+        return ()
+
+    def check_agents(self, n: int) -> None:
+        """Raise if a link is of an agent that is not there.
+
+        Parameters
+        ----------
+        n : int
+            Number of agents.
+        """
+        last = max((j for _, j in self.links), default=0)
+        if last >= n:
+            raise ArgumentError(f"links name agent {last}, and there are {n}: expected links among agents 0 to {n - 1}")
+
+    def check_start(self, q: FloatArray, p: FloatArray) -> None:
+        """Raise if a link is as long as r, where the tension has its pole.
+
+        Parameters
+        ----------
+        q, p : ndarray, shape (n, m)
+            Initial positions and velocities.
+        """
+        super().check_start(q, p)
+        for (i, j), length in zip(self.links, self.lengths(q), strict=True):
+            if length >= self.r:
+                raise ArgumentError(f"link ({i}, {j}) is {length:g} long: expected links shorter than r = {self.r:g}")
+
+    def lengths(self, q: FloatArray) -> FloatArray:
+        """Length of each link.
+
+        Parameters
+        ----------
+        q : ndarray, shape (n, m)
+            Positions.
+        """
+        ends = np.array(self.links, dtype=np.int64).reshape(-1, 2)
+        lengths: FloatArray = np.linalg.norm(q[ends[:, 1]] - q[ends[:, 0]], axis=1)
+        return lengths
+
+    def longest(self, energy: float) -> float:
+        """The length s < r at which one link alone has an energy: k s²/(r − s) = H.
+
+        Parameters
+        ----------
+        energy : float
+            H ≥ 0.
+
+        Examples
+        --------
+        >>> LinkKeeping(((0, 1),), r=2.0).longest(1.0)
+        1.0
+        """
+        root = sqrt(energy * energy + 4.0 * self.k * energy * self.r)
+        return 2.0 * energy * self.r / (energy + root) if energy > 0.0 else 0.0

@@ -1,0 +1,65 @@
+"""The link term: a pair law among the pairs of a net that does not change, however far apart they are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.interactions.pair import PairInteraction
+from flockana.laws.terms.term import Term
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
+
+
+@dataclass(frozen=True)
+class LinkTerm(Term):
+    """u_i = c1 Σ_j w (q_j − q_i) + c2 Σ_j a (p_j − p_i) over the links {i, j} of a net, with the energy c1 Σ ψ.
+
+    Parameters
+    ----------
+    pair : PairInteraction
+        The pair law; its range counts for nothing.
+    links : tuple of (int, int)
+        The net.
+    stiffness, damping : float
+        Gains c1 and c2.
+
+    Examples
+    --------
+    >>> from flockana.interactions import AlphaInteraction
+    >>> u = np.zeros((3, 1))
+    >>> term = LinkTerm(AlphaInteraction(), ((0, 1),), 1.0, 1.0)
+    >>> power = term.act(0.0, np.array([[0.0], [8.0], [7.0]]), np.zeros((3, 1)), u)
+    >>> bool(u[0, 0] == -u[1, 0] > 0.0), float(u[2, 0])
+    (True, 0.0)
+    """
+
+    pair: PairInteraction
+    links: tuple[tuple[int, int], ...]
+    stiffness: float
+    damping: float
+
+    @cached_property
+    def _ends(self) -> tuple[np.ndarray, np.ndarray]:
+        ends = np.array(self.links, dtype=np.int64).reshape(-1, 2)
+        return np.ascontiguousarray(ends[:, 0]), np.ascontiguousarray(ends[:, 1])
+
+    def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
+        forces_of = self.pair.kernels.sweeps[q.shape[1] - 1][1]
+        par = tuple(self.pair.par.tolist())
+        return -self.damping * float(forces_of(q, p, *self._ends, par, self.stiffness, self.damping, u))
+
+    def energy(self, t: float, q: FloatArray) -> float:  # noqa: D102
+        return self.stiffness * float(self.pair.kernels.potential(q, *self._ends, self.pair.par, self.pair.panels))
+
+    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[csr_array, csr_array]:  # noqa: D102
+        return self.pair.jacobian(q, p, stiffness=self.stiffness, damping=self.damping, pairs=[self._ends])
+
+    def hessian(self, t: float, q: FloatArray) -> csr_array:  # noqa: D102
+        hessian: csr_array = self.stiffness * self.pair.hessian(q, pairs=[self._ends])
+        return hessian

@@ -1,0 +1,53 @@
+"""Links that a tension keeps: a chain that is thrown apart, and two pairs that nothing joins."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from flockana.laws.link_keeping import LinkKeeping
+from flockana.scenarios.scenario import Scenario
+
+_REFERENCES = ("zavlanos-2007", "ji-egerstedt-2007")
+
+
+def _chain(seed: int = 0) -> Scenario:
+    """Six agents in a chain, the outer ones flung outwards."""
+    q = np.array([[0.0, 0.0], [0.6, 0.1], [1.2, 0.0], [1.8, 0.1], [2.4, 0.0], [3.0, 0.1]])
+    p = np.array([[-1.5, 0.4], [0.0, -0.6], [0.2, 0.5], [0.1, -0.5], [-0.3, 0.6], [1.5, -0.4]])
+    return Scenario(
+        "links-kept",
+        "A chain of six that is thrown apart and holds",
+        "Ours: six agents 0.6 apart in a chain of links of range r = 1, the outer ones flung outwards at 1.5, k = c = "
+        "1. The start is fixed.",
+        LinkKeeping(tuple((i, i + 1) for i in range(5))),
+        q,
+        p,
+        (0.0, 6.0),
+        seed,
+        {"links-kept": "verified"},
+        references=_REFERENCES,
+    )
+
+
+def _pairs(seed: int = 0) -> Scenario:
+    """Two pairs without a link between them, which leave each other."""
+    q = np.array([[0.0, 0.0], [0.5, 0.0], [0.0, 0.9], [0.5, 0.9]])
+    p = np.array([[0.3, -1.0], [-0.3, -1.0], [0.3, 1.0], [-0.3, 1.0]])
+    return Scenario(
+        "links-parted",
+        "Two linked pairs that nothing joins: they part",
+        "Ours: two pairs of linked agents within r = 1 of each other, but not linked, that leave each other at 2; k = "
+        "c = 1. The start is fixed.",
+        LinkKeeping(((0, 1), (2, 3))),
+        q,
+        p,
+        (0.0, 4.0),
+        seed,
+        {"links-kept": "verified", "links-kept:connected": "vacuous"},
+        references=_REFERENCES,
+    )
+
+
+SCENARIOS: dict[str, Callable[..., Scenario]] = {"links-kept": _chain, "links-parted": _pairs}

@@ -1,0 +1,219 @@
+"""Formulas as text: read by a small grammar of their own, so that a file with a formula in it is data and no program.
+
+Known are names, numbers, + - * / ** and brackets, comparisons with the distance, ``Piecewise((value, condition), ...)``
+and the functions in `FUNCTIONS`. Nothing is evaluated as Python, and nothing that is written small can grow large.
+"""
+
+from __future__ import annotations
+
+import ast
+import operator
+from collections.abc import Callable, Mapping
+from math import isfinite
+from typing import Any
+
+import sympy as sp
+from sympy.printing.str import StrPrinter
+
+from flockana.base.errors import ArgumentError, UnknownNameError
+
+LENGTH = 4000  # characters of a formula
+DEPTH = 100  # of brackets and operations within each other
+LARGEST_POWER = 64
+_BITS = 1024  # of a whole number or a fraction that powers give
+_MOST_EXPONENT = 600  # of e
+_GREATEST = 1e300
+_GROWING = ("exp", "sinh", "cosh")
+
+FUNCTIONS: Mapping[str, Callable[..., sp.Expr]] = {
+    **{name: getattr(sp, name) for name in ("sqrt", "exp", "log", "sin", "cos", "tan", "sinh", "cosh", "tanh")},
+    **{name: getattr(sp, name) for name in ("asin", "acos", "atan", "asinh", "acosh", "atanh")},
+    **dict.fromkeys(("abs", "Abs"), lambda x: sp.Piecewise((x, x >= 0), (-x, True), evaluate=False)),
+}
+_CONSTANTS = {"pi": sp.pi, "True": sp.true}
+_OPERATIONS: Mapping[type, Callable[[Any, Any], Any]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+}
+_RELATIONS: Mapping[type, type] = {ast.Lt: sp.Lt, ast.LtE: sp.Le, ast.Gt: sp.Gt, ast.GtE: sp.Ge}
+
+
+def read_formula(text: str, symbols: Mapping[str, sp.Expr], *, where: str = "the formula") -> sp.Expr:
+    """The sympy expression that a text says, in the names given.
+
+    Parameters
+    ----------
+    text : str
+        At most 4000 characters.
+    symbols : mapping of str to sympy.Expr
+        What each name stands for; no other name is known, but pi and the functions.
+    where : str
+        What is read, for messages.
+
+    Raises
+    ------
+    ArgumentError
+        On anything outside the grammar, and on numbers that powers make too large.
+
+    Examples
+    --------
+    >>> s, k = sp.symbols("s k")
+    >>> read_formula("k*(s - 2)**2/2", {"s": s, "k": k})
+    k*(s - 2)**2/2
+    >>> read_formula("().__class__", {"s": s})
+    Traceback (most recent call last):
+    flockana.base.errors.ArgumentError: the formula: '().__class__' is no formula; expected names, numbers, ...
+    """
+    if not isinstance(text, str):
+        raise ArgumentError(f"{where} = {text!r}: expected a sympy expression, or text")
+    if len(text) > LENGTH:
+        raise ArgumentError(f"{where} has {len(text)} characters: expected at most {LENGTH}")
+    try:
+        tree = ast.parse(text.strip(), mode="eval")
+    except (SyntaxError, ValueError, MemoryError, RecursionError):
+        raise ArgumentError(
+            f"{where}: {_short(text)} cannot be read; expected a formula such as k*(s - d)**2"
+        ) from None
+    value = _Reader(text, symbols, where).expression(tree.body, 0)
+    if not isinstance(value, sp.Expr):
+        raise ArgumentError(f"{where}: {_short(text)} is a condition; expected a value")
+    return value
+
+
+def write_formula(expression: sp.Expr) -> str:
+    """The text that `read_formula` reads as the same expression, every number to the last bit.
+
+    Parameters
+    ----------
+    expression : sympy.Expr
+        In plain symbols.
+
+    Examples
+    --------
+    >>> s = sp.Symbol("s")
+    >>> write_formula(sp.Piecewise((0.1 * s, s < 1), (sp.Abs(s), True)))
+    'Piecewise((0.1*s, s < 1), (Abs(s), True))'
+    """
+    return str(_Printer().doprint(expression))
+
+
+class _Printer(StrPrinter):
+    """sympy's, whose numbers lose no digit."""
+
+    def _print_Float(self, number: sp.Float) -> str:  # noqa: N802  # sympy's name
+        return repr(float(number))
+
+    def _print_Exp1(self, number: sp.Expr) -> str:  # noqa: N802  # sympy's name
+        return "exp(1)"
+
+
+def _short(text: str) -> str:
+    return repr(text if len(text) <= 60 else f"{text[:57]}...")
+
+
+class _Reader:
+    """Walks the tree of a text and builds the expression, node by node."""
+
+    def __init__(self, text: str, symbols: Mapping[str, sp.Expr], where: str) -> None:
+        self.text, self.where = text, where
+        self.names = {**_CONSTANTS, **symbols}
+
+    def expression(self, node: ast.AST, depth: int) -> Any:
+        """What a node says."""
+        if depth > DEPTH:
+            raise ArgumentError(f"{self.where} is nested more than {DEPTH} deep: expected a simpler formula")
+        if isinstance(node, ast.Constant):
+            return self._number(node.value)
+        if isinstance(node, ast.Name):
+            if node.id not in self.names:
+                raise ArgumentError(
+                    f"{self.where} has the unknown name {node.id!r}: expected one of "
+                    f"{', '.join(sorted(self.names))}; give a parameter its value, parameters={{{node.id!r}: ...}}"
+                )
+            return self.names[node.id]
+        if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub | ast.UAdd):
+            value = self._value(node.operand, depth)
+            return -value if isinstance(node.op, ast.USub) else value
+        if isinstance(node, ast.BinOp):
+            return self._operation(node, depth)
+        if isinstance(node, ast.Compare) and len(node.ops) == 1 and type(node.ops[0]) in _RELATIONS:
+            left, right = (self._value(each, depth) for each in (node.left, node.comparators[0]))
+            return _RELATIONS[type(node.ops[0])](left, right)
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and not node.keywords:
+            return self._call(node.func.id, node.args, depth)
+        raise self._refused(node)
+
+    def _refused(self, node: ast.AST) -> ArgumentError:
+        part = ast.get_source_segment(self.text.strip(), node) or self.text
+        return ArgumentError(
+            f"{self.where}: {_short(part)} is no formula; expected names, numbers, + - * / **, comparisons, "
+            f"Piecewise((value, condition), ...) and {', '.join(sorted(FUNCTIONS))}"
+        )
+
+    def _value(self, node: ast.AST, depth: int) -> sp.Expr:
+        value = self.expression(node, depth + 1)
+        if not isinstance(value, sp.Expr):
+            raise self._refused(node)
+        return value
+
+    def _number(self, value: Any) -> sp.Expr:
+        if isinstance(value, bool):
+            return sp.true if value else sp.false
+        if isinstance(value, int) and value.bit_length() <= _BITS:
+            return sp.Integer(value)
+        if isinstance(value, float) and isfinite(value):
+            return sp.Float(value, 17)
+        raise ArgumentError(
+            f"{self.where}: {_short(repr(type(value)))} is no number of a formula; expected a finite one"
+        )
+
+    def _operation(self, node: ast.BinOp, depth: int) -> sp.Expr:
+        left, right = self._value(node.left, depth), self._value(node.right, depth)
+        if isinstance(node.op, ast.Pow):
+            self._ensure_small_power(left, right)
+            value = left**right
+        elif type(node.op) in _OPERATIONS:
+            value = _OPERATIONS[type(node.op)](left, right)
+        else:
+            raise self._refused(node)
+        return self._real(value, node)
+
+    def _real(self, value: sp.Expr, node: ast.AST) -> sp.Expr:
+        """The value, if it is real and a number in it is of a size that floating point knows."""
+        unreal = value.has(sp.zoo, sp.nan, sp.oo, -sp.oo, sp.I)
+        if unreal or (value.is_number and not abs(complex(value.evalf(15))) < _GREATEST):
+            raise ArgumentError(f"{self.where}: {_short(ast.unparse(node))} is no real number below {_GREATEST:g}")
+        return value
+
+    def _ensure_small_power(self, base: sp.Expr, power: sp.Expr) -> None:
+        """Refuse 9**9**9 before it is computed."""
+        if power.is_number and not (power.is_Rational or power.is_Float):
+            raise ArgumentError(f"{self.where}: a power {power} is no plain number; expected one such as 2 or 1/2")
+        if power.is_number and abs(power) > LARGEST_POWER:
+            raise ArgumentError(f"{self.where} has a power beyond {LARGEST_POWER}: expected a smaller one")
+        if base.is_Rational and power.is_number:
+            bits = max(abs(base.p), base.q).bit_length()
+            if bits * abs(float(power)) > _BITS:
+                raise ArgumentError(f"{self.where} has a power with more than {_BITS} bits: expected a smaller one")
+
+    def _call(self, name: str, arguments: list[ast.expr], depth: int) -> sp.Expr:
+        if name == "Piecewise":
+            return sp.Piecewise(*(self._piece(each, depth) for each in arguments), evaluate=False)
+        if name not in FUNCTIONS:
+            raise UnknownNameError(f"function in {self.where}:", name, [*FUNCTIONS, "Piecewise"])
+        if len(arguments) != 1:
+            raise ArgumentError(f"{self.where}: {name} of {len(arguments)} arguments; expected one")
+        argument = self._value(arguments[0], depth)
+        if argument.is_number and name in _GROWING and abs(float(argument)) > _MOST_EXPONENT:
+            raise ArgumentError(f"{self.where}: {name} of {_short(str(argument))}; expected at most {_MOST_EXPONENT}")
+        return self._real(FUNCTIONS[name](argument), arguments[0])
+
+    def _piece(self, node: ast.expr, depth: int) -> tuple[sp.Expr, Any]:
+        if not isinstance(node, ast.Tuple) or len(node.elts) != 2:
+            raise self._refused(node)
+        condition = self.expression(node.elts[1], depth + 1)
+        if isinstance(condition, sp.Expr):
+            raise self._refused(node.elts[1])
+        return self._value(node.elts[0], depth), condition

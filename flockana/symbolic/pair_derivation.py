@@ -1,0 +1,63 @@
+"""From a pair law's formula to its potential, force, weight and adjacency, step by step."""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from flockana.symbolic.derivation import Derivation, Step
+from flockana.symbolic.functions import adjacency, phi_alpha
+from flockana.symbolic.pair_formula import EPS, PairFormula, S, Z
+
+
+def pair_derivation(formula: PairFormula) -> Derivation:
+    """What follows from a formula, with the residual of every equation that can be checked by computing.
+
+    Parameters
+    ----------
+    formula : PairFormula
+        As read.
+
+    Examples
+    --------
+    >>> from flockana.symbolic.pair_formula import read_pair
+    >>> pair_derivation(read_pair("k*(s**2 - d**2)**2", "", "1", ["k"])).holds
+    True
+    """
+    y = formula.distance
+    psi, named = sp.Function("psi")(y), "s" if y == S else "z"
+    derivative = formula.derivative
+    weight = derivative / y if y == S else derivative / (1 + EPS * Z)
+    potential = sp.Integral(formula.main, y) if formula.forces else formula.main
+    square = sp.Symbol("x", positive=True)
+    at = sp.sqrt(square) if y == S else (sp.sqrt(1 + EPS * square) - 1) / EPS
+    residuals = () if formula.forces else (_along(formula.main, at, y, square) - _at(weight, at, y),)
+    steps = (
+        Step(f"The potential of a pair, in ${named}$,", sp.Eq(psi, potential, evaluate=False)),
+        Step("its derivative, negative where the pair repels,", sp.Eq(psi.diff(y), derivative, evaluate=False)),
+        Step(r"the force on $i$ is $w\,(q_j - q_i)$ with", sp.Eq(sp.Symbol("w"), weight, evaluate=False)),
+        Step("and velocities are averaged with", sp.Eq(sp.Symbol("a_ij"), formula.adjacency, evaluate=False)),
+    )
+    return Derivation("The pair law", steps, weight, tuple(sp.simplify(each) for each in residuals))
+
+
+def _at(expression: sp.Expr, at: sp.Expr, y: sp.Symbol) -> sp.Expr:
+    return expression.subs(y, at)
+
+
+def _along(potential: sp.Expr, at: sp.Expr, y: sp.Symbol, square: sp.Symbol) -> sp.Expr:
+    """2 dψ/d(s²), which the weight must be."""
+    return 2 * sp.diff(potential.subs(y, at), square)
+
+
+def alpha_steps() -> tuple[Step, ...]:
+    """Force and adjacency of Olfati-Saber's pair law, whose potential has no closed form.
+
+    Examples
+    --------
+    >>> len(alpha_steps())
+    2
+    """
+    return (
+        Step("The pair law's derivative of the potential, in the sigma-norm,", phi_alpha(Z)),
+        Step("and its adjacency", adjacency(Z)),
+    )

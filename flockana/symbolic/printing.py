@@ -1,0 +1,151 @@
+"""Expressions to the text of scalar functions that a compiler takes: constants taken out, common parts shared."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import sympy as sp
+from sympy.printing.pycode import PythonCodePrinter
+
+_WHOLE = 8  # powers up to it are products
+
+
+class Constants:
+    """What of some expressions no variable enters, by the place it gets among the parameters.
+
+    Parameters
+    ----------
+    variables : iterable of sympy.Symbol
+        The variables.
+    first : int
+        Place of the first constant.
+
+    Examples
+    --------
+    >>> x, k = sp.symbols("x k")
+    >>> constants = Constants([x], 2)
+    >>> constants.taken_out(sp.sqrt(k) * x + 1), constants.values
+    (c2*x + 1, [sqrt(k)])
+    """
+
+    def __init__(self, variables: Iterable[sp.Symbol], first: int) -> None:
+        self.variables, self.first = frozenset(variables), first
+        self.places: dict[sp.Expr, sp.Symbol] = {}
+
+    @property
+    def values(self) -> list[sp.Expr]:
+        """The constants, in the order of their places."""
+        return list(self.places)
+
+    def taken_out(self, expression: sp.Expr) -> sp.Expr:
+        """An expression with symbols for its constants.
+
+        Parameters
+        ----------
+        expression : sympy.Expr
+            Of variables and parameters.
+        """
+        if not expression.free_symbols & self.variables:
+            return self._named(expression)
+        if isinstance(expression, sp.Add | sp.Mul):
+            fixed = [each for each in expression.args if not each.free_symbols & self.variables]
+            moving = [self.taken_out(each) for each in expression.args if each.free_symbols & self.variables]
+            return expression.func(self._named(expression.func(*fixed)), *moving)
+        if not expression.args:
+            return expression
+        return expression.func(*(self.taken_out(each) for each in expression.args))
+
+    def _named(self, constant: sp.Expr) -> sp.Expr:
+        if constant.is_Integer or (constant.is_Rational and constant.q in (2, 4)):
+            return constant
+        symbol = sp.Symbol(f"c{self.first + len(self.places)}", real=True)
+        return self.places.setdefault(constant, symbol)
+
+
+class _Code(PythonCodePrinter):
+    """Names of the scalar functions as the kernels know them, powers as products and roots."""
+
+    def _print_Pow(self, power: sp.Expr, rational: bool = False) -> str:  # noqa: N802  # sympy's name
+        base, exponent = power.as_base_exp()
+        if exponent.is_Rational and exponent.q <= 2 and abs(exponent) <= _WHOLE:
+            whole, half = divmod(abs(int(2 * exponent)), 2)
+            text = self.parenthesize(base, 100)
+            factors = [text] * whole + [f"sqrt({self._print(base)})"] * half
+            product = "*".join(factors)
+            return (
+                product
+                if exponent > 0 and len(factors) == 1
+                else f"({product})"
+                if exponent > 0
+                else f"(1.0/({product}))"
+            )
+        return f"{self.parenthesize(base, 100)}**({self._print(exponent)})"
+
+    def _print_Mul(self, product: sp.Expr) -> str:  # noqa: N802  # sympy's name
+        above: list[sp.Expr] = []
+        below: list[sp.Expr] = []
+        for factor in product.args:
+            exponent = factor.as_base_exp()[1]
+            inverse = exponent.is_Rational and exponent < 0
+            (below if inverse else above).append(1 / factor if inverse else factor)
+        text = "*".join(self.parenthesize(each, 50) for each in above) or "1.0"
+        return f"{text}/({'*'.join(self.parenthesize(each, 50) for each in below)})" if below else text
+
+    def _print_Integer(self, number: sp.Integer) -> str:  # noqa: N802  # sympy's name
+        return f"{int(number)}.0"
+
+    def _print_Rational(self, number: sp.Rational) -> str:  # noqa: N802  # sympy's name
+        return repr(float(number))
+
+    def _print_Function(self, function: sp.Expr) -> str:  # noqa: N802  # sympy's name
+        name = {"sin": "sine", "cos": "cosine"}.get(function.func.__name__, function.func.__name__)
+        return f"{name}({', '.join(self._print(each) for each in function.args)})"
+
+    _print_sin = _print_cos = _print_tan = _print_exp = _print_log = _print_Function
+    _print_sinh = _print_cosh = _print_tanh = _print_asin = _print_acos = _print_atan = _print_Function
+    _print_asinh = _print_acosh = _print_atanh = _print_Function
+
+
+def function_text(name: str, arguments: str, before: list[str], expressions: list[list[sp.Expr]], after: str) -> str:
+    """The text of a function of several results, of which each is one of some expressions: that of its piece.
+
+    Parameters
+    ----------
+    name, arguments : str
+        Of the function.
+    before : list of str
+        Lines that come first; they leave the piece's marks in ``m0``, ``m1``, …, the variable in ``y``.
+    expressions : list of lists of sympy.Expr
+        For every result, one for each piece.
+    after : str
+        What is returned, of the results ``v0``, ``v1``, ….
+
+    Examples
+    --------
+    >>> x = sp.Symbol("x")
+    >>> print(function_text("f", "x", ["y, m0 = x, 1.0"], [[x**2, sp.sin(x) + x**2]], "v0"))
+    def f(x):
+        y, m0 = x, 1.0
+        x0 = (x*x)
+        p0, p1 = x0, x0 + sine(x)
+        v0 = p0 if y < m0 else p1
+        return v0
+    """
+    printer = _Code()
+    flat = [each for row in expressions for each in row]
+    shared, reduced = sp.cse(flat, symbols=sp.numbered_symbols("x"), order="none")
+    lines = [*before, *(f"{symbol} = {printer.doprint(value)}" for symbol, value in shared)]
+    at = 0
+    for k, row in enumerate(expressions):
+        values = [printer.doprint(each) for each in reduced[at : at + len(row)]]
+        at += len(row)
+        if len(set(values)) == 1:
+            lines.append(f"v{k} = {values[0]}")
+            continue
+        names = [f"p{at - len(row) + i}" for i in range(len(row))]
+        lines.append(f"{', '.join(names)} = {', '.join(values)}")
+        chosen = names[-1]
+        for i in range(len(row) - 2, -1, -1):  # every piece is computed and one chosen: no branch, so it is vectorised
+            chosen = f"{names[i]} if y < m{i} else {chosen if chosen == names[-1] else f'({chosen})'}"
+        lines.append(f"v{k} = {chosen}")
+    return "\n".join([f"def {name}({arguments}):", *(f"    {line}" for line in (*lines, f"return {after}"))])

@@ -1,0 +1,251 @@
+"""A pair law from a formula: against mpmath, against the hand-written law, and in every part of the library."""
+
+import dataclasses
+import json
+import pickle
+
+import mpmath
+import numpy as np
+import pytest
+import sympy as sp
+
+import flockana as fl
+from flockana.base.errors import ArgumentError, FileError
+from flockana.base.serialize import from_data, to_data
+from flockana.interactions import AlphaInteraction
+from flockana.kernels.elementary import cosine, sine
+from tests.toys.formulas import alpha_formula, formula_flock, spring
+
+PAPER = AlphaInteraction()
+
+
+def terms(law, s):
+    """(w, a, dw/ds²) as compiled, at distances s."""
+    line = np.append(0.0, s)[:, None]
+    ends = np.arange(1, line.size)
+    return law.kernels.terms(line, 0 * ends, ends, law.par)
+
+
+@pytest.mark.parametrize("x", [-7.0, -1.6, 0.0, 1e-9, 0.7, np.pi / 2, 3.0, 41.0, 1e4 + 0.3])
+def test_sine_and_cosine(x):
+    assert sine(x) == pytest.approx(float(mpmath.sin(x)), abs=3e-16)
+    assert cosine(x) == pytest.approx(float(mpmath.cos(x)), abs=3e-16)
+
+
+def test_the_papers_law_as_a_formula_is_the_papers_law():
+    law = alpha_formula()
+    s = np.linspace(0.0, 8.4, 400)
+    rng = np.random.default_rng(1)
+    q, p = rng.uniform(0.0, 40.0, (60, 2)), rng.normal(size=(60, 2))
+    assert np.abs(law.energy_at(s) - PAPER.energy_at(s)).max() < 1e-13 * PAPER.c_star
+    assert law.far_potential == pytest.approx(PAPER.far_potential, rel=1e-13)
+    assert (law.faults, law.lattice, law.strength) == ((), (7.0, 8.4), pytest.approx(PAPER.strength, rel=1e-4))
+    laws = [fl.Algorithm1(pair) for pair in (law, PAPER)]
+    u, stated = (each.acceleration(0.0, q, p) for each in laws)
+    assert np.abs(u - stated).max() < 1e-13 * PAPER.strength
+    mine, theirs = (each.jacobian(0.0, q, p) for each in laws)
+    assert np.abs(mine - theirs).max() < 1e-12 * np.abs(theirs).max()
+
+
+@pytest.mark.parametrize(
+    ("potential", "parameters"),
+    [
+        ("cos(s/k)", {"k": 0.7}),
+        ("(1 - exp(-s**2))/s**2", {}),
+        ("sin(s)/s", {}),
+        ("exp(-s**2/k)", {"k": 2.0}),
+        ("sin(z)/z", {"eps": 0.1}),
+    ],
+)
+def test_removable_singularities_lose_no_digit(potential, parameters):
+    law = fl.pair_law(potential, adjacency=0, range=3.0, length=1.0, parameters=parameters)
+    s = 3.0 * 0.5 ** np.arange(1.0, 60.0)
+    assert law.coincidence
+
+    def psi(x):
+        z = (mpmath.sqrt(1 + mpmath.mpf("0.1") * x) - 1) / mpmath.mpf("0.1")
+        names = {"s": mpmath.sqrt(x), "z": z, **{k: mpmath.mpf(v) for k, v in parameters.items()}}
+        known = {"cos": mpmath.cos, "sin": mpmath.sin, "exp": mpmath.exp}
+        return eval(potential, known, names)  # of this test's own
+
+    w, _, slope = terms(law, s)
+    with mpmath.workdps(200):
+        exact = [
+            [float(k * mpmath.diff(psi, mpmath.mpf(x) ** 2, n, h=mpmath.mpf(10) ** -90)) for x in s]
+            for n, k in ((1, 2), (2, 2))
+        ]
+        energies = [float(psi(mpmath.mpf(x) ** 2)) for x in s]
+    assert np.abs(w - exact[0]).max() < 1e-14 * np.abs(exact[0]).max()
+    assert np.abs(slope - exact[1]).max() < 1e-12 * np.abs(exact[1]).max()
+    assert np.abs(law.energy_at(s) - energies).max() < 1e-14 * np.abs(energies).max()
+    assert np.isfinite(terms(law, np.array([0.0]))).all()
+    assert np.isfinite(law.energy_at(np.array([0.0]))).all()
+
+
+def test_a_force_is_integrated():
+    law = fl.pair_law(force="sin(s)", adjacency=0, range=3.0, length=1.0)
+    s = np.linspace(0.0, 4.0, 50)
+    assert law.energy_at(s) == pytest.approx(np.cos(1.0) - np.cos(np.minimum(s, 3.0)), abs=1e-14)
+
+
+FAULTS = [
+    ("s**2*(s - r)**2", "(1 - s/r)", ()),
+    ("1/s + s", 0, ("coincidence is excluded", "does not vanish at the range")),
+    ("s**2/(r - s)", 0, ("pole at the range",)),
+    ("Piecewise((s**2, s < 1), (2*s - 1, True))", 0, ("the force does not vanish",)),
+    ("Piecewise((s**2, s < 1), (s, True))", 0, ("the force jumps at s = 1", "does not vanish at the range")),
+    ("Piecewise((1, s < 2), (0, True))", 0, ("the potential jumps at s = 2",)),
+    ("0", 1, ("the adjacency does not vanish",)),
+    ("0", "Piecewise((1, s < 2), (0, True))", ("the adjacency jumps at s = 2",)),
+    ("abs(s - 1)*(s - r)**2*s**2", 0, ("the force jumps at s = 1",)),
+]
+
+
+@pytest.mark.parametrize(("potential", "adjacency", "faults"), FAULTS)
+def test_what_a_formula_lacks_is_named(potential, adjacency, faults):
+    law = fl.pair_law(potential, adjacency=adjacency, range=3.0, length=1.0)
+    assert len(law.faults) == len(faults)
+    assert all(part in fault for part, fault in zip(faults, law.faults, strict=True))
+
+
+def test_what_jumps_is_a_surface():
+    law = fl.pair_law("Piecewise((s**2, s < 1), (s, True))", adjacency=0, range=3.0, length=1.0)
+    assert law.surfaces == (1.0, 3.0)
+
+
+def test_no_start_may_coincide_where_the_force_has_no_limit():
+    law = fl.Algorithm1(fl.pair_law("1/s + s", adjacency=0, range=3.0, length=1.0))
+    q = np.array([[0.0], [1.0], [0.0]])
+    with pytest.raises(ArgumentError, match="agents 0 and 2 coincide"):
+        fl.simulate(law, q, 0.0 * q, (0.0, 1.0))
+
+
+BAD = [
+    ({"potential": "k*s"}, "unknown name 'k'"),
+    ({"parameters": {"q": 1.0}}, "'q' is in no formula"),
+    ({"parameters": {"s": 1.0}}, "a name that has no meaning of its own"),
+    ({"parameters": {"a b": 1.0}}, "'a b'"),
+    ({"potential": "k*s", "parameters": {"k": float("nan")}}, "k"),
+    ({"potential": None}, "one of the two"),
+    ({"force": "s"}, "one of the two"),
+    ({"length": 5.0}, "length within the range"),
+    ({"range": -1.0}, "r = -1"),
+    ({"potential": "s*z", "parameters": {"eps": 0.1}}, "in s and in z"),
+    ({"potential": "z"}, "eps"),
+    ({"potential": "z", "parameters": {"eps": -1.0}}, "eps"),
+    ({"potential": "log(s - 2)"}, "no finite real value at s = "),
+    ({"potential": "1/(s - 1.5)"}, "no finite real value at s = 1.5"),
+    ({"potential": "Piecewise((1, s**2 < 2), (0, True))"}, "not linear in s"),
+    ({"potential": "Piecewise((1, s < 2))"}, "no piece holds"),
+    ({"potential": object()}, "expected a sympy expression"),
+    ({"potential": None, "force": "1/s"}, "cannot be integrated"),
+    ({"units": {"k": (1, 0)}}, "units of 'k'"),
+]
+
+
+@pytest.mark.parametrize(("change", "says"), BAD, ids=[says for _, says in BAD])
+def test_bad_formulas(change, says):
+    good = {"potential": "s**2", "adjacency": 0, "range": 3.0, "length": 1.0}
+    with pytest.raises(ArgumentError, match=says):
+        fl.pair_law(**(good | change))
+
+
+def test_parameters_are_given_later_and_compile_nothing():
+    law = spring()
+    other = law.given(k=2.0)
+    assert other.kernels is law.kernels
+    assert other.force(2.5) == pytest.approx(2.0 / dict(law.parameters)["k"] * law.force(2.5))
+    with pytest.raises(ArgumentError, match="'m' is no parameter"):
+        law.given(m=1.0)
+
+
+def test_sympy_and_text_are_one():
+    s, d, r, k = sp.symbols("s d r k")
+    law = fl.pair_law(
+        k * (s**2 - d**2) ** 2 * (r**2 - s**2) ** 2,
+        adjacency=(1 - s / r) ** 2,
+        range=3.0,
+        length=2.0,
+        parameters={"k": 0.01},
+    )
+    at = np.linspace(0.0, 3.0, 20)
+    assert law.force(at) == pytest.approx(spring().force(at), abs=1e-13)
+
+
+def test_units():
+    law = spring()
+    other = fl.rescale(law, length=1000.0, time=60.0)
+    assert other.force(2000.5) == pytest.approx(law.force(2.0005) * 1000.0 / 3600.0, rel=1e-9)
+    assert fl.rescale(alpha_formula(), length=3.0).d == 21.0
+    with pytest.raises(ArgumentError, match="'k' has no powers"):
+        fl.rescale(dataclasses.replace(law, powers=()), length=2.0)
+    with pytest.raises(ArgumentError, match="a number in it that has a unit"):
+        fl.rescale(dataclasses.replace(law, potential=law.potential.replace("d**2", "4")), length=2.0)
+
+
+def test_a_file_holds_text_and_numbers():
+    law = spring()
+    data = json.loads(json.dumps(to_data(law)))
+    assert from_data(data) == law
+    assert pickle.loads(pickle.dumps(law)) == law  # as processes hand it on
+    with pytest.raises(FileError, match="is no formula"):
+        from_data(data | {"potential": "().__class__"})
+    with pytest.raises(FileError, match="power beyond 64"):
+        from_data(data | {"adjacency": "9**9**9**9"})
+
+
+def test_it_is_a_pair_law_everywhere(tmp_path):
+    law = fl.Algorithm2(spring(), fl.Gains(c1_gamma=0.5), fl.StaticTarget((0.0, 0.0)))
+    rng = np.random.default_rng(3)
+    q, p = np.array([[0.0, 0.0], [2.2, 0.0], [1.0, 1.8]]), rng.normal(0.0, 0.1, (3, 2))
+    assert law.compiled(2) is not None
+    run = fl.simulate(law, q, p, (0.0, 2.0))
+    assert np.abs(run.energy_residual).max() < 1e-6 * np.abs(run.energy()).max()
+    run.save(tmp_path / "run.npz")
+    again = fl.Trajectory.load(tmp_path / "run.npz")
+    assert again.law == law
+    rest = fl.find_equilibrium(law, q)
+    modes = fl.linearise(law, rest)
+    assert modes.eigenvalues.real.max() < 1e-6
+
+
+def test_a_verdict_that_needs_a_smooth_pair_is_vacuous():
+    start = np.array([[0.0], [1.5]])
+    rough = fl.pair_law("Piecewise((s**2, s < 1), (s, True))", adjacency=0, range=3.0, length=1.0)
+    for pair, status in ((rough, "vacuous"), (spring(), "verified")):
+        run = fl.simulate(fl.Algorithm1(pair), start, 0.0 * start, (0.0, 0.2))
+        verdict = fl.verify("energy", run)
+        assert verdict.status == status
+        unmet = [each.detail for each in verdict.hypotheses if each.status == "unmet"]
+        assert ("the force jumps at s = 1" in "".join(unmet)) == (status == "vacuous")
+
+
+def test_ensembles_rebuild_the_law_in_other_processes():
+    found = fl.ensemble(formula_flock, [0, 1], jobs=2, theorems=[], metrics=["order"])
+    assert found.sizes["seed"] == 2
+    assert not [text for text in found["error"].values.ravel().tolist() if text]
+
+
+def test_falsification_varies_a_formula_s_flock():
+    result = fl.falsify("energy", formula_flock(0), budget=2, seed=1)
+    assert result.claim in ("rate", "balance")
+    assert "refuted" not in {status for each in result.statuses.values() for status in each}
+
+
+def test_derivation():
+    derived = spring().derivation()
+    assert derived.holds
+    assert r"\psi" in derived.latex()
+    law = fl.Algorithm1(spring())
+    identity = law.derivation(1)
+    assert identity.holds
+    assert "Algorithm1" in identity.latex()
+    assert fl.Algorithm2(target=fl.StaticTarget((0.0,))).derivation(1).holds
+    with pytest.raises(ArgumentError, match="expected pair_law"):
+        fl.Algorithm1(fl.DeadZoneInteraction()).derivation()
+
+
+def test_two_formulas_are_two_kernels():
+    one, two = (fl.pair_law(text, adjacency=0, range=3.0, length=1.0) for text in ("s**2", "s**2*2"))
+    assert one.kernels is not two.kernels
+    assert (one.force(1.0), two.force(1.0)) == (2.0, 4.0)

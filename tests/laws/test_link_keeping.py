@@ -1,0 +1,70 @@
+"""Links that a tension keeps: the force by hand, derivatives, what is refused."""
+
+import numpy as np
+import pytest
+
+import flockana as fl
+from flockana.base.errors import ArgumentError
+from flockana.laws.link_keeping import LinkKeeping
+
+CHAIN = LinkKeeping(((1, 0), (1, 2)), r=2.0, k=0.5, c=0.25)
+Q = np.array([[0.0, 0.0], [1.2, 0.0], [1.2, 0.9]])
+P = np.array([[0.1, 0.0], [0.0, 0.2], [0.0, -0.3]])
+
+
+def test_force_energy_and_rate_by_hand():
+    u = CHAIN.acceleration(0.0, Q, P)
+    w = [0.5 * (4.0 - s) / (2.0 - s) ** 2 for s in (1.2, 0.9)]  # ψ'/s
+    assert u[0] == pytest.approx([w[0] * 1.2 + 0.25 * -0.1, 0.25 * 0.2], rel=1e-14)
+    assert u[2] == pytest.approx([0.0, -w[1] * 0.9 + 0.25 * 0.5], rel=1e-14)
+    assert u.sum(axis=0) == pytest.approx([0.0, 0.0], abs=1e-15)
+    tension = 0.5 * (1.44 / 0.8 + 0.81 / 1.1)
+    assert CHAIN.energy(0.0, Q, P) == pytest.approx(tension + 0.5 * 0.14, rel=1e-14)
+    assert CHAIN.energy_rate(0.0, Q, P) == pytest.approx(-0.25 * (0.01 + 0.04 + 0.25), rel=1e-14)
+
+
+def test_derivatives_by_differences():
+    matrix, h = CHAIN.jacobian(0.0, Q, P)[6:, :6], 1e-5
+    for k in range(6):
+        step = h * np.eye(6)[k].reshape(3, 2)
+        slope = (CHAIN.acceleration(0.0, Q + step, P) - CHAIN.acceleration(0.0, Q - step, P)) / (2.0 * h)
+        assert matrix[:, k] == pytest.approx(slope.ravel(), abs=1e-8)
+
+
+def test_pairs_without_a_link_do_not_interact():
+    alone = LinkKeeping((), r=1.0)
+    assert not alone.acceleration(0.0, Q, P).any()
+
+
+def test_the_length_of_a_level():
+    for energy in (1e-9, 0.3, 1e9):
+        s = CHAIN.longest(energy)
+        assert 0.0 < s <= CHAIN.r
+        assert CHAIN.k * s**2 == pytest.approx(energy * (CHAIN.r - s), rel=1e-6, abs=1e-9 * energy)
+    assert CHAIN.longest(0.0) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("links", "says"),
+    [
+        (((0, 0),), "different agents"),
+        (((0, 1), (1, 0)), "once"),
+        (((0, 1, 2),), "pairs of agents"),
+        (((-1, 0),), "pairs"),
+    ],
+)
+def test_bad_links(links, says):
+    with pytest.raises(ArgumentError, match=says):
+        LinkKeeping(links)
+
+
+def test_bad_starts():
+    with pytest.raises(ArgumentError, match=r"link \(0, 1\) is 1.2 long"):
+        fl.simulate(LinkKeeping(((0, 1),)), Q, P, (0.0, 1.0))
+    with pytest.raises(ArgumentError, match="name agent 7"):
+        LinkKeeping(((0, 7),)).acceleration(0.0, Q, P)
+
+
+def test_in_other_units_it_is_the_same_law():
+    other = fl.rescale(CHAIN, length=10.0, time=2.0)
+    assert other.acceleration(0.0, 10.0 * Q, 5.0 * P) == pytest.approx(2.5 * CHAIN.acceleration(0.0, Q, P), rel=1e-13)
