@@ -60,7 +60,7 @@ def law_is(name: str, *laws: type, formulas: bool = False) -> Callable[[Trajecto
 
 
 def law_is_or_composed(name: str, *laws: type) -> Callable[[Trajectory], Hypothesis]:
-    """As `law_is`, or any composition of the terms that these laws are made of (`flockana.compose`), or a formula's pair.
+    """As `law_is`, or of a composition of their terms (`flockana.compose`), or with the pair law of a formula.
 
     Parameters
     ----------
