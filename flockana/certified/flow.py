@@ -45,6 +45,8 @@ class Flow:
         The pair law.
     stiffness, damping : arb
         c1α and c2α.
+    pace : float
+        About the law's fastest rate, by which steps and coordinates are proposed; nothing rests on it.
     terms : tuple of AgentTerm
         What acts on each agent by itself: the γ-agent, obstacles.
     """
@@ -54,6 +56,7 @@ class Flow:
     pair: PairNumbers
     stiffness: arb
     damping: arb
+    pace: float
     terms: tuple[AgentTerm, ...] = ()
 
     def pieces(self, state: Sequence[arb]) -> Pieces:

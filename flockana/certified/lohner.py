@@ -7,9 +7,10 @@ the coordinates B are made orthogonal again, longest edge first (QR), so that bo
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from itertools import combinations
+from typing import Any, NamedTuple
 
 import numpy as np
 from flint import arb, arb_mat
@@ -68,16 +69,27 @@ class Step(NamedTuple):
         Holds the states at its end.
     during : list of arb
         Box that holds them from its begin to its end.
-    pieces : tuple of Piece
-        Of each pair and agent within that box.
-    added : arb
-        The largest remainder.
+    relative : list of list of arb
+        Of each pair, the box that holds q_j − q_i during it.
+    deviations : list of list of arb
+        Of each agent, the box that holds q_i − q_c during it.
+    added : float
+        The largest remainder, in units of length; of a velocity, what it goes in the law's own time.
+    blur : float
+        By what share the set may grow as its derivative is known to balls only.
     """
 
     after: StateSet
     during: list[arb]
-    pieces: Pieces
-    added: arb
+    relative: list[list[arb]]
+    deviations: list[list[arb]]
+    added: float
+    blur: float
+
+
+def variation_order(order: int) -> int:
+    """The order of the derivative of a Taylor step."""
+    return min(_VARIATION, order - 1)
 
 
 def taylor_step(flow: Flow, t: arb, h: arb, before: StateSet, order: int) -> Step | None:
@@ -91,10 +103,15 @@ def taylor_step(flow: Flow, t: arb, h: arb, before: StateSet, order: int) -> Ste
     if found is None:
         return None
     during, remainder = found
-    variation = _variation(flow, t, h, path, during, pieces, min(_VARIATION, order - 1))
+    variation = _variation(flow, t, h, path, during, pieces, variation_order(order))
     point = flow.taylor(t, before.centre, order - 1, pieces)
     moved = [_at(coefficients, h) + rest for coefficients, rest in zip(point, remainder, strict=True)]
-    return Step(_moved(before, moved, variation), during, pieces, _largest(remainder))
+    after = _moved(before, moved, variation, flow.pace)
+    if not all(x.is_finite() for x in after.hull):
+        return None
+    tail = [hull(arb(0), x) for x in remainder]
+    relative, deviations = _seen(flow, lambda weights: _combined(weights, path, tail, span))
+    return Step(after, during, relative, deviations, _size(flow, remainder), _blur(flow, variation))
 
 
 def crossing_step(flow: Flow, t: arb, h: arb, before: StateSet) -> Step | None:
@@ -106,15 +123,15 @@ def crossing_step(flow: Flow, t: arb, h: arb, before: StateSet) -> Step | None:
     during = _picard(flow, t, span, box)
     if during is None:
         return None
-    pieces, at_start = flow.pieces(during), flow.pieces(box)
-    remainder = [h * h / 2 * x for x in flow.acceleration(t + span, during, pieces)]
+    remainder = [h * h / 2 * x for x in flow.acceleration(t + span, during, flow.pieces(during))]
     rate = flow.rate(t, before.centre, flow.pieces(before.centre))
     moved = [x + h * v + rest for x, v, rest in zip(before.centre, rate, remainder, strict=True)]
-    slope = identity(len(box)) + flow.jacobian(t, box, at_start) * h
-    after = _moved(before, moved, slope)
+    slope = identity(len(box)) + flow.jacobian(t, box, flow.pieces(box)) * h
+    after = _moved(before, moved, slope, flow.pace)
     if not all(x.is_finite() for x in after.hull):
         return None
-    return Step(after, during, pieces, arb(max(x.rad() for x in remainder)))
+    seen = _seen(flow, lambda weights: sum((weight * during[k] for k, weight in weights.items()), arb(0)))
+    return Step(after, during, *seen, _size(flow, [arb(x.rad()) for x in remainder]), _blur(flow, slope))
 
 
 def _enclosed(
@@ -186,31 +203,67 @@ def _variation(
     return total
 
 
-def _moved(before: StateSet, moved: Sequence[arb], slope: arb_mat) -> StateSet:
+def _moved(before: StateSet, moved: Sequence[arb], slope: arb_mat, pace: float) -> StateSet:
     """The image of a set whose centre goes to `moved`, by the mean value theorem with derivatives in `slope`."""
     centre = tuple(x.mid() for x in moved)
     rest = column([x - y for x, y in zip(moved, centre, strict=True)])
     c, b = slope * before.c, slope * before.b
     exact = midpoints(c)
     rest += (c - exact) * column(before.start)
-    frame = _frame(b, [float(x.rad()) for x in before.error])
+    frame = _frame(b, [float(x.abs_upper()) for x in before.error], pace)
     back = frame.inv()
     error = (back * b) * column(before.error) + back * rest
     return StateSet(centre, exact, before.start, frame, tuple(error.entries()))
 
 
-def _frame(b: arb_mat, widths: Sequence[float]) -> arb_mat:
-    """An exact matrix, orthogonal but for rounding, whose first column is the longest edge of the set, and so on."""
+def _frame(b: arb_mat, widths: Sequence[float], pace: float) -> arb_mat:
+    """An exact matrix whose columns are orthogonal but for rounding, the first along the longest edge, and so on.
+
+    Velocities count by what they go in the law's own time, so that what damping shrinks is not mixed with what it does
+    not. Floating point proposes the matrix; whatever it is, the set is enclosed in it.
+    """
     size, widest = len(widths), max(widths)
-    if widest == 0.0:
+    weights = np.repeat((1.0, 1.0 / pace), size // 2)[:, None]
+    edges = weights * np.array([[float(x.mid()) for x in row] for row in b.tolist()])
+    scaled = edges * (np.array(widths) / widest if widest > 0.0 else 1.0)
+    if not np.isfinite(scaled).all():
         return identity(size)
-    edges = np.array([[float(x.mid()) for x in row] for row in b.tolist()])
-    scaled = edges * (np.array(widths) / widest)
     longest = np.argsort(-np.linalg.norm(scaled, axis=0), kind="stable")
-    q = np.linalg.qr(edges[:, longest])[0]
-    if not np.isfinite(q).all():
-        return identity(size)
+    q = np.linalg.qr(edges[:, longest])[0] / weights
     return arb_mat(size, size, [arb(float(x)) for x in q.ravel()])
+
+
+def _seen(flow: Flow, combined: Callable[[Mapping[int, Any]], arb]) -> tuple[list[list[arb]], list[list[arb]]]:
+    """(q_j − q_i of each pair, q_i − q_c of each agent), from what tells a linear combination of coordinates."""
+    n, m, share = flow.n, flow.m, arb(1) / flow.n
+    relative = [[combined({j * m + k: 1, i * m + k: -1}) for k in range(m)] for i, j in combinations(range(n), 2)]
+    deviations = [
+        [combined({j * m + k: int(i == j) - share for j in range(n)}) for k in range(m)] for i in range(n)
+    ]
+    return relative, deviations
+
+
+def _combined(
+    weights: Mapping[int, Any], path: Sequence[Sequence[arb]], tail: Sequence[arb], span: arb
+) -> arb:
+    """A linear combination of coordinates during a step: that of their polynomials, and their remainders."""
+    orders = range(len(path[0]))
+    polynomial = [sum((weight * path[k][order] for k, weight in weights.items()), arb(0)) for order in orders]
+    return _at(polynomial, span) + sum((weight * tail[k] for k, weight in weights.items()), arb(0))
+
+
+def _size(flow: Flow, remainder: Sequence[arb]) -> float:
+    """The largest remainder in units of length; a proposal for the next step, nothing rests on it."""
+    half = len(remainder) // 2
+    far, fast = (max(float(x.abs_upper()) for x in part) for part in (remainder[:half], remainder[half:]))
+    return max(far, fast / flow.pace)
+
+
+def _blur(flow: Flow, slope: arb_mat) -> float:
+    """The largest row sum of the radii of a derivative, velocities counting as in `_frame`; a proposal only."""
+    weights = np.repeat((1.0, 1.0 / flow.pace), slope.nrows() // 2)
+    radii = np.array([[float(x.rad()) for x in row] for row in slope.tolist()])
+    return float((radii * weights[:, None] / weights).sum(axis=1).max())
 
 
 def _interval(h: arb) -> arb:
@@ -224,8 +277,3 @@ def _at(coefficients: Sequence[arb], s: arb) -> arb:
     for coefficient in reversed(coefficients):
         total = total * s + coefficient
     return total
-
-
-def _largest(values: Sequence[arb]) -> arb:
-    """The largest absolute value."""
-    return arb(max(x.abs_upper() for x in values))
