@@ -28,6 +28,7 @@ class BasinLike(Protocol):
     """What a tube may end in: `flockana.certified.basin.Basin`."""
 
     law: Any
+    rest: FloatArray
 
     def holds(self, q: Any, p: Any) -> bool:
         """Whether every state in a box certainly lies in it."""
@@ -158,7 +159,7 @@ class Tube:
             Step, the last one excluded.
         """
         with ctx.workprec(BITS):
-            return [_norm(gap) for gap in self.taken[k].relative]
+            return [norm(gap) for gap in self.taken[k].relative]
 
     def min_distance(self) -> Approach:
         """A proved lower bound of the distance of any two agents, at all times of the tube."""
@@ -172,7 +173,7 @@ class Tube:
     def cohesion_radius(self) -> FloatArray:
         """Upper bounds of R = max ‖q_i − q_c‖ from each step to the next, proved, shape (T − 1,)."""
         with ctx.workprec(BITS):
-            return np.array([max(up(_norm(x).upper()) for x in step.deviations) for step in self.taken])
+            return np.array([max(up(norm(x).upper()) for x in step.deviations) for step in self.taken])
 
     def energy(self, k: int) -> arb:
         """A ball that holds the structural energy at step k: c1α V(x) + c1γ J(x) + K(v) in the moving frame.
@@ -234,7 +235,8 @@ def _norm2(x: Sequence[arb]) -> arb:
     return sum(map(square, x), arb(0))
 
 
-def _norm(x: Sequence[arb]) -> arb:
+def norm(x: Sequence[arb]) -> arb:
+    """The length of a vector, a ball that is nowhere below 0."""
     return _norm2(x).nonnegative_part().sqrt()
 
 

@@ -9,6 +9,7 @@ from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.hypotheses import alpha_gain, law_is
 from flockana.theorems.olfati_saber.collisions import below_multiple, no_collision
 from flockana.theorems.rounding import energy_error
+from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.theorem import Checked, Theorem, Tolerances, unmet
 
 _MULTIPLES = {"below": 1, "twice": 2}  # of c*, by claim
@@ -39,6 +40,7 @@ THEOREM = Theorem(
     kind="trajectory",
     law=law_is("Algorithm 1 or 2", Algorithm1, Algorithm2),
     check=_check,
+    enclosed=enclosed_by("collision_energy"),
     claims=tuple(_MULTIPLES),
     references=("olfati-saber-2006", "flockana"),
 )

@@ -17,6 +17,7 @@ from flockana.theorems.olfati_saber.attraction import final_basin
 from flockana.theorems.olfati_saber.collisions import below_multiple, below_the_barrier, no_collision
 from flockana.theorems.olfati_saber.energy import proved
 from flockana.theorems.rounding import energy_error
+from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.theorem import Checked, Hypothesis, Theorem, Tolerances, unmet
 
 
@@ -85,6 +86,7 @@ THEOREM = Theorem(
     kind="trajectory",
     law=law_is("Algorithm 1", Algorithm1),
     check=_check,
+    enclosed=enclosed_by("os_1"),
     claims=("i", "ii", "iii", "iii-barrier"),
     leads={"i": strained},
     limits=("i",),

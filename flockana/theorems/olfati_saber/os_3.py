@@ -26,6 +26,7 @@ from flockana.theorems.olfati_saber.collisions import (
 from flockana.theorems.olfati_saber.gamma_agent import consistent
 from flockana.theorems.rounding import energy_error, frame_error
 from flockana.theorems.sampling import radius_between
+from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
 
 _COLLISIONS = ("iv-printed", "iv-instant", "iv-none", "iv-barrier")
@@ -108,6 +109,7 @@ THEOREM = Theorem(
     kind="trajectory",
     law=law_with_common_gains("Algorithm 2", Algorithm2),
     check=_check,
+    enclosed=enclosed_by("os_3"),
     claims=("i", "ii", "iii", *_COLLISIONS),
     leads={"iv-printed": pairs_apart, "iv-instant": pairs_apart},
 )
