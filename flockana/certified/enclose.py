@@ -18,13 +18,14 @@ from flockana.base.interrupts import interrupts_recognised
 from flockana.base.progress import progress_bar
 from flockana.certified.flow import Flow
 from flockana.certified.laws import ensure_enclosable, flow_of
-from flockana.certified.lohner import StateSet, Step, crossing_step, taylor_step, variation_order
+from flockana.certified.lohner import StateSet, Step, crossing_step, size, taylor_step, variation_order
 from flockana.certified.tube import BITS, Tube
 
 _SHORTEST = 1e-7  # of the law's own time: nearer to a switch, it is crossed
 _LONGEST = 0.1  # of the law's own time: the longest step that crosses a switch
 _TRIES = 40  # of ever shorter steps
 _SHRINK, _GROW = 0.5, 4.0
+_PART = 1e-4  # of its own width, which a step may add to a wide set
 _BLUR = 1e-4  # by which a step may let the set grow
 
 
@@ -182,12 +183,12 @@ def _steps(
         if step is None:
             yield t, f"no step of any length could be enclosed at t = {t:.6g}, where {_where(flow, current)}"
             return
-        widest = max(float(x.rad()) for x in step.after.hull[: flow.n * flow.m])
+        widest = size(flow, [arb(x.rad()) for x in step.after.hull])
         if not widest <= knobs.widest * knobs.length:
             yield t, f"the set is wider than {2.0 * knobs.widest:g} d at t = {end:.6g}, where {_where(flow, current)}"
             return
         if crossing is None:
-            off = step.added / (knobs.remainder * knobs.length)
+            off = step.added / max(knobs.remainder * knobs.length, _PART * widest)
             factors = [_factor(off, knobs.order), _factor(step.blur / _BLUR, variation_order(knobs.order)), _GROW]
             wanted = (end - t) * max(min(factors), 0.3)
         t, current = end, step.after
@@ -213,7 +214,7 @@ def _proposed(flow: Flow, t: float, current: StateSet, longest: float) -> tuple[
         speed = float(apart @ relative) / length if length > 0.0 else float(np.linalg.norm(relative))
         for switch in switches:
             gap = length - switch
-            if abs(gap) <= wide:
+            if abs(gap) <= 1.1 * wide + 2.0 * _SHORTEST * abs(speed) / flow.pace:
                 crossing = max(crossing, (wide - gap * np.sign(speed)) / max(abs(speed), 1e-3 * wide * flow.pace, 1e-300))
             elif gap * speed < 0.0:
                 h = min(h, 0.8 * (abs(gap) - wide) / abs(speed))

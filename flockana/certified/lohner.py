@@ -76,7 +76,7 @@ class Step(NamedTuple):
     added : float
         The largest remainder, in units of length; of a velocity, what it goes in the law's own time.
     blur : float
-        By what share the set may grow as its derivative is known to balls only.
+        By what share the set may grow as the derivative of the step has a remainder.
     """
 
     after: StateSet
@@ -103,7 +103,7 @@ def taylor_step(flow: Flow, t: arb, h: arb, before: StateSet, order: int) -> Ste
     if found is None:
         return None
     during, remainder = found
-    variation = _variation(flow, t, h, path, during, pieces, variation_order(order))
+    variation, tail_of_it = _variation(flow, t, h, path, during, pieces, variation_order(order))
     point = flow.taylor(t, before.centre, order - 1, pieces)
     moved = [_at(coefficients, h) + rest for coefficients, rest in zip(point, remainder, strict=True)]
     after = _moved(before, moved, variation, flow.pace)
@@ -111,7 +111,7 @@ def taylor_step(flow: Flow, t: arb, h: arb, before: StateSet, order: int) -> Ste
         return None
     tail = [hull(arb(0), x) for x in remainder]
     relative, deviations = _seen(flow, lambda weights: _combined(weights, path, tail, span))
-    return Step(after, during, relative, deviations, _size(flow, remainder), _blur(flow, variation))
+    return Step(after, during, relative, deviations, size(flow, remainder), _blur(flow, tail_of_it))
 
 
 def crossing_step(flow: Flow, t: arb, h: arb, before: StateSet) -> Step | None:
@@ -131,7 +131,7 @@ def crossing_step(flow: Flow, t: arb, h: arb, before: StateSet) -> Step | None:
     if not all(x.is_finite() for x in after.hull):
         return None
     seen = _seen(flow, lambda weights: sum((weight * during[k] for k, weight in weights.items()), arb(0)))
-    return Step(after, during, *seen, _size(flow, [arb(x.rad()) for x in remainder]), _blur(flow, slope))
+    return Step(after, during, *seen, size(flow, [arb(x.rad()) for x in remainder]), _blur(flow, slope))
 
 
 def _enclosed(
@@ -183,8 +183,8 @@ def _first_growth(box: Sequence[arb], h: arb) -> list[arb]:
 
 def _variation(
     flow: Flow, t: arb, h: arb, path: Sequence[Sequence[arb]], during: Sequence[arb], pieces: Pieces, order: int
-) -> arb_mat:
-    """∂x(t + h)/∂x(t) on the whole set: its Taylor polynomial, and a remainder.
+) -> tuple[arb_mat, arb_mat]:
+    """∂x(t + h)/∂x(t) on the whole set, a Taylor polynomial and a remainder; and the remainder alone.
 
     At a time between, the K-th coefficient is that of the states there, times ∂x(between)/∂x(t). With L the largest row
     sum of |∂x'/∂x| during the step, Gronwall's inequality bounds the latter: no entry differs from that of the identity
@@ -197,10 +197,10 @@ def _variation(
     steepest = arb(max(sum((abs(x) for x in row), arb(0)).upper() for row in rows))
     off, size = arb(0, ((steepest * h).exp() - 1).upper()), len(during)
     between = identity(size) + arb_mat(size, size, [off] * size**2)
-    total = there * between * h**order
-    for coefficients in reversed(list(enumerate(polynomial))):
-        total += coefficients[1] * h ** coefficients[0]
-    return total
+    total = tail = there * between * h**order
+    for k, coefficients in enumerate(polynomial):
+        total = total + coefficients * h**k
+    return total, tail
 
 
 def _moved(before: StateSet, moved: Sequence[arb], slope: arb_mat, pace: float) -> StateSet:
@@ -252,8 +252,8 @@ def _combined(
     return _at(polynomial, span) + sum((weight * tail[k] for k, weight in weights.items()), arb(0))
 
 
-def _size(flow: Flow, remainder: Sequence[arb]) -> float:
-    """The largest remainder in units of length; a proposal for the next step, nothing rests on it."""
+def size(flow: Flow, remainder: Sequence[arb]) -> float:
+    """The largest of some coordinates, velocities by what they go in the law's own time; nothing rests on it."""
     half = len(remainder) // 2
     far, fast = (max(float(x.abs_upper()) for x in part) for part in (remainder[:half], remainder[half:]))
     return max(far, fast / flow.pace)
