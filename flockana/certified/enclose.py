@@ -204,7 +204,8 @@ def _proposed(flow: Flow, t: float, current: StateSet, longest: float) -> tuple[
     """(length of a Taylor step, length of one across a switch if the set lies on one): proposals in floating point."""
     state = np.array([[float(x.mid()), float(x.rad())] for x in current.hull])
     half, m = flow.n * flow.m, flow.m
-    (q, p), wide = state[:, 0].reshape(2, flow.n, m), float(state[:half, 1].max()) * 2.0 * sqrt(m)
+    q, p = state[:, 0].reshape(2, flow.n, m)
+    wide, blown = (2.0 * sqrt(m) * float(part.max()) for part in (state[:half, 1], state[half:, 1]))
     eps, unit = float(flow.pair.eps), sqrt(float(flow.pair.area))
     switches = [unit * sqrt(((1.0 + eps * float(z)) ** 2 - 1.0) / eps) for z in (flow.pair.knee, flow.pair.cutoff)]
     h, crossing = longest, 0.0
@@ -214,8 +215,9 @@ def _proposed(flow: Flow, t: float, current: StateSet, longest: float) -> tuple[
         speed = float(apart @ relative) / length if length > 0.0 else float(np.linalg.norm(relative))
         for switch in switches:
             gap = length - switch
-            if abs(gap) <= 1.1 * wide + 2.0 * _SHORTEST * abs(speed) / flow.pace:
-                crossing = max(crossing, (wide - gap * np.sign(speed)) / max(abs(speed), 1e-3 * wide * flow.pace, 1e-300))
+            fastest = abs(speed) + blown
+            if abs(gap) <= 1.5 * wide + 2.0 * _SHORTEST * fastest / flow.pace:
+                crossing = max(crossing, (wide + abs(gap)) / max(fastest, 1e-3 * wide * flow.pace, 1e-300))
             elif gap * speed < 0.0:
                 h = min(h, 0.8 * (abs(gap) - wide) / abs(speed))
             elif speed != 0.0:
