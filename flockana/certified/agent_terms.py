@@ -1,4 +1,4 @@
-"""What acts on an agent by itself, in balls and in series (Arb): the pull to a γ-agent on a straight path, and spheres."""
+"""What acts on an agent by itself, in balls and in series (Arb): the pull to a γ-agent on a straight path."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from flint import arb, arb_series
+from flint import arb
 
 from flockana.certified.intervals import square
 from flockana.certified.series import Piece
@@ -60,16 +60,16 @@ class Pull(AgentTerm):
         """x − q_r."""
         return [a - (b + c * t) for a, b, c in zip(x, self.start, self.velocity, strict=True)]
 
-    def _slant(self, away: Sequence[Any]) -> Any:
+    def _slant(self, away: Sequence[Any], unit: arb) -> Any:
         """1/√(1 + ‖x − q_r‖²/ℓ²)."""
         squares = [square(a) if isinstance(a, arb) else a * a for a in away]
-        return (1 + sum(squares[1:], squares[0]) / (self.unit * self.unit)).rsqrt()
+        return (1 + sum(squares[1:], squares[0]) / (unit * unit)).rsqrt()
 
     def force(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> list[Any]:
         """The force at a position and a velocity."""
         away = self._away(t, x)
         if self.unit is not None:
-            slant = self._slant(away)
+            slant = self._slant(away, self.unit)
             away = [a * slant for a in away]
         told = zip(away, v, self.told, strict=True)
         return [-self.stiffness * a - self.damping * (w - p) for a, w, p in told]
@@ -81,7 +81,7 @@ class Pull(AgentTerm):
         if self.unit is None:
             return [[-self.stiffness if k == h else 0 for h in range(m)] for k in range(m)], drag
         away = self._away(t, x)
-        slant = self._slant(away)
+        slant = self._slant(away, self.unit)
         cube = slant * slant * slant / (self.unit * self.unit)
         pull = [
             [-self.stiffness * ((slant if k == h else 0) - cube * away[k] * away[h]) for h in range(m)]

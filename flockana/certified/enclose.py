@@ -230,9 +230,13 @@ def _proposed(flow: Flow, t: float, current: StateSet, longest: float) -> tuple[
 def _where(flow: Flow, current: StateSet) -> str:
     """Which pairs are about a switching distance, in words."""
     pieces = flow.pieces(current.hull)
-    pairs = [pair for pair, piece in zip(combinations(range(flow.n), 2), pieces, strict=False) if piece.name == "SWITCH"]
+    pairs = [
+        pair for pair, piece in zip(combinations(range(flow.n), 2), pieces, strict=False) if piece.name == "SWITCH"
+    ]
     width = max(float(x.rad()) for x in current.hull)
     if not isfinite(width):
         return "nothing is known of it any more"
     named = ", ".join(f"{i} and {j}" for i, j in pairs[:3])
-    return f"its half-width is {width:.2g}" + (f", and agents {named} may be about a switching distance" if pairs else "")
+    return f"its half-width is {width:.2g}" + (
+        f", and agents {named} may be about a switching distance" if pairs else ""
+    )

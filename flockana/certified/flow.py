@@ -61,7 +61,7 @@ class Flow:
 
     def pieces(self, state: Sequence[arb]) -> Pieces:
         """On which piece of its law each pair and each agent is, anywhere in a box."""
-        q, p = self.split(state)
+        q = self.split(state)[0]
         pairs = [self.pair.piece(squared_distance(q[i], q[j])) for i, j in combinations(range(self.n), 2)]
         return (*pairs, *(term.piece(x) for term in self.terms for x in q))
 
@@ -99,7 +99,9 @@ class Flow:
             apart, relative = _minus(q[j], q[i]), _minus(p[j], p[i])
             stress, adjacency, bend, fade = _pair_and_slopes(_norm2(apart), self.pair, piece)
             stress, drag = self.stiffness * stress, self.damping * adjacency
-            way = [2 * (self.stiffness * bend * x + self.damping * fade * w) for x, w in zip(apart, relative, strict=True)]
+            way = [
+                2 * (self.stiffness * bend * x + self.damping * fade * w) for x, w in zip(apart, relative, strict=True)
+            ]
             for k in range(m):
                 _couple(by_p, m, i, j, k, k, drag)
                 for h in range(m):
@@ -165,7 +167,9 @@ class Flow:
         """x'' = ∂x'/∂x x' + ∂x'/∂t, continuous, on a box that may lie on several pieces."""
         along = (self.jacobian(t, state, pieces) * column(self.rate(t, state, pieces))).entries()
         half, q = self.n * self.m, self.split(state)[0]
-        by_time = [sum(parts, arb(0)) for x in q for parts in zip(*(term.drift(t, x) for term in self.terms), strict=True)]
+        by_time = [
+            sum(parts, arb(0)) for x in q for parts in zip(*(term.drift(t, x) for term in self.terms), strict=True)
+        ]
         return [*along[:half], *(a + b for a, b in zip(along[half:], by_time or [arb(0)] * half, strict=True))]
 
 
@@ -181,7 +185,10 @@ def stacked(upper: arb_mat, lower: arb_mat) -> arb_mat:
 
 def _norm2(x: Sequence[Any]) -> Any:
     """‖x‖² of balls or of series."""
-    return sum((square(a) if isinstance(a, arb) else a * a for a in x[1:]), square(x[0]) if isinstance(x[0], arb) else x[0] * x[0])
+    return sum(
+        (square(a) if isinstance(a, arb) else a * a for a in x[1:]),
+        square(x[0]) if isinstance(x[0], arb) else x[0] * x[0],
+    )
 
 
 def _minus(a: Sequence[Any], b: Sequence[Any]) -> list[Any]:
@@ -204,13 +211,15 @@ def _table(size: int) -> list[list[Any]]:
 
 def _couple(table: list[list[Any]], m: int, i: int, j: int, k: int, h: int, value: Any) -> None:
     """Add what coordinate h of two agents' difference pulls coordinate k of one by, and of the other back."""
-    for row, column, sign in ((i, j, 1), (j, i, 1), (i, i, -1), (j, j, -1)):
-        table[row * m + k][column * m + h] += value if sign > 0 else -value
+    for row, other, sign in ((i, j, 1), (j, i, 1), (i, i, -1), (j, j, -1)):
+        table[row * m + k][other * m + h] += value if sign > 0 else -value
 
 
 def _coefficient(table: list[list[Any]], k: int) -> arb_mat:
     """The k-th coefficients of a table of series."""
-    return arb_mat([[entry[k] if isinstance(entry, arb_series) else (entry if k == 0 else 0) for entry in row] for row in table])
+    return arb_mat(
+        [[entry[k] if isinstance(entry, arb_series) else (entry if k == 0 else 0) for entry in row] for row in table]
+    )
 
 
 def _block(half: int, which: int) -> arb_mat:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import sqrt
-from typing import Any
+from typing import Any, cast
 
 from flint import arb
 
@@ -33,8 +33,8 @@ def ensure_enclosable(law: Any) -> None:
         ensure_one_gain(law.gains)
         if type(law.target) not in (StaticTarget, LinearTarget):
             raise ArgumentError(
-                f"target = {law.target!r}: expected StaticTarget or LinearTarget, whose path is exact; under Algorithm 2 "
-                "the shape moves alike with every target"
+                f"target = {law.target!r}: expected StaticTarget or LinearTarget, whose path is exact; under "
+                "Algorithm 2 the shape moves alike with every target"
             )
     if isinstance(law, Algorithm3) and law.obstacles:
         raise ArgumentError(f"obstacles = {law.obstacles!r}: expected none; obstacles are not enclosed")
@@ -42,17 +42,15 @@ def ensure_enclosable(law: Any) -> None:
 
 def flow_of(law: Any, n: int, m: int) -> Flow:
     """The law for n agents in m dimensions, at the present precision, each number as the decimal that it prints as."""
-    gains = law.gains
+    gains: Any = law.gains
     terms: tuple[AgentTerm, ...] = ()
     rates = [gains.c2_alpha * min(n, 6), sqrt(gains.c1_alpha * n)]
     if isinstance(law, _LED):
-        path = law.target.harmonic.terms
-        unit = arb(exact(law.alpha.unit)) if isinstance(law, Algorithm3) else None
+        path = cast(Any, law).target.harmonic.terms
+        unit = arb(exact(cast(Any, law).alpha.unit)) if isinstance(law, Algorithm3) else None
         start, velocity, told = (tuple(arb(exact(x)) for x in path[k].tolist()) for k in (0, 1, 4))
         told = tuple(a + b for a, b in zip(velocity, told, strict=True))  # p_r = dq_r/dt + what is told beside it
         terms = (Pull(start, velocity, told, arb(exact(gains.c1_gamma)), arb(exact(gains.c2_gamma)), unit),)
         rates += [gains.c2_gamma, sqrt(gains.c1_gamma)]
     pace = max(rates) or 1.0
-    return Flow(
-        n, m, PairNumbers.of(law.alpha), arb(exact(gains.c1_alpha)), arb(exact(gains.c2_alpha)), pace, terms
-    )
+    return Flow(n, m, PairNumbers.of(law.alpha), arb(exact(gains.c1_alpha)), arb(exact(gains.c2_alpha)), pace, terms)

@@ -1,7 +1,7 @@
 """One rigorous step of an ordinary differential equation: Lohner's method in ball arithmetic (Arb).
 
-The set of possible states is x̂ + C r₀ + B r: a point, what is left of the start, and everything that was added since, each
-in coordinates that turn with the flow. A step of the Taylor polynomial moves the point, its derivative the sets, and
+The set of possible states is x̂ + C r₀ + B r: a point, what is left of the start, and all that was added since, each in
+coordinates that turn with the flow. A step of the Taylor polynomial moves the point, its derivative the sets, and
 the coordinates B are made orthogonal again, longest edge first (QR), so that boxes are not wrapped in boxes.
 """
 
@@ -237,15 +237,11 @@ def _seen(flow: Flow, combined: Callable[[Mapping[int, Any]], arb]) -> tuple[lis
     """(q_j − q_i of each pair, q_i − q_c of each agent), from what tells a linear combination of coordinates."""
     n, m, share = flow.n, flow.m, arb(1) / flow.n
     relative = [[combined({j * m + k: 1, i * m + k: -1}) for k in range(m)] for i, j in combinations(range(n), 2)]
-    deviations = [
-        [combined({j * m + k: int(i == j) - share for j in range(n)}) for k in range(m)] for i in range(n)
-    ]
+    deviations = [[combined({j * m + k: int(i == j) - share for j in range(n)}) for k in range(m)] for i in range(n)]
     return relative, deviations
 
 
-def _combined(
-    weights: Mapping[int, Any], path: Sequence[Sequence[arb]], tail: Sequence[arb], span: arb
-) -> arb:
+def _combined(weights: Mapping[int, Any], path: Sequence[Sequence[arb]], tail: Sequence[arb], span: arb) -> arb:
     """A linear combination of coordinates during a step: that of their polynomials, and their remainders."""
     orders = range(len(path[0]))
     polynomial = [sum((weight * path[k][order] for k, weight in weights.items()), arb(0)) for order in orders]

@@ -8,12 +8,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from fractions import Fraction
 from typing import Any
 
-from flint import arb, arb_series, fmpq
+from flint import arb, arb_series
 
-from flockana.certified.intervals import ball, bump, bump_slope, clamp, exact, phi, phi_slope, shift, sigma_of_square
+from flockana.certified.intervals import bump, bump_slope, exact, phi, phi_slope, shift, sigma_of_square
 
 
 class Piece(Enum):

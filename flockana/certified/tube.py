@@ -14,11 +14,10 @@ from flint import arb, ctx
 
 from flockana.base.checks import FloatArray
 from flockana.certified.intervals import AlphaParameters, exact, psi_alpha, sigma_of_square, square
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.laws.olfati_saber import Algorithm2
 
 if TYPE_CHECKING:
     from flockana.certified.lohner import StateSet, Step
-    from flockana.certified.series import PairNumbers
 
 Pair = tuple[int, int]
 BITS = 100
@@ -68,6 +67,7 @@ class Tube:
     Examples
     --------
     >>> from flockana.certified.enclose import enclose
+    >>> from flockana.laws.olfati_saber import Algorithm1
     >>> tube = enclose(Algorithm1(), [[0.0], [9.0]], [[1.0], [2.0]], (0.0, 2.0))  # out of range: uniform motion
     >>> tube.min_distance().pair, 9.0 - tube.min_distance().lower < 1e-9, tube.q[-1].ravel().tolist()
     ((0, 1), True, [2.0, 13.0])
@@ -196,11 +196,12 @@ class Tube:
         return bool(basin.law == self.law and basin.holds(*self.state(-1)))
 
 
-def structural_energy(law: Algorithm1 | Algorithm2, q: Sequence[Sequence[arb]], p: Sequence[Sequence[arb]]) -> arb:
+def structural_energy(law: Any, q: Sequence[Sequence[arb]], p: Sequence[Sequence[arb]]) -> arb:
     """The energy of Algorithm 1 or 2 in the moving frame, on a box of states.
 
     Examples
     --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
     >>> zero = [[arb(0)], [arb(0)]]
     >>> abs(structural_energy(Algorithm1(), zero, zero) / 30 - arb("52.383811786644864")) < arb("1e-13")
     True

@@ -1,4 +1,4 @@
-"""Verdicts of a scenario that are decided rigorously: its start is enclosed, and its end held against a certified basin."""
+"""Verdicts of a scenario that are decided rigorously: from a tube, and the certified basin that it ends in."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Enclosure:
         return verify(name, tube, basin=basin, tolerances=tolerances, subject=subject)
 
     def _enclosed(self, run: Trajectory) -> tuple[Any, Any]:
-        """The tube, and the basin or None; in lengths of ℓ, in which σ₁ counts, as a basin is certified in no others."""
+        """The tube, and the basin or None; in lengths of ℓ, which σ₁ counts in: a basin is certified in no others."""
         from flockana.certified.basin import certify
         from flockana.certified.enclose import enclose
         from flockana.equilibria.solve import find_equilibrium

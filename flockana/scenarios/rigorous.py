@@ -10,9 +10,12 @@ from flockana.environment.targets import StaticTarget
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.scenarios.enclosure import Enclosure
 from flockana.scenarios.scenario import Scenario
+from flockana.theorems.theorem import Status
 
 _REFERENCES = ("olfati-saber-2006", "flockana")
-_ALL_OF_OS_3 = {f"os-3:{name}": "verified" for name in ("i", "ii", "iii", "iv-instant", "iv-none", "iv-barrier")}
+_ALL_OF_OS_3: dict[str, Status] = {
+    f"os-3:{name}": "verified" for name in ("i", "ii", "iii", "iv-instant", "iv-none", "iv-barrier")
+}
 
 
 def _flock_of_three(seed: int = 0) -> Scenario:
@@ -20,9 +23,9 @@ def _flock_of_three(seed: int = 0) -> Scenario:
     return Scenario(
         "proved-flock",
         "Three agents: their flock and its limit are proved",
-        "Ours: three agents at rest, out of each other's range, with the γ-agent between them, Algorithm 2 with the default "
-        "gains. A tube encloses the run while the links form, until it is in a certified basin: all of Theorem 3 holds, its "
-        "limit included. The start is fixed.",
+        "Ours: three agents at rest, out of each other's range, with the γ-agent between them, Algorithm 2 with the "
+        "default gains. A tube encloses the run while the links form, until it is in a certified basin: all of Theorem "
+        "3 holds, its limit included. The start is fixed.",
         Algorithm2(target=StaticTarget((0.0, 0.0))),
         q,
         np.zeros((3, 2)),
@@ -38,8 +41,9 @@ def _collision(seed: int = 0) -> Scenario:
     return Scenario(
         "proved-collision",
         "Two agents head on: that they collide is proved",
-        "Ours: two agents on a line, 1 apart, at 32 towards each other, Algorithm 1 with the default gains, H(0) = 1.6 c*. A "
-        "tube shows them in the other order, so they met: no bound above c* excludes a collision. The start is fixed.",
+        "Ours: two agents on a line, 1 apart, at 32 towards each other, Algorithm 1 with the default gains, H(0) = "
+        "1.6 c*. A tube shows them in the other order, so they met: no bound above c* excludes a collision. The start "
+        "is fixed.",
         Algorithm1(),
         np.array([[0.0], [1.0]]),
         np.array([[32.0], [-32.0]]),

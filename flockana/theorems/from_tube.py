@@ -1,7 +1,7 @@
 """Claims decided by a tube (`flockana.enclose`): of rigour interval, for every start that it encloses.
 
-A margin is a ball. Where it lies on one side of 0, it decides; where it does not, the tube is too wide, and the claim is
-inconclusive. A limit is claimed from the certified basin that the tube ends in.
+A margin is a ball. Where it lies on one side of 0, it decides; where it does not, the tube is too wide, and the claim
+is inconclusive. A limit is claimed from the certified basin that the tube ends in.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ class Enclosed:
 
 
 def enclosed_by(name: str, module: str = "enclosed") -> Callable[..., Checked]:
-    """What decides a theorem of `olfati_saber` from a tube: a function that is imported, Arb with it, when it is called."""
+    """What decides a theorem of `olfati_saber` from a tube: a function that is imported when it is called."""
 
     def check(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
         decide = getattr(import_module(f"flockana.theorems.olfati_saber.{module}"), name)
@@ -154,10 +154,12 @@ def no_collision(case: Enclosed, needs: Iterable[Hypothesis], *, name: str, proo
 
 
 def converges(case: Enclosed, needs: Iterable[Hypothesis], *, name: str, stated: str, detail: str) -> Claim:
-    """The claim that every start of the tube converges to the orbit of the basin that it ends in, velocities matched."""
+    """The claim that every start of the tube converges to the orbit of the basin that it ends in."""
     last = case.tube.t[-1]
     caught = f"{detail}; all states at t = {last:g} lie in a certified basin" if case.basin is not None else detail
-    return known(name, case.doubt, needs, holds=case.basin is not None, stated=stated, witness={"time": last}, detail=caught)
+    return known(
+        name, case.doubt, needs, holds=case.basin is not None, stated=stated, witness={"time": last}, detail=caught
+    )
 
 
 def certain_links(distances: Mapping[Pair, arb], reach: arb) -> tuple[list[Pair], list[Pair]]:

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING
 
 from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
 from flockana.theorems.theorem import Claim, Hypothesis
+
+if TYPE_CHECKING:
+    from flockana.certified.tube import Tube
 
 _MEMBERS = {"alpha": AlphaInteraction, "beta": BetaInteraction, "gains": Gains}
 
@@ -102,12 +106,12 @@ def applied(run: Trajectory, name: str, *laws: type) -> Hypothesis:
     return condition(f"{name} is applied", type(law) in laws and not other, detail=detail)
 
 
-def positive(run: Trajectory, **gains: str) -> Hypothesis:
+def positive(run: Trajectory | Tube, **gains: str) -> Hypothesis:
     """The hypothesis that some gains are positive.
 
     Parameters
     ----------
-    run : Trajectory
+    run : Trajectory or Tube
         A run of a law with gains.
     **gains : str
         How each is written, by its name in `Gains`; common to all agents.

@@ -68,8 +68,10 @@ def test_one_agent_swings_to_its_target_as_the_closed_form_says(order):
     for k, t in enumerate(tube.t):
         (q,), (p,) = tube.state(k)
         position, velocity = oscillator(t)
-        assert q[0].contains(position) and p[0].contains(velocity)
-    assert tube.radii.max() < 1e5 * off and tube.min_distance().lower == np.inf
+        assert q[0].contains(position)
+        assert p[0].contains(velocity)
+    assert tube.radii.max() < 1e5 * off
+    assert tube.min_distance().lower == np.inf
 
 
 def test_between_steps_too_the_closed_form_is_inside():
@@ -85,7 +87,8 @@ def test_a_target_that_moves_and_one_that_lies_are_followed():
     moving = enclose(Algorithm2(gains=ALONE, target=LinearTarget((0.0,), (3.0,))), [[1.0]], [[3.0]], t)
     lying = enclose(Algorithm2(gains=ALONE, target=StaticTarget((0.0,), (1.25,))), [[2.0]], [[0.0]], t)
     position, velocity = oscillator(1.0)
-    assert moving.state(-1)[0][0][0].contains(position + 3) and moving.state(-1)[1][0][0].contains(velocity + 3)
+    assert moving.state(-1)[0][0][0].contains(position + 3)
+    assert moving.state(-1)[1][0][0].contains(velocity + 3)
     assert lying.state(-1)[0][0][0].contains(position + 1)  # it rests where 1.25 q = 1 · 1.25
 
 
@@ -93,7 +96,8 @@ def test_two_agents_out_of_range_move_uniformly():
     tube = enclose(Algorithm1(), [[0.0, 0.0], [20.0, 0.0]], [[1.0, 2.0], [-1.0, 0.5]], (0.0, 4.0))
     q, p = tube.state(-1)
     assert all(x.contains(y) for x, y in zip((*q[0], *q[1], *p[0]), (4, 8, 16, 2, 1, 2), strict=True))
-    assert tube.radii.max() < 1e-14 and 11.0 < tube.min_distance().lower <= 13.42
+    assert tube.radii.max() < 1e-14
+    assert 11.0 < tube.min_distance().lower <= 13.42
 
 
 @pytest.mark.parametrize("start", [3.0, 5.0, 8.0])
@@ -117,7 +121,8 @@ def test_a_run_in_high_precision_is_inside(start):
         gap, speed = (arb(mpmath.nstr(x, 30)) for x in y)
     q, p = tube.state(-1)
     for found, expected in ((q[1][0] - q[0][0], gap), (p[1][0] - p[0][0], speed)):
-        assert (found + arb(0, "1e-24")).contains(expected) and found.rad() < 1e-12
+        assert (found + arb(0, "1e-24")).contains(expected)
+        assert found.rad() < 1e-12
 
 
 def test_links_form_on_the_way_and_the_run_stays_inside(forming):
@@ -125,7 +130,8 @@ def test_links_form_on_the_way_and_the_run_stays_inside(forming):
     beyond = [all(x > 8.4 for x in forming.distances_during(k)) for k in (0, -1)]
     assert beyond == [True, False]
     run = simulate(TOLD, TRIANGLE, 0.0 * TRIANGLE, (0.0, 0.53125), rtol=1e-12, t_eval=forming.t)
-    assert inside(run, forming, 1e-10) and forming.radii.max() < 1e-9
+    assert inside(run, forming, 1e-10)
+    assert forming.radii.max() < 1e-9
 
 
 def test_what_is_told_of_the_time_between_steps_holds_of_the_run(forming):
@@ -158,7 +164,8 @@ def test_a_box_of_starts_is_followed_as_a_whole():
     for a, b in ((-1, -1), (-1, 1), (1, -1), (1, 1), (0, 0.5)):
         q0 = [[wide * a], [6.5 + wide * b]]
         assert inside(simulate(law, q0, [[0.25], [-0.25]], t, rtol=1e-12, t_eval=tube.t), tube, 1e-9)
-    assert tube.radii[0, 0].max() < 1.01 * wide and tube.radii[-1, 0].max() < 5.0 * wide
+    assert tube.radii[0, 0].max() < 1.01 * wide
+    assert tube.radii[-1, 0].max() < 5.0 * wide
 
 
 # Each bound taken away: what is then no enclosure is found to be none.
@@ -182,7 +189,9 @@ def no_error(monkeypatch):
 
 
 def no_derivative(monkeypatch):
-    monkeypatch.setattr(lohner, "_variation", lambda flow, t, h, path, *rest: (zero := lohner.identity(len(path)) * 0, zero))
+    monkeypatch.setattr(
+        lohner, "_variation", lambda flow, t, h, path, *rest: (zero := lohner.identity(len(path)) * 0, zero)
+    )
 
 
 @pytest.mark.parametrize("mutate", [no_remainder, no_error])
@@ -228,7 +237,8 @@ def test_it_ends_where_it_breaks_and_says_why(capsys):
     assert (few.status, len(few.taken), few.stats["steps"]) == ("broken", 3, 3)
     assert few.message == "it took 3 steps, as many as it may"
     wide = enclose(Algorithm1(), [[0.0], [9.0]], [[0.0], [0.0]], (0.0, 4.0), radius=(0.0, 0.5))
-    assert wide.status == "broken" and wide.message.startswith("the set is wider than 0.2 d at t = ")
+    assert wide.status == "broken"
+    assert wide.message.startswith("the set is wider than 0.2 d at t = ")
 
 
 @pytest.mark.parametrize(

@@ -11,11 +11,11 @@ from flockana.base.checks import FloatArray
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw
 from flockana.theorems.claims import judged
+from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.hypotheses import condition, has_lattice
 from flockana.theorems.leads import bridge
 from flockana.theorems.rounding import EPS, frame_error, spread_error
 from flockana.theorems.sampling import fastest_between, nets_at, nets_between, radius_between
-from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
 
 _SHARE = 1e-9  # of an agent: what a share of n agents, as a decimal fraction, may be off by

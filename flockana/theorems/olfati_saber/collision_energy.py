@@ -6,10 +6,10 @@ import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.hypotheses import alpha_gain, law_is
 from flockana.theorems.olfati_saber.collisions import below_multiple, no_collision
 from flockana.theorems.rounding import energy_error
-from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.theorem import Checked, Theorem, Tolerances, unmet
 
 _MULTIPLES = {"below": 1, "twice": 2}  # of c*, by claim

@@ -38,11 +38,12 @@ def _coincident_energy(tube: Tube) -> arb:
 def _below_c_star(tube: Tube, times: int = 1) -> Hypothesis:
     """The hypothesis H(0) < k c*."""
     with ctx.workprec(BITS):
-        return below("H(0) < c*" if times == 1 else f"H(0) < {times} c*", tube.energy(0), times * _coincident_energy(tube))
+        name = "H(0) < c*" if times == 1 else f"H(0) < {times} c*"
+        return below(name, tube.energy(0), times * _coincident_energy(tube))
 
 
 def _below_barrier(tube: Tube) -> Hypothesis:
-    """The hypothesis H(0) < min{V : two agents coincide}: met below a lower bound, unmet above the V of such a state."""
+    """The hypothesis H(0) < min{V : two agents coincide}: met below a lower bound, unmet above such a state's V."""
     from flockana.equilibria.barrier import collision_bounds
 
     low, high = (tube.law.gains.c1_alpha * bound for bound in collision_bounds(tube.law.alpha, tube.n, tube.m))
@@ -141,7 +142,9 @@ def _cohesive(case: Enclosed, needs: list[Hypothesis]) -> Claim:
         computed=largest,
         stated=f"R <= sqrt(2 H_λ(0)/c1γ) = {float(bound):.5g}",
         proof="cohesion",
-        detail=f"cohesive: R <= {largest:.5g} {case.until}" if case.basin is None else f"cohesive: R <= {largest:.5g} "
+        detail=f"cohesive: R <= {largest:.5g} {case.until}"
+        if case.basin is None
+        else f"cohesive: R <= {largest:.5g} "
         f"up to t = {tube.t[-1]:g}, and the energy allows {float(bound):.5g} for ever",
     )
 

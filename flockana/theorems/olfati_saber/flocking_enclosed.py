@@ -95,9 +95,11 @@ def _cohesive(tube: Tube, window: range, tolerances: Tolerances) -> Claim:
     rows = [[norm(x) for x in tube.taken[k].deviations] for k in window]
     each = [max(row, key=lambda x: float(x.upper())).union(max(row, key=lambda x: float(x.lower()))) for row in rows]
     bound = arb(tolerances.cohesion) * each[0]
-    highest, when = _highest(tube, range(len(each)), lambda k: each[k])
+    highest = _highest(tube, range(len(each)), lambda k: each[k])[0]
     detail = f"R is at most {float(highest.upper()):.5g}, and {float(each[0].mid()):.5g} when the window begins"
-    return decided("cohesive", bound - highest, computed=float(highest.upper()), stated="R stays bounded", detail=detail)
+    return decided(
+        "cohesive", bound - highest, computed=float(highest.upper()), stated="R stays bounded", detail=detail
+    )
 
 
 def alpha_flocking(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:

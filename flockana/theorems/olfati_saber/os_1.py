@@ -11,13 +11,13 @@ from flockana.interactions import AlphaInteraction
 from flockana.lattice import harborth
 from flockana.laws.olfati_saber import Algorithm1, paper_pair
 from flockana.theorems.asymptotics import lattice_limit, velocities_match
+from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.hypotheses import law_is, positive
 from flockana.theorems.leads import strained
 from flockana.theorems.olfati_saber.attraction import final_basin
 from flockana.theorems.olfati_saber.collisions import below_multiple, below_the_barrier, no_collision
 from flockana.theorems.olfati_saber.energy import proved
 from flockana.theorems.rounding import energy_error
-from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.theorem import Checked, Hypothesis, Theorem, Tolerances, unmet
 
 

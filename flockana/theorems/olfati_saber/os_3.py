@@ -12,6 +12,7 @@ from flockana.lattice import classify
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.theorems.asymptotics import velocities_match
 from flockana.theorems.claims import judged
+from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.hypotheses import condition, law_with_common_gains, positive, vacuous
 from flockana.theorems.leads import pairs_apart
 from flockana.theorems.limits import limit_claim
@@ -26,7 +27,6 @@ from flockana.theorems.olfati_saber.collisions import (
 from flockana.theorems.olfati_saber.gamma_agent import consistent
 from flockana.theorems.rounding import energy_error, frame_error
 from flockana.theorems.sampling import radius_between
-from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
 
 _COLLISIONS = ("iv-printed", "iv-instant", "iv-none", "iv-barrier")
