@@ -7,6 +7,12 @@ from .base import errors as errors
 from .base.binomial import clopper_pearson as clopper_pearson
 from .base.references import cite as cite
 from .base.units import rescale as rescale
+from .certified.basin import Basin as Basin
+from .certified.basin import certify as certify
+from .certified.certificate import write_certificate as write_certificate
+from .certified.check import check_certificate as check_certificate
+from .certified.enclose import enclose as enclose
+from .certified.tube import Tube as Tube
 from .dynamics import predicates as predicates
 from .dynamics.simulate import simulate as simulate
 from .dynamics.trajectory import Trajectory as Trajectory

@@ -8,7 +8,7 @@ from __future__ import annotations
 from fractions import Fraction
 from math import ceil, floor
 
-from flint import arb
+from flint import arb, fmpq
 
 
 def at_least(x: arb, places: int = 6) -> str:
@@ -41,6 +41,37 @@ def small(x: arb, digits: int = 2) -> str:
     if mantissa == 10**digits:  # 9.99 became 10.0
         mantissa, exponent = mantissa // 10, exponent + 1
     return f"{_shifted(mantissa, digits - 1)}e{exponent:d}"
+
+
+def floored(x: arb | fmpq, digits: int) -> fmpq:
+    """The largest decimal of so many significant digits that is certainly not above x, a ball or an exact number."""
+    low = Fraction(int(x.p), int(x.q)) if isinstance(x, fmpq) else _end(x.lower())
+    unit = _unit(abs(low), digits)
+    return _rational(floor(low / unit) * unit)
+
+
+def raised(x: arb | fmpq, digits: int) -> fmpq:
+    """The smallest decimal of so many significant digits that is certainly not below x."""
+    return -floored(-x, digits)
+
+
+def written(x: fmpq) -> str:
+    """A rational as the decimal that it is, nothing rounded."""
+    return decimal(Fraction(int(x.p), int(x.q)))
+
+
+def _unit(size: Fraction, digits: int) -> Fraction:
+    """One in the last of so many significant digits."""
+    exponent = 0
+    while size and size >= Fraction(10) ** (exponent + 1):
+        exponent += 1
+    while size and size < Fraction(10) ** exponent:
+        exponent -= 1
+    return Fraction(10) ** (exponent + 1 - digits)
+
+
+def _rational(x: Fraction) -> fmpq:
+    return fmpq(x.numerator, x.denominator)
 
 
 def first_digits(x: arb, places: int) -> str | None:

@@ -16,6 +16,7 @@ from flockana.base.errors import FlockanaError
 from flockana.base.interrupts import interrupts_recognised
 from flockana.cli.animate import animate_command
 from flockana.cli.catalogue import scenarios_command, theorems_command
+from flockana.cli.check import check_command
 from flockana.cli.ensemble import ensemble_command
 from flockana.cli.equilibrium import equilibrium_command
 from flockana.cli.export import export_command
@@ -62,6 +63,7 @@ _COMMANDS: dict[str, Callable[..., Any]] = {
     "equilibrium": equilibrium_command,
     "stability": stability_command,
     "prove": prove_command,
+    "check": check_command,
     "ensemble": ensemble_command,
     "falsify": falsify_command,
     "export": export_command,

@@ -17,7 +17,7 @@ from flockana.ensemble.digest import mathematics
 from flockana.measures.measure import measures
 from flockana.scenarios import Scenario, scenario
 from flockana.scenarios.scenario import SOURCE
-from flockana.theorems import Tolerances, Verdict, verify
+from flockana.theorems import Tolerances, Verdict
 
 Scalar = bool | int | float | str
 COMPLETE, FAILED, ERROR, DIED = "complete", "failed", "error", "died"
@@ -226,7 +226,7 @@ def _verdicts(request: Request, item: Scenario, run: Trajectory) -> tuple[Verdic
     if request.theorems is None:
         return item.verify(run, tolerances=tolerances)
     chosen = [name for name in request.theorems if name != SOURCE]
-    verdicts = [verify(name, run, tolerances=tolerances, subject=item.name) for name in chosen]
+    verdicts = [item.verdict(name, run, tolerances=tolerances) for name in chosen]
     if SOURCE in request.theorems:
         verdicts += item.reported(run, tolerances=tolerances)
     return tuple(verdicts)

@@ -86,7 +86,7 @@ def check(task: Task | Survey) -> Page | SurveyResult:
             run = item.run()
             if run.status == "interrupted":
                 raise KeyboardInterrupt
-            verdicts = tuple(verify(name, run, subject=item.name) for name in task.only) or item.verify(run)
+            verdicts = tuple(item.verdict(name, run) for name in task.only) or item.verify(run)
             return page(ScenarioResult(item, run, verdicts), figures=task.figures)
     except FlockanaError as error:
         # one plain kind: errors with constructors of their own do not survive the way between processes

@@ -16,6 +16,7 @@ from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law
+from flockana.scenarios.enclosure import Enclosure
 from flockana.scenarios.start import given_later
 from flockana.theorems import Claim, Tolerances, Verdict, verify
 from flockana.theorems.second_run import corroborated
@@ -78,6 +79,8 @@ class Scenario:
         Statuses expected of the start with seed 0 alone, as other starts come to others: there `expected` has them too.
     instants : tuple of float
         Times within t_span at which the report shows the flock, because its source does so; empty for the usual three.
+    enclosed : Enclosure, optional
+        Which theorems are decided rigorously, from a tube, and how.
 
     Raises
     ------
@@ -106,6 +109,7 @@ class Scenario:
     settings: str = ""
     shipped: Mapping[str, Status] = field(default_factory=dict)
     instants: tuple[float, ...] = ()
+    enclosed: Enclosure | None = None
 
     def __post_init__(self) -> None:
         outside = [time for time in self.instants if not self.t_span[0] <= time <= self.t_span[1]]
@@ -146,8 +150,24 @@ class Scenario:
         tolerances : Tolerances, optional
             Thresholds.
         """
-        verdicts = tuple(verify(name, trajectory, tolerances=tolerances, subject=self.name) for name in self.theorems)
+        verdicts = tuple(self.verdict(name, trajectory, tolerances=tolerances) for name in self.theorems)
         return verdicts + self.reported(trajectory, tolerances=tolerances)
+
+    def verdict(self, name: str, trajectory: Trajectory, *, tolerances: Tolerances | None = None) -> Verdict:
+        """Check one theorem on a run of this scenario, rigorously if it is one of those `enclosed`.
+
+        Parameters
+        ----------
+        name : str
+            Its id.
+        trajectory : Trajectory
+            What `run` returned, or a saved copy of it.
+        tolerances : Tolerances, optional
+            Thresholds.
+        """
+        if self.enclosed is not None and name in self.enclosed.theorems:
+            return self.enclosed.verdict(name, trajectory, tolerances=tolerances, subject=self.name)
+        return verify(name, trajectory, tolerances=tolerances, subject=self.name)
 
     def reported(self, trajectory: Trajectory, *, tolerances: Tolerances | None = None) -> tuple[Verdict, ...]:
         """Check what the source reports, as one verdict; none if it reports nothing.

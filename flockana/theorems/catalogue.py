@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from functools import cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from flockana.base.checks import ensure_points, ensure_positive
 from flockana.base.errors import ArgumentError, UnknownNameError
@@ -13,6 +13,9 @@ from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.theorems.second_run import ensure_fits, examined_twice
 from flockana.theorems.theorem import Theorem, Tolerances, Verdict
+
+if TYPE_CHECKING:
+    from flockana.certified.tube import Tube
 
 
 @cache
@@ -68,8 +71,9 @@ def theorem(name: str) -> Theorem:
 
 def verify(
     name: str | Theorem,
-    trajectory: Trajectory | None = None,
+    trajectory: Trajectory | Tube | None = None,
     *,
+    basin: Any = None,
     law: Any = None,
     q0: Any = None,
     p0: Any = None,
@@ -86,8 +90,11 @@ def verify(
     ----------
     name : str or Theorem
         One of `theorems`, or a theorem of your own.
-    trajectory : Trajectory, optional
-        The run, for theorems about motion.
+    trajectory : Trajectory or Tube, optional
+        The run, for theorems about motion. Of a tube (`flockana.enclose`) the claims are decided rigorously, for every
+        start that it encloses, and their rigour reads ``"interval"``.
+    basin : Basin, optional
+        With a tube: a certified basin (`flockana.certify`) that it may end in, which decides claims about limits.
     law, q0, p0, t_span : optional
         Instead of a trajectory: `simulate` is called with them and its defaults.
     q : array_like, shape (n, m), optional
@@ -127,6 +134,10 @@ def verify(
     if given not in needed:
         options = " or ".join(", ".join(sorted(option)) or "nothing" for option in needed)
         raise ArgumentError(f"{item.id} is checked on {options}: got {', '.join(sorted(given)) or 'nothing'}")
+    if item.kind == "trajectory" and _is_tube(trajectory):
+        return _verified_tube(item, trajectory, basin, used, subject)
+    if basin is not None:
+        raise ArgumentError("a basin decides the limit of a tube: expected verify(theorem, enclose(...), basin=...)")
     if item.kind == "trajectory":
         run = trajectory if trajectory is not None else simulate(law, q0, p0, t_span)
         if not isinstance(run, Trajectory):
@@ -136,6 +147,22 @@ def verify(
     if item.kind == "configuration":
         subject_data = (ensure_points("q", q), ensure_positive("d", d), ensure_positive("r", r))
     return Verdict(item.id, *item.examine(*subject_data, used), used, subject)
+
+
+def _is_tube(run: Any) -> bool:
+    """Whether it is a tube, told without loading Arb for what is none."""
+    if run is None or isinstance(run, Trajectory):
+        return False
+    from flockana.certified.tube import Tube
+
+    return isinstance(run, Tube)
+
+
+def _verified_tube(item: Theorem, tube: Any, basin: Any, tolerances: Tolerances, subject: str) -> Verdict:
+    if item.enclosed is None:
+        able = ", ".join(name for name, one in catalogue().items() if one.enclosed is not None)
+        raise ArgumentError(f"{item.id} is not decided from a tube: expected a Trajectory, or one of {able}")
+    return Verdict(item.id, *item.examine(tube, basin, tolerances, check=item.enclosed), tolerances, subject)
 
 
 def _verified_run(item: Theorem, run: Trajectory, tolerances: Tolerances, subject: str) -> Verdict:

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING
 
 from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import AlphaInteraction, BetaInteraction, FormulaInteraction, Gains
 from flockana.laws.composition import Composition
 from flockana.theorems.theorem import Claim, Hypothesis
+
+if TYPE_CHECKING:
+    from flockana.certified.tube import Tube
 
 _MEMBERS = {"alpha": AlphaInteraction, "beta": BetaInteraction, "gains": Gains}
 
@@ -147,12 +151,12 @@ def smooth_pair(run: Trajectory) -> Hypothesis:
     return condition("the pair law is C¹ and vanishes at its range", not faults, detail="; ".join(faults))
 
 
-def positive(run: Trajectory, **gains: str) -> Hypothesis:
+def positive(run: Trajectory | Tube, **gains: str) -> Hypothesis:
     """The hypothesis that some gains are positive.
 
     Parameters
     ----------
-    run : Trajectory
+    run : Trajectory or Tube
         A run of a law with gains.
     **gains : str
         How each is written, by its name in `Gains`; common to all agents.

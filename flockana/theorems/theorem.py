@@ -249,6 +249,8 @@ class Theorem:
         Names of the claims, in order. Those that `check` leaves out are vacuous if a hypothesis is unmet.
     reason : str
         Text of such a vacuous claim, with ``{name}`` and ``{detail}`` of the first unmet hypothesis.
+    enclosed : callable, optional
+        As `check`, of a tube (`flockana.enclose`), a certified basin that it may end in or None, and the tolerances.
     """
 
     id: str
@@ -264,19 +266,24 @@ class Theorem:
     law: Callable[[Any], Hypothesis] | None = None
     claims: tuple[str, ...] = ()
     reason: str = "{name}: {detail}"
+    enclosed: Callable[..., tuple[Iterable[Hypothesis], Iterable[Claim]]] | None = None
 
-    def examine(self, *case: Any) -> tuple[tuple[Hypothesis, ...], tuple[Claim, ...]]:
+    def examine(
+        self, *case: Any, check: Callable[..., tuple[Iterable[Hypothesis], Iterable[Claim]]] | None = None
+    ) -> tuple[tuple[Hypothesis, ...], tuple[Claim, ...]]:
         """Hypotheses and claims of one case; claims that `check` leaves out for an unmet hypothesis are vacuous.
 
         Parameters
         ----------
         *case : object
             What `check` takes, the tolerances last.
+        check : callable, optional
+            Another check than the theorem's own, such as `enclosed`.
         """
         hypotheses = [] if self.law is None else [self.law(case[0])]
         claims: list[Claim] = []
         if unmet(hypotheses) is None:
-            further, stated = self.check(*case)
+            further, stated = (check or self.check)(*case)
             hypotheses, claims = [*hypotheses, *further], list(stated)
         if (missed := unmet(hypotheses)) is not None:
             text, made = self.reason.format(name=missed.name, detail=missed.detail), {claim.name for claim in claims}

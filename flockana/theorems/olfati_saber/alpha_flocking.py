@@ -11,6 +11,7 @@ from flockana.base.checks import FloatArray
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw
 from flockana.theorems.claims import judged
+from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.hypotheses import condition, has_lattice
 from flockana.theorems.leads import bridge
 from flockana.theorems.rounding import EPS, frame_error, spread_error
@@ -181,6 +182,7 @@ THEOREM = (
         source="Olfati-Saber 2006, Definition 5",
         kind="trajectory",
         check=_check,
+        enclosed=enclosed_by("alpha_flocking", "flocking_enclosed"),
         claims=("giant", "cohesive", "deviation", "mismatch"),
         leads={"giant": bridge},
     ),
@@ -191,6 +193,7 @@ THEOREM = (
         source="Olfati-Saber 2006, Definition 5, strict form",
         kind="trajectory",
         check=_check_strict,
+        enclosed=enclosed_by("alpha_flocking_strict", "flocking_enclosed"),
         claims=("flock", "deviation", "mismatch"),
         leads={"flock": bridge},
     ),

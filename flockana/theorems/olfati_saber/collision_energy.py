@@ -8,6 +8,7 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import AlphaInteraction
 from flockana.laws.composition import Composition
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.hypotheses import alpha_gain, condition, law_is_or_composed, positive
 from flockana.theorems.meeting import least_is_known, meeting
 from flockana.theorems.olfati_saber.collisions import below_multiple, no_collision
@@ -56,6 +57,7 @@ THEOREM = Theorem(
     kind="trajectory",
     law=law_is_or_composed("Algorithm 1 or 2", Algorithm1, Algorithm2),
     check=_check,
+    enclosed=enclosed_by("collision_energy"),
     claims=tuple(_MULTIPLES),
     references=("olfati-saber-2006", "flockana"),
 )

@@ -11,6 +11,7 @@ from flockana.interactions import AlphaInteraction
 from flockana.lattice import harborth
 from flockana.laws.olfati_saber import Algorithm1, paper_pair
 from flockana.theorems.asymptotics import lattice_limit, velocities_match
+from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.hypotheses import law_is, positive
 from flockana.theorems.leads import strained
 from flockana.theorems.olfati_saber.attraction import final_basin
@@ -85,6 +86,7 @@ THEOREM = Theorem(
     kind="trajectory",
     law=law_is("Algorithm 1", Algorithm1),
     check=_check,
+    enclosed=enclosed_by("os_1"),
     claims=("i", "ii", "iii", "iii-barrier"),
     leads={"i": strained},
     limits=("i",),

@@ -12,6 +12,7 @@ from flockana.lattice import classify
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.theorems.asymptotics import velocities_match
 from flockana.theorems.claims import judged
+from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.hypotheses import condition, law_with_common_gains, positive, vacuous
 from flockana.theorems.leads import pairs_apart
 from flockana.theorems.limits import limit_claim
@@ -108,6 +109,7 @@ THEOREM = Theorem(
     kind="trajectory",
     law=law_with_common_gains("Algorithm 2", Algorithm2),
     check=_check,
+    enclosed=enclosed_by("os_3"),
     claims=("i", "ii", "iii", *_COLLISIONS),
     leads={"iv-printed": pairs_apart, "iv-instant": pairs_apart},
 )

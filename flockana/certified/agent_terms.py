@@ -1,0 +1,95 @@
+"""What acts on an agent by itself, in balls and in series (Arb): the pull to a γ-agent on a straight path."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from flint import arb
+
+from flockana.certified.intervals import square
+from flockana.certified.series import Piece
+
+Block = list[list[Any]]
+
+
+class AgentTerm(ABC):
+    """A force on each agent that depends on time and on its own state."""
+
+    @abstractmethod
+    def force(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> list[Any]:
+        """The force at a position and a velocity."""
+
+    @abstractmethod
+    def slopes(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> tuple[Block, Block]:
+        """Its derivatives by position and velocity, two tables."""
+
+    def piece(self, x: Sequence[arb]) -> Piece:
+        """The piece on which it is, anywhere in a box: `Piece.OUT` where it is 0, `Piece.CORE` where it is analytic."""
+        return Piece.CORE
+
+    def drift(self, t: arb, x: Sequence[arb]) -> list[arb]:
+        """Its derivative by time at a fixed state."""
+        return [arb(0)] * len(x)
+
+
+@dataclass(frozen=True)
+class Pull(AgentTerm):
+    """−c1γ (x − q_r) − c2γ (v − p_r), or −c1γ (x − q_r)/√(1 + ‖x − q_r‖²/ℓ²) − c2γ (v − p_r).
+
+    Attributes
+    ----------
+    start, velocity, told : tuple of arb
+        q_r = start + velocity t, and p_r.
+    stiffness, damping : arb
+        c1γ and c2γ.
+    unit : arb, optional
+        ℓ; None for the linear pull.
+    """
+
+    start: tuple[arb, ...]
+    velocity: tuple[arb, ...]
+    told: tuple[arb, ...]
+    stiffness: arb
+    damping: arb
+    unit: arb | None = None
+
+    def _away(self, t: Any, x: Sequence[Any]) -> list[Any]:
+        """x − q_r."""
+        return [a - (b + c * t) for a, b, c in zip(x, self.start, self.velocity, strict=True)]
+
+    def _slant(self, away: Sequence[Any], unit: arb) -> Any:
+        """1/√(1 + ‖x − q_r‖²/ℓ²)."""
+        squares = [square(a) if isinstance(a, arb) else a * a for a in away]
+        return (1 + sum(squares[1:], squares[0]) / (unit * unit)).rsqrt()
+
+    def force(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> list[Any]:
+        """The force at a position and a velocity."""
+        away = self._away(t, x)
+        if self.unit is not None:
+            slant = self._slant(away, self.unit)
+            away = [a * slant for a in away]
+        told = zip(away, v, self.told, strict=True)
+        return [-self.stiffness * a - self.damping * (w - p) for a, w, p in told]
+
+    def slopes(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> tuple[Block, Block]:
+        """Its derivatives by position and velocity, two tables."""
+        m = len(x)
+        drag = [[-self.damping if k == h else 0 for h in range(m)] for k in range(m)]
+        if self.unit is None:
+            return [[-self.stiffness if k == h else 0 for h in range(m)] for k in range(m)], drag
+        away = self._away(t, x)
+        slant = self._slant(away, self.unit)
+        cube = slant * slant * slant / (self.unit * self.unit)
+        pull = [
+            [-self.stiffness * ((slant if k == h else 0) - cube * away[k] * away[h]) for h in range(m)]
+            for k in range(m)
+        ]
+        return pull, drag
+
+    def drift(self, t: arb, x: Sequence[arb]) -> list[arb]:
+        """Minus what moves with q_r: the force depends on x − q_r."""
+        pull = self.slopes(t, x, x, Piece.CORE)[0]
+        return [-sum((a * b for a, b in zip(row, self.velocity, strict=True)), arb(0)) for row in pull]

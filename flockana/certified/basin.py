@@ -1,0 +1,269 @@
+"""Certified basins: about an orbit of equilibria of Algorithm 1 or 2, starts that provably end in it.
+
+Let O be the orbit of x* under rotations, in the frame of the centre of mass, dist the distance to O over all
+coordinates, H = U + ½‖v‖². Every state with dist < ρ and H − U* < ΔH stays nearer than ρ, collides nowhere and
+converges to a point of O with matched velocities, at a guaranteed rate. The argument, with what is checked where:
+
+1. x* exists, one in a box modulo rigid motions (`at_rest`, Krawczyk).
+2. w = y − R x* for the nearest R x* is orthogonal to the orbit there; U and H do not change under rotations: prose.
+3. Along w the curvature of U is at least k_i in the i-th shell of the ball (`pair_floors`, `shells`), so that
+   U − U* >= G(‖w‖) and ⟨∇U, w⟩ >= λ‖w‖²; on the way out U would have to reach U* + G(ρ), and H, which never rises, is
+   less: the set is invariant. In it O holds all equilibria.
+4. ⟨v, D v⟩ >= μ‖v‖² throughout (`damping`), and a strict Lyapunov function falls exponentially (`lyapunov`); so the
+   speed is integrable in time, and x converges to one point. No limit set theorem is needed.
+5. dist² is smooth where the nearest point is unique and not degenerate: in the plane if ρ < ‖x*‖, in space if
+   (1 + √3) ρ √g < tr − g with g the Frobenius norm, and tr the trace, of Σ x_i* x_i*ᵀ (checked; that this suffices is
+   prose: R maximises tr(Rᵀ M), M = Σ x_i x_i*ᵀ, which it does uniquely if σ2 ± σ3 > 0).
+6. Pairs stay farther apart than ℓ − √2 ρ > 0.
+
+The centre of mass is not part of it: it moves uniformly under Algorithm 1, and under Algorithm 2, where q_r' = p_r,
+q_c − q_r solves y'' + c2γ y' + c1γ y = −p_r'.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from flint import arb, ctx, fmpq
+
+from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_points
+from flockana.base.errors import ArgumentError, SolverError
+from flockana.certified.alignment import centred, projects, turned_to
+from flockana.certified.at_rest import enclose_rest, half_width
+from flockana.certified.damping import damping
+from flockana.certified.decimals import floored
+from flockana.certified.intervals import ball, square
+from flockana.certified.lyapunov import Bounds, Decay, decay
+from flockana.certified.shells import ROOT_TWO, Shells, Surroundings, prove
+from flockana.certified.structure import Structure, norm
+from flockana.equilibria.solve import Equilibrium
+from flockana.measures.nets import components, links
+
+DIGITS = 40
+_STATED = 4
+_BISECTIONS = 10
+_WIDEST = 0.5  # of d
+_SMALLEST = 1e-4  # of d: a basin that is smaller is not sought
+_RETREAT, _RETRIES = 0.97, 8
+_APART = 1e-6  # of d: nearer agents are at one place
+
+
+@dataclass(frozen=True)
+class Basin:
+    """A certified basin of an equilibrium's orbit under rotations; all numbers are exact, and rounded to the safe side.
+
+    Every start whose shape is nearer than `radius` to the orbit, over all coordinates, and whose structural energy is
+    less than `level` above the equilibrium's, converges to a point of the orbit, in the frame of the centre of mass,
+    and its velocities match.
+
+    Parameters
+    ----------
+    law : Algorithm1 or Algorithm2
+        The law.
+    rest : ndarray, shape (n, m)
+        The computed equilibrium, its centre at the origin; the true one is within 1e-13 d of it.
+    radius : Fraction
+        ρ, in units of length.
+    level : Fraction
+        ΔH, in units of energy.
+    curvature : Fraction
+        λ: within, U − U* >= ½ λ dist².
+    damping : Fraction
+        μ: within, the energy falls at least at the rate μ‖v‖².
+    rate : Fraction
+        Distance and speed fall at least like exp(−rate·t), but for `overshoot`.
+    overshoot : Fraction
+        The energy's excess E obeys E(t) <= overshoot·E(0)·exp(−2 rate·t).
+    distance : Fraction
+        No two agents ever come nearer to one another.
+    connected : bool
+        Whether the net is connected at all times.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> pair = certify([[0.0], [7.0]], law=Algorithm1())
+    >>> pair.share > 0.05, pair.holds([[0.0], [7.2]], [[1.0], [1.0]]), pair.holds([[0.0], [9.0]], [[0.0], [0.0]])
+    (True, True, False)
+    """
+
+    law: Any = field(repr=False)
+    rest: FloatArray = field(repr=False)
+    radius: Fraction
+    level: Fraction
+    curvature: Fraction
+    damping: Fraction
+    rate: Fraction
+    overshoot: Fraction
+    distance: Fraction
+    connected: bool
+    proof: Proved = field(repr=False)
+
+    @property
+    def share(self) -> float:
+        """ρ/d."""
+        return float(self.radius) / float(self.law.alpha.d)
+
+    def above(self, q: Any, p: Any) -> tuple[arb, arb]:
+        """Upper bounds, as balls, of a state's distance to the orbit and of its energy above the equilibrium's.
+
+        Parameters
+        ----------
+        q, p : array_like, shape (n, m)
+            Positions and velocities, floats (which count with their binary values) or balls.
+        """
+        with ctx.workdps(DIGITS):
+            u, shape = self.proof.structure, self.rest.shape
+            x, v = centred("q", q, shape), centred("p", p, shape)
+            turned = turned_to(self.proof.rest, x, shape)
+            distance = norm([a - b for a, b in zip(x, turned, strict=True)])
+            excess = u.energy(x) - u.energy(self.proof.rest) + sum(map(square, v), arb(0)) / 2
+            return distance.upper(), excess.upper()
+
+    def holds(self, q: Any, p: Any) -> bool:
+        """Whether a start is certainly in the basin; False too where that is not certain.
+
+        Parameters
+        ----------
+        q, p : array_like, shape (n, m)
+            Positions and velocities, floats (which count with their binary values) or balls. Agents are numbered as in
+            `rest`.
+        """
+        distance, excess = self.above(q, p)
+        with ctx.workdps(DIGITS):
+            return bool(distance < ball(self.radius) and excess < ball(self.level))
+
+
+@dataclass(frozen=True)
+class Proved:
+    """What a basin was proved from, for its certificate."""
+
+    structure: Structure
+    rest: tuple[arb, ...]
+    box: fmpq
+    shells: Shells
+    second: fmpq
+    degree: fmpq
+    bounds: Bounds
+    decay: Decay
+
+
+def certify(equilibrium: Any, *, law: Any = None, least: float = 0.05) -> Basin:
+    """A basin of an equilibrium of Algorithm 1 or 2, as large as this proof makes it, that no rounding can touch.
+
+    Parameters
+    ----------
+    equilibrium : Equilibrium or array_like, shape (n, m)
+        A strict minimum, of `find_equilibrium`; or positions next to one.
+    law : Algorithm1 or Algorithm2, optional
+        The law, if not the equilibrium's own.
+    least : float
+        λ over the curvature at rest, in (0, 1): a smaller one buys radius at the price of the rate.
+
+    Returns
+    -------
+    Basin
+
+    Raises
+    ------
+    ArgumentError
+        If there is no equilibrium, or it is no strict minimum, has coincident agents, or is disconnected under
+        Algorithm 1.
+    SolverError
+        If no basin could be proved.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> triangle = certify([[0.0, 0.0], [7.0, 0.0], [3.5, 6.062177826491071]], law=Algorithm1())
+    >>> triangle.share > 0.045, triangle.connected, triangle.distance > 6
+    (True, True, True)
+    """
+    known = isinstance(equilibrium, Equilibrium)
+    law = equilibrium.law if law is None and known else law
+    if law is None:
+        raise ArgumentError("law = None: expected the law that these positions are an equilibrium of")
+    q = ensure_points("equilibrium", equilibrium.q if known else equilibrium)
+    share = ensure_finite_scalar("least", least)
+    if not 0.0 < share < 1.0:
+        raise ArgumentError(f"least = {share:g}: expected a share of the curvature at rest, between 0 and 1")
+    u = Structure.of(law, *q.shape)
+    _ensure_flock(law, q)
+    with ctx.workdps(DIGITS):
+        computed, rest = enclose_rest(u, q)
+        around = Surroundings(law, u, rest)
+        radius = _largest(around, share)
+        for _ in range(_RETRIES):
+            shells = prove(around, around.proposed(radius))
+            found = shells and _concluded(around, law, computed, shells)
+            if found:
+                return found
+            radius *= _RETREAT
+    raise SolverError(f"no basin of {q.shape[0]} agents could be proved down to ρ = {radius / law.alpha.d:.3g} d")
+
+
+def _ensure_flock(law: Any, q: FloatArray) -> None:
+    """Raise on what cannot be a strict minimum of distinct agents, before work starts."""
+    if len(q) < 2:
+        raise ArgumentError(f"equilibrium has {len(q)} agent: expected two or more, a shape")
+    if len(links(q, _APART * law.alpha.d)):
+        raise ArgumentError(
+            "the equilibrium has agents at one place: expected distinct ones, or nothing bars collisions"
+        )
+    free = law.target is None or law.gains.c1_gamma == 0.0
+    if free and components(len(q), links(q, law.alpha.r)).any():
+        raise ArgumentError("the net is disconnected and nothing else holds it together: expected one component")
+
+
+def _largest(around: Surroundings, share: float) -> float:
+    """The largest radius for which floating point still proposes enough curvature, by bisection."""
+    d = float(around.law.alpha.d)
+    shortest = min(float(length) for _, length in around.gaps.values())
+    at_rest = around.proposed(_SMALLEST * d).mean
+    if not at_rest > 0.0:
+        raise ArgumentError(
+            f"the least curvature off the rigid motions is {at_rest:.3g}: expected a strict minimum of the potential; "
+            "a saddle or a soft net has no basin"
+        )
+    low, high = _SMALLEST * d, min(_WIDEST * d, 0.99 * shortest * float(ROOT_TWO.q) / float(ROOT_TWO.p))
+    for _ in range(_BISECTIONS):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if around.proposed(middle).mean > share * at_rest else (low, middle)
+    return low
+
+
+def _concluded(around: Surroundings, law: Any, computed: list[float], shells: Shells) -> Basin | None:
+    """The basin of proved shells; None where the net may part, nothing damps, or distances are not certain."""
+    u, reach = around.u, ROOT_TWO * shells.radius
+    lengths = {pair: length for pair, (_, length) in around.gaps.items()}
+    second, degree = damping(u, lengths, reach)
+    least, most = u.c2_gamma + u.c2_alpha * second, u.c2_gamma + 2 * u.c2_alpha * degree
+    curvature = floored(shells.curvature, _STATED)
+    surplus = floored(shells.surplus, _STATED)
+    apart = min((length - ball(reach)).lower() for length in lengths.values())
+    if not (least > 0 and curvature > 0 and apart > 0 and projects(u, around.rest, shells.radius)):
+        return None
+    bounds = Bounds(curvature, surplus, least, most)
+    found = decay(bounds)
+    if not found.rate > 0:
+        return None
+    return Basin(
+        law=law,
+        rest=np.array(computed).reshape(u.n, u.m),
+        radius=_fraction(shells.radius),
+        level=_fraction(floored(shells.level, _STATED)),
+        curvature=_fraction(curvature),
+        damping=_fraction(least),
+        rate=_fraction(found.rate / 2),
+        overshoot=_fraction(found.overshoot),
+        distance=_fraction(floored(apart, _STATED)),
+        connected=second > 0,
+        proof=Proved(u, tuple(around.rest), half_width(u), shells, second, degree, bounds, found),
+    )
+
+
+def _fraction(x: fmpq) -> Fraction:
+    return Fraction(int(x.p), int(x.q))

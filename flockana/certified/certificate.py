@@ -1,0 +1,100 @@
+"""A certified basin as JSON that `flockana check` can verify without the code that made it.
+
+Numbers are exact: decimals as text, computed positions in hexadecimal. A name of a field says which number of
+`flockana.certified.basin` it is; what no machine checks stands in the file.
+"""
+
+from __future__ import annotations
+
+import json
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from flint import fmpq
+
+from flockana._version import __version__
+from flockana.base.files import write_whole
+from flockana.base.seals import sealed
+from flockana.certified.basin import Basin
+from flockana.certified.decimals import decimal, written
+
+FORMAT = "flockana certificate 1"
+STATEMENT = (
+    "In the frame of the centre of mass, every solution that starts nearer than `radius` to the orbit under rotations "
+    "of the equilibrium that lies within `box` of `positions` in each coordinate (distance over all coordinates, "
+    "agents numbered), with a structural energy less than `level` above the equilibrium's, converges to a point of that "
+    "orbit with matched velocities; E(t) <= overshoot E(0) exp(-2 rate t), U - U* >= curvature/2 times the squared "
+    "distance, and no two agents come nearer than `distance`."
+)
+PROSE = (
+    "U and H do not change under rotations, so what holds along w orthogonal to the tangent at x* holds at every R x*.",
+    "At the nearest point of the orbit the displacement is orthogonal to its tangent, and |w_j - w_i| <= sqrt(2) |w|.",
+    "U is twice continuously differentiable: the bump is C^1, so that phi_alpha is C^1 and psi_alpha is C^2.",
+    "Half the squared distance to the orbit has the gradient w and a Hessian that is at most 1, and is smooth where "
+    "the nearest point is unique and not degenerate: what is checked suffices for that.",
+    "The energy's excess E falls at the rate of the damping, by the law; F > 0 with dF/dt <= -2 rate F on an invariant "
+    "set falls like exp(-2 rate t); the speed is then integrable in time, and the places converge.",
+)
+
+
+def basin_certificate(basin: Basin) -> dict[str, Any]:
+    """The certificate as plain data, with its digest.
+
+    Examples
+    --------
+    >>> from flockana.certified.basin import certify
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> basin_certificate(certify([[0.0], [7.0]], law=Algorithm1()))["kind"]
+    'basin'
+    """
+    proof = basin.proof
+    u, shells, bounds, found = proof.structure, proof.shells, proof.bounds, proof.decay
+    parameters = {name: written(getattr(u.par, name)) for name in ("d", "r", "eps", "h", "a", "b")}
+    gains = {name: written(getattr(u, name)) for name in ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma")}
+    bonds = [
+        {
+            "pairs": [list(pair) for pair in bond.pairs],
+            "along": [written(row[k]) for row in shells.along],
+            "across": [written(row[k]) for row in shells.across],
+        }
+        for k, bond in enumerate(shells.bonds)
+    ]
+    data: dict[str, Any] = {
+        "format": FORMAT,
+        "kind": "basin",
+        "statement": STATEMENT,
+        "prose": list(PROSE),
+        "law": {"algorithm": type(basin.law).__name__, **parameters, **gains},
+        "positions": [[float(x).hex() for x in row] for row in basin.rest],
+        "box": written(proof.box),
+        "bonds": bonds,
+        "curvatures": _all(shells.curvatures),
+        "second_eigenvalue": written(proof.second),
+        "degree": written(proof.degree),
+        "surplus": written(bounds.surplus),
+        "lyapunov": {name: written(getattr(found, name)) for name in ("eps", "theta", "kappa", "tau")},
+        **{name: decimal(getattr(basin, name)) for name in STATED},
+        "made_with": {"flockana": __version__, "python-flint": version("python-flint")},
+    }
+    return sealed(data)
+
+
+STATED = ("radius", "level", "curvature", "rate", "overshoot", "distance")
+
+
+def write_certificate(basin: Basin, path: str | Path) -> None:
+    """Write a basin's certificate; `flockana check` verifies the file.
+
+    Parameters
+    ----------
+    basin : Basin
+        Of `certify`.
+    path : str or Path
+        File, usually .json.
+    """
+    write_whole(path, json.dumps(basin_certificate(basin), indent=1) + "\n")
+
+
+def _all(values: tuple[fmpq, ...]) -> list[str]:
+    return [written(value) for value in values]

@@ -1,0 +1,109 @@
+"""Certificates read by who did not make them: a digest against accidents, and a checker for each kind against errors.
+
+A kind is checked by the module ``check_<kind>`` beside this one, which shares with the code that proves only the scalar
+functions in balls (`intervals`). A change of any number is seen by the digest; of one that was sealed again, what it
+claims is decided by the mathematics, to the last digit that is stated.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from flockana.base.errors import FileError, FlockanaError
+from flockana.base.files import read_whole
+from flockana.base.serialize import read_json
+
+FORMAT = "flockana certificate 1"
+
+
+class RejectedError(FlockanaError):
+    """A certificate that does not prove what it says."""
+
+
+@dataclass(frozen=True)
+class Checked:
+    """A certificate that holds.
+
+    Parameters
+    ----------
+    kind : str
+        Such as ``"basin"``.
+    statement : str
+        What is proved.
+    steps : tuple of str
+        What was verified, in order.
+    prose : tuple of str
+        What no machine checks.
+    """
+
+    kind: str
+    statement: str
+    steps: tuple[str, ...]
+    prose: tuple[str, ...]
+
+
+def check_certificate(path: str | Path) -> Checked:
+    """Verify a certificate's file.
+
+    Parameters
+    ----------
+    path : str or Path
+        JSON, as written by `write_certificate`.
+
+    Returns
+    -------
+    Checked
+
+    Raises
+    ------
+    FileError
+        If the file is no certificate.
+    RejectedError
+        If it does not prove what it says.
+    """
+    try:
+        data = read_json(read_whole(path))
+    except ValueError as error:
+        raise FileError(f"{path} is no certificate: {error}") from error
+    if not isinstance(data, dict) or data.get("format") != FORMAT:
+        raise FileError(f"{path} is no certificate: expected JSON of the format {FORMAT!r}")
+    return check_data(data)
+
+
+def check_data(data: Mapping[str, Any]) -> Checked:
+    """Verify a certificate that was read; `RejectedError` if it does not hold."""
+    rest = {key: value for key, value in data.items() if key != "digest"}
+    found = hashlib.sha256(json.dumps(rest, sort_keys=True).encode()).hexdigest()
+    ensure(data.get("digest") == found, "its digest is not that of its contents: something in it was changed")
+    kind = str(data.get("kind"))
+    module = f"{__package__}.check_{kind}"
+    ensure(kind.isidentifier() and find_spec(module) is not None, f"its kind {kind!r} is unknown")
+    try:
+        steps = tuple(importlib.import_module(module).check(rest))
+        return Checked(kind, str(data["statement"]), steps, tuple(map(str, data["prose"])))
+    except (KeyError, ValueError, TypeError, AttributeError, IndexError, ArithmeticError) as error:
+        raise RejectedError(f"it is incomplete or out of form: {type(error).__name__}: {error}") from error
+
+
+def ensure(holds: bool, otherwise: str) -> None:
+    """Raise `RejectedError` unless something holds."""
+    if not holds:
+        raise RejectedError(otherwise)
+
+
+def unit(stated: Fraction, digits: int) -> Fraction:
+    """One in the last of so many significant digits of a stated number."""
+    exponent = 0
+    while stated and abs(stated) >= Fraction(10) ** (exponent + 1):
+        exponent += 1
+    while stated and abs(stated) < Fraction(10) ** exponent:
+        exponent -= 1
+    return Fraction(10) ** (exponent + 1 - digits)

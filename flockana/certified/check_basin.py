@@ -1,0 +1,142 @@
+"""The checker of basin certificates, to be read in one sitting beside `basin`, whose argument it follows.
+
+It and `check_net` share with the prover the scalar functions of `intervals` and nothing else. Everything is in balls or
+exact; "true" means certainly true.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
+from itertools import combinations
+from typing import Any
+
+from flint import arb, arb_mat, ctx
+
+from flockana.certified.check import ensure, unit
+from flockana.certified.check_net import ROOT_TWO, Net, Pair
+from flockana.certified.intervals import ball, square
+
+DIGITS = 45
+STATED, OF_RATE = 4, 3  # significant digits
+
+
+def check(data: Mapping[str, Any]) -> Iterator[str]:
+    """Verify a certificate and say what was verified, step by step."""
+    with ctx.workdps(DIGITS):
+        net = Net(data)
+        x = net.equilibrium()
+        yield "exactly one equilibrium, modulo rigid motions, lies in the box about the positions (Krawczyk)"
+        radius, shells = Fraction(data["radius"]), len(data["curvatures"])
+        reach = radius * ROOT_TWO
+        ensure(radius > 0 and ROOT_TWO**2 > 2 and shells > 0, "no radius")
+        gaps = {(i, j): [b - a for a, b in zip(x[i], x[j], strict=True)] for i, j in combinations(range(net.n), 2)}
+        lengths = {pair: sum(map(square, gap), arb(0)).sqrt() for pair, gap in gaps.items()}
+        bonds = [tuple((int(i), int(j)) for i, j in bond["pairs"]) for bond in data["bonds"]]
+        listed = [pair for bond in bonds for pair in bond]
+        ensure(len(set(listed)) == len(listed) and set(listed) <= set(gaps), "a pair is listed twice, or is none")
+        out = ball(Fraction(str(net.text["r"]))) + ball(reach)
+        ensure(all(lengths[pair] >= out for pair in set(gaps) - set(listed)), "a pair may come into range unseen")
+        yield f"all but the {len(listed)} pairs listed stay out of range"
+        apart = min((lengths[pair] - ball(reach)).lower() for pair in gaps)
+        ensure(apart > 0, "agents may collide")
+        ensure(rounded_down(data["distance"], apart), "the distance is not that of the closest pair")
+        yield "no two agents come nearer than the distance stated"
+        for bond, pairs in zip(data["bonds"], bonds, strict=True):
+            rest = net.hull([lengths[pair] for pair in pairs])
+            ensure(
+                len(bond["along"]) == len(bond["across"]) == shells, "a bond has other than one bound for each shell"
+            )
+            for k, (along, across) in enumerate(zip(bond["along"], bond["across"], strict=True)):
+                eta = reach * (k + 1) / shells
+                ensure(
+                    net.floor_holds(rest, eta, Fraction(along), Fraction(across)), f"pairs {pairs}, shell {k}: no bound"
+                )
+        yield f"the curvatures along and across of {len(bonds)} kinds of pairs are bounds in each of {shells} shells"
+        curvatures = [Fraction(k) for k in data["curvatures"]]
+        for k, stated in enumerate(curvatures):
+            floors = {
+                pair: (Fraction(bond["along"][k]), Fraction(bond["across"][k]))
+                for bond, pairs in zip(data["bonds"], bonds, strict=True)
+                for pair in pairs
+            }
+            matrix = net.radial(x, gaps, floors)
+            ensure(positive(matrix, stated), f"shell {k}: the curvature is not proved")
+            ensure(
+                not positive(matrix, stated + unit(stated, STATED)),
+                f"shell {k}: more than the curvature stated is true",
+            )
+        yield "the curvature of U along displacements is at least what is stated, shell by shell"
+        yield from _conclusions(data, net, x, lengths, curvatures)
+
+
+def _conclusions(
+    data: Mapping[str, Any], net: Net, x: Sequence[Sequence[arb]], lengths: Mapping[Pair, arb], k: Sequence[Fraction]
+) -> Iterator[str]:
+    """What follows: level, curvature and surplus from the shells, damping from the net, and the rate from all."""
+    radius = Fraction(data["radius"])
+    step = radius / len(k)
+    slopes = [step * sum(k[: i + 1], Fraction(0)) for i in range(len(k))]  # G' at the shells' ends
+    level = step * (sum(slopes, Fraction(0)) - slopes[-1] / 2)
+    ends = [step * (i + 1) for i in range(len(k))]
+    moments = [sum((k[j] * (2 * j + 1) for j in range(i + 1)), Fraction(0)) / (2 * (i + 1) ** 2) for i in range(len(k))]
+    ensure(rounded_down(data["level"], level), "the level is not that of the shells")
+    ensure(
+        rounded_down(data["curvature"], min(s / t for s, t in zip(slopes, ends, strict=True))), "the least curvature"
+    )
+    ensure(rounded_down(data["surplus"], min(moments)), "the surplus is not that of the shells")
+    curvature, surplus = Fraction(data["curvature"]), Fraction(data["surplus"])
+    ensure(curvature > 0 and level > 0, "the potential does not rise")
+    yield "U rises by the level at least on the way out, and the orbit holds all equilibria within"
+    away = ball(radius * ROOT_TWO)
+    second, degree = Fraction(data["second_eigenvalue"]), Fraction(data["degree"])
+    weak = {pair: net.weight(length + away).lower() for pair, length in lengths.items()}
+    laplacian = net.laplacian(weak)
+    ensure(second >= 0 and (second == 0 or positive(laplacian, second)), "the net's second eigenvalue is not proved")
+    more = second + unit(second, STATED) if second else Fraction(1, 10**6)
+    ensure(not positive(laplacian, more), "the net's second eigenvalue is larger than stated")
+    near = {pair: net.weight((length - away).max(arb(0))) for pair, length in lengths.items()}
+    degrees = [sum((w for pair, w in near.items() if i in pair), arb(0)).upper() for i in range(net.n)]
+    ensure(rounded_down(str(-degree), -max(degrees)), "the largest degree is not that of the net")
+    least, most = net.c2_gamma + net.c2_alpha * second, net.c2_gamma + 2 * net.c2_alpha * degree
+    ensure(least > 0, "nothing damps")
+    yield "relative velocities are damped, the net's part from its second eigenvalue at its longest lengths"
+    eps, theta, kappa, tau = (Fraction(data["lyapunov"][name]) for name in ("eps", "theta", "kappa", "tau"))
+    ensure(0 < eps <= 2 * kappa and 0 <= theta <= 1 and tau > 0 and eps**2 < curvature, "no Lyapunov function")
+    mean = theta * surplus + (1 - theta) * curvature
+    rate = min(
+        eps * theta,
+        eps * (theta * curvature + 2 * mean - kappa * most) / (curvature + eps * tau),
+        2 * ((1 - eps / (2 * kappa)) * least - eps) / (1 + eps / tau),
+    )
+    ensure(rate > 0 and rounded_down(str(2 * Fraction(data["rate"])), rate, OF_RATE), "the rate is not that of F")
+    share = ball(eps) / ball(curvature).sqrt()
+    ensure(rounded_down(str(-Fraction(data["overshoot"])), -(1 + share) / (1 - share), OF_RATE), "the overshoot")
+    yield "F = E + ε⟨w, v⟩ falls at twice the rate, and is E but for the overshoot"
+    ensure(net.projects(x, ball(radius)), "the nearest point of the orbit may not be unique")
+    yield "the nearest point of the orbit is unique, and not degenerate"
+
+
+def rounded_down(stated: str, value: Any, digits: int = STATED) -> bool:
+    """Whether a stated number is the value rounded down to so many digits."""
+    number = Fraction(stated)
+    above = number + unit(number, digits)
+    if isinstance(value, Fraction):
+        return number <= value < above
+    return bool(ball(number) <= value) and bool(value < ball(above))
+
+
+def positive(matrix: arb_mat, shift: Fraction) -> bool:
+    """Whether every symmetric matrix in the balls, less shift·1, is certainly positive definite: L D Lᵀ has D > 0."""
+    rows = [
+        [entry - ball(shift) if i == j else entry for j, entry in enumerate(row)]
+        for i, row in enumerate(matrix.tolist())
+    ]
+    for k, pivot in enumerate(rows):
+        if not pivot[k] > 0:
+            return False
+        for row in rows[k + 1 :]:
+            factor = row[k] / pivot[k]
+            for j in range(k + 1, len(rows)):
+                row[j] -= factor * pivot[j]
+    return True

@@ -1,0 +1,227 @@
+"""The right-hand side of Algorithms 1 to 3 on balls and on power series in time (Arb), and its Taylor coefficients.
+
+A state is a list of 2 n m numbers, all coordinates of q and then all of p, agent by agent. What is written here for one
+number holds for a ball (`arb`: an enclosure over all states in a box, also across the distances where the pair law is
+only C¹) and for a series (`arb_series`: on one piece of each pair's law).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Any
+
+from flint import arb, arb_mat, arb_series, ctx
+
+from flockana.certified.agent_terms import AgentTerm
+from flockana.certified.intervals import square
+from flockana.certified.krawczyk import column
+from flockana.certified.series import PairNumbers, Piece, pair_hull, pair_series, pair_slopes
+
+Pieces = tuple[Piece, ...]  # of the pairs (0, 1), (0, 2), ..., then of the agents of each term
+
+
+@contextmanager
+def series_length(length: int) -> Iterator[None]:
+    """Series arithmetic to so many coefficients."""
+    before, ctx.cap = ctx.cap, length
+    try:
+        yield
+    finally:
+        ctx.cap = before
+
+
+@dataclass(frozen=True)
+class Flow:
+    """q' = p, p' = u(t, q, p) of Algorithm 1, 2 or 3 in balls.
+
+    Attributes
+    ----------
+    n, m : int
+        Agents and dimension.
+    pair : PairNumbers
+        The pair law.
+    stiffness, damping : arb
+        c1α and c2α.
+    pace : float
+        About the law's fastest rate, by which steps and coordinates are proposed; nothing rests on it.
+    terms : tuple of AgentTerm
+        What acts on each agent by itself: the γ-agent, obstacles.
+    """
+
+    n: int
+    m: int
+    pair: PairNumbers
+    stiffness: arb
+    damping: arb
+    pace: float
+    terms: tuple[AgentTerm, ...] = ()
+
+    def pieces(self, state: Sequence[arb]) -> Pieces:
+        """On which piece of its law each pair and each agent is, anywhere in a box."""
+        q = self.split(state)[0]
+        pairs = [self.pair.piece(squared_distance(q[i], q[j])) for i, j in combinations(range(self.n), 2)]
+        return (*pairs, *(term.piece(x) for term in self.terms for x in q))
+
+    def split(self, state: Sequence[Any]) -> tuple[list[Sequence[Any]], list[Sequence[Any]]]:
+        """Positions and velocities, agent by agent."""
+        m, half = self.m, self.n * self.m
+        return [state[k : k + m] for k in range(0, half, m)], [state[k : k + m] for k in range(half, 2 * half, m)]
+
+    def input(self, t: Any, state: Sequence[Any], pieces: Pieces) -> list[Any]:
+        """u(t, q, p), coordinate by coordinate."""
+        (q, p), m = self.split(state), self.m
+        u: list[list[Any]] = [[0 * q[0][0]] * m for _ in range(self.n)]
+        for (i, j), piece in zip(combinations(range(self.n), 2), pieces, strict=False):
+            if piece is Piece.OUT:
+                continue
+            apart, relative = [b - a for a, b in zip(q[i], q[j], strict=True)], _minus(p[j], p[i])
+            stress, adjacency = _pair(_norm2(apart), self.pair, piece)
+            stress, adjacency = self.stiffness * stress, self.damping * adjacency
+            for k in range(m):
+                force = stress * apart[k] + adjacency * relative[k]
+                u[i][k], u[j][k] = u[i][k] + force, u[j][k] - force
+        for term, own in self._agents(pieces):
+            for i in range(self.n):
+                if own[i] is not Piece.OUT:
+                    u[i] = [a + b for a, b in zip(u[i], term.force(t, q[i], p[i], own[i]), strict=True)]
+        return [x for agent in u for x in agent]
+
+    def slopes(self, t: Any, state: Sequence[Any], pieces: Pieces) -> tuple[list[list[Any]], list[list[Any]]]:
+        """(∂u/∂q, ∂u/∂p), square tables; what is 0 everywhere is the number 0."""
+        (q, p), m, size = self.split(state), self.m, self.n * self.m
+        by_q, by_p = _table(size), _table(size)
+        for (i, j), piece in zip(combinations(range(self.n), 2), pieces, strict=False):
+            if piece is Piece.OUT:
+                continue
+            apart, relative = _minus(q[j], q[i]), _minus(p[j], p[i])
+            stress, adjacency, bend, fade = _pair_and_slopes(_norm2(apart), self.pair, piece)
+            stress, drag = self.stiffness * stress, self.damping * adjacency
+            way = [
+                2 * (self.stiffness * bend * x + self.damping * fade * w) for x, w in zip(apart, relative, strict=True)
+            ]
+            for k in range(m):
+                _couple(by_p, m, i, j, k, k, drag)
+                for h in range(m):
+                    _couple(by_q, m, i, j, k, h, way[k] * apart[h] + (stress if k == h else 0))
+        for term, own in self._agents(pieces):
+            for i in range(self.n):
+                if own[i] is not Piece.OUT:
+                    for table, block in zip((by_q, by_p), term.slopes(t, q[i], p[i], own[i]), strict=True):
+                        for k in range(m):
+                            for h in range(m):
+                                table[i * m + k][i * m + h] += block[k][h]
+        return by_q, by_p
+
+    def _agents(self, pieces: Pieces) -> Iterator[tuple[AgentTerm, Pieces]]:
+        """Each term with the pieces of its agents."""
+        first = self.n * (self.n - 1) // 2
+        for term in self.terms:
+            yield term, pieces[first : first + self.n]
+            first += self.n
+
+    def taylor(self, t: arb, state: Sequence[arb], order: int, pieces: Pieces) -> list[list[arb]]:
+        """Taylor coefficients 0 to `order` of each coordinate of the solutions from a box, at a ball of times."""
+        half = self.n * self.m
+        path = [[x] for x in state]
+        for k in range(order):
+            with series_length(k + 1):
+                series = [arb_series(coefficients) for coefficients in path]
+                u = self.input(arb_series([t, 1]), series, pieces)
+            for x, v, a in zip(path[:half], path[half:], u, strict=True):
+                x.append(v[k] / (k + 1))
+                v.append(a[k] / (k + 1))
+        return path
+
+    def variation(self, t: arb, path: Sequence[Sequence[arb]], order: int, pieces: Pieces) -> list[arb_mat]:
+        """Taylor coefficients 0 to `order` of ∂x(t + s)/∂x(t), a matrix, along a path with that many known."""
+        half = self.n * self.m
+        with series_length(order):
+            series = [arb_series(coefficients[:order]) for coefficients in path]
+            by_q, by_p = self.slopes(arb_series([t, 1]), series, pieces)
+            slopes = [(_coefficient(by_q, k), _coefficient(by_p, k)) for k in range(order)]
+        upper = [_block(half, 0)]
+        lower = [_block(half, 1)]
+        for k in range(order):
+            rate = arb_mat(half, 2 * half)
+            for j, (of_q, of_p) in enumerate(slopes[: k + 1]):
+                rate += of_q * upper[k - j] + of_p * lower[k - j]
+            upper.append(lower[k] * (arb(1) / (k + 1)))
+            lower.append(rate * (arb(1) / (k + 1)))
+        return [stacked(a, b) for a, b in zip(upper, lower, strict=True)]
+
+    def rate(self, t: arb, state: Sequence[arb], pieces: Pieces) -> list[arb]:
+        """x' = (p, u), on a box that may lie on several pieces."""
+        return [*state[self.n * self.m :], *self.input(t, state, pieces)]
+
+    def jacobian(self, t: arb, state: Sequence[arb], pieces: Pieces) -> arb_mat:
+        """∂(p, u)/∂(q, p), on a box that may lie on several pieces."""
+        half = self.n * self.m
+        by_q, by_p = self.slopes(t, state, pieces)
+        rows = [[int(c == half + r) for c in range(2 * half)] for r in range(half)]
+        return arb_mat(rows + [[*a, *b] for a, b in zip(by_q, by_p, strict=True)])
+
+    def acceleration(self, t: arb, state: Sequence[arb], pieces: Pieces) -> list[arb]:
+        """x'' = ∂x'/∂x x' + ∂x'/∂t, continuous, on a box that may lie on several pieces."""
+        along = (self.jacobian(t, state, pieces) * column(self.rate(t, state, pieces))).entries()
+        half, q = self.n * self.m, self.split(state)[0]
+        by_time = [
+            sum(parts, arb(0)) for x in q for parts in zip(*(term.drift(t, x) for term in self.terms), strict=True)
+        ]
+        return [*along[:half], *(a + b for a, b in zip(along[half:], by_time or [arb(0)] * half, strict=True))]
+
+
+def squared_distance(a: Sequence[arb], b: Sequence[arb]) -> arb:
+    """‖a − b‖² of two boxes, never below 0."""
+    return sum((square(x - y) for x, y in zip(a, b, strict=True)), arb(0))
+
+
+def stacked(upper: arb_mat, lower: arb_mat) -> arb_mat:
+    """One matrix above another."""
+    return arb_mat(upper.nrows() + lower.nrows(), upper.ncols(), upper.entries() + lower.entries())
+
+
+def _norm2(x: Sequence[Any]) -> Any:
+    """‖x‖² of balls or of series."""
+    return sum(
+        (square(a) if isinstance(a, arb) else a * a for a in x[1:]),
+        square(x[0]) if isinstance(x[0], arb) else x[0] * x[0],
+    )
+
+
+def _minus(a: Sequence[Any], b: Sequence[Any]) -> list[Any]:
+    return [x - y for x, y in zip(a, b, strict=True)]
+
+
+def _pair(s2: Any, law: PairNumbers, piece: Piece) -> tuple[Any, Any]:
+    """(stress, adjacency) on a ball or along a series."""
+    return pair_hull(s2, law)[:2] if isinstance(s2, arb) else pair_series(s2, law, piece)
+
+
+def _pair_and_slopes(s2: Any, law: PairNumbers, piece: Piece) -> tuple[Any, Any, Any, Any]:
+    """(stress, adjacency, and their slopes by s²) on a ball or along a series."""
+    return pair_hull(s2, law) if isinstance(s2, arb) else (*pair_series(s2, law, piece), *pair_slopes(s2, law, piece))
+
+
+def _table(size: int) -> list[list[Any]]:
+    return [[0] * size for _ in range(size)]
+
+
+def _couple(table: list[list[Any]], m: int, i: int, j: int, k: int, h: int, value: Any) -> None:
+    """Add what coordinate h of two agents' difference pulls coordinate k of one by, and of the other back."""
+    for row, other, sign in ((i, j, 1), (j, i, 1), (i, i, -1), (j, j, -1)):
+        table[row * m + k][other * m + h] += value if sign > 0 else -value
+
+
+def _coefficient(table: list[list[Any]], k: int) -> arb_mat:
+    """The k-th coefficients of a table of series."""
+    return arb_mat(
+        [[entry[k] if isinstance(entry, arb_series) else (entry if k == 0 else 0) for entry in row] for row in table]
+    )
+
+
+def _block(half: int, which: int) -> arb_mat:
+    """The upper (0) or lower (1) half of the identity."""
+    return arb_mat([[int(c == r + which * half) for c in range(2 * half)] for r in range(half)])

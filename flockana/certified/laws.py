@@ -1,0 +1,56 @@
+"""What may be enclosed: a law as its right-hand side in balls."""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import Any, cast
+
+from flint import arb
+
+from flockana.base.errors import ArgumentError
+from flockana.certified.agent_terms import AgentTerm, Pull
+from flockana.certified.flow import Flow
+from flockana.certified.intervals import exact
+from flockana.certified.series import PairNumbers
+from flockana.environment.targets import LinearTarget, StaticTarget
+from flockana.interactions import AlphaInteraction
+from flockana.laws.algorithm3 import Algorithm3
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain
+
+_LED = (Algorithm2, Algorithm3)
+
+
+def ensure_enclosable(law: Any) -> None:
+    """Raise unless a law is one that `enclose` knows.
+
+    Examples
+    --------
+    >>> ensure_enclosable(Algorithm1())
+    """
+    if type(law) not in (Algorithm1, *_LED) or type(law.alpha) is not AlphaInteraction:
+        raise ArgumentError(f"law = {law!r}: expected Algorithm1, 2 or 3 with AlphaInteraction, alone")
+    if isinstance(law, _LED):
+        ensure_one_gain(law.gains)
+        if type(law.target) not in (StaticTarget, LinearTarget):
+            raise ArgumentError(
+                f"target = {law.target!r}: expected StaticTarget or LinearTarget, whose path is exact; under "
+                "Algorithm 2 the shape moves alike with every target"
+            )
+    if isinstance(law, Algorithm3) and law.obstacles:
+        raise ArgumentError(f"obstacles = {law.obstacles!r}: expected none; obstacles are not enclosed")
+
+
+def flow_of(law: Any, n: int, m: int) -> Flow:
+    """The law for n agents in m dimensions, at the present precision, each number as the decimal that it prints as."""
+    gains: Any = law.gains
+    terms: tuple[AgentTerm, ...] = ()
+    rates = [gains.c2_alpha * min(n, 6), sqrt(gains.c1_alpha * n)]
+    if isinstance(law, _LED):
+        path = cast(Any, law).target.harmonic.terms
+        unit = arb(exact(cast(Any, law).alpha.unit)) if isinstance(law, Algorithm3) else None
+        start, velocity, told = (tuple(arb(exact(x)) for x in path[k].tolist()) for k in (0, 1, 4))
+        told = tuple(a + b for a, b in zip(velocity, told, strict=True))  # p_r = dq_r/dt + what is told beside it
+        terms = (Pull(start, velocity, told, arb(exact(gains.c1_gamma)), arb(exact(gains.c2_gamma)), unit),)
+        rates += [gains.c2_gamma, sqrt(gains.c1_gamma)]
+    pace = max(rates) or 1.0
+    return Flow(n, m, PairNumbers.of(law.alpha), arb(exact(gains.c1_alpha)), arb(exact(gains.c2_alpha)), pace, terms)

@@ -1,0 +1,275 @@
+"""One rigorous step of an ordinary differential equation: Lohner's method in ball arithmetic (Arb).
+
+The set of possible states is x̂ + C r₀ + B r: a point, what is left of the start, and all that was added since, each in
+coordinates that turn with the flow. A step of the Taylor polynomial moves the point, its derivative the sets, and
+the coordinates B are made orthogonal again, longest edge first (QR), so that boxes are not wrapped in boxes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Any, NamedTuple
+
+import numpy as np
+from flint import arb, arb_mat
+
+from flockana.certified.flow import Flow, Pieces
+from flockana.certified.intervals import hull
+from flockana.certified.krawczyk import column, identity, midpoints
+from flockana.certified.series import Piece
+
+_INFLATIONS = 12  # of a candidate enclosure, before a step is called too long
+_GRAIN = arb(2) ** -64  # relative: by which a candidate of no width is made wider
+_VARIATION = 14  # order of the derivative of a step
+
+
+@dataclass(frozen=True)
+class StateSet:
+    """The states x̂ + C r₀ + B r.
+
+    Attributes
+    ----------
+    centre : tuple of arb
+        x̂, exact.
+    c, b : arb_mat
+        C and B, exact.
+    start, error : tuple of arb
+        The boxes r₀ and r, about 0.
+    """
+
+    centre: tuple[arb, ...]
+    c: arb_mat
+    start: tuple[arb, ...]
+    b: arb_mat
+    error: tuple[arb, ...]
+
+    @classmethod
+    def box(cls, centre: Sequence[arb], radius: Sequence[arb]) -> StateSet:
+        """All states in a box."""
+        middle = tuple(x.mid() for x in centre)
+        spread = tuple(x - y + arb(0, r.upper()) for x, y, r in zip(centre, middle, radius, strict=True))
+        size = len(middle)
+        return cls(middle, identity(size), spread, identity(size), (arb(0),) * size)
+
+    @property
+    def hull(self) -> list[arb]:
+        """The smallest box, in the coordinates of the state."""
+        spread = (self.c * column(self.start) + self.b * column(self.error)).entries()
+        return [x + y for x, y in zip(self.centre, spread, strict=True)]
+
+
+class Step(NamedTuple):
+    """What one step proves.
+
+    Attributes
+    ----------
+    after : StateSet
+        Holds the states at its end.
+    during : list of arb
+        Box that holds them from its begin to its end.
+    relative : list of list of arb
+        Of each pair, the box that holds q_j − q_i during it.
+    deviations : list of list of arb
+        Of each agent, the box that holds q_i − q_c during it.
+    added : float
+        The largest remainder, in units of length; of a velocity, what it goes in the law's own time.
+    blur : float
+        By what share the set may grow as the derivative of the step has a remainder.
+    """
+
+    after: StateSet
+    during: list[arb]
+    relative: list[list[arb]]
+    deviations: list[list[arb]]
+    added: float
+    blur: float
+
+
+def variation_order(order: int) -> int:
+    """The order of the derivative of a Taylor step."""
+    return min(_VARIATION, order - 1)
+
+
+def taylor_step(flow: Flow, t: arb, h: arb, before: StateSet, order: int) -> Step | None:
+    """A step of a Taylor polynomial; None if it is too long, or a pair may change its piece on the way."""
+    span, box = _interval(h), before.hull
+    if Piece.SWITCH in (pieces := flow.pieces(box)):
+        return None
+    path = flow.taylor(t, box, order - 1, pieces)
+    reach = [_at(coefficients, span) for coefficients in path]
+    found = _enclosed(flow, t + span, h, reach, order, pieces)
+    if found is None:
+        return None
+    during, remainder = found
+    variation, tail_of_it = _variation(flow, t, h, path, during, pieces, variation_order(order))
+    point = flow.taylor(t, before.centre, order - 1, pieces)
+    moved = [_at(coefficients, h) + rest for coefficients, rest in zip(point, remainder, strict=True)]
+    after = _moved(before, moved, variation, flow.pace)
+    if not all(x.is_finite() for x in after.hull):
+        return None
+    tail = [hull(arb(0), x) for x in remainder]
+    relative, deviations = _seen(flow, lambda weights: _combined(weights, path, tail, span))
+    return Step(after, during, relative, deviations, size(flow, remainder), _blur(flow, tail_of_it))
+
+
+def crossing_step(flow: Flow, t: arb, h: arb, before: StateSet) -> Step | None:
+    """A step of second order, which needs the right-hand side C¹ only; None if it is too long.
+
+    x(t + h) = x + h x' + ½ h² x'' at some time between, each coordinate at its own, with x'' continuous.
+    """
+    span, box = _interval(h), before.hull
+    during = _picard(flow, t, span, box)
+    if during is None:
+        return None
+    remainder = [h * h / 2 * x for x in flow.acceleration(t + span, during, flow.pieces(during))]
+    rate = flow.rate(t, before.centre, flow.pieces(before.centre))
+    moved = [x + h * v + rest for x, v, rest in zip(before.centre, rate, remainder, strict=True)]
+    slope = identity(len(box)) + flow.jacobian(t, box, flow.pieces(box)) * h
+    after = _moved(before, moved, slope, flow.pace)
+    if not all(x.is_finite() for x in after.hull):
+        return None
+    seen = _seen(flow, lambda weights: sum((weight * during[k] for k, weight in weights.items()), arb(0)))
+    return Step(after, during, *seen, size(flow, [arb(x.rad()) for x in remainder]), _blur(flow, slope))
+
+
+def _enclosed(
+    flow: Flow, times: arb, h: arb, reach: Sequence[arb], order: int, pieces: Pieces
+) -> tuple[list[arb], list[arb]] | None:
+    """(box that holds the solutions during a step, remainder at its end), if the Taylor series proves one.
+
+    If the polynomial on [0, h] plus h^N times the N-th coefficient on a box E lies inside E, no solution leaves E: it
+    would be on E's boundary at a first time, and inside by Taylor's theorem up to it.
+    """
+    growth = _first_growth(reach, h)
+    for _ in range(_INFLATIONS):
+        box = [x + arb(0, g) for x, g in zip(reach, growth, strict=True)]
+        if flow.pieces(box) != pieces:
+            return None
+        last = [coefficients[order] for coefficients in flow.taylor(times, box, order, pieces)]
+        if not all(x.is_finite() for x in last):
+            return None
+        power, whole = h**order, _interval(h**order)
+        image = [x + whole * rest for x, rest in zip(reach, last, strict=True)]
+        if all(a.contains_interior(b) for a, b in zip(box, image, strict=True)):
+            return image, [power * rest for rest in last]
+        growth = [a + 2 * arb((whole * rest).abs_upper()) for a, rest in zip(growth, last, strict=True)]
+    return None
+
+
+def _picard(flow: Flow, t: arb, span: arb, start: Sequence[arb]) -> list[arb] | None:
+    """A box that no solution leaves: start + [0, h] x'(box) lies inside it."""
+    image = list(start)
+    for _ in range(_INFLATIONS):
+        growth = _first_growth(image, span.upper())
+        box = [x + arb(0, g) for x, g in zip(image, growth, strict=True)]
+        rate = flow.rate(t + span, box, flow.pieces(box))
+        if not all(x.is_finite() for x in rate):
+            return None
+        image = [x + span * v for x, v in zip(start, rate, strict=True)]
+        if all(a.contains_interior(b) for a, b in zip(box, image, strict=True)):
+            return image
+    return None
+
+
+def _first_growth(box: Sequence[arb], h: arb) -> list[arb]:
+    """By how much a candidate is made larger than what it should hold: an eighth, and never by nothing."""
+    half = len(box) // 2
+    far, fast = (arb(max(x.abs_upper() for x in part)) for part in (box[:half], box[half:]))
+    least = [(far + h * fast) * _GRAIN] * half + [(fast + far / h) * _GRAIN] * half
+    return [arb((x.rad() / 8 + own).upper()) + arb(2) ** -500 for x, own in zip(box, least, strict=True)]
+
+
+def _variation(
+    flow: Flow, t: arb, h: arb, path: Sequence[Sequence[arb]], during: Sequence[arb], pieces: Pieces, order: int
+) -> tuple[arb_mat, arb_mat]:
+    """∂x(t + h)/∂x(t) on the whole set, a Taylor polynomial and a remainder; and the remainder alone.
+
+    At a time between, the K-th coefficient is that of the states there, times ∂x(between)/∂x(t). With L the largest row
+    sum of |∂x'/∂x| during the step, Gronwall's inequality bounds the latter: no entry differs from that of the identity
+    by more than e^{Lh} − 1.
+    """
+    span = _interval(h)
+    polynomial = flow.variation(t, path, order - 1, pieces)
+    there = flow.variation(t + span, flow.taylor(t + span, during, order, pieces), order, pieces)[order]
+    rows = flow.jacobian(t + span, during, pieces).tolist()
+    steepest = arb(max(sum((abs(x) for x in row), arb(0)).upper() for row in rows))
+    off, size = arb(0, ((steepest * h).exp() - 1).upper()), len(during)
+    between = identity(size) + arb_mat(size, size, [off] * size**2)
+    total = tail = there * between * h**order
+    for k, coefficients in enumerate(polynomial):
+        total = total + coefficients * h**k
+    return total, tail
+
+
+def _moved(before: StateSet, moved: Sequence[arb], slope: arb_mat, pace: float) -> StateSet:
+    """The image of a set whose centre goes to `moved`, by the mean value theorem with derivatives in `slope`."""
+    centre = tuple(x.mid() for x in moved)
+    rest = column([x - y for x, y in zip(moved, centre, strict=True)])
+    c, b = slope * before.c, slope * before.b
+    exact = midpoints(c)
+    rest += (c - exact) * column(before.start)
+    frame = _frame(b, [float(x.abs_upper()) for x in before.error], pace)
+    back = frame.inv()
+    error = (back * b) * column(before.error) + back * rest
+    return StateSet(centre, exact, before.start, frame, tuple(error.entries()))
+
+
+def _frame(b: arb_mat, widths: Sequence[float], pace: float) -> arb_mat:
+    """An exact matrix whose columns are orthogonal but for rounding, the first along the longest edge, and so on.
+
+    Velocities count by what they go in the law's own time, so that what damping shrinks is not mixed with what it does
+    not. Floating point proposes the matrix; whatever it is, the set is enclosed in it.
+    """
+    size, widest = len(widths), max(widths)
+    weights = np.repeat((1.0, 1.0 / pace), size // 2)[:, None]
+    edges = weights * np.array([[float(x.mid()) for x in row] for row in b.tolist()])
+    scaled = edges * (np.array(widths) / widest if widest > 0.0 else 1.0)
+    if not np.isfinite(scaled).all():
+        return identity(size)
+    longest = np.argsort(-np.linalg.norm(scaled, axis=0), kind="stable")
+    q = np.linalg.qr(edges[:, longest])[0] / weights
+    return arb_mat(size, size, [arb(float(x)) for x in q.ravel()])
+
+
+def _seen(flow: Flow, combined: Callable[[Mapping[int, Any]], arb]) -> tuple[list[list[arb]], list[list[arb]]]:
+    """(q_j − q_i of each pair, q_i − q_c of each agent), from what tells a linear combination of coordinates."""
+    n, m, share = flow.n, flow.m, arb(1) / flow.n
+    relative = [[combined({j * m + k: 1, i * m + k: -1}) for k in range(m)] for i, j in combinations(range(n), 2)]
+    deviations = [[combined({j * m + k: int(i == j) - share for j in range(n)}) for k in range(m)] for i in range(n)]
+    return relative, deviations
+
+
+def _combined(weights: Mapping[int, Any], path: Sequence[Sequence[arb]], tail: Sequence[arb], span: arb) -> arb:
+    """A linear combination of coordinates during a step: that of their polynomials, and their remainders."""
+    orders = range(len(path[0]))
+    polynomial = [sum((weight * path[k][order] for k, weight in weights.items()), arb(0)) for order in orders]
+    return _at(polynomial, span) + sum((weight * tail[k] for k, weight in weights.items()), arb(0))
+
+
+def size(flow: Flow, remainder: Sequence[arb]) -> float:
+    """The largest of some coordinates, velocities by what they go in the law's own time; nothing rests on it."""
+    half = len(remainder) // 2
+    far, fast = (max(float(x.abs_upper()) for x in part) for part in (remainder[:half], remainder[half:]))
+    return max(far, fast / flow.pace)
+
+
+def _blur(flow: Flow, slope: arb_mat) -> float:
+    """The largest row sum of the radii of a derivative, velocities counting as in `_frame`; a proposal only."""
+    weights = np.repeat((1.0, 1.0 / flow.pace), slope.nrows() // 2)
+    radii = np.array([[float(x.rad()) for x in row] for row in slope.tolist()])
+    return float((radii * weights[:, None] / weights).sum(axis=1).max())
+
+
+def _interval(h: arb) -> arb:
+    """[0, h]."""
+    return hull(arb(0), h)
+
+
+def _at(coefficients: Sequence[arb], s: arb) -> arb:
+    """A polynomial at a ball (Horner)."""
+    total = arb(0)
+    for coefficient in reversed(coefficients):
+        total = total * s + coefficient
+    return total

@@ -1,0 +1,223 @@
+"""Radial curvatures of U about an orbit of equilibria, shell by shell, and what they bound: energy, slope, uniqueness.
+
+Let w be orthogonal to the orbit's tangent at x*, Σ w_i = 0, and t = ‖w‖. If ⟨w, ∇²U(x* + s w) w⟩ >= k_i t² wherever
+s t lies in the shell (t_{i−1}, t_i], then along the segment, ∇U(x*) being 0,
+
+    ⟨∇U, w⟩ >= t G'(t),   U − U* >= G(t),   ⟨∇U, w⟩ − (U − U*) >= t G'(t) − G(t),
+
+G'' = k_i in the i-th shell, G(0) = G'(0) = 0. The least of G'/t and of (t G' − G)/t² are at ends of shells, for they
+are monotone within each; and G >= ½λt² where G' >= λt.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from flint import arb, arb_mat, fmpq
+
+from flockana.base.checks import FloatArray
+from flockana.certified.decimals import floored
+from flockana.certified.intervals import ball, hull
+from flockana.certified.krawczyk import column, identity, least_eigenvalue
+from flockana.certified.pair_floors import SHELLS, LengthCells, points, proposed_across
+from flockana.certified.structure import Balls, Structure, outer
+
+ROOT_TWO = fmpq(14142136, 10**7)  # a little more than √2: |w_j − w_i| <= √2 ‖w‖
+_ALIKE = 1e-7  # of d: pairs whose lengths agree so closely share one bound
+_SLACKS = (0.03, 0.06, 0.12, 0.25, 0.5, 0.8)  # of K: by how much α may be less than the least F''
+_LIFT = 10**7  # times the stiffest pair: curvature given to rigid motions, which are orthogonal to every w
+_DIGITS = 4
+
+
+@dataclass(frozen=True)
+class Bond:
+    """Pairs of one length (as nearly as matters), that are or may come into range."""
+
+    pairs: tuple[tuple[int, int], ...]
+    rest: arb
+
+
+@dataclass(frozen=True)
+class Floors:
+    """What floating point proposes for a radius: α and β of each bond in each shell, and the curvatures they leave."""
+
+    radius: float
+    along: FloatArray
+    across: FloatArray
+    curvatures: FloatArray
+
+    @property
+    def mean(self) -> float:
+        """Least mean of the curvatures over the first shells: λ."""
+        return float(np.min(np.cumsum(self.curvatures) / np.arange(1, SHELLS + 1)))
+
+
+class Surroundings:
+    """The bonds about an enclosed equilibrium, and the matrices of their bounds."""
+
+    def __init__(self, law: Any, u: Structure, rest: Balls) -> None:
+        self.law, self.u, self.rest = law, u, rest
+        self.gaps = {(i, j): (gap, s.sqrt()) for i, j, gap, s in u.pairs(rest)}
+
+    def bonds(self, reach: fmpq) -> list[Bond]:
+        """Pairs grouped by length, without those that stay out of range."""
+        groups: list[list[tuple[int, int]]] = []
+        last, same = -np.inf, _ALIKE * self.law.alpha.d
+        for pair in sorted(self.gaps, key=lambda pair: float(self.gaps[pair][1])):
+            length = self.gaps[pair][1]
+            if length - ball(reach) > ball(self.u.par.r):
+                continue
+            if float(length) > last + same:
+                groups.append([])
+                last = float(length)
+            groups[-1].append(pair)
+        return [Bond(tuple(group), hull(*(self.gaps[pair][1] for pair in group))) for group in groups]
+
+    @cached_property
+    def lifts(self) -> arb_mat:
+        """Σ g gᵀ/‖g‖² of the true rigid motions, times much."""
+        total = arb_mat(len(self.rest), len(self.rest))
+        at_rest = [abs(float(self.u.stiffness(length**2).mid())) for _, length in self.gaps.values()]
+        for motion in self.u.turns(self.rest) + self.u.shifts():
+            g = column(motion)
+            total += g * g.transpose() * (_LIFT * arb(max(at_rest)) / sum((y * y for y in motion), arb(0)))
+        return total
+
+    def matrix(self, bonds: Sequence[Bond], along: Sequence[Any], across: Sequence[Any]) -> arb_mat:
+        """c1γ 1 + Σ [α uuᵀ + β (1 − uuᵀ)] of the pairs, with rigid motions lifted."""
+        blocks = []
+        for bond, a, b in zip(bonds, along, across, strict=True):
+            for pair in bond.pairs:
+                gap, length = self.gaps[pair]
+                blocks.append((*pair, outer(gap, ball(b), (ball(a) - ball(b)) / length**2)))
+        return self.u.assembled(blocks) + self.lifts
+
+    def curvature(self, bonds: Sequence[Bond], along: Sequence[Any], across: Sequence[Any]) -> arb:
+        """A number that is certainly below ⟨w, M w⟩/‖w‖² for all w orthogonal to the rigid motions."""
+        total = self.matrix(bonds, along, across)
+        shift = 2 * max(sum(map(abs, row), arb(0)).upper() for row in (total - self.lifts).tolist())
+        found = least_eigenvalue(total + identity(total.nrows()) * shift)
+        return arb("-inf") if found is None else (found - shift).lower()
+
+    def proposed(self, radius: float) -> Floors:
+        """Bounds for a radius, by floating point: in each shell the slack of α that leaves most curvature."""
+        reach = float(ROOT_TWO.p) / float(ROOT_TWO.q) * radius
+        bonds = self.bonds(fmpq(*reach.as_integer_ratio()))
+        x = points(reach)
+        lengths = [float(bond.rest) for bond in bonds]
+        curves = [self._curves(length + x) for length in lengths]
+        along_part, across_part, fixed = self._parts(bonds)
+        shape = (SHELLS, len(bonds))
+        along, across, curvatures = np.empty(shape), np.empty(shape), np.empty(SHELLS)
+        for i in range(SHELLS):
+            eta = reach * (i + 1) / SHELLS
+            inside = np.abs(x) <= eta * (1.0 + 1e-12)
+            best = -np.inf
+            for slack in _SLACKS:
+                stiffest = [float(np.abs(stiff[inside]).max()) for stiff, _ in curves]
+                a = [float(stiff[inside].min()) - slack * k for (stiff, _), k in zip(curves, stiffest, strict=True)]
+                b = [
+                    proposed_across(one, length, x[inside], stiff[inside], pull[inside], eta)
+                    for one, length, (stiff, pull) in zip(a, lengths, curves, strict=True)
+                ]
+                least = _least(fixed + np.tensordot(a, along_part, 1) + np.tensordot(b, across_part, 1))
+                if least > best:
+                    best, along[i], across[i] = least, a, b
+            curvatures[i] = best
+        return Floors(radius, along, across, curvatures)
+
+    def _curves(self, length: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """(F'', T) in floating point."""
+        alpha, gain = self.law.alpha, self.law.gains.c1_alpha
+        root, z = np.sqrt(1.0 + alpha.eps * length**2), alpha.sigma_norm(length)
+        action = alpha.phi_alpha(z)
+        return gain * (alpha.phi_alpha_slope(z) * (length / root) ** 2 + action / root**3), gain * action / root
+
+    def _parts(self, bonds: Sequence[Bond]) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """In floating point: the matrices that α and β of each bond multiply, and the rest, on the complement."""
+        size, m = len(self.rest), self.u.m
+        motions = np.array([[float(y) for y in g] for g in self.u.turns(self.rest) + self.u.shifts()])
+        basis = np.linalg.svd(motions, full_matrices=True)[2][len(motions) :]
+        parts = np.zeros((2, len(bonds), len(basis), len(basis)))
+        for k, bond in enumerate(bonds):
+            for i, j in bond.pairs:
+                gap = np.array([float(y) for y in self.gaps[i, j][0]])
+                moved = basis.reshape(-1, size // m, m)[:, j] - basis.reshape(-1, size // m, m)[:, i]
+                along = moved @ (gap / np.linalg.norm(gap))
+                parts[0, k] += np.outer(along, along)
+                parts[1, k] += moved @ moved.T - np.outer(along, along)
+        own = float(self.u.c1_gamma.p) / float(self.u.c1_gamma.q)
+        return parts[0], parts[1], own * np.eye(len(basis))
+
+
+def _least(matrix: FloatArray) -> float:
+    return float(np.linalg.eigvalsh(matrix)[0]) if len(matrix) else np.inf
+
+
+@dataclass(frozen=True)
+class Shells:
+    """Proved: in the i-th of the shells of a radius the curvature is at least k_i.
+
+    `along` and `across` hold, shell by shell, the α and β of every bond that the k_i were proved with.
+    """
+
+    radius: fmpq
+    bonds: tuple[Bond, ...]
+    along: tuple[tuple[fmpq, ...], ...]
+    across: tuple[tuple[fmpq, ...], ...]
+    curvatures: tuple[fmpq, ...]
+
+    @property
+    def slopes(self) -> tuple[fmpq, ...]:
+        """G'(t_i)."""
+        step, total = self.radius / SHELLS, fmpq(0)
+        return tuple(total := total + k * step for k in self.curvatures)
+
+    @property
+    def level(self) -> fmpq:
+        """G(ρ)."""
+        step, slopes = self.radius / SHELLS, (fmpq(0), *self.slopes)
+        return sum(((a + b) * step / 2 for a, b in pairwise(slopes)), fmpq(0))
+
+    @property
+    def curvature(self) -> fmpq:
+        """λ = min G'(t)/t: ⟨∇U, w⟩ >= λ‖w‖² and U − U* >= ½ λ‖w‖²."""
+        step = self.radius / SHELLS
+        return min(slope / (step * (i + 1)) for i, slope in enumerate(self.slopes))
+
+    @property
+    def surplus(self) -> fmpq:
+        """min (t G' − G)/t²: ⟨∇U, w⟩ − (U − U*) >= surplus ‖w‖², which may be negative."""
+        step, total, least = self.radius / SHELLS, fmpq(0), []
+        for i, k in enumerate(self.curvatures):
+            total += k * step**2 * ((i + 1) ** 2 - i**2) / 2
+            least.append(total / (step * (i + 1)) ** 2)
+        return min(least)
+
+
+def prove(around: Surroundings, floors: Floors) -> Shells | None:
+    """What was proposed, rounded down and proved; None where a bound is not certain."""
+    radius = floored(arb(floors.radius), _DIGITS)
+    reach = ROOT_TWO * radius
+    bonds = around.bonds(reach)
+    if len(bonds) != floors.along.shape[1]:
+        return None
+    cells = [LengthCells(around.u, bond.rest, reach) for bond in bonds]
+    along, across, curvatures = [], [], []
+    for i in range(SHELLS):
+        a = tuple(floored(arb(y), _DIGITS) for y in floors.along[i])
+        b = tuple(floored(arb(y), _DIGITS) for y in floors.across[i])
+        if not all(cell.holds(i + 1, *pair) for cell, *pair in zip(cells, a, b, strict=True)):
+            return None
+        least = around.curvature(bonds, a, b)
+        if not least.is_finite():
+            return None
+        along.append(a)
+        across.append(b)
+        curvatures.append(floored(least, _DIGITS))
+    return Shells(radius, tuple(bonds), tuple(along), tuple(across), tuple(curvatures))

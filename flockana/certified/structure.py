@@ -1,0 +1,169 @@
+"""The structural energy of Algorithms 1 and 2 in balls, with exact parameters: U(x) = c1α V(x) + ½ c1γ ‖x‖².
+
+In the frame of the centre of mass both laws read x' = v, v' = −∇U(x) − (c2γ + c2α L̂(x)) v on Σ x_i = 0, with
+c1γ = c2γ = 0 under Algorithm 1. A configuration is a list of balls x_11, ..., x_1m, x_21, ...
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Any
+
+from flint import arb, arb_mat, fmpq
+
+from flockana.base.errors import ArgumentError
+from flockana.certified.intervals import (
+    AlphaParameters,
+    adjacency,
+    ball,
+    exact,
+    far_potential,
+    phi_alpha,
+    phi_alpha_slope,
+    psi_alpha,
+    sigma_of_square,
+    square,
+)
+from flockana.interactions import AlphaInteraction
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain
+
+Balls = Sequence[arb]
+
+
+@dataclass(frozen=True)
+class Structure:
+    """What U and the damping are made of: parameters and gains as exact rationals, n agents in m dimensions."""
+
+    par: AlphaParameters
+    c1_alpha: fmpq
+    c2_alpha: fmpq
+    c1_gamma: fmpq
+    c2_gamma: fmpq
+    n: int
+    m: int
+
+    @classmethod
+    def of(cls, law: Any, n: int, m: int) -> Structure:
+        """Of a law, each number as the decimal that it prints as; an error if the law is neither of the two."""
+        if type(law) not in (Algorithm1, Algorithm2) or not isinstance(law.alpha, AlphaInteraction):
+            raise ArgumentError(f"law = {law!r}: expected Algorithm1 or Algorithm2 with AlphaInteraction, alone")
+        if law.alpha.unit != 1.0:
+            raise ArgumentError(f"unit = {law.alpha.unit:g}: expected 1; rescale law and places by it (fl.rescale)")
+        led, gains = isinstance(law, Algorithm2), law.gains
+        if led:
+            ensure_one_gain(gains)
+        if not gains.c1_alpha > 0.0:
+            raise ArgumentError(f"c1_alpha = {gains.c1_alpha:g}: expected more than 0, or nothing holds the agents")
+        return cls(
+            AlphaParameters.of(law.alpha),
+            c1_alpha=exact(gains.c1_alpha),
+            c2_alpha=exact(gains.c2_alpha),
+            c1_gamma=exact(gains.c1_gamma if led else 0),
+            c2_gamma=exact(gains.c2_gamma if led else 0),
+            n=n,
+            m=m,
+        )
+
+    def pairs(self, x: Balls) -> Iterator[tuple[int, int, list[arb], arb]]:
+        """(i, j, x_j − x_i, squared distance) of every pair."""
+        m = self.m
+        for i, j in combinations(range(self.n), 2):
+            gap = [x[m * j + a] - x[m * i + a] for a in range(m)]
+            yield i, j, gap, sum(map(square, gap), arb(0))
+
+    def near(self, x: Balls) -> Iterator[tuple[int, int, list[arb], arb]]:
+        """The pairs that are not certainly out of range."""
+        beyond = ball(self.par.r) ** 2
+        return (pair for pair in self.pairs(x) if not pair[3] >= beyond)
+
+    def tension(self, s: arb) -> arb:
+        """F'(ℓ)/ℓ of a pair's potential F = c1α ψ_α(‖·‖_σ), by s = ℓ²: its stress."""
+        z = sigma_of_square(s, self.par.eps)
+        return ball(self.c1_alpha) * phi_alpha(z, self.par) / self._root(s)
+
+    def stiffness(self, s: arb) -> arb:
+        """F''(ℓ), by s = ℓ²: φ_α' s/(1 + εs) + φ_α/(1 + εs)^(3/2), times c1α."""
+        z, root = sigma_of_square(s, self.par.eps), self._root(s)
+        along = phi_alpha_slope(z, self.par) * s / square(root) + phi_alpha(z, self.par) / (root * square(root))
+        return ball(self.c1_alpha) * along
+
+    def weight(self, s: arb) -> arb:
+        """a_ij by s = ℓ²."""
+        return adjacency(sigma_of_square(s, self.par.eps), self.par)
+
+    def gradient(self, x: Balls) -> list[arb]:
+        """∇U."""
+        m, total = self.m, [ball(self.c1_gamma) * y for y in x]
+        for i, j, gap, s in self.near(x):
+            pull = self.tension(s)
+            for a in range(m):
+                total[m * j + a] += pull * gap[a]
+                total[m * i + a] -= pull * gap[a]
+        return total
+
+    def hessian(self, x: Balls) -> arb_mat:
+        """∇²U: each pair's T 1 + (F'' − T) uuᵀ, and c1γ."""
+        blocks = []
+        for i, j, gap, s in self.near(x):
+            pull = self.tension(s)
+            blocks.append((i, j, outer(gap, pull, (self.stiffness(s) - pull) / s)))
+        return self.assembled(blocks)
+
+    def assembled(self, blocks: Sequence[tuple[int, int, list[list[arb]]]]) -> arb_mat:
+        """The matrix of c1γ‖w‖² + Σ ⟨δ, B δ⟩, δ = w_j − w_i, over pairs with their blocks B."""
+        m, size, own = self.m, self.n * self.m, ball(self.c1_gamma)
+        total = [[own if i == j else arb(0) for j in range(size)] for i in range(size)]
+        for i, j, block in blocks:
+            for a in range(m):
+                for b in range(m):
+                    total[m * i + a][m * i + b] += block[a][b]
+                    total[m * j + a][m * j + b] += block[a][b]
+                    total[m * i + a][m * j + b] -= block[a][b]
+                    total[m * j + a][m * i + b] -= block[a][b]
+        return arb_mat(total)
+
+    def energy(self, x: Balls) -> arb:
+        """U."""
+        far, total = far_potential(self.par), arb(0)
+        beyond = ball(self.par.r) ** 2
+        for *_, s in self.pairs(x):
+            total += far if s >= beyond else psi_alpha(sigma_of_square(s, self.par.eps), self.par)
+        return ball(self.c1_alpha) * total + ball(self.c1_gamma) / 2 * sum(map(square, x), arb(0))
+
+    def turns(self, x: Balls) -> list[list[arb]]:
+        """Tangents Ωx of the orbit of x under rotations, for a basis of the skew Ω: 0, 1 or 3 of them."""
+        m, found = self.m, []
+        for a in range(m):
+            for b in range(a):
+                turn = [arb(0)] * len(x)
+                for i in range(0, len(x), m):
+                    turn[i + a], turn[i + b] = x[i + b], -x[i + a]
+                found.append(turn)
+        return found
+
+    def shifts(self) -> list[list[arb]]:
+        """Translations along the axes."""
+        return [[arb(int(k % self.m == a)) for k in range(self.n * self.m)] for a in range(self.m)]
+
+    def _root(self, s: arb) -> arb:
+        return (1 + ball(self.par.eps) * s).sqrt()
+
+
+def outer(gap: Sequence[arb], across: arb, more: arb) -> list[list[arb]]:
+    """across·1 + more·gap gapᵀ."""
+    return [
+        [more * (square(x) if a == b else x * y) + (across if a == b else arb(0)) for b, y in enumerate(gap)]
+        for a, x in enumerate(gap)
+    ]
+
+
+def dot(a: Balls, b: Balls) -> arb:
+    """⟨a, b⟩."""
+    return sum((x * y for x, y in zip(a, b, strict=True)), arb(0))
+
+
+def norm(a: Balls) -> arb:
+    """‖a‖."""
+    return sum(map(square, a), arb(0)).sqrt()

@@ -1,0 +1,248 @@
+"""A tube: sets that provably hold a run at its steps, and boxes that hold it between them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import combinations
+from math import inf, nextafter
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+
+import numpy as np
+from flint import arb, ctx
+
+from flockana.base.checks import FloatArray
+from flockana.certified.intervals import AlphaParameters, exact, psi_alpha, sigma_of_square, square
+from flockana.laws.olfati_saber import Algorithm2
+
+if TYPE_CHECKING:
+    from flockana.certified.lohner import StateSet, Step
+
+Pair = tuple[int, int]
+BITS = 100
+
+
+class BasinLike(Protocol):
+    """What a tube may end in: `flockana.certified.basin.Basin`."""
+
+    law: Any
+    rest: FloatArray
+
+    def holds(self, q: Any, p: Any) -> bool:
+        """Whether every state in a box certainly lies in it."""
+
+
+class Approach(NamedTuple):
+    """How near two agents come: a proved lower bound, which ones, and when (the step's begin)."""
+
+    lower: float
+    pair: Pair
+    time: float
+
+
+@dataclass(frozen=True)
+class Tube:
+    """Sets that hold every solution from a start or a box of starts, proved in ball arithmetic.
+
+    Parameters
+    ----------
+    law : Algorithm1, Algorithm2 or Algorithm3
+        What moves the flock.
+    q0, p0 : ndarray, shape (n, m)
+        The start, or the middle of the starts.
+    t : tuple of float
+        Times of the steps, exact; the first is that of the start.
+    sets : tuple
+        The sets at these times (`flockana.certified.lohner.StateSet`).
+    taken : tuple
+        What is known between them, one less (`flockana.certified.lohner.Step`).
+    status : {"complete", "broken", "interrupted"}
+        Whether it reaches the end of its time span.
+    message : str
+        Where and why it ends early.
+    stats : dict
+        Knobs and seconds.
+
+    Examples
+    --------
+    >>> from flockana.certified.enclose import enclose
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> tube = enclose(Algorithm1(), [[0.0], [9.0]], [[1.0], [2.0]], (0.0, 2.0))  # out of range: uniform motion
+    >>> tube.min_distance().pair, 9.0 - tube.min_distance().lower < 1e-9, tube.q[-1].ravel().tolist()
+    ((0, 1), True, [2.0, 13.0])
+    """
+
+    law: Any = field(repr=False)
+    q0: FloatArray = field(repr=False)
+    p0: FloatArray = field(repr=False)
+    t: tuple[float, ...] = field(repr=False)
+    sets: tuple[StateSet, ...] = field(repr=False)
+    taken: tuple[Step, ...] = field(repr=False)
+    status: str
+    message: str
+    stats: dict[str, Any]
+
+    def with_seconds(self, seconds: float) -> Tube:
+        """The same, with the time that it took.
+
+        Parameters
+        ----------
+        seconds : float
+            By the clock.
+        """
+        return replace(self, stats={**self.stats, "steps": len(self.taken), "seconds": seconds})
+
+    @property
+    def n(self) -> int:
+        """Number of agents."""
+        return len(self.q0)
+
+    @property
+    def m(self) -> int:
+        """Dimension."""
+        return int(self.q0.shape[1])
+
+    @property
+    def q(self) -> FloatArray:
+        """Middles of the positions' boxes at the steps, shape (T, n, m): to draw, no bounds."""
+        return self._middles[:, 0]
+
+    @property
+    def p(self) -> FloatArray:
+        """Middles of the velocities' boxes at the steps, shape (T, n, m)."""
+        return self._middles[:, 1]
+
+    @cached_property
+    def boxes(self) -> tuple[list[arb], ...]:
+        """At each step, balls that hold all coordinates of q and then of p."""
+        with ctx.workprec(BITS):
+            return tuple(one.hull for one in self.sets)
+
+    @cached_property
+    def _middles(self) -> FloatArray:
+        return self._array([[float(x.mid()) for x in box] for box in self.boxes])
+
+    @cached_property
+    def radii(self) -> FloatArray:
+        """Half-widths of the boxes of positions and of velocities about `q` and `p`, rounded up, shape (T, 2, n, m)."""
+        rows = zip(self.boxes, self._middles.reshape(len(self.t), -1).tolist(), strict=True)
+        with ctx.workprec(BITS):
+            return self._array([[up((x - y).abs_upper()) for x, y in zip(box, row, strict=True)] for box, row in rows])
+
+    def _array(self, rows: list[list[float]]) -> FloatArray:
+        return np.array(rows).reshape(len(self.t), 2, self.n, self.m)
+
+    def state(self, k: int) -> tuple[list[list[arb]], list[list[arb]]]:
+        """(q, p) at step k as balls, agent by agent.
+
+        Parameters
+        ----------
+        k : int
+            Step; negative from the end.
+        """
+        m, box = self.m, self.boxes[k]
+        rows = [box[i : i + m] for i in range(0, len(box), m)]
+        return rows[: self.n], rows[self.n :]
+
+    @property
+    def pairs(self) -> list[Pair]:
+        """All pairs, in the order of `distances_during`."""
+        return list(combinations(range(self.n), 2))
+
+    def distances_during(self, k: int) -> list[arb]:
+        """Balls that hold the distance of each pair from step k to the next.
+
+        Parameters
+        ----------
+        k : int
+            Step, the last one excluded.
+        """
+        with ctx.workprec(BITS):
+            return [norm(gap) for gap in self.taken[k].relative]
+
+    def min_distance(self) -> Approach:
+        """A proved lower bound of the distance of any two agents, at all times of the tube."""
+        least = Approach(inf, (0, 0), self.t[0])
+        for k, t in enumerate(self.t[:-1]):
+            for pair, distance in zip(self.pairs, self.distances_during(k), strict=True):
+                if (lower := down(distance.lower())) < least.lower:
+                    least = Approach(lower, pair, t)
+        return least
+
+    def cohesion_radius(self) -> FloatArray:
+        """Upper bounds of R = max ‖q_i − q_c‖ from each step to the next, proved, shape (T − 1,)."""
+        with ctx.workprec(BITS):
+            return np.array([max(up(norm(x).upper()) for x in step.deviations) for step in self.taken])
+
+    def energy(self, k: int) -> arb:
+        """A ball that holds the structural energy at step k: c1α V(x) + c1γ J(x) + K(v) in the moving frame.
+
+        Parameters
+        ----------
+        k : int
+            Step; negative from the end.
+        """
+        return structural_energy(self.law, *self.state(k))
+
+    def ends_in(self, basin: BasinLike) -> bool:
+        """Whether every state at the end lies in a certified basin of the same law: then all converge to its orbit.
+
+        Parameters
+        ----------
+        basin : Basin
+            Of `flockana.certify`.
+        """
+        return bool(basin.law == self.law and basin.holds(*self.state(-1)))
+
+
+def structural_energy(law: Any, q: Sequence[Sequence[arb]], p: Sequence[Sequence[arb]]) -> arb:
+    """The energy of Algorithm 1 or 2 in the moving frame, on a box of states.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> zero = [[arb(0)], [arb(0)]]
+    >>> abs(structural_energy(Algorithm1(), zero, zero) / 30 - arb("52.383811786644864")) < arb("1e-13")
+    True
+    """
+    with ctx.workprec(BITS):
+        par, area = scaled(law.alpha), arb(exact(law.alpha.unit)) ** 2
+        s2 = [_norm2([b - a for a, b in zip(x, y, strict=True)]) for x, y in combinations(q, 2)]
+        pairs = sum((psi_alpha(sigma_of_square(x / area, par.eps), par) for x in s2), arb(0)) * area
+        total = arb(exact(law.gains.c1_alpha)) * pairs + _inertia(p)
+        return total + arb(exact(law.gains.c1_gamma)) * _inertia(q) if isinstance(law, Algorithm2) else total
+
+
+def scaled(alpha: Any) -> AlphaParameters:
+    """The pair law's exact parameters, in units of ℓ."""
+    unit = exact(alpha.unit)
+    lengths = {name: exact(getattr(alpha, name)) / unit for name in ("d", "r")}
+    rest = {name: exact(getattr(alpha, name)) for name in ("h", "a", "b")}
+    return AlphaParameters(**lengths, eps=exact(alpha.eps) * unit * unit, **rest)
+
+
+def up(x: arb) -> float:
+    """A float that is certainly not below an exact number."""
+    return nextafter(float(x), inf)
+
+
+def down(x: arb) -> float:
+    """A float that is certainly not above an exact number."""
+    return nextafter(float(x), -inf)
+
+
+def _norm2(x: Sequence[arb]) -> arb:
+    return sum(map(square, x), arb(0))
+
+
+def norm(x: Sequence[arb]) -> arb:
+    """The length of a vector, a ball that is nowhere below 0."""
+    return _norm2(x).nonnegative_part().sqrt()
+
+
+def _inertia(x: Sequence[Sequence[arb]]) -> arb:
+    """½ Σ‖x_i − x_c‖²."""
+    columns = list(zip(*x, strict=True))
+    means = [sum(column, arb(0)) / len(x) for column in columns]
+    return sum((square(a - mean) for column, mean in zip(columns, means, strict=True) for a in column), arb(0)) / 2

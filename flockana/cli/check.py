@@ -1,0 +1,41 @@
+"""`flockana check`: verify a certificate without the code that made it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from flockana.cli.options import AsJson
+from flockana.cli.show import show_json
+from flockana.cli.status import OK, UNEXPECTED, complain
+
+
+def check_command(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="A certificate (.json).")],
+    as_json: AsJson = False,
+) -> int:
+    """Verify a certificate of a basin, and say what it proves, step by step.
+
+    The checker shares with the code that proves only the scalar functions in ball arithmetic. It rejects a file in
+    which anything was changed, and one that claims more than is true.
+
+    Exit status: 0 it holds, 2 bad input, 3 it is rejected, 130 interrupted.
+    """
+    from dataclasses import asdict
+
+    from flockana.certified.check import RejectedError, check_certificate
+
+    try:
+        found = check_certificate(file)
+    except RejectedError as error:
+        complain(f"{file} is rejected: {error}")
+        return UNEXPECTED
+    if as_json:
+        show_json(asdict(found))
+        return OK
+    typer.echo(f"{file}: a certificate of kind {found.kind} that holds\n\n{found.statement}\n")
+    typer.echo("\n".join(["Verified:", *(f"  {step}" for step in found.steps)]))
+    typer.echo("\n".join(["Not checked by machine:", *(f"  {line}" for line in found.prose)]))
+    return OK

@@ -1,0 +1,70 @@
+"""Verdicts of a scenario that are decided rigorously: from a tube, and the certified basin that it ends in."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from flockana.base.errors import SolverError
+from flockana.base.units import rescale
+from flockana.dynamics.trajectory import Trajectory
+from flockana.theorems import Tolerances, Verdict, verify
+
+
+@dataclass(frozen=True)
+class Enclosure:
+    """How to decide theorems about a run rigorously: a tube from its start, over its time.
+
+    Parameters
+    ----------
+    theorems : tuple of str
+        Ids of the theorems; others are checked on the run.
+    limit : bool
+        Whether to certify the basin of the equilibrium next to the end: what claims about limits need.
+    options : mapping
+        Keyword arguments of `flockana.enclose`.
+
+    Examples
+    --------
+    >>> Enclosure(("collision-energy",)).limit
+    False
+    """
+
+    theorems: tuple[str, ...]
+    limit: bool = False
+    options: Mapping[str, Any] = field(default_factory=dict)
+
+    def verdict(self, name: str, run: Trajectory, *, tolerances: Tolerances | None, subject: str) -> Verdict:
+        """Check a theorem on all that starts where a run does.
+
+        Parameters
+        ----------
+        name : str
+            One of `theorems`.
+        run : Trajectory
+            The run: its law, its first sample and its time are enclosed, whatever else it holds.
+        tolerances : Tolerances, optional
+            Thresholds.
+        subject : str
+            A name for the case.
+        """
+        tube, basin = run.remembered("enclosed", lambda: self._enclosed(run))
+        return verify(name, tube, basin=basin, tolerances=tolerances, subject=subject)
+
+    def _enclosed(self, run: Trajectory) -> tuple[Any, Any]:
+        """The tube, and the basin or None; in lengths of ℓ, which σ₁ counts in: a basin is certified in no others."""
+        from flockana.certified.basin import certify
+        from flockana.certified.enclose import enclose
+        from flockana.equilibria.solve import find_equilibrium
+
+        unit = run.law.alpha.unit
+        law = run.law if unit == 1.0 else rescale(run.law, length=1.0 / unit)
+        span = (float(run.t[0]), float(run.t[-1]))
+        tube = enclose(law, run.q[0] / unit, run.p[0] / unit, span, **self.options)
+        if not self.limit:
+            return tube, None
+        try:
+            return tube, certify(find_equilibrium(law, tube.q[-1]))
+        except SolverError:  # nothing is known of where it ends: its limit is inconclusive
+            return tube, None

@@ -1,0 +1,58 @@
+"""Starts whose verdicts no rounding can touch: a flock that provably forms, and two agents that provably collide."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from flockana.environment.targets import StaticTarget
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.scenarios.enclosure import Enclosure
+from flockana.scenarios.scenario import Scenario
+from flockana.theorems.theorem import Status
+
+_REFERENCES = ("olfati-saber-2006", "flockana")
+_ALL_OF_OS_3: dict[str, Status] = {
+    f"os-3:{name}": "verified" for name in ("i", "ii", "iii", "iv-instant", "iv-none", "iv-barrier")
+}
+
+
+def _flock_of_three(seed: int = 0) -> Scenario:
+    q = np.array([[-4.625, -2.5], [4.5, -2.75], [0.25, 5.5]])
+    return Scenario(
+        "proved-flock",
+        "Three agents: their flock and its limit are proved",
+        "Ours: three agents at rest, out of each other's range, with the γ-agent between them, Algorithm 2 with the "
+        "default gains. A tube encloses the run while the links form, until it is in a certified basin: all of Theorem "
+        "3 holds, its limit included. The start is fixed.",
+        Algorithm2(target=StaticTarget((0.0, 0.0))),
+        q,
+        np.zeros((3, 2)),
+        (0.0, 1.25),
+        seed,
+        {"energy": "verified", "os-3": "verified", **_ALL_OF_OS_3},
+        references=_REFERENCES,
+        enclosed=Enclosure(("os-3",), limit=True),
+    )
+
+
+def _collision(seed: int = 0) -> Scenario:
+    return Scenario(
+        "proved-collision",
+        "Two agents head on: that they collide is proved",
+        "Ours: two agents on a line, 1 apart, at 32 towards each other, Algorithm 1 with the default gains, H(0) = "
+        "1.6 c*. A tube shows them in the other order, so they met: no bound above c* excludes a collision. The start "
+        "is fixed.",
+        Algorithm1(),
+        np.array([[0.0], [1.0]]),
+        np.array([[32.0], [-32.0]]),
+        (0.0, 0.0625),
+        seed,
+        {"energy": "verified", "collision-energy:below": "vacuous", "collision-energy:twice": "refuted"},
+        references=_REFERENCES,
+        enclosed=Enclosure(("collision-energy",)),
+    )
+
+
+SCENARIOS: dict[str, Callable[..., Scenario]] = {"proved-flock": _flock_of_three, "proved-collision": _collision}

@@ -1,0 +1,192 @@
+"""Claims decided by a tube (`flockana.enclose`): of rigour interval, for every start that it encloses.
+
+A margin is a ball. Where it lies on one side of 0, it decides; where it does not, the tube is too wide, and the claim
+is inconclusive. A limit is claimed from the certified basin that the tube ends in.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from math import inf
+from typing import TYPE_CHECKING, Any
+
+from flockana.base.checks import FloatArray
+from flockana.theorems.claims import judged
+from flockana.theorems.hypotheses import condition
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances
+
+if TYPE_CHECKING:
+    from flint import arb
+
+    from flockana.certified.tube import BasinLike, Tube
+
+Pair = tuple[int, int]
+
+
+@dataclass(frozen=True)
+class Enclosed:
+    """A tube, and the basin that it ends in, if it certainly ends in one.
+
+    Attributes
+    ----------
+    tube : Tube
+        The tube.
+    basin : BasinLike, optional
+        A certified basin that holds all of its end; None if none is known to.
+    doubt : str
+        Why there is none.
+    """
+
+    tube: Tube
+    basin: BasinLike | None
+    doubt: str
+
+    @classmethod
+    def of(cls, tube: Tube, basin: BasinLike | None) -> Enclosed:
+        """A tube with the basin that it may end in."""
+        if basin is None:
+            return cls(tube, None, "no certified basin was given")
+        if tube.status != "complete":
+            return cls(tube, None, f"the tube ends early: {tube.message}")
+        if not tube.ends_in(basin):
+            return cls(tube, None, f"the end of the tube, at t = {tube.t[-1]:g}, is not certainly in the basin")
+        return cls(tube, basin, "")
+
+    @property
+    def until(self) -> str:
+        """How long what it shows holds, in words."""
+        tube = self.tube
+        if self.basin is not None:
+            return f"at all times: up to t = {tube.t[-1]:g} by the tube, from then on in the basin"
+        return f"from t = {tube.t[0]:g} to {tube.t[-1]:g}; {self.doubt}"
+
+
+def enclosed_by(name: str, module: str = "enclosed") -> Callable[..., Checked]:
+    """What decides a theorem of `olfati_saber` from a tube: a function that is imported when it is called."""
+
+    def check(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
+        decide = getattr(import_module(f"flockana.theorems.olfati_saber.{module}"), name)
+        checked: Checked = decide(tube, basin, tolerances)
+        return checked
+
+    return check
+
+
+def decided(name: str, margin: arb, needs: Iterable[Hypothesis] = (), **fields: Any) -> Claim:
+    """A claim that holds if its margin is certainly positive, and fails if it is certainly negative.
+
+    Examples
+    --------
+    >>> from flint import arb
+    >>> [decided("i", x).status for x in (arb(1, 0.5), arb(0, 1), arb(-1, 0.5))]
+    ['verified', 'inconclusive', 'refuted']
+    """
+    from flockana.certified.tube import down, up
+
+    low, high = (down(margin.lower()), up(margin.upper())) if margin.is_finite() else (-inf, inf)
+    if low > 0.0 or high < 0.0:
+        return judged(name, low if low > 0.0 else high, 0.0, needs, rigour="interval", **fields)
+    wide = f"the tube is too wide to tell: the margin is between {low:.3g} and {high:.3g}"
+    fields["detail"] = "; ".join(text for text in (fields.get("detail", ""), wide) if text)
+    return judged(name, 0.0, max(high, -low), needs, rigour="interval", **fields)
+
+
+def known(name: str, reason: str, needs: Iterable[Hypothesis], *, holds: bool, **fields: Any) -> Claim:
+    """A claim that is verified if something is known, and inconclusive for a reason if it is not."""
+    detail = "; ".join(text for text in (fields.pop("detail", ""), "" if holds else reason) if text)
+    margin, error = (1.0, 0.0) if holds else (0.0, inf)
+    return judged(name, margin, error, needs, rigour="interval", detail=detail, **fields)
+
+
+def below(name: str, energy: arb, bound: arb) -> Hypothesis:
+    """The hypothesis that an energy lies below a bound, by balls: assumed where they overlap."""
+    text = f"H(0) is in [{float(energy.lower()):.6g}, {float(energy.upper()):.6g}], the bound is {float(bound):.6g}"
+    if energy < bound or energy >= bound:
+        return condition(name, bool(energy < bound), float((bound - energy).mid()), text)
+    return Hypothesis(name, "assumed", 0.0, f"{text}; the tube is too wide to tell")
+
+
+def met(tube: Tube) -> dict[Pair, float]:
+    """Pairs that certainly meet, by when at the latest: on a line, agents that certainly change places.
+
+    Examples
+    --------
+    >>> from flockana import Algorithm1, enclose
+    >>> met(enclose(Algorithm1(), [[0.0], [1.0]], [[60.0], [-60.0]], (0.0, 0.03125)))
+    {(0, 1): 0.03125}
+    """
+    times: dict[Pair, float] = {}
+    if tube.m > 1:
+        return times
+    first = [row[0] for row in tube.state(0)[0]]
+    for k, t in enumerate(tube.t):
+        q = [row[0] for row in tube.state(k)[0]]
+        for i, j in tube.pairs:
+            before, now = first[j] - first[i], q[j] - q[i]
+            if (before > 0 and now < 0) or (before < 0 and now > 0):
+                times.setdefault((i, j), t)
+    return times
+
+
+def no_collision(case: Enclosed, needs: Iterable[Hypothesis], *, name: str, proof: str | None = None) -> Claim:
+    """The claim that no two agents ever coincide: all distances are certainly positive, or a pair certainly meets."""
+    from flint import arb
+
+    tube = case.tube
+    least, certain = tube.min_distance(), met(tube)
+    pair, margin = least.pair, arb(min(least.lower, 1e300)) if least.lower > 0.0 else arb(0, 1)
+    text = f"no two agents come nearer than {least.lower:.6g}, {case.until}"
+    if certain:
+        pair = min(certain, key=lambda each: certain[each])
+        margin, text = arb(-1), f"agents {pair[0]} and {pair[1]} certainly meet before t = {certain[pair]:.6g}"
+    return decided(
+        name,
+        margin,
+        list(needs),
+        computed=least.lower,
+        stated="distance > 0 between any two agents, always",
+        witness={"pair": pair, "time": certain.get(pair, least.time)},
+        proof=proof,
+        detail=text,
+    )
+
+
+def converges(case: Enclosed, needs: Iterable[Hypothesis], *, name: str, stated: str, detail: str) -> Claim:
+    """The claim that every start of the tube converges to the orbit of the basin that it ends in."""
+    last = case.tube.t[-1]
+    caught = f"{detail}; all states at t = {last:g} lie in a certified basin" if case.basin is not None else detail
+    return known(
+        name, case.doubt, needs, holds=case.basin is not None, stated=stated, witness={"time": last}, detail=caught
+    )
+
+
+def certain_links(distances: Mapping[Pair, arb], reach: arb) -> tuple[list[Pair], list[Pair]]:
+    """(pairs that are certainly in range, pairs that may be)."""
+    return (
+        [pair for pair, distance in distances.items() if distance < reach],
+        [pair for pair, distance in distances.items() if not distance >= reach],
+    )
+
+
+def groups(n: int, pairs: Sequence[Pair]) -> list[int]:
+    """Sizes of the connected components of n agents, largest first.
+
+    Examples
+    --------
+    >>> groups(4, [(0, 1), (1, 3)])
+    [3, 1]
+    """
+    label = list(range(n))
+    for i, j in pairs:
+        label = [label[j] if x == label[i] else x for x in label]
+    return sorted((label.count(x) for x in set(label)), reverse=True)
+
+
+def rest_strain(rest: FloatArray, d: float, r: float) -> float:
+    """Largest |link − d|/d of an equilibrium; 1 without links."""
+    from flockana.measures.nets import link_lengths, links
+
+    lengths = link_lengths(rest, links(rest, r))
+    return float(abs(lengths - d).max()) / d if lengths.size else 1.0

@@ -1,0 +1,171 @@
+"""Theorems 1 and 3 of Olfati-Saber (2006), and the energy that a collision takes, decided by a tube and its basin."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from flint import arb, ctx
+
+from flockana.certified.intervals import c_star, exact
+from flockana.certified.tube import BITS, Tube, scaled, up
+from flockana.theorems.from_tube import (
+    Enclosed,
+    below,
+    certain_links,
+    converges,
+    decided,
+    groups,
+    known,
+    no_collision,
+    rest_strain,
+)
+from flockana.theorems.hypotheses import condition, positive, vacuous
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, unmet
+
+if TYPE_CHECKING:
+    from flockana.certified.tube import BasinLike
+
+_ROUNDING = 1e-9  # relative: of bounds of the barrier that are computed in floating point
+_MULTIPLES = {"below": 1, "twice": 2}  # of c*, by claim
+
+
+def _coincident_energy(tube: Tube) -> arb:
+    """c* with its gain, c1α ψ_α(0)."""
+    unit = arb(exact(tube.law.alpha.unit))
+    return arb(exact(tube.law.gains.c1_alpha)) * unit * unit * c_star(scaled(tube.law.alpha))
+
+
+def _below_c_star(tube: Tube, times: int = 1) -> Hypothesis:
+    """The hypothesis H(0) < k c*."""
+    with ctx.workprec(BITS):
+        name = "H(0) < c*" if times == 1 else f"H(0) < {times} c*"
+        return below(name, tube.energy(0), times * _coincident_energy(tube))
+
+
+def _below_barrier(tube: Tube) -> Hypothesis:
+    """The hypothesis H(0) < min{V : two agents coincide}: met below a lower bound, unmet above such a state's V."""
+    from flockana.equilibria.barrier import collision_bounds
+
+    low, high = (tube.law.gains.c1_alpha * bound for bound in collision_bounds(tube.law.alpha, tube.n, tube.m))
+    name, energy = "H(0) < min{V : two agents coincide}", tube.energy(0)
+    text = f"H(0) = {float(energy):.6g}; the minimum is at least {low:.5g}, and a state of {high:.5g} is known"
+    if energy < low * (1.0 - _ROUNDING):
+        return condition(name, True, low - float(energy), text)
+    if energy > high * (1.0 + _ROUNDING):
+        return condition(name, False, high - float(energy), text)
+    return Hypothesis(name, "assumed", low - float(energy), text)
+
+
+def _stays_together(tube: Tube) -> Hypothesis:
+    """The hypothesis of Theorem 1 on all solutions from Ω_c, which a tube can only break."""
+    from flockana.theorems.olfati_saber.os_1 import disconnected_energy
+
+    name = "every solution from Ω_c is a cohesive dynamic flock"
+    reach = arb(exact(tube.law.alpha.r))
+    for k, t in enumerate(tube.t[:-1]):
+        possible = certain_links(dict(zip(tube.pairs, tube.distances_during(k), strict=True)), reach)[1]
+        if len(groups(tube.n, possible)) > 1:
+            return condition(name, False, -1.0, f"the net is certainly not connected about t = {t:.4g}")
+    apart = disconnected_energy(tube.law, tube.n, tube.m)
+    if tube.energy(0) > apart * (1.0 + _ROUNDING):
+        return condition(name, False, apart - float(tube.energy(0)), "Ω_c holds a disconnected state at rest")
+    return Hypothesis(name, "assumed", detail="the starts of this tube may stay connected; the others are not known")
+
+
+def os_1(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
+    """Theorem 1 for the starts of a tube."""
+    needs = [positive(tube, c1_alpha="c1α"), positive(tube, c2_alpha="c2α")]
+    if unmet(needs):
+        return needs, []
+    case, needs = Enclosed.of(tube, basin), [*needs, _stays_together(tube)]
+    low, barrier = _below_c_star(tube), _below_barrier(tube)
+    return [*needs, low, barrier], [
+        _lattice(case, needs, tolerances),
+        converges(case, needs, name="ii", stated="K̃ -> 0", detail="velocities match in the moving frame"),
+        no_collision(case, [*needs, low], name="iii"),
+        no_collision(case, [*needs, barrier], name="iii-barrier"),
+    ]
+
+
+def _lattice(case: Enclosed, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
+    """Claim (i): the limit is an equilibrium whose links are d long, within the tolerance."""
+    alpha, stated = case.tube.law.alpha, f"|link - d|/d <= {tolerances.lattice:g} in the limit"
+    if case.basin is None:
+        return known("i", case.doubt, needs, holds=False, stated=stated, detail="an α-lattice in the limit")
+    strain = rest_strain(case.basin.rest, alpha.d, alpha.r)
+    margin = arb(tolerances.lattice - strain, 1e-12)  # the equilibrium is within 1e-13 d of where it is computed
+    detail = f"every start converges to the basin's equilibrium, whose links are off d by up to {strain:.2g} d"
+    return decided("i", margin, needs, computed=strain, stated=stated, detail=detail)
+
+
+def os_3(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
+    """Theorem 3 for the starts of a tube."""
+    gains = positive(tube, c1_gamma="c1γ", c2_gamma="c2γ")
+    needs, repels = [gains, condition("K(v(0)) and J(x(0)) are finite", True)], positive(tube, c1_alpha="c1α")
+    case = Enclosed.of(tube, basin)
+    claims = [
+        _cohesive(case, needs),
+        converges(
+            case,
+            needs,
+            name="ii",
+            stated="every start of the tube converges to a strict local minimum of U_λ (modulo rotations)",
+            detail="the limit is a local minimum",
+        ),
+        converges(case, needs, name="iii", stated="K̃ -> 0", detail="velocities match in the moving frame"),
+    ]
+    names = ("iv-printed", "iv-instant", "iv-none", "iv-barrier")
+    if unmet([repels]):
+        return [*needs, repels], [*claims, *vacuous(repels, names)]
+    none, barrier = _below_c_star(tube), _below_barrier(tube)
+    return [*needs, repels, none, barrier], [
+        *claims,
+        _few_pairs(case, repels),
+        no_collision(case, [repels], name="iv-instant"),
+        no_collision(case, [repels, none], name="iv-none"),
+        no_collision(case, [repels, barrier], name="iv-barrier"),
+    ]
+
+
+def _cohesive(case: Enclosed, needs: list[Hypothesis]) -> Claim:
+    """Claim (i): R stays below the bound that the energy at the start allows, √(2 H(0)/c1γ)."""
+    tube = case.tube
+    with ctx.workprec(BITS):
+        gain = arb(exact(tube.law.gains.c1_gamma))
+        largest = float(tube.cohesion_radius().max())
+        bound = (2 * tube.energy(0) / gain).nonnegative_part().sqrt() if gain > 0 else arb(1e300)
+        margin = arb(bound.lower()) - largest
+    return decided(
+        "i",
+        margin,
+        needs,
+        computed=largest,
+        stated=f"R <= sqrt(2 H_λ(0)/c1γ) = {float(bound):.5g}",
+        proof="cohesion",
+        detail=f"cohesive: R <= {largest:.5g} {case.until}"
+        if case.basin is None
+        else f"cohesive: R <= {largest:.5g} "
+        f"up to t = {tube.t[-1]:g}, and the energy allows {float(bound):.5g} for ever",
+    )
+
+
+def _few_pairs(case: Enclosed, repels: Hypothesis) -> Claim:
+    """Claim (iv) as printed, that with H(0) < (k+1) c* at most k pairs collide: certain where none does."""
+    tube = case.tube
+    with ctx.workprec(BITS):
+        least = int(up((tube.energy(0) / _coincident_energy(tube)).lower()))
+    bites = condition("k < n(n-1)/2", least < len(tube.pairs), float(len(tube.pairs) - least - 1))
+    apart = no_collision(case, [repels, bites], name="iv-printed")
+    if apart.status in ("verified", "vacuous"):
+        return apart
+    return known("iv-printed", "whether more pairs meet is open", [repels, bites], holds=False, detail=apart.detail)
+
+
+def collision_energy(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
+    """How much energy a collision takes, for the starts of a tube."""
+    needs, case = [positive(tube, c1_alpha="c1α")], Enclosed.of(tube, basin)
+    if unmet(needs):
+        return needs, []
+    bounds = {name: _below_c_star(tube, times) for name, times in _MULTIPLES.items()}
+    claims = [no_collision(case, [*needs, bound], name=name) for name, bound in bounds.items()]
+    return [*needs, *bounds.values()], claims

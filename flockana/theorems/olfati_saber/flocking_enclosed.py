@@ -1,0 +1,130 @@
+"""Definition 5 of Olfati-Saber (2006), α-flocking, decided by a tube, between its steps too."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import floor
+from typing import TYPE_CHECKING
+
+from flint import arb, ctx
+
+from flockana.certified.intervals import exact, square
+from flockana.certified.tube import BITS, Pair, Tube, norm
+from flockana.theorems.from_tube import certain_links, decided, groups
+from flockana.theorems.hypotheses import condition
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances
+
+if TYPE_CHECKING:
+    from flockana.certified.tube import BasinLike
+
+_SHARE = 1e-9  # of an agent: what a share of n agents, as a decimal fraction, may be off by
+
+
+def _window(tube: Tube, tolerances: Tolerances) -> tuple[Hypothesis, range]:
+    """The steps that are judged: those that end within the last part of the tube."""
+    start = tube.t[0] + tolerances.settle * (tube.t[-1] - tube.t[0])
+    steps = [k for k in range(len(tube.taken)) if tube.t[k + 1] > start]
+    broken = tube.status != "complete"
+    detail = tube.message if broken else f"from t = {start:.4g} to {tube.t[-1]:.4g}, at all times"
+    known = condition("judged over a window", bool(steps) and not broken, detail=detail)
+    return known, range(steps[0], steps[-1] + 1) if steps else range(0)
+
+
+def _highest(tube: Tube, window: range, value: Callable[[int], arb]) -> tuple[arb, float]:
+    """A ball that holds the largest value of a quantity over the window, and when it is attained at about."""
+    values = [value(k) for k in window]
+    low, high = (max((end(x) for x in values), key=float) for end in (arb.lower, arb.upper))
+    worst = max(range(len(values)), key=lambda i: float(values[i].upper()))
+    return low.union(high), tube.t[window[worst]]
+
+
+def _distances(tube: Tube, k: int) -> dict[Pair, arb]:
+    return dict(zip(tube.pairs, tube.distances_during(k), strict=True))
+
+
+def _components(tube: Tube, window: range, name: str, most: int, missing: Callable[[list[Pair]], int]) -> Claim:
+    """A claim that a number that falls with each link is never above a bound, by certain and by possible links."""
+    reach = arb(exact(tube.law.alpha.r))
+
+    def count(k: int) -> arb:
+        certain, possible = certain_links(_distances(tube, k), reach)
+        return arb(missing(possible)).union(arb(missing(certain)))
+
+    number, when = _highest(tube, window, count)
+    stated = "the net is connected" if name == "flock" else f"at most {most} agents outside the giant component"
+    text = f"{float(number.upper()):.0f} at most, about t = {when:.4g}"
+    return decided(name, most + arb("0.5") - number, computed=float(number.mid()), stated=stated, detail=text)
+
+
+def _deviation(tube: Tube, window: range, bound: float) -> Claim:
+    """The claim Ẽ <= ε₁, at all times of the window."""
+    d, reach = arb(exact(tube.law.alpha.d)), arb(exact(tube.law.alpha.r))
+
+    def value(k: int) -> arb:
+        lengths = _distances(tube, k)
+        certain, possible = certain_links(lengths, reach)
+        sums = [2 * sum((square(lengths[pair] / d - 1) for pair in pairs), arb(0)) for pairs in (certain, possible)]
+        return (sums[0] / (2 * len(possible) + 1)).union(sums[1] / (2 * len(certain) + 1))
+
+    highest, when = _highest(tube, window, value)
+    return _under("deviation", "Ẽ", highest, bound, when)
+
+
+def _mismatch(tube: Tube, window: range, bound: float) -> Claim:
+    """The claim K̃ <= ε₂, at all times of the window."""
+    units, n, m = arb(tube.law.scales.energy), tube.n, tube.m
+
+    def value(k: int) -> arb:
+        p = tube.taken[k].during[n * m :]
+        means = [sum(p[axis::m], arb(0)) / n for axis in range(m)]
+        return sum((square(x - means[i % m]) for i, x in enumerate(p)), arb(0)) / (2 * n * units)
+
+    highest, when = _highest(tube, window, value)
+    return _under("mismatch", "K̃", highest, bound, when)
+
+
+def _under(name: str, symbol: str, highest: arb, bound: float, when: float) -> Claim:
+    """A claim that the largest value of a quantity is below a bound."""
+    top = float(highest.upper())
+    detail = f"{symbol} <= {top:.4g} throughout, largest about t = {when:.4g}"
+    return decided(name, arb(bound) - highest, computed=top, stated=f"{symbol} <= {bound:g}", detail=detail)
+
+
+def _cohesive(tube: Tube, window: range, tolerances: Tolerances) -> Claim:
+    """The claim that R never exceeds a multiple of what it is at the start of the window."""
+    rows = [[norm(x) for x in tube.taken[k].deviations] for k in window]
+    each = [max(row, key=lambda x: float(x.upper())).union(max(row, key=lambda x: float(x.lower()))) for row in rows]
+    bound = arb(tolerances.cohesion) * each[0]
+    highest = _highest(tube, range(len(each)), lambda k: each[k])[0]
+    detail = f"R is at most {float(highest.upper()):.5g}, and {float(each[0].mid()):.5g} when the window begins"
+    return decided(
+        "cohesive", bound - highest, computed=float(highest.upper()), stated="R stays bounded", detail=detail
+    )
+
+
+def alpha_flocking(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
+    """The plain form."""
+    known, window = _window(tube, tolerances)
+    if known.status == "unmet":
+        return [known], []
+    outside = tube.n - floor(tolerances.giant * tube.n + _SHARE) - 1
+    with ctx.workprec(BITS):
+        return [known], [
+            _components(tube, window, "giant", outside, lambda pairs: tube.n - groups(tube.n, pairs)[0]),
+            _cohesive(tube, window, tolerances),
+            _deviation(tube, window, tolerances.deviation),
+            _mismatch(tube, window, tolerances.mismatch),
+        ]
+
+
+def alpha_flocking_strict(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
+    """The strict form."""
+    known, window = _window(tube, tolerances)
+    if known.status == "unmet":
+        return [known], []
+    with ctx.workprec(BITS):
+        return [known], [
+            _components(tube, window, "flock", 1, lambda pairs: len(groups(tube.n, pairs))),
+            _deviation(tube, window, tolerances.deviation),
+            _mismatch(tube, window, tolerances.mismatch),
+        ]

@@ -1,0 +1,44 @@
+"""Basins that several tests read, each certified once."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+pytest.importorskip("flint")
+
+from flockana import Algorithm1, Algorithm2, StaticTarget, certify, find_equilibrium, lattice
+
+TETRAHEDRON = 7.0 / np.sqrt(8.0) * np.array([[1.0, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
+STARTS = {"pair": lattice.hexagonal_spiral(2, 7.0), "triangle": lattice.hexagonal_spiral(3, 7.0)}
+STARTS |= {"hexagon": lattice.hexagonal_patch(1, 7.0), "tetrahedron": TETRAHEDRON}
+NAMES = ("pair", "triangle", "hexagon", "tetrahedron")
+
+
+@cache
+def basin_of(name: str, algorithm: int):
+    q = STARTS[name]
+    law = Algorithm1() if algorithm == 1 else Algorithm2(target=StaticTarget((0.0,) * q.shape[1]))
+    return certify(find_equilibrium(law, q))
+
+
+@pytest.fixture
+def basin(request):
+    return basin_of(*request.param)
+
+
+ALL = pytest.mark.parametrize(
+    "basin", [(name, k) for name in NAMES for k in (1, 2)], indirect=True, ids=lambda x: f"{x[0]}-{x[1]}"
+)
+
+
+def displaced(basin, share: float, rng) -> np.ndarray:
+    """A shape at a share of ρ from the equilibrium, orthogonal to the orbit, in a random direction."""
+    from flockana.equilibria.terminal import rigid_motions
+
+    motions = rigid_motions(basin.rest)
+    w = rng.standard_normal(basin.rest.size)
+    w -= motions @ (motions.T @ w)
+    return share * float(basin.radius) * (w / np.linalg.norm(w)).reshape(basin.rest.shape)

@@ -1,0 +1,184 @@
+"""Certified basins: what they claim is true where algebra or a run can tell, and what has no basin is refused."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from flockana import (
+    Algorithm1,
+    Algorithm2,
+    AlphaInteraction,
+    Gains,
+    PeerToPeer,
+    StaticTarget,
+    certify,
+    find_equilibrium,
+    lattice,
+    simulate,
+)
+from flockana.base.errors import ArgumentError, FlockanaError, SolverError
+from flockana.certified.shells import SHELLS
+from tests.certified.conftest import ALL, STARTS, basin_of, displaced
+
+
+def energy(basin, x):
+    """U in floating point."""
+    law, c1 = basin.law, 0.0 if basin.law.target is None else basin.law.gains.c1_gamma
+    i, j = np.triu_indices(len(x), 1)
+    lengths = np.linalg.norm(x[j] - x[i], axis=1)
+    return law.gains.c1_alpha * float(law.alpha.energy_at(lengths).sum()) + 0.5 * c1 * float((x**2).sum())
+
+
+def force(basin, x):
+    """−∇U."""
+    still = np.zeros_like(x)
+    return basin.law.flow(0.0, x, still)[0] - basin.law.flow(0.0, x, still)[0].mean(axis=0)
+
+
+@pytest.mark.parametrize("algorithm", [1, 2])
+def test_two_agents_are_a_potential_on_a_line(algorithm):
+    """U(ℓ) = c1α ψ_α(‖ℓ‖_σ) + ¼ c1γ ℓ²; a distance δ from the orbit is a stretch by √2 δ."""
+    basin = basin_of("pair", algorithm)
+    rest = float(np.linalg.norm(basin.rest[1] - basin.rest[0]))
+    ends = [basin.rest * (1.0 + sign * np.sqrt(2.0) * float(basin.radius) / rest) for sign in (-1.0, 1.0)]
+    rises = [energy(basin, x) - energy(basin, basin.rest) for x in ends]
+    assert 0.0 < float(basin.level) < min(rises)
+    assert float(basin.level) > 0.6 * min(rises)  # and no less than shells and slack cost
+    assert 0.06 < basin.share < (basin.law.alpha.r - rest) / np.sqrt(2.0) / basin.law.alpha.d
+    assert float(basin.distance) == pytest.approx(rest - np.sqrt(2.0) * float(basin.radius), abs=2e-3)
+    weight = basin.law.alpha.adjacency(basin.law.alpha.sigma_norm(rest + np.sqrt(2.0) * float(basin.radius)))
+    damping = 2.0 * weight * basin.law.gains.c2_alpha + (algorithm == 2) * basin.law.gains.c2_gamma
+    assert 0.99 * damping < float(basin.damping) <= damping
+
+
+@ALL
+def test_no_sampled_curvature_slope_or_energy_is_below_what_is_proved(basin):
+    rng, step = np.random.default_rng(0), float(basin.radius) / SHELLS
+    curvatures = [float(k.p) / float(k.q) for k in basin.proof.shells.curvatures]
+    at_rest, least = energy(basin, basin.rest), float(basin.curvature)
+    slack = []
+    for shell in [*range(SHELLS)] * 3:
+        t = step * (shell + rng.uniform())
+        w = displaced(basin, t / float(basin.radius), rng)
+        x = basin.rest + w
+        unit = w.ravel() / t
+        hessian = basin.law.stiffness(x)
+        curvature = float(unit @ (hessian @ unit))
+        slack.append(curvature - curvatures[shell])
+        assert slack[-1] > 0.0
+        assert -float((force(basin, x) * w).sum()) >= least * t**2
+        assert energy(basin, x) - at_rest >= 0.5 * least * t**2
+    assert all(b <= a for a, b in pairwise(curvatures))
+
+
+@ALL
+def test_starts_in_the_basin_end_in_the_orbit_no_slower_than_promised(basin):
+    rng = np.random.default_rng(1)
+    x = basin.rest + displaced(basin, 0.9, rng)
+    assert not basin.holds(basin.rest + displaced(basin, 1.001, rng), np.zeros_like(x))
+    excess = energy(basin, x) - energy(basin, basin.rest)
+    v = rng.standard_normal(x.shape)
+    v -= v.mean(axis=0)
+    spare = float(basin.level) - excess
+    x, spare = (x, spare) if spare > 0.0 else (basin.rest.copy(), float(basin.level))
+    v *= np.sqrt(2.0 * 0.98 * spare) / np.linalg.norm(v)
+    assert basin.holds(x, v)
+    run = simulate(basin.law, x, v, (0.0, 6.0), rtol=1e-10, atol=1e-12)
+    first = basin.above(run.q[0], run.p[0])[1]
+    for k in np.linspace(1, len(run.t) - 1, 12).astype(int):
+        distance, left = basin.above(run.q[k], run.p[k])
+        assert distance < basin.radius.numerator / basin.radius.denominator
+        bound = float(basin.overshoot) * float(first) * np.exp(-2.0 * float(basin.rate) * run.t[k])
+        assert float(left) <= bound + 1e-9
+    assert basin.holds(run.q[-1], run.p[-1])
+
+
+@pytest.mark.parametrize("name", ["triangle", "tetrahedron"])
+def test_a_start_is_seen_from_any_side_and_a_mirror_image_is_another_orbit(name):
+    basin = basin_of(name, 2)
+    m, rng = basin.rest.shape[1], np.random.default_rng(2)
+    turn = np.linalg.qr(rng.standard_normal((m, m)))[0]
+    turn[:, 0] *= np.linalg.det(turn)
+    x, still = basin.rest + displaced(basin, 0.3, rng), np.zeros_like(basin.rest)
+    distance, above = basin.above(x, still)
+    assert float(distance) == pytest.approx(0.3 * float(basin.radius), rel=1e-12)
+    assert float(above) == pytest.approx(energy(basin, x) - energy(basin, basin.rest), rel=1e-9)
+    moved = basin.above(x @ turn.T + 100.0, still + [5.0] * m)
+    assert [float(y) for y in moved] == pytest.approx([float(distance), float(above)], rel=1e-9)
+    mirrored = basin.rest * ([-1.0] + [1.0] * (m - 1))
+    assert not basin.holds(mirrored, still)
+    assert basin.holds(basin.rest, still)
+
+
+def test_only_what_is_below_both_bounds_is_in():
+    basin = basin_of("triangle", 1)
+    fast = np.zeros((3, 2))
+    fast[:, 0] = [1.0, -1.0, 0.0]
+    level = float(basin.level)
+    assert basin.holds(basin.rest, fast * np.sqrt(0.999 * level))  # ½‖v‖² = 0.999 ΔH
+    assert not basin.holds(basin.rest, fast * np.sqrt(1.001 * level))
+    with pytest.raises(ArgumentError, match=r"q has shape \(2, 2\): expected \(3, 2\)"):
+        basin.holds(basin.rest[:2], fast)
+
+
+def test_numbers_are_exact_and_a_smaller_share_buys_radius():
+    wide = certify(STARTS["pair"], law=Algorithm1(), least=0.02)
+    narrow = certify(STARTS["pair"], law=Algorithm1(), least=0.4)
+    assert all(isinstance(x, Fraction) for x in (wide.radius, wide.level, wide.rate, wide.distance))
+    assert narrow.share < basin_of("pair", 1).share < wide.share
+    assert narrow.rate > basin_of("pair", 1).rate > wide.rate > 0
+
+
+def test_what_is_no_strict_minimum_of_a_connected_flock_of_distinct_agents_is_refused():
+    law, led = Algorithm1(), Algorithm2(target=StaticTarget((0.0, 0.0)))
+    with pytest.raises(ArgumentError, match=r"no equilibrium beside these positions.*find_equilibrium"):
+        certify([[0.0, 0.0], [6.0, 0.0]], law=law)
+    with pytest.raises(ArgumentError, match="disconnected"):
+        certify([[0.0, 0.0], [7.0, 0.0], [30.0, 0.0], [37.0, 0.0]], law=law)
+    with pytest.raises(ArgumentError, match="agents at one place"):
+        certify([[0.0, 0.0], [7.0, 0.0], [7.0, 0.0]], law=law)
+    saddle = find_equilibrium(led, [[-7.0, 0.0], [0.0, 0.0], [7.0, 0.0]], method="root")
+    assert saddle.kind == "saddle"
+    with pytest.raises(ArgumentError, match="expected a strict minimum"):
+        certify(saddle)
+    hinge = [[-7.0, 0.0], [0.0, 0.0], [7.0, 0.0]]  # it bends freely
+    with pytest.raises(FlockanaError, match=r"strict minimum|isolated equilibrium|no equilibrium beside"):
+        certify(hinge, law=law)
+    with pytest.raises(ArgumentError, match="on one line in space"):
+        certify([[0.0, 0.0, 0.0], [7.0, 0.0, 0.0]], law=law)
+
+
+def test_what_the_argument_does_not_cover_is_refused():
+    q = STARTS["pair"]
+    with pytest.raises(ArgumentError, match="law = None: expected the law"):
+        certify(q)
+    with pytest.raises(ArgumentError, match="expected Algorithm1 or Algorithm2"):
+        certify(q, law=PeerToPeer())
+    with pytest.raises(ArgumentError, match=r"unit = 2: expected 1; rescale"):
+        certify(q, law=Algorithm1(alpha=AlphaInteraction(unit=2.0)))
+    with pytest.raises(ArgumentError, match="given per agent"):
+        certify(q, law=Algorithm2(gains=Gains(c1_gamma=(1.0, 2.0)), target=StaticTarget((0.0, 0.0))))
+    with pytest.raises(ArgumentError, match="c1_alpha = 0: expected more than 0"):
+        certify(q, law=Algorithm1(gains=Gains(c1_alpha=0.0)))
+    with pytest.raises(ArgumentError, match="1 agent: expected two or more"):
+        certify(q[:1], law=Algorithm1())
+    with pytest.raises(ArgumentError, match=r"least = 1: expected a share"):
+        certify(q, law=Algorithm1(), least=1.0)
+
+
+def test_a_net_that_nothing_damps_has_no_basin():
+    undamped = Algorithm1(gains=replace(Gains(), c2_alpha=0.0))
+    with pytest.raises(SolverError, match="no basin of 2 agents could be proved"):
+        certify(STARTS["pair"], law=undamped)
+
+
+def test_where_the_flock_was_found_does_not_matter():
+    basin = basin_of("hexagon", 2)
+    again = certify(find_equilibrium(basin.law, lattice.hexagonal_patch(1, 7.0) + 50.0))
+    assert float(again.radius) == pytest.approx(float(basin.radius), rel=1e-2)
+    assert float(again.level) == pytest.approx(float(basin.level), rel=2e-2)

@@ -1,0 +1,264 @@
+"""Tubes: exact solutions, runs in high precision and numerical runs lie in them; without a bound they do not."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import mpmath
+import numpy as np
+import pytest
+from flint import arb, ctx
+
+from flockana import (
+    Algorithm1,
+    Algorithm2,
+    Algorithm3,
+    CircleTarget,
+    Gains,
+    LinearTarget,
+    Sphere,
+    StaticTarget,
+    enclose,
+    simulate,
+)
+from flockana.base.errors import ArgumentError
+from flockana.certified import lohner
+from flockana.certified.laws import flow_of
+from flockana.certified.series import Piece
+
+ALONE = Gains(c1_gamma=1.25, c2_gamma=1.0)  # the roots are −½ ± i
+TOLD = Algorithm2(target=StaticTarget((0.0, 0.0)))
+TRIANGLE = np.array([[-4.625, -2.5], [4.5, -2.75], [0.25, 5.5]])
+
+
+@pytest.fixture(autouse=True)
+def precise():
+    """What is expected is computed with more digits than the tubes."""
+    with ctx.workprec(200):
+        yield
+
+
+@pytest.fixture(scope="module")
+def forming():
+    """Three agents whose first two links form on the way."""
+    return enclose(TOLD, TRIANGLE, 0.0 * TRIANGLE, (0.0, 0.53125))
+
+
+def inside(run, tube, slack):
+    """Whether the samples of a numerical run, at the tube's steps, lie in it but for the run's own error."""
+    return all(
+        (np.abs(x - y) <= radii + slack).all()
+        for x, y, radii in ((run.q, tube.q, tube.radii[:, 0]), (run.p, tube.p, tube.radii[:, 1]))
+    )
+
+
+def oscillator(t):
+    """e^{−t/2}(cos t + ½ sin t) and its derivative, the solution from 1 at rest."""
+    with ctx.workprec(200):
+        t = arb(t)
+        fade = (-t / 2).exp()
+        return fade * (t.cos() + t.sin() / 2), -fade * t.sin() * arb(1.25)
+
+
+@pytest.mark.parametrize("order", [4, 9, 16])
+def test_one_agent_swings_to_its_target_as_the_closed_form_says(order):
+    law, off = Algorithm2(gains=ALONE, target=StaticTarget((0.0,))), 1e-9 if order == 4 else 1e-16
+    tube = enclose(law, [[1.0]], [[0.0]], (0.0, 3.0), order=order, remainder=off)
+    assert (tube.status, tube.t[-1]) == ("complete", 3.0)
+    for k, t in enumerate(tube.t):
+        (q,), (p,) = tube.state(k)
+        position, velocity = oscillator(t)
+        assert q[0].contains(position)
+        assert p[0].contains(velocity)
+    assert tube.radii.max() < 1e5 * off
+    assert tube.min_distance().lower == np.inf
+
+
+def test_between_steps_too_the_closed_form_is_inside():
+    tube = enclose(Algorithm2(gains=ALONE, target=StaticTarget((0.0,))), [[1.0]], [[0.0]], (0.0, 2.0))
+    for k, (a, b) in enumerate(zip(tube.t[:-1], tube.t[1:], strict=True)):
+        for share in (0.1, 0.5, 0.9):
+            values = oscillator(a + share * (b - a))
+            assert all(box.contains(x) for box, x in zip(tube.taken[k].during, values, strict=True))
+
+
+def test_a_target_that_moves_and_one_that_lies_are_followed():
+    t = (0.0, 1.0)
+    moving = enclose(Algorithm2(gains=ALONE, target=LinearTarget((0.0,), (3.0,))), [[1.0]], [[3.0]], t)
+    lying = enclose(Algorithm2(gains=ALONE, target=StaticTarget((0.0,), (1.25,))), [[2.0]], [[0.0]], t)
+    position, velocity = oscillator(1.0)
+    assert moving.state(-1)[0][0][0].contains(position + 3)
+    assert moving.state(-1)[1][0][0].contains(velocity + 3)
+    assert lying.state(-1)[0][0][0].contains(position + 1)  # it rests where 1.25 q = 1 · 1.25
+
+
+def test_two_agents_out_of_range_move_uniformly():
+    tube = enclose(Algorithm1(), [[0.0, 0.0], [20.0, 0.0]], [[1.0, 2.0], [-1.0, 0.5]], (0.0, 4.0))
+    q, p = tube.state(-1)
+    assert all(x.contains(y) for x, y in zip((*q[0], *q[1], *p[0]), (4, 8, 16, 2, 1, 2), strict=True))
+    assert tube.radii.max() < 1e-14
+    assert 11.0 < tube.min_distance().lower <= 13.42
+
+
+@pytest.mark.parametrize("start", [3.0, 5.0, 8.0])
+def test_a_run_in_high_precision_is_inside(start):
+    """Taylor series of mpmath with its own formulas, on one piece: two agents, by their distance."""
+    law = Algorithm1()
+    tube = enclose(law, [[0.0], [start]], [[0.0], [0.0]], (0.0, 0.0625))
+    with mpmath.workdps(30):
+        eps, one = mpmath.mpf(1) / 10, mpmath.mpf(1)
+        c1, c2 = mpmath.mpf(30), mpmath.mpf(repr(law.gains.c2_alpha))
+        z_of = lambda x: (mpmath.sqrt(1 + eps * x**2) - 1) / eps  # noqa: E731
+        d, r = z_of(mpmath.mpf(7)), z_of(mpmath.mpf("8.4"))
+
+        def rate(t, y):
+            z = z_of(y[0])
+            rho = (1 + mpmath.cos(mpmath.pi * (z / r - one / 5) / (1 - one / 5))) / 2
+            force = rho * 5 * (z - d) / mpmath.sqrt(1 + (z - d) ** 2) * y[0] / mpmath.sqrt(1 + eps * y[0] ** 2)
+            return [y[1], -2 * c1 * force - 2 * c2 * rho * y[1]]
+
+        y = mpmath.odefun(rate, 0, [mpmath.mpf(start), mpmath.mpf(0)])(mpmath.mpf("0.0625"))
+        gap, speed = (arb(mpmath.nstr(x, 30)) for x in y)
+    q, p = tube.state(-1)
+    for found, expected in ((q[1][0] - q[0][0], gap), (p[1][0] - p[0][0], speed)):
+        assert (found + arb(0, "1e-24")).contains(expected)
+        assert found.rad() < 1e-12
+
+
+def test_links_form_on_the_way_and_the_run_stays_inside(forming):
+    assert forming.status == "complete"
+    beyond = [all(x > 8.4 for x in forming.distances_during(k)) for k in (0, -1)]
+    assert beyond == [True, False]
+    run = simulate(TOLD, TRIANGLE, 0.0 * TRIANGLE, (0.0, 0.53125), rtol=1e-12, t_eval=forming.t)
+    assert inside(run, forming, 1e-10)
+    assert forming.radii.max() < 1e-9
+
+
+def test_what_is_told_of_the_time_between_steps_holds_of_the_run(forming):
+    middles = 0.5 * (np.array(forming.t[:-1]) + np.array(forming.t[1:]))
+    run = simulate(TOLD, TRIANGLE, 0.0 * TRIANGLE, (0.0, 0.53125), rtol=1e-12, t_eval=middles)
+    radius, slack = forming.cohesion_radius(), arb(0, 1e-9)
+    for k, (q, p) in enumerate(zip(run.q, run.p, strict=True)):
+        values = [*q.ravel(), *p.ravel()]
+        assert all((box + slack).contains(arb(x)) for box, x in zip(forming.taken[k].during, values, strict=True))
+        for (i, j), distance in zip(forming.pairs, forming.distances_during(k), strict=True):
+            assert (distance + slack).contains(arb(float(np.linalg.norm(q[j] - q[i]))))
+        assert np.linalg.norm(q - q.mean(axis=0), axis=1).max() <= radius[k] + 1e-9
+    least = forming.min_distance()
+    assert least.lower <= float(np.linalg.norm(run.q[-1, 1] - run.q[-1, 0])) < least.lower + 0.3
+
+
+def test_the_energy_is_enclosed_and_falls(forming):
+    for k in (0, -1):
+        q, p = forming.q[k], forming.p[k]
+        assert abs(forming.energy(k) - TOLD.structural_energy(q, p)).lower() < 1e-9
+        assert forming.energy(k).rad() < 1e-7
+    assert forming.energy(-1) < forming.energy(0)
+
+
+def test_a_box_of_starts_is_followed_as_a_whole():
+    law, t = Algorithm1(), (0.0, 0.25)
+    wide = 2.0**-10
+    tube = enclose(law, [[0.0], [6.5]], [[0.25], [-0.25]], t, radius=(wide, 0.0))
+    assert tube.status == "complete"
+    for a, b in ((-1, -1), (-1, 1), (1, -1), (1, 1), (0, 0.5)):
+        q0 = [[wide * a], [6.5 + wide * b]]
+        assert inside(simulate(law, q0, [[0.25], [-0.25]], t, rtol=1e-12, t_eval=tube.t), tube, 1e-9)
+    assert tube.radii[0, 0].max() < 1.01 * wide
+    assert tube.radii[-1, 0].max() < 5.0 * wide
+
+
+# Each bound taken away: what is then no enclosure is found to be none.
+
+
+def no_remainder(monkeypatch):
+    own = lohner._enclosed
+
+    def without(*arguments):
+        found = own(*arguments)
+        return None if found is None else (found[0], [arb(0)] * len(found[1]))
+
+    monkeypatch.setattr(lohner, "_enclosed", without)
+
+
+def no_error(monkeypatch):
+    own = lohner._moved
+    monkeypatch.setattr(
+        lohner, "_moved", lambda *a: replace(after := own(*a), error=tuple(arb(0) for _ in after.error))
+    )
+
+
+def no_derivative(monkeypatch):
+    monkeypatch.setattr(
+        lohner, "_variation", lambda flow, t, h, path, *rest: (zero := lohner.identity(len(path)) * 0, zero)
+    )
+
+
+@pytest.mark.parametrize("mutate", [no_remainder, no_error])
+def test_without_its_remainders_a_tube_holds_nothing(monkeypatch, mutate):
+    mutate(monkeypatch)
+    law = Algorithm2(gains=ALONE, target=StaticTarget((0.0,)))
+    tube = enclose(law, [[1.0]], [[0.0]], (0.0, 1.0), order=4, remainder=1e-8)
+    assert not tube.state(-1)[0][0][0].contains(oscillator(tube.t[-1])[0])
+
+
+def test_without_the_derivative_of_a_step_a_box_of_starts_is_lost(monkeypatch):
+    no_derivative(monkeypatch)
+    law = Algorithm2(gains=ALONE, target=StaticTarget((0.0,)))
+    tube = enclose(law, [[0.0]], [[0.0]], (0.0, 1.0), radius=(1.0, 0.0), widest=1.0)
+    assert not tube.state(-1)[0][0][0].contains(oscillator(1.0)[0])
+
+
+def test_a_frame_that_is_not_inverted_loses_the_set(monkeypatch):
+    """Whatever matrix is proposed, the set stays enclosed; unless its inverse is not used."""
+    law = Algorithm2(gains=ALONE, target=StaticTarget((0.0,)))
+    skew = lambda b, widths, pace: lohner.arb_mat([[3, 1], [1, 2]])  # noqa: E731
+    monkeypatch.setattr(lohner, "_frame", skew)
+    assert enclose(law, [[1.0]], [[0.0]], (0.0, 1.0), order=6).state(-1)[0][0][0].contains(oscillator(1.0)[0])
+
+
+def test_the_step_across_a_switch_needs_its_second_derivative(monkeypatch):
+    """One long step of it, held against many short ones."""
+    law, start, h = Algorithm1(), ([[0.0], [8.40625]], [[0.0], [-16.0]]), 2.0**-8
+    fine = enclose(law, *start, (0.0, h)).boxes[-1]
+    assert max(float(x.rad()) for x in fine) < 1e-14
+    with ctx.workprec(100):
+        flow, box = flow_of(law, 2, 1), lohner.StateSet.box([arb(x) for x in (0.0, 8.40625, 0.0, -16.0)], [arb(0)] * 4)
+        right = lohner.crossing_step(flow, arb(0), arb(h), box)
+        monkeypatch.setattr(type(flow), "acceleration", lambda self, t, state, pieces: [arb(0)] * len(state))
+        wrong = lohner.crossing_step(flow, arb(0), arb(h), box)
+    assert Piece.SWITCH in flow.pieces(right.during)
+    assert all(x.contains(y) for x, y in zip(right.after.hull, fine, strict=True))
+    assert not any(x.overlaps(y) for x, y in zip(wrong.after.hull, fine, strict=True))
+
+
+def test_it_ends_where_it_breaks_and_says_why(capsys):
+    few = enclose(TOLD, TRIANGLE, 0.0 * TRIANGLE, (0.0, 1.0), steps=3, progress=True)
+    assert (few.status, len(few.taken), few.stats["steps"]) == ("broken", 3, 3)
+    assert few.message == "it took 3 steps, as many as it may"
+    wide = enclose(Algorithm1(), [[0.0], [9.0]], [[0.0], [0.0]], (0.0, 4.0), radius=(0.0, 0.5))
+    assert wide.status == "broken"
+    assert wide.message.startswith("the set is wider than 0.2 d at t = ")
+
+
+@pytest.mark.parametrize(
+    ("law", "knobs", "message"),
+    [
+        (Algorithm2(target=CircleTarget((0.0, 0.0), 1.0, 0.1)), {}, "expected StaticTarget or LinearTarget"),
+        (
+            Algorithm3(target=StaticTarget((0.0, 0.0)), obstacles=(Sphere((9.0, 9.0), 1.0),)),
+            {},
+            "obstacles are not enclosed",
+        ),
+        (Algorithm2(gains=Gains(c1_gamma=(1.0, 2.0)), target=StaticTarget((0.0, 0.0))), {}, "given per agent"),
+        (Algorithm1(), {"order": 3}, "order = 3: expected a whole number from 4 to 40"),
+        (Algorithm1(), {"steps": 0}, "steps = 0: expected a whole number >= 1"),
+        (Algorithm1(), {"radius": (1.0, 2.0, 3.0)}, "expected one, or one of positions and one of velocities"),
+        (Algorithm1(), {"radius": -1.0}, "radius = -1"),
+        (Algorithm1(), {"remainder": 0.0}, "remainder = 0"),
+        ("a law", {}, "expected Algorithm1, 2 or 3"),
+    ],
+)
+def test_what_cannot_be_enclosed_is_said_before_work_starts(law, knobs, message):
+    with pytest.raises(ArgumentError, match=message):
+        enclose(law, [[0.0, 0.0], [7.0, 0.0]], [[0.0, 0.0], [0.0, 0.0]], (0.0, 1.0), **knobs)

@@ -1,0 +1,107 @@
+"""The right-hand side in balls and in series against the library's own formulas, which share no code with it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from flint import arb, arb_series, ctx
+
+from flockana import Algorithm1, Algorithm2, Algorithm3, AlphaInteraction, Gains, LinearTarget, StaticTarget
+from flockana.certified.flow import series_length
+from flockana.certified.laws import flow_of
+from flockana.certified.series import PairNumbers, Piece, pair_hull, pair_series, pair_slopes
+from flockana.kernels import alpha as kernel
+
+LAWS = [AlphaInteraction(), AlphaInteraction(d=3.0, r=4.5, eps=0.2, h=0.4, a=2.0, b=7.0, unit=1.5)]
+LENGTHS = {Piece.CORE: 0.4, Piece.TAPER: 0.8, Piece.OUT: 1.1}  # of r
+
+
+@pytest.mark.parametrize("alpha", LAWS)
+@pytest.mark.parametrize("piece", [Piece.CORE, Piece.TAPER])
+def test_stress_adjacency_and_their_slopes_are_those_of_the_kernels(alpha, piece):
+    law, share = PairNumbers.of(alpha), 0.1 if piece is Piece.CORE else 0.8
+    s2 = (share * alpha.r) ** 2
+    assert law.piece(arb(s2)) is piece
+    expected = (
+        *kernel.pair_alpha(s2, alpha.par),
+        kernel.pair_alpha_slope(s2, alpha.par),
+        kernel.pair_alpha_adjacency_slope(s2, alpha.par),
+    )
+    with series_length(1):
+        series = arb_series([arb(s2)])
+        found = [float(x[0]) for x in (*pair_series(series, law, piece), *pair_slopes(series, law, piece))]
+    np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-14)
+    np.testing.assert_allclose([float(x) for x in pair_hull(arb(s2), law)], expected, rtol=1e-12, atol=1e-14)
+
+
+@pytest.mark.parametrize("alpha", LAWS)
+def test_a_ball_across_a_switch_holds_the_values_on_both_sides(alpha):
+    law = PairNumbers.of(alpha)
+    for z in (law.knee, law.cutoff):
+        length2 = float(((1 + law.eps * z) ** 2 - 1) / law.eps * law.area)
+        wide = arb(length2, 0.3)
+        assert law.piece(wide) is Piece.SWITCH
+        for s2 in (length2 - 0.25, length2, length2 + 0.25):
+            point = (
+                *kernel.pair_alpha(s2, alpha.par),
+                kernel.pair_alpha_slope(s2, alpha.par),
+                kernel.pair_alpha_adjacency_slope(s2, alpha.par),
+            )
+            assert all((x + arb(0, 1e-12)).contains(arb(y)) for x, y in zip(pair_hull(wide, law), point, strict=True))
+
+
+def test_out_of_range_is_a_piece_of_its_own_and_exactly_r_lies_on_the_switch():
+    law = PairNumbers.of(AlphaInteraction(d=7.0, r=8.5))
+    assert law.piece(arb(8.6) ** 2) is Piece.OUT
+    assert law.piece(arb(8.5) ** 2) is Piece.SWITCH
+
+
+GAINS = Gains(c1_alpha=12.0, c2_alpha=3.5, c1_gamma=1.25, c2_gamma=0.75)
+
+
+def laws(m):
+    q, p = tuple(np.arange(1.0, m + 1.0)), (0.5,) * m
+    return [
+        Algorithm1(gains=GAINS),
+        Algorithm2(gains=GAINS, target=LinearTarget(q, p)),
+        Algorithm2(gains=GAINS, target=StaticTarget(q, p)),
+        Algorithm3(gains=GAINS, target=StaticTarget(q, p)),
+    ]
+
+
+@pytest.mark.parametrize("law", [law for m in (1, 2, 3) for law in laws(m)], ids=lambda law: type(law).__name__)
+def test_acceleration_and_jacobian_are_those_of_the_law(law):
+    m = 2 if law.target is None else law.target.dimension
+    rng = np.random.default_rng(3)
+    q, p, t = rng.uniform(-6.0, 6.0, (4, m)), rng.normal(size=(4, m)), 0.75
+    with ctx.workprec(100):
+        flow = flow_of(law, 4, m)
+        state = [arb(x) for x in (*q.ravel(), *p.ravel())]
+        u = flow.input(arb(t), state, flow.pieces(state))
+        slope = flow.jacobian(arb(t), state, flow.pieces(state))
+    np.testing.assert_allclose([float(x) for x in u], law.acceleration(t, q, p).ravel(), rtol=1e-11, atol=1e-11)
+    found = np.array([[float(x) for x in row] for row in slope.tolist()])
+    expected = law.jacobian(t, q, p)
+    np.testing.assert_allclose(found, getattr(expected, "toarray", lambda: expected)(), rtol=1e-10, atol=1e-10)
+
+
+@pytest.mark.parametrize("law", laws(2), ids=lambda law: type(law).__name__)
+def test_taylor_coefficients_are_those_of_the_flow_and_of_its_derivative(law):
+    """The second coefficient is x''/2, and the coefficients of the variation are those of differences of paths."""
+    q, p = np.array([[0.0, 0.0], [6.5, 1.0], [2.0, 5.0]]), np.array([[1.0, 0.0], [0.0, -1.0], [0.5, 0.5]])
+    with ctx.workprec(200):
+        flow, t = flow_of(law, 3, 2), arb(0.25)
+        state = [arb(x) for x in (*q.ravel(), *p.ravel())]
+        pieces = flow.pieces(state)
+        path = flow.taylor(t, state, 6, pieces)
+        second = flow.acceleration(t, state, pieces)
+        assert all(abs(2 * a[2] - b) < arb("1e-40") for a, b in zip(path, second, strict=True))
+        variation = flow.variation(t, path, 5, pieces)
+        step = arb(2) ** -60
+        for column in (0, 3, 8):
+            moved = [x + (step if k == column else 0) for k, x in enumerate(state)]
+            ahead = flow.taylor(t, moved, 5, pieces)
+            for row in range(12):
+                for k in range(6):
+                    quotient = (ahead[row][k] - path[row][k]) / step
+                    assert abs(variation[k][row, column] - quotient) < arb("1e-9")

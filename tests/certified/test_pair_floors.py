@@ -1,0 +1,140 @@
+"""Bounds of a pair's curvature along a displacement: true ones are proved, false ones never."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from flint import arb, ctx, fmpq
+
+from flockana import Algorithm1, Algorithm2, StaticTarget
+from flockana.certified.damping import damping
+from flockana.certified.decimals import floored, raised, written
+from flockana.certified.lyapunov import Bounds, decay, rate_of
+from flockana.certified.pair_floors import SHELLS, LengthCells, points, proposed_across
+from flockana.certified.shells import Surroundings
+from flockana.certified.structure import Structure
+from flockana.interactions import AlphaInteraction
+
+LAW = Algorithm1()
+U = Structure.of(LAW, 2, 2)
+
+
+def sampled(rest, eta, along, count=20_000):
+    """The largest β at sampled displacements, from forces and their differences in floating point."""
+    rng = np.random.default_rng(0)
+    angle, size = rng.uniform(0, np.pi, count), eta * np.sqrt(rng.uniform(0, 1, count))
+    e = size[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])
+    y = e + np.array([rest, 0.0])
+    length, alpha = np.linalg.norm(y, axis=1), LAW.alpha
+    root = np.sqrt(1 + alpha.eps * length**2)
+    pull = 30.0 * alpha.phi_alpha(alpha.sigma_norm(length)) / root
+    stiff = 30.0 * (
+        alpha.phi_alpha_slope(alpha.sigma_norm(length)) * (length / root) ** 2
+        + alpha.phi_alpha(alpha.sigma_norm(length)) / root**3
+    )
+    inward = (y * e).sum(axis=1) / length
+    form = stiff * inward**2 + pull * (size**2 - inward**2)
+    return float(np.min((form - along * e[:, 0] ** 2) / e[:, 1] ** 2))
+
+
+@pytest.mark.parametrize("rest", [6.8, 7.0, 7.3])
+@pytest.mark.parametrize("eta", [0.1, 0.4, 0.7])
+def test_proposed_bounds_are_proved_and_samples_leave_no_room_for_much_better_ones(rest, eta):
+    with ctx.workdps(25):
+        reach = fmpq(int(1000 * eta), 1000)
+        cells = LengthCells(U, arb(rest), reach)
+        x = points(eta)
+        length, alpha = rest + x, LAW.alpha
+        root = np.sqrt(1 + alpha.eps * length**2)
+        action = alpha.phi_alpha(alpha.sigma_norm(length))
+        stiff = 30.0 * (alpha.phi_alpha_slope(alpha.sigma_norm(length)) * (length / root) ** 2 + action / root**3)
+        pull = 30.0 * action / root
+        along = float(stiff.min()) - 0.25 * float(np.abs(stiff).max())
+        across = proposed_across(along, rest, x, stiff, pull, eta)
+        a, b = floored(arb(along), 6), floored(arb(across), 6)
+        assert cells.holds(SHELLS, a, b)
+        true = sampled(rest, eta, along)
+        assert across < true
+        assert not cells.holds(SHELLS, a, floored(arb(true + 0.01 * abs(true) + 1e-3), 6))
+        above = floored(arb(1.001 * float(stiff.min()) + 1.0), 6)
+        assert not cells.holds(SHELLS, above, b)
+
+
+def test_the_pair_of_a_structure_is_that_of_the_law():
+    law = Algorithm2(target=StaticTarget((0.0, 0.0)))
+    rng = np.random.default_rng(3)
+    x = rng.uniform(-6.0, 6.0, (5, 2))
+    x -= x.mean(axis=0)
+    with ctx.workdps(25):
+        u = Structure.of(law, 5, 2)
+        balls = [arb(float(y)) for y in x.ravel()]
+        gradient = np.array([float(y) for y in u.gradient(balls)])
+        hessian = np.array([[float(y) for y in row] for row in u.hessian(balls).tolist()])
+        far = -law.flow(0.0, x, np.zeros_like(x))[0].ravel()
+        assert np.abs(gradient - far).max() < 1e-11
+        step = 1e-6
+        for k in (0, 3, 9):
+            moved = x.ravel().copy()
+            moved[k] += step
+            change = (-law.flow(0.0, moved.reshape(x.shape), np.zeros_like(x))[0].ravel() - far) / step
+            assert np.abs(hessian[:, k] - change).max() < 1e-3
+        raised_energy = [arb(float(y)) for y in (x * (1 + 1e-6)).ravel()]
+        slope = float((u.energy(raised_energy) - u.energy(balls)).mid()) / 1e-6
+        assert slope == pytest.approx(float(gradient @ x.ravel()), rel=1e-4)
+
+
+def test_damping_of_a_path_is_that_of_its_laplacian():
+    u = Structure.of(LAW, 3, 1)
+    with ctx.workdps(25):
+        lengths = {(0, 1): arb(7), (1, 2): arb(7), (0, 2): arb(14)}
+        second, degree = damping(u, lengths, fmpq(1, 2))
+    alpha = AlphaInteraction()
+    weak, strong = (float(alpha.adjacency(alpha.sigma_norm(7.0 + s))) for s in (0.5, -0.5))
+    assert weak * 0.999 < float(second.p) / float(second.q) <= weak  # eigenvalues 0, a, 3a
+    assert 2 * strong <= float(degree.p) / float(degree.q) < 2.01 * strong
+    with ctx.workdps(25):
+        assert damping(u, {**lengths, (1, 2): arb(8)}, fmpq(1, 2))[0] == 0  # the net may part
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_rate_is_one_of_every_linear_system_within_its_bounds(seed):
+    """x'' + D x' + K x = 0 with λ <= K <= Λ, μ <= D <= M: dF/dt <= −αF as a quadratic form."""
+    rng = np.random.default_rng(seed)
+    size = 4
+    turn, other = (np.linalg.qr(rng.standard_normal((size, size)))[0] for _ in range(2))
+    stiff, drag = np.linspace(1.0, 1.0 + 30.0 * rng.uniform(), size), np.linspace(0.5, 0.5 + 8.0 * rng.uniform(), size)
+    k, d = turn @ np.diag(stiff) @ turn.T, other @ np.diag(drag) @ other.T
+    bounds = Bounds(fmpq(1), fmpq(1, 2), fmpq(1, 2), raised(arb(float(drag[-1])), 4))
+    found = decay(bounds)
+    eps, alpha = (float(y.p) / float(y.q) for y in (found.eps, found.rate))
+    one, zero = np.eye(size), np.zeros((size, size))
+    form = 0.5 * np.block([[k, eps * one], [eps * one, one]])
+    system = np.block([[zero, one], [-k, -d]])
+    change = form @ system + system.T @ form + alpha * form
+    assert np.linalg.eigvalsh(change)[-1] <= 1e-12
+    assert alpha > 0.0
+    assert float(found.overshoot.p) / float(found.overshoot.q) >= (1 + eps) / (1 - eps)
+
+
+def test_no_rate_without_damping_or_with_a_useless_choice():
+    fine = Bounds(fmpq(1), fmpq(1, 2), fmpq(1), fmpq(1))
+    assert rate_of(fine, fmpq(1, 4), fmpq(1), fmpq(1, 2), fmpq(1)) > 0
+    assert rate_of(Bounds(fmpq(1), fmpq(1, 2), fmpq(0), fmpq(1)), fmpq(1, 4), fmpq(1), fmpq(1, 2), fmpq(1)) == 0
+    assert rate_of(fine, fmpq(1, 4), fmpq(1), fmpq(1, 9), fmpq(1)) == 0  # ε > 2κ
+    assert rate_of(fine, fmpq(1), fmpq(1), fmpq(1), fmpq(1)) == 0  # F is not positive
+
+
+def test_stated_decimals_are_on_the_safe_side_to_the_digit():
+    assert written(floored(arb("12.3456"), 4)) == "12.34"
+    assert written(raised(arb("12.3416"), 4)) == "12.35"
+    assert written(floored(arb("-0.0123416"), 4)) == "-0.01235"
+    assert floored(fmpq(1, 4), 3) == fmpq(1, 4)
+    assert floored(fmpq(0), 3) == 0
+
+
+def test_pairs_that_may_come_into_range_have_bounds_too():
+    with ctx.workdps(25):
+        u = Structure.of(LAW, 3, 1)
+        around = Surroundings(LAW, u, [arb(-8), arb(0), arb("8.5")])
+        assert [bond.pairs for bond in around.bonds(fmpq(1, 20))] == [((0, 1),)]
+        assert [bond.pairs for bond in around.bonds(fmpq(1, 5))] == [((0, 1),), ((1, 2),)]

@@ -1,0 +1,145 @@
+"""Verdicts from tubes: decided where the tube is narrow enough, with a reason where it is not."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+
+from flockana import Algorithm1, Algorithm2, Gains, StaticTarget, Tolerances, enclose, simulate, verify
+from flockana.base.errors import ArgumentError
+from flockana.theorems.from_tube import met
+
+LED = Algorithm2(target=StaticTarget((0.0,)))
+NEAR = np.array([[-3.5], [3.5]])
+
+
+@dataclass(frozen=True)
+class Everything:
+    """A basin that says of every state whether it holds it."""
+
+    law: object
+    answer: bool = True
+    rest: np.ndarray = None
+
+    def __post_init__(self):
+        object.__setattr__(self, "rest", NEAR)
+
+    def holds(self, q, p):
+        return self.answer
+
+
+@pytest.fixture(scope="module")
+def pair():
+    return enclose(LED, NEAR, 0.0 * NEAR, (0.0, 0.25))
+
+
+@pytest.fixture(scope="module")
+def loose():
+    """A tube of starts that differ by far."""
+    return enclose(LED, NEAR, 0.0 * NEAR, (0.0, 2.0**-9), radius=(0.0, 4.0), order=5, remainder=0.01, widest=10.0)
+
+
+def statuses(verdict):
+    return {claim.name: claim.status for claim in verdict.claims}
+
+
+def test_all_of_theorem_3_is_decided_and_its_rigour_reads_interval(pair):
+    verdict = verify("os-3", pair, basin=Everything(LED))
+    assert (verdict.status, verdict.rigour) == ("verified", "interval")
+    decided = statuses(verdict)
+    assert [name for name, status in decided.items() if status == "vacuous"] == []
+    assert decided["ii"] == decided["iii"] == decided["iv-none"] == "verified"
+    assert "from then on in the basin" in verdict.claim("iv-none").detail
+    assert verdict.claim("iv-none").margin < 7.0
+
+
+@pytest.mark.parametrize(
+    ("basin", "reason"),
+    [
+        (None, "no certified basin was given"),
+        (Everything(LED, answer=False), "is not certainly in the basin"),
+        (Everything(Algorithm1()), "is not certainly in the basin"),  # that of another law
+    ],
+)
+def test_a_limit_needs_a_basin_that_certainly_holds_the_end(pair, basin, reason):
+    verdict = verify("os-3", pair, basin=basin)
+    assert verdict.status == "inconclusive"
+    assert verdict.claim("i").status == "verified"
+    for name in ("ii", "iii"):
+        assert verdict.claim(name).status == "inconclusive"
+        assert reason in verdict.claim(name).detail
+
+
+def test_a_tube_that_ends_early_proves_no_limit():
+    broken = enclose(LED, NEAR, 0.0 * NEAR, (0.0, 1.0), steps=2)
+    claim = verify("os-3", broken, basin=Everything(LED)).claim("ii")
+    assert claim.status == "inconclusive"
+    assert "the tube ends early: it took 2 steps" in claim.detail
+
+
+def test_a_tube_that_is_too_wide_is_inconclusive_and_says_so():
+    wide = enclose(LED, NEAR, 0.0 * NEAR, (0.0, 0.03125), radius=(3.75, 0.0), widest=100.0)
+    verdict = verify("collision-energy", wide)
+    assert verdict.status == "inconclusive"
+    assert "the tube is too wide to tell: the margin is between" in verdict.claim("twice").detail
+    assert [h.status for h in verdict.hypotheses if h.name.startswith("H(0)")] != ["met", "met"]
+
+
+def test_loose_knobs_widen_what_is_known(loose, pair):
+    tight, wide = (verify("alpha-flocking", tube).claim("mismatch") for tube in (pair, loose))
+    assert tight.status == "verified"
+    assert wide.status == "inconclusive"
+    assert "too wide to tell" in wide.detail
+
+
+def test_agents_that_change_places_on_a_line_met():
+    law = Algorithm1()
+    tube = enclose(law, [[0.0], [1.0]], [[32.0], [-32.0]], (0.0, 0.03125))
+    assert list(met(tube)) == [(0, 1)]
+    assert 1.0 / 64.0 < met(tube)[0, 1] <= 0.03125
+    verdict = verify("collision-energy", tube)
+    assert statuses(verdict) == {"below": "vacuous", "twice": "refuted"}
+    assert verdict.rigour == "interval"
+    beside = enclose(law, [[0.0, 0.0], [1.0, 0.0]], [[32.0, 0.0], [-32.0, 0.0]], (0.0, 0.03125))
+    assert met(beside) == {}
+    assert statuses(verify("collision-energy", beside))["twice"] == "inconclusive"
+
+
+def test_theorem_1_from_a_tube():
+    law = Algorithm1()
+    tube = enclose(law, NEAR, 0.0 * NEAR, (0.0, 0.125))
+    verdict = verify("os-1", tube, basin=Everything(law))
+    assert statuses(verdict) == {"i": "verified", "ii": "verified", "iii": "verified", "iii-barrier": "verified"}
+    assert verdict.hypotheses[3].status == "assumed"  # of all solutions from Ω_c one tube says nothing
+    stretched = replace(Everything(law))
+    object.__setattr__(stretched, "rest", 1.1 * NEAR)
+    assert verify("os-1", tube, basin=stretched).claim("i").status == "inconclusive"  # refuted, but for what is assumed
+    apart = enclose(law, 3.0 * NEAR, 0.0 * NEAR, (0.0, 0.125))
+    assert set(statuses(verify("os-1", apart)).values()) == {"vacuous"}
+
+
+def test_flocking_is_judged_at_all_times_of_its_window(pair):
+    plain, strict = verify("alpha-flocking", pair), verify("alpha-flocking-strict", pair)
+    assert set(statuses(plain).values()) == set(statuses(strict).values()) == {"verified"}
+    apart = enclose(Algorithm1(), [[0.0], [20.0]], [[0.0], [1.0]], (0.0, 1.0))
+    assert statuses(verify("alpha-flocking-strict", apart))["flock"] == "refuted"
+    assert statuses(verify("alpha-flocking", apart))["giant"] == "refuted"
+    halved = verify("alpha-flocking", pair, tolerances=Tolerances(deviation=1e-12)).claim("deviation")
+    assert halved.status == "refuted"
+
+
+def test_gains_that_the_theorem_excludes_make_it_vacuous():
+    law = Algorithm2(gains=Gains(c1_gamma=0.0), target=StaticTarget((0.0,)))
+    tube = enclose(law, NEAR, 0.0 * NEAR, (0.0, 0.0625))
+    assert statuses(verify("os-3", tube))["ii"] == "vacuous"
+    free = Algorithm2(gains=Gains(c1_alpha=0.0), target=StaticTarget((0.0,)))
+    assert statuses(verify("os-3", enclose(free, NEAR, 0.0 * NEAR, (0.0, 0.0625))))["iv-none"] == "vacuous"
+
+
+def test_what_a_tube_cannot_decide_is_said(pair):
+    with pytest.raises(ArgumentError, match="energy is not decided from a tube: expected a Trajectory, or one of"):
+        verify("energy", pair)
+    with pytest.raises(ArgumentError, match="a basin decides the limit of a tube"):
+        verify("os-3", simulate(LED, NEAR, 0.0 * NEAR, (0.0, 0.1)), basin=Everything(LED))
