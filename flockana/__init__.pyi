@@ -11,6 +11,7 @@ from .certified.basin import Basin as Basin
 from .certified.basin import certify as certify
 from .certified.certificate import write_certificate as write_certificate
 from .certified.check import check_certificate as check_certificate
+from .certified.sampling import sample_basin as sample_basin
 from .dynamics import predicates as predicates
 from .dynamics.simulate import simulate as simulate
 from .dynamics.trajectory import Trajectory as Trajectory

@@ -81,6 +81,8 @@ class Basin:
         No two agents ever come nearer to one another.
     connected : bool
         Whether the net is connected at all times.
+    proof : Proved
+        What it was proved from, for its certificate.
 
     Examples
     --------
@@ -257,7 +259,7 @@ def _concluded(around: Surroundings, law: Any, computed: list[float], shells: Sh
         level=_fraction(floored(shells.level, _STATED)),
         curvature=_fraction(curvature),
         damping=_fraction(least),
-        rate=_fraction(found.rate / 2),
+        rate=_fraction(found.rate),
         overshoot=_fraction(found.overshoot),
         distance=_fraction(floored(apart, _STATED)),
         connected=second > 0,

@@ -1,5 +1,6 @@
 from .animation import animate as animate
 from .animation import animation as animation
+from .basin import sampled_basin as sampled_basin
 from .control import bode as bode
 from .control import delay_chart as delay_chart
 from .control import gain_sweep as gain_sweep

@@ -106,7 +106,7 @@ def test_the_rate_is_one_of_every_linear_system_within_its_bounds(seed):
     k, d = turn @ np.diag(stiff) @ turn.T, other @ np.diag(drag) @ other.T
     bounds = Bounds(fmpq(1), fmpq(1, 2), fmpq(1, 2), raised(arb(float(drag[-1])), 4))
     found = decay(bounds)
-    eps, alpha = (float(y.p) / float(y.q) for y in (found.eps, found.rate))
+    eps, alpha = (float(y.p) / float(y.q) for y in (found.eps, 2 * found.rate))
     one, zero = np.eye(size), np.zeros((size, size))
     form = 0.5 * np.block([[k, eps * one], [eps * one, one]])
     system = np.block([[zero, one], [-k, -d]])
