@@ -8,6 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from flint import arb, fmpq
 
 from flockana import (
     Algorithm1,
@@ -22,8 +23,10 @@ from flockana import (
     simulate,
 )
 from flockana.base.errors import ArgumentError, FlockanaError, SolverError
+from flockana.certified.alignment import projects
 from flockana.certified.shells import SHELLS
-from tests.certified.conftest import ALL, STARTS, basin_of, displaced
+from flockana.certified.structure import Structure
+from tests.certified.conftest import ALL, STARTS, TETRAHEDRON, basin_of, displaced
 
 
 def energy(basin, x):
@@ -182,3 +185,24 @@ def test_where_the_flock_was_found_does_not_matter():
     again = certify(find_equilibrium(basin.law, lattice.hexagonal_patch(1, 7.0) + 50.0))
     assert float(again.radius) == pytest.approx(float(basin.radius), rel=1e-2)
     assert float(again.level) == pytest.approx(float(basin.level), rel=2e-2)
+
+
+def test_a_set_of_states_is_in_the_basin_only_if_all_of_it_is():
+    basin = basin_of("triangle", 2)
+    still = [[arb(0)] * 2] * 3
+    for width, inside in (("0.01", True), ("1", False)):
+        states = [[arb(float(x)) + arb(0, width) for x in row] for row in basin.rest]
+        assert basin.holds(states, still) is inside
+    assert not basin.holds(basin.rest, [[arb(0, 3)] * 2] * 3)
+
+
+def test_the_nearest_point_of_an_orbit_is_unique_below_the_size_of_the_flock():
+    square = [arb(x) for x in (1, 1, 1, -1, -1, 1, -1, -1)]  # its size is √8
+    u = Structure.of(Algorithm1(), 4, 2)
+    assert projects(u, square, fmpq(282, 100))
+    assert not projects(u, square, fmpq(283, 100))
+    four = [arb(x) for row in TETRAHEDRON * np.sqrt(8.0) / 7.0 for x in map(round, row)]  # Σ x xᵀ = 4: tr 12, norm √48
+    space = Structure.of(Algorithm1(), 4, 3)
+    most = (12.0 - 48.0**0.5) / (1.0 + 3.0**0.5) / 48.0**0.25
+    assert projects(space, four, fmpq(int(most * 1e6), 10**6))
+    assert not projects(space, four, fmpq(int(most * 1e6) + 1, 10**6))
