@@ -12,11 +12,14 @@ import pytest
 
 import flockana.certified.check_basin
 import flockana.certified.check_net
+from flockana import Algorithm2, StaticTarget, certify, find_equilibrium
 from flockana.base.errors import FileError
 from flockana.base.seals import sealed
 from flockana.certified.certificate import basin_certificate, write_certificate
 from flockana.certified.check import RejectedError, check_certificate, check_data, unit
 from flockana.cli.main import main
+from flockana.equilibria.record import smallest_strained
+from flockana.lattice import hexagonal_patch
 from tests.certified.conftest import ALL, basin_of
 
 
@@ -179,3 +182,16 @@ def test_what_is_no_certificate_is_no_certificate(tmp_path):
     del data["bonds"]
     with pytest.raises(RejectedError, match="incomplete or out of form: KeyError"):
         check_data(resealed(data))
+
+
+@pytest.mark.parametrize(("name", "share"), [("nineteen", 0.04), ("strained", 0.02)])
+def test_larger_flocks_and_one_under_stress_have_certified_basins_too(name, share):
+    if name == "strained":
+        basin = certify(smallest_strained())
+    else:
+        law = Algorithm2(target=StaticTarget((0.0, 0.0)))
+        basin = certify(find_equilibrium(law, hexagonal_patch(2, law.alpha.d)))
+        assert not rejected(json.loads(json.dumps(basin_certificate(basin))))
+    assert share < basin.share < 0.05
+    assert basin.connected
+    assert basin.holds(basin.rest, 0.0 * basin.rest)
