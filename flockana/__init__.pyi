@@ -12,6 +12,7 @@ from .certified.basin import certify as certify
 from .certified.certificate import write_certificate as write_certificate
 from .certified.check import check_certificate as check_certificate
 from .certified.enclose import enclose as enclose
+from .certified.sampling import sample_basin as sample_basin
 from .certified.tube import Tube as Tube
 from .dynamics import predicates as predicates
 from .dynamics.simulate import simulate as simulate

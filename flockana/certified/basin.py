@@ -38,7 +38,7 @@ from flockana.certified.decimals import floored
 from flockana.certified.intervals import ball, square
 from flockana.certified.lyapunov import Bounds, Decay, decay
 from flockana.certified.shells import ROOT_TWO, Shells, Surroundings, prove
-from flockana.certified.structure import Structure, norm
+from flockana.certified.structure import Structure
 from flockana.equilibria.solve import Equilibrium
 from flockana.measures.nets import components, links
 
@@ -81,6 +81,8 @@ class Basin:
         No two agents ever come nearer to one another.
     connected : bool
         Whether the net is connected at all times.
+    proof : Proved
+        What it was proved from, for its certificate.
 
     Examples
     --------
@@ -119,7 +121,7 @@ class Basin:
             u, shape = self.proof.structure, self.rest.shape
             x, v = centred("q", q, shape), centred("p", p, shape)
             turned = turned_to(self.proof.rest, x, shape)
-            distance = norm([a - b for a, b in zip(x, turned, strict=True)])
+            distance = sum((square(a - b) for a, b in zip(x, turned, strict=True)), arb(0)).upper().sqrt()
             excess = u.energy(x) - u.energy(self.proof.rest) + sum(map(square, v), arb(0)) / 2
             return distance.upper(), excess.upper()
 
@@ -257,7 +259,7 @@ def _concluded(around: Surroundings, law: Any, computed: list[float], shells: Sh
         level=_fraction(floored(shells.level, _STATED)),
         curvature=_fraction(curvature),
         damping=_fraction(least),
-        rate=_fraction(found.rate / 2),
+        rate=_fraction(found.rate),
         overshoot=_fraction(found.overshoot),
         distance=_fraction(floored(apart, _STATED)),
         connected=second > 0,

@@ -23,9 +23,9 @@ FORMAT = "flockana certificate 1"
 STATEMENT = (
     "In the frame of the centre of mass, every solution that starts nearer than `radius` to the orbit under rotations "
     "of the equilibrium that lies within `box` of `positions` in each coordinate (distance over all coordinates, "
-    "agents numbered), with a structural energy less than `level` above the equilibrium's, converges to a point of that "
-    "orbit with matched velocities; E(t) <= overshoot E(0) exp(-2 rate t), U - U* >= curvature/2 times the squared "
-    "distance, and no two agents come nearer than `distance`."
+    "agents numbered), with a structural energy less than `level` above the equilibrium's, converges to a point of "
+    "that orbit with matched velocities; E(t) <= overshoot E(0) exp(-2 rate t), U - U* >= curvature/2 times the "
+    "squared distance, and no two agents come nearer than `distance`."
 )
 PROSE = (
     "U and H do not change under rotations, so what holds along w orthogonal to the tangent at x* holds at every R x*.",

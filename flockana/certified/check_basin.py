@@ -62,6 +62,7 @@ def check(data: Mapping[str, Any]) -> Iterator[str]:
             }
             matrix = net.radial(x, gaps, floors)
             ensure(positive(matrix, stated), f"shell {k}: the curvature is not proved")
+            ensure(stated % unit(stated, STATED) == 0, f"shell {k}: the curvature has too many digits")
             ensure(
                 not positive(matrix, stated + unit(stated, STATED)),
                 f"shell {k}: more than the curvature stated is true",
@@ -109,7 +110,7 @@ def _conclusions(
         eps * (theta * curvature + 2 * mean - kappa * most) / (curvature + eps * tau),
         2 * ((1 - eps / (2 * kappa)) * least - eps) / (1 + eps / tau),
     )
-    ensure(rate > 0 and rounded_down(str(2 * Fraction(data["rate"])), rate, OF_RATE), "the rate is not that of F")
+    ensure(rate > 0 and rounded_down(data["rate"], rate / 2, OF_RATE), "the rate is not that of F")
     share = ball(eps) / ball(curvature).sqrt()
     ensure(rounded_down(str(-Fraction(data["overshoot"])), -(1 + share) / (1 - share), OF_RATE), "the overshoot")
     yield "F = E + ε⟨w, v⟩ falls at twice the rate, and is E but for the overshoot"
@@ -121,6 +122,8 @@ def rounded_down(stated: str, value: Any, digits: int = STATED) -> bool:
     """Whether a stated number is the value rounded down to so many digits."""
     number = Fraction(stated)
     above = number + unit(number, digits)
+    if number % unit(number, digits):
+        return False
     if isinstance(value, Fraction):
         return number <= value < above
     return bool(ball(number) <= value) and bool(value < ball(above))

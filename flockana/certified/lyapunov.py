@@ -42,7 +42,7 @@ class Bounds:
 
 @dataclass(frozen=True)
 class Decay:
-    """ε, θ, κ and τ, and with them the proved rate α of F and (1 + e)/(1 − e), rounded up."""
+    """ε, θ, κ and τ, and with them half the proved rate α, rounded down, and (1 + e)/(1 − e), rounded up."""
 
     eps: fmpq
     theta: fmpq
@@ -68,8 +68,8 @@ def decay(bounds: Bounds) -> Decay:
 
     Examples
     --------
-    >>> of_spring = decay(Bounds(fmpq(1), fmpq(1, 2), fmpq(1), fmpq(1)))  # x'' + x' + x = 0: E falls like exp(-t)
-    >>> 0.4 < float(of_spring.rate) < 1.0
+    >>> of_spring = decay(Bounds(fmpq(1), fmpq(1, 2), fmpq(1), fmpq(1)))  # x'' + x' + x = 0: x falls like exp(-t/2)
+    >>> 0.15 < float(of_spring.rate) < 0.5
     True
     """
     curvature = float(bounds.curvature)
@@ -80,7 +80,7 @@ def decay(bounds: Bounds) -> Decay:
             best = _improved(bounds, best, pair, spread)
         spread = 1.0 + (spread - 1.0) * 0.6
     eps, theta, kappa, tau = (floored(arb(float(x)), _DIGITS) for x in best)
-    rate = floored(rate_of(bounds, eps, theta, kappa, tau), _DIGITS)
+    rate = floored(rate_of(bounds, eps, theta, kappa, tau) / 2, _DIGITS)
     share = ball(eps) / ball(bounds.curvature).sqrt()
     return Decay(eps, theta, kappa, tau, rate, raised((1 + share) / (1 - share), _DIGITS))
 

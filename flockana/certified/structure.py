@@ -162,8 +162,3 @@ def outer(gap: Sequence[arb], across: arb, more: arb) -> list[list[arb]]:
 def dot(a: Balls, b: Balls) -> arb:
     """⟨a, b⟩."""
     return sum((x * y for x, y in zip(a, b, strict=True)), arb(0))
-
-
-def norm(a: Balls) -> arb:
-    """‖a‖."""
-    return sum(map(square, a), arb(0)).sqrt()

@@ -8,13 +8,14 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from flint import arb, fmpq
 
 from flockana import (
     Algorithm1,
     Algorithm2,
     AlphaInteraction,
+    DeadZoneFlocking,
     Gains,
-    PeerToPeer,
     StaticTarget,
     certify,
     find_equilibrium,
@@ -22,8 +23,10 @@ from flockana import (
     simulate,
 )
 from flockana.base.errors import ArgumentError, FlockanaError, SolverError
+from flockana.certified.alignment import projects
 from flockana.certified.shells import SHELLS
-from tests.certified.conftest import ALL, STARTS, basin_of, displaced
+from flockana.certified.structure import Structure
+from tests.certified.conftest import ALL, STARTS, TETRAHEDRON, basin_of, displaced
 
 
 def energy(basin, x):
@@ -88,9 +91,9 @@ def test_starts_in_the_basin_end_in_the_orbit_no_slower_than_promised(basin):
     x, spare = (x, spare) if spare > 0.0 else (basin.rest.copy(), float(basin.level))
     v *= np.sqrt(2.0 * 0.98 * spare) / np.linalg.norm(v)
     assert basin.holds(x, v)
-    run = simulate(basin.law, x, v, (0.0, 6.0), rtol=1e-10, atol=1e-12)
+    run = simulate(basin.law, x, v, (0.0, 4.0), rtol=1e-10, atol=1e-12)
     first = basin.above(run.q[0], run.p[0])[1]
-    for k in np.linspace(1, len(run.t) - 1, 12).astype(int):
+    for k in np.linspace(1, len(run.t) - 1, 6).astype(int):
         distance, left = basin.above(run.q[k], run.p[k])
         assert distance < basin.radius.numerator / basin.radius.denominator
         bound = float(basin.overshoot) * float(first) * np.exp(-2.0 * float(basin.rate) * run.t[k])
@@ -158,7 +161,7 @@ def test_what_the_argument_does_not_cover_is_refused():
     with pytest.raises(ArgumentError, match="law = None: expected the law"):
         certify(q)
     with pytest.raises(ArgumentError, match="expected Algorithm1 or Algorithm2"):
-        certify(q, law=PeerToPeer())
+        certify(q, law=DeadZoneFlocking())
     with pytest.raises(ArgumentError, match=r"unit = 2: expected 1; rescale"):
         certify(q, law=Algorithm1(alpha=AlphaInteraction(unit=2.0)))
     with pytest.raises(ArgumentError, match="given per agent"):
@@ -182,3 +185,24 @@ def test_where_the_flock_was_found_does_not_matter():
     again = certify(find_equilibrium(basin.law, lattice.hexagonal_patch(1, 7.0) + 50.0))
     assert float(again.radius) == pytest.approx(float(basin.radius), rel=1e-2)
     assert float(again.level) == pytest.approx(float(basin.level), rel=2e-2)
+
+
+def test_a_set_of_states_is_in_the_basin_only_if_all_of_it_is():
+    basin = basin_of("triangle", 2)
+    still = [[arb(0)] * 2] * 3
+    for width, inside in (("0.01", True), ("1", False)):
+        states = [[arb(float(x)) + arb(0, width) for x in row] for row in basin.rest]
+        assert basin.holds(states, still) is inside
+    assert not basin.holds(basin.rest, [[arb(0, 3)] * 2] * 3)
+
+
+def test_the_nearest_point_of_an_orbit_is_unique_below_the_size_of_the_flock():
+    square = [arb(x) for x in (1, 1, 1, -1, -1, 1, -1, -1)]  # its size is √8
+    u = Structure.of(Algorithm1(), 4, 2)
+    assert projects(u, square, fmpq(282, 100))
+    assert not projects(u, square, fmpq(283, 100))
+    four = [arb(x) for row in TETRAHEDRON * np.sqrt(8.0) / 7.0 for x in map(round, row)]  # Σ x xᵀ = 4: tr 12, norm √48
+    space = Structure.of(Algorithm1(), 4, 3)
+    most = (12.0 - 48.0**0.5) / (1.0 + 3.0**0.5) / 48.0**0.25
+    assert projects(space, four, fmpq(int(most * 1e6), 10**6))
+    assert not projects(space, four, fmpq(int(most * 1e6) + 1, 10**6))

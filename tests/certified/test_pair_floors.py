@@ -106,7 +106,7 @@ def test_the_rate_is_one_of_every_linear_system_within_its_bounds(seed):
     k, d = turn @ np.diag(stiff) @ turn.T, other @ np.diag(drag) @ other.T
     bounds = Bounds(fmpq(1), fmpq(1, 2), fmpq(1, 2), raised(arb(float(drag[-1])), 4))
     found = decay(bounds)
-    eps, alpha = (float(y.p) / float(y.q) for y in (found.eps, found.rate))
+    eps, alpha = (float(y.p) / float(y.q) for y in (found.eps, 2 * found.rate))
     one, zero = np.eye(size), np.zeros((size, size))
     form = 0.5 * np.block([[k, eps * one], [eps * one, one]])
     system = np.block([[zero, one], [-k, -d]])
@@ -116,12 +116,21 @@ def test_the_rate_is_one_of_every_linear_system_within_its_bounds(seed):
     assert float(found.overshoot.p) / float(found.overshoot.q) >= (1 + eps) / (1 - eps)
 
 
+def test_each_of_the_three_conditions_may_be_the_one_that_binds():
+    choice = (fmpq(1, 4), fmpq(1), fmpq(1, 4), fmpq(1))  # ε, θ, κ, τ
+    assert rate_of(Bounds(fmpq(1), fmpq(1, 2), fmpq(2), fmpq(4)), *choice) == fmpq(1, 5)  # places
+    assert rate_of(Bounds(fmpq(1), fmpq(1, 2), fmpq(7, 10), fmpq(4)), *choice) == fmpq(4, 25)  # speeds
+    assert rate_of(Bounds(fmpq(1), fmpq(1, 2), fmpq(2), fmpq(2)), *choice) == fmpq(1, 4)  # εθ
+
+
 def test_no_rate_without_damping_or_with_a_useless_choice():
     fine = Bounds(fmpq(1), fmpq(1, 2), fmpq(1), fmpq(1))
     assert rate_of(fine, fmpq(1, 4), fmpq(1), fmpq(1, 2), fmpq(1)) > 0
     assert rate_of(Bounds(fmpq(1), fmpq(1, 2), fmpq(0), fmpq(1)), fmpq(1, 4), fmpq(1), fmpq(1, 2), fmpq(1)) == 0
     assert rate_of(fine, fmpq(1, 4), fmpq(1), fmpq(1, 9), fmpq(1)) == 0  # ε > 2κ
-    assert rate_of(fine, fmpq(1), fmpq(1), fmpq(1), fmpq(1)) == 0  # F is not positive
+    stiff = Bounds(fmpq(1), fmpq(1, 2), fmpq(10), fmpq(1))
+    assert rate_of(stiff, fmpq(99, 100), fmpq(1), fmpq(1), fmpq(1)) > 0
+    assert rate_of(stiff, fmpq(1), fmpq(1), fmpq(1), fmpq(1)) == 0  # F is not positive
 
 
 def test_stated_decimals_are_on_the_safe_side_to_the_digit():

@@ -1,0 +1,106 @@
+"""How far the true basin of an equilibrium reaches, as far as samples can tell: beside what is certified."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from flockana.base.binomial import clopper_pearson
+from flockana.base.checks import FloatArray, ensure_count, ensure_positive
+from flockana.base.errors import ArgumentError
+from flockana.certified.basin import Basin
+from flockana.dynamics.simulate import simulate
+from flockana.equilibria.terminal import rigid_motions
+
+
+@dataclass(frozen=True)
+class SampledBasin:
+    """How many starts at rest, displaced in random directions, came back to the orbit.
+
+    Parameters
+    ----------
+    basin : Basin
+        What is certified.
+    distances : ndarray
+        Distances from the orbit over all coordinates, in units of length.
+    returned : int array
+        Starts that ended in the certified basin.
+    runs : int
+        Starts at each distance.
+    """
+
+    basin: Basin = field(repr=False)
+    distances: FloatArray
+    returned: Any
+    runs: int
+
+    @property
+    def shares(self) -> FloatArray:
+        """Share of the starts that returned."""
+        found: FloatArray = self.returned / self.runs
+        return found
+
+    def interval(self, *, level: float = 0.95) -> tuple[FloatArray, FloatArray]:
+        """Ends of the exact confidence interval of each share.
+
+        Parameters
+        ----------
+        level : float
+            Confidence.
+        """
+        return clopper_pearson(self.returned, np.full_like(self.returned, self.runs), level=level)
+
+
+def sample_basin(
+    basin: Basin, distances: Sequence[float], *, runs: int = 20, seed: int = 0, t_end: float = 20.0
+) -> SampledBasin:
+    """Run starts at rest at given distances from the orbit, in random directions, and count those that return.
+
+    A run counts if its end is in the certified basin: from there on it is proved. A run that needs longer than `t_end`
+    does not.
+
+    Parameters
+    ----------
+    basin : Basin
+        Of `certify`.
+    distances : sequence of float
+        Over all coordinates, in units of length.
+    runs : int
+        Starts at each.
+    seed : int
+        Of the directions.
+    t_end : float
+        Length of a run.
+
+    Returns
+    -------
+    SampledBasin
+
+    Examples
+    --------
+    >>> from flockana.certified.basin import certify
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> pair = certify([[0.0], [7.0]], law=Algorithm1())
+    >>> sample_basin(pair, [0.3, 12.0], runs=4).returned.tolist()
+    [4, 0]
+    """
+    runs, end = ensure_count("runs", runs), ensure_positive("t_end", t_end)
+    sizes = np.array([ensure_positive("distances", x) for x in distances])
+    if not sizes.size:
+        raise ArgumentError("distances is empty: expected one or more")
+    rng, motions = np.random.default_rng(seed), rigid_motions(basin.rest)
+    still = np.zeros_like(basin.rest)
+    centre = np.zeros(basin.rest.shape[1]) if basin.law.target is None else basin.law.target.state(0.0)[0]
+    drift = still if basin.law.target is None else still + basin.law.target.state(0.0)[1]
+    returned = np.zeros(sizes.size, dtype=np.int64)
+    for k, size in enumerate(sizes):
+        for _ in range(runs):
+            w = rng.standard_normal(basin.rest.size)
+            w -= motions @ (motions.T @ w)
+            start = basin.rest + centre + (size / np.linalg.norm(w) * w).reshape(basin.rest.shape)
+            run = simulate(basin.law, start, drift, (0.0, end), t_eval=[0.0, end])
+            returned[k] += basin.holds(run.q[-1], run.p[-1])
+    return SampledBasin(basin, sizes, returned, runs)

@@ -1,0 +1,48 @@
+"""The certified radius of a basin beside what sampling finds of the true one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from flockana.plots.style import BLUE, INK, VERMILLION, ensure_axes
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from flockana.certified.sampling import SampledBasin
+
+
+def sampled_basin(sampled: SampledBasin, *, level: float = 0.95, ax: Axes | None = None) -> Axes:
+    """Draw the share of starts that return to the orbit against their distance from it, and the certified radius.
+
+    What is certified of starts below the radius asks for an energy below the basin's level too.
+
+    Parameters
+    ----------
+    sampled : SampledBasin
+        Of `flockana.certified.sampling.sample_basin`.
+    level : float
+        Confidence of the intervals.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    ax = ensure_axes(ax)
+    d, basin = sampled.basin.law.alpha.d, sampled.basin
+    low, high = sampled.interval(level=level)
+    off = [(sampled.shares - low).clip(0.0), (high - sampled.shares).clip(0.0)]
+    label = f"{sampled.runs} starts each"
+    ax.errorbar(sampled.distances / d, sampled.shares, yerr=off, fmt="o", color=BLUE, label=label)
+    ax.axvspan(0.0, basin.share, color=VERMILLION, alpha=0.15)
+    ax.axvline(basin.share, color=VERMILLION, label=f"certified ρ = {basin.share:.3f} d")
+    ax.axhline(1.0, color=INK, linewidth=0.5)
+    ax.set_ylim(-0.05, 1.1)
+    ax.set_xlim(left=0.0)
+    ax.set_xlabel("distance from the orbit, over all coordinates, in d")
+    ax.set_ylabel("share that returns")
+    ax.set_title(f"{type(basin.law).__name__}, n = {len(basin.rest)}: certified, and sampled")
+    ax.legend(loc="lower left")
+    return ax

@@ -1,0 +1,148 @@
+# ---
+# jupyter:
+#   jupytext:
+#     text_representation:
+#       extension: .py
+#       format_name: percent
+#   kernelspec:
+#     display_name: Python 3
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # From a run to a theorem
+#
+# **Aims.** See what a simulation leaves open, turn "it looks as if it flocks" into a statement that no rounding error
+# can touch, read its certificate, and let other code check it.
+#
+# Three agents under Algorithm 2, one of them off its place by a push. Does *this* start flock?
+
+# %%
+import json
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+import flockana as fl
+from flockana import lattice, plots
+from flockana.course import grade
+
+law = fl.Algorithm2(target=fl.StaticTarget((0.0, 0.0)))
+rest = fl.find_equilibrium(law, lattice.hexagonal_spiral(3, 7.0))
+start = rest.q + 0.9 * np.array([[1.0, 0.0], [-0.5, 0.4], [-0.5, -0.4]])
+still = np.zeros_like(start)
+run = fl.simulate(law, start, still, (0.0, 8.0))
+_ = plots.measure(run, "normalised_velocity_mismatch")
+
+# %% [markdown]
+# The mismatch falls, and falls. But the integrator rounds, eight seconds are not for ever, and the equilibrium itself
+# was computed only to fifteen digits. What would a proof need?
+#
+# ## A basin
+#
+# In the frame of the centre of mass $\dot x = v$, $\dot v = -\nabla U(x) - D(x)v$ with $U = c_1^\alpha V + \tfrac12
+# c_1^\gamma\|x\|^2$ and $D = c_2^\gamma + c_2^\alpha\hat L(x)$. Turning the triangle costs nothing, so it is an
+# *orbit* of equilibria. Let $w$ be the displacement from the nearest of them. If on the way to distance $t$ the
+# curvature of $U$ along $w$ is at least $k(t)$, then with $G'' = k$, $G(0) = G'(0) = 0$
+#
+# $$U - U^* \ge G(\|w\|), \qquad \langle\nabla U, w\rangle \ge \|w\|\,G'(\|w\|).$$
+#
+# So to leave the ball of radius $\rho$ the energy must reach $U^* + G(\rho)$, which a start with less never has: the
+# energy only falls. `certify` bounds every pair's stress and slope by *ball arithmetic*, over all lengths that the ball
+# allows, and takes the largest ρ that it can prove.
+
+# %%
+basin = fl.certify(rest)
+print(f"rho = {basin.share:.4f} d, level {float(basin.level):.3f}, no two agents nearer than {float(basin.distance)}")
+print(f"energy falls like exp(-{2 * float(basin.rate):.3f} t) at least, as the net stays connected: {basin.connected}")
+
+# %% [markdown]
+# Is our start in it? `above` gives upper bounds of the distance to the orbit and of the energy above it; `holds` is
+# True only if both are certainly small enough.
+
+# %%
+for t, q, p in zip(run.t, run.q, run.p, strict=True):
+    distance, energy = basin.above(q, p)
+    if basin.holds(q, p):
+        print(f"at t = {t:.2f} the state is in the basin: distance {float(distance):.3f}, energy {float(energy):.3f}")
+        break
+    if t == run.t[0]:
+        print(
+            f"the start is not: distance {float(distance):.3f} > {float(basin.radius)}, or energy {float(energy):.2f}"
+        )
+
+# %% [markdown]
+# From that state on, everything is proved: it converges to the triangle, with matched velocities, without a collision.
+# That the *computed* state is near the true one at that time is the integrator's word; to enclose the run itself takes
+# a tube around the solution.
+#
+# <!-- tube -->
+#
+# ## What others find
+#
+# The certified radius is a lower bound of the true basin's. Samples tell how far from the truth it may be, and prove
+# nothing:
+
+# %%
+sampled = fl.sample_basin(basin, np.linspace(0.03, 0.9, 9) * 7.0, runs=12, t_end=10.0)
+_ = plots.sampled_basin(sampled)
+
+# %% [markdown]
+# ## A certificate
+#
+# `write_certificate` writes what was proved, and everything that is needed to verify it: exact parameters, positions in
+# hexadecimal, the bounds of the pairs in each shell. `flockana check FILE`, or `fl.check_certificate`, verifies it with
+# code of its own, which shares only the scalar functions with the code that proved.
+
+# %%
+file = Path(tempfile.mkdtemp()) / "triangle.json"
+fl.write_certificate(basin, file)
+checked = fl.check_certificate(file)
+print(*checked.steps, sep="\n")
+
+# %% [markdown] tags=["exercise"]
+# ## Exercises
+#
+# **1.** Two agents under Algorithm 1, 7 apart. A displacement by δ over all coordinates stretches the link by
+# $\sqrt2\,\delta$, and at $r = 8.4$ the link breaks. What is the largest ρ/d that any proof could reach?
+
+# %% tags=["answer"]
+largest = ...
+
+# %% tags=["solution"]
+largest = 1.4 / np.sqrt(2) / 7.0
+
+# %% tags=["check"]
+grade(largest, 0.1414213562, hint="r - d = 1.4, over the square root of 2")
+
+# %% [markdown] tags=["exercise"]
+# **2.** And what does `certify` reach for these two, in d?
+
+# %% tags=["answer"]
+reached = ...
+
+# %% tags=["solution"]
+reached = fl.certify([[0.0, 0.0], [7.0, 0.0]], law=fl.Algorithm1()).share
+
+# %% tags=["check"]
+grade(reached, lambda x: 0.06 < x < 0.1414, hint="fl.certify(positions, law=fl.Algorithm1()).share")
+
+# %% [markdown] tags=["exercise"]
+# **3.** Change the radius of the certificate above to 1.0 and have it checked. Which word does the error begin with
+# after "its"? (Read the message.)
+
+# %% tags=["answer"]
+word = ...
+
+# %% tags=["solution"]
+file.write_text(json.dumps({**json.loads(file.read_text()), "radius": "1"}))
+try:
+    fl.check_certificate(file)
+except fl.errors.FlockanaError as error:
+    print(error)
+    word = str(error).split()[1]
+
+# %% tags=["check"]
+grade(word, lambda x: x == "digest", hint="fl.check_certificate(file)")

@@ -1,0 +1,197 @@
+"""Certificates of basins: a change of any number is seen, and of one that was sealed again no false claim passes."""
+
+from __future__ import annotations
+
+import copy
+import json
+from collections.abc import Iterator
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+import flockana.certified.check_basin
+import flockana.certified.check_net
+from flockana import Algorithm2, StaticTarget, certify, find_equilibrium
+from flockana.base.errors import FileError
+from flockana.base.seals import sealed
+from flockana.certified.certificate import basin_certificate, write_certificate
+from flockana.certified.check import RejectedError, check_certificate, check_data, unit
+from flockana.cli.main import main
+from flockana.equilibria.record import smallest_strained
+from flockana.lattice import hexagonal_patch
+from tests.certified.conftest import ALL, basin_of
+
+
+def numbers(data, path=()) -> Iterator[tuple]:
+    """Where the numbers of a certificate stand, in text or not; not those of the statement."""
+    if isinstance(data, dict):
+        for key in data:
+            if key not in ("statement", "prose", "digest", "made_with", "format", "kind", "algorithm"):
+                yield from numbers(data[key], (*path, key))
+    elif isinstance(data, list):
+        for k, item in enumerate(data):
+            yield from numbers(item, (*path, k))
+    else:
+        yield path
+
+
+def value(text):
+    return Fraction(float.fromhex(text)) if "0x" in str(text) else Fraction(str(text))
+
+
+def changed(data, path, new):
+    """The same with another number there."""
+    other = copy.deepcopy(data)
+    inner = other
+    for key in path[:-1]:
+        inner = inner[key]
+    old = inner[path[-1]]
+    inner[path[-1]] = int(new) if isinstance(old, int) else float(new).hex() if "0x" in old else str(new)
+    return other
+
+
+def resealed(data):
+    return sealed({key: item for key, item in data.items() if key != "digest"})
+
+
+def rejected(data) -> bool:
+    try:
+        check_data(data)
+    except RejectedError:
+        return True
+    return False
+
+
+def small():
+    return json.loads(json.dumps(basin_certificate(basin_of("triangle", 1))))
+
+
+@ALL
+def test_what_was_certified_is_checked_by_other_code(basin):
+    found = check_data(json.loads(json.dumps(basin_certificate(basin))))
+    assert found.kind == "basin"
+    assert len(found.steps) == 9
+    assert len(found.prose) == 5
+
+
+def test_the_checker_knows_nothing_of_the_prover():
+    ours = {"basin", "certificate", "shells", "pair_floors", "lyapunov", "damping", "structure", "at_rest", "krawczyk"}
+    for module in (flockana.certified.check_basin, flockana.certified.check_net, flockana.certified.check):
+        text = Path(module.__file__).read_text(encoding="utf-8")
+        lines = [line for line in text.splitlines() if line.startswith(("from", "import"))]
+        assert not any(f"flockana.certified.{name} " in line for line in lines for name in ours)
+
+
+def test_a_change_of_any_one_number_is_rejected():
+    data = small()
+    places = list(numbers(data))
+    assert len(places) > 60
+    for path in places:
+        inner = data
+        for key in path:
+            inner = inner[key]
+        old = value(inner)
+        for new in (old + 1, old - 1) if isinstance(inner, int) else (old * 1001 / 1000 + (old == 0), old + 1):
+            assert rejected(changed(data, path, new)), path
+    assert not rejected(data)
+
+
+CLAIMS = ["radius", "level", "curvature", "rate", "overshoot", "distance", "surplus", "second_eigenvalue", "degree"]
+
+
+@pytest.mark.parametrize("name", [*CLAIMS, "curvatures"])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_what_follows_is_stated_to_the_last_digit_even_when_it_is_sealed_again(name, sign):
+    data = small()
+    for path in [(name,)] if name in CLAIMS else [(name, 0), (name, 7), (name, 15)]:
+        old = value(data[name] if len(path) == 1 else data[name][path[1]])
+        digits = 3 if name in ("rate", "overshoot") else 4
+        assert rejected(resealed(changed(data, path, old + sign * unit(old, digits)))), path
+
+
+@pytest.mark.parametrize(
+    ("path", "factor"),
+    [(("bonds", 0, "along", k), Fraction(21, 20)) for k in (0, 6)]
+    + [(("bonds", 0, "across", k), Fraction(1, 2)) for k in (0, 8, 15)]
+    + [(("law", name), Fraction(101, 100)) for name in ("d", "r", "eps", "h", "a")]
+    + [(("law", "c1_alpha"), Fraction(99, 100)), (("law", "c2_alpha"), Fraction(1, 20))]
+    + [(("lyapunov", name), Fraction(2)) for name in ("eps", "theta", "kappa", "tau")]
+    + [
+        (("positions", 0, 1), Fraction(10**9 + 1, 10**9)),
+        (("box",), Fraction(10**12)),
+        (("bonds", 0, "pairs", 0, 0), 9),
+    ],
+)
+def test_false_premises_are_rejected_even_when_they_are_sealed_again(path, factor):
+    data = small()
+    inner = data
+    for key in path:
+        inner = inner[key]
+    assert rejected(resealed(changed(data, path, (value(inner) or 1) * factor)))
+
+
+def test_a_radius_that_all_else_was_fitted_to_is_rejected_for_what_it_lacks():
+    """Shells of one hundredth more, with the α and β of those that hold."""
+    data = small()
+    with pytest.raises(RejectedError, match=r"no bound|curvature|pair|distance"):
+        check_data(resealed(changed(data, ("radius",), value(data["radius"]) * 6 / 5)))
+
+
+def test_a_pair_left_out_is_missed():
+    data = small()
+    data["bonds"][0]["pairs"].pop()
+    with pytest.raises(RejectedError, match="may come into range unseen"):
+        check_data(resealed(data))
+
+
+def test_gains_of_a_gamma_agent_are_none_of_algorithm_1():
+    data = small()
+    data["law"]["c2_gamma"] = "1"
+    with pytest.raises(RejectedError, match="no gains"):
+        check_data(resealed(data))
+
+
+def test_the_command_says_what_holds_and_what_is_rejected(tmp_path, capsys):
+    file, other = tmp_path / "pair.json", tmp_path / "other.json"
+    write_certificate(basin_of("pair", 1), file)
+    with pytest.raises(SystemExit) as end:
+        main(["check", str(file)])
+    assert end.value.code == 0
+    assert "a certificate of kind basin that holds" in capsys.readouterr().out
+    data = json.loads(file.read_text(encoding="utf-8"))
+    other.write_text(json.dumps({**data, "radius": "0.6"}), encoding="utf-8")
+    with pytest.raises(SystemExit) as end:
+        main(["check", str(other)])
+    assert end.value.code == 3
+    assert "is rejected: its digest is not that of its contents" in capsys.readouterr().err
+    other.write_text("{}", encoding="utf-8")
+    with pytest.raises(SystemExit) as end:
+        main(["check", str(other)])
+    assert end.value.code == 2
+
+
+def test_what_is_no_certificate_is_no_certificate(tmp_path):
+    file = tmp_path / "x.json"
+    file.write_text("[1, 2", encoding="utf-8")
+    with pytest.raises(FileError, match="is no certificate"):
+        check_certificate(file)
+    with pytest.raises(RejectedError, match="its kind 'wish' is unknown"):
+        check_data(resealed({**small(), "kind": "wish"}))
+    data = small()
+    del data["bonds"]
+    with pytest.raises(RejectedError, match="incomplete or out of form: KeyError"):
+        check_data(resealed(data))
+
+
+@pytest.mark.parametrize(("name", "share"), [("nineteen", 0.04), ("strained", 0.02)])
+def test_larger_flocks_and_one_under_stress_have_certified_basins_too(name, share):
+    if name == "strained":
+        basin = certify(smallest_strained())
+    else:
+        law = Algorithm2(target=StaticTarget((0.0, 0.0)))
+        basin = certify(find_equilibrium(law, hexagonal_patch(2, law.alpha.d)))
+        assert not rejected(json.loads(json.dumps(basin_certificate(basin))))
+    assert share < basin.share < 0.05
+    assert basin.connected
+    assert basin.holds(basin.rest, 0.0 * basin.rest)
