@@ -18,6 +18,7 @@ from benchmarks.machine import cores, facts, notice, pin
 
 STUDIES = (
     "right_hand_side",
+    "formulas",
     "pairs",
     "laws",
     "engines",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -257,77 +256,3 @@ class FormulaInteraction(PairInteraction):
         from flockana.symbolic.pair_derivation import pair_derivation
 
         return pair_derivation(self._parts.cut.formula)
-
-
-def pair_law(
-    potential: Any = None,
-    *,
-    force: Any = None,
-    adjacency: Any,
-    range: float,
-    length: float,
-    parameters: Mapping[str, float] | None = None,
-    units: Mapping[str, Powers] | None = None,
-) -> FormulaInteraction:
-    """A pair law from a formula, compiled as fast as a hand-written one, for every law that takes a pair interaction.
-
-    Formulas are sympy expressions, text or numbers, in the distance s, or in the σ-norm z with a parameter ``eps``;
-    r and d mean range and length, r_z and d_z their σ-norms, and every other name is a parameter. Pieces are
-    ``Piecewise`` with conditions linear in the distance. What a formula lacks that theorems ask for stands in
-    `FormulaInteraction.faults`.
-
-    Parameters
-    ----------
-    potential : sympy.Expr, str or float, optional
-        ψ, of which the derivative is the force: negative repels.
-    force : sympy.Expr, str or float, optional
-        Instead of it dψ/ds or dψ/dz, where ψ has no closed form, as that of Olfati-Saber has none.
-    adjacency : sympy.Expr, str or float
-        a_ij, by which velocities are averaged; 0 for none.
-    range : float
-        Beyond which pairs do not interact, in the user's length unit.
-    length : float
-        That neighbours are held at, or another length that the law has.
-    parameters : mapping of str to float, optional
-        A value for each name.
-    units : mapping of str to (int, int), optional
-        Powers of length and time of each parameter, so that `flockana.rescale` knows them.
-
-    Raises
-    ------
-    ArgumentError
-        As `FormulaInteraction`.
-
-    Examples
-    --------
-    >>> law = pair_law("k*(s**2 - d**2)**2*(r**2 - s**2)**2", adjacency="(1 - s/r)**2", range=3.0,
-    ...                length=2.0, parameters={"k": 0.01})
-    >>> law.faults, law.lattice
-    ((), (2.0, 3.0))
-    """
-    if (potential is None) == (force is None):
-        raise ArgumentError("expected a potential or a force, one of the two")
-    return FormulaInteraction(
-        potential=_as_text("potential", potential),
-        force_formula=_as_text("force", force),
-        adjacency=_as_text("adjacency", adjacency),
-        r=range,
-        d=length,
-        parameters=tuple((parameters or {}).items()),
-        powers=tuple((name, *both) for name, both in (units or {}).items()),
-    )
-
-
-def _as_text(name: str, formula: Any) -> str:
-    """A formula as text; sympy is imported only if it is none."""
-    if formula is None:
-        return ""
-    if isinstance(formula, str):
-        return formula
-    import sympy as sp
-
-    from flockana.symbolic.grammar import write_formula
-
-    if isinstance(formula, int | float) or (isinstance(formula, sp.Expr) and not formula.has(sp.Indexed)):
-        return write_formula(sp.sympify(formula))
-    raise ArgumentError(f"{name} = {formula!r}: expected a sympy expression, text or a number")

@@ -88,6 +88,11 @@ class LinkKeeping(SumOfTerms):
         return Scales(self.r, sqrt(self.r / self.k))
 
     @property
+    def pair(self) -> None:  # type: ignore[override]
+        """None: who interacts is the net's matter, not the distance's."""
+        return
+
+    @property
     def lattice(self) -> None:
         """None: links hold at no length."""
         return

@@ -128,7 +128,7 @@ def derive_piece(main: sp.Expr, adjacency: sp.Expr, distance: sp.Symbol, *, forc
     --------
     >>> piece = derive_piece(S**2 * (S - 1) ** 2 / 2, sp.Integer(1), S, forces=False)
     >>> sp.expand(piece.weight)
-    2*s2 - 3*sqrt(s2) + 1
+    -3*sqrt(s2) + 2*s2 + 1
     """
     if distance == Z:
         action = main if forces else sp.diff(main, Z)

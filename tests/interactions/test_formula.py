@@ -3,6 +3,8 @@
 import dataclasses
 import json
 import pickle
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
 
 import mpmath
 import numpy as np
@@ -221,7 +223,8 @@ def test_a_verdict_that_needs_a_smooth_pair_is_vacuous():
 
 
 def test_ensembles_rebuild_the_law_in_other_processes():
-    found = fl.ensemble(formula_flock, [0, 1], jobs=2, theorems=[], metrics=["order"])
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as other:
+        found = fl.ensemble(formula_flock, [0, 1], executor=other, theorems=[], metrics=["order"])
     assert found.sizes["seed"] == 2
     assert not [text for text in found["error"].values.ravel().tolist() if text]
 

@@ -34,6 +34,8 @@ def test_derivatives_by_differences():
 def test_pairs_without_a_link_do_not_interact():
     alone = LinkKeeping((), r=1.0)
     assert not alone.acceleration(0.0, Q, P).any()
+    assert alone.tension.r == 1.0
+    assert (alone.pair, alone.lattice, alone.surfaces) == (None, None, ())
 
 
 def test_the_length_of_a_level():
