@@ -44,12 +44,15 @@ from .interactions import PairInteraction as PairInteraction
 from .interactions import ZoneNoise as ZoneNoise
 from .interactions import ZoneRadii as ZoneRadii
 from .interactions import ZoneWeights as ZoneWeights
+from .interactions.weights import RationalWeight as RationalWeight
+from .interactions.weights import Weight as Weight
 from .lammps.dump import read_lammps as read_lammps
 from .lammps.export import export_lammps as export_lammps
 from .laws.algorithm3 import Algorithm3 as Algorithm3
 from .laws.bearing_distance import ZoneFlocking as ZoneFlocking
 from .laws.composition import Composition as Composition
 from .laws.composition import compose as compose
+from .laws.cucker_smale import CuckerSmale as CuckerSmale
 from .laws.dead_zone import DeadZoneFlocking as DeadZoneFlocking
 from .laws.directed import DirectedNet as DirectedNet
 from .laws.discrete import DiscreteLaw as DiscreteLaw
@@ -61,6 +64,7 @@ from .laws.olfati_saber import Algorithm1 as Algorithm1
 from .laws.olfati_saber import Algorithm2 as Algorithm2
 from .laws.peer_to_peer import PeerToPeer as PeerToPeer
 from .laws.sum_of_terms import SumOfTerms as SumOfTerms
+from .laws.terms.alignment import AlignmentTerm as AlignmentTerm
 from .laws.terms.navigation import Navigation as Navigation
 from .laws.terms.obstacles import ObstacleTerm as ObstacleTerm
 from .laws.terms.pairs import PairTerm as PairTerm

@@ -1,0 +1,90 @@
+"""Weights of velocity consensus: how much agents at some distance heed each other, near or far."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from math import inf
+from typing import Any, ClassVar
+
+import numpy as np
+
+from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_positive
+from flockana.base.units import Powers
+from flockana.interactions.pair import evaluate
+from flockana.kernels.alignment import WeightKernels, lift_weight, rational, rational_slope
+
+
+class Weight(ABC):
+    """A weight a(s) of the distance; a subclass is a frozen dataclass with `kernels`, `par` and, if finite, `range`."""
+
+    kernels: ClassVar[WeightKernels]
+
+    @property
+    @abstractmethod
+    def par(self) -> FloatArray:
+        """Parameters in the order that the kernels read."""
+
+    @property
+    def range(self) -> float:
+        """Distance from which on the weight is 0; infinite, unless it says otherwise."""
+        return inf
+
+    def __call__(self, distance: Any) -> Any:
+        """The weight at some distances, a scalar or an array.
+
+        Parameters
+        ----------
+        distance : array_like
+            Distances >= 0.
+        """
+        s = np.asarray(distance, dtype=np.float64)
+        values = np.where(s < self.range, evaluate(self.kernels.weight, s * s, self.par), 0.0)
+        return float(values) if s.ndim == 0 else values
+
+
+_RATIONAL = lift_weight(rational, rational_slope)
+
+
+@dataclass(frozen=True)
+class RationalWeight(Weight):
+    """a(s) = K (1 + s²/ℓ²)^−β, of Cucker and Smale, who write it K′/(σ² + s²)^β: ℓ = σ and K = K′/σ^2β.
+
+    Parameters
+    ----------
+    strength : float
+        K > 0, the weight at distance 0 (1/time).
+    decay : float
+        β >= 0; 0 is the constant weight.
+    length : float
+        ℓ > 0.
+
+    Raises
+    ------
+    ArgumentError
+        On numbers out of range.
+
+    Examples
+    --------
+    >>> RationalWeight(2.0, 1.0)(1.0)
+    1.0
+    """
+
+    strength: float = 1.0
+    decay: float = 0.5
+    length: float = 1.0
+
+    kernels: ClassVar[WeightKernels] = _RATIONAL
+    units: ClassVar[Mapping[str, Powers]] = {"strength": (0, -1), "length": (1, 0)}
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "strength", ensure_positive("strength", self.strength))
+        object.__setattr__(self, "decay", ensure_nonnegative("decay", self.decay))
+        object.__setattr__(self, "length", ensure_positive("length", self.length))
+
+    @cached_property
+    def par(self) -> FloatArray:
+        """K, ℓ, β."""
+        return np.array([self.strength, self.length, self.decay])

@@ -1,0 +1,90 @@
+"""The law of Cucker and Smale: every agent heeds every other, the less the farther it is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError
+from flockana.base.scales import Scales
+from flockana.interactions.weights import RationalWeight
+from flockana.laws.sum_of_terms import SumOfTerms
+from flockana.laws.terms.alignment import AlignmentTerm
+from flockana.laws.terms.term import Term
+
+
+@dataclass(frozen=True)
+class CuckerSmale(SumOfTerms):
+    """u_i = Σ_j a(‖q_j − q_i‖) (p_j − p_i), a(s) = K (1 + s²/ℓ²)^−β; divided by n in the form of Ha and Liu.
+
+    No force depends on positions alone, and momentum is conserved; the energy is ½ Σ‖p_i − p̄‖², which falls.
+
+    Parameters
+    ----------
+    weight : RationalWeight
+        K, β and ℓ.
+    mean : bool
+        Whether the sum is divided by n (Ha and Liu); it is not by default (Cucker and Smale).
+
+    Raises
+    ------
+    ArgumentError
+        On another weight, or if `mean` is no truth value.
+
+    Examples
+    --------
+    >>> law = CuckerSmale(RationalWeight(strength=2.0, decay=1.0))
+    >>> law.acceleration(0.0, [[0.0], [1.0]], [[0.0], [3.0]]).tolist()
+    [[3.0], [-3.0]]
+    """
+
+    weight: RationalWeight = field(default_factory=RationalWeight)
+    mean: bool = False
+
+    references: ClassVar[tuple[str, ...]] = ("cucker-smale-2007", "ha-liu-2009")
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.weight, RationalWeight):
+            raise ArgumentError(f"weight = {self.weight!r}: expected RationalWeight(strength, decay, length)")
+        if not isinstance(self.mean, bool):
+            raise ArgumentError(f"mean = {self.mean!r}: expected True or False")
+
+    @property
+    def scales(self) -> Scales:
+        """ℓ, and the time 1/K in which two agents that are near match."""
+        return Scales(self.weight.length, 1.0 / self.weight.strength)
+
+    @property
+    def moving(self) -> bool:
+        """Its energy is that in the frame of the centre of mass."""
+        return True
+
+    @cached_property
+    def terms(self) -> tuple[Term, ...]:
+        """H = ½ Σ‖p_i − p̄‖², falling by Σ_{i<j} a_ij ‖p_j − p_i‖²."""
+        return (AlignmentTerm(self.weight, 1.0, self.mean),)
+
+    def measures(  # noqa: D102
+        self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
+    ) -> Mapping[str, Any]:
+        return {
+            "position_spread": ("√Σ‖q_i − q̄‖² (length)", spread(q)),
+            "velocity_spread": ("√Σ‖p_i − p̄‖² (length/time)", spread(p)),
+        }
+
+
+def spread(x: FloatArray) -> FloatArray:
+    """√Σ‖x_i − x̄‖² of each sample, shape (T,).
+
+    Examples
+    --------
+    >>> spread(np.array([[[0.0], [2.0]]])) ** 2
+    array([2.])
+    """
+    root: FloatArray = np.sqrt(np.sum((x - x.mean(axis=1, keepdims=True)) ** 2, axis=(1, 2)))
+    return root
