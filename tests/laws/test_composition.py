@@ -248,6 +248,18 @@ def test_a_weight_is_a_consensus_by_itself():
     assert float(np.linalg.norm(rest.q[1] - rest.q[0])) == pytest.approx(7.0, abs=1e-6)
 
 
+class NearWeight(fl.RationalWeight):
+    """A weight that ends."""
+
+    @property
+    def range(self):
+        return 9.0
+
+
+def test_where_a_weight_ends_is_a_surface():
+    assert compose(pair=AlphaInteraction(), consensus=NearWeight()).surfaces == (8.4, 9.0)
+
+
 PAIR = AlphaInteraction()
 WRONG = {
     "unknown": ({"pairs": PAIR}, "'pairs'"),
