@@ -17,6 +17,7 @@ from flockana.environment.beta import ObstacleField
 from flockana.environment.obstacles import Obstacle
 from flockana.environment.target import Target
 from flockana.interactions import BetaInteraction, Gains, PairInteraction
+from flockana.interactions.weights import Weight
 from flockana.laws.algorithm3 import Algorithm3, ensure_obstacles
 from flockana.laws.gained import GainedLaw
 from flockana.laws.olfati_saber import GAINS, PAIR, TARGET, Algorithm1, Algorithm2, alpha_scales, ensure_part
@@ -41,8 +42,8 @@ class Composition(GainedLaw):
         Whose gradient acts between agents.
     gains : Gains
         Gains of all terms but the last.
-    net : PairInteraction, optional
-        Range and adjacency of the consensus, if they are not those of `alpha`.
+    net : PairInteraction or Weight, optional
+        Range and adjacency of the consensus, if they are not those of `alpha`, or any weight of the distance.
     target : Target, optional
         The γ-agent.
     unit : float, optional
@@ -71,7 +72,7 @@ class Composition(GainedLaw):
     alpha: PairInteraction | None = None
     gains: Gains = _NO_GAIN
     _: KW_ONLY
-    net: PairInteraction | None = None
+    net: PairInteraction | Weight | None = None
     target: Target | None = None
     unit: float | None = None
     told: bool = False
@@ -83,7 +84,8 @@ class Composition(GainedLaw):
     units: ClassVar[Mapping[str, Powers]] = {"unit": (1, 0), "thrust": (0, -1), "brake": (-2, 1)}
 
     def __post_init__(self) -> None:
-        optional = (("alpha", PairInteraction, PAIR), ("net", PairInteraction, PAIR), ("target", Target, TARGET))
+        net: Any = Weight if isinstance(self.net, Weight) else PairInteraction
+        optional: Any = (("alpha", PairInteraction, PAIR), ("net", net, PAIR), ("target", Target, TARGET))
         for name, kind, example in optional:
             if getattr(self, name) is not None:
                 ensure_part(name, getattr(self, name), kind, example)
@@ -115,7 +117,7 @@ class Composition(GainedLaw):
     def scales(self) -> Scales | None:
         """Of the pair law, or of the consensus net; the time is that of drag or thrust if nothing else has one."""
         known = self.alpha or self.net
-        if known is None:
+        if known is None or isinstance(known, Weight):
             return None
         own = alpha_scales(known, self.gains if self.alpha else Gains(0.0, self.gains.c2_alpha, 0.0, 0.0, *self._pull))
         used = any(np.max(gain) > 0.0 for gain in (self.gains.c1_alpha, self.gains.c2_alpha, *self._pull))
@@ -131,8 +133,9 @@ class Composition(GainedLaw):
 
     @property
     def surfaces(self) -> tuple[float | tuple[float, ...], ...]:  # noqa: D102
-        pairs = [pair for pair in (self.alpha, self.net) if pair is not None]
-        return tuple(sorted({x for pair in pairs for x in pair.surfaces if np.isfinite(x)}))
+        edges = {x for pair in (self.alpha, self.net) if isinstance(pair, PairInteraction) for x in pair.surfaces}
+        edges |= {self.net.range} if isinstance(self.net, Weight) else set()
+        return tuple(sorted(x for x in edges if np.isfinite(x)))
 
     @cached_property
     def obstacle_field(self) -> ObstacleField | None:
@@ -171,8 +174,8 @@ def compose(
     *,
     pair: PairInteraction | None = None,
     gradient: float | None = None,
-    consensus: float | None = None,
-    net: PairInteraction | None = None,
+    consensus: float | Weight | None = None,
+    net: PairInteraction | Weight | None = None,
     navigation: Target | None = None,
     pull: Any = None,
     match: Any = None,
@@ -196,10 +199,11 @@ def compose(
         A gradient c1 Σ_j φ n_ij between agents.
     gradient : float, optional
         c1 of the pair, 1/time².
-    consensus : float, optional
-        c2 of the velocity consensus c2 Σ_j a_ij (p_j − p_i), 1/time; none by default.
-    net : PairInteraction, optional
-        Whose range and adjacency the consensus has; those of the pair by default.
+    consensus : float or Weight, optional
+        c2 of the velocity consensus c2 Σ_j a_ij (p_j − p_i), 1/time; none by default. Or a weight a(s) of the distance,
+        near or far, such as `flockana.RationalWeight`, which is the net too, with c2 = 1.
+    net : PairInteraction or Weight, optional
+        Whose range and adjacency the consensus has, those of the pair by default; or a weight of the distance.
     navigation : Target, optional
         A γ-agent.
     pull, match : float or array_like, shape (n,), optional
@@ -248,6 +252,10 @@ def compose(
     """
     for name in unknown:
         raise UnknownNameError("part of a law", name, _PARTS)
+    if isinstance(consensus, Weight):
+        if net is not None:
+            raise ArgumentError(f"net = {net!r} beside consensus = {consensus!r}: expected one of the two weights")
+        net, consensus = consensus, 1.0
     obstacles = ensure_obstacles(obstacles)
     _ensure_parts("pair", pair, gradient=gradient)
     _ensure_parts("consensus", consensus, net=net)

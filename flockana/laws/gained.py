@@ -7,11 +7,12 @@ from typing import Any, Self
 
 from flockana.base.units import scaled_fields
 from flockana.interactions import Gains, PairInteraction
+from flockana.interactions.weights import Weight
 from flockana.laws.sum_of_terms import SumOfTerms
 
 
 class GainedLaw(SumOfTerms):
-    """A sum of terms with `gains`, whose c1α is 1/time² unless its pair law carries a time of its own."""
+    """A sum of terms with `gains`: c1α is 1/time², c2α 1/time, unless pair law or weight carry a time of their own."""
 
     gains: Gains
 
@@ -26,11 +27,13 @@ class GainedLaw(SumOfTerms):
         changed: dict[str, Any] = scaled_fields(self, length, time)
         if timed(getattr(self, "alpha", None)):
             changed["gains"] = replace(changed["gains"], c1_alpha=self.gains.c1_alpha)
+        if timed(weight := getattr(self, "net", None)) and isinstance(weight, Weight):
+            changed["gains"] = replace(changed["gains"], c2_alpha=self.gains.c2_alpha)
         return type(self)(**changed)
 
 
-def timed(pair: PairInteraction | None) -> bool:
-    """Whether the forces of a pair law are accelerations already, by a time among its parameters' units.
+def timed(pair: PairInteraction | Weight | None) -> bool:
+    """Whether what a pair law or a weight gives has a time in it already, as one is among its parameters' units.
 
     Examples
     --------

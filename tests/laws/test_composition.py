@@ -27,7 +27,7 @@ compositions = st.fixed_dictionaries(
     {},
     optional={
         "pair": st.sampled_from([AlphaInteraction(), AlphaInteraction(d=5.0, r=9.0), DeadZoneInteraction()]),
-        "net": st.just(AlphaInteraction(d=6.0, r=12.0)),
+        "net": st.sampled_from([AlphaInteraction(d=6.0, r=12.0), fl.RationalWeight(2.0, 0.6, 3.0)]),
         "consensus": st.floats(0.1, 9.0),
         "navigation": st.sampled_from([LEADER, LinearTarget((1.0, 2.0), (0.5, 0.1)), StaticTarget((4.0, 0.0))]),
         "informed": st.sampled_from([(0,), (1, 3), (0, 1, 2, 3)]),
@@ -143,6 +143,7 @@ def test_through_a_file_and_other_units(chosen):
         {"pair": AlphaInteraction(), "navigation": LEADER, "told": True, "informed": (1,), "speed": (1.0, 0.5)},
         {"pair": AlphaInteraction(), "navigation": StaticTarget((4.0, 0.0)), "obstacles": SOLIDS[:1], "drag": 0.1},
         {"speed": (1.0, 0.5)},
+        {"pair": AlphaInteraction(), "consensus": 1.0, "net": fl.RationalWeight(2.0, 0.6, 3.0)},
     ],
 )
 @pytest.mark.parametrize("drift", [0.0, 40.0])
@@ -234,6 +235,31 @@ def test_a_law_without_pairs_has_scales_only_of_what_it_has():
     assert compose(net=AlphaInteraction(), consensus=4.0).lattice is None
 
 
+def test_a_weight_is_a_consensus_by_itself():
+    """Cucker and Smale's law, and the same with a pair potential: a(4) = 2 (1 + 16/9)^−0.6 here."""
+    weight = fl.RationalWeight(2.0, 0.6, 3.0)
+    law, q, p = compose(consensus=weight), np.array([[0.0], [4.0]]), np.array([[1.0], [-1.0]])
+    assert law == compose(consensus=1.0, net=weight)
+    pull = 2.0 * (1.0 + 16.0 / 9.0) ** -0.6
+    np.testing.assert_allclose(law.acceleration(0.0, q, p), [[-2.0 * pull], [2.0 * pull]], rtol=1e-14)
+    assert law.energy_rate(0.0, q, p) == pytest.approx(-4.0 * pull, rel=1e-14)
+    assert compose(pair=AlphaInteraction(), consensus=weight).surfaces == (8.4,)
+    rest = fl.find_equilibrium(compose(pair=AlphaInteraction(), consensus=weight), [[0.0, 0.0], [6.5, 0.0]])
+    assert float(np.linalg.norm(rest.q[1] - rest.q[0])) == pytest.approx(7.0, abs=1e-6)
+
+
+class NearWeight(fl.RationalWeight):
+    """A weight that ends."""
+
+    @property
+    def range(self):
+        return 9.0
+
+
+def test_where_a_weight_ends_is_a_surface():
+    assert compose(pair=AlphaInteraction(), consensus=NearWeight()).surfaces == (8.4, 9.0)
+
+
 PAIR = AlphaInteraction()
 WRONG = {
     "unknown": ({"pairs": PAIR}, "'pairs'"),
@@ -241,6 +267,7 @@ WRONG = {
     "gradient": ({"gradient": 2.0, "drag": 1.0}, "gradient = 2.0 without its part: give pair="),
     "net": ({"pair": PAIR, "net": PAIR}, "without its part: give consensus="),
     "consensus": ({"consensus": 1.0}, "consensus = 1.0 without a net"),
+    "two nets": ({"consensus": fl.RationalWeight(), "net": PAIR}, "expected one of the two weights"),
     "pull": ({"pair": PAIR, "pull": 1.0}, "pull = 1.0 without its part: give navigation="),
     "informed": ({"pair": PAIR, "informed": (0,)}, "without its part: give navigation="),
     "range": (

@@ -43,6 +43,8 @@ def test_the_plot_shows_runs_means_and_intervals(runs):
     np.testing.assert_allclose(means.get_ydata(), runs["followers"].mean("seed").values)
     segments = ax.containers[0].lines[2][0].get_segments()
     np.testing.assert_allclose(segments[-1][:, 1], [0.025**0.25, 1.0])
+    nobody = plots.informed_shares(runs.assign(followers=0.1 * runs["followers"])).containers[0].lines[2][0]
+    np.testing.assert_allclose(nobody.get_segments()[-1][:, 1], [0.0, 1.0 - 0.025**0.25], atol=1e-12)
 
 
 def test_a_dataset_without_followers_is_refused(runs):

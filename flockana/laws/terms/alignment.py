@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -41,6 +41,8 @@ class AlignmentTerm(Term):
     weight: Weight
     gain: float = 1.0
     mean: bool = False
+
+    idle: ClassVar[bool] = True
 
     def _gain(self, n: int) -> float:
         """g, or g/n."""

@@ -5,6 +5,8 @@ from __future__ import annotations
 from flockana.environment.beta import ObstacleField
 from flockana.environment.target import Target
 from flockana.interactions import Gains, PairInteraction
+from flockana.interactions.weights import Weight
+from flockana.laws.terms.alignment import AlignmentTerm
 from flockana.laws.terms.along import AlongVelocity
 from flockana.laws.terms.consensus import Consensus
 from flockana.laws.terms.navigation import Navigation
@@ -18,7 +20,7 @@ def parts(
     pair: PairInteraction | None,
     gains: Gains,
     *,
-    net: PairInteraction | None = None,
+    net: PairInteraction | Weight | None = None,
     field: ObstacleField | None = None,
     target: Target | None = None,
     unit: float | None = None,
@@ -41,7 +43,9 @@ def parts(
     terms: list[Term] = []
     if pair is not None:
         terms.append(PairTerm(pair, gains.c1_alpha, gains.c2_alpha if net is None else 0.0))
-    if net is not None:
+    if isinstance(net, Weight):
+        terms.append(AlignmentTerm(net, gains.c2_alpha))
+    elif net is not None:
         terms.append(Consensus(net, gains.c2_alpha))
     if field is not None:
         terms.append(ObstacleTerm(field, gains.c1_beta, gains.c2_beta))
