@@ -26,7 +26,7 @@ def _fixed(seed: int = 0) -> Scenario:
         FixedNetFlocking((*((0, k) for k in range(1, n)), *((k, 1 + k % 6) for k in range(1, n)))),
         q,
         generator.uniform(-0.3, 0.3, (n, 2)),
-        (0.0, 40.0),
+        (0.0, 26.0),
         seed,
         {
             "tanner-fixed:energy": "verified",
