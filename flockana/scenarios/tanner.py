@@ -26,13 +26,13 @@ def _fixed(seed: int = 0) -> Scenario:
         FixedNetFlocking((*((0, k) for k in range(1, n)), *((k, 1 + k % 6) for k in range(1, n)))),
         q,
         generator.uniform(-0.3, 0.3, (n, 2)),
-        (0.0, 40.0),
+        (0.0, 20.0),
         seed,
         {
             "tanner-fixed:energy": "verified",
             "tanner-fixed:no-collision": "verified",
         },
-        options={"rtol": 1e-9},
+        options={"rtol": 1e-9, "t_eval": np.linspace(0.0, 20.0, 401)},
         shipped={"tanner-fixed": "verified"},
         references=_REFERENCES,
     )
@@ -48,10 +48,10 @@ def _switching(seed: int = 0) -> Scenario:
         ProximityFlocking(LogPotential(10.0, 1.0), r=1.6, k2=2.0),
         hexagonal_spiral(n, 1.0) + generator.uniform(-0.05, 0.05, (n, 2)),
         generator.uniform((1.0, -0.5), (2.0, 0.5), (n, 2)),
-        (0.0, 16.0),
+        (0.0, 10.0),
         seed,
         {"tanner-switching:energy": "verified", "tanner-switching:no-collision": "verified"},
-        options={"rtol": 1e-9},
+        options={"rtol": 1e-9, "t_eval": np.linspace(0.0, 10.0, 401)},
         shipped={"tanner-switching": "verified"},
         references=_REFERENCES,
     )

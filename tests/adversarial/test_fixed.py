@@ -55,7 +55,7 @@ TRUTHS = {
     "L8": {"r": "printed balance-distance", "v": "contact"},
     "L9": {"r": "printed fraction", "v": "energy one-leader different-leaders acceleration acceleration-needed"},
     "L10": {"r": "printed-sufficient printed-necessary", "v": "sufficient not-necessary"},
-    "T1": {"r": "printed", "v": "corrected"},
+    "tanner-minimum": {"r": "printed", "v": "corrected"},
     "delay-margin": {"v": " ".join(f"algorithm-{k}-{late}" for k in (1, 2) for late in DELAYED)},
     "linearised-decay": {"v": "decay random range"},
     "zone-separation": {"r": "close-encounters", "v": "alone energy chain"},

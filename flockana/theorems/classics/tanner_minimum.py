@@ -1,4 +1,4 @@
-"""Erratum T1: what the flock tends to is extremal, and need not minimise any agent's potential."""
+"""Erratum: what the flock tends to is extremal, and need not minimise any agent's potential."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 
 THEOREM = erratum(
-    "T1",
+    "tanner-minimum",
     title="Potentials become extremal, not minimal",
     statement=(
         "The theorem on fixed networks says that the flock approaches a state that minimises the potentials of "

@@ -64,3 +64,25 @@ def test_a_matched_start_and_another_law():
     assert fl.verify("ha-liu", run).claim("rate").status == "inconclusive"
     other = fl.simulate(fl.Algorithm1(), [[0.0], [7.0]], [[1.0], [1.0]], (0.0, 1.0))
     assert fl.verify("ha-liu", other).status == fl.verify("tanner-fixed", other).status == "vacuous"
+
+
+def test_sums_that_are_not_divided_count_every_agent():
+    """λ = nK: the same flock in both forms has the same integral, with K a third of it."""
+    q, p = [[0.0], [1.0], [3.0]], [[0.5], [0.0], [-0.5]]
+    margins = [
+        fl.verify("ha-liu", fl.simulate(law, q, p, (0.0, 0.1))).hypotheses[-1].margin
+        for law in (
+            fl.CuckerSmale(RationalWeight(1.0, 1.0)),
+            fl.CuckerSmale(RationalWeight(3.0, 1.0), mean=True),
+        )
+    ]
+    assert margins[0] == pytest.approx(margins[1], rel=1e-12)
+
+
+@pytest.mark.parametrize(("share", "status"), [(0.9, "met"), (1.1, "assumed")])
+def test_connectedness_is_certain_below_the_energy_of_a_cut(share, status):
+    """Two agents at d with a share of V(R) as their energy: seen for so short a time that they are still linked."""
+    law = fl.ProximityFlocking()
+    speed = sqrt(share * float(law.potential.energy(law.r**2)))  # each: H = speed²
+    run = fl.simulate(law, [[0.0], [1.0]], [[-speed], [speed]], (0.0, 0.1))
+    assert fl.verify("tanner-switching", run).hypotheses[-1].status == status
