@@ -13,7 +13,8 @@ from flockana.certified.intervals import AlphaParameters, ball, c_star, far_pote
 from flockana.equilibria.barrier import turan_pairs
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.symbolic.energy import algorithm1_identity
-from proofs.n_max import four_points, largest_clique, shortest_bound
+from proofs.n_max import SPACE, shortest_bound
+from proofs.point_ratios import DIMENSIONS, cited, largest_clique, radon_points
 from proofs.proof import Proof, Step
 from proofs.signs_of_phi import PAIR, potential_lemma, potential_signs
 from proofs.smt import implication, lemma
@@ -79,20 +80,21 @@ def _count() -> Iterator[Step]:
     par = AlphaParameters.of(Algorithm1().alpha)
     with ctx.workdps(DIGITS):
         ratio = ball(par.r) / ball(shortest_bound(par))
-        clique = largest_clique(ratio)
-        yield Step(
-            f"by default no more than {clique} agents are pairwise bound, so that two coincident ones among n "
-            "cost more "
-            "than c* + ψ_α(r_α) u(n - 1)",
-            None if clique is None else clique == 3,
-            evidence=f"c* in {interval(c_star(par))}, ψ_α(r_α) in {interval(far_potential(par))}",
-        )
+        for m in DIMENSIONS:
+            clique = largest_clique(ratio, m)
+            yield Step(
+                f"by default {SPACE[m]} no more than {clique} agents are pairwise bound, so that two coincident ones "
+                f"among n cost more than c* + ψ_α(r_α) u(n - 1){'' if clique is None else cited(clique, m)}",
+                None if clique is None else clique == m + 1,
+                evidence=f"c* in {interval(c_star(par))}, ψ_α(r_α) in {interval(far_potential(par))}",
+            )
 
 
 def _steps() -> Iterator[Step]:
     yield from potential_signs()
     yield from _away()
-    yield from four_points()
+    for m in DIMENSIONS:
+        yield from radon_points(m)
     yield from _count()
 
 
@@ -101,13 +103,13 @@ PROOF = Proof(
     title="No collision below the barrier c* + the least V of n - 1 agents",
     statement=(
         "Under Algorithm 1, if H(0) < c1α(c* + the least V of n - 1 agents), no two agents ever coincide, for every n "
-        "and m = 1, 2, 3. In the plane with the default parameters that least V is at least ψ_α(r_α) times the count "
+        "and m = 1, 2, 3. With the default parameters that least V is at least ψ_α(r_α) times the count "
         f"of pairs that cannot be bound, which is the library's for n up to {STATED['agents']}."
     ),
     hypotheses="c1α > 0, c2α >= 0; 0 < a <= b, 0 < h < 1, 0 < d < r, ε > 0; bound: ψ_α below ψ_α(r_α)",
     rigour="interval",
     steps=_steps,
-    size=25,
+    size=33,
     theorems=("os-1",),
     values=STATED,
 )

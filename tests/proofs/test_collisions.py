@@ -29,7 +29,7 @@ from flockana.measures.metrics import coincident_pairs
 from flockana.measures.path_bounds import contacts
 from flockana.scenarios import scenario
 from flockana.theorems import verify
-from proofs import barrier, collisions, distinct_pairs, n_max
+from proofs import barrier, collisions, distinct_pairs, n_max, point_ratios
 from proofs.distinct_pairs import Start, crossings, free, is_the_scenario, onward, potential
 
 SETS = {
@@ -207,17 +207,19 @@ def test_the_two_separate_into_their_difference_and_sum():
 @pytest.mark.parametrize(("values", "sizes"), SETS.items(), ids=lambda value: "-".join(map(str, value)))
 def test_the_proved_sizes_are_the_numeric_ones(values, sizes):
     par, alpha = AlphaParameters(*values), AlphaInteraction(*map(float, values))
-    states, lattices = [step.text for step in n_max.every_state(par)][1], n_max.every_lattice(par).text
-    assert f"for n >= {sizes[0]}" in states
-    assert f"an α-lattice of {sizes[1]} agents has V < c*" in lattices
+    _, ratio = n_max.bound_lengths(par)
+    assert f"for n >= {sizes[0]}" in n_max.every_state(par, 2, ratio).text
+    assert f"an α-lattice of {sizes[1]} agents has V < c*" in n_max.every_lattice(par, 2).text
     assert (none_from(alpha), lattice_reach(alpha)) == sizes
+    assert f"an α-lattice of {lattice_reach(alpha, 1)} agents has V < c*" in n_max.every_lattice(par, 1).text
     shortest = n_max.shortest_bound(par)
     assert 0 < bound_range(alpha)[0] - float(shortest) < 1.001 / n_max.PARTS
-    clique = n_max.largest_clique(arb(float(par.r.p) / float(par.r.q)) / arb(float(shortest)))
-    assert clique == numeric_clique(alpha.r / bound_range(alpha)[0], 2)
-    for n in (clique, 9, 20, 31):  # the bound without whole numbers is below Turán's count
-        assert float(n_max.floor_of(n, clique, par)) <= energy_floor(alpha, n) * (1 + 1e-12)
-        assert Fraction(n * n, 2 * clique) - Fraction(n, 2) <= n * (n - 1) // 2 - turan_pairs(n, clique)
+    for m in (1, 2, 3):
+        clique = point_ratios.largest_clique(ratio, m)
+        assert clique == numeric_clique(alpha.r / bound_range(alpha)[0], m)
+        for n in (clique, clique + 6, clique + 17, clique + 28):  # without whole numbers it is below Turán's count
+            assert float(n_max.floor_of(n, clique, par)) <= energy_floor(alpha, n, m) * (1 + 1e-12)
+            assert Fraction(n * n, 2 * clique) - Fraction(n, 2) <= n * (n - 1) // 2 - turan_pairs(n, clique)
 
 
 def test_a_stronger_count_than_turan_is_refuted():
@@ -225,20 +227,35 @@ def test_a_stronger_count_than_turan_is_refuted():
     assert n_max.missing("one pair fewer", bound_to_all=1).holds is False
 
 
-def test_four_points_need_their_root_of_two():
-    assert [step.holds for step in n_max.four_points()] == [True, True, True]
-    assert n_max.short_side("a square's sides are no shorter", z3.Q(49, 100)).holds is False
-    square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
-    lengths = [np.linalg.norm(a - b) for k, a in enumerate(square) for b in square[:k]]
-    assert max(lengths) / min(lengths) == pytest.approx(float(n_max.least_ratio(4)))
+BEST = {  # m + 2 points of the least ratio: halves of a segment, a square, a triangle between two poles
+    1: [[-1.0], [0.0], [1.0]],
+    2: [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
+    3: [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]
+    + [
+        [2.0 / np.sqrt(3.0) * np.cos(angle), 2.0 / np.sqrt(3.0) * np.sin(angle), 0.0] for angle in (0.0, 2.0944, 4.1888)
+    ],
+}
+
+
+@pytest.mark.parametrize(("m", "square"), {1: 4, 2: 2, 3: Fraction(12, 7)}.items())
+def test_the_least_ratio_of_points_is_attained(m, square):
+    assert point_ratios.least_square(m) == square
+    assert [step.holds for step in point_ratios.radon_points(m)] == [True, True, True]
+    lengths = [np.linalg.norm(np.subtract(a, b)) for k, a in enumerate(BEST[m]) for b in BEST[m][:k]]
+    assert len(BEST[m]) == m + 2
+    assert max(lengths) / min(lengths) == pytest.approx(float(point_ratios.least_ratio(m + 2, m)), abs=1e-4)
 
 
 def test_too_wide_a_range_of_lengths_is_not_decided():
     wide = AlphaParameters(h="0.9", r=14)  # a ratio above 2
-    assert [step.holds for step in n_max.every_state(wide)][-1] is None
-    assert n_max.largest_clique(arb("1.41")) == 3
-    assert n_max.largest_clique(arb("1.415")) == 5
-    assert n_max.largest_clique(arb(2)) is None
+    assert n_max.every_state(wide, 2, n_max.bound_lengths(wide)[1]).holds is None
+    assert point_ratios.largest_clique(arb("1.41"), 2) == 3
+    assert point_ratios.largest_clique(arb("1.415"), 2) == 5
+    assert point_ratios.largest_clique(arb(2), 2) is None
+    assert [point_ratios.largest_clique(arb(x), 1) for x in ("1.99", "2", "2.01")] == [2, 3, 3]
+    assert point_ratios.largest_clique(arb("1.309"), 3) == 4
+    assert point_ratios.largest_clique(arb("1.31"), 3) == numeric_clique(1.31, 3) == 17
+    assert point_ratios.largest_clique(arb("inf"), 1) is None
 
 
 def test_the_energies_of_lattices_are_those_of_the_kernels():

@@ -55,6 +55,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             computed=step,
             stated=4.0 * tanh(0.75),
             witness="one agent at the desired speed, no input",
+            proof="speed-bound",
             detail=f"applied to the state, (10) makes a speed of 3 into {step:.4g} in every step: a drag",
         ),
         judged(
@@ -64,6 +65,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             computed=bound,
             stated=f"the desired speed {law.desired_speed:g} is below the bound 4, so it can be kept",
             witness={dt: dragged_speed(dt) for dt in (0.1, 0.05, 0.01, 0.001)},
+            proof="speed-bound",
             detail=f"with all inputs within u^max = 2 no speed above {bound:.4f} lasts (steps of 0.1 s); with "
             "finer steps less still",
         ),

@@ -43,6 +43,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             computed=through,
             stated="an agent keeps clear of an alien that it sees",
             witness={"alien": (20.0, 0.0), "q(0)": (0.0, 0.0), "p(0)": (3.0, 0.0)},
+            proof="stand-off",
             detail="N_i^s ends at a_i: nearer than 5 m the alien exerts no force: an agent runs straight through it",
         ),
         judged(
@@ -52,6 +53,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             computed=gap,
             stated=stand_off,
             witness="the same agent and alien, 0 < d <= s_i",
+            proof="stand-off",
             detail=f"with 0 < d <= s_i it stops at {gap:.4f} m, where s - v^d w^ga/w^ss = {stand_off:g}",
         ),
         judged(

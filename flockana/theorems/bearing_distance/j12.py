@@ -93,6 +93,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
                 "beyond the wall x = 50": (50.1, 25.0),
                 "beyond it after 3 s": beyond,
             },
+            proof="stand-off",
             detail=f"inside, b - p_i points outwards and (8) pushes in: {outward:.3g} in an obstacle, {inward:.3g} "
             f"beyond a wall, and after 3 s the agent is {beyond:.3g} m beyond it",
         ),
@@ -103,6 +104,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             computed={"outward force in an obstacle": mended_outward, "inward force beyond a wall": mended_inward},
             stated="with d + c along b - p_i it is pushed out of obstacles and back behind walls",
             witness="the same agents",
+            proof="stand-off",
             detail=f"pushed out by {mended_outward:.3g}, back by {mended_inward:.3g}: after 3 s the second is "
             f"{-mended_beyond:.3g} m inside",
         ),
@@ -113,6 +115,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             computed={case: pair[1] for case, pair in stand_offs.items()},
             stated={case: pair[0] for case, pair in stand_offs.items()},
             witness="head on, inputs unbounded, weights that damp the approach",
+            proof="stand-off",
             detail="agents that run head on at a wall, or at each other, stop at c - v^d w^ga/w in "
             f"{len(stand_offs)} cases (off by {error:.1g} m)",
         ),
@@ -123,6 +126,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             computed={"distance from the wall": at_wall, "least signed gap of two agents": least_gap},
             stated="w^oa = w^ls = 5 keep agents off walls and each other",
             witness={"w^ga": 5.0, "w": 5.0, "c": 3.0, "v^d": 3.0, "stand-off": 0.0},
+            proof="stand-off",
             detail=f"with the printed 5, 5, 3, 3 the stand-off is 0: an agent comes to rest {abs(at_wall):.1g} m from "
             "the wall, and two that meet head on pass through each other",
         ),

@@ -46,12 +46,14 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             "printed",
             _SAME - printed_change,
             _ROUNDING,
+            proof="turned-axes",
             detail=f"read by components, turning the axes changes the force by {printed_change:.3g} of itself",
         ),
         judged(
             "corrected",
             _SAME - corrected_change,
             _ROUNDING,
+            proof="turned-axes",
             detail=f"with f once and n once the force turns with the axes, to {corrected_change:.2g}",
         ),
     ]

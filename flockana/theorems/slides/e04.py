@@ -114,8 +114,9 @@ THEOREM = erratum(
     title="c < c* soon certifies nothing",
     statement=(
         "Theorem 1(iii) excludes collisions below c* = ψ_α(0). That is true, but each pair out of range adds ψ_α(r_α) "
-        "to the energy: in the plane no α-lattice of more than 14 agents is below c*, and no state of 23 or more. The "
-        "barrier min{V : two agents coincide} is a certificate that does not go vacuous; it is found numerically."
+        "to the energy: in the plane no α-lattice of more than 14 agents is below c*, and no state of 23 or more (18 "
+        "on a line, 26 in space). The barrier min{V : two agents coincide} is a certificate that does not go vacuous; "
+        "it is found numerically."
     ),
     source="slides, Theorem 1(iii)",
     check=_check,

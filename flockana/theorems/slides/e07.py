@@ -43,14 +43,18 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 def _share(name: str, share: float, witness: str, detail: str, *, stated: int = 96) -> Claim:
     """Whether a share of the hundred agents is the source's, as a whole number."""
     margin = 0.5 - abs(round(100.0 * share) - stated)
-    return judged(name, margin, 0.0, computed=share, stated=stated / 100.0, witness=witness, detail=detail)
+    return judged(
+        name, margin, 0.0, computed=share, stated=stated / 100.0, witness=witness, proof="net-measures", detail=detail
+    )
 
 
 def _relative(name: str, share: float, witness: str) -> Claim:
     """Whether C is 95/99: both nets have five components, and C cannot tell them apart."""
     margin = 0.5 - abs(round(99.0 * share) - 95)
     detail = f"C = {round(99.0 * share)}/99 for {witness}: five components, whatever their sizes"
-    return judged(name, margin, 0.0, computed=share, stated="95/99", witness=witness, detail=detail)
+    return judged(
+        name, margin, 0.0, computed=share, stated="95/99", witness=witness, proof="net-measures", detail=detail
+    )
 
 
 THEOREM = erratum(

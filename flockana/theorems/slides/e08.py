@@ -21,7 +21,16 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 def _rank(name: str, share: float, full: int, detail: str) -> Claim:
     """Whether the measure is 1, as it must be on a connected net: by the rank it comes from, a whole number."""
     margin = 0.5 - (full - round(full * share))
-    return judged(name, margin, 0.0, computed=share, stated=1.0, witness="a path of three agents", detail=detail)
+    return judged(
+        name,
+        margin,
+        0.0,
+        computed=share,
+        stated=1.0,
+        witness="a path of three agents",
+        proof="net-measures",
+        detail=detail,
+    )
 
 
 THEOREM = erratum(

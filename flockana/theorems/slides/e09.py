@@ -63,6 +63,7 @@ def _by_algebra(name: str, v: str, factor: float) -> Claim:
         computed=text,
         stated="0",
         witness={"u dt²": swept, "excess of one step of the map": measured},
+        proof="constant-acceleration",
         detail=f"with the velocity of the {v} of the step, q moves {text} beyond q + p dt + ½ u dt²",
     )
 

@@ -80,6 +80,7 @@ def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
             computed=true,
             stated="the ratio is below 1 because the γ-agent turns",
             witness={"handed p_r": handed[0], "true p_r": true},
+            proof="tracking-gain" if omega**2 < 2.0 * law.gains.c1_gamma else None,
             detail=f"the same turning γ-agent with its true p_r is followed at {true:.4f} of its size, not less "
             f"than 1: it is the wrong p_r that makes the ratio {handed[0]:.4f}",
         ),

@@ -131,6 +131,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             "condition",
             _condition(),
             stated="|G(jω)| falls with every ω iff c2γ²(1 - k²) >= 2 c1γ, for p_r = k dq_r/dt",
+            proof="tracking-gain",
             detail=f"so never with the true p_r; the project's gains and p_r meet it, {margin:.3g} times over",
         ),
     ]
