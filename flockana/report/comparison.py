@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 
 from matplotlib.figure import Figure
 
@@ -63,8 +64,9 @@ class ComparisonSection:
     pictures: tuple[Picture, ...]
 
 
+@cache
 def comparison_section(seed: int = 0) -> ComparisonSection:
-    """Run the start under every law and judge it; seconds.
+    """Run the start under every law and judge it; it takes seconds, once in a process.
 
     Parameters
     ----------
