@@ -31,12 +31,12 @@ if TYPE_CHECKING:
     from flockana.dynamics.trajectory import Trajectory
     from flockana.scenarios.one_start import Outcome
 
-_COLUMNS = 4
+_COLUMNS = 5
 _LOOKS = tuple(
     zip((BLUE, VERMILLION, GREEN, PURPLE, INK), ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1))), strict=True)
 )
 _MARKS = (None, "o", "s", "^")  # one for each time that the looks come round again
-_FLOOR = 1e-12  # of the start: below it a difference of velocities is rounding
+_FLOOR = 1e-8  # of the start: below it is what an integration leaves
 
 
 def side_by_side(outcomes: Sequence[Outcome], *, axes: Any = None) -> Any:
@@ -47,7 +47,7 @@ def side_by_side(outcomes: Sequence[Outcome], *, axes: Any = None) -> Any:
     outcomes : sequence of Outcome
         What `flockana.scenarios.one_start.compare` gave.
     axes : sequence of Axes, optional
-        One for each; by default a new figure, four in a row.
+        One for each; by default a new figure, five in a row.
 
     Returns
     -------

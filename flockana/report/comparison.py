@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 
 from matplotlib.figure import Figure
 
@@ -11,9 +12,9 @@ from flockana import plots
 from flockana.report.figures import Picture
 from flockana.report.image import png
 from flockana.scenarios.one_start import UNTIL, Outcome, compare
-from flockana.theorems.theorem import unmet
+from flockana.theorems.theorem import Verdict, unmet
 
-_COLUMNS = 4
+_COLUMNS = 5
 _SIZE = 3.1  # inches of a panel
 _SETTLED = 1e-9  # of the start: what a table calls 0
 
@@ -29,7 +30,7 @@ class Row:
     status : str
         Of the verdict.
     reason : str
-        The first unmet hypothesis; empty if there is none.
+        What is refuted or open, or the first unmet hypothesis; empty if there is none of these.
     velocities, positions : str
         Diameters at the end over those at the start.
     groups, nearest : str
@@ -63,8 +64,9 @@ class ComparisonSection:
     pictures: tuple[Picture, ...]
 
 
+@cache
 def comparison_section(seed: int = 0) -> ComparisonSection:
-    """Run the start under every law and judge it; seconds.
+    """Run the start under every law and judge it; it takes seconds, once in a process.
 
     Parameters
     ----------
@@ -76,18 +78,27 @@ def comparison_section(seed: int = 0) -> ComparisonSection:
 
 
 def _row(outcome: Outcome) -> Row:
-    missed, share = unmet(outcome.verdict.hypotheses), outcome.velocity_share
+    share = outcome.velocity_share
     return Row(
         outcome.entry.name,
         outcome.entry.theorem,
         outcome.entry.promise,
         outcome.verdict.status,
-        "" if missed is None else f"{missed.name}: {missed.detail}",
+        _reason(outcome.verdict),
         f"{share:.2g}" if share > _SETTLED else "0",
         f"{outcome.position_share:.3g}",
         str(outcome.groups),
         f"{outcome.least_distance:.3g}",
     )
+
+
+def _reason(verdict: Verdict) -> str:
+    """Why a verdict is not plainly verified: what it refutes, what is open, or the hypothesis that is not met."""
+    found = [claim for claim in verdict.claims if claim.status == verdict.status]
+    if verdict.status in ("refuted", "inconclusive"):
+        return f"{', '.join(claim.name for claim in found)}: {found[0].detail}"
+    missed = unmet(verdict.hypotheses)
+    return "" if missed is None else f"{missed.name}: {missed.detail}"
 
 
 def _pictures(outcomes: Sequence[Outcome]) -> tuple[Picture, ...]:

@@ -17,11 +17,15 @@ from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import LinearTarget
 from flockana.interactions import AlphaInteraction, Gains
+from flockana.interactions.log_potential import LogPotential
+from flockana.interactions.weights import RationalWeight
 from flockana.lattice.builders import hexagonal_spiral
+from flockana.laws.cucker_smale import CuckerSmale
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.laws.tanner import FixedNetFlocking, ProximityFlocking
 from flockana.laws.vicsek import HeadingAveraging
 from flockana.measures.metrics import diameter
 from flockana.measures.nets import components, links
@@ -33,6 +37,8 @@ _SHAKEN, _TURNED = 0.1, 0.6  # of d, and radians: what chance adds to places and
 UNTIL = 60.0
 RANGE = AlphaInteraction().r
 _INSTANTS = 201
+_RTOL = 1e-10  # so that what the integration leaves of velocities that agree lies far below what counts as 0
+_STRENGTH, _CONSENSUS = 40.0, 1.0  # of Tanner's laws: forces of the size of k/d near d
 
 
 @dataclass(frozen=True)
@@ -125,6 +131,11 @@ def _follower(q: FloatArray, p: FloatArray) -> LinearTarget:
     return LinearTarget((place[0], place[1]), (velocity[0], velocity[1]))
 
 
+def _net(q: FloatArray) -> tuple[tuple[int, int], ...]:
+    """The links within the common range at the start."""
+    return tuple((i, j) for i, j in links(q, RANGE).tolist())
+
+
 def _informing(some: int, n: int) -> Gains:
     """The default gains, those to the γ-agent for the first few agents only."""
     gains, felt = Gains(), np.arange(n) < some
@@ -156,6 +167,30 @@ ENTRIES: tuple[Entry, ...] = (
         lambda q, p: DeadZoneFlocking(),
         "dead-zone-1-corrected",
         "the saturated energy falls; velocities agree within each component; distances keep above an explicit bound",
+    ),
+    Entry(
+        "Cucker and Smale",
+        lambda q, p: CuckerSmale(RationalWeight(strength=0.5, decay=0.25, length=RANGE)),
+        "cucker-smale",
+        "every agent heeds all, with a weight that falls slowly (β < ½): from any start a flock",
+    ),
+    Entry(
+        "Ha and Liu",
+        lambda q, p: CuckerSmale(RationalWeight(strength=4.0, decay=1.0, length=RANGE), mean=True),
+        "ha-liu",
+        "the weight falls fast (β > ½): a flock if the spread of velocities is below an integral of it",
+    ),
+    Entry(
+        "Tanner, fixed net",
+        lambda q, p: FixedNetFlocking(_net(q), LogPotential(_STRENGTH, AlphaInteraction().d), k2=_CONSENSUS),
+        "tanner-fixed",
+        "the links of the start pull for ever: velocities agree, no two that are linked collide",
+    ),
+    Entry(
+        "Tanner, switching",
+        lambda q, p: ProximityFlocking(LogPotential(_STRENGTH, AlphaInteraction().d), r=RANGE, k2=_CONSENSUS),
+        "tanner-switching",
+        "only agents within r pull: the same, if the net stays connected",
     ),
     Entry(
         "Averaged headings",
@@ -198,6 +233,8 @@ def compare(names: Iterable[str] | None = None, *, seed: int = 0) -> tuple[Outco
 
 def _outcome(entry: Entry, q: FloatArray, p: FloatArray) -> Outcome:
     law = entry.law(q, p)
-    kept = None if isinstance(law, DiscreteLaw) else np.linspace(0.0, UNTIL, _INSTANTS)
-    run = simulate(law, q, p, (0.0, UNTIL), t_eval=kept)
+    if isinstance(law, DiscreteLaw):
+        run = simulate(law, q, p, (0.0, UNTIL))
+    else:
+        run = simulate(law, q, p, (0.0, UNTIL), t_eval=np.linspace(0.0, UNTIL, _INSTANTS), rtol=_RTOL)
     return Outcome(entry, run, verify(entry.theorem, run, subject=f"{entry.name}, one start"))

@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 import pytest
+from markupsafe import escape
 
 from flockana.base.errors import UnknownNameError
 from flockana.report.build import write_report
@@ -24,7 +25,7 @@ def test_a_row_for_each_law_with_its_theorem_and_verdict(section):
     for entry, row in zip(ENTRIES, section.rows, strict=True):
         assert theorem(entry.theorem).kind == "trajectory"
         assert row.status == (entry.expected or row.status)
-        assert (row.status == "vacuous") == bool(row.reason)
+        assert row.reason or row.status == "verified"
         assert int(row.groups) >= 1
 
 
@@ -32,7 +33,7 @@ def test_it_is_part_of_the_page(section, tmp_path):
     page = write_report([], tmp_path, comparison=section).read_text(encoding="utf-8")
     assert 'id="one-start"' in page
     assert 'href="#one-start"' in page
-    assert all(entry.promise.replace("'", "&#39;") in page for entry in ENTRIES)
+    assert all(str(escape(entry.promise)) in page for entry in ENTRIES)
     assert len(re.findall(r"data:image/png", page)) == len(section.pictures) == 2
     assert 'id="one-start"' not in write_report([], tmp_path).read_text(encoding="utf-8")
 
