@@ -51,7 +51,7 @@ _RETREAT, _RETRIES = 0.97, 8
 _APART = 1e-6  # of d: nearer agents are at one place
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Basin:
     """A certified basin of an equilibrium's orbit under rotations; all numbers are exact, and rounded to the safe side.
 
@@ -139,7 +139,7 @@ class Basin:
             return bool(distance < ball(self.radius) and excess < ball(self.level))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Proved:
     """What a basin was proved from, for its certificate."""
 

@@ -195,3 +195,11 @@ def test_larger_flocks_and_one_under_stress_have_certified_basins_too(name, shar
     assert share < basin.share < 0.05
     assert basin.connected
     assert basin.holds(basin.rest, 0.0 * basin.rest)
+
+
+@pytest.mark.parametrize(("name", "sign", "why"), [("second_eigenvalue", 1, "not proved"), ("degree", -1, "degree")])
+def test_the_net_itself_is_checked_and_not_only_what_follows(name, sign, why):
+    data = small()
+    old = value(data[name])
+    with pytest.raises(RejectedError, match=why):
+        check_data(resealed(changed(data, (name,), old + sign * unit(old, 4))))
