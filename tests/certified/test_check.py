@@ -12,7 +12,7 @@ import pytest
 
 import flockana.certified.check_basin
 import flockana.certified.check_net
-from flockana import Algorithm2, StaticTarget, certify, find_equilibrium
+from flockana import Algorithm1, certify
 from flockana.base.errors import FileError
 from flockana.base.seals import sealed
 from flockana.certified.certificate import basin_certificate, write_certificate
@@ -184,13 +184,12 @@ def test_what_is_no_certificate_is_no_certificate(tmp_path):
         check_data(resealed(data))
 
 
-@pytest.mark.parametrize(("name", "share"), [("nineteen", 0.04), ("strained", 0.02)])
+@pytest.mark.parametrize(("name", "share"), [("nineteen", 0.035), ("strained", 0.02)])
 def test_larger_flocks_and_one_under_stress_have_certified_basins_too(name, share):
     if name == "strained":
         basin = certify(smallest_strained())
     else:
-        law = Algorithm2(target=StaticTarget((0.0, 0.0)))
-        basin = certify(find_equilibrium(law, hexagonal_patch(2, law.alpha.d)))
+        basin = certify(hexagonal_patch(2, 7.0), law=Algorithm1())
         assert not rejected(json.loads(json.dumps(basin_certificate(basin))))
     assert share < basin.share < 0.05
     assert basin.connected
