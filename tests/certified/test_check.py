@@ -202,3 +202,11 @@ def test_the_net_itself_is_checked_and_not_only_what_follows(name, sign, why):
     old = value(data[name])
     with pytest.raises(RejectedError, match=why):
         check_data(resealed(changed(data, (name,), old + sign * unit(old, 4))))
+
+
+def test_a_stated_number_has_its_digits_and_no_more():
+    rounded = flockana.certified.check_basin.rounded_down
+    assert rounded("7.740", Fraction("7.7405"))
+    assert not rounded("7.7399", Fraction("7.7405"))
+    assert not rounded("7.739", Fraction("7.7405"))
+    assert not rounded("7.741", Fraction("7.7405"))
