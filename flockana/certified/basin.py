@@ -51,7 +51,7 @@ _RETREAT, _RETRIES = 0.97, 8
 _APART = 1e-6  # of d: nearer agents are at one place
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Basin:
     """A certified basin of an equilibrium's orbit under rotations; all numbers are exact, and rounded to the safe side.
 
@@ -139,7 +139,7 @@ class Basin:
             return bool(distance < ball(self.radius) and excess < ball(self.level))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Proved:
     """What a basin was proved from, for its certificate."""
 
@@ -215,6 +215,8 @@ def _ensure_flock(law: Any, q: FloatArray) -> None:
         raise ArgumentError(
             "the equilibrium has agents at one place: expected distinct ones, or nothing bars collisions"
         )
+    if law.gains.c2_alpha == 0.0 and (law.target is None or law.gains.c2_gamma == 0.0):
+        raise ArgumentError("c2_alpha = 0 and no c2_gamma: expected a gain that damps, or no velocities match")
     free = law.target is None or law.gains.c1_gamma == 0.0
     if free and components(len(q), links(q, law.alpha.r)).any():
         raise ArgumentError("the net is disconnected and nothing else holds it together: expected one component")

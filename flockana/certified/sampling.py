@@ -16,7 +16,7 @@ from flockana.dynamics.simulate import simulate
 from flockana.equilibria.terminal import rigid_motions
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SampledBasin:
     """How many starts at rest, displaced in random directions, came back to the orbit.
 
