@@ -13,6 +13,7 @@ from .certified.certificate import write_certificate as write_certificate
 from .certified.check import check_certificate as check_certificate
 from .certified.enclose import enclose as enclose
 from .certified.tube import Tube as Tube
+from .certified.tube_certificate import write_tube_certificate as write_tube_certificate
 from .dynamics import predicates as predicates
 from .dynamics.simulate import simulate as simulate
 from .dynamics.trajectory import Trajectory as Trajectory

@@ -26,8 +26,13 @@ BITS = 100
 class BasinLike(Protocol):
     """What a tube may end in: `flockana.certified.basin.Basin`."""
 
-    law: Any
-    rest: FloatArray
+    @property
+    def law(self) -> Any:
+        """Of which law."""
+
+    @property
+    def rest(self) -> FloatArray:
+        """The equilibrium that all its starts converge to, but for a rotation."""
 
     def holds(self, q: Any, p: Any) -> bool:
         """Whether every state in a box certainly lies in it."""
