@@ -92,7 +92,7 @@ class Run:
         least, widest = [], []
         for t, end, coefficients, stated in zip(times[:-1], times[1:], data["paths"], data["errors"], strict=True):
             h, path = ball(end - t), [[ball(exact(c)) for c in row] for row in coefficients]
-            ensure(len(path) == size and all(len(row) >= 2 for row in path), "a path of another size")
+            ensure(len(path) == size and all(len(row) == len(path[0]) >= 4 for row in path), "a path of another size")
             error, bound = self.jumped(state, path, error), number(stated)
             found, box = self.grown(ball(t), h, path, error, bound)
             ensure(bool(found < bound), f"t = {float(t):.6g}: the error may exceed what is stated")

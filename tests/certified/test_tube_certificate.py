@@ -111,6 +111,13 @@ def test_what_was_sealed_again_is_decided_by_the_mathematics(data, at, change, m
         check_data(altered)
 
 
+def test_a_path_with_more_terms_in_one_coordinate_is_rejected(data):
+    """Terms that the defect would not see."""
+    longer = with_leaf(data, ("paths", 0, 1), lambda row: [*row, "0x1p0"])
+    with pytest.raises(RejectedError, match="a path of another size"):
+        check_data(resealed(longer))
+
+
 def test_what_has_no_certificate_is_said(tube):
     wide = enclose(LAW, [[-3.625], [3.625]], [[0.0], [0.0]], (0.0, 0.0078125), radius=0.001)
     with pytest.raises(ArgumentError, match="expected a complete tube from one start"):
