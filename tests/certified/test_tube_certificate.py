@@ -92,15 +92,19 @@ def bits(value):
         (("times", 3), bits, "the error may exceed"),
         (("errors", 4), lambda e: repr(float(e) / 10.0), "the error may exceed what is stated"),
         (("errors", 4), lambda e: repr(float(e) * 1e12), "is not the one proved|may exceed"),
-        *((("law", name), more, "") for name in ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma", "d", "r", "eps")),
-        *((("law", name), more, "") for name in ("h", "a", "b")),
+        *(
+            (("law", name), more, "the error may exceed")
+            for name in ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma", "d", "r", "eps")
+        ),
+        *((("law", name), more, "the error may exceed") for name in ("h", "b")),
+        (("law", "a"), more, "expected 0 < d < r"),
         (("law", "start", 0), more, "the error may exceed"),
         (("law", "told", 0), more, "the error may exceed"),
         (("distance",), more, "the least distance"),
         (("cohesion_radius",), more, "the largest radius"),
         (("energy",), more, "the energy at the start"),
         (("below_c_star",), lambda holds: not holds, "H\\(0\\) < c"),
-        (("basin", "radius"), more, ""),
+        (("basin", "radius"), more, "."),
     ],
 )
 def test_what_was_sealed_again_is_decided_by_the_mathematics(data, at, change, message):
