@@ -14,6 +14,7 @@ from .certified.check import check_certificate as check_certificate
 from .certified.enclose import enclose as enclose
 from .certified.sampling import sample_basin as sample_basin
 from .certified.tube import Tube as Tube
+from .certified.tube_certificate import write_tube_certificate as write_tube_certificate
 from .dynamics import predicates as predicates
 from .dynamics.simulate import simulate as simulate
 from .dynamics.trajectory import Trajectory as Trajectory

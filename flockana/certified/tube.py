@@ -26,8 +26,13 @@ BITS = 100
 class BasinLike(Protocol):
     """What a tube may end in: `flockana.certified.basin.Basin`."""
 
-    law: Any
-    rest: FloatArray
+    @property
+    def law(self) -> Any:
+        """Of which law."""
+
+    @property
+    def rest(self) -> FloatArray:
+        """The equilibrium that all its starts converge to, but for a rotation."""
 
     def holds(self, q: Any, p: Any) -> bool:
         """Whether every state in a box certainly lies in it."""
@@ -69,7 +74,7 @@ class Tube:
     >>> from flockana.certified.enclose import enclose
     >>> from flockana.laws.olfati_saber import Algorithm1
     >>> tube = enclose(Algorithm1(), [[0.0], [9.0]], [[1.0], [2.0]], (0.0, 2.0))  # out of range: uniform motion
-    >>> tube.min_distance().pair, 9.0 - tube.min_distance().lower < 1e-9, tube.q[-1].ravel().tolist()
+    >>> tube.min_distance().pair, 8.0 < tube.min_distance().lower <= 9.0, tube.q[-1].ravel().tolist()
     ((0, 1), True, [2.0, 13.0])
     """
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from flockana.base.errors import SolverError
@@ -59,7 +59,10 @@ class Enclosure:
         from flockana.equilibria.solve import find_equilibrium
 
         unit = run.law.alpha.unit
-        law = run.law if unit == 1.0 else rescale(run.law, length=1.0 / unit)
+        law = run.law
+        if unit != 1.0:
+            law = rescale(law, length=1.0 / unit)
+            law = replace(law, alpha=replace(law.alpha, unit=1.0))  # but for rounding it is
         span = (float(run.t[0]), float(run.t[-1]))
         tube = enclose(law, run.q[0] / unit, run.p[0] / unit, span, **self.options)
         if not self.limit:

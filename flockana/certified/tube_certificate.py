@@ -1,0 +1,197 @@
+"""A tube as JSON that `flockana check` can verify by another theorem than the one that the tube rests on.
+
+The certificate holds a path of polynomials beside the run, of a higher order than the tube's, and its distance from it.
+"""
+
+from __future__ import annotations
+
+import json
+from fractions import Fraction
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from flint import arb, ctx
+
+from flockana._version import __version__
+from flockana.base.errors import ArgumentError
+from flockana.base.files import write_whole
+from flockana.base.seals import sealed
+from flockana.certified.basin import Basin
+from flockana.certified.certificate import FORMAT, basin_certificate
+from flockana.certified.check_tube import BITS, Run, exact, number
+from flockana.certified.decimals import at_least, at_most, decimal, small
+from flockana.certified.flow import Flow
+from flockana.certified.intervals import c_star
+from flockana.certified.laws import flow_of
+from flockana.certified.series import Piece
+from flockana.certified.tube import Tube
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+
+_ORDER = 26  # of the paths
+_TRIES = 30  # of an error that holds itself up
+STATEMENT = (
+    "The solution from q0, p0 differs from the path of polynomials at no time of a step by more than its error, in the "
+    "norm sqrt(weight^2 |q|^2 + |p|^2); no two agents come nearer than `distance`, and none is farther than "
+    "`cohesion_radius` from the centre of mass. If there is a basin, the end lies in it, turned by `turn`, and the run "
+    "converges to its orbit."
+)
+PROSE = (
+    "f is C^1, with a derivative that is Lipschitz: the bump is C^1; so u is the integral of its slope along a path.",
+    "An error e of two solutions obeys d|e|/dt <= mu |e| + |defect| while mu bounds the logarithmic norm between them.",
+    "A bound that holds strictly as long as it holds, holds to the end of the step.",
+)
+
+
+def tube_certificate(tube: Tube, *, basin: Basin | None = None, weight: float = 10.0) -> dict[str, Any]:
+    """The certificate of the run in the middle of a tube from one start, as plain data with its digest.
+
+    Parameters
+    ----------
+    tube : Tube
+        Of one start (radius 0), complete.
+    basin : Basin, optional
+        In which it ends; in one or two dimensions.
+    weight : float
+        In which units errors of position count beside those of velocity, a rate; any is valid, some prove more.
+
+    Raises
+    ------
+    ArgumentError
+        On a tube of which there is no certificate.
+
+    Examples
+    --------
+    >>> from flockana.certified.enclose import enclose
+    >>> tube_certificate(enclose(Algorithm1(), [[0.0], [7.5]], [[0.0], [0.0]], (0.0, 0.0625)))["kind"]
+    'tube'
+    """
+    _ensure_certifiable(tube, basin)
+    with ctx.workprec(BITS):
+        data = _start(tube, weight) | {"times": [_hexadecimal(arb(t)) for t in tube.t], "paths": _paths(tube)}
+        run = Run.of(data)
+        return sealed(data | _followed(run, tube, data["paths"]) | _ending(tube, basin))
+
+
+def write_tube_certificate(tube: Tube, path: str | Path, *, basin: Basin | None = None) -> None:
+    """Write a tube's certificate; `flockana check` verifies the file.
+
+    Parameters
+    ----------
+    tube : Tube
+        Of one start, complete.
+    path : str or Path
+        File, usually .json.
+    basin : Basin, optional
+        In which it ends.
+    """
+    write_whole(path, json.dumps(tube_certificate(tube, basin=basin), indent=1) + "\n")
+
+
+def _ensure_certifiable(tube: Tube, basin: Basin | None) -> None:
+    if type(tube.law) not in (Algorithm1, Algorithm2) or tube.law.alpha.unit != 1.0:
+        raise ArgumentError(f"law = {tube.law!r}: expected Algorithm1 or Algorithm2 with unit = 1")
+    if tube.status != "complete" or any(tube.stats["radius"]):
+        raise ArgumentError(f"{tube!r}: expected a complete tube from one start, radius=0")
+    if basin is not None and (tube.m > 2 or not tube.ends_in(basin)):
+        raise ArgumentError("basin: expected one, in one or two dimensions, that the tube certainly ends in")
+
+
+def _start(tube: Tube, weight: float) -> dict[str, Any]:
+    law, gains, zero = tube.law, tube.law.gains, ["0"] * tube.m
+    led = isinstance(law, Algorithm2)
+    terms = law.target.harmonic.terms if led else np.zeros((5, tube.m))
+    path = {"start": terms[0], "velocity": terms[1], "told": terms[1] + terms[4]}
+    numbers = {name: _decimal(getattr(law.alpha, name)) for name in ("d", "r", "eps", "h", "a", "b")}
+    numbers |= {name: _decimal(getattr(gains, name)) for name in ("c1_alpha", "c2_alpha")}
+    numbers |= {name: _decimal(getattr(gains, name)) if led else "0" for name in ("c1_gamma", "c2_gamma")}
+    told = {name: [_decimal(x) for x in row] if led else zero for name, row in path.items()}
+    return {
+        "format": FORMAT,
+        "kind": "tube",
+        "statement": STATEMENT,
+        "prose": list(PROSE),
+        "law": {"algorithm": type(law).__name__, **numbers, **told},
+        "q0": [[_hexadecimal(arb(x)) for x in row] for row in tube.q0.tolist()],
+        "p0": [[_hexadecimal(arb(x)) for x in row] for row in tube.p0.tolist()],
+        "weight": _decimal(weight),
+        "made_with": {"flockana": __version__, "python-flint": version("python-flint")},
+    }
+
+
+def _paths(tube: Tube) -> list[list[list[str]]]:
+    """Taylor polynomials of positions, from the start and then each from the end of the one before; all exact."""
+    flow, half, paths = flow_of(tube.law, tube.n, tube.m), tube.n * tube.m, []
+    state = [arb(x) for x in (*tube.q0.ravel().tolist(), *tube.p0.ravel().tolist())]
+    for t, end, step in zip(tube.t[:-1], tube.t[1:], tube.taken, strict=True):
+        h, rows = arb(end) - arb(t), _polynomials(flow, arb(t), state, flow.pieces(step.during))
+        paths.append([[_hexadecimal(c) for c in row] for row in rows[:half]])
+        q = [sum((c * h**k for k, c in enumerate(row)), arb(0)) for row in rows[:half]]
+        p = [sum((k * c * h ** (k - 1) for k, c in enumerate(row) if k), arb(0)) for row in rows[:half]]
+        state = [x.mid() for x in (*q, *p)]
+    return paths
+
+
+def _polynomials(flow: Flow, t: arb, state: list[arb], pieces: tuple[Piece, ...]) -> list[list[arb]]:
+    """Of positions, of the third order where a pair changes its piece."""
+    half = flow.n * flow.m
+    if Piece.SWITCH not in pieces:
+        return [[c.mid() for c in row] for row in flow.taylor(t, state, _ORDER, pieces)[:half]]
+    own = flow.pieces(state)
+    u, jerk = flow.input(t, state, own), flow.acceleration(t, state, own)[half:]
+    return [[c.mid() for c in (state[k], state[half + k], u[k] / 2, jerk[k] / 6)] for k in range(half)]
+
+
+def _followed(run: Run, tube: Tube, paths: list[list[list[str]]]) -> dict[str, Any]:
+    """Errors that hold themselves up, and what they leave of distances, radii and the energy."""
+    state, error, errors, least, widest = [arb(x) for x in (*tube.q0.ravel(), *tube.p0.ravel())], arb(0), [], [], []
+    start = list(state)
+    for t, end, text in zip(tube.t[:-1], tube.t[1:], paths, strict=True):
+        h, path = arb(end) - arb(t), [[arb_of(c) for c in row] for row in text]
+        error = run.jumped(state, path, error)
+        stated = small((2 * error).max(arb("1e-28")))
+        for _ in range(_TRIES):
+            found, box = run.grown(arb(t), h, path, error, number(stated))
+            if found < number(stated) < 2 * found + arb(2) ** -90:
+                break
+            stated = small((arb("1.3") * found).max(arb("1e-28")))
+        else:
+            raise ArgumentError(f"no error of the path holds itself up at t = {t:g}: expected another weight or tube")
+        errors.append(stated)
+        state, error = run.at(path, h), found
+        least.append(min(length.lower() for length in run.lengths(box)))
+        widest.append(max(radius.upper() for radius in run.radii(box)))
+    level = run.energy(start)
+    return {
+        "errors": errors,
+        "distance": at_least(arb(min(least))),
+        "cohesion_radius": at_most(arb(max(widest))),
+        "energy": at_least(level.lower()),
+        "below_c_star": bool(level < run.gain["c1_alpha"] * c_star(run.par)),
+    }
+
+
+def _ending(tube: Tube, basin: Basin | None) -> dict[str, Any]:
+    """The basin's own certificate, and by how much its equilibrium is turned."""
+    if basin is None:
+        return {"basin": None, "turn": "0"}
+    x = tube.q[-1] - tube.q[-1].mean(axis=0)
+    angle = 0.0 if tube.m == 1 else float(np.angle(np.sum((x @ (1.0, 1.0j)) * np.conj(basin.rest @ (1.0, 1.0j)))))
+    return {"basin": basin_certificate(basin), "turn": _decimal(round(angle, 15))}
+
+
+def arb_of(text: str) -> arb:
+    """A number in hexadecimal as a ball of radius 0."""
+    value = exact(text)
+    return arb(value.numerator) / value.denominator
+
+
+def _decimal(x: float) -> str:
+    return decimal(Fraction(repr(float(x))))
+
+
+def _hexadecimal(x: arb) -> str:
+    """An exact number: mantissa in hexadecimal, and exponent of 2."""
+    mantissa, exponent = x.man_exp()
+    return f"{int(mantissa):#x}p{int(exponent)}"

@@ -1,0 +1,131 @@
+"""Certificates of tubes: what was altered is rejected, by the digest or, sealed again, by the mathematics."""
+
+from __future__ import annotations
+
+import copy
+import json
+
+import pytest
+
+from flockana import Algorithm1, Algorithm2, StaticTarget, certify, check_certificate, enclose, find_equilibrium
+from flockana.base.errors import ArgumentError
+from flockana.base.seals import sealed
+from flockana.certified.check import RejectedError, check_data
+from flockana.certified.tube_certificate import tube_certificate, write_tube_certificate
+
+LAW = Algorithm2(target=StaticTarget((0.0,)))
+
+
+@pytest.fixture(scope="module")
+def tube():
+    return enclose(LAW, [[-3.625], [3.625]], [[0.0], [0.0]], (0.0, 0.03125))
+
+
+@pytest.fixture(scope="module")
+def data(tube):
+    basin = certify(find_equilibrium(LAW, [[-3.5], [3.5]]))
+    return json.loads(json.dumps(tube_certificate(tube, basin=basin)))
+
+
+def leaves(data, at=()):
+    """Where every number and every text stands that is one."""
+    if isinstance(data, dict | list):
+        for key, value in data.items() if isinstance(data, dict) else enumerate(data):
+            yield from leaves(value, (*at, key))
+    elif isinstance(data, bool | int | float) or (isinstance(data, str) and data[:1] in "-0123456789"):
+        yield at
+
+
+def with_leaf(data, at, change):
+    """A copy in which one of them is changed, sealed again."""
+    altered = copy.deepcopy(data)
+    place = altered
+    for key in at[:-1]:
+        place = place[key]
+    place[at[-1]] = change(place[at[-1]])
+    return altered
+
+
+def resealed(data):
+    return sealed({key: value for key, value in data.items() if key != "digest"})
+
+
+def test_it_holds_and_says_what_was_verified(data, tmp_path, tube):
+    checked = check_data(data)
+    assert checked.kind == "tube"
+    assert checked.steps[0].startswith("the run is within the errors stated of the path, through ")
+    assert checked.steps[-1].startswith("all of the end lies in the basin: the run converges")
+    assert float(data["distance"]) <= tube.min_distance().lower + 1e-3
+    write_tube_certificate(tube, tmp_path / "tube.json")
+    assert check_certificate(tmp_path / "tube.json").kind == "tube"
+
+
+def test_any_one_number_that_is_altered_is_rejected(data):
+    def other(value):
+        if not isinstance(value, str):
+            return not value if isinstance(value, bool) else value + 1
+        return value[:-1] + ("2" if value[-1] != "2" else "3")
+
+    places = list(leaves(data))
+    assert len(places) > 300
+    for at in places:
+        with pytest.raises(RejectedError, match="digest"):
+            check_data(with_leaf(data, at, other))
+
+
+def more(value):
+    """A decimal one thousandth larger."""
+    return repr(float(value) * 1.001 + 0.001)
+
+
+def bits(value):
+    """A number in hexadecimal, one 256th larger."""
+    mantissa, exponent = value.split("p")
+    return f"{int(mantissa, 16) * 257:#x}p{int(exponent) - 8}" if int(mantissa, 16) else "0x1p-8"
+
+
+@pytest.mark.parametrize(
+    ("at", "change", "message"),
+    [
+        *(((where, 0, 0), bits, "the error may exceed") for where in ("q0", "p0")),
+        *((("paths", 2, 1, k), bits, "the error may exceed") for k in range(4)),
+        (("times", 3), bits, "the error may exceed"),
+        (("errors", 4), lambda e: repr(float(e) / 10.0), "the error may exceed what is stated"),
+        (("errors", 4), lambda e: repr(float(e) * 1e12), "is not the one proved|may exceed"),
+        *(
+            (("law", name), more, "the error may exceed")
+            for name in ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma", "d", "r", "eps")
+        ),
+        *((("law", name), more, "the error may exceed") for name in ("h", "b")),
+        (("law", "a"), more, "expected 0 < d < r"),
+        (("law", "start", 0), more, "the error may exceed"),
+        (("law", "told", 0), more, "the error may exceed"),
+        (("distance",), more, "the least distance"),
+        (("cohesion_radius",), more, "the largest radius"),
+        (("energy",), more, "the energy at the start"),
+        (("below_c_star",), lambda holds: not holds, "H\\(0\\) < c"),
+        (("basin", "radius"), more, "."),
+    ],
+)
+def test_what_was_sealed_again_is_decided_by_the_mathematics(data, at, change, message):
+    altered = resealed(with_leaf(data, at, change))
+    if at[0] == "basin":
+        altered = resealed({**altered, "basin": resealed(altered["basin"])})
+    with pytest.raises(RejectedError, match=message):
+        check_data(altered)
+
+
+def test_a_path_with_more_terms_in_one_coordinate_is_rejected(data):
+    """Terms that the defect would not see."""
+    longer = with_leaf(data, ("paths", 0, 1), lambda row: [*row, "0x1p0"])
+    with pytest.raises(RejectedError, match="a path of another size"):
+        check_data(resealed(longer))
+
+
+def test_what_has_no_certificate_is_said(tube):
+    wide = enclose(LAW, [[-3.625], [3.625]], [[0.0], [0.0]], (0.0, 0.0078125), radius=0.001)
+    with pytest.raises(ArgumentError, match="expected a complete tube from one start"):
+        tube_certificate(wide)
+    other = certify(find_equilibrium(Algorithm1(), [[-3.5], [3.5]]))
+    with pytest.raises(ArgumentError, match="that the tube certainly ends in"):
+        tube_certificate(tube, basin=other)
