@@ -24,6 +24,7 @@ from flockana.laws.cucker_smale import CuckerSmale
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law
+from flockana.laws.link_keeping import LinkKeeping
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.laws.tanner import FixedNetFlocking, ProximityFlocking
 from flockana.laws.vicsek import HeadingAveraging
@@ -191,6 +192,12 @@ ENTRIES: tuple[Entry, ...] = (
         lambda q, p: ProximityFlocking(LogPotential(_STRENGTH, AlphaInteraction().d), r=RANGE, k2=_CONSENSUS),
         "tanner-switching",
         "only agents within r pull: the same, if the net stays connected",
+    ),
+    Entry(
+        "Links kept",
+        lambda q, p: LinkKeeping(_net(q), r=RANGE),
+        "links-kept",
+        "a tension without bound at r: no link reaches it, so that a connected net stays connected",
     ),
     Entry(
         "Averaged headings",

@@ -14,12 +14,16 @@ from hypothesis import strategies as st
 
 import flockana as fl
 from flockana.base.modules import modules
+from flockana.laws.cucker_smale import CuckerSmale
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import LawOfMotion
+from flockana.laws.link_keeping import LinkKeeping
 from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.notebook import PushedAlgorithm1, PushedAlgorithm2
 from flockana.laws.semi_implicit import SemiImplicitEuler
+from flockana.laws.tanner import FixedNetFlocking, ProximityFlocking
 from flockana.laws.taylor_step import TaylorStep
+from flockana.laws.vicsek import HeadingAveraging
 
 N, SPREAD, TIME = 9, 12.0, 0.7
 ORIGIN = fl.StaticTarget((0.0, 0.0))
@@ -36,6 +40,18 @@ LAWS = {
     "PeerToPeer": (
         fl.PeerToPeer(fl.Copies([[0.0, 0.0]] * N, [[0.0, 0.0]] * N, fl.Spring((0.0, 0.0), 1.0))),
         PLACED,
+    ),
+    "Composition": (
+        fl.compose(pair=fl.AlphaInteraction(), consensus=1.0, navigation=ORIGIN, drag=0.2, speed=(1.0, 0.1)),
+        PLACED,
+    ),
+    "CuckerSmale": (CuckerSmale(fl.RationalWeight(strength=2.0, decay=0.5, length=5.0)), FREE),
+    "FixedNetFlocking": (FixedNetFlocking(((0, 1), (1, 2)), fl.LogPotential(1.0, 5.0)), FREE - {"permutation"}),
+    "ProximityFlocking": (ProximityFlocking(fl.LogPotential(1.0, 5.0), r=8.0), FREE),
+    "LinkKeeping": (LinkKeeping(((0, 1), (1, 2)), r=60.0), FREE - {"permutation"}),
+    "HeadingAveraging": (
+        HeadingAveraging(range=8.0, speed=2.0, dt=0.1, average="vectors"),
+        FREE - {"boost"},
     ),
     "DirectedNet": (fl.DirectedNet(fl.Algorithm1(), view=2.0), FREE - {"boost"}),
     "DeadZoneFlocking": (fl.DeadZoneFlocking(), FREE),
