@@ -197,7 +197,8 @@ ENTRIES: tuple[Entry, ...] = (
         "Links kept",
         lambda q, p: LinkKeeping(_net(q), r=RANGE),
         "links-kept",
-        "a tension without bound at r: no link reaches it, so that a connected net stays connected",
+        "a tension without bound at r: no link reaches it, so that a connected net stays connected; nothing keeps "
+        "agents apart, and here they meet",
     ),
     Entry(
         "Averaged headings",
