@@ -71,7 +71,7 @@ def _steps() -> Iterator[Step]:
 PROOF = Proof(
     id="links-kept",
     title="A tension without bound at the range keeps every link",
-    statement="no link is ever longer than s* < r, where ψ(s*) = H(0); so links that join all agents do so for ever",
+    statement="no link is ever longer than s* < r, where ψ(s*) = H(0); so links that join all agents do so for ever.",
     hypotheses="u_i = −Σ_j ∇_i ψ + c Σ_j (p_j − p_i) over links shorter than r at the start, ψ = k s²/(r − s), c >= 0",
     rigour="smt",
     steps=_steps,

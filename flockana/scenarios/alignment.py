@@ -26,7 +26,7 @@ def _flock(name: str, beta: float, speed: float, expected: dict[str, Status]) ->
             name,
             f"Twelve agents that match velocities alone, β = {beta:g}",
             f"Ours: the law of Cucker and Smale in the form of Ha and Liu, K = 2, ℓ = 1, β = {beta:g}; positions "
-            f"uniform in a square of side 0.8, velocities uniform, then scaled to Σ‖p_i − p̄‖² = {speed:g}².",
+            f"uniform in a square of side 0.8, velocities uniform, then scaled to Σ‖p_i − p_c‖² = {speed:g}².",
             CuckerSmale(RationalWeight(strength=2.0, decay=beta), mean=True),
             q,
             p * (speed / np.sqrt(np.sum(p * p))) + (1.0, 0.5),

@@ -21,6 +21,8 @@ from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.theorem import Status
 
+_C_STAR = 523838.11786644866  # ψ_α(0) for a = b = 5e4; to compute it would load the compiler
+
 _REFERENCES = ("su-2009", "olfati-saber-2006")
 _LEADER = LinearTarget((6.0, 0.0), (1.0, 0.5))
 _CIRCLE = CircleTarget((0.0, 0.0), radius=20.0, frequency=0.05)
@@ -62,7 +64,7 @@ def _few(seed: int = 0) -> Scenario:
             "su-informed:distance": "verified",
             "su-informed:informed": "verified",
             "su-informed:linked": "verified",
-            "su-informed:distinct-pairs": "verified",
+            "su-informed:pairs": "verified",
             "su-informed:one-instant": "verified",
             "su-informed:no-collision": "verified",
             "energy:balance": "verified",
@@ -81,7 +83,7 @@ def _few(seed: int = 0) -> Scenario:
 def _through(seed: int = 0) -> Scenario:
     """Erratum E13 with one informed agent, seen from a leader that moves as the centre of mass does at the start."""
     alpha = AlphaInteraction(a=5e4, b=5e4)
-    speed = float(np.sqrt(5.6 * alpha.c_star))
+    speed = float(np.sqrt(5.6 * _C_STAR))
     gains = Gains(1.0, 1.0, 0.0, 0.0, (0.01, 0.0, 0.0), (0.01, 0.0, 0.0))
     return Scenario(
         "informed-through",
@@ -95,7 +97,7 @@ def _through(seed: int = 0) -> Scenario:
         seed,
         {
             "su-informed": "refuted",
-            "su-informed:distinct-pairs": "refuted",
+            "su-informed:pairs": "refuted",
             "su-informed:one-instant": "verified",
             "su-informed:energy": "verified",
             "su-informed:distance": "verified",

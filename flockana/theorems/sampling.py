@@ -51,6 +51,52 @@ def fastest_between(run: Trajectory) -> FloatArray:
     return fastest
 
 
+def mismatch_between(run: Trajectory) -> FloatArray:
+    """An upper bound of the normalised velocity mismatch K̃ over each interval between samples, shape (T − 1,).
+
+    It is a convex function of velocities, and so at most what it is of the control points of the paths' velocities.
+
+    Examples
+    --------
+    >>> from flockana.dynamics.simulate import simulate
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> run = simulate(Algorithm1(), [[0.0], [99.0]], [[-1.0], [1.0]], (0.0, 1.0))
+    >>> bool(abs(mismatch_between(run).max() - 0.5) < 1e-12)
+    True
+    """
+    if isinstance(run.law, DiscreteLaw):
+        mismatch = run.metric("normalised_velocity_mismatch")
+        ends: FloatArray = np.maximum(mismatch[:-1], mismatch[1:])
+        return ends
+    path, bounds = run.path, np.empty(len(run.path.t) - 1)
+    for k, h in enumerate(np.diff(path.t).tolist()):
+        points = bernstein(h, *(x[k + side] for side in (0, 1) for x in (path.q, path.p, path.u)))[0]
+        legs = 5.0 / h * np.diff(points - points.mean(axis=0), axis=1)
+        bounds[k] = 0.5 / run.n * np.sum(legs**2, axis=(0, 2)).max()
+    between: FloatArray = run.over_intervals(np.maximum, bounds)
+    return between
+
+
+def stretch_between(run: Trajectory) -> FloatArray:
+    """By how much any distance may leave the range of its values at both ends of each interval, shape (T − 1,).
+
+    Examples
+    --------
+    >>> from flockana.dynamics.simulate import simulate
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> run = simulate(Algorithm1(), [[0.0], [99.0]], [[-1.0], [1.0]], (0.0, 1.0))
+    >>> bool(0.0 < stretch_between(run).max() <= 1.0)
+    True
+    """
+    if isinstance(run.law, DiscreteLaw):
+        return np.zeros(len(run.t) - 1)
+    (speed, force, off), h, least = _motion(run), np.diff(run.t), run.metric("min_distance")
+    low = np.maximum(np.minimum(least[:-1], least[1:]), np.finfo(float).tiny)
+    with np.errstate(over="ignore"):
+        stretch: FloatArray = _slack(low, low, h, 2.0 * speed, 2.0 * force) + 2.0 * off
+    return stretch
+
+
 def radius_between(run: Trajectory) -> FloatArray:
     """An upper bound of the cohesion radius over each interval between samples, shape (T − 1,).
 
@@ -131,7 +177,7 @@ def _nets_between(run: Trajectory) -> Nets:
     return _nets(rows)
 
 
-def _slack(low: FloatArray, r: float, h: float, speed: Any, force: Any) -> FloatArray:
+def _slack(low: FloatArray, r: Any, h: Any, speed: Any, force: Any) -> FloatArray:
     """How far a distance, `low` at the nearer end, may go beyond its ends, at relative speeds and accelerations."""
     straight, bent = 0.5 * speed * h, h**2 / 8.0 * (2.0 * speed**2 / r + force)
     slack: FloatArray = np.where(low - straight >= 0.5 * r, np.minimum(straight, bent), straight)

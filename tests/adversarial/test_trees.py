@@ -18,6 +18,14 @@ CORRECTED = dict.fromkeys(
 )
 PRINTED = {"equilibrium": REFUTED, "edges": FALSE, "velocities": TRUE, "hurwitz": TRUE | FALSE}
 exactly = st.just(0.0)
+
+
+def printed(case):
+    """What the printed theorem may be said to be; one sample shows no motion, and decides nothing."""
+    one_sample = np.size(case.options.get("t_eval", (0.0, case.until))) < 2
+    return PRINTED | ({"equilibrium": FALSE} if one_sample else {})
+
+
 scales = st.sampled_from((1.0, 2.0, 1e-6, 1e4))
 
 
@@ -57,7 +65,7 @@ def test_at_its_own_equilibrium(drawn, until, drift, data):
     p = np.full(q.shape, drift * rho)
     case = Case(law, q, p, until, data.draw(ways(until, until / 100.0)))
     hold("zone-1-corrected", case, CORRECTED)
-    hold("zone-1-printed", case, PRINTED)
+    hold("zone-1-printed", case, printed(case))
 
 
 @effort(0.4)
@@ -66,7 +74,7 @@ def test_near_the_manifold(drawn, speed, until, data):
     law, q, rho, rng = drawn
     case = Case(law, q, speed * rho * rng.normal(size=q.shape), until, data.draw(ways(until, until / 1000.0)))
     hold("zone-1-corrected", case, CORRECTED)
-    hold("zone-1-printed", case, PRINTED)
+    hold("zone-1-printed", case, printed(case))
 
 
 @effort(0.2)

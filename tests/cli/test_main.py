@@ -5,6 +5,7 @@ import os
 from concurrent.futures import ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
 from textwrap import indent
 
@@ -16,12 +17,13 @@ from flockana.base.errors import FlockanaError, SolverError
 from flockana.dynamics.trajectory import Trajectory
 from flockana.ensemble import executors
 from flockana.laws.olfati_saber import Algorithm1
-from flockana.report import work
 from flockana.report.surveys import Survey
 from flockana.report.work import Task, check_all, plan
 from flockana.scenarios import Report, Scenario
 from flockana.theorems import Claim, theorem
 from tests.programs import ANSWERS_CTRL_C, CLI, IGNORES_CTRL_C, group, interrupt, out_of_a_kernel, posix, program, until
+
+scenario_module = import_module("flockana.scenarios.scenario")  # where a function has the module's name
 
 
 def tiny(name="tiny", status="refuted"):
@@ -208,14 +210,14 @@ def test_a_run_of_another_scenario_is_refused(call, catalogue, tmp_path):
 
 @pytest.mark.parametrize("error", [KeyboardInterrupt(), out_of_a_kernel()])
 def test_what_was_done_before_an_interrupt_is_reported(error, call, catalogue, monkeypatch):
-    verify = work.verify
+    verify = scenario_module.verify
 
     def interrupted(theorem, run, **options):
         if options["subject"] == "wrong":
             raise error
         return verify(theorem, run, **options)
 
-    monkeypatch.setattr(work, "verify", interrupted)
+    monkeypatch.setattr(scenario_module, "verify", interrupted)
     code, out, err = call("verify", "energy", "--jobs", 1)
     assert code == 130
     assert err == "flockana: interrupted\n"
@@ -225,14 +227,14 @@ def test_what_was_done_before_an_interrupt_is_reported(error, call, catalogue, m
 
 
 def test_what_was_done_before_an_error_is_reported(call, catalogue, monkeypatch):
-    verify = work.verify
+    verify = scenario_module.verify
 
     def failing(theorem, run, **options):
         if options["subject"] == "wrong":
             raise SolverError("it gave up")
         return verify(theorem, run, **options)
 
-    monkeypatch.setattr(work, "verify", failing)
+    monkeypatch.setattr(scenario_module, "verify", failing)
     code, _, err = call("verify", "energy", "--jobs", 1)
     assert (code, err) == (2, "flockana: wrong: it gave up\n")
     assert len(verdicts("report")["verdicts"]) == 1

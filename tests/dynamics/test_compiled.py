@@ -24,6 +24,7 @@ from flockana.interactions import AlphaInteraction, DeadZoneInteraction, Gains
 from flockana.kernels import alpha
 from flockana.kernels.compiling import register_jitable
 from flockana.kernels.lift import lift
+from flockana.kernels.listed import PARAMETERS
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.laws.terms.pairs import PairTerm
@@ -264,7 +265,7 @@ def test_a_pair_law_of_many_parameters_or_one_that_allocates_is_integrated_all_t
 
         @property
         def par(self):
-            return np.concatenate([super().par, np.zeros(9)])
+            return np.concatenate([super().par, np.zeros(PARAMETERS)])
 
     @register_jitable
     def through_an_array(s2, par, panels):

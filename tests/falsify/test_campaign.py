@@ -176,9 +176,9 @@ class TestGrades:
         assert units(Verdict("x", (), claims)) == {"a": 2.0, "f": 1e-8}
 
     def test_every_claim_that_has_a_surrogate_exists(self):
-        runs = {"os-3": "three-agents-1d", "E13": "three-agents-1d"}
+        runs = {"os-3": "three-agents-1d", "E13": "three-agents-1d", "su-informed": "informed-through"}
         led = [(name, claim, lead) for name in theorems() for claim, lead in theorem(name).leads.items()]
-        assert len(led) == 8
+        assert len(led) == 10
         ran = cache(lambda entry: scenario(entry).run())
         for name, claim, lead in led:
             run = ran("five-agents" if name.startswith("alpha") else runs.get(name, "head-on-collision"))

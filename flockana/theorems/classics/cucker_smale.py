@@ -16,7 +16,7 @@ def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
     needs = [condition("β < ½", beta < 0.5, 0.5 - beta, f"β = {beta:g}")]
     if unmet(needs):
         return needs, []
-    bounded, _, velocities = Guarantee(run, sqrt(2.0)).claims(("bounded", "rate", "velocities"), "cucker-smale")
+    bounded, _, velocities = Guarantee(run, sqrt(2.0)).claims(("bounded", "rate", "velocities"), proof="cucker-smale")
     return needs, [bounded, velocities]
 
 

@@ -17,7 +17,7 @@ _NAMES = ("bounded", "rate", "flock")
 def _check(run: Trajectory, tolerances: Tolerances, *, stretch: float) -> Checked:
     told = Guarantee(run, stretch)
     needs = [told.hypothesis("‖v(0)‖ < ∫φ from ‖x(0)‖ on")]
-    return needs, [] if unmet(needs) else told.claims(_NAMES, "cucker-smale")
+    return needs, [] if unmet(needs) else told.claims(_NAMES, proof="cucker-smale")
 
 
 THEOREM = (

@@ -24,7 +24,7 @@ from flockana.theorems.rounding import energy_error
 from flockana.theorems.theorem import Checked, Hypothesis, Theorem, Tolerances, unmet
 
 PROOF = "informed-agents"
-CLAIMS = ("energy", "distance", "informed", "linked", "distinct-pairs", "one-instant", "no-collision")
+CLAIMS = ("energy", "distance", "informed", "linked", "pairs", "one-instant", "no-collision")
 
 
 def _lasting(run: Trajectory) -> tuple[Hypothesis, np.ndarray]:
@@ -50,7 +50,7 @@ def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
         stays_within(seen, needs, name="distance", proof=PROOF),
         comes_to_rest(seen, informed(run), needs, tolerances, "informed"),
         comes_to_rest(seen, linked, [*needs, lasting], tolerances, "linked"),
-        distinct_pairs(seen, needs, tolerances, name="distinct-pairs"),
+        distinct_pairs(seen, needs, tolerances, name="pairs"),
         pairs_at_one_instant(seen, needs, tolerances, name="one-instant"),
         no_collision(seen, [*needs, below], tolerances, name="no-collision"),
     ]
@@ -72,6 +72,6 @@ THEOREM = Theorem(
     law=law_is("Algorithm 2", Algorithm2),
     check=_check,
     claims=CLAIMS,
-    leads={"distinct-pairs": pairs_apart, "one-instant": pairs_apart},
+    leads={"pairs": pairs_apart, "one-instant": pairs_apart},
     references=("su-2009", "olfati-saber-2006"),
 )

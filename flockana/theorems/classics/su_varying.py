@@ -5,7 +5,6 @@ from __future__ import annotations
 from math import sqrt
 
 import numpy as np
-from scipy.linalg import expm
 
 from flockana.base.checks import FloatArray
 from flockana.dynamics.trajectory import Trajectory
@@ -61,6 +60,8 @@ def centre_of(run: Trajectory) -> tuple[FloatArray, FloatArray]:
     c1, c2 = run.law.gains.c1_gamma[0], run.law.gains.c2_gamma[0]
     flow = np.array([[0.0, 1.0], [-c1, -c2]])
     start = found[0].reshape(2, run.m)
+    from scipy.linalg import expm
+
     said = np.array([(expm(flow * (t - run.t[0])) @ start).ravel() for t in run.t.tolist()])
     return found, said
 

@@ -19,8 +19,8 @@ def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
     if unmet(needs):
         return needs, []
     return needs, [
-        energy_falls(run, tolerances, "tanner"),
-        no_collision(run, edges[:, 0], edges[:, 1], "tanner"),
+        energy_falls(run, tolerances, proof="tanner"),
+        no_collision(run, edges[:, 0], edges[:, 1], proof="tanner"),
         *comes_to_rest(run, tolerances, ("velocities", "critical")),
     ]
 

@@ -15,7 +15,14 @@ from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.hypotheses import condition, has_lattice
 from flockana.theorems.leads import bridge
 from flockana.theorems.rounding import EPS, frame_error, spread_error
-from flockana.theorems.sampling import fastest_between, nets_at, nets_between, radius_between
+from flockana.theorems.sampling import (
+    fastest_between,
+    mismatch_between,
+    nets_at,
+    nets_between,
+    radius_between,
+    stretch_between,
+)
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
 
 _SHARE = 1e-9  # of an agent: what a share of n agents, as a decimal fraction, may be off by
@@ -120,7 +127,7 @@ def _giant(part: _Window, tolerances: Tolerances) -> Claim:
 def _common(part: _Window, tolerances: Tolerances) -> list[Claim]:
     """The claims Ẽ <= ε₁ and K̃ <= ε₂; a link that may come or go between samples, or by rounding, adds to Ẽ."""
     run = part.run
-    (d, r), units, steps = run.law.lattice, run.scales.energy, isinstance(run.law, DiscreteLaw)
+    (d, r), units = run.law.lattice, run.scales.energy
     deviation, mismatch = run.metric("normalised_deviation_energy"), run.metric("normalised_velocity_mismatch") / units
     rounding = 8.0 * EPS * (float(np.abs(run.q).max()) / d + 1.0)
     error = 2.0 * np.sqrt(deviation) * rounding + rounding**2 + 4.0 * EPS * run.n * deviation
@@ -129,17 +136,13 @@ def _common(part: _Window, tolerances: Tolerances) -> list[Claim]:
     error += one_link * at.open_links / (2.0 * at.links + 1.0)
     jumps = one_link * during.open_links / (2.0 * during.links + 1.0)
     own = spread_error(run.p) / (run.n * units)
+    # of links that stay: √Ẽ is a norm of their deviations, and grows by no more than the largest of them does
+    ends = np.sqrt(np.maximum(deviation[:-1], deviation[1:]))
+    between = (ends + stretch_between(run) / d) ** 2 + jumps
     return [
-        _always("deviation", part, deviation, tolerances.deviation, error, _between(deviation, steps=steps) + jumps),
-        _always("mismatch", part, mismatch, tolerances.mismatch, own, _between(mismatch, steps=steps)),
+        _always("deviation", part, deviation, tolerances.deviation, error, between),
+        _always("mismatch", part, mismatch, tolerances.mismatch, own, mismatch_between(run) / units),
     ]
-
-
-def _between(value: FloatArray, *, steps: bool) -> FloatArray:
-    """Bound of a smooth series between samples: beyond the larger end by half of what the ends differ."""
-    ends = np.maximum(value[:-1], value[1:])
-    between: FloatArray = ends if steps else ends + 0.5 * np.abs(np.diff(value))
-    return between
 
 
 def _cohesive(part: _Window, tolerances: Tolerances) -> Claim:

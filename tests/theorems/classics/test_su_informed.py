@@ -57,7 +57,7 @@ def test_links_over_windows_join_who_is_near_an_informed_agent():
 def test_few_lead_all_that_are_linked():
     verdict = scenario("informed-few").verify(scenario("informed-few").run())[0]
     assert {name: status for name, status in statuses(verdict).items() if name != "no-collision"} == dict.fromkeys(
-        ("energy", "distance", "informed", "linked", "distinct-pairs", "one-instant"), "verified"
+        ("energy", "distance", "informed", "linked", "pairs", "one-instant"), "verified"
     )
     assert hypothesis_status(verdict, "joined to informed") == "assumed"
 
@@ -118,5 +118,5 @@ def test_at_constant_velocity_nothing_need_be_told():
 
 def test_as_printed_more_pairs_collide_over_time():
     verdict = verify("su-informed", scenario("informed-through").run())
-    assert verdict.claim("distinct-pairs").computed == 2
-    assert (verdict.claim("distinct-pairs").status, verdict.claim("one-instant").status) == ("refuted", "verified")
+    assert verdict.claim("pairs").computed == 2
+    assert (verdict.claim("pairs").status, verdict.claim("one-instant").status) == ("refuted", "verified")
