@@ -20,7 +20,7 @@ def test_a_pair_at_rest_near_its_distance_refutes_nothing(off):
     assert verdict.claim("no-collision").status != "refuted"
 
 
-@pytest.mark.parametrize("level", [1e-24, 1e-16, 1e-8, 1.0, 50.0])
+@pytest.mark.parametrize("level", [1e-24, 1e-16, 4e-9, 1e-8, 1.0, 50.0])
 def test_the_distance_of_an_energy_has_it(level):
     from mpmath import log, mp, mpf
 
