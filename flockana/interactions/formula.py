@@ -131,6 +131,11 @@ class FormulaInteraction(PairInteraction):
         return self._parts.strength
 
     @property
+    def least_weight(self) -> float:
+        """The least adjacency, on the grid of `strength`: negative where agents drive each other's velocities apart."""
+        return float(self._parts.looks[1].min())
+
+    @property
     def c_star(self) -> float:
         """The largest |ψ| within the range, on the grid of `strength`: what rounding of energies counts in."""
         return self._parts.most_energy

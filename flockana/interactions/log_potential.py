@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import exp, inf, sqrt
+from math import exp, expm1, inf, sqrt
 from typing import Any, ClassVar
 
 import numpy as np
@@ -89,6 +89,8 @@ class LogPotential:
         >>> potential = LogPotential(2.0, 3.0)
         >>> round(potential.nearest(float(potential.energy(1.0))), 12)
         1.0
+        >>> round((3.0 - potential.nearest(4e-18)) / 3.0, 15)  # V is about 2 k (s/d - 1)² there
+        1e-09
         """
         from scipy.optimize import brentq
 
@@ -96,8 +98,13 @@ class LogPotential:
         if not 0.0 < level < inf:
             return self.d if level <= 0.0 else 0.0
         top = max(2.0 * level + 8.0, 8.0)  # x − 1 − log x >= x/2 − 1 >= level there
-        w = float(brentq(lambda w: exp(w) - 1.0 - w - level, 0.0, np.log(top), xtol=1e-14, rtol=1e-14))
+        w = float(brentq(lambda w: _height(w) - level, 0.0, np.log(top), xtol=1e-300, rtol=1e-14))
         return self.d * exp(-0.5 * w)
+
+
+def _height(w: float) -> float:
+    """e^w − 1 − w, to a few roundings for every w >= 0."""
+    return 0.5 * w * w * (1.0 + w / 3.0 * (1.0 + w / 4.0)) if w < 1e-4 else expm1(w) - w
 
 
 def net_forces(

@@ -27,6 +27,7 @@ from flockana.laws.terms.term import Term
 from flockana.measures.frame import moving_frame
 
 _PARTS = ("pair", "consensus", "navigation", "obstacles", "drag", "speed")
+_OPTIONS = ("gradient", "net", "pull", "match", "informed", "agents", "bounded", "told", "repulsion", "braking", "beta")
 _NO_GAIN = Gains(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
@@ -251,7 +252,7 @@ def compose(
     ((1.1, 0.0, 1.1), -0.1)
     """
     for name in unknown:
-        raise UnknownNameError("part of a law", name, _PARTS)
+        raise UnknownNameError("part of a law", name, (*_PARTS, *_OPTIONS))
     if isinstance(consensus, Weight):
         if net is not None:
             raise ArgumentError(f"net = {net!r} beside consensus = {consensus!r}: expected one of the two weights")

@@ -8,6 +8,7 @@ allowance for the paths' own error (`flockana.kernels.paths`) is added.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -113,6 +114,63 @@ def radius_between(run: Trajectory) -> FloatArray:
         ends: FloatArray = np.maximum(radius[:-1], radius[1:])
         return ends
     return run.cohesion_bounds
+
+
+def spread_between(run: Trajectory) -> float:
+    """An upper bound of √Σ‖q_i − q̄‖² on the paths, the samples included.
+
+    Examples
+    --------
+    >>> from flockana.dynamics.simulate import simulate
+    >>> from flockana.laws.cucker_smale import CuckerSmale
+    >>> run = simulate(CuckerSmale(), [[0.0], [2.0]], [[1.0], [1.0]], (0.0, 1.0))
+    >>> bool(abs(spread_between(run) - 2.0**0.5) < 1e-9)
+    True
+    """
+    most = 0.0
+    for points, off in _polygons(run):
+        sizes = np.sqrt(np.sum((points - points.mean(axis=0)) ** 2, axis=(0, 2)))
+        most = max(most, float(sizes.max() + np.linalg.norm(off)))
+    return most
+
+
+def least_between(run: Trajectory, i: Any, j: Any) -> float:
+    """A lower bound of the distances of some pairs on the paths: of their control points along one direction.
+
+    Parameters
+    ----------
+    run : Trajectory
+        The run.
+    i, j : int array
+        The pairs, one at least.
+
+    Examples
+    --------
+    Two agents that approach each other from afar:
+
+    >>> from flockana.dynamics.simulate import simulate
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> start = [[0.0], [99.0]], [[1.0], [-1.0]]
+    >>> run = simulate(Algorithm1(), *start, (0.0, 9.0))
+    >>> bool(81.0 - 1e-9 < least_between(run, [0], [1]) <= 81.0)
+    True
+    """
+    least = np.inf
+    for points, off in _polygons(run):
+        apart = points[j] - points[i]
+        ways = apart.mean(axis=1, keepdims=True)
+        ways /= np.maximum(np.linalg.norm(ways, axis=2, keepdims=True), np.finfo(float).tiny)
+        along = np.sum(apart * ways, axis=2).min(axis=1) - off[i] - off[j]
+        least = min(least, float(along.min()))
+    return max(least, 0.0)
+
+
+def _polygons(run: Trajectory) -> Iterator[tuple[FloatArray, FloatArray]]:
+    """Control points of the agents' paths in each step, (n, 6, 3), and how far a path may be off each."""
+    path = run.path
+    for k, h in enumerate(np.diff(path.t).tolist()):
+        points, _, allowance = bernstein(h, *(x[k + side] for side in (0, 1) for x in (path.q, path.p, path.u)))
+        yield points, allowance if path.slack is None else allowance + path.slack[k]
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import flockana as fl
-from flockana.base.errors import ArgumentError
+from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.serialize import from_data, to_data
 from flockana.environment.obstacles import Sphere, Wall
 from flockana.environment.targets import CallableTarget, CircleTarget, LinearTarget, StaticTarget
@@ -305,3 +305,8 @@ def test_a_run_of_other_agents_than_were_informed_is_refused():
     law = compose(pair=PAIR, navigation=LEADER, informed=(0,), agents=3)
     with pytest.raises(ArgumentError, match="c1_gamma has 3 gains but there are 2 agents"):
         fl.simulate(law, [[0.0, 0.0], [7.0, 0.0]], np.zeros((2, 2)), (0.0, 1.0))
+
+
+def test_a_misspelt_gain_is_told_the_gain():
+    with pytest.raises(UnknownNameError, match="did you mean 'gradient'"):
+        compose(pair=AlphaInteraction(), gradiant=2.0)

@@ -70,12 +70,15 @@ class Block:
         By how much the nets contract every spread at least.
     error : float
         Rounding of the spread at its end.
+    mixes : bool
+        Whether all agents take something from one, so that the factor is below 1, however little: it may round to 1.
     """
 
     start: int
     stop: int
     factor: float
     error: float
+    mixes: bool
 
 
 def blocks(nets: Sequence[LinkArray], headings: FloatArray, windows: Sequence[tuple[int, int]]) -> tuple[Block, ...]:
@@ -94,12 +97,13 @@ def blocks(nets: Sequence[LinkArray], headings: FloatArray, windows: Sequence[tu
     size = max(1, n - 1)
     for k in range(0, len(windows) - size + 1, size):
         start, stop = windows[k][0], windows[k + size - 1][1]
-        product = np.eye(n)
+        product, heard = np.eye(n), np.eye(n)
         for net in nets[start:stop]:
-            product = averaging_matrix(n, net) @ product
+            matrix = averaging_matrix(n, net)
+            product, heard = matrix @ product, np.sign(np.sign(matrix) @ heard)
         steps, spread = stop - start, float(np.ptp(headings[start]))
         error = steps * (n + _TERMS) * EPS * (float(np.abs(headings[start]).max()) + n * spread)
-        found.append(Block(start, stop, contraction(product), error))
+        found.append(Block(start, stop, min(contraction(product), 1.0), error, bool(heard.all(axis=0).any())))
     return tuple(found)
 
 

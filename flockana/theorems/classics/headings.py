@@ -71,7 +71,7 @@ def _contraction(headings: FloatArray, found: tuple[Block, ...]) -> Claim:
     """Over each block of n − 1 windows the span shrinks by what its nets guarantee, but for rounding."""
     n = headings.shape[1]
     span = np.ptp(headings, axis=1)
-    missed = [b for b in found if not span[b.stop] <= b.factor * span[b.start] + b.error or b.factor >= 1.0]
+    missed = [b for b in found if not span[b.stop] <= b.factor * span[b.start] + b.error or not b.mixes]
     enough = condition(
         f"n - 1 = {n - 1} jointly connected windows in a row", bool(found), detail=f"{len(found)} times in the run"
     )
@@ -135,7 +135,7 @@ THEOREM = Theorem(
         "leaves the span of those before, and over n - 1 such intervals the span shrinks by a factor that the nets "
         "guarantee."
     ),
-    source="Jadbabaie, Lin and Morse, theorem on leaderless coordination; span and factor as its proofs have them",
+    source="Jadbabaie, Lin and Morse, theorem on leaderless coordination, in our words; span and factor are ours",
     kind="trajectory",
     check=_check,
     law=law_is("nearest-neighbour averaging of headings", HeadingAveraging),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from itertools import product
 
 from flockana.theorems.claims import erratum, exact
 from flockana.theorems.theorem import Claim, Tolerances
@@ -50,15 +49,18 @@ def _turned() -> Claim:
 
 
 def _clear() -> Claim:
-    """Headings within a half-turn that does not contain the direction 0: the mean turns with them."""
-    steps = [Fraction(k, 24) for k in range(12)]
-    pairs = ((a, b, turn) for a, b, turn in product(steps, steps, _TURNS) if 0 <= a + turn < 1 and 0 <= b + turn < 1)
-    holds = all(averaged((a + turn, b + turn)) == (a + b) / 2 + turn for a, b, turn in pairs)
+    """Headings that the turn takes through no direction 0: each is counted as it was, and the turn added."""
+    import sympy as sp
+
+    n, turn, k = sp.Symbol("n", positive=True, integer=True), sp.Symbol("t", real=True), sp.Symbol("k", integer=True)
+    heading = sp.IndexedBase("h", real=True)
+    turned = sp.expand(sp.Sum(heading[k] + turn, (k, 1, n)) / n)
+    mean = sp.Sum(heading[k], (k, 1, n)) / n
     return exact(
         "clear-of-cut",
-        holds,
+        sp.simplify(turned.expand(func=True).doit() - mean.doit() - turn) == 0,
         stated="as long as no heading passes the direction of angle 0, the mean turns with the flock",
-        detail="headings in [0, 1) turn: the turned mean is the mean of the turned, on a grid of 24ths",
+        detail="a heading h that stays in [0, 2π) is counted as h + t after a turn by t, and Σ (h + t)/n = Σ h/n + t",
     )
 
 

@@ -12,7 +12,8 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.theorems.asymptotics import velocities_match
 from flockana.theorems.claims import judged
 from flockana.theorems.limits import decay, limit_claim
-from flockana.theorems.rounding import EPS
+from flockana.theorems.rounding import EPS, spread_error
+from flockana.theorems.sampling import least_between
 from flockana.theorems.theorem import Claim, Tolerances
 
 _NOISE = 10.0  # times the absolute tolerance: what an integrator leaves of a force at rest
@@ -36,23 +37,40 @@ def energy_falls(run: Trajectory, tolerances: Tolerances, proof: str) -> Claim:
 
 
 def no_collision(run: Trajectory, i: Any, j: Any, proof: str) -> Claim:
-    """The claim that some pairs never come nearer than where V alone is the energy of the start."""
+    """The claim that some pairs never come nearer than where V alone is the energy of the start, between samples too.
+
+    It is refuted by a sample alone. Where H(0) is small V is flat, and what rounding leaves of H(0) moves the bound.
+    """
     if not len(i):
         return judged("no-collision", 1.0, 0.0, detail="no pair is joined")
     gaps = np.linalg.norm(run.q[:, j] - run.q[:, i], axis=2)
     k = int(gaps.min(axis=1).argmin())
-    least, bound = float(gaps[k].min()), run.law.potential.nearest(float(run.energy()[0]))
-    rounding = 8.0 * EPS * float(np.abs(run.q).max()) / run.scales.length + 1e-12
+    energy, blur = float(run.energy()[0]), _energy_error(run, i, j)
+    least, between = float(gaps[k].min()), least_between(run, i, j)
+    bound, lowest = (run.law.potential.nearest(level) for level in (energy, energy + blur))
+    highest = run.law.potential.nearest(energy - blur)
+    rounding = 8.0 * EPS * float(np.abs(run.q).max()) + 1e-12 * run.scales.length + max(bound - lowest, highest - bound)
+    unseen = max(least - between, 0.0) if least > bound else 0.0
     return judged(
         "no-collision",
         (least - bound) / run.scales.length,
-        rounding,
+        (rounding + unseen) / run.scales.length,
         computed=least,
         stated=f"no such pair comes nearer than {bound:.6g}, where V = H(0)",
         witness={"time": float(run.t[k])},
         proof=proof,
-        detail=f"the least distance at the samples is {least:.6g}",
+        detail=f"the least distance at the samples is {least:.6g}, and between them at least {between:.6g}",
     )
+
+
+def _energy_error(run: Trajectory, i: Any, j: Any) -> float:
+    """Of the rounding of H at the start: a relative error e of d²/s² moves V by k (|d²/s² − 1| e + e²) at most."""
+    q, potential = run.q[0], run.law.potential
+    s = np.linalg.norm(q[j] - q[i], axis=1)
+    x, e = (potential.d / s) ** 2, 8.0 * EPS * (1.0 + float(np.abs(q).max()) / s)
+    moved = potential.strength * float(np.sum(np.abs(x - 1.0) * e + e * e))
+    total: float = moved + run.n**2 * EPS * float(run.energy()[0]) + float(spread_error(run.p[:1])[0])
+    return total
 
 
 def comes_to_rest(run: Trajectory, tolerances: Tolerances, names: tuple[str, str]) -> list[Claim]:

@@ -9,6 +9,7 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.obstacles import Sphere, Wall
+from flockana.interactions import FormulaInteraction
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.composition import Composition
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
@@ -136,9 +137,16 @@ def smooth_where_needed(run: Trajectory) -> list[Hypothesis]:
     return [smooth_pair(run)] if run.law.pair is not None and run.law.pair.faults else []
 
 
+def _heeding(run: Trajectory) -> list[Hypothesis]:
+    """The hypothesis that a consensus draws velocities together, of a formula whose adjacency is negative somewhere."""
+    pairs = [getattr(run.law, name, None) for name in ("alpha", "net")]
+    least = min((pair.least_weight for pair in pairs if isinstance(pair, FormulaInteraction)), default=0.0)
+    return [condition("a_ij >= 0 at every distance", False, least, f"it is {least:.3g}")] if least < 0.0 else []
+
+
 def nothing_adds_energy(run: Trajectory) -> list[Hypothesis]:
     """What it takes that no term of the law adds energy, in the frame that the energy is in."""
-    law, needs = run.law, smooth_where_needed(run)
+    law, needs = run.law, [*smooth_where_needed(run), *_heeding(run)]
     if law.target is not None and not law.moving:
         needs.append(target_rests(run, told=False))  # outside of the moving frame a moving γ-agent does work
     if type(law) is Algorithm3 or law.obstacles:

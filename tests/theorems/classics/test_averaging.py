@@ -7,12 +7,15 @@ import pytest
 
 from flockana import HeadingAveraging, simulate, verify
 from flockana.theorems.classics.averaging import (
+    Block,
     averaging_matrix,
+    blocks,
     contraction,
     for_ever_connected,
     for_ever_parted,
     neighbourhoods,
 )
+from flockana.theorems.classics.headings import _contraction
 
 LAW = HeadingAveraging(range=1.0, speed=0.05, dt=1.0)
 
@@ -118,3 +121,19 @@ def test_samples_that_leave_steps_out_say_nothing():
     q, heading = flock(0, 1.0, 1.0, 2.0)
     run = simulate(LAW, q, LAW.velocities(heading), (0.0, 6.0), t_eval=[0.0, 2.0, 4.0])
     assert verify("jlm-headings", run).status == "vacuous"
+
+
+def test_a_guarantee_that_rounds_to_nothing_is_not_missed():
+    """A long path contracts by 1 - 1e-30, which is 1 in floating point; who hears whom is not."""
+    headings = np.array([[0.0, 1.0], [0.0, 1.0]])
+    for mixes, status in ((True, "verified"), (False, "refuted")):
+        assert _contraction(headings, (Block(0, 1, 1.0, 1e-12, mixes),)).status == status
+
+
+def test_who_hears_one_agent_is_counted_in_whole_numbers():
+    headings, path = np.zeros((5, 5)), np.array([[k, k + 1] for k in range(4)])
+    (joined,) = blocks([path] * 4, headings, [(k, k + 1) for k in range(4)])
+    (cut,) = blocks([path[[0, 3]]] * 4, headings, [(k, k + 1) for k in range(4)])
+    assert joined.mixes
+    assert joined.factor < 1.0
+    assert not cut.mixes

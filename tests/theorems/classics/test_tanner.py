@@ -1,0 +1,49 @@
+"""What Tanner's law keeps apart: near the minimum of V, where rounding moves the bound, and between samples."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from flockana import pair_law, simulate, verify
+from flockana.interactions.log_potential import LogPotential
+from flockana.laws.olfati_saber import Algorithm1
+from flockana.laws.tanner import FixedNetFlocking
+from flockana.theorems.sampling import least_between, spread_between
+
+
+@pytest.mark.parametrize("off", [-2e-8, -3e-9, -1e-9, 1e-9])
+def test_a_pair_at_rest_near_its_distance_refutes_nothing(off):
+    """It never comes nearer than it started: equality, or, from beyond d, as far from d on the other side."""
+    run = simulate(FixedNetFlocking(edges=((0, 1),)), [[0.0], [1.0 + off]], [[0.0], [0.0]], (0.0, 2.0))
+    verdict = verify("tanner-fixed", run)
+    assert verdict.claim("no-collision").status != "refuted"
+
+
+@pytest.mark.parametrize("level", [1e-24, 1e-16, 4e-9, 1e-8, 1.0, 50.0])
+def test_the_distance_of_an_energy_has_it(level):
+    from mpmath import log, mp, mpf
+
+    # a distance holds 1 - s/d = √(level/2) to ε only
+    near = LogPotential(2.0, 3.0).nearest(2.0 * level)
+    mp.dps = 60
+    w = -2 * log(mpf(near) / 3)
+    assert float((mp.e**w - 1 - w) / level) == pytest.approx(1.0, abs=1e-12 + 1e-15 / level**0.5)
+    assert 0.0 < near < 3.0
+
+
+def test_between_two_samples_a_pair_is_nearer_and_the_flock_wider():
+    """Two agents that pass at a distance of 30, free of forces, sampled at the ends alone: 40 away from there."""
+    q, p = np.array([[-40.0, 0.0], [0.0, 30.0]]), np.array([[40.0, 0.0], [0.0, 0.0]])
+    run = simulate(Algorithm1(), q, p, (0.0, 2.0), t_eval=[0.0, 2.0])
+    assert 15.0 < least_between(run, [0], [1]) <= 30.0
+    assert spread_between(run) >= 50.0 / np.sqrt(2.0) * (1.0 - 1e-12)
+
+
+def test_a_consensus_that_drives_apart_is_no_case_of_the_energy_theorem():
+    pair = pair_law("k*(s-d)**2*(s-r)**2/2", adjacency="-(1-s/r)**2", range=3.0, length=2.0, parameters={"k": 1.0})
+    run = simulate(Algorithm1(pair), [[0.0], [2.2]], [[0.1], [-0.1]], (0.0, 0.2))
+    verdict = verify("energy", run)
+    assert verdict.claim("rate").status == "vacuous"
+    assert verdict.claim("balance").status == "verified"
+    assert verify("collision-energy", run).status == "vacuous"
