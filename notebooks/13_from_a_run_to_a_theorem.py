@@ -141,6 +141,17 @@ fl.write_certificate(basin, file)
 checked = fl.check_certificate(file)
 print(*checked.steps, sep="\n")
 
+# %% [markdown]
+# The run has one too: polynomials beside the solution, whose distance from it the checker bounds by another theorem
+# than the one that the tube rests on, and the basin's certificate within.
+
+# %%
+
+of_run = file.with_name("run.json")
+fl.write_tube_certificate(tube, of_run, basin=basin)
+of_tube = [step for step in fl.check_certificate(of_run).steps if not step.startswith("basin: ")]
+print(*of_tube, sep="\n")
+
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
