@@ -30,6 +30,8 @@ def centred(name: str, values: Any, shape: tuple[int, int]) -> list[arb]:
     rows = [[arb(x) if isinstance(x, arb) else arb(float(x)) for x in row] for row in values]
     if len(rows) != shape[0] or any(len(row) != shape[1] for row in rows):
         raise ArgumentError(f"{name} has shape {np.shape(values)}: expected {shape}, as the equilibrium")
+    if not all(x.is_finite() for row in rows for x in row):
+        raise ArgumentError(f"{name} holds a number that is not finite: expected finite coordinates")
     middle = [sum(column, arb(0)) / shape[0] for column in zip(*rows, strict=True)]
     return [x - c for row in rows for x, c in zip(row, middle, strict=True)]
 

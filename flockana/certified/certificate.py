@@ -18,24 +18,7 @@ from flockana.base.files import write_whole
 from flockana.base.seals import sealed
 from flockana.certified.basin import Basin
 from flockana.certified.decimals import decimal, written
-
-FORMAT = "flockana certificate 1"
-STATEMENT = (
-    "In the frame of the centre of mass, every solution that starts nearer than `radius` to the orbit under rotations "
-    "of the equilibrium that lies within `box` of `positions` in each coordinate (distance over all coordinates, "
-    "agents numbered), with a structural energy less than `level` above the equilibrium's, converges to a point of "
-    "that orbit with matched velocities; E(t) <= overshoot E(0) exp(-2 rate t), U - U* >= curvature/2 times the "
-    "squared distance, and no two agents come nearer than `distance`."
-)
-PROSE = (
-    "U and H do not change under rotations, so what holds along w orthogonal to the tangent at x* holds at every R x*.",
-    "At the nearest point of the orbit the displacement is orthogonal to its tangent, and |w_j - w_i| <= sqrt(2) |w|.",
-    "U is twice continuously differentiable: the bump is C^1, so that phi_alpha is C^1 and psi_alpha is C^2.",
-    "Half the squared distance to the orbit has the gradient w and a Hessian that is at most 1, and is smooth where "
-    "the nearest point is unique and not degenerate: what is checked suffices for that.",
-    "The energy's excess E falls at the rate of the damping, by the law; F > 0 with dF/dt <= -2 rate F on an invariant "
-    "set falls like exp(-2 rate t); the speed is then integrable in time, and the places converge.",
-)
+from flockana.certified.statements import BASIN, BASIN_PROSE, FORMAT
 
 
 def basin_certificate(basin: Basin) -> dict[str, Any]:
@@ -63,8 +46,8 @@ def basin_certificate(basin: Basin) -> dict[str, Any]:
     data: dict[str, Any] = {
         "format": FORMAT,
         "kind": "basin",
-        "statement": STATEMENT,
-        "prose": list(PROSE),
+        "statement": BASIN,
+        "prose": list(BASIN_PROSE),
         "law": {"algorithm": type(basin.law).__name__, **parameters, **gains},
         "positions": [[float(x).hex() for x in row] for row in basin.rest],
         "box": written(proof.box),

@@ -10,18 +10,21 @@ from __future__ import annotations
 import hashlib
 import importlib
 import json
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from flockana.base.errors import FileError, FlockanaError
 from flockana.base.files import read_whole
 from flockana.base.serialize import read_json
+from flockana.certified.statements import FORMAT, STATEMENTS
 
-FORMAT = "flockana certificate 1"
+_LONGEST = 500  # characters of a number
+_AGENTS = 100
+_HUGE = re.compile(r"p[+-]?[\d_]{4,}|^[+-]?[\d._]*e[+-]?[\d_]{4,}$", re.IGNORECASE)  # an exponent that would never end
 
 
 class RejectedError(FlockanaError):
@@ -84,13 +87,31 @@ def check_data(data: Mapping[str, Any]) -> Checked:
     found = hashlib.sha256(json.dumps(rest, sort_keys=True).encode()).hexdigest()
     ensure(data.get("digest") == found, "its digest is not that of its contents: something in it was changed")
     kind = str(data.get("kind"))
-    module = f"{__package__}.check_{kind}"
-    ensure(kind.isidentifier() and find_spec(module) is not None, f"its kind {kind!r} is unknown")
+    ensure(kind in STATEMENTS, f"its kind {kind!r} is unknown")
+    ensure(data.get("format") == FORMAT, f"its format {data.get('format')!r} is unknown")
+    statement, prose = STATEMENTS[kind]
+    ensure(data.get("statement") == statement, f"it states something else than a certificate of kind {kind!r} proves")
+    ensure(data.get("prose") == list(prose), "it lists something else as not checked by machine")
     try:
-        steps = tuple(importlib.import_module(module).check(rest))
-        return Checked(kind, str(data["statement"]), steps, tuple(map(str, data["prose"])))
+        _ensure_modest({key: value for key, value in rest.items() if key not in ("statement", "prose", "basin")})
+        steps = tuple(importlib.import_module(f"{__package__}.check_{kind}").check(rest))
+        return Checked(kind, statement, steps, prose)
     except (KeyError, ValueError, TypeError, AttributeError, IndexError, ArithmeticError) as error:
         raise RejectedError(f"it is incomplete or out of form: {type(error).__name__}: {error}") from error
+
+
+def _ensure_modest(data: Any) -> None:
+    """Raise `RejectedError` on what a checker could not read to the end: endless numbers, or huge flocks."""
+    if isinstance(data, str):
+        ensure(len(data) <= _LONGEST and not _HUGE.search(data), f"{data[:30]!r}: expected a shorter number")
+    elif isinstance(data, Mapping):
+        for name in ("positions", "q0"):
+            ensure(len(data.get(name, ())) <= _AGENTS, f"expected at most {_AGENTS} agents")
+        for value in data.values():
+            _ensure_modest(value)
+    elif isinstance(data, list):
+        for value in data:
+            _ensure_modest(value)
 
 
 def ensure(holds: bool, otherwise: str) -> None:

@@ -92,7 +92,10 @@ class Run:
         least, widest = [], []
         for t, end, coefficients, stated in zip(times[:-1], times[1:], data["paths"], data["errors"], strict=True):
             h, path = ball(end - t), [[ball(exact(c)) for c in row] for row in coefficients]
-            ensure(len(path) == size and all(len(row) == len(path[0]) >= 4 for row in path), "a path of another size")
+            ensure(
+                len(path) == size and all(len(row) == len(path[0]) in range(4, 65) for row in path),
+                "a path of another size",
+            )
             error, bound = self.jumped(state, path, error), number(stated)
             found, box = self.grown(ball(t), h, path, error, bound)
             ensure(bool(found < bound), f"t = {float(t):.6g}: the error may exceed what is stated")
@@ -112,17 +115,17 @@ class Run:
         ensure(data["below_c_star"] is bool(level < self.gain["c1_alpha"] * c_star(self.par)), "H(0) < c*")
         yield f"the energy at the start is {data['energy']}, rounded down"
         if data["basin"] is not None:
-            yield from self.ends_in(data["basin"], number(data["turn"]), state, error)
+            yield from self.ends_in(data["basin"], data["law"], number(data["turn"]), state, error)
 
-    def ends_in(self, basin: Mapping[str, Any], turn: arb, state: Vector, error: arb) -> Iterator[str]:
+    def ends_in(
+        self, basin: Mapping[str, Any], own: Mapping[str, str], turn: arb, state: Vector, error: arb
+    ) -> Iterator[str]:
         """The end of the run lies in the basin of a certificate of its own, turned by an angle."""
+        ensure(basin.get("kind") == "basin", "what stands for the basin is no certificate of one")
         yield from (f"basin: {step}" for step in check_data(basin).steps)
         law, size = basin["law"], self.n * self.m
-        ensure(
-            all(same_number(getattr(self.par, name), law[name]) for name in ("d", "r", "eps", "h", "a", "b")),
-            "another law",
-        )
-        ensure(all(self.gain[name].overlaps(number(law[name])) for name in self.gain), "the basin is of other gains")
+        alike = (Fraction(own[name]) == Fraction(law[name]) for name in ("d", "r", "eps", "h", "a", "b", *self.gain))
+        ensure(own["algorithm"] == law["algorithm"] and all(alike), "the basin is of another law")
         ensure(self.m <= 2 and len(basin["positions"]) == self.n, "a basin of another flock")
         off = arb(0, number(basin["box"]).upper())
         rest = [arb(float.fromhex(x)) + off for row in basin["positions"] for x in row]
@@ -338,11 +341,6 @@ def positive(rows: list[list[arb]]) -> bool:
 def same(stated: str, value: arb, *, down: bool) -> bool:
     """Whether a decimal is the one that bounds a number."""
     return stated == (at_least(value) if down else at_most(value))
-
-
-def same_number(value: Any, text: str) -> bool:
-    """Whether a rational is that of a decimal."""
-    return bool(Fraction(int(value.p), int(value.q)) == Fraction(text))
 
 
 def number(text: str) -> arb:

@@ -13,8 +13,9 @@ import numpy as np
 from flint import arb, ctx
 
 from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError
 from flockana.certified.intervals import AlphaParameters, exact, psi_alpha, sigma_of_square, square
-from flockana.laws.olfati_saber import Algorithm2
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 
 if TYPE_CHECKING:
     from flockana.certified.lohner import StateSet, Step
@@ -49,6 +50,9 @@ class Approach(NamedTuple):
 @dataclass(frozen=True)
 class Tube:
     """Sets that hold every solution from a start or a box of starts, proved in ball arithmetic.
+
+    The law enclosed is the one whose every parameter is the decimal that it prints as (0.1 is one tenth); a simulation
+    computes with the nearest binary number, and a start or a time is exactly its binary number here too.
 
     Parameters
     ----------
@@ -168,9 +172,11 @@ class Tube:
 
     def min_distance(self) -> Approach:
         """A proved lower bound of the distance of any two agents, at all times of the tube."""
-        least = Approach(inf, (0, 0), self.t[0])
-        for k, t in enumerate(self.t[:-1]):
-            for pair, distance in zip(self.pairs, self.distances_during(k), strict=True):
+        least, q = Approach(inf, (0, 0), self.t[0]), self.state(0)[0]
+        with ctx.workprec(BITS):
+            start = [norm([b - a for a, b in zip(x, y, strict=True)]) for x, y in combinations(q, 2)]
+        for k, t in enumerate((self.t[0], *self.t[:-1])):  # the start by itself: a tube may break before its first step
+            for pair, distance in zip(self.pairs, start if k == 0 else self.distances_during(k - 1), strict=True):
                 if (lower := down(distance.lower())) < least.lower:
                     least = Approach(lower, pair, t)
         return least
@@ -188,7 +194,22 @@ class Tube:
         k : int
             Step; negative from the end.
         """
+        _ensure_energy(self.law)
         return structural_energy(self.law, *self.state(k))
+
+    def energy_during(self, k: int) -> arb:
+        """A ball that holds the structural energy at all times from step k to the next.
+
+        Parameters
+        ----------
+        k : int
+            Step, the last one excluded.
+        """
+        _ensure_energy(self.law)
+        step, half = self.taken[k], self.n * self.m
+        p = [step.during[i : i + self.m] for i in range(half, 2 * half, self.m)]
+        with ctx.workprec(BITS):
+            return _energy(self.law, [_norm2(gap) for gap in step.relative], step.deviations, p)
 
     def ends_in(self, basin: BasinLike) -> bool:
         """Whether every state at the end lies in a certified basin of the same law: then all converge to its orbit.
@@ -212,11 +233,22 @@ def structural_energy(law: Any, q: Sequence[Sequence[arb]], p: Sequence[Sequence
     True
     """
     with ctx.workprec(BITS):
-        par, area = scaled(law.alpha), arb(exact(law.alpha.unit)) ** 2
         s2 = [_norm2([b - a for a, b in zip(x, y, strict=True)]) for x, y in combinations(q, 2)]
-        pairs = sum((psi_alpha(sigma_of_square(x / area, par.eps), par) for x in s2), arb(0)) * area
-        total = arb(exact(law.gains.c1_alpha)) * pairs + _inertia(p)
-        return total + arb(exact(law.gains.c1_gamma)) * _inertia(q) if isinstance(law, Algorithm2) else total
+        return _energy(law, s2, q, p)
+
+
+def _energy(law: Any, s2: Sequence[arb], q: Sequence[Sequence[arb]], p: Sequence[Sequence[arb]]) -> arb:
+    """The structural energy from squared distances, positions and velocities, boxes of the same states."""
+    par, area = scaled(law.alpha), arb(exact(law.alpha.unit)) ** 2
+    pairs = sum((psi_alpha(sigma_of_square(x / area, par.eps), par) for x in s2), arb(0)) * area
+    total = arb(exact(law.gains.c1_alpha)) * pairs + _inertia(p)
+    return total + arb(exact(law.gains.c1_gamma)) * _inertia(q) if isinstance(law, Algorithm2) else total
+
+
+def _ensure_energy(law: Any) -> None:
+    """Raise on Algorithm 3, whose γ-agent has another energy."""
+    if type(law) not in (Algorithm1, Algorithm2):
+        raise ArgumentError(f"law = {law!r}: expected Algorithm1 or Algorithm2, whose structural energy this is")
 
 
 def scaled(alpha: Any) -> AlphaParameters:

@@ -19,29 +19,19 @@ from flockana.base.errors import ArgumentError
 from flockana.base.files import write_whole
 from flockana.base.seals import sealed
 from flockana.certified.basin import Basin
-from flockana.certified.certificate import FORMAT, basin_certificate
+from flockana.certified.certificate import basin_certificate
 from flockana.certified.check_tube import BITS, Run, exact, number
 from flockana.certified.decimals import at_least, at_most, decimal, small
 from flockana.certified.flow import Flow
 from flockana.certified.intervals import c_star
 from flockana.certified.laws import flow_of
 from flockana.certified.series import Piece
+from flockana.certified.statements import FORMAT, TUBE, TUBE_PROSE
 from flockana.certified.tube import Tube
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 
 _ORDER = 26  # of the paths
 _TRIES = 30  # of an error that holds itself up
-STATEMENT = (
-    "The solution from q0, p0 differs from the path of polynomials at no time of a step by more than its error, in the "
-    "norm sqrt(weight^2 |q|^2 + |p|^2); no two agents come nearer than `distance`, and none is farther than "
-    "`cohesion_radius` from the centre of mass. If there is a basin, the end lies in it, turned by `turn`, and the run "
-    "converges to its orbit."
-)
-PROSE = (
-    "f is C^1, with a derivative that is Lipschitz: the bump is C^1; so u is the integral of its slope along a path.",
-    "An error e of two solutions obeys d|e|/dt <= mu |e| + |defect| while mu bounds the logarithmic norm between them.",
-    "A bound that holds strictly as long as it holds, holds to the end of the step.",
-)
 
 
 def tube_certificate(tube: Tube, *, basin: Basin | None = None, weight: float = 10.0) -> dict[str, Any]:
@@ -92,8 +82,8 @@ def write_tube_certificate(tube: Tube, path: str | Path, *, basin: Basin | None 
 def _ensure_certifiable(tube: Tube, basin: Basin | None) -> None:
     if type(tube.law) not in (Algorithm1, Algorithm2) or tube.law.alpha.unit != 1.0:
         raise ArgumentError(f"law = {tube.law!r}: expected Algorithm1 or Algorithm2 with unit = 1")
-    if tube.status != "complete" or any(tube.stats["radius"]):
-        raise ArgumentError(f"{tube!r}: expected a complete tube from one start, radius=0")
+    if tube.n < 2 or tube.status != "complete" or any(tube.stats["radius"]):
+        raise ArgumentError(f"{tube!r}: expected a complete tube of two agents or more from one start, radius=0")
     if basin is not None and (tube.m > 2 or not tube.ends_in(basin)):
         raise ArgumentError("basin: expected one, in one or two dimensions, that the tube certainly ends in")
 
@@ -110,8 +100,8 @@ def _start(tube: Tube, weight: float) -> dict[str, Any]:
     return {
         "format": FORMAT,
         "kind": "tube",
-        "statement": STATEMENT,
-        "prose": list(PROSE),
+        "statement": TUBE,
+        "prose": list(TUBE_PROSE),
         "law": {"algorithm": type(law).__name__, **numbers, **told},
         "q0": [[_hexadecimal(arb(x)) for x in row] for row in tube.q0.tolist()],
         "p0": [[_hexadecimal(arb(x)) for x in row] for row in tube.p0.tolist()],

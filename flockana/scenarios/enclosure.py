@@ -65,6 +65,8 @@ class Enclosure:
             law = replace(law, alpha=replace(law.alpha, unit=1.0))  # but for rounding it is
         span = (float(run.t[0]), float(run.t[-1]))
         tube = enclose(law, run.q[0] / unit, run.p[0] / unit, span, **self.options)
+        if unit != 1.0:
+            tube = replace(tube, message=f"{tube.message} (the run in lengths of ℓ, rounded)".strip())
         if not self.limit:
             return tube, None
         try:

@@ -92,7 +92,8 @@ def verify(
         One of `theorems`, or a theorem of your own.
     trajectory : Trajectory or Tube, optional
         The run, for theorems about motion. Of a tube (`flockana.enclose`) the claims are decided rigorously, for every
-        start that it encloses, and their rigour reads ``"interval"``.
+        start that it encloses, and their rigour reads ``"interval"``; they are those of the law whose parameters are
+        the decimals that they print as.
     basin : Basin, optional
         With a tube: a certified basin (`flockana.certify`) that it may end in, which decides claims about limits.
     law, q0, p0, t_span : optional

@@ -58,9 +58,10 @@ class Enclosed:
     def until(self) -> str:
         """How long what it shows holds, in words."""
         tube = self.tube
+        note = f"; {tube.message}" if tube.message and tube.message not in self.doubt else ""
         if self.basin is not None:
-            return f"at all times: up to t = {tube.t[-1]:g} by the tube, from then on in the basin"
-        return f"from t = {tube.t[0]:g} to {tube.t[-1]:g}; {self.doubt}"
+            return f"at all times: up to t = {tube.t[-1]:g} by the tube, from then on in the basin{note}"
+        return f"from t = {tube.t[0]:g} to {tube.t[-1]:g}; {self.doubt}{note}"
 
 
 def enclosed_by(name: str, module: str = "enclosed") -> Callable[..., Checked]:
@@ -137,16 +138,19 @@ def no_collision(case: Enclosed, needs: Iterable[Hypothesis], *, name: str, proo
     tube = case.tube
     least, certain = tube.min_distance(), met(tube)
     pair, margin = least.pair, arb(min(least.lower, 1e300)) if least.lower > 0.0 else arb(0, 1)
+    if tube.status != "complete":
+        margin = arb(0, 1)  # of what comes after its end nothing is known
     text = f"no two agents come nearer than {least.lower:.6g}, {case.until}"
     if certain:
         pair = min(certain, key=lambda each: certain[each])
         margin, text = arb(-1), f"agents {pair[0]} and {pair[1]} certainly meet before t = {certain[pair]:.6g}"
+    when = "always" if case.basin is not None else f"from t = {tube.t[0]:g} to {tube.t[-1]:g}"
     return decided(
         name,
         margin,
         list(needs),
         computed=least.lower,
-        stated="distance > 0 between any two agents, always",
+        stated=f"distance > 0 between any two agents, {when}",
         witness={"pair": pair, "time": certain.get(pair, least.time)},
         proof=proof,
         detail=text,

@@ -206,3 +206,10 @@ def test_the_nearest_point_of_an_orbit_is_unique_below_the_size_of_the_flock():
     most = (12.0 - 48.0**0.5) / (1.0 + 3.0**0.5) / 48.0**0.25
     assert projects(space, four, fmpq(int(most * 1e6), 10**6))
     assert not projects(space, four, fmpq(int(most * 1e6) + 1, 10**6))
+
+
+def test_a_state_that_is_no_number_is_refused():
+    pair = certify([[0.0], [7.0]], law=Algorithm1())
+    for bad in (float("nan"), float("inf")):
+        with pytest.raises(ArgumentError, match="q holds a number that is not finite"):
+            pair.holds([[bad], [7.0]], [[0.0], [0.0]])

@@ -122,9 +122,42 @@ def test_a_path_with_more_terms_in_one_coordinate_is_rejected(data):
         check_data(resealed(longer))
 
 
+def test_only_a_certificate_of_a_basin_stands_for_the_basin(data):
+    """A tube's own certificate holds, and what else is written into it would be believed unseen."""
+    inner = {**data, "basin": None, "turn": "0"}
+    claimed = {name: data["basin"][name] for name in ("positions", "box", "radius", "level")}
+    forged = resealed({**data, "basin": resealed({**inner, **claimed, "level": "1000000"})})
+    with pytest.raises(RejectedError, match="no certificate of one"):
+        check_data(forged)
+
+
+def test_a_basin_of_gains_that_differ_by_less_than_balls_tell_is_of_another_law(data):
+    law = {**data["law"], "c1_alpha": f"{data['law']['c1_alpha'].split('.')[0]}." + "0" * 60 + "1"}
+    with pytest.raises(RejectedError, match="the basin is of another law"):
+        check_data(resealed({**data, "law": law}))
+
+
+@pytest.mark.parametrize("name", ["statement", "prose", "format"])
+def test_what_it_states_is_what_is_proved(data, name):
+    other = ["Every flock flocks."] if name == "prose" else "Every flock flocks."
+    with pytest.raises(RejectedError, match=r"states|lists|format"):
+        check_data(resealed({**data, name: other}))
+
+
+@pytest.mark.parametrize("number", ["1e999999999", "0x1p999999999", "1" * 501, "1e-1_000_000_000"])
+def test_a_number_without_end_is_rejected_at_once(data, number):
+    for at in (("times", 1), ("law", "d"), ("basin", "radius")):
+        altered = with_leaf(data, at, lambda _: number)
+        with pytest.raises(RejectedError, match="expected a shorter number"):
+            check_data(resealed({**altered, "basin": resealed(altered["basin"])}))
+
+
 def test_what_has_no_certificate_is_said(tube):
+    one = enclose(Algorithm1(), [[0.0]], [[1.0]], (0.0, 0.125))
+    with pytest.raises(ArgumentError, match="two agents or more"):
+        tube_certificate(one)
     wide = enclose(LAW, [[-3.625], [3.625]], [[0.0], [0.0]], (0.0, 0.0078125), radius=0.001)
-    with pytest.raises(ArgumentError, match="expected a complete tube from one start"):
+    with pytest.raises(ArgumentError, match="expected a complete tube of two agents or more from one start"):
         tube_certificate(wide)
     other = certify(find_equilibrium(Algorithm1(), [[-3.5], [3.5]]))
     with pytest.raises(ArgumentError, match="that the tube certainly ends in"):

@@ -79,6 +79,20 @@ def test_a_tube_that_ends_early_proves_no_limit():
     assert "the tube ends early: it took 2 steps" in claim.detail
 
 
+def test_a_tube_that_breaks_proves_no_absence_of_collisions():
+    """What comes after its end is not known; one that breaks at once has no distances between steps."""
+    law, q, p = Algorithm1(), np.array([[0.0], [1.0]]), np.array([[32.0], [-32.0]])
+    early = enclose(law, q, p, (0.0, 0.0625), steps=1)
+    whole = enclose(law, q, p, (0.0, 0.0625))
+    twice = verify("collision-energy", early).claim("twice")
+    assert (twice.status, verify("collision-energy", whole).claim("twice").status) == ("inconclusive", "refuted")
+    assert "always" not in twice.stated
+    at_once = enclose(LED, NEAR, 0.0 * NEAR, (0.0, 1.0), radius=3.5, widest=0.1)
+    assert (at_once.status, len(at_once.taken)) == ("broken", 0)
+    assert at_once.min_distance().lower <= 0.0
+    assert set(statuses(verify("os-3", at_once)).values()) <= {"inconclusive", "vacuous"}
+
+
 def test_a_tube_that_is_too_wide_is_inconclusive_and_says_so():
     wide = enclose(LED, NEAR, 0.0 * NEAR, (0.0, 0.03125), radius=(3.75, 0.0), widest=100.0)
     verdict = verify("collision-energy", wide)

@@ -130,6 +130,8 @@ def os_3(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked
 def _cohesive(case: Enclosed, needs: list[Hypothesis]) -> Claim:
     """Claim (i): R stays below the bound that the energy at the start allows, √(2 H(0)/c1γ)."""
     tube = case.tube
+    if not tube.taken:
+        return known("i", tube.message, needs, holds=False, stated="R <= sqrt(2 H_λ(0)/c1γ)", proof="cohesion")
     with ctx.workprec(BITS):
         gain = arb(exact(tube.law.gains.c1_gamma))
         largest = float(tube.cohesion_radius().max())
