@@ -398,3 +398,32 @@ def test_where_samples_fall_does_not_say_how_much_a_flock_has_grown():
     for options in ({"t_eval": np.linspace(0.0, until, 700)}, {}, {"method": "LSODA", "rtol": 1e-6}):
         claim = verify("alpha-flocking", simulate(law, q, p, (0.0, until), **options)).claim("cohesive")
         assert claim.status in (("refuted",) if "t_eval" in options else ("refuted", "inconclusive", "vacuous"))
+
+
+# --- flocks that are looked at when they are still -------------------------------------------------------------------
+
+
+def test_a_flock_that_swings_does_not_match_velocities_because_it_is_sampled_once_a_period():
+    """Two agents on springs stand still at each sample, and run against each other in between."""
+    gains = Gains(c1_alpha=0.0, c2_alpha=0.0, c1_gamma=1.0, c2_gamma=0.0)
+    law = Algorithm2(gains=gains, target=StaticTarget((0.0,)))
+    for samples in (3, 5, 9):
+        still = np.pi * np.arange(samples)
+        run = simulate(law, [[10.0], [-10.0]], [[0.0], [0.0]], (0.0, float(still[-1])), t_eval=still)
+        assert verify("alpha-flocking", run).claim("mismatch").status == "inconclusive"
+    every = np.linspace(0.0, 2.0 * np.pi, 101)
+    run = simulate(law, [[10.0], [-10.0]], [[0.0], [0.0]], (0.0, float(every[-1])), t_eval=every)
+    assert verify("alpha-flocking", run).claim("mismatch").status == "refuted"
+
+
+def test_a_lattice_that_breathes_is_none_because_it_is_sampled_at_its_length():
+    """A pair that swings about d, sampled as it passes d, strays from it in between."""
+    law = Algorithm1(AlphaInteraction(), Gains(c1_alpha=30.0, c2_alpha=0.0))
+    q, p, strict = [[0.0], [7.0]], [[-3.0], [3.0]], Tolerances(deviation=1e-3)
+    fine = simulate(law, q, p, (0.0, 3.0), t_eval=np.linspace(0.0, 3.0, 3001))
+    gap = fine.q[:, 1, 0] - fine.q[:, 0, 0]
+    passes = fine.t[np.flatnonzero((gap[1:] >= 7.0) != (gap[:-1] >= 7.0))]
+    run = simulate(law, q, p, (0.0, float(passes[-1])), t_eval=[0.0, *passes[1:]])
+    assert run.metric("normalised_deviation_energy").max() < 1e-6
+    assert verify("alpha-flocking", run, tolerances=strict).claim("deviation").status == "inconclusive"
+    assert verify("alpha-flocking", fine, tolerances=strict).claim("deviation").status == "refuted"
