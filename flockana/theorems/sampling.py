@@ -74,6 +74,8 @@ def mismatch_between(run: Trajectory) -> FloatArray:
         points = bernstein(h, *(x[k + side] for side in (0, 1) for x in (path.q, path.p, path.u)))[0]
         legs = 5.0 / h * np.diff(points - points.mean(axis=0), axis=1)
         bounds[k] = 0.5 / run.n * np.sum(legs**2, axis=(0, 2)).max()
+    if path.slack is not None:  # of steps that were not kept it is known where they went, and not how fast
+        bounds[path.slack.max(axis=1) > 0.0] = np.inf
     between: FloatArray = run.over_intervals(np.maximum, bounds)
     return between
 
