@@ -81,6 +81,8 @@ def list_pairs(q, reach, first, second):
     The count is −1, and nothing is listed, where there are too many for memory.
     """
     n, m = q.shape
+    if not reach > 0.0:  # of a law without pairs: none is closer, and no cell has that size
+        return first, second, 0
     order, start, rows = sort_into_grid(q, reach)
     if start.size:
         return _list_by_grid(q, reach, order, start, rows, first, second)

@@ -73,3 +73,10 @@ def test_the_order_is_one_of_all_agents_and_neighbours_follow_each_other():
 def test_what_is_not_finite_ends_no_list():
     q = np.array([[0.0], [0.5], [np.nan]])
     assert kept_up(q, 1.0, 0.1, empty_list(3), list_pairs)[2] == pytest.approx(1)
+
+
+def test_a_law_without_pairs_needs_no_list():
+    few = np.empty(1, np.uint32)
+    for n, m in ((1, 1), (2, 2), (40, 3)):
+        q = np.random.default_rng(n).normal(size=(n, m))
+        assert list_pairs(q, 0.0, few, few)[2] == 0
