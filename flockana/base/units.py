@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from flockana.base.checks import ensure_positive
+from flockana.base.errors import ArgumentError
 
 Powers = tuple[int, int]
 """Powers of length and time: (1, -1) is a velocity."""
@@ -37,7 +38,8 @@ def rescale(item: _Any, *, length: float = 1.0, time: float = 1.0) -> _Any:
     Raises
     ------
     ArgumentError
-        If a factor is not positive, or the thing has a number in its formula that cannot change with the unit.
+        If a factor is not positive, or the thing is none that has units, or has a number in its formula that cannot
+        change with the unit.
 
     Examples
     --------
@@ -45,7 +47,15 @@ def rescale(item: _Any, *, length: float = 1.0, time: float = 1.0) -> _Any:
     >>> rescale(LinearTarget(q=(1.0, 2.0), p=(3.0, 0.0)), length=1000.0, time=60.0)
     LinearTarget(q=(1000.0, 2000.0), p=(50.0, 0.0))
     """
-    return _rescaled(item, ensure_positive("length", length), ensure_positive("time", time))  # type: ignore[no-any-return]
+    length, time = ensure_positive("length", length), ensure_positive("time", time)
+    if isinstance(item, type):
+        raise ArgumentError(f"{item.__name__} is a class: expected an instance; did you forget the parentheses?")
+    if not isinstance(item, tuple) and not is_dataclass(item) and not hasattr(item, "in_units"):
+        raise ArgumentError(
+            f"{item!r} has no units: expected a law, target, obstacle, interaction, run or scenario; for bare numbers "
+            "use their product with the factor"
+        )
+    return _rescaled(item, length, time)  # type: ignore[no-any-return]
 
 
 def _rescaled(item: Any, length: float, time: float) -> Any:

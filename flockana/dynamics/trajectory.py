@@ -151,7 +151,8 @@ class Trajectory:
         q, p, u = self.q * length, self.p * (length / time), self.u * (length / time**2)
         units = {"dt": time, "atol": length}  # an absolute tolerance is in the state's own units: places first
         stats = {key: times(value, units[key]) if key in units else value for key, value in self.stats.items()}
-        law, between = (rescale(x, length=length, time=time) for x in (self.law, self.between))
+        law = rescale(self.law, length=length, time=time)
+        between = None if self.between is None else rescale(self.between, length=length, time=time)
         return replace(self, t=self.t * time, q=q, p=p, u=u, law=law, extra=extra, stats=stats, between=between)
 
     @cached_property

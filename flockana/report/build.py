@@ -29,6 +29,7 @@ from flockana.report.statistics import StatisticsSection
 from flockana.report.text import MARKS, deciding_claim, show, tolerance_rows
 
 FOLDER, HTML, JSON = Path("report"), "index.html", "verdicts.json"
+UNFINISHED = "unfinished"  # folder within that of a complete report, for one that was broken off
 _REMEDY = "choose another folder"
 _LIBRARIES = ("numpy", "scipy", "numba", "sympy", "xarray", "matplotlib")
 _STATUSES = ("verified", "refuted", "vacuous", "inconclusive")
@@ -59,14 +60,17 @@ def report_folder(name: str | None) -> Path:
     >>> report_folder(None).name
     'report'
     """
-    if name is None:
-        return FOLDER
+    there = None if name is None else _facts(FOLDER)
+    return FOLDER if name is None or there is None or there.get("of") is not None else FOLDER / name
+
+
+def _facts(folder: Path) -> dict[str, Any] | None:
+    """What the report of a folder tells of itself; None if there is none."""
     try:
-        data = json.loads((FOLDER / JSON).read_text(encoding="utf-8"))
-        whole = data.get("of") is None
-    except (OSError, ValueError, AttributeError, RecursionError):
-        return FOLDER
-    return FOLDER / name if whole else FOLDER
+        data = json.loads((folder / JSON).read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
+        return None
+    return data if isinstance(data, dict) else None
 
 
 def write_report(
@@ -82,9 +86,11 @@ def write_report(
 ) -> Path:
     """Write ``index.html`` and ``verdicts.json``; existing ones are replaced only when the new ones are whole.
 
-    `of` is what was checked, by name; None for the whole catalogue.
+    A report that is not complete leaves a complete one alone and goes to the folder ``unfinished`` within. `of` is what was checked, by name; None for the whole catalogue.
     """
     folder = ensure_directory(directory)
+    if not complete and (_facts(folder) or {}).get("complete"):
+        folder = ensure_directory(folder / UNFINISHED)
     pages = [page(r) if isinstance(r, ScenarioResult | FixedResult) else r for r in results]
     run = _run_facts(seed, seconds, complete) | {"of": of}
     texts = {JSON: _json(pages, run, statistics), HTML: _html(pages, run, statistics, comparison)}

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import Any
 
 from flockana.base.checks import FloatArray
-from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.base.errors import UnknownNameError
 from flockana.base.modules import modules
 from flockana.base.units import rescale, times
 from flockana.dynamics.simulate import simulate
@@ -17,6 +16,7 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law
 from flockana.scenarios.enclosure import Enclosure
+from flockana.scenarios.given import ensure_options, ensure_parts, ensure_seed
 from flockana.scenarios.start import given_later
 from flockana.theorems import Claim, Tolerances, Verdict, verify
 from flockana.theorems.second_run import corroborated
@@ -85,7 +85,7 @@ class Scenario:
     Raises
     ------
     ArgumentError
-        If an instant lies outside t_span.
+        On a law, start, time span, seed or status that is none, or an instant outside t_span.
 
     Examples
     --------
@@ -112,9 +112,7 @@ class Scenario:
     enclosed: Enclosure | None = None
 
     def __post_init__(self) -> None:
-        outside = [time for time in self.instants if not self.t_span[0] <= time <= self.t_span[1]]
-        if outside:
-            raise ArgumentError(f"instants = {self.instants!r}: expected times within t_span = {self.t_span}")
+        ensure_parts(self)
         if self.seed == 0:
             object.__setattr__(self, "expected", {**self.expected, **self.shipped})
 
@@ -276,7 +274,7 @@ def scenario(name: str, seed: int = 0, **options: Any) -> Scenario:
     UnknownNameError
         If there is no such scenario.
     ArgumentError
-        On a bad seed or an option that the scenario does not have.
+        On a bad seed, an option that the scenario does not have, or more agents than memory holds.
 
     Examples
     --------
@@ -285,11 +283,6 @@ def scenario(name: str, seed: int = 0, **options: Any) -> Scenario:
     """
     if name not in catalogue():
         raise UnknownNameError("scenario", name, scenarios())
-    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
-        raise ArgumentError(f"seed = {seed!r}: expected a whole number >= 0")
     build = catalogue()[name]
-    known = [key for key in inspect.signature(build).parameters if key != "seed"]
-    unknown = sorted(set(options) - set(known))
-    if unknown:
-        raise ArgumentError(f"{name} has no option {', '.join(unknown)}; it has {', '.join(known) or 'none'}")
-    return build(seed=seed, **options)
+    ensure_options(name, build, options)
+    return build(seed=ensure_seed(seed), **options)

@@ -49,6 +49,22 @@ def drawn_later(
     return later(shape, lambda: drawn()[0]), later(shape, lambda: drawn()[1])
 
 
+def is_later(start: Any) -> bool:
+    """Whether positions or velocities were given by `later`.
+
+    Parameters
+    ----------
+    start : object
+        As given.
+
+    Examples
+    --------
+    >>> is_later(later((2, 1), lambda: None))
+    True
+    """
+    return isinstance(start, _Later)
+
+
 class _Field:
     """A field of a dataclass that is an array to those who read it, however it was given."""
 

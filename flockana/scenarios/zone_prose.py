@@ -13,6 +13,7 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_count
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
+from flockana.base.errors import ArgumentError
 from flockana.environment.zone_world import Alien, ZoneWorld
 from flockana.interactions import ZoneNoise, ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
@@ -186,10 +187,12 @@ def _entry(
 
 def _informed(seed: int = 0, informed: int = _INFORMED) -> Scenario:
     told = ensure_count("informed", informed)
-    weights = ZoneWeights(speed=tuple([5.0] * min(told, N) + [0.0] * max(0, N - told)))
+    if told > N:
+        raise ArgumentError(f"informed = {told}: expected 1 to {N}, the number of agents")
+    weights = ZoneWeights(speed=tuple([5.0] * told + [0.0] * (N - told)))
     return _entry(
         "zone-51-informed",
-        f"{min(told, N)} of {N} agents are informed of the desired speed",
+        f"{told} of {N} agents are informed of the desired speed",
         "section 2.1 says that neighbours adjust and a new global speed results; start and settings as zone-51, "
         "w^ga = 0 for those that are not informed, 60 s (J14).",
         ZoneFlocking(FREE, weights),

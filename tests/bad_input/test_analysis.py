@@ -1,10 +1,14 @@
 from __future__ import annotations
 
+import inspect
+
 import numpy as np
 import pytest
 
 import flockana as fl
 from flockana.equilibria import find_equilibrium
+from flockana.scenarios import Scenario
+from flockana.scenarios.scenario import catalogue
 from tests.bad_input.values import (
     COUNTS,
     LAW,
@@ -15,6 +19,7 @@ from tests.bad_input.values import (
     POSITIVE,
     RUN,
     SIZES,
+    P,
     Q,
     refused,
     rows,
@@ -22,6 +27,7 @@ from tests.bad_input.values import (
 )
 
 OTHERS = {"none": None, "a text": "x", "a number": 3}
+OF_KIND = {bool: without(NUMBERS, "a truth value", "numpy's truth value"), int: COUNTS, float: NUMBERS}
 LINEAR = fl.linearise(LAW, find_equilibrium(LAW, Q))
 
 
@@ -31,6 +37,18 @@ def ensemble(scenario="three-agents-1d", seeds=(0,), **options):
 
 def falsify(theorem="energy", scenario="three-agents-1d", **options):
     return fl.falsify(theorem, scenario, **({"budget": 1} | options))
+
+
+def made(**change):
+    return Scenario(
+        **({"name": "x", "title": "x", "source": "x", "law": LAW, "q0": Q, "p0": P, "t_span": (0, 1)} | change)
+    )
+
+
+def options_of(build):
+    """The options of a scenario whose defaults tell their kind."""
+    options = {key: one.default for key, one in inspect.signature(build).parameters.items() if key != "seed"}
+    return [(key, default) for key, default in options.items() if type(default) in OF_KIND]
 
 
 def cases():
@@ -55,7 +73,21 @@ def cases():
     seeds = {"a text": "x", "negative": -1, "a fraction": 1.5, "none": None, "a truth value": True, "a list": [1]}
     yield "scenario seed", seeds, lambda v: fl.scenario("paper-flocking", v)
     yield "scenario option", {"unknown": {"x": 1}}, lambda v: fl.scenario("phase", 0, **v)
-    yield "scenario n", COUNTS, lambda v: fl.scenario("phase", 0, n=v)
+    for name, build in catalogue().items():
+        for option, default in options_of(build):
+            yield f"{name} {option}", OF_KIND[type(default)], lambda v, n=name, o=option: fl.scenario(n, **{o: v})
+            if option in ("n", "m", "informed"):
+                yield f"{name} {option} size", SIZES, lambda v, n=name, o=option: fl.scenario(n, **{o: v})
+    yield "Scenario law", OTHERS | {"a class": fl.Algorithm1}, lambda v: made(law=v)
+    yield "Scenario name", without(OTHERS, "a text") | {"nothing": ""}, lambda v: made(name=v)
+    yield "Scenario q0", POINTS | {"more agents": Q + Q}, lambda v: made(q0=v)
+    yield "Scenario p0", POINTS | {"more agents": Q + Q}, lambda v: made(p0=v)
+    yield "Scenario t_span", OTHERS | {"backwards": (1.0, 0.0), "nan": (0.0, NAN)}, lambda v: made(t_span=v)
+    yield "Scenario seed", without(COUNTS, "zero"), lambda v: made(seed=v)
+    statuses = OTHERS | {"no status": {"energy": "fine"}, "none of them": {"energy": None}}
+    yield "Scenario expected", statuses, lambda v: made(expected=v)
+    yield "Scenario shipped", statuses, lambda v: made(shipped=v)
+    yield "Scenario instants", {"outside": (2.0,)}, lambda v: made(instants=v)
     several = {"none": None, "a text": "ab", "negative": [-1], "fractions": [0.5], "none of them": [], "twice": [1, 1]}
     yield "ensemble seeds", several | {"a number": 3, "truth values": [True]}, lambda v: ensemble(seeds=v)
     yield "ensemble scenario", OTHERS, lambda v: ensemble(v)

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 from dataclasses import fields
 
+import numpy as np
 import pytest
 
 import flockana as fl
@@ -68,6 +69,8 @@ def cases():
     still = fl.StaticTarget(ORIGIN)
     yield "Algorithm3 obstacles", OTHERS | {"a list": [3]}, lambda v: fl.Algorithm3(target=still, obstacles=v)
     yield "rescale length", POSITIVE, lambda v: fl.rescale(LAW, length=v)
+    things = OTHERS | {"a class": fl.Algorithm1, "an array": np.zeros(2), "a list": [LAW]}
+    yield "rescale item", things, lambda v: fl.rescale(v, length=2.0)
     yield "rescale time", POSITIVE, lambda v: fl.rescale(LAW, time=v)
 
 

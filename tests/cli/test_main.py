@@ -218,12 +218,33 @@ def test_what_was_done_before_an_interrupt_is_reported(error, call, catalogue, m
         return verify(theorem, run, **options)
 
     monkeypatch.setattr(scenario_module, "verify", interrupted)
-    code, out, err = call("verify", "energy", "--jobs", 1)
-    assert code == 130
-    assert err == "flockana: interrupted\n"
-    assert "1 verdict in" in out
-    data = verdicts("report")
-    assert (data["complete"], len(data["verdicts"])) == (False, 1)
+    for _ in range(2):  # another report that was broken off may be replaced
+        code, out, err = call("verify", "energy", "--jobs", 1)
+        assert code == 130
+        assert err == "flockana: interrupted\n"
+        assert "1 verdict in" in out
+        data = verdicts("report")
+        assert (data["complete"], len(data["verdicts"])) == (False, 1)
+
+
+def test_a_complete_report_is_not_replaced_by_one_that_was_broken_off(call, catalogue, monkeypatch):
+    assert call("verify", "energy", "--jobs", 1)[0] == 3  # as the catalogue expects of wrong
+    whole = {path.name: path.read_bytes() for path in Path("report").iterdir()}
+    verify = scenario_module.verify
+
+    def interrupted(theorem, run, **options):
+        if options["subject"] == "wrong":
+            raise KeyboardInterrupt
+        return verify(theorem, run, **options)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(scenario_module, "verify", interrupted)
+        code, out, _ = call("verify", "energy", "--jobs", 1)
+    assert (code, "report: report/unfinished/index.html" in out) == (130, True)
+    assert {path.name: path.read_bytes() for path in Path("report").iterdir() if path.is_file()} == whole
+    assert [verdicts(folder)["complete"] for folder in ("report", "report/unfinished")] == [True, False]
+    assert call("verify", "energy", "--jobs", 1)[0] == 3
+    assert Path("report/verdicts.json").read_bytes() != whole["verdicts.json"]  # a whole one replaces it
 
 
 def test_what_was_done_before_an_error_is_reported(call, catalogue, monkeypatch):

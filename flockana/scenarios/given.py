@@ -1,0 +1,130 @@
+"""What a scenario is given, checked before anything is run: its parts, and the options by which it is built."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, get_args
+
+import numpy as np
+
+from flockana.base.checks import (
+    ensure_count,
+    ensure_dimension,
+    ensure_finite_scalar,
+    ensure_fits,
+    ensure_points,
+    ensure_time_span,
+)
+from flockana.base.errors import ArgumentError
+from flockana.laws.discrete import ensure_law
+from flockana.scenarios.start import is_later
+from flockana.theorems.theorem import Status
+
+if TYPE_CHECKING:
+    from flockana.scenarios.scenario import Scenario
+
+_SAMPLES = 4  # of q, p and u in three dimensions: the least that a run takes
+
+
+def ensure_seed(seed: Any) -> int:
+    """Return a seed, a whole number >= 0.
+
+    Parameters
+    ----------
+    seed : int
+        What the caller gave.
+
+    Raises
+    ------
+    ArgumentError
+        On anything else.
+
+    Examples
+    --------
+    >>> ensure_seed(7)
+    7
+    """
+    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
+        raise ArgumentError(f"seed = {seed!r}: expected a whole number >= 0")
+    return int(seed)
+
+
+def ensure_parts(scenario: Scenario) -> None:
+    """Raise unless a scenario has a law, a start, a time span and statuses to expect; a start of later is not drawn.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Just made.
+
+    Raises
+    ------
+    ArgumentError
+        Which names the part.
+    """
+    if not isinstance(scenario.name, str) or not scenario.name:
+        raise ArgumentError(f"name = {scenario.name!r}: expected the scenario's name in the catalogue")
+    ensure_law(scenario.law)
+    ensure_time_span(scenario.t_span)
+    ensure_seed(scenario.seed)
+    given = {key: vars(scenario)[key] for key in ("q0", "p0")}
+    shapes = {key: v.shape if is_later(v) else ensure_points(key, v).shape for key, v in given.items()}
+    if shapes["q0"] != shapes["p0"]:
+        raise ArgumentError(
+            f"q0 has shape {shapes['q0']} but p0 has shape {shapes['p0']}: expected equal shapes (n, m)"
+        )
+    for name in ("expected", "shipped"):
+        _ensure_statuses(name, getattr(scenario, name))
+    outside = [time for time in scenario.instants if not scenario.t_span[0] <= time <= scenario.t_span[1]]
+    if outside:
+        raise ArgumentError(f"instants = {scenario.instants!r}: expected times within t_span = {scenario.t_span}")
+
+
+def _ensure_statuses(name: str, statuses: Any) -> None:
+    known = get_args(Status)
+    if not isinstance(statuses, Mapping):
+        raise ArgumentError(f"{name} = {statuses!r}: expected a mapping of theorem ids to statuses")
+    wrong = {key: status for key, status in statuses.items() if status not in known}
+    if wrong:
+        raise ArgumentError(f"{name} = {wrong!r}: expected statuses {', '.join(known)}")
+
+
+def ensure_options(name: str, build: Callable[..., Any], options: Mapping[str, Any]) -> None:
+    """Raise unless a scenario has such options, of such kinds; the builder checks what values they may have.
+
+    Parameters
+    ----------
+    name : str
+        Of the scenario.
+    build : callable
+        Makes it.
+    options : mapping
+        Its keyword arguments.
+
+    Raises
+    ------
+    ArgumentError
+        On an option that there is not, a value not of its kind, or more agents than memory holds.
+    """
+    known = {key: one.default for key, one in inspect.signature(build).parameters.items() if key != "seed"}
+    unknown = sorted(set(options) - set(known))
+    if unknown:
+        raise ArgumentError(f"{name} has no option {', '.join(unknown)}; it has {', '.join(known) or 'none'}")
+    for key, value in options.items():
+        _ensure_like(known[key], key, value)
+
+
+def _ensure_like(default: Any, key: str, value: Any) -> None:
+    """Raise on an option that is not of the kind of its default."""
+    if isinstance(default, bool):
+        if not isinstance(value, bool):
+            raise ArgumentError(f"{key} = {value!r}: expected True or False")
+    elif isinstance(default, float):
+        ensure_finite_scalar(key, value)
+    elif key == "m":
+        ensure_dimension(value)
+    elif isinstance(default, int):
+        count = ensure_count(key, value)
+        if key == "n":
+            ensure_fits(f"a short run of {count} agents,", (3 * _SAMPLES, count, 3), "ask for fewer agents")
