@@ -86,7 +86,8 @@ def write_report(
 ) -> Path:
     """Write ``index.html`` and ``verdicts.json``; existing ones are replaced only when the new ones are whole.
 
-    A report that is not complete leaves a complete one alone and goes to the folder ``unfinished`` within. `of` is what was checked, by name; None for the whole catalogue.
+    A report that is not complete leaves a complete one alone and goes to the folder ``unfinished`` within. `of` is what
+    was checked, by name; None for the whole catalogue.
     """
     folder = ensure_directory(directory)
     if not complete and (_facts(folder) or {}).get("complete"):

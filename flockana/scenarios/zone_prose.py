@@ -11,9 +11,9 @@ from dataclasses import replace
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_count
+from flockana.base.errors import ArgumentError
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
-from flockana.base.errors import ArgumentError
 from flockana.environment.zone_world import Alien, ZoneWorld
 from flockana.interactions import ZoneNoise, ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
