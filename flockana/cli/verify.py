@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from flockana.base.errors import ArgumentError, FlockanaError
+from flockana.base.errors import ArgumentError, FileError, FlockanaError
 from flockana.base.progress import progress_bar
 from flockana.cli.options import AnySeed, Jobs
 from flockana.cli.show import show_files
@@ -90,16 +90,19 @@ def verify_command(
     written = None
     if report is not None and not no_report and (pages or complete):
         comparison = comparison_section(seed) if complete and name is None else None
-        written = write_report(
-            pages,
-            report,
-            seed=seed,
-            seconds=seconds,
-            complete=complete,
-            statistics=statistics,
-            comparison=comparison,
-            of=name,
-        )
+        try:
+            written = write_report(
+                pages,
+                report,
+                seed=seed,
+                seconds=seconds,
+                complete=complete,
+                statistics=statistics,
+                comparison=comparison,
+                of=name,
+            )
+        except FileError as error:  # the verdicts are still to be told
+            failure = failure or error
     if as_json:
         text = verdicts_json(pages, seed=seed, seconds=seconds, complete=complete, statistics=statistics)
         typer.echo(in_output_encoding(text), nl=False)
