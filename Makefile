@@ -1,10 +1,11 @@
 # Everything lives in .venv; each target sets up what it needs. PYTHON chooses the interpreter (3.11 or newer), TESTS
-# what `lowest` and `newest` run, OPTIONS goes to `portability` and `bench`.
+# what `lowest` and `newest` run, NAME what `wheel` verifies, OPTIONS goes to `portability` and `bench`.
 PYTHON ?= python3
 BIN := .venv/bin
 TESTS ?=
+NAME ?= hexagon
 
-.PHONY: verify test attack check bench proofs notebooks course coverage portability lowest newest clean
+.PHONY: verify test attack check bench proofs notebooks course coverage portability lowest newest wheel clean
 
 verify: .venv/.installed  ## run the catalogue, check every theorem, write report/index.html
 	$(BIN)/flockana verify
@@ -49,6 +50,17 @@ newest:  ## the tests with every dependency as new as it is today; PYTHON=python
 	$(call environment,.venv-newest)
 	$(call tested,.venv-newest,)
 
+wheel:  ## build sdist and wheel into dist, and verify NAME with the installed wheel, in a folder without the sources
+	$(call environment,.venv-wheel)
+	.venv-wheel/bin/python -m pip install --quiet --disable-pip-version-check build
+	rm -rf dist
+	.venv-wheel/bin/python -m build --outdir dist
+	$(call environment,.venv-wheel)
+	.venv-wheel/bin/python -m pip install --quiet --disable-pip-version-check dist/*.whl
+	away=$$(mktemp -d) && cd "$$away" && unset PYTHONPATH && "$(CURDIR)"/.venv-wheel/bin/flockana verify $(NAME) \
+		&& "$(CURDIR)"/.venv-wheel/bin/python -c 'import flockana, sys; sys.exit("site-packages" not in flockana.__file__)' \
+		&& rm -r "$$away"
+
 # numba keeps what it compiles beside the sources, for one of its versions: other versions have a folder of their own
 define tested
 	$(1)/bin/python -m pip install --quiet --disable-pip-version-check $(2) --editable '.[test,cluster,proofs]'
@@ -73,4 +85,4 @@ endef
 	touch $@ .venv/.installed
 
 clean:
-	rm -rf .venv .venv-lowest .venv-newest report
+	rm -rf .venv .venv-lowest .venv-newest .venv-wheel dist report
