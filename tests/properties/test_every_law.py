@@ -135,3 +135,11 @@ def test_a_symmetry_holds_for_any_state(law, symmetry, seed):
 @pytest.mark.parametrize(("law", "symmetry"), [(law, s) for law, (_, has) in LAWS.items() for s in sorted(FREE - has)])
 def test_a_symmetry_that_a_law_lacks_is_seen_to_fail(law, symmetry):
     assert max(off(LAWS[law][0], symmetry, seed) for seed in range(8)) > 1e-4
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_what_a_law_says_of_itself_is_true_or_false_and_not_a_method(name):
+    law = LAWS[name][0]
+    said = [getattr(law, word) for word in ("conservative", "splits", "located", "moving") if hasattr(law, word)]
+    assert said
+    assert all(type(word) is bool for word in said)

@@ -3,6 +3,7 @@
 Left out are changes
 
 - that cannot compile, or only change a type: shifts and bits of numbers, `is` for `==`, operators in annotations;
+- of `strict=` in `zip`, which asserts what the lines before it have made so;
 - inside of `raise`, `assert` and f-strings (texts), of `__all__`, of `if TYPE_CHECKING:`, of ``__repr__``;
 - of decorators that say how to compile (`njit`, `register_jitable`, `vectorize` and their options), or nothing at run
   time (`override`, `abstractmethod`, `overload`).
@@ -92,6 +93,8 @@ def _means_nothing(node: Any) -> bool:
         if kind == "if_stmt" and above.children[1].get_code().strip() == "TYPE_CHECKING":
             return True
         if kind == "expr_stmt" and above.children[0].get_code().strip() in ("__all__", "__slots__"):
+            return True
+        if kind == "argument" and above.children[0].get_code().strip() == "strict":
             return True
         below, above = above, above.parent
     return node.type == "decorator" and bool(_COMPILING.match(node.get_code(include_prefix=False)))

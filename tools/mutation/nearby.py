@@ -1,13 +1,16 @@
-"""Which tests to ask first of a file: its own, then those of what imports it, nearest first."""
+"""Which tests to ask first of a file: its own, then those of what imports it or names its theorem, nearest first."""
 
 from __future__ import annotations
 
 import re
 from functools import cache
+from itertools import chain
 from pathlib import Path
 
-LAST = ("tests/properties", "tests/reference")  # asked of every file, at the end
+LAST = ("tests/test_public_api", "tests/properties", "tests/reference")  # asked of every file
 _IMPORT = re.compile(r"^\s*from (flockana[\w.]*) import (\([^)]*\)|.+)$|^\s*import (flockana[\w.]+)", re.MULTILINE)
+_THEOREM = re.compile(r'\b(?:id=|erratum\(\s*)"([\w-]+)"')
+_FIXED = "tests/adversarial/test_fixed.py"  # asks for every theorem that needs no run, by its id
 _DEFINED = re.compile(r"^(?:def|class) (\w+)|^(\w+)(?:: [^=\n]+)? = ", re.MULTILINE)
 
 
@@ -25,9 +28,11 @@ class Nearby:
         sources = sorted(path for top in ("flockana", "tests") for path in (root / top).rglob("*.py"))
         self.texts = {str(path.relative_to(root)): path.read_text("utf-8") for path in sources}
         self.homes = self._homes()
+        theorems = ((path, text) for path, text in self.texts.items() if path.startswith("flockana/theorems/"))
+        self.ids = {name: path for path, text in theorems for name in _THEOREM.findall(text)}
         self.users: dict[str, list[str]] = {}
         for path, text in self.texts.items():
-            for used in self._used(path, text):
+            for used in self._used(path, text) | self._named(text if path.startswith("tests/") else ""):
                 self.users.setdefault(used, []).append(path)
 
     def _homes(self) -> dict[str, list[str]]:
@@ -50,6 +55,14 @@ class Nearby:
                 used |= {f"{file}/{thing}.py", *(inside if f"{file}.py" not in self.texts else ())}
         return {one for one in used if one in self.texts and one != path}
 
+    def _named(self, text: str) -> set[str]:
+        """The theorems that a test asks for by their ids."""
+        return {self.ids[name] for name in re.findall(r'"([\w-]+)"', text) if name in self.ids}
+
+    def _fixed(self, paths: list[str]) -> list[str]:
+        """The theorems among some files that need no run."""
+        return [name for name, path in self.ids.items() if path in paths and f'"{name}":' in self.texts.get(_FIXED, "")]
+
     def own(self, path: str) -> list[str]:
         """The tests that are named for a file."""
         room, name = Path(path).parent.relative_to("flockana"), Path(path).stem
@@ -65,18 +78,17 @@ class Nearby:
         path : str
             A file of the package.
         """
-        found, seen, reached = list[str](), {path}, [path]
+        levels, seen, reached = list[list[str]](), {path}, [path]
+        room = f"/{Path(path).parts[1]}/"
         while reached:
-            asked = [test for one in reached for test in self.own(one)]
             users = sorted({user for one in reached for user in self.users.get(one, ())} - seen)
-            asked += [user for user in users if Path(user).name.startswith("test_")]
-            examples = [one for one in reached if one.startswith("flockana/") and ">>>" in self.texts[one]]
-            found += [one for one in (*asked, *examples) if one not in found]
+            asked = [test for one in reached for test in self.own(one)]
+            asked += [one for one in reached if ">>>" in self.texts[one]]
+            asked += [user for user in users if Path(user).name.startswith("test_") and user != _FIXED]
+            asked += [f"{_FIXED}::test_what_is_printed_and_what_is_true[{name}]" for name in self._fixed(reached)]
+            levels.append(sorted(asked, key=lambda one: (one not in self.own(path), room not in one)))
             seen |= set(users)
             reached = [user for user in users if user.startswith("flockana/")]
-        room = Path(path).parts[1]
-        near = [one for one in found if one.startswith((f"tests/{room}/", f"flockana/{room}/"))]
+        near, far = list(chain(*levels[:2])), list(chain(*levels[2:]))
         last = sorted(one for one in self.texts if one.startswith(LAST) and "/test_" in one)
-        first = [one for one in found if one in self.own(path) or one == path]
-        far = [one for one in found if one not in near]
-        return list(dict.fromkeys([*first, *near, *far[:6], *last, *far]))
+        return list(dict.fromkeys([*near, *far[:6], *last, *far]))
