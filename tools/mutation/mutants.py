@@ -81,7 +81,7 @@ def _operators() -> dict[str, Any]:
 
 def _means_nothing(node: Any) -> bool:
     """Whether a change at a node is a text, a type or a way to compile."""
-    below, above = node, node.parent
+    below, above = None, node
     while above is not None:
         kind = above.type
         if kind in _TEXTS or (kind == "annassign" and below is above.children[1]):
@@ -97,7 +97,7 @@ def _means_nothing(node: Any) -> bool:
         if kind == "argument" and above.children[0].get_code().strip() == "strict":
             return True
         below, above = above, above.parent
-    return node.type == "decorator" and bool(_COMPILING.match(node.get_code(include_prefix=False)))
+    return False
 
 
 def _places(text: str) -> Iterator[tuple[str, int, int]]:
