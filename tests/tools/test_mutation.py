@@ -90,15 +90,17 @@ def test_the_nearest_tests_come_first(project):
     assert order("flockana/laws/area.py") == ["tests/laws/test_twice.py", "tests/properties/test_all.py"]
 
 
-def test_what_a_file_of_the_package_is_tested_by():
-    here = nearby.Nearby(command.PROJECT)
-    assert here.order("flockana/lattice/measure.py")[:2] == [
-        "tests/lattice/test_measure.py",
-        "flockana/lattice/measure.py",
-    ]
-    assert "tests/symbolic/test_linearisation.py" in here.order("flockana/symbolic/norms.py")
-    for path in mutants.files(command.PROJECT):
-        assert any(one.startswith("tests/") for one in here.order(path)[:3]), path
+@pytest.mark.parametrize(
+    ("path", "first"),
+    [
+        ("lattice/measure", "tests/lattice/test_measure.py"),  # its own
+        ("kernels/paths", "tests/measures/test_path_bounds.py"),  # has none: that of what imports it
+        ("theorems/slides/e13", "tests/theorems/olfati_saber/test_collisions.py"),  # names the theorem
+        ("theorems/dead_zone/l01", "tests/adversarial/test_fixed.py::test_what_is_printed_and_what_is_true[L1]"),
+    ],
+)
+def test_what_a_file_of_the_package_is_tested_by(path, first):
+    assert nearby.Nearby(command.PROJECT).order(f"flockana/{path}.py")[0] == first
 
 
 ASKED = """
