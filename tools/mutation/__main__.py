@@ -22,7 +22,7 @@ from pathlib import Path
 
 from . import trial
 from .mutants import PACKAGES, Mutant, count_and_draw, files
-from .nearby import Nearby
+from .nearby import INTERPRETED, Nearby
 from .table import table
 
 KILLED, BAD_INPUT, SURVIVED, INTERRUPTED = 0, 2, 3, 130
@@ -102,6 +102,14 @@ class Crew:
         while True:
             order = [file for file in order if file not in self.broken]
             with trial.mutated(self.clean, mutant.path, mutant.source(self.clean)) as tree:
+                quick = [file for file in order if mutant.package == "kernels" and file in INTERPRETED]
+                result = (
+                    trial.attempt(tree, quick, dict.fromkeys(quick, 5.0), 30.0, False, True)
+                    if quick
+                    else trial.Result("survived")
+                )
+                if result.killed:
+                    return result
                 compiles = mutant.package in ("kernels", "interactions")
                 result = trial.attempt(tree, order, self.usual, self.budget, compiles)
             failed = next((file for file in order if result.by.startswith(file)), None)

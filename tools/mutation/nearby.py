@@ -7,11 +7,33 @@ from functools import cache
 from itertools import chain
 from pathlib import Path
 
+from .mutants import PACKAGES
+
 LAST = ("tests/test_public_api", "tests/properties", "tests/reference")  # asked of every file
+# tests of kernels that pass in seconds when these run as Python: asked first of their mutants, which compile slowly
+INTERPRETED = tuple(
+    f"tests/{name}.py"
+    for name in (
+        "kernels/test_scalars",
+        "kernels/test_verlet",
+        "kernels/test_sums",
+        "kernels/test_sweep",
+        "kernels/test_ranges",
+        "kernels/test_dead_zone",
+        "kernels/test_left_right",
+    )
+)
 _IMPORT = re.compile(r"^\s*from (flockana[\w.]*) import (\([^)]*\)|.+)$|^\s*import (flockana[\w.]+)", re.MULTILINE)
 _THEOREM = re.compile(r'\b(?:id=|erratum\(\s*)"([\w-]+)"')
 _FIXED = "tests/adversarial/test_fixed.py"  # asks for every theorem that needs no run, by its id
 _DEFINED = re.compile(r"^(?:def|class) (\w+)|^(\w+)(?:: [^=\n]+)? = ", re.MULTILINE)
+
+
+def _breadth(test: str) -> int:
+    """0 for tests of the rooms that compute, 1 for others, 2 for those that run much at once."""
+    room = Path(test).parts[1]
+    wide = ("adversarial", "bad_input", "cli", "ensemble", "falsify", "report")
+    return 0 if room in PACKAGES or _FIXED in test else 2 if room in wide else 1
 
 
 class Nearby:
@@ -86,7 +108,7 @@ class Nearby:
             asked += [one for one in reached if ">>>" in self.texts[one]]
             asked += [user for user in users if Path(user).name.startswith("test_") and user != _FIXED]
             asked += [f"{_FIXED}::test_what_is_printed_and_what_is_true[{name}]" for name in self._fixed(reached)]
-            levels.append(sorted(asked, key=lambda one: (one not in self.own(path), room not in one)))
+            levels.append(sorted(asked, key=lambda one: (one not in self.own(path), room not in one, _breadth(one))))
             seen |= set(users)
             reached = [user for user in users if user.startswith("flockana/")]
         near, far = list(chain(*levels[:2])), list(chain(*levels[2:]))

@@ -84,7 +84,7 @@ class _Watch:
             self.failed = report.nodeid or "collection"
 
 
-def _tests(tree: Path, files: Sequence[str], tell: int, log: Path) -> None:
+def _tests(tree: Path, files: Sequence[str], tell: int, log: Path, interpreted: bool) -> None:
     """In the child: give pytest one file after the other until one fails; tell of each, with its processor time."""
     import pytest
 
@@ -94,6 +94,9 @@ def _tests(tree: Path, files: Sequence[str], tell: int, log: Path) -> None:
     os.chdir(tree)
     os.environ["PYTHONPATH"], sys.dont_write_bytecode = str(tree), True
     sys.path[:] = [str(tree), *(one for one in sys.path if one and not (Path(one) / "flockana").is_dir())]
+    if interpreted:
+        importlib.import_module("numba").config.DISABLE_JIT = True
+        os.environ["NUMBA_DISABLE_JIT"] = "1"
     for file in files:
         before, watch = time.process_time(), _Watch()
         code = pytest.main(["-x", "-q", "--no-header", "-p", "no:cacheprovider", "--tb=short", file], plugins=[watch])
@@ -112,7 +115,9 @@ def _spent(child: int) -> float:
     return 0.0
 
 
-def attempt(tree: Path, files: Sequence[str], usual: dict[str, float], budget: float, compiles: bool) -> Result:
+def attempt(
+    tree: Path, files: Sequence[str], usual: dict[str, float], budget: float, compiles: bool, interpreted: bool = False
+) -> Result:
     """Run test files in a tree, one after the other, until one fails.
 
     Parameters
@@ -127,6 +132,8 @@ def attempt(tree: Path, files: Sequence[str], usual: dict[str, float], budget: f
         Seconds of processor time after which no further file is begun; one that is not the first ends after twice it.
     compiles : bool
         Whether compiled functions may have changed.
+    interpreted : bool
+        Run kernels as Python.
 
     Returns
     -------
@@ -139,7 +146,7 @@ def attempt(tree: Path, files: Sequence[str], usual: dict[str, float], budget: f
     if not child:
         code = 1
         try:
-            _tests(tree, files, write, tree.parent / "log")
+            _tests(tree, files, write, tree.parent / "log", interpreted)
             code = 0
         finally:
             os._exit(code)
