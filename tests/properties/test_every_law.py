@@ -143,6 +143,7 @@ def test_what_a_law_says_of_itself_is_true_or_false_and_not_a_method(name):
     said = [getattr(law, word) for word in ("conservative", "splits", "located", "moving") if hasattr(law, word)]
     assert said
     assert all(type(word) is bool for word in said)
+    assert isinstance(getattr(law, "surfaces", ()), tuple)
 
 
 CARRYING = {  # a pair law or a weight whose own numbers have a time in them, next to gains

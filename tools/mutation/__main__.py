@@ -104,7 +104,7 @@ class Crew:
             with trial.mutated(self.clean, mutant.path, mutant.source(self.clean)) as tree:
                 quick = [file for file in order if mutant.package == "kernels" and file in INTERPRETED]
                 result = (
-                    trial.attempt(tree, quick, dict.fromkeys(quick, 5.0), 30.0, False, True)
+                    trial.attempt(tree, quick, dict.fromkeys(quick, 2.0), 10.0, False, True)
                     if quick
                     else trial.Result("survived")
                 )

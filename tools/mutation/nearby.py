@@ -21,6 +21,14 @@ INTERPRETED = tuple(
         "kernels/test_ranges",
         "kernels/test_dead_zone",
         "kernels/test_left_right",
+        "kernels/test_rank",
+        "kernels/test_tableaus",
+        "kernels/test_zones",
+        "measures/test_path_bounds",
+        "lattice/test_crossings",
+        "laws/test_minimal",
+        "laws/test_directed",
+        "environment/test_obstacles",
     )
 )
 _IMPORT = re.compile(r"^\s*from (flockana[\w.]*) import (\([^)]*\)|.+)$|^\s*import (flockana[\w.]+)", re.MULTILINE)
