@@ -120,5 +120,5 @@ class Nearby:
             seen |= set(users)
             reached = [user for user in users if user.startswith("flockana/")]
         near, far = list(chain(*levels[:2])), list(chain(*levels[2:]))
-        last = sorted(one for one in self.texts if one.startswith(LAST) and "/test_" in one)
+        last = [one for start in LAST for one in sorted(self.texts) if one.startswith(start) and "/test_" in one]
         return list(dict.fromkeys([*near, *far[:6], *last, *far]))
