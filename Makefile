@@ -1,11 +1,11 @@
 # Everything lives in .venv; each target sets up what it needs. PYTHON chooses the interpreter (3.11 or newer), TESTS
-# what `lowest` and `newest` run, NAME what `wheel` verifies, OPTIONS goes to `portability` and `bench`.
+# what `lowest` and `newest` run, NAME what `wheel` verifies, OPTIONS goes to `portability`, `mutation` and `bench`.
 PYTHON ?= python3
 BIN := .venv/bin
 TESTS ?=
 NAME ?= hexagon
 
-.PHONY: verify test attack check bench proofs notebooks course coverage portability lowest newest wheel clean
+.PHONY: verify test attack check bench proofs notebooks course coverage portability mutation lowest newest wheel clean
 
 verify: .venv/.installed  ## run the catalogue, check every theorem, write report/index.html
 	$(BIN)/flockana verify
@@ -40,6 +40,9 @@ coverage: .venv/.dev  ## write docs/coverage.md: what holds each item of each so
 
 portability: .venv/.installed  ## which verdicts change on other machine code, from moved starts, at other tolerances
 	$(BIN)/python -m tools.portability $(OPTIONS)
+
+mutation: .venv/.dev  ## change the code in small ways and see which changes no test notices; OPTIONS="--sample 200 laws"
+	$(BIN)/python -m tools.mutation $(OPTIONS)
 
 lowest:  ## the tests with every dependency at its lower bound, in an environment of their own
 	$(call environment,.venv-lowest)

@@ -2,11 +2,13 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from dataclasses import is_dataclass
 from types import FunctionType, ModuleType
 
 import pytest
 
 import flockana
+from flockana.base.modules import modules
 
 HEAVY = ("numba", "sympy", "matplotlib", "xarray", "scipy", "numpy", "jinja2", "rich", "typer")
 
@@ -71,3 +73,17 @@ def test_a_name_that_does_not_exist_is_an_attribute_error():
 def test_setting_a_public_name_by_hand_still_works(monkeypatch):
     monkeypatch.setattr(flockana, "simulate", 3)
     assert flockana.simulate == 3
+
+
+def test_parameters_and_results_are_frozen():
+    """All but what is counted up or held while something runs."""
+    rooms = ("base", "symbolic", "interactions", "environment", "measures", "lattice", "laws", "stability", "theorems")
+    thawed = [
+        f"{thing.__module__}.{name}"
+        for room in rooms
+        for module in modules(f"flockana.{room}")
+        for name, thing in vars(module).items()
+        if isinstance(thing, type) and thing.__module__ == module.__name__ and is_dataclass(thing)
+        if not thing.__dataclass_params__.frozen
+    ]
+    assert thawed == []

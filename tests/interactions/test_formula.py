@@ -252,3 +252,10 @@ def test_two_formulas_are_two_kernels():
     one, two = (fl.pair_law(text, adjacency=0, range=3.0, length=1.0) for text in ("s**2", "s**2*2"))
     assert one.kernels is not two.kernels
     assert (one.force(1.0), two.force(1.0)) == (2.0, 4.0)
+
+
+@pytest.mark.parametrize("length", [1.0, 2.0])
+def test_the_strength_of_a_force_without_bound_is_its_largest_from_half_the_distance_on(length):
+    """|1 - d²/s²| falls from 3 at d/2 to 0 at d and rises to 1 - d²/9 at the range."""
+    pair = fl.pair_law("d**2/s + s", adjacency=0, range=3.0, length=length)
+    assert pair.strength == pytest.approx(3.0, rel=0.03)

@@ -14,14 +14,15 @@ def listed(q, reach, room=1):
     return sorted((min(i, j), max(i, j)) for i, j in zip(first[:count].tolist(), second[:count].tolist(), strict=True))
 
 
+@pytest.mark.parametrize("reach", [1.0, 0.3, 8.4])
 @given(st.integers(0, 10**6), st.integers(1, 60), st.integers(1, 3), st.floats(0.05, 60.0), st.booleans())
-def test_every_pair_once_from_the_grid_and_from_hashed_cells(seed, n, m, side, sparse):
+def test_every_pair_once_from_the_grid_and_from_hashed_cells(reach, seed, n, m, side, sparse):
     rng = np.random.default_rng(seed)
-    q = rng.uniform(0.0, side, (n, m))
+    q = reach * rng.uniform(0.0, side, (n, m))
     if sparse:  # a box of far more cells than agents
-        q[rng.integers(n)] += 1e5
-    i, j = pair_list(q, 1.0)
-    assert listed(q, 1.0) == list(zip(i.tolist(), j.tolist(), strict=True))
+        q[rng.integers(n)] += 1e5 * reach
+    i, j = pair_list(q, reach)
+    assert listed(q, reach) == list(zip(i.tolist(), j.tolist(), strict=True))
 
 
 def test_agents_in_one_place_and_one_agent_alone():

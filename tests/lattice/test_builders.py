@@ -102,6 +102,38 @@ def test_links_counted_by_hand(build, size, count):
     assert is_alpha_lattice(q, D, r)
 
 
+@pytest.mark.parametrize(
+    ("q", "extent"),  # between the first and the last site along each axis, in distances
+    [
+        (line(9, D), [8.0]),
+        (square(3, 5, D), [4.0, 2.0]),
+        (simple_cubic(2, 3, 4, D), [1.0, 2.0, 3.0]),
+        (fcc(2, 3, 4, D), [1.5 * math.sqrt(2.0), 2.5 * math.sqrt(2.0), 3.5 * math.sqrt(2.0)]),
+        (bcc(2, 3, 4, D), [3.0 / math.sqrt(3.0), 5.0 / math.sqrt(3.0), 7.0 / math.sqrt(3.0)]),
+        # along y two cells and two thirds of the last, in which the second layer stands over the triangles of the first
+        (hcp(2, 3, 4, D), [1.5, (2.0 + 2.0 / 3.0) * math.sqrt(3.0), 3.5 * math.sqrt(8.0 / 3.0)]),
+    ],
+    ids=["line", "square", "simple_cubic", "fcc", "bcc", "hcp"],
+)
+def test_a_block_begins_at_the_origin_and_is_as_long_as_its_cells(q, extent):
+    assert q[0].tolist() == q.min(axis=0).tolist() == [0.0] * len(extent)
+    np.testing.assert_allclose(q.max(axis=0), np.multiply(D, extent), rtol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("build", "n", "m"),
+    [
+        (lambda: line(10**13, D), 10**13, 1),
+        (lambda: triangular(10**13, D), 10**13, 2),
+        (lambda: hexagonal_spiral(10**13, D), 10**13, 2),
+        (lambda: hcp(10**5, 10**4, 10**4, D), 4 * 10**13, 3),
+    ],
+)
+def test_a_lattice_too_large_says_what_it_would_take(build, n, m):
+    with pytest.raises(ArgumentError, match=rf"of shape \(4, {n}, {m}\) would take"):
+        build()
+
+
 def test_the_triangular_patch_is_nearly_square():
     assert np.ptp(triangular(100, D), axis=0).tolist() == pytest.approx([9.5 * D, 9.0 * D * np.sqrt(0.75)])
 

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from flockana.base.errors import ArgumentError
 from flockana.kernels.crossings import grid
 from flockana.lattice import bcc, crossings, fcc, links, separation, simple_cubic, square, triangular
+from flockana.lattice.crossings import turns_left
 
 
 def rational_meet(a, b, c, d) -> bool:
@@ -294,3 +295,11 @@ class TestSeparation:
                 best = min(best, float(np.linalg.norm(one[:, None] - two[None], axis=2).min()))
         assert found.distance <= best + 1e-12
         assert found.distance == pytest.approx(best, abs=2.0 * 9.0 / 200.0)
+
+
+def test_a_turn_is_decided_exactly_where_rounded_products_agree():
+    """(1, 1 − e) × (1 + e, 1) = e² > 0; in floating point both products are 1."""
+    e = 2.0**-30
+    q = np.array([[0.0, 0.0], [1.0, 1.0 - e], [1.0 + e, 1.0]])
+    assert (1.0 - e) * (1.0 + e) == 1.0
+    assert turns_left(q, [0, 0, 0], [1, 2, 1], [2, 1, 1]).tolist() == [True, False, False]

@@ -96,3 +96,14 @@ def test_a_zero_pivot_is_a_failure_and_no_answer():
 
     with pytest.raises(SolverError, match="use another tol, or dense=True"):
         eigenvalues_below(csr_array(np.eye(2)), 1.0, np.zeros((1, 2)))
+
+
+@pytest.mark.parametrize("height", [1e-2, 1e-3])
+def test_a_soft_motion_below_the_threshold_counts_as_one_in_both_ways(height):
+    """A flat triangle bends softly: with a threshold of twice its softest singular value it is not rigid."""
+    q, net = np.array([[0.0, 0.0], [1.0, height], [2.0, 0.0]]), [[0, 1], [1, 2], [0, 2]]
+    sizes = np.linalg.svd(rigidity_matrix(q, net).toarray(), compute_uv=False)
+    tol = 2.0 * sizes[-1] / sizes[0]
+    for dense in (True, False):
+        assert rigidity(q, net, dense=dense).infinitesimally_rigid
+        assert not rigidity(q, net, tol=tol, dense=dense).infinitesimally_rigid

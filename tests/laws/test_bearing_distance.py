@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from flockana.base.errors import ArgumentError
+from flockana.base.units import rescale
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.zone_obstacles import Box, SimplePolygon
@@ -74,6 +75,20 @@ def test_a_run_leaves_its_arguments_alone_and_records_its_memory():
     np.testing.assert_array_equal(run.extra["estimate"][1], p)  # measured: what the agent knew at the step's start
     speeds = np.linalg.norm(run.extra["heading"], axis=2)
     np.testing.assert_allclose(speeds, 1.0, rtol=1e-14)
+
+
+def test_a_run_in_other_units_is_the_run_of_the_law_in_other_units():
+    """Places, velocities, and the memory: estimates, how far agents have learnt to see, and where the alien is."""
+    law, (q, p) = ZoneFlocking(RADII, world=WORLD, growth=0.3), a_start()
+    run = simulate(law, q, p, (0.0, 2.0))
+    one, other = (
+        rescale(run, length=2.0, time=0.5),
+        simulate(rescale(law, length=2.0, time=0.5), 2.0 * q, 4.0 * p, (0.0, 1.0)),
+    )
+    assert {"estimate", "heading", "reach", "alien"} <= one.extra.keys() == other.extra.keys()
+    for name in one.extra:
+        np.testing.assert_allclose(one.extra[name], other.extra[name], rtol=1e-9, atol=1e-9, err_msg=name)
+    np.testing.assert_allclose(one.q, other.q, rtol=1e-9, atol=1e-9)
 
 
 @pytest.mark.parametrize("m", [2, 3])

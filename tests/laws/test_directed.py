@@ -113,6 +113,7 @@ def test_written_read_and_rescaled():
         (lambda: DirectedNet(Algorithm1(), ()), "ranges is empty"),
         (lambda: DirectedNet(Algorithm1(), ((8.0, 3.0),)), r"ranges has shape \(1, 2\): expected one range"),
         (lambda: DirectedNet(Algorithm1(), view=7.0), "view = 7: expected an angle in radians"),
+        (lambda: DirectedNet(Algorithm1(), view=0.0), "view = 0: expected an angle in radians"),
         (lambda: DirectedNet(Algorithm1(), slow=0.0), "slow = 0: expected a number > 0"),
         (
             lambda: DirectedNet(Algorithm1(), (1.0, 2.0)).acceleration(0.0, [[0.0]], [[0.0]]),

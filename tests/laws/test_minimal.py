@@ -321,3 +321,12 @@ def test_distances_of_all_pairs_are_in_the_metrics(edges):
     run = simulate(MinimalFlocking(edges=edges), q, 0.0 * q, (0.0, 0.1))
     assert run.metric("median_distance")[0] == 4.0
     assert run.metric("largest_distance")[0] == 5.0
+
+
+@pytest.mark.parametrize("radius", [3.0, R])
+@pytest.mark.parametrize("given", [{}, {"beta": BETA}, {"spacing": 1.5}])
+def test_a_law_in_other_units_pushes_as_before(radius, given):
+    """Lengths doubled; without `beta` and `spacing` the default β_i = 1/r_i stays that of the first unit."""
+    law, (q, p) = MinimalFlocking(radius=radius, edges=TREE, normalised=False, **given), state(5, 2)
+    doubled = law.in_units(2.0, 1.0).acceleration(0.0, 2.0 * q, 2.0 * p)
+    np.testing.assert_allclose(doubled, 2.0 * law.acceleration(0.0, q, p), rtol=1e-13, atol=1e-15)

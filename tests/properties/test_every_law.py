@@ -135,3 +135,38 @@ def test_a_symmetry_holds_for_any_state(law, symmetry, seed):
 @pytest.mark.parametrize(("law", "symmetry"), [(law, s) for law, (_, has) in LAWS.items() for s in sorted(FREE - has)])
 def test_a_symmetry_that_a_law_lacks_is_seen_to_fail(law, symmetry):
     assert max(off(LAWS[law][0], symmetry, seed) for seed in range(8)) > 1e-4
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_what_a_law_says_of_itself_is_true_or_false_and_not_a_method(name):
+    law = LAWS[name][0]
+    said = [getattr(law, word) for word in ("conservative", "splits", "located", "moving") if hasattr(law, word)]
+    assert said
+    assert all(type(word) is bool for word in said)
+    assert isinstance(getattr(law, "surfaces", ()), tuple)
+
+
+CARRYING = {  # a pair law or a weight whose own numbers have a time in them, next to gains
+    "pair with a time": fl.Algorithm2(alpha=fl.DeadZoneInteraction(ramp=0.1), target=ORIGIN),
+    "weight with a time": fl.compose(
+        pair=fl.AlphaInteraction(), consensus=fl.RationalWeight(strength=2.0, decay=0.5, length=5.0)
+    ),
+    "both": fl.compose(
+        pair=fl.DeadZoneInteraction(ramp=0.1),
+        consensus=fl.RationalWeight(strength=2.0, decay=0.5, length=5.0),
+        navigation=ORIGIN,
+    ),
+}
+OWN_RATE = ("HeadingAveraging", "MinimalFlocking", "DiscreteMinimalFlocking")  # ask for the unit of time they are in
+
+
+@pytest.mark.parametrize("name", [*LAWS, *CARRYING])
+def test_a_law_in_other_units_does_the_same(name):
+    law = CARRYING[name] if name in CARRYING else LAWS[name][0]
+    length, time = 3.0, 1.0 if name in OWN_RATE else 0.25
+    q, p, *_ = state(5)
+    places, rates = answer(law, q, p)
+    power = 1 if places is not None else 2  # a map gives velocities, a flow accelerations
+    there, speeds = answer(fl.rescale(law, length=length, time=time), length * q, length / time * p)
+    np.testing.assert_allclose(speeds, rates * length / time**power, rtol=1e-9, atol=1e-9 * np.abs(speeds).max())
+    assert places is None or there == pytest.approx(length * places, rel=1e-12)

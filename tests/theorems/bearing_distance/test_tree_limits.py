@@ -264,3 +264,11 @@ def test_verdicts_are_the_same_in_all_units(length, time, directed):
     run = simulate(law, rng.uniform(-2.0, 2.0, (5, 2)), rng.uniform(-1.0, 1.0, (5, 2)), (0.0, 60.0))
     for name in ("zone-1-printed", "zone-1-corrected"):
         assert said(name, rescale(run, length=length, time=time)) == said(name, run)
+
+
+@pytest.mark.parametrize("off", [-1e-9, 1e-9, -1e-6])
+def test_a_share_near_rest_is_that_of_the_stretch_and_not_of_its_rounding(off):
+    """V/(½μρ²) of an edge of length (1 + x) ρ is x²: rounding adds some 10⁻¹⁵ x to it, and not 10⁻¹⁵."""
+    case = tree_case(MinimalFlocking(edges=PAIR, spacing=2.0), 2)
+    q = np.array([[0.0], [2.0 * (1.0 + off)]])
+    assert edge_shares(case, q, 0.0 * q) == pytest.approx([off**2], rel=1e-4, abs=0.0)

@@ -20,6 +20,18 @@ def test_a_pair_at_rest_near_its_distance_refutes_nothing(off):
     assert verdict.claim("no-collision").status != "refuted"
 
 
+def test_the_error_of_few_samples_holds_what_many_find():
+    """A joined pair dips between the ends of its run: the margin at the ends less its error is below the dip."""
+    law, q, p = FixedNetFlocking(edges=((0, 1),)), [[0.0, 0.0], [1.2, 0.0]], [[0.0, 0.0], [0.0, 0.1]]
+    few, many = (
+        verify("tanner-fixed", simulate(law, q, p, (0.0, 2.0), t_eval=times)).claim("no-collision")
+        for times in ([0.0, 2.0], np.linspace(0.0, 2.0, 101))
+    )
+    assert many.error < 1e-3 < few.margin - many.margin
+    assert few.margin - few.error <= many.margin
+    assert few.status == many.status == "verified"
+
+
 @pytest.mark.parametrize("level", [1e-24, 1e-16, 4e-9, 1e-8, 1.0, 50.0])
 def test_the_distance_of_an_energy_has_it(level):
     from mpmath import log, mp, mpf

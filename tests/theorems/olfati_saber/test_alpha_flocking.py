@@ -99,6 +99,9 @@ def test_a_pair_at_r_but_for_rounding_decides_nothing(side):
     run = made_up(LAW, [q] * 4)
     found = judged("alpha-flocking-strict", run, Tolerances(deviation=0.004))
     assert (found.claim("flock").status, found.claim("deviation").status) == ("inconclusive", "inconclusive")
+    # the pair that may be a link or not moves Ẽ by 2 (r/d - 1)²/(2·2 + 1) = 0.016, at samples and between them
+    claim = judged("alpha-flocking-strict", run, Tolerances(deviation=0.045)).claim("deviation")
+    assert (claim.status, claim.error) == ("verified", pytest.approx(0.032, rel=1e-9))
 
 
 class TestBetweenSamples:
