@@ -134,7 +134,7 @@ def test_false_premises_are_rejected_even_when_they_are_sealed_again(path, facto
 
 
 def test_a_premise_that_still_proves_every_claim_makes_another_certificate_that_holds():
-    """A slightly weaker repulsion or stronger gain leaves the bounds of every pair true; by itself it is an alteration."""
+    """A little less attraction, or a little more gain, leaves every bound of a pair true."""
     for path, factor in ((("law", "a"), Fraction(999, 1000)), (("law", "c1_alpha"), Fraction(1001, 1000))):
         other = changed(small(), path, value(small()["law"][path[1]]) * factor)
         assert rejected(other)
