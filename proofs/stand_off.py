@@ -87,10 +87,19 @@ def _head_on() -> Iterator[Step]:
     watched = stand_off(desired_speed=3, drive=5, weight=5).subs(sp.Symbol("c", positive=True), 6)
     speed = V + (sp.Symbol("v_0", positive=True) - V) * sp.exp(-G * T)
     yield Step(
-        "an alien watched up to s = 6, with weights 5 and 5, is kept off by 3 < a = 5: if it exerts no force nearer "
-        "than a, the agent comes nearer than a, where its speed v' = g(v^d - v) stays positive, and runs into it",
-        watched == 3 and sp.simplify(speed.diff(T) - G * (V - speed)) == 0 and speed.subs(T, 0).is_positive is True,
+        "an alien watched up to s = 6, with weights 5 and 5, is kept off by 3 < a = 5, and (w^ga)² > 4w",
+        watched == 3 and 5**2 > 4 * 5,
+        evidence=str(watched),
+    )
+    later = speed.subs(sp.exp(-G * T), 1 / (1 + GAP))
+    yield Step(
+        "if it exerts no force nearer than a > d*, the agent comes nearer than a, where its speed v' = g(v^d - v), "
+        "positive at first, stays so, and runs into it",
+        sp.simplify(speed.diff(T) - G * (V - speed)) == 0
+        and sp.factor(speed.subs(T, 0)).is_positive is True
+        and sp.factor(later).is_positive is True,
         r"v = v^d(1 - e^{-gt}) + v_0 e^{-gt} > 0",
+        "e^(-gt) <= 1, written as 1/(1 + g₁)",
     )
 
 
@@ -103,10 +112,10 @@ PROOF = Proof(
     id="stand-off",
     title="Errata J9 and J12: what repulsion keeps off, and where it reverses",
     statement=(
-        "An agent that heads at v^d for a wall or an alien at rest comes to rest at c - v^d w^ga/w of it (s for c with "
-        "an alien), without overshoot if (w^ga)² > 4w; two that meet head on likewise if (w^ga)² > 8w. With the "
-        "printed weights that is 0. Inside an obstacle, or beyond a wall, (8) pushes further in. An alien that exerts "
-        "no force nearer than a is run into if c - v^d w^ga/w < a."
+        "Let d* = c - v^d w^ga/w (s for c with an alien) be 0 or more. An agent that comes at v^d to the distance c "
+        "of a wall or of an alien at rest, with (w^ga)² > 4w, comes ever nearer to d*, and never there; so do two "
+        "that meet head on with (w^ga)² > 8w. With the printed weights d* is 0. Inside an obstacle, or beyond a wall, "
+        "(8) pushes further in. With (w^ga)² > 4w an alien that exerts no force nearer than a is run into if d* < a."
     ),
     hypotheses=(
         "head on, inputs unbounded, as a differential equation (steps of length δ have the same points of rest); "
@@ -114,6 +123,6 @@ PROOF = Proof(
     ),
     rigour="symbolic",
     steps=_steps,
-    size=9,
+    size=10,
     theorems=("J9", "J12"),
 )

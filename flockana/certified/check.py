@@ -2,7 +2,8 @@
 
 A kind is checked by the module ``check_<kind>`` beside this one, which shares with the code that proves only the scalar
 functions in balls (`intervals`). A change of any number is seen by the digest; of one that was sealed again, what it
-claims is decided by the mathematics, to the last digit that is stated.
+claims is decided by the mathematics, to the last digit that is stated. One that was sealed again with another premise,
+such as a gain a thousandth larger, of which every claim is still proved, is a certificate of another law, and holds.
 """
 
 from __future__ import annotations

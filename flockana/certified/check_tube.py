@@ -18,33 +18,18 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import combinations, pairwise
-from math import comb
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from flint import arb, arb_mat, arb_series, ctx
 
 from flockana.certified.check import check_data, ensure
+from flockana.certified.check_motion import Motion, Vector, number
 from flockana.certified.decimals import at_least, at_most
-from flockana.certified.intervals import (
-    AlphaParameters,
-    adjacency,
-    ball,
-    bump_slope,
-    c_star,
-    d_alpha,
-    phi_alpha,
-    phi_alpha_slope,
-    psi_alpha,
-    r_alpha,
-    shift,
-    sigma_of_square,
-    square,
-)
+from flockana.certified.intervals import AlphaParameters, ball, c_star
 
 BITS = 128
-Vector = list[arb]
 
 
 def check(data: Mapping[str, Any]) -> Iterator[str]:
@@ -55,17 +40,10 @@ def check(data: Mapping[str, Any]) -> Iterator[str]:
 
 
 @dataclass(frozen=True)
-class Run:
-    """The law and the weight w of the norm; what is given as text counts as the decimal that it is."""
+class Run(Motion):
+    """A motion, and the weight w of the norm."""
 
-    par: AlphaParameters
-    gain: Mapping[str, arb]
-    start: Vector
-    velocity: Vector
-    told: Vector
     weight: arb
-    n: int
-    m: int
 
     @classmethod
     def of(cls, data: Mapping[str, Any]) -> Run:
@@ -80,7 +58,7 @@ class Run:
         par = AlphaParameters(**{name: law[name] for name in ("d", "r", "eps", "h", "a", "b")})
         weight = number(data["weight"])
         ensure(bool(weight > 0), "the weight is not positive")
-        return cls(par, gain, start, velocity, told, weight, n, m)
+        return cls(par, gain, start, velocity, told, n, m, weight)
 
     def follow(self, data: Mapping[str, Any]) -> Iterator[str]:
         """The run step by step, then what is claimed of all of it."""
@@ -181,92 +159,6 @@ class Run:
                 total.append(sum(terms, abs(last[k][order - 1]) * h ** (order - 1)))
         return self.length(total)
 
-    def shifted(self, path: Sequence[Vector], s: arb) -> list[Vector]:
-        """Coefficients of q and then of p = q' about a time s into the step."""
-        rows = [
-            [sum((comb(i, j) * row[i] * s ** (i - j) for i in range(j, len(row))), arb(0)) for j in range(len(row))]
-            for row in path
-        ]
-        return rows + [[(j + 1) * row[j + 1] for j in range(len(row) - 1)] for row in rows]
-
-    def at(self, path: Sequence[Vector], s: arb) -> Vector:
-        """(q, p) at a time s into the step."""
-        return [row[0] for row in self.shifted(path, s)]
-
-    def agents(self, x: Sequence[Any]) -> list[Sequence[Any]]:
-        """Coordinates, agent by agent."""
-        return [x[k : k + self.m] for k in range(0, len(x), self.m)]
-
-    def gaps(self, x: Sequence[Any]) -> Iterator[tuple[int, int, list[Any]]]:
-        """(i, j, q_j − q_i) of every pair."""
-        q = self.agents(x[: self.n * self.m])
-        return ((i, j, [b - a for a, b in zip(q[i], q[j], strict=True)]) for i, j in combinations(range(self.n), 2))
-
-    def pieces(self, q: Vector) -> list[int | None]:
-        """0 up to h r_α, 1 up to r_α, 2 beyond; None for a pair that may be on two."""
-        found: list[int | None] = []
-        for _, _, gap in self.gaps(q):
-            z, cutoff = sigma_of_square(sum(map(square, gap), arb(0)), self.par.eps), r_alpha(self.par)
-            knee = ball(self.par.h) * cutoff
-            found.append(0 if z < knee else 2 if z > cutoff else 1 if z > knee and z < cutoff else None)
-        return found
-
-    def force(self, t: arb, x: Sequence[arb_series], pieces: Sequence[int | None]) -> list[Any]:
-        """u along series of q and p about a time."""
-        size, m = self.n * self.m, self.m
-        p, g = self.agents(x[size:]), self.gain
-        u = [
-            -g["c1_gamma"] * (x[k] - arb_series([self.start[k % m] + self.velocity[k % m] * t, self.velocity[k % m]]))
-            - g["c2_gamma"] * (x[size + k] - self.told[k % m])
-            for k in range(size)
-        ]
-        for (i, j, gap), piece in zip(self.gaps(x), pieces, strict=True):
-            if piece == 2:
-                continue
-            stress, weight = self.pair(gap, piece)
-            for k in range(m):
-                pull = g["c1_alpha"] * stress * gap[k] + g["c2_alpha"] * weight * (p[j][k] - p[i][k])
-                u[i * m + k] += pull
-                u[j * m + k] -= pull
-        return u
-
-    def pair(self, gap: Sequence[arb_series], piece: int | None) -> tuple[Any, Any]:
-        """(φ_α/√(1 + εs²), a_ij) of a pair, a series; of an unknown piece its value at the begin, as a number."""
-        par, s2 = self.par, sum((x * x for x in gap[1:]), gap[0] * gap[0])
-        if piece is None:
-            z = sigma_of_square(s2[0], par.eps)
-            return phi_alpha(z, par) / (1 + ball(par.eps) * s2[0]).sqrt(), adjacency(z, par)
-        root = (1 + ball(par.eps) * s2).sqrt()
-        z, h = (root - 1) / ball(par.eps), ball(par.h)
-        rho = arb_series([1]) if piece == 0 else (1 + ((z / r_alpha(par) - h) / (1 - h)).cos_pi()) / 2
-        s = z + (shift(par.a, par.b) - d_alpha(par))
-        a, b = ball(par.a), ball(par.b)
-        return rho * ((a + b) * s / (1 + s * s).sqrt() + (a - b)) / 2 / root, rho
-
-    def slope(self, box: Vector) -> arb_mat:
-        """∂(p, u)/∂(q, p) on a box, across the pieces of the pair law."""
-        size, m, g, par = self.n * self.m, self.m, self.gain, self.par
-        rows = [[arb(int(c == r + size)) for c in range(2 * size)] for r in range(2 * size)]
-        for k in range(size):
-            rows[size + k][k], rows[size + k][size + k] = -g["c1_gamma"], -g["c2_gamma"]
-        p = self.agents(box[size:])
-        for i, j, gap in self.gaps(box):
-            s2 = sum(map(square, gap), arb(0))
-            z, root = sigma_of_square(s2, par.eps), (1 + ball(par.eps) * s2).sqrt()
-            stress, weight = phi_alpha(z, par) / root, adjacency(z, par)
-            steeper = (phi_alpha_slope(z, par) - ball(par.eps) * stress) / square(root)
-            fading = bump_slope(z / r_alpha(par), par.h) / r_alpha(par) / root
-            for k in range(m):
-                relative = p[j][k] - p[i][k]
-                for c in range(m):
-                    block = (g["c1_alpha"] * steeper * gap[k] + g["c2_alpha"] * fading * relative) * gap[c]
-                    block += g["c1_alpha"] * stress if k == c else 0
-                    for r, o, sign in ((i, j, 1), (j, i, 1), (i, i, -1), (j, j, -1)):
-                        rows[size + r * m + k][o * m + c] += sign * block
-                        if k == c:
-                            rows[size + r * m + k][size + o * m + c] += sign * g["c2_alpha"] * weight
-        return arb_mat(rows)
-
     def logarithmic_norm(self, slope: arb_mat) -> arb:
         """A bound μ of ⟨e, A e⟩/|e|² for every matrix A in the balls, e in the weighted coordinates (w q, p)."""
         size, w, a = self.n * self.m, self.weight, slope.tolist()
@@ -287,33 +179,6 @@ class Run:
         """√(w²|q|² + |p|²)."""
         size = self.n * self.m
         return self.length([*(self.weight * y for y in x[:size]), *x[size:]])
-
-    def length(self, x: Sequence[arb]) -> arb:
-        """The Euclidean norm, an upper end."""
-        return arb(sum(map(square, x), arb(0)).nonnegative_part().sqrt().upper())
-
-    def lengths(self, box: Vector) -> list[arb]:
-        """Distances of the pairs."""
-        return [sum(map(square, gap), arb(0)).nonnegative_part().sqrt() for _, _, gap in self.gaps(box)]
-
-    def radii(self, box: Vector) -> list[arb]:
-        """Distances of the agents from their centre of mass."""
-        return [sum(map(square, row), arb(0)).nonnegative_part().sqrt() for row in self.centred(box[: self.n * self.m])]
-
-    def centred(self, x: Vector) -> list[Vector]:
-        """Deviations from the mean of all agents."""
-        rows = self.agents(x)
-        means = [sum((row[k] for row in rows), arb(0)) / self.n for k in range(self.m)]
-        return [[a - b for a, b in zip(row, means, strict=True)] for row in rows]
-
-    def energy(self, x: Vector) -> arb:
-        """The structural energy: c1α V + c1γ J + K in the moving frame."""
-        size = self.n * self.m
-        pairs = (psi_alpha(sigma_of_square(square(length), self.par.eps), self.par) for length in self.lengths(x))
-        inertia, kinetic = (
-            sum((square(y) for row in self.centred(part) for y in row), arb(0)) / 2 for part in (x[:size], x[size:])
-        )
-        return self.gain["c1_alpha"] * sum(pairs, arb(0)) + self.gain["c1_gamma"] * inertia + kinetic
 
 
 @contextmanager
@@ -341,11 +206,6 @@ def positive(rows: list[list[arb]]) -> bool:
 def same(stated: str, value: arb, *, down: bool) -> bool:
     """Whether a decimal is the one that bounds a number."""
     return stated == (at_least(value) if down else at_most(value))
-
-
-def number(text: str) -> arb:
-    """A decimal as the ball of its value."""
-    return ball(Fraction(text))
 
 
 def exact(text: str) -> Fraction:

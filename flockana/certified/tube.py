@@ -35,6 +35,10 @@ class BasinLike(Protocol):
     def rest(self) -> FloatArray:
         """The equilibrium that all its starts converge to, but for a rotation."""
 
+    @property
+    def proof(self) -> Any:
+        """Balls that hold that equilibrium, and the structure that it is one of."""
+
     def holds(self, q: Any, p: Any) -> bool:
         """Whether every state in a box certainly lies in it."""
 

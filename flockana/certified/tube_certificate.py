@@ -20,7 +20,8 @@ from flockana.base.files import write_whole
 from flockana.base.seals import sealed
 from flockana.certified.basin import Basin
 from flockana.certified.certificate import basin_certificate
-from flockana.certified.check_tube import BITS, Run, exact, number
+from flockana.certified.check_motion import number
+from flockana.certified.check_tube import BITS, Run, exact
 from flockana.certified.decimals import at_least, at_most, decimal, small
 from flockana.certified.flow import Flow
 from flockana.certified.intervals import c_star

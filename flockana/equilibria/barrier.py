@@ -222,6 +222,17 @@ def collision_bounds(alpha: AlphaInteraction, n: int, m: int = 2) -> tuple[float
     n, m = ensure_count("n", n), ensure_dimension(m)
     if n == 1:
         return inf, inf
+    return alpha.c_star + energy_floor(alpha, n - 1, m), alpha.potential_energy(coincident_lattice(alpha, n, m))
+
+
+def coincident_lattice(alpha: AlphaInteraction, n: int, m: int = 2) -> FloatArray:
+    """A compact lattice of n − 1 agents with the one of most links doubled, n >= 2.
+
+    Examples
+    --------
+    >>> coincident_lattice(AlphaInteraction(), 3).shape
+    (3, 2)
+    """
     lattice = hexagonal_spiral(n - 1, alpha.d) if m == 2 else lattice_starts(n - 1, m, alpha.d, 1, noise=0.0)[0]
     doubled = _most_linked_first(lattice, alpha)
-    return alpha.c_star + energy_floor(alpha, n - 1, m), alpha.potential_energy(np.vstack([doubled[:1], doubled]))
+    return np.vstack([doubled[:1], doubled])

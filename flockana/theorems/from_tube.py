@@ -12,7 +12,6 @@ from importlib import import_module
 from math import inf
 from typing import TYPE_CHECKING, Any
 
-from flockana.base.checks import FloatArray
 from flockana.theorems.claims import judged
 from flockana.theorems.hypotheses import condition
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances
@@ -188,9 +187,25 @@ def groups(n: int, pairs: Sequence[Pair]) -> list[int]:
     return sorted((label.count(x) for x in set(label)), reverse=True)
 
 
-def rest_strain(rest: FloatArray, d: float, r: float) -> float:
-    """Largest |link − d|/d of an equilibrium; 1 without links."""
-    from flockana.measures.nets import link_lengths, links
+def rest_strain(basin: BasinLike, alpha: Any) -> arb:
+    """Largest |link − d|/d of a basin's equilibrium, a ball at the present precision; 1 without links.
 
-    lengths = link_lengths(rest, links(rest, r))
-    return float(abs(lengths - d).max()) / d if lengths.size else 1.0
+    Examples
+    --------
+    >>> from flockana import Algorithm1, certify
+    >>> from flint import arb
+    >>> abs(rest_strain(certify([[0.0], [7.0]], law=Algorithm1()), Algorithm1().alpha)) < arb("1e-12")
+    True
+    """
+    from flint import arb
+
+    from flockana.certified.intervals import exact
+
+    d, r = arb(exact(alpha.d)), arb(exact(alpha.r))
+    lengths = [s.sqrt() for *_, s in basin.proof.structure.pairs(basin.proof.rest) if not s >= r * r]
+    strain = arb(0)
+    for length in lengths:
+        off = abs(length - d) / d
+        strain = strain.max(off if length < r else off.union(arb(0)))  # a pair at r may be no link
+    certain = any(length < r for length in lengths)
+    return strain if certain else strain.union(arb(1)) if lengths else arb(1)

@@ -7,8 +7,6 @@ from functools import cache
 import numpy as np
 import pytest
 
-pytest.importorskip("flint")
-
 from flockana import Algorithm1, Algorithm2, StaticTarget, certify, find_equilibrium, lattice
 
 TETRAHEDRON = 7.0 / np.sqrt(8.0) * np.array([[1.0, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])

@@ -10,11 +10,11 @@ from pathlib import Path
 
 import pytest
 
-import flockana.certified.check_basin
-import flockana.certified.check_net
+import flockana.certified.check
 from flockana import Algorithm1, certify
 from flockana.base.errors import FileError
 from flockana.base.seals import sealed
+from flockana.certified import check_basin, check_motion, check_net, check_tube
 from flockana.certified.certificate import basin_certificate, write_certificate
 from flockana.certified.check import RejectedError, check_certificate, check_data, unit
 from flockana.cli.main import main
@@ -77,7 +77,9 @@ def test_what_was_certified_is_checked_by_other_code(basin):
 
 def test_the_checker_knows_nothing_of_the_prover():
     ours = {"basin", "certificate", "shells", "pair_floors", "lyapunov", "damping", "structure", "at_rest", "krawczyk"}
-    for module in (flockana.certified.check_basin, flockana.certified.check_net, flockana.certified.check):
+    ours |= {"flow", "lohner", "series", "enclose", "tube", "laws", "agent_terms", "tube_certificate"}
+    checks = (check_basin, check_motion, check_net, check_tube, flockana.certified.check)
+    for module in checks:
         text = Path(module.__file__).read_text(encoding="utf-8")
         lines = [line for line in text.splitlines() if line.startswith(("from", "import"))]
         assert not any(f"flockana.certified.{name} " in line for line in lines for name in ours)
@@ -129,6 +131,14 @@ def test_false_premises_are_rejected_even_when_they_are_sealed_again(path, facto
     for key in path:
         inner = inner[key]
     assert rejected(resealed(changed(data, path, (value(inner) or 1) * factor)))
+
+
+def test_a_premise_that_still_proves_every_claim_makes_another_certificate_that_holds():
+    """A little less attraction, or a little more gain, leaves every bound of a pair true."""
+    for path, factor in ((("law", "a"), Fraction(999, 1000)), (("law", "c1_alpha"), Fraction(1001, 1000))):
+        other = changed(small(), path, value(small()["law"][path[1]]) * factor)
+        assert rejected(other)
+        assert not rejected(resealed(other))
 
 
 def test_a_radius_that_all_else_was_fitted_to_is_rejected_for_what_it_lacks():
@@ -205,7 +215,7 @@ def test_the_net_itself_is_checked_and_not_only_what_follows(name, sign, why):
 
 
 def test_a_stated_number_has_its_digits_and_no_more():
-    rounded = flockana.certified.check_basin.rounded_down
+    rounded = check_basin.rounded_down
     assert rounded("7.740", Fraction("7.7405"))
     assert not rounded("7.7399", Fraction("7.7405"))
     assert not rounded("7.739", Fraction("7.7405"))

@@ -11,7 +11,6 @@ from pathlib import Path
 import pytest
 
 pytest.importorskip("z3")  # the extra flockana[proofs]
-pytest.importorskip("flint")
 
 from flint import arb, ctx
 

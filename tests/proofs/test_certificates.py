@@ -10,7 +10,6 @@ from pathlib import Path
 import pytest
 
 pytest.importorskip("z3")  # the extra flockana[proofs]
-pytest.importorskip("flint")
 
 from flockana.base.modules import modules
 from flockana.theorems.theorem import Theorem

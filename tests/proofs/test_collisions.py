@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 pytest.importorskip("z3")  # the extra flockana[proofs]
-pytest.importorskip("flint")
 
 import z3
 from flint import arb, ctx

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 pytest.importorskip("z3")  # the extra flockana[proofs]
-pytest.importorskip("flint")
 
 from flint import arb, arb_mat, ctx
 

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-
-pytest.importorskip("flint")  # the extra flockana[proofs]
-
 from flint import arb, ctx
 
 from flockana.certified import intervals

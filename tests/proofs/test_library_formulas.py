@@ -8,7 +8,6 @@ from math import pi, sin, sqrt
 import pytest
 
 pytest.importorskip("z3")  # the extra flockana[proofs]
-pytest.importorskip("flint")
 
 import numpy as np
 from flint import arb, ctx

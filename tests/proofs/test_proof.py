@@ -9,7 +9,6 @@ from importlib import import_module
 import pytest
 
 pytest.importorskip("z3")  # the extra flockana[proofs]
-pytest.importorskip("flint")
 
 import sympy as sp
 import z3

@@ -9,7 +9,6 @@ import types
 import pytest
 
 pytest.importorskip("z3")  # the extra flockana[proofs]
-pytest.importorskip("flint")
 
 import z3
 

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from flint import arb
 
 from flockana import Algorithm1, Algorithm2, Gains, StaticTarget, Tolerances, enclose, simulate, verify
 from flockana.base.errors import ArgumentError
-from flockana.theorems.from_tube import met
+from flockana.certified.structure import Structure
+from flockana.theorems.from_tube import met, rest_strain
 
 LED = Algorithm2(target=StaticTarget((0.0,)))
 NEAR = np.array([[-3.5], [3.5]])
@@ -25,6 +28,11 @@ class Everything:
 
     def __post_init__(self):
         object.__setattr__(self, "rest", NEAR)
+
+    @property
+    def proof(self):
+        law, (n, m) = self.law, self.rest.shape
+        return SimpleNamespace(structure=Structure.of(law, n, m), rest=[arb(x) for x in self.rest.ravel().tolist()])
 
     def holds(self, q, p):
         return self.answer
@@ -157,3 +165,15 @@ def test_what_a_tube_cannot_decide_is_said(pair):
         verify("energy", pair)
     with pytest.raises(ArgumentError, match="a basin decides the limit of a tube"):
         verify("os-3", simulate(LED, NEAR, 0.0 * NEAR, (0.0, 0.1)), basin=Everything(LED))
+
+
+def test_the_strain_of_an_equilibrium_is_a_ball_of_its_links():
+    basin = replace(Everything(LED))
+    object.__setattr__(basin, "rest", np.array([[-3.5], [3.5], [10.85]]))  # links of 7 and 7.35, a pair of 14.35
+    assert abs(rest_strain(basin, LED.alpha) - arb("0.05")) < 1e-12
+    object.__setattr__(basin, "rest", 2.0 * NEAR)
+    assert rest_strain(basin, LED.alpha) == 1
+    near_r = SimpleNamespace(structure=Structure.of(LED, 2, 1), rest=[arb(0), arb(8.4, 0.1)])
+    strain = rest_strain(SimpleNamespace(proof=near_r), LED.alpha)
+    assert strain.contains(arb("0.2"))  # a link of 8.4
+    assert strain.contains(arb(1))  # or none

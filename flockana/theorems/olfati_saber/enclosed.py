@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 from flint import arb, ctx
 
 from flockana.certified.intervals import c_star, exact
-from flockana.certified.tube import BITS, Tube, scaled, up
+from flockana.certified.levels import coincident_floor, coincident_state, disconnected_state, gain
+from flockana.certified.tube import BITS, Tube, down, scaled, up
 from flockana.theorems.from_tube import (
     Enclosed,
     below,
@@ -25,7 +26,6 @@ from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, un
 if TYPE_CHECKING:
     from flockana.certified.tube import BasinLike
 
-_ROUNDING = 1e-9  # relative: of bounds of the barrier that are computed in floating point
 _MULTIPLES = {"below": 1, "twice": 2}  # of c*, by claim
 
 
@@ -44,31 +44,34 @@ def _below_c_star(tube: Tube, times: int = 1) -> Hypothesis:
 
 def _below_barrier(tube: Tube) -> Hypothesis:
     """The hypothesis H(0) < min{V : two agents coincide}: met below a lower bound, unmet above such a state's V."""
-    from flockana.equilibria.barrier import collision_bounds
-
-    low, high = (tube.law.gains.c1_alpha * bound for bound in collision_bounds(tube.law.alpha, tube.n, tube.m))
-    name, energy = "H(0) < min{V : two agents coincide}", tube.energy(0)
-    text = f"H(0) = {float(energy):.6g}; the minimum is at least {low:.5g}, and a state of {high:.5g} is known"
-    if energy < low * (1.0 - _ROUNDING):
-        return condition(name, True, low - float(energy), text)
-    if energy > high * (1.0 + _ROUNDING):
-        return condition(name, False, high - float(energy), text)
-    return Hypothesis(name, "assumed", low - float(energy), text)
+    name, alpha, energy = "H(0) < min{V : two agents coincide}", tube.law.alpha, tube.energy(0)
+    if tube.n < 2:
+        return condition(name, True, detail="there is one agent")
+    with ctx.workprec(BITS):
+        low = gain(tube.law) * coincident_floor(alpha, tube.n, tube.m)
+        text = f"H(0) is at most {up(energy.upper()):.6g}; the minimum is at least {down(low.lower()):.5g}"
+        if energy < low:
+            return condition(name, True, down((low - energy).lower()), text)
+        high = gain(tube.law) * coincident_state(alpha, tube.n, tube.m)
+        text = f"H(0) = {float(energy):.6g}; the minimum is at least {float(low):.5g}, a state has {float(high):.5g}"
+        if energy > high:
+            return condition(name, False, up((high - energy).upper()), text)
+    return Hypothesis(name, "assumed", down((low - energy).lower()), text)
 
 
 def _stays_together(tube: Tube) -> Hypothesis:
     """The hypothesis of Theorem 1 on all solutions from Ω_c, which a tube can only break."""
-    from flockana.theorems.olfati_saber.os_1 import disconnected_energy
-
     name = "every solution from Ω_c is a cohesive dynamic flock"
     reach = arb(exact(tube.law.alpha.r))
     for k, t in enumerate(tube.t[:-1]):
         possible = certain_links(dict(zip(tube.pairs, tube.distances_during(k), strict=True)), reach)[1]
         if len(groups(tube.n, possible)) > 1:
             return condition(name, False, -1.0, f"the net is certainly not connected about t = {t:.4g}")
-    apart = disconnected_energy(tube.law, tube.n, tube.m)
-    if tube.energy(0) > apart * (1.0 + _ROUNDING):
-        return condition(name, False, apart - float(tube.energy(0)), "Ω_c holds a disconnected state at rest")
+    with ctx.workprec(BITS):
+        apart = disconnected_state(tube.law.alpha, tube.n, tube.m)
+        excess = arb(0) if apart is None else tube.energy(0) - gain(tube.law) * apart
+    if excess > 0:
+        return condition(name, False, -down(excess.lower()), "Ω_c holds a disconnected state at rest")
     return Hypothesis(name, "assumed", detail="the starts of this tube may stay connected; the others are not known")
 
 
@@ -92,10 +95,11 @@ def _lattice(case: Enclosed, needs: list[Hypothesis], tolerances: Tolerances) ->
     alpha, stated = case.tube.law.alpha, f"|link - d|/d <= {tolerances.lattice:g} in the limit"
     if case.basin is None:
         return known("i", case.doubt, needs, holds=False, stated=stated, detail="an α-lattice in the limit")
-    strain = rest_strain(case.basin.rest, alpha.d, alpha.r)
-    margin = arb(tolerances.lattice - strain, 1e-12)  # the equilibrium is within 1e-13 d of where it is computed
-    detail = f"every start converges to the basin's equilibrium, whose links are off d by up to {strain:.2g} d"
-    return decided("i", margin, needs, computed=strain, stated=stated, detail=detail)
+    with ctx.workprec(BITS):
+        strain = rest_strain(case.basin, alpha)
+        margin, largest = arb(tolerances.lattice) - strain, up(strain.upper())
+    detail = f"every start converges to the basin's equilibrium, whose links are off d by up to {largest:.2g} d"
+    return decided("i", margin, needs, computed=largest, stated=stated, detail=detail)
 
 
 def os_3(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:

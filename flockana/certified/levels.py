@@ -1,0 +1,106 @@
+"""Energies that bound what a flock can do, as balls: where two agents may coincide, and where one may be left behind.
+
+The counting is that of `flockana.equilibria.barrier`, with every length and level enclosed, and each count rounded to
+the side that is safe.
+"""
+
+from __future__ import annotations
+
+from math import ceil, floor
+from typing import Any
+
+from flint import arb, ctx, fmpq
+
+from flockana.certified.intervals import (
+    AlphaParameters,
+    ball,
+    c_star,
+    exact,
+    far_potential,
+    psi_alpha,
+    sigma_norm,
+    sigma_of_square,
+    square,
+)
+from flockana.certified.tube import BITS, scaled
+from flockana.equilibria.barrier import coincident_lattice, turan_pairs
+from flockana.lattice import harborth
+
+_HALVINGS = 40  # of the bracket of the shortest length of a bound pair
+
+
+def gain(law: Any) -> arb:
+    """c1α ℓ², by which V in units of ℓ is multiplied."""
+    return arb(exact(law.gains.c1_alpha)) * arb(exact(law.alpha.unit)) ** 2
+
+
+def coincident_floor(alpha: Any, n: int, m: int) -> arb:
+    """A lower bound of V of n agents, two of which coincide, in units of ℓ²."""
+    with ctx.workprec(BITS):
+        par = scaled(alpha)
+        clique = _largest_clique(par, m)
+        if clique is None:
+            return c_star(par)
+        pairs = (n - 1) * (n - 2) // 2 - turan_pairs(n - 1, clique)
+        return c_star(par) + pairs * far_potential(par)
+
+
+def coincident_state(alpha: Any, n: int, m: int) -> arb:
+    """V, in units of ℓ², of a state of n agents two of which coincide."""
+    q = coincident_lattice(alpha, n, m)
+    with ctx.workprec(BITS):
+        par, area = scaled(alpha), arb(exact(alpha.unit)) ** 2
+        s2 = (
+            sum((square(arb(float(a)) - arb(float(b))) for a, b in zip(x, y, strict=True)), arb(0))
+            for x, y in _pairs(q)
+        )
+        return sum((psi_alpha(sigma_of_square(s / area, par.eps), par) for s in s2), arb(0))
+
+
+def disconnected_state(alpha: Any, n: int, m: int) -> arb | None:
+    """V, in units of ℓ², of the best lattice of n − 1 agents and one agent far away; None if no lattice is exact."""
+    with ctx.workprec(BITS):
+        par = scaled(alpha)
+        square_of_kappa = (par.r / par.d) ** 2
+        if n < 2 or square_of_kappa >= (4 if m == 1 else 3):
+            return None
+        bonds = n - 2 if m == 1 else harborth(n - 1)
+        return (n * (n - 1) // 2 - bonds) * far_potential(par)
+
+
+def _pairs(q: Any) -> list[tuple[Any, Any]]:
+    return [(q[i], q[j]) for i in range(len(q)) for j in range(i + 1, len(q))]
+
+
+def _shortest_bound(par: AlphaParameters) -> fmpq | None:
+    """A length below which a pair certainly has ψ_α > ψ_α(r_α); None where 0 is not certainly one.
+
+    ψ_α falls up to d_α, so that it holds below any length at which it holds.
+    """
+    far, low, high = far_potential(par), fmpq(0), par.d
+    if not c_star(par) > far:
+        return None
+    for _ in range(_HALVINGS):
+        middle = (low + high) / 2
+        low, high = (middle, high) if psi_alpha(sigma_norm(ball(middle), par.eps), par) > far else (low, middle)
+    return low
+
+
+def _largest_clique(par: AlphaParameters, m: int) -> int | None:
+    """At most so many points have all their distances between the shortest of a bound pair and r; None if unbounded."""
+    shortest = _shortest_bound(par)
+    if not shortest:
+        return None
+    ratio = ball(par.r / shortest)
+    packed = floor(float(((1 + 2 * ratio * ball(fmpq(m, 2 * (m + 1))).sqrt()) ** m).upper()) * (1 + 2.0**-40))
+    if m == 1:
+        return min(packed, ceil(float(ratio.upper()) * (1 + 2.0**-40)))
+    known = [points - 1 for points, least in _least_ratios(m).items() if ratio < least]
+    return min([packed, *known])
+
+
+def _least_ratios(m: int) -> dict[int, arb]:
+    """Least ratio of the longest to the shortest distance among so many points (sources: `equilibria.barrier`)."""
+    if m == 2:
+        return {4: arb(2).sqrt(), 5: (1 + arb(5).sqrt()) / 2, 6: 2 * arb(fmpq(2, 5)).sin_pi(), 7: arb(2)}
+    return {5: arb(fmpq(12, 7)).sqrt()} if m == 3 else {}
