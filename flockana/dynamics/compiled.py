@@ -15,7 +15,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.dynamics.encounters import Encounters
-from flockana.dynamics.sample import Sample, Tally, has_energy
+from flockana.dynamics.sample import Sample, Tally
 from flockana.dynamics.stepping import BALANCED, ONE_STEP, Frame
 from flockana.dynamics.tolerance import Floor
 from flockana.kernels.advance import CROWDED, RUNNING, advance
@@ -102,10 +102,17 @@ class Engine:
         result: tuple[Any, ...] = advance()(*self._system, ledger, *now, stops, due, most)
         return result
 
-    def crowded(self, q: FloatArray) -> bool:
-        """Whether there are more pairs within reach than a list has room for."""
-        few = np.empty(1, np.uint32)
-        return bool(list_pairs(q, (1.0 + SKIN) * self.form.reach, few, few)[2] < 0)
+    def fits(self, q: FloatArray, p: FloatArray) -> bool:
+        """Whether a list has room for the pairs within reach, and the energy is finite, so it has a rate."""
+        few, still = np.empty(1, np.uint32), np.zeros((2, q.shape[1]))
+        first, second, count = list_pairs(q, (1.0 + SKIN) * self.form.reach, few, few)
+        if count < 0:
+            return False
+        own, energy = np.arange(len(q), dtype=np.uint64), 0.5 * float(np.vdot(p, p))
+        for term in self.form.terms:
+            numbers, panels = np.array(term.numbers), np.array(term.panels)  # their own are not to be written to
+            energy += term.energy(self.frame.t0, q, p, still, numbers, panels, first, second, count, own)
+        return bool(np.isfinite(energy))
 
 
 def engine_of(
@@ -114,14 +121,14 @@ def engine_of(
     """The law and the method, compiled; None where one has no such form, or pairs are too many (RK4: no tolerances)."""
     form = law.compiled(q0.shape[1]) if method in METHODS else None
     encounters = Encounters.of(law, len(q0))
-    if form is None or not has_energy(law, t0, q0, p0):
+    if form is None:
         return None
     if sum(term.guard is not None for term in form.terms) != (encounters.bodies is not None):
         return None  # obstacles that no term, or more than one, keeps from being leapt over
     balance = (BALANCED * rtol, BALANCED * floor.energy) if method in ONE_STEP else (0.0, 0.0)
     frame = Frame.of(t0, q0, p0, energetic=True)
     engine = Engine(law, form, frame, tableau(method), encounters, Allowed(rtol, floor, balance))
-    return None if engine.crowded(q0) else engine
+    return engine if engine.fits(q0, p0) else None
 
 
 def stepped(

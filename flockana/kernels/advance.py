@@ -14,9 +14,9 @@ import numpy as np
 
 from flockana.kernels.bodies import guard_signature
 from flockana.kernels.compiling import njit
-from flockana.kernels.encounters import share_of_pairs
+from flockana.kernels.encounters import farthest_ways, mean_way, share_of_listed
 from flockana.kernels.listed import MOST_TERMS, signatures
-from flockana.kernels.paths import bernstein, centred
+from flockana.kernels.paths import bernstein
 from flockana.kernels.runge_kutta import energy_of, error_of, first_step, frame_at, interpolated, rate_of, stages_of
 from flockana.kernels.sums import finite
 from flockana.kernels.verlet import empty_list, search_of_pairs, spatial_order, strayed
@@ -57,15 +57,16 @@ def _met(t, h, y0, f0, y1, f1, encounters, system, pairs, scratch):
     size, share = n * m, 1.0
     q0, p0, u0 = y0[:size].reshape(n, m), y0[size : 2 * size].reshape(n, m), f0[size : 2 * size].reshape(n, m)
     q1, p1, u1 = y1[:size].reshape(n, m), y1[size : 2 * size].reshape(n, m), f1[size : 2 * size].reshape(n, m)
-    points, _, allowance = bernstein(h, q0, p0, u0, q1, p1, u1)
     if bodies.size:
+        points, _, allowance = bernstein(h, q0, p0, u0, q1, p1, u1)
         share = guard(_at_rest(t, h, points, system[5]), allowance, bodies, shell[0], shell[1], share)
     if not radii.size or n == 1:
         return share, scratch
-    ways = centred(points, allowance)
-    widest, farthest, blur = 0.0, 0.0, 0.0
+    mean = mean_way(h, q0, p0, u0, q1, p1, u1)
+    farthest, blur = farthest_ways(h, q0, p0, u0, q1, p1, u1, mean)
+    widest = 0.0
     for i in range(n):
-        widest, farthest, blur = max(widest, radii[i, -1]), max(farthest, ways[i]), max(blur, allowance[i])
+        widest = max(widest, radii[i, -1])
     within = (widest + 2.0 * (farthest + blur)) * (1.0 + 1e-9)
     first, second, count, places, mean = pairs
     held = system[7][0] + system[7][1] - 2.0 * np.sqrt(strayed(q0, places, mean)) if places.size else 0.0
@@ -74,7 +75,9 @@ def _met(t, h, y0, f0, y1, f1, encounters, system, pairs, scratch):
         scratch = (first, second)
         if count < 0:
             return np.nan, scratch
-    return share_of_pairs(points, ways, allowance, radii, far, first[:count], second[:count], share), scratch
+    ways = (farthest, blur)
+    first, second = first[:count], second[:count]
+    return share_of_listed(h, q0, p0, u0, q1, p1, u1, mean, ways, radii, far, first, second, share), scratch
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
