@@ -104,13 +104,14 @@ class Engine:
 
     def fits(self, q: FloatArray, p: FloatArray) -> bool:
         """Whether a list has room for the pairs within reach, and the energy is finite, so it has a rate."""
+        q, p = np.array(q), np.array(p)  # what is compiled takes arrays that may be written to
         few, still = np.empty(1, np.uint32), np.zeros((2, q.shape[1]))
         first, second, count = list_pairs(q, (1.0 + SKIN) * self.form.reach, few, few)
         if count < 0:
             return False
         own, energy = np.arange(len(q), dtype=np.uint64), 0.5 * float(np.vdot(p, p))
         for term in self.form.terms:
-            numbers, panels = np.array(term.numbers), np.array(term.panels)  # their own are not to be written to
+            numbers, panels = np.array(term.numbers), np.array(term.panels)
             energy += term.energy(self.frame.t0, q, p, still, numbers, panels, first, second, count, own)
         return bool(np.isfinite(energy))
 
