@@ -26,7 +26,7 @@ from flockana.laws.law import Law
 from flockana.laws.terms.term import Compiled
 
 METHODS = ("DOP853", "RK45", "RK23", "RK4")  # that there are compiled
-_STEPS, _NUMBERS = 128, 2_000_000  # in one call, at most: steps, and numbers kept of them
+_STEPS, _NUMBERS = 128, 6_000_000  # in one call, at most: steps, and numbers kept of them
 _UNLISTED = "scipy-DOP853"  # which looks at pairs in blocks
 EXACT = Floor(0.0, 0.0, 0.0)
 
@@ -94,7 +94,17 @@ class Engine:
         met = self.encounters
         around = ((self.form.reach, SKIN * self.form.reach), met.radii, met.far, guard, bodies, (met.shell, met.skirt))
         allowed = (self.allowed.rtol, tuple(self.allowed.floor), self.allowed.balance)
-        return (*functions, *arrays, frame.shape, view, self.form.moving, *self.method, *around, *allowed)
+        return (
+            *functions,
+            *arrays,
+            frame.shape,
+            view,
+            self.form.moving,
+            len(self.form.terms),
+            *self.method,
+            *around,
+            *allowed,
+        )
 
     def run(self, now: Point, stops: FloatArray, due: FloatArray, ledger: FloatArray) -> tuple[Any, ...]:
         """Some steps from here."""
