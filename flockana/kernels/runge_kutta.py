@@ -18,7 +18,7 @@ from flockana.kernels.verlet import kept_up
 _STRIP = 1024  # components at once: what is summed over the stages stays in the first-level cache
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)  # it allocates nothing: no reference is counted
 def combine(y, h, weights, rates, rows, count, out):
     """y + h Σ weights_j K_j over the first `count` stages."""
     for begin in range(0, y.size, _STRIP):
@@ -47,19 +47,24 @@ def frame_at(t, start, origin, drift):
 @njit(cache=True, error_model="numpy", nogil=True)
 def rate_of(t, y, f, system, pairs):
     """Write the rate of the vector y into f; returns the pairs, listed anew if need be."""
-    acts, _, numbers, panels, (n, m), view, _, reach, order, search, terms = system
-    size = n * m
-    x, v, u = y[:size].reshape(n, m), y[size : 2 * size].reshape(n, m), f[size : 2 * size].reshape(n, m)
+    (n, m), view, reach = system[4], system[5], system[7]
     if reach[0] > 0.0:
-        pairs = kept_up(x, reach[0], reach[1], pairs, search)
-    first, second, count, _, _ = pairs
-    frame, power = frame_at(t, *view), 0.0
+        pairs = kept_up(y[: n * m].reshape(n, m), reach[0], reach[1], pairs, system[9])
+    _act(t, y, f, frame_at(t, *view), system, pairs[0], pairs[1], pairs[2])
+    return pairs
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def _act(t, y, f, frame, system, first, second, count):
+    """The rate of y into f, its pairs being listed."""
+    acts, _, numbers, panels, (n, m), _, _, _, order, _, terms = system
+    size, power = n * m, 0.0
+    x, v, u = y[:size].reshape(n, m), y[size : 2 * size].reshape(n, m), f[size : 2 * size].reshape(n, m)
     for k in range(size):
         f[k], f[size + k] = y[size + k], 0.0
     for k in range(terms):
         power += acts[k](t, x, v, u, frame, numbers[k], panels[k], first, second, count, order)
     f[2 * size] = power
-    return pairs
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
