@@ -51,3 +51,14 @@ def test_rates_that_nothing_reads_again_make_room():
         rows = tableau(method).rows
         assert rows.max() + 1 == count
         assert (rows == rows[0]).sum() == 1  # the rate of the start is that of every step that is made again
+
+
+@pytest.mark.parametrize("method", ORDERS)
+def test_no_rate_is_written_over_before_it_was_read_for_the_last_time(method):
+    a, _, estimates, interpolant, rows, stages, _ = tableau(method)
+    held, error = {}, np.flatnonzero(estimates.any(axis=0))
+    for s in range(len(rows)):
+        read = np.concatenate([np.flatnonzero(a[s]), error if s == stages + 1 else []]).astype(int)
+        assert all(held[rows[k]] == k for k in read)
+        held[rows[s]] = s
+    assert all(held[rows[k]] == k for k in (0, stages, *np.flatnonzero(interpolant.any(axis=1))))
