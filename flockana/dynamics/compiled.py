@@ -15,7 +15,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.dynamics.encounters import Encounters
-from flockana.dynamics.sample import Sample, Tally, has_energy
+from flockana.dynamics.sample import Sample, Tally
 from flockana.dynamics.stepping import BALANCED, ONE_STEP, Frame
 from flockana.dynamics.tolerance import Floor
 from flockana.kernels.advance import CROWDED, RUNNING, advance
@@ -26,7 +26,7 @@ from flockana.laws.law import Law
 from flockana.laws.terms.term import Compiled
 
 METHODS = ("DOP853", "RK45", "RK23", "RK4")  # that there are compiled
-_STEPS, _NUMBERS = 128, 2_000_000  # in one call, at most: steps, and numbers kept of them
+_STEPS, _NUMBERS = 128, 6_000_000  # in one call, at most: steps, and numbers kept of them
 _UNLISTED = "scipy-DOP853"  # which looks at pairs in blocks
 EXACT = Floor(0.0, 0.0, 0.0)
 
@@ -94,7 +94,17 @@ class Engine:
         met = self.encounters
         around = ((self.form.reach, SKIN * self.form.reach), met.radii, met.far, guard, bodies, (met.shell, met.skirt))
         allowed = (self.allowed.rtol, tuple(self.allowed.floor), self.allowed.balance)
-        return (*functions, *arrays, frame.shape, view, self.form.moving, *self.method, *around, *allowed)
+        return (
+            *functions,
+            *arrays,
+            frame.shape,
+            view,
+            self.form.moving,
+            len(self.form.terms),
+            *self.method,
+            *around,
+            *allowed,
+        )
 
     def run(self, now: Point, stops: FloatArray, due: FloatArray, ledger: FloatArray) -> tuple[Any, ...]:
         """Some steps from here."""
@@ -102,10 +112,18 @@ class Engine:
         result: tuple[Any, ...] = advance()(*self._system, ledger, *now, stops, due, most)
         return result
 
-    def crowded(self, q: FloatArray) -> bool:
-        """Whether there are more pairs within reach than a list has room for."""
-        few = np.empty(1, np.uint32)
-        return bool(list_pairs(q, (1.0 + SKIN) * self.form.reach, few, few)[2] < 0)
+    def fits(self, q: FloatArray, p: FloatArray) -> bool:
+        """Whether a list has room for the pairs within reach, and the energy is finite, so it has a rate."""
+        q, p = np.array(q), np.array(p)  # what is compiled takes arrays that may be written to
+        few, still = np.empty(1, np.uint32), np.zeros((2, q.shape[1]))
+        first, second, count = list_pairs(q, (1.0 + SKIN) * self.form.reach, few, few)
+        if count < 0:
+            return False
+        own, energy = np.arange(len(q), dtype=np.uint64), 0.5 * float(np.vdot(p, p))
+        for term in self.form.terms:
+            numbers, panels = np.array(term.numbers), np.array(term.panels)
+            energy += term.energy(self.frame.t0, q, p, still, numbers, panels, first, second, count, own)
+        return bool(np.isfinite(energy))
 
 
 def engine_of(
@@ -114,14 +132,14 @@ def engine_of(
     """The law and the method, compiled; None where one has no such form, or pairs are too many (RK4: no tolerances)."""
     form = law.compiled(q0.shape[1]) if method in METHODS else None
     encounters = Encounters.of(law, len(q0))
-    if form is None or not has_energy(law, t0, q0, p0):
+    if form is None:
         return None
     if sum(term.guard is not None for term in form.terms) != (encounters.bodies is not None):
         return None  # obstacles that no term, or more than one, keeps from being leapt over
     balance = (BALANCED * rtol, BALANCED * floor.energy) if method in ONE_STEP else (0.0, 0.0)
     frame = Frame.of(t0, q0, p0, energetic=True)
     engine = Engine(law, form, frame, tableau(method), encounters, Allowed(rtol, floor, balance))
-    return None if engine.crowded(q0) else engine
+    return engine if engine.fits(q0, p0) else None
 
 
 def stepped(

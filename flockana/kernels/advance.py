@@ -14,9 +14,9 @@ import numpy as np
 
 from flockana.kernels.bodies import guard_signature
 from flockana.kernels.compiling import njit
-from flockana.kernels.encounters import share_of_pairs
+from flockana.kernels.encounters import farthest_ways, mean_way, share_of_listed
 from flockana.kernels.listed import MOST_TERMS, signatures
-from flockana.kernels.paths import bernstein, centred
+from flockana.kernels.paths import bernstein
 from flockana.kernels.runge_kutta import energy_of, error_of, first_step, frame_at, interpolated, rate_of, stages_of
 from flockana.kernels.sums import finite
 from flockana.kernels.verlet import empty_list, search_of_pairs, spatial_order, strayed
@@ -57,15 +57,16 @@ def _met(t, h, y0, f0, y1, f1, encounters, system, pairs, scratch):
     size, share = n * m, 1.0
     q0, p0, u0 = y0[:size].reshape(n, m), y0[size : 2 * size].reshape(n, m), f0[size : 2 * size].reshape(n, m)
     q1, p1, u1 = y1[:size].reshape(n, m), y1[size : 2 * size].reshape(n, m), f1[size : 2 * size].reshape(n, m)
-    points, _, allowance = bernstein(h, q0, p0, u0, q1, p1, u1)
     if bodies.size:
+        points, _, allowance = bernstein(h, q0, p0, u0, q1, p1, u1)
         share = guard(_at_rest(t, h, points, system[5]), allowance, bodies, shell[0], shell[1], share)
     if not radii.size or n == 1:
         return share, scratch
-    ways = centred(points, allowance)
-    widest, farthest, blur = 0.0, 0.0, 0.0
+    mean = mean_way(h, q0, p0, u0, q1, p1, u1)
+    farthest, blur = farthest_ways(h, q0, p0, u0, q1, p1, u1, mean)
+    widest = 0.0
     for i in range(n):
-        widest, farthest, blur = max(widest, radii[i, -1]), max(farthest, ways[i]), max(blur, allowance[i])
+        widest = max(widest, radii[i, -1])
     within = (widest + 2.0 * (farthest + blur)) * (1.0 + 1e-9)
     first, second, count, places, mean = pairs
     held = system[7][0] + system[7][1] - 2.0 * np.sqrt(strayed(q0, places, mean)) if places.size else 0.0
@@ -74,7 +75,9 @@ def _met(t, h, y0, f0, y1, f1, encounters, system, pairs, scratch):
         scratch = (first, second)
         if count < 0:
             return np.nan, scratch
-    return share_of_pairs(points, ways, allowance, radii, far, first[:count], second[:count], share), scratch
+    ways = (farthest, blur)
+    first, second = first[:count], second[:count]
+    return share_of_listed(h, q0, p0, u0, q1, p1, u1, mean, ways, radii, far, first, second, share), scratch
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
@@ -126,11 +129,11 @@ def _record(t, y, f, system, out):
 @njit(cache=True, error_model="numpy", nogil=True)
 def _sampled(t, h, at, y, rates, trial, due, begin, method, interpolant, between, work, system, pairs):
     """Samples at the times due before the end of a step: (samples so far, pairs)."""
-    stages, slope = method[2], np.empty(y.size)
-    pairs = stages_of(t, h, y, rates, trial, trial, method, stages + 1, len(rates), system, pairs)
+    rows, stages, slope = method[2], method[3], np.empty(y.size)
+    pairs = stages_of(t, h, y, rates, trial, trial, method, stages + 1, len(rows), system, pairs)
     k = begin
     while k < due.size and due[k] < at:
-        interpolated((due[k] - t) / h, h, y, rates, interpolant, trial)
+        interpolated((due[k] - t) / h, h, y, rates, rows, interpolant, trial)
         pairs = rate_of(due[k], trial, slope, system, pairs)
         work[k] = _record(due[k], trial, slope, system, between[k])
         k += 1
@@ -160,8 +163,8 @@ def _controlled(h, error, exponent, rejected):
 
 def _advance(
     search, act0, act1, act2, act3, act4, energy0, energy1, energy2, energy3, energy4, numbers, panels, shape, view,
-    moving,
-    tableau_a, tableau_c, estimates, interpolant, stages, exponent,
+    moving, terms,
+    tableau_a, tableau_c, estimates, interpolant, rows, stages, exponent,
     reach, radii, far, guard, bodies, shell, rtol, floor, balance, ledger, t, y, f, h, stops, due, most,
 ):  # fmt: skip
     """Make up to `most` steps that stand, to the last of `stops`.
@@ -174,13 +177,13 @@ def _advance(
     order = spatial_order(start, reach[0] + reach[1]) if reach[0] > 0.0 else np.arange(n).astype(np.uint64)
     system = (
         (act0, act1, act2, act3, act4), (energy0, energy1, energy2, energy3, energy4),
-        numbers, panels, shape, view, moving, reach, order, search,
+        numbers, panels, shape, view, moving, reach, order, search, terms,
     )  # fmt: skip
-    method, fixed = (tableau_a, tableau_c, stages), exponent == 0.0
+    method, fixed, end = (tableau_a, tableau_c, rows, stages), exponent == 0.0, rows[stages]
     encounters = (np.empty_like(radii), far, guard, bodies, shell)
     for i in range(n):
         encounters[0][i] = radii[np.int64(order[i])]
-    rates = np.zeros((len(tableau_a) if due.size else stages + 1, y.size))
+    rates = np.zeros((rows.max() + 1, y.size))
     now, reached, trial = np.empty(y.size), np.empty(y.size), np.empty(y.size)
     _moved(y, order, shape, False, now)
     _moved(f, order, shape, False, rates[0])
@@ -210,18 +213,18 @@ def _advance(
                 status = CROWDED
                 break
             if not fixed:
-                error = error_of(now, reached, h, estimates, rates, n * m, rtol, floor)
+                error = error_of(now, reached, h, estimates, rates, rows, n * m, rtol, floor)
                 later, passes = _controlled(h, error, exponent, rejected)
                 if not passes:
                     h, rejected = later, True
                     continue
-            if not (finite(reached) and finite(rates[stages])):
+            if not (finite(reached) and finite(rates[end])):
                 status = NOT_FINITE
                 break
             share = 1.0
             if bodies.size or (radii.size and n > 1):
                 share, scratch = _met(
-                    t, h, now, rates[0], reached, rates[stages], encounters, system, pairs, scratch
+                    t, h, now, rates[0], reached, rates[end], encounters, system, pairs, scratch
                 )  # fmt: skip
             if np.isnan(share):
                 status = CROWDED
@@ -239,17 +242,17 @@ def _advance(
             sampled, pairs = _sampled(
                 t, h, at, now, rates, trial, due, sampled, method, interpolant, between, work_between, system, pairs
             )  # fmt: skip
-            evaluations += len(rates) - stages - 1 + sampled - before
+            evaluations += len(rows) - stages - 1 + sampled - before
         while sampled < due.size and due[sampled] == at:
             work_between[sampled], sampled = np.nan, sampled + 1  # the step itself is the sample
         if fixed:
             later = np.inf if at == stops[stop] else GROWTH * h
         stop += at == stops[stop]
         t, h, now, reached = at, later, reached, now
-        rates[0] = rates[stages]
+        rates[0] = rates[end]
         times[made], work[made] = t, _record(t, now, rates[0], system, states[made])
         made += 1
-    last, slope = np.empty(y.size), np.empty(y.size)
+    last, slope = reached, trial  # no longer needed: memory is used again
     _moved(now, order, shape, True, last)
     _moved(rates[0], order, shape, True, slope)
     between = _with_room(between, due[:sampled], np.inf)  # where steps ended there is nothing in it
@@ -270,8 +273,8 @@ def advance() -> Callable[..., Any]:
     search = types.FunctionType(search_of_pairs()[1])
     law = (search, *(act,) * MOST_TERMS, *(energy,) * MOST_TERMS)
     law = (*law, several(vector, MOST_TERMS), several(matrix, MOST_TERMS))
-    view = (several(int64, 2), types.containers.Tuple((float64, vector, vector)), boolean)
-    method = (matrix, vector, matrix, matrix, int64, float64)
+    view = (several(int64, 2), types.containers.Tuple((float64, vector, vector)), boolean, int64)
+    method = (matrix, vector, matrix, matrix, int64[::1], int64, float64)
     around = (several(float64, 2), matrix, float64, types.FunctionType(guard_signature()), vector, several(float64, 2))
     limits = (float64, several(float64, 3), several(float64, 2), vector)
     point = (float64, vector, vector, float64)

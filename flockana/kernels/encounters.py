@@ -1,7 +1,8 @@
 """Whether a step leapt over an encounter: two agents in and out of each other's reach between two evaluations.
 
 The paths of a step are the quintics through its ends (`flockana.kernels.paths`). All arrays of paths, reaches and
-allowances are those of `control_points`.
+allowances are those of `control_points`; those of many agents are not kept, but made again for the few pairs that may
+matter.
 """
 
 from __future__ import annotations
@@ -9,8 +10,11 @@ from __future__ import annotations
 import numpy as np
 
 from flockana.kernels.compiling import njit
-from flockana.kernels.paths import _DEPTH, _first_touch, _hull_bound
+from flockana.kernels.paths import _DEPTH, ALLOWED, _first_touch, _hull_bound, quintic, reach_of
+from flockana.kernels.sums import column_means
 
+_STRIP = 512  # agents at once
+_WIDER = 1.0 + 1e-9  # for the rounding of bounds
 SLACK = 1.1  # a step that is too long by less than this is not worth another
 
 
@@ -128,4 +132,72 @@ def share_of_pairs(points, reach, allowance, radii, far, first, second, share):
         i, j = np.int64(first[k]), np.int64(second[k])
         if low2 <= _apart2(points, i, j, 0) < high2:
             share = _share(points, reach, allowance, radii, far, i, j, share, stack, spans)
+    return share
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def mean_way(h, q0, p0, u0, q1, p1, u1):
+    """How far the control points of the flock's mean path are from the first of them, (6, 3)."""
+    way, m = np.zeros((6, 3)), q0.shape[1]
+    gone = column_means(q1) - column_means(q0)
+    out, back = h * column_means(p0) / 5.0, h * column_means(p1) / 5.0
+    bend0, bend1 = h * h * column_means(u0) / 20.0, h * h * column_means(u1) / 20.0
+    for c in range(m):
+        way[1, c], way[2, c], way[5, c] = out[c], 2.0 * out[c] + bend0[c], gone[c]
+        way[3, c], way[4, c] = gone[c] - 2.0 * back[c] + bend1[c], gone[c] - back[c]
+    return way
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def farthest_ways(h, q0, p0, u0, q1, p1, u1, mean):
+    """(the longest way of an agent beside the mean one, the largest allowance): of `control_points`, to rounding."""
+    n, m = q0.shape
+    ways, off = np.empty((5, _STRIP)), np.empty((2, _STRIP))
+    far, blur, s, z = 0.0, 0.0, h / 5.0, h * h / 20.0
+    for begin in range(0, n, _STRIP):
+        count = min(_STRIP, n - begin)
+        ways[:], off[:] = 0.0, 0.0
+        for c in range(m):
+            m1, m2, m3, m4, m5 = mean[1, c], mean[2, c], mean[3, c], mean[4, c], mean[5, c]
+            for k in range(count):
+                i = begin + k
+                gone, out, back = q1[i, c] - q0[i, c], s * p0[i, c], s * p1[i, c]
+                bend0, bend1 = z * u0[i, c], z * u1[i, c]
+                ways[0, k] += (out - m1) ** 2
+                ways[1, k] += (2.0 * out + bend0 - m2) ** 2
+                ways[2, k] += (gone - 2.0 * back + bend1 - m3) ** 2
+                ways[3, k] += (gone - back - m4) ** 2
+                ways[4, k] += (gone - m5) ** 2
+                off[0, k] += (out + 0.5 * back + bend0 - 0.3 * gone) ** 2
+                off[1, k] += (0.3 * gone - back - 0.5 * out + bend1) ** 2
+        for k in range(count):
+            way = max(max(max(ways[0, k], ways[1, k]), max(ways[2, k], ways[3, k])), ways[4, k])
+            slack = ALLOWED * (np.sqrt(off[0, k]) + np.sqrt(off[1, k]))
+            far, blur = max(far, np.sqrt(way) + slack), max(blur, slack)
+    return far, blur
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def share_of_listed(h, q0, p0, u0, q1, p1, u1, mean, farthest, radii, far, first, second, share):
+    """As `share_of_pairs` of the paths between two states: control points only of pairs that may matter."""
+    stack, spans = np.empty((_DEPTH + 2, 6, 3)), np.empty((_DEPTH + 2, 2))
+    points, reach, allowance = np.zeros((2, 6, 3)), np.empty(2), np.empty(2)
+    own, (way, blur), m = np.empty((2, radii.shape[1])), farthest, q0.shape[1]
+    travel = 2.0 * way * _WIDER
+    low = radii[:, 0].min() if travel <= far else 0.0
+    high = (radii[:, -1].max() + 2.0 * blur + travel) * _WIDER
+    low2, high2 = low * low, high * high
+    for k in range(first.size):
+        i, j = np.uint64(first[k]), np.uint64(second[k])
+        s2 = 0.0
+        for c in range(m):
+            s2 += (q0[j, c] - q0[i, c]) ** 2
+        if low2 <= s2 < high2:
+            for a in range(2):
+                one = i if a == 0 else j
+                own[a] = radii[one]
+                allowance[a] = quintic(h, q0[one], p0[one], u0[one], q1[one], p1[one], u1[one], points[a])
+                points[a] -= mean
+                reach[a] = reach_of(points[a]) + allowance[a]
+            share = _share(points, reach, allowance, own, far, 0, 1, share, stack, spans)
     return share

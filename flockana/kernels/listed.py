@@ -118,15 +118,19 @@ def lift_listed(
                 count += square < limit
             return count
 
-        def act(t, x, v, u, frame, numbers, panels, first, second, size, order):
+        @njit(error_model="numpy", nogil=True, _nrt=False)  # what allocates nothing need count no references
+        def sweep(x, v, u, numbers, first, second, size, near, d, s2, w, a):
             total, c1, c2, r = 0.0 * digest, numbers[0], numbers[1], numbers[2]
             par, limit = _as_tuple(numbers[4:]), max(r * r, 5e-324)
-            d, s2, w, a = np.empty((m, BLOCK)), np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
-            near = np.empty((2, BLOCK), np.uint64)
             for begin in range(0, size, BLOCK):
                 count = gather(x, limit, first, second, begin, min(begin + BLOCK, size), near, d, s2)
                 total += add(count, near[0], near[1], d, s2, w, a, v, u, par, c1, c2)
             return -c2 * total
+
+        def act(t, x, v, u, frame, numbers, panels, first, second, size, order):
+            d, s2, w, a = np.empty((m, BLOCK)), np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
+            near = np.empty((2, BLOCK), np.uint64)
+            return sweep(x, v, u, numbers, first, second, size, near, d, s2, w, a)
 
         def energy(t, x, v, frame, numbers, panels, first, second, size, order):
             total, near, r, par = 0.0 * digest, 0, numbers[2], numbers[4:]

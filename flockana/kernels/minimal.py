@@ -85,3 +85,75 @@ def edge_forces(q, p, head, tail, mu, rho, align, u):
             u[i, c] += w * (q[j, c] - q[i, c]) + align[e] * (p[j, c] - p[i, c])
         dissipated += align[e] * v2
     return dissipated
+
+
+@njit(cache=True)
+def _count(q, first, second, square, count):
+    """Add to the number of agents that each perceives, among some pairs."""
+    for k in range(first.size):
+        i, j = np.uint64(first[k]), np.uint64(second[k])
+        s2 = 0.0
+        for c in range(q.shape[1]):
+            s2 += (q[j, c] - q[i, c]) ** 2
+        count[i] += s2 <= square[i]
+        count[j] += s2 <= square[j]
+
+
+@njit(cache=True, error_model="numpy")
+def _pull(q, p, first, second, square, mu, rho, align, u):
+    """`edge_forces` of the edges among some pairs, whose weights and lengths are the perceiving agent's."""
+    m = q.shape[1]
+    for k in range(first.size):
+        i, j = np.uint64(first[k]), np.uint64(second[k])
+        s2 = 0.0
+        for c in range(m):
+            s2 += (q[j, c] - q[i, c]) ** 2
+        inverse = 1.0 / np.sqrt(s2) if s2 > 0.0 else 0.0
+        for way in range(2):
+            head, tail = (i, j) if way == 0 else (j, i)
+            if s2 <= square[head]:
+                w = mu * (1.0 - rho[head] * inverse) if s2 > 0.0 else 0.0
+                for c in range(m):
+                    u[head, c] += w * (q[tail, c] - q[head, c]) + align[head] * (p[tail, c] - p[head, c])
+
+
+def perceived_forces(
+    q: FloatArray,
+    p: FloatArray,
+    radius: FloatArray,
+    spacing: FloatArray,
+    shared: bool,
+    mu: float,
+    sigma: float,
+    normalised: bool,
+    u: FloatArray,
+) -> None:
+    """Add to u what `edge_forces` adds for `perceived_edges` that are all heeded alike, without making them.
+
+    Parameters
+    ----------
+    q, p : ndarray, shape (n, m)
+        Positions and velocities.
+    radius : ndarray, shape (n,)
+        Perception radius of each agent.
+    spacing : ndarray, shape (n,)
+        Its desired spacing, times the number of those that it perceives if that is `shared`.
+    shared : bool
+        Whether it grows with that number.
+    mu, sigma : float
+        Weights of springs and of alignment.
+    normalised : bool
+        Whether alignment is with the mean, rather than the sum.
+    u : ndarray, shape (n, m)
+        Changed in place.
+    """
+    reach, square, count = float(radius.max()) * (1.0 + 1e-12), radius * radius, np.zeros(len(q), np.int64)
+    parts = [(i.copy(), j.copy()) for i, j in pair_blocks(q, reach)]
+    if shared or normalised:
+        for i, j in parts:
+            _count(q, i, j, square, count)
+    total = sigma * count if normalised else np.ones(len(q))
+    align = np.divide(sigma, total, out=np.zeros(len(q)), where=total > 0.0)
+    rho = spacing * count if shared else spacing
+    for i, j in parts:
+        _pull(q, p, i, j, square, mu, rho, align, u)

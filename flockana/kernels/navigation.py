@@ -11,7 +11,7 @@ from math import cos, sin, sqrt
 
 import numpy as np
 
-from flockana.kernels.compiling import njit
+from flockana.kernels.compiling import njit, register_jitable
 from flockana.kernels.listed import CompiledFunction, term_functions
 from flockana.kernels.sums import column_means, pull_to, squared_differences
 
@@ -44,7 +44,8 @@ def navigate(x, v, u, target, velocity, c1, c2, unit, moving, order):
     return power
 
 
-def act(t, x, v, u, frame, numbers, panels, first, second, size, order):
+@register_jitable
+def _follow(t, x, v, u, frame, numbers, order):
     """`navigate` to the path that the numbers are of."""
     m = x.shape[1]
     omega, factor, gains = numbers[_OMEGA], numbers[_FACTOR], np.int64(numbers[_GAINS])
@@ -55,6 +56,17 @@ def act(t, x, v, u, frame, numbers, panels, first, second, size, order):
         target[0, k] = path[0, k] + path[1, k] * t + path[2, k] * co + path[3, k] * si - frame[0, k]
         target[1, k], target[2, k] = factor * rate + path[4, k] - frame[1, k], rate
     return navigate(x, v, u, target, frame[1], c[:gains], c[gains:], numbers[_UNIT], numbers[_MOVING] != 0.0, order)
+
+
+@njit(cache=True, error_model="numpy")
+def follow(t, x, v, u, numbers):
+    """`navigate` to the path that the numbers are of, seen from where it is at rest and in the agents' own order."""
+    return _follow(t, x, v, u, np.zeros((2, x.shape[1])), numbers, np.arange(x.shape[0]).astype(np.uint64))
+
+
+def act(t, x, v, u, frame, numbers, panels, first, second, size, order):
+    """`follow` for compiled integrators."""
+    return _follow(t, x, v, u, frame, numbers, order)
 
 
 def energy(t, x, v, frame, numbers, panels, first, second, size, order):

@@ -2,8 +2,8 @@
 
 This is the only place that searches: links, forces, energies and Hessians all loop over the blocks of pairs it
 yields. Blocks keep memory O(n) even where every agent is within range of every other. Small flocks are searched
-directly; larger ones are sorted into cells of the range's size, addressed modulo the table's length, so that one
-agent far away costs nothing.
+directly; larger ones are sorted into a grid of cells of the range's size, or, where the box is too sparse for one, into
+cells addressed modulo the table's length, so that one agent far away costs nothing.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.kernels.compiling import njit
+from flockana.kernels.grid import sort_into_grid
 
 FloatArray = npt.NDArray[np.float64]
 IndexArray = npt.NDArray[np.int32]
@@ -117,6 +118,32 @@ def _fill_cells(order, x, cells, start, strides, forward, r2, row, first, second
     return row, count
 
 
+@njit(cache=True, error_model="numpy")
+def _fill_grid(x, order, start, rows, r2, cell, row, first, second):
+    """As `_fill_cells`, over agents sorted into a grid: (cell and row to go on from, pairs found)."""
+    (n, m), capacity, count = x.shape, first.size, 0
+    while row < n:
+        while np.int64(start[cell + 1]) <= row:
+            cell += 1
+        candidates = np.int64(start[cell + 2]) - row - 1
+        for f in range(rows.size):
+            there = cell + np.int64(rows[f])
+            candidates += np.int64(start[there + 2] - start[there - 1])
+        if count + candidates > capacity:
+            break
+        for f in range(-1, rows.size):
+            there = cell + np.int64(rows[f]) if f >= 0 else cell
+            low, high = (start[there - 1], start[there + 2]) if f >= 0 else (np.uint64(row + 1), start[cell + 2])
+            for j in range(low, high):
+                square = 0.0
+                for c in range(m):
+                    square += (x[j, c] - x[row, c]) ** 2
+                first[count], second[count] = order[row], order[j]
+                count += square < r2
+        row += 1
+    return cell, row, count
+
+
 def pair_blocks(
     q: FloatArray, r: float, *, dense: bool | None = None, block: int = BLOCK
 ) -> Iterator[tuple[IndexArray, IndexArray]]:
@@ -153,6 +180,13 @@ def pair_blocks(
     if dense or not np.isfinite(r2):
         while row < n:
             row, count = _fill_direct(x, r2, row, first, second)
+            yield first[:count], second[:count]
+        return
+    order, start, rows = sort_into_grid(q, r)
+    if start.size:
+        sorted_q, cell = q[order], 0
+        while row < n:
+            cell, row, count = _fill_grid(sorted_q, order, start, rows, r2, cell, row, first, second)
             yield first[:count], second[:count]
         return
     size = 1 << int(2 * n).bit_length()

@@ -28,26 +28,31 @@ def _norm(x):
 
 
 @njit(cache=True)
+def quintic(h, a, p0, u0, b, p1, u1, out):
+    """The control points of one agent's quintic from a to b into `out`, (6, 3), and its error allowance."""
+    off2, off3 = 0.0, 0.0
+    for k in range(a.size):
+        out[0, k], out[5, k] = a[k], b[k]
+        out[1, k], out[4, k] = a[k] + h * p0[k] / 5.0, b[k] - h * p1[k] / 5.0
+        out[2, k] = a[k] + 2.0 * h * p0[k] / 5.0 + h * h * u0[k] / 20.0
+        out[3, k] = b[k] - 2.0 * h * p1[k] / 5.0 + h * h * u1[k] / 20.0
+        c1, c2 = a[k] + h * p0[k] / 3.0, b[k] - h * p1[k] / 3.0
+        off2 += (out[2, k] - (a[k] + 6.0 * c1 + 3.0 * c2) / 10.0) ** 2
+        off3 += (out[3, k] - (3.0 * c1 + 6.0 * c2 + b[k]) / 10.0) ** 2
+    return ALLOWED * (np.sqrt(off2) + np.sqrt(off3))
+
+
+@njit(cache=True)
 def bernstein(h, q0, p0, u0, q1, p1, u1):
     """Bernstein control points (n, 6, 3) of every agent's quintic, its reach (n,) and its error allowance (n,).
 
     The reach bounds how far an agent gets from its first point. The allowance, which it includes, bounds how far the
     motion is from the quintic where the interval resolves it (see above).
     """
-    n, m = q0.shape
+    n = q0.shape[0]
     points, reach, allowance = np.zeros((n, 6, 3)), np.zeros(n), np.zeros(n)
     for i in range(n):
-        off2, off3 = 0.0, 0.0
-        for k in range(m):
-            a, b = q0[i, k], q1[i, k]
-            points[i, 0, k], points[i, 5, k] = a, b
-            points[i, 1, k], points[i, 4, k] = a + h * p0[i, k] / 5.0, b - h * p1[i, k] / 5.0
-            points[i, 2, k] = a + 2.0 * h * p0[i, k] / 5.0 + h * h * u0[i, k] / 20.0
-            points[i, 3, k] = b - 2.0 * h * p1[i, k] / 5.0 + h * h * u1[i, k] / 20.0
-            c1, c2 = a + h * p0[i, k] / 3.0, b - h * p1[i, k] / 3.0
-            off2 += (points[i, 2, k] - (a + 6.0 * c1 + 3.0 * c2) / 10.0) ** 2
-            off3 += (points[i, 3, k] - (3.0 * c1 + 6.0 * c2 + b) / 10.0) ** 2
-        allowance[i] = ALLOWED * (np.sqrt(off2) + np.sqrt(off3))
+        allowance[i] = quintic(h, q0[i], p0[i], u0[i], q1[i], p1[i], u1[i], points[i])
         reach[i] = reach_of(points[i]) + allowance[i]
     return points, reach, allowance
 

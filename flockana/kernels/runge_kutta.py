@@ -2,7 +2,7 @@
 
 A tableau is (A, C, E, P): row s of A has the weights of the step itself, so that stage s is the rate at its end; rows
 beyond it are stages of the interpolant alone. E has one row, the error estimate, or two, those of DOP853; P the
-interpolant, y(θ) = y + h Σ_jk P_jk θᵏ⁺¹ K_j.
+interpolant, y(θ) = y + h Σ_jk P_jk θᵏ⁺¹ K_j. The rate K_s is kept in row rows[s] of `rates`.
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ from flockana.kernels.verlet import kept_up
 _STRIP = 1024  # components at once: what is summed over the stages stays in the first-level cache
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def combine(y, h, weights, rates, count, out):
-    """y + h Σ weights_j rates_j over the first `count` rates."""
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)  # it allocates nothing: no reference is counted
+def combine(y, h, weights, rates, rows, count, out):
+    """y + h Σ weights_j K_j over the first `count` stages."""
     for begin in range(0, y.size, _STRIP):
         end = min(begin + _STRIP, y.size)
         total = out[begin:end]
         total[:] = 0.0
         for j in range(count):
             if weights[j] != 0.0:
-                rate, weight = rates[j, begin:end], weights[j]
+                rate, weight = rates[rows[j], begin:end], weights[j]
                 for k in range(end - begin):
                     total[k] += weight * rate[k]
         start = y[begin:end]
@@ -47,30 +47,35 @@ def frame_at(t, start, origin, drift):
 @njit(cache=True, error_model="numpy", nogil=True)
 def rate_of(t, y, f, system, pairs):
     """Write the rate of the vector y into f; returns the pairs, listed anew if need be."""
-    acts, _, numbers, panels, (n, m), view, _, reach, order, search = system
-    size = n * m
-    x, v, u = y[:size].reshape(n, m), y[size : 2 * size].reshape(n, m), f[size : 2 * size].reshape(n, m)
+    (n, m), view, reach = system[4], system[5], system[7]
     if reach[0] > 0.0:
-        pairs = kept_up(x, reach[0], reach[1], pairs, search)
-    first, second, count, _, _ = pairs
-    frame, power = frame_at(t, *view), 0.0
+        pairs = kept_up(y[: n * m].reshape(n, m), reach[0], reach[1], pairs, system[9])
+    _act(t, y, f, frame_at(t, *view), system, pairs[0], pairs[1], pairs[2])
+    return pairs
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def _act(t, y, f, frame, system, first, second, count):
+    """The rate of y into f, its pairs being listed."""
+    acts, _, numbers, panels, (n, m), _, _, _, order, _, terms = system
+    size, power = n * m, 0.0
+    x, v, u = y[:size].reshape(n, m), y[size : 2 * size].reshape(n, m), f[size : 2 * size].reshape(n, m)
     for k in range(size):
         f[k], f[size + k] = y[size + k], 0.0
-    for k in range(len(acts)):
+    for k in range(terms):
         power += acts[k](t, x, v, u, frame, numbers[k], panels[k], first, second, count, order)
     f[2 * size] = power
-    return pairs
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def energy_of(t, y, system, pairs):
     """H of a vector whose pairs are listed: potential energies, and the kinetic one in the law's frame."""
-    _, energies, numbers, panels, (n, m), view, moving, _, order, _ = system
+    _, energies, numbers, panels, (n, m), view, moving, _, order, _, terms = system
     x, v = y[: n * m].reshape(n, m), y[n * m : 2 * n * m].reshape(n, m)
     first, second, count, _, _ = pairs
     frame = frame_at(t, *view)
     total = 0.5 * squared_differences(v, column_means(v) if moving else -frame[1])
-    for k in range(len(energies)):
+    for k in range(terms):
         total += energies[k](t, x, v, frame, numbers[k], panels[k], first, second, count, order)
     return total
 
@@ -78,23 +83,23 @@ def energy_of(t, y, system, pairs):
 @njit(cache=True, error_model="numpy", nogil=True)
 def stages_of(t, h, y, rates, reached, trial, method, begin, end, system, pairs):
     """Stages `begin` to `end` of a step; `reached` is its end once the last stage of the step itself is through."""
-    a, c, stages = method
+    a, c, rows, stages = method
     for s in range(begin, end):
         into = reached if s == stages else trial
-        combine(y, h, a[s], rates, s, into)
-        pairs = rate_of(t + c[s] * h, into, rates[s], system, pairs)
+        combine(y, h, a[s], rates, rows, s, into)
+        pairs = rate_of(t + c[s] * h, into, rates[rows[s]], system, pairs)
     return pairs
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def interpolated(theta, h, y, rates, interpolant, trial):
+def interpolated(theta, h, y, rates, rows, interpolant, trial):
     """The vector at a share θ of the step."""
     count, powers = interpolant.shape
     weights = np.zeros(count)
     for j in range(count):
         for k in range(powers - 1, -1, -1):
             weights[j] = (weights[j] + interpolant[j, k]) * theta
-    combine(y, h, weights, rates, count, trial)
+    combine(y, h, weights, rates, rows, count, trial)
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
@@ -104,7 +109,7 @@ def allowed(k, size, floor):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def error_of(y, reached, h, estimates, rates, size, rtol, floor):
+def error_of(y, reached, h, estimates, rates, rows, size, rtol, floor):
     """The estimated error of a step over what is allowed, as scipy's solvers weigh it."""
     squares, stages, strip = np.zeros(2), estimates.shape[1], np.empty(_STRIP)
     for begin in range(0, y.size, _STRIP):
@@ -112,9 +117,10 @@ def error_of(y, reached, h, estimates, rates, size, rtol, floor):
         for row in range(estimates.shape[0]):
             strip[:] = 0.0
             for j in range(stages):
-                rate, weight = rates[j, begin:end], estimates[row, j]
-                for k in range(end - begin):
-                    strip[k] += weight * rate[k]
+                if estimates[row, j] != 0.0:
+                    rate, weight = rates[rows[j], begin:end], estimates[row, j]
+                    for k in range(end - begin):
+                        strip[k] += weight * rate[k]
             for k in range(begin, end):
                 scale = allowed(k, size, floor) + max(abs(y[k]), abs(reached[k])) * rtol
                 squares[row] += (strip[k - begin] / scale) ** 2

@@ -10,18 +10,21 @@ import numpy.typing as npt
 from numpy.polynomial import polynomial
 
 FloatArray = npt.NDArray[np.float64]
+IndexArray = npt.NDArray[np.int64]
 
 
 class Tableau(NamedTuple):
-    """A method: (A, C, E, P), the number of stages of a step, and the power of the error that a step goes with.
+    """A method: (A, C, E, P), where rates are kept, the stages of a step, and the power of the error that it goes with.
 
-    The power is 0 for a method of fixed steps.
+    The power is 0 for a method of fixed steps. Stage s is kept in row `rows[s]`: a rate that nothing reads again gives
+    its place to a later one, which at a million agents is a hundred megabytes.
     """
 
     a: FloatArray
     c: FloatArray
     estimates: FloatArray
     interpolant: FloatArray
+    rows: IndexArray
     stages: int
     exponent: float
 
@@ -45,7 +48,8 @@ def tableau(method: str) -> Tableau:
         a = np.zeros((5, 5))
         a[1, 0], a[2, 1], a[3, 2] = 0.5, 0.5, 1.0
         a[4, :4] = np.array([1.0, 2.0, 2.0, 1.0]) / 6.0
-        return Tableau(a, np.array([0.0, 0.5, 0.5, 1.0, 1.0]), np.zeros((1, 5)), np.zeros((5, 1)), 4, 0.0)
+        c, estimates, interpolant = np.array([0.0, 0.5, 0.5, 1.0, 1.0]), np.zeros((1, 5)), np.zeros((5, 1))
+        return Tableau(a, c, estimates, interpolant, _rows(a, estimates, interpolant), 4, 0.0)
     import scipy.integrate
 
     solver = getattr(scipy.integrate, method)
@@ -55,7 +59,9 @@ def tableau(method: str) -> Tableau:
     a = np.zeros((stages + 1, stages + 1))
     a[:stages, : solver.A.shape[1]], a[stages, :stages] = solver.A, solver.B
     exponent = -1.0 / (solver.error_estimator_order + 1)
-    return Tableau(a, np.append(solver.C, 1.0), solver.E[None].copy(), solver.P.copy(), stages, exponent)
+    estimates, interpolant = solver.E[None].copy(), solver.P.copy()
+    rows = _rows(a, estimates, interpolant)
+    return Tableau(a, np.append(solver.C, 1.0), estimates, interpolant, rows, stages, exponent)
 
 
 def _dop853(solver: Any) -> Tableau:
@@ -74,4 +80,21 @@ def _dop853(solver: Any) -> Tableau:
         interpolant[:, : len(power) - 1] += np.outer(row, power[1:])
     estimates = np.array([solver.E5, solver.E3])
     exponent = -1.0 / (solver.error_estimator_order + 1)
-    return Tableau(a, np.concatenate([solver.C, [1.0], solver.C_EXTRA]), estimates, interpolant, stages, exponent)
+    c, rows = np.concatenate([solver.C, [1.0], solver.C_EXTRA]), _rows(a, estimates, interpolant)
+    return Tableau(a, c, estimates, interpolant, rows, stages, exponent)
+
+
+def _rows(a: FloatArray, estimates: FloatArray, interpolant: FloatArray) -> IndexArray:
+    """A row for the rate of every stage, that of a stage whose rate was read for the last time if there is one."""
+    count, stages = len(a), estimates.shape[1] - 1
+    last = [int(np.flatnonzero(a[:, s]).max(initial=s)) for s in range(count)]
+    for s in range(stages + 1):
+        if estimates[:, s].any():
+            last[s] = max(last[s], stages + 1)  # the error is estimated before the interpolant's own stages
+    for s in (0, stages, *np.flatnonzero(interpolant.any(axis=1))):
+        last[s] = count
+    rows = list[int]()
+    for s in range(count):
+        taken = {rows[k] for k in range(s) if last[k] > s}
+        rows.append(min(set(range(count)) - taken))
+    return np.array(rows)

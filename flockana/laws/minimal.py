@@ -13,7 +13,7 @@ from flockana.base.checks import FloatArray, ensure_points
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.units import times
-from flockana.kernels.minimal import edge_forces, perceived_edges
+from flockana.kernels.minimal import edge_forces, perceived_edges, perceived_forces
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.edges import EdgeData, PerAgent, PerPair, per_agent, per_pair, weighed_edges
 from flockana.laws.law import Law
@@ -230,6 +230,12 @@ class MinimalFlocking(Law):
             Positions and velocities.
         """
         u = np.zeros_like(q)
+        if self.edges is None and isinstance(self.mu, float) and isinstance(self.sigma, float):
+            radius, shared = np.full(len(q), self.radius), self.spacing is None
+            spacing = self.spacing if self.beta is None else np.array(self.beta) * radius
+            spacing = np.full(len(q), 1.0 if spacing is None else spacing)
+            perceived_forces(q, p, radius, spacing, shared, self.mu, self.sigma, self.normalised, u)
+            return u, float("nan")
         dissipated = edge_forces(q, p, *self.edge_data(q), u)
         return u, -0.5 * dissipated if self.reciprocal else float("nan")
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import DOP853, RK23, RK45
 
-from flockana.kernels.runge_kutta import combine, interpolated
+from flockana.kernels.runge_kutta import combine, error_of, interpolated
 from flockana.kernels.tableaus import tableau
 
 ORDERS = {"DOP853": 8, "RK45": 5, "RK23": 3, "RK4": 4}
@@ -12,7 +12,7 @@ ORDERS = {"DOP853": 8, "RK45": 5, "RK23": 3, "RK4": 4}
 
 @pytest.mark.parametrize("method", ORDERS)
 def test_quadrature_conditions_up_to_the_order(method):
-    a, c, estimates, _, stages, _ = tableau(method)
+    a, c, estimates, _, _, stages, _ = tableau(method)
     np.testing.assert_allclose(a.sum(axis=1), c, atol=1e-14)
     weights = a[stages, : stages + 1]
     for power in range(ORDERS[method]):
@@ -27,14 +27,38 @@ def test_steps_errors_and_interpolants_are_those_of_scipy(solver):
     matrix, y0 = rng.normal(size=(4, 4)), rng.normal(size=4)
     theirs = solver(lambda t, y: matrix @ y + np.sin(t), 0.3, y0, 9.0, first_step=0.2, rtol=1e-1, atol=1e-1)
     theirs.step()
-    a, c, _, interpolant, stages, _ = tableau(solver.__name__)
-    h, rates, out = theirs.t - 0.3, np.zeros((len(a), 4)), np.empty(4)
+    a, c, estimates, interpolant, rows, stages, _ = tableau(solver.__name__)
+    h, rates, out = theirs.t - 0.3, np.full((rows.max() + 1, 4), np.nan), np.empty(4)
     for s in range(len(a)):
-        combine(y0, h, a[s], rates, s, out)
-        rates[s] = matrix @ out + np.sin(0.3 + c[s] * h)
+        combine(y0, h, a[s], rates, rows, s, out)
+        rates[rows[s]] = matrix @ out + np.sin(0.3 + c[s] * h)
         if s == stages:
             np.testing.assert_allclose(out, theirs.y, rtol=1e-14)
+            floor = (1e-1, 1e-1, 1e-1)
+            error = error_of(y0, out, h, estimates, rates, rows, 2, 1e-1, floor)
+            scale = 0.1 + np.maximum(abs(y0), abs(theirs.y)) * 0.1
+            own = theirs.K_extended if solver is DOP853 else theirs.K
+            expected = theirs._estimate_error_norm(own[: stages + 1], h, scale)
+            assert error == pytest.approx(expected, rel=1e-9)
     dense = theirs.dense_output()
     for theta in (0.1, 0.5, 0.93, 1.0):
-        interpolated(theta, h, y0, rates, interpolant, out)
+        interpolated(theta, h, y0, rates, rows, interpolant, out)
         np.testing.assert_allclose(out, dense(0.3 + theta * h), rtol=1e-13, atol=1e-14)
+
+
+def test_rates_that_nothing_reads_again_make_room():
+    for method, count in (("DOP853", 12), ("RK45", 6), ("RK23", 4), ("RK4", 4)):
+        rows = tableau(method).rows
+        assert rows.max() + 1 == count
+        assert (rows == rows[0]).sum() == 1  # the rate of the start is that of every step that is made again
+
+
+@pytest.mark.parametrize("method", ORDERS)
+def test_no_rate_is_written_over_before_it_was_read_for_the_last_time(method):
+    a, _, estimates, interpolant, rows, stages, _ = tableau(method)
+    held, error = {}, np.flatnonzero(estimates.any(axis=0))
+    for s in range(len(rows)):
+        read = np.concatenate([np.flatnonzero(a[s]), error if s == stages + 1 else []]).astype(int)
+        assert all(held[rows[k]] == k for k in read)
+        held[rows[s]] = s
+    assert all(held[rows[k]] == k for k in (0, stages, *np.flatnonzero(interpolant.any(axis=1))))

@@ -81,19 +81,30 @@ class Navigation(Term):
         return bend
 
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
+        x, v = np.ascontiguousarray(q), np.ascontiguousarray(p)
+        if self._straight is not None:
+            return float(kernel.follow(t, x, v, u, self._straight))
         target, (c1, c2) = np.array([*self.target.state(t), self.target.rate(t)]), self._gains
         still, own = np.zeros(q.shape[1]), np.arange(len(q), dtype=np.uint64)
-        x, v = np.ascontiguousarray(q), np.ascontiguousarray(p)
         return float(kernel.navigate(x, v, u, target, still, c1, c2, self.unit or 0.0, self.moving, own))
 
-    def compiled(self, m: int) -> TermKernel | None:  # noqa: D102
+    @cached_property
+    def _path(self) -> FloatArray | None:
+        """The numbers of `flockana.kernels.navigation`, of a target whose path has that form."""
         path = self.target.harmonic
         if path is None or not speaks_for(type(self.target), "harmonic", ("position", "rate", "state")):
             return None
         c1, c2 = self._gains
         head = [float(self.moving), self.unit or 0.0, c1.size, path.omega, path.factor]
-        numbers = np.concatenate([head, path.terms.ravel(), c1, c2])
-        return TermKernel(*kernel.compiled(), numbers, np.empty((0, 0)), 0.0)
+        return np.concatenate([head, path.terms.ravel(), c1, c2])
+
+    @cached_property
+    def _straight(self) -> FloatArray | None:
+        """The same of a target at rest or on a line, whose path compiled code has to the last bit."""
+        return None if self._path is None or self.target.harmonic.omega else self._path  # type: ignore[union-attr]
+
+    def compiled(self, m: int) -> TermKernel | None:  # noqa: D102
+        return None if self._path is None else TermKernel(*kernel.compiled(), self._path, np.empty((0, 0)), 0.0)
 
     def energy(self, t: float, q: FloatArray) -> float:  # noqa: D102
         x = moving_frame(q) if self.moving else q - self.target.state(t)[0]
