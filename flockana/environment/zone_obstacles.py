@@ -88,7 +88,9 @@ class SimplePolygon:
         signed: FloatArray = np.where(shapely.contains(self._shape, points), -distance, distance)
         return signed
 
-    def clearance_on_way(self, start: FloatArray, end: FloatArray) -> FloatArray:
+    def clearance_on_way(
+        self, start: FloatArray, end: FloatArray, ends: tuple[FloatArray, FloatArray] | None = None
+    ) -> FloatArray:
         """Lower bound of the signed distance along straight ways, exact outside the polygon, shape (N,).
 
         Where a way enters, the signed distance s changes by at most the way travelled: s >= (s_a + s_b − length)/2.
@@ -97,10 +99,13 @@ class SimplePolygon:
         ----------
         start, end : ndarray, shape (N, 2)
             Ends of the ways.
+        ends : tuple of ndarray, shapes (N,), optional
+            Signed distances of both, where they are known already.
         """
         import shapely
 
-        ways, ends = shapely.linestrings(np.stack([start, end], axis=1)), (self.clearance(start), self.clearance(end))
+        ways = shapely.linestrings(np.stack([start, end], axis=1))
+        ends = (self.clearance(start), self.clearance(end)) if ends is None else ends
         least = np.minimum(shapely.distance(ways, self._shape.boundary), np.minimum(*ends))
         deepest = 0.5 * (ends[0] + ends[1] - np.linalg.norm(end - start, axis=1))
         bound: FloatArray = np.where(shapely.intersects(ways, self._shape), np.minimum(least, deepest), least)

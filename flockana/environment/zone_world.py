@@ -7,6 +7,7 @@ from dataclasses import KW_ONLY, dataclass
 from typing import Any, ClassVar
 
 import numpy as np
+import numpy.typing as npt
 
 from flockana.base.checks import FloatArray, ensure_positive, ensure_vector
 from flockana.base.errors import ArgumentError
@@ -159,21 +160,28 @@ class ZoneWorld:
         least: FloatArray = np.min([o.clearance(q) for o in self.obstacles] or [np.full(len(q), np.inf)], axis=0)
         return least
 
-    def clearance_on_way(self, start: FloatArray, end: FloatArray) -> FloatArray:
-        """Lower bound of the signed distance from all obstacles along straight ways, exact outside them, shape (N,).
+    def clearances(self, q: FloatArray, taken: npt.NDArray[np.int64]) -> tuple[FloatArray, FloatArray]:
+        """Signed distance from all obstacles at samples, and its lower bound on straight ways between some of them.
+
+        Each obstacle is measured once at each sample. The bound is exact outside the obstacles. Shapes (T, n), (K, n).
 
         Parameters
         ----------
-        start, end : ndarray, shape (N, m)
-            Ends of the ways.
+        q : ndarray, shape (T, n, m)
+            Positions at the samples.
+        taken : ndarray of int, shape (K,)
+            Samples from which a way leads to the next one.
         """
-        bounds = [np.full(len(start), np.inf)]
+        flat, start, end = (x.reshape(-1, q.shape[2]) for x in (q, q[taken], q[taken + 1]))
+        at, on_way = np.full(q.shape[:2], np.inf), np.full((len(taken), q.shape[1]), np.inf)
         for o in self.obstacles:
+            found = o.clearance(flat).reshape(at.shape)
             if isinstance(o, Sphere):
-                bounds.append(ball_clearance_on_way(o, start, end))
+                bound = ball_clearance_on_way(o, start, end)
             else:
-                bounds.append(o.clearance_on_way(start, end))
-        return np.min(bounds, axis=0)  # type: ignore[no-any-return]
+                bound = o.clearance_on_way(start, end, (found[taken].ravel(), found[taken + 1].ravel()))
+            at, on_way = np.minimum(at, found), np.minimum(on_way, bound.reshape(on_way.shape))
+        return at, on_way
 
     def check_start(self, q: FloatArray) -> None:
         """Raise if an agent begins outside the box, in an obstacle, or at an alien.

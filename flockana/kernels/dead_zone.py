@@ -1,4 +1,4 @@
-"""The dead-zone pair law as scalar functions of the distance ρ, and its sums with every pair held in its zone.
+"""The dead-zone pair law as scalar functions of the distance ρ, its sums with every pair held in its zone, its steps.
 
 Parameters are a vector of float64 whose places have the names below: INNER is ψ where the inner ramp begins, OUTER
 where the outer one ends. Zones of a pair: 0 repulsion, 1 dead zone, 2 attraction, 3 out of range. Without a ramp the
@@ -16,6 +16,7 @@ from flockana.kernels.compiling import njit, register_jitable
 from flockana.kernels.scalars import on_panels
 
 REPULSION, DEAD, ATTRACTION, OUT = 0, 1, 2, 3
+_AHEAD = 30.0  # steps that a list is made for, at the speeds of its time
 ETA, K_R, K_DELTA, K_1, D_1, D_2, R, R_D, RAMP, INNER, OUTER = range(11)
 
 
@@ -205,47 +206,57 @@ def zone_forces(q, p, zone, par, c2, u):
     return total
 
 
-# rows of pairs are loops over arrays without branches, which the compiler turns into vector instructions: no check for
-# a zero divisor stands in its way. The order of every sum is written down, so that all processors give the same bits.
+# Loops over arrays without branches become vector instructions: no check for a zero divisor stands in their way. The
+# order of every sum is written down, so that all processors give the same bits, and so does every list that is kept.
 @njit(cache=True, error_model="numpy")
 def semi_implicit_steps(q, p, par, c2, dt, steps):
-    """`steps` semi-implicit Euler steps of the law: q, p after each of them and the u that was applied."""
+    """`steps` semi-implicit Euler steps of the law: q, p after each of them and the u that was applied.
+
+    Neighbours pull by k₁ and c₂ alone where nothing else acts, which is a sum over a table of who is in range. Pairs
+    that may act otherwise, or come into range, are listed with a skin: the list holds until somebody has moved by half
+    of it, seen from the centre.
+    """
     n, m = q.shape
     all_q, all_p, all_u = np.empty((steps, n, m)), np.empty((steps, n, m)), np.empty((steps, n, m))
-    x, v, u = q.T.copy(), p.T.copy(), np.empty((m, n))
-    s2, w, a, f = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
-    r = par[R]
-    held = (
-        par[0],
-        par[1],
-        par[2],
-        par[3],
-        par[4],
-        par[5],
-        par[6],
-        par[7],
-        par[8],
-    )  # in registers
+    x, v, u, z = q.T.copy(), p.T.copy(), np.empty((m, n)), np.zeros((m, n + 3))
+    near, then, skin, kept = np.zeros((n + 3, n), np.uint8), np.full((m, n), inf), 0.0, 0
+    most = n * (n - 1) // 2
+    first, second, inside = np.empty(most, np.int32), np.empty(most, np.int32), np.empty(most, np.uint8)
+    s2, w, d = np.empty(most), np.empty(most), np.empty((m, most))
+    r, k_1 = par[R], par[K_1]
+    held = (par[0], par[1], par[2], 0.0, par[4], par[5], par[6], par[7], par[8])  # without k₁, in registers
     for step in range(steps):
-        u[:] = 0.0
-        for i in range(n):
-            others = n - i - 1
-            s2[:] = 0.0
+        if not _moved(x, then) <= 0.5 * skin:
+            skin = 1e-3 * r + _AHEAD * dt * _moved(v, np.zeros((m, n)))
+            kept = _listed(x, par, skin, near, first, second, inside)
+            then[:] = x
+        for k in range(kept):
+            total = 0.0
             for c in range(m):
-                x_i, x_j = x[c, i], x[c, i + 1 :]
-                for j in range(others):
-                    d = x_j[j] - x_i
-                    s2[j] += d * d
-            for j in range(others):
-                pull, near = pair_dead_zone(s2[j], held)[0], sqrt(s2[j]) < r
-                w[j] = pull if near else 0.0
-                a[j] = c2 if near else 0.0
-            for c in range(m):
-                x_i, x_j, v_i, v_j, u_j = x[c, i], x[c, i + 1 :], v[c, i], v[c, i + 1 :], u[c, i + 1 :]
-                for j in range(others):
-                    f[j] = w[j] * (x_j[j] - x_i) + a[j] * (v_j[j] - v_i)
-                    u_j[j] -= f[j]
-                u[c, i] += _total(f, others)
+                d[c, k] = x[c, second[k]] - x[c, first[k]]
+                total += d[c, k] * d[c, k]
+            s2[k] = total
+        for k in range(kept):
+            w[k] = pair_dead_zone(s2[k], held)[0] if sqrt(s2[k]) < r else 0.0
+        for k in range(kept):
+            if (sqrt(s2[k]) < r) != (inside[k] == 1):
+                inside[k] = 1 - inside[k]
+                near[first[k], second[k]] = near[second[k], first[k]] = inside[k]
+        for c in range(m):
+            for i in range(n):
+                z[c, i], u[c, i] = k_1 * x[c, i] + c2 * v[c, i], 0.0
+            z_c, u_c = z[c], u[c]
+            for j in range(0, n, 4):
+                a_0, a_1, a_2, a_3 = near[j], near[j + 1], near[j + 2], near[j + 3]
+                z_0, z_1, z_2, z_3 = z_c[j], z_c[j + 1], z_c[j + 2], z_c[j + 3]
+                for i in range(n):
+                    z_i = z_c[i]
+                    first_two = a_0[i] * (z_0 - z_i) + a_1[i] * (z_1 - z_i)
+                    u_c[i] += first_two + (a_2[i] * (z_2 - z_i) + a_3[i] * (z_3 - z_i))
+            for k in range(kept):
+                f = w[k] * d[c, k]
+                u_c[first[k]] += f
+                u_c[second[k]] -= f
         for i in range(n):
             for c in range(m):
                 v[c, i] += dt * u[c, i]
@@ -254,20 +265,37 @@ def semi_implicit_steps(q, p, par, c2, dt, steps):
     return all_q, all_p, all_u
 
 
-@njit(cache=True, inline="always")
-def _total(f, size):
-    """Sum of the first terms in eight interleaved sums: fast, and in one order whatever the processor."""
-    t0, t1, t2, t3, t4, t5, t6, t7 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    whole = size - size % 8
-    for k in range(0, whole, 8):
-        t0 += f[k]
-        t1 += f[k + 1]
-        t2 += f[k + 2]
-        t3 += f[k + 3]
-        t4 += f[k + 4]
-        t5 += f[k + 5]
-        t6 += f[k + 6]
-        t7 += f[k + 7]
-    for k in range(whole, size):
-        t0 += f[k]
-    return ((t0 + t4) + (t2 + t6)) + ((t1 + t5) + (t3 + t7))
+@njit(cache=True)
+def _moved(x, then):
+    """The largest change of a place, less the mean change: at least that of a pair's distance, halved."""
+    m, n = x.shape
+    most = np.zeros(n)
+    for c in range(m):
+        mean = 0.0
+        for i in range(n):
+            mean += (x[c, i] - then[c, i]) / n
+        for i in range(n):
+            most[i] += (x[c, i] - then[c, i] - mean) ** 2
+    largest = 0.0
+    for i in range(n):
+        largest = most[i] if not most[i] <= largest else largest  # NaN is the largest
+    return sqrt(largest)
+
+
+@njit(cache=True)
+def _listed(x, par, skin, near, first, second, inside):
+    """List pairs within a skin of where they act by more than k₁ or come into range; who is in range goes to `near`."""
+    m, n = x.shape
+    low, high, r = par[D_1] + skin, min(par[D_2], par[R]) - skin, par[R]
+    kept = 0
+    for i in range(n):
+        for j in range(i + 1, n):
+            s2 = 0.0
+            for c in range(m):
+                s2 += (x[c, j] - x[c, i]) ** 2
+            s = sqrt(s2)
+            near[i, j] = near[j, i] = s < r
+            if not low <= s <= high and not s >= r + skin:
+                first[kept], second[kept], inside[kept] = i, j, near[i, j]
+                kept += 1
+    return kept

@@ -315,12 +315,11 @@ class ZoneFlocking(DiscreteLaw):
 
     def _clearances(self, t: FloatArray, q: FloatArray) -> dict[str, tuple[str, FloatArray]]:
         """Clearance at the samples, and its bound on the straight way from each sample to the next."""
-        n, m = q.shape[1:]
-        at = self.world.clearance(q.reshape(-1, m)).reshape(-1, n).min(axis=1)
-        on_way = np.append(at[:1], np.full(len(t) - 1, np.nan))
         taken = np.flatnonzero(np.diff(t) < 1.5 * self.dt)  # between samples further apart the way is not known
-        ways = self.world.clearance_on_way(q[taken].reshape(-1, m), q[taken + 1].reshape(-1, m))
-        on_way[taken + 1] = ways.reshape(-1, n).min(axis=1)
+        every, ways = self.world.clearances(q, taken)
+        at = every.min(axis=1)
+        on_way = np.append(at[:1], np.full(len(t) - 1, np.nan))
+        on_way[taken + 1] = ways.min(axis=1)
         return {
             "obstacle_clearance": ("least distance from an obstacle, negative inside", at),
             "obstacle_clearance_bound": ("lower bound of it on the way to the sample", on_way),

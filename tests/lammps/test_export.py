@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import flockana as fl
+from benchmarks import engines
 from flockana.base.errors import ArgumentError, FileError
 from flockana.lammps.script import nearest_weight
 from flockana.lattice import hexagonal_spiral
@@ -214,3 +215,32 @@ def test_a_folder_that_is_a_file_is_refused(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(FileError, match=r"cannot make .*choose another folder"):
         fl.export_lammps(fl.Algorithm1(), *start(), (0.0, 1.0), tmp_path / "file")
+
+
+def in_lammps(folder, law, **options):
+    """Force residual at the end of a run of LAMMPS itself, and how far agents are from where the law takes them."""
+    rng = np.random.default_rng(0)
+    grid = np.stack(np.meshgrid(np.arange(4), np.arange(4)), axis=-1).reshape(-1, 2)
+    q, p = 7.0 * grid + rng.normal(0.0, 0.2, (16, 2)), rng.normal(0.0, 0.5, (16, 2))
+    fl.export_lammps(law, q, p, (0.0, 0.5), folder, samples=20, **options)
+    engine = engines.lammps()
+    engine.command(f"shell cd {folder}")
+    engine.file("in.flock")
+    engine.close()
+    run = fl.read_lammps(folder / "flock.dump", law)
+    own = fl.simulate(law, q, p, (0.0, 0.5), t_eval=run.t, rtol=1e-9)
+    return float(run.extra["force_residual"].max()), float(np.abs(run.q - own.q).max())
+
+
+def test_lammps_itself_runs_the_script_and_the_residual_says_what_is_missing(tmp_path):
+    """A consensus left out shows, the nearest style less; an exact one is off by the step alone, in first order."""
+    pytest.importorskip("lammps")
+    missing = in_lammps(tmp_path / "missing", fl.Algorithm1())
+    nearest = in_lammps(tmp_path / "nearest", fl.Algorithm1(), consensus="nearest")
+    assert 0.1 < missing[0] < 1.0
+    assert nearest[0] < 0.9 * missing[0]
+    assert nearest[1] < 0.5 * missing[1]
+    law = fl.DeadZoneFlocking(fl.DeadZoneInteraction(ramp=0.25))
+    exact = [in_lammps(tmp_path / str(dt), law, dt=dt) for dt in (0.005, 0.0025)]
+    assert exact[1][0] < 0.03
+    assert [a / b for a, b in zip(*exact, strict=True)] == pytest.approx([2.0, 2.0], rel=0.15)
