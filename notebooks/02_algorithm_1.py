@@ -18,8 +18,9 @@
 #
 # Algorithm 1 of Olfati-Saber (2006, section IV) is a gradient term and a consensus term,
 #
-# $$u_i = c_1 \sum_{j\in N_i} \phi_\alpha(\|q_j-q_i\|_\sigma)\,n_{ij} + c_2 \sum_{j\in N_i} a_{ij}(q)(p_j-p_i)
-#   \quad\Longleftrightarrow\quad \dot p = -c_1\nabla V(q) - c_2 \hat L(q)\,p.$$
+# $$u_i = c_1^\alpha \sum_{j\in N_i} \phi_\alpha(\|q_j-q_i\|_\sigma)\,n_{ij}
+#   + c_2^\alpha \sum_{j\in N_i} a_{ij}(q)(p_j-p_i)
+#   \quad\Longleftrightarrow\quad \dot p = -c_1^\alpha\nabla V(q) - c_2^\alpha \hat L(q)\,p.$$
 #
 # ## The energy identity, derived
 #
@@ -37,8 +38,8 @@ print("residual of dH/dt + c2 pᵀL̂p:", identity.residual)
 identity
 
 # %% [markdown]
-# With $H = V + \sum\|p_i\|^2$, as a set of lecture slides prints it, a term without sign remains (erratum E1), and at
-# some states this $H$ rises:
+# So $H = c_1^\alpha V + \tfrac12\sum\|p_i\|^2$ falls. With $\sum\|p_i\|^2$ in the place of its half, as a set of
+# lecture slides prints it, a term without sign remains (erratum E1), and at some states this $H$ rises:
 
 # %%
 print(symbolic.e1_identity(m=2).residual)
@@ -92,20 +93,30 @@ _ = plots.phase_portrait(
 # ## A student project's two films
 #
 # A course project (see `fl.cite(fl.scenario("notebook-algorithm1"))`) animates 27 agents under Algorithm 1 and 35 under
-# Algorithm 2. Here they are, three lines each:
+# Algorithm 2, which adds a γ-agent (lecture 3). The first:
 
 # %%
 film = fl.scenario("notebook-algorithm1").run().animate(seconds=4, fps=10)
 film
 
+# %% [markdown]
+# In the second the agents take on the γ-agent's velocity, but leave its place (the cross), and the flock splits.
+# Neither is an error of the film: the project sets $c_1^\gamma = 0$, so the place of the γ-agent is not in the law at
+# all, and nothing holds the flock together. Cohesion, in the next lecture, needs $c_1^\gamma > 0$.
+
 # %%
 film = fl.scenario("notebook-algorithm2").run().animate(seconds=4, fps=10)
 film
 
+# %% tags=["facts"]
+left = fl.scenario("notebook-algorithm2").run()
+assert left.law.gains.c1_gamma == 0.0
+assert left.metrics().connectivity[-1] < 1.0  # it splits
+
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** In how many components does `run` end?
+# **1.** ★ (1 point) In how many components does `run` end? (A whole number.)
 
 # %% tags=["answer"]
 components = ...
@@ -118,8 +129,9 @@ components = len(set(labels))
 grade(components, 24, hint="fl.components(n, links) labels every agent, fl.links(q, r) finds the links")
 
 # %% [markdown] tags=["exercise"]
-# **2.** From which start at rest, closer than $d$, does the pair of `law` just escape if there is no damping? Give the
-# distance to three digits. (At rest $H = \psi_\alpha$, and escape needs $\psi_\alpha(r_\alpha)$.)
+# **2.** ★★ (2 points) From which start at rest, closer than $d$, does the pair of `law` just escape if there is no
+# damping? Give the distance to four significant digits. (At rest $H = \psi_\alpha$, and escape needs
+# $\psi_\alpha(r_\alpha)$.)
 
 # %% tags=["answer"]
 start = ...
@@ -131,11 +143,11 @@ psi = law.alpha.psi_alpha
 start = brentq(lambda s: psi(law.alpha.sigma_norm(s)) - psi(law.alpha.r_alpha), 5.0, 7.0)
 
 # %% tags=["check"]
-grade(start, 6.568, rtol=5e-4, hint="solve ψ_α(‖s‖_σ) = ψ_α(r_α) below d")
+grade(start, 6.567645, digits=4, hint="brentq; ψ_α takes a σ-norm, and escape is at r_α")
 
 # %% [markdown] tags=["exercise"]
-# **3.** The momentum $\sum p_i$ of Algorithm 1 is conserved, because each pair acts equally and oppositely. By how much
-# does it change in `run`, relative to $\sum \|p_i(0)\|$? Is that above $10^{-10}$?
+# **3.** ★★ (2 points) The momentum $\sum p_i$ of Algorithm 1 is conserved, because each pair acts equally and
+# oppositely. By how much does it change in `run`, relative to $\sum \|p_i(0)\|$? Is that above $10^{-10}$?
 
 # %% tags=["answer"]
 above = ...

@@ -52,12 +52,23 @@ plots.defect_map(end, net, lattice.coordination(len(end), net), strain=length / 
 print(f"largest strain {lattice.strain(end, d, r):.3f}, crossings {len(lattice.crossings(end, net))}")
 
 # %% [markdown]
-# Theorem 5 is about lattices, so on this state most of it is vacuous. An extension is not: **if all pairs are farther
-# apart than $r/\sqrt2$, no two links cross**, lattice or not. (Two crossing links are the diagonals of a convex
-# quadrilateral, one of whose sides is at most $1/\sqrt2$ of the longer diagonal.)
+# Theorem 5 is about lattices, and this state is none: what it says is vacuous here. An extension needs no lattice: **if
+# all pairs are farther apart than $r/\sqrt2$, no two links cross**. (Two crossing links are the diagonals of a convex
+# quadrilateral, one of whose sides is at most $1/\sqrt2$ of the longer diagonal.) It is vacuous too, `extension` below,
+# because the closest pair is a little nearer than $r/\sqrt2$. But the argument bounds that side by the links that there
+# are, not by the range: with $\ell$ the longest link, pairs farther apart than $\ell/\sqrt2$ suffice. That holds here
+# (`extension-lengths`).
 
 # %%
 print(fl.verify("os-5", q=end, d=d, r=r))
+
+# %% tags=["facts"]
+said = fl.verify("os-5", q=end, d=d, r=r)
+assert [said.claim(name).status for name in ("i", "extension", "extension-lengths")] == [
+    "vacuous",
+    "vacuous",
+    "verified",
+]
 
 # %% [markdown]
 # ## In space, planarity fails
@@ -86,7 +97,7 @@ print(lattice.rigidity(q, pairs))
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** How many links can an α-lattice of 100 agents in the plane have at most?
+# **1.** ★ (1 point) How many links can an α-lattice of 100 agents in the plane have at most? (A whole number.)
 
 # %% tags=["answer"]
 most = ...
@@ -95,11 +106,11 @@ most = ...
 most = lattice.harborth(100)
 
 # %% tags=["check"]
-grade(most, 265, hint="⌊3n − √(12n − 3)⌋")
+grade(most, 265, hint="Harborth's number, not 3n − 6")
 
 # %% [markdown] tags=["exercise"]
-# **2.** For $r = 1.2\,d$, at what least distance between any two agents does the extension guarantee that no links
-# cross? Give it as a multiple of $d$.
+# **2.** ★ (1 point) For $r = 1.2\,d$, at what least distance between any two agents does the extension guarantee that
+# no links cross? Give it as a multiple of $d$, to three significant digits.
 
 # %% tags=["answer"]
 safe = ...
@@ -108,11 +119,11 @@ safe = ...
 safe = 1.2 / np.sqrt(2)
 
 # %% tags=["check"]
-grade(safe, 0.848528, rtol=1e-3, hint="r/√2")
+grade(safe, 0.848528, digits=3, hint="the extension is stated for r; put in what r is")
 
 # %% [markdown] tags=["exercise"]
-# **3.** Build thirteen agents: an FCC site with its twelve nearest neighbours, as an array `thirteen` of shape (13, 3)
-# with scale $d = 7$. More than $3n - 6 = 33$ links are possible in space.
+# **3.** ★★ (2 points) Build thirteen agents: an FCC site with its twelve nearest neighbours, as an array `thirteen` of
+# shape (13, 3) with scale $d = 7$. More than $3n - 6 = 33$ links are possible in space.
 
 # %% tags=["answer"]
 thirteen = ...
@@ -125,12 +136,13 @@ print(len(lattice.links(thirteen, r)), "links")
 # %% tags=["check"]
 grade(
     thirteen,
-    lambda x: np.shape(x) == (13, 3) and lattice.is_alpha_lattice(x, d, r) and len(lattice.links(x, r)) == 36,
-    hint="sites of even coordinate sum, times d/√2; 36 links",
+    lambda x: np.shape(x) == (13, 3) and lattice.is_alpha_lattice(x, 7.0, 8.4) and len(lattice.links(x, 8.4)) == 36,
+    form="list",
+    hint="every agent of the shell has the centre and four of the shell as neighbours",
 )
 
 # %% [markdown] tags=["exercise"]
-# **4.** Theorem 5 bounds the links of 2 agents by $3n - 6$. Is that right?
+# **4.** ★ (1 point) Theorem 5 bounds the links of 2 agents by $3n - 6$. Is that right? (`True` or `False`.)
 
 # %% tags=["answer"]
 bound_holds_for_two = ...

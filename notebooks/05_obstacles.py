@@ -75,8 +75,9 @@ plots.energy(trapped, ax=axes[1])
 _ = plots.energy_residual(trapped, ax=axes[2])
 
 # %% [markdown]
-# Nothing in the theorem says that the flock *arrives*: the obstacle holds some agents back for good, at rest, and the
-# energy is content. A moving γ-agent feeds energy in, and the theorem is vacuous:
+# Nothing in the theorem says that the flock *arrives*: the obstacle holds some agents back for good. They are at rest,
+# so the energy no longer changes, which is all that the theorem speaks of. A moving γ-agent feeds energy in, and the
+# theorem is vacuous:
 
 # %%
 print(fl.verify("os-6", run).status)
@@ -86,8 +87,8 @@ _ = plots.energy(run, ax=ax)
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** An agent moves past a sphere of radius 2 at the origin: it is at $(4, 0)$ with velocity $(0, 3)$. How fast is
-# its β-agent?
+# **1.** ★ (1 point) An agent moves past a sphere of radius 2 at the origin: it is at $(4, 0)$ with velocity $(0, 3)$.
+# How fast is its β-agent? (Exactly.)
 
 # %% tags=["answer"]
 speed = ...
@@ -96,11 +97,11 @@ speed = ...
 speed = 2 / 4 * 3  # μ P p, and P p = p here
 
 # %% tags=["check"]
-grade(speed, 1.5, hint="p̂ = μ P p")
+grade(speed, 1.5, hint="which part of the velocity does P keep?")
 
 # %% [markdown] tags=["exercise"]
-# **2.** Let `run` start with twice the velocity of the γ-agent (10 along x). What is the least clearance that it
-# reaches?
+# **2.** ★★ (2 points) Let `run` start with twice the velocity of the γ-agent (10 along x). What is the least clearance
+# that it reaches, to three significant digits?
 
 # %% tags=["answer"]
 reached = ...
@@ -110,22 +111,29 @@ fast = fl.simulate(law, start, np.tile([10.0, 0.0], (len(start), 1)), (0.0, 50.0
 reached = fast.clearance().reached
 
 # %% tags=["check"]
-grade(
-    reached,
-    fl.simulate(law, start, np.tile([10.0, 0.0], (len(start), 1)), (0.0, 50.0)).clearance().reached,
-    rtol=1e-3,
-    hint="run it with another p0, then .clearance().reached",
-)
+grade(reached, 4.12186, digits=3, hint="run it with another p0, and ask that run for its clearance")
 
 # %% [markdown] tags=["exercise"]
-# **3.** A γ-agent at rest reports $p_d = (1, 0)$. All agents are at rest. Does Theorem 6 promise that the energy falls
-# right now?
+# **3.** ★★★ (3 points) A γ-agent that stays at the origin reports $p_d = (1, 0)$. One agent is at rest at the origin;
+# $c_1^\gamma = 1$, $c_2^\gamma = 2$, no obstacle. Put $p = 0$ into $\dot H$: it is 0, and the condition $\tfrac
+# n2\langle p_c, p_d\rangle \le T$ holds, with equality. Does the energy stay? Compute $\ddot H$ at this instant,
+# exactly. (Then run it, and read what `os-6` says and why.)
 
 # %% tags=["answer"]
-promised = ...
+curvature = ...
 
 # %% tags=["solution"]
-promised = True  # (n/2)⟨p_c, p_d⟩ = 0 ≤ T = 0: the condition holds, with equality, at this instant
+lone = fl.Algorithm3(gains=fl.Gains(c1_gamma=1.0, c2_gamma=2.0), target=fl.StaticTarget((0.0, 0.0), p=(1.0, 0.0)))
+pushed = fl.simulate(lone, [[0.0, 0.0]], [[0.0, 0.0]], (0.0, 3.0))
+print(fl.verify("os-6", pushed))
+# dH/dt = −c2γ (‖p‖² − ⟨p, p_d⟩), and p grows from 0 at the rate u = c2γ p_d: H rises, and the condition fails at once
+curvature = 2.0 * 2.0 * 1.0
+
+# %% tags=["facts"]
+assert fl.verify("os-6", pushed).status == "vacuous"
+assert fl.verify("os-6", run).status == "vacuous"
+first = fl.simulate(lone, [[0.0, 0.0]], [[0.0, 0.0]], (0.0, 1e-3)).energy()[-1]
+assert abs(2.0 * first / 1e-3**2 - curvature) < 0.02 * curvature  # H rises as ½ Ḧ t²
 
 # %% tags=["check"]
-grade(promised, True, hint="put p = 0 into the condition; 'does not rise' is what is promised")
+grade(curvature, 4.0, hint="differentiate the third term of dH/dt; at rest only the part linear in p counts")

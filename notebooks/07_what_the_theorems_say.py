@@ -94,7 +94,8 @@ for name in fl.theorems():
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** With $a = b = 1$ instead of 5 (all else equal), from which $n$ on does no state have $V < c^*$?
+# **1.** ★★ (2 points) With $a = b = 1$ instead of 5 (all else equal), from which $n$ on does no state have $V < c^*$?
+# (A whole number.)
 
 # %% tags=["answer"]
 n_none = ...
@@ -103,15 +104,11 @@ n_none = ...
 n_none = none_from(fl.AlphaInteraction(a=1.0, b=1.0))
 
 # %% tags=["check"]
-grade(
-    n_none,
-    none_from(fl.AlphaInteraction(a=1.0, b=1.0)),
-    hint="none_from(AlphaInteraction(...)): think before you run it",
-)
+grade(n_none, 23, hint="how do V and c* change when a = b does?")
 
 # %% [markdown] tags=["exercise"]
-# **2.** Erratum E9: a constant input $u = 2$ for one step $\Delta t = 0.1$ from rest. How far does the printed update
-# move the agent?
+# **2.** ★ (1 point) Erratum E9: a constant input $u = 2$ for one step $\Delta t = 0.1$ from rest. How far does the
+# printed update move the agent, exactly?
 
 # %% tags=["answer"]
 moved = ...
@@ -121,11 +118,11 @@ u, dt = 2.0, 0.1
 moved = (u * dt) * dt + 0.5 * u * dt**2
 
 # %% tags=["check"]
-grade(moved, 0.03, hint="p + v_new dt + ½ u dt²")
+grade(moved, 0.03, hint="the printed update uses the new velocity, and adds ½ u dt² to it")
 
 # %% [markdown] tags=["exercise"]
-# **3.** A run of `paper-flocking` keeps all agents apart. What is the status of claim `iv-none` of `os-3` on it, and
-# why?
+# **3.** ★ (1 point) A run of `paper-flocking` keeps all agents apart. What is the status of claim `iv-none` of `os-3`
+# on it (one word), and why?
 
 # %% tags=["answer"]
 status = ...

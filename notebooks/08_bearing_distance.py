@@ -21,9 +21,10 @@
 # step,
 #
 # $$u_i = u_i^{lc} + u_i^{la} + u_i^{ls} + u_i^{ss} + u_i^{oa} + u_i^{ga}, \qquad
-#   v_i \leftarrow v_i + \delta\, u_i, \qquad p_i \leftarrow p_i + \delta\, v_i ,$$
+#   p_i \leftarrow p_i + \delta\, u_i, \qquad q_i \leftarrow q_i + \delta\, p_i ,$$
 #
-# with cohesion, alignment, separation (local and strategic), obstacle avoidance and global speed.
+# with cohesion, alignment, separation (local and strategic), obstacle avoidance and global speed. As in all lectures
+# $q$ is a position and $p$ a velocity; the paper writes $p$ and $v$.
 
 # %%
 import numpy as np
@@ -53,8 +54,8 @@ for ax, case, t in zip(axes, ("zone-gap", "zone-gap", "zone-gap-buffer"), (4.0, 
 # %% [markdown]
 # ## Two forms, and where they part
 #
-# From a bearing $b_{ij}$ and a distance $d_{ij}$ an agent knows $p_j - p_i = d\,b$, and from their rates
-# $v_j - v_i = d\,\dot b + \dot d\,b$ (13). So each behaviour has a form without positions:
+# From a bearing $b_{ij}$ and a distance $d_{ij}$ an agent knows $q_j - q_i = d\,b$, and from their rates
+# $p_j - p_i = d\,\dot b + \dot d\,b$ (13). So each behaviour has a form without positions:
 
 # %%
 print("both forms agree:", bearing_distance.derive_equivalence().holds)
@@ -84,7 +85,7 @@ print(f"mean error of the estimate after 1, 5 and 20 s: {off[10]:.2f}, {off[50]:
 # %% [markdown]
 # ## A bound that is a drag
 #
-# To keep $\|v\| \le v^{\max} = 4$ the paper sets $v \leftarrow v^{\max}\tanh(\|v\|/v^{\max})\, v/\|v\|$ in *every* step
+# To keep $\|p\| \le v^{\max} = 4$ the paper sets $p \leftarrow v^{\max}\tanh(\|p\|/v^{\max})\, p/\|p\|$ in *every* step
 # (10). That shortens a velocity of 3, far from the bound, too (erratum J7). Against full thrust $u^{\max} = 2$ it holds
 # the speed below a fixed point:
 
@@ -102,7 +103,7 @@ for ax, run, title in zip(axes, (printed, clipped), ("as printed", "as recommend
 # ## The theorem
 #
 # For its analysis the paper reduces the law to springs and alignment along the edges of a perception graph
-# (`MinimalFlocking`). With $x_e = p_j - p_i$ on edge $e = (j, i)$, by which $i$ perceives $j$, and a desired length
+# (`MinimalFlocking`). With $x_e = q_j - q_i$ on edge $e = (j, i)$, by which $i$ perceives $j$, and a desired length
 # $\rho$:
 #
 # > **Theorem 1** (as printed, in our words). If the graph is a spanning tree, then $x \to 0$ and $\dot x \to 0$ from
@@ -168,7 +169,8 @@ _ = plots.pole_map(found.eigenvalues, ax=ax)
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** Halve the step to $\delta = 0.05$. Which speed can the printed bound (10) not exceed for long now?
+# **1.** ★ (1 point) Halve the step to $\delta = 0.05$. Which speed can the printed bound (10) not exceed for long now?
+# (Four significant digits.)
 
 # %% tags=["answer"]
 fastest = ...
@@ -177,11 +179,11 @@ fastest = ...
 fastest = float(bearing_distance.fastest_under_drag(0.05, 2, 4))
 
 # %% tags=["check"]
-grade(fastest, 1.628, rtol=1e-3, hint="bearing_distance.fastest_under_drag(step, force, bound)")
+grade(fastest, 1.62779186, digits=4, hint="the speed at which one step gains as much as the bound takes")
 
 # %% [markdown] tags=["exercise"]
-# **2.** Two agents: 1 perceives 0 and wants to be 1 away, both at rest, 0.5 apart. What is the acceleration of agent 1
-# along the line from 0 to 1 ($\mu = 1$)?
+# **2.** ★ (1 point) Two agents: 1 perceives 0 and wants to be 1 away, both at rest, 0.5 apart. What is the acceleration
+# of agent 1 along the line from 0 to 1 ($\mu = 1$)? (Exactly.)
 
 # %% tags=["answer"]
 push = ...
@@ -191,11 +193,11 @@ pair = MinimalFlocking(edges=[(0, 1)], spacing=1.0)
 push = float(pair.acceleration(0.0, [[0.0], [0.5]], [[0.0], [0.0]])[1, 0])
 
 # %% tags=["check"]
-grade(push, 0.5, hint="μ (1 − ρ/‖x‖)(p_0 − p_1)")
+grade(push, 0.5, hint="a spring that is too short pushes: mind the sign")
 
 # %% [markdown] tags=["exercise"]
-# **3.** How many zero modes, translations included, has the same law on a tree of 5 agents in space? Count them with
-# `linearise`, with all edges at their desired lengths.
+# **3.** ★★ (2 points) How many zero modes, translations included, has the same law on a tree of 5 agents in space?
+# Count them with `linearise`, with all edges at their desired lengths. (A whole number.)
 
 # %% tags=["answer"]
 count = ...
@@ -206,10 +208,11 @@ corners = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [1, 1, 1], [2, 1, 1]], dtyp
 count = len(linearise(chain, corners).zero_modes)
 
 # %% tags=["check"]
-grade(count, 11, hint="m translations and (n − 1)(m − 1) free bearings")
+grade(count, 11, hint="in space a bearing has two angles")
 
 # %% [markdown] tags=["exercise"]
-# **4.** With the zones' own law in its letter (`zone-51-printed`), how close do two agents come in 20 s, at the steps?
+# **4.** ★★ (2 points) With the zones' own law in its letter (`zone-51-printed`), how close do two agents come in 20 s,
+# at the steps? (Three significant digits.)
 
 # %% tags=["answer"]
 least = ...
@@ -218,4 +221,4 @@ least = ...
 least = float(printed.metrics().min_distance.min())
 
 # %% tags=["check"]
-grade(least, 0.0707, rtol=5e-3, hint="printed.metrics().min_distance")
+grade(least, 0.07065939, digits=3, hint="the run's metrics hold the least distance at every step")

@@ -108,7 +108,8 @@ print(fl.replay(path))
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** You see 198 successes in 200 runs. What is the lower end of the 95 % interval?
+# **1.** ★ (1 point) You see 198 successes in 200 runs. What is the lower end of the 95 % interval, to four significant
+# digits?
 
 # %% tags=["answer"]
 lower = ...
@@ -117,10 +118,11 @@ lower = ...
 lower = fl.clopper_pearson(198, 200)[0]
 
 # %% tags=["check"]
-grade(lower, 0.964345, rtol=1e-3, hint="fl.clopper_pearson(successes, runs)")
+grade(lower, 0.96434533, digits=4, hint="two of the 200 failed: the function counts successes")
 
 # %% [markdown] tags=["exercise"]
-# **2.** How many successes without a failure does it take until the lower end exceeds 0.99?
+# **2.** ★★ (2 points) How many successes without a failure does it take until the lower end exceeds 0.99? (A whole
+# number.)
 
 # %% tags=["answer"]
 runs_needed = ...
@@ -132,8 +134,8 @@ runs_needed = next(N for N in range(1, 1000) if fl.clopper_pearson(N, N)[0] > 0.
 grade(runs_needed, 368, hint="a loop over N; the low end grows with N")
 
 # %% [markdown] tags=["exercise"]
-# **3.** Search for a start of `zone-tree` that breaks the bearing-distance Theorem 1 as printed (`zone-1-printed`).
-# After how many runs is one found?
+# **3.** ★ (1 point) Search for a start of `zone-tree` that breaks the bearing-distance Theorem 1 as printed
+# (`zone-1-printed`). After how many runs is one found? (A whole number.)
 
 # %% tags=["answer"]
 evaluations = ...

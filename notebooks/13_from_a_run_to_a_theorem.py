@@ -155,8 +155,9 @@ print(*of_tube, sep="\n")
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** Two agents under Algorithm 1, 7 apart. A displacement by δ over all coordinates stretches the link by
-# $\sqrt2\,\delta$, and at $r = 8.4$ the link breaks. What is the largest ρ/d that any proof could reach?
+# **1.** ★★ (2 points) Two agents under Algorithm 1, 7 apart. A displacement by δ over all coordinates stretches the
+# link by $\sqrt2\,\delta$, and at $r = 8.4$ the link breaks. What is the largest ρ/d that any proof could reach? (Four
+# significant digits.)
 
 # %% tags=["answer"]
 largest = ...
@@ -165,10 +166,10 @@ largest = ...
 largest = 1.4 / np.sqrt(2) / 7.0
 
 # %% tags=["check"]
-grade(largest, 0.1414213562, hint="r - d = 1.4, over the square root of 2")
+grade(largest, 0.14142136, digits=4, hint="how much longer may the link become?")
 
 # %% [markdown] tags=["exercise"]
-# **2.** And what does `certify` reach for these two, in d?
+# **2.** ★ (1 point) And what does `certify` reach for these two, in d? (Two significant digits.)
 
 # %% tags=["answer"]
 reached = ...
@@ -177,11 +178,11 @@ reached = ...
 reached = fl.certify([[0.0, 0.0], [7.0, 0.0]], law=fl.Algorithm1()).share
 
 # %% tags=["check"]
-grade(reached, lambda x: 0.06 < x < 0.1414, hint="fl.certify(positions, law=fl.Algorithm1()).share")
+grade(reached, 0.07038571, digits=2, hint="fl.certify takes positions and a law")
 
 # %% [markdown] tags=["exercise"]
-# **3.** Change the radius of the certificate above to 1.0 and have it checked. Which word does the error begin with
-# after "its"? (Read the message.)
+# **3.** ★★ (2 points) Change the radius of the certificate above to 1.0 and have it checked. Which word does the error
+# begin with after "its"? (One word; read the message.)
 
 # %% tags=["answer"]
 word = ...
@@ -195,4 +196,4 @@ except fl.errors.FlockanaError as error:
     word = str(error).split()[1]
 
 # %% tags=["check"]
-grade(word, lambda x: x == "digest", hint="fl.check_certificate(file)")
+grade(word, "digest", hint="the message of the error that fl.check_certificate raises")
