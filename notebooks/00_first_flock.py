@@ -21,8 +21,15 @@
 # $$u_i = c_1^\alpha \sum_{j \in N_i} \phi_\alpha(\|q_j - q_i\|_\sigma)\, n_{ij}
 #       + c_2^\alpha \sum_{j \in N_i} a_{ij}(q)\,(p_j - p_i)
 #       - c_1^\gamma (q_i - q_r) - c_2^\gamma (p_i - p_r).$$
+#
+# Here $N_i$ holds all $j \ne i$ with $\|q_j - q_i\| < r$, $n_{ij} = (q_j - q_i)/\sqrt{1 + \varepsilon\|q_j - q_i\|^2}$
+# points from $i$ to $j$, and the weight $a_{ij} = \rho_h(\|q_j - q_i\|_\sigma/r_\alpha)$ falls smoothly from 1 to 0 at
+# the range. The first sum pushes neighbours nearer than $d$ apart and draws those farther than $d$ together; the second
+# brings velocities together. Lecture 01 builds $\phi_\alpha$, the bump $\rho_h$ and the σ-norm from scratch.
 
 # %%
+import numpy as np
+
 import flockana as fl
 from flockana import plots
 from flockana.course import grade
@@ -57,6 +64,13 @@ _ = plots.snapshot(run, time=run.t[-1], ax=axes[1])
 
 # %%
 print(fl.verify("os-3", run))
+
+# %% [markdown]
+# ## Summary
+#
+# - A run carries its own error: what is left of the energy balance.
+# - A theorem is asked about a run by name; its hypotheses come first, and one that fails makes its claims vacuous.
+# - Errata of published claims are asked in the same way.
 
 # %% [markdown] tags=["exercise"]
 # ## Exercises
@@ -108,3 +122,35 @@ print(f"{residual:.3g}, and {abs(tight.energy_residual).max():.3g} at the librar
 
 # %% tags=["check"]
 grade(residual, 0.0360221, digits=2, hint="fl.simulate takes rtol and atol; the residual has two signs")
+
+# %% [markdown] tags=["exercise"]
+# **4.** ★ (1 point) One agent without neighbours is at $(3, 0)$ with the velocity $(0, 2)$; the γ-agent rests at the
+# origin, $c_1^\gamma = 1$, $c_2^\gamma = 2$. How large is $\|u\|$, exactly?
+
+# %% tags=["answer"]
+push = ...
+
+# %% tags=["solution"]
+push = float(np.hypot(-3.0, -2.0 * 2.0))
+
+# %% tags=["check"]
+grade(push, 5.0, hint="write down both components of u")
+
+# %% [markdown] tags=["exercise"]
+# **5.** ★★ (2 points) Counterexample hunt: is $d$ the only distance at which two agents exert no force on each other?
+# Give positions of two agents in the plane, an array of shape (2, 2), that are not 7 apart and feel no force under
+# Algorithm 1 with $d = 7$, $r = 8.4$.
+
+# %% tags=["answer"]
+pair = ...
+
+# %% tags=["solution"]
+pair = [[0.0, 0.0], [9.0, 0.0]]  # out of range; two agents in one place would do as well, as n_ij = 0
+
+# %% tags=["check"]
+grade(
+    pair,
+    lambda x: np.shape(x) == (2, 2) and (np.linalg.norm(np.subtract(*x)) >= 8.4 or np.array_equal(*x)),
+    form="list",
+    hint="look at what the sum runs over",
+)

@@ -115,6 +115,14 @@ assert abs(quad(alpha.phi_alpha, alpha.d_alpha, z, epsabs=0.0, epsrel=1e-13)[0] 
 tiny = 1e-9
 print(f"as printed {(np.sqrt(1 + 0.1 * tiny**2) - 1) / 0.1:.3e},  as computed {alpha.sigma_norm(tiny):.3e}")
 
+# %% [markdown]
+# ## Summary
+#
+# - The potential of a pair is the integral of its action; it has its minimum at $d$, a high wall at 0 and a shallow rim
+#   at $r$.
+# - On the bump's plateau it has a closed form, on the taper none.
+# - Formulas that subtract nearly equal numbers lose digits; rearranged, they do not.
+
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
@@ -169,3 +177,16 @@ strongest = fine[np.argmax(alpha.phi_alpha(alpha.sigma_norm(fine)))]
 
 # %% tags=["check"]
 grade(strongest, 7.3139591, digits=4, hint="maximise φ_α between d and r")
+
+# %% [markdown] tags=["exercise"]
+# **5.** ★★★ (3 points) Derive the stiffness of a link: what is $\phi_\alpha'(d_\alpha)$ for `alpha`? (Four significant
+# digits; mind that $d_\alpha$ is on the taper of the bump.)
+
+# %% tags=["answer"]
+slope = ...
+
+# %% tags=["solution"]
+slope = 5.0 * 0.5 * (1.0 + np.cos(np.pi * (alpha.d_alpha / alpha.r_alpha - 0.2) / 0.8))  # φ(0) = 0 kills the other term
+
+# %% tags=["check"]
+grade(slope, 0.896325033, digits=4, hint="product rule; one of the two terms vanishes at d_α")

@@ -22,6 +22,15 @@
 #   + c_2^\alpha \sum_{j\in N_i} a_{ij}(q)(p_j-p_i)
 #   \quad\Longleftrightarrow\quad \dot p = -c_1^\alpha\nabla V(q) - c_2^\alpha \hat L(q)\,p.$$
 #
+# Here $n_{ij} = (q_j-q_i)/\sqrt{1+\varepsilon\|q_j-q_i\|^2}$ and $a_{ij} = \rho_h(\|q_j-q_i\|_\sigma/r_\alpha)$. The
+# *collective potential* counts each pair once, those out of range too, of which each costs $\psi_\alpha(r_\alpha)$:
+#
+# $$V(q) = \tfrac12\sum_i\sum_{j\ne i}\psi_\alpha(\|q_j-q_i\|_\sigma), \qquad
+#   \nabla_{q_i}V = -\sum_{j\in N_i}\phi_\alpha(\|q_j-q_i\|_\sigma)\,n_{ij} .$$
+#
+# $L = \Delta(A) - A$ is the Laplacian of the weights $A = [a_{ij}]$, $\hat L = L\otimes I_m$, and $p^\top\hat Lp =
+# \tfrac12\sum_{i,j}a_{ij}\|p_j-p_i\|^2 \ge 0$ (lecture 00a).
+#
 # ## The energy identity, derived
 #
 # $V$ and $u$ are sums over pairs, so one generic pair is enough for every $n$:
@@ -65,6 +74,20 @@ _ = plots.components(run, ax=axes[2])
 # %% [markdown]
 # The energy falls to a constant, and its balance closes to nine digits. The number of components falls too, but not to
 # one: energy decay says nothing about connectivity.
+#
+# ## Theorem 1
+#
+# Let $x_i = q_i - q_c$ and $v_i = p_i - p_c$ be positions and velocities in the frame of the centre of mass, and $H(x,
+# v) = c_1^\alpha V(x) + \tfrac12\sum\|v_i\|^2$. A group is *cohesive* if one ball about its centre holds it at all
+# times, and a *flock* while its net is connected.
+#
+# > **Theorem 1** (Olfati-Saber 2006). Let $\Omega_c = \{(x, v) : H(x, v) \le c\}$ be such that every solution of
+# > Algorithm 1 that starts in it is a cohesive flock for all times. Then (i) almost every solution that starts in
+# > $\Omega_c$ converges to an equilibrium $(x^*, 0)$ where $x^*$ is an α-lattice; (ii) all agents asymptotically move
+# > with the same velocity; (iii) if $c < c^* = c_1^\alpha\psi_\alpha(0)$, no two agents ever collide.
+#
+# The proof is LaSalle's: cohesion makes $\Omega_c$ compact, $\dot H = 0$ forces equal velocities on a connected net.
+# Claim (i) is false as printed (erratum E3, lecture 07): minima of $V$ need not be lattices.
 
 # %%
 print(fl.verify("energy", run))
@@ -113,6 +136,13 @@ left = fl.scenario("notebook-algorithm2").run()
 assert left.law.gains.c1_gamma == 0.0
 assert left.metrics().connectivity[-1] < 1.0  # it splits
 
+# %% [markdown]
+# ## Summary
+#
+# - Algorithm 1 is a gradient descent with damping between neighbours, and $\dot H = -c_2^\alpha p^\top\hat Lp \le 0$.
+# - Without a bound on the size of the group LaSalle does not apply: groups fragment.
+# - Theorem 1 assumes what would have to be shown, so it is vacuous where a run fragments.
+
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
@@ -160,3 +190,32 @@ above = bool(change > 1e-10)
 
 # %% tags=["check"]
 grade(above, False, hint="run.p has shape (T, n, m)")
+
+# %% [markdown] tags=["exercise"]
+# **4.** ★★ (2 points) Two agents start at rest 6 apart, under `law` without its damping. At what relative speed do they
+# move once they are out of range? (Four significant digits.)
+
+# %% tags=["answer"]
+parting = ...
+
+# %% tags=["solution"]
+parting = 2.0 * np.sqrt(psi(law.alpha.sigma_norm(6.0)) - psi(law.alpha.r_alpha))  # ψ(6) = ψ(r_α) + w²/4
+
+# %% tags=["check"]
+grade(parting, 3.2609838, digits=4, hint="H is conserved; each agent has half the relative speed")
+
+# %% [markdown] tags=["exercise"]
+# **5.** ★★★ (3 points) In your own words, at least 30 of them: which step of a proof of cohesion for Algorithm 1 by
+# LaSalle's principle fails, and what in Algorithm 2 could repair it? (A text; the check counts words, and your lecturer
+# reads it.)
+
+# %% tags=["answer"]
+gap = ...
+
+# %% tags=["solution"]
+gap = """H falls, but its level sets are not bounded: a pair out of range costs a constant, however far apart it is,
+so agents can leave without more energy and the set is not compact. Algorithm 2 adds a pull that grows with
+the distance from the centre; then a level set bounds the size of the group."""
+
+# %% tags=["check"]
+grade(gap, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")

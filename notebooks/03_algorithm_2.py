@@ -50,7 +50,17 @@ split
 #
 # All three terms are non-negative, and one agent at distance $R$ from the centre costs $\tfrac{\lambda}{2}R^2$. So
 # $R(t) \le \sqrt{2H_\lambda(t)/c_1^\gamma} \le \sqrt{2H_\lambda(0)/c_1^\gamma}$: no flock of Algorithm 2 with
-# $c_1^\gamma > 0$ fragments without end. That is Theorem 3(i) with its constant.
+# $c_1^\gamma > 0$ fragments without end. That is Theorem 3(i) with its constant. The whole theorem, with $V$ as in
+# lecture 02, $J(x) = \tfrac12\sum\|x_i\|^2$, $K(v) = \tfrac12\sum\|v_i\|^2$ and $U_\lambda = c_1^\alpha V + \lambda J$:
+#
+# > **Theorem 3** (Olfati-Saber 2006). Apply Algorithm 2 with $c_1^\gamma, c_2^\gamma > 0$, and let $K(v(0))$ and
+# > $J(x(0))$ be finite. Then (i) the group is cohesive for all $t \ge 0$; (ii) almost every solution converges to an
+# > equilibrium $(x_\lambda^*, 0)$ where $x_\lambda^*$ is a local minimum of $U_\lambda$; (iii) all agents
+# > asymptotically move with the same velocity; (iv) if $H_\lambda(0) < (k+1)\,c^*$ with $c^* =
+# > c_1^\alpha\psi_\alpha(0)$, at most $k$ distinct pairs of agents can collide, and none if $k = 0$.
+#
+# Claim (iv) is false as printed for $k \ge 1$ (erratum E13, lecture 07): it bounds the pairs that coincide at one
+# instant.
 
 # %%
 flock = fl.scenario("paper-flocking").run()
@@ -173,6 +183,16 @@ places = len(np.unique(np.round(found.q, 4), axis=0))
 assert 1 < places < 19  # some share a place, not all
 
 
+# %% [markdown]
+# ## Summary
+#
+# - Algorithm 2 splits exactly into a shape, which dissipates $H_\lambda$, and a centre of mass, which is a linear
+#   filter of second order.
+# - $J$ in the energy bounds the size of the flock: cohesion holds with a constant.
+# - What the γ-agent tells as its velocity moves the zero of the filter; that explains circles that are too small or too
+#   large.
+# - Too strong a pull squeezes agents together.
+
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
@@ -228,3 +248,21 @@ coincide = bool(fl.min_distance(relaxed(alpha, 7, 3.0).q) < 1e-6)
 
 # %% tags=["check"]
 grade(coincide, False, hint="fl.min_distance(relaxed(alpha, 7, 3.0).q)")
+
+# %% [markdown] tags=["exercise"]
+# **5.** ★★★ (3 points) Design: choose $c_1^\gamma$ and $c_2^\gamma$, neither above 5, such that the centre of mass
+# returns like $e^{-2t}$ or faster from every start. Give the list $[c_1^\gamma, c_2^\gamma]$.
+
+# %% tags=["answer"]
+gains = ...
+
+# %% tags=["solution"]
+gains = [4.8, 4.2]  # poles of s² + c2γ s + c1γ; with s = z − 2: c2γ ≥ 4 and c1γ ≥ 2 c2γ − 4
+
+# %% tags=["check"]
+grade(
+    gains,
+    lambda g: len(g) == 2 and max(g) <= 5.0 and np.roots([1.0, g[1], g[0]]).real.max() <= -2.0 + 1e-6,
+    form="list",
+    hint="where are the poles? two of them",
+)

@@ -38,6 +38,16 @@ print(f"{len(q)} agents, {len(pairs)} links, α-lattice: {lattice.is_alpha_latti
 print(f"Theorem 5 allows 3n − 6 = {lattice.planar_bound(len(q))}; Harborth's sharp bound is {lattice.harborth(len(q))}")
 
 # %% [markdown]
+# ## Theorem 5
+#
+# > **Theorem 5** (Olfati-Saber 2006). Let $q$ be an α-lattice of scale $d > 0$ and ratio $\kappa > 1$ with distinct
+# > nodes. Then (i) its net is planar, $m = 2, 3$; (ii) it has at most $3n - 6$ links, $m = 2$, $n \ge 3$; (iii) with $n
+# > > m + 1$ nodes it is not complete, $m = 1, 2, 3$.
+#
+# In the plane (i) holds for $\kappa \le \sqrt2$ and more, because links that cross would have a pair that is nearer
+# than $d$ allows; in space it is false (below). The sharp bound in (ii) is $\lfloor 3n - \sqrt{12n-3}\rfloor$ (Harborth
+# 1974), which hexagonal spirals reach.
+#
 # ## What a flock really ends in
 #
 # Algorithm 2 ends near a lattice, not in one: the γ-agent's pull compresses it. Colour and shape of an agent tell its
@@ -93,6 +103,13 @@ _ = plots.configuration(fragment, d=d, r=r, ax=ax, bar=False)
 
 # %%
 print(lattice.rigidity(q, pairs))
+
+# %% [markdown]
+# ## Summary
+#
+# - Which patterns are α-lattices is decided by the second neighbours.
+# - Links of pairs farther apart than $\ell/\sqrt2$ do not cross, lattice or not.
+# - In space a lattice's net need not be planar.
 
 # %% [markdown] tags=["exercise"]
 # ## Exercises
@@ -152,3 +169,23 @@ bound_holds_for_two = bool(len(lattice.links(lattice.line(2, d), r)) <= 3 * 2 - 
 
 # %% tags=["check"]
 grade(bound_holds_for_two, False, hint="erratum E6")
+
+# %% [markdown] tags=["exercise"]
+# **5.** ★★★ (3 points) Counterexample hunt: give four agents in the plane, an array of shape (4, 2), two of whose links
+# cross, for $r = 8.4$. (By the extension some two of them are nearer than $r/\sqrt2$.)
+
+# %% tags=["answer"]
+crossing = ...
+
+# %% tags=["solution"]
+crossing = [[0.0, 0.0], [5.0, 0.0], [5.0, 5.0], [0.0, 5.0]]  # the diagonals are links
+
+# %% tags=["check"]
+grade(
+    crossing,
+    lambda x: (
+        np.shape(x) == (4, 2) and len(lattice.crossings(np.array(x, float), lattice.links(np.array(x, float), 8.4))) > 0
+    ),
+    form="list",
+    hint="which links could cross in a square?",
+)

@@ -115,6 +115,14 @@ _ = plots.gain_sweep(sweep)
 best_drawn = sweep.values[int(np.argmin(sweep.abscissa))]
 assert abs(best_drawn - 2.0 * np.sqrt(law.gains.c1_gamma)) < 1e-12
 
+# %% [markdown]
+# ## Summary
+#
+# - Near a minimum of $U_\lambda$ a flock is a mechanical system $s^2I + sD + S$; rotations and translations that
+#   nothing holds give zero modes.
+# - A linearisation is checked against the nonlinear law before it is used.
+# - Poles, delay margin and gain sweeps follow from it.
+
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
@@ -176,3 +184,18 @@ residual = fl.linearise(law, lattice.hexagonal_patch(2, 7.0), allow_residual=Tru
 
 # %% tags=["check"]
 grade(residual, 0.04442693, digits=2, hint="the error says it, relative to the forces")
+
+# %% [markdown] tags=["exercise"]
+# **5.** ★★★ (3 points) Design: one agent follows a γ-agent at rest with $c_1^\gamma = 1$, $c_2^\gamma = 2$, and
+# everything that it hears is late by $\tau$: $s^2 + (2s + 1)e^{-s\tau} = 0$. What is the delay margin, to four
+# significant digits? (At the margin $s = i\omega$: compare moduli first, then phases.)
+
+# %% tags=["answer"]
+delay = ...
+
+# %% tags=["solution"]
+omega_c = np.sqrt((4.0 + np.sqrt(20.0)) / 2.0)  # ω⁴ = 1 + 4ω²
+delay = np.arctan(2.0 * omega_c) / omega_c
+
+# %% tags=["check"]
+grade(delay, 0.647409203, digits=4, hint="two real equations, for ω and for τ")

@@ -91,6 +91,13 @@ for name in fl.theorems():
     if name.startswith("E"):
         print(f"{name:>4}  {fl.theorem(name).title}")
 
+# %% [markdown]
+# ## Summary
+#
+# - A true theorem may have a hypothesis that no state satisfies.
+# - A strict local minimum that is no lattice refutes convergence of almost every solution, because its basin is open.
+# - Energy bounds what happens at one instant, not what happens one after another.
+
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
@@ -132,3 +139,32 @@ status = fl.verify("os-3", fl.scenario("paper-flocking").run()).claim("iv-none")
 
 # %% tags=["check"]
 grade(status, "vacuous", hint="is H_λ(0) < c*?")
+
+# %% [markdown] tags=["exercise"]
+# **4.** ★★ (2 points) Agents that are all out of each other's range have $V = \tfrac12 n(n-1)\psi_\alpha(r_\alpha)$.
+# From which $n$ on is that at least $c^*$? (A whole number.)
+
+# %% tags=["answer"]
+scattered = ...
+
+# %% tags=["solution"]
+scattered = next(n for n in range(2, 99) if n * (n - 1) / 2 * alpha.psi_alpha(alpha.r_alpha) >= alpha.c_star)
+
+# %% tags=["check"]
+grade(scattered, 13, hint="how many pairs out of range cost as much as c*?")
+
+# %% [markdown] tags=["exercise"]
+# **5.** ★★★ (3 points) In your own words, at least 30 of them: a strict local minimum of $V$ that is no lattice refutes
+# a claim about *almost every* solution of Algorithm 1 with a connected flock. Why is one such minimum enough? (A text;
+# the check counts words, and your lecturer reads it.)
+
+# %% tags=["answer"]
+basin = ...
+
+# %% tags=["solution"]
+basin = """At a strict local minimum, up to motions of the whole, the energy is a Lyapunov function, and damping makes
+it fall, so the minimum attracts an open neighbourhood of states. An open set has positive measure, so the
+solutions that start in it are not almost none."""
+
+# %% tags=["check"]
+grade(basin, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")

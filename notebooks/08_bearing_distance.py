@@ -23,8 +23,20 @@
 # $$u_i = u_i^{lc} + u_i^{la} + u_i^{ls} + u_i^{ss} + u_i^{oa} + u_i^{ga}, \qquad
 #   p_i \leftarrow p_i + \delta\, u_i, \qquad q_i \leftarrow q_i + \delta\, p_i ,$$
 #
-# with cohesion, alignment, separation (local and strategic), obstacle avoidance and global speed. As in all lectures
-# $q$ is a position and $p$ a velocity; the paper writes $p$ and $v$.
+# with cohesion, alignment, separation (local and strategic), obstacle avoidance and global speed. With $d_{ij} =
+# \|q_j-q_i\|$, the bearing $b_{ij} = (q_j-q_i)/d_{ij}$, the sets $R_i = \{j : d_{ij} \le c\}$, $A_i = \{j : r < d_{ij}
+# \le a\}$ and the aliens $S_i = \{k : 0 < d_{ik} \le s\}$, and weights $w$ whose sum over the set is $W$:
+#
+# $$u_i^{lc} = \frac1{W^{lc}}\sum_{A_i} w_{ij}^{lc}\,(q_j - q_i), \quad
+#   u_i^{la} = \frac1{W^{la}}\sum_{A_i} w_{ij}^{la}\,(p_j - p_i), \quad
+#   u_i^{ls} = \sum_{R_i} w_{ij}^{ls}\,(d_{ij}-c)\,b_{ij},$$
+#
+# $$u_i^{ss} = \sum_{S_i} w_{ik}^{ss}\,(d_{ik}-s)\,b_{ik}, \quad
+#   u_i^{oa} = \sum_e w_i^{oa}\min(0,\, d_{ie}-c)\,b_{ie}, \quad
+#   u_i^{ga} = w_i^{ga}\Bigl(v^d\frac{p_i}{\|p_i\|} - p_i\Bigr),$$
+#
+# where $e$ runs over the closest points of the obstacles that the agent's zone meets, $v^d$ is the desired speed, and a
+# sum over an empty set is 0. As in all lectures $q$ is a position and $p$ a velocity; the paper writes $p$ and $v$.
 
 # %%
 import numpy as np
@@ -166,6 +178,14 @@ print("with velocities that persist:", ", ".join(found.drifting), "(the plot cou
 figure, ax = plots.subplots(size=(5, 3.6))
 _ = plots.pole_map(found.eigenvalues, ax=ax)
 
+# %% [markdown]
+# ## Summary
+#
+# - Bearings and distances suffice for all terms but the global speed.
+# - A bound that acts at every speed is a drag.
+# - Eigenvalues of a matrix that depends on the state prove nothing about a trajectory; the corrected theorem speaks of
+#   a neighbourhood of a set of equilibria.
+
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
@@ -222,3 +242,16 @@ least = float(printed.metrics().min_distance.min())
 
 # %% tags=["check"]
 grade(least, 0.07065939, digits=3, hint="the run's metrics hold the least distance at every step")
+
+# %% [markdown] tags=["exercise"]
+# **5.** ★★★ (3 points) Derive: the eigenvalues of an edge solve $s^2 + s + w = 0$ with $w = 1 - \rho/\|x\|$. Above
+# which ratio $\|x\|/\rho$ are they complex, so that the edge's length swings? (Four significant digits.)
+
+# %% tags=["answer"]
+ratio = ...
+
+# %% tags=["solution"]
+ratio = 1.0 / (1.0 - 0.25)  # w > 1/4
+
+# %% tags=["check"]
+grade(ratio, 1.33333333, digits=4, hint="the sign of the discriminant")

@@ -172,6 +172,13 @@ print(f"a {equilibrium.kind}, contacts shorter than d1 by at most {equilibrium.s
 figure, ax = plots.subplots(size=(6, 5))
 _ = plots.configuration(equilibrium.q, d=ramped.d1, r=1.2 * ramped.d1, ax=ax)
 
+# %% [markdown]
+# ## Summary
+#
+# - The potential that is continuous across switches holds each pair's cost constant beyond the range; its sum falls.
+# - At a jump an integrator's error estimate means nothing: switches have to be located.
+# - A pair can be held at a jump, in Filippov's sense; a fixed step chatters there.
+
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
@@ -234,3 +241,16 @@ share = contact.above / (contact.above - contact.below)
 
 # %% tags=["check"]
 grade(share, 0.001072077, digits=3, hint="share × one force + (1 − share) × the other = 0")
+
+# %% [markdown] tags=["exercise"]
+# **5.** ★★ (2 points) What least distance does the corrected theorem guarantee for $\bar H(0) = 100$, without a ramp
+# and with $\eta = 1$? (Four significant digits.)
+
+# %% tags=["answer"]
+nearest = ...
+
+# %% tags=["solution"]
+nearest = 1.0 / np.sinh(100.0 / (2.0 * hard.k_r) + np.arcsinh(1.0 / hard.d1))
+
+# %% tags=["check"]
+grade(nearest, 1.79401084, digits=4, hint="the formula is above; k_r is hard.k_r")

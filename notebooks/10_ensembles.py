@@ -105,6 +105,13 @@ path = Path(tempfile.mkdtemp()) / "e3.json"
 found.save(path)
 print(fl.replay(path))
 
+# %% [markdown]
+# ## Summary
+#
+# - A share of successes is an estimate with an interval; $N$ of $N$ does not give 1.
+# - A search for the least margin finds counterexamples that random starts miss.
+# - That a search finds nothing proves nothing.
+
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
@@ -145,3 +152,31 @@ evaluations = fl.falsify("zone-1-printed", "zone-tree", budget=20).evaluations
 
 # %% tags=["check"]
 grade(evaluations, 1, hint=".evaluations; the very first run will do")
+
+# %% [markdown] tags=["exercise"]
+# **4.** ★★ (2 points) A claim fails at one start in a hundred. With what probability do 60 random runs show no failure?
+# (Four significant digits.)
+
+# %% tags=["answer"]
+unseen = ...
+
+# %% tags=["solution"]
+unseen = 0.99**60
+
+# %% tags=["check"]
+grade(unseen, 0.547157, digits=4, hint="runs are independent")
+
+# %% [markdown] tags=["exercise"]
+# **5.** ★★ (2 points) And how many random runs does it take to see a failure with a probability of at least 0.95? (A
+# whole number.)
+
+# %% tags=["answer"]
+runs_for_one = ...
+
+# %% tags=["solution"]
+import math
+
+runs_for_one = math.ceil(math.log(0.05) / math.log(0.99))
+
+# %% tags=["check"]
+grade(runs_for_one, 299, hint="ask for the probability of none")

@@ -139,6 +139,14 @@ from own_law.proof import PROOF
 for step in PROOF.steps():
     print("✓" if step.holds else "✗", step.text)
 
+# %% [markdown]
+# ## Summary
+#
+# - From the formula of a pair potential force, energy, Jacobian and compiled code follow, and what the formula lacks is
+#   said.
+# - A law of another kind states its energy and the rate of it, and every run checks that promise.
+# - A verdict is about a run; a proof is about all of them.
+
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
@@ -216,3 +224,71 @@ escape = np.pi / 2 - np.arctan(1.0)
 
 # %% tags=["check"]
 grade(escape, 0.78539816, digits=4, hint="w must not reach 0 as x → ∞")
+
+# %% [markdown] tags=["exercise"]
+# **6.** ★★★ (3 points) Capstone: write a law of your own, its theorem and its proof, after the three files in
+# `own_law/` (in cells, or in files beside this notebook). Any law will do that you can prove something about; try the
+# linear consensus $u_i = \frac sn\sum_j (p_j - p_i)$, and how fast its $K$ falls. Hand in the list `[THEOREM, run,
+# PROOF]`; the check verifies the theorem on the run and the steps of the proof, and your lecturer reads them.
+
+# %% tags=["answer"]
+capstone = ...
+
+# %% tags=["solution"]
+from dataclasses import dataclass
+
+from flockana.theorems import Theorem
+from flockana.theorems.claims import judged
+from flockana.theorems.hypotheses import law_is
+from proofs.proof import Proof, Step
+
+
+@dataclass(frozen=True)
+class LinearConsensus(fl.Law):
+    strength: float = 1.0
+
+    def flow(self, t, q, p):
+        v = p - p.mean(axis=0)
+        return -self.strength * v, -self.strength * float(np.sum(v**2))
+
+    def hamiltonian(self, t, q, p):
+        return 0.5 * float(np.sum((p - p.mean(axis=0)) ** 2))
+
+
+def decays(run, tolerances):
+    bound = run.energy()[0] * np.exp(-2.0 * run.law.strength * (run.t - run.t[0]))
+    slack = float((1.001 * bound - run.energy()).min())
+    return [], [judged("decay", slack, float(np.abs(run.energy_residual).max()), detail="K stays below its bound")]
+
+
+def proof_steps():
+    strength, v = sp.Symbol("s", positive=True), sp.symbols("v1:4", real=True)
+    mean = sum(v) / 3
+    identity = sum(w - v[0] for w in v) / 3 - (mean - v[0])
+    yield Step("(1/n) Σ_j (p_j − p_i) = p_c − p_i", sp.expand(identity) == 0)
+    K = sum((w - mean) ** 2 for w in v) / 2
+    rate = sum(sp.diff(K, w) * strength * (mean - w) for w in v)
+    yield Step("dK/dt = −2 s K", sp.expand(rate + 2 * strength * K) == 0)
+
+
+own_theorem = Theorem(
+    id="linear-consensus",
+    title="The mismatch of linear consensus falls at the rate 2s",
+    statement="K(t) = K(0) exp(−2 s t).",
+    source="ours",
+    kind="trajectory",
+    check=decays,
+    references=(),
+    law=law_is("linear consensus", LinearConsensus),
+    claims=("decay",),
+)
+own_proof = Proof("linear-consensus", "K(t) = K(0) exp(−2 s t), n = 3, m = 1", "s > 0", "symbolic", proof_steps)
+capstone = [own_theorem, fl.simulate(LinearConsensus(), q0, p0, (0.0, 2.0)), own_proof]
+
+# %% tags=["check"]
+grade(
+    capstone,
+    lambda parts: fl.verify(parts[0], parts[1]).status == "verified" and all(s.holds for s in parts[2].steps()),
+    form="list",
+    hint="fl.verify(THEOREM, run) must be verified, and every step of the proof hold",
+)

@@ -102,6 +102,12 @@ for name, pairs in {"path": [(0, 1), (1, 2), (2, 3)], "complete": [(i, j) for j 
     margin, largest = delay_margin(consensus_system(net)), np.linalg.eigvalsh(net)[-1]
     print(f"{name:>9}: τ* = {margin.delay:.6f}, largest λ = {largest:.4g}")
 
+# %% [markdown]
+# ## Summary
+#
+# - Theorems on flocking either let an energy fall or average; both need a hypothesis that keeps the agents in touch.
+# - Joint connectivity is a hypothesis on a whole run; delay bounds depend on the largest eigenvalue of the Laplacian.
+
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
@@ -156,3 +162,16 @@ rate = consensus_root(2.0, 1.5 * np.pi / 4.0).real
 
 # %% tags=["check"]
 grade(rate, 0.247105912, digits=4, hint="the deciding root is Lambert's; a rate is its real part")
+
+# %% [markdown] tags=["exercise"]
+# **5.** ★★★ (3 points) Design: six agents on a ring with weights $w$ on all links have $\lambda_n = 4w$ and $\lambda_2
+# = w$. Their messages take 0.5 time units. Which $w$ must not be reached? (Four significant digits.)
+
+# %% tags=["answer"]
+weight = ...
+
+# %% tags=["solution"]
+weight = np.pi / (2.0 * 4.0 * 0.5)
+
+# %% tags=["check"]
+grade(weight, 0.78539816, digits=4, hint="the delay margin, solved for the weight")

@@ -152,6 +152,13 @@ fl.write_tube_certificate(tube, of_run, basin=basin)
 of_tube = [step for step in fl.check_certificate(of_run).steps if not step.startswith("basin: ")]
 print(*of_tube, sep="\n")
 
+# %% [markdown]
+# ## Summary
+#
+# - A basin is certified by bounding curvature in all states of a ball; its certificate is checked by other code.
+# - A tube encloses the solution itself, so that a run becomes a proof.
+# - A certified radius is a lower bound; samples show how far it may be from the truth.
+
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
@@ -197,3 +204,32 @@ except fl.errors.FlockanaError as error:
 
 # %% tags=["check"]
 grade(word, "digest", hint="the message of the error that fl.check_certificate raises")
+
+# %% [markdown] tags=["exercise"]
+# **4.** ★★ (2 points) The certified energy falls like $e^{-2\rho t}$ at least, with $\rho = 0.4$ per time unit. After
+# what time has it surely fallen to a millionth? (Four significant digits.)
+
+# %% tags=["answer"]
+wait = ...
+
+# %% tags=["solution"]
+wait = np.log(1e6) / 0.8
+
+# %% tags=["check"]
+grade(wait, 17.2693882, digits=4, hint="mind the factor 2")
+
+# %% [markdown] tags=["exercise"]
+# **5.** ★★★ (3 points) In your own words, at least 30 of them: the tube ends in the basin. What is proved of this start
+# that the run alone does not show, and what is still not proved? (A text; the check counts words, and your lecturer
+# reads it.)
+
+# %% tags=["answer"]
+proved = ...
+
+# %% tags=["solution"]
+proved = """Proved is that the true solution, not only the computed one, enters the basin, hence converges to the
+triangle with matched velocities and never collides, for all time. Not proved is anything about other
+starts outside the tube and the basin, or about a law with other parameters."""
+
+# %% tags=["check"]
+grade(proved, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")

@@ -20,6 +20,7 @@ import nbformat
 
 from flockana.base.errors import ArgumentError
 from flockana.course.grading import form_of
+from flockana.course.pages import course_map, header, map_page, notation_page, number_of, references
 
 _PACKAGE = Path(__file__).resolve().parent
 _CHECKOUT = _PACKAGE.parent.parent
@@ -57,8 +58,9 @@ def lectures() -> Path:
 
 
 def sources() -> list[Path]:
-    """The lectures, in order."""
-    return sorted(path for path in lectures().glob("*.py") if re.match(r"\d\d_", path.name))
+    """The lectures, in the order in which they are taught."""
+    files = {number_of(path): path for path in lectures().glob("*.py")}
+    return [files[lecture.number] for lecture in course_map(lectures())]
 
 
 def tags(cell: Any) -> list[str]:
@@ -96,8 +98,11 @@ def notebook(source: Path, version: str) -> Any:
     book = jupytext.read(source)
     book.metadata = nbformat.from_dict({"kernelspec": _KERNEL})
     book.cells = [cell for cell in book.cells if not _LEFT_OUT[version] & set(tags(cell))]
+    entry = next(each for each in course_map(source.parent) if each.number == number_of(source))
+    book.cells.insert(1, nbformat.v4.new_markdown_cell(header(entry, source.parent)))
+    book.cells.append(nbformat.v4.new_markdown_cell(references(entry)))
     for number, cell in enumerate(book.cells):
-        cell["id"] = f"{source.stem[:2]}-{number:03d}"  # the same at every build
+        cell["id"] = f"{entry.number}-{number:03d}"  # the same at every build
         if "check" in tags(cell) and version == "student":
             cell.source = form_check(cell.source)
         elif {"solution", "check", "facts"} & set(tags(cell)):
@@ -193,6 +198,8 @@ def write(folder: Path, version: str = "student") -> list[Path]:
     """
     folder.mkdir(parents=True, exist_ok=True)
     copy_companions(folder)
+    for name, page in (("map.md", map_page), ("notation.md", notation_page)):
+        (folder / name).write_text(page(lectures()), encoding="utf-8")
     written = []
     for source in sources():
         written.append(folder / f"{source.stem}.ipynb")

@@ -10,9 +10,11 @@ import sys
 import numpy as np
 import pytest
 
+import flockana as fl
 from flockana import lattice
 from flockana.base.errors import ArgumentError
 from flockana.course import build, grade
+from flockana.course.pages import number_of
 from tests.course.answers import ANSWERS
 
 SOURCES = build.sources()
@@ -28,22 +30,22 @@ def check_of(source, name):
 
 
 CASES = [
-    pytest.param(source, name, id=f"{source.name[:2]}-{name}")
+    pytest.param(source, name, id=f"{number_of(source)}-{name}")
     for source in SOURCES
-    for name in ANSWERS[source.name[:2]]
+    for name in ANSWERS[number_of(source)]
 ]
 
 
 @pytest.mark.parametrize(("source", "name"), CASES)
 def test_a_check_takes_right_answers_and_refuses_wrong_ones(source, name):
-    wrong, right = ANSWERS[source.name[:2]][name]
+    wrong, right = ANSWERS[number_of(source)][name]
     code = check_of(source, name)
     tree = ast.parse(code)
     expression = compile(ast.Expression(tree.body.pop().value), code, "eval")
     assert not tree.body  # it stands alone: one call, on constants
 
     def status(answer):
-        return eval(expression, {"grade": grade, "np": np, "lattice": lattice, name: answer}).status
+        return eval(expression, {"grade": grade, "np": np, "fl": fl, "lattice": lattice, name: answer}).status
 
     assert len(wrong) >= 3
     assert len(right) >= 2
@@ -57,12 +59,26 @@ def test_versions_of_a_lecture(source):
     books = {version: build.notebook(source, version) for version in build.VERSIONS}
     exercises = list(build.exercises(source))
     assert [each.number for each in exercises] == list(range(1, len(exercises) + 1))
-    assert {each.name for each in exercises} == set(ANSWERS[source.name[:2]])
+    assert len(exercises) >= 5
+    assert all(each.points == each.level for each in exercises)
+    assert max(each.level for each in exercises) > 1
+    assert {each.name for each in exercises} == set(ANSWERS[number_of(source)])
     for version, book in books.items():
         assert len(of(book, "check")) == len(of(book, "exercise")) == len(exercises)
         assert len(of(book, "answer")) == (0 if version == "solutions" else len(exercises))
         assert len(of(book, "solution")) == (len(exercises) if version == "solutions" else 0)
     assert all("= ..." in text for text in of(books["student"], "answer"))
+
+
+@pytest.mark.parametrize("source", SOURCES, ids=lambda path: path.stem)
+def test_a_lecture_says_what_it_needs_aims_at_and_rests_on(source):
+    texts = [cell.source for cell in build.notebook(source, "student").cells if cell.cell_type == "markdown"]
+    assert "**Aims.**" in texts[0]
+    assert "**Lectures before this one:**" in texts[1]
+    assert "| $q_i$, $p_i$, $u_i$ |" in texts[1]
+    assert sum("## Summary" in text for text in texts) == 1
+    assert "## References\n\n- " in texts[-1]
+    assert "## Further reading\n\n- " in texts[-1]
 
 
 @pytest.mark.parametrize("source", SOURCES, ids=lambda path: path.stem)
