@@ -18,20 +18,25 @@ def course_command(
     self_study: Annotated[
         bool, typer.Option("--self-study", help="Without solutions, but with checks that grade, and so hold values.")
     ] = False,
+    grader: Annotated[
+        Literal["otter", "nbgrader"] | None,
+        typer.Option(help="Masters for a grader, with hidden tests: for `otter assign`, or nbgrader's folder source."),
+    ] = None,
 ) -> int:
     """Write the lectures as notebooks that run wherever flockana is installed; a student's by default.
 
     A student's copy checks the form of an answer only. Needs `pip install 'flockana[course]'`, which brings Jupyter.
     """
-    if solutions and self_study:
-        raise ArgumentError("--solutions and --self-study: expected one of them; leave the other out")
+    if solutions + self_study + (grader is not None) > 1:
+        raise ArgumentError("--solutions, --self-study, --grader: expected one of them; leave the others out")
     version: Literal["student", "self-study", "solutions"] = (
         "solutions" if solutions else "self-study" if self_study else "student"
     )
     try:
         from flockana.course.build import write
+        from flockana.course.export import write_for
     except ModuleNotFoundError as error:
         raise ArgumentError(f"{error.name} is not installed: pip install 'flockana[course]'") from error
-    for written in write(folder, version):
+    for written in write(folder, version) if grader is None else write_for(folder, grader):
         show_files(notebook=written)
     return OK

@@ -138,7 +138,7 @@ def asked(check: str) -> tuple[str, str]:
     Parameters
     ----------
     check : str
-        The source of the cell, which ends with ``grade(name, right, ...)``.
+        The source of the cell, which is one call ``grade(name, right, ...)``.
 
     Raises
     ------
@@ -150,12 +150,12 @@ def asked(check: str) -> tuple[str, str]:
     >>> asked('grade(jump, 1.0, hint="one-sided limits")')
     ('jump', 'number')
     """
-    last = ast.parse(check).body[-1]
+    *before, last = ast.parse(check).body
     match last:
-        case ast.Expr(ast.Call(func=ast.Name("grade"), args=[ast.Name(name), right], keywords=options)):
+        case ast.Expr(ast.Call(func=ast.Name("grade"), args=[ast.Name(name), right], keywords=options)) if not before:
             given = {option.arg: option.value for option in options}
         case _:
-            raise ArgumentError(f"a check ends with {ast.unparse(last)!r}; expected grade(name, right, ...)")
+            raise ArgumentError(f"a check reads {check!r}: expected one call grade(name, right, ...)")
     try:
         return name, str(ast.literal_eval(given["form"])) if "form" in given else form_of(ast.literal_eval(right))
     except ValueError as error:

@@ -29,6 +29,14 @@ def test_two_versions_at_once_are_refused(call, tmp_path):
     assert not (tmp_path / "new").exists()
 
 
+def test_masters_for_a_grader(call, tmp_path):
+    code, said, _ = call("masters", "--grader", "nbgrader")
+    assert code == 0
+    assert "notebook: masters/source/11_your_own_law/11_your_own_law.ipynb" in said
+    assert (tmp_path / "masters" / "source" / "11_your_own_law" / "own_law" / "law.py").is_file()
+    assert (tmp_path / "masters" / "nbgrader_config.py").is_file()
+
+
 def test_without_the_extra_the_remedy_is_said(call, monkeypatch):
     monkeypatch.setitem(sys.modules, "jupytext", None)
     monkeypatch.delitem(sys.modules, "flockana.course.build", raising=False)

@@ -117,9 +117,10 @@ def test_everything_that_a_lecture_needs_is_written_beside_it(tmp_path):
 @pytest.mark.parametrize(
     ("check", "expected"),
     [
-        ("x = 1", "expected grade"),
+        ("x = 1", "expected one call grade"),
         ("grade(x, right(), hint='')", "give a constant, or form="),
-        ("grade(x + 1, 2)", "expected grade"),
+        ("grade(x + 1, 2)", "expected one call grade"),
+        ("import math\ngrade(x, 2)", "expected one call grade"),
     ],
 )
 def test_a_check_that_cannot_be_exported_is_refused(check, expected):
