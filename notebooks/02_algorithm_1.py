@@ -99,7 +99,8 @@ print(fl.verify("os-1", run))
 #
 # ## Two agents, all there is to see
 #
-# With little damping a pair circles its well; with more energy than $\psi_\alpha(r_\alpha)$ it escapes.
+# With little damping a pair circles its well; with more energy than $\psi_\alpha(r_\alpha)$ it escapes. The level curve
+# of that energy, the *separatrix*, divides the two kinds of motion.
 
 # %%
 law = fl.Algorithm1(gains=fl.Gains(c1_alpha=1.0, c2_alpha=0.2))
@@ -109,7 +110,11 @@ distance, rate = np.diff(pair.q, axis=1)[:, 0], np.diff(pair.p, axis=1)[:, 0]
 x, v = np.linspace(6.2, 8.6, 200), np.linspace(-2.5, 2.5, 200)
 H = law.alpha.psi_alpha(law.alpha.sigma_norm(x)) + v[:, None] ** 2 / 4
 _ = plots.phase_portrait(
-    distance, rate, energy=(x, v, H), labels=("distance of the pair (length)", "its rate (length/time)")
+    distance,
+    rate,
+    energy=(x, v, H),
+    separatrix=law.alpha.psi_alpha(law.alpha.r_alpha),
+    labels=("distance of the pair (length)", "its rate (length/time)"),
 )
 
 # %% [markdown]
