@@ -108,7 +108,9 @@ for share in (0.9, 1.1):
 # follows the equilibrium, which moves.)
 
 # %%
-sweep = stability.gain_sweep(law, rest.q, "c2_gamma", np.linspace(0.2, 4.0, 20) * 2.0 * np.sqrt(law.gains.c1_gamma))
+sweep = stability.gain_sweep(
+    law, rest.q, "c2_gamma", np.linspace(0.2, 4.0, 20) * 2.0 * np.sqrt(law.gains.c1_gamma), follow=False
+)
 _ = plots.gain_sweep(sweep)
 
 # %% tags=["facts"]
