@@ -29,11 +29,12 @@ bench: .venv/.dev  ## measure everything, write report/performance; OPTIONS="--q
 proofs: .venv/.dev  ## run every executable proof
 	$(BIN)/python -m proofs
 
-notebooks: .venv/.dev  ## execute every notebook with its solutions
-	$(BIN)/python tools/run_notebooks.py
+notebooks: .venv/.dev  ## execute every notebook as it is delivered, from the wheel, in an environment of its own
+	$(BIN)/python tools/run_notebooks.py --wheel
 
 course: .venv/.dev  ## write course/student and course/solutions as .ipynb
-	$(BIN)/python tools/course.py
+	$(BIN)/flockana course course/student
+	$(BIN)/flockana course course/solutions --solutions
 
 coverage: .venv/.dev  ## write docs/coverage.md: what holds each item of each source
 	$(BIN)/python -m tools.coverage_page

@@ -21,8 +21,15 @@
 # $$u_i = c_1^\alpha \sum_{j \in N_i} \phi_\alpha(\|q_j - q_i\|_\sigma)\, n_{ij}
 #       + c_2^\alpha \sum_{j \in N_i} a_{ij}(q)\,(p_j - p_i)
 #       - c_1^\gamma (q_i - q_r) - c_2^\gamma (p_i - p_r).$$
+#
+# Here $N_i$ holds all $j \ne i$ with $\|q_j - q_i\| < r$, $n_{ij} = (q_j - q_i)/\sqrt{1 + \varepsilon\|q_j - q_i\|^2}$
+# points from $i$ to $j$, and the weight $a_{ij} = \rho_h(\|q_j - q_i\|_\sigma/r_\alpha)$ falls smoothly from 1 to 0 at
+# the range. The first sum pushes neighbours nearer than $d$ apart and draws those farther than $d$ together; the second
+# brings velocities together. Lecture 01 builds $\phi_\alpha$, the bump $\rho_h$ and the σ-norm from scratch.
 
 # %%
+import numpy as np
+
 import flockana as fl
 from flockana import plots
 from flockana.course import grade
@@ -51,16 +58,24 @@ _ = plots.snapshot(run, time=run.t[-1], ax=axes[1])
 # %% [markdown]
 # ## Ask a theorem
 #
-# Theorem 3 promises cohesion, a local minimum of $U_\lambda = V + \lambda J$ as the limit, matched velocities, and few
-# collisions. A verdict lists its hypotheses first: one that fails makes a claim *vacuous*, not true.
+# Theorem 3 promises cohesion, a local minimum of $U_\lambda = c_1^\alpha V + \lambda J$ with $\lambda = c_1^\gamma$ as
+# the limit, matched velocities, and few collisions. ($V$ sums the pairs' potentials, $J = \tfrac12\sum\|q_i-q_c\|^2$;
+# lectures 1 and 3 build them.) A verdict lists its hypotheses first: one that fails makes a claim *vacuous*, not true.
 
 # %%
 print(fl.verify("os-3", run))
 
+# %% [markdown]
+# ## Summary
+#
+# - A run carries its own error: what is left of the energy balance.
+# - A theorem is asked about a run by name; its hypotheses come first, and one that fails makes its claims vacuous.
+# - Errata of published claims are asked in the same way.
+
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** Run the scenario `collapse` and ask erratum E11 about it. What is the status of the verdict?
+# **1.** ★ (1 point) Run the scenario `collapse` and ask erratum E11 about it. What is the status of the verdict?
 
 # %% tags=["answer"]
 collapse_status = ...
@@ -73,31 +88,69 @@ _ = plots.snapshot(collapse)
 grade(collapse_status, "refuted", hint="fl.verify(name, run).status, one word")
 
 # %% [markdown] tags=["exercise"]
-# **2.** Ask Theorem 1 (`os-1`) about a run of `paper-fragmentation`. It is vacuous: at what time does the run itself
-# break a hypothesis for the first time? (Two digits.)
+# **2.** ★★ (2 points) Theorem 1 (`os-1`) assumes a flock that stays one. A run of `paper-fragmentation` breaks that at
+# $t = 0$ already: its relative connectivity $C = (n - \text{number of components})/(n-1)$ is below 1. (The verdict
+# names the instant at which $C$ is least, not the first at which it is below 1.) Give $C(0)$ to two significant digits.
 
 # %% tags=["answer"]
-broken_at = ...
+connectivity = ...
 
 # %% tags=["solution"]
 fragments = fl.scenario("paper-fragmentation").run()
 print(fl.verify("os-1", fragments))
-broken_at = 0.21
+connectivity = float(fragments.metrics().connectivity[0])
 
 # %% tags=["check"]
-grade(broken_at, lambda t: 0.205 < t < 0.22, hint="read the line that says what this run is not")
+grade(connectivity, 0.128205, digits=2, hint="run.metrics() holds the connectivity at every sample")
 
 # %% [markdown] tags=["exercise"]
-# **3.** scipy would have integrated with `rtol=1e-3` and `atol=1e-6`, had we not asked for better. By what factor does
-# the largest energy residual of `case` grow at those tolerances?
+# **3.** ★ (1 point) scipy would have integrated with `rtol=1e-3` and `atol=1e-6`, had we not asked for better. Start
+# seven agents at rest in a hexagon that is 1.1 times too large, `1.1 * fl.lattice.hexagonal_patch(1, 7.0)`, under
+# `fl.Algorithm2(target=fl.StaticTarget((0.0, 0.0)))`, for 10 time units. What is the largest energy residual at those
+# tolerances, to two significant digits? (Compare it with the one at the library's own tolerances.)
 
 # %% tags=["answer"]
-factor = ...
+residual = ...
 
 # %% tags=["solution"]
-loose = fl.simulate(case.law, case.q0, case.p0, case.t_span, rtol=1e-3, atol=1e-6)
-factor = abs(loose.energy_residual).max() / abs(run.energy_residual).max()
-print(f"{factor:.0f} times")
+law = fl.Algorithm2(target=fl.StaticTarget((0.0, 0.0)))
+wide = 1.1 * fl.lattice.hexagonal_patch(1, 7.0)
+loose = fl.simulate(law, wide, 0.0 * wide, (0.0, 10.0), rtol=1e-3, atol=1e-6)
+tight = fl.simulate(law, wide, 0.0 * wide, (0.0, 10.0))
+residual = abs(loose.energy_residual).max()
+print(f"{residual:.3g}, and {abs(tight.energy_residual).max():.3g} at the library's tolerances")
 
 # %% tags=["check"]
-grade(factor, lambda x: 1e3 < x < 1e5, hint="fl.simulate(case.law, ...), then abs(run.energy_residual).max()")
+grade(residual, 0.0360221, digits=2, hint="fl.simulate takes rtol and atol; the residual has two signs")
+
+# %% [markdown] tags=["exercise"]
+# **4.** ★ (1 point) One agent without neighbours is at $(3, 0)$ with the velocity $(0, 2)$; the γ-agent rests at the
+# origin, $c_1^\gamma = 1$, $c_2^\gamma = 2$. How large is $\|u\|$, exactly?
+
+# %% tags=["answer"]
+push = ...
+
+# %% tags=["solution"]
+push = float(np.hypot(-3.0, -2.0 * 2.0))
+
+# %% tags=["check"]
+grade(push, 5.0, hint="write down both components of u")
+
+# %% [markdown] tags=["exercise"]
+# **5.** ★★ (2 points) Counterexample hunt: is $d$ the only distance at which two agents exert no force on each other?
+# Give positions of two agents in the plane, an array of shape (2, 2), that are not 7 apart and feel no force under
+# Algorithm 1 with $d = 7$, $r = 8.4$.
+
+# %% tags=["answer"]
+pair = ...
+
+# %% tags=["solution"]
+pair = [[0.0, 0.0], [9.0, 0.0]]  # out of range; two agents in one place would do as well, as n_ij = 0
+
+# %% tags=["check"]
+grade(
+    pair,
+    lambda x: np.shape(x) == (2, 2) and (np.linalg.norm(np.subtract(*x)) >= 8.4 or np.array_equal(*x)),
+    form="list",
+    hint="look at what the sum runs over",
+)

@@ -23,6 +23,7 @@
 
 # %%
 import numpy as np
+import sympy as sp
 
 import flockana as fl
 from flockana import plots, symbolic
@@ -86,16 +87,23 @@ _ = ax.set(xlabel="z = ‖q_j − q_i‖_σ", ylabel="ψ_α(z)")
 _ = plots.deviation(alpha)
 
 # %% [markdown]
-# ## Three witnesses
+# ## Three routes to one number
 #
-# The kernel, the symbolic expression and plain quadrature are three independent routes to one number.
+# The compiled kernel, sympy's expression and plain quadrature compute it independently.
 
 # %%
 from scipy.integrate import quad
 
 z = 5.0
-print(f"kernel      {alpha.psi_alpha(z):.15f}")
-print(f"quadrature  {quad(alpha.phi_alpha, alpha.d_alpha, z, epsabs=1e-13)[0]:.15f}")
+paper = symbolic.AlphaSymbols(eps=0.1, h=0.2, a=5, b=5, d=7, r=8.4)
+print(f"kernel      {alpha.psi_alpha(z):.13f}")
+print(f"symbolic    {symbolic.psi_alpha(sp.Integer(5), alpha=paper).evalf(17):.13f}")
+print(f"quadrature  {quad(alpha.phi_alpha, alpha.d_alpha, z, epsabs=0.0, epsrel=1e-13)[0]:.13f}")
+
+# %% tags=["facts"]
+exact = float(symbolic.psi_alpha(sp.Integer(5), alpha=paper).evalf(17))
+assert abs(alpha.psi_alpha(z) - exact) < 1e-12
+assert abs(quad(alpha.phi_alpha, alpha.d_alpha, z, epsabs=0.0, epsrel=1e-13)[0] - exact) < 1e-12
 
 # %% [markdown]
 # ## Digits that disappear
@@ -107,10 +115,19 @@ print(f"quadrature  {quad(alpha.phi_alpha, alpha.d_alpha, z, epsabs=1e-13)[0]:.1
 tiny = 1e-9
 print(f"as printed {(np.sqrt(1 + 0.1 * tiny**2) - 1) / 0.1:.3e},  as computed {alpha.sigma_norm(tiny):.3e}")
 
+# %% [markdown]
+# ## Summary
+#
+# - The potential of a pair is the integral of its action; it has its minimum at $d$, a high wall at 0 and a shallow rim
+#   at $r$.
+# - On the bump's plateau it has a closed form, on the taper none.
+# - Formulas that subtract nearly equal numbers lose digits; rearranged, they do not.
+
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** For $a = 1$, $b = 5$: what is $c$, and how large is $\phi(0)$ if $c$ is left out? Give the second number.
+# **1.** ★ (1 point) For $a = 1$, $b = 5$: what is $c$, and what is $\phi(0)$ if $c$ is left out? Give the second
+# number, exactly.
 
 # %% tags=["answer"]
 phi_at_zero = ...
@@ -119,11 +136,11 @@ phi_at_zero = ...
 phi_at_zero = 0.5 * ((1 + 5) * 0 + (1 - 5))
 
 # %% tags=["check"]
-grade(phi_at_zero, -2.0, hint="set s + c = 0 in φ")
+grade(phi_at_zero, -2.0, hint="which term of φ is left at s = 0?")
 
 # %% [markdown] tags=["exercise"]
-# **2.** A lattice link costs nothing and a pair out of range costs $\psi_\alpha(r_\alpha)$. How many pairs out of range
-# weigh as much as one coincident pair, for `alpha`?
+# **2.** ★★ (2 points) A lattice link costs nothing and a pair out of range costs $\psi_\alpha(r_\alpha)$. How many
+# pairs out of range weigh as much as one coincident pair, for `alpha`? (Three significant digits.)
 
 # %% tags=["answer"]
 pairs = ...
@@ -132,11 +149,11 @@ pairs = ...
 pairs = alpha.c_star / alpha.psi_alpha(alpha.r_alpha)
 
 # %% tags=["check"]
-grade(pairs, 71.1833, rtol=1e-3, hint="alpha.c_star and alpha.psi_alpha")
+grade(pairs, 71.183219, digits=3, hint="both potentials are printed above")
 
 # %% [markdown] tags=["exercise"]
-# **3.** At $h = 1$ the bump is an indicator, which the slides call "still differentiable". Ask erratum E10 and give the
-# height of the jump.
+# **3.** ★ (1 point) At $h = 1$ the bump is an indicator, which the slides call "still differentiable". Ask erratum E10
+# and give the height of the jump, exactly.
 
 # %% tags=["answer"]
 jump = ...
@@ -149,7 +166,7 @@ jump = 1.0
 grade(jump, 1.0, hint="one-sided limits at z = 1")
 
 # %% [markdown] tags=["exercise"]
-# **4.** Where is the attraction strongest? Give the distance of the pair, to three digits.
+# **4.** ★★ (2 points) Where is the attraction strongest? Give the distance of the pair, to four significant digits.
 
 # %% tags=["answer"]
 strongest = ...
@@ -159,4 +176,17 @@ fine = np.linspace(alpha.d, alpha.r, 200_001)
 strongest = fine[np.argmax(alpha.phi_alpha(alpha.sigma_norm(fine)))]
 
 # %% tags=["check"]
-grade(strongest, lambda s: abs(s - 7.314) < 0.005, hint="maximise φ_α between d and r")
+grade(strongest, 7.3139591, digits=4, hint="maximise φ_α between d and r")
+
+# %% [markdown] tags=["exercise"]
+# **5.** ★★★ (3 points) Derive the stiffness of a link: what is $\phi_\alpha'(d_\alpha)$ for `alpha`? (Four significant
+# digits; mind that $d_\alpha$ is on the taper of the bump.)
+
+# %% tags=["answer"]
+slope = ...
+
+# %% tags=["solution"]
+slope = 5.0 * 0.5 * (1.0 + np.cos(np.pi * (alpha.d_alpha / alpha.r_alpha - 0.2) / 0.8))  # φ(0) = 0 kills the other term
+
+# %% tags=["check"]
+grade(slope, 0.896325033, digits=4, hint="product rule; one of the two terms vanishes at d_α")

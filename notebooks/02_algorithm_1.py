@@ -18,8 +18,18 @@
 #
 # Algorithm 1 of Olfati-Saber (2006, section IV) is a gradient term and a consensus term,
 #
-# $$u_i = c_1 \sum_{j\in N_i} \phi_\alpha(\|q_j-q_i\|_\sigma)\,n_{ij} + c_2 \sum_{j\in N_i} a_{ij}(q)(p_j-p_i)
-#   \quad\Longleftrightarrow\quad \dot p = -c_1\nabla V(q) - c_2 \hat L(q)\,p.$$
+# $$u_i = c_1^\alpha \sum_{j\in N_i} \phi_\alpha(\|q_j-q_i\|_\sigma)\,n_{ij}
+#   + c_2^\alpha \sum_{j\in N_i} a_{ij}(q)(p_j-p_i)
+#   \quad\Longleftrightarrow\quad \dot p = -c_1^\alpha\nabla V(q) - c_2^\alpha \hat L(q)\,p.$$
+#
+# Here $n_{ij} = (q_j-q_i)/\sqrt{1+\varepsilon\|q_j-q_i\|^2}$ and $a_{ij} = \rho_h(\|q_j-q_i\|_\sigma/r_\alpha)$. The
+# *collective potential* counts each pair once, those out of range too, of which each costs $\psi_\alpha(r_\alpha)$:
+#
+# $$V(q) = \tfrac12\sum_i\sum_{j\ne i}\psi_\alpha(\|q_j-q_i\|_\sigma), \qquad
+#   \nabla_{q_i}V = -\sum_{j\in N_i}\phi_\alpha(\|q_j-q_i\|_\sigma)\,n_{ij} .$$
+#
+# $L = \Delta(A) - A$ is the Laplacian of the weights $A = [a_{ij}]$, $\hat L = L\otimes I_m$, and $p^\top\hat Lp =
+# \tfrac12\sum_{i,j}a_{ij}\|p_j-p_i\|^2 \ge 0$ (lecture 00a).
 #
 # ## The energy identity, derived
 #
@@ -37,8 +47,8 @@ print("residual of dH/dt + c2 pᵀL̂p:", identity.residual)
 identity
 
 # %% [markdown]
-# With $H = V + \sum\|p_i\|^2$, as a set of lecture slides prints it, a term without sign remains (erratum E1), and at
-# some states this $H$ rises:
+# So $H = c_1^\alpha V + \tfrac12\sum\|p_i\|^2$ falls. With $\sum\|p_i\|^2$ in the place of its half, as a set of
+# lecture slides prints it, a term without sign remains (erratum E1), and at some states this $H$ rises:
 
 # %%
 print(symbolic.e1_identity(m=2).residual)
@@ -64,6 +74,20 @@ _ = plots.components(run, ax=axes[2])
 # %% [markdown]
 # The energy falls to a constant, and its balance closes to nine digits. The number of components falls too, but not to
 # one: energy decay says nothing about connectivity.
+#
+# ## Theorem 1
+#
+# Let $x_i = q_i - q_c$ and $v_i = p_i - p_c$ be positions and velocities in the frame of the centre of mass, and $H(x,
+# v) = c_1^\alpha V(x) + \tfrac12\sum\|v_i\|^2$. A group is *cohesive* if one ball about its centre holds it at all
+# times, and a *flock* while its net is connected.
+#
+# > **Theorem 1** (Olfati-Saber 2006). Let $\Omega_c = \{(x, v) : H(x, v) \le c\}$ be such that every solution of
+# > Algorithm 1 that starts in it is a cohesive flock for all times. Then (i) almost every solution that starts in
+# > $\Omega_c$ converges to an equilibrium $(x^*, 0)$ where $x^*$ is an α-lattice; (ii) all agents asymptotically move
+# > with the same velocity; (iii) if $c < c^* = c_1^\alpha\psi_\alpha(0)$, no two agents ever collide.
+#
+# The proof is LaSalle's: cohesion makes $\Omega_c$ compact, $\dot H = 0$ forces equal velocities on a connected net.
+# Claim (i) is false as printed (erratum E3, lecture 07): minima of $V$ need not be lattices.
 
 # %%
 print(fl.verify("energy", run))
@@ -75,7 +99,8 @@ print(fl.verify("os-1", run))
 #
 # ## Two agents, all there is to see
 #
-# With little damping a pair circles its well; with more energy than $\psi_\alpha(r_\alpha)$ it escapes.
+# With little damping a pair circles its well; with more energy than $\psi_\alpha(r_\alpha)$ it escapes. The level curve
+# of that energy, the *separatrix*, divides the two kinds of motion.
 
 # %%
 law = fl.Algorithm1(gains=fl.Gains(c1_alpha=1.0, c2_alpha=0.2))
@@ -85,27 +110,48 @@ distance, rate = np.diff(pair.q, axis=1)[:, 0], np.diff(pair.p, axis=1)[:, 0]
 x, v = np.linspace(6.2, 8.6, 200), np.linspace(-2.5, 2.5, 200)
 H = law.alpha.psi_alpha(law.alpha.sigma_norm(x)) + v[:, None] ** 2 / 4
 _ = plots.phase_portrait(
-    distance, rate, energy=(x, v, H), labels=("distance of the pair (length)", "its rate (length/time)")
+    distance,
+    rate,
+    energy=(x, v, H),
+    separatrix=law.alpha.psi_alpha(law.alpha.r_alpha),
+    labels=("distance of the pair (length)", "its rate (length/time)"),
 )
 
 # %% [markdown]
 # ## A student project's two films
 #
 # A course project (see `fl.cite(fl.scenario("notebook-algorithm1"))`) animates 27 agents under Algorithm 1 and 35 under
-# Algorithm 2. Here they are, three lines each:
+# Algorithm 2, which adds a γ-agent (lecture 3). The first:
 
 # %%
 film = fl.scenario("notebook-algorithm1").run().animate(seconds=4, fps=10)
 film
 
+# %% [markdown]
+# In the second the agents take on the γ-agent's velocity, but leave its place (the cross), and the flock splits.
+# Neither is an error of the film: the project sets $c_1^\gamma = 0$, so the place of the γ-agent is not in the law at
+# all, and nothing holds the flock together. Cohesion, in the next lecture, needs $c_1^\gamma > 0$.
+
 # %%
 film = fl.scenario("notebook-algorithm2").run().animate(seconds=4, fps=10)
 film
 
+# %% tags=["facts"]
+left = fl.scenario("notebook-algorithm2").run()
+assert left.law.gains.c1_gamma == 0.0
+assert left.metrics().connectivity[-1] < 1.0  # it splits
+
+# %% [markdown]
+# ## Summary
+#
+# - Algorithm 1 is a gradient descent with damping between neighbours, and $\dot H = -c_2^\alpha p^\top\hat Lp \le 0$.
+# - Without a bound on the size of the group LaSalle does not apply: groups fragment.
+# - Theorem 1 assumes what would have to be shown, so it is vacuous where a run fragments.
+
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** In how many components does `run` end?
+# **1.** ★ (1 point) In how many components does `run` end? (A whole number.)
 
 # %% tags=["answer"]
 components = ...
@@ -118,8 +164,9 @@ components = len(set(labels))
 grade(components, 24, hint="fl.components(n, links) labels every agent, fl.links(q, r) finds the links")
 
 # %% [markdown] tags=["exercise"]
-# **2.** From which start at rest, closer than $d$, does the pair of `law` just escape if there is no damping? Give the
-# distance to three digits. (At rest $H = \psi_\alpha$, and escape needs $\psi_\alpha(r_\alpha)$.)
+# **2.** ★★ (2 points) From which start at rest, closer than $d$, does the pair of `law` just escape if there is no
+# damping? Give the distance to four significant digits. (At rest $H = \psi_\alpha$, and escape needs
+# $\psi_\alpha(r_\alpha)$.)
 
 # %% tags=["answer"]
 start = ...
@@ -131,11 +178,11 @@ psi = law.alpha.psi_alpha
 start = brentq(lambda s: psi(law.alpha.sigma_norm(s)) - psi(law.alpha.r_alpha), 5.0, 7.0)
 
 # %% tags=["check"]
-grade(start, 6.568, rtol=5e-4, hint="solve ψ_α(‖s‖_σ) = ψ_α(r_α) below d")
+grade(start, 6.567645, digits=4, hint="brentq; ψ_α takes a σ-norm, and escape is at r_α")
 
 # %% [markdown] tags=["exercise"]
-# **3.** The momentum $\sum p_i$ of Algorithm 1 is conserved, because each pair acts equally and oppositely. By how much
-# does it change in `run`, relative to $\sum \|p_i(0)\|$? Is that above $10^{-10}$?
+# **3.** ★★ (2 points) The momentum $\sum p_i$ of Algorithm 1 is conserved, because each pair acts equally and
+# oppositely. By how much does it change in `run`, relative to $\sum \|p_i(0)\|$? Is that above $10^{-10}$?
 
 # %% tags=["answer"]
 above = ...
@@ -148,3 +195,32 @@ above = bool(change > 1e-10)
 
 # %% tags=["check"]
 grade(above, False, hint="run.p has shape (T, n, m)")
+
+# %% [markdown] tags=["exercise"]
+# **4.** ★★ (2 points) Two agents start at rest 6 apart, under `law` without its damping. At what relative speed do they
+# move once they are out of range? (Four significant digits.)
+
+# %% tags=["answer"]
+parting = ...
+
+# %% tags=["solution"]
+parting = 2.0 * np.sqrt(psi(law.alpha.sigma_norm(6.0)) - psi(law.alpha.r_alpha))  # ψ(6) = ψ(r_α) + w²/4
+
+# %% tags=["check"]
+grade(parting, 3.2609838, digits=4, hint="H is conserved; each agent has half the relative speed")
+
+# %% [markdown] tags=["exercise"]
+# **5.** ★★★ (3 points) In your own words, at least 30 of them: which step of a proof of cohesion for Algorithm 1 by
+# LaSalle's principle fails, and what in Algorithm 2 could repair it? (A text; the check counts words, and your lecturer
+# reads it.)
+
+# %% tags=["answer"]
+gap = ...
+
+# %% tags=["solution"]
+gap = """H falls, but its level sets are not bounded: a pair out of range costs a constant, however far apart it is,
+so agents can leave without more energy and the set is not compact. Algorithm 2 adds a pull that grows with
+the distance from the centre; then a level set bounds the size of the group."""
+
+# %% tags=["check"]
+grade(gap, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")

@@ -45,12 +45,22 @@ split
 #
 # The shape dissipates
 #
-# $$H_\lambda = V(x) + \tfrac{\lambda}{2}\sum\|x_i\|^2 + \tfrac12\sum\|v_i\|^2, \quad \lambda = c_1^\gamma, \qquad
-#   \dot H_\lambda = -c_2^\alpha\, v^\top \hat L v - c_2^\gamma \sum\|v_i\|^2 \le 0 .$$
+# $$H_\lambda = c_1^\alpha V(x) + \tfrac{\lambda}{2}\sum\|x_i\|^2 + \tfrac12\sum\|v_i\|^2, \quad
+#   \lambda = c_1^\gamma, \qquad \dot H_\lambda = -c_2^\alpha\, v^\top \hat L v - c_2^\gamma \sum\|v_i\|^2 \le 0 .$$
 #
 # All three terms are non-negative, and one agent at distance $R$ from the centre costs $\tfrac{\lambda}{2}R^2$. So
-# $R(t) \le \sqrt{2H_\lambda(t)/c_1^\gamma} \le \sqrt{2H_\lambda(0)/c_1^\gamma}$: no flock of Algorithm 2 fragments
-# without end. That is Theorem 3(i) with its constant.
+# $R(t) \le \sqrt{2H_\lambda(t)/c_1^\gamma} \le \sqrt{2H_\lambda(0)/c_1^\gamma}$: no flock of Algorithm 2 with
+# $c_1^\gamma > 0$ fragments without end. That is Theorem 3(i) with its constant. The whole theorem, with $V$ as in
+# lecture 02, $J(x) = \tfrac12\sum\|x_i\|^2$, $K(v) = \tfrac12\sum\|v_i\|^2$ and $U_\lambda = c_1^\alpha V + \lambda J$:
+#
+# > **Theorem 3** (Olfati-Saber 2006). Apply Algorithm 2 with $c_1^\gamma, c_2^\gamma > 0$, and let $K(v(0))$ and
+# > $J(x(0))$ be finite. Then (i) the group is cohesive for all $t \ge 0$; (ii) almost every solution converges to an
+# > equilibrium $(x_\lambda^*, 0)$ where $x_\lambda^*$ is a local minimum of $U_\lambda$; (iii) all agents
+# > asymptotically move with the same velocity; (iv) if $H_\lambda(0) < (k+1)\,c^*$ with $c^* =
+# > c_1^\alpha\psi_\alpha(0)$, at most $k$ distinct pairs of agents can collide, and none if $k = 0$.
+#
+# Claim (iv) is false as printed for $k \ge 1$ (erratum E13, lecture 07): it bounds the pairs that coincide at one
+# instant.
 
 # %%
 flock = fl.scenario("paper-flocking").run()
@@ -65,7 +75,7 @@ plots.energy(flock, ax=axes[2])
 print(fl.verify("os-3", flock).claim("i").detail)
 
 # %% [markdown]
-# The bound is far above $R$ because most of $H_\lambda$ is $V$, which sums over all pairs out of range too.
+# The bound is far above $R$ because most of $H_\lambda$ is $c_1^\alpha V$, which sums over all pairs out of range too.
 #
 # ## The centre: a filter of second order
 #
@@ -76,12 +86,12 @@ print(fl.verify("os-3", flock).claim("i").detail)
 symbolic.transfer_function()
 
 # %% [markdown]
-# if $p_r = \dot q_r$. If the γ-agent says $p_r = \kappa\,\dot q_r$ instead, the zero moves:
+# if $p_r = \dot q_r$. If the γ-agent says $p_r = k_v\,\dot q_r$ instead, the zero moves:
 
 # %%
 import sympy
 
-symbolic.transfer_function(sympy.Symbol("kappa"))
+symbolic.transfer_function(sympy.Symbol("k_v"))
 
 # %% [markdown]
 # ## An assignment in four cases
@@ -134,13 +144,13 @@ case4 = assignment("msn-case4")
 #
 # The project saw that, and laid the sine of its case 3 to the turning of the γ-agent, and the circle of case 4 to a
 # start inside it and to the speed. The filter knows better (errata E12 and E15). The project moves its γ-agent by
-# iterations of 0.009 time units, but the $p_r$ that it hands over is *per iteration*: $\kappa = 0.009$.
+# iterations of 0.009 time units, but the $p_r$ that it hands over is *per iteration*: $k_v = 0.009$.
 
 # %%
 gains, circle = case4.law.gains, case4.law.target.target
 omega = 2 * np.pi * circle.frequency
-for kappa in (0.009, 1.0):
-    print(f"p_r = {kappa:5} dq_r/dt: predicted ratio {predicted_gain(gains, omega, factor=kappa):.3f}")
+for k_v in (0.009, 1.0):
+    print(f"p_r = {k_v:5} dq_r/dt: predicted ratio {predicted_gain(gains, omega, factor=k_v):.3f}")
 true = fl.simulate(fl.Algorithm2(case4.law.alpha, gains, circle), case4.q[0], case4.p[0], case4.t[[0, -1]])
 print(f"measured: {response_ratio(case4)[0]:.3f}, and {response_ratio(true)[0]:.3f} with the true p_r")
 print(tracking(case4))
@@ -150,17 +160,15 @@ print(tracking(case4))
 
 # %%
 frequencies = np.geomspace(0.3, 100.0, 200)
-responses = {
-    f"p_r = {kappa:g} dq_r/dt": CentreOfMass(gains, kappa).frequency_response(frequencies) for kappa in (0.009, 1.0)
-}
+responses = {f"p_r = {k_v:g} dq_r/dt": CentreOfMass(gains, k_v).frequency_response(frequencies) for k_v in (0.009, 1.0)}
 axes = plots.bode(responses, marks={"case 4": omega})
 
 # %% [markdown]
 # ## Too strong a pull
 #
 # The same $\lambda$ that holds the flock together presses on every link. Beyond a ratio $c_1^\gamma/c_1^\alpha$ that
-# falls with $n$, agents end in one place, in a strict local minimum of $U_\lambda$ (erratum E11): Theorem 3 promises
-# no lattice. Nineteen agents:
+# falls with $n$, some agents share one place, in a strict local minimum of $U_\lambda$ (erratum E11): Theorem 3
+# promises no lattice. Nineteen agents, the closest two of which coincide at the largest ratio:
 
 # %%
 alpha = fl.AlphaInteraction()
@@ -170,10 +178,26 @@ for ax, ratio in zip(axes, (0.05, 0.8, 3.0), strict=True):
     title = f"c1γ/c1α = {ratio:g}: {found.kind}, closest pair {fl.min_distance(found.q):.3g}"
     plots.configuration(found.q, d=alpha.d, r=alpha.r, ax=ax, bar=False, title=title)
 
+# %% tags=["facts"]
+places = len(np.unique(np.round(found.q, 4), axis=0))
+assert 1 < places < 19  # some share a place, not all
+
+
+# %% [markdown]
+# ## Summary
+#
+# - Algorithm 2 splits exactly into a shape, which dissipates $H_\lambda$, and a centre of mass, which is a linear
+#   filter of second order.
+# - $J$ in the energy bounds the size of the flock: cohesion holds with a constant.
+# - What the γ-agent tells as its velocity moves the zero of the filter; that explains circles that are too small or too
+#   large.
+# - Too strong a pull squeezes agents together.
+
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** Case 4 has $c_1^\gamma = 70$. Which $c_2^\gamma$ makes the centre of mass critically damped ($\zeta = 1$)?
+# **1.** ★ (1 point) Case 4 has $c_1^\gamma = 70$. Which $c_2^\gamma$ makes the centre of mass critically damped ($\zeta
+# = 1$)? (Four significant digits.)
 
 # %% tags=["answer"]
 c2_gamma = ...
@@ -182,29 +206,26 @@ c2_gamma = ...
 c2_gamma = 2 * np.sqrt(70)
 
 # %% tags=["check"]
-grade(c2_gamma, 2 * np.sqrt(70), rtol=1e-3, hint="ζ = c2γ/(2 √c1γ)")
+grade(c2_gamma, 16.733201, digits=4, hint="compare the characteristic polynomial with (s + ω_n)²")
 
 # %% [markdown] tags=["exercise"]
-# **2.** For which $\kappa$ between 0 and 1 would the flock of case 4 follow on a circle of exactly the right size?
+# **2.** ★★ (2 points) For which $k_v$ between 0 and 1 would the flock of case 4 follow on a circle of exactly the right
+# size? (Four significant digits.)
 
 # %% tags=["answer"]
-kappa = ...
+k_v = ...
 
 # %% tags=["solution"]
 from scipy.optimize import brentq
 
-kappa = brentq(lambda k: predicted_gain(gains, omega, factor=k) - 1.0, 0.0, 1.0)
+k_v = brentq(lambda k: predicted_gain(gains, omega, factor=k) - 1.0, 0.0, 1.0)
 
 # %% tags=["check"]
-grade(
-    kappa,
-    lambda k: abs(predicted_gain(gains, omega, factor=k) - 1.0) < 1e-3,
-    hint="solve predicted_gain(gains, omega, factor=kappa) = 1",
-)
+grade(k_v, 0.7372359, digits=4, hint="predicted_gain has what you need; so has the transfer function, by hand")
 
 # %% [markdown] tags=["exercise"]
-# **3.** A γ-agent on a straight line says $p_r = 0$ while it moves at speed 3. How far behind does the centre stay,
-# with $c_1^\gamma = 1.1$ and $c_2^\gamma = 2\sqrt{1.1}$? (Set $\ddot q_c = 0$.)
+# **3.** ★★ (2 points) A γ-agent on a straight line says $p_r = 0$ while it moves at speed 3. How far behind does the
+# centre stay, with $c_1^\gamma = 1.1$ and $c_2^\gamma = 2\sqrt{1.1}$? (Set $\ddot q_c = 0$; four significant digits.)
 
 # %% tags=["answer"]
 lag = ...
@@ -213,11 +234,11 @@ lag = ...
 lag = 2 * np.sqrt(1.1) * 3 / 1.1
 
 # %% tags=["check"]
-grade(lag, 2 * np.sqrt(1.1) * 3 / 1.1, rtol=1e-3, hint="c1γ (q_r − q_c) must balance c2γ times the speed")
+grade(lag, 5.7207755, digits=4, hint="which two forces on the centre balance?")
 
 # %% [markdown] tags=["exercise"]
-# **4.** Do seven agents coincide at $c_1^\gamma/c_1^\alpha = 3$, where nineteen do? Relax them, and answer `True` or
-# `False`.
+# **4.** ★ (1 point) Do seven agents coincide at $c_1^\gamma/c_1^\alpha = 3$, where nineteen do? Relax them, and answer
+# `True` or `False`.
 
 # %% tags=["answer"]
 coincide = ...
@@ -227,3 +248,21 @@ coincide = bool(fl.min_distance(relaxed(alpha, 7, 3.0).q) < 1e-6)
 
 # %% tags=["check"]
 grade(coincide, False, hint="fl.min_distance(relaxed(alpha, 7, 3.0).q)")
+
+# %% [markdown] tags=["exercise"]
+# **5.** ★★★ (3 points) Design: choose $c_1^\gamma$ and $c_2^\gamma$, neither above 5, such that the centre of mass
+# returns like $e^{-2t}$ or faster from every start. Give the list $[c_1^\gamma, c_2^\gamma]$.
+
+# %% tags=["answer"]
+gains = ...
+
+# %% tags=["solution"]
+gains = [4.8, 4.2]  # poles of s² + c2γ s + c1γ; with s = z − 2: c2γ ≥ 4 and c1γ ≥ 2 c2γ − 4
+
+# %% tags=["check"]
+grade(
+    gains,
+    lambda g: len(g) == 2 and max(g) <= 5.0 and np.roots([1.0, g[1], g[0]]).real.max() <= -2.0 + 1e-6,
+    form="list",
+    hint="where are the poles? two of them",
+)

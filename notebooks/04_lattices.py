@@ -38,6 +38,16 @@ print(f"{len(q)} agents, {len(pairs)} links, α-lattice: {lattice.is_alpha_latti
 print(f"Theorem 5 allows 3n − 6 = {lattice.planar_bound(len(q))}; Harborth's sharp bound is {lattice.harborth(len(q))}")
 
 # %% [markdown]
+# ## Theorem 5
+#
+# > **Theorem 5** (Olfati-Saber 2006). Let $q$ be an α-lattice of scale $d > 0$ and ratio $\kappa > 1$ with distinct
+# > nodes. Then (i) its net is planar, $m = 2, 3$; (ii) it has at most $3n - 6$ links, $m = 2$, $n \ge 3$; (iii) with $n
+# > > m + 1$ nodes it is not complete, $m = 1, 2, 3$.
+#
+# In the plane (i) holds for $\kappa \le \sqrt2$ and more, because links that cross would have a pair that is nearer
+# than $d$ allows; in space it is false (below). The sharp bound in (ii) is $\lfloor 3n - \sqrt{12n-3}\rfloor$ (Harborth
+# 1974), which hexagonal spirals reach.
+#
 # ## What a flock really ends in
 #
 # Algorithm 2 ends near a lattice, not in one: the γ-agent's pull compresses it. Colour and shape of an agent tell its
@@ -52,12 +62,23 @@ plots.defect_map(end, net, lattice.coordination(len(end), net), strain=length / 
 print(f"largest strain {lattice.strain(end, d, r):.3f}, crossings {len(lattice.crossings(end, net))}")
 
 # %% [markdown]
-# Theorem 5 is about lattices, so on this state most of it is vacuous. An extension is not: **if all pairs are farther
-# apart than $r/\sqrt2$, no two links cross**, lattice or not. (Two crossing links are the diagonals of a convex
-# quadrilateral, one of whose sides is at most $1/\sqrt2$ of the longer diagonal.)
+# Theorem 5 is about lattices, and this state is none: what it says is vacuous here. An extension needs no lattice: **if
+# all pairs are farther apart than $r/\sqrt2$, no two links cross**. (Two crossing links are the diagonals of a convex
+# quadrilateral, one of whose sides is at most $1/\sqrt2$ of the longer diagonal.) It is vacuous too, `extension` below,
+# because the closest pair is a little nearer than $r/\sqrt2$. But the argument bounds that side by the links that there
+# are, not by the range: with $\ell$ the longest link, pairs farther apart than $\ell/\sqrt2$ suffice. That holds here
+# (`extension-lengths`).
 
 # %%
 print(fl.verify("os-5", q=end, d=d, r=r))
+
+# %% tags=["facts"]
+said = fl.verify("os-5", q=end, d=d, r=r)
+assert [said.claim(name).status for name in ("i", "extension", "extension-lengths")] == [
+    "vacuous",
+    "vacuous",
+    "verified",
+]
 
 # %% [markdown]
 # ## In space, planarity fails
@@ -83,10 +104,17 @@ _ = plots.configuration(fragment, d=d, r=r, ax=ax, bar=False)
 # %%
 print(lattice.rigidity(q, pairs))
 
+# %% [markdown]
+# ## Summary
+#
+# - Which patterns are α-lattices is decided by the second neighbours.
+# - Links of pairs farther apart than $\ell/\sqrt2$ do not cross, lattice or not.
+# - In space a lattice's net need not be planar.
+
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** How many links can an α-lattice of 100 agents in the plane have at most?
+# **1.** ★ (1 point) How many links can an α-lattice of 100 agents in the plane have at most? (A whole number.)
 
 # %% tags=["answer"]
 most = ...
@@ -95,11 +123,11 @@ most = ...
 most = lattice.harborth(100)
 
 # %% tags=["check"]
-grade(most, 265, hint="⌊3n − √(12n − 3)⌋")
+grade(most, 265, hint="Harborth's number, not 3n − 6")
 
 # %% [markdown] tags=["exercise"]
-# **2.** For $r = 1.2\,d$, at what least distance between any two agents does the extension guarantee that no links
-# cross? Give it as a multiple of $d$.
+# **2.** ★ (1 point) For $r = 1.2\,d$, at what least distance between any two agents does the extension guarantee that
+# no links cross? Give it as a multiple of $d$, to three significant digits.
 
 # %% tags=["answer"]
 safe = ...
@@ -108,11 +136,11 @@ safe = ...
 safe = 1.2 / np.sqrt(2)
 
 # %% tags=["check"]
-grade(safe, 0.848528, rtol=1e-3, hint="r/√2")
+grade(safe, 0.848528, digits=3, hint="the extension is stated for r; put in what r is")
 
 # %% [markdown] tags=["exercise"]
-# **3.** Build thirteen agents: an FCC site with its twelve nearest neighbours, as an array `thirteen` of shape (13, 3)
-# with scale $d = 7$. More than $3n - 6 = 33$ links are possible in space.
+# **3.** ★★ (2 points) Build thirteen agents: an FCC site with its twelve nearest neighbours, as an array `thirteen` of
+# shape (13, 3) with scale $d = 7$. More than $3n - 6 = 33$ links are possible in space.
 
 # %% tags=["answer"]
 thirteen = ...
@@ -125,12 +153,13 @@ print(len(lattice.links(thirteen, r)), "links")
 # %% tags=["check"]
 grade(
     thirteen,
-    lambda x: np.shape(x) == (13, 3) and lattice.is_alpha_lattice(x, d, r) and len(lattice.links(x, r)) == 36,
-    hint="sites of even coordinate sum, times d/√2; 36 links",
+    lambda x: np.shape(x) == (13, 3) and lattice.is_alpha_lattice(x, 7.0, 8.4) and len(lattice.links(x, 8.4)) == 36,
+    form="list",
+    hint="every agent of the shell has the centre and four of the shell as neighbours",
 )
 
 # %% [markdown] tags=["exercise"]
-# **4.** Theorem 5 bounds the links of 2 agents by $3n - 6$. Is that right?
+# **4.** ★ (1 point) Theorem 5 bounds the links of 2 agents by $3n - 6$. Is that right? (`True` or `False`.)
 
 # %% tags=["answer"]
 bound_holds_for_two = ...
@@ -140,3 +169,23 @@ bound_holds_for_two = bool(len(lattice.links(lattice.line(2, d), r)) <= 3 * 2 - 
 
 # %% tags=["check"]
 grade(bound_holds_for_two, False, hint="erratum E6")
+
+# %% [markdown] tags=["exercise"]
+# **5.** ★★★ (3 points) Counterexample hunt: give four agents in the plane, an array of shape (4, 2), two of whose links
+# cross, for $r = 8.4$. (By the extension some two of them are nearer than $r/\sqrt2$.)
+
+# %% tags=["answer"]
+crossing = ...
+
+# %% tags=["solution"]
+crossing = [[0.0, 0.0], [5.0, 0.0], [5.0, 5.0], [0.0, 5.0]]  # the diagonals are links
+
+# %% tags=["check"]
+grade(
+    crossing,
+    lambda x: (
+        np.shape(x) == (4, 2) and len(lattice.crossings(np.array(x, float), lattice.links(np.array(x, float), 8.4))) > 0
+    ),
+    form="list",
+    hint="which links could cross in a square?",
+)

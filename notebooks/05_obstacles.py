@@ -21,7 +21,22 @@
 # centre $y$ and radius $R$,
 #
 # $$\mu = \frac{R}{\|q_i - y\|},\quad a = \frac{q_i-y}{\|q_i-y\|},\quad P = I - aa^\top,\qquad
-#   \hat q_{ik} = \mu q_i + (1-\mu) y,\quad \hat p_{ik} = \mu P p_i .$$
+#   \hat q_{ik} = \mu q_i + (1-\mu) y,\quad \hat p_{ik} = \mu P p_i ,$$
+#
+# and for a wall through $y$ with unit normal $a$: $\hat q_{ik} = Pq_i + (I-P)y$, $\hat p_{ik} = Pp_i$. An agent is to
+# keep the distance $d'$ from obstacles. With $d_\beta = \|d'\|_\sigma$ and $\sigma_1(z) = z/\sqrt{1+\|z\|^2}$ the
+# β-agents repel, and brake, within that distance:
+#
+# $$\phi_\beta(z) = \rho_h(z/d_\beta)\,(\sigma_1(z-d_\beta)-1) \le 0, \qquad
+#   b_{ik} = \rho_h(\|\hat q_{ik}-q_i\|_\sigma/d_\beta), \qquad
+#   \hat n_{ik} = \frac{\hat q_{ik}-q_i}{\sqrt{1+\varepsilon\|\hat q_{ik}-q_i\|^2}},$$
+#
+# $$u_i^\beta = c_1^\beta\sum_k \phi_\beta(\|\hat q_{ik}-q_i\|_\sigma)\,\hat n_{ik}
+#   + c_2^\beta\sum_k b_{ik}(\hat p_{ik}-p_i), \qquad
+#   u_i^\gamma = -c_1^\gamma\,\sigma_1(q_i-q_r) - c_2^\gamma(p_i-p_r),$$
+#
+# and $u_i = u_i^\alpha + u_i^\beta + u_i^\gamma$, where $u_i^\alpha$ is Algorithm 1. Because of $\sigma_1$ the pull of
+# a distant γ-agent is bounded.
 
 # %%
 import numpy as np
@@ -57,14 +72,20 @@ _ = plots.components(run, ax=axes[1])
 # %% [markdown]
 # ## Theorem 6
 #
-# With a static γ-agent at $q_d$ that reports the velocity $p_d$, the energy
-# $H = V_\alpha + V_\beta + V_\gamma + T$ changes at
+# Let the γ-agent be static at $q_d$ and report the velocity $p_d$. With $\psi_\beta(z) = \int_{d_\beta}^z\phi_\beta$,
+#
+# $$V_\alpha = c_1^\alpha V, \qquad V_\beta = c_1^\beta\sum_{i,k}\psi_\beta(\|\hat q_{ik}-q_i\|_\sigma), \qquad
+#   V_\gamma = c_1^\gamma\sum_i\bigl(\sqrt{1+\|q_i-q_d\|^2}-1\bigr),$$
+#
+# the energy $H = V_\alpha + V_\beta + V_\gamma + T$ changes at
 #
 # $$\dot H = -c_2^\alpha\, p^\top \hat L p + c_2^\beta \sum_{i,k} b_{ik}\langle p_i, \hat p_{ik} - p_i\rangle
 #   - c_2^\gamma \bigl(2T - n \langle p_c, p_d\rangle\bigr), \qquad T = \tfrac12 \sum \|p_i\|^2 .$$
 #
-# The first two terms never feed energy in; the third does not as long as $\tfrac n2\langle p_c, p_d\rangle \le T$. With
-# $p_d = 0$ that is trivial.
+# > **Theorem 6** (Olfati-Saber 2006). Apply Algorithm 3 with a static γ-agent. If $\tfrac n2\langle p_c(t), p_d\rangle
+# > \le T(t)$ for all $t \ge t_0$, then $\dot H \le 0$ for all $t \ge t_0$.
+#
+# The first two terms never feed energy in, and the third does not under the condition. With $p_d = 0$ it is trivial.
 
 # %%
 trapped = fl.scenario("paper-trapped").run()
@@ -75,19 +96,27 @@ plots.energy(trapped, ax=axes[1])
 _ = plots.energy_residual(trapped, ax=axes[2])
 
 # %% [markdown]
-# Nothing in the theorem says that the flock *arrives*: the obstacle holds some agents back for good, at rest, and the
-# energy is content. A moving γ-agent feeds energy in, and the theorem is vacuous:
+# Nothing in the theorem says that the flock *arrives*: the obstacle holds some agents back for good. They are at rest,
+# so the energy no longer changes, which is all that the theorem speaks of. A moving γ-agent feeds energy in, and the
+# theorem is vacuous:
 
 # %%
 print(fl.verify("os-6", run).status)
 figure, ax = plots.subplots(size=(6, 3))
 _ = plots.energy(run, ax=ax)
 
+# %% [markdown]
+# ## Summary
+#
+# - β-agents are projections of the agent on the obstacle; they repel and brake.
+# - Theorem 6 bounds the energy only: it promises neither arrival nor a way around.
+# - Its condition must hold at all later times, not at one instant.
+
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** An agent moves past a sphere of radius 2 at the origin: it is at $(4, 0)$ with velocity $(0, 3)$. How fast is
-# its β-agent?
+# **1.** ★ (1 point) An agent moves past a sphere of radius 2 at the origin: it is at $(4, 0)$ with velocity $(0, 3)$.
+# How fast is its β-agent? (Exactly.)
 
 # %% tags=["answer"]
 speed = ...
@@ -96,11 +125,11 @@ speed = ...
 speed = 2 / 4 * 3  # μ P p, and P p = p here
 
 # %% tags=["check"]
-grade(speed, 1.5, hint="p̂ = μ P p")
+grade(speed, 1.5, hint="which part of the velocity does P keep?")
 
 # %% [markdown] tags=["exercise"]
-# **2.** Let `run` start with twice the velocity of the γ-agent (10 along x). What is the least clearance that it
-# reaches?
+# **2.** ★★ (2 points) Let `run` start with twice the velocity of the γ-agent (10 along x). What is the least clearance
+# that it reaches, to three significant digits?
 
 # %% tags=["answer"]
 reached = ...
@@ -110,22 +139,55 @@ fast = fl.simulate(law, start, np.tile([10.0, 0.0], (len(start), 1)), (0.0, 50.0
 reached = fast.clearance().reached
 
 # %% tags=["check"]
-grade(
-    reached,
-    fl.simulate(law, start, np.tile([10.0, 0.0], (len(start), 1)), (0.0, 50.0)).clearance().reached,
-    rtol=1e-3,
-    hint="run it with another p0, then .clearance().reached",
-)
+grade(reached, 4.12186, digits=3, hint="run it with another p0, and ask that run for its clearance")
 
 # %% [markdown] tags=["exercise"]
-# **3.** A γ-agent at rest reports $p_d = (1, 0)$. All agents are at rest. Does Theorem 6 promise that the energy falls
-# right now?
+# **3.** ★★★ (3 points) A γ-agent that stays at the origin reports $p_d = (1, 0)$. One agent is at rest at the origin;
+# $c_1^\gamma = 1$, $c_2^\gamma = 2$, no obstacle. Put $p = 0$ into $\dot H$: it is 0, and the condition $\tfrac
+# n2\langle p_c, p_d\rangle \le T$ holds, with equality. Does the energy stay? Compute $\ddot H$ at this instant,
+# exactly. (Then run it, and read what `os-6` says and why.)
 
 # %% tags=["answer"]
-promised = ...
+curvature = ...
 
 # %% tags=["solution"]
-promised = True  # (n/2)⟨p_c, p_d⟩ = 0 ≤ T = 0: the condition holds, with equality, at this instant
+lone = fl.Algorithm3(gains=fl.Gains(c1_gamma=1.0, c2_gamma=2.0), target=fl.StaticTarget((0.0, 0.0), p=(1.0, 0.0)))
+pushed = fl.simulate(lone, [[0.0, 0.0]], [[0.0, 0.0]], (0.0, 3.0))
+print(fl.verify("os-6", pushed))
+# dH/dt = −c2γ (‖p‖² − ⟨p, p_d⟩), and p grows from 0 at the rate u = c2γ p_d: H rises, and the condition fails at once
+curvature = 2.0 * 2.0 * 1.0
+
+# %% tags=["facts"]
+assert fl.verify("os-6", pushed).status == "vacuous"
+assert fl.verify("os-6", run).status == "vacuous"
+first = fl.simulate(lone, [[0.0, 0.0]], [[0.0, 0.0]], (0.0, 1e-3)).energy()[-1]
+assert abs(2.0 * first / 1e-3**2 - curvature) < 0.02 * curvature  # H rises as ½ Ḧ t²
 
 # %% tags=["check"]
-grade(promised, True, hint="put p = 0 into the condition; 'does not rise' is what is promised")
+grade(curvature, 4.0, hint="differentiate the third term of dH/dt; at rest only the part linear in p counts")
+
+# %% [markdown] tags=["exercise"]
+# **4.** ★★ (2 points) An agent moves with the velocity $(3, 4)$ near a wall with the normal $(0, 1)$. Compute $\langle
+# p, \hat p - p\rangle$, the power that its braking draws, exactly.
+
+# %% tags=["answer"]
+work = ...
+
+# %% tags=["solution"]
+work = -(4.0**2)  # Pp = (3, 0), so p̂ − p = (0, −4)
+
+# %% tags=["check"]
+grade(work, -16.0, hint="split the velocity along and across the wall")
+
+# %% [markdown] tags=["exercise"]
+# **5.** ★★ (2 points) The pull of Algorithm 3 is bounded by $c_1^\gamma$. At what distance from the γ-agent is it at 99
+# % of that bound? (Four significant digits.)
+
+# %% tags=["answer"]
+far = ...
+
+# %% tags=["solution"]
+far = 0.99 / np.sqrt(1.0 - 0.99**2)
+
+# %% tags=["check"]
+grade(far, 7.01792, digits=4, hint="invert σ₁")

@@ -17,11 +17,14 @@
 # the value of a gain off the linear system, having checked first that it tells the truth.
 #
 # In the frame of the centre of mass Algorithm 2 is $\dot x = v$, $\dot v = -\nabla U_\lambda(x) - (c_2^\gamma I +
-# c_2^\alpha \hat L(x))v$ with $U_\lambda = c_1^\alpha V + c_1^\gamma J$. Near a minimum $x^*$ of $U_\lambda$, where
-# $v = 0$,
+# c_2^\alpha \hat L(x))v$ with $U_\lambda = c_1^\alpha V + \lambda J$, $\lambda = c_1^\gamma$. Near a minimum $x^*$ of
+# $U_\lambda$, where $v = 0$,
 #
 # $$\delta\ddot x + \underbrace{(c_2^\gamma I + c_2^\alpha \hat L)}_{D}\,\delta\dot x
-#   + \underbrace{\nabla^2 U_\lambda(x^*)}_{K}\,\delta x = 0, \qquad (\lambda^2 I + \lambda D + K)\,\nu = 0 .$$
+#   + \underbrace{\nabla^2 U_\lambda(x^*)}_{S}\,\delta x = 0, \qquad (s^2 I + s D + S)\,\nu = 0 .$$
+#
+# $D$ is the damping, $S$ the stiffness, $s$ a pole and $\nu$ its mode. ($\lambda$ stays $c_1^\gamma$; $K$ stays the
+# velocity mismatch $\tfrac12\sum\|v_i\|^2$.)
 
 # %%
 import numpy as np
@@ -65,7 +68,7 @@ for ax, mode in zip(axes, shapes, strict=True):
 # ## Does it tell the truth?
 #
 # Push the flock along its slowest structural mode by $10^{-4}$ and let the *nonlinear* law act. The mismatch
-# $\tilde K$ must fall at twice the mode's decay rate, as it is quadratic in the velocities.
+# $\tilde K = K/n$ must fall at twice the mode's decay rate, as it is quadratic in the velocities.
 
 # %%
 slow = shapes[0]
@@ -90,7 +93,7 @@ _ = plots.bode({"q_r to q_c, p_r = dq_r/dt": system.frequency_response(omega)})
 
 # %% [markdown]
 # How much delay in *all* interactions does the flock survive? The characteristic equation
-# $\det(s^2 I + (sD + K)e^{-s\tau}) = 0$ has infinitely many roots; a Chebyshev discretisation finds the rightmost.
+# $\det(s^2 I + (sD + S)e^{-s\tau}) = 0$ has infinitely many roots; a Chebyshev discretisation finds the rightmost.
 
 # %%
 margin = stability.delay_margin(stability.delay_system(law, rest.q))
@@ -101,17 +104,32 @@ for share in (0.9, 1.1):
 
 # %% [markdown]
 # And what does a stronger damping $c_2^\gamma$ buy? Of the structure, ever more decay; of the centre of mass, less
-# beyond critical damping. (A sweep over $c_1^\gamma$ follows the equilibrium, which moves.)
+# beyond critical damping, $c_2^\gamma = 2\sqrt{c_1^\gamma}$, which is one of the points. (A sweep over $c_1^\gamma$
+# follows the equilibrium, which moves.)
 
 # %%
-sweep = stability.gain_sweep(law, rest.q, "c2_gamma", np.linspace(0.2, 8.0, 25))
+sweep = stability.gain_sweep(
+    law, rest.q, "c2_gamma", np.linspace(0.2, 4.0, 20) * 2.0 * np.sqrt(law.gains.c1_gamma), follow=False
+)
 _ = plots.gain_sweep(sweep)
+
+# %% tags=["facts"]
+best_drawn = sweep.values[int(np.argmin(sweep.abscissa))]
+assert abs(best_drawn - 2.0 * np.sqrt(law.gains.c1_gamma)) < 1e-12
+
+# %% [markdown]
+# ## Summary
+#
+# - Near a minimum of $U_\lambda$ a flock is a mechanical system $s^2I + sD + S$; rotations and translations that
+#   nothing holds give zero modes.
+# - A linearisation is checked against the nonlinear law before it is used.
+# - Poles, delay margin and gain sweeps follow from it.
 
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** Linearise Algorithm 1 about the exact hexagon of 19 (at rest). Which of its zero modes drift for ever once they
-# are given a velocity? Give the list of names.
+# **1.** ★ (1 point) Linearise Algorithm 1 about the exact hexagon of 19 (at rest). Which of its zero modes drift for
+# ever once they are given a velocity? Give the list of names.
 
 # %% tags=["answer"]
 drifting = ...
@@ -121,11 +139,12 @@ free = fl.linearise(fl.Algorithm1(), lattice.hexagonal_patch(2, 7.0))
 drifting = list(free.drifting)
 
 # %% tags=["check"]
-grade(drifting, lambda x: sorted(x) == ["translation x", "translation y"], hint="Linearisation.drifting")
+grade(drifting, {"translation x", "translation y"}, hint="what can move for ever without a force?")
 
 # %% [markdown] tags=["exercise"]
-# **2.** Two agents under Algorithm 1, 7 apart, at rest. The only shape is the distance. From $K$ and $D$ of
-# `linearise`, what is its damping ratio?
+# **2.** ★★ (2 points) Two agents under Algorithm 1, 7 apart, at rest. The only shape is the distance. What is its
+# damping ratio, to three significant digits? (By `linearise`, or from $\phi_\alpha'(d_\alpha)$ and $a_{ij}$ at $d$ by
+# hand.)
 
 # %% tags=["answer"]
 damping_ratio = ...
@@ -135,10 +154,11 @@ pair = fl.linearise(fl.Algorithm1(), [[0.0], [7.0]])
 damping_ratio = pair.modes[0].damping_ratio
 
 # %% tags=["check"]
-grade(damping_ratio, fl.linearise(fl.Algorithm1(), [[0.0], [7.0]]).modes[0].damping_ratio, hint="one mode: .modes[0]")
+grade(damping_ratio, 0.09291926, digits=3, hint="there is one mode")
 
 # %% [markdown] tags=["exercise"]
-# **3.** For which $c_2^\gamma$ does the centre of mass return fastest, with $c_1^\gamma = 1.1$ as it is?
+# **3.** ★ (1 point) For which $c_2^\gamma$ does the centre of mass return fastest, with $c_1^\gamma = 1.1$ as it is?
+# (Four significant digits.)
 
 # %% tags=["answer"]
 best = ...
@@ -147,11 +167,12 @@ best = ...
 best = 2 * np.sqrt(1.1)
 
 # %% tags=["check"]
-grade(best, 2.097618, rtol=0.02, hint="a double real pole")
+grade(best, 2.0976177, digits=4, hint="where do two real poles meet?")
 
 # %% [markdown] tags=["exercise"]
-# **4.** `linearise` refuses a state that is no equilibrium. Try the *exact* hexagon of 19 under `law`: what does it
-# name, relative to the forces of the law? Give it to one digit. (Read the message of the error.)
+# **4.** ★★ (2 points) `linearise` refuses a state that is no equilibrium. Try the *exact* hexagon of 19 under `law`:
+# what does it name, relative to the forces of the law? Give it to two significant digits. (Read the message of the
+# error.)
 
 # %% tags=["answer"]
 residual = ...
@@ -164,9 +185,19 @@ except fl.errors.ArgumentError as error:
 residual = fl.linearise(law, lattice.hexagonal_patch(2, 7.0), allow_residual=True).residual
 
 # %% tags=["check"]
-grade(
-    residual,
-    fl.linearise(law, lattice.hexagonal_patch(2, 7.0), allow_residual=True).residual,
-    rtol=0.5,
-    hint="fl.linearise(law, lattice.hexagonal_patch(2, 7.0)) says it",
-)
+grade(residual, 0.04442693, digits=2, hint="the error says it, relative to the forces")
+
+# %% [markdown] tags=["exercise"]
+# **5.** ★★★ (3 points) Design: one agent follows a γ-agent at rest with $c_1^\gamma = 1$, $c_2^\gamma = 2$, and
+# everything that it hears is late by $\tau$: $s^2 + (2s + 1)e^{-s\tau} = 0$. What is the delay margin, to four
+# significant digits? (At the margin $s = i\omega$: compare moduli first, then phases.)
+
+# %% tags=["answer"]
+delay = ...
+
+# %% tags=["solution"]
+omega_c = np.sqrt((4.0 + np.sqrt(20.0)) / 2.0)  # ω⁴ = 1 + 4ω²
+delay = np.arctan(2.0 * omega_c) / omega_c
+
+# %% tags=["check"]
+grade(delay, 0.647409203, digits=4, hint="two real equations, for ω and for τ")

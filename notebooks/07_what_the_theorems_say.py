@@ -91,10 +91,18 @@ for name in fl.theorems():
     if name.startswith("E"):
         print(f"{name:>4}  {fl.theorem(name).title}")
 
+# %% [markdown]
+# ## Summary
+#
+# - A true theorem may have a hypothesis that no state satisfies.
+# - A strict local minimum that is no lattice refutes convergence of almost every solution, because its basin is open.
+# - Energy bounds what happens at one instant, not what happens one after another.
+
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** With $a = b = 1$ instead of 5 (all else equal), from which $n$ on does no state have $V < c^*$?
+# **1.** ★★ (2 points) With $a = b = 1$ instead of 5 (all else equal), from which $n$ on does no state have $V < c^*$?
+# (A whole number.)
 
 # %% tags=["answer"]
 n_none = ...
@@ -103,15 +111,11 @@ n_none = ...
 n_none = none_from(fl.AlphaInteraction(a=1.0, b=1.0))
 
 # %% tags=["check"]
-grade(
-    n_none,
-    none_from(fl.AlphaInteraction(a=1.0, b=1.0)),
-    hint="none_from(AlphaInteraction(...)): think before you run it",
-)
+grade(n_none, 23, hint="how do V and c* change when a = b does?")
 
 # %% [markdown] tags=["exercise"]
-# **2.** Erratum E9: a constant input $u = 2$ for one step $\Delta t = 0.1$ from rest. How far does the printed update
-# move the agent?
+# **2.** ★ (1 point) Erratum E9: a constant input $u = 2$ for one step $\Delta t = 0.1$ from rest. How far does the
+# printed update move the agent, exactly?
 
 # %% tags=["answer"]
 moved = ...
@@ -121,11 +125,11 @@ u, dt = 2.0, 0.1
 moved = (u * dt) * dt + 0.5 * u * dt**2
 
 # %% tags=["check"]
-grade(moved, 0.03, hint="p + v_new dt + ½ u dt²")
+grade(moved, 0.03, hint="the printed update uses the new velocity, and adds ½ u dt² to it")
 
 # %% [markdown] tags=["exercise"]
-# **3.** A run of `paper-flocking` keeps all agents apart. What is the status of claim `iv-none` of `os-3` on it, and
-# why?
+# **3.** ★ (1 point) A run of `paper-flocking` keeps all agents apart. What is the status of claim `iv-none` of `os-3`
+# on it (one word), and why?
 
 # %% tags=["answer"]
 status = ...
@@ -135,3 +139,32 @@ status = fl.verify("os-3", fl.scenario("paper-flocking").run()).claim("iv-none")
 
 # %% tags=["check"]
 grade(status, "vacuous", hint="is H_λ(0) < c*?")
+
+# %% [markdown] tags=["exercise"]
+# **4.** ★★ (2 points) Agents that are all out of each other's range have $V = \tfrac12 n(n-1)\psi_\alpha(r_\alpha)$.
+# From which $n$ on is that at least $c^*$? (A whole number.)
+
+# %% tags=["answer"]
+scattered = ...
+
+# %% tags=["solution"]
+scattered = next(n for n in range(2, 99) if n * (n - 1) / 2 * alpha.psi_alpha(alpha.r_alpha) >= alpha.c_star)
+
+# %% tags=["check"]
+grade(scattered, 13, hint="how many pairs out of range cost as much as c*?")
+
+# %% [markdown] tags=["exercise"]
+# **5.** ★★★ (3 points) In your own words, at least 30 of them: a strict local minimum of $V$ that is no lattice refutes
+# a claim about *almost every* solution of Algorithm 1 with a connected flock. Why is one such minimum enough? (A text;
+# the check counts words, and your lecturer reads it.)
+
+# %% tags=["answer"]
+basin = ...
+
+# %% tags=["solution"]
+basin = """At a strict local minimum, up to motions of the whole, the energy is a Lyapunov function, and damping makes
+it fall, so the minimum attracts an open neighbourhood of states. An open set has positive measure, so the
+solutions that start in it are not almost none."""
+
+# %% tags=["check"]
+grade(basin, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")

@@ -21,9 +21,22 @@
 # step,
 #
 # $$u_i = u_i^{lc} + u_i^{la} + u_i^{ls} + u_i^{ss} + u_i^{oa} + u_i^{ga}, \qquad
-#   v_i \leftarrow v_i + \delta\, u_i, \qquad p_i \leftarrow p_i + \delta\, v_i ,$$
+#   p_i \leftarrow p_i + \delta\, u_i, \qquad q_i \leftarrow q_i + \delta\, p_i ,$$
 #
-# with cohesion, alignment, separation (local and strategic), obstacle avoidance and global speed.
+# with cohesion, alignment, separation (local and strategic), obstacle avoidance and global speed. With $d_{ij} =
+# \|q_j-q_i\|$, the bearing $b_{ij} = (q_j-q_i)/d_{ij}$, the sets $R_i = \{j : d_{ij} \le c\}$, $A_i = \{j : r < d_{ij}
+# \le a\}$ and the aliens $S_i = \{k : 0 < d_{ik} \le s\}$, and weights $w$ whose sum over the set is $W$:
+#
+# $$u_i^{lc} = \frac1{W^{lc}}\sum_{A_i} w_{ij}^{lc}\,(q_j - q_i), \quad
+#   u_i^{la} = \frac1{W^{la}}\sum_{A_i} w_{ij}^{la}\,(p_j - p_i), \quad
+#   u_i^{ls} = \sum_{R_i} w_{ij}^{ls}\,(d_{ij}-c)\,b_{ij},$$
+#
+# $$u_i^{ss} = \sum_{S_i} w_{ik}^{ss}\,(d_{ik}-s)\,b_{ik}, \quad
+#   u_i^{oa} = \sum_e w_i^{oa}\min(0,\, d_{ie}-c)\,b_{ie}, \quad
+#   u_i^{ga} = w_i^{ga}\Bigl(v^d\frac{p_i}{\|p_i\|} - p_i\Bigr),$$
+#
+# where $e$ runs over the closest points of the obstacles that the agent's zone meets, $v^d$ is the desired speed, and a
+# sum over an empty set is 0. As in all lectures $q$ is a position and $p$ a velocity; the paper writes $p$ and $v$.
 
 # %%
 import numpy as np
@@ -53,8 +66,8 @@ for ax, case, t in zip(axes, ("zone-gap", "zone-gap", "zone-gap-buffer"), (4.0, 
 # %% [markdown]
 # ## Two forms, and where they part
 #
-# From a bearing $b_{ij}$ and a distance $d_{ij}$ an agent knows $p_j - p_i = d\,b$, and from their rates
-# $v_j - v_i = d\,\dot b + \dot d\,b$ (13). So each behaviour has a form without positions:
+# From a bearing $b_{ij}$ and a distance $d_{ij}$ an agent knows $q_j - q_i = d\,b$, and from their rates
+# $p_j - p_i = d\,\dot b + \dot d\,b$ (13). So each behaviour has a form without positions:
 
 # %%
 print("both forms agree:", bearing_distance.derive_equivalence().holds)
@@ -84,7 +97,7 @@ print(f"mean error of the estimate after 1, 5 and 20 s: {off[10]:.2f}, {off[50]:
 # %% [markdown]
 # ## A bound that is a drag
 #
-# To keep $\|v\| \le v^{\max} = 4$ the paper sets $v \leftarrow v^{\max}\tanh(\|v\|/v^{\max})\, v/\|v\|$ in *every* step
+# To keep $\|p\| \le v^{\max} = 4$ the paper sets $p \leftarrow v^{\max}\tanh(\|p\|/v^{\max})\, p/\|p\|$ in *every* step
 # (10). That shortens a velocity of 3, far from the bound, too (erratum J7). Against full thrust $u^{\max} = 2$ it holds
 # the speed below a fixed point:
 
@@ -102,7 +115,7 @@ for ax, run, title in zip(axes, (printed, clipped), ("as printed", "as recommend
 # ## The theorem
 #
 # For its analysis the paper reduces the law to springs and alignment along the edges of a perception graph
-# (`MinimalFlocking`). With $x_e = p_j - p_i$ on edge $e = (j, i)$, by which $i$ perceives $j$, and a desired length
+# (`MinimalFlocking`). With $x_e = q_j - q_i$ on edge $e = (j, i)$, by which $i$ perceives $j$, and a desired length
 # $\rho$:
 #
 # > **Theorem 1** (as printed, in our words). If the graph is a spanning tree, then $x \to 0$ and $\dot x \to 0$ from
@@ -165,10 +178,19 @@ print("with velocities that persist:", ", ".join(found.drifting), "(the plot cou
 figure, ax = plots.subplots(size=(5, 3.6))
 _ = plots.pole_map(found.eigenvalues, ax=ax)
 
+# %% [markdown]
+# ## Summary
+#
+# - Bearings and distances suffice for all terms but the global speed.
+# - A bound that acts at every speed is a drag.
+# - Eigenvalues of a matrix that depends on the state prove nothing about a trajectory; the corrected theorem speaks of
+#   a neighbourhood of a set of equilibria.
+
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** Halve the step to $\delta = 0.05$. Which speed can the printed bound (10) not exceed for long now?
+# **1.** ★ (1 point) Halve the step to $\delta = 0.05$. Which speed can the printed bound (10) not exceed for long now?
+# (Four significant digits.)
 
 # %% tags=["answer"]
 fastest = ...
@@ -177,11 +199,11 @@ fastest = ...
 fastest = float(bearing_distance.fastest_under_drag(0.05, 2, 4))
 
 # %% tags=["check"]
-grade(fastest, 1.628, rtol=1e-3, hint="bearing_distance.fastest_under_drag(step, force, bound)")
+grade(fastest, 1.62779186, digits=4, hint="the speed at which one step gains as much as the bound takes")
 
 # %% [markdown] tags=["exercise"]
-# **2.** Two agents: 1 perceives 0 and wants to be 1 away, both at rest, 0.5 apart. What is the acceleration of agent 1
-# along the line from 0 to 1 ($\mu = 1$)?
+# **2.** ★ (1 point) Two agents: 1 perceives 0 and wants to be 1 away, both at rest, 0.5 apart. What is the acceleration
+# of agent 1 along the line from 0 to 1 ($\mu = 1$)? (Exactly.)
 
 # %% tags=["answer"]
 push = ...
@@ -191,11 +213,11 @@ pair = MinimalFlocking(edges=[(0, 1)], spacing=1.0)
 push = float(pair.acceleration(0.0, [[0.0], [0.5]], [[0.0], [0.0]])[1, 0])
 
 # %% tags=["check"]
-grade(push, 0.5, hint="μ (1 − ρ/‖x‖)(p_0 − p_1)")
+grade(push, 0.5, hint="a spring that is too short pushes: mind the sign")
 
 # %% [markdown] tags=["exercise"]
-# **3.** How many zero modes, translations included, has the same law on a tree of 5 agents in space? Count them with
-# `linearise`, with all edges at their desired lengths.
+# **3.** ★★ (2 points) How many zero modes, translations included, has the same law on a tree of 5 agents in space?
+# Count them with `linearise`, with all edges at their desired lengths. (A whole number.)
 
 # %% tags=["answer"]
 count = ...
@@ -206,10 +228,11 @@ corners = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [1, 1, 1], [2, 1, 1]], dtyp
 count = len(linearise(chain, corners).zero_modes)
 
 # %% tags=["check"]
-grade(count, 11, hint="m translations and (n − 1)(m − 1) free bearings")
+grade(count, 11, hint="in space a bearing has two angles")
 
 # %% [markdown] tags=["exercise"]
-# **4.** With the zones' own law in its letter (`zone-51-printed`), how close do two agents come in 20 s, at the steps?
+# **4.** ★★ (2 points) With the zones' own law in its letter (`zone-51-printed`), how close do two agents come in 20 s,
+# at the steps? (Three significant digits.)
 
 # %% tags=["answer"]
 least = ...
@@ -218,4 +241,17 @@ least = ...
 least = float(printed.metrics().min_distance.min())
 
 # %% tags=["check"]
-grade(least, 0.0707, rtol=5e-3, hint="printed.metrics().min_distance")
+grade(least, 0.07065939, digits=3, hint="the run's metrics hold the least distance at every step")
+
+# %% [markdown] tags=["exercise"]
+# **5.** ★★★ (3 points) Derive: the eigenvalues of an edge solve $s^2 + s + w = 0$ with $w = 1 - \rho/\|x\|$. Above
+# which ratio $\|x\|/\rho$ are they complex, so that the edge's length swings? (Four significant digits.)
+
+# %% tags=["answer"]
+ratio = ...
+
+# %% tags=["solution"]
+ratio = 1.0 / (1.0 - 0.25)  # w > 1/4
+
+# %% tags=["check"]
+grade(ratio, 1.33333333, digits=4, hint="the sign of the discriminant")

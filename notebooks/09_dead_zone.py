@@ -137,17 +137,28 @@ print(fl.verify("dead-zone-1-printed", near))
 print(fl.verify("dead-zone-1-printed", wide))
 
 # %% [markdown]
-# The flock that stays one ends a little wider than $r$: at rest, so for good. For the other, a finite run refutes "in
-# the end they are together" only if it is certain that they part. It is: each component conserves its momentum, so
-# its centre moves at constant velocity, and its energy bounds how many of its own pairs can ever be out of range,
-# hence how far an agent gets from that centre. The components that are left at the end never come within $r$ of each
-# other again.
+# The flock that stays one ends a little wider than $r$, and at rest: it stays so. For the other, a finite run refutes
+# "in the end they are together" only if it is certain that they part. It is: each component conserves its momentum, so
+# its centre moves at constant velocity, and its energy bounds how many of its own pairs can ever be out of range, hence
+# how far an agent gets from that centre. The components that are left at the end never come within $r$ of each other
+# again.
 #
-# Of the theorem three things remain true, and are proved: the energy that falls, velocities that match *within*
-# components (seen here, not proved), and an explicit least distance:
+# Of the theorem two things remain true, and are proved: the energy falls, and there is an explicit least distance. With
+# $\bar H(0)$ the energy at the start, a pair inside $d_1$ costs $2k_r(\operatorname{arsinh}(1/(\sqrt\eta\rho)) -
+# \operatorname{arsinh}(1/(\sqrt\eta d_1)))$ at least, and no two agents ever come closer than
+#
+# $$\rho_{\min} = \frac{1}{\sqrt\eta\,\sinh\bigl(\bar H(0)/(2k_r)
+#   + \operatorname{arsinh}(1/(\sqrt\eta\, d_1))\bigr)} .$$
+#
+# A third, that velocities match *within* components, is seen in this run and not proved:
 
 # %%
 print(fl.verify("dead-zone-1-corrected", wide))
+
+# %% tags=["facts"]
+H0 = float(wide.energy()[0])
+inside = ramped.d1 - ramped.ramp
+assert abs(ramped.least_distance(H0) * np.sinh(H0 / (2 * ramped.k_r) + np.arcsinh(1 / inside)) - 1.0) < 1e-9
 
 # %% [markdown]
 # ## Where contacts sit
@@ -161,11 +172,19 @@ print(f"a {equilibrium.kind}, contacts shorter than d1 by at most {equilibrium.s
 figure, ax = plots.subplots(size=(6, 5))
 _ = plots.configuration(equilibrium.q, d=ramped.d1, r=1.2 * ramped.d1, ax=ax)
 
+# %% [markdown]
+# ## Summary
+#
+# - The potential that is continuous across switches holds each pair's cost constant beyond the range; its sum falls.
+# - At a jump an integrator's error estimate means nothing: switches have to be located.
+# - A pair can be held at a jump, in Filippov's sense; a fixed step chatters there.
+
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** Two agents out of range approach each other head-on at relative speed 2 on a line. By how much does the printed
-# energy, of neighbours, rise at the instant at which they come into range? (Default parameters, without a ramp.)
+# **1.** ★ (1 point) Two agents out of range approach each other head-on at relative speed 2 on a line. By how much does
+# the printed energy, of neighbours, rise at the instant at which they come into range? (Default parameters, without a
+# ramp; four significant digits.)
 
 # %% tags=["answer"]
 rise = ...
@@ -174,11 +193,11 @@ rise = ...
 rise = hard.psi(hard.r)  # whatever the speed
 
 # %% tags=["check"]
-grade(rise, hard.far_potential, hint="ψ at r, which fl.DeadZoneInteraction(ramp=0.0).psi knows")
+grade(rise, 5.81707271, digits=4, hint="what does a pair at the edge of the range cost?")
 
 # %% [markdown] tags=["exercise"]
-# **2.** What is the greatest energy $\bar H(0)$ for which the corrected theorem promises that no two agents come closer
-# than 1? (Without a ramp; $\eta = 1$.)
+# **2.** ★★ (2 points) What is the greatest energy $\bar H(0)$ for which the corrected theorem promises that no two
+# agents come closer than 1? (Without a ramp; $\eta = 1$; four significant digits.)
 
 # %% tags=["answer"]
 energy = ...
@@ -187,11 +206,11 @@ energy = ...
 energy = 2 * hard.k_r * (np.arcsinh(1.0) - np.arcsinh(1.0 / hard.d1))
 
 # %% tags=["check"]
-grade(energy, lambda H: abs(hard.least_distance(H) - 1.0) < 1e-3, hint="solve 1/sinh(H/2k_r + asinh(1/d₁)) = 1")
+grade(energy, 239.764139, digits=4, hint="set the least distance to 1 and solve for the energy")
 
 # %% [markdown] tags=["exercise"]
-# **3.** Two agents 14 apart leave each other, each at speed $v$, with the default law. At which of the speeds 1, 2,
-# 3, 4 do they part for ever? Give a list.
+# **3.** ★★★ (3 points) Two agents 14 apart leave each other, each at speed $v$, with the default law. At which of the
+# speeds 1, 2, 3, 4 do they part for ever? Give a list, in any order.
 
 # %% tags=["answer"]
 parting = ...
@@ -206,21 +225,32 @@ def cohesion(v):
 parting = [v for v in (1, 2, 3, 4) if cohesion(v) == "refuted"]
 
 # %% tags=["check"]
-grade(parting, [3, 4], hint="verify dead-zone-1-printed on a short run: when is cohesion refuted?")
+grade(parting, {3, 4}, hint="the printed theorem's claim of cohesion says when parting is certain")
 
 # %% [markdown] tags=["exercise"]
-# **4.** Let `k1` grow from 0.01 to 0.1. What is the mean distance of an agent to its nearest neighbour, in the
-# equilibrium that `find_equilibrium` reaches from a hexagonal spiral of 50 agents, 3 apart?
+# **4.** ★★ (2 points) Filippov: at the jump at $d_1$ a held pair feels a convex combination of the two forces beside
+# it, with the share that makes it 0. `hard.jumps()` gives both forces. What share of the repelling one is it, to three
+# significant digits?
 
 # %% tags=["answer"]
-spacing = ...
+share = ...
 
 # %% tags=["solution"]
-from scipy.spatial import KDTree
-
-squeezed = fl.DeadZoneFlocking(fl.DeadZoneInteraction(k1=0.1))
-lattice = fl.find_equilibrium(squeezed, fl.lattice.hexagonal_spiral(50, 3.0)).q
-spacing = KDTree(lattice).query(lattice, k=2)[0][:, 1].mean()
+contact = hard.jumps()[0]
+share = contact.above / (contact.above - contact.below)
 
 # %% tags=["check"]
-grade(spacing, 2.70, rtol=0.03, hint="scipy's KDTree(q).query(q, k=2) gives each agent's nearest neighbour")
+grade(share, 0.001072077, digits=3, hint="share × one force + (1 − share) × the other = 0")
+
+# %% [markdown] tags=["exercise"]
+# **5.** ★★ (2 points) What least distance does the corrected theorem guarantee for $\bar H(0) = 100$, without a ramp
+# and with $\eta = 1$? (Four significant digits.)
+
+# %% tags=["answer"]
+nearest = ...
+
+# %% tags=["solution"]
+nearest = 1.0 / np.sinh(100.0 / (2.0 * hard.k_r) + np.arcsinh(1.0 / hard.d1))
+
+# %% tags=["check"]
+grade(nearest, 1.79401084, digits=4, hint="the formula is above; k_r is hard.k_r")

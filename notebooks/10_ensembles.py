@@ -105,10 +105,18 @@ path = Path(tempfile.mkdtemp()) / "e3.json"
 found.save(path)
 print(fl.replay(path))
 
+# %% [markdown]
+# ## Summary
+#
+# - A share of successes is an estimate with an interval; $N$ of $N$ does not give 1.
+# - A search for the least margin finds counterexamples that random starts miss.
+# - That a search finds nothing proves nothing.
+
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** You see 198 successes in 200 runs. What is the lower end of the 95 % interval?
+# **1.** ★ (1 point) You see 198 successes in 200 runs. What is the lower end of the 95 % interval, to four significant
+# digits?
 
 # %% tags=["answer"]
 lower = ...
@@ -117,10 +125,11 @@ lower = ...
 lower = fl.clopper_pearson(198, 200)[0]
 
 # %% tags=["check"]
-grade(lower, 0.964345, rtol=1e-3, hint="fl.clopper_pearson(successes, runs)")
+grade(lower, 0.96434533, digits=4, hint="two of the 200 failed: the function counts successes")
 
 # %% [markdown] tags=["exercise"]
-# **2.** How many successes without a failure does it take until the lower end exceeds 0.99?
+# **2.** ★★ (2 points) How many successes without a failure does it take until the lower end exceeds 0.99? (A whole
+# number.)
 
 # %% tags=["answer"]
 runs_needed = ...
@@ -132,8 +141,8 @@ runs_needed = next(N for N in range(1, 1000) if fl.clopper_pearson(N, N)[0] > 0.
 grade(runs_needed, 368, hint="a loop over N; the low end grows with N")
 
 # %% [markdown] tags=["exercise"]
-# **3.** Search for a start of `zone-tree` that breaks the bearing-distance Theorem 1 as printed (`zone-1-printed`).
-# After how many runs is one found?
+# **3.** ★ (1 point) Search for a start of `zone-tree` that breaks the bearing-distance Theorem 1 as printed
+# (`zone-1-printed`). After how many runs is one found? (A whole number.)
 
 # %% tags=["answer"]
 evaluations = ...
@@ -143,3 +152,31 @@ evaluations = fl.falsify("zone-1-printed", "zone-tree", budget=20).evaluations
 
 # %% tags=["check"]
 grade(evaluations, 1, hint=".evaluations; the very first run will do")
+
+# %% [markdown] tags=["exercise"]
+# **4.** ★★ (2 points) A claim fails at one start in a hundred. With what probability do 60 random runs show no failure?
+# (Four significant digits.)
+
+# %% tags=["answer"]
+unseen = ...
+
+# %% tags=["solution"]
+unseen = 0.99**60
+
+# %% tags=["check"]
+grade(unseen, 0.547157, digits=4, hint="runs are independent")
+
+# %% [markdown] tags=["exercise"]
+# **5.** ★★ (2 points) And how many random runs does it take to see a failure with a probability of at least 0.95? (A
+# whole number.)
+
+# %% tags=["answer"]
+runs_for_one = ...
+
+# %% tags=["solution"]
+import math
+
+runs_for_one = math.ceil(math.log(0.05) / math.log(0.99))
+
+# %% tags=["check"]
+grade(runs_for_one, 299, hint="ask for the probability of none")

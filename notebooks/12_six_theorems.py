@@ -36,7 +36,7 @@ print(f"{len(q)} agents, position diameter {fl.diameter(q):.3g}, velocity diamet
 # Two kinds of promise. Some say what an **energy** does: it falls, so that velocities agree, *if* something keeps the
 # flock together. Others say what **averaging** does: a mean of neighbours never leaves their span, so that the spread
 # of velocities shrinks, *if* the nets connect the agents often enough, or the weights fall slowly enough with distance.
-# The if is the theorem.
+# The theorems differ in these conditions.
 
 # %%
 for entry in ENTRIES:
@@ -56,8 +56,8 @@ for outcome in outcomes:
 ax = plots.velocity_diameters(outcomes)
 
 # %% [markdown]
-# A **vacuous** verdict beside a flock that flocks is no contradiction: the theorem says nothing of this start, and the
-# flock does not read theorems. Which hypothesis failed stands in the verdict:
+# A **vacuous** verdict beside a flock that flocks is no contradiction: the theorem says nothing about this start. Which
+# hypothesis failed stands in the verdict:
 
 # %%
 for outcome in outcomes:
@@ -102,11 +102,17 @@ for name, pairs in {"path": [(0, 1), (1, 2), (2, 3)], "complete": [(i, j) for j 
     margin, largest = delay_margin(consensus_system(net)), np.linalg.eigvalsh(net)[-1]
     print(f"{name:>9}: τ* = {margin.delay:.6f}, largest λ = {largest:.4g}")
 
+# %% [markdown]
+# ## Summary
+#
+# - Theorems on flocking either let an energy fall or average; both need a hypothesis that keeps the agents in touch.
+# - Joint connectivity is a hypothesis on a whole run; delay bounds depend on the largest eigenvalue of the Laplacian.
+
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** Two neighbours head 10° to the left and 10° to the right of due east. Under the mean of headings in
-# $[0, 2\pi)$, which way do they head after one step, in degrees?
+# **1.** ★ (1 point) Two neighbours head 10° to the left and 10° to the right of due east. Under the mean of headings in
+# $[0, 2\pi)$, which way do they head after one step, in degrees, exactly?
 
 # %% tags=["answer"]
 degrees = ...
@@ -118,7 +124,8 @@ degrees = (10.0 + 350.0) / 2.0
 grade(degrees, 180.0, hint="10° to the right of east is 350°; `fl.verify('jlm-cut')` has more of it")
 
 # %% [markdown] tags=["exercise"]
-# **2.** What delay does consensus on a star of 6 agents bear? (Its largest eigenvalue is its number of agents.)
+# **2.** ★ (1 point) What delay does consensus on a star of 6 agents bear? (Its largest eigenvalue is its number of
+# agents; four significant digits.)
 
 # %% tags=["answer"]
 delay = ...
@@ -127,12 +134,11 @@ delay = ...
 delay = np.pi / (2.0 * 6.0)
 
 # %% tags=["check"]
-star = fl.laplacian(6, np.array([(0, k) for k in range(1, 6)])).toarray()
-grade(delay, delay_margin(consensus_system(star)).delay, hint="π/(2 λ_n)")
+grade(delay, 0.26179939, digits=4, hint="the margin is stated above for any net")
 
 # %% [markdown] tags=["exercise"]
-# **3.** Nets of four agents: link 0-1, then 1-2, then nothing, then 2-3, then 0-1, 1-2 and 2-3 at once. Into how many
-# contiguous, jointly connected windows do the five instants divide, at most?
+# **3.** ★ (1 point) Nets of four agents: link 0-1, then 1-2, then nothing, then 2-3, then 0-1, 1-2 and 2-3 at once.
+# Into how many contiguous, jointly connected windows do the five instants divide, at most? (A whole number.)
 
 # %% tags=["answer"]
 count = ...
@@ -145,8 +151,8 @@ count = len(fl.joint_windows(4, [np.array(net, dtype=int).reshape(-1, 2) for net
 grade(count, 2, hint="a window ends as soon as its links connect all four")
 
 # %% [markdown] tags=["exercise"]
-# **4.** At 1.5 times the delay margin of two agents that are linked ($\lambda_2 = 2$): at what rate does their
-# difference grow, per time unit?
+# **4.** ★★ (2 points) At 1.5 times the delay margin of two agents that are linked ($\lambda_2 = 2$): at what rate does
+# their difference grow, per time unit? (Four significant digits.)
 
 # %% tags=["answer"]
 rate = ...
@@ -155,8 +161,17 @@ rate = ...
 rate = consensus_root(2.0, 1.5 * np.pi / 4.0).real
 
 # %% tags=["check"]
-grade(
-    rate,
-    lambda x: x > 0.0 and abs(x - consensus_root(2.0, 1.5 * np.pi / 4.0).real) < 1e-6,
-    hint="the real part of W(-λτ)/τ, with λτ = 1.5 π/2",
-)
+grade(rate, 0.247105912, digits=4, hint="the deciding root is Lambert's; a rate is its real part")
+
+# %% [markdown] tags=["exercise"]
+# **5.** ★★★ (3 points) Design: six agents on a ring with weights $w$ on all links have $\lambda_n = 4w$ and $\lambda_2
+# = w$. Their messages take 0.5 time units. Which $w$ must not be reached? (Four significant digits.)
+
+# %% tags=["answer"]
+weight = ...
+
+# %% tags=["solution"]
+weight = np.pi / (2.0 * 4.0 * 0.5)
+
+# %% tags=["check"]
+grade(weight, 0.78539816, digits=4, hint="the delay margin, solved for the weight")

@@ -152,11 +152,19 @@ fl.write_tube_certificate(tube, of_run, basin=basin)
 of_tube = [step for step in fl.check_certificate(of_run).steps if not step.startswith("basin: ")]
 print(*of_tube, sep="\n")
 
+# %% [markdown]
+# ## Summary
+#
+# - A basin is certified by bounding curvature in all states of a ball; its certificate is checked by other code.
+# - A tube encloses the solution itself, so that a run becomes a proof.
+# - A certified radius is a lower bound; samples show how far it may be from the truth.
+
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** Two agents under Algorithm 1, 7 apart. A displacement by δ over all coordinates stretches the link by
-# $\sqrt2\,\delta$, and at $r = 8.4$ the link breaks. What is the largest ρ/d that any proof could reach?
+# **1.** ★★ (2 points) Two agents under Algorithm 1, 7 apart. A displacement by δ over all coordinates stretches the
+# link by $\sqrt2\,\delta$, and at $r = 8.4$ the link breaks. What is the largest ρ/d that any proof could reach? (Four
+# significant digits.)
 
 # %% tags=["answer"]
 largest = ...
@@ -165,10 +173,10 @@ largest = ...
 largest = 1.4 / np.sqrt(2) / 7.0
 
 # %% tags=["check"]
-grade(largest, 0.1414213562, hint="r - d = 1.4, over the square root of 2")
+grade(largest, 0.14142136, digits=4, hint="how much longer may the link become?")
 
 # %% [markdown] tags=["exercise"]
-# **2.** And what does `certify` reach for these two, in d?
+# **2.** ★ (1 point) And what does `certify` reach for these two, in d? (Two significant digits.)
 
 # %% tags=["answer"]
 reached = ...
@@ -177,11 +185,11 @@ reached = ...
 reached = fl.certify([[0.0, 0.0], [7.0, 0.0]], law=fl.Algorithm1()).share
 
 # %% tags=["check"]
-grade(reached, lambda x: 0.06 < x < 0.1414, hint="fl.certify(positions, law=fl.Algorithm1()).share")
+grade(reached, 0.07038571, digits=2, hint="fl.certify takes positions and a law")
 
 # %% [markdown] tags=["exercise"]
-# **3.** Change the radius of the certificate above to 1.0 and have it checked. Which word does the error begin with
-# after "its"? (Read the message.)
+# **3.** ★★ (2 points) Change the radius of the certificate above to 1.0 and have it checked. Which word does the error
+# begin with after "its"? (One word; read the message.)
 
 # %% tags=["answer"]
 word = ...
@@ -195,4 +203,33 @@ except fl.errors.FlockanaError as error:
     word = str(error).split()[1]
 
 # %% tags=["check"]
-grade(word, lambda x: x == "digest", hint="fl.check_certificate(file)")
+grade(word, "digest", hint="the message of the error that fl.check_certificate raises")
+
+# %% [markdown] tags=["exercise"]
+# **4.** ★★ (2 points) The certified energy falls like $e^{-2\rho t}$ at least, with $\rho = 0.4$ per time unit. After
+# what time has it surely fallen to a millionth? (Four significant digits.)
+
+# %% tags=["answer"]
+wait = ...
+
+# %% tags=["solution"]
+wait = np.log(1e6) / 0.8
+
+# %% tags=["check"]
+grade(wait, 17.2693882, digits=4, hint="mind the factor 2")
+
+# %% [markdown] tags=["exercise"]
+# **5.** ★★★ (3 points) In your own words, at least 30 of them: the tube ends in the basin. What is proved of this start
+# that the run alone does not show, and what is still not proved? (A text; the check counts words, and your lecturer
+# reads it.)
+
+# %% tags=["answer"]
+proved = ...
+
+# %% tags=["solution"]
+proved = """Proved is that the true solution, not only the computed one, enters the basin, hence converges to the
+triangle with matched velocities and never collides, for all time. Not proved is anything about other
+starts outside the tube and the basin, or about a law with other parameters."""
+
+# %% tags=["check"]
+grade(proved, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")

@@ -13,7 +13,7 @@ PACKAGE = "flockana"
 
 # Earlier lines may not import later ones; names on one line may not import each other, unless they are the same name.
 STAGES: tuple[tuple[str, ...], ...] = (
-    ("_version", "course"),
+    ("_version",),
     ("base",),
     ("symbolic", "kernels"),
     ("interactions",),
@@ -32,6 +32,7 @@ STAGES: tuple[tuple[str, ...], ...] = (
     ("falsify",),
     ("plots",),
     ("report",),
+    ("course",),
     ("cli",),
 )
 STAGE = {name: k for k, names in enumerate(STAGES) for name in names}

@@ -1,20 +1,28 @@
-"""Execute every lecture with its solutions; a cell that fails, or a check that does not say "right", fails the run.
+"""Execute every lecture as it is delivered: written by `flockana course` to a clean folder, and run there.
 
-`python tools/run_notebooks.py [NUMBER...]` runs those whose names begin so; by default all, two at a time.
+`python tools/run_notebooks.py [--wheel] [--student | --solutions] [NUMBER...]` runs those whose names begin so; by
+default all, of both versions, two at a time. With `--wheel` it builds the wheel, installs it with its extra in an
+environment of its own, and runs everything there, with no checkout on the path. A cell that fails, and a check that
+does not say what it should, fail the run: "right" with our solutions, "not answered" without. A lecture that takes over
+90 s is pointed out.
 """
 
 from __future__ import annotations
 
+import os
+import shutil
+import subprocess
 import sys
+import tempfile
 import time
+import venv
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
-from course import notebook, sources, tags
-from nbclient import NotebookClient
-
 _TIMEOUT = 600  # seconds for one cell, and for a kernel to start
+_LONGEST = 90.0  # seconds for a lecture
+_SAYS = {"student": "not answered", "solutions": "right"}
 
 
 def shown(cell: Any) -> str:
@@ -22,34 +30,70 @@ def shown(cell: Any) -> str:
     return "".join(out.get("text", out.get("data", {}).get("text/plain", "")) for out in cell.get("outputs", ()))
 
 
-def execute(source: Path) -> tuple[Path, list[str], float]:
-    """Run one; return its faults and the seconds it took."""
-    started, book = time.perf_counter(), notebook(source, "solutions")
+def execute(path: Path, version: str) -> tuple[str, list[str], float]:
+    """Run one notebook where it lies; return its name, its faults and the seconds it took."""
+    import nbformat
+    from nbclient import NotebookClient
+
+    started, book = time.perf_counter(), nbformat.read(path, as_version=4)
     try:
-        place = {"metadata": {"path": str(source.parent)}}
+        place = {"metadata": {"path": str(path.parent)}}
         NotebookClient(book, timeout=_TIMEOUT, startup_timeout=_TIMEOUT, resources=place).execute()
-        faults = [
-            f"a check says {shown(c)!r}:\n{c.source}" for c in book.cells if "check" in tags(c) and "✓" not in shown(c)
-        ]
-        faults += [f"exercise without a check: {source.name}"] * (not any("check" in tags(c) for c in book.cells))
+        checks = [cell for cell in book.cells if "check" in cell.metadata.get("tags", ())]
+        faults = [f"a check says {shown(c)!r}:\n{c.source}" for c in checks if _SAYS[version] not in shown(c)]
+        faults += [f"exercise without a check: {path.name}"] * (not checks)
     except Exception as error:  # a cell that fails or takes too long, a kernel that dies or does not start
         faults = [f"{type(error).__name__}: {error}"]
-    return source, faults, time.perf_counter() - started
+    return f"{path.parent.name}/{path.name}", faults, time.perf_counter() - started
 
 
-def main(numbers: list[str]) -> int:
-    """Run them; return the exit status."""
-    chosen = [path for path in sources() if not numbers or path.name.startswith(tuple(numbers))]
-    if not chosen:
+def run(versions: list[str], numbers: list[str]) -> int:
+    """Write the notebooks and run them; return the exit status."""
+    failed = found = 0
+    with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(2) as pool:
+        for version in versions:
+            target, option = Path(folder, version), ["--solutions"] * (version == "solutions")
+            subprocess.run(
+                [sys.executable, "-P", "-m", "flockana", "course", str(target), *option],
+                check=True,
+                stdout=subprocess.DEVNULL,
+                cwd=folder,
+            )
+            chosen = [p for p in sorted(target.glob("*.ipynb")) if not numbers or p.name.startswith(tuple(numbers))]
+            for name, faults, seconds in pool.map(lambda path, v=version: execute(path, v), chosen):
+                found, failed = found + 1, failed + bool(faults)
+                sys.stdout.write(
+                    f"{name}: {'FAILED' if faults else 'ok'} ({seconds:.1f} s{', too long' * (seconds > _LONGEST)})\n"
+                )
+                sys.stdout.writelines(f"{fault}\n" for fault in faults)
+                sys.stdout.flush()
+    if not found:
         sys.stdout.write("no notebooks found\n")
-        return 1
-    failed = 0
-    with ThreadPoolExecutor(2) as pool:
-        for source, faults, seconds in pool.map(execute, chosen):
-            failed += bool(faults)
-            sys.stdout.write(f"{source.name}: {'FAILED' if faults else 'ok'} ({seconds:.1f} s)\n")
-            sys.stdout.writelines(f"{fault}\n" for fault in faults)
-    return 1 if failed else 0
+    return 1 if failed or not found else 0
+
+
+def run_from_wheel(arguments: list[str]) -> int:
+    """Build the wheel, install it in an environment of its own, and run this file there, away from the checkout."""
+    root = Path(__file__).resolve().parent.parent
+    with tempfile.TemporaryDirectory() as folder:
+        pip = ["-m", "pip", "--quiet", "--disable-pip-version-check"]
+        subprocess.run([sys.executable, *pip, "wheel", "--no-deps", "--wheel-dir", folder, str(root)], check=True)
+        venv.create(Path(folder, "venv"), with_pip=True)
+        python = str(Path(folder, "venv", "bin", "python"))
+        wheel = next(Path(folder).glob("flockana-*.whl"))
+        subprocess.run([python, *pip, "install", f"{wheel}[course]", "nbclient>=0.10"], check=True)
+        alone = shutil.copy(__file__, folder)
+        plain = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+        return subprocess.run([python, alone, *arguments], cwd=folder, env=plain, check=False).returncode
+
+
+def main(arguments: list[str]) -> int:
+    """Run them; return the exit status."""
+    if "--wheel" in arguments:
+        return run_from_wheel([each for each in arguments if each != "--wheel"])
+    numbers = [each for each in arguments if not each.startswith("--")]
+    versions = [version for version in _SAYS if f"--{version}" in arguments] or list(_SAYS)
+    return run(versions, numbers)
 
 
 if __name__ == "__main__":

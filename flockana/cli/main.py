@@ -17,6 +17,7 @@ from flockana.base.interrupts import interrupts_recognised
 from flockana.cli.animate import animate_command
 from flockana.cli.catalogue import scenarios_command, theorems_command
 from flockana.cli.check import check_command
+from flockana.cli.course import course_command
 from flockana.cli.ensemble import ensemble_command
 from flockana.cli.equilibrium import equilibrium_command
 from flockana.cli.export import export_command
@@ -67,6 +68,7 @@ _COMMANDS: dict[str, Callable[..., Any]] = {
     "ensemble": ensemble_command,
     "falsify": falsify_command,
     "export": export_command,
+    "course": course_command,
 }
 for _name, _command in _COMMANDS.items():
     app.command(_name)(_command)

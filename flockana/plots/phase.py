@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flockana.base.errors import ArgumentError
-from flockana.plots.style import BLUE, FAINT, INK, ensure_axes, finish, hairline
+from flockana.plots.style import BLUE, INK, MUTED, VERMILLION, ensure_axes, finish, hairline
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _LEVELS = 14
+_ORBITS = np.array([0.1, 0.3, 0.5, 0.7, 0.9, 1.25, 1.75, 2.5, 4.0])  # of the separatrix, from the least energy on
 
 
 def phase_portrait(
@@ -20,6 +21,7 @@ def phase_portrait(
     velocity: Any,
     *,
     energy: tuple[Any, Any, Any] | None = None,
+    separatrix: float | None = None,
     labels: tuple[str, str] = ("position (length)", "velocity (length/time)"),
     ax: Axes | None = None,
 ) -> Axes:
@@ -31,6 +33,9 @@ def phase_portrait(
         Of k degrees of freedom: distances of pairs and their rates, or deviations from a γ-agent.
     energy : (x, v, H), optional
         Grids of shape (b,), (a,) and (a, b): level curves of H are drawn behind the motion.
+    separatrix : float, optional
+        The energy that divides motions that stay from those that leave: its level curve is drawn, with orbits of less
+        and of more energy about it.
     labels : (str, str)
         Of the axes, with units.
     ax : matplotlib.axes.Axes, optional
@@ -43,15 +48,22 @@ def phase_portrait(
     Raises
     ------
     ArgumentError
-        If the two do not have the same shape.
+        If the two do not have the same shape, or a separatrix is given without an energy.
     """
     x, v = (np.asarray(values, dtype=np.float64) for values in (position, velocity))
     if x.shape != v.shape or x.ndim not in (1, 2):
         raise ArgumentError(f"position {x.shape}, velocity {v.shape}: expected equal shapes, (T,) or (T, k)")
     x, v = (values.reshape(len(values), -1) for values in (x, v))
     axes = ensure_axes(ax)
+    if separatrix is not None and energy is None:
+        raise ArgumentError(f"separatrix = {separatrix:g} without an energy: give energy=(x, v, H) too")
     if energy is not None:
-        axes.contour(*energy, levels=_LEVELS, colors=FAINT, linewidths=0.8)
+        least = float(np.min(energy[2]))
+        levels = _LEVELS if separatrix is None else least + _ORBITS * (separatrix - least)
+        axes.contour(*energy, levels=levels, colors=MUTED, linewidths=0.6, alpha=0.7)
+    if energy is not None and separatrix is not None:
+        axes.contour(*energy, levels=[separatrix], colors=VERMILLION, linewidths=1.3)
+        axes.plot([], [], color=VERMILLION, linestyle="-", linewidth=1.3, label="separatrix")
     axes.axhline(0.0, color=INK, linewidth=0.6, linestyle="-")
     width, alpha = hairline(x.shape[1])
     axes.plot(x, v, color=BLUE, linestyle="-", linewidth=width, alpha=alpha)

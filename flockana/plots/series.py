@@ -10,6 +10,7 @@ from matplotlib.ticker import FormatStrFormatter, MaxNLocator, NullFormatter
 from flockana.base.errors import UnknownNameError
 from flockana.laws.discrete import DiscreteLaw
 from flockana.measures.profiles import pair_distance_profile
+from flockana.plots.dense import velocities_between
 from flockana.plots.style import (
     BLUE,
     GREEN,
@@ -291,12 +292,12 @@ def speeds(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     matplotlib.axes.Axes
     """
     ax = ensure_axes(ax)
-    t, target = trajectory.t, trajectory.law.target
-    speed = np.linalg.norm(trajectory.p, axis=2)
+    (t, p), target = velocities_between(trajectory), trajectory.law.target
+    speed = np.linalg.norm(p, axis=2)
     width, alpha = hairline(trajectory.n)
     ax.plot(t, speed, color=BLUE, linestyle="-", linewidth=width, alpha=alpha)
     ax.plot([], [], color=BLUE, linestyle="-", linewidth=0.8, label="agents")
-    centre = np.linalg.norm(trajectory.p.mean(axis=1), axis=1)
+    centre = np.linalg.norm(p.mean(axis=1), axis=1)
     ax.plot(t, centre, color=INK, linestyle="-", linewidth=1.4, label="centre of mass")
     if target is not None:
         handed = [np.linalg.norm(target.state(s)[1]) for s in t.tolist()]

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import singledispatch
+from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,7 +19,7 @@ from flockana.base.errors import ArgumentError
 from flockana.environment.beta import ObstacleField
 from flockana.environment.obstacles import Obstacle
 from flockana.interactions import BetaInteraction
-from flockana.measures.nets import link_lengths, links
+from flockana.measures.nets import components, link_lengths, links
 from flockana.plots.obstacles import bounds
 from flockana.plots.obstacles import obstacles as draw_obstacles
 from flockana.plots.style import (
@@ -42,7 +43,8 @@ if TYPE_CHECKING:
 
 _ARROW = 0.07  # longest arrow as a share of the axes' width
 _MANY = 4.0  # links per agent beyond which they are drawn thinner; a lattice has 3
-_AT_REST = 1e-9  # speed, relative to the size of the flock per unit of time, below which no arrow is drawn
+_AT_REST = 1e-4  # share of the law's own speed below which a run is drawn without arrows: rounding has none to show
+_COINCIDE = 1e-4  # share of the size of the flock below which agents are drawn as one
 
 
 def snapshot(
@@ -85,7 +87,8 @@ def snapshot(
     when = trajectory.t[-1] if time is None else ensure_finite_scalar("time", time)
     k = int(np.argmin(np.abs(trajectory.t - when)))
     law = drawn_law(trajectory)
-    drawn = draw_sample(law, trajectory, k, ax=ax, velocities=velocities, bar=bar)
+    moving = float(np.linalg.norm(trajectory.p[k], axis=1).max()) > _AT_REST * trajectory.scales.speed
+    drawn = draw_sample(law, trajectory, k, ax=ax, velocities=velocities and moving, bar=bar)
     if ranges:
         _range_circles(drawn, trajectory.q[k], law)
     return drawn
@@ -212,6 +215,7 @@ def configuration(
         _links(axes, x, points, links(points, r), d, r, bar)
     size = float(np.clip(900.0 / len(x), 3.0, 26.0))
     axes.scatter(*x.T, s=size, color=INK, linewidths=0, zorder=3, label="agents")
+    _multiplicities(axes, x)
     seen = x
     if target is not None:
         mark = in_plane(np.asarray(target, dtype=np.float64)[None, :])
@@ -228,11 +232,27 @@ def configuration(
     return frame_space(axes, seen, m)
 
 
+def _multiplicities(ax: Any, x: FloatArray) -> None:
+    """Write ×k beside each place that k agents share: they are drawn as one."""
+    extent = float(np.ptp(x, axis=0).max())
+    near = links(x, _COINCIDE * extent) if extent else np.array(list(combinations(range(len(x)), 2)))
+    if len(near) == 0:
+        return
+    groups = components(len(x), near)
+    for group in np.unique(groups[near]):
+        here = groups == group
+        ax.text(
+            *x[here].mean(axis=0), f"  ×{here.sum()}", fontsize=7, color=VERMILLION, ha="left", va="bottom", zorder=5
+        )
+
+
 def _links(ax: Any, x: FloatArray, points: FloatArray, pairs: Any, d: Any, r: float | None, bar: bool) -> None:
     """Draw links, coloured by strain up to that of a link about to break, at most that of one twice as long as d.
 
     Where agents have many, links are thin, and those near d lie above the others.
     """
+    if len(pairs) == 0:
+        return
     few = min(1.0, (_MANY * len(points) / max(1, len(pairs))) ** 0.5)
     look: dict[str, Any] = {"linewidths": few * float(np.clip(120.0 / len(points), 0.7, 1.8)), "zorder": 2}
     if d is None:
@@ -277,7 +297,7 @@ def velocity_arrows(ax: Any, q: Any, p: Any) -> str:
     x, v = in_plane(ensure_points("q", q)), in_plane(ensure_points("p", p))
     fastest = float(np.linalg.norm(v, axis=1).max())
     extent = float(np.ptp(x, axis=0).max()) or 1.0
-    if fastest <= _AT_REST * extent:
+    if fastest == 0.0:
         return ""
     if x.shape[1] == 3:
         ax.quiver(*x.T, *v.T, length=_ARROW * extent / fastest, color=GREEN, linewidth=0.6, arrow_length_ratio=0.25)

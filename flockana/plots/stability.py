@@ -78,7 +78,7 @@ def pole_map(poles: Any, *, grid: bool = True, ax: Axes | None = None) -> Axes:
         axes.set_ylim(-height, height)
     if grid:
         _damping_rays(axes)
-    return finish(axes, "Re λ (1/time)", "Im λ (rad/time)")
+    return finish(axes, "Re s (1/time)", "Im s (rad/time)")
 
 
 def _damping_rays(ax: Any) -> None:
@@ -166,15 +166,15 @@ def mode_title(mode: Mode) -> str:
     Examples
     --------
     >>> mode_title(Mode(-3 + 4j, np.ones((1, 1)), "breathing"))
-    'breathing: λ = −3 ± 4i, ζ = 0.6'
+    'breathing: s = −3 ± 4i, ζ = 0.6'
     >>> mode_title(Mode(-3 + 0j, np.ones((1, 1)), "7")), mode_title(Mode(0j, np.ones((1, 1)), "rotation"))
-    ('mode 7: λ = −3', 'rotation: λ = 0')
+    ('mode 7: s = −3', 'rotation: s = 0')
     """
     name = f"mode {mode.name}" if mode.name.isdigit() else mode.name
     real = f"{mode.eigenvalue.real:.3g}".replace("-", "−")
     if mode.frequency:
-        return f"{name}: λ = {real} ± {mode.frequency:.3g}i, ζ = {mode.damping_ratio:.2g}"
-    return f"{name}: λ = {real}"
+        return f"{name}: s = {real} ± {mode.frequency:.3g}i, ζ = {mode.damping_ratio:.2g}"
+    return f"{name}: s = {real}"
 
 
 def animate_mode(

@@ -214,7 +214,7 @@ def frame_space(ax: Any, points: FloatArray, m: int) -> Axes:
     if m == 2:
         ax.set_aspect("equal", adjustable="datalim")
         return ax  # type: ignore[no-any-return]
-    ax.set_box_aspect(None, zoom=0.82)  # room for the labels, which the layout does not measure
+    ax.set_box_aspect((1.0, 1.0, 1.0), zoom=0.82)  # a cube, with room for the labels, which the layout does not measure
     low, high = points.min(axis=0), points.max(axis=0)
     middle, half = 0.5 * (low + high), 0.53 * float((high - low).max()) or 1.0
     for name, centre in zip(names, middle.tolist(), strict=True):

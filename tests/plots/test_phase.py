@@ -33,3 +33,22 @@ def test_level_curves_are_of_the_energy_given():
 def test_unequal_shapes_are_refused():
     with pytest.raises(ArgumentError, match=r"position \(3,\), velocity \(2,\): expected equal shapes"):
         phase_portrait([0.0, 1.0, 2.0], [0.0, 1.0])
+
+
+def test_the_separatrix_is_drawn_between_orbits_of_less_and_of_more_energy():
+    """A pendulum: H = ½v² − cos x; its separatrix is H = 1, v² = 2 + 2 cos x."""
+    x, v = np.linspace(-3.0, 3.0, 121), np.linspace(-2.5, 2.5, 121)
+    ax = phase_portrait([1.0], [0.0], energy=(x, v, 0.5 * v[:, None] ** 2 - np.cos(x)), separatrix=1.0)
+    orbits, dividing = ax.collections[:2]
+    assert dividing.levels.tolist() == [1.0]
+    assert sum(orbits.levels < 1.0) >= 4
+    assert sum(orbits.levels > 1.0) >= 2
+    (path,) = dividing.get_paths()
+    assert len(path.vertices) > 100
+    assert np.abs(path.vertices[:, 1] ** 2 - 2.0 - 2.0 * np.cos(path.vertices[:, 0])).max() < 0.01
+    assert "separatrix" in [text.get_text() for text in ax.get_legend().get_texts()]
+
+
+def test_a_separatrix_needs_an_energy():
+    with pytest.raises(ArgumentError, match="separatrix = 1 without an energy"):
+        phase_portrait([1.0], [0.0], separatrix=1.0)

@@ -11,6 +11,7 @@ from matplotlib.patches import Polygon, Rectangle
 from matplotlib.quiver import Quiver
 from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
+import flockana as fl
 from flockana import plots
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.simulate import simulate
@@ -226,3 +227,35 @@ def test_circles_of_interaction_stand_about_the_agents():
         np.testing.assert_allclose(circles.get_offsets(), q)
     with pytest.raises(ArgumentError, match="ranges = True: expected a law with a range in the plane"):
         plots.snapshot(simulate(Algorithm1(), [[0.0]], [[1.0]], (0.0, 0.1)), ranges=True)
+
+
+def test_agents_in_one_place_carry_their_number():
+    q = [[0.0, 0.0], [0.0, 0.0], [0.0, 1e-7], [7.0, 0.0], [7.0, 7.0], [7.0, 7.0]]
+    ax = plots.configuration(q, ax=axes())
+    found = {text.get_text().strip(): text.get_position() for text in ax.texts}
+    assert set(found) == {"×3", "×2"}
+    np.testing.assert_allclose(found["×2"], (7.0, 7.0))
+    assert [text.get_text().strip() for text in plots.configuration([[1.0], [1.0]], ax=axes()).texts] == ["×2"]
+    assert not plots.configuration([[0.0, 0.0], [7.0, 0.0]], ax=axes()).texts
+
+
+def test_no_bar_of_strain_where_there_are_no_links():
+    ax = plots.configuration([[0.0, 0.0], [20.0, 0.0]], d=7.0, r=8.4, ax=axes())
+    assert ax.child_axes == []
+    assert len(plots.configuration([[0.0, 0.0], [7.5, 0.0]], d=7.0, r=8.4, ax=axes()).child_axes) == 1
+
+
+def test_a_flock_at_rest_has_no_arrows():
+    law = fl.Algorithm2(target=fl.StaticTarget((0.0, 0.0)))
+    q = fl.lattice.hexagonal_patch(1, 7.0)
+    still = fl.simulate(law, q, np.full_like(q, 1e-7), (0.0, 1e-6))
+    moving = fl.simulate(law, q, np.full_like(q, 1.0), (0.0, 1e-6))
+    assert "arrow" not in title(plots.snapshot(still, ax=axes()))
+    assert "longest arrow: 1.41" in title(plots.snapshot(moving, ax=axes()))
+
+
+def test_a_sphere_in_space_is_as_wide_as_it_is_high():
+    ax = plots.configuration([[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 2.0, 3.0]], ax=axes(3))
+    shares = ax._box_aspect
+    spans = [np.ptp(getattr(ax, f"get_{name}lim")()) for name in "xyz"]
+    np.testing.assert_allclose(np.array(shares) / spans, shares[0] / spans[0])

@@ -28,7 +28,7 @@ def test_poles_are_where_they_are_and_zeros_and_growth_stand_out():
     np.testing.assert_array_equal(found["eigenvalues"], [[-1.0, 2.0], [-1.0, -2.0], [-4.0, 0.0]])
     np.testing.assert_array_equal(found["growing"], [[0.5, 0.0]])
     assert "zero eigenvalues: 2" in found
-    assert (ax.get_xlabel(), ax.get_ylabel()) == ("Re λ (1/time)", "Im λ (rad/time)")
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("Re s (1/time)", "Im s (rad/time)")
     assert "ζ = 0.5" in [text.get_text() for text in ax.texts]
     low, high = ax.get_ylim()
     assert low == -high
@@ -115,4 +115,4 @@ def test_a_film_of_a_mode(tmp_path):
 
 
 def test_titles():
-    assert plots.mode_title(Mode(-0.5 + 2.0j, np.ones((1, 1)), "4")) == "mode 4: λ = −0.5 ± 2i, ζ = 0.24"
+    assert plots.mode_title(Mode(-0.5 + 2.0j, np.ones((1, 1)), "4")) == "mode 4: s = −0.5 ± 2i, ζ = 0.24"

@@ -1,0 +1,42 @@
+"""`flockana course`: write the lectures as notebooks."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from flockana.base.errors import ArgumentError
+from flockana.cli.show import show_files
+from flockana.cli.status import OK
+
+
+def course_command(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder to write to.")],
+    solutions: Annotated[bool, typer.Option("--solutions", help="With our solutions, and checks that grade.")] = False,
+    self_study: Annotated[
+        bool, typer.Option("--self-study", help="Without solutions, but with checks that grade, and so hold values.")
+    ] = False,
+    grader: Annotated[
+        Literal["otter", "nbgrader"] | None,
+        typer.Option(help="Masters for a grader, with hidden tests: for `otter assign`, or nbgrader's folder source."),
+    ] = None,
+) -> int:
+    """Write the lectures as notebooks that run wherever flockana is installed; a student's by default.
+
+    A student's copy checks the form of an answer only. Needs `pip install 'flockana[course]'`, which brings Jupyter.
+    """
+    if solutions + self_study + (grader is not None) > 1:
+        raise ArgumentError("--solutions, --self-study, --grader: expected one of them; leave the others out")
+    version: Literal["student", "self-study", "solutions"] = (
+        "solutions" if solutions else "self-study" if self_study else "student"
+    )
+    try:
+        from flockana.course.build import write
+        from flockana.course.export import write_for
+    except ModuleNotFoundError as error:
+        raise ArgumentError(f"{error.name} is not installed: pip install 'flockana[course]'") from error
+    for written in write(folder, version) if grader is None else write_for(folder, grader):
+        show_files(notebook=written)
+    return OK

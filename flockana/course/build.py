@@ -1,0 +1,224 @@
+"""Lectures as notebooks: for students without our solutions, for lecturers with them, and the files that go with them.
+
+A lecture is a text in jupytext's percent format whose cells are tagged: ``exercise`` poses, ``answer`` is what the
+student fills in, ``solution`` is our answer, and ``check`` grades it by one call of `grade`. ``facts`` asserts what the
+text says about the output above it; it is kept beside the solutions, where CI runs it.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+import shutil
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import jupytext
+import nbformat
+
+from flockana.base.errors import ArgumentError
+from flockana.course.grading import form_of
+from flockana.course.pages import course_map, header, map_page, notation_page, number_of, references
+
+_PACKAGE = Path(__file__).resolve().parent
+_CHECKOUT = _PACKAGE.parent.parent
+_KERNEL = {"name": "python3", "language": "python", "display_name": "Python 3"}
+_LEFT_OUT = {"student": {"solution", "facts"}, "self-study": {"solution", "facts"}, "solutions": {"answer"}}
+_POSED = re.compile(r"\*\*(\d+)\.\*\* (★{1,3}) \((\d+) points?\)")
+VERSIONS = tuple(_LEFT_OUT)
+
+
+@dataclass(frozen=True)
+class Exercise:
+    """One exercise of a lecture.
+
+    Parameters
+    ----------
+    name : str
+        The variable that takes the answer.
+    number, level, points : int
+        Its place in the lecture, stars from 1 to 3, and what it counts.
+    form : str
+        What is asked for, as `answered` takes it.
+    """
+
+    name: str
+    number: int
+    level: int
+    points: int
+    form: str
+
+
+def lectures() -> Path:
+    """The folder that holds the sources: in the package where it is installed, in the checkout where it is not."""
+    shipped = _PACKAGE / "lectures"
+    return shipped if shipped.is_dir() else _CHECKOUT / "notebooks"
+
+
+def sources() -> list[Path]:
+    """The lectures, in the order in which they are taught."""
+    files = {number_of(path): path for path in lectures().glob("*.py")}
+    return [files[lecture.number] for lecture in course_map(lectures())]
+
+
+def tags(cell: Any) -> list[str]:
+    """The tags of a cell.
+
+    Parameters
+    ----------
+    cell : NotebookNode
+        Of a notebook.
+    """
+    return list(cell.metadata.get("tags", ()))
+
+
+def notebook(source: Path, version: str) -> Any:
+    """The notebook of a lecture: for the student, for study alone (with checks), or with solutions.
+
+    Parameters
+    ----------
+    source : Path
+        One of `sources`.
+    version : {"student", "self-study", "solutions"}
+        A student's checks look at the form of an answer only: neither values nor hints are in the file.
+
+    Returns
+    -------
+    nbformat.NotebookNode
+
+    Raises
+    ------
+    ArgumentError
+        If there is no such version.
+    """
+    if version not in _LEFT_OUT:
+        raise ArgumentError(f"version = {version!r}: expected one of {', '.join(VERSIONS)}")
+    book = jupytext.read(source)
+    book.metadata = nbformat.from_dict({"kernelspec": _KERNEL})
+    book.cells = [cell for cell in book.cells if not _LEFT_OUT[version] & set(tags(cell))]
+    entry = next(each for each in course_map(source.parent) if each.number == number_of(source))
+    book.cells.insert(1, nbformat.v4.new_markdown_cell(header(entry, source.parent)))
+    book.cells.append(nbformat.v4.new_markdown_cell(references(entry)))
+    for number, cell in enumerate(book.cells):
+        cell["id"] = f"{entry.number}-{number:03d}"  # the same at every build
+        if "check" in tags(cell) and version == "student":
+            cell.source = form_check(cell.source)
+        elif {"solution", "check", "facts"} & set(tags(cell)):
+            cell.metadata["jupyter"] = {"source_hidden": True}
+    return book
+
+
+def exercises(source: Path) -> Iterator[Exercise]:
+    """The exercises of a lecture, in order.
+
+    Parameters
+    ----------
+    source : Path
+        One of `sources`.
+    """
+    posed = [cell for cell in jupytext.read(source).cells if {"exercise", "check"} & set(tags(cell))]
+    for text, check in zip(posed[::2], posed[1::2], strict=True):
+        number, stars, points = _head(text.source, source)
+        name, form = asked(check.source)
+        yield Exercise(name, number, stars, points, form)
+
+
+def _head(text: str, source: Path) -> tuple[int, int, int]:
+    found = _POSED.search(text)
+    if found is None:
+        raise ArgumentError(f"{source.name}: an exercise begins {text[:60]!r}; expected '**1.** ★★ (2 points) ...'")
+    return int(found[1]), len(found[2]), int(found[3])
+
+
+def asked(check: str) -> tuple[str, str]:
+    """The variable that a check looks at, and the form of its answer.
+
+    Parameters
+    ----------
+    check : str
+        The source of the cell, which is one call ``grade(name, right, ...)``.
+
+    Raises
+    ------
+    ArgumentError
+        If `right` is neither a constant nor accompanied by ``form=``.
+
+    Examples
+    --------
+    >>> asked('grade(jump, 1.0, hint="one-sided limits")')
+    ('jump', 'number')
+    """
+    *before, last = ast.parse(check).body
+    match last:
+        case ast.Expr(ast.Call(func=ast.Name("grade"), args=[ast.Name(name), right], keywords=options)) if not before:
+            given = {option.arg: option.value for option in options}
+        case _:
+            raise ArgumentError(f"a check reads {check!r}: expected one call grade(name, right, ...)")
+    try:
+        return name, str(ast.literal_eval(given["form"])) if "form" in given else form_of(ast.literal_eval(right))
+    except ValueError as error:
+        raise ArgumentError(f"the check of {name} computes what is right: give a constant, or form=") from error
+
+
+def form_check(check: str) -> str:
+    """What a student's copy has in the place of a check: a look at the form of the answer.
+
+    Parameters
+    ----------
+    check : str
+        The source of the cell.
+
+    Examples
+    --------
+    >>> print(form_check('grade(jump, 1.0, hint="one-sided limits")'))
+    from flockana.course import answered
+    <BLANKLINE>
+    answered(jump, "number")
+    """
+    name, form = asked(check)
+    return f'from flockana.course import answered\n\nanswered({name}, "{form}")'
+
+
+def write(folder: Path, version: str = "student") -> list[Path]:
+    """Write a version of all lectures, and what they import or show, so that they run there.
+
+    Parameters
+    ----------
+    folder : Path
+        Made if need be; files of the same names are replaced.
+    version : {"student", "self-study", "solutions"}, default "student"
+        As in `notebook`.
+
+    Returns
+    -------
+    list of Path
+        The notebooks.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    copy_companions(folder)
+    for name, page in (("map.md", map_page), ("notation.md", notation_page)):
+        (folder / name).write_text(page(lectures()), encoding="utf-8")
+    written = []
+    for source in sources():
+        written.append(folder / f"{source.stem}.ipynb")
+        nbformat.write(notebook(source, version), written[-1])
+    return written
+
+
+def copy_companions(folder: Path) -> None:
+    """Copy what lectures import: the law of lecture 11, and the one file of `proofs` that its proof needs.
+
+    Parameters
+    ----------
+    folder : Path
+        Where the notebooks go.
+    """
+    no_caches = shutil.ignore_patterns("__pycache__")
+    shutil.copytree(lectures() / "own_law", folder / "own_law", dirs_exist_ok=True, ignore=no_caches)
+    shipped = lectures() / "proofs"
+    proofs = shipped if shipped.is_dir() else _CHECKOUT / "proofs"
+    (folder / "proofs").mkdir(exist_ok=True)
+    for name in ("__init__.py", "proof.py"):
+        shutil.copyfile(proofs / name, folder / "proofs" / name)

@@ -1,0 +1,156 @@
+"""Lectures as assignments for otter-grader and nbgrader: points, hidden tests, and answers that a person reads.
+
+Both programs make the student's copy themselves, and take solutions and hidden tests out of it; what is left looks at
+the form of an answer only. Neither is needed for writing what they start from.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import nbformat
+
+from flockana.base.errors import ArgumentError
+from flockana.course.build import Exercise, copy_companions, exercises, notebook, sources, tags
+from flockana.course.pages import number_of
+
+_IMPORTS = "from flockana.course import answered, grade\n\n"
+_COMPANIONS = ("own_law", "proofs")
+_NBGRADER_CONFIG = """c = get_config()
+c.ClearSolutions.code_stub = {"python": "# your code here"}
+"""
+GRADERS = ("otter", "nbgrader")
+
+
+def master(source: Path, grader: str) -> Any:
+    """The notebook that a grader starts from, with solutions and all tests: for lecturers only.
+
+    Parameters
+    ----------
+    source : Path
+        One of `sources`.
+    grader : {"otter", "nbgrader"}
+        For ``otter assign``, or as a source notebook of nbgrader.
+
+    Returns
+    -------
+    nbformat.NotebookNode
+
+    Raises
+    ------
+    ArgumentError
+        If there is no such grader.
+    """
+    if grader not in GRADERS:
+        raise ArgumentError(f"grader = {grader!r}: expected one of {', '.join(GRADERS)}")
+    posed: Callable[..., Iterator[Any]] = _otter if grader == "otter" else _nbgrader
+    book, asked = notebook(source, "solutions"), iter(exercises(source))
+    cells: list[Any] = [_raw(_assignment(source))] if grader == "otter" else []
+    parts: dict[str, Any] = {}
+    for cell in book.cells:
+        kind = next((tag for tag in ("exercise", "solution", "check") if tag in tags(cell)), "")
+        if kind:
+            parts[kind] = cell
+        elif "facts" not in tags(cell):
+            cells.append(cell)
+        if kind == "check":
+            cells += posed(next(asked), parts["exercise"], parts["solution"].source, cell.source)
+    for number, cell in enumerate(cells):
+        cell["id"] = f"{number_of(source)}-{number:03d}"
+    book.cells = cells
+    return book
+
+
+def write_for(folder: Path, grader: str) -> list[Path]:
+    """Write all lectures for a grader: masters for ``otter assign``, or nbgrader's folder ``source``.
+
+    Parameters
+    ----------
+    folder : Path
+        Made if need be; files of the same names are replaced.
+    grader : {"otter", "nbgrader"}
+        As in `master`.
+
+    Returns
+    -------
+    list of Path
+        The notebooks.
+    """
+    written = []
+    for source in sources():
+        home = folder / "source" / source.stem if grader == "nbgrader" else folder
+        home.mkdir(parents=True, exist_ok=True)
+        written.append(home / f"{source.stem}.ipynb")
+        nbformat.write(master(source, grader), written[-1])
+        if _needs_companions(source):
+            copy_companions(home)
+    if grader == "nbgrader":
+        (folder / "nbgrader_config.py").write_text(_NBGRADER_CONFIG, encoding="utf-8")
+    return written
+
+
+def _needs_companions(source: Path) -> bool:
+    return any(f"from {name}." in source.read_text(encoding="utf-8") for name in _COMPANIONS)
+
+
+def _tests(check: str, exercise: Exercise) -> tuple[str, str]:
+    """The test that students see, and the one that they do not."""
+    seen = f'{_IMPORTS}assert answered({exercise.name}, "{exercise.form}").status == "handed in"'
+    return seen, f'assert {check.rstrip()}.status == "right"'
+
+
+def _raw(text: str) -> Any:
+    return nbformat.v4.new_raw_cell(text)
+
+
+def _assignment(source: Path) -> str:
+    files = ["own_law/__init__.py", "own_law/law.py", "own_law/theorem.py", "own_law/proof.py"]
+    files += ["proofs/__init__.py", "proofs/proof.py"]
+    listed = "".join(f"\n  - {name}" for name in files)
+    return "# ASSIGNMENT CONFIG\ninit_cell: true\nexport_cell: true" + f"\nfiles:{listed}" * _needs_companions(source)
+
+
+def _otter(exercise: Exercise, text: Any, solution: str, check: str) -> Iterator[Any]:
+    """Raw cells bound the parts of a question; the hidden test has all its points, and is not in the student's copy."""
+    by_hand = exercise.form == "text"
+    head = f"# BEGIN QUESTION\nname: {exercise.name}\npoints: {exercise.points}"
+    yield _raw(head + "\nmanual: true" * by_hand)
+    yield nbformat.v4.new_markdown_cell(text.source)
+    yield _raw("# BEGIN SOLUTION")
+    prompt = f'""" # BEGIN PROMPT\n{exercise.name} = ...\n"""; # END PROMPT'
+    yield nbformat.v4.new_code_cell(f"{prompt}\n# BEGIN SOLUTION NO PROMPT\n{solution.rstrip()}\n# END SOLUTION")
+    yield _raw("# END SOLUTION")
+    if not by_hand:
+        seen, hidden = _tests(check, exercise)
+        yield _raw("# BEGIN TESTS")
+        yield nbformat.v4.new_code_cell(_scored(0, hidden=False) + seen)
+        yield nbformat.v4.new_code_cell(_scored(exercise.points, hidden=True) + _IMPORTS + hidden)
+        yield _raw("# END TESTS")
+    yield _raw("# END QUESTION")
+
+
+def _scored(points: int, *, hidden: bool) -> str:
+    return f'""" # BEGIN TEST CONFIG\npoints: {points}\nhidden: {str(hidden).lower()}\n""" # END TEST CONFIG\n'
+
+
+def _nbgrader(exercise: Exercise, text: Any, solution: str, check: str) -> Iterator[Any]:
+    """Metadata say what a cell is; what stands between ``### BEGIN`` and ``### END`` is not in the student's copy."""
+    by_hand = exercise.form == "text"
+    yield nbformat.v4.new_markdown_cell(text.source)
+    answer = nbformat.v4.new_code_cell(
+        f"{exercise.name} = ...\n### BEGIN SOLUTION\n{solution.rstrip()}\n### END SOLUTION"
+    )
+    yield _marked(answer, exercise, grade=by_hand, solution=True)
+    if not by_hand:
+        seen, hidden = _tests(check, exercise)
+        tests = nbformat.v4.new_code_cell(f"{seen}\n### BEGIN HIDDEN TESTS\n{hidden}\n### END HIDDEN TESTS")
+        yield _marked(tests, exercise, grade=True, solution=False)
+
+
+def _marked(cell: Any, exercise: Exercise, *, grade: bool, solution: bool) -> Any:
+    marks = {"schema_version": 3, "cell_type": "code", "task": False, "grade": grade, "solution": solution}
+    marks |= {"locked": not solution, "grade_id": f"{exercise.name}-{'answer' if solution else 'tests'}"}
+    cell.metadata["nbgrader"] = marks | ({"points": exercise.points} if grade else {})
+    return cell

@@ -1,0 +1,194 @@
+"""Check a student's answer in a notebook: right, not yet, or not answered; never an exception."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from flockana.base.errors import ArgumentError
+
+_MARKS = {"right": "✓", "handed in": "✓", "not yet": "✗", "not answered": "…"}
+_ROUNDING = 1e-9  # of the right answer: what double precision may leave of an exact one
+
+
+@dataclass(frozen=True)
+class Grade:
+    """What became of an answer; shows itself in a notebook.
+
+    Parameters
+    ----------
+    status : {"right", "handed in", "not yet", "not answered"}
+        The finding; ``handed in`` says that the form is right and that nobody has looked at the value.
+    hint : str
+        Where to look, if it is not right.
+
+    Examples
+    --------
+    >>> Grade("not yet", "count each pair once")
+    ✗ not yet: count each pair once
+    """
+
+    status: str
+    hint: str = ""
+
+    def __repr__(self) -> str:
+        return f"{_MARKS[self.status]} {self.status}" + (
+            f": {self.hint}" if self.hint and self.status != "right" else ""
+        )
+
+
+def grade(
+    answer: Any, right: Any, *, digits: int | None = None, within: float | None = None, hint: str = "", form: str = ""
+) -> Grade:
+    """Compare an answer with the right one, or ask a function whether it is right.
+
+    A number counts to the precision that the question asks for, and no wider: to so many significant `digits`, that is
+    half a unit of the last of them, or `within` so much. Without either, to rounding.
+
+    Parameters
+    ----------
+    answer : object
+        The student's; ``...`` stands for no answer yet.
+    right : object
+        A number, an array or list (in this order), a set (in any order), a text (in any case), a truth value, or a
+        function of the answer that returns one. A function that stumbles over the answer counts as a no.
+    digits : int, optional
+        Significant digits asked for.
+    within : float, optional
+        Largest difference that counts as none.
+    hint : str
+        Shown with an answer that is not right.
+    form : {"number", "word", "text", "truth value", "list"}, optional
+        What is asked for, if `right` is a function; by default what `right` is.
+
+    Returns
+    -------
+    Grade
+
+    Raises
+    ------
+    ArgumentError
+        If both `digits` and `within` are given.
+
+    Examples
+    --------
+    >>> grade(..., 42), grade(41, 42, hint="count each pair once"), grade(42, 42)
+    (… not answered, ✗ not yet: count each pair once, ✓ right)
+    >>> grade(0.0929, 0.092857, digits=3), grade(0.0928, 0.092857, digits=3)
+    (✓ right, ✗ not yet)
+    >>> grade([4, 3], {3, 4}), grade("Refuted", "refuted"), grade("one", 1.0)
+    (✓ right, ✓ right, ✗ not yet: a number is asked for)
+    """
+    if digits is not None and within is not None:
+        raise ArgumentError(f"digits = {digits} and within = {within}: expected one of the two; leave the other out")
+    handed = answered(answer, form or form_of(right))
+    if handed.status != "handed in":
+        return handed
+    try:
+        if isinstance(right, Callable):  # type: ignore[arg-type]
+            good = bool(right(answer))
+        else:
+            good = _same(answer, right, lambda b: _tolerance(b, digits, within))
+    except Exception:  # whatever a student hands in, the check answers
+        good = False
+    return Grade("right" if good else "not yet", hint)
+
+
+def answered(answer: Any, form: str) -> Grade:
+    """Look at the form of an answer only: all that a student's copy checks.
+
+    Parameters
+    ----------
+    answer : object
+        The student's; ``...`` stands for no answer yet.
+    form : {"number", "word", "text", "truth value", "list", ""}
+        What is asked for; anything if empty.
+
+    Returns
+    -------
+    Grade
+        ``handed in``, ``not yet`` or ``not answered``.
+
+    Examples
+    --------
+    >>> answered(3.0, "number"), answered("three", "number"), answered(..., "number")
+    (✓ handed in: a number, ✗ not yet: a number is asked for, … not answered)
+    """
+    if answer is ...:
+        return Grade("not answered")
+    if not form:
+        return Grade("handed in")
+    return Grade("handed in", f"a {form}") if _FORMS[form](answer) else Grade("not yet", f"a {form} is asked for")
+
+
+def form_of(right: Any) -> str:
+    """The form of a right answer, as `answered` knows it; empty for a function, which may ask for anything.
+
+    Parameters
+    ----------
+    right : object
+        As `grade` takes it.
+
+    Examples
+    --------
+    >>> form_of(1.5), form_of("refuted"), form_of(False), form_of({1, 2})
+    ('number', 'word', 'truth value', 'list')
+    """
+    if isinstance(right, Callable):  # type: ignore[arg-type]
+        return ""
+    return next(name for name, fits in _FORMS.items() if fits(right))
+
+
+def _number(x: Any) -> bool:
+    if isinstance(x, str | bytes | bool | np.bool_):
+        return False
+    try:
+        a = np.asarray(x, dtype=float)
+    except (TypeError, ValueError):
+        return False
+    return bool(a.size == 1)
+
+
+_FORMS: dict[str, Callable[[Any], bool]] = {
+    "truth value": lambda x: isinstance(x, bool | np.bool_),
+    "word": lambda x: isinstance(x, str),
+    "text": lambda x: isinstance(x, str),
+    "list": lambda x: (
+        isinstance(x, list | tuple | set | frozenset | range) or (isinstance(x, np.ndarray) and x.ndim > 0)
+    ),
+    "number": _number,
+}
+
+
+def _tolerance(right: float, digits: int | None, within: float | None) -> float:
+    rounding = _ROUNDING * abs(right)
+    if within is not None:
+        return within + rounding
+    if digits is None or right == 0.0:
+        return max(rounding, _ROUNDING if right == 0.0 else 0.0)
+    return 0.5 * float(10.0 ** (np.floor(np.log10(abs(right))) - digits + 1)) + rounding
+
+
+def _same(answer: Any, right: Any, tolerance: Callable[[float], float]) -> bool:
+    if isinstance(right, set | frozenset):
+        return _matched(list(answer), list(right), tolerance)
+    if isinstance(right, list | tuple | np.ndarray):
+        return len(answer) == len(right) and all(_same(a, b, tolerance) for a, b in zip(answer, right, strict=True))
+    if isinstance(right, bool | np.bool_):
+        return bool(answer) is bool(right)
+    if isinstance(right, str):
+        return isinstance(answer, str) and answer.strip().casefold() == right.casefold()
+    return _number(answer) and abs(float(np.asarray(answer, dtype=float).item()) - right) <= tolerance(float(right))
+
+
+def _matched(answers: list[Any], rights: list[Any], tolerance: Callable[[float], float]) -> bool:
+    """Whether each answer is one of the right ones, and each of those is given once."""
+    for b in rights:
+        found = next((k for k, a in enumerate(answers) if _same(a, b, tolerance)), None)
+        if found is None:
+            return False
+        del answers[found]
+    return not answers

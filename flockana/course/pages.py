@@ -1,0 +1,214 @@
+"""What all lectures share, from two tables beside them: the map of the course, notation and references."""
+
+from __future__ import annotations
+
+import csv
+import re
+import tomllib
+import unicodedata
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from flockana.base.errors import ArgumentError
+from flockana.base.references import cite
+
+_FIELD = re.compile(r"(\w+)\s*=\s*\{((?:[^{}]|\{[^{}]*\})*)\}")
+
+_ACCENTS = {'"': "\u0308", "'": "\u0301"}
+
+
+@dataclass(frozen=True)
+class Lecture:
+    """A lecture's entry in the map of the course.
+
+    Parameters
+    ----------
+    number, title : str
+        As in its file's name and its first line.
+    after : tuple of str
+        Numbers of the lectures that it builds on.
+    minutes : int
+        For reading and running it, exercises apart.
+    references, further : tuple of str
+        What it rests on, and what to read next, as text.
+    """
+
+    number: str
+    title: str
+    after: tuple[str, ...]
+    minutes: int
+    references: tuple[str, ...]
+    further: tuple[str, ...]
+
+
+def number_of(source: Path) -> str:
+    """The number of a lecture, from the name of its file.
+
+    Parameters
+    ----------
+    source : Path
+        Of the lecture.
+
+    Examples
+    --------
+    >>> number_of(Path("00a_graphs_and_lyapunov.py"))
+    '00a'
+    """
+    return source.stem.partition("_")[0]
+
+
+def course_map(folder: Path) -> list[Lecture]:
+    """The lectures in the order in which they are taught.
+
+    Parameters
+    ----------
+    folder : Path
+        Holds the sources and ``lectures.toml``.
+
+    Raises
+    ------
+    ArgumentError
+        If the table and the folder differ, or a lecture comes before one that it builds on.
+    """
+    table = tomllib.loads((folder / "lectures.toml").read_text(encoding="utf-8"))
+    files = {number_of(path): path for path in sorted(folder.glob("[0-9][0-9]*_*.py"))}
+    if set(table) != set(files):
+        raise ArgumentError(f"lectures.toml lists {sorted(table)}; the folder holds {sorted(files)}")
+    found: list[Lecture] = []
+    for number, entry in table.items():
+        early = [each for each in entry["after"] if each not in {lecture.number for lecture in found}]
+        if early:
+            raise ArgumentError(f"lecture {number} builds on {early}: expected earlier entries of lectures.toml")
+        references = tuple(as_text(cite(key)) for key in entry["references"])
+        title = _title(files[number])
+        found.append(
+            Lecture(number, title, tuple(entry["after"]), entry["minutes"], references, tuple(entry["further"]))
+        )
+    return found
+
+
+def _title(source: Path) -> str:
+    found = re.search(r"^# # (.+)$", source.read_text(encoding="utf-8"), re.MULTILINE)
+    if found is None:
+        raise ArgumentError(f"{source.name} has no title: expected a line '# # ...'")
+    return found[1]
+
+
+def as_text(bibtex: str) -> str:
+    """A BibTeX entry as a line of text.
+
+    Parameters
+    ----------
+    bibtex : str
+        One entry.
+
+    Examples
+    --------
+    >>> as_text(cite("olfati-saber-2006"))
+    'Olfati-Saber, R., Flocking for Multi-Agent Dynamic Systems: Algorithms and Theory, IEEE Transactions on Automatic
+     Control 51(3), 401-420, 2006, doi:10.1109/TAC.2005.864190.'
+    """
+    field = {name: _plain(text) for name, text in _FIELD.findall(bibtex)}
+    *others, last = [_initials(name) for name in field.get("author", "").split(" and ")]
+    authors = f"{', '.join(others)} and {last}" if others else last
+    number = f"({field['number']})" if "number" in field else ""
+    volume = f" {field['volume']}{number}" if "volume" in field else ""
+    place = field.get("journal") or field.get("booktitle") or field.get("howpublished") or field.get("school", "")
+    doi = f"doi:{field['doi']}" if "doi" in field else f"arXiv:{field['eprint']}" if "eprint" in field else ""
+    parts = (authors, field.get("title", ""), place + volume, field.get("pages", ""), field.get("year", ""), doi)
+    return ", ".join(part for part in parts if part) + "."
+
+
+def _plain(text: str) -> str:
+    """TeX's accents as letters, without its braces."""
+    accented = re.sub(r"\\([\"'])(\w)", lambda m: unicodedata.normalize("NFC", m[2] + _ACCENTS[m[1]]), text)
+    return re.sub(r"[{}~]", "", accented).replace("--", "-")
+
+
+def _initials(name: str) -> str:
+    last, comma, first = name.partition(", ")
+    return f"{last}, {' '.join(f'{each[0]}.' for each in first.split())}" if comma else name
+
+
+def notation(folder: Path) -> list[dict[str, str]]:
+    """The table of symbols: ``symbol``, ``meaning``, ``unit`` and the ``lectures`` that use it.
+
+    Parameters
+    ----------
+    folder : Path
+        Holds ``notation.csv``.
+    """
+    with (folder / "notation.csv").open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file, delimiter="|", quoting=csv.QUOTE_NONE))
+
+
+def _rows(table: list[dict[str, str]], number: str) -> Iterator[str]:
+    yield "| symbol | meaning | unit |\n|---|---|---|"
+    for row in table:
+        if number == "all" or row["lectures"] == "all" or number in row["lectures"].split():
+            yield f"| {row['symbol']} | {row['meaning']} | {row['unit']} |"
+
+
+def header(lecture: Lecture, folder: Path) -> str:
+    """What stands below a lecture's title: what goes before, how long it takes, and its symbols.
+
+    Parameters
+    ----------
+    lecture : Lecture
+        Of the map.
+    folder : Path
+        Holds ``notation.csv``.
+    """
+    before = ", ".join(lecture.after) or "none"
+    symbols = "\n".join(_rows(notation(folder), lecture.number))
+    return (
+        f"**Lectures before this one:** {before}. **Time:** {lecture.minutes} minutes, exercises apart.\n\n"
+        f"<details><summary>Symbols</summary>\n\n{symbols}\n\n</details>"
+    )
+
+
+def references(lecture: Lecture) -> str:
+    """What stands at a lecture's end.
+
+    Parameters
+    ----------
+    lecture : Lecture
+        Of the map.
+    """
+    lists = (("References", lecture.references), ("Further reading", lecture.further))
+    return "\n\n".join(f"## {title}\n\n" + "\n".join(f"- {text}" for text in texts) for title, texts in lists)
+
+
+def notation_page(folder: Path) -> str:
+    """All symbols of the course, in Markdown.
+
+    Parameters
+    ----------
+    folder : Path
+        Holds ``notation.csv``.
+    """
+    return (
+        "# Notation\n\nA symbol means the same in all lectures.\n\n" + "\n".join(_rows(notation(folder), "all")) + "\n"
+    )
+
+
+def map_page(folder: Path) -> str:
+    """The map of the course, in Markdown: its lectures, what each builds on, and a drawing for Mermaid.
+
+    Parameters
+    ----------
+    folder : Path
+        Holds the sources and ``lectures.toml``.
+    """
+    lectures = course_map(folder)
+    rows = "\n".join(f"| {e.number} | {e.title} | {', '.join(e.after) or '–'} | {e.minutes} |" for e in lectures)
+    arrows = "\n".join(f"    L{before} --> L{each.number}" for each in lectures for before in each.after)
+    names = "\n".join(f'    L{each.number}["{each.number} {each.title}"]' for each in lectures)
+    total = sum(each.minutes for each in lectures)
+    return (
+        "# Map of the course\n\n"
+        "| lecture | title | after | minutes |\n|---|---|---|---|\n"
+        f"{rows}\n\n{len(lectures)} lectures, {total} minutes, exercises apart.\n\n"
+        f"```mermaid\ngraph TD\n{names}\n{arrows}\n```\n"
+    )

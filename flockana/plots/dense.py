@@ -1,0 +1,41 @@
+"""A run between its samples and the solver's steps, so that a curve is drawn and not a polygon of steps."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flockana.laws.discrete import DiscreteLaw
+
+if TYPE_CHECKING:
+    from flockana.base.checks import FloatArray
+    from flockana.dynamics.trajectory import Trajectory
+
+_INSTANTS = 1500  # about as many as a figure has pixels across
+
+
+def velocities_between(trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:
+    """Times and velocities on each of the solver's steps: the cubic through velocities and accelerations at its ends.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The run; that of a map has nothing between its steps.
+
+    Returns
+    -------
+    t : ndarray, shape (S,)
+        Instants, samples and steps among them.
+    p : ndarray, shape (S, n, m)
+        Velocities.
+    """
+    t, _, p, u, _ = trajectory.path
+    parts = -(-_INSTANTS // max(1, len(t) - 1))
+    if isinstance(trajectory.law, DiscreteLaw) or len(t) < 2 or parts == 1:
+        return t, p
+    x, h = np.arange(parts)[:, None, None, None] / parts, np.diff(t)[:, None, None]  # on all steps at once
+    straight = p[:-1] + x**2 * (3.0 - 2.0 * x) * (p[1:] - p[:-1])
+    inner = straight + x * (1.0 - x) * h * ((1.0 - x) * u[:-1] - x * u[1:])
+    times = t[:-1] + x[:, :, 0, 0] * np.diff(t)
+    return np.append(times.T.ravel(), t[-1]), np.concatenate([inner.swapaxes(0, 1).reshape(-1, *p.shape[1:]), p[-1:]])

@@ -1,0 +1,133 @@
+"""Lectures as notebooks: which cells a version keeps, what a student's copy gives away, and every check by answers."""
+
+from __future__ import annotations
+
+import ast
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import flockana as fl
+from flockana import lattice
+from flockana.base.errors import ArgumentError
+from flockana.course import build, grade
+from flockana.course.pages import number_of
+from tests.course.answers import ANSWERS
+
+SOURCES = build.sources()
+
+
+def of(book, tag):
+    return [cell.source for cell in book.cells if tag in build.tags(cell)]
+
+
+def check_of(source, name):
+    checks = of(build.notebook(source, "solutions"), "check")
+    return next(text for text in checks if build.asked(text)[0] == name)
+
+
+CASES = [
+    pytest.param(source, name, id=f"{number_of(source)}-{name}")
+    for source in SOURCES
+    for name in ANSWERS[number_of(source)]
+]
+
+
+@pytest.mark.parametrize(("source", "name"), CASES)
+def test_a_check_takes_right_answers_and_refuses_wrong_ones(source, name):
+    wrong, right = ANSWERS[number_of(source)][name]
+    code = check_of(source, name)
+    tree = ast.parse(code)
+    expression = compile(ast.Expression(tree.body.pop().value), code, "eval")
+    assert not tree.body  # it stands alone: one call, on constants
+
+    def status(answer):
+        return eval(expression, {"grade": grade, "np": np, "fl": fl, "lattice": lattice, name: answer}).status
+
+    assert len(wrong) >= 3
+    assert len(right) >= 2
+    assert {repr(answer): status(answer) for answer in wrong} == {repr(answer): "not yet" for answer in wrong}
+    assert {repr(answer): status(answer) for answer in right} == {repr(answer): "right" for answer in right}
+    assert status(...) == "not answered"
+
+
+@pytest.mark.parametrize("source", SOURCES, ids=lambda path: path.stem)
+def test_versions_of_a_lecture(source):
+    books = {version: build.notebook(source, version) for version in build.VERSIONS}
+    exercises = list(build.exercises(source))
+    assert [each.number for each in exercises] == list(range(1, len(exercises) + 1))
+    assert len(exercises) >= 5
+    assert all(each.points == each.level for each in exercises)
+    assert max(each.level for each in exercises) > 1
+    assert {each.name for each in exercises} == set(ANSWERS[number_of(source)])
+    for version, book in books.items():
+        assert len(of(book, "check")) == len(of(book, "exercise")) == len(exercises)
+        assert len(of(book, "answer")) == (0 if version == "solutions" else len(exercises))
+        assert len(of(book, "solution")) == (len(exercises) if version == "solutions" else 0)
+    assert all("= ..." in text for text in of(books["student"], "answer"))
+
+
+@pytest.mark.parametrize("source", SOURCES, ids=lambda path: path.stem)
+def test_a_lecture_says_what_it_needs_aims_at_and_rests_on(source):
+    texts = [cell.source for cell in build.notebook(source, "student").cells if cell.cell_type == "markdown"]
+    assert "**Aims.**" in texts[0]
+    assert "**Lectures before this one:**" in texts[1]
+    assert "| $q_i$, $p_i$, $u_i$ |" in texts[1]
+    assert sum("## Summary" in text for text in texts) == 1
+    assert "## References\n\n- " in texts[-1]
+    assert "## Further reading\n\n- " in texts[-1]
+
+
+@pytest.mark.parametrize("source", SOURCES, ids=lambda path: path.stem)
+def test_a_students_copy_holds_neither_answers_nor_hints(source):
+    text = json.dumps(build.notebook(source, "student"))
+    assert "grade(" not in text
+    for check in of(build.notebook(source, "solutions"), "check"):
+        hint = next(each.value.value for each in ast.parse(check).body[-1].value.keywords if each.arg == "hint")
+        assert hint not in text
+
+
+@pytest.mark.parametrize("source", SOURCES, ids=lambda path: path.stem)
+def test_a_number_that_is_not_exact_says_to_what_precision(source):
+    """The tolerance is the one that the question states."""
+    words = {2: "two significant", 3: "three significant", 4: "four significant"}
+    solved = build.notebook(source, "solutions")
+    for text, check in zip(of(solved, "exercise"), of(solved, "check"), strict=True):
+        options = {each.arg: each.value for each in ast.parse(check).body[-1].value.keywords}
+        right = ast.parse(check).body[-1].value.args[1]
+        said = " ".join(text.split()).lower()
+        if "digits" in options:
+            assert words[options["digits"].value] in said
+        elif isinstance(right, ast.Constant | ast.UnaryOp) and build.asked(check)[1] == "number":
+            assert "exactly" in said or "whole number" in said or "nearest integer" in said
+
+
+def test_everything_that_a_lecture_needs_is_written_beside_it(tmp_path):
+    """Lecture 11 imports its own law, whose proof imports `proofs`: neither is in the package."""
+    written = build.write(tmp_path)
+    assert [path.stem for path in written] == [path.stem for path in SOURCES]
+    code = "import own_law.theorem, own_law.proof; print(all(step.holds for step in own_law.proof.PROOF.steps()))"
+    found = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert found.stdout.strip() == "True"
+
+
+@pytest.mark.parametrize(
+    ("check", "expected"),
+    [
+        ("x = 1", "expected one call grade"),
+        ("grade(x, right(), hint='')", "give a constant, or form="),
+        ("grade(x + 1, 2)", "expected one call grade"),
+        ("import math\ngrade(x, 2)", "expected one call grade"),
+    ],
+)
+def test_a_check_that_cannot_be_exported_is_refused(check, expected):
+    with pytest.raises(ArgumentError, match=expected):
+        build.asked(check)
+
+
+def test_an_unknown_version_is_refused():
+    with pytest.raises(ArgumentError, match="student, self-study, solutions"):
+        build.notebook(SOURCES[0], "teacher")

@@ -1,0 +1,102 @@
+"""Answers are graded: to the precision asked for, whatever type they come in, and never with an exception."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from flockana.base.errors import ArgumentError
+from flockana.course import answered, form_of, grade
+
+
+@pytest.mark.parametrize(
+    ("answer", "right", "status"),
+    [
+        (..., 1.0, "not answered"),
+        (1.0 + 1e-12, 1.0, "right"),
+        (1.0 + 1e-7, 1.0, "not yet"),
+        (np.float32(0.5), 0.5, "right"),
+        (Fraction(1, 2), 0.5, "right"),
+        (sp.Rational(1, 2), 0.5, "right"),
+        (np.array([0.5]), 0.5, "right"),
+        (float("nan"), 0.5, "not yet"),
+        (float("inf"), 0.5, "not yet"),
+        (1e-12, 0.0, "right"),
+        (1e-6, 0.0, "not yet"),
+        ([1.0, 2.0], [1.0, 2.0], "right"),
+        (np.array([1.0, 2.0]), [1.0, 2.0], "right"),
+        ([2.0, 1.0], [1.0, 2.0], "not yet"),
+        ([2.0, 1.0], {1.0, 2.0}, "right"),
+        ([2.0, 1.0, 1.0], {1.0, 2.0}, "not yet"),
+        ([2.0], {1.0, 2.0}, "not yet"),
+        (["B", "a"], {"a", "b"}, "right"),
+        ([1.0], [1.0, 1.0], "not yet"),
+        (1, True, "not yet"),
+        (True, 1, "not yet"),
+        (True, True, "right"),
+        (np.True_, True, "right"),
+        (np.False_, False, "right"),
+        (np.True_, False, "not yet"),
+        ("refuted", "refuted", "right"),
+        ("Refuted ", "refuted", "right"),
+        ("one", 1.0, "not yet"),
+        ("1.0", 1.0, "not yet"),
+        (None, 1.0, "not yet"),
+        (3, lambda n: n % 2 == 1, "right"),
+        ("x", lambda n: n % 2 == 1, "not yet"),
+    ],
+)
+def test_grades(answer, right, status):
+    assert grade(answer, right).status == status
+
+
+@pytest.mark.parametrize("digits", [1, 2, 3, 4])
+@pytest.mark.parametrize("right", [0.09291926, -5.8170727, 239.764139, 1.0004, 9.996e-4])
+def test_the_tolerance_is_half_a_unit_of_the_last_digit_asked_for(right, digits):
+    rounded = float(f"{right:.{digits - 1}e}")
+    unit = 10.0 ** (np.floor(np.log10(abs(right))) - digits + 1)
+    assert grade(rounded, right, digits=digits).status == "right"
+    for off, status in ((0.49, "right"), (-0.49, "right"), (0.51, "not yet"), (-0.51, "not yet")):
+        assert grade(right + off * unit, right, digits=digits).status == status
+
+
+def test_an_absolute_tolerance():
+    assert grade(5.1, 5.0, within=0.1).status == "right"
+    assert grade(5.11, 5.0, within=0.1).status == "not yet"
+
+
+def test_one_precision_at_a_time():
+    with pytest.raises(ArgumentError, match=r"digits = 2 and within = 0\.1"):
+        grade(1.0, 1.0, digits=2, within=0.1)
+
+
+@pytest.mark.parametrize(
+    ("answer", "form", "status"),
+    [
+        (3, "number", "handed in"),
+        (-1e9, "number", "handed in"),
+        ([3, 4], "number", "not yet"),
+        ("three", "number", "not yet"),
+        (True, "number", "not yet"),
+        ("vacuous", "word", "handed in"),
+        (3, "word", "not yet"),
+        (np.False_, "truth value", "handed in"),
+        (0, "truth value", "not yet"),
+        ((3, 4), "list", "handed in"),
+        (3, "list", "not yet"),
+        (..., "list", "not answered"),
+        (object(), "", "handed in"),
+    ],
+)
+def test_a_students_copy_looks_at_the_form_only(answer, form, status):
+    assert answered(answer, form).status == status
+
+
+@pytest.mark.parametrize(
+    ("right", "form"), [(1, "number"), (True, "truth value"), ("a", "word"), ([1], "list"), (len, "")]
+)
+def test_the_form_of_a_right_answer(right, form):
+    assert form_of(right) == form

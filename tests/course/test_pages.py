@@ -1,0 +1,79 @@
+"""The map of the course, its notation and its references, from their two tables."""
+
+from __future__ import annotations
+
+import re
+import shutil
+
+import pytest
+
+from flockana.base.errors import ArgumentError
+from flockana.course import build, pages
+
+FOLDER = build.lectures()
+
+
+def test_the_map_holds_every_lecture_after_those_that_it_builds_on():
+    found = pages.course_map(FOLDER)
+    numbers = [each.number for each in found]
+    assert len(numbers) == len(set(numbers)) == len(list(FOLDER.glob("[0-9]*_*.py")))
+    assert numbers[:2] == ["00", "00a"]  # a first run, then the tools
+    page = pages.map_page(FOLDER)
+    for each in found:
+        assert each.minutes >= 20
+        assert f"| {each.number} | {each.title} |" in page
+        assert all(f"L{before} --> L{each.number}" in page for before in each.after)
+        assert not any(re.search(r"[{}\\]", text) for text in each.references)
+
+
+def test_a_reference_reads_as_text():
+    found = {text for each in pages.course_map(FOLDER) for text in each.references}
+    assert any(
+        text.startswith("Harborth, H., Lösung zu Problem 664A, Elemente der Mathematik 29, 14-15") for text in found
+    )
+    assert any(text.startswith("Jadbabaie, A., Lin, J. and Morse, A. S., ") for text in found)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('[01]\nafter = ["00"]', '[01]\nafter = ["13"]', "lecture 01 builds on .*13"),
+        ("[13]\n", "[14]\n", "lectures.toml lists .*'14'"),
+    ],
+)
+def test_a_map_that_does_not_fit_is_refused(tmp_path, old, new, message):
+    folder = tmp_path / "lectures"
+    shutil.copytree(FOLDER, folder)
+    table = folder / "lectures.toml"
+    assert old in table.read_text()
+    table.write_text(table.read_text().replace(old, new))
+    with pytest.raises(ArgumentError, match=message):
+        pages.course_map(folder)
+
+
+def test_one_table_defines_every_symbol_once():
+    table = pages.notation(FOLDER)
+    numbers = {each.number for each in pages.course_map(FOLDER)}
+    symbols = [symbol for row in table for symbol in re.findall(r"\$([^$]+)\$", row["symbol"])]
+    assert len(symbols) == len(set(symbols))
+    assert all(row["lectures"] == "all" or set(row["lectures"].split()) <= numbers for row in table)
+    page = pages.notation_page(FOLDER)
+    assert all(row["meaning"] in page for row in table)
+
+
+@pytest.mark.parametrize("source", build.sources(), ids=lambda path: path.stem)
+def test_a_lecture_lists_the_symbols_that_it_uses(source):
+    """Of the symbols that had two meanings once."""
+    entry = next(each for each in pages.course_map(FOLDER) if each.number == pages.number_of(source))
+    text, head = source.read_text(), pages.header(entry, FOLDER)
+    for pattern, row in (
+        (r"c_1\^\\alpha", r"| $c_1^\alpha$"),
+        (r"\\hat L\b", r"| $L$, $\hat L"),
+        (r"U_\\lambda", r"| $U_\lambda$"),
+        (r"\\lambda_2", r"| $\lambda_2$"),
+        (r"q_r\b", "| $q_r$, $p_r$"),
+        (r"a_\{ij\}", "| $a_{ij}$"),
+        (r"H_\\lambda", "| $H$, $H_"),
+    ):
+        if re.search(pattern, text):
+            assert row in head, row
