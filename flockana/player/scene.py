@@ -91,7 +91,7 @@ def world(law: Any, run: Trajectory, frames: npt.NDArray[np.intp]) -> World:
         length=_finite(None if pair is None else pair.length),
         stars=None if target is None else _paths([target], run.t[frames]),
         solids=tuple(law.obstacles),
-        beta=0.0 if law.obstacle_field is None else float(law.obstacle_field.beta.range),
+        beta=0.0 if law.obstacle_field is None else float(law.obstacle_field.beta.r),
     )
 
 
