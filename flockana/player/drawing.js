@@ -1,4 +1,5 @@
 // One instant of a run on a canvas.
+const ON_DARK = ["#4a9df0", "#5f98d0", "#7296b8", "#8298a8", "#8a8a8a", "#a8957a", "#cf9a50", "#e8a940", "#ffc84a"];
 const STRAINS = ["#00356b", "#1d5898", "#3d76b2", "#6480a0", "#8a8a8a", "#ab8a62", "#cf8a33", "#e5a033", "#f5b83d"];
 const GROUPS = ["--ink", "--blue", "--vermillion", "--green", "--purple"];
 
@@ -7,7 +8,7 @@ function flockanaDrawing(canvas, run) {
   const places = new Float64Array(n * m), speeds = new Float64Array(n * m);
   const screen = new Float64Array(2 * n), look = { trails: true, velocities: true, links: true };
   const view = { x: 0, y: 0, scale: 1, turn: 0.6, tilt: 0.5 };
-  let colours = {}, width = 1, height = 1;
+  let colours = {}, strains = STRAINS, width = 1, height = 1;
 
   const fastest = Math.max(1e-300, ...chunks(run.p, m).map((v) => Math.hypot(...v)));
   const box = extent();
@@ -33,6 +34,7 @@ function flockanaDrawing(canvas, run) {
     const style = getComputedStyle(canvas);
     for (const name of ["--ink", "--muted", "--faint", "--paper", "--blue", "--vermillion", "--green", "--purple"])
       colours[name] = style.getPropertyValue(name).trim() || "#888";
+    strains = matchMedia("(prefers-color-scheme: dark)").matches ? ON_DARK : STRAINS;
   }
   function resize() {
     const ratio = Math.min(window.devicePixelRatio || 1, 2);
@@ -124,7 +126,7 @@ function flockanaDrawing(canvas, run) {
         ink.moveTo(screen[2 * list[e]], screen[2 * list[e] + 1]);
         ink.lineTo(screen[2 * list[e + 1]], screen[2 * list[e + 1] + 1]);
       }
-      ink.strokeStyle = length ? STRAINS[k] : colours["--muted"];
+      ink.strokeStyle = length ? strains[k] : colours["--muted"];
       ink.stroke();
     });
   }
@@ -203,7 +205,8 @@ function flockanaDrawing(canvas, run) {
     ink.stroke();
   }
   function agents() {
-    const r = Math.max(1.3, Math.min(4.5, 45 / Math.sqrt(n))), groups = run.groups.length ? run.groups : null;
+    const near = (run.length || run.reach || Infinity) * view.scale;
+    const r = Math.max(1.2, Math.min(4.5, 45 / Math.sqrt(n), 0.25 * near)), groups = run.groups.length ? run.groups : null;
     for (let g = 0; g < (groups ? GROUPS.length - 1 : 1); g++) {
       ink.beginPath();
       for (let i = 0; i < n; i++) {

@@ -146,15 +146,21 @@ def _round(low: float, high: float, most: int) -> list[tuple[float, str]]:
     --------
     >>> _round(0.0, 60.0, 5)
     [(0.0, '0'), (20.0, '20'), (40.0, '40'), (60.0, '60')]
+    >>> [text for _, text in _round(-3e-7, 2e-7, 4)], [text for _, text in _round(0.0, 1.0, 4)]
+    (['-2e-07', '0', '2e-07'], ['0.0', '0.5', '1.0'])
     """
     if not high > low:
         return [(low, f"{low:.4g}")]
     raw = (high - low) / most
     power = 10.0 ** floor(log10(raw))
     step = next(factor * power for factor in (1.0, 2.0, 5.0, 10.0) if factor * power >= raw * (1.0 - 1e-9))
-    first, last = ceil(low / step - 1e-9), floor(high / step + 1e-9)
-    digits = max(1, 1 + floor(log10(max(abs(first), abs(last), 1))))
-    return [(k * step, f"{k * step + 0.0:.{digits}g}") for k in range(first, last + 1)]
+    ticks = [k * step + 0.0 for k in range(ceil(low / step - 1e-9), floor(high / step + 1e-9) + 1)]
+    largest = max(map(abs, ticks), default=0.0)
+    if largest and not 1e-3 <= largest < 1e5:
+        digits = round(log10(largest / step)) + 1
+        return [(at, f"{at:.{digits}g}") for at in ticks]
+    decimals = max(0, -floor(log10(step) + 1e-9))
+    return [(at, f"{at:.{decimals}f}") for at in ticks]
 
 
 def _decades(low: float, high: float) -> list[tuple[float, str]]:

@@ -72,7 +72,7 @@ def _placed(draw: Callable[[Figure], None], size: tuple[float, float], dpi: floa
 def _page_s_own(text: str) -> str:
     """matplotlib's SVG as part of a page: no prologue, ids of its own, colours by name, three digits after the point."""
     text = text[text.index("<svg") :]
-    text = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->", "", text, flags=re.DOTALL)
+    text = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->|<style.*?</style>", "", text, flags=re.DOTALL)
     box = re.search(r'viewBox="[^"]*"', text)
     text = re.sub(r"<svg[^>]*>", f"<svg {box.group(0) if box else ''} class=\"drawn\">", text, count=1)
     used = set(re.findall(r'(?:href="#|url\(#)([^")]+)', text))

@@ -187,13 +187,14 @@ def page(result: ScenarioResult | FixedResult, *, figures: bool = True) -> Page:
 
 def _play(scenario: Scenario, run: Trajectory, verdicts: tuple[Verdict, ...]) -> str:
     """The run for the player, with the source's instants and those that the verdicts' claims point to."""
-    marks = [(time, "as in the source") for time in scenario.instants]
+    marks: dict[float, list[str]] = {float(time): ["as in the source"] for time in scenario.instants}
     for verdict in verdicts:
         for claim in verdict.claims:
             time = claim.witness.get("time") if isinstance(claim.witness, Mapping) else None
             if isinstance(time, float | int) and run.t[0] <= time <= run.t[-1]:
-                marks.append((float(time), f"{verdict.theorem} {claim.name}"))
-    return text_of(scene(run, values=_VALUES, exact=False, title=f"{scenario.name}: {scenario.title}", marks=marks))
+                marks.setdefault(float(time), []).append(f"{verdict.theorem} {claim.name}")
+    named = [(time, ", ".join(names)) for time, names in sorted(marks.items())]
+    return text_of(scene(run, values=_VALUES, exact=False, title=f"{scenario.name}: {scenario.title}", marks=named))
 
 
 def _scenario_finding(scenario: Scenario, verdict: Verdict) -> Finding:
