@@ -65,7 +65,7 @@ def encode(header: Mapping[str, Any], arrays: Mapping[str, Packed]) -> bytes:
         values = np.asarray(packed.values, dtype=np.float64)
         whole, origin = _whole(name, values, packed.step)
         entries.append({"name": name, "shape": values.shape, "step": packed.step, "origin": origin})
-        bodies.append(_bytes(whole.reshape(len(values), -1)))
+        bodies.append(_bytes(whole.reshape(len(values), int(np.prod(values.shape[1:])))))
     text = json.dumps(dict(header) | {"arrays": entries}, ensure_ascii=False, allow_nan=False).encode("utf-8")
     return _MAGIC + zlib.compress(b"".join([len(text).to_bytes(4, "little"), text, *bodies]), 9)
 
@@ -94,7 +94,7 @@ def decode(data: bytes) -> tuple[dict[str, Any], dict[str, FloatArray]]:
             rows, size = entry["shape"][0], int(np.prod(entry["shape"]))
             planes = np.frombuffer(raw, np.uint8, 4 * size, start).reshape(4, size)
             start += 4 * size
-            whole = np.ascontiguousarray(planes.T).view("<u4").reshape(-1, rows).T
+            whole = np.ascontiguousarray(planes.T).view("<u4").reshape(size // max(rows, 1), rows).T
             whole = np.cumsum(whole, axis=0, dtype=np.uint32)
             arrays[entry["name"]] = _numbers(whole, entry).reshape(entry["shape"])
     except (ValueError, KeyError, TypeError, IndexError, zlib.error) as error:

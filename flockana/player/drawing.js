@@ -6,7 +6,7 @@ const GROUPS = ["--ink", "--blue", "--vermillion", "--green", "--purple"];
 function flockanaDrawing(canvas, run) {
   const { n, m } = run, frames = run.t.length, ink = canvas.getContext("2d");
   const places = new Float64Array(n * m), speeds = new Float64Array(n * m);
-  const screen = new Float64Array(2 * n), look = { trails: true, velocities: true, links: true };
+  const screen = new Float64Array(2 * n), look = { trails: true, velocities: true, links: true, follow: false };
   const view = { x: 0, y: 0, scale: 1, turn: 0.6, tilt: 0.5 };
   let colours = {}, strains = STRAINS, width = 1, height = 1;
 
@@ -47,6 +47,19 @@ function flockanaDrawing(canvas, run) {
     view.x = 0; view.y = 0;
     const across = m === 3 ? Math.hypot(...spans) : spans[0], up = m === 3 ? across : spans[1] || 0;
     view.scale = 0.9 * Math.min(width / (across || size), height / (up || size * height / width * 0.2));
+  }
+  const whole = box.centre;
+  function middle() {
+    return whole.map((_, c) => { let sum = 0; for (let i = c; i < n * m; i += m) sum += places[i]; return sum / n; });
+  }
+  function follow(on) {  // the flock, as large as it is now
+    look.follow = on;
+    if (!on) { fit(); return; }
+    const centre = middle();
+    let far = 0;
+    for (let i = 0; i < n; i++) far = Math.max(far, Math.hypot(...centre.map((v, c) => places[i * m + c] - v)));
+    view.x = 0; view.y = 0;
+    if (far > 0) view.scale = Math.min(0.42 * Math.min(width, height) / far, 200 * view.scale);
   }
   let turned = { a: 1, b: 0, c: 0, d: 1 };
   function project(x, i) {  // to pixels
@@ -236,6 +249,7 @@ function flockanaDrawing(canvas, run) {
   }
   function draw(time) {
     const at = interpolate(time);
+    box.centre = look.follow ? middle() : whole;
     turned = { a: Math.cos(view.turn), b: Math.sin(view.turn), c: Math.sin(view.tilt), d: Math.cos(view.tilt) };
     ink.clearRect(0, 0, width, height);
     for (let i = 0; i < n; i++) [screen[2 * i], screen[2 * i + 1]] = project(places, i * m);
@@ -245,5 +259,5 @@ function flockanaDrawing(canvas, run) {
     if (look.velocities) arrows();
     agents(); betaAgents(); marks(at);
   }
-  return { draw, fit, resize, palette, view, look };
+  return { draw, fit, follow, resize, palette, view, look };
 }

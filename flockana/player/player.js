@@ -35,11 +35,14 @@ async function flockanaPlayer(place, bytes) {
   button("+", "Zoom in", () => zoom(1.25));
   button("−", "Zoom out", () => zoom(0.8));
   button("fit", "Fit the whole run", () => { drawing.fit(); redraw(); });
-  for (const name of ["trails", "velocities", "links"]) {
+  for (const name of ["trails", "velocities", "links", "follow"]) {
     const label = add("label", "", bar), box = add("input", "", label, { type: "checkbox" });
     label.append(` ${name}`);
-    box.checked = true;
-    box.addEventListener("change", () => { drawing.look[name] = box.checked; redraw(); });
+    box.checked = name !== "follow";
+    box.addEventListener("change", () => {
+      if (name === "follow") drawing.follow(box.checked); else drawing.look[name] = box.checked;
+      redraw();
+    });
   }
   const strip = flockanaStrip(add("div", "", place, { class: "fp-strip" }), run, (t) => { pause(); show(t); });
   const said = add("p", "", place, { class: "fp-hidden", "aria-live": "polite" });

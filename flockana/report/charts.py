@@ -157,7 +157,7 @@ def _round(low: float, high: float, most: int) -> list[tuple[float, str]]:
     ticks = [k * step + 0.0 for k in range(ceil(low / step - 1e-9), floor(high / step + 1e-9) + 1)]
     largest = max(map(abs, ticks), default=0.0)
     if largest and not 1e-3 <= largest < 1e5:
-        digits = round(log10(largest / step)) + 1
+        digits = floor(log10(largest / step) + 1e-9) + 2
         return [(at, f"{at:.{digits}g}") for at in ticks]
     decimals = max(0, -floor(log10(step) + 1e-9))
     return [(at, f"{at:.{decimals}f}") for at in ticks]

@@ -47,7 +47,7 @@ def stills(run: Trajectory, times: Sequence[float]) -> str:
     drawn = []
     for j, k in enumerate(samples.tolist()):
         label = f"t = {run.t[k]:.4g}"
-        inner = _world(around, put, scale, height) + _links(around, run.q[k], j, put) + _dots(put(places[j]), run.n)
+        inner = _world(around, put, scale, height) + _links(around, run.q[k], j, put) + _dots(put(places[j]), min(70.0 / np.sqrt(run.n), 0.4 * (around.length or around.reach or np.inf) * scale))
         for kind, marks in (("star", around.stars), ("cross", around.crosses)):
             if marks is not None and marks[j].size:
                 inner += "".join(_mark(kind, *at) for at in put(_flat(marks[j])).tolist())
@@ -67,10 +67,9 @@ def _flat(points: FloatArray) -> FloatArray:
     return points
 
 
-def _dots(points: FloatArray, n: int) -> str:
-    size = float(np.clip(70.0 / np.sqrt(n), 2.5, 10.0))
+def _dots(points: FloatArray, size: float) -> str:
     path = "".join(f"M{x:.0f} {y:.0f}h0" for x, y in points.tolist())
-    return f'<path class="agents" stroke-width="{size:.1f}" d="{path}"/>'
+    return f'<path class="agents" stroke-width="{np.clip(size, 2.0, 10.0):.1f}" d="{path}"/>'
 
 
 def _links(around: World, q: FloatArray, j: int, put: Any) -> str:
