@@ -15,10 +15,10 @@ import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
 from flockana.environment.obstacles import Obstacle, Sphere, Wall
+from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.laws.led_dead_zone import LedDeadZoneFlocking
 from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.vicsek import HeadingAveraging
-from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.player.codec import Packed, encode
 
 if TYPE_CHECKING:

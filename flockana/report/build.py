@@ -141,12 +141,8 @@ def _version(name: str) -> str:
         return "unknown"
 
 
-def _html(
-    pages: list[Page],
-    run: dict[str, Any],
-    statistics: StatisticsSection | None,
-    comparison: ComparisonSection | None,
-) -> str:
+def page_environment() -> Environment:
+    """The templates with the filters that they use; figures are numbered anew, so it serves one page."""
     environment = Environment(
         loader=PackageLoader("flockana.report", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True
     )
@@ -157,28 +153,41 @@ def _html(
 
     environment.filters |= {"show": show, "markup": markup, "deciding": deciding_claim, "figure": figure}
     environment.filters |= {"source_name": source_name}
+    return environment
+
+
+def _html(
+    pages: list[Page],
+    run: dict[str, Any],
+    statistics: StatisticsSection | None,
+    comparison: ComparisonSection | None,
+) -> str:
     findings = [finding for page in pages for finding in page.findings]
     counts: Counter[str] = Counter(finding.verdict.status for finding in findings)
-    return environment.get_template("template.html.j2").render(
-        run=run,
-        scenarios=[page for page in pages if isinstance(page, ScenarioPage)],
-        fixed=[page for page in pages if isinstance(page, FixedPage)],
-        lattices=lattice_section(pages),
-        statistics=statistics,
-        comparison=comparison,
-        stability=stability_section(pages),
-        coverage={"sources": coverage(), "anchors": anchors(pages)} if run["of"] is None else None,
-        verdict_id=verdict_id,
-        counts=[(status, counts[status]) for status in _STATUSES],
-        surprises=_surprises(pages),
-        marks=MARKS,
-        sources=sorted({source_name(f.references[0]) for f in findings if f.references}),
-        rigours=sorted({f.verdict.rigour for f in findings}),
-        player_style=Markup(style()),
-        player_script=Markup(script()),
-        report_script=Markup((files("flockana.report") / "report.js").read_text(encoding="utf-8")),
-        report_style=Markup((files("flockana.report") / "report.css").read_text(encoding="utf-8")),
-        tolerances=[tolerance_rows(t) for t in dict.fromkeys(f.verdict.tolerances for f in findings)],
+    return (
+        page_environment()
+        .get_template("template.html.j2")
+        .render(
+            run=run,
+            scenarios=[page for page in pages if isinstance(page, ScenarioPage)],
+            fixed=[page for page in pages if isinstance(page, FixedPage)],
+            lattices=lattice_section(pages),
+            statistics=statistics,
+            comparison=comparison,
+            stability=stability_section(pages),
+            coverage={"sources": coverage(), "anchors": anchors(pages)} if run["of"] is None else None,
+            verdict_id=verdict_id,
+            counts=[(status, counts[status]) for status in _STATUSES],
+            surprises=_surprises(pages),
+            marks=MARKS,
+            sources=sorted({source_name(f.references[0]) for f in findings if f.references}),
+            rigours=sorted({f.verdict.rigour for f in findings}),
+            player_style=Markup(style()),
+            player_script=Markup(script()),
+            report_script=Markup((files("flockana.report") / "report.js").read_text(encoding="utf-8")),
+            report_style=Markup((files("flockana.report") / "report.css").read_text(encoding="utf-8")),
+            tolerances=[tolerance_rows(t) for t in dict.fromkeys(f.verdict.tolerances for f in findings)],
+        )
     )
 
 

@@ -91,7 +91,9 @@ class Chart:
             drawn = _path(np.asarray(x(self.t[keep])), np.asarray(y(heights)))
             parts.append(f'<path class="curve c{k}" d="{drawn}"/>')
         words = escape(self.words, quote=True)
-        drawing = f'<svg viewBox="0 0 {_WIDTH} {_HEIGHT}" role="img" aria-label="{words} over time">{"".join(parts)}</svg>'
+        drawing = (
+            f'<svg viewBox="0 0 {_WIDTH} {_HEIGHT}" role="img" aria-label="{words} over time">{"".join(parts)}</svg>'
+        )
         return f'<div class="chart"><p class="axis">{words}</p>{drawing}{self._legend()}</div>'
 
     def _legend(self) -> str:

@@ -48,7 +48,12 @@ def control_pictures() -> tuple[Picture, ...]:
     gains = Gains()
     centre = CentreOfMass(gains)
     t = np.linspace(0.0, 12.0 * pi / centre.natural_frequency / 2.0, 300)
-    step = Chart("centre of mass after a unit step of the γ-agent", t, (Curve(np.ravel(centre.step_response(t).y)),), levels=((1.0, "γ-agent"),))
+    step = Chart(
+        "centre of mass after a unit step of the γ-agent",
+        t,
+        (Curve(np.ravel(centre.step_response(t).y)),),
+        levels=((1.0, "γ-agent"),),
+    )
     locus, _ = centre_locus(gains, "c1_gamma", np.linspace(0.0, 3.0 * gains.c1_gamma, 61))
     table = norms_against_size(Algorithm1(), _SIZES)
 

@@ -61,9 +61,7 @@ def _captures(run: Trajectory, instants: Sequence[float]) -> Picture:
     return Picture(f"{shown}: the sample nearest to each. {_WORDS}", stills(run, instants))
 
 
-_WORDS = (
-    "Links are blue where they are shorter than desired, orange where longer, by more than a tenth; a star is a γ-agent."
-)
+_WORDS = "Links are blue where they are shorter than desired, orange where longer, by more than a tenth; a star is a γ-agent."
 
 
 def flock_pictures(trajectory: Trajectory) -> tuple[Picture, ...]:

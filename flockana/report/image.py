@@ -74,7 +74,7 @@ def _page_s_own(text: str) -> str:
     text = text[text.index("<svg") :]
     text = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->|<style.*?</style>", "", text, flags=re.DOTALL)
     box = re.search(r'viewBox="[^"]*"', text)
-    text = re.sub(r"<svg[^>]*>", f"<svg {box.group(0) if box else ''} class=\"drawn\">", text, count=1)
+    text = re.sub(r"<svg[^>]*>", f'<svg {box.group(0) if box else ""} class="drawn">', text, count=1)
     used = set(re.findall(r'(?:href="#|url\(#)([^")]+)', text))
     text = re.sub(r' id="([^"]*)"', lambda m: f' id="{IDS}{m[1]}"' if m[1] in used else "", text)
     text = re.sub(r'(href="#|url\(#)', rf"\g<1>{IDS}", text).replace("xlink:href", "href")

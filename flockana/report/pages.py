@@ -16,7 +16,6 @@ from flockana.scenarios.scenario import SOURCE, differences
 from flockana.theorems import Theorem, Verdict, theorem
 from flockana.theorems.theorem import Status
 
-
 _VALUES = 24_000  # numbers of places and velocities of a run in the page: all runs together take 2 MB of it
 
 
@@ -203,7 +202,13 @@ def _scenario_finding(scenario: Scenario, verdict: Verdict) -> Finding:
         return _finding(verdict, theorem(verdict.theorem), expected)
     reports = " ".join(f"{report.name}: {report.text.rstrip('.')}." for report in scenario.reports)
     return Finding(
-        verdict, "What the source reports", reports, scenario.source, expected, differences(verdict, expected), scenario.references
+        verdict,
+        "What the source reports",
+        reports,
+        scenario.source,
+        expected,
+        differences(verdict, expected),
+        scenario.references,
     )
 
 

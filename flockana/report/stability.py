@@ -108,7 +108,9 @@ def stability_section(pages: Iterable[Page]) -> StabilitySection | None:
         tuple(picture for picture in pictures if picture is not None),
         tuple(margin_texts),
         control_pictures(),
-        tuple(state_space(flock, f"{name}.json".lower().replace(" ", "-"), f"19 agents, {name}") for name, flock in flocks),
+        tuple(
+            state_space(flock, f"{name}.json".lower().replace(" ", "-"), f"19 agents, {name}") for name, flock in flocks
+        ),
     )
 
 
@@ -139,7 +141,10 @@ def _flocks() -> list[tuple[str, Linearisation]]:
     """A hexagon of 19 agents under both algorithms, linearised."""
     laws = Algorithm1(), Algorithm2(target=StaticTarget((0.0, 0.0)))
     return [
-        (f"Algorithm {type(law).__name__[-1]}", linearise(law, find_equilibrium(law, hexagonal_patch(2, law.alpha.length))))
+        (
+            f"Algorithm {type(law).__name__[-1]}",
+            linearise(law, find_equilibrium(law, hexagonal_patch(2, law.alpha.length))),
+        )
         for law in laws
     ]
 

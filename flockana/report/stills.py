@@ -33,7 +33,9 @@ def stills(run: Trajectory, times: Sequence[float]) -> str:
     around = world(run.law.continuous or run.law, run, samples)
     places = [_flat(run.q[k]) for k in samples]
     others = [_flat(x[j]) for x in (around.stars, around.crosses) if x is not None for j in range(len(samples))]
-    balls = [_flat(np.array([s.centre])) + d * s.radius for s in around.solids if isinstance(s, Sphere) for d in (-1, 1)]
+    balls = [
+        _flat(np.array([s.centre])) + d * s.radius for s in around.solids if isinstance(s, Sphere) for d in (-1, 1)
+    ]
     lines = [_flat(line) for line in around.outlines]
     every = np.concatenate([*places, *others, *balls, *lines])
     low, span = every.min(axis=0), float(np.ptp(every, axis=0).max()) or 1.0
@@ -47,7 +49,11 @@ def stills(run: Trajectory, times: Sequence[float]) -> str:
     drawn = []
     for j, k in enumerate(samples.tolist()):
         label = f"t = {run.t[k]:.4g}"
-        inner = _world(around, put, scale, height) + _links(around, run.q[k], j, put) + _dots(put(places[j]), min(70.0 / np.sqrt(run.n), 0.4 * (around.length or around.reach or np.inf) * scale))
+        inner = (
+            _world(around, put, scale, height)
+            + _links(around, run.q[k], j, put)
+            + _dots(put(places[j]), min(70.0 / np.sqrt(run.n), 0.4 * (around.length or around.reach or np.inf) * scale))
+        )
         for kind, marks in (("star", around.stars), ("cross", around.crosses)):
             if marks is not None and marks[j].size:
                 inner += "".join(_mark(kind, *at) for at in put(_flat(marks[j])).tolist())
@@ -89,7 +95,9 @@ def _links(around: World, q: FloatArray, j: int, put: Any) -> str:
     ends, text = put(_flat(q)), ""
     for kind, name in ((-1, "short"), (1, "long"), (0, "even")):
         a, b = (ends[pairs[kinds == kind, c]] for c in (0, 1))
-        path = "".join(f"M{x:.0f} {y:.0f}L{u:.0f} {v:.0f}" for (x, y), (u, v) in zip(a.tolist(), b.tolist(), strict=True))
+        path = "".join(
+            f"M{x:.0f} {y:.0f}L{u:.0f} {v:.0f}" for (x, y), (u, v) in zip(a.tolist(), b.tolist(), strict=True)
+        )
         text += f'<path class="link {name}" d="{path}"/>' if path else ""
     return text
 

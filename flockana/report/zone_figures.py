@@ -65,7 +65,9 @@ def profile_curves(run: Trajectory) -> tuple[Curve, ...]:
         The run.
     """
     profile = pair_distance_profile(run.q)
-    return tuple(Curve(profile[:, k], name) for k, name in ((-1, "greatest"), (profile.shape[1] // 2, "median"), (0, "least")))
+    return tuple(
+        Curve(profile[:, k], name) for k, name in ((-1, "greatest"), (profile.shape[1] // 2, "median"), (0, "least"))
+    )
 
 
 def _middle(run: Trajectory) -> int:

@@ -25,7 +25,11 @@ def test_with_a_step_they_come_back_to_half_of_it():
 
 
 def test_one_row_none_and_whole_numbers():
-    arrays = {"one": Packed(np.array([[3.0]])), "none": Packed(np.zeros((0, 2))), "pairs": Packed([[0, 1], [7, 2]], 1.0)}
+    arrays = {
+        "one": Packed(np.array([[3.0]])),
+        "none": Packed(np.zeros((0, 2))),
+        "pairs": Packed([[0, 1], [7, 2]], 1.0),
+    }
     back = decode(encode({}, arrays))[1]
     assert (back["one"].tolist(), back["none"].shape, back["pairs"].tolist()) == ([[3.0]], (0, 2), [[0, 1], [7, 2]])
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from flockana.dynamics.simulate import simulate
-from flockana.environment.obstacles import Sphere, Wall
 from flockana.environment.capsule import Capsule
+from flockana.environment.obstacles import Sphere, Wall
 from flockana.environment.targets import LinearTarget
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.minimal import MinimalFlocking
@@ -58,7 +58,13 @@ def test_links_that_are_no_matter_of_range_are_told_by_frame():
 
 def test_a_large_run_is_thinned_and_stays_under_a_megabyte():
     rng = np.random.default_rng(0)
-    run = simulate(Algorithm1(), rng.normal(0.0, 60.0, (150, 2)), rng.normal(0.0, 1.0, (150, 2)), (0.0, 4.0), t_eval=np.linspace(0.0, 4.0, 900))
+    run = simulate(
+        Algorithm1(),
+        rng.normal(0.0, 60.0, (150, 2)),
+        rng.normal(0.0, 1.0, (150, 2)),
+        (0.0, 4.0),
+        t_eval=np.linspace(0.0, 4.0, 900),
+    )
     data = scene(run)
     assert len(data) < 1_000_000
     t = decode(data)[1]["t"]
@@ -74,7 +80,13 @@ def test_kept_samples_begin_and_end_as_the_run():
 @pytest.mark.parametrize("name", ["zone-52", "dead-zone-leaders", "headings-meet", "head-on"])
 def test_laws_with_a_world_of_their_own(name):
     item = scenario(name)
-    run = simulate(item.law, item.q0, item.p0, (item.t_span[0], item.t_span[0] + 2.0), **{k: v for k, v in item.options.items() if k == "dt"})
+    run = simulate(
+        item.law,
+        item.q0,
+        item.p0,
+        (item.t_span[0], item.t_span[0] + 2.0),
+        **{k: v for k, v in item.options.items() if k == "dt"},
+    )
     header, arrays = decode(scene(run, exact=False))
     assert arrays["q"].shape[1:] == (run.n, run.m)
     assert len(header["series"]) >= 3

@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import base64
 import json
-import re
 from dataclasses import replace
 from html.parser import HTMLParser
 
@@ -158,7 +157,10 @@ def test_instants_of_source_and_witnesses_are_marked_once_each(result):
     verdict = Verdict("os-1", (), (seen, late), Tolerances(), "pair")
     marked = replace(result, scenario=replace(result.scenario, instants=(0.2, 0.5)), verdicts=(verdict,))
     header, _ = decode(base64.b64decode(page(marked).play))
-    assert header["marks"] == [{"t": 0.2, "label": "as in the source"}, {"t": 0.5, "label": "as in the source, os-1 iii"}]
+    assert header["marks"] == [
+        {"t": 0.2, "label": "as in the source"},
+        {"t": 0.5, "label": "as in the source, os-1 iii"},
+    ]
 
 
 def test_no_two_places_of_the_whole_catalogue_have_one_id():

@@ -32,7 +32,8 @@ ROW = {
 
 @pytest.fixture
 def pages(monkeypatch):
-    monkeypatch.setattr(stability, "flock_pictures", tuple)
+    monkeypatch.setattr(stability, "_flocks", list)
+    monkeypatch.setattr(stability, "control_pictures", tuple)
     sizes = np.geomspace(1e-3, 0.1, 5)
     one = {
         "exponent": 1.998,

@@ -9,8 +9,8 @@ import numpy as np
 from flockana.dynamics.simulate import simulate
 from flockana.environment.obstacles import Sphere, Wall
 from flockana.environment.targets import StaticTarget
-from flockana.laws.olfati_saber import Algorithm1
 from flockana.laws.algorithm3 import Algorithm3
+from flockana.laws.olfati_saber import Algorithm1
 from flockana.report.stills import stills
 
 
@@ -24,7 +24,9 @@ def test_links_have_the_colour_of_their_strain():
 
 
 def test_obstacles_and_target_are_drawn():
-    law = Algorithm3(target=StaticTarget((5.0, 0.0)), obstacles=(Sphere((20.0, 0.0), 4.0), Wall((0.0, -9.0), (0.0, 1.0))))
+    law = Algorithm3(
+        target=StaticTarget((5.0, 0.0)), obstacles=(Sphere((20.0, 0.0), 4.0), Wall((0.0, -9.0), (0.0, 1.0)))
+    )
     q = np.array([[0.0, 0.0], [7.0, 0.0]])
     text = stills(simulate(law, q, 0.0 * q, (0.0, 0.1)), [0.0, 0.1])
     assert text.count("<circle") == text.count('class="target"') == text.count("<svg") == 2
