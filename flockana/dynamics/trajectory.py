@@ -375,7 +375,7 @@ class Trajectory:
         return import_module(PLOTS).Film(self, seconds, fps, velocities, ranges)
 
     def player(self, *, height: int = 760) -> Any:
-        """The run in a player: a notebook shows it moving, and so does its export as HTML; ``.save(path)`` writes a page.
+        """The run in a player: a notebook shows it, and so does its export as HTML; ``.save(path)`` writes a page.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Write the report: one HTML page that needs no network, and plays only by JavaScript; the verdicts as JSON beside it."""
+"""Write the report: one HTML page that needs no network (JavaScript only to play), and the verdicts as JSON."""
 
 from __future__ import annotations
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
+from itertools import pairwise
 from math import ceil, floor, log10
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -66,10 +68,10 @@ class Chart:
         t0, t1 = float(self.t[0]), float(self.t[-1])
         width, height = _WIDTH - _LEFT - _RIGHT, _HEIGHT - _TOP - _BELOW
 
-        def x(time: FloatArray | float) -> FloatArray | float:
+        def x(time: Any) -> Any:
             return _LEFT + width * (time - t0) / ((t1 - t0) or 1.0)
 
-        def y(value: FloatArray | float) -> FloatArray | float:
+        def y(value: Any) -> Any:
             return _TOP + height * (1.0 - (value - low) / (high - low))
 
         parts = []
@@ -120,7 +122,7 @@ def _kept(values: FloatArray) -> npt.NDArray[np.intp]:
         return np.arange(samples)
     edges = np.linspace(0, samples, _SPANS + 1).astype(int)
     found = {0, samples - 1}
-    for first, last in zip(edges[:-1], edges[1:], strict=True):
+    for first, last in pairwise(edges.tolist()):
         part = np.nan_to_num(values[first:last])
         found |= {int(first + part.argmin()), int(first + part.argmax())}
     return np.array(sorted(found))

@@ -68,7 +68,7 @@ def control_pictures() -> tuple[Picture, ...]:
     )
     return (
         Picture(
-            f"Step response of the centre of mass (Algorithm 2, c1γ = {gains.c1_gamma:.4g}, c2γ = {gains.c2_gamma:.4g}: "
+            f"Step response of the centre of mass (c1γ = {gains.c1_gamma:.4g}, c2γ = {gains.c2_gamma:.4g}: "
             f"ω_n = {centre.natural_frequency:.4g}, ζ = {centre.damping_ratio:.4g}).",
             panels([step]),
         ),

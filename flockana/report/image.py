@@ -70,7 +70,7 @@ def _placed(draw: Callable[[Figure], None], size: tuple[float, float], dpi: floa
 
 
 def _page_s_own(text: str) -> str:
-    """matplotlib's SVG as part of a page: no prologue, ids of its own, colours by name, three digits after the point."""
+    """matplotlib's SVG as part of a page: no prologue, ids of its own, colours by name, fewer digits."""
     text = text[text.index("<svg") :]
     text = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->|<style.*?</style>", "", text, flags=re.DOTALL)
     box = re.search(r'viewBox="[^"]*"', text)

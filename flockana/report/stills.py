@@ -130,4 +130,5 @@ def _mark(kind: str, x: float, y: float) -> str:
         return f'<path class="alien" d="M{x - 6:.0f} {y - 6:.0f}l12 12m0-12l-12 12"/>'
     turns = np.pi * np.arange(10) / 5.0 - np.pi / 2.0
     radii = np.where(np.arange(10) % 2, 4.0, 10.0)
-    return f'<polygon class="target" points="{_points(np.column_stack([x + radii * np.cos(turns), y + radii * np.sin(turns)]).tolist())}"/>'
+    corners = np.column_stack([x + radii * np.cos(turns), y + radii * np.sin(turns)])
+    return f'<polygon class="target" points="{_points(corners.tolist())}"/>'
