@@ -61,8 +61,7 @@ def _captures(run: Trajectory, instants: Sequence[float]) -> Picture:
     return Picture(f"{shown}: the sample nearest to each. {_WORDS}", stills(run, instants))
 
 
-_WORDS = "Links are blue where they are shorter than desired, orange where longer, by more than a tenth; a star is a "
-    "γ-agent."
+_WORDS = "Links shorter than desired by more than a tenth are blue, longer ones orange; a star is a γ-agent."
 
 
 def flock_pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
@@ -79,15 +78,15 @@ def flock_pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
         ),
         Picture(
             "The energy H of the law (of Algorithm 2: in the frame of the centre of mass), the residual of its "
-            "balance, which is the numerical error of this run; least distance of two agents, with a lower bound that holds "
-            "between the samples too; speeds; control effort, the greatest and the mean ‖u‖ of an agent.",
+            "balance, which is the numerical error of this run; least distance of two agents, with a lower bound that "
+            "holds between the samples too; speeds; control effort, the greatest and the mean ‖u‖ of an agent.",
             panels([*_energy(run), _distances(run), speeds(run), effort(run)]),
         ),
     ]
     if blocked:
         words = (
-            "Least clearance of any agent from an obstacle; the number of components of the net, which is above 1 where "
-            "the flock splits."
+            "Least clearance of any agent from an obstacle; the number of components of the net, which is above 1 "
+            "where the flock splits."
         )
         drawn.append(Picture(words, panels(_clearances(run))))
     return tuple(drawn)
