@@ -48,7 +48,8 @@ def svg(draw: Callable[[Figure], None], size: tuple[float, float]) -> str:
     with plots.style(), mpl.rc_context({"axes.titley": 1.0, "svg.fonttype": "none", "path.simplify_threshold": 0.3}):
         figure = _placed(draw, size, _MEASURED_DPI).figure
         text = StringIO()
-        FigureCanvasSVG(figure).print_svg(text, metadata={"Date": None})
+        canvas: Any = FigureCanvasSVG(figure)
+        canvas.print_svg(text, metadata={"Date": None})
     return _page_s_own(text.getvalue())
 
 
