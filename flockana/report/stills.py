@@ -16,7 +16,7 @@ from flockana.player.scene import World, world
 _SIZE = 400.0
 _TURN, _TILT = 0.6, 0.5  # of a flock in space, as the player first shows it
 _NEAR = 0.1  # of strain, within which a link counts as being of its length
-_MOST = 1500  # links of a still; more of them show nothing
+_MOST = 500  # links of a still: a lattice of 150 has 400, and more of them are one blot
 
 
 def stills(run: Trajectory, times: Sequence[float]) -> str:
