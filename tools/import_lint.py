@@ -30,6 +30,7 @@ STAGES: tuple[tuple[str, ...], ...] = (
     ("scenarios",),
     ("ensemble",),
     ("falsify",),
+    ("player",),
     ("plots",),
     ("report",),
     ("course",),

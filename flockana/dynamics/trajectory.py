@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 _Value = TypeVar("_Value")
 
-PLOTS = "flockana.plots"  # who draws is named, not imported: this room lies below
+PLOTS, PLAYER = "flockana.plots", "flockana.player"  # who draws is named, not imported: this room lies below
 _KINDS = {"extra": "series by name", "stats": "facts by name", "between": "a Between, or None"}
 STATUSES = ("complete", "interrupted", "failed")
 
@@ -374,6 +374,20 @@ class Trajectory:
         flockana.plots.Film
         """
         return import_module(PLOTS).Film(self, seconds, fps, velocities, ranges)
+
+    def player(self, *, height: int = 760) -> Any:
+        """The run in a player: a notebook shows it, and so does its export as HTML; ``.save(path)`` writes a page.
+
+        Parameters
+        ----------
+        height : int
+            Of its frame in a notebook, in pixels.
+
+        Returns
+        -------
+        flockana.player.Player
+        """
+        return import_module(PLAYER).Player(self, height)
 
     def window(self, start: float, end: float) -> Trajectory:
         """The samples with start ≤ t ≤ end, as a run of their own.

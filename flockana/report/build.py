@@ -1,4 +1,4 @@
-"""Write the report: one HTML page that needs neither network nor JavaScript, and the verdicts as JSON beside it."""
+"""Write the report: one HTML page that needs no network (JavaScript only to play), and the verdicts as JSON."""
 
 from __future__ import annotations
 
@@ -11,22 +11,28 @@ from collections.abc import Iterable
 from contextlib import ExitStack
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
+from importlib.resources import files
+from itertools import count
 from pathlib import Path
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
 
 from flockana._version import __version__
 from flockana.base.errors import FileError
 from flockana.base.files import ensure_path, replacing
+from flockana.player.page import script, style
 from flockana.report.comparison import ComparisonSection
 from flockana.report.coverage import coverage
 from flockana.report.coverage.anchors import anchors, verdict_id
+from flockana.report.figures import Picture
+from flockana.report.image import named
 from flockana.report.lattices import lattice_section
 from flockana.report.pages import FixedPage, FixedResult, Page, ScenarioPage, ScenarioResult, page
 from flockana.report.stability import stability_section
 from flockana.report.statistics import StatisticsSection
-from flockana.report.text import MARKS, deciding_claim, show, tolerance_rows
+from flockana.report.text import MARKS, deciding_claim, markup, show, source_name, tolerance_rows
 
 FOLDER, HTML, JSON = Path("report"), "index.html", "verdicts.json"
 UNFINISHED = "unfinished"  # folder within that of a complete report, for one that was broken off
@@ -142,30 +148,63 @@ def _version(name: str) -> str:
         return "unknown"
 
 
+def page_environment() -> Environment:
+    """The templates with the filters that they use; figures are numbered anew, so it serves one page."""
+    environment = Environment(
+        loader=PackageLoader("flockana.report", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True
+    )
+    numbers = count(1)
+
+    def figure(picture: Picture) -> Markup:
+        return Markup(named(picture.source, picture.caption, next(numbers)))
+
+    environment.filters |= {"show": show, "markup": markup, "deciding": deciding_claim, "figure": figure}
+    environment.filters |= {"source_name": source_name}
+    return environment
+
+
 def _html(
     pages: list[Page],
     run: dict[str, Any],
     statistics: StatisticsSection | None,
     comparison: ComparisonSection | None,
 ) -> str:
-    environment = Environment(
-        loader=PackageLoader("flockana.report", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True
-    )
-    environment.filters |= {"show": show, "deciding": deciding_claim}
     findings = [finding for page in pages for finding in page.findings]
     counts: Counter[str] = Counter(finding.verdict.status for finding in findings)
-    return environment.get_template("template.html.j2").render(
-        run=run,
-        scenarios=[page for page in pages if isinstance(page, ScenarioPage)],
-        fixed=[page for page in pages if isinstance(page, FixedPage)],
-        lattices=lattice_section(pages),
-        statistics=statistics,
-        comparison=comparison,
-        stability=stability_section(pages),
-        coverage={"sources": coverage(), "anchors": anchors(pages)} if run["of"] is None else None,
-        verdict_id=verdict_id,
-        counts=[(status, counts[status]) for status in _STATUSES],
-        surprises=[text for page in pages for text in page.surprises],
-        marks=MARKS,
-        tolerances=[tolerance_rows(t) for t in dict.fromkeys(f.verdict.tolerances for f in findings)],
+    return (
+        page_environment()
+        .get_template("template.html.j2")
+        .render(
+            run=run,
+            scenarios=[page for page in pages if isinstance(page, ScenarioPage)],
+            fixed=[page for page in pages if isinstance(page, FixedPage)],
+            lattices=lattice_section(pages),
+            statistics=statistics,
+            comparison=comparison,
+            stability=stability_section(pages),
+            coverage={"sources": coverage(), "anchors": anchors(pages)} if run["of"] is None else None,
+            verdict_id=verdict_id,
+            counts=[(status, counts[status]) for status in _STATUSES],
+            surprises=_surprises(pages),
+            marks=MARKS,
+            sources=sorted({source_name(f.references[0]) for f in findings if f.references}),
+            rigours=sorted({f.verdict.rigour for f in findings}),
+            player_style=Markup(style()),
+            player_script=Markup(script()),
+            report_script=Markup((files("flockana.report") / "report.js").read_text(encoding="utf-8")),
+            report_style=Markup((files("flockana.report") / "report.css").read_text(encoding="utf-8")),
+            tolerances=[tolerance_rows(t) for t in dict.fromkeys(f.verdict.tolerances for f in findings)],
+        )
     )
+
+
+def _surprises(pages: list[Page]) -> list[tuple[str, str]]:
+    """(where in the page, what) of all that differs from the expected."""
+    found = []
+    for each in pages:
+        subject = each.name if isinstance(each, ScenarioPage) else "fixed"
+        if isinstance(each, ScenarioPage) and each.trouble:
+            found.append((each.name, each.trouble))
+        for finding in each.findings:
+            found += [(verdict_id(subject, finding.verdict.theorem), text) for text in finding.surprises]
+    return found

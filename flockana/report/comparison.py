@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from flockana import plots
 from flockana.report.figures import Picture
-from flockana.report.image import png
+from flockana.report.image import svg
 from flockana.scenarios.one_start import UNTIL, Outcome, compare
 from flockana.theorems.theorem import Verdict, unmet
 
@@ -119,10 +119,10 @@ def _pictures(outcomes: Sequence[Outcome]) -> tuple[Picture, ...]:
         Picture(
             f"The same start under each law, until t = {UNTIL:g}, all on one scale: hollow and grey at the start, dots "
             "with their links at the end. Above each the theorem and its verdict.",
-            png(paths, (_SIZE * columns, (_SIZE + 0.3) * rows)),
+            svg(paths, (_SIZE * columns, (_SIZE + 0.3) * rows)),
         ),
         Picture(
             f"Greatest difference of two velocities over that at the start: {names}. Flocking is its fall to 0.",
-            png(together, (8.0, 4.2)),
+            svg(together, (8.0, 4.2)),
         ),
     )

@@ -1,4 +1,4 @@
-"""The figures of one scenario, composed from `flockana.plots` and written as images that a page can hold."""
+"""The figures of one scenario: the flock at some instants and curves over time, as SVG that a page holds."""
 
 from __future__ import annotations
 
@@ -7,27 +7,27 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from matplotlib.figure import Figure
 
-from flockana import plots
+from flockana.base.checks import FloatArray
 from flockana.base.modules import modules
 from flockana.dynamics.trajectory import Trajectory
-from flockana.plots.series import has_metric
+from flockana.plots.series import PANEL, has_metric
 from flockana.plots.snapshot import drawn_law
-from flockana.report.image import png
+from flockana.report.charts import Chart, Curve, panels
+from flockana.report.stills import stills
 from flockana.scenarios.findings import component_counts
 
 
 @dataclass(frozen=True)
 class Picture:
-    """An image with its words.
+    """A figure with its words.
 
     Parameters
     ----------
     caption : str
         What it shows and how to read it.
     source : str
-        A ``data:`` address that holds the image.
+        SVG elements, in HTML, in the page's own colours.
     """
 
     caption: str
@@ -57,76 +57,86 @@ def pictures(trajectory: Trajectory, instants: Sequence[float] = ()) -> tuple[Pi
 
 
 def _captures(run: Trajectory, instants: Sequence[float]) -> Picture:
-    """The flock at so many instants, in rows of three or four."""
-    columns = 3 if len(instants) <= 6 else 4
-    rows = -(-len(instants) // columns)
-
-    def draw(figure: Figure) -> None:
-        for k, time in enumerate(instants):
-            ax = figure.add_subplot(rows, columns, k + 1, projection="3d" if run.m == 3 else None)
-            plots.snapshot(run, time, ax=ax, bar=(k + 1) % columns == 0)
-
     shown = f"As many instants as the source shows, {len(instants)}"
-    caption = f"{shown}: the sample nearest to each, drawn as in the next figure."
-    return Picture(caption, png(draw, (13.0, rows * (13.0 / columns))))
+    return Picture(f"{shown}: the sample nearest to each. {_WORDS}", stills(run, instants))
+
+
+_WORDS = "Links shorter than desired by more than a tenth are blue, longer ones orange; a star is a γ-agent."
 
 
 def flock_pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
-    """Draw snapshots, paths, C R Ẽ K̃, energy with its balance, distances and speeds; among obstacles, clearance."""
-    law = drawn_law(trajectory)
-    linked = law.pair is not None or has_metric(trajectory, "edge_error")
-    blocked = bool(law.obstacles)
-    drawn = (
-        Picture(
-            (
-                "Start, middle (of a flock that splits: where it is most split) and end. "
-                if blocked
-                else "Start, middle and end. "
-            )
-            + ("Links join agents that interact, coloured by strain (length − d)/d. " if linked else "")
-            + ("Dotted lines lead to β-agents, the closest points of obstacles within r'. " if blocked else "")
-            + "Arrows are velocities, scaled anew in each panel; a star is the γ-agent.",
-            _png(_snapshots, trajectory, (13.0, 4.3)),
-        ),
-        Picture(
-            "Paths of all agents; the centre of mass (solid, from circle to dot) against the γ-agent (dashed, ending "
-            "in a star), where there is one, in space and over time.",
-            _png(_motion, trajectory, (13.0, 4.0)),
-        ),
+    """Draw the flock at its start, middle and end; its measures; energy, distances, speeds and control effort."""
+    run, times = trajectory, trajectory.t[[0, middle_sample(trajectory), -1]].tolist()
+    blocked = bool(drawn_law(run).obstacles)
+    middle = "middle (of a flock that splits: where it is most split)" if blocked else "middle"
+    drawn = [
+        Picture(f"Start, {middle} and end. {_WORDS}", stills(run, times)),
         Picture(
             "C = 1 exactly when the net is connected; R is the largest distance from the centre of mass; Ẽ is zero "
             "when every link has length d; K̃ is zero when all velocities agree.",
-            _png(_measures, trajectory, (13.0, 2.9)),
+            panels([measured(run, name) for name in PANEL if has_metric(run, name)]),
         ),
         Picture(
-            "The energy H of the law (of Algorithm 2: in the frame of the centre of mass), and the residual of its "
-            "balance, which is the numerical error of this run.",
-            _png(_energy, trajectory, (13.0, 2.9)),
+            "The energy H of the law (of Algorithm 2: in the frame of the centre of mass), the residual of its "
+            "balance, which is the numerical error of this run; least distance of two agents, with a lower bound that "
+            "holds between the samples too; speeds; control effort, the greatest and the mean ‖u‖ of an agent.",
+            panels([*_energy(run), _distances(run), speeds(run), effort(run)]),
         ),
-        Picture(
-            "Least distance between two agents, with a lower bound that holds between the samples too; speeds of all "
-            "agents.",
-            _png(_distances, trajectory, (13.0, 2.9)),
-        ),
-    )
-    if not blocked:
-        return drawn
-    caption = (
-        "Least clearance of any agent from each obstacle, with a lower bound that holds between the samples too, and "
-        "d', where repulsion begins; the number of components of the net, which leaves 1 where the flock splits."
-    )
-    return (*drawn, Picture(caption, _png(_clearance, trajectory, (13.0, 2.9))))
+    ]
+    if blocked:
+        words = (
+            "Least clearance of any agent from an obstacle; the number of components of the net, which is above 1 "
+            "where the flock splits."
+        )
+        drawn.append(Picture(words, panels(_clearances(run))))
+    return tuple(drawn)
 
 
-def _png(draw: Callable[[Figure, Trajectory], None], run: Trajectory, size: tuple[float, float]) -> str:
-    return png(lambda figure: draw(figure, run), size)
+def measured(run: Trajectory, name: str) -> Chart:
+    """One of a run's metrics over time.
+
+    Parameters
+    ----------
+    run : Trajectory
+        The run.
+    name : str
+        Of the metric.
+    """
+    it = run.measure(name)
+    return Chart(it.label, run.t, (Curve(run.metric(name)),), bool(it.logarithmic))
 
 
-def _snapshots(figure: Figure, run: Trajectory) -> None:
-    times = run.t[[0, middle_sample(run), -1]]
-    for k, time in enumerate(times.tolist()):
-        ax = figure.add_subplot(1, 3, k + 1, projection="3d" if run.m == 3 else None)
-        plots.snapshot(run, time, ax=ax, bar=k == 2)
+def speeds(run: Trajectory, levels: Sequence[tuple[float, str]] = ()) -> Chart:
+    """Greatest, mean and least speed of an agent over time.
+
+    Parameters
+    ----------
+    run : Trajectory
+        The run.
+    levels : sequence of (float, str)
+        Bounds, with their names.
+    """
+    return _spread("speeds (length/time)", run.t, np.linalg.norm(run.p, axis=2), levels)
+
+
+def effort(run: Trajectory, levels: Sequence[tuple[float, str]] = ()) -> Chart:
+    """Greatest and mean control effort ‖u‖ of an agent over time.
+
+    Parameters
+    ----------
+    run : Trajectory
+        The run.
+    levels : sequence of (float, str)
+        Bounds, with their names.
+    """
+    size = np.linalg.norm(run.u, axis=2)
+    curves = Curve(size.max(axis=1), "greatest"), Curve(size.mean(axis=1), "mean")
+    return Chart("control effort ‖u‖ (length/time²)", run.t, curves, levels=levels)
+
+
+def _spread(words: str, t: FloatArray, values: FloatArray, levels: Sequence[tuple[float, str]]) -> Chart:
+    of = (("greatest", values.max(axis=1)), ("mean", values.mean(axis=1)), ("least", values.min(axis=1)))
+    return Chart(words, t, tuple(Curve(series, name) for name, series in of), levels=levels)
 
 
 def middle_sample(run: Trajectory) -> int:
@@ -139,30 +149,28 @@ def middle_sample(run: Trajectory) -> int:
     return int(np.searchsorted(run.t, 0.5 * (run.t[0] + run.t[-1])))
 
 
-def _motion(figure: Figure, run: Trajectory) -> None:
-    projection = "3d" if run.m == 3 else None
-    plots.trajectories(run, ax=figure.add_subplot(1, 3, 1, projection=projection))
-    plots.centre_path(run, ax=figure.add_subplot(1, 3, 2, projection=projection))
-    plots.centre_of_mass(run, ax=figure.add_subplot(1, 3, 3))
+def _energy(run: Trajectory) -> list[Chart]:
+    energy = run.energy()
+    if not np.isfinite(energy).any():
+        return []
+    charts = [Chart("energy H", run.t, (Curve(energy),))]
+    if "work" in run.extra:
+        charts.append(Chart("residual of the energy balance", run.t, (Curve(run.energy_residual),)))
+    return charts
 
 
-def _measures(figure: Figure, run: Trajectory) -> None:
-    plots.panel(run, axes=figure.subplots(1, 4))
+def _distances(run: Trajectory) -> Chart:
+    curves = [Curve(run.metric("min_distance"), "at the samples")] if has_metric(run, "min_distance") else []
+    bound = np.full(len(run.t), run.min_distance())
+    return Chart("least distance (length)", run.t, (*curves, Curve(bound, "bound for all times")))
 
 
-def _energy(figure: Figure, run: Trajectory) -> None:
-    left, right = figure.subplots(1, 2)
-    plots.energy(run, ax=left)
-    plots.energy_residual(run, ax=right)
-
-
-def _distances(figure: Figure, run: Trajectory) -> None:
-    left, right = figure.subplots(1, 2)
-    plots.distances(run, ax=left)
-    plots.speeds(run, ax=right)
-
-
-def _clearance(figure: Figure, run: Trajectory) -> None:
-    left, right = figure.subplots(1, 2)
-    plots.clearances(run, ax=left)
-    plots.components(run, ax=right)
+def _clearances(run: Trajectory) -> list[Chart]:
+    law = drawn_law(run)
+    flat = run.q.reshape(-1, run.m)
+    apart = [solid.clearance(flat).reshape(run.q.shape[:2]).min(axis=1) for solid in law.obstacles]
+    levels = [(run.clearance().lower, "lower bound for all times")]
+    if law.obstacle_field is not None:
+        levels.append((float(law.obstacle_field.beta.d), "d'"))
+    clear = Chart("least clearance (length)", run.t, (Curve(np.min(apart, axis=0)),), levels=levels)
+    return [clear, Chart("components of the net", run.t, (Curve(component_counts(run).astype(float)),))]

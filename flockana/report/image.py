@@ -1,86 +1,101 @@
-"""A figure as an image that a page can hold: drawn once, in 256 colours."""
+"""A drawn figure as SVG in the page's own colours, with texts that can be searched."""
 
 from __future__ import annotations
 
-import base64
+import re
 from collections.abc import Callable
-from io import BytesIO
+from html import escape
+from io import StringIO
 from typing import Any
 
 import matplotlib as mpl
-import numpy as np
-import numpy.typing as npt
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
-from PIL import Image
 
 from flockana import plots
 from flockana.plots.scales import plain_scales
 from flockana.report.layout import place_axes
 
-_DPI = 125
-_COMMON = 64  # colours that are kept as they are
-_CELLS, _WHITE = 1 << 18, 0xFFFFFFFF
-_LEVEL = 6  # of compression: 9 takes six times as long and saves a tenth
+_MEASURED_DPI = 72  # that of SVG: texts are as long where they are measured as where they are drawn
+_COLOURS = {
+    "#222222": "--ink",
+    "#000000": "--ink",
+    "#6b6b6b": "--muted",
+    "#cccccc": "--line",
+    "#d9d9d9": "--faint",
+    "#ececec": "--faint",
+    "#ffffff": "--paper",
+    "#0072b2": "--blue",
+    "#e69f00": "--orange",
+    "#009e73": "--green",
+    "#d55e00": "--vermillion",
+    "#cc79a7": "--purple",
+}  # of plots.style, by what the page calls them
+IDS = "FIGURE-"  # begins every id of a figure; the page puts a number in its place
 
 
-def png(draw: Callable[[Figure], None], size: tuple[float, float]) -> str:
-    """A figure in flockana's look, as a ``data:`` address."""
-    buffer = BytesIO()
-    reduced(np.asarray(drawn(draw, size).buffer_rgba())).save(buffer, "png", compress_level=_LEVEL)
-    return "data:image/png;base64," + base64.b64encode(buffer.getvalue()).decode("ascii")
+def svg(draw: Callable[[Figure], None], size: tuple[float, float]) -> str:
+    """A figure in flockana's look as an ``<svg>`` element.
+
+    Parameters
+    ----------
+    draw : callable
+        Takes the figure.
+    size : (float, float)
+        Width and height in inches.
+    """
+    with plots.style(), mpl.rc_context({"axes.titley": 1.0, "svg.fonttype": "none", "path.simplify_threshold": 0.3}):
+        figure = _placed(draw, size, _MEASURED_DPI).figure
+        text = StringIO()
+        canvas: Any = FigureCanvasSVG(figure)
+        canvas.print_svg(text, metadata={"Date": None})
+    return _page_s_own(text.getvalue())
 
 
-def drawn(draw: Callable[[Figure], None], size: tuple[float, float], *, dpi: float = _DPI) -> Any:
+def drawn(draw: Callable[[Figure], None], size: tuple[float, float], *, dpi: float = 125) -> Any:
     """The canvas of a figure in flockana's look, of a size in inches, drawn."""
     with plots.style(), mpl.rc_context({"axes.titley": 1.0}):  # else matplotlib asks all axes where it may stand
-        figure = Figure(figsize=size, dpi=dpi)  # not pyplot's: nothing to close, safe in any process
-        figure.set_layout_engine("none")
-        canvas: Any = FigureCanvasAgg(figure)
-        draw(figure)
-        place_axes(figure, canvas.get_renderer(), plain_scales(figure))
+        canvas = _placed(draw, size, dpi)
         canvas.draw()
     return canvas
 
 
-def reduced(pixels: npt.NDArray[np.uint8]) -> Image.Image:
-    """An image with a palette, which makes drawings three times smaller, and no eye can tell.
+def _placed(draw: Callable[[Figure], None], size: tuple[float, float], dpi: float) -> Any:
+    figure = Figure(figsize=size, dpi=dpi)  # not pyplot's: nothing to close, safe in any process
+    figure.set_layout_engine("none")
+    canvas: Any = FigureCanvasAgg(figure)
+    draw(figure)
+    place_axes(figure, canvas.get_renderer(), plain_scales(figure))
+    return canvas
 
-    Colours that agree in their six leading bits are one. The commonest, of paper, panes and grids, are kept; of the
-    others so many are chosen as cover all.
+
+def _page_s_own(text: str) -> str:
+    """matplotlib's SVG as part of a page: no prologue, ids of its own, colours by name, fewer digits."""
+    text = text[text.index("<svg") :]
+    text = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->|<style.*?</style>", "", text, flags=re.DOTALL)
+    box = re.search(r'viewBox="[^"]*"', text)
+    text = re.sub(r"<svg[^>]*>", f'<svg {box.group(0) if box else ""} class="drawn">', text, count=1)
+    used = set(re.findall(r'(?:href="#|url\(#)([^")]+)', text))
+    text = re.sub(r' id="([^"]*)"', lambda m: f' id="{IDS}{m[1]}"' if m[1] in used else "", text)
+    text = re.sub(r'(href="#|url\(#)', rf"\g<1>{IDS}", text).replace("xlink:href", "href")
+    text = re.sub(r"#[0-9a-f]{6}\b", lambda m: f"var({_COLOURS[m[0]]})" if m[0] in _COLOURS else m[0], text)
+    text = re.sub(r"font: ([^;\"]*?)(\d+(?:\.\d+)?)px [^;\"]*", r"font: \1\2px system-ui, sans-serif", text)
+    text = re.sub(r"(\d+\.\d\d)\d+", r"\1", text)
+    return re.sub(r"\s*\n\s*", " ", text)
+
+
+def named(source: str, caption: str, number: int) -> str:
+    """A figure as the page holds it: with ids that no other has, and what it shows for who cannot see it.
 
     Parameters
     ----------
-    pixels : uint8 array, shape (height, width, 4)
-        Red, green, blue, and an opacity that is not looked at.
-
-    Examples
-    --------
-    >>> image = reduced(np.full((2, 3, 4), 255, dtype=np.uint8))
-    >>> image.size, image.convert("RGB").getpixel((0, 0))
-    ((3, 2), (255, 255, 255))
+    source : str
+        What `svg` gave, or other SVG.
+    caption : str
+        What it shows.
+    number : int
+        Of the figure in its page.
     """
-    colours = np.ascontiguousarray(pixels).view("<u4")[:, :, 0]
-    cells = (colours >> 2) & 0x3F | (colours >> 4) & 0xFC0 | (colours >> 6) & 0x3F000
-    counts, seen = np.bincount(cells.ravel(), minlength=_CELLS), np.zeros(_CELLS, dtype="<u4")
-    seen[cells] = colours  # one of each cell stands for it
-    seen[-1] = _WHITE
-    used = np.flatnonzero(counts)
-    used = used[np.argsort(-counts[used], kind="stable")]
-    common, rest = used[:_COMMON], used[_COMMON:]
-    palette, index = _colours(seen[common]), np.zeros(_CELLS, dtype=np.uint8)
-    index[common] = np.arange(common.size)
-    if rest.size:
-        covering = Image.fromarray(_colours(seen[rest])[None]).quantize(
-            256 - _COMMON, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE
-        )
-        index[rest] = common.size + np.asarray(covering).ravel()
-        palette = np.concatenate([palette, np.array(covering.getpalette(), dtype=np.uint8).reshape(-1, 3)])
-    image = Image.fromarray(index[cells], mode="P")
-    image.putpalette(palette.tobytes())
-    return image
-
-
-def _colours(packed: npt.NDArray[np.uint32]) -> npt.NDArray[np.uint8]:
-    """Red, green and blue of packed colours, shape (N, 3)."""
-    return np.ascontiguousarray(packed).view(np.uint8).reshape(-1, 4)[:, :3]
+    label = escape(caption, quote=True)
+    return source.replace(IDS, f"f{number}-").replace('class="drawn"', f'class="drawn" role="img" aria-label="{label}"')

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from flockana import plots
 from flockana.lattice import harborth, hexagonal_spiral, links
 from flockana.report.figures import Picture
-from flockana.report.image import png
+from flockana.report.image import svg
 from flockana.report.pages import Page
 from flockana.theorems import Verdict
 
@@ -106,7 +106,7 @@ def _collapse(verdicts: Sequence[Verdict]) -> Picture | None:
         "Algorithm 2 on hexagonal patches (E11): up to the lower mark all agents stay apart, from the upper on some "
         "coincide for good. The larger the flock, the smaller the ratio of the gains that it bears."
     )
-    return Picture(text, png(draw, (6.5, 3.4)))
+    return Picture(text, svg(draw, (6.5, 3.4)))
 
 
 def _barrier(verdicts: Sequence[Verdict]) -> Picture | None:
@@ -123,4 +123,4 @@ def _barrier(verdicts: Sequence[Verdict]) -> Picture | None:
         "The barrier against collisions (E4), found numerically: V < c* excludes them, but the least V of all rises "
         "with n until no state is left below c*; the barrier, V where two agents meet less the least V, stays near c*."
     )
-    return Picture(text, png(draw, (6.5, 3.4)))
+    return Picture(text, svg(draw, (6.5, 3.4)))

@@ -15,7 +15,7 @@ def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
     """Draw what is drawn of any flock; its snapshots show who follows whom."""
     first, *others = flock_pictures(trajectory)
     caption = (
-        "Start, middle and end. Stars are the leaders, agents have the colour of theirs, the pinned are ringed; links "
-        "join agents within 1.1 d1, in contact or nearly. Arrows are velocities, scaled anew in each panel."
+        "Start, middle and end. Stars are the leaders; links join agents within 1.1 d1, in contact or nearly. The "
+        "player gives each agent the colour of its leader."
     )
     return (replace(first, caption=caption), *others)

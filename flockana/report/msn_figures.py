@@ -2,29 +2,34 @@
 
 from __future__ import annotations
 
-from matplotlib.figure import Figure
+import numpy as np
 
-from flockana import plots
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.msn import MSNDiscretisation
+from flockana.measures.nets import links, printed_rank_connectivity
+from flockana.report.charts import Chart, Curve, panels
 from flockana.report.figures import Picture, flock_pictures
-from flockana.report.image import png
 
 LAWS = (MSNDiscretisation,)
+_SAMPLES = 271  # every other of the project's 540 iterations
 
 
 def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
     """Draw what is drawn of any flock, and rank(A)/n over time."""
-
-    def draw(figure: Figure) -> None:
-        plots.rank_connectivity(trajectory, ax=figure.subplots())
-
+    run = trajectory
+    shown = np.unique(np.linspace(0, len(run.t) - 1, min(len(run.t), _SAMPLES)).round().astype(int))
+    nets = [links(run.q[k], run.law.pair.range) for k in shown]
+    curves = [
+        Curve(np.array([printed_rank_connectivity(run.n, net, typeset=typeset) for net in nets]), name)
+        for typeset, name in ((False, "rank(A)/n"), (True, "rank(A)/n as typeset"))
+    ]
+    curves.append(Curve(run.metric("connectivity")[shown], "C = rank(L)/(n − 1)"))
     return (
-        *flock_pictures(trajectory),
+        *flock_pictures(run),
         Picture(
             "The project's connectivity rank(A)/n of the adjacency matrix, with a zero diagonal and as its code is "
             "typeset (a unit diagonal but for the last agent), beside C = rank(L)/(n − 1), which is 1 exactly when the "
             "net is connected (erratum E8).",
-            png(draw, (13.0, 3.2)),
+            panels([Chart("connectivity, three ways", run.t[shown], curves)]),
         ),
     )

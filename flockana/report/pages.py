@@ -7,12 +7,16 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from flockana.dynamics.trajectory import Trajectory
+from flockana.player.page import text_of
+from flockana.player.scene import scene
 from flockana.report.figures import Picture, pictures
 from flockana.report.text import parameters
 from flockana.scenarios import Scenario
 from flockana.scenarios.scenario import SOURCE, differences
 from flockana.theorems import Theorem, Verdict, theorem
 from flockana.theorems.theorem import Status
+
+_VALUES = 24_000  # numbers of places and velocities of a run in the page: all runs together take 2 MB of it
 
 
 @dataclass(frozen=True)
@@ -64,6 +68,8 @@ class Finding:
         Expected status by theorem id and by ``"id:claim"``; empty if nothing is.
     surprises : tuple of str
         What differs from the expected, one line each.
+    references : tuple of str
+        Keys of the bibliography.
     """
 
     verdict: Verdict
@@ -72,6 +78,7 @@ class Finding:
     source: str
     expected: Mapping[str, Status] = field(default_factory=dict)
     surprises: tuple[str, ...] = ()
+    references: tuple[str, ...] = ()
 
     @property
     def as_expected(self) -> bool | None:
@@ -104,6 +111,10 @@ class ScenarioPage:
         Its figures; empty if none were drawn.
     trouble : str
         Why the run ended early; empty if it did not.
+    references : tuple of str
+        Keys of the bibliography.
+    play : str
+        The run for the player, as text (`flockana.player`); empty if there are no figures.
     """
 
     name: str
@@ -113,6 +124,8 @@ class ScenarioPage:
     findings: tuple[Finding, ...]
     pictures: tuple[Picture, ...] = ()
     trouble: str = ""
+    references: tuple[str, ...] = ()
+    play: str = ""
 
     @property
     def surprises(self) -> tuple[str, ...]:
@@ -166,7 +179,21 @@ def page(result: ScenarioResult | FixedResult, *, figures: bool = True) -> Page:
         tuple(_scenario_finding(scenario, verdict) for verdict in result.verdicts),
         pictures(run, scenario.instants) if figures else (),
         trouble,
+        tuple(scenario.references),
+        _play(scenario, run, result.verdicts) if figures else "",
     )
+
+
+def _play(scenario: Scenario, run: Trajectory, verdicts: tuple[Verdict, ...]) -> str:
+    """The run for the player, with the source's instants and those that the verdicts' claims point to."""
+    marks: dict[float, list[str]] = {float(time): ["as in the source"] for time in scenario.instants}
+    for verdict in verdicts:
+        for claim in verdict.claims:
+            time = claim.witness.get("time") if isinstance(claim.witness, Mapping) else None
+            if isinstance(time, float | int) and run.t[0] <= time <= run.t[-1]:
+                marks.setdefault(float(time), []).append(f"{verdict.theorem} {claim.name}")
+    named = [(time, ", ".join(names)) for time, names in sorted(marks.items())]
+    return text_of(scene(run, values=_VALUES, exact=False, title=f"{scenario.name}: {scenario.title}", marks=named))
 
 
 def _scenario_finding(scenario: Scenario, verdict: Verdict) -> Finding:
@@ -175,12 +202,19 @@ def _scenario_finding(scenario: Scenario, verdict: Verdict) -> Finding:
         return _finding(verdict, theorem(verdict.theorem), expected)
     reports = " ".join(f"{report.name}: {report.text.rstrip('.')}." for report in scenario.reports)
     return Finding(
-        verdict, "What the source reports", reports, scenario.source, expected, differences(verdict, expected)
+        verdict,
+        "What the source reports",
+        reports,
+        scenario.source,
+        expected,
+        differences(verdict, expected),
+        scenario.references,
     )
 
 
 def _finding(verdict: Verdict, item: Theorem, expected: Mapping[str, Status]) -> Finding:
-    return Finding(verdict, item.title, item.statement, item.source, dict(expected), differences(verdict, expected))
+    surprises = differences(verdict, expected)
+    return Finding(verdict, item.title, item.statement, item.source, dict(expected), surprises, item.references)
 
 
 def _facts(scenario: Scenario, run: Trajectory) -> tuple[tuple[str, str], ...]:

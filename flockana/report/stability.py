@@ -15,8 +15,9 @@ from flockana.environment.targets import CircleTarget, SineTarget, StaticTarget
 from flockana.equilibria import find_equilibrium
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.report.control import Download, control_pictures, state_space
 from flockana.report.figures import Picture
-from flockana.report.image import png
+from flockana.report.image import svg
 from flockana.report.pages import Page
 from flockana.scenarios import scenario, scenarios
 from flockana.stability import Linearisation, linearise
@@ -75,12 +76,18 @@ class StabilitySection:
         Linear range and Bode plot, where their verdicts are at hand.
     margins : tuple of str
         Findings on delays and gains.
+    control : tuple of Picture
+        Step response, root locus and norms.
+    downloads : tuple of Download
+        State spaces.
     """
 
     flocks: tuple[Picture, ...]
     rows: tuple[Row, ...]
     pictures: tuple[Picture, ...]
     margins: tuple[str, ...]
+    control: tuple[Picture, ...] = ()
+    downloads: tuple[Download, ...] = ()
 
 
 def stability_section(pages: Iterable[Page]) -> StabilitySection | None:
@@ -94,11 +101,16 @@ def stability_section(pages: Iterable[Page]) -> StabilitySection | None:
     margin_texts = [claim.detail for v in margins for claim in v.claims]
     if any(v.theorem == "heterogeneous-gains" for v in margins):
         margin_texts.append(_LONGER)
+    flocks = _flocks()
     return StabilitySection(
-        flock_pictures(),
+        flock_pictures(flocks),
         tuple(row for name, v in decays for row in _rows(name, v)),
         tuple(picture for picture in pictures if picture is not None),
         tuple(margin_texts),
+        control_pictures(),
+        tuple(
+            state_space(flock, f"{name}.json".lower().replace(" ", "-"), f"19 agents, {name}") for name, flock in flocks
+        ),
     )
 
 
@@ -125,19 +137,29 @@ def _rows(name: str, verdict: Verdict) -> list[Row]:
     ]
 
 
-def flock_pictures() -> tuple[Picture, ...]:
-    """Poles and the three slowest modes of the shape of 19 agents, under both algorithms."""
+def _flocks() -> list[tuple[str, Linearisation]]:
+    """A hexagon of 19 agents under both algorithms, linearised."""
+    laws = Algorithm1(), Algorithm2(target=StaticTarget((0.0, 0.0)))
+    return [
+        (
+            f"Algorithm {type(law).__name__[-1]}",
+            linearise(law, find_equilibrium(law, hexagonal_patch(2, law.alpha.length))),
+        )
+        for law in laws
+    ]
+
+
+def flock_pictures(flocks: Iterable[tuple[str, Linearisation]]) -> tuple[Picture, ...]:
+    """Poles and the three slowest modes of the shape of linearised flocks, given by the names of their laws."""
     pictures = []
-    for law in (Algorithm1(), Algorithm2(target=StaticTarget((0.0, 0.0)))):
-        flock = linearise(law, find_equilibrium(law, hexagonal_patch(2, law.alpha.length)))
-        kind = f"Algorithm {type(law).__name__[-1]}"
+    for kind, flock in flocks:
         zero = ", ".join(mode.name for mode in flock.zero_modes)
         text = (
             f"Poles and slowest modes of the shape of a hexagon of 19 under {kind}. Set apart: {zero}. Spectral "
             f"abscissa {flock.spectral_abscissa:.4f}, of the shape {-flock.structural_decay_rate:.4f}, per time unit. "
             "Arrows: displacements at one instant; orange: the path of an agent in the undamped mode."
         )
-        pictures.append(Picture(text, png(lambda figure, f=flock: _poles_and_modes(figure, f), (13.0, 3.9))))  # type: ignore[misc]
+        pictures.append(Picture(text, svg(lambda figure, f=flock: _poles_and_modes(figure, f), (13.0, 3.9))))  # type: ignore[misc]
     return tuple(pictures)
 
 
@@ -168,7 +190,7 @@ def _range(verdicts: Sequence[Verdict]) -> Picture | None:
         f"(exponents {exponents}), until σ₁ saturates: a link that is off by {bend:.2g} d no longer pulls in "
         "proportion. White marks: a link formed or broke on the way."
     )
-    return Picture(text, png(draw, (6.5, 4.0)))
+    return Picture(text, svg(draw, (6.5, 4.0)))
 
 
 def bode_picture(verdicts: Sequence[tuple[str, Verdict]]) -> Picture | None:
@@ -204,4 +226,4 @@ def bode_picture(verdicts: Sequence[tuple[str, Verdict]]) -> Picture | None:
         f"From γ-agent to centre of mass (MSN gains: ω_n = {centre.natural_frequency:.3f}, ζ = "
         f"{centre.damping_ratio:.3g}), with ratios measured from the runs (E12). " + "; ".join(words) + "."
     )
-    return Picture(text, png(draw, (6.5, 4.8)))
+    return Picture(text, svg(draw, (6.5, 4.8)))

@@ -13,7 +13,7 @@ from flockana.base.errors import ArgumentError
 from flockana.ensemble import shares
 from flockana.ensemble.dataset import to_dataset
 from flockana.report.figures import Picture
-from flockana.report.image import png
+from flockana.report.image import svg
 from flockana.report.surveys import Survey, SurveyResult, request
 from flockana.scenarios import Scenario, scenario, scenarios
 from flockana.scenarios.scenario import SOURCE
@@ -173,7 +173,7 @@ def _picture(tables: Sequence[xarray.Dataset]) -> Picture:
         "In which share of the seeds each claim is verified (discs) and refuted (squares), with intervals; what is "
         "missing to 100 % is vacuous or inconclusive. The tables below say what each claim is."
     )
-    return Picture(text, png(draw, (7.5, 1.1 + 0.19 * whole.claim.size)))
+    return Picture(text, svg(draw, (7.5, 1.1 + 0.19 * whole.claim.size)))
 
 
 def _entry(dataset: xarray.Dataset, level: float) -> Entry:

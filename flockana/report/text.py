@@ -9,6 +9,7 @@ from inspect import getdoc
 from typing import Any
 
 import numpy as np
+from markupsafe import Markup, escape
 
 from flockana.theorems import Claim, Tolerances, Verdict
 
@@ -46,6 +47,39 @@ def show(value: Any) -> str:
             return f"{len(value)} values"
         return f"({', '.join(show(item) for item in value)})"
     return str(value)
+
+
+def markup(value: Any) -> Markup:
+    """A value for the page: as `show` writes it, but a table, folded, where it is a mapping of mappings or a long one.
+
+    Examples
+    --------
+    >>> markup({"pair": (1, 2)})
+    Markup('pair: (1, 2)')
+    >>> markup({"a": {"b": 1.0}})
+    Markup('<details class="values"><summary>1 entry</summary><dl><dt>a</dt><dd>b: 1</dd></dl></details>')
+    """
+    if not isinstance(value, Mapping) or (len(value) <= _LONGEST and not any(map(_deep, value.values()))):
+        return escape(show(value))
+    rows = Markup("").join(Markup("<dt>{}</dt><dd>{}</dd>").format(key, markup(item)) for key, item in value.items())
+    count = "1 entry" if len(value) == 1 else f"{len(value)} entries"
+    return Markup('<details class="values"><summary>{}</summary><dl>{}</dl></details>').format(count, rows)
+
+
+def _deep(value: Any) -> bool:
+    return isinstance(value, Mapping) or (isinstance(value, list | tuple) and any(map(_deep, value)))
+
+
+def source_name(key: str) -> str:
+    """A key of the bibliography as a name to read.
+
+    Examples
+    --------
+    >>> source_name("olfati-saber-2006"), source_name("msn-2013")
+    ('Olfati-Saber 2006', 'MSN 2013')
+    """
+    *words, year = key.split("-") if key[-1:].isdigit() else (*key.split("-"), "")
+    return f"{'-'.join(word.upper() if word in ('msn', 'ode') else word.capitalize() for word in words)} {year}".strip()
 
 
 def _inner(value: Any) -> str:

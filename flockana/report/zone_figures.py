@@ -2,53 +2,72 @@
 
 from __future__ import annotations
 
-from matplotlib.figure import Figure
+import numpy as np
 
-from flockana import plots
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.bearing_distance import ZoneFlocking
+from flockana.measures.profiles import pair_distance_profile
 from flockana.plots.series import has_metric
-from flockana.report.figures import Picture
-from flockana.report.image import png
+from flockana.report.charts import Chart, Curve, panels
+from flockana.report.figures import Picture, effort, measured, speeds
+from flockana.report.stills import stills
 from flockana.scenarios.findings import component_counts
 
 LAWS = (ZoneFlocking,)
+_DANGERS = (("obstacle_clearance_bound", "obstacle"), ("wall_distance", "wall"), ("alien_distance", "alien"))
 
 
 def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
-    """Draw snapshots, paths, distances, speeds and inputs against their bounds, C R D, and dangers."""
-
-    def drawn(draw: object, size: tuple[float, float]) -> str:
-        return png(lambda figure: draw(figure, trajectory), size)  # type: ignore[operator]
-
+    """Draw the flock, distances, speeds and inputs against their bounds, C R D, zones and dangers."""
+    run, law = trajectory, trajectory.law
+    radii = [(float(r), name) for r, name in zip(law.radii.reach, "rca", strict=True) if np.isfinite(r)]
+    dangers = [Curve(run.metric(name), label) for name, label in _DANGERS if has_metric(run, name)]
+    zones = [Curve(run.metric(f"in_{zone}"), zone) for zone in ("repulsion", "conflict", "attraction")]
     return (
         Picture(
-            "Start, middle (where the flock is most split, or else nearest to an obstacle) and end. Lines join "
-            "agents within a; triangles are the zones in which an agent heeds obstacles; a cross is the alien, "
-            "which keeps to the tinted area; dashed circles are the buffers of the conventional method.",
-            drawn(_snapshots, (13.0, 4.6)),
+            "Start, middle (where the flock is most split, or else nearest to an obstacle) and end. Lines join agents "
+            "within a; a cross is the alien.",
+            stills(run, run.t[[0, _middle(run), -1]].tolist()),
         ),
         Picture(
-            "Paths of all agents; number of components of the net within a, which leaves 1 where the flock splits; "
-            "mean number of agents in each zone of an agent.",
-            drawn(_motion, (13.0, 3.8)),
+            "Distances of all pairs with the radii of the zones; speeds and control effort, each with its bound; mean "
+            "number of agents in each zone of an agent.",
+            panels(
+                [
+                    Chart("distances of pairs (length)", run.t, profile_curves(run), levels=radii),
+                    speeds(run, [(float(law.desired_speed), "desired"), (float(law.v_max), "bound")]),
+                    effort(run, [(float(law.u_max), "bound")]),
+                    Chart("agents in the zone, mean", run.t, zones),
+                ]
+            ),
         ),
         Picture(
-            "Distances of all pairs with the radii of the zones; speeds; inputs; each with its bound.",
-            drawn(_bounds, (13.0, 3.2)),
-        ),
-        Picture(
-            "C = 1 where all move one way; R is the largest distance from the centre of mass; D the least distance of "
-            "two agents; and how near obstacles (between the steps too), walls and aliens come.",
-            drawn(_measures, (13.0, 3.0)),
+            "C = 1 where all move one way; R is the largest distance from the centre of mass; components of the net "
+            "within a, above 1 where the flock splits; and how near obstacles (between the steps too), walls and "
+            "aliens come.",
+            panels(
+                [
+                    *(measured(run, name) for name in ("coordination", "cohesion_radius") if has_metric(run, name)),
+                    Chart("components of the net", run.t, (Curve(component_counts(run).astype(float)),)),
+                    *([Chart("distance to dangers (length)", run.t, dangers, levels=[(0.0, "")])] if dangers else []),
+                ]
+            ),
         ),
     )
 
 
-def _snapshots(figure: Figure, run: Trajectory) -> None:
-    for k, sample in enumerate((0, _middle(run), -1)):
-        ax = figure.add_subplot(1, 3, k + 1, projection="3d" if run.m == 3 else None)
-        plots.zones(run, float(run.t[sample]), ax=ax)
+def profile_curves(run: Trajectory) -> tuple[Curve, ...]:
+    """Greatest, median and least distance of two agents over time.
+
+    Parameters
+    ----------
+    run : Trajectory
+        The run.
+    """
+    profile = pair_distance_profile(run.q)
+    return tuple(
+        Curve(profile[:, k], name) for k, name in ((-1, "greatest"), (profile.shape[1] // 2, "median"), (0, "least"))
+    )
 
 
 def _middle(run: Trajectory) -> int:
@@ -58,23 +77,3 @@ def _middle(run: Trajectory) -> int:
         return int(counts.argmax())
     near = has_metric(run, "obstacle_clearance")
     return int(run.metric("obstacle_clearance").argmin()) if near else len(run.t) // 2
-
-
-def _motion(figure: Figure, run: Trajectory) -> None:
-    plots.trajectories(run, ax=figure.add_subplot(1, 3, 1, projection="3d" if run.m == 3 else None))
-    plots.components(run, ax=figure.add_subplot(1, 3, 2))
-    plots.zone_populations(run, ax=figure.add_subplot(1, 3, 3))
-
-
-def _bounds(figure: Figure, run: Trajectory) -> None:
-    for ax, draw in zip(
-        figure.subplots(1, 3), (plots.zone_distances, plots.zone_speeds, plots.zone_controls), strict=True
-    ):
-        draw(run, ax=ax)
-
-
-def _measures(figure: Figure, run: Trajectory) -> None:
-    axes = figure.subplots(1, 4)
-    for ax, name in zip(axes, ("coordination", "cohesion_radius", "min_distance"), strict=False):
-        plots.measure(run, name, ax=ax)
-    plots.zone_safety(run, ax=axes[3])

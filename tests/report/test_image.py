@@ -1,46 +1,31 @@
+"""Drawn figures are part of the page: in its colours, with ids of their own, and named."""
+
 from __future__ import annotations
 
-import base64
-from io import BytesIO
+import re
 
-import numpy as np
-from PIL import Image
-
-from flockana.report.image import png, reduced
+from flockana.report.image import named, svg
 
 
-def rgb(image):
-    return np.asarray(image.convert("RGB")).astype(int)
+def lines(figure):
+    ax = figure.subplots()
+    ax.plot([0.0, 1.0], [0.0, 1.0], "o", color="#0072B2", label="a <curve>")
+    ax.legend()
 
 
-def test_few_colours_stay_as_they_are():
-    pixels = np.full((40, 40, 4), 255, dtype=np.uint8)
-    colours = np.random.default_rng(0).integers(0, 252, (40, 3)).astype(np.uint8)
-    pixels[np.arange(40), 7, :3] = colours // 4 * 4
-    np.testing.assert_array_equal(rgb(reduced(pixels)), pixels[:, :, :3])
+def test_colours_are_the_page_s_and_texts_are_texts():
+    text = svg(lines, (4.0, 3.0))
+    assert text.startswith('<svg viewBox="0 0 288 216" class="drawn">')
+    assert "var(--blue)" in text
+    assert "a &lt;curve&gt;</text>" in text
+    assert not re.search(r"#0072b2|#ffffff|#222222|<style|http", text)
 
 
-def test_of_many_colours_paper_stays_white_and_a_rare_one_is_not_lost():
-    pixels = np.full((300, 300, 4), 255, dtype=np.uint8)
-    ramp = np.linspace(0, 255, 200).astype(np.uint8)
-    pixels[:200, :200, 0], pixels[:200, :200, 1], pixels[:200, :200, 2] = ramp[None], ramp[:, None], 90
-    pixels[290, 290, :3] = 213, 94, 0
-    image = reduced(pixels)
-    found = rgb(image)
-    assert len(np.unique(found.reshape(-1, 3), axis=0)) <= 256
-    assert found[250, 250].tolist() == [255, 255, 255]
-    assert np.abs(found[290, 290] - (213, 94, 0)).max() <= 24
-    assert np.abs(found - pixels[:, :, :3]).max() <= 40
-
-
-def test_a_figure_is_an_image_in_a_page():
-    text = png(lambda figure: figure.subplots().plot([0.0, 1.0], [0.0, 1.0]), (4.0, 3.0))
-    head, data = text.split(",")
-    assert head == "data:image/png;base64"
-    assert Image.open(BytesIO(base64.b64decode(data))).size == (500, 375)
-
-
-def test_paper_stays_white_beside_what_is_nearly_white():
-    pixels = np.full((20, 20, 4), 255, dtype=np.uint8)
-    pixels[-1, -1, :3] = 253
-    assert rgb(reduced(pixels))[0, 0].tolist() == [255, 255, 255]
+def test_ids_are_unique_in_a_page_and_lead_where_they_did():
+    text = svg(lines, (4.0, 3.0))
+    first, second = (named(text, 'a "name"', number) for number in (1, 2))
+    ids = [re.findall(r' id="([^"]*)"', each) for each in (first, second)]
+    assert ids[0]
+    assert not set(ids[0]) & set(ids[1])
+    assert set(re.findall(r'(?:href="#|url\(#)([^")]+)', first)) == set(ids[0])
+    assert 'aria-label="a &quot;name&quot;"' in first

@@ -44,7 +44,7 @@ def test_the_section_shows_what_the_verdicts_hold(pages, tmp_path):
     text = write_report(pages, tmp_path).read_text(encoding="utf-8")
     assert 'id="lattices-and-equilibria"' in text
     assert 'href="#lattices-and-equilibria"' in text
-    assert text.count("data:image/png") == 2
+    assert text.count('class="drawn"') == 2
 
 
 def test_without_their_verdicts_there_are_no_pictures_and_no_section(pages, tmp_path):

@@ -53,5 +53,8 @@ def verdict_id(subject: str, theorem: str) -> str:
     --------
     >>> verdict_id("fixed", "E1")
     'fixed-E1'
+    >>> verdict_id("collapse", "E11")
+    'collapse--E11'
     """
-    return f"{subject}-{theorem}".replace(" ", "-")
+    between = "-" if subject == "fixed" else "--"  # a scenario's own id may be another's name with a theorem's after it
+    return f"{subject}{between}{theorem}".replace(" ", "-")

@@ -18,13 +18,13 @@ def test_what_a_report_shows_is_found_there():
     ]
     assert anchors(pages) == {
         "scenario:pair": "pair",
-        "theorem:os-3": "pair-os-3",  # the first run
-        "claim:os-3/i": "pair-os-3",
-        "report:pair/saw": "pair-source",
+        "theorem:os-3": "pair--os-3",  # the first run
+        "claim:os-3/i": "pair--os-3",
+        "report:pair/saw": "pair--source",
         "scenario:other": "other",
-        "claim:os-3/ii": "other-os-3",
-        "erratum:E12": "other-E12",
-        "claim:E12/printed": "other-E12",
+        "claim:os-3/ii": "other--os-3",
+        "erratum:E12": "other--E12",
+        "claim:E12/printed": "other--E12",
         "erratum:E8": "fixed-E8",
         "claim:E8/corrected": "fixed-E8",
         "theorem:delay-margin": "fixed-delay-margin",

@@ -1,0 +1,93 @@
+"""A run that moves in a page: the player of notebooks and of the report."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from flockana.base.errors import ArgumentError
+from flockana.base.files import replacing
+from flockana.player.page import page, script, style
+from flockana.player.scene import scene
+
+if TYPE_CHECKING:
+    from flockana.dynamics.trajectory import Trajectory
+
+__all__ = ["Player", "page", "scene", "script", "style"]
+
+
+@dataclass(frozen=True, eq=False)
+class Player:
+    """A run to watch: a notebook shows it, and keeps it when it is exported as HTML.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The run.
+    height : int
+        Of the frame in a notebook, in pixels.
+    values : int
+        Numbers of places and velocities that are kept at most; of a longer run some samples are left out.
+    """
+
+    trajectory: Trajectory
+    height: int = 760
+    values: int = 240_000
+
+    def __post_init__(self) -> None:
+        for name in ("height", "values"):
+            if not isinstance(getattr(self, name), int) or getattr(self, name) < 1:
+                raise ArgumentError(f"{name} = {getattr(self, name)!r}: expected a whole number > 0")
+
+    def __repr__(self) -> str:
+        """One line."""
+        return f"<Player of {self.trajectory!r}>"
+
+    def html(self) -> str:
+        """The page that plays it, which needs neither network nor other files."""
+        return page(scene(self.trajectory, values=self.values))
+
+    def save(self, path: str) -> Path:
+        """Write that page; an existing file is replaced only when the new one is whole.
+
+        Parameters
+        ----------
+        path : path-like
+            File to write.
+        """
+        target = Path(path)
+        with replacing(target, remedy="choose another file") as partial:
+            partial.write_text(self.html(), encoding="utf-8")
+        return target
+
+    def _repr_html_(self) -> str:
+        look = f"width:100%;height:{self.height}px;border:0"
+        return f'<iframe title="A run" sandbox="allow-scripts" style="{look}" srcdoc="{escape(self.html())}"></iframe>'
+
+    def widget(self) -> Any:
+        """It as a widget, whose ``time`` the notebook's code reads and sets; needs flockana[notebook].
+
+        Raises
+        ------
+        ArgumentError
+            If anywidget is not installed.
+        """
+        try:
+            import anywidget
+            import traitlets
+        except ImportError:
+            raise ArgumentError(
+                "a widget needs anywidget: expected it to be installed; run pip install 'flockana[notebook]', or show "
+                "run.player() itself, which needs nothing"
+            ) from None
+        source = Path(__file__).with_name("widget.js").read_text(encoding="utf-8")
+        fields = {
+            "_esm": script() + source,
+            "_css": style(),
+            "data": traitlets.Bytes().tag(sync=True),
+            "time": traitlets.Float(0.0).tag(sync=True),
+        }
+        kind = type("RunWidget", (anywidget.AnyWidget,), fields)
+        return kind(data=scene(self.trajectory, values=self.values), time=float(self.trajectory.t[0]))

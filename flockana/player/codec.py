@@ -1,0 +1,129 @@
+"""Runs as compact bytes that a page can read: numbers of 32 bits, their differences in time, byte by byte, deflated.
+
+``b"FLK1"``, then one zlib stream: the length of a JSON header (4 bytes, little-endian), the header, and the arrays one
+after the other. An array of shape (T, …) is T rows of k whole numbers of 32 bits: the bits of float32, or
+round((x − origin)/step). Each row but the first is less the one before it (modulo 2³²), and the numbers lie transposed
+(all times of one agent together) and split (first the low bytes of all, …), which is what deflate compresses best.
+"""
+
+from __future__ import annotations
+
+import json
+import zlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError
+
+_MAGIC = b"FLK1"
+_STEPS = 2.0**30  # more of them in one array than this would not fit 32 bits
+
+
+@dataclass(frozen=True)
+class Packed:
+    """An array on its way into bytes.
+
+    Parameters
+    ----------
+    values : ndarray, shape (T, …)
+        Numbers; the first axis is time.
+    step : float
+        Resolution to which they are kept, > 0; or 0 for that of float32.
+    """
+
+    values: Any
+    step: float = 0.0
+
+
+def encode(header: Mapping[str, Any], arrays: Mapping[str, Packed]) -> bytes:
+    """A header and arrays as bytes.
+
+    Parameters
+    ----------
+    header : mapping
+        Plain data for JSON, without a key ``"arrays"``.
+    arrays : mapping of str to Packed
+        Arrays by name.
+
+    Raises
+    ------
+    ArgumentError
+        If an array holds something that is not finite, beyond float32, or too large for its step.
+
+    Examples
+    --------
+    >>> header, arrays = decode(encode({"n": 2}, {"q": Packed(np.array([[0.5, 1.0], [0.25, 1.5]]))}))
+    >>> header["n"], arrays["q"].tolist()
+    (2, [[0.5, 1.0], [0.25, 1.5]])
+    """
+    entries, bodies = [], []
+    for name, packed in arrays.items():
+        values = np.asarray(packed.values, dtype=np.float64)
+        whole, origin = _whole(name, values, packed.step)
+        entries.append({"name": name, "shape": values.shape, "step": packed.step, "origin": origin})
+        bodies.append(_bytes(whole.reshape(len(values), int(np.prod(values.shape[1:])))))
+    text = json.dumps(dict(header) | {"arrays": entries}, ensure_ascii=False, allow_nan=False).encode("utf-8")
+    return _MAGIC + zlib.compress(b"".join([len(text).to_bytes(4, "little"), text, *bodies]), 9)
+
+
+def decode(data: bytes) -> tuple[dict[str, Any], dict[str, FloatArray]]:
+    """(header, arrays by name) of what `encode` gave; the page does the same in decode.js.
+
+    Parameters
+    ----------
+    data : bytes
+        What `encode` gave.
+
+    Raises
+    ------
+    ArgumentError
+        If it is something else, or damaged.
+    """
+    try:
+        if data[:4] != _MAGIC:
+            raise ValueError("its first bytes are not FLK1")
+        raw = zlib.decompress(data[4:])
+        start = 4 + int.from_bytes(raw[:4], "little")
+        header = json.loads(raw[4:start].decode("utf-8"))
+        arrays = {}
+        for entry in header.pop("arrays"):
+            rows, size = entry["shape"][0], int(np.prod(entry["shape"]))
+            planes = np.frombuffer(raw, np.uint8, 4 * size, start).reshape(4, size)
+            start += 4 * size
+            whole = np.ascontiguousarray(planes.T).view("<u4").reshape(size // max(rows, 1), rows).T
+            whole = np.cumsum(whole, axis=0, dtype=np.uint32)
+            arrays[entry["name"]] = _numbers(whole, entry).reshape(entry["shape"])
+    except (ValueError, KeyError, TypeError, IndexError, zlib.error) as error:
+        raise ArgumentError(f"{len(data)} bytes: expected those of a run for the player ({error})") from None
+    return header, arrays
+
+
+def _whole(name: str, values: FloatArray, step: float) -> tuple[Any, float]:
+    """Whole numbers of 32 bits that stand for an array, and what is taken off it first."""
+    with np.errstate(over="ignore"):
+        single = values.astype("<f4")
+    if not np.isfinite(single).all():
+        raise ArgumentError(f"{name}: expected finite numbers that float32 holds")
+    if step == 0.0:
+        return single.view("<u4"), 0.0
+    origin = float(values.min()) if values.size else 0.0
+    steps = np.rint((values - origin) / step)
+    if steps.size and steps.max() > _STEPS:
+        raise ArgumentError(f"{name}: step = {step:g} for a span of {np.ptp(values):g}: expected a longer step")
+    return steps.astype("<u4"), origin
+
+
+def _bytes(whole: Any) -> bytes:
+    change = np.diff(whole, axis=0, prepend=np.zeros((1, whole.shape[1]), dtype="<u4"))
+    return np.ascontiguousarray(change.T).view(np.uint8).reshape(-1, 4).T.tobytes()
+
+
+def _numbers(whole: Any, entry: Mapping[str, Any]) -> FloatArray:
+    if entry["step"] == 0.0:
+        return np.ascontiguousarray(whole).view("<f4").astype(np.float64)
+    values: FloatArray = entry["origin"] + entry["step"] * whole.astype(np.float64)
+    return values

@@ -1,0 +1,59 @@
+"""The player's parts for a page, and a page of its own."""
+
+from __future__ import annotations
+
+import base64
+from functools import cache
+from html import escape
+from importlib.resources import files
+
+SCRIPTS = ("decode.js", "drawing.js", "strip.js", "player.js")
+
+
+@cache
+def script() -> str:
+    """All of the player's JavaScript but what binds it to a page; it defines ``flockanaPlayer(element, bytes)``."""
+    return "".join((files("flockana.player") / name).read_text(encoding="utf-8") for name in SCRIPTS)
+
+
+@cache
+def style() -> str:
+    """The player's CSS."""
+    return (files("flockana.player") / "player.css").read_text(encoding="utf-8")
+
+
+def text_of(data: bytes) -> str:
+    """Bytes as text that a page can hold.
+
+    Parameters
+    ----------
+    data : bytes
+        A run.
+
+    Examples
+    --------
+    >>> text_of(b"FLK1")
+    'RkxLMQ=='
+    """
+    return base64.b64encode(data).decode("ascii")
+
+
+def page(data: bytes, *, title: str = "A run") -> str:
+    """A page that holds the player and one run, and needs nothing else.
+
+    Parameters
+    ----------
+    data : bytes
+        What `flockana.player.scene` gave.
+    title : str
+        Of the page.
+    """
+    return (
+        f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">'
+        f"<style>body{{margin:0;padding:.5rem;background:var(--paper)}}\n{style()}</style></head>"
+        f'<body><main><h1 class="fp-hidden">{escape(title)}</h1><div id="player"></div></main>'
+        f'<script type="text/plain" id="run">{text_of(data)}</script><script>(() => {{\n{script()}'
+        'flockanaPlayer(document.getElementById("player"), bytesOfText(document.getElementById("run").textContent));'
+        "\n})();</script></body></html>"
+    )

@@ -1,0 +1,250 @@
+"""What the player shows of a run: its frames, links, obstacles, targets and series, as a header and arrays.
+
+A law with a world of its own registers it (`world`), as it registers how a snapshot draws it (`plots.snapshot`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from functools import singledispatch
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.base.checks import FloatArray
+from flockana.environment.obstacles import Obstacle, Sphere, Wall
+from flockana.laws.bearing_distance import ZoneFlocking
+from flockana.laws.led_dead_zone import LedDeadZoneFlocking
+from flockana.laws.minimal import MinimalFlocking
+from flockana.laws.vicsek import HeadingAveraging
+from flockana.player.codec import Packed, encode
+
+if TYPE_CHECKING:
+    from flockana.dynamics.trajectory import Trajectory
+
+SHOWN = (
+    "connectivity",
+    "coordination",
+    "cohesion_radius",
+    "normalised_deviation_energy",
+    "normalised_velocity_mismatch",
+    "min_distance",
+    "heading_spread",
+)  # metrics of the strip, of those that the law has
+_FEATURES = 160  # samples of a series in a strip
+_OUTLINE = 90  # points about an obstacle that is neither ball nor wall
+_FINE, _COARSE = 2.0**-13, 2.0**-6  # resolution of places and velocities in a page, as shares of their span
+_EXTREME = 1e30  # beyond it a number is shown as if it were this
+
+
+@dataclass(frozen=True)
+class World:
+    """What is around the agents.
+
+    Parameters
+    ----------
+    reach, length : float, optional
+        Agents nearer than the first are linked, and the links coloured by their strain about the second.
+    edges : tuple of ndarray of int, shape (M, 2)
+        Links by frame, in place of those within reach; or of one frame for all.
+    stars, crosses : ndarray, shape (T, K, m), optional
+        Targets and aliens by frame.
+    solids : sequence of Obstacle
+        Obstacles.
+    outlines : tuple of ndarray, shape (V, m)
+        Closed lines: of other obstacles, and of a box.
+    beta : float
+        Distance r' within which β-agents are shown.
+    groups : sequence of int
+        Colour of each agent by number; empty for one colour.
+    """
+
+    reach: float | None = None
+    length: float | None = None
+    edges: tuple[npt.NDArray[np.int64], ...] = ()
+    stars: FloatArray | None = None
+    crosses: FloatArray | None = None
+    solids: Sequence[Obstacle] = ()
+    outlines: tuple[FloatArray, ...] = ()
+    beta: float = 0.0
+    groups: Sequence[int] = field(default=())
+
+
+@singledispatch
+def world(law: Any, run: Trajectory, frames: npt.NDArray[np.intp]) -> World:
+    """What is around the agents of a run; ``@world.register(Law)`` for a law with a world of its own.
+
+    Parameters
+    ----------
+    law : object
+        The run's law, or the one that its map steps.
+    run : Trajectory
+        The run.
+    frames : ndarray of int
+        Samples that are shown.
+    """
+    pair, target = law.pair, law.target
+    return World(
+        reach=_finite(None if pair is None else pair.range),
+        length=_finite(None if pair is None else pair.length),
+        stars=None if target is None else _paths([target], run.t[frames]),
+        solids=tuple(law.obstacles),
+        beta=0.0 if law.obstacle_field is None else float(law.obstacle_field.beta.r),
+    )
+
+
+@world.register(MinimalFlocking)
+def _perceived(law: Any, run: Trajectory, frames: npt.NDArray[np.intp]) -> World:
+    data = [law.edge_data(run.q[k]) for k in (frames if law.edges is None else frames[:1])]
+    return World(edges=tuple(np.column_stack([each.tail, each.head]).astype(np.int64) for each in data))
+
+
+@world.register(HeadingAveraging)
+def _circles(law: Any, run: Trajectory, frames: npt.NDArray[np.intp]) -> World:
+    return World(edges=tuple(np.asarray(law.links(run.q[k]), dtype=np.int64) for k in frames))
+
+
+@world.register(LedDeadZoneFlocking)
+def _led(law: Any, run: Trajectory, frames: npt.NDArray[np.intp]) -> World:
+    groups = np.zeros(run.n, dtype=int)
+    for number, own in enumerate(law.ties.members):
+        groups[own] = number
+    stars = _paths(law.leaders, run.t[frames])
+    return World(reach=1.1 * law.interaction.d1, stars=stars, groups=groups.tolist())
+
+
+@world.register(ZoneFlocking)
+def _zones(law: Any, run: Trajectory, frames: npt.NDArray[np.intp]) -> World:
+    around = law.world
+    solids = tuple(each for each in around.obstacles if isinstance(each, Sphere))
+    outlines = [np.asarray(each.vertices) for each in around.obstacles if not isinstance(each, Sphere)]
+    if around.box is not None and run.m == 2:
+        (x0, y0), (x1, y1) = around.box.low, around.box.high
+        outlines.append(np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]))
+    aliens = run.extra.get("alien")
+    crosses = None if aliens is None else aliens[frames].reshape(len(frames), -1, run.m)
+    reach = float(law.radii.reach[2])
+    return World(reach=_finite(reach), crosses=crosses, solids=solids, outlines=tuple(outlines))
+
+
+def scene(
+    run: Trajectory,
+    *,
+    values: int = 240_000,
+    exact: bool = True,
+    title: str = "",
+    marks: Iterable[tuple[float, str]] = (),
+) -> bytes:
+    """A run as the player reads it.
+
+    Parameters
+    ----------
+    run : Trajectory
+        The run.
+    values : int
+        So many numbers of places and velocities at most; of a longer run only every so-many-th sample is kept.
+    exact : bool
+        Keep places and velocities to float32; else to 1/8192 and 1/64 of their span, which no eye can tell.
+    title : str
+        What the drawing is called to who cannot see it.
+    marks : iterable of (float, str)
+        Instants to mark, with their names.
+
+    Returns
+    -------
+    bytes
+        See `flockana.player.codec`.
+    """
+    frames = kept(len(run.t), max(2, values // (2 * run.n * run.m)))
+    around = world(run.law.continuous or run.law, run, frames)
+    q, p = run.q[frames], run.p[frames]
+    series = _series(run)
+    samples = kept(len(run.t), _FEATURES)
+    q_step, p_step = (0.0, 0.0) if exact else (_FINE * (np.ptp(q) or 1.0), _COARSE * (np.ptp(p) or 1.0))
+    arrays = {"t": Packed(run.t[frames]), "q": Packed(q, float(q_step)), "p": Packed(p, float(p_step))}
+    for name, places in (("stars", around.stars), ("crosses", around.crosses)):
+        if places is not None:
+            arrays[name] = Packed(places, float(q_step))
+    if around.edges:
+        arrays["edges"] = Packed(np.concatenate(around.edges).reshape(-1, 2), 1.0)
+    arrays["series_t"] = Packed(run.t[samples])
+    for k, (*_, numbers) in enumerate(series):
+        arrays[f"series_{k}"] = Packed(np.clip(np.nan_to_num(numbers[samples]), -_EXTREME, _EXTREME))
+    header = {
+        "n": run.n,
+        "m": run.m,
+        "title": title or f"{run.n} agents, {type(run.law).__name__}",
+        "reach": around.reach,
+        "length": around.length,
+        "edge_counts": [len(pairs) for pairs in around.edges],
+        "solids": [_solid(each) for each in around.solids],
+        "outlines": [np.round(line, 6).tolist() for line in around.outlines + _outlines(around.solids)],
+        "beta": around.beta,
+        "groups": list(around.groups),
+        "series": [{"name": name, "label": label, "log": log} for name, label, log, _ in series],
+        "marks": [{"t": float(time), "label": label} for time, label in marks],
+    }
+    return encode(header, arrays)
+
+
+def kept(samples: int, most: int) -> npt.NDArray[np.intp]:
+    """Which of so many samples are kept: first and last, and others evenly between, at most so many.
+
+    Parameters
+    ----------
+    samples, most : int
+        How many there are, and may be.
+
+    Examples
+    --------
+    >>> kept(9, 4).tolist(), kept(3, 10).tolist()
+    ([0, 3, 5, 8], [0, 1, 2])
+    """
+    return np.unique(np.rint(np.linspace(0, samples - 1, min(samples, most))).astype(np.intp))
+
+
+def _series(run: Trajectory) -> list[tuple[str, str, bool, FloatArray]]:
+    """(name, label, whether logarithmic, values at all samples) of what the strip shows."""
+    found = []
+    energy = run.energy()
+    if np.isfinite(energy).any():
+        found.append(("H", "energy H", False, energy))
+        if "work" in run.extra:
+            found.append(("residual", "residual of the energy balance", False, run.energy_residual))
+    for name in SHOWN:
+        if name in run._metric_names:
+            it = run.measure(name)
+            found.append((name, it.label, bool(it.logarithmic), run.metric(name)))
+    found.append(("effort", "control effort: greatest ‖u‖", False, np.linalg.norm(run.u, axis=2).max(axis=1)))
+    return found
+
+
+def _finite(value: Any) -> float | None:
+    return float(value) if value is not None and np.ndim(value) == 0 and np.isfinite(value) else None
+
+
+def _paths(targets: Iterable[Any], times: FloatArray) -> FloatArray:
+    """Places of targets, shape (T, K, m)."""
+    return np.array([[target.position(t) for target in targets] for t in times.tolist()])
+
+
+def _solid(solid: Obstacle) -> dict[str, Any]:
+    if isinstance(solid, Sphere):
+        return {"kind": "sphere", "par": solid.par.tolist()}
+    if isinstance(solid, Wall):
+        return {"kind": "wall", "par": solid.par.tolist()}
+    return {"kind": "other"}
+
+
+def _outlines(solids: Iterable[Obstacle]) -> tuple[FloatArray, ...]:
+    """Outlines in the plane of those that are neither balls nor walls: closest points of a circle about each."""
+    turn = np.linspace(0.0, 2.0 * np.pi, _OUTLINE, endpoint=False)
+    circle, lines = np.column_stack([np.cos(turn), np.sin(turn)]), []
+    for solid in solids:
+        if not isinstance(solid, Sphere | Wall) and solid.dimension == 2 and np.isfinite(solid.ball[1]):
+            centre, radius = solid.ball
+            around = centre + 1.001 * radius * circle
+            lines.append(solid.beta_agents(around, np.zeros_like(around)).q)
+    return tuple(lines)

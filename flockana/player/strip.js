@@ -1,0 +1,64 @@
+// Series of a run below its drawing, with a cursor at the time that is shown.
+const SVG = "http://www.w3.org/2000/svg";
+
+function flockanaStrip(place, run, seek) {
+  const t = run.series_t, first = t[0], span = t[t.length - 1] - t[0] || 1, rows = [];
+  const x = (time) => 1000 * (time - first) / span;
+  const make = (kind, attributes, parent) => {
+    const node = document.createElementNS(SVG, kind);
+    for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
+    if (parent) parent.append(node);
+    return node;
+  };
+  run.series.forEach(({ label, log }, k) => {
+    const values = Array.from(run[`series_${k}`]);
+    const positive = values.filter((v) => v > 0), logarithmic = log && positive.length > 0;
+    const least = logarithmic ? Math.log10(Math.min(...positive)) : 0;
+    const scaled = logarithmic ? values.map((v) => (v > 0 ? Math.log10(v) : least)) : values;
+    const low = Math.min(...scaled), high = Math.max(...scaled), flat = !(high > low);
+    const row = document.createElement("div"), name = document.createElement("span"), value = document.createElement("output");
+    row.className = "fp-row"; name.textContent = label + (logarithmic ? ", log" : "");
+    const graph = make("svg", { viewBox: "0 0 1000 40", preserveAspectRatio: "none", "aria-hidden": "true" });
+    const y = (v) => (flat ? 20 : 37 - 34 * (v - low) / (high - low));
+    make("polyline", { points: scaled.map((v, i) => `${x(t[i]).toFixed(1)},${y(v).toFixed(1)}`).join(" ") }, graph);
+    for (const { t: time, label: words } of run.marks)
+      make("title", {}, make("line", { x1: x(time), x2: x(time), y1: 0, y2: 40, class: "fp-mark" }, graph)).textContent = words;
+    const cursor = make("line", { x1: 0, x2: 0, y1: 0, y2: 40, class: "fp-cursor" }, graph);
+    row.append(name, graph, value);
+    place.append(row);
+    const at = (event) => {
+      const box = graph.getBoundingClientRect();
+      seek(first + span * Math.min(1, Math.max(0, (event.clientX - box.left) / box.width)));
+    };
+    graph.addEventListener("pointerdown", (event) => { graph.setPointerCapture(event.pointerId); at(event); });
+    graph.addEventListener("pointermove", (event) => { if (event.buttons) at(event); });
+    rows.push({ label, values, cursor, value });
+  });
+  if (run.marks.length) {
+    const list = document.createElement("div");
+    list.className = "fp-marks";
+    list.append("Instants: ");
+    for (const { t: time, label } of run.marks) {
+      const button = document.createElement("button");
+      button.type = "button"; button.textContent = `t = ${Number(time.toPrecision(4))}: ${label}`;
+      button.addEventListener("click", () => seek(time));
+      list.append(button);
+    }
+    place.append(list);
+  }
+  function value(values, time) {
+    let k = 0;
+    while (k < t.length - 2 && t[k + 1] <= time) k++;
+    const s = t.length > 1 ? Math.min(1, Math.max(0, (time - t[k]) / (t[k + 1] - t[k]))) : 0;
+    return t.length > 1 ? (1 - s) * values[k] + s * values[k + 1] : values[0];
+  }
+  function show(time) {
+    for (const row of rows) {
+      const now = value(row.values, time).toPrecision(4);
+      row.cursor.setAttribute("x1", x(time)); row.cursor.setAttribute("x2", x(time));
+      row.value.textContent = String(Number(now));
+    }
+  }
+  const words = (time) => rows.slice(0, 2).map((row) => `${row.label} ${Number(value(row.values, time).toPrecision(3))}`).join(", ");
+  return { show, words };
+}

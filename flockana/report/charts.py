@@ -1,0 +1,196 @@
+"""Curves over time as SVG in the page's own colours: written as text, in a hundredth of the time of a drawn figure."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from html import escape
+from itertools import pairwise
+from math import ceil, floor, log10
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.base.checks import FloatArray
+
+_WIDTH, _HEIGHT = 720, 380  # whole numbers of this drawing are half a pixel of the page
+_LEFT, _RIGHT, _TOP, _BELOW = 112, 20, 24, 60
+_SPANS = 70  # of time, in each of which a curve is drawn through its least and greatest value
+_DECADES = 6  # more of them are labelled at every other one
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A curve of a chart.
+
+    Parameters
+    ----------
+    values : ndarray, shape (T,)
+        Over the chart's times; where they are not finite there is no curve.
+    label : str
+        What it is; empty if the chart's own words say it.
+    """
+
+    values: FloatArray
+    label: str = ""
+
+
+@dataclass(frozen=True)
+class Chart:
+    """Curves over the same times.
+
+    Parameters
+    ----------
+    words : str
+        What the axis upwards is.
+    t : ndarray, shape (T,)
+        Times.
+    curves : sequence of Curve
+        At most five: they differ in colour and dash.
+    logarithmic : bool
+        Whether decades are equally long; what is not positive is then left out.
+    levels : sequence of (float, str)
+        Horizontal lines, with their names.
+    """
+
+    words: str
+    t: FloatArray
+    curves: Sequence[Curve]
+    logarithmic: bool = False
+    levels: Sequence[tuple[float, str]] = ()
+
+    def svg(self) -> str:
+        """The chart as an ``<svg>`` element."""
+        shown = [np.asarray(curve.values, dtype=np.float64) for curve in self.curves]
+        logarithmic = self.logarithmic and any((values > 0.0).any() for values in shown)
+        low, high = _limits([*shown, np.array([level for level, _ in self.levels])], logarithmic)
+        t0, t1 = float(self.t[0]), float(self.t[-1])
+        width, height = _WIDTH - _LEFT - _RIGHT, _HEIGHT - _TOP - _BELOW
+
+        def x(time: Any) -> Any:
+            return _LEFT + width * (time - t0) / ((t1 - t0) or 1.0)
+
+        def y(value: Any) -> Any:
+            return _TOP + height * (1.0 - (value - low) / (high - low))
+
+        parts = []
+        for at, text in _decades(low, high) if logarithmic else _round(low, high, 4):
+            parts.append(f'<path class="grid" d="M{_LEFT} {y(at):.0f}H{_WIDTH - _RIGHT}"/>')
+            parts.append(f'<text x="{_LEFT - 10}" y="{y(at) + 7:.0f}" text-anchor="end">{text}</text>')
+        for at, text in _round(t0, t1, 5):
+            parts.append(f'<text x="{x(at):.0f}" y="{_HEIGHT - 30}" text-anchor="middle">{text}</text>')
+        parts.append(f'<text x="{_WIDTH - _RIGHT}" y="{_HEIGHT - 4}" text-anchor="end">t (time)</text>')
+        for level, name in self.levels:
+            if not logarithmic or level > 0.0:
+                at = y(log10(level) if logarithmic else level)
+                parts.append(f'<path class="level" d="M{_LEFT} {at:.0f}H{_WIDTH - _RIGHT}"/>')
+                parts.append(f'<text x="{_WIDTH - _RIGHT}" y="{at - 6:.0f}" text-anchor="end">{escape(name)}</text>')
+        for k, values in enumerate(shown):
+            keep = _kept(values)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                heights = np.log10(values[keep]) if logarithmic else values[keep]
+            drawn = _path(np.asarray(x(self.t[keep])), np.asarray(y(heights)))
+            parts.append(f'<path class="curve c{k}" d="{drawn}"/>')
+        words = escape(self.words, quote=True)
+        drawing = (
+            f'<svg viewBox="0 0 {_WIDTH} {_HEIGHT}" role="img" aria-label="{words} over time">{"".join(parts)}</svg>'
+        )
+        return f'<div class="chart"><p class="axis">{words}</p>{drawing}{self._legend()}</div>'
+
+    def _legend(self) -> str:
+        named = [(k, curve.label) for k, curve in enumerate(self.curves) if curve.label]
+        keys = "".join(f'<span><i class="key c{k}"></i>{escape(label)}</span>' for k, label in named)
+        return f'<p class="legend">{keys}</p>' if keys else ""
+
+
+def panels(charts: Sequence[Chart]) -> str:
+    """Charts side by side, as HTML.
+
+    Parameters
+    ----------
+    charts : sequence of Chart
+        What is shown.
+    """
+    return f'<div class="panels">{"".join(chart.svg() for chart in charts)}</div>'
+
+
+def _kept(values: FloatArray) -> npt.NDArray[np.intp]:
+    """Samples through which a curve is drawn: in each of so many spans of time the first, least and greatest."""
+    samples = len(values)
+    if samples <= 2 * _SPANS:
+        return np.arange(samples)
+    edges = np.linspace(0, samples, _SPANS + 1).astype(int)
+    found = {0, samples - 1}
+    for first, last in pairwise(edges.tolist()):
+        part = np.nan_to_num(values[first:last])
+        found |= {int(first + part.argmin()), int(first + part.argmax())}
+    return np.array(sorted(found))
+
+
+def _limits(values: Sequence[FloatArray], logarithmic: bool) -> tuple[float, float]:
+    every = np.concatenate(values)
+    every = every[np.isfinite(every) & ((every > 0.0) | (not logarithmic))]
+    if not every.size:
+        return 0.0, 1.0
+    if logarithmic:
+        low, high = floor(log10(every.min()) * 2.0) / 2.0, ceil(log10(every.max()) * 2.0) / 2.0
+        return low, high if high > low else low + 1.0
+    low, high = float(every.min()), float(every.max())
+    if 0.0 < low < 0.5 * high:
+        low = 0.0
+    margin = 0.04 * (high - low) or 0.5 * abs(high) or 0.5
+    return low - margin * (low != 0.0), high + margin
+
+
+def _round(low: float, high: float, most: int) -> list[tuple[float, str]]:
+    """Round numbers between two, at most so many steps apart, and how each is written.
+
+    Examples
+    --------
+    >>> _round(0.0, 60.0, 5)
+    [(0.0, '0'), (20.0, '20'), (40.0, '40'), (60.0, '60')]
+    >>> [text for _, text in _round(-3e-7, 2e-7, 4)], [text for _, text in _round(0.0, 1.0, 4)]
+    (['-2e-07', '0', '2e-07'], ['0.0', '0.5', '1.0'])
+    """
+    if not high > low:
+        return [(low, f"{low:.4g}")]
+    raw = (high - low) / most
+    power = 10.0 ** floor(log10(raw))
+    step = next(factor * power for factor in (1.0, 2.0, 5.0, 10.0) if factor * power >= raw * (1.0 - 1e-9))
+    ticks = [k * step + 0.0 for k in range(ceil(low / step - 1e-9), floor(high / step + 1e-9) + 1)]
+    largest = max(map(abs, ticks), default=0.0)
+    if largest and not 1e-3 <= largest < 1e5:
+        digits = floor(log10(largest / step) + 1e-9) + 2
+        return [(at, f"{at:.{digits}g}") for at in ticks]
+    decimals = max(0, -floor(log10(step) + 1e-9))
+    return [(at, f"{at:.{decimals}f}") for at in ticks]
+
+
+def _decades(low: float, high: float) -> list[tuple[float, str]]:
+    every = 1 + int((high - low) // _DECADES)
+    return [(float(k), f"1e{k}") for k in range(ceil(low), floor(high) + 1) if k % every == 0]
+
+
+def _path(x: FloatArray, y: FloatArray) -> str:
+    """Points as the data of a path in whole numbers, broken where they are not finite; those amid a level are left out.
+
+    Examples
+    --------
+    >>> _path(np.array([0.0, 1.0, 2.0, 3.0]), np.array([0.0, 1.0, np.nan, 3.0]))
+    'M0 0L1 1M3 3'
+    >>> _path(np.arange(4.0), np.array([5.0, 5.0, 5.0, 7.0]))
+    'M0 5L2 5L3 7'
+    """
+    text: list[str] = []
+    heights = [round(v) if np.isfinite(v) else None for v in y.tolist()]
+    pen = "M"
+    for k, (u, v) in enumerate(zip(x.tolist(), heights, strict=True)):
+        if v is None:
+            pen = "M"
+            continue
+        if pen == "L" and 0 < k < len(heights) - 1 and heights[k - 1] == v == heights[k + 1]:
+            continue
+        text.append(f"{pen}{u:.0f} {v}")
+        pen = "L"
+    return "".join(text)

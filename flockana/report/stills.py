@@ -1,0 +1,134 @@
+"""A flock at single instants as SVG in the page's own colours: what the player shows, on paper and without scripts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.dynamics.trajectory import Trajectory
+from flockana.environment.obstacles import Sphere, Wall
+from flockana.measures.nets import link_lengths, links
+from flockana.player.scene import World, world
+
+_SIZE = 400.0
+_TURN, _TILT = 0.6, 0.5  # of a flock in space, as the player first shows it
+_NEAR = 0.1  # of strain, within which a link counts as being of its length
+_MOST = 500  # links of a still: a lattice of 150 has 400, and more of them are one blot
+
+
+def stills(run: Trajectory, times: Sequence[float]) -> str:
+    """The samples nearest to some times, side by side, as HTML; all on one scale.
+
+    Parameters
+    ----------
+    run : Trajectory
+        The run.
+    times : sequence of float
+        Instants.
+    """
+    samples = np.array([int(np.argmin(np.abs(run.t - time))) for time in times])
+    around = world(run.law.continuous or run.law, run, samples)
+    places = [_flat(run.q[k]) for k in samples]
+    others = [_flat(x[j]) for x in (around.stars, around.crosses) if x is not None for j in range(len(samples))]
+    balls = [
+        _flat(np.array([s.centre])) + d * s.radius for s in around.solids if isinstance(s, Sphere) for d in (-1, 1)
+    ]
+    lines = [_flat(line) for line in around.outlines]
+    every = np.concatenate([*places, *others, *balls, *lines])
+    low, span = every.min(axis=0), float(np.ptp(every, axis=0).max()) or 1.0
+    scale = 0.92 * _SIZE / span
+    height = max(60.0, scale * float(np.ptp(every[:, 1])) + 0.08 * _SIZE)
+
+    def put(points: FloatArray) -> FloatArray:
+        shown = 0.04 * _SIZE + scale * (points - low)
+        return np.column_stack([shown[:, 0], height - shown[:, 1]])
+
+    drawn = []
+    for j, k in enumerate(samples.tolist()):
+        label = f"t = {run.t[k]:.4g}"
+        inner = (
+            _world(around, put, scale, height)
+            + _links(around, run.q[k], j, put)
+            + _dots(put(places[j]), min(70.0 / np.sqrt(run.n), 0.4 * (around.length or around.reach or np.inf) * scale))
+        )
+        for kind, marks in (("star", around.stars), ("cross", around.crosses)):
+            if marks is not None and marks[j].size:
+                inner += "".join(_mark(kind, *at) for at in put(_flat(marks[j])).tolist())
+        image = f'<svg viewBox="0 0 {_SIZE:g} {height:.0f}" role="img" aria-label="The flock at {label}">{inner}</svg>'
+        drawn.append(f'<div class="still"><p class="axis">{label}</p>{image}</div>')
+    return f'<div class="panels">{"".join(drawn)}</div>'
+
+
+def _flat(points: FloatArray) -> FloatArray:
+    """Points as they are drawn: those of a line on one height, those of space turned as the player first turns them."""
+    if points.shape[1] == 1:
+        return np.column_stack([points, np.zeros(len(points))])
+    if points.shape[1] == 3:
+        x, y, z = points.T
+        across, deep = np.cos(_TURN) * x - np.sin(_TURN) * y, np.sin(_TURN) * x + np.cos(_TURN) * y
+        return np.column_stack([across, np.sin(_TILT) * deep + np.cos(_TILT) * z])
+    return points
+
+
+def _dots(points: FloatArray, size: float) -> str:
+    path = "".join(f"M{x:.0f} {y:.0f}h0" for x, y in points.tolist())
+    return f'<path class="agents" stroke-width="{np.clip(size, 2.0, 10.0):.1f}" d="{path}"/>'
+
+
+def _links(around: World, q: FloatArray, j: int, put: Any) -> str:
+    """Links in three colours: shorter than desired, about as desired, longer."""
+    kinds: Any
+    if around.edges:
+        pairs: Any = around.edges[j if len(around.edges) > 1 else 0]
+        kinds = np.zeros(len(pairs))
+    elif around.reach and len(q) > 1:
+        pairs = links(q, around.reach)
+        strain = link_lengths(q, pairs) / around.length - 1.0 if around.length else np.zeros(len(pairs))
+        kinds = np.sign(np.where(np.abs(strain) < _NEAR, 0.0, strain))
+    else:
+        return ""
+    if not 0 < len(pairs) <= _MOST:
+        return ""
+    ends, text = put(_flat(q)), ""
+    for kind, name in ((-1, "short"), (1, "long"), (0, "even")):
+        a, b = (ends[pairs[kinds == kind, c]] for c in (0, 1))
+        path = "".join(
+            f"M{x:.0f} {y:.0f}L{u:.0f} {v:.0f}" for (x, y), (u, v) in zip(a.tolist(), b.tolist(), strict=True)
+        )
+        text += f'<path class="link {name}" d="{path}"/>' if path else ""
+    return text
+
+
+def _world(around: World, put: Any, scale: float, height: float) -> str:
+    text = ""
+    for solid in around.solids:
+        if isinstance(solid, Sphere):
+            x, y = put(_flat(np.array([solid.centre])))[0]
+            text += f'<circle class="solid" cx="{x:.0f}" cy="{y:.0f}" r="{scale * solid.radius:.1f}"/>'
+        elif isinstance(solid, Wall) and solid.dimension == 2:
+            x, y = put(np.array([solid.par[:2]]))[0]
+            a, b = solid.par[2:]
+            far = 4.0 * (_SIZE + height)
+            corners = [(x - b * far, y - a * far), (x + b * far, y + a * far)]
+            corners += [(u - a * far, v + b * far) for u, v in reversed(corners)]
+            text += f'<polygon class="solid" points="{_points(corners)}"/>'
+    for line in around.outlines:
+        kind = "solid" if len(line) != 4 else "box"
+        text += f'<polygon class="{kind}" points="{_points(put(_flat(line)).tolist())}"/>'
+    return text
+
+
+def _points(corners: Any) -> str:
+    return " ".join(f"{x:.0f},{y:.0f}" for x, y in corners)
+
+
+def _mark(kind: str, x: float, y: float) -> str:
+    if kind == "cross":
+        return f'<path class="alien" d="M{x - 6:.0f} {y - 6:.0f}l12 12m0-12l-12 12"/>'
+    turns = np.pi * np.arange(10) / 5.0 - np.pi / 2.0
+    radii = np.where(np.arange(10) % 2, 4.0, 10.0)
+    corners = np.column_stack([x + radii * np.cos(turns), y + radii * np.sin(turns)])
+    return f'<polygon class="target" points="{_points(corners.tolist())}"/>'

@@ -1,0 +1,92 @@
+"""What the player is given of a run: its states to float32, its world, its series."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from flockana.dynamics.simulate import simulate
+from flockana.environment.capsule import Capsule
+from flockana.environment.obstacles import Sphere, Wall
+from flockana.environment.targets import LinearTarget
+from flockana.laws.algorithm3 import Algorithm3
+from flockana.laws.minimal import MinimalFlocking
+from flockana.laws.olfati_saber import Algorithm1
+from flockana.player.codec import decode
+from flockana.player.scene import kept, scene
+from flockana.scenarios import scenario
+
+Q = np.array([[0.0, 0.0], [7.0, 0.0], [3.0, 6.0]])
+
+
+def short(law, q=Q, until=1.0):
+    return simulate(law, q, 0.0 * q, (0.0, until))
+
+
+def test_the_states_are_the_run_s_to_float32():
+    run = short(Algorithm1())
+    header, arrays = decode(scene(run, marks=[(0.5, "there")]))
+    for name in ("t", "q", "p"):
+        np.testing.assert_array_equal(arrays[name], getattr(run, name).astype(np.float32))
+    assert (header["reach"], header["length"], header["marks"]) == (8.4, 7.0, [{"t": 0.5, "label": "there"}])
+    names = [series["name"] for series in header["series"]]
+    assert names[:2] == ["H", "residual"]
+    np.testing.assert_allclose(arrays["series_0"], run.energy(), rtol=1e-6)
+    effort = np.linalg.norm(run.u, axis=2).max(axis=1)
+    np.testing.assert_allclose(arrays[f"series_{names.index('effort')}"], effort, rtol=1e-6)
+
+
+def test_obstacles_and_target():
+    solids = Sphere((20.0, 0.0), 4.0), Wall((0.0, -9.0), (0.0, 2.0)), Capsule((30.0, 0.0), (35.0, 0.0), 1.0)
+    run = short(Algorithm3(target=LinearTarget((1.0, 2.0), (3.0, 0.0)), obstacles=solids))
+    header, arrays = decode(scene(run))
+    assert [each["kind"] for each in header["solids"]] == ["sphere", "wall", "other"]
+    assert header["solids"][0]["par"] == [20.0, 0.0, 4.0]
+    assert header["solids"][1]["par"] == [0.0, -9.0, 0.0, 1.0]
+    corners = np.array(header["outlines"][0])
+    assert np.abs(corners - (36.0, 0.0)).sum(axis=1).min() < 0.2
+    assert header["beta"] == run.law.obstacle_field.beta.r
+    np.testing.assert_allclose(arrays["stars"][:, 0], [[1.0 + 3.0 * t, 2.0] for t in run.t], rtol=1e-6)
+
+
+def test_links_that_are_no_matter_of_range_are_told_by_frame():
+    law = MinimalFlocking((1.0, 1.0, 1.0), edges=((0, 1), (1, 2)))
+    header, arrays = decode(scene(short(law)))
+    assert header["edge_counts"] == [2]
+    assert sorted(map(tuple, arrays["edges"].astype(int).tolist())) == [(0, 1), (1, 2)]
+
+
+def test_a_large_run_is_thinned_and_stays_under_a_megabyte():
+    rng = np.random.default_rng(0)
+    run = simulate(
+        Algorithm1(),
+        rng.normal(0.0, 60.0, (150, 2)),
+        rng.normal(0.0, 1.0, (150, 2)),
+        (0.0, 4.0),
+        t_eval=np.linspace(0.0, 4.0, 900),
+    )
+    data = scene(run)
+    assert len(data) < 1_000_000
+    t = decode(data)[1]["t"]
+    assert (len(t), t[0], t[-1]) == (400, 0.0, 4.0)
+
+
+def test_kept_samples_begin_and_end_as_the_run():
+    for samples, most in ((1, 5), (2, 2), (1000, 7)):
+        found = kept(samples, most)
+        assert (found[0], found[-1], len(found)) == (0, samples - 1, min(samples, most))
+
+
+@pytest.mark.parametrize("name", ["zone-52", "dead-zone-leaders", "headings-meet", "head-on"])
+def test_laws_with_a_world_of_their_own(name):
+    item = scenario(name)
+    run = simulate(
+        item.law,
+        item.q0,
+        item.p0,
+        (item.t_span[0], item.t_span[0] + 2.0),
+        **{k: v for k, v in item.options.items() if k == "dt"},
+    )
+    header, arrays = decode(scene(run, exact=False))
+    assert arrays["q"].shape[1:] == (run.n, run.m)
+    assert len(header["series"]) >= 3

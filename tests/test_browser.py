@@ -1,0 +1,202 @@
+"""The report and the player in a real browser: no error, accessible, filtered, played; skipped where there is none.
+
+Needs Chromium and playwright (`pip install flockana[browser]`; no browser of playwright's own). axe-core, which is used
+here only, is in tests/axe with its licence.
+"""
+
+from __future__ import annotations
+
+import base64
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from flockana.dynamics.simulate import simulate
+from flockana.laws.minimal import MinimalFlocking
+from flockana.laws.olfati_saber import Algorithm1
+from flockana.player.page import page
+from flockana.player.scene import scene
+from flockana.report.build import write_report
+from flockana.report.pages import FixedResult, ScenarioResult
+from flockana.scenarios import scenario
+from flockana.theorems import Claim, Verdict, theorem, verify
+
+CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+AXE = Path(__file__).parent / "axe" / "axe.min.js"
+
+
+@pytest.fixture(scope="module")
+def browser():
+    playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed: flockana[browser]")
+    if CHROMIUM is None:
+        pytest.skip("no Chromium on this machine: install the system's package chromium")
+    with playwright.sync_playwright() as driver:
+        started = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        yield started
+        started.close()
+
+
+@pytest.fixture
+def visit(browser):
+    """Open a file, in light or dark, wide or narrow; at the end there must have been no message of an error."""
+    contexts, troubles = [], []
+
+    def visit(path, *, dark=False, width=1280):
+        context = browser.new_context(
+            viewport={"width": width, "height": 900}, color_scheme="dark" if dark else "light"
+        )
+        contexts.append(context)
+        tab = context.new_page()
+        tab.on("pageerror", lambda error: troubles.append(str(error)))
+        tab.on("console", lambda message: troubles.append(message.text) if message.type == "error" else None)
+        tab.on("request", lambda asked: troubles.append(asked.url) if asked.url.startswith("http") else None)
+        tab.goto(path.as_uri())
+        return tab
+
+    yield visit
+    for context in contexts:
+        context.close()
+    assert troubles == []
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory):
+    results = []
+    for name in ("hexagon", "three-agents-1d"):
+        item = scenario(name)
+        run = item.run()
+        results.append(ScenarioResult(item, run, (item.verdict("energy", run),) if name == "hexagon" else ()))
+    derived = Verdict("E1", (), (Claim("corrected", "verified", "symbolic"),))
+    results += [FixedResult(theorem("E8"), verify("E8")), FixedResult(theorem("E1"), derived)]
+    return write_report(results, tmp_path_factory.mktemp("report"))
+
+
+@pytest.fixture(scope="module")
+def run():
+    rng = np.random.default_rng(0)
+    return simulate(Algorithm1(), rng.normal(0.0, 12.0, (20, 2)), rng.normal(0.0, 1.0, (20, 2)), (0.0, 2.0))
+
+
+def violations(tab):
+    tab.add_script_tag(content=AXE.read_text(encoding="utf-8"))
+    found = tab.evaluate("axe.run().then((r) => r.violations.map((v) => [v.id, v.nodes.map((n) => n.target[0])]))")
+    return [(name, places[:3]) for name, places in found]
+
+
+def played(path, data):
+    path.write_text(page(data), encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize(("dark", "width"), [(False, 1280), (True, 390)])
+def test_the_report_is_accessible_and_as_wide_as_its_window(visit, report, dark, width):
+    tab = visit(report, dark=dark, width=width)
+    tab.locator("#open-all").click()
+    tab.wait_for_selector(".fp-row")
+    assert tab.evaluate("document.documentElement.scrollWidth") <= width
+    assert violations(tab) == []
+
+
+def test_the_report_is_filtered(visit, report):
+    tab = visit(report)
+    count = tab.locator("#filter output")
+    whole = count.inner_text()
+    assert whole == "3 of 3 verdicts"
+    tab.fill("[name=words]", "hexagon")
+    assert count.inner_text() == "1 of 3 verdicts"
+    assert tab.locator("section.scenario:visible").count() == 1
+    tab.fill("[name=words]", "")
+    tab.select_option("[name=rigour]", "symbolic")
+    assert count.inner_text() == "1 of 3 verdicts"
+    tab.select_option("[name=rigour]", "")
+    tab.select_option("[name=status]", "inconclusive")
+    assert count.inner_text() == "0 of 3 verdicts"
+
+
+def test_runs_are_decoded_when_their_section_opens_and_a_link_opens_it(visit, report):
+    tab = visit(report)
+    assert tab.locator("canvas").count() == 0
+    tab.locator(".summary a[href='#hexagon--energy']").click()
+    tab.wait_for_selector("#hexagon canvas")
+    assert tab.locator("canvas").count() == 1
+    assert tab.locator("#hexagon--energy").is_visible()
+
+
+def test_without_javascript_all_is_there_but_the_player(browser, report):
+    context = browser.new_context(java_script_enabled=False)
+    tab = context.new_page()
+    tab.goto(report.as_uri())
+    assert not tab.locator("#filter").is_visible()
+    tab.locator("#hexagon > summary").click()
+    assert tab.locator("#hexagon svg").first.is_visible()
+    context.close()
+
+
+def test_the_page_decodes_what_was_encoded(visit, run, tmp_path):
+    for exact in (True, False):
+        data = scene(run, exact=exact)
+        tab = visit(played(tmp_path / "run.html", data))
+        tab.wait_for_selector(".fp-row")
+        source = (Path(__file__).parents[1] / "flockana" / "player" / "decode.js").read_text(encoding="utf-8")
+        text = base64.b64encode(data).decode()
+        tab.add_script_tag(content=source)
+        got = tab.evaluate(f"decodeRun(bytesOfText('{text}')).then((r) => [Array.from(r.q), Array.from(r.t)])")
+        step = 0.0 if exact else np.ptp(run.q) / 2.0**13
+        np.testing.assert_allclose(got[0], run.q.astype(np.float32).ravel(), rtol=1e-6, atol=0.51 * step)
+        np.testing.assert_array_equal(got[1], run.t.astype(np.float32))
+
+
+def test_the_player_plays_pauses_and_answers_keys(visit, run, tmp_path):
+    tab = visit(played(tmp_path / "run.html", scene(run, marks=[(1.5, "there")])))
+    tab.wait_for_selector(".fp-row")
+    clock, start = tab.locator(".fp-clock"), tab.get_by_role("button", name="Play")
+    assert clock.inner_text() == "t = 0"
+    start.click()
+    tab.wait_for_function("document.querySelector('.fp-clock').textContent !== 't = 0'")
+    tab.get_by_role("button", name="Pause").click()
+    tab.get_by_role("button", name="t = 1.5: there").click()
+    tab.wait_for_function("document.querySelector('.fp-clock').textContent === 't = 1.5'")
+    assert tab.locator("[aria-live=polite]").inner_text().startswith("t = 1.5; energy H")
+    tab.locator("canvas").focus()
+    for key, text in (("End", "t = 2"), ("ArrowLeft", "t = 1.98"), ("Home", "t = 0"), ("ArrowRight", "t = 0.02")):
+        tab.keyboard.press(key)
+        tab.wait_for_function(f"document.querySelector('.fp-clock').textContent === '{text}'")
+    energy = float(tab.locator(".fp-row output").first.inner_text())
+    assert energy == pytest.approx(np.interp(0.02, run.t, run.energy()), rel=2e-3)
+    assert violations(tab) == []
+
+
+def pixels(tab):
+    return tab.evaluate("document.querySelector('canvas').toDataURL()")
+
+
+def test_zoom_pan_and_turning_change_the_picture_and_fit_brings_it_back(visit, tmp_path):
+    q = np.random.default_rng(0).normal(size=(8, 3))
+    space = simulate(MinimalFlocking((1.0,) * 3, edges=((0, 1), (1, 2))), q[:3], 0.0 * q[:3], (0.0, 1.0))
+    tab = visit(played(tmp_path / "run.html", scene(space)))
+    tab.wait_for_selector(".fp-row")
+    tab.wait_for_timeout(100)
+    seen = [pixels(tab)]
+    box = tab.locator("canvas").bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    tab.mouse.move(x, y)
+    tab.mouse.down()
+    tab.mouse.move(x + 80, y + 10)
+    tab.mouse.up()
+    tab.wait_for_timeout(100)
+    turned = pixels(tab)
+    seen.append(turned)
+    tab.get_by_role("button", name="Zoom in").click()
+    tab.wait_for_timeout(100)
+    seen.append(pixels(tab))
+    assert len(set(seen)) == 3
+    tab.get_by_role("button", name="Fit").click()
+    tab.wait_for_timeout(100)
+    assert pixels(tab) == turned
+
+
+def test_a_damaged_run_says_so(visit, tmp_path):
+    tab = visit(played(tmp_path / "run.html", b"FLK1 damaged"))
+    tab.wait_for_function("document.querySelector('#player').textContent.startsWith('This run cannot be shown here')")
