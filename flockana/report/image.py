@@ -80,6 +80,7 @@ def _page_s_own(text: str) -> str:
     text = re.sub(r' id="([^"]*)"', lambda m: f' id="{IDS}{m[1]}"' if m[1] in used else "", text)
     text = re.sub(r'(href="#|url\(#)', rf"\g<1>{IDS}", text).replace("xlink:href", "href")
     text = re.sub(r"#[0-9a-f]{6}\b", lambda m: f"var({_COLOURS[m[0]]})" if m[0] in _COLOURS else m[0], text)
+    text = re.sub(r"font-family: [^;\"]*;? ?", "", text)  # the page has one
     text = re.sub(r"font: ([^;\"]*?)(\d+(?:\.\d+)?)px [^;\"]*", r"font: \1\2px system-ui, sans-serif", text)
     text = re.sub(r"(\d+\.\d\d)\d+", r"\1", text)
     return re.sub(r"\s*\n\s*", " ", text)

@@ -37,6 +37,6 @@ def test_a_law_without_a_range_is_refused():
 def test_the_report_draws_it_of_the_projects_map():
     entry = scenario("msn-case2-printed")
     drawn = pictures(entry.run(), entry.instants)
-    assert len(drawn) == 7
+    assert len(drawn) == 5
     assert "rank(A)/n" in drawn[-1].caption
     assert "source shows, 6" in drawn[0].caption
