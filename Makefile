@@ -1,10 +1,10 @@
 # Everything lives in .venv; each target sets up what it needs. PYTHON chooses the interpreter (3.11 or newer), TESTS
-# what `lowest` and `newest` run, OPTIONS goes to `portability` and `bench`.
+# what `lowest` and `newest` run, OPTIONS goes to `portability`, `bench` and `docs`.
 PYTHON ?= python3
 BIN := .venv/bin
 TESTS ?=
 
-.PHONY: verify test attack check bench proofs notebooks course coverage portability lowest newest clean
+.PHONY: verify test attack check bench proofs notebooks course coverage docs portability lowest newest clean
 
 verify: .venv/.installed  ## run the catalogue, check every theorem, write report/index.html
 	$(BIN)/flockana verify
@@ -36,6 +36,9 @@ course: .venv/.dev  ## write course/student and course/solutions as .ipynb
 
 coverage: .venv/.dev  ## write docs/coverage.md: what holds each item of each source
 	$(BIN)/python -m tools.coverage_page
+
+docs: .venv/.docs  ## build the documentation site, site/html/index.html; OPTIONS=--external checks outer links too
+	$(BIN)/python -m tools.site $(OPTIONS)
 
 portability: .venv/.installed  ## which verdicts change on other machine code, from moved starts, at other tolerances
 	$(BIN)/python -m tools.portability $(OPTIONS)
@@ -72,5 +75,9 @@ endef
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
 	touch $@ .venv/.installed
 
+.venv/.docs: .venv/bin/python pyproject.toml
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
+	touch $@ .venv/.installed
+
 clean:
-	rm -rf .venv .venv-lowest .venv-newest report
+	rm -rf .venv .venv-lowest .venv-newest report site docs/generated
