@@ -11,7 +11,7 @@ sys.path[:0] = [str(HERE / "_ext"), str(HERE.parent)]
 from flockana import __version__  # noqa: E402
 
 project = "flockana"
-author = copyright = "The flockana developers"  # noqa: A001  # Sphinx's name
+author = copyright = "The flockana developers"  # Sphinx's name
 version = release = __version__
 
 extensions = [
@@ -19,14 +19,14 @@ extensions = [
     "sphinx.ext.mathjax",
     "numpydoc",
     "myst_nb",
-    "sphinx_mathjax_offline",
+    "sphinx-mathjax-offline",
     "plain_docstrings",
     "keyboard",
 ]
 templates_path = ["_templates"]
 exclude_patterns = ["_ext", "generated/lectures/own_law"]
 default_role = "py:obj"
-suppress_warnings = ["misc.highlighting_failure", "mystnb.unknown_mime_type"]
+suppress_warnings = ["misc.highlighting_failure", "mystnb.unknown_mime_type", "myst-nb.lexer"]
 
 numpydoc_show_class_members = False
 autodoc_member_order = "bysource"

@@ -1,7 +1,8 @@
 """Write the documentation site: `python -m tools.site`; exit status 0, or 1 with what is wrong.
 
-`--verdicts FILE` takes measured verdicts from a report's ``verdicts.json`` (by default report/verdicts.json, if there is
-one); `--draft` executes no page and draws no picture of a run, for who writes text; `--external` checks links to other sites too, which needs the network.
+`--verdicts FILE` takes measured verdicts from a report's ``verdicts.json`` (by default report/verdicts.json, if there
+is one); `--draft` executes no page and draws no picture of a run, for who writes text; `--external` checks links to
+other sites too, which needs the network.
 """
 
 from __future__ import annotations
@@ -31,7 +32,8 @@ def generate(verdicts: Path | None, *, draft: bool = False) -> None:
 
 
 def build(builder: str, folder: Path, *, draft: bool = False) -> int:
-    """Run Sphinx with warnings as errors; return its exit status. Kernels import the checkout: lecture 11 has a proof."""
+    """Run Sphinx with warnings as errors; return its exit status."""
+    # kernels import the checkout: lecture 11 has a proof
     environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), *filter(None, [os.getenv("PYTHONPATH")])])}
     options = ["-D", "nb_execution_mode=off"] if draft else []
     options += ["-W", "--keep-going", "-q", "-d", str(SITE / "cache" / "doctrees")]

@@ -18,7 +18,9 @@ SOURCES = ROOT / "notebooks"
 def lecture(source: Path) -> Any:
     """The notebook of a lecture: without blanks to fill in, solutions and checks hidden until a click."""
     book = jupytext.read(source)
-    book.metadata = nbformat.from_dict({"kernelspec": {"name": "python3", "language": "python", "display_name": "Python"}})
+    book.metadata = nbformat.from_dict(
+        {"kernelspec": {"name": "python3", "language": "python", "display_name": "Python"}}
+    )
     book.cells = [cell for cell in book.cells if "answer" not in cell.metadata.get("tags", ())]
     for number, cell in enumerate(book.cells):
         cell["id"] = f"{source.stem[:2]}-{number:03d}"
@@ -36,7 +38,9 @@ def write(folder: Path) -> None:
         nbformat.write(lecture(source), folder / f"{source.stem}.ipynb")
     for helper in (path for path in SOURCES.iterdir() if path not in sources and path.name != "__pycache__"):
         if helper.is_dir():
-            shutil.copytree(helper, folder / helper.name, dirs_exist_ok=True, ignore=shutil.ignore_patterns("__pycache__"))
+            shutil.copytree(
+                helper, folder / helper.name, dirs_exist_ok=True, ignore=shutil.ignore_patterns("__pycache__")
+            )
         else:
             shutil.copy(helper, folder)
     opening = (

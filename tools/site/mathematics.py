@@ -67,7 +67,11 @@ NOTATION = (
     (r"$c_1^\gamma, c_2^\gamma$", "gains of the γ-agent", "`c1_gamma`, `c2_gamma`"),
     ("$q_r$, $p_r$", "position and velocity of the γ-agent", "`target`"),
     (r"$x_i$, $v_i$", "position and velocity in the frame of the centre of mass", ""),
-    ("$V$, $J$, $K$", "potential of the pairs, moment of inertia, velocity mismatch", "`energy`, `inertia`, `velocity_mismatch`"),
+    (
+        "$V$, $J$, $K$",
+        "potential of the pairs, moment of inertia, velocity mismatch",
+        "`energy`, `inertia`, `velocity_mismatch`",
+    ),
     ("$c^*$", "ψ_α(0), the energy of one coincident pair", "`c_star`"),
     (r"$\lambda$", r"$c_1^\gamma$ in $U_\lambda$; elsewhere an eigenvalue", ""),
     (r"$\tilde E$, $\tilde K$", "deviation energy over $d^2$, mismatch over $n$", "`normalised_deviation_energy`, …"),
@@ -76,8 +80,8 @@ NOTATION = (
 _OPENING = """\
 # Mathematics
 
-Nothing on this page but the notation table is typed: each formula is printed by the function of `flockana.symbolic` that
-stands beside it, and tests hold the compiled kernels against the same functions.
+Nothing on this page but the notation table is typed: each formula is printed by the function of `flockana.symbolic`
+that stands beside it, and tests hold the compiled kernels against the same functions.
 """
 
 

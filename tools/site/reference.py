@@ -22,7 +22,9 @@ _TITLES = {
     "lammps": "LAMMPS",
     "laws": "Laws",
     "measures": "Measures",
+    "plots": "Films",
     "scenarios": "Scenarios",
+    "stability": "Linear stability",
     "theorems": "Theorems and verdicts",
 }
 
@@ -59,8 +61,11 @@ def directive(module: str, name: str) -> str:
         inner = "\n\n".join(directive(item.__name__, one) for one in names if not inspect.ismodule(getattr(item, one)))
         return f".. rubric:: {item.__name__}\n\n{inner}"
     if inspect.isclass(item):
-        return f".. autoclass:: {module}.{name}\n   :members:"
-    return f".. {'autofunction' if callable(item) else 'autodata'}:: {module}.{name}" + ("" if callable(item) else "\n   :no-value:")
+        twice = module != "flockana" and getattr(flockana, name, None) is item  # the index leads to the first
+        return f".. autoclass:: {module}.{name}\n   :members:" + ("\n   :no-index:" if twice else "")
+    if callable(item):
+        return f".. autofunction:: {module}.{name}"
+    return f".. autodata:: {module}.{name}\n   :no-value:"
 
 
 def write(folder: Path) -> None:

@@ -96,7 +96,9 @@ def _scenarios(item: Theorem, verdicts: Measured) -> str:
         rows.append(("by itself", item.expected.get(item.id, "—"), verdicts.get((item.id, ""), "—")))
     for name in checked_on(item.id):
         case = scenario(name)
-        rows.append((f"`{name}`: {plain(case.title)}", case.expected.get(item.id, "—"), verdicts.get((item.id, name), "—")))
+        rows.append(
+            (f"`{name}`: {plain(case.title)}", case.expected.get(item.id, "—"), verdicts.get((item.id, name), "—"))
+        )
     if not rows:
         return "No scenario of the catalogue asks it."
     header = ("scenario", "expected", "measured")
