@@ -42,6 +42,7 @@ nb_merge_streams = True
 
 html_theme = "pydata_sphinx_theme"
 html_title = "flockana"
+html_context = {"default_mode": "auto"}
 html_static_path = ["_static"]
 html_css_files = ["flockana.css"]
 html_copy_source = False

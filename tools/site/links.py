@@ -35,7 +35,8 @@ def _read(file: Path) -> _Page:
 
 def dead(folder: Path) -> Iterator[str]:
     """Links of the pages in a folder that lead nowhere, one line each."""
-    for file in sorted(folder.rglob("*.html")):
+    pages = (file for file in folder.rglob("*.html") if "_static" not in file.relative_to(folder).parts)  # templates
+    for file in sorted(pages):
         for target in _read(file).targets:
             parts = urlsplit(target)
             if parts.scheme or parts.netloc or target in ("", "#"):
