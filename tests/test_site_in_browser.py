@@ -31,11 +31,12 @@ def browser():
 @pytest.mark.parametrize("name", PAGES)
 def test_a_page_is_quiet_fits_and_can_be_read_by_all(browser, name, width, scheme):
     page = browser.new_page(viewport={"width": width, "height": 800}, color_scheme=scheme)
+    page.set_default_timeout(120_000)  # milliseconds: on a busy machine
     said: list[str] = []
     page.on("console", lambda message: said.append(message.text) if message.type == "error" else None)
     page.on("pageerror", lambda error: said.append(str(error)))
     page.goto((HTML / name).as_uri())
-    page.wait_for_load_state("networkidle")
+    page.wait_for_load_state("load")
     page.wait_for_function("!window.MathJax || !MathJax.startup || MathJax.startup.promise.then(() => true)")
     assert said == []
     assert (
