@@ -1,11 +1,11 @@
 # Everything lives in .venv; each target sets up what it needs. PYTHON chooses the interpreter (3.11 or newer), TESTS
-# what `lowest` and `newest` run, NAME what `wheel` verifies, OPTIONS goes to `portability`, `mutation` and `bench`.
+# what `lowest` and `newest` run, NAME what `wheel` verifies, OPTIONS goes to `portability`, `mutation`, `bench`, `docs`.
 PYTHON ?= python3
 BIN := .venv/bin
 TESTS ?=
 NAME ?= hexagon
 
-.PHONY: verify test attack check bench proofs notebooks course coverage portability mutation lowest newest wheel clean
+.PHONY: verify test attack check bench proofs notebooks course coverage docs portability mutation lowest newest wheel clean
 
 verify: .venv/.installed  ## run the catalogue, check every theorem, write report/index.html
 	$(BIN)/flockana verify
@@ -38,6 +38,9 @@ course: .venv/.dev  ## write course/student and course/solutions as .ipynb
 
 coverage: .venv/.dev  ## write docs/coverage.md: what holds each item of each source
 	$(BIN)/python -m tools.coverage_page
+
+docs: .venv/.docs  ## build the documentation site, site/html/index.html; OPTIONS=--external checks outer links too
+	$(BIN)/python -m tools.site $(OPTIONS)
 
 portability: .venv/.installed  ## which verdicts change on other machine code, from moved starts, at other tolerances
 	$(BIN)/python -m tools.portability $(OPTIONS)
@@ -88,5 +91,9 @@ endef
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
 	touch $@ .venv/.installed
 
+.venv/.docs: .venv/bin/python pyproject.toml
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
+	touch $@ .venv/.installed
+
 clean:
-	rm -rf .venv .venv-lowest .venv-newest .venv-wheel dist report
+	rm -rf .venv .venv-lowest .venv-newest .venv-wheel dist report site docs/generated

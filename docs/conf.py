@@ -1,0 +1,58 @@
+"""Sphinx settings of the documentation site; `make docs` writes the generated pages first and checks the links last."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE / "_ext"), str(HERE.parent)]
+
+from flockana import __version__  # noqa: E402
+
+project = "flockana"
+author = copyright = "The flockana developers"  # Sphinx's name
+version = release = __version__
+
+extensions = [
+    "sphinx.ext.autodoc",
+    "sphinx.ext.mathjax",
+    "numpydoc",
+    "myst_nb",
+    "sphinx-mathjax-offline",
+    "plain_docstrings",
+    "keyboard",
+]
+templates_path = ["_templates"]
+exclude_patterns = ["_ext", "generated/lectures/own_law"]
+default_role = "py:obj"
+suppress_warnings = ["misc.highlighting_failure", "mystnb.unknown_mime_type", "myst-nb.lexer"]
+
+numpydoc_show_class_members = False
+autodoc_member_order = "bysource"
+autodoc_typehints = "none"  # numpydoc sections say it in words
+
+myst_enable_extensions = ["amsmath", "dollarmath", "deflist", "colon_fence", "attrs_block", "attrs_inline"]
+myst_heading_anchors = 3
+nb_execution_mode = "cache"
+nb_execution_cache_path = str(HERE.parent / "site" / "cache" / "notebooks")
+nb_execution_timeout = 600
+nb_execution_raise_on_error = True
+nb_merge_streams = True
+
+html_theme = "pydata_sphinx_theme"
+html_title = "flockana"
+html_context = {"default_mode": "auto"}
+html_static_path = ["_static"]
+html_css_files = ["flockana.css"]
+html_copy_source = False
+html_show_sourcelink = False
+html_theme_options = {
+    "show_toc_level": 2,
+    "navigation_with_keys": True,
+    "secondary_sidebar_items": ["page-toc"],
+    "footer_start": ["copyright"],
+    "footer_end": [],
+    "pygments_light_style": "a11y-high-contrast-light",
+    "pygments_dark_style": "a11y-high-contrast-dark",
+}

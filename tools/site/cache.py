@@ -1,0 +1,36 @@
+"""What a build need not do again: results kept as JSON or images under the digest of the code that they came from."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Iterable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+CACHE = ROOT / "site" / "cache"
+
+
+@cache
+def digest(folders: tuple[str, ...]) -> str:
+    """Digest of every Python file in these folders of the checkout."""
+    mix = hashlib.sha256()
+    for folder in folders:
+        for path in sorted((ROOT / folder).rglob("*.py")):
+            mix.update(path.relative_to(ROOT).as_posix().encode() + b"\0" + path.read_bytes())
+    return mix.hexdigest()[:16]
+
+
+def kept(kind: str, name: str, folders: Iterable[str], make: Callable[[], Any]) -> Any:
+    """The JSON value of that name, made again where the code in `folders` has changed."""
+    path = CACHE / kind / f"{name}-{digest(tuple(folders))}.json"
+    if path.exists():
+        return json.loads(path.read_text(encoding="utf-8"))
+    value = make()
+    path.parent.mkdir(parents=True, exist_ok=True)
+    for older in path.parent.glob(f"{name}-{'?' * 16}.json"):
+        older.unlink()
+    path.write_text(json.dumps(value, ensure_ascii=False), encoding="utf-8")
+    return value
