@@ -132,7 +132,7 @@ def test_the_report_adds_a_figure_where_there_are_obstacles():
     drawn = pictures(two_discs())
     assert len(drawn) == 4
     assert "clearance" in drawn[3].caption
-    assert drawn[0].source.count("<circle class=\"solid\"") == 6  # two discs, three instants
+    assert drawn[0].source.count('<circle class="solid"') == 6  # two discs, three instants
 
 
 def test_rules_draw_links_by_sign_and_the_parts_of_u_on_one_scale():
