@@ -143,13 +143,12 @@ def form_of(right: Any) -> str:
 
 
 def _number(x: Any) -> bool:
-    if isinstance(x, str | bytes | bool | np.bool_):
-        return False
     try:
-        a = np.asarray(x, dtype=float)
+        a = np.asarray(x)
+        real = a.dtype.kind in "fiuO" or (a.dtype.kind == "c" and not np.any(a.imag))  # no text, date or truth value
+        return bool(real and isinstance(float(a.real.item()), float))
     except (TypeError, ValueError):
         return False
-    return bool(a.size == 1)
 
 
 _FORMS: dict[str, Callable[[Any], bool]] = {
@@ -178,10 +177,10 @@ def _same(answer: Any, right: Any, tolerance: Callable[[float], float]) -> bool:
     if isinstance(right, list | tuple | np.ndarray):
         return len(answer) == len(right) and all(_same(a, b, tolerance) for a, b in zip(answer, right, strict=True))
     if isinstance(right, bool | np.bool_):
-        return bool(answer) is bool(right)
+        return isinstance(answer, bool | np.bool_) and bool(answer) is bool(right)
     if isinstance(right, str):
         return isinstance(answer, str) and answer.strip().casefold() == right.casefold()
-    return _number(answer) and abs(float(np.asarray(answer, dtype=float).item()) - right) <= tolerance(float(right))
+    return _number(answer) and abs(float(np.asarray(answer).real.item()) - right) <= tolerance(float(right))
 
 
 def _matched(answers: list[Any], rights: list[Any], tolerance: Callable[[float], float]) -> bool:

@@ -244,7 +244,7 @@ def semi_implicit_steps(q, p, par, c2, dt, steps):
                 near[first[k], second[k]] = near[second[k], first[k]] = inside[k]
         for c in range(m):
             for i in range(n):
-                z[c, i], u[c, i] = k_1 * x[c, i] + c2 * v[c, i], 0.0
+                z[c, i], u[c, i] = k_1 * (x[c, i] - x[c, 0]) + c2 * (v[c, i] - v[c, 0]), 0.0
             z_c, u_c = z[c], u[c]
             for j in range(0, n, 4):
                 a_0, a_1, a_2, a_3 = near[j], near[j + 1], near[j + 2], near[j + 3]

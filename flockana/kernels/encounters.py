@@ -197,7 +197,9 @@ def share_of_listed(h, q0, p0, u0, q1, p1, u1, mean, farthest, radii, far, first
                 one = i if a == 0 else j
                 own[a] = radii[one]
                 allowance[a] = quintic(h, q0[one], p0[one], u0[one], q1[one], p1[one], u1[one], points[a])
-                points[a] -= mean
+                for node in range(6):  # by its indices: compiled code does not check that shapes agree
+                    for c in range(m):
+                        points[a, node, c] -= mean[node, c]
                 reach[a] = reach_of(points[a]) + allowance[a]
             share = _share(points, reach, allowance, own, far, 0, 1, share, stack, spans)
     return share

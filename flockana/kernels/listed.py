@@ -118,7 +118,7 @@ def lift_listed(
                 count += square < limit
             return count
 
-        @njit(error_model="numpy", nogil=True, _nrt=False)  # what allocates nothing need count no references
+        @njit(error_model="numpy", nogil=True)  # a pair law of a user's may allocate
         def sweep(x, v, u, numbers, first, second, size, near, d, s2, w, a):
             total, c1, c2, r = 0.0 * digest, numbers[0], numbers[1], numbers[2]
             par, limit = _as_tuple(numbers[4:]), max(r * r, 5e-324)

@@ -108,11 +108,11 @@ def _pull(q, p, first, second, square, mu, rho, align, u):
         s2 = 0.0
         for c in range(m):
             s2 += (q[j, c] - q[i, c]) ** 2
-        inverse = 1.0 / np.sqrt(s2) if s2 > 0.0 else 0.0
+        s = np.sqrt(s2)
         for way in range(2):
             head, tail = (i, j) if way == 0 else (j, i)
             if s2 <= square[head]:
-                w = mu * (1.0 - rho[head] * inverse) if s2 > 0.0 else 0.0
+                w = mu * (1.0 - rho[head] / s) if s2 > 0.0 else 0.0
                 for c in range(m):
                     u[head, c] += w * (q[tail, c] - q[head, c]) + align[head] * (p[tail, c] - p[head, c])
 

@@ -171,7 +171,7 @@ def scene(
         arrays["edges"] = Packed(np.concatenate(around.edges).reshape(-1, 2), 1.0)
     arrays["series_t"] = Packed(run.t[samples])
     for k, (*_, numbers) in enumerate(series):
-        arrays[f"series_{k}"] = Packed(np.clip(np.nan_to_num(numbers[samples]), -_EXTREME, _EXTREME))
+        arrays[f"series_{k}"] = Packed(np.clip(numbers[samples], -_EXTREME, _EXTREME))
     header = {
         "n": run.n,
         "m": run.m,
@@ -218,7 +218,7 @@ def _series(run: Trajectory) -> list[tuple[str, str, bool, FloatArray]]:
             it = run.measure(name)
             found.append((name, it.label, bool(it.logarithmic), run.metric(name)))
     found.append(("effort", "control effort: greatest ‖u‖", False, np.linalg.norm(run.u, axis=2).max(axis=1)))
-    return found
+    return [each for each in found if np.isfinite(each[-1]).all()]  # a number that is none has no place in a strip
 
 
 def _finite(value: Any) -> float | None:

@@ -15,7 +15,9 @@ document.querySelectorAll("section.scenario > details").forEach((details) => {
 });
 
 function follow() {  // an address within a folded section opens it
-  const target = location.hash.length > 1 && document.getElementById(decodeURIComponent(location.hash.slice(1)));
+  let name = "";
+  try { name = decodeURIComponent(location.hash.slice(1)); } catch { return; }  // no address of ours
+  const target = name && document.getElementById(name);
   if (!target) return;
   for (let node = target; node; node = node.parentElement) if (node.tagName === "DETAILS") node.open = true;
   target.scrollIntoView();

@@ -152,7 +152,7 @@ def euler_step_in_python(q, p, pair, k2, dt):
     """One semi-implicit Euler step in Python's own floats, every operation in the order that the kernel writes down."""
     n, m = q.shape
     x, v = q.T.tolist(), p.T.tolist()
-    z = [[pair.k1 * x[c][i] + k2 * v[c][i] for i in range(n)] + [0.0] * 3 for c in range(m)]
+    z = [[pair.k1 * (x[c][i] - x[c][0]) + k2 * (v[c][i] - v[c][0]) for i in range(n)] + [0.0] * 3 for c in range(m)]
     u, pushed = [[0.0] * n for _ in range(m)], []
     near = [[0.0] * n for _ in range(n + 3)]
     steep = 1.0 / pair.ramp if pair.ramp > 0.0 else 1e300

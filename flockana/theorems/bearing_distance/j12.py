@@ -116,7 +116,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             stated={case: pair[0] for case, pair in stand_offs.items()},
             witness="head on, inputs unbounded, weights that damp the approach",
             proof="stand-off",
-            detail="agents that run head on at a wall, or at each other, stop at c - v^d w^ga/w in "
+            detail="agents that run head on at a wall, or at each other, come to c - v^d w^ga/w in "
             f"{len(stand_offs)} cases (off by {error:.1g} m)",
         ),
         judged(
@@ -126,7 +126,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             computed={"distance from the wall": at_wall, "least signed gap of two agents": least_gap},
             stated="w^oa = w^ls = 5 keep agents off walls and each other",
             witness={"w^ga": 5.0, "w": 5.0, "c": 3.0, "v^d": 3.0, "stand-off": 0.0},
-            proof="stand-off",
             detail=f"with the printed 5, 5, 3, 3 the stand-off is 0: an agent comes to rest {abs(at_wall):.1g} m from "
             "the wall, and two that meet head on pass through each other",
         ),
@@ -137,8 +136,10 @@ THEOREM = erratum(
     "J12",
     title="Repulsion reverses inside obstacles, and the printed weights allow contact",
     statement=(
-        "Inside an obstacle or beyond a wall b - p_i reverses, and (8) pushes deeper in. Outside, an agent that "
-        "runs head on at a wall or another agent stands off at c - v^d w^ga/w: 0 with the printed 5, 5, 3, 3."
+        "Inside an obstacle or beyond a wall b - p_i reverses, and (8) pushes deeper in. Outside, where weights damp "
+        "the approach, (w^ga)² > 4w (8w for two agents), an agent that runs head on at a wall or another agent comes "
+        "to c - v^d w^ga/w from it. At the printed 5, 5, 3, 3 that is 0 at a wall, and two agents pass through each "
+        "other."
     ),
     source="Jond, bearing-distance flocking, (8) and section 5",
     check=_check,
