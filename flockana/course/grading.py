@@ -145,10 +145,10 @@ def form_of(right: Any) -> str:
 def _number(x: Any) -> bool:
     try:
         a = np.asarray(x)
-        real = a.dtype.kind in "fiuO" or (a.dtype.kind == "c" and not np.any(a.imag))  # no text, date or truth value
-        return bool(real and isinstance(float(a.real.item()), float))
+        float(a.real.item())
     except (TypeError, ValueError):
         return False
+    return a.dtype.kind in "fiuO" or (a.dtype.kind == "c" and not np.any(a.imag))  # no text, date or truth value
 
 
 _FORMS: dict[str, Callable[[Any], bool]] = {

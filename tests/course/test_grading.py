@@ -100,3 +100,15 @@ def test_a_students_copy_looks_at_the_form_only(answer, form, status):
 )
 def test_the_form_of_a_right_answer(right, form):
     assert form_of(right) == form
+
+
+@pytest.mark.parametrize(
+    "answer", [np.complex128(1.0 + 5.0j), np.array([1.0 + 5.0j]), 1.0 + 5.0j, np.datetime64("1970-01-02"), "1"]
+)
+def test_what_is_no_real_number_is_not_graded_as_one(answer):
+    assert grade(answer, 1.0).status == "not yet"
+    assert grade(np.complex128(1.0), 1.0).status == "right"
+
+
+def test_words_are_no_truth_values():
+    assert grade(["wrong", ""], [True, False]).status == "not yet"

@@ -33,3 +33,9 @@ def test_forces_without_edges_are_those_along_them(parameters, m):
     np.testing.assert_allclose(u, expected, rtol=0.0, atol=1e-13 * abs(expected).max())
     assert np.isnan(rate)
     assert not u[0].any()
+
+
+def test_at_the_desired_spacing_nothing_pulls():
+    q, p = np.array([[0.0, 0.0], [49.0, 0.0]]), np.zeros((2, 2))  # 49 (1/49) is not 1
+    u, _ = MinimalFlocking(radius=60.0, spacing=49.0).flow(0.0, q, p)
+    assert not u.any()

@@ -36,6 +36,16 @@ def test_the_states_are_the_run_s_to_float32():
     np.testing.assert_allclose(arrays[f"series_{names.index('effort')}"], effort, rtol=1e-6)
 
 
+def test_a_series_that_is_not_a_number_everywhere_is_left_out(monkeypatch):
+    run = short(Algorithm1())
+    metric = type(run).metric
+    gap = lambda self, name: metric(self, name) * (np.nan if name == "min_distance" else 1.0)  # noqa: E731
+    with_it = [series["name"] for series in decode(scene(run))[0]["series"]]
+    monkeypatch.setattr(type(run), "metric", gap)
+    assert "min_distance" in with_it
+    assert [series["name"] for series in decode(scene(run))[0]["series"]] == [n for n in with_it if n != "min_distance"]
+
+
 def test_obstacles_and_target():
     solids = Sphere((20.0, 0.0), 4.0), Wall((0.0, -9.0), (0.0, 2.0)), Capsule((30.0, 0.0), (35.0, 0.0), 1.0)
     run = short(Algorithm3(target=LinearTarget((1.0, 2.0), (3.0, 0.0)), obstacles=solids))
