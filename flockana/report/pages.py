@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from flockana.base.errors import ArgumentError
 from flockana.dynamics.trajectory import Trajectory
 from flockana.player.page import text_of
 from flockana.player.scene import scene
@@ -185,7 +186,10 @@ def page(result: ScenarioResult | FixedResult, *, figures: bool = True) -> Page:
 
 
 def _play(scenario: Scenario, run: Trajectory, verdicts: tuple[Verdict, ...]) -> str:
-    """The run for the player, with the source's instants and those that the verdicts' claims point to."""
+    """The run for the player, with the source's instants and those that the verdicts' claims point to.
+
+    Empty where places or velocities are so large that the player's numbers have no room for them.
+    """
     marks: dict[float, list[str]] = {float(time): ["as in the source"] for time in scenario.instants}
     for verdict in verdicts:
         for claim in verdict.claims:
@@ -193,7 +197,11 @@ def _play(scenario: Scenario, run: Trajectory, verdicts: tuple[Verdict, ...]) ->
             if isinstance(time, float | int) and run.t[0] <= time <= run.t[-1]:
                 marks.setdefault(float(time), []).append(f"{verdict.theorem} {claim.name}")
     named = [(time, ", ".join(names)) for time, names in sorted(marks.items())]
-    return text_of(scene(run, values=_VALUES, exact=False, title=f"{scenario.name}: {scenario.title}", marks=named))
+    try:
+        played = scene(run, values=_VALUES, exact=False, title=f"{scenario.name}: {scenario.title}", marks=named)
+    except ArgumentError:
+        return ""
+    return text_of(played)
 
 
 def _scenario_finding(scenario: Scenario, verdict: Verdict) -> Finding:

@@ -151,6 +151,13 @@ def test_the_run_in_the_page_is_the_run(result):
     assert page(result, figures=False).play == ""
 
 
+def test_a_run_too_large_for_the_player_has_a_page_without_it(result):
+    run = result.trajectory
+    fast = replace(result, trajectory=replace(run, p=run.p + 1e60))
+    assert page(result).play
+    assert page(fast).play == ""
+
+
 def test_instants_of_source_and_witnesses_are_marked_once_each(result):
     seen = Claim("iii", "verified", witness={"time": 0.5})
     late = Claim("iv", "verified", witness={"time": 99.0})  # not in this run
