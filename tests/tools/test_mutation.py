@@ -105,9 +105,9 @@ def test_what_a_file_of_the_package_is_tested_by(path, first):
 
 ASKED = """
 import json, sys
-from dataclasses import astuple
 from pathlib import Path
 from tools.mutation import trial
+sys.path.append(str(Path(sys.argv[1]).parent / "libraries"))
 trial._SLACK = 0.5
 with trial.mutated(Path(sys.argv[1]), "number.py", f"number = {sys.argv[2]}") as tree:
     result = trial.attempt(tree, ["test_first.py", "test_number.py"], {"test_number.py": 0.1}, 60.0, False)
@@ -137,13 +137,39 @@ def test_what_tests_say_of_a_mutant(tmp_path, number, said):
     clean = tmp_path / "clean"
     clean.mkdir()
     (clean / "number.py").write_text("number = 3")
-    (clean / "test_first.py").write_text("def test_nothing():\n    pass\n")
+    (clean / "test_first.py").write_text("import beside\ndef test_nothing():\n    pass\n")
+    libraries = tmp_path / "libraries"  # data of an editable install lie there under the package's name
+    (libraries / "flockana/course").mkdir(parents=True)
+    (libraries / "beside.py").touch()
     (clean / "test_number.py").write_text(TESTS)
     asked = [sys.executable, "-c", ASKED, str(clean), number]  # not forked from here, out of a test that runs
     done = subprocess.run(asked, cwd=command.PROJECT, capture_output=True, text=True, check=True)
     assert json.loads(done.stdout) == said
     assert (clean / "number.py").read_text() == "number = 3"
-    assert [one.name for one in tmp_path.iterdir()] == ["clean"]
+    assert sorted(one.name for one in tmp_path.iterdir()) == ["clean", "libraries"]
+
+
+def test_tests_that_fail_without_a_change_kill_nothing(monkeypatch, tmp_path, capsys):
+    (tmp_path / "flockana/laws").mkdir(parents=True)
+    (tmp_path / "flockana/laws/a.py").write_text("c = a + b")
+    crew = object.__new__(command.Crew)
+    crew.clean, crew.budget, crew.usual, crew.broken = tmp_path, 1.0, {}, set()
+    crew.nearby = type("Two", (), {"order": staticmethod(lambda path: ["test_bad.py", "test_good.py"])})
+    monkeypatch.setattr(Mutant, "source", lambda *_: "c = a - b")
+    monkeypatch.setattr(trial, "attempt", lambda tree, files, *_: said(tree == tmp_path, files))
+
+    def said(unchanged, files):
+        wrong = [file for file in files if file in ("test_bad.py", *([] if unchanged else failing))]
+        return trial.Result("killed", f"{wrong[0]}::test") if wrong else trial.Result("survived", "", 0.1)
+
+    failing = []
+    assert crew.judge(mutant("a - b")).outcome == "survived"
+    assert "test_bad.py is left out, it fails without a change" in capsys.readouterr().err
+    failing.append("test_good.py")
+    assert crew.judge(mutant("a - b")).by == "test_good.py::test"
+    crew.broken.add(("test_good.py", False))
+    with pytest.raises(RuntimeError, match=r"no test that reaches flockana/laws/a\.py passes without a change"):
+        crew.judge(mutant("a - b"))
 
 
 def mutant(after, package="laws"):

@@ -49,7 +49,6 @@ def arguments() -> argparse.ArgumentParser:
         help="processor time for one mutant, in seconds (default 120)",
     )
     parser.add_argument("--file", metavar="PART", default="", help="only files whose path has this in it")
-    parser.add_argument("--trusted", action="store_true", help="all tests are known to pass without a change")
     parser.add_argument("--again", action="store_true", help="try survivors again, after new tests")
     parser.add_argument("--out", type=Path, default=PROJECT / "report" / "mutation", metavar="FOLDER")
     return parser
@@ -77,44 +76,46 @@ def read_reviewed(path: Path = REVIEWED) -> dict[tuple[str, str, str], str]:
 class Crew:
     """Tries mutants, in a folder with a clean copy of the project."""
 
-    def __init__(self, folder: Path, state: Path, budget: float, trusted: bool) -> None:
+    def __init__(self, folder: Path, state: Path, budget: float) -> None:
         self.clean = trial.clean_copy(PROJECT, folder)
         compileall.compile_dir(self.clean, quiet=2)
         self.nearby, self.state, self.budget = Nearby(self.clean), state, budget
-        self.trusted, self.usual = trusted, dict[str, float]()
-        self.broken: set[str] = set()
+        self.usual, self.broken = dict[tuple[str, bool], float](), set[tuple[str, bool]]()
 
-    def passes(self, file: str) -> bool:
+    def passes(self, file: str, interpreted: bool = False) -> bool:
         """Whether a test file passes without a change; its time is noted."""
-        if not self.trusted and file not in self.usual and file not in self.broken:
-            result = trial.attempt(self.clean, [file], {file: 200.0}, 1e9, True)
+        key = (file, interpreted)
+        if key not in self.usual and key not in self.broken:
+            result = trial.attempt(self.clean, [file], {file: 200.0}, 1e9, True, interpreted)
             if result.outcome == "survived":
-                self.usual[file] = result.seconds
+                self.usual[key] = result.seconds
             else:
-                self.broken.add(file)
+                self.broken.add(key)
                 sys.stderr.write(f"mutation: {file} is left out, it fails without a change: {result.by}\n")
-        return file not in self.broken
+        return key not in self.broken
 
     def judge(self, mutant: Mutant) -> trial.Result:
-        """Try one mutant."""
-        order = [file for file in self.nearby.order(mutant.path) if file not in self.broken]
-        self.passes(order[0])
-        while True:
-            order = [file for file in order if file not in self.broken]
+        """Try one mutant: what fails counts only if it passes without the change."""
+        if mutant.package == "kernels" and (result := self._asked(mutant, True)).killed:
+            return result
+        return self._asked(mutant, False)
+
+    def _asked(self, mutant: Mutant, interpreted: bool) -> trial.Result:
+        nearest = [file for file in self.nearby.order(mutant.path) if not interpreted or file in INTERPRETED]
+        compiles = not interpreted and mutant.package in ("kernels", "interactions")
+        if nearest and not interpreted:
+            self.passes(nearest[0])  # for its time
+        while files := [file for file in nearest if (file, interpreted) not in self.broken]:
+            usual = {file: 2.0 if interpreted else self.usual.get((file, False), 20.0) for file in files}
             with trial.mutated(self.clean, mutant.path, mutant.source(self.clean)) as tree:
-                quick = [file for file in order if mutant.package == "kernels" and file in INTERPRETED]
-                result = (
-                    trial.attempt(tree, quick, dict.fromkeys(quick, 2.0), 10.0, False, True)
-                    if quick
-                    else trial.Result("survived")
-                )
-                if result.killed:
-                    return result
-                compiles = mutant.package in ("kernels", "interactions")
-                result = trial.attempt(tree, order, self.usual, self.budget, compiles)
-            failed = next((file for file in order if result.by.startswith(file)), None)
-            if not result.killed or failed is None or self.passes(failed):
+                budget = 10.0 if interpreted else self.budget
+                result = trial.attempt(tree, files, usual, budget, compiles, interpreted)
+            failed = next((file for file in files if result.by.startswith(file)), files[0])
+            if not result.killed or self.passes(failed, interpreted):
                 return result
+        if interpreted:
+            return trial.Result("survived")
+        raise RuntimeError(f"no test that reaches {mutant.path} passes without a change: run the tests first")
 
     def work(self, mutants: Iterable[Mutant]) -> None:
         """Try mutants and note each."""
@@ -124,24 +125,29 @@ class Crew:
                 notes.write(line)
 
 
-def carry_out(mutants: Sequence[Mutant], state: Path, *, jobs: int, budget: float, trusted: bool) -> None:
+def carry_out(mutants: Sequence[Mutant], state: Path, *, jobs: int, budget: float) -> None:
     """Try mutants in some processes at once; each notes what it found."""
     os.environ.update(dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"), "1"))
     sys.argv[1:] = []
     trial.preload()
     with tempfile.TemporaryDirectory(prefix="mutation-", ignore_cleanup_errors=True) as folder:
-        crew, children = Crew(Path(folder), state, budget, trusted), []
+        crew, children = Crew(Path(folder), state, budget), []
         for number in range(min(jobs, len(mutants))):
             child = os.fork()
             if not child:
+                code = 1
                 try:
                     crew.work(mutants[number::jobs])
+                    code = 0
+                except Exception as error:
+                    sys.stderr.write(f"mutation: {error}\n")
                 finally:
-                    os._exit(0)
+                    os._exit(code)
             children.append(child)
-        for child in children:
-            os.waitpid(child, 0)
+        failed = [child for child in children if os.waitpid(child, 0)[1]]
         shutil.rmtree(crew.clean, ignore_errors=True)
+    if failed:
+        raise SystemExit("mutation: not all were tried")
 
 
 def main(given: Sequence[str] | None = None) -> int:
@@ -164,7 +170,7 @@ def main(given: Sequence[str] | None = None) -> int:
     sys.stderr.write(f"mutation: {sum(counts.values())} mutants, {len(drawn)} drawn, {len(left)} to try\n")
     try:
         if left:
-            carry_out(left, state, jobs=options.jobs, budget=options.budget, trusted=options.trusted)
+            carry_out(left, state, jobs=options.jobs, budget=options.budget)
     except KeyboardInterrupt:
         return INTERRUPTED
     text, survivors = table(counts, drawn, read_results(state), reviewed)

@@ -93,7 +93,9 @@ def _tests(tree: Path, files: Sequence[str], tell: int, log: Path, interpreted: 
         os.dup2(os.open(log, os.O_WRONLY | os.O_CREAT | os.O_APPEND), stream)
     os.chdir(tree)
     os.environ["PYTHONPATH"], sys.dont_write_bytecode = str(tree), True
-    sys.path[:] = [str(tree), *(one for one in sys.path if one and not (Path(one) / "flockana").is_dir())]
+    # the tree's flockana, not another; what an editable install leaves beside all other libraries is no package
+    others = (one for one in sys.path if one and not (Path(one) / "flockana" / "__init__.py").is_file())
+    sys.path[:] = [str(tree), *others]
     if interpreted:
         importlib.import_module("numba").config.DISABLE_JIT = True
         os.environ["NUMBA_DISABLE_JIT"] = "1"
