@@ -36,6 +36,9 @@ from numba.core.registry import cpu_target
 from numba.core.serialize import dumps
 
 
+_SIGNATURES = 64  # kept of one function: in use are two or three
+
+
 class NamedByContent(IndexDataCacheFile):
     """An index, and files whose names no two functions, signatures, processors or versions of a source share."""
 
@@ -120,14 +123,34 @@ def dispatcher(function: Callable[..., Any], *, cache: bool, **options: Any) -> 
         Those of `numba.njit`.
     """
     if not cache:
-        return numba.njit(**options)(function)
+        return _at_hand(numba.njit(**options)(function))
     named = _named_for_its_cells(function)
-    made = numba.njit(**options)(named)
+    made = _at_hand(numba.njit(**options)(named))
     try:
         made._cache = _Cache(named)
     except RuntimeError:  # neither beside the sources nor at home is there a folder to write to
         with suppress(RuntimeError, OSError), _cached_in(temporary_folder()):
             made._cache = _Cache(named)
+    return made
+
+
+def _at_hand(made: Any) -> Any:
+    """The same dispatcher, which finds what it compiled by the signature object that asks for it.
+
+    Compiled code that is handed a function asks for its address twice in each call, by a signature that it keeps; to
+    look that up by its types takes numba 0.1 ms.
+    """
+    look_up, found = made.get_compile_result, dict[int, tuple[Any, Any]]()
+
+    def get_compile_result(signature: Any) -> Any:
+        kept = found.get(id(signature))
+        if kept is None or kept[0] is not signature:
+            if len(found) >= _SIGNATURES:
+                found.clear()
+            kept = found[id(signature)] = signature, look_up(signature)
+        return kept[1]
+
+    made.get_compile_result = get_compile_result
     return made
 
 

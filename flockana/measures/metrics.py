@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_points, ensure_positive
+from flockana.kernels.components import labelled, squared_excess, unite
 from flockana.kernels.instants import greatest_distances, least_distances
-from flockana.kernels.neighbours import pair_blocks, pair_list
-from flockana.measures.nets import components, link_lengths
+from flockana.kernels.neighbours import pair_blocks
 
 _TREE = 300  # agents from which on a search tree beats all pairs
 
@@ -34,11 +34,13 @@ def net_measures(q: Any, d: float, r: float) -> tuple[float, float, float]:
 
 
 def _net_measures(q: FloatArray, d: float, r: float) -> tuple[float, float, float]:
-    n, pairs = len(q), np.column_stack(pair_list(q, r))
-    sizes = np.bincount(components(n, pairs))
-    excess = link_lengths(q, pairs) - d
-    deviation = float(2.0 * np.sum(excess**2) / (2 * excess.size + 1))
-    return (1.0 if n == 1 else (n - sizes.size) / (n - 1)), float(sizes.max()) / n, deviation
+    n, known, count, excess = len(q), np.arange(len(q)), 0, 0.0
+    for first, second in pair_blocks(q, r):
+        unite(known, first, second)
+        count, excess = count + first.size, excess + squared_excess(q, first, second, d)
+    sizes = np.bincount(labelled(known))
+    connectivity = 1.0 if n == 1 else (n - sizes.size) / (n - 1)
+    return connectivity, float(sizes.max()) / n, 2.0 * excess / (2 * count + 1)
 
 
 def connectivity(q: Any, r: float) -> float:

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray, ensure_count, ensure_links, ensure_points, ensure_positive, ensure_series
+from flockana.kernels.components import labelled, unite
 from flockana.kernels.neighbours import pair_list
 from flockana.kernels.rank import rank_modulo
 
@@ -77,13 +78,10 @@ def components(n: int, pairs: LinkArray) -> npt.NDArray[np.int32]:
     >>> components(3, links([[0.0], [1.0], [9.0]], 2.0)).tolist()
     [0, 0, 1]
     """
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     n = ensure_count("n", n)
-    pairs = ensure_links(pairs, n)
-    graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
-    labels: npt.NDArray[np.int32] = connected_components(graph, directed=False)[1]
+    pairs, known = ensure_links(pairs, n), np.arange(n)
+    unite(known, pairs[:, 0], pairs[:, 1])
+    labels: npt.NDArray[np.int32] = labelled(known)
     return labels
 
 

@@ -1,0 +1,57 @@
+"""Connected components of a graph by union-find: every agent knows one of its component with a smaller number, or none.
+
+Links may come in any order and in parts, so no more of them than one part need be in memory.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+import numpy as np
+
+from flockana.kernels.compiling import njit
+
+
+@njit(cache=True)
+def _root(parent, i):
+    """The first agent of i's component, as far as is known; the way there becomes shorter."""
+    while parent[i] != i:
+        parent[i] = parent[parent[i]]
+        i = parent[i]
+    return i
+
+
+@njit(cache=True)
+def unite(parent, first, second):
+    """Put both ends of every link into one component; `parent` begins as 0 … n − 1."""
+    for k in range(first.size):
+        a, b = _root(parent, first[k]), _root(parent, second[k])
+        if a < b:
+            parent[b] = a
+        else:
+            parent[a] = b
+
+
+@njit(cache=True)
+def labelled(parent):
+    """Label of each agent's component, counted from 0 in the order of their first agents."""
+    labels, count = np.empty(parent.size, np.int32), 0
+    for i in range(parent.size):
+        if parent[i] == i:
+            labels[i] = count
+            count += 1
+        else:  # what it knows is of a smaller number, and has its label
+            labels[i] = labels[parent[i]]
+    return labels
+
+
+@njit(cache=True)
+def squared_excess(q, first, second, d):
+    """Σ (‖q_j − q_i‖ − d)² over links."""
+    total = 0.0
+    for k in range(first.size):
+        square = 0.0
+        for c in range(q.shape[1]):
+            square += (q[second[k], c] - q[first[k], c]) ** 2
+        total += (sqrt(square) - d) ** 2
+    return total
