@@ -29,6 +29,7 @@ from flockana.laws.law import Law
 
 ADAPTIVE = ("DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA")
 METHODS = (*ADAPTIVE, "RK4", *(SCIPY + method for method in ADAPTIVE))
+AS_SIMULATED = "as simulated"  # remembered of a run that `simulate` returned in this process
 
 
 def simulate(
@@ -120,7 +121,9 @@ def simulate(
     stats = counts | tally.notes | how | {"seconds": time.perf_counter() - started}
     kept = kept or [start_sample(law, q0, p0, t_span[0])]  # ended before the first time to keep
     t, q, p, u, extra = _stacked(kept)
-    return Trajectory(t, q, p, u, law, extra, tally.status, tally.message, stats, between)
+    run = Trajectory(t, q, p, u, law, extra, tally.status, tally.message, stats, between)
+    run.remembered(AS_SIMULATED, lambda: True)
+    return run
 
 
 def _stacked(kept: list[Sample]) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, dict[str, FloatArray]]:

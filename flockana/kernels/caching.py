@@ -35,7 +35,6 @@ from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.core.registry import cpu_target
 from numba.core.serialize import dumps
 
-
 _SIGNATURES = 64  # kept of one function: in use are two or three
 
 

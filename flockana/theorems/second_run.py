@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.errors import ArgumentError, FlockanaError
-from flockana.dynamics.simulate import simulate
+from flockana.dynamics.simulate import AS_SIMULATED, simulate
 from flockana.dynamics.tolerance import FINEST
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw
@@ -25,7 +25,7 @@ TIGHTER = 1e-2  # the second run's tolerances over the first's
 DOUBT = 2.0  # times what two runs differ by: all of the first's error, if the second's is at most half as large
 RK4_SECOND = 1e-10  # relative tolerance of the second run of one with a fixed step
 SAME_INPUT = 1e-8  # of the largest input: other machine code evaluates a law to 1e-13, another law does not
-INTERVALS = 6  # by each indicator of an edit, and as many evenly spread ones, which are integrated again
+INTERVALS = 6  # by each indicator of an edit, and as many evenly spread ones, are integrated again
 SLACK = 100.0  # how often the error of integrating an interval, as two tolerances show it, a sample may be off,
 FLOOR = 300.0  # and how often the relative tolerance, where the two agree by chance or to rounding
 _LOW_ORDER = ("RK23", "RK45")  # methods that take many times the steps of DOP853 to a tight tolerance
@@ -147,10 +147,18 @@ def _at_switches(law: SwitchedLaw, run: Trajectory) -> list[bool]:
 
 
 def _suspicious_intervals(run: Trajectory) -> list[int]:
-    """Intervals to integrate again: evenly spread ones, and those whose ends lie farthest from a smooth path."""
+    """Intervals to integrate again: evenly spread ones, and those whose ends lie farthest from a smooth path.
+
+    Nobody has edited a run that `simulate` gave to this process: of it the evenly spread ones show a law that is not
+    the same function each time.
+    """
     count = len(run.t) - 1
     if count == 0:
         return []
+    spread = np.linspace(0, count - 1, INTERVALS)
+    series = (run.t, run.q, run.p, run.u)  # of a copy they may be written to
+    if run.remembered(AS_SIMULATED, lambda: False) and not any(each.flags.writeable for each in series):
+        return sorted({int(k) for k in spread})
     h = np.diff(run.t)[:, None, None]
     (q0, q1), (p0, p1), (u0, u1) = ((x[:-1], x[1:]) for x in (run.q, run.p, run.u))
     jump_of_q = np.abs(q1 - q0 - h * (p0 + p1) / 2.0 + h * h * (u1 - u0) / 12.0).max(axis=(1, 2))
@@ -162,7 +170,7 @@ def _suspicious_intervals(run: Trajectory) -> list[int]:
         apart = [(getattr(run, name) - getattr(again, name)) for name in "qp"]  # grows smoothly, unless by an edit
         indicators += [np.abs(np.diff(series, axis=0)).max(axis=(1, 2)) for series in apart]
     worst = [k for series in indicators for k in np.argsort(series)[-INTERVALS:]]
-    return sorted({int(k) for k in (*worst, *np.linspace(0, count - 1, INTERVALS))})
+    return sorted({int(k) for k in (*worst, *spread)})
 
 
 def _ensure_leads_on(run: Trajectory, k: int) -> None:

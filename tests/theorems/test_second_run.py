@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+import copy
+import pickle
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pytest
@@ -111,6 +113,18 @@ class Pushed(fl.Algorithm1):
         return u + 1e-3, rate
 
 
+@dataclass(frozen=True)
+class Gusty(Pushed):
+    """As often as it has been asked, the wind has grown."""
+
+    asked: list[int] = field(default_factory=list)
+
+    def flow(self, t, q, p):
+        self.asked.append(1)
+        u, rate = fl.Algorithm1.flow(self, t, q, p)
+        return u + 1e-4 * len(self.asked), rate
+
+
 EDITS = {
     "an input": lambda run: replace(run, u=np.where(np.arange(len(run.t))[:, None, None] == 5, 1.001 * run.u, run.u)),
     "a position": lambda run: replace(run, q=run.q + (np.arange(len(run.t)) == 5)[:, None, None] * 1e-4),
@@ -141,6 +155,20 @@ def test_a_state_from_elsewhere_is_refused_even_with_its_own_input() -> None:
     }
     with pytest.raises(ArgumentError, match=r"is off by .* from where Algorithm1 leads"):
         verify("energy", replace(run, **mixed))
+
+
+@pytest.mark.parametrize("copied", [copy.deepcopy, lambda run: pickle.loads(pickle.dumps(run))], ids=["copy", "pickle"])
+def test_a_copy_is_not_taken_for_what_simulate_returned(copied) -> None:
+    """Of that fewer intervals are looked at; a copy can be written to. The edit is between those."""
+    run = copied(fl.simulate(fl.Algorithm1(), *PAIR, (0.0, 2.0), t_eval=np.linspace(0.0, 2.0, 60)))
+    run.q[7] += 1e-4
+    with pytest.raises(ArgumentError, match="was it edited, or is it of another law"):
+        verify("energy", run)
+
+
+def test_a_law_that_is_another_function_each_time_is_refused_as_simulated() -> None:
+    with pytest.raises(ArgumentError, match="was it edited, or is it of another law"):
+        verify("energy", fl.simulate(Gusty(), *PAIR, (0.0, 2.0), t_eval=np.linspace(0.0, 2.0, 60)))
 
 
 def test_an_edited_map_is_refused() -> None:
