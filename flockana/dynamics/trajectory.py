@@ -257,7 +257,8 @@ class Trajectory:
             if of_any is not None and of_any.over_time is not None and of_any.defined(self.law):
                 values = of_any.over_time(self._flock)
             elif name in self._own:  # the law is asked last, which may cost more
-                values = np.fromiter(Series(*self._own[name]).values, float, len(self.t))
+                given = Series(*self._own[name]).values
+                values = np.fromiter(given() if callable(given) else given, float, len(self.t))
             else:
                 raise UnknownNameError("metric", name, self._metric_names)
             self._measured[name] = values

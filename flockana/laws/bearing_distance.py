@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass, field
+from functools import cache
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -290,7 +291,7 @@ class ZoneFlocking(DiscreteLaw):
 
     def measures(  # noqa: D102
         self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
-    ) -> Mapping[str, tuple[str, FloatArray]]:
+    ) -> Mapping[str, tuple[str, Any]]:
         n = q.shape[1]
         r, c, a, _ = self.radii.arrays(n)
         parts, counts = compiled.fragments(q, a), compiled.populations(q, r, c, a)
@@ -313,16 +314,21 @@ class ZoneFlocking(DiscreteLaw):
             series["wall_distance"] = ("least distance from a wall, negative outside the box", inside)
         return series
 
-    def _clearances(self, t: FloatArray, q: FloatArray) -> dict[str, tuple[str, FloatArray]]:
-        """Clearance at the samples, and its bound on the straight way from each sample to the next."""
-        taken = np.flatnonzero(np.diff(t) < 1.5 * self.dt)  # between samples further apart the way is not known
-        every, ways = self.world.clearances(q, taken)
-        at = every.min(axis=1)
-        on_way = np.append(at[:1], np.full(len(t) - 1, np.nan))
-        on_way[taken + 1] = ways.min(axis=1)
+    def _clearances(self, t: FloatArray, q: FloatArray) -> dict[str, tuple[str, Any]]:
+        """Clearance at the samples, and its bound on the straight way from each sample to the next; when asked for."""
+
+        @cache
+        def measured() -> tuple[FloatArray, FloatArray]:
+            taken = np.flatnonzero(np.diff(t) < 1.5 * self.dt)  # between samples further apart the way is not known
+            every, ways = self.world.clearances(q, taken)
+            at = every.min(axis=1)
+            on_way = np.append(at[:1], np.full(len(t) - 1, np.nan))
+            on_way[taken + 1] = ways.min(axis=1)
+            return at, on_way
+
         return {
-            "obstacle_clearance": ("least distance from an obstacle, negative inside", at),
-            "obstacle_clearance_bound": ("lower bound of it on the way to the sample", on_way),
+            "obstacle_clearance": ("least distance from an obstacle, negative inside", lambda: measured()[0]),
+            "obstacle_clearance_bound": ("lower bound of it on the way to the sample", lambda: measured()[1]),
         }
 
     def altitudes(self, p: Any) -> FloatArray:

@@ -146,8 +146,10 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
 
     def measures(  # noqa: D102
         self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
-    ) -> Mapping[str, tuple[str, FloatArray]]:
-        literal = np.array([self.literal_energy(x, v) for x, v in zip(q, p, strict=True)])
+    ) -> Mapping[str, tuple[str, Any]]:
+        def literal() -> FloatArray:
+            return np.array([self.literal_energy(x, v) for x, v in zip(q, p, strict=True)])
+
         return {"literal_energy": ("H of neighbours only", literal)}
 
     def semi_implicit(

@@ -199,12 +199,15 @@ class DirectedNet(Law):
     def measures(  # noqa: D102
         self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
     ) -> Mapping[str, Any]:
-        momentum = np.linalg.norm(p.sum(axis=1), axis=1)
-        edges = [self.perceived(*state) for state in zip(q, p, strict=True)]
-        one_way = [len({*seen} - {(i, j) for j, i in seen}) / max(1, len(seen)) for seen in edges]
-        energy = [self.law.hamiltonian(float(time), *state) for time, *state in zip(t, q, p, strict=True)]
+        def one_way() -> FloatArray:
+            edges = [self.perceived(*state) for state in zip(q, p, strict=True)]
+            return np.array([len({*seen} - {(i, j) for j, i in seen}) / max(1, len(seen)) for seen in edges])
+
+        def energy() -> FloatArray:
+            return np.array([self.law.hamiltonian(float(time), *state) for time, *state in zip(t, q, p, strict=True)])
+
         return {
-            "momentum": ("‖Σ p_i‖ (length/time)", momentum),
-            "one_way": ("share of the directed edges that have no counterpart", np.array(one_way)),
-            "undirected_energy": ("energy of the law on an undirected net (length²/time²)", np.array(energy)),
+            "momentum": ("‖Σ p_i‖ (length/time)", np.linalg.norm(p.sum(axis=1), axis=1)),
+            "one_way": ("share of the directed edges that have no counterpart", one_way),
+            "undirected_energy": ("energy of the law on an undirected net (length²/time²)", energy),
         }

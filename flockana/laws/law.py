@@ -202,7 +202,7 @@ class LawOfMotion(ABC):  # noqa: B024  # each of its two kinds has an abstract m
         Returns
         -------
         mapping of str to (str, ndarray of shape (T,)) or to `flockana.measures.measure.Series`
-            By name, what it is in words and its values.
+            By name, what it is in words and its values; a function of nothing that gives them, where that costs much.
         """
         return {}
 

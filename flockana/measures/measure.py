@@ -42,10 +42,10 @@ class Flock:
 
 
 class Series(NamedTuple):
-    """A measure that a law takes of its own runs, already taken."""
+    """A measure that a law takes of its own runs: taken, or to be taken by a function of nothing."""
 
     text: str
-    values: FloatArray
+    values: FloatArray | Callable[[], FloatArray]
     logarithmic: bool = False
 
 
