@@ -11,7 +11,7 @@ verify: .venv/.installed  ## run the catalogue, check every theorem, write repor
 	$(BIN)/flockana verify
 
 test: .venv/.dev  ## the whole test suite
-	$(BIN)/python -m pytest -n auto
+	$(BIN)/python -m pytest -n auto --dist worksteal
 
 attack: .venv/.dev  ## attack the verdicts with thousands of new cases, for hours; ATTACK=N examples a test
 	$(BIN)/python -m pytest tests/adversarial --attack=$(or $(ATTACK),2000) -n 2

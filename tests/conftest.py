@@ -46,6 +46,14 @@ def pytest_configure(config):
         settings.load_profile("attack")
 
 
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_auto_num_workers(config):
+    """One worker more than there are cores: tests of clusters, faults and limits mostly wait for what they started."""
+    from flockana.ensemble.processes import cores
+
+    return cores() + 1
+
+
 def pytest_report_header(config):
     if examples := config.getoption("attack"):
         return f"attack: {examples} examples a test, --hypothesis-seed={config.option.hypothesis_seed}"
