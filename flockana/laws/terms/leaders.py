@@ -70,6 +70,10 @@ class Leaders(Term):
         pins[list(self.pinned)] = 1.0
         return pins
 
+    @cached_property
+    def _paths(self) -> tuple[Harmonic, ...]:
+        return tuple(known_path(leader) for leader in self.leaders)
+
     def led(self, t: float) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Position, velocity and acceleration of each agent's own leader, three arrays of shape (n, m).
 
@@ -78,7 +82,7 @@ class Leaders(Term):
         t : float
             Time.
         """
-        states = np.array([_motion(leader, t) for leader in self.leaders])
+        states = np.array([_motion(*each, t) for each in zip(self.leaders, self._paths, strict=True)])
         q, p, a = states[list(self.group)].transpose(1, 0, 2)
         return q, p, a
 
@@ -158,9 +162,8 @@ def known_path(leader: Any) -> Harmonic:
     return path
 
 
-def _motion(leader: Target, t: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _motion(leader: Target, path: Harmonic, t: float) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Position, velocity and acceleration of a leader."""
-    path = known_path(leader)
     c, s = path.terms[2:4]
     bend: FloatArray = -(path.omega**2) * (c * cos(path.omega * t) + s * sin(path.omega * t))
     return leader.position(t), leader.rate(t), bend
