@@ -219,16 +219,16 @@ def semi_implicit_steps(q, p, par, c2, dt, steps):
     n, m = q.shape
     all_q, all_p, all_u = np.empty((steps, n, m)), np.empty((steps, n, m)), np.empty((steps, n, m))
     x, v, u, z = q.T.copy(), p.T.copy(), np.empty((m, n)), np.zeros((m, n + 3))
-    near, then, skin, kept = np.zeros((n + 3, n), np.uint8), np.full((m, n), inf), 0.0, 0
+    near, degree, then, skin, kept = np.zeros((n + 3, n), np.uint8), np.empty(n), np.full((m, n), inf), 0.0, 0
     most = n * (n - 1) // 2
-    first, second, inside = np.empty(most, np.int32), np.empty(most, np.int32), np.empty(most, np.uint8)
+    first, second, inside = np.empty(most, np.uint32), np.empty(most, np.uint32), np.empty(most, np.uint8)
     s2, w, d = np.empty(most), np.empty(most), np.empty((m, most))
-    r, k_1 = par[R], par[K_1]
+    r, k_1, square = par[R], par[K_1], _square_of_range(par[R])
     held = (par[0], par[1], par[2], 0.0, par[4], par[5], par[6], par[7], par[8])  # without k₁, in registers
     for step in range(steps):
         if not _moved(x, then) <= 0.5 * skin:
             skin = 1e-3 * r + _AHEAD * dt * _moved(v, np.zeros((m, n)))
-            kept = _listed(x, par, skin, near, first, second, inside)
+            kept = _listed(x, par, skin, near, degree, first, second, inside)
             then[:] = x
         for k in range(kept):
             total = 0.0
@@ -236,12 +236,12 @@ def semi_implicit_steps(q, p, par, c2, dt, steps):
                 d[c, k] = x[c, second[k]] - x[c, first[k]]
                 total += d[c, k] * d[c, k]
             s2[k] = total
+        changed = 0
         for k in range(kept):
-            w[k] = pair_dead_zone(s2[k], held)[0] if sqrt(s2[k]) < r else 0.0
-        for k in range(kept):
-            if (sqrt(s2[k]) < r) != (inside[k] == 1):
-                inside[k] = 1 - inside[k]
-                near[first[k], second[k]] = near[second[k], first[k]] = inside[k]
+            w[k] = pair_dead_zone(s2[k], held)[0] if s2[k] < square else 0.0
+            changed += (s2[k] < square) != (inside[k] == 1)
+        if changed:
+            _crossed(s2, square, kept, near, degree, first, second, inside)
         for c in range(m):
             for i in range(n):
                 z[c, i], u[c, i] = k_1 * (x[c, i] - x[c, 0]) + c2 * (v[c, i] - v[c, 0]), 0.0
@@ -250,9 +250,9 @@ def semi_implicit_steps(q, p, par, c2, dt, steps):
                 a_0, a_1, a_2, a_3 = near[j], near[j + 1], near[j + 2], near[j + 3]
                 z_0, z_1, z_2, z_3 = z_c[j], z_c[j + 1], z_c[j + 2], z_c[j + 3]
                 for i in range(n):
-                    z_i = z_c[i]
-                    first_two = a_0[i] * (z_0 - z_i) + a_1[i] * (z_1 - z_i)
-                    u_c[i] += first_two + (a_2[i] * (z_2 - z_i) + a_3[i] * (z_3 - z_i))
+                    u_c[i] += (a_0[i] * z_0 + a_1[i] * z_1) + (a_2[i] * z_2 + a_3[i] * z_3)
+            for i in range(n):
+                u_c[i] -= degree[i] * z_c[i]
             for k in range(kept):
                 f = w[k] * d[c, k]
                 u_c[first[k]] += f
@@ -263,6 +263,29 @@ def semi_implicit_steps(q, p, par, c2, dt, steps):
                 x[c, i] += dt * v[c, i]
                 all_q[step, i, c], all_p[step, i, c], all_u[step, i, c] = x[c, i], v[c, i], u[c, i]
     return all_q, all_p, all_u
+
+
+@njit(cache=True)
+def _square_of_range(r):
+    """The least number whose square root is not below r: `s2 < square` says that √s2 < r, to the bit."""
+    square = r * r
+    while sqrt(square) >= r:
+        square = np.nextafter(square, 0.0)
+    while sqrt(square) < r:
+        square = np.nextafter(square, inf)
+    return square
+
+
+@njit(cache=True)
+def _crossed(s2, square, kept, near, degree, first, second, inside):
+    """Note which pairs of the list have come into range or left it."""
+    for k in range(kept):
+        now = s2[k] < square
+        if now != (inside[k] == 1):
+            i, j, more = first[k], second[k], 1.0 if now else -1.0
+            inside[k] = near[i, j] = near[j, i] = now
+            degree[i] += more
+            degree[j] += more
 
 
 @njit(cache=True)
@@ -283,11 +306,15 @@ def _moved(x, then):
 
 
 @njit(cache=True)
-def _listed(x, par, skin, near, first, second, inside):
-    """List pairs within a skin of where they act by more than k₁ or come into range; who is in range goes to `near`."""
+def _listed(x, par, skin, near, degree, first, second, inside):
+    """List pairs within a skin of where they act by more than k₁ or come into range.
+
+    Who is in range of whom goes to `near`, and of how many to `degree`.
+    """
     m, n = x.shape
     low, high, r = par[D_1] + skin, min(par[D_2], par[R]) - skin, par[R]
     kept = 0
+    degree[:] = 0.0
     for i in range(n):
         for j in range(i + 1, n):
             s2 = 0.0
@@ -295,6 +322,8 @@ def _listed(x, par, skin, near, first, second, inside):
                 s2 += (x[c, j] - x[c, i]) ** 2
             s = sqrt(s2)
             near[i, j] = near[j, i] = s < r
+            degree[i] += near[i, j]
+            degree[j] += near[i, j]
             if not low <= s <= high and not s >= r + skin:
                 first[kept], second[kept], inside[kept] = i, j, near[i, j]
                 kept += 1

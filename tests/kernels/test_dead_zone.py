@@ -14,7 +14,7 @@ from scipy.integrate import quad
 
 from flockana.base.errors import ArgumentError
 from flockana.interactions import DeadZoneInteraction
-from flockana.kernels.dead_zone import semi_implicit_steps, zone_forces, zone_margins, zones
+from flockana.kernels.dead_zone import _square_of_range, semi_implicit_steps, zone_forces, zone_margins, zones
 
 CASES = [
     {},
@@ -173,8 +173,9 @@ def euler_step_in_python(q, p, pair, k2, dt):
     for c in range(m):
         for i in range(n):
             for j in range(0, n, 4):
-                terms = [near[j + k][i] * (z[c][j + k] - z[c][i]) for k in range(4)]
+                terms = [near[j + k][i] * z[c][j + k] for k in range(4)]
                 u[c][i] += (terms[0] + terms[1]) + (terms[2] + terms[3])
+            u[c][i] -= sum(near[j][i] for j in range(n)) * z[c][i]
         for i, j, w in pushed:  # most push nobody: what the kernel leaves out is zero
             u[c][i] += w * (x[c][j] - x[c][i])
             u[c][j] -= w * (x[c][j] - x[c][i])
@@ -193,3 +194,9 @@ def test_the_compiled_steps_give_the_same_bits_on_every_processor(ramp, m):
         q, p, u = euler_step_in_python(q, p, pair, 1.0, 0.01)
         for mine, theirs in zip((q, p, u), found, strict=True):
             np.testing.assert_array_equal(mine, theirs[step])
+
+
+@pytest.mark.parametrize("r", [15.0, 0.1, 1e-170, 3.3333333333333335, 1e150])
+def test_a_square_tells_the_range_to_the_bit(r):
+    square = _square_of_range(r)
+    assert sqrt(square) >= r > sqrt(np.nextafter(square, 0.0))
