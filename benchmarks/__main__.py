@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import sys
 import time
 from importlib import import_module
@@ -20,6 +21,7 @@ STUDIES = (
     "right_hand_side",
     "formulas",
     "pairs",
+    "threads",
     "laws",
     "engines",
     "runs",
@@ -60,6 +62,7 @@ def _options() -> argparse.Namespace:
 
 def _measured(names: tuple[str, ...] | list[str], *, quick: bool) -> dict[str, object]:
     """Everything that the studies find, as what JSON holds."""
+    os.environ.setdefault("NUMBA_NUM_THREADS", str(cores()))  # numba counts them once pinned: one study wants them all
     available, core = cores(), pin()  # before numpy is imported, which counts the cores for its threads
     from benchmarks.rows import to_json
 

@@ -17,6 +17,7 @@ from flockana.base.checks import FloatArray
 from flockana.dynamics.encounters import Encounters
 from flockana.dynamics.sample import Sample, Tally
 from flockana.dynamics.stepping import BALANCED, ONE_STEP, Frame
+from flockana.dynamics.threads import threads_of_numba
 from flockana.dynamics.tolerance import Floor
 from flockana.kernels.advance import CROWDED, RUNNING, advance
 from flockana.kernels.bodies import no_guard
@@ -66,6 +67,8 @@ class Engine:
         What no step may leap over.
     allowed : Allowed
         Tolerances.
+    threads : int
+        That sum the pairs; the bits are the same for any number.
     """
 
     law: Law
@@ -74,6 +77,7 @@ class Engine:
     method: Tableau
     encounters: Encounters
     allowed: Allowed
+    threads: int = 1
 
     def start(self, q0: FloatArray, p0: FloatArray) -> tuple[Sample, Point]:
         """The start as a sample and as a point."""
@@ -85,11 +89,14 @@ class Engine:
     @cached_property
     def _system(self) -> tuple[Any, ...]:
         """What stays the same from call to call (`flockana.kernels.advance`)."""
+        from flockana.kernels.slabs import sum_of_slabs
+
         frame, size = self.frame, self.frame.shape[1]
         terms = self.form.padded
         view = (frame.t0, frame.origin[:size].copy(), frame.drift[:size].copy())
         arrays = (tuple(np.array(getattr(term, name)) for term in terms) for name in ("numbers", "panels"))
-        functions = (search_of_pairs()[0], *(term.act for term in terms), *(term.energy for term in terms))
+        helpers = search_of_pairs()[0], sum_of_slabs(self.threads > 1)
+        functions = (*helpers, *(term.act for term in terms), *(term.energy for term in terms))
         guard, bodies = next(((term.guard, term.numbers) for term in terms if term.guard), (no_guard(), np.empty(0)))
         met = self.encounters
         around = ((self.form.reach, SKIN * self.form.reach), met.radii, met.far, guard, bodies, (met.shell, met.skirt))
@@ -101,6 +108,7 @@ class Engine:
             view,
             self.form.moving,
             len(self.form.terms),
+            np.array([term.of_pairs for term in terms]),
             *self.method,
             *around,
             *allowed,
@@ -109,14 +117,15 @@ class Engine:
     def run(self, now: Point, stops: FloatArray, due: FloatArray, ledger: FloatArray) -> tuple[Any, ...]:
         """Some steps from here."""
         most = int(np.clip(_NUMBERS // (3 * self.frame.size), 1, _STEPS))
-        result: tuple[Any, ...] = advance()(*self._system, ledger, *now, stops, due, most)
+        with threads_of_numba(self.threads):
+            result: tuple[Any, ...] = advance()(*self._system, ledger, *now, stops, due, most)
         return result
 
     def fits(self, q: FloatArray, p: FloatArray) -> bool:
         """Whether a list has room for the pairs within reach, and the energy is finite, so it has a rate."""
         q, p = np.array(q), np.array(p)  # what is compiled takes arrays that may be written to
         few, still = np.empty(1, np.uint32), np.zeros((2, q.shape[1]))
-        first, second, count = list_pairs(q, (1.0 + SKIN) * self.form.reach, few, few)
+        first, second, count, _ = list_pairs(q, (1.0 + SKIN) * self.form.reach, few, few)
         if count < 0:
             return False
         own, energy = np.arange(len(q), dtype=np.uint64), 0.5 * float(np.vdot(p, p))
@@ -127,7 +136,14 @@ class Engine:
 
 
 def engine_of(
-    law: Law, q0: FloatArray, p0: FloatArray, t0: float, method: str, rtol: float = 0.0, floor: Floor = EXACT
+    law: Law,
+    q0: FloatArray,
+    p0: FloatArray,
+    t0: float,
+    method: str,
+    rtol: float = 0.0,
+    floor: Floor = EXACT,
+    threads: int = 1,
 ) -> Engine | None:
     """The law and the method, compiled; None where one has no such form, or pairs are too many (RK4: no tolerances)."""
     form = law.compiled(q0.shape[1]) if method in METHODS else None
@@ -138,7 +154,7 @@ def engine_of(
         return None  # obstacles that no term, or more than one, keeps from being leapt over
     balance = (BALANCED * rtol, BALANCED * floor.energy) if method in ONE_STEP else (0.0, 0.0)
     frame = Frame.of(t0, q0, p0, energetic=True)
-    engine = Engine(law, form, frame, tableau(method), encounters, Allowed(rtol, floor, balance))
+    engine = Engine(law, form, frame, tableau(method), encounters, Allowed(rtol, floor, balance), threads)
     return engine if engine.fits(q0, p0) else None
 
 

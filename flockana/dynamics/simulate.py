@@ -22,6 +22,7 @@ from flockana.dynamics.first_call import check_first_call
 from flockana.dynamics.iterate import count_steps, discrete
 from flockana.dynamics.rk4 import rk4
 from flockana.dynamics.sample import Sample, Tally, start_sample
+from flockana.dynamics.threads import ensure_threads
 from flockana.dynamics.tolerance import error_floor
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw, ensure_law
@@ -43,6 +44,7 @@ def simulate(
     atol: float | None = None,
     dt: float | None = None,
     t_eval: Any = None,
+    threads: int = 1,
     progress: bool = False,
 ) -> Trajectory:
     """Integrate q' = p, p' = u(t, q, p) from (q0, p0).
@@ -74,6 +76,8 @@ def simulate(
     t_eval : array_like, optional
         Rising times at which to keep the state; by default every step that the integrator takes. Bounds at all times,
         such as `Trajectory.min_distance`, rest on the steps in either case.
+    threads : int
+        That sum the pairs of a compiled run: worth it for some thousands of agents. The run is the same to the bit.
     progress : bool
         Show a progress bar on the terminal.
 
@@ -100,21 +104,23 @@ def simulate(
     t_span = ensure_time_span(t_span)
     keep = _check_t_eval(t_eval, t_span)
     check_first_call(law, t_span[0], q0, p0)
-    tally, how = Tally(), dict[str, Any]()
+    tally, how, threads = Tally(), dict[str, Any](), ensure_threads(threads)
     if isinstance(law, DiscreteLaw):
         if dt is not None or method != "DOP853":
             raise ArgumentError("a discrete law brings its own step: expected neither dt nor method")
+        if threads > 1:
+            raise ArgumentError(f"threads = {threads}: the steps of a discrete law take one; expected 1")
         method, how = "discrete", {"dt": _ensure_step("law.dt", law.dt, t_span)}
         _ensure_samples_fit(how["dt"], t_span, q0, keep)
         samples = discrete(law, q0, p0, t_span, keep, tally)
     elif _ensure_method(method, dt) == "RK4":
         how = {"dt": _ensure_step("dt", dt, t_span)}
         _ensure_samples_fit(how["dt"], t_span, q0, keep)
-        samples = rk4(law, q0, p0, t_span, how["dt"], keep, tally)
+        samples = rk4(law, q0, p0, t_span, how["dt"], keep, tally, threads)
     else:
         how = {"rtol": ensure_positive("rtol", rtol), "atol": None if atol is None else ensure_positive("atol", atol)}
         floor = error_floor(law, q0, p0, t_span, **how)
-        samples = adaptive(law, q0, p0, t_span, method, how["rtol"], floor, keep, tally)
+        samples = adaptive(law, q0, p0, t_span, method, how["rtol"], floor, keep, tally, threads)
     started = time.perf_counter()
     kept, between = _collect(samples, t_span, tally, progress)
     counts = {"method": method, "steps": tally.steps, "evaluations": tally.evaluations}

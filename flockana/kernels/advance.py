@@ -68,10 +68,10 @@ def _met(t, h, y0, f0, y1, f1, encounters, system, pairs, scratch):
     for i in range(n):
         widest = max(widest, radii[i, -1])
     within = (widest + 2.0 * (farthest + blur)) * (1.0 + 1e-9)
-    first, second, count, places, centre = pairs
+    first, second, count, places, centre, _ = pairs
     held = system[7][0] + system[7][1] - 2.0 * np.sqrt(strayed(q0, places, centre)) if places.size else 0.0
     if within > held:  # the list may lack a pair that was so near where the step began
-        first, second, count = system[9](q0, within, scratch[0], scratch[1])
+        first, second, count, _ = system[9](q0, within, scratch[0], scratch[1])
         scratch = (first, second)
         if count < 0:
             return np.nan, scratch
@@ -162,8 +162,8 @@ def _controlled(h, error, exponent, rejected):
 
 
 def _advance(
-    search, act0, act1, act2, act3, act4, energy0, energy1, energy2, energy3, energy4, numbers, panels, shape, view,
-    moving, terms,
+    search, summed, act0, act1, act2, act3, act4, energy0, energy1, energy2, energy3, energy4,
+    numbers, panels, shape, view, moving, terms, of_pairs,
     tableau_a, tableau_c, estimates, interpolant, rows, stages, exponent,
     reach, radii, far, guard, bodies, shell, rtol, floor, balance, ledger, t, y, f, h, stops, due, most,
 ):  # fmt: skip
@@ -177,7 +177,7 @@ def _advance(
     order = spatial_order(start, reach[0] + reach[1]) if reach[0] > 0.0 else np.arange(n).astype(np.uint64)
     system = (
         (act0, act1, act2, act3, act4), (energy0, energy1, energy2, energy3, energy4),
-        numbers, panels, shape, view, moving, reach, order, search, terms,
+        numbers, panels, shape, view, moving, reach, order, search, terms, of_pairs, summed,
     )  # fmt: skip
     method, fixed, end = (tableau_a, tableau_c, rows, stages), exponent == 0.0, rows[stages]
     encounters = (np.empty_like(radii), far, guard, bodies, shell)
@@ -265,15 +265,17 @@ def advance() -> Callable[..., Any]:
     """`_advance`, compiled when first asked for: what it is handed functions for, no two laws compile twice."""
     from numba import boolean, float64, int64, types
 
+    from flockana.kernels.slabs import slabs_signature
+
     def several(kind: Any, count: int) -> Any:
         return types.containers.UniTuple(kind, count)
 
     act, energy = (types.FunctionType(signature) for signature in signatures())
     matrix, vector = float64[:, ::1], float64[::1]
     search = types.FunctionType(search_of_pairs()[1])
-    law = (search, *(act,) * MOST_TERMS, *(energy,) * MOST_TERMS)
+    law = (search, types.FunctionType(slabs_signature()), *(act,) * MOST_TERMS, *(energy,) * MOST_TERMS)
     law = (*law, several(vector, MOST_TERMS), several(matrix, MOST_TERMS))
-    view = (several(int64, 2), types.containers.Tuple((float64, vector, vector)), boolean, int64)
+    view = (several(int64, 2), types.containers.Tuple((float64, vector, vector)), boolean, int64, boolean[::1])
     method = (matrix, vector, matrix, matrix, int64[::1], int64, float64)
     around = (several(float64, 2), matrix, float64, types.FunctionType(guard_signature()), vector, several(float64, 2))
     limits = (float64, several(float64, 3), several(float64, 2), vector)

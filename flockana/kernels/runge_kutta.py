@@ -50,29 +50,32 @@ def rate_of(t, y, f, system, pairs):
     (n, m), view, reach = system[4], system[5], system[7]
     if reach[0] > 0.0:
         pairs = kept_up(y[: n * m].reshape(n, m), reach[0], reach[1], pairs, system[9])
-    _act(t, y, f, frame_at(t, *view), system, pairs[0], pairs[1], pairs[2])
+    _act(t, y, f, frame_at(t, *view), system, pairs[0], pairs[1], pairs[2], pairs[5])
     return pairs
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
-def _act(t, y, f, frame, system, first, second, count):
+def _act(t, y, f, frame, system, first, second, count, slabs):
     """The rate of y into f, its pairs being listed."""
-    acts, _, numbers, panels, (n, m), _, _, _, order, _, terms = system
+    acts, _, numbers, panels, (n, m), _, _, _, order, _, terms, of_pairs, summed = system
     size, power = n * m, 0.0
     x, v, u = y[:size].reshape(n, m), y[size : 2 * size].reshape(n, m), f[size : 2 * size].reshape(n, m)
     for k in range(size):
         f[k], f[size + k] = y[size + k], 0.0
     for k in range(terms):
-        power += acts[k](t, x, v, u, frame, numbers[k], panels[k], first, second, count, order)
+        if of_pairs[k] and slabs.size > 2:
+            power += summed(acts[k], t, x, v, u, frame, numbers[k], panels[k], first, second, slabs, order)
+        else:
+            power += acts[k](t, x, v, u, frame, numbers[k], panels[k], first, second, count, order)
     f[2 * size] = power
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def energy_of(t, y, system, pairs):
     """H of a vector whose pairs are listed: potential energies, and the kinetic one in the law's frame."""
-    _, energies, numbers, panels, (n, m), view, moving, _, order, _, terms = system
+    _, energies, numbers, panels, (n, m), view, moving, _, order, _, terms, _, _ = system
     x, v = y[: n * m].reshape(n, m), y[n * m : 2 * n * m].reshape(n, m)
-    first, second, count, _, _ = pairs
+    first, second, count, _, _, _ = pairs
     frame = frame_at(t, *view)
     total = 0.5 * squared_differences(v, column_means(v) if moving else -frame[1])
     for k in range(terms):
