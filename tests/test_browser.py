@@ -16,6 +16,7 @@ import pytest
 from flockana.dynamics.simulate import simulate
 from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.olfati_saber import Algorithm1
+from flockana.player.codec import Packed, encode
 from flockana.player.page import page
 from flockana.player.scene import scene
 from flockana.report.build import write_report
@@ -166,6 +167,48 @@ def test_the_player_plays_pauses_and_answers_keys(visit, run, tmp_path):
     energy = float(tab.locator(".fp-row output").first.inner_text())
     assert energy == pytest.approx(np.interp(0.02, run.t, run.energy()), rel=2e-3)
     assert violations(tab) == []
+
+
+def made(**world):
+    """Three instants of one agent in space, with this world: as `scene` gives it."""
+    header = {
+        **{"n": 1, "m": 3, "title": "made", "reach": None, "length": None, "edge_counts": [], "solids": []},
+        **{"outlines": [], "beta": 0.0, "groups": [], "marks": []},
+        **{"series": [{"name": "a", "label": "a", "log": False}]},
+    }
+    q = np.array([[[0.0, 0.0, 0.0]], [[4.0, 0.0, 0.0]], [[4.0, 4.0, 4.0]]])
+    t = np.array([0.0, 1.0, 2.0])
+    arrays = {"t": t, "q": q, "p": 0.0 * q, "series_t": t, "series_0": np.array([0.0, 10.0, -5.0])}
+    return encode(header | world, {name: Packed(values) for name, values in arrays.items()})
+
+
+def test_the_strip_shows_the_value_of_the_nearest_sample(visit, tmp_path):
+    tab = visit(played(tmp_path / "run.html", made(marks=[{"t": t, "label": "x"} for t in (0.4, 0.6, 1.4, 1.6)])))
+    tab.wait_for_selector(".fp-row")
+    for time, value in ((0.4, 0), (0.6, 10), (1.4, 10), (1.6, -5)):
+        tab.get_by_role("button", name=f"t = {time}: x").click()
+        tab.wait_for_function(f"document.querySelector('.fp-clock').textContent === 't = {time}'")
+        assert tab.locator(".fp-row output").inner_text() == str(value)
+
+
+def test_in_space_walls_and_wires_are_drawn(visit, tmp_path):
+    wall = {"kind": "wall", "par": [0.0, 0.0, -1.0, 0.0, 0.0, 1.0]}
+    wire = [[0.0, 0.0, 1.0], [4.0, 0.0, 1.0], [4.0, 4.0, 1.0], [0.0, 4.0, 1.0], [0.0, 2.0, 1.0]]
+    inked = []
+    for world in ({}, {"solids": [wall]}, {"outlines": [wire]}):
+        tab = visit(played(tmp_path / "run.html", made(**world)))
+        tab.wait_for_selector(".fp-row")
+        tab.wait_for_timeout(100)
+        inked.append(
+            tab.evaluate(
+                "(() => { const c = document.querySelector('canvas'), d = c.getContext('2d').getImageData(0, 0, "
+                "c.width, c.height).data; let sum = 0; for (let i = 3; i < d.length; i += 4) sum += d[i] > 0; "
+                "return sum; })()"
+            )
+        )
+    none, grid, line = inked
+    assert grid > none + 2000  # ten lines of hundreds of pixels
+    assert none + 100 < line < none + 4000  # a line, and not a filled face
 
 
 def pixels(tab):
