@@ -119,10 +119,10 @@ def test_the_report_is_filtered(visit, report):
 def test_runs_are_decoded_when_their_section_opens_and_a_link_opens_it(visit, report):
     tab = visit(report)
     assert tab.locator("canvas").count() == 0
-    tab.locator(".summary a[href='#hexagon--energy']").click()
-    tab.wait_for_selector("#hexagon canvas")
+    tab.locator(".summary a[href='#scenario-hexagon--energy']").click()
+    tab.wait_for_selector("#scenario-hexagon canvas")
     assert tab.locator("canvas").count() == 1
-    assert tab.locator("#hexagon--energy").is_visible()
+    assert tab.locator("#scenario-hexagon--energy").is_visible()
 
 
 def test_without_javascript_all_is_there_but_the_player(browser, report):
@@ -130,8 +130,8 @@ def test_without_javascript_all_is_there_but_the_player(browser, report):
     tab = context.new_page()
     tab.goto(report.as_uri())
     assert not tab.locator("#filter").is_visible()
-    tab.locator("#hexagon > summary").click()
-    assert tab.locator("#hexagon svg").first.is_visible()
+    tab.locator("#scenario-hexagon > summary").click()
+    assert tab.locator("#scenario-hexagon svg").first.is_visible()
     context.close()
 
 
