@@ -52,7 +52,9 @@ def result():
         margin=float("inf"),
         witness={"pair": (0, 1)},
     )
-    verdict = Verdict("os-1", (Hypothesis("h", "unmet", -2.0, "why"),), (good, bad), Tolerances(quasi=0.3), item.name)
+    verdict = Verdict(
+        "os-1", (Hypothesis("h", "unmet", -2.0, "why", 0.125),), (good, bad), Tolerances(quasi=0.3), item.name
+    )
     source = Verdict("source", (), (item.reports[0].check(run, Tolerances()),), Tolerances(), item.name)
     return ScenarioResult(item, run, (verdict, source))
 
@@ -114,6 +116,7 @@ def test_the_page_is_whole_self_contained_and_escaped(result, tmp_path):
         '<a class="differs" href="#scenario-pair--os-1">os-1 is inconclusive, expected refuted</a>',
         "flockana verify pair --seed 5",
         "± 1e-09",
+        "± 0.125",
         "seed 5",
         "quasi",
     ):
