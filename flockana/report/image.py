@@ -83,7 +83,7 @@ def _page_s_own(text: str) -> str:
     text = re.sub(r"#[0-9a-f]{6}\b", lambda m: f"var({_COLOURS[m[0]]})" if m[0] in _COLOURS else m[0], text)
     text = re.sub(r"font-family: [^;\"]*;? ?", "", text)  # the page has one
     text = re.sub(r"font: ([^;\"]*?)(\d+(?:\.\d+)?)px [^;\"]*", r"font: \1\2px system-ui, sans-serif", text)
-    text = re.sub(r"(\d+\.\d\d)\d+", r"\1", text)
+    text = re.sub(r"<[^>]*>", lambda tag: re.sub(r"(\d+\.\d\d)\d+", r"\1", tag[0]), text)  # labels keep theirs
     text = re.sub(r"\s*\n\s*", " ", text)
     return re.sub(r' d="([^"]*)"', lambda m: f' d="{_short(m[1])}"', text)
 
