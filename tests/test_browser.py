@@ -16,7 +16,7 @@ import pytest
 from flockana.dynamics.simulate import simulate
 from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.olfati_saber import Algorithm1
-from flockana.player.codec import Packed, encode
+from flockana.player.codec import Packed, decode, encode
 from flockana.player.page import page
 from flockana.player.scene import scene
 from flockana.report.build import write_report
@@ -243,3 +243,59 @@ def test_zoom_pan_and_turning_change_the_picture_and_fit_brings_it_back(visit, t
 def test_a_damaged_run_says_so(visit, tmp_path):
     tab = visit(played(tmp_path / "run.html", b"FLK1 damaged"))
     tab.wait_for_function("document.querySelector('#player').textContent.startsWith('This run cannot be shown here')")
+
+
+NOTEBOOK = """\
+import flockana as fl
+q = [[0.0, 0.0], [7.0, 0.0], [3.0, 6.0]]
+shown = fl.simulate(fl.Algorithm1(), q, [[0.0, 0.0]] * 3, (0.0, 2.0)).player().widget()
+shown.time = 1.5
+shown
+"""
+FRONT_END = """async ([code, css, data, time]) => {
+  const sheet = document.createElement("style");
+  sheet.textContent = css;
+  document.head.append(sheet);
+  const state = { data: new DataView(Uint8Array.from(atob(data), (c) => c.charCodeAt(0)).buffer), time }, heard = {};
+  window.model = {
+    saved: 0, get: (name) => state[name], save_changes() { this.saved++; },
+    on: (event, act) => { heard[event] = act; },
+    set(name, value) {
+      if (state[name] === value) return;
+      state[name] = value;
+      if (heard[`change:${name}`]) heard[`change:${name}`]();
+    },
+  };
+  const widget = await import(URL.createObjectURL(new Blob([code], { type: "text/javascript" })));
+  window.leave = widget.default.render({ model: window.model, el: document.body });
+}"""  # what a notebook does with an anywidget
+
+
+def test_a_widget_leaves_the_kernel_whole_and_its_time_goes_both_ways(visit, tmp_path):
+    """The kernel sends what a front end needs; the start of a kernel takes its seconds."""
+    pytest.importorskip("anywidget", reason="anywidget is not installed: flockana[notebook]")
+    pytest.importorskip("ipykernel")
+    client, nbformat = pytest.importorskip("nbclient"), pytest.importorskip("nbformat")
+    book = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(NOTEBOOK)])
+    book = client.NotebookClient(book, timeout=120, kernel_name="python3", store_widget_state=True).execute()
+    view = book.cells[0].outputs[0]["data"]["application/vnd.jupyter.widget-view+json"]
+    model = book.metadata["widgets"]["application/vnd.jupyter.widget-state+json"]["state"][view["model_id"]]
+    (buffer,) = model["buffers"]
+    assert (buffer["path"], buffer["encoding"]) == (["data"], "base64")
+    header, arrays = decode(base64.b64decode(buffer["data"]))
+    assert (header["n"], arrays["t"][-1]) == (3, 2.0)
+
+    (tmp_path / "empty.html").write_text('<!doctype html><html lang="en"><title>A notebook</title><body></body></html>')
+    tab = visit(tmp_path / "empty.html")
+    state = model["state"]
+    tab.evaluate(FRONT_END, [state["_esm"], state["_css"], buffer["data"], state["time"]])
+    clock = "document.querySelector('.fp-clock').textContent"
+    tab.wait_for_selector("canvas")
+    tab.wait_for_function(f"{clock} === 't = 1.5'")
+    tab.evaluate("model.set('time', 0.5)")  # as when the notebook's code sets it
+    tab.wait_for_function(f"{clock} === 't = 0.5'")
+    tab.locator("canvas").focus()
+    tab.keyboard.press("End")
+    tab.wait_for_function("model.get('time') === 2 && model.saved > 0")
+    tab.evaluate("leave()")
+    assert tab.locator("canvas").count() == 0
