@@ -96,15 +96,14 @@ def test_measured_verdicts_come_from_a_report(found):
     assert found.claims["os-3"] == {"i": {"refuted": 1, "vacuous": 1}}
 
 
-def test_a_page_shows_hypotheses_claims_steps_pictures_and_verdicts(proved, found, monkeypatch):
-    monkeypatch.setattr(scenarios, "ran", lambda name: {"stills": [["t = 0", ""], ["t = 9", ""]]})
+def test_a_page_shows_hypotheses_claims_steps_pictures_and_verdicts(proved, found):
     text = theorems.page(catalogue()["os-3"], found, images=True, report=True)
     assert "| c1γ > 0 | met: 1, unmet: 1 |" in text
     assert "| `i` | as \\*said\\* | refuted: 1, vacuous: 1 |" in text
     assert "1. x\\_1 \\< 2 (holds)\n\n   $$\n   x_1 < 2\n   $$" in text
     assert "2. and so on (**does not hold**)" in text
     row = next(line for line in text.splitlines() if "scenarios/collapse.md" in line)
-    assert row.startswith("| ![collapse, last still](../scenarios/images/collapse-1.svg){.thumbnail} |")
+    assert row.startswith("| ![collapse, at the end](../scenarios/images/collapse-end.svg){.thumbnail} |")
     shown = '<a href="../../report/index.html#scenario-collapse--os-3">refuted (interval)</a>'
     assert row.endswith(f"| {scenario('collapse').expected['os-3']} | {shown} |")
 

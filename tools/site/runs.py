@@ -21,7 +21,7 @@ _LOOK = """<style>
 
 
 def ran(name: str) -> dict[str, Any]:
-    """Facts, stills (label and image) and the playing page of a scenario; it runs where the library has changed."""
+    """Facts, stills (label and image), the end and the playing page of a scenario; it runs where the library has changed."""
     return kept("runs", name, ("flockana",), lambda: _ran(name))
 
 
@@ -35,6 +35,7 @@ def _ran(name: str) -> dict[str, Any]:
     return {
         "facts": [list(fact) for fact in told.facts],
         "stills": [[label, image(svg)] for label, svg in drawn],
+        "end": image(STILL.findall(stills(run, [run.t[-1]]))[0][1]),  # on a scale of its own
         "play": play,
     }
 

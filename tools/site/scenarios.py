@@ -71,6 +71,7 @@ def write(folder: Path, extra: Path, verdicts: Verdicts, *, images: bool, report
             told = ran(name)
             for k, (_, svg) in enumerate(told["stills"]):
                 (folder / "images" / f"{name}-{k}.svg").write_text(svg, encoding="utf-8")
+            (folder / "images" / f"{name}-end.svg").write_text(told["end"], encoding="utf-8")
             if told["play"]:
                 (extra / "runs" / f"{name}.html").write_text(told["play"], encoding="utf-8")
         (folder / f"{name}.md").write_text(page(case, verdicts, images=images, report=report), encoding="utf-8")
@@ -87,6 +88,5 @@ def write(folder: Path, extra: Path, verdicts: Verdicts, *, images: bool, report
 
 
 def thumbnail(name: str, *, folder: str = "images") -> str:
-    """A small picture of the last still."""
-    last = len(ran(name)["stills"]) - 1
-    return f"![{name}, last still]({folder}/{name}-{last}.svg){{.thumbnail}}"
+    """A small picture of the end."""
+    return f"![{name}, at the end]({folder}/{name}-end.svg){{.thumbnail}}"

@@ -70,7 +70,8 @@ def _claims(item: Theorem, verdicts: Verdicts) -> str:
     ]
     if not verdicts.status:
         rows = [(name, "as above", "—") for name, *_ in rows]
-    text = table(("claim, judged by itself", "stated", "found, in how many verdicts of the catalogue"), rows)
+    stated = "stated" if item.kind == "fixed" else "stated, of the first run"
+    text = table(("claim, judged by itself", stated, "found, in how many verdicts of the catalogue"), rows)
     said = ", ".join(f"`{name}`" for name in limits)
     return f"{text}\n\nOf limits speak {said}: a run that is too short decides nothing." if limits else text
 
