@@ -32,7 +32,7 @@ from flockana.report.lattices import lattice_section
 from flockana.report.pages import FixedPage, FixedResult, Page, ScenarioPage, ScenarioResult, page
 from flockana.report.stability import stability_section
 from flockana.report.statistics import StatisticsSection
-from flockana.report.text import MARKS, deciding_claim, markup, show, source_name, tolerance_rows
+from flockana.report.text import deciding_claim, markup, show, source_name, tolerance_rows
 
 FOLDER, HTML, JSON = Path("report"), "index.html", "verdicts.json"
 UNFINISHED = "unfinished"  # folder within that of a complete report, for one that was broken off
@@ -186,7 +186,6 @@ def _html(
             coverage={"sources": coverage(), "anchors": anchors(pages)} if run["of"] is None else None,
             counts=[(status, counts[status]) for status in _STATUSES],
             surprises=_surprises(pages),
-            marks=MARKS,
             sources=sorted({source_name(f.references[0]) for f in findings if f.references}),
             rigours=sorted({f.verdict.rigour for f in findings}),
             player_style=Markup(style()),

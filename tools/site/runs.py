@@ -21,7 +21,7 @@ _LOOK = """<style>
 
 
 def ran(name: str) -> dict[str, Any]:
-    """Facts, stills (label and image), the end and the playing page of a scenario; it runs where the library has changed."""
+    """Facts, stills (label, image), the end and the playing page of a scenario; run where the library has changed."""
     return kept("runs", name, ("flockana",), lambda: _ran(name))
 
 
