@@ -1,4 +1,4 @@
-"""Pages of the site as `make docs` left them, in headless Chromium: no fault in the console, axe content, found, played.
+"""Pages of the site as `make docs` left them, in headless Chromium: quiet, accessible, found by the search, played.
 
 Of a draft (`make docs OPTIONS=--draft`) what it has; a page that plays a run is in the whole site alone.
 """
