@@ -6,7 +6,10 @@ Of a draft (`make docs OPTIONS=--draft`) what it has; a page that plays a run is
 from __future__ import annotations
 
 import shutil
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
+from threading import Thread
 
 import pytest
 
@@ -29,8 +32,22 @@ def browser():
         found.close()
 
 
+class Quiet(SimpleHTTPRequestHandler):
+    def log_message(self, *words):
+        pass
+
+
+@pytest.fixture(scope="module")
+def address():
+    """The site as a server gives it: of a file a page may not read another, and the search shows no excerpts."""
+    with ThreadingHTTPServer(("127.0.0.1", 0), partial(Quiet, directory=HTML)) as server:
+        Thread(target=server.serve_forever, daemon=True).start()
+        yield f"http://127.0.0.1:{server.server_port}"
+        server.shutdown()
+
+
 @pytest.fixture
-def visit(browser):
+def visit(browser, address):
     """Open a page of the site; at the end there must have been no message of an error."""
     tabs, said = [], []
 
@@ -40,7 +57,7 @@ def visit(browser):
         tab.set_default_timeout(120_000)  # milliseconds: on a busy machine
         tab.on("console", lambda message: said.append(message.text) if message.type == "error" else None)
         tab.on("pageerror", lambda error: said.append(str(error)))
-        tab.goto(f"{HTML.as_uri()}/{name}")
+        tab.goto(f"{address}/{name}")
         tab.wait_for_load_state("load")
         return tab
 
