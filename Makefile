@@ -39,7 +39,7 @@ course: .venv/.dev  ## write course/student and course/solutions as .ipynb
 coverage: .venv/.dev  ## write docs/coverage.md: what holds each item of each source
 	$(BIN)/python -m tools.coverage_page
 
-docs: .venv/.docs  ## build the documentation site, site/html/index.html; OPTIONS=--external checks outer links too
+docs: .venv/.docs  ## build the site, site/html/index.html; OPTIONS="--draft" executes nothing, "--external" checks outer links
 	$(BIN)/python -m tools.site $(OPTIONS)
 
 portability: .venv/.installed  ## which verdicts change on other machine code, from moved starts, at other tolerances

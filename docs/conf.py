@@ -9,6 +9,7 @@ HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE / "_ext"), str(HERE.parent)]
 
 from flockana import __version__  # noqa: E402
+from tools.site.cache import CACHE, digest  # noqa: E402
 
 project = "flockana"
 author = copyright = "The flockana developers"  # Sphinx's name
@@ -24,7 +25,7 @@ extensions = [
     "keyboard",
 ]
 templates_path = ["_templates"]
-exclude_patterns = ["_ext", "generated/lectures/own_law"]
+exclude_patterns = ["_ext", "generated/lectures/own_law", "generated/extra"]
 default_role = "py:obj"
 suppress_warnings = ["misc.highlighting_failure", "mystnb.unknown_mime_type", "myst-nb.lexer"]
 
@@ -35,7 +36,7 @@ autodoc_typehints = "none"  # numpydoc sections say it in words
 myst_enable_extensions = ["amsmath", "dollarmath", "deflist", "colon_fence", "attrs_block", "attrs_inline"]
 myst_heading_anchors = 3
 nb_execution_mode = "cache"
-nb_execution_cache_path = str(HERE.parent / "site" / "cache" / "notebooks")
+nb_execution_cache_path = str(CACHE / f"notebooks-{digest(('flockana', 'proofs', 'notebooks'))}")  # of this code
 nb_execution_timeout = 600
 nb_execution_raise_on_error = True
 nb_merge_streams = True
@@ -44,12 +45,16 @@ html_theme = "pydata_sphinx_theme"
 html_title = "flockana"
 html_context = {"default_mode": "auto"}
 html_static_path = ["_static"]
+html_extra_path = ["generated/extra"]  # runs that play, and the report
 html_css_files = ["flockana.css"]
+html_favicon = "_static/icon.svg"
 html_copy_source = False
 html_show_sourcelink = False
 html_theme_options = {
     "show_toc_level": 2,
     "navigation_with_keys": True,
+    "header_links_before_dropdown": 4,
+    "navbar_align": "left",
     "secondary_sidebar_items": ["page-toc"],
     "footer_start": ["copyright"],
     "footer_end": [],

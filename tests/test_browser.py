@@ -16,6 +16,7 @@ import pytest
 from flockana.dynamics.simulate import simulate
 from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.olfati_saber import Algorithm1
+from flockana.player.codec import Packed, decode, encode
 from flockana.player.page import page
 from flockana.player.scene import scene
 from flockana.report.build import write_report
@@ -118,10 +119,10 @@ def test_the_report_is_filtered(visit, report):
 def test_runs_are_decoded_when_their_section_opens_and_a_link_opens_it(visit, report):
     tab = visit(report)
     assert tab.locator("canvas").count() == 0
-    tab.locator(".summary a[href='#hexagon--energy']").click()
-    tab.wait_for_selector("#hexagon canvas")
+    tab.locator(".summary a[href='#scenario-hexagon--energy']").click()
+    tab.wait_for_selector("#scenario-hexagon canvas")
     assert tab.locator("canvas").count() == 1
-    assert tab.locator("#hexagon--energy").is_visible()
+    assert tab.locator("#scenario-hexagon--energy").is_visible()
 
 
 def test_without_javascript_all_is_there_but_the_player(browser, report):
@@ -129,8 +130,8 @@ def test_without_javascript_all_is_there_but_the_player(browser, report):
     tab = context.new_page()
     tab.goto(report.as_uri())
     assert not tab.locator("#filter").is_visible()
-    tab.locator("#hexagon > summary").click()
-    assert tab.locator("#hexagon svg").first.is_visible()
+    tab.locator("#scenario-hexagon > summary").click()
+    assert tab.locator("#scenario-hexagon svg").first.is_visible()
     context.close()
 
 
@@ -168,6 +169,48 @@ def test_the_player_plays_pauses_and_answers_keys(visit, run, tmp_path):
     assert violations(tab) == []
 
 
+def made(**world):
+    """Three instants of one agent in space, with this world: as `scene` gives it."""
+    header = {
+        **{"n": 1, "m": 3, "title": "made", "reach": None, "length": None, "edge_counts": [], "solids": []},
+        **{"outlines": [], "beta": 0.0, "groups": [], "marks": []},
+        **{"series": [{"name": "a", "label": "a", "log": False}]},
+    }
+    q = np.array([[[0.0, 0.0, 0.0]], [[4.0, 0.0, 0.0]], [[4.0, 4.0, 4.0]]])
+    t = np.array([0.0, 1.0, 2.0])
+    arrays = {"t": t, "q": q, "p": 0.0 * q, "series_t": t, "series_0": np.array([0.0, 10.0, -5.0])}
+    return encode(header | world, {name: Packed(values) for name, values in arrays.items()})
+
+
+def test_the_strip_shows_the_value_of_the_nearest_sample(visit, tmp_path):
+    tab = visit(played(tmp_path / "run.html", made(marks=[{"t": t, "label": "x"} for t in (0.4, 0.6, 1.4, 1.6)])))
+    tab.wait_for_selector(".fp-row")
+    for time, value in ((0.4, 0), (0.6, 10), (1.4, 10), (1.6, -5)):
+        tab.get_by_role("button", name=f"t = {time}: x").click()
+        tab.wait_for_function(f"document.querySelector('.fp-clock').textContent === 't = {time}'")
+        assert tab.locator(".fp-row output").inner_text() == str(value)
+
+
+def test_in_space_walls_and_wires_are_drawn(visit, tmp_path):
+    wall = {"kind": "wall", "par": [0.0, 0.0, -1.0, 0.0, 0.0, 1.0]}
+    wire = [[0.0, 0.0, 1.0], [4.0, 0.0, 1.0], [4.0, 4.0, 1.0], [0.0, 4.0, 1.0], [0.0, 2.0, 1.0]]
+    inked = []
+    for world in ({}, {"solids": [wall]}, {"outlines": [wire]}):
+        tab = visit(played(tmp_path / "run.html", made(**world)))
+        tab.wait_for_selector(".fp-row")
+        tab.wait_for_timeout(100)
+        inked.append(
+            tab.evaluate(
+                "(() => { const c = document.querySelector('canvas'), d = c.getContext('2d').getImageData(0, 0, "
+                "c.width, c.height).data; let sum = 0; for (let i = 3; i < d.length; i += 4) sum += d[i] > 0; "
+                "return sum; })()"
+            )
+        )
+    none, grid, line = inked
+    assert grid > none + 2000  # ten lines of hundreds of pixels
+    assert none + 100 < line < none + 4000  # a line, and not a filled face
+
+
 def pixels(tab):
     return tab.evaluate("document.querySelector('canvas').toDataURL()")
 
@@ -200,3 +243,59 @@ def test_zoom_pan_and_turning_change_the_picture_and_fit_brings_it_back(visit, t
 def test_a_damaged_run_says_so(visit, tmp_path):
     tab = visit(played(tmp_path / "run.html", b"FLK1 damaged"))
     tab.wait_for_function("document.querySelector('#player').textContent.startsWith('This run cannot be shown here')")
+
+
+NOTEBOOK = """\
+import flockana as fl
+q = [[0.0, 0.0], [7.0, 0.0], [3.0, 6.0]]
+shown = fl.simulate(fl.Algorithm1(), q, [[0.0, 0.0]] * 3, (0.0, 2.0)).player().widget()
+shown.time = 1.5
+shown
+"""
+FRONT_END = """async ([code, css, data, time]) => {
+  const sheet = document.createElement("style");
+  sheet.textContent = css;
+  document.head.append(sheet);
+  const state = { data: new DataView(Uint8Array.from(atob(data), (c) => c.charCodeAt(0)).buffer), time }, heard = {};
+  window.model = {
+    saved: 0, get: (name) => state[name], save_changes() { this.saved++; },
+    on: (event, act) => { heard[event] = act; },
+    set(name, value) {
+      if (state[name] === value) return;
+      state[name] = value;
+      if (heard[`change:${name}`]) heard[`change:${name}`]();
+    },
+  };
+  const widget = await import(URL.createObjectURL(new Blob([code], { type: "text/javascript" })));
+  window.leave = widget.default.render({ model: window.model, el: document.body });
+}"""  # what a notebook does with an anywidget
+
+
+def test_a_widget_leaves_the_kernel_whole_and_its_time_goes_both_ways(visit, tmp_path):
+    """The kernel sends what a front end needs; the start of a kernel takes its seconds."""
+    pytest.importorskip("anywidget", reason="anywidget is not installed: flockana[notebook]")
+    pytest.importorskip("ipykernel")
+    client, nbformat = pytest.importorskip("nbclient"), pytest.importorskip("nbformat")
+    book = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(NOTEBOOK)])
+    book = client.NotebookClient(book, timeout=120, kernel_name="python3", store_widget_state=True).execute()
+    view = book.cells[0].outputs[0]["data"]["application/vnd.jupyter.widget-view+json"]
+    model = book.metadata["widgets"]["application/vnd.jupyter.widget-state+json"]["state"][view["model_id"]]
+    (buffer,) = model["buffers"]
+    assert (buffer["path"], buffer["encoding"]) == (["data"], "base64")
+    header, arrays = decode(base64.b64decode(buffer["data"]))
+    assert (header["n"], arrays["t"][-1]) == (3, 2.0)
+
+    (tmp_path / "empty.html").write_text('<!doctype html><html lang="en"><title>A notebook</title><body></body></html>')
+    tab = visit(tmp_path / "empty.html")
+    state = model["state"]
+    tab.evaluate(FRONT_END, [state["_esm"], state["_css"], buffer["data"], state["time"]])
+    clock = "document.querySelector('.fp-clock').textContent"
+    tab.wait_for_selector("canvas")
+    tab.wait_for_function(f"{clock} === 't = 1.5'")
+    tab.evaluate("model.set('time', 0.5)")  # as when the notebook's code sets it
+    tab.wait_for_function(f"{clock} === 't = 0.5'")
+    tab.locator("canvas").focus()
+    tab.keyboard.press("End")
+    tab.wait_for_function("model.get('time') === 2 && model.saved > 0")
+    tab.evaluate("leave()")
+    assert tab.locator("canvas").count() == 0

@@ -1,16 +1,22 @@
-"""Three pages of the site as `make docs` left them, in headless Chromium: no fault in the console, axe content."""
+"""Pages of the site as `make docs` left them, in headless Chromium: quiet, accessible, found by the search, played.
+
+Of a draft (`make docs OPTIONS=--draft`) what it has; a page that plays a run is in the whole site alone.
+"""
 
 from __future__ import annotations
 
 import shutil
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
+from threading import Thread
 
 import pytest
 
 HERE = Path(__file__).resolve().parent
 HTML = HERE.parent / "site" / "html"
-PAGES = ("start.html", "generated/theorems/os-3.html", "generated/mathematics.html")
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+PAGES = ("start.html", "generated/theorems/os-3.html", "generated/scenarios/hexagon.html", "howto/verify.html")
+CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 
 
 @pytest.fixture(scope="module")
@@ -26,25 +32,94 @@ def browser():
         found.close()
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize("width", [1280, 390])
-@pytest.mark.parametrize("name", PAGES)
-def test_a_page_is_quiet_fits_and_can_be_read_by_all(browser, name, width, scheme):
-    page = browser.new_page(viewport={"width": width, "height": 800}, color_scheme=scheme)
-    page.set_default_timeout(120_000)  # milliseconds: on a busy machine
-    said: list[str] = []
-    page.on("console", lambda message: said.append(message.text) if message.type == "error" else None)
-    page.on("pageerror", lambda error: said.append(str(error)))
-    page.goto((HTML / name).as_uri())
-    page.wait_for_load_state("load")
-    page.wait_for_function("!window.MathJax || !MathJax.startup || MathJax.startup.promise.then(() => true)")
+class Quiet(SimpleHTTPRequestHandler):
+    def log_message(self, *words):
+        pass
+
+
+@pytest.fixture(scope="module")
+def address():
+    """The site as a server gives it: of a file a page may not read another, and the search shows no excerpts."""
+    with ThreadingHTTPServer(("127.0.0.1", 0), partial(Quiet, directory=HTML)) as server:
+        Thread(target=server.serve_forever, daemon=True).start()
+        yield f"http://127.0.0.1:{server.server_port}"
+        server.shutdown()
+
+
+@pytest.fixture
+def visit(browser, address):
+    """Open a page of the site; at the end there must have been no message of an error."""
+    tabs, said = [], []
+
+    def visit(name, *, width=1280, scheme="light"):
+        tab = browser.new_page(viewport={"width": width, "height": 800}, color_scheme=scheme)
+        tabs.append(tab)
+        tab.set_default_timeout(120_000)  # milliseconds: on a busy machine
+        tab.on("console", lambda message: said.append(message.text) if message.type == "error" else None)
+        tab.on("pageerror", lambda error: said.append(str(error)))
+        tab.goto(f"{address}/{name}")
+        tab.wait_for_load_state("load")
+        return tab
+
+    yield visit
+    for tab in tabs:
+        tab.close()
     assert said == []
-    assert (
-        page.evaluate("[...document.images].filter(i => !i.alt && i.getAttribute('role') !== 'presentation').length")
-        == 0
-    )
-    assert page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth") <= 0
-    page.add_script_tag(path=str(HERE / "axe" / "axe.min.js"))
-    found = page.evaluate("axe.run('main', {preload: false, runOnly: ['wcag2a', 'wcag2aa']})")
+
+
+def typeset(tab):
+    tab.wait_for_function("!window.MathJax || !MathJax.startup || MathJax.startup.promise.then(() => true)")
+
+
+def too_wide(tab):
+    return tab.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
+
+
+@pytest.mark.parametrize(("scheme", "width"), [("light", 1280), ("dark", 390)])
+@pytest.mark.parametrize("name", PAGES)
+def test_a_page_is_quiet_fits_and_can_be_read_by_all(visit, name, width, scheme):
+    tab = visit(name, width=width, scheme=scheme)
+    typeset(tab)
+    unnamed = "[...document.images].filter(i => !i.alt && i.getAttribute('role') !== 'presentation').length"
+    assert tab.evaluate(unnamed) == 0
+    assert too_wide(tab) <= 0
+    tab.add_script_tag(path=str(HERE / "axe" / "axe.min.js"))
+    found = tab.evaluate("axe.run('main', {preload: false, iframes: false, runOnly: ['wcag2a', 'wcag2aa']})")
     assert [(one["id"], one["nodes"][0]["html"][:120]) for one in found["violations"]] == []
-    page.close()
+
+
+@pytest.mark.parametrize("width", [1280, 390])
+def test_every_formula_is_typeset_and_wide_ones_scroll_in_themselves(visit, width):
+    """The page with the most formulas; for axe it has too many elements."""
+    tab = visit("generated/mathematics.html", width=width)
+    typeset(tab)
+    assert tab.locator("mjx-container").count() > 150
+    assert tab.locator("mjx-merror").count() == 0
+    assert too_wide(tab) <= 0
+
+
+@pytest.mark.parametrize(
+    ("words", "page"),
+    [
+        ("cohesive matched", "theorems/os-3"),
+        ("paper-split-rejoin", "scenarios/paper-split-rejoin"),
+        ("falsify", "howto/falsify"),
+    ],
+)
+def test_the_search_finds(visit, words, page):
+    tab = visit(f"search.html?q={words.replace(' ', '+')}")
+    tab.wait_for_selector("#search-results li a")
+    tab.wait_for_function(
+        f"[...document.querySelectorAll('#search-results li a')].some(a => a.href.includes('{page}'))"
+    )
+
+
+def test_a_scenario_plays_in_its_page(visit):
+    if not (HTML / "runs" / "hexagon.html").exists():
+        pytest.skip("the site is a draft, without runs")
+    tab = visit("generated/scenarios/hexagon.html")
+    tab.locator("iframe.run").scroll_into_view_if_needed()
+    frame = tab.frame_locator("iframe.run")
+    frame.get_by_role("button", name="Play").click()
+    frame.get_by_role("button", name="Pause").click()
+    assert frame.locator(".fp-clock").inner_text() != "t = 0"

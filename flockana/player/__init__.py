@@ -69,6 +69,9 @@ class Player:
     def widget(self) -> Any:
         """It as a widget, whose ``time`` the notebook's code reads and sets; needs flockana[notebook].
 
+        A notebook with it that is exported to HTML fetches what shows widgets from the network; of the player itself
+        the export needs nothing.
+
         Raises
         ------
         ArgumentError

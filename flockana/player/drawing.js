@@ -167,15 +167,25 @@ function flockanaDrawing(canvas, run) {
         ink.lineTo(x + b * far - a * far, y + a * far + b * far);
         ink.lineTo(x - b * far - a * far, y - a * far + b * far);
         ink.fill(); ink.stroke();
+      } else if (kind === "wall" && m === 3) {
+        for (const ends of patch(par)) ends.forEach((x, k) => { const [u, v] = project(x, 0); if (k) ink.lineTo(u, v); else ink.moveTo(u, v); });
+        ink.stroke();
       }
     }
     for (const line of run.outlines) {
       ink.beginPath();
       line.forEach((x, k) => { const [u, v] = project(x, 0); if (k) ink.lineTo(u, v); else ink.moveTo(u, v); });
       ink.closePath();
-      if (line.length > 4) ink.fill();
+      if (line.length > 4 && m < 3) ink.fill();  // in space they are wires about a solid
       ink.stroke();
     }
+  }
+  function patch(par) {  // of a wall in space, about the foot of the run's centre: a grid of lines
+    const a = par.slice(3), [foot] = closest({ kind: "wall", par }, whole), k = a.map(Math.abs).indexOf(Math.min(...a.map(Math.abs)));
+    const cross = (x, y) => [x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]];
+    const across = cross(a, [0, 1, 2].map((c) => (c === k ? 1 : 0))), long = Math.hypot(...across), u = across.map((c) => c / long), v = cross(a, u);
+    const at = (x, y) => foot.map((c, i) => c + 0.6 * size * (x * u[i] + y * v[i]));
+    return [-1, -0.5, 0, 0.5, 1].flatMap((x) => [[at(x, -1), at(x, 1)], [at(-1, x), at(1, x)]]);
   }
   function betaAgents() {
     if (!run.beta) return;

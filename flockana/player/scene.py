@@ -33,8 +33,15 @@ SHOWN = (
     "min_distance",
     "heading_spread",
 )  # metrics of the strip, of those that the law has
-_FEATURES = 160  # samples of a series in a strip
+_FEATURES = 160  # samples of a series in a strip, beside those of least and greatest values
 _OUTLINE = 90  # points about an obstacle that is neither ball nor wall
+_CIRCLES = {
+    2: (((1.0, 0.0), (0.0, 1.0)),),
+    3: (
+        ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)),
+        *(((float(np.cos(a)), float(np.sin(a)), 0.0), (0.0, 0.0, 1.0)) for a in np.pi * np.arange(4) / 4.0),
+    ),
+}  # two axes of each, by dimension: the outline; the equator and four meridians
 _FINE, _COARSE = 2.0**-13, 2.0**-6  # resolution of places and velocities in a page, as shares of their span
 _EXTREME = 1e30  # beyond it a number is shown as if it were this
 
@@ -161,7 +168,9 @@ def scene(
     around = world(run.law.continuous or run.law, run, frames)
     q, p = run.q[frames], run.p[frames]
     series = _series(run)
-    samples = kept(len(run.t), _FEATURES)
+    samples = np.unique(
+        [*kept(len(run.t), _FEATURES), *(pick(x) for *_, x in series for pick in (np.argmin, np.argmax))]
+    )
     q_step, p_step = (0.0, 0.0) if exact else (_FINE * (np.ptp(q) or 1.0), _COARSE * (np.ptp(p) or 1.0))
     arrays = {"t": Packed(run.t[frames]), "q": Packed(q, float(q_step)), "p": Packed(p, float(p_step))}
     for name, places in (("stars", around.stars), ("crosses", around.crosses)):
@@ -180,7 +189,7 @@ def scene(
         "length": around.length,
         "edge_counts": [len(pairs) for pairs in around.edges],
         "solids": [_solid(each) for each in around.solids],
-        "outlines": [np.round(line, 6).tolist() for line in around.outlines + _outlines(around.solids)],
+        "outlines": [np.round(line, 6).tolist() for line in around.outlines + outlines(around.solids)],
         "beta": around.beta,
         "groups": list(around.groups),
         "series": [{"name": name, "label": label, "log": log} for name, label, log, _ in series],
@@ -238,13 +247,25 @@ def _solid(solid: Obstacle) -> dict[str, Any]:
     return {"kind": "other"}
 
 
-def _outlines(solids: Iterable[Obstacle]) -> tuple[FloatArray, ...]:
-    """Outlines in the plane of those that are neither balls nor walls: closest points of a circle about each."""
+def outlines(solids: Iterable[Obstacle]) -> tuple[FloatArray, ...]:
+    """Closed lines on those that are neither balls nor walls: the closest points of circles about each.
+
+    Parameters
+    ----------
+    solids : iterable of Obstacle
+        Obstacles; of one in the plane the line is its outline, of one in space the lines are five wires.
+
+    Returns
+    -------
+    tuple of ndarray, shape (V, m)
+    """
     turn = np.linspace(0.0, 2.0 * np.pi, _OUTLINE, endpoint=False)
-    circle, lines = np.column_stack([np.cos(turn), np.sin(turn)]), []
+    lines = []
     for solid in solids:
-        if not isinstance(solid, Sphere | Wall) and solid.dimension == 2 and np.isfinite(solid.ball[1]):
-            centre, radius = solid.ball
-            around = centre + 1.001 * radius * circle
+        if isinstance(solid, Sphere | Wall) or not np.isfinite(solid.ball[1]):
+            continue
+        centre, radius = solid.ball
+        for u, v in _CIRCLES.get(solid.dimension, ()):
+            around = centre + 1.001 * radius * (np.outer(np.cos(turn), u) + np.outer(np.sin(turn), v))
             lines.append(solid.beta_agents(around, np.zeros_like(around)).q)
     return tuple(lines)

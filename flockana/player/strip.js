@@ -46,11 +46,10 @@ function flockanaStrip(place, run, seek) {
     }
     place.append(list);
   }
-  function value(values, time) {
-    let k = 0;
-    while (k < t.length - 2 && t[k + 1] <= time) k++;
-    const s = t.length > 1 ? Math.min(1, Math.max(0, (time - t[k]) / (t[k + 1] - t[k]))) : 0;
-    return t.length > 1 ? (1 - s) * values[k] + s * values[k + 1] : values[0];
+  function value(values, time) {  // of the nearest sample: between samples nothing is known
+    let low = 0, high = t.length - 1;
+    while (high - low > 1) { const k = (low + high) >> 1; if (t[k] <= time) low = k; else high = k; }
+    return values[time - t[low] <= t[high] - time ? low : high];
   }
   function show(time) {
     for (const row of rows) {

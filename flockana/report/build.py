@@ -25,14 +25,14 @@ from flockana.base.files import ensure_path, replacing
 from flockana.player.page import script, style
 from flockana.report.comparison import ComparisonSection
 from flockana.report.coverage import coverage
-from flockana.report.coverage.anchors import anchors, verdict_id
+from flockana.report.coverage.anchors import anchors, scenario_id, verdict_id
 from flockana.report.figures import Picture
 from flockana.report.image import named
 from flockana.report.lattices import lattice_section
 from flockana.report.pages import FixedPage, FixedResult, Page, ScenarioPage, ScenarioResult, page
 from flockana.report.stability import stability_section
 from flockana.report.statistics import StatisticsSection
-from flockana.report.text import MARKS, deciding_claim, markup, show, source_name, tolerance_rows
+from flockana.report.text import deciding_claim, markup, show, source_name, tolerance_rows
 
 FOLDER, HTML, JSON = Path("report"), "index.html", "verdicts.json"
 UNFINISHED = "unfinished"  # folder within that of a complete report, for one that was broken off
@@ -160,6 +160,7 @@ def page_environment() -> Environment:
 
     environment.filters |= {"show": show, "markup": markup, "deciding": deciding_claim, "figure": figure}
     environment.filters |= {"source_name": source_name}
+    environment.globals |= {"scenario_id": scenario_id, "verdict_id": verdict_id}
     return environment
 
 
@@ -183,10 +184,8 @@ def _html(
             comparison=comparison,
             stability=stability_section(pages),
             coverage={"sources": coverage(), "anchors": anchors(pages)} if run["of"] is None else None,
-            verdict_id=verdict_id,
             counts=[(status, counts[status]) for status in _STATUSES],
             surprises=_surprises(pages),
-            marks=MARKS,
             sources=sorted({source_name(f.references[0]) for f in findings if f.references}),
             rigours=sorted({f.verdict.rigour for f in findings}),
             player_style=Markup(style()),
@@ -204,7 +203,7 @@ def _surprises(pages: list[Page]) -> list[tuple[str, str]]:
     for each in pages:
         subject = each.name if isinstance(each, ScenarioPage) else "fixed"
         if isinstance(each, ScenarioPage) and each.trouble:
-            found.append((each.name, each.trouble))
+            found.append((scenario_id(each.name), each.trouble))
         for finding in each.findings:
             found += [(verdict_id(subject, finding.verdict.theorem), text) for text in finding.surprises]
     return found

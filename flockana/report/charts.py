@@ -74,18 +74,17 @@ class Chart:
         def y(value: Any) -> Any:
             return _TOP + height * (1.0 - (value - low) / (high - low))
 
-        parts = []
-        for at, text in _decades(low, high) if logarithmic else _round(low, high, 4):
-            parts.append(f'<path class="grid" d="M{_LEFT} {y(at):.0f}H{_WIDTH - _RIGHT}"/>')
-            parts.append(f'<text x="{_LEFT - 10}" y="{y(at) + 7:.0f}" text-anchor="end">{text}</text>')
-        for at, text in _round(t0, t1, 5):
-            parts.append(f'<text x="{x(at):.0f}" y="{_HEIGHT - 30}" text-anchor="middle">{text}</text>')
-        parts.append(f'<text x="{_WIDTH - _RIGHT}" y="{_HEIGHT - 4}" text-anchor="end">t (time)</text>')
+        ticks = _decades(low, high) if logarithmic else _round(low, high, 4)
+        parts = [f'<path class="grid" d="{"".join(f"M{_LEFT} {y(at):.0f}H{_WIDTH - _RIGHT}" for at, _ in ticks)}"/>']
+        parts += [f'<text x="{_LEFT - 10}" y="{y(at) + 7:.0f}">{text}</text>' for at, text in ticks]
+        times = "".join(f'<text x="{x(at):.0f}" y="{_HEIGHT - 30}">{text}</text>' for at, text in _round(t0, t1, 5))
+        parts.append(f'<g class="times">{times}</g>')
+        parts.append(f'<text x="{_WIDTH - _RIGHT}" y="{_HEIGHT - 4}">t (time)</text>')
         for level, name in self.levels:
             if not logarithmic or level > 0.0:
                 at = y(log10(level) if logarithmic else level)
                 parts.append(f'<path class="level" d="M{_LEFT} {at:.0f}H{_WIDTH - _RIGHT}"/>')
-                parts.append(f'<text x="{_WIDTH - _RIGHT}" y="{at - 6:.0f}" text-anchor="end">{escape(name)}</text>')
+                parts.append(f'<text x="{_WIDTH - _RIGHT}" y="{at - 6:.0f}">{escape(name)}</text>')
         for k, values in enumerate(shown):
             keep = _kept(values)
             with np.errstate(divide="ignore", invalid="ignore"):

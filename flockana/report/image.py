@@ -32,6 +32,7 @@ _COLOURS = {
     "#d55e00": "--vermillion",
     "#cc79a7": "--purple",
 }  # of plots.style, by what the page calls them
+_LONG = 400  # characters of a path; markers, which are small and used often, have fewer
 IDS = "FIGURE-"  # begins every id of a figure; the page puts a number in its place
 
 
@@ -82,8 +83,18 @@ def _page_s_own(text: str) -> str:
     text = re.sub(r"#[0-9a-f]{6}\b", lambda m: f"var({_COLOURS[m[0]]})" if m[0] in _COLOURS else m[0], text)
     text = re.sub(r"font-family: [^;\"]*;? ?", "", text)  # the page has one
     text = re.sub(r"font: ([^;\"]*?)(\d+(?:\.\d+)?)px [^;\"]*", r"font: \1\2px system-ui, sans-serif", text)
-    text = re.sub(r"(\d+\.\d\d)\d+", r"\1", text)
-    return re.sub(r"\s*\n\s*", " ", text)
+    text = re.sub(r"<[^>]*>", lambda tag: re.sub(r"(\d+\.\d\d)\d+", r"\1", tag[0]), text)  # labels keep theirs
+    text = re.sub(r"\s*\n\s*", " ", text)
+    return re.sub(r' d="([^"]*)"', lambda m: f' d="{_short(m[1])}"', text)
+
+
+def _short(path: str) -> str:
+    """A path without what no eye can tell: of a long one the hundredths of a pixel, and points that repeat the last."""
+    if len(path) > _LONG:
+        path = re.sub(r"(\d+\.\d)\d+", r"\1", path)
+    path = re.sub(r"(L \S+ \S+ ?)\1+", r"\1", path)
+    path = re.sub(r"(\.\d*?)0+(?=\D|$)", r"\1", path)
+    return re.sub(r"\.(?=\D|$)| (?=[A-Za-z])|(?<=[A-Za-z]) | $", "", path)
 
 
 def named(source: str, caption: str, number: int) -> str:

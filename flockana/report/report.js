@@ -43,7 +43,7 @@ function filter() {
     body.hidden = !any;
   }
   for (const section of document.querySelectorAll("section.scenario"))
-    section.hidden = !shown.has(section.firstElementChild.id);
+    section.hidden = !shown.has(section.dataset.name);
   form.querySelector("output").textContent = `${count} of ${all} verdicts`;
 }
 form.hidden = false;

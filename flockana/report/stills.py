@@ -9,9 +9,9 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.obstacles import Sphere, Wall
+from flockana.environment.obstacles import Obstacle, Sphere, Wall
 from flockana.measures.nets import link_lengths, links
-from flockana.player.scene import World, world
+from flockana.player.scene import World, outlines, world
 
 _SIZE = 400.0
 _TURN, _TILT = 0.6, 0.5  # of a flock in space, as the player first shows it
@@ -36,7 +36,8 @@ def stills(run: Trajectory, times: Sequence[float]) -> str:
     balls = [
         _flat(np.array([s.centre])) + d * s.radius for s in around.solids if isinstance(s, Sphere) for d in (-1, 1)
     ]
-    lines = [_flat(line) for line in around.outlines]
+    wires = around.outlines + outlines(around.solids)
+    lines = [_flat(line) for line in wires]
     every = np.concatenate([*places, *others, *balls, *lines])
     low, span = every.min(axis=0), float(np.ptp(every, axis=0).max()) or 1.0
     scale = 0.92 * _SIZE / span
@@ -50,7 +51,8 @@ def stills(run: Trajectory, times: Sequence[float]) -> str:
     for j, k in enumerate(samples.tolist()):
         label = f"t = {run.t[k]:.4g}"
         inner = (
-            _world(around, put, scale, height)
+            _world(around.solids, wires, put, scale, height)
+            + _walls(around.solids, run.q, put)
             + _links(around, run.q[k], j, put)
             + _dots(put(places[j]), min(70.0 / np.sqrt(run.n), 0.4 * (around.length or around.reach or np.inf) * scale))
         )
@@ -102,9 +104,9 @@ def _links(around: World, q: FloatArray, j: int, put: Any) -> str:
     return text
 
 
-def _world(around: World, put: Any, scale: float, height: float) -> str:
+def _world(solids: Sequence[Obstacle], wires: Sequence[FloatArray], put: Any, scale: float, height: float) -> str:
     text = ""
-    for solid in around.solids:
+    for solid in solids:
         if isinstance(solid, Sphere):
             x, y = put(_flat(np.array([solid.centre])))[0]
             text += f'<circle class="solid" cx="{x:.0f}" cy="{y:.0f}" r="{scale * solid.radius:.1f}"/>'
@@ -115,10 +117,29 @@ def _world(around: World, put: Any, scale: float, height: float) -> str:
             corners = [(x - b * far, y - a * far), (x + b * far, y + a * far)]
             corners += [(u - a * far, v + b * far) for u, v in reversed(corners)]
             text += f'<polygon class="solid" points="{_points(corners)}"/>'
-    for line in around.outlines:
-        kind = "solid" if len(line) != 4 else "box"
+    for line in wires:
+        kind = "solid" if len(line) != 4 and line.shape[1] == 2 else "box"
         text += f'<polygon class="{kind}" points="{_points(put(_flat(line)).tolist())}"/>'
     return text
+
+
+def _walls(solids: Sequence[Obstacle], q: FloatArray, put: Any) -> str:
+    """Of each wall in space a grid about the foot of the run's centre, as the player draws it."""
+    path = ""
+    low, high = q.min(axis=(0, 1)), q.max(axis=(0, 1))
+    for solid in solids:
+        if isinstance(solid, Wall) and solid.dimension == 3:
+            y, a = solid.par[:3], solid.par[3:]
+            foot = 0.5 * (low + high) - ((0.5 * (low + high) - y) @ a) * a
+            u = np.cross(a, np.eye(3)[np.argmin(np.abs(a))])
+            axes = (
+                0.6 * float((high - low).max()) * np.array([u / np.linalg.norm(u), np.cross(a, u) / np.linalg.norm(u)])
+            )
+            for k in np.linspace(-1.0, 1.0, 5):
+                for ends in (((k, -1.0), (k, 1.0)), ((-1.0, k), (1.0, k))):
+                    (x0, y0), (x1, y1) = put(_flat(foot + np.array(ends) @ axes)).tolist()
+                    path += f"M{x0:.0f} {y0:.0f}L{x1:.0f} {y1:.0f}"
+    return f'<path class="box" d="{path}"/>' if path else ""
 
 
 def _points(corners: Any) -> str:

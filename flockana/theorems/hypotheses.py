@@ -16,7 +16,9 @@ if TYPE_CHECKING:
 _MEMBERS = {"alpha": AlphaInteraction, "beta": BetaInteraction, "gains": Gains}
 
 
-def condition(name: str, holds: bool, margin: float | None = None, detail: str = "") -> Hypothesis:
+def condition(
+    name: str, holds: bool, margin: float | None = None, detail: str = "", *, error: float | None = None
+) -> Hypothesis:
     """A hypothesis that is met or not, and never merely assumed.
 
     Parameters
@@ -29,13 +31,15 @@ def condition(name: str, holds: bool, margin: float | None = None, detail: str =
         How far it is met (positive) or missed (negative).
     detail : str
         In words.
+    error : float, optional
+        Of the margin.
 
     Examples
     --------
     >>> condition("c1α > 0", False, 0.0).status
     'unmet'
     """
-    return Hypothesis(name, "met" if holds else "unmet", margin, detail)
+    return Hypothesis(name, "met" if holds else "unmet", margin, detail, error)
 
 
 def law_is(name: str, *laws: type, formulas: bool = False) -> Callable[[Trajectory], Hypothesis]:
@@ -242,5 +246,5 @@ def below(name: str, value: float, bound: float, error: float, detail: str) -> H
     """
     margin = bound - value
     if abs(margin) <= error:
-        return Hypothesis(name, "assumed", margin, f"{detail}; equal but for rounding")
-    return condition(name, margin > 0.0, margin, detail)
+        return Hypothesis(name, "assumed", margin, f"{detail}; equal but for rounding", error)
+    return condition(name, margin > 0.0, margin, detail, error=error)

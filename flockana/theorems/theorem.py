@@ -102,12 +102,15 @@ class Hypothesis:
         How far it is met (positive) or missed (negative).
     detail : str
         In words.
+    error : float, optional
+        Numerical error of the margin, where it has one.
     """
 
     name: str
     status: HypothesisStatus
     margin: float | None = None
     detail: str = ""
+    error: float | None = None
 
 
 @dataclass(frozen=True)

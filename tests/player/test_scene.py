@@ -9,11 +9,12 @@ from flockana.dynamics.simulate import simulate
 from flockana.environment.capsule import Capsule
 from flockana.environment.obstacles import Sphere, Wall
 from flockana.environment.targets import LinearTarget
+from flockana.interactions.gains import Gains
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.player.codec import decode
-from flockana.player.scene import kept, scene
+from flockana.player.scene import kept, outlines, scene
 from flockana.scenarios import scenario
 
 Q = np.array([[0.0, 0.0], [7.0, 0.0], [3.0, 6.0]])
@@ -64,6 +65,34 @@ def test_links_that_are_no_matter_of_range_are_told_by_frame():
     header, arrays = decode(scene(short(law)))
     assert header["edge_counts"] == [2]
     assert sorted(map(tuple, arrays["edges"].astype(int).tolist())) == [(0, 1), (1, 2)]
+
+
+def test_in_space_a_curved_obstacle_is_wires_upon_it_and_all_around():
+    solid = Capsule((20.0, 0.0, 0.0), (26.0, 3.0, 1.0), 2.0)
+    wires = outlines([solid, Sphere((0.0, 0.0, 0.0), 1.0), Wall((0.0, 0.0, -9.0), (0.0, 0.0, 1.0))])
+    assert len(wires) == 5
+    np.testing.assert_allclose(solid.clearance(np.concatenate(wires)), 0.0, atol=1e-9)
+    low, high = np.array([18.0, -2.0, -2.0]), np.array([28.0, 5.0, 3.0])
+    np.testing.assert_allclose(np.concatenate(wires).min(axis=0), low, atol=0.5)
+    np.testing.assert_allclose(np.concatenate(wires).max(axis=0), high, atol=0.5)
+    ball = outlines([Capsule((0.0, 0.0, 0.0), (0.0, 0.0, 1e-6), 1.0)])
+    angles = [np.degrees(np.arctan2(wire[0, 1], wire[0, 0])) for wire in ball]
+    np.testing.assert_allclose(angles, [0.0, 0.0, 45.0, 90.0, 135.0], atol=0.1)
+
+
+def test_least_and_greatest_values_of_each_series_are_among_those_of_the_strip():
+    t = np.linspace(0.0, 3.0, 1000)
+    q = np.array([[0.0, 0.0], [6.7, 0.0], [3.35, 6.0]])  # they swing about their distance, between kept samples too
+    run = simulate(Algorithm1(gains=Gains(c1_alpha=30.0, c2_alpha=0.1)), q, 0.0 * q, (0.0, 3.0), t_eval=t)
+    header, arrays = decode(scene(run))
+    assert len(arrays["series_t"]) < 200
+    of = {series["name"]: arrays[f"series_{k}"] for k, series in enumerate(header["series"])}
+    effort = np.linalg.norm(run.u, axis=2).max(axis=1)
+    for name, values in (("H", run.energy()), ("min_distance", run.metric("min_distance")), ("effort", effort)):
+        single = values.astype(np.float32)
+        assert (of[name].min(), of[name].max()) == (single.min(), single.max())
+    bare = run.metric("min_distance")[kept(len(t), 160)]
+    assert bare.max() < run.metric("min_distance").max()  # else this test would say nothing
 
 
 def test_a_large_run_is_thinned_and_stays_under_a_megabyte():

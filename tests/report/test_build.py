@@ -14,7 +14,7 @@ from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.player.codec import decode
 from flockana.report.build import ensure_directory, verdicts_json, write_report
 from flockana.report.coverage import coverage
-from flockana.report.coverage.anchors import verdict_id
+from flockana.report.coverage.anchors import scenario_id, verdict_id
 from flockana.report.pages import FixedResult, ScenarioPage, ScenarioResult, page
 from flockana.report.text import deciding_claim, parameters, show, tolerance_rows
 from flockana.scenarios import Report, Scenario, scenario, scenarios
@@ -52,7 +52,9 @@ def result():
         margin=float("inf"),
         witness={"pair": (0, 1)},
     )
-    verdict = Verdict("os-1", (Hypothesis("h", "unmet", -2.0, "why"),), (good, bad), Tolerances(quasi=0.3), item.name)
+    verdict = Verdict(
+        "os-1", (Hypothesis("h", "unmet", -2.0, "why", 0.125),), (good, bad), Tolerances(quasi=0.3), item.name
+    )
     source = Verdict("source", (), (item.reports[0].check(run, Tolerances()),), Tolerances(), item.name)
     return ScenarioResult(item, run, (verdict, source))
 
@@ -111,9 +113,10 @@ def test_the_page_is_whole_self_contained_and_escaped(result, tmp_path):
         "Two agents",
         "rank(A)/n",
         "c1_alpha = 30",
-        '<a class="differs" href="#pair--os-1">os-1 is inconclusive, expected refuted</a>',
+        '<a class="differs" href="#scenario-pair--os-1">os-1 is inconclusive, expected refuted</a>',
         "flockana verify pair --seed 5",
         "± 1e-09",
+        "± 0.125",
         "seed 5",
         "quasi",
     ):
@@ -172,7 +175,7 @@ def test_instants_of_source_and_witnesses_are_marked_once_each(result):
 
 def test_no_two_places_of_the_whole_catalogue_have_one_id():
     reserved = "top filter open-all summary scenarios lattices-and-equilibria linearised-stability one-start statistics"
-    ids = [*reserved.split(), "fixed", "coverage", "tolerances", *scenarios()]
+    ids = [*reserved.split(), "fixed", "coverage", "tolerances", *map(scenario_id, scenarios())]
     for name in scenarios():
         ids += [verdict_id(name, found) for found in (*scenario(name).theorems, "source")]
     for found in theorems():

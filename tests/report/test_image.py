@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from flockana.report.image import named, svg
+from flockana.report.image import _short, named, svg
 
 
 def lines(figure):
@@ -29,3 +29,15 @@ def test_ids_are_unique_in_a_page_and_lead_where_they_did():
     assert not set(ids[0]) & set(ids[1])
     assert set(re.findall(r'(?:href="#|url\(#)([^")]+)', first)) == set(ids[0])
     assert 'aria-label="a &quot;name&quot;"' in first
+
+
+def test_long_paths_lose_repeated_points_and_hundredths_short_ones_only_spaces():
+    assert _short("M 0.50 -1.25 C 0 1.00 10 20.05 3.10 4 z ") == "M0.5 -1.25C0 1 10 20.05 3.1 4z"
+    points = "M 0 0 " + "L 10.00 20.06 " * 40 + "L 10.04 20.09 L 3.19 100"
+    assert _short(points) == "M0 0L10 20L3.1 100"
+
+
+def test_numbers_in_labels_keep_their_digits():
+    text = svg(lambda figure: figure.subplots().set_title("p = 0.0012345"), (2.0, 2.0))
+    assert "p = 0.0012345" in text
+    assert not re.search(r"=\"[^\"]*\d\.\d{3}", text)

@@ -5,8 +5,10 @@ from __future__ import annotations
 import re
 
 import numpy as np
+import pytest
 
 from flockana.dynamics.simulate import simulate
+from flockana.environment.capsule import Capsule
 from flockana.environment.obstacles import Sphere, Wall
 from flockana.environment.targets import StaticTarget
 from flockana.laws.algorithm3 import Algorithm3
@@ -31,3 +33,30 @@ def test_obstacles_and_target_are_drawn():
     text = stills(simulate(law, q, 0.0 * q, (0.0, 0.1)), [0.0, 0.1])
     assert text.count("<circle") == text.count('class="target"') == text.count("<svg") == 2
     assert text.count('class="solid"') == 4
+
+
+def test_a_capsule_has_its_outline():
+    law = Algorithm3(target=StaticTarget((5.0, 0.0)), obstacles=(Capsule((20.0, 0.0), (25.0, 0.0), 1.0),))
+    q = np.array([[0.0, 0.0], [7.0, 0.0]])
+    text = stills(simulate(law, q, 0.0 * q, (0.0, 0.1)), [0.0])
+    corners = re.search(r'class="solid" points="([^"]*)"', text)[1].split()
+    x, y = np.array([corner.split(",") for corner in corners], dtype=float).T
+    assert np.ptp(x) / np.ptp(y) == pytest.approx(3.5, rel=0.1)  # 7 long and 2 wide
+
+
+def test_in_space_a_wall_is_a_grid_in_its_plane():
+    law = Algorithm3(target=StaticTarget((5.0, 0.0, 0.0)), obstacles=(Wall((0.0, 0.0, -9.0), (0.0, 0.0, 1.0)),))
+    q = np.array([[0.0, 0.0, 0.0], [7.0, 0.0, 0.0], [0.0, 7.0, 0.0]])
+    text = stills(simulate(law, q, 0.0 * q, (0.0, 0.1)), [0.0])
+    path = re.search(r'class="box" d="([^"]*)"', text)[1]
+    ends = np.array(re.findall(r"-?[0-9]+", path), dtype=float).reshape(-1, 2, 2)
+    assert len(ends) == 10
+    x, y = np.array(re.findall(r"M([0-9]+) ([0-9]+)h0", text), dtype=float).T  # first two are 7 apart along x
+    scale = (x[1] - x[0]) / 7.0 / np.cos(0.6)
+    middle = ends.mean(axis=(0, 1)) - (x[0], y[0])
+    foot = 3.5 * np.array([np.cos(0.6) - np.sin(0.6), -np.sin(0.5) * (np.cos(0.6) + np.sin(0.6))])
+    np.testing.assert_allclose(middle / scale, np.add(foot, (0.0, 9.0 * np.cos(0.5))), atol=0.15)
+    slopes = (ends[:, 1, 1] - ends[:, 0, 1]) / (ends[:, 1, 0] - ends[:, 0, 0])
+    cos, sin, tilt = np.cos(0.6), np.sin(0.6), np.sin(0.5)  # as lines along x and along y of a level plane are seen
+    seen = sorted({round(slope, 1) for slope in slopes.tolist()})
+    np.testing.assert_allclose(seen, sorted([-tilt * sin / cos, tilt * cos / sin]), atol=0.07)

@@ -91,6 +91,7 @@ def test_equal_but_for_rounding_is_neither_below_nor_above():
         "assumed",
         "unmet",
     ]
+    assert [below("x < 1", value, 1.0, 0.1, "").error for value in (0.8, 0.95, 1.2)] == [0.1] * 3
 
 
 def exactly(x):

@@ -2,18 +2,26 @@
 
 from __future__ import annotations
 
+import importlib
+import inspect
 import json
+import pkgutil
 import re
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 
 import flockana
-from flockana import plots
+from flockana import plots, symbolic
+from flockana.report.stills import stills
 from flockana.scenarios import scenario
+from flockana.scenarios import scenarios as scenario_names
 from flockana.theorems.catalogue import catalogue
-from tools.site import cache, links, mathematics, reference, theorems
+from tools.site import cache, links, mathematics, reference, runs, scenarios, theorems, verdicts
+from tools.site.formulas import DERIVATIONS
 
+INNER = {"pair_derivation"}  # of a formula that a user writes
 DOCS = Path(__file__).resolve().parent.parent.parent / "docs"
 
 
@@ -29,33 +37,99 @@ def proved(monkeypatch):
 
 
 def test_every_theorem_and_erratum_has_a_page_with_what_it_says(proved, tmp_path):
-    theorems.write(tmp_path, {}, images=False)
+    theorems.write(tmp_path / "theorems", verdicts.Verdicts(), images=False, report=False)
     for item in catalogue().values():
-        text = (tmp_path / f"{item.id}.md").read_text(encoding="utf-8")
+        text = (tmp_path / "theorems" / f"{item.id}.md").read_text(encoding="utf-8")
         assert theorems.plain(item.statement) in text
         assert theorems.plain(item.source) in text
         assert text.count("```bibtex") == len(item.references) > 0
-        assert f"({item.id}.md)" in (tmp_path / "index.md").read_text(encoding="utf-8")
+        assert all(f"`{claim}`" in text for claim in item.claims)
+        assert all(f"(../scenarios/{name}.md)" in text for name in scenarios.checked_on(item.id))
+        assert f"({item.id}.md)" in (tmp_path / "theorems" / "index.md").read_text(encoding="utf-8")
 
 
-def test_a_page_shows_steps_expected_and_measured(proved):
-    item = catalogue()["os-3"]
-    text = theorems.page(item, {("os-3", "collapse"): "refuted (interval)"}, image="![alt](x.png)")
+def test_every_scenario_has_a_page_that_leads_to_its_theorems(tmp_path):
+    scenarios.write(tmp_path / "scenarios", tmp_path / "extra", verdicts.Verdicts(), images=False, report=False)
+    for name in scenario_names():
+        text = (tmp_path / "scenarios" / f"{name}.md").read_text(encoding="utf-8")
+        assert all(f"(../theorems/{theorem}.md)" in text for theorem in scenario(name).theorems)
+
+
+MEASURED = {
+    "flockana": "0.1",
+    "written": "today",
+    "verdicts": [
+        {
+            "theorem": "os-3",
+            "status": "refuted",
+            "rigour": "interval",
+            "subject": "collapse",
+            "hypotheses": [{"name": "c1γ > 0", "status": "met"}],
+            "claims": [{"name": "i", "status": "refuted", "stated": "as *said*"}],
+        },
+        {
+            "theorem": "os-3",
+            "status": "vacuous",
+            "rigour": "numeric",
+            "subject": "hexagon",
+            "hypotheses": [{"name": "c1γ > 0", "status": "unmet"}],
+            "claims": [{"name": "i", "status": "vacuous"}],
+        },
+        {"theorem": "E1", "status": "refuted", "rigour": "symbolic", "subject": ""},
+    ],
+}
+
+
+@pytest.fixture
+def found(tmp_path):
+    (tmp_path / "verdicts.json").write_text(json.dumps(MEASURED), encoding="utf-8")
+    return verdicts.measured(tmp_path / "verdicts.json")
+
+
+def test_measured_verdicts_come_from_a_report(found):
+    assert found.status == {
+        ("os-3", "collapse"): "refuted (interval)",
+        ("os-3", "hexagon"): "vacuous (numeric)",
+        ("E1", ""): "refuted (symbolic)",
+    }
+    assert found.hypotheses["os-3"] == {"c1γ > 0": {"met": 1, "unmet": 1}}
+    assert found.claims["os-3"] == {"i": {"refuted": 1, "vacuous": 1}}
+
+
+def test_a_page_shows_hypotheses_claims_steps_pictures_and_verdicts(proved, found):
+    text = theorems.page(catalogue()["os-3"], found, images=True, report=True)
+    assert "| c1γ > 0 | met: 1, unmet: 1 |" in text
+    assert "| `i` | as \\*said\\* | refuted: 1, vacuous: 1 |" in text
     assert "1. x\\_1 \\< 2 (holds)\n\n   $$\n   x_1 < 2\n   $$" in text
     assert "2. and so on (**does not hold**)" in text
-    row = next(line for line in text.splitlines() if "`collapse`" in line)
-    assert row.endswith(f"| {scenario('collapse').expected['os-3']} | refuted (interval) |")
-    assert "![alt](x.png)" in text
+    row = next(line for line in text.splitlines() if "scenarios/collapse.md" in line)
+    assert row.startswith("| ![collapse, at the end](../scenarios/images/collapse-end.svg){.thumbnail} |")
+    shown = '<a href="../../report/index.html#scenario-collapse--os-3">refuted (interval)</a>'
+    assert row.endswith(f"| {scenario('collapse').expected['os-3']} | {shown} |")
 
 
-def test_measured_verdicts_come_from_a_report(tmp_path):
-    verdicts = [
-        {"theorem": "E1", "status": "refuted", "rigour": "symbolic", "subject": ""},
-        {"theorem": "os-1", "status": "vacuous", "rigour": "numeric", "subject": "hexagon"},
-    ]
-    (tmp_path / "verdicts.json").write_text(json.dumps({"verdicts": verdicts}))
-    found = theorems.measured(tmp_path / "verdicts.json")
-    assert found == {("E1", ""): "refuted (symbolic)", ("os-1", "hexagon"): "vacuous (numeric)"}
+def test_a_scenario_s_page_plays_the_run_and_shows_what_was_found(found, monkeypatch):
+    told = {"stills": [["t = 0", "<svg/>"]], "play": "<p>", "facts": [["agents", "150"]]}
+    monkeypatch.setattr(scenarios, "ran", lambda name: told)
+    text = scenarios.page(scenario("collapse"), found, images=True, report=False)
+    assert 'src="../../runs/collapse.html"' in text
+    assert "![collapse at t = 0](images/collapse-0.svg){.still}" in text
+    assert "| [os-3](../theorems/os-3.md) |" in text
+    assert "| refuted (interval) |" in text
+    assert "| agents | 150 |" in text
+
+
+def test_a_still_of_its_own_file_has_its_colours_and_is_whole():
+    run = scenario("head-on").run()
+    ((label, svg),) = runs.STILL.findall(stills(run, [run.t[0]]))
+    root = ElementTree.fromstring(runs.image(svg))
+    assert root.tag == "{http://www.w3.org/2000/svg}svg"
+    style = root.find("{http://www.w3.org/2000/svg}style").text
+    used = {name for each in root.iter() for name in each.get("class", "").split()}
+    assert used
+    assert all(f".{name} " in style or f".{name}{{" in style for name in used if name != "even")
+    assert "var(" not in style
+    assert label == "t = 0"
 
 
 def test_every_public_name_is_in_the_reference():
@@ -78,10 +152,24 @@ def test_every_plot_is_in_the_gallery():
 
 
 def test_formulas_are_those_of_the_library(monkeypatch):
-    monkeypatch.setattr(mathematics, "DERIVATIONS", mathematics.DERIVATIONS[2:3])
+    few = {"Energies": (*DERIVATIONS["Energy along the flow"][:3], *DERIVATIONS["Obstacles and Theorem 6"][-2:])}
+    monkeypatch.setattr(mathematics, "DERIVATIONS", few)
     text = mathematics.page()
     assert r"\|z\|_\sigma = \frac{\sqrt{\epsilon z^{2} + 1} - 1}{\epsilon}" in text
-    assert "the residual, computed, is 0" in text
+    assert "| $V$ | collective potential" in text  # notation
+    assert text.count("As computed: every residual, computed, is 0.") == 3
+    for false in ("e1_identity", "theorem6.e2_identity"):  # printed energies that are none
+        assert "is **not** 0" in text.split(f"### `{false}`")[1].split("###")[0]
+
+
+def test_every_derivation_of_the_library_is_on_the_mathematics_page():
+    told = {name.split("(")[0].split(".")[-1] for group in DERIVATIONS.values() for name, _ in group}
+    for info in pkgutil.iter_modules(symbolic.__path__):
+        module = importlib.import_module(f"flockana.symbolic.{info.name}")
+        for name, item in vars(module).items():
+            own = inspect.isfunction(item) and item.__module__ == module.__name__ and not name.startswith("_")
+            if own and item.__annotations__.get("return") in ("Derivation", "EnergyIdentity"):
+                assert name in told | INNER, name
 
 
 def test_dead_links_are_found_and_good_ones_are_not(tmp_path):

@@ -1,7 +1,7 @@
 """Write the documentation site: `python -m tools.site`; exit status 0, or 1 with what is wrong.
 
-`--verdicts FILE` takes measured verdicts from a report's ``verdicts.json`` (by default report/verdicts.json, if there
-is one); `--draft` executes no page and draws no picture of a run, for who writes text; `--external` checks links to
+It carries the report of `make verify` (report/), or writes one if there is none; `--report FOLDER` takes another.
+`--draft` executes no page, runs no scenario and makes no report, for who writes text; `--external` checks links to
 other sites too, which needs the network.
 """
 
@@ -14,18 +14,25 @@ import subprocess
 import sys
 from pathlib import Path
 
-from tools.site import lectures, links, mathematics, reference, theorems
+from tools.site import lectures, links, mathematics, proofs, reference, scenarios, theorems, verdicts
 from tools.site.cache import ROOT
 
 SOURCE, SITE = ROOT / "docs", ROOT / "site"
 GENERATED = SOURCE / "generated"
 
 
-def generate(verdicts: Path | None, *, draft: bool = False) -> None:
-    """Write docs/generated anew; a draft without pictures of runs."""
+def generate(report: Path | None) -> None:
+    """Write docs/generated anew; without a report, a draft without pictures of runs."""
     shutil.rmtree(GENERATED, ignore_errors=True)
-    GENERATED.mkdir()
-    theorems.write(GENERATED / "theorems", theorems.measured(verdicts), images=not draft)
+    extra, found = GENERATED / "extra", verdicts.measured(None if report is None else report / "verdicts.json")
+    full = {"images": report is not None, "report": report is not None}
+    extra.mkdir(parents=True)
+    if report is not None:
+        (extra / "report").mkdir()
+        for name in ("index.html", "verdicts.json"):
+            shutil.copy(report / name, extra / "report")
+    scenarios.write(GENERATED / "scenarios", extra, found, **full)
+    theorems.write(GENERATED / "theorems", found, **full)
     lectures.write(GENERATED / "lectures")
     reference.write(GENERATED / "reference")
     (GENERATED / "mathematics.md").write_text(mathematics.page(), encoding="utf-8")
@@ -44,13 +51,17 @@ def build(builder: str, folder: Path, *, draft: bool = False) -> int:
 def main(arguments: list[str]) -> int:
     """Generate, build and check; return the exit status."""
     parser = argparse.ArgumentParser(prog="python -m tools.site", description=(__doc__ or "").partition(":")[0])
-    parser.add_argument("--verdicts", type=Path, default=None, metavar="FILE")
+    parser.add_argument("--report", type=Path, default=None, metavar="FOLDER")
     parser.add_argument("--draft", action="store_true")
     parser.add_argument("--external", action="store_true")
     chosen = parser.parse_args(arguments)
-    kept = ROOT / "report" / "verdicts.json"
-    generate(chosen.verdicts or (kept if kept.exists() else None), draft=chosen.draft)
+    false = [name for name, found in proofs.outcomes().items() if found["status"] != "proved"]
+    if false:
+        sys.stdout.write(f"not proved: {', '.join(false)}; run python -m proofs {' '.join(false)}\n")
+        return 1
+    generate(None if chosen.draft else chosen.report or verdicts.report())
     html = SITE / "html"
+    shutil.rmtree(html, ignore_errors=True)  # with it what an older build left
     if build("html", html, draft=chosen.draft):
         return 1
     lost = list(links.dead(html))

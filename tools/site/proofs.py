@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import json
+import os
+from functools import cache
 from typing import Any
 
 from proofs.proof import Proof, proofs
-from proofs.run import check
-from tools.site.cache import kept
+from proofs.run import Outcome, check
+from tools.site.cache import place, write
 
 _CODE = ("proofs", "flockana/symbolic", "flockana/certified", "flockana/lattice")
 
@@ -17,12 +20,24 @@ def backing(theorem: str) -> tuple[Proof, ...]:
 
 
 def outcome(name: str) -> dict[str, Any]:
-    """Status and checked steps of a proof; it runs if its code has changed since it last did."""
-    return kept("proofs", name, _CODE, lambda: _checked(name))
+    """Status and checked steps of a proof."""
+    return outcomes()[name]
 
 
-def _checked(name: str) -> dict[str, Any]:
-    (found,) = check([name])
+@cache
+def outcomes() -> dict[str, dict[str, Any]]:
+    """Those of all proofs; they run, on all cores, whose code has changed since they were last proved."""
+    files = {proof.id: place("proofs", proof.id, _CODE) for proof in proofs()}
+    found = {name: json.loads(file.read_text(encoding="utf-8")) for name, file in files.items() if file.exists()}
+    for each in check([name for name in files if name not in found], jobs=os.cpu_count() or 1):
+        found[each.id] = plain_data(each)
+        if each.status == "proved":  # what failed for want of time may succeed in the next build
+            write(files[each.id], found[each.id])
+    return found
+
+
+def plain_data(found: Outcome) -> dict[str, Any]:
+    """What a page says of a proof."""
     return {
         "status": found.status,
         "objections": list(found.objections()),

@@ -1,21 +1,22 @@
-"""A page for each theorem and erratum: statement, hypotheses, claims, proofs, scenarios, picture, references."""
+"""A page for each theorem and erratum: statement, hypotheses, claims, proofs, scenarios with pictures, references."""
 
 from __future__ import annotations
 
-import json
+from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from flockana import cite
+from flockana.report.coverage.anchors import verdict_id
 from flockana.scenarios import scenario
 from flockana.theorems import Theorem
 from flockana.theorems.catalogue import catalogue
-from tools.site.pictures import checked_on, picture, shown
 from tools.site.proofs import backing, outcome
+from tools.site.scenarios import checked_on, in_report, thumbnail
+from tools.site.verdicts import Verdicts
 from tools.site.words import contents, plain, table
 
-Measured = Mapping[tuple[str, str], str]
 _KINDS = {
     "trajectory": "Checked on a run: `flockana verify {id}` runs every scenario it applies to; "
     '`fl.verify("{id}", run)` asks it of a run of yours.',
@@ -24,49 +25,59 @@ _KINDS = {
 }
 
 
-def measured(file: Path | None) -> Measured:
-    """Status by theorem and subject of a report's ``verdicts.json``; a fixed theorem has the subject ''."""
-    if file is None:
-        return {}
-    found = json.loads(file.read_text(encoding="utf-8"))["verdicts"]
-    return {(one["theorem"], one.get("subject", "")): f"{one['status']} ({one['rigour']})" for one in found}
-
-
-def page(item: Theorem, verdicts: Measured, *, image: str | None = None) -> str:
-    """The page of one, with the name of its image if there is one."""
+def page(item: Theorem, verdicts: Verdicts, *, images: bool, report: bool) -> str:
+    """The page of one."""
     parts = [
         f"# {plain(item.id)}: {plain(item.title)}",
         f"*{plain(item.source)}*",
         "## Statement",
         plain(item.statement),
         _KINDS[item.kind].format(id=item.id),
-        "## Hypotheses and claims",
-        _claims(item),
+        "## Hypotheses",
+        _hypotheses(item, verdicts),
+        "## Claims",
+        _claims(item, verdicts),
         "## Proof",
         _proofs(item.id),
         "## Checked on",
-        _scenarios(item, verdicts),
+        _scenarios(item, verdicts, images=images, report=report),
+        "## References",
+        *(f"```bibtex\n{cite(key)}\n```" for key in item.references),
     ]
-    if image is not None:
-        parts += ["## A picture", image]
-    parts += ["## References", *(f"```bibtex\n{cite(key)}\n```" for key in item.references)]
     return "\n\n".join(parts) + "\n"
 
 
-def _claims(item: Theorem) -> str:
-    given = [f"- {plain(text)}" for text in _hypotheses(item)]
-    text = "\n".join(given) if given else "A verdict lists the hypotheses that it found met, unmet or assumed."
-    if not item.claims:
-        return text
+def _hypotheses(item: Theorem, verdicts: Verdicts) -> str:
+    """As the proofs state them, and as verdicts found them."""
+    parts = [f"- {plain(text)}" for text in dict.fromkeys(proof.hypotheses for proof in backing(item.id)) if text]
+    parts = ["\n".join(parts)] if parts else []
+    found = verdicts.hypotheses.get(item.id, {})
+    if found:
+        rows = [(plain(name), _counts(of)) for name, of in found.items()]
+        parts.append(table(("what a verdict looks for", "found, in how many verdicts of the catalogue"), rows))
+    return "\n\n".join(parts) or "None: it is a statement about formulas or numbers."
+
+
+def _claims(item: Theorem, verdicts: Verdicts) -> str:
+    found = verdicts.claims.get(item.id, {})
+    names = tuple(dict.fromkeys((*item.claims, *found)))
+    if not names:
+        return "One, the statement itself."
     limits = [name for name in item.claims if name in item.limits]
-    named = ", ".join(f"`{name}`" for name in item.claims)
-    more = f" Of limits speak {', '.join(f'`{name}`' for name in limits)}: a run that is too short decides nothing."
-    return f"{text}\n\nClaims, judged one by one: {named}.{more if limits else ''}"
+    rows = [
+        (f"`{name}`", plain(verdicts.stated.get((item.id, name), "")) or "—", _counts(found.get(name, Counter())))
+        for name in names
+    ]
+    if not verdicts.status:
+        rows = [(name, "as above", "—") for name, *_ in rows]
+    stated = "stated" if item.kind == "fixed" else "stated, of the first run"
+    text = table(("claim, judged by itself", stated, "found, in how many verdicts of the catalogue"), rows)
+    said = ", ".join(f"`{name}`" for name in limits)
+    return f"{text}\n\nOf limits speak {said}: a run that is too short decides nothing." if limits else text
 
 
-def _hypotheses(item: Theorem) -> tuple[str, ...]:
-    """As the proofs state them; what a verdict asks of a run stands in the verdict."""
-    return tuple(dict.fromkeys(proof.hypotheses for proof in backing(item.id)))
+def _counts(of: Mapping[str, int]) -> str:
+    return ", ".join(f"{status}: {count}" for status, count in of.items()) or "—"
 
 
 def _proofs(name: str) -> str:
@@ -90,31 +101,37 @@ def _step(number: int, step: Mapping[str, Any]) -> str:
     return f"{text}\n\n   $$\n   {' '.join(step['latex'].split())}\n   $$" if step["latex"] else text
 
 
-def _scenarios(item: Theorem, verdicts: Measured) -> str:
+def _scenarios(item: Theorem, verdicts: Verdicts, *, images: bool, report: bool) -> str:
     rows = []
     if item.kind == "fixed":
-        rows.append(("by itself", item.expected.get(item.id, "—"), verdicts.get((item.id, ""), "—")))
+        found = verdicts.status.get((item.id, ""), "—")
+        found = in_report(verdict_id("fixed", item.id), found) if report else found
+        rows.append(("", "by itself", item.expected.get(item.id, "—"), found))
     for name in checked_on(item.id):
         case = scenario(name)
+        found = verdicts.status.get((item.id, name), "—")
         rows.append(
-            (f"`{name}`: {plain(case.title)}", case.expected.get(item.id, "—"), verdicts.get((item.id, name), "—"))
+            (
+                thumbnail(name, folder="../scenarios/images") if images else "",
+                f"[{plain(name)}](../scenarios/{name}.md): {plain(case.title)}",
+                case.expected.get(item.id, "—"),
+                in_report(verdict_id(name, item.id), found) if report else found,
+            )
         )
     if not rows:
         return "No scenario of the catalogue asks it."
-    header = ("scenario", "expected", "measured")
-    return table(header if verdicts else header[:2], rows if verdicts else [row[:2] for row in rows])
+    end = 4 if verdicts.status else 3
+    begin = 0 if images and checked_on(item.id) else 1
+    text = table(("at the end", "scenario", "expected", "measured")[begin:end], [row[begin:end] for row in rows])
+    return f"{text}\n\nMeasured by {plain(verdicts.written)}." if verdicts.status else text
 
 
-def write(folder: Path, verdicts: Measured, *, images: bool = True) -> None:
-    """Write all pages, their images if asked for, and their index."""
-    (folder / "images").mkdir(parents=True, exist_ok=True)
+def write(folder: Path, verdicts: Verdicts, *, images: bool, report: bool) -> None:
+    """Write all pages and their index."""
+    folder.mkdir(parents=True)
     for item in catalogue().values():
-        image, case = None, shown(item.id) if images else None
-        if case is not None:
-            caption, data = picture(case)
-            (folder / "images" / f"{case}.png").write_bytes(data)
-            image = f"![Scenario {case}: {scenario(case).title}](images/{case}.png)\n\n`{case}`. {plain(caption)}"
-        (folder / f"{item.id}.md").write_text(page(item, verdicts, image=image), encoding="utf-8")
+        text = page(item, verdicts, images=images, report=report)
+        (folder / f"{item.id}.md").write_text(text, encoding="utf-8")
     (folder / "index.md").write_text(index(), encoding="utf-8")
 
 

@@ -26,7 +26,7 @@ def anchors(pages: Iterable[Page]) -> dict[str, str]:
     for page in pages:
         run = isinstance(page, ScenarioPage)
         if run:
-            found[f"scenario:{page.name}"] = page.name
+            found[f"scenario:{page.name}"] = scenario_id(page.name)
         for finding in page.findings:
             verdict, subject = finding.verdict, page.name if run else "fixed"
             shown = verdict_id(subject, verdict.theorem)
@@ -54,7 +54,24 @@ def verdict_id(subject: str, theorem: str) -> str:
     >>> verdict_id("fixed", "E1")
     'fixed-E1'
     >>> verdict_id("collapse", "E11")
-    'collapse--E11'
+    'scenario-collapse--E11'
     """
-    between = "-" if subject == "fixed" else "--"  # a scenario's own id may be another's name with a theorem's after it
-    return f"{subject}{between}{theorem}".replace(" ", "-")
+    if subject == "fixed":
+        return f"fixed-{theorem}".replace(" ", "-")
+    return f"{scenario_id(subject)}--{theorem}".replace(" ", "-")  # another's name may be this one's with a theorem's
+
+
+def scenario_id(name: str) -> str:
+    """The id of a scenario's section in the report, which no other part of the page has.
+
+    Parameters
+    ----------
+    name : str
+        Of the scenario.
+
+    Examples
+    --------
+    >>> scenario_id("statistics")
+    'scenario-statistics'
+    """
+    return f"scenario-{name}"

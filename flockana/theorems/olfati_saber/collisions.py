@@ -77,7 +77,7 @@ def below_the_barrier(run: Trajectory, energy: float, error: float) -> Hypothesi
     status: HypothesisStatus = "met" if energy + error < low else "unmet" if energy - error >= high else "assumed"
     detail = f"H(0) = {energy:.5g}; the minimum is at least {low:.5g}, and a state of {high:.5g} is known"
     bound = high if status == "unmet" else low
-    return Hypothesis("H(0) < min{V : two agents coincide}", status, bound - energy, detail)
+    return Hypothesis("H(0) < min{V : two agents coincide}", status, bound - energy, detail, error)
 
 
 def below_multiple(energy: float, error: float, c_star: float, times: int = 1) -> Hypothesis:

@@ -117,7 +117,7 @@ def declared_rate_is_true(run: Trajectory) -> Hypothesis:
 def _agrees(run: Trajectory, name: str, what: str, velocity: Callable[[float], FloatArray]) -> Hypothesis:
     difference, allowed = slip(run, velocity), _CONSISTENT * run.scales.speed
     if difference.off + difference.error <= allowed:
-        return Hypothesis(name, "met", -difference.off)
+        return Hypothesis(name, "met", -difference.off, error=difference.error)
     if difference.off - difference.error <= allowed:
-        return Hypothesis(name, "assumed", -difference.off, "the samples are too sparse to tell")
-    return Hypothesis(name, "unmet", -difference.off, f"{what} is off by up to {difference.off:.3g}")
+        return Hypothesis(name, "assumed", -difference.off, "the samples are too sparse to tell", difference.error)
+    return Hypothesis(name, "unmet", -difference.off, f"{what} is off by up to {difference.off:.3g}", difference.error)

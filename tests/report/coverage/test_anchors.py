@@ -17,14 +17,14 @@ def test_what_a_report_shows_is_found_there():
         FixedPage(finding("delay-margin")),
     ]
     assert anchors(pages) == {
-        "scenario:pair": "pair",
-        "theorem:os-3": "pair--os-3",  # the first run
-        "claim:os-3/i": "pair--os-3",
-        "report:pair/saw": "pair--source",
-        "scenario:other": "other",
-        "claim:os-3/ii": "other--os-3",
-        "erratum:E12": "other--E12",
-        "claim:E12/printed": "other--E12",
+        "scenario:pair": "scenario-pair",
+        "theorem:os-3": "scenario-pair--os-3",  # the first run
+        "claim:os-3/i": "scenario-pair--os-3",
+        "report:pair/saw": "scenario-pair--source",
+        "scenario:other": "scenario-other",
+        "claim:os-3/ii": "scenario-other--os-3",
+        "erratum:E12": "scenario-other--E12",
+        "claim:E12/printed": "scenario-other--E12",
         "erratum:E8": "fixed-E8",
         "claim:E8/corrected": "fixed-E8",
         "theorem:delay-margin": "fixed-delay-margin",

@@ -54,6 +54,7 @@ def test_a_velocity_that_is_told_wrongly_is_seen_to_a_thousandth(target, factor)
     found = consistent(run(told))
     assert found.status == "unmet"
     assert -found.margin == pytest.approx(abs(1.0 - factor) * speed, rel=0.05)
+    assert 0.0 < found.error < -found.margin
     assert declared_rate_is_true(run(told)).status == "met"
 
 

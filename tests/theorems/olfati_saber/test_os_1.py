@@ -40,6 +40,7 @@ def test_holds_in_full_where_its_hypotheses_do(run):
         "H(0) < min{V : two agents coincide}": "met",
     }
     assert all(claim.error > 0.0 for claim in verdict.claims)
+    assert [h.error is not None for h in verdict.hypotheses] == [False] * 4 + [True] * 2
     least = float(run.metric("min_distance").min())
     assert least * (1.0 - 1e-3) < verdict.claim("iii").computed <= least
 
