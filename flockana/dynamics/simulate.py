@@ -7,7 +7,7 @@ of the energy balance is `Trajectory.energy_residual`.
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -43,6 +43,7 @@ def simulate(
     dt: float | None = None,
     t_eval: Any = None,
     progress: bool = False,
+    watch: Callable[[Sample], object] | None = None,
 ) -> Trajectory:
     """Integrate q' = p, p' = u(t, q, p) from (q0, p0).
 
@@ -75,6 +76,8 @@ def simulate(
         such as `Trajectory.min_distance`, rest on the steps in either case.
     progress : bool
         Show a progress bar on the terminal.
+    watch : callable, optional
+        Called with each sample that is kept, which has t, q, p and u, as it comes: to draw the run while it is made.
 
     Returns
     -------
@@ -115,7 +118,7 @@ def simulate(
         floor = error_floor(law, q0, p0, t_span, **how)
         samples = adaptive(law, q0, p0, t_span, method, how["rtol"], floor, keep, tally)
     started = time.perf_counter()
-    kept, between = _collect(samples, t_span, tally, progress)
+    kept, between = _collect(samples, t_span, tally, progress, watch)
     counts = {"method": method, "steps": tally.steps, "evaluations": tally.evaluations}
     stats = counts | tally.notes | how | {"seconds": time.perf_counter() - started}
     kept = kept or [start_sample(law, q0, p0, t_span[0])]  # ended before the first time to keep
@@ -174,7 +177,11 @@ def _check_t_eval(t_eval: Any, t_span: tuple[float, float]) -> FloatArray | None
 
 
 def _collect(
-    samples: Iterator[Sample], t_span: tuple[float, float], tally: Tally, progress: bool
+    samples: Iterator[Sample],
+    t_span: tuple[float, float],
+    tally: Tally,
+    progress: bool,
+    watch: Callable[[Sample], object] | None,
 ) -> tuple[list[Sample], Between | None]:
     """Drain the integrator: the samples, and its steps between them; on Ctrl-C keep what there is."""
     kept: list[Sample] = []
@@ -185,6 +192,8 @@ def _collect(
                 for sample in samples:
                     if sample.wanted:
                         kept.append(sample)
+                        if watch is not None:
+                            watch(sample)
                     recorder.add(sample.t, sample.q, sample.p, sample.u, sample=sample.wanted)
                     advance(sample.t - t_span[0], f"t = {sample.t:.4g}")
         except KeyboardInterrupt:

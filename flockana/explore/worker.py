@@ -1,0 +1,99 @@
+"""A process that answers the cases of one page: the newest alone, and what is under way is broken off for it."""
+
+from __future__ import annotations
+
+import _thread
+import os
+import signal
+import threading
+from contextlib import suppress
+from multiprocessing.connection import Connection
+from typing import Any
+
+from flockana.base.interrupts import interrupts_held, interrupts_recognised
+
+
+class Worker:
+    """Questions from a pipe, one after the other; an older one ends where a newer has come.
+
+    Parameters
+    ----------
+    pipe : Connection
+        Gives (number, data), takes (number, kind, content).
+    limit : float
+        Seconds that a run may take.
+    """
+
+    def __init__(self, pipe: Connection, limit: float) -> None:
+        self.pipe, self.limit = pipe, limit
+        self.newest: tuple[int, Any] = (0, None)
+        self.done = 0
+        self.breakable = False  # not while a law is compiled for its first run: that would only begin again
+        self.changed = threading.Condition()
+
+    def read(self) -> None:
+        """Note what comes, for ever."""
+        while True:
+            try:
+                question = self.pipe.recv()
+            except (EOFError, OSError):  # the server has ended
+                os._exit(0)
+            with self.changed:
+                self.newest = question
+                self.changed.notify()
+            if self.breakable:
+                _thread.interrupt_main()
+
+    def answer_all(self) -> None:
+        """Answer, for ever."""
+        from flockana.explore.answers import answer
+
+        while True:
+            with self.changed:
+                self.changed.wait_for(lambda: self.newest[0] > self.done)
+                number, data = self.newest
+
+            def send(kind: str, content: Any, number: int = number) -> None:
+                if self.newest[0] != number:
+                    raise KeyboardInterrupt
+                with interrupts_held():  # half a message would be the end of all
+                    self.pipe.send((number, kind, content))
+                self.breakable = kind not in ("begun", "form", "done")
+
+            try:
+                send("begun", {})
+                with interrupts_recognised():
+                    answer(data, send, limit=self.limit, cancelled=lambda number=number: self.newest[0] != number)
+                self.done = number
+            finally:
+                self.breakable = False
+
+
+def work(pipe: Connection, limit: float) -> None:
+    """Answer what comes until the pipe closes; what a process of the explorer does.
+
+    Parameters
+    ----------
+    pipe : Connection
+        To the server.
+    limit : float
+        Seconds that a run may take.
+    """
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    worker = Worker(pipe, limit)
+    _warm()
+    pipe.send((0, "ready", {}))
+    threading.Thread(target=worker.read, daemon=True).start()
+    while True:
+        with suppress(KeyboardInterrupt):  # a newer question, or one that came late: then the newest is asked again
+            worker.answer_all()
+
+
+def _warm() -> None:
+    """Load what every answer needs, and the kernels of the commonest laws."""
+    from flockana.explore import answers
+    from flockana.explore.case import Case
+
+    answers.answer(
+        Case("law", "Algorithm2", n=12, duration=0.5), lambda kind, content: None, limit=60.0, cancelled=lambda: False
+    )
