@@ -86,6 +86,7 @@ def form(case: Case, parts: Start) -> dict[str, Any]:
     listed = [
         {"path": each.path, "value": each.value, "usual": usual.get(each.path), "place": each.place}
         for each in numbers(parts.law)
+        if not each.path.endswith(_idle(parts.law))
     ]
     return {
         "title": parts.title,
@@ -99,6 +100,12 @@ def form(case: Case, parts: Start) -> dict[str, Any]:
         "ratio": _squeezed(parts.law),
         "python": program(parts),
     }
+
+
+def _idle(law: Any) -> tuple[str, ...]:
+    """Endings of paths that mean nothing to a law: gains of a γ-agent or of obstacles that it does not have."""
+    unpulled = () if law.target is not None else ("c1_gamma", "c2_gamma")
+    return unpulled if law.obstacles else (*unpulled, "c1_beta", "c2_beta")
 
 
 def _analysed(parts: Start, run: Trajectory) -> Iterator[tuple[str, Any]]:

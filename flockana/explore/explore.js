@@ -90,8 +90,10 @@ async function show(of, bytes) {
   if (state.playing && time < last) made.play();
   if (focus) (next.querySelector(`[aria-label="${focus.getAttribute("aria-label")}"]`) || next.querySelector("canvas")).focus();
   by("hint").textContent = run.m === 3 ? "" : "At the start of the run agents, balls, walls and the γ-agent can be dragged.";
-  document.body.dataset.frames = String(Math.round(performance.now() - since));
-  document.body.dataset.number = String(of);
+  requestAnimationFrame(() => {  // drawn
+    if (document.body.dataset.number !== String(of)) document.body.dataset.frames = String(Math.round(performance.now() - since));
+    document.body.dataset.number = String(of);
+  });
   fresh = false;
   arrived();
 }

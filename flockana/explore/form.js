@@ -11,6 +11,8 @@ function explorerForm(place, kinds, ask) {
     return node;
   };
   const short = (value) => String(Number(Number(value).toPrecision(6)));
+  const symbols = { alpha: "α", beta: "β", gamma: "γ", eps: "ε", eta: "η", delta: "δ", kappa: "κ" };
+  const named = (path) => path.split(".").slice(path.includes(".") ? 1 : 0).join(" ").replace(/_?(alpha|beta|gamma|eps|eta|delta|kappa)\b/g, (_, name) => symbols[name]);
   const finite = (node) => {
     const good = node.value.trim() !== "" && Number.isFinite(Number(node.value));
     node.setAttribute("aria-invalid", String(!good));
@@ -63,7 +65,7 @@ function explorerForm(place, kinds, ask) {
     return node;
   }
   function scalar(parent, { path, value, usual }) {
-    const label = path.split(".").slice(1).join(" ") || path, id = `number-${path}`;
+    const label = named(path), id = `number-${path}`;
     const row = make("div", "", parent, { class: `field${value !== usual ? " changed" : ""}` });
     make("label", label, row, { for: id });
     if (typeof value === "boolean") {
@@ -83,7 +85,7 @@ function explorerForm(place, kinds, ask) {
   }
   function vector(parent, { path, value, usual }) {
     const row = make("div", "", parent, { class: `field${String(value) !== String(usual) ? " changed" : ""}` });
-    make("label", path.split(".").slice(1).join(" ") || path, row, { for: `number-${path}-0` });
+    make("label", named(path), row, { for: `number-${path}-0` });
     const parts = make("div", "", row, { class: "vector" });
     const inputs = value.map((v, c) => {
       const node = make("input", "", parts, { type: "number", step: "any", id: `number-${path}-${c}`, "aria-label": `${path}, component ${c + 1}` });

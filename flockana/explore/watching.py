@@ -17,8 +17,9 @@ from flockana.explore.starts import Start
 from flockana.player.scene import kept, scene
 
 AGENTS = 3000  # more of them no page draws smoothly
-_FIRST, _SLOWER = 0.05, 2.0  # seconds until the first frames are sent; factor between sendings
-_FRAMES = 60  # of a run under way
+_FIRST, _SLOWER = 0.03, 2.5  # seconds until the first frames are sent; factor between sendings
+_FRAMES, _SAMPLES = 24, 200  # of a run under way; of the whole, at least
+_NUMBERS = 120_000  # places and velocities of the whole, at most
 _TRIED, _FAR = 2.0, 4.0  # seconds after which the end is foretold; multiples of the limit at which it is not awaited
 
 
@@ -97,10 +98,9 @@ def watched(parts: Start, show: Callable[[bytes], None], *, limit: float, cancel
         raise failure
     if run.status == "interrupted":
         raise KeyboardInterrupt
-    if len(run.t) > _FRAMES and pause == _FIRST:  # nothing was shown yet, and all its series take long
+    if len(run.t) > _SAMPLES and pause == _FIRST:  # nothing was shown yet, and the whole takes longer
         show(scene(_thin(samples, parts.law)))
-    show(scene(run, values=120_000))
-    return run
+    return shown(run, show)
 
 
 def _cost(parts: Start, gone: float, done: float, span: float, limit: float) -> str:
@@ -121,14 +121,17 @@ def _thin(samples: list[Sample], law: Any) -> Trajectory:
 
 
 def shown(run: Trajectory, show: Callable[[bytes], None]) -> Trajectory:
-    """A recorded run, shown.
+    """A run, shown as a whole: of a long one some samples, as the strip measures each.
 
     Parameters
     ----------
     run : Trajectory
-        The run.
+        What is shown, and returned.
     show : callable
         As in `watched`.
     """
-    show(scene(replace(run, status="complete"), values=120_000))
+    most = kept(len(run.t), max(_SAMPLES, _NUMBERS // (2 * run.n * run.m)))
+    extra = {name: series[most] for name, series in run.extra.items()}
+    some = replace(run, t=run.t[most], q=run.q[most], p=run.p[most], u=run.u[most], extra=extra, between=None)
+    show(scene(some, values=_NUMBERS))
     return run
