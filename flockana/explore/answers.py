@@ -27,7 +27,7 @@ _MODES = 12  # that a page lists
 _POLES = 900  # n m above which the whole spectrum takes too long for a page
 _RESTING = 0.02  # residual, of the force scale, up to which the end of a run is near an equilibrium
 _SOUGHT = 400  # steps of the search for it
-_SQUEEZED = 60  # agents up to which the collapse threshold is sought here
+_SQUEEZED = 400  # agents up to which the collapse threshold is sought, in the plane
 
 
 def answer(asked: Any, send: Send, *, limit: float, cancelled: Callable[[], bool]) -> None:
@@ -116,8 +116,8 @@ def _analysed(parts: Start, run: Trajectory) -> Iterator[tuple[str, Any]]:
             verdict = {"theorem": name, "status": "not checked", "error": str(error), "hypotheses": [], "claims": []}
         yield "verdict", {**verdict, "title": theorem(name).title, "statement": theorem(name).statement}
     yield "poles", poles(run)
-    if _squeezed(parts.law) and len(parts.q0) <= _SQUEEZED:
-        yield "threshold", _threshold(parts.law.pair, len(parts.q0))
+    if _squeezed(parts.law):
+        yield "threshold", _threshold(parts.law.pair, *parts.q0.shape)
 
 
 def poles(run: Trajectory) -> dict[str, Any]:
@@ -174,7 +174,9 @@ def _squeezed(law: Any) -> bool:
 
 
 @cache
-def _threshold(alpha: AlphaInteraction, n: int) -> dict[str, Any]:
+def _threshold(alpha: AlphaInteraction, n: int, m: int) -> dict[str, Any]:
+    if n > _SQUEEZED or m != 2:
+        return {"note": f"threshold of collapse: sought for at most {_SQUEEZED} agents, in the plane"}
     try:
         low, high = collapse_threshold(alpha, n, halvings=2)
     except FlockanaError as error:

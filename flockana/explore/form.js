@@ -110,7 +110,7 @@ function explorerForm(place, kinds, ask) {
     ratio = { set: () => { output.textContent = short(value()); if (document.activeElement !== range) range.value = String(Math.log10(Math.max(value(), 1e-9))); },
       tell: () => {
         mark.replaceChildren();
-        if (!threshold) { make("span", told.n > 60 ? "threshold of collapse: sought for at most 60 agents" : "threshold of collapse: being sought", mark); return; }
+        if (!threshold) { make("span", "threshold of collapse: being sought", mark); return; }
         if (threshold.note) { make("span", threshold.note, mark); return; }
         const share = (Math.log10(threshold.high) - RATIOS[0]) / (RATIOS[1] - RATIOS[0]);
         make("i", "", mark).style.left = `calc(${100 * share}% + ${8 - 16 * share}px)`;
@@ -141,7 +141,7 @@ function explorerForm(place, kinds, ask) {
     const groups = Map.groupBy ? Map.groupBy(told.numbers, ({ path }) => path.split(".")[0]) : grouped();
     for (const [name, list] of groups) {
       const group = make("details", "", numbers);
-      group.open = ["gains", "alpha", "interaction", "obstacles", "target", "weight"].includes(name);
+      group.open = ["gains", "alpha", "interaction", "obstacles", "target", "weight", "law"].includes(name);
       make("summary", name, group);
       for (const each of list) shown.push(Array.isArray(each.value) ? vector(group, each) : scalar(group, each));
     }

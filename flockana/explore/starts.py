@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cache, lru_cache
 from pathlib import Path
@@ -24,7 +24,7 @@ from flockana.scenarios import scenario, scenarios
 from flockana.theorems import Tolerances
 
 _FLOCK = 50  # agents of a law that is tried
-_SPREAD, _SPEED = 0.9, 0.2  # side of the square over √n lengths of the law; speeds over length per time
+_SPREAD, _SPEED = 0.9, 0.2  # side of the square over √n lengths of the law; speeds over the length per time unit
 _SPANS = {"Algorithm1": 20.0, "Algorithm2": 20.0, "Algorithm3": 40.0, "CuckerSmale": 10.0, "DeadZoneFlocking": 10.0}
 _OPTIONS = ("method", "rtol", "atol", "dt")
 FILES = (".nc", ".json")
@@ -92,9 +92,12 @@ def _law(name: str, m: int, side: float) -> tuple[Any, str]:
         radius = round(side / 8.0, 3)
         target, text = StaticTarget(there), f"fl.StaticTarget({there}), obstacles=(fl.Sphere({between}, {radius}),)"
         return Algorithm3(target=target, obstacles=(Sphere(between, radius),)), f"fl.Algorithm3(target={text})"
-    return {"Algorithm1": Algorithm1, "CuckerSmale": CuckerSmale, "DeadZoneFlocking": DeadZoneFlocking}[
-        name
-    ](), f"fl.{name}()"
+    kinds: dict[str, Callable[[], Any]] = {
+        "Algorithm1": Algorithm1,
+        "CuckerSmale": CuckerSmale,
+        "DeadZoneFlocking": DeadZoneFlocking,
+    }
+    return kinds[name](), f"fl.{name}()"
 
 
 def from_law(name: str, *, n: int = _FLOCK, m: int = 2, seed: int = 0) -> Start:
@@ -122,8 +125,8 @@ def from_law(name: str, *, n: int = _FLOCK, m: int = 2, seed: int = 0) -> Start:
     if name not in law_names():
         raise UnknownNameError("law", name, law_names())
     n, m = ensure_count("n", n), ensure_dimension(m)
-    length, time = (1.0, 1.0) if name == "CuckerSmale" else (7.0, 1.0)
-    side, speed, end = round(_SPREAD * length * n ** (1 / m), 3), _SPEED * length / time, _SPANS[name]
+    length = 1.0 if name == "CuckerSmale" else 7.0
+    side, speed, end = round(_SPREAD * length * n ** (1 / m), 3), round(_SPEED * length, 3), _SPANS[name]
     law, text = _law(name, m, side)
     rng = np.random.default_rng(seed)
     q0 = side * rng.uniform(-0.5, 0.5, (n, m))

@@ -107,8 +107,8 @@ def _cost(parts: Start, gone: float, done: float, span: float, limit: float) -> 
     whole = gone * span / done if done > 0.0 else float("inf")
     return (
         f"this run takes about {whole / 60.0:.2g} minutes here ({len(parts.q0)} agents, {span:.4g} time units, "
-        f"{done:.3g} of them took {gone:.2g} s): expected at most {limit:g} s; shorten it, take fewer agents or softer gains, "
-        "or run the lines of Python below"
+        f"{done:.3g} of them took {gone:.2g} s): expected at most {limit:g} s; shorten it, take fewer agents or softer "
+        "gains, or run the lines of Python below"
     )
 
 
