@@ -8,7 +8,7 @@ const fail = (text) => { wrong.hidden = !text; wrong.textContent = text || ""; }
 let player = null, number = 0, waiting = false, dirty = false, asked = null, fresh = true, since = 0;
 const state = { touched: false, playing: !matchMedia("(prefers-reduced-motion: reduce)").matches, time: null, end: false };
 const form = explorerForm(by("form"), kinds, ask);
-const handles = explorerHandles(place, () => player && { ...player, time: () => state.time }, form);
+const handles = explorerHandles(place, () => player && { ...player, time: () => state.time }, form, () => { state.touched = true; });
 const answers = explorerAnswers(by("verdicts"), by("poles"));
 
 function ask(next, anew = false) {

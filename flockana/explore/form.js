@@ -56,7 +56,7 @@ function explorerForm(place, kinds, ask) {
   function change(path, value) { ask({ ...current, changes: { ...current.changes, [path]: value } }); }
 
   function slider(parent, label, value, low, high, logarithmic, act) {
-    const from = (x) => (logarithmic ? Math.log10(x) : x), to = (x) => (logarithmic ? 10 ** x : x);
+    const from = (x) => (logarithmic ? Math.log10(Math.max(x, 1e-300)) : x), to = (x) => (logarithmic ? 10 ** x : x);
     const node = make("input", "", parent, { type: "range", min: from(low), max: from(high), step: "any", "aria-label": `${label}, slider` });
     node.value = String(from(value));
     const say = () => node.setAttribute("aria-valuetext", short(to(Number(node.value))));
@@ -81,7 +81,7 @@ function explorerForm(place, kinds, ask) {
     const [low, high] = positive ? [usual * 10 ** -DECADES, usual * 10 ** DECADES] : [-far, far];
     const range = slider(row, path, value, low, high, positive, (now) => { input.value = short(now); change(path, now); });
     return { path, set: (now) => { row.classList.toggle("changed", now !== usual); if (document.activeElement !== input) input.value = short(now);
-      if (document.activeElement !== range) range.value = String(positive ? Math.log10(now) : now); } };
+      if (document.activeElement !== range) range.value = String(positive ? Math.log10(Math.max(now, 1e-300)) : now); } };
   }
   function vector(parent, { path, value, usual }) {
     const row = make("div", "", parent, { class: `field${String(value) !== String(usual) ? " changed" : ""}` });

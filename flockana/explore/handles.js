@@ -1,5 +1,5 @@
 // Agents, balls, walls and the γ-agent as things to take hold of, on the player's canvas at the start of a run.
-function explorerHandles(place, player, form) {
+function explorerHandles(place, player, form, taken) {
   const close = (event) => (event.pointerType === "touch" ? 20 : 10);
 
   function axes({ drawing, run }) {  // pixels are an affine function of places: origin and inverse of its matrix
@@ -40,6 +40,7 @@ function explorerHandles(place, player, form) {
     event.preventDefault(); event.stopPropagation();  // or the player would move its view
     event.target.setPointerCapture(event.pointerId);
     held.now.pause();
+    taken();
   }, true);
   const by = (event) => axes(held.now).place(event.clientX - held.x, event.clientY - held.y);
   place.addEventListener("pointermove", (event) => {

@@ -206,7 +206,7 @@ def from_file(path: str) -> Start:
 
 @cache
 def theorems_of(kind: type) -> tuple[str, ...]:
-    """Ids of the theorems that the catalogue checks on runs of a kind of law.
+    """Ids of the theorems that the catalogue checks on runs of a kind of law; errata are about runs of their own.
 
     Parameters
     ----------
@@ -220,4 +220,5 @@ def theorems_of(kind: type) -> tuple[str, ...]:
     'cucker-smale'
     """
     items = (scenario(name) for name in scenarios())
-    return tuple(dict.fromkeys(name for item in items if type(item.law) is kind for name in item.theorems))
+    names = (name for item in items if type(item.law) is kind for name in item.theorems)
+    return tuple(dict.fromkeys(name for name in names if name.islower()))

@@ -90,10 +90,15 @@ def work(pipe: Connection, limit: float) -> None:
 
 
 def _warm() -> None:
-    """Load what every answer needs, and the kernels of the commonest laws."""
-    from flockana.explore import answers
+    """Load what every answer needs, and the kernels of the commonest laws: a run, without its verdicts."""
+    from flockana.explore.answers import answer
     from flockana.explore.case import Case
 
-    answers.answer(
-        Case("law", "Algorithm2", n=12, duration=0.5), lambda kind, content: None, limit=60.0, cancelled=lambda: False
-    )
+    ran: list[str] = []
+    with suppress(KeyboardInterrupt):
+        answer(
+            Case("law", "Algorithm2", n=12, duration=0.5),
+            lambda kind, content: ran.append(kind),
+            limit=60.0,
+            cancelled=lambda: "ran" in ran,
+        )
