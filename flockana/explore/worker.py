@@ -32,12 +32,12 @@ class Worker:
         self.changed = threading.Condition()
 
     def read(self) -> None:
-        """Note what comes, for ever."""
+        """Note what comes, until the pipe closes."""
         while True:
             try:
                 question = self.pipe.recv()
-            except (EOFError, OSError):  # the server has ended
-                os._exit(0)
+            except (EOFError, OSError):
+                return
             with self.changed:
                 self.newest = question
                 self.changed.notify()
@@ -54,11 +54,11 @@ class Worker:
                 number, data = self.newest
 
             def send(kind: str, content: Any, number: int = number) -> None:
-                if self.newest[0] != number:
-                    raise KeyboardInterrupt
                 with interrupts_held():  # half a message would be the end of all
                     self.pipe.send((number, kind, content))
                 self.breakable = kind not in ("begun", "form", "done")
+                if self.newest[0] != number:  # it came before it could break anything off
+                    raise KeyboardInterrupt
 
             try:
                 send("begun", {})
@@ -83,10 +83,15 @@ def work(pipe: Connection, limit: float) -> None:
     worker = Worker(pipe, limit)
     _warm()
     pipe.send((0, "ready", {}))
-    threading.Thread(target=worker.read, daemon=True).start()
+    threading.Thread(target=_read_to_the_end, args=(worker,), daemon=True).start()
     while True:
         with suppress(KeyboardInterrupt):  # a newer question, or one that came late: then the newest is asked again
             worker.answer_all()
+
+
+def _read_to_the_end(worker: Worker) -> None:
+    worker.read()
+    os._exit(0)  # the server has ended, and with it whoever asked
 
 
 def _warm() -> None:
