@@ -62,9 +62,12 @@ class Process:
             except (EOFError, OSError):
                 message = None
             try:
-                loop.call_soon_threadsafe(lambda message=message: self.deliver(message))
+                loop.call_soon_threadsafe(self._hand_on, message)
             except RuntimeError:  # the server is gone
                 return
+
+    def _hand_on(self, message: Any) -> None:
+        self.deliver(message)  # to whoever has it now
 
     def end(self) -> None:
         """End it at once."""
@@ -197,7 +200,11 @@ class _Tab(WebSocketHandler):
         """What the process says, if it is of the newest question."""
         if message is None:
             self._say(
-                {"number": self.number, "kind": "error", "text": "the process of this run ended: too little memory?"}
+                {
+                    "number": self.number,
+                    "kind": "error",
+                    "text": "the process of this run ended: too little memory, or an error that the terminal shows",
+                }
             )
             self._take()
             return
@@ -262,7 +269,7 @@ async def serve(server: Server, port: int, opened: Callable[[str], None]) -> Non
         If another program has the port.
     """
     routes = [("/", _Page), ("/socket", _Tab)]
-    application = Application(routes, explorer=server, websocket_max_message_size=_QUESTION, websocket_ping_interval=20)  # type: ignore[arg-type]
+    application = Application(routes, explorer=server, websocket_max_message_size=_QUESTION, websocket_ping_interval=20)
     http = HTTPServer(application)
     try:
         sockets = bind_sockets(port, HOST)

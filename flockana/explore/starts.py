@@ -138,7 +138,9 @@ def from_law(name: str, *, n: int = _FLOCK, m: int = 2, seed: int = 0) -> Start:
         f"p0 = {speed} * rng.normal(size=({n}, {m}))",
         f"t_span, options = (0.0, {end}), {{}}",
     )
-    return Start(f"{name}, {n} agents at random", law, q0, p0, (0.0, end), lines, theorems=theorems_of(type(law)))
+    return Start(
+        f"{name}, {n} agents at random", law, q0, p0, (0.0, end), lines, theorems=theorems_of(type(law).__name__)
+    )
 
 
 @lru_cache(maxsize=8)
@@ -182,7 +184,7 @@ def from_file(path: str) -> Start:
     """
     if Path(path).suffix == ".json":
         found = Counterexample.load(path)
-        lines = (
+        lines: tuple[str, ...] = (
             "from flockana.falsify.counterexample import Counterexample",
             f"found = Counterexample.load({str(path)!r})",
             "law, q0, p0 = found.law, found.q0.copy(), found.p0.copy()",
@@ -200,25 +202,24 @@ def from_file(path: str) -> Start:
         f"law, q0, p0, t_span, options = saved.law, saved.q[0].copy(), saved.p[0].copy(), {span}, {options}",
     )
     title = f"{Path(path).name}: {run.n} agents, {type(run.law).__name__}"
-    checked = theorems_of(type(run.law))
+    checked = theorems_of(type(run.law).__name__)
     return Start(title, run.law, run.q[0], run.p[0], span, lines, options, checked, recorded=run)
 
 
 @cache
-def theorems_of(kind: type) -> tuple[str, ...]:
+def theorems_of(law: str) -> tuple[str, ...]:
     """Ids of the theorems that the catalogue checks on runs of a kind of law; errata are about runs of their own.
 
     Parameters
     ----------
-    kind : type
-        Its class.
+    law : str
+        Name of its class.
 
     Examples
     --------
-    >>> from flockana.laws.cucker_smale import CuckerSmale
-    >>> theorems_of(CuckerSmale)[0]
+    >>> theorems_of("CuckerSmale")[0]
     'cucker-smale'
     """
     items = (scenario(name) for name in scenarios())
-    names = (name for item in items if type(item.law) is kind for name in item.theorems)
+    names = (name for item in items if type(item.law).__name__ == law for name in item.theorems)
     return tuple(dict.fromkeys(name for name in names if name.islower()))

@@ -7,6 +7,7 @@ import os
 import signal
 import threading
 from contextlib import suppress
+from functools import partial
 from multiprocessing.connection import Connection
 from typing import Any
 
@@ -53,20 +54,24 @@ class Worker:
                 self.changed.wait_for(lambda: self.newest[0] > self.done)
                 number, data = self.newest
 
-            def send(kind: str, content: Any, number: int = number) -> None:
-                with interrupts_held():  # half a message would be the end of all
-                    self.pipe.send((number, kind, content))
-                self.breakable = kind not in ("begun", "form", "done")
-                if self.newest[0] != number:  # it came before it could break anything off
-                    raise KeyboardInterrupt
-
             try:
-                send("begun", {})
+                self._send(number, "begun", {})
                 with interrupts_recognised():
-                    answer(data, send, limit=self.limit, cancelled=lambda number=number: self.newest[0] != number)
+                    send, newer = partial(self._send, number), partial(self._newer_than, number)
+                    answer(data, send, limit=self.limit, cancelled=newer)
                 self.done = number
             finally:
                 self.breakable = False
+
+    def _newer_than(self, number: int) -> bool:
+        return self.newest[0] != number
+
+    def _send(self, number: int, kind: str, content: Any) -> None:
+        with interrupts_held():  # half a message would be the end of all
+            self.pipe.send((number, kind, content))
+        self.breakable = kind not in ("begun", "form", "done")
+        if self._newer_than(number):  # it came before it could break anything off
+            raise KeyboardInterrupt
 
 
 def work(pipe: Connection, limit: float) -> None:
