@@ -158,6 +158,41 @@ def test_an_agent_is_dragged(visit, address):
     assert "q0[0] = (" in tab.locator("#python").inner_text()
 
 
+def test_an_obstacle_and_the_target_are_dragged(visit, address):
+    tab = visit(address, {"kind": "law", "name": "Algorithm3", "n": 3, "duration": 1})
+    number = "[id='number-{}-{}']".format
+    for colour, path in (((198, 83, 0), "target.q"), ((227, 227, 221), "obstacles.0.centre")):
+        before = [float(tab.input_value(number(path, c))) for c in range(2)]
+        box, (x, y) = tab.locator("#player canvas").bounding_box(), centre(tab, colour)
+        tab.mouse.move(box["x"] + x, box["y"] + y)
+        tab.mouse.down()
+        tab.mouse.move(box["x"] + x + 10, box["y"] + y + 40, steps=4)
+        tab.mouse.up()
+        done(tab, asked(tab) + 1)
+        dx, dy = (float(tab.input_value(number(path, c))) - before[c] for c in range(2))
+        assert dy < 0.0 < dx
+        assert dy == pytest.approx(-4.0 * dx, rel=0.01)
+    assert "obstacles=(replace(law.obstacles[0], centre=(" in tab.locator("#python").inner_text()
+    assert "target=replace(law.target, q=(" in tab.locator("#python").inner_text()
+
+
+def centre(tab, colour):
+    """Middle of the pixels of one colour in the player's picture."""
+    return tab.evaluate(
+        """([r, g, b]) => {
+          const c = document.querySelector("#player canvas"), ink = c.getContext("2d");
+          const { data, width, height } = ink.getImageData(0, 0, c.width, c.height);
+          let [x, y, n] = [0, 0, 0];
+          for (let i = 0; i < width * height; i++) {
+            if (data[4 * i] !== r || data[4 * i + 1] !== g || data[4 * i + 2] !== b || data[4 * i + 3] < 255) continue;
+            x += i % width; y += Math.floor(i / width); n += 1;
+          }
+          return [x / n / (c.width / c.clientWidth), y / n / (c.width / c.clientWidth)];
+        }""",
+        colour,
+    )
+
+
 def places(tab):
     """Of the agents, as the form has them."""
     number, found = tab.get_by_label("Number of the agent"), []
@@ -225,6 +260,14 @@ def test_poles_and_a_mode_that_moves_when_chosen(visit, address):
     assert [modes.nth(k).get_attribute("aria-pressed") for k in (0, 2)] == ["false", "true"]
     assert "Mode" in tab.locator("#poles canvas").get_attribute("aria-label")
     assert tab.locator("#poles circle.chosen").count() == 4  # a double one
+
+
+def test_a_run_that_is_too_large_is_refused_with_its_cost(visit, address):
+    tab = visit(address, {"kind": "law", "name": "Algorithm1", "n": 5000})
+    assert "5000 agents" in tab.locator("#wrong").inner_text()
+    change(tab, "start-n", 5)
+    assert not tab.locator("#wrong").is_visible()
+    assert tab.locator("#player canvas").count() == 1
 
 
 @pytest.mark.parametrize(("dark", "width"), [(False, 1280), (True, 390)])

@@ -75,13 +75,13 @@ async function show(of, bytes) {
   while (handles.holding()) await new Promise((go) => setTimeout(go, 30));
   const old = player, before = place.firstElementChild, next = document.createElement("div");
   const focus = before && before.contains(document.activeElement) ? document.activeElement : null;
-  next.className = "coming";
+  next.classList.add("coming");
   place.append(next);
   const made = await flockanaPlayer(next, bytes);
   if (of !== number || !made) { if (made) made.destroy(); next.remove(); return; }
   const { run } = made, last = run.t[run.t.length - 1];
   if (old) { keep(old, made, before, next); old.destroy(); before.remove(); }
-  next.className = "";
+  next.classList.remove("coming");
   player = made;
   watch(next);
   const time = state.end ? last : Math.min(last, Math.max(run.t[0], state.time === null ? run.t[0] : state.time));

@@ -19,6 +19,7 @@ SHORT = [
     ),
     Case("scenario", "beside-a-sphere", seed=3, changes={"obstacles.0.radius": 1.25}),
     Case("scenario", "zone-path", duration=2.0),
+    Case("scenario", "tanner-fixed", duration=1.0),  # which gives t_eval and rtol
     Case("scenario", "minimal-2d", duration=1.0, seed=4),
     Case("law", "Algorithm1", n=9, duration=0.3, moved={0: (0.1, 0.2), 8: (50.0, 0.0)}),
     Case("law", "Algorithm2", n=8, m=3, duration=0.2, changes={"target.q": (1.0, 0.0, 1e-3)}),
