@@ -10,6 +10,7 @@ import pytest
 import flockana as fl
 from flockana.explore.answers import answer, poles
 from flockana.explore.case import Case
+from flockana.falsify.counterexample import Counterexample
 
 
 def told(case, limit=60.0):
@@ -102,6 +103,13 @@ def test_errors_are_the_librarys_own(case, words):
     assert words in found["error"][0]["text"]
     assert "run" not in found
     assert list(found)[-1] == "done"
+
+
+def test_the_tolerances_of_a_counterexample_are_used(tmp_path):
+    item, loose = fl.scenario("head-on"), fl.Tolerances(energy=1e-5)
+    found = Counterexample("energy", "rate", "head-on", item.law, item.q0, item.p0, (0.0, 0.5), tolerances=loose)
+    (verdict,) = told(Case("file", str(found.save(tmp_path / "found.json"))))["verdict"]
+    assert (verdict["theorem"], verdict["tolerances"]["energy"]) == ("energy", 1e-5)
 
 
 def test_a_newer_question_ends_the_verdicts():

@@ -147,6 +147,8 @@ def test_the_newest_alone_is_answered_and_a_deaf_process_replaced(served):
         tab = await opened(url)
         await answer(tab, 1, FIRST)
         (busy,) = (each for each in Echo.made if each.asked)
+        busy.deliver((0, "ran", {"of": "an older question"}))
+        assert await answer(tab, 1, FIRST) == FIRST  # with nothing before it
         busy.deaf = True
         await tab.write_message(json.dumps({"number": 2, "case": FIRST}))
         for _ in range(100):

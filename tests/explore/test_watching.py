@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
@@ -49,12 +51,16 @@ def test_a_run_that_takes_too_long_is_refused_with_its_cost():
 
 
 def test_it_is_foretold_from_the_pace(monkeypatch):
-    """After the time of a try, at a pace of a quarter of a time unit a second, 2 time units take 8 s."""
+    """Three seconds a sample: long before the limit it is clear that there are too many of them."""
     clock = iter(np.arange(0.0, 1e6, 3.0))
     monkeypatch.setattr(watching.time, "perf_counter", lambda: next(clock))
-    flock = parts()
-    with pytest.raises(TooLargeError):
-        watched(flock, lambda data: None, limit=10.0, cancelled=lambda: False)
+    with pytest.raises(TooLargeError) as found:
+        watched(parts(), lambda data: None, limit=60.0, cancelled=lambda: False)
+    told = re.search(r"about (\S+) minutes .* 2 time units, (\S+) of them took (\S+) s", str(found.value))
+    minutes, done, gone = map(float, told.groups())
+    assert gone < 60.0
+    assert minutes == pytest.approx(gone * 2.0 / done / 60.0, rel=0.1)
+    assert minutes > 4.0
 
 
 def test_too_many_agents_are_refused_before_anything_runs():
