@@ -149,7 +149,7 @@ def poles(run: Trajectory) -> dict[str, Any]:
     return {
         "note": note,
         "poles": np.column_stack([eigenvalues.real, eigenvalues.imag]).tolist(),
-        "zero": [mode.name for mode in linear.zero_modes],
+        "zero": _few([mode.name for mode in linear.zero_modes]),
         "abscissa": linear.spectral_abscissa if modes else None,
         "q": linear.q.tolist(),
         "links": np.asarray(linear.links).tolist(),
@@ -164,6 +164,13 @@ def poles(run: Trajectory) -> dict[str, Any]:
             for mode in modes
         ],
     }
+
+
+def _few(names: list[str]) -> list[str]:
+    """Names of zero modes, the soft ones, which have but numbers, counted."""
+    named = [name for name in names if not name.startswith("soft")]
+    soft = len(names) - len(named)
+    return [*named, f"{soft} soft ones"] if soft else named
 
 
 def _squeezed(law: Any) -> bool:

@@ -53,7 +53,11 @@ function explorerForm(place, kinds, ask) {
     if (where().length && given.map(finite).every(Boolean)) move(Number(agent.value), given.map((each) => Number(each.value)));
   }));
   function move(number, point) { ask({ ...current, moved: { ...current.moved, [number]: point } }); }
-  function change(path, value) { ask({ ...current, changes: { ...current.changes, [path]: value } }); }
+  function change(path, value) {
+    const changes = { ...current.changes, [path]: value }, { usual } = told.numbers.find((each) => each.path === path);
+    if (String(usual) === String(value)) delete changes[path];
+    ask({ ...current, changes });
+  }
 
   function slider(parent, label, value, low, high, logarithmic, act) {
     const from = (x) => (logarithmic ? Math.log10(Math.max(x, 1e-300)) : x), to = (x) => (logarithmic ? 10 ** x : x);
