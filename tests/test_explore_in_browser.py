@@ -284,7 +284,7 @@ def test_it_is_accessible_and_as_wide_as_its_window(visit, address, dark, width)
 def test_first_frames_come_soon_at_150_agents(visit, address):
     """Within 0.3 s on a machine with nothing else to do; the limit here allows for one that has."""
     tab = visit(address, {"kind": "scenario", "name": "paper-flocking", "duration": 5}, until="data-number")
-    tab.locator("#verdict-energy .verified").wait_for()  # os-3 is under way, and broken off
+    tab.locator("#verdict-energy summary .verified").wait_for()  # os-3 is under way, and broken off
     tab.fill("[id='number-gains.c1_alpha']", "25")
     tab.locator("[id='number-gains.c1_alpha']").press("Tab")
     tab.wait_for_selector("body[data-number='2']")
