@@ -33,6 +33,7 @@ STAGES: tuple[tuple[str, ...], ...] = (
     ("player",),
     ("plots",),
     ("report",),
+    ("explore",),
     ("course",),
     ("cli",),
 )

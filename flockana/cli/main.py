@@ -20,6 +20,7 @@ from flockana.cli.check import check_command
 from flockana.cli.course import course_command
 from flockana.cli.ensemble import ensemble_command
 from flockana.cli.equilibrium import equilibrium_command
+from flockana.cli.explore import explore_command
 from flockana.cli.export import export_command
 from flockana.cli.falsify import falsify_command
 from flockana.cli.lattice import lattice_command
@@ -69,6 +70,7 @@ _COMMANDS: dict[str, Callable[..., Any]] = {
     "falsify": falsify_command,
     "export": export_command,
     "course": course_command,
+    "explore": explore_command,
 }
 for _name, _command in _COMMANDS.items():
     app.command(_name)(_command)

@@ -7,7 +7,7 @@ of the energy balance is `Trajectory.energy_residual`.
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -46,6 +46,7 @@ def simulate(
     t_eval: Any = None,
     threads: int = 1,
     progress: bool = False,
+    watch: Callable[[Sample], object] | None = None,
 ) -> Trajectory:
     """Integrate q' = p, p' = u(t, q, p) from (q0, p0).
 
@@ -80,6 +81,8 @@ def simulate(
         That sum the pairs of a compiled run: worth it for some thousands of agents. The run is the same to the bit.
     progress : bool
         Show a progress bar on the terminal.
+    watch : callable, optional
+        Called with each sample that is kept, which has t, q, p and u, as it comes: to draw the run while it is made.
 
     Returns
     -------
@@ -122,7 +125,7 @@ def simulate(
         floor = error_floor(law, q0, p0, t_span, **how)
         samples = adaptive(law, q0, p0, t_span, method, how["rtol"], floor, keep, tally, threads)
     started = time.perf_counter()
-    kept, between = _collect(samples, t_span, tally, progress)
+    kept, between = _collect(samples, t_span, tally, progress, watch)
     counts = {"method": method, "steps": tally.steps, "evaluations": tally.evaluations}
     stats = counts | tally.notes | how | {"seconds": time.perf_counter() - started}
     kept = kept or [start_sample(law, q0, p0, t_span[0])]  # ended before the first time to keep
@@ -183,7 +186,11 @@ def _check_t_eval(t_eval: Any, t_span: tuple[float, float]) -> FloatArray | None
 
 
 def _collect(
-    samples: Iterator[Sample], t_span: tuple[float, float], tally: Tally, progress: bool
+    samples: Iterator[Sample],
+    t_span: tuple[float, float],
+    tally: Tally,
+    progress: bool,
+    watch: Callable[[Sample], object] | None,
 ) -> tuple[list[Sample], Between | None]:
     """Drain the integrator: the samples, and its steps between them; on Ctrl-C keep what there is."""
     kept: list[Sample] = []
@@ -194,6 +201,8 @@ def _collect(
                 for sample in samples:
                     if sample.wanted:
                         kept.append(sample)
+                        if watch is not None:
+                            watch(sample)
                     recorder.add(sample.t, sample.q, sample.p, sample.u, sample=sample.wanted)
                     advance(sample.t - t_span[0], f"t = {sample.t:.4g}")
         except KeyboardInterrupt:

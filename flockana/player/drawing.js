@@ -269,5 +269,5 @@ function flockanaDrawing(canvas, run) {
     if (look.velocities) arrows();
     agents(); betaAgents(); marks(at);
   }
-  return { draw, fit, follow, resize, palette, view, look };
+  return { draw, fit, follow, resize, palette, project, view, look };
 }

@@ -377,3 +377,19 @@ def test_refusals(options, message):
 def test_an_unknown_method_is_named():
     with pytest.raises(UnknownNameError, match=re.escape("unknown method 'RK5'; did you mean 'RK")):
         simulate(LAW, [[0.0, 0.0]], [[0.0, 0.0]], (0.0, 1.0), method="RK5")
+
+
+def test_who_watches_sees_each_kept_sample_as_it_comes_and_may_end_the_run():
+    law, q0, p0 = Algorithm1(), [[0.0], [7.9]], [[0.0], [0.0]]
+    seen = []
+    run = simulate(law, q0, p0, (0.0, 1.0), t_eval=[0.25, 0.5, 1.0], watch=seen.append)
+    assert [sample.t for sample in seen] == run.t.tolist() == [0.25, 0.5, 1.0]
+    np.testing.assert_array_equal([sample.q for sample in seen], run.q)
+
+    def end(sample):
+        if sample.t >= 0.5:
+            raise KeyboardInterrupt
+
+    ended = simulate(law, q0, p0, (0.0, 1.0), t_eval=[0.25, 0.5, 1.0], watch=end)
+    assert (ended.status, ended.t.tolist()) == ("interrupted", [0.25, 0.5])
+    np.testing.assert_array_equal(ended.q, run.q[:2])

@@ -1,0 +1,67 @@
+"""`flockana explore`: a page on this machine where a flock is chosen, dragged and changed."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.cli.status import OK
+
+_PORT = 8642
+
+
+def explore_command(
+    name: Annotated[
+        str,
+        typer.Argument(help="A scenario, a law, a saved run (.nc) or a counterexample (.json).", metavar="[NAME|FILE]"),
+    ] = "paper-flocking",
+    port: Annotated[int, typer.Option(min=0, max=65535, help="Of the page; 0 for any that is free.")] = _PORT,
+    seconds: Annotated[float, typer.Option(help="How long a run may take; a longer one is refused.")] = 60.0,
+    no_browser: Annotated[bool, typer.Option("--no-browser", help="Print the address, open nothing.")] = False,
+) -> int:
+    """Open a page where one chooses a flock, drags and changes it, and sees at once what it does.
+
+    Only this machine and this user reach it: it listens on the loopback address, and its address holds a token, kept in
+    ~/.flockana so that an open page finds the server again when it is started anew. Ctrl-C ends it. Needs
+    `pip install 'flockana[explore]'`.
+    """
+    import asyncio
+    import webbrowser
+
+    from flockana.base.checks import ensure_positive
+
+    ensure_positive("--seconds", seconds)
+    first = _first(name)
+    try:
+        from flockana.explore.server import Server, kept_token, serve
+    except ModuleNotFoundError as error:
+        raise ArgumentError(f"{error.name} is not installed: pip install 'flockana[explore]'") from error
+
+    def opened(address: str) -> None:
+        typer.echo(f"{name} is explored at\n{address}\nCtrl-C ends it")
+        if not no_browser:
+            webbrowser.open(address)
+
+    asyncio.run(serve(Server(kept_token(), first, seconds), port, opened))
+    return OK
+
+
+def _first(name: str) -> dict[str, str]:
+    """The case that the page begins with; an unknown name or a bad file is an error before anything starts."""
+    import os
+    from pathlib import Path
+
+    from flockana.explore.starts import FILES, from_file, law_names
+    from flockana.scenarios import scenarios
+
+    if name in scenarios():
+        return {"kind": "scenario", "name": name}
+    if name in law_names():
+        return {"kind": "law", "name": name}
+    if Path(name).suffix not in FILES and not os.path.exists(name):
+        raise UnknownNameError("scenario, law or file", name, (*scenarios(), *law_names()))
+    path = str(Path(name).resolve())
+    from_file(path)
+    return {"kind": "file", "name": path}

@@ -1,0 +1,191 @@
+"""Everything that a page is told of a case, in the order in which it can be known."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from flockana.base.errors import FlockanaError
+from flockana.dynamics.trajectory import Trajectory
+from flockana.equilibria import find_equilibrium
+from flockana.equilibria.collapse import collapse_threshold
+from flockana.equilibria.rest import resting_state
+from flockana.explore.case import Case, program
+from flockana.explore.parameters import numbers
+from flockana.explore.starts import Start
+from flockana.explore.watching import ensure_small, shown, watched
+from flockana.interactions import AlphaInteraction
+from flockana.stability import linearise
+from flockana.theorems import theorem, verify
+
+Send = Callable[[str, Any], None]  # a kind, and plain data or bytes
+
+_MODES = 12  # that a page lists
+_POLES = 900  # n m above which the whole spectrum takes too long for a page
+_RESTING = 0.02  # residual, of the force scale, up to which the end of a run is near an equilibrium
+_SOUGHT = 400  # steps of the search for it
+_SQUEEZED = 400  # agents up to which the collapse threshold is sought, in the plane
+
+
+def answer(asked: Any, send: Send, *, limit: float, cancelled: Callable[[], bool]) -> None:
+    """Run a case and tell all about it; ends early where something is wrong, which is told.
+
+    Parameters
+    ----------
+    asked : Case or mapping
+        A case, or what a page sent.
+    send : callable
+        ``send(kind, content)`` with kinds form, run (bytes), ran, verdict, poles, threshold, error, done.
+    limit : float
+        Seconds that the run may take.
+    cancelled : callable
+        Whether to stop.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If it was cancelled.
+    """
+    try:
+        case = asked if isinstance(asked, Case) else Case.of(asked)
+        parts = case.parts
+        send("form", form(case, parts))
+        ensure_small(parts)
+
+        def show(data: bytes) -> None:
+            send("run", data)
+
+        if parts.recorded is not None:
+            run = shown(parts.recorded, show)
+        else:
+            run = watched(parts, show, limit=limit, cancelled=cancelled)
+        send("ran", {"status": run.status, "message": run.message, "samples": len(run.t)})
+        for kind, content in _analysed(parts, run):
+            if cancelled():
+                raise KeyboardInterrupt
+            send(kind, content)
+    except FlockanaError as error:
+        send("error", {"text": str(error)})
+    send("done", {})
+
+
+def form(case: Case, parts: Start) -> dict[str, Any]:
+    """What a page lets one change, with the Python that does the same.
+
+    Parameters
+    ----------
+    case : Case
+        What is asked for.
+    parts : Start
+        Of it.
+    """
+    usual = {number.path: number.value for number in numbers(case.start().law)}
+    listed = [
+        {"path": each.path, "value": each.value, "usual": usual.get(each.path), "place": each.place}
+        for each in numbers(parts.law)
+        if not each.path.endswith(_idle(parts.law))
+    ]
+    return {
+        "title": parts.title,
+        "law": type(parts.law).__name__,
+        "n": len(parts.q0),
+        "m": parts.q0.shape[1],
+        "q0": parts.q0.tolist(),
+        "duration": parts.t_span[1] - parts.t_span[0],
+        "numbers": listed,
+        "theorems": [{"id": name, "title": theorem(name).title} for name in parts.theorems],
+        "ratio": _squeezed(parts.law),
+        "python": program(parts),
+    }
+
+
+def _idle(law: Any) -> tuple[str, ...]:
+    """Endings of paths that mean nothing to a law: gains of a γ-agent or of obstacles that it does not have."""
+    unpulled = () if law.target is not None else ("c1_gamma", "c2_gamma")
+    return unpulled if law.obstacles else (*unpulled, "c1_beta", "c2_beta")
+
+
+def _analysed(parts: Start, run: Trajectory) -> Iterator[tuple[str, Any]]:
+    for name in parts.theorems:
+        try:
+            verdict = verify(name, run, tolerances=parts.tolerances).to_dict()
+        except FlockanaError as error:  # such as an erratum about another number of agents
+            verdict = {"theorem": name, "status": "not checked", "error": str(error), "hypotheses": [], "claims": []}
+        yield "verdict", {**verdict, "title": theorem(name).title, "statement": theorem(name).statement}
+    yield "poles", poles(run)
+    if _squeezed(parts.law):
+        yield "threshold", _threshold(parts.law.pair, *parts.q0.shape)
+
+
+def poles(run: Trajectory) -> dict[str, Any]:
+    """Poles and slowest modes at the end of a run: of the equilibrium near it, or as if the flock stood still there.
+
+    Parameters
+    ----------
+    run : Trajectory
+        The run.
+    """
+    law, q = run.law.continuous, run.q[-1]
+    if law is None:
+        return {"note": f"{type(run.law).__name__} is a map of its own: it has no poles in continuous time"}
+    if q.size > _POLES:
+        return {"note": f"{q.size} coordinates: a page finds the poles of at most {_POLES}; use flockana stability"}
+    t = float(run.t[-1])
+    try:
+        linear = linearise(law, q, t=t, allow_residual=True)
+        note = (
+            f"As if the flock stood still where the run ends, which is no equilibrium (residual {linear.residual:.2g})"
+        )
+        if linear.residual <= _RESTING and not law.obstacles:
+            rest = find_equilibrium(law, q, t=t, max_iter=_SOUGHT) if law.conservative else resting_state(law, q, t=t)
+            linear = linearise(law, rest, t=t)
+            note = "At the equilibrium nearest to the end of the run"
+        modes, eigenvalues = linear.modes[:_MODES], linear.eigenvalues
+    except FlockanaError as error:
+        return {"note": f"No poles: {error}"}
+    return {
+        "note": note,
+        "poles": np.column_stack([eigenvalues.real, eigenvalues.imag]).tolist(),
+        "zero": _few([mode.name for mode in linear.zero_modes]),
+        "abscissa": linear.spectral_abscissa if modes else None,
+        "q": linear.q.tolist(),
+        "links": np.asarray(linear.links).tolist(),
+        "modes": [
+            {
+                "name": mode.name,
+                "value": [mode.eigenvalue.real, mode.eigenvalue.imag],
+                "damping": mode.damping_ratio,
+                "real": np.round(mode.shape.real, 6).tolist(),
+                "imag": np.round(np.imag(mode.shape), 6).tolist(),
+            }
+            for mode in modes
+        ],
+    }
+
+
+def _few(names: list[str]) -> list[str]:
+    """Names of zero modes, the soft ones, which have but numbers, counted."""
+    named = [name for name in names if not name.startswith("soft")]
+    soft = len(names) - len(named)
+    return [*named, f"{soft} soft ones"] if soft else named
+
+
+def _squeezed(law: Any) -> bool:
+    """Whether a γ-agent pulls on all alike, so that c1γ/c1α decides whether agents coincide (erratum E11)."""
+    gains = getattr(law, "gains", None)
+    follows = law.target is not None and getattr(law, "splits", False) and isinstance(law.pair, AlphaInteraction)
+    return bool(follows and gains is not None and not gains.per_agent and gains.c1_alpha > 0.0)
+
+
+@cache
+def _threshold(alpha: AlphaInteraction, n: int, m: int) -> dict[str, Any]:
+    if n > _SQUEEZED or m != 2:
+        return {"note": f"threshold of collapse: sought for at most {_SQUEEZED} agents, in the plane"}
+    try:
+        low, high = collapse_threshold(alpha, n, halvings=2)
+    except FlockanaError as error:
+        return {"note": str(error)}
+    return {"low": low, "high": high}

@@ -1,0 +1,157 @@
+"""What a page asks for: a start with changed numbers and moved agents; as a law and a flock, and as Python."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from flockana.base.checks import ensure_finite_scalar, ensure_positive, ensure_time_span, ensure_vector
+from flockana.base.errors import ArgumentError
+from flockana.explore.parameters import changed, expression, tree_of
+from flockana.explore.starts import Start, from_file, from_law, from_scenario
+
+KINDS = ("scenario", "law", "file")
+_KEYS = ("kind", "name", "seed", "n", "m", "duration", "changes", "moved")
+
+
+@dataclass(frozen=True)
+class Case:
+    """A start and what was changed of it.
+
+    Parameters
+    ----------
+    kind : {"scenario", "law", "file"}
+        What it starts from.
+    name : str
+        Of the scenario or law; a file's path.
+    seed : int
+        Of a random start.
+    n, m : int
+        Agents and dimensions, of a law.
+    duration : float, optional
+        Time to integrate over, if it is not the start's own.
+    changes : mapping of str to object
+        Numbers of the law by path (`flockana.explore.parameters`).
+    moved : mapping of int to sequence of float
+        Places of agents by number.
+
+    Raises
+    ------
+    ArgumentError
+        On anything else.
+
+    Examples
+    --------
+    >>> case = Case("scenario", "hexagon", duration=2.0, changes={"gains.c1_alpha": 9.0}, moved={0: (1.0, 2.0)})
+    >>> case.parts.law.gains.c1_alpha, case.parts.q0[0].tolist(), case.parts.t_span
+    (9.0, [1.0, 2.0], (0.0, 2.0))
+    """
+
+    kind: str
+    name: str
+    seed: int = 0
+    n: int = 50
+    m: int = 2
+    duration: float | None = None
+    changes: Mapping[str, Any] = field(default_factory=dict)
+    moved: Mapping[int, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if self.kind not in KINDS:
+            raise ArgumentError(f"kind = {self.kind!r}: expected one of {', '.join(KINDS)}")
+        if not isinstance(self.name, str):
+            raise ArgumentError(f"name = {self.name!r}: expected a text")
+        for name in ("seed", "n", "m"):
+            if isinstance(getattr(self, name), bool) or not isinstance(getattr(self, name), int):
+                raise ArgumentError(f"{name} = {getattr(self, name)!r}: expected a whole number")
+        if self.seed < 0:
+            raise ArgumentError(f"seed = {self.seed}: expected a whole number >= 0")
+        if self.duration is not None:
+            ensure_positive("duration", self.duration)
+        for name in ("changes", "moved"):
+            if not isinstance(getattr(self, name), Mapping):
+                raise ArgumentError(f"{name} = {getattr(self, name)!r}: expected values by name")
+
+    @classmethod
+    def of(cls, asked: Any) -> Case:
+        """A case from what a page sent.
+
+        Parameters
+        ----------
+        asked : mapping
+            Plain data.
+
+        Raises
+        ------
+        ArgumentError
+            On anything that is no case.
+        """
+        if not isinstance(asked, Mapping) or set(asked) - set(_KEYS) or not {"kind", "name"} <= set(asked):
+            raise ArgumentError(f"a case has kind, name and some of {', '.join(_KEYS[2:])}: got {str(asked)[:80]}")
+        moved = asked.get("moved") or {}
+        if not isinstance(moved, Mapping) or not all(str(key).isdecimal() for key in moved):
+            raise ArgumentError(f"moved = {str(moved)[:80]}: expected places by the agents' numbers")
+        return cls(**{**asked, "changes": asked.get("changes") or {}, "moved": {int(k): moved[k] for k in moved}})
+
+    @property
+    def untouched(self) -> bool:
+        """Whether nothing is changed."""
+        return not (self.changes or self.moved or self.duration)
+
+    def start(self) -> Start:
+        """What it starts from."""
+        if self.kind == "file":
+            return from_file(self.name)
+        if self.kind == "law":
+            return from_law(self.name, n=self.n, m=self.m, seed=self.seed)
+        return from_scenario(self.name, seed=self.seed)
+
+    @property
+    def parts(self) -> Start:
+        """The start with all that is changed, and the Python that makes it; a law that refuses a number says so."""
+        start = self.start()
+        tree, lines = tree_of(start.law, self.changes), list(start.lines)
+        law, q0 = changed(start.law, tree), start.q0.copy()
+        if tree:
+            lines.append(f"law = {expression('law', start.law, tree)}")
+        for agent, given in sorted(self.moved.items()):
+            if agent >= len(q0):
+                raise ArgumentError(f"moved agent {agent}: expected one of 0 … {len(q0) - 1}")
+            q0[agent] = ensure_vector(f"agent {agent}", given, q0.shape[1])
+            lines.append(f"q0[{agent}] = {tuple(q0[agent].tolist())}")
+        span, options = start.t_span, dict(start.options)
+        if self.duration is not None:
+            span = ensure_time_span((span[0], span[0] + ensure_finite_scalar("duration", self.duration)))
+            options.pop("t_eval", None)  # its times are those of another span
+            lines += [f"t_span = {span}", 'options.pop("t_eval", None)']
+        recorded = start.recorded if self.untouched else None
+        return replace(start, law=law, q0=q0, t_span=span, options=options, lines=tuple(lines), recorded=recorded)
+
+
+def program(parts: Start) -> str:
+    """Python that does the same as a page: simulates, and checks the same theorems.
+
+    Parameters
+    ----------
+    parts : Start
+        Of a case.
+
+    Examples
+    --------
+    >>> print(program(Case("scenario", "hexagon", duration=2.0).parts))
+    import flockana as fl
+    <BLANKLINE>
+    item = fl.scenario('hexagon', seed=0)
+    ...
+    run = fl.simulate(law, q0, p0, t_span, **options)
+    ...
+    """
+    text = "\n".join(parts.lines)
+    imports = ["from dataclasses import replace"] if "replace(" in text else []
+    imports += ["import numpy as np"] if "np." in text else []
+    kept = f", tolerances={parts.tolerances_text}" if parts.tolerances_text else ""
+    run = ["run = saved"] if parts.recorded is not None else ["run = fl.simulate(law, q0, p0, t_span, **options)"]
+    checks = [f"for name in {parts.theorems}:", f"    print(fl.verify(name, run{kept}))"] if parts.theorems else []
+    head = [*imports[:1], *([""] if imports else []), *imports[1:], "import flockana as fl", ""]
+    return "\n".join([*head, text, *run, *checks]) + "\n"

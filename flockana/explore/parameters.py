@@ -1,0 +1,185 @@
+"""The numbers in a law by their paths: listed, replaced, and the replacement written as Python.
+
+A page changes numbers and nothing else: it names a path that the law has and gives a number, or a vector of as many.
+What they may be the law's own classes say, which check them as they do when a program makes them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, fields, is_dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import ensure_finite_scalar, ensure_vector
+from flockana.base.errors import ArgumentError, UnknownNameError
+
+Value = bool | int | float | tuple[float, ...]
+Tree = dict[str, Any]  # changed fields by name, or places in a tuple; a leaf is a value
+
+_PLACES = ("centre", "point", "q", "start", "a", "b")  # vectors that are places, of obstacles and targets
+_COMPONENTS = 3
+
+
+@dataclass(frozen=True)
+class Number:
+    """A number, or a short vector, in a law.
+
+    Parameters
+    ----------
+    path : str
+        Names of fields and numbers in tuples, such as ``"gains.c1_gamma"`` or ``"obstacles.0.centre"``.
+    value : bool, int, float or tuple of float
+        As it is.
+    place : bool
+        Whether it is where an obstacle or a target is, so that a page may let it be dragged.
+    """
+
+    path: str
+    value: Value
+    place: bool = False
+
+
+def numbers(law: Any) -> tuple[Number, ...]:
+    """Every number and short vector among the parameters of a law, and of what they are made of.
+
+    Parameters
+    ----------
+    law : object
+        A law, or another frozen parameter object.
+
+    Examples
+    --------
+    >>> from flockana.interactions import AlphaInteraction
+    >>> [number.path for number in numbers(AlphaInteraction())]
+    ['d', 'r', 'eps', 'h', 'a', 'b', 'unit']
+    """
+    return tuple(_listed(law, ()))
+
+
+def _listed(item: Any, path: tuple[str, ...]) -> Iterator[Number]:
+    if is_dataclass(item):
+        for name in (each.name for each in fields(item) if each.init):
+            yield from _listed(getattr(item, name), (*path, name))
+    elif isinstance(item, bool | int | float | np.number):
+        yield Number(".".join(path), item if isinstance(item, bool | int) else float(item))
+    elif _is_vector(item):
+        place = path[-1] in _PLACES and ("target" in path or "obstacles" in path)
+        yield Number(".".join(path), tuple(float(x) for x in item), place)
+    elif isinstance(item, tuple):
+        for k, each in enumerate(item):
+            if is_dataclass(each):
+                yield from _listed(each, (*path, str(k)))
+
+
+def _is_vector(item: Any) -> bool:
+    if not isinstance(item, tuple | np.ndarray) or not 1 <= len(item) <= _COMPONENTS:
+        return False
+    return all(isinstance(x, int | float | np.number) and not isinstance(x, bool) for x in item)
+
+
+def tree_of(law: Any, changes: Mapping[str, Any]) -> Tree:
+    """Changes by path as a tree, each checked to be a value of the kind that it replaces.
+
+    Parameters
+    ----------
+    law : object
+        Whose numbers they change.
+    changes : mapping of str to object
+        New values by path.
+
+    Raises
+    ------
+    UnknownNameError
+        If the law has no number of that path.
+    ArgumentError
+        If a value is no finite number, or no vector of as many components.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> tree_of(Algorithm1(), {"gains.c1_alpha": 3, "alpha.d": 6})
+    {'gains': {'c1_alpha': 3.0}, 'alpha': {'d': 6.0}}
+    """
+    known = {number.path: number.value for number in numbers(law)} if changes else {}
+    tree: Tree = {}
+    for path, given in changes.items():
+        if path not in known:
+            raise UnknownNameError("parameter", path, known)
+        *branch, leaf = path.split(".")
+        at = tree
+        for name in branch:
+            at = at.setdefault(name, {})
+        at[leaf] = _like(path, known[path], given)
+    return tree
+
+
+def _like(path: str, old: Value, given: Any) -> Value:
+    if isinstance(old, tuple):
+        return tuple(ensure_vector(path, given, len(old)).tolist())
+    if isinstance(old, bool):
+        if not isinstance(given, bool):
+            raise ArgumentError(f"{path} = {given!r}: expected true or false")
+        return given
+    number = ensure_finite_scalar(path, given)
+    return int(number) if isinstance(old, int) and number.is_integer() else number
+
+
+def changed(item: Any, tree: Tree) -> Any:
+    """A law with other numbers; its classes check them.
+
+    Parameters
+    ----------
+    item : object
+        The law, or a part of it.
+    tree : dict
+        From `tree_of`.
+
+    Raises
+    ------
+    ArgumentError
+        On a number that a class does not take.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> changed(Algorithm1(), {"alpha": {"d": 6.0}}).alpha.d
+    6.0
+    """
+    if not isinstance(tree, dict):
+        return tree
+    if isinstance(item, tuple):
+        return tuple(changed(each, tree[str(k)]) if str(k) in tree else each for k, each in enumerate(item))
+    if not tree:
+        return item
+    return replace(item, **{name: changed(getattr(item, name), each) for name, each in tree.items()})
+
+
+def expression(name: str, item: Any, tree: Tree) -> str:
+    """The same as Python: an expression of the changed law.
+
+    Parameters
+    ----------
+    name : str
+        Expression of the unchanged one.
+    item : object
+        The unchanged one.
+    tree : dict
+        From `tree_of`.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> expression("law", Algorithm1(), {"alpha": {"d": 6.0}})
+    'replace(law, alpha=replace(law.alpha, d=6.0))'
+    """
+    if not isinstance(tree, dict):
+        return repr(tree)
+    if not tree:
+        return name
+    if isinstance(item, tuple):
+        parts = (expression(f"{name}[{k}]", each, tree.get(str(k), {})) for k, each in enumerate(item))
+        return f"({', '.join(parts)},)"
+    given = (f"{key}={expression(f'{name}.{key}', getattr(item, key), each)}" for key, each in tree.items())
+    return f"replace({name}, {', '.join(given)})"

@@ -1,0 +1,285 @@
+"""A server on the loopback address: one page, one socket for each tab, one process for each socket."""
+
+from __future__ import annotations
+
+import asyncio
+import hmac
+import json
+import os
+import secrets
+import threading
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, field
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+from tornado.httpserver import HTTPServer
+from tornado.netutil import bind_sockets
+from tornado.web import Application, HTTPError, RequestHandler
+from tornado.websocket import WebSocketClosedError, WebSocketHandler
+
+from flockana.base.errors import ArgumentError
+from flockana.base.interrupts import interrupts_hidden
+from flockana.ensemble.processes import single_threaded_children
+from flockana.explore.page import page
+from flockana.explore.worker import work
+
+HOST = "127.0.0.1"
+_TABS = 6
+_LENGTH = 32  # letters that a token has at least
+_PATIENCE = 1.0  # seconds that a process has to begin with what is new
+_QUESTION = 1_000_000  # bytes at most
+_POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'nonce-{0}'; connect-src 'self'; img-src data:"
+
+
+class Process:
+    """A worker process, whose messages reach the server's own thread.
+
+    Parameters
+    ----------
+    limit : float
+        Seconds that a run may take.
+    """
+
+    def __init__(self, limit: float) -> None:
+        context = get_context("spawn")
+        self.pipe, theirs = context.Pipe()
+        self.process = context.Process(target=work, args=(theirs, limit), daemon=True)
+        with interrupts_hidden(), single_threaded_children():
+            self.process.start()
+        theirs.close()
+        self.deliver: Callable[[Any], None] = lambda message: None
+        loop = asyncio.get_running_loop()
+        threading.Thread(target=self._read, args=(loop,), daemon=True).start()
+
+    def _read(self, loop: asyncio.AbstractEventLoop) -> None:
+        message: Any = ()
+        while message is not None:
+            try:
+                message = self.pipe.recv()
+            except (EOFError, OSError):
+                message = None
+            try:
+                loop.call_soon_threadsafe(self._hand_on, message)
+            except RuntimeError:  # the server is gone
+                return
+
+    def _hand_on(self, message: Any) -> None:
+        self.deliver(message)  # to whoever has it now
+
+    def end(self) -> None:
+        """End it at once."""
+        self.deliver = lambda message: None
+        self.process.kill()
+
+
+@dataclass
+class Server:
+    """What all tabs share.
+
+    Parameters
+    ----------
+    token : str
+        Whoever does not know it is turned away.
+    first : dict
+        The case that a page begins with.
+    limit : float
+        Seconds that a run may take.
+    """
+
+    token: str
+    first: dict[str, Any]
+    limit: float
+    tabs: set[Any] = field(default_factory=set)
+    spare: Process | None = None
+
+    def take(self) -> Process:
+        """A process that is, with luck, ready; another is started to be the next."""
+        taken, self.spare = self.spare or Process(self.limit), None
+        asyncio.get_running_loop().call_later(2.0, self.prepare)
+        return taken
+
+    def prepare(self) -> None:
+        """Have a process ready."""
+        if self.spare is None or not self.spare.process.is_alive():
+            self.spare = Process(self.limit)
+
+    def end(self) -> None:
+        """End all processes."""
+        for process in (self.spare, *(tab.process for tab in self.tabs)):
+            if process is not None:
+                process.end()
+
+    def admits(self, handler: RequestHandler) -> bool:
+        """Whether a request knows the token, and was sent to this machine by its own name."""
+        host = handler.request.host.rpartition(":")[0]
+        given = handler.get_query_argument("token", "")
+        return host in (HOST, "localhost") and hmac.compare_digest(given.encode(), self.token.encode())
+
+
+class _Page(RequestHandler):
+    def get(self) -> None:
+        """The page."""
+        server: Server = self.application.settings["explorer"]
+        if not server.admits(self):
+            raise HTTPError(403)
+        nonce = secrets.token_urlsafe(16)
+        self.set_header("Content-Security-Policy", _POLICY.format(nonce))
+        self.set_header("Referrer-Policy", "no-referrer")
+        self.set_header("Cache-Control", "no-store")
+        self.finish(page(server.first, nonce))
+
+    def write_error(self, status_code: int, **_: Any) -> None:
+        """Say it in one line."""
+        wrong = "wrong or missing token: open the address that flockana explore printed"
+        self.finish(wrong if status_code == 403 else f"{status_code}")
+
+
+class _Tab(WebSocketHandler):
+    """One tab: its questions go to its own process, and the answers to the newest come back."""
+
+    process: Process | None = None
+    number, begun, asked = 0, 0, None
+    analysing = False
+
+    def prepare(self) -> None:
+        """Turn away whoever does not know the token."""
+        self.server: Server = self.application.settings["explorer"]
+        if not self.server.admits(self):
+            raise HTTPError(403)
+
+    def open(self, *_: Any) -> None:
+        """Take a process."""
+        if len(self.server.tabs) >= _TABS:
+            self.close(4000, f"{_TABS} tabs are open: close one")
+            return
+        self.server.tabs.add(self)
+        self._take()
+
+    def _take(self) -> None:
+        if self.process is not None:
+            self.process.end()
+        self.process, self.analysing = self.server.take(), False
+        self.process.deliver = self.deliver
+
+    def on_message(self, message: str | bytes) -> None:
+        """Ask the process."""
+        try:
+            asked = json.loads(message)
+            number, case = int(asked["number"]), asked["case"]
+            if case.get("kind") == "file" and case != {
+                **case,
+                "kind": self.server.first["kind"],
+                "name": self.server.first["name"],
+            }:
+                raise ArgumentError("expected the file that the explorer was started with")
+        except (ValueError, KeyError, TypeError, AttributeError) as error:
+            self._say({"number": -1, "kind": "error", "text": f"no question: {error}"})
+            return
+        self.number, self.asked = number, case
+        self._ask()
+        if self.analysing:
+            asyncio.get_running_loop().call_later(_PATIENCE, self._replace_unless_begun, number)
+
+    def _ask(self) -> None:
+        if self.process is not None:
+            try:
+                self.process.pipe.send((self.number, self.asked))
+            except OSError:  # it has ended; `deliver` hears of it
+                return
+
+    def _replace_unless_begun(self, number: int) -> None:
+        """Solvers that do not hear of a newer question are left behind."""
+        if self.begun < number == self.number and self.process is not None:
+            self._take()
+            self._ask()
+
+    def deliver(self, message: Any) -> None:
+        """What the process says, if it is of the newest question."""
+        if message is None:
+            self._say(
+                {
+                    "number": self.number,
+                    "kind": "error",
+                    "text": "the process of this run ended: too little memory, or an error that the terminal shows",
+                }
+            )
+            self._take()
+            return
+        number, kind, content = message
+        self.begun = max(self.begun, number)
+        if number != self.number:
+            return
+        self.analysing = kind not in ("begun", "form", "run", "done")
+        if kind == "run":
+            self._write(number.to_bytes(4, "little") + content, binary=True)
+        else:
+            self._say({"number": number, "kind": kind, **content})
+
+    def _say(self, data: dict[str, Any]) -> None:
+        self._write(json.dumps(data), binary=False)
+
+    def _write(self, data: str | bytes, *, binary: bool) -> None:
+        try:
+            self.write_message(data, binary=binary)
+        except WebSocketClosedError:
+            self.on_close()
+
+    def on_close(self) -> None:
+        """End the process."""
+        self.server.tabs.discard(self)
+        if self.process is not None:
+            self.process.end()
+            self.process = None
+
+
+def kept_token() -> str:
+    """This user's token, made when it is first asked for; one for this time only where nothing can be kept."""
+    path = Path.home() / ".flockana" / "explore-token"
+    try:
+        path.parent.mkdir(mode=0o700, exist_ok=True)
+        with (
+            suppress(FileExistsError),
+            os.fdopen(os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o600), "w") as new,
+        ):
+            new.write(secrets.token_urlsafe(32))
+        kept = path.read_text(encoding="ascii").strip()
+    except (OSError, ValueError):
+        kept = ""
+    return kept if len(kept) >= _LENGTH else secrets.token_urlsafe(32)
+
+
+async def serve(server: Server, port: int, opened: Callable[[str], None]) -> None:
+    """Serve until cancelled.
+
+    Parameters
+    ----------
+    server : Server
+        Token, first case, limit.
+    port : int
+        On the loopback address; 0 for any that is free.
+    opened : callable
+        Told the address.
+
+    Raises
+    ------
+    ArgumentError
+        If another program has the port.
+    """
+    routes = [("/", _Page), ("/socket", _Tab)]
+    application = Application(routes, explorer=server, websocket_max_message_size=_QUESTION, websocket_ping_interval=20)
+    http = HTTPServer(application)
+    try:
+        sockets = bind_sockets(port, HOST)
+    except OSError as error:
+        raise ArgumentError(f"--port {port}: {error.strerror}; give another, or 0 for any that is free") from None
+    http.add_sockets(sockets)
+    server.prepare()
+    opened(f"http://{HOST}:{sockets[0].getsockname()[1]}/?token={server.token}")
+    try:
+        await asyncio.Event().wait()
+    finally:
+        http.stop()
+        server.end()

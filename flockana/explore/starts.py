@@ -1,0 +1,225 @@
+"""What a page starts from: a scenario, a law with a random flock, or a file; with the Python that makes the same."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cache, lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import FloatArray, ensure_count, ensure_dimension
+from flockana.base.errors import UnknownNameError
+from flockana.dynamics.trajectory import Trajectory
+from flockana.environment.obstacles import Sphere
+from flockana.environment.targets import StaticTarget
+from flockana.falsify.counterexample import Counterexample
+from flockana.laws.algorithm3 import Algorithm3
+from flockana.laws.cucker_smale import CuckerSmale
+from flockana.laws.dead_zone import DeadZoneFlocking
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.scenarios import scenario, scenarios
+from flockana.theorems import Tolerances
+
+_FLOCK = 50  # agents of a law that is tried
+_SPREAD, _SPEED = 0.9, 0.2  # side of the square over √n lengths of the law; speeds over the length per time unit
+_SPANS = {"Algorithm1": 20.0, "Algorithm2": 20.0, "Algorithm3": 40.0, "CuckerSmale": 10.0, "DeadZoneFlocking": 10.0}
+_OPTIONS = ("method", "rtol", "atol", "dt")
+FILES = (".nc", ".json")
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """A law, a flock and a time span, before anything is changed.
+
+    Parameters
+    ----------
+    title : str
+        In words.
+    law : Law or DiscreteLaw
+        What moves the flock.
+    q0, p0 : ndarray, shape (n, m)
+        The flock.
+    t_span : (float, float)
+        Start and end.
+    lines : tuple of str
+        Python that makes ``law, q0, p0, t_span, options``, where flockana is ``fl`` and numpy is ``np``.
+    options : mapping
+        Keyword arguments of `simulate`.
+    theorems : tuple of str
+        Ids of those that are checked.
+    tolerances : Tolerances
+        Thresholds of the verdicts.
+    tolerances_text : str
+        These as an expression; empty for the usual ones.
+    recorded : Trajectory, optional
+        The run of a file, which is shown until something is changed.
+    """
+
+    title: str
+    law: Any
+    q0: FloatArray
+    p0: FloatArray
+    t_span: tuple[float, float]
+    lines: tuple[str, ...]
+    options: Mapping[str, Any] = field(default_factory=dict)
+    theorems: tuple[str, ...] = ()
+    tolerances: Tolerances = field(default_factory=Tolerances)
+    tolerances_text: str = ""
+    recorded: Trajectory | None = None
+
+
+def law_names() -> tuple[str, ...]:
+    """Laws that can be tried on a random flock.
+
+    Examples
+    --------
+    >>> law_names()
+    ('Algorithm1', 'Algorithm2', 'Algorithm3', 'CuckerSmale', 'DeadZoneFlocking')
+    """
+    return tuple(_SPANS)
+
+
+def _law(name: str, m: int, side: float) -> tuple[Any, str]:
+    """A law of its usual parameters, and as Python; a γ-agent and a ball on the way to it where it has such."""
+    here = (0.0,) * m
+    there, between = (2.0 * side, *here[1:]), (side, *here[1:])
+    if name == "Algorithm2":
+        return Algorithm2(target=StaticTarget(here)), f"fl.Algorithm2(target=fl.StaticTarget({here}))"
+    if name == "Algorithm3":
+        radius = round(side / 8.0, 3)
+        target, text = StaticTarget(there), f"fl.StaticTarget({there}), obstacles=(fl.Sphere({between}, {radius}),)"
+        return Algorithm3(target=target, obstacles=(Sphere(between, radius),)), f"fl.Algorithm3(target={text})"
+    kinds: dict[str, Callable[[], Any]] = {
+        "Algorithm1": Algorithm1,
+        "CuckerSmale": CuckerSmale,
+        "DeadZoneFlocking": DeadZoneFlocking,
+    }
+    return kinds[name](), f"fl.{name}()"
+
+
+def from_law(name: str, *, n: int = _FLOCK, m: int = 2, seed: int = 0) -> Start:
+    """A law of its usual parameters, and agents spread over a square at random.
+
+    Parameters
+    ----------
+    name : str
+        One of `law_names`.
+    n, m : int
+        Agents and dimensions.
+    seed : int
+        Of the flock, >= 0.
+
+    Raises
+    ------
+    UnknownNameError
+        If there is no such law.
+
+    Examples
+    --------
+    >>> from_law("Algorithm1", n=7).q0.shape
+    (7, 2)
+    """
+    if name not in law_names():
+        raise UnknownNameError("law", name, law_names())
+    n, m = ensure_count("n", n), ensure_dimension(m)
+    length = 1.0 if name == "CuckerSmale" else 7.0
+    side, speed, end = round(_SPREAD * length * n ** (1 / m), 3), round(_SPEED * length, 3), _SPANS[name]
+    law, text = _law(name, m, side)
+    rng = np.random.default_rng(seed)
+    q0 = side * rng.uniform(-0.5, 0.5, (n, m))
+    p0 = speed * rng.normal(size=(n, m))
+    lines = (
+        f"law = {text}",
+        f"rng = np.random.default_rng({seed})",
+        f"q0 = {side} * rng.uniform(-0.5, 0.5, ({n}, {m}))",
+        f"p0 = {speed} * rng.normal(size=({n}, {m}))",
+        f"t_span, options = (0.0, {end}), {{}}",
+    )
+    return Start(
+        f"{name}, {n} agents at random", law, q0, p0, (0.0, end), lines, theorems=theorems_of(type(law).__name__)
+    )
+
+
+@lru_cache(maxsize=8)
+def from_scenario(name: str, *, seed: int = 0) -> Start:
+    """A scenario of the catalogue.
+
+    Parameters
+    ----------
+    name : str
+        Its name.
+    seed : int
+        Of its random start.
+
+    Examples
+    --------
+    >>> from_scenario("hexagon").theorems[0]
+    'energy'
+    """
+    item = scenario(name, seed)
+    lines = (
+        f"item = fl.scenario({name!r}, seed={item.seed})",
+        "law, q0, p0, t_span, options = item.law, item.q0.copy(), item.p0.copy(), item.t_span, dict(item.options)",
+    )
+    span = (float(item.t_span[0]), float(item.t_span[1]))
+    return Start(item.title, item.law, item.q0, item.p0, span, lines, item.options, item.theorems)
+
+
+@lru_cache(maxsize=1)
+def from_file(path: str) -> Start:
+    """A saved run (.nc), or a counterexample (.json).
+
+    Parameters
+    ----------
+    path : path-like
+        The file.
+
+    Raises
+    ------
+    FileError
+        If it holds neither.
+    """
+    if Path(path).suffix == ".json":
+        found = Counterexample.load(path)
+        lines: tuple[str, ...] = (
+            "from flockana.falsify.counterexample import Counterexample",
+            f"found = Counterexample.load({str(path)!r})",
+            "law, q0, p0 = found.law, found.q0.copy(), found.p0.copy()",
+            "t_span, options = found.t_span, dict(found.options)",
+        )
+        title = f"A counterexample to {found.theorem}, {found.claim}; from {found.scenario}"
+        start = (title, found.law, found.q0, found.p0, found.t_span, lines, found.options, (found.theorem,))
+        return Start(*start, found.tolerances, "found.tolerances")
+    run = Trajectory.load(path)
+    fixed = run.stats.get("method") == "discrete"
+    options = {key: run.stats[key] for key in _OPTIONS if not fixed and run.stats.get(key) is not None}
+    span = (float(run.t[0]), float(run.t[-1]))
+    lines = (
+        f"saved = fl.Trajectory.load({str(path)!r})",
+        f"law, q0, p0, t_span, options = saved.law, saved.q[0].copy(), saved.p[0].copy(), {span}, {options}",
+    )
+    title = f"{Path(path).name}: {run.n} agents, {type(run.law).__name__}"
+    checked = theorems_of(type(run.law).__name__)
+    return Start(title, run.law, run.q[0], run.p[0], span, lines, options, checked, recorded=run)
+
+
+@cache
+def theorems_of(law: str) -> tuple[str, ...]:
+    """Ids of the theorems that the catalogue checks on runs of a kind of law; errata are about runs of their own.
+
+    Parameters
+    ----------
+    law : str
+        Name of its class.
+
+    Examples
+    --------
+    >>> theorems_of("CuckerSmale")[0]
+    'cucker-smale'
+    """
+    items = (scenario(name) for name in scenarios())
+    names = (name for item in items if type(item.law).__name__ == law for name in item.theorems)
+    return tuple(dict.fromkeys(name for name in names if name.islower()))

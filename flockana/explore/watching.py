@@ -1,0 +1,137 @@
+"""A run that is shown while it is made: first frames at once, more as they come, an end if it takes too long."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from flockana.base.errors import ArgumentError
+from flockana.dynamics.sample import Sample
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.trajectory import Trajectory
+from flockana.explore.starts import Start
+from flockana.player.scene import kept, scene
+
+AGENTS = 3000  # more of them no page draws smoothly
+_FIRST, _SLOWER = 0.03, 2.5  # seconds until the first frames are sent; factor between sendings
+_FRAMES, _SAMPLES = 24, 200  # of a run under way; of the whole, at least
+_NUMBERS = 120_000  # places and velocities of the whole, at most
+_TRIED, _FAR = 2.0, 4.0  # seconds after which the end is foretold; multiples of the limit at which it is not awaited
+
+
+class TooLargeError(ArgumentError):
+    """A run that takes longer than a page should wait for; the message names its cost."""
+
+
+def ensure_small(parts: Start) -> None:
+    """Raise before a run of more agents than a page can show.
+
+    Parameters
+    ----------
+    parts : Start
+        What is to be run.
+
+    Raises
+    ------
+    TooLargeError
+        If they are too many.
+    """
+    n, m = parts.q0.shape
+    if n > AGENTS:
+        megabytes = 8e-6 * 2 * n * m * _FRAMES
+        raise TooLargeError(
+            f"{n} agents, {megabytes:.3g} MB for every {_FRAMES} frames: expected at most {AGENTS} in a page; "
+            "take fewer, or run the lines of Python below"
+        )
+
+
+def watched(parts: Start, show: Callable[[bytes], None], *, limit: float, cancelled: Callable[[], bool]) -> Trajectory:
+    """The run, shown while it is made.
+
+    Parameters
+    ----------
+    parts : Start
+        What is to be run.
+    show : callable
+        Takes what the player reads: of some frames of the run so far, at growing intervals, and of the whole at last.
+    limit : float
+        Seconds that it may take.
+    cancelled : callable
+        Whether to stop; asked at every sample.
+
+    Raises
+    ------
+    TooLargeError
+        If it takes longer, or is sure to.
+    KeyboardInterrupt
+        If it was cancelled.
+    """
+    samples: list[Sample] = []
+    span = parts.t_span[1] - parts.t_span[0]
+    started, due, pause = time.perf_counter(), 0.0, _FIRST
+    failure: TooLargeError | None = None
+
+    def watch(sample: Sample) -> None:
+        nonlocal started, due, pause, failure
+        if cancelled():
+            raise KeyboardInterrupt
+        samples.append(sample)
+        now = time.perf_counter()
+        if len(samples) <= 2:  # until here the law was compiled, or loaded
+            started, due = now, now + pause
+            return
+        done, gone = sample.t - samples[1].t, now - started
+        if gone > limit or (gone > _TRIED and done > 0.0 and gone * span / done > _FAR * limit):
+            failure = TooLargeError(_cost(parts, gone, done, span, limit))
+            raise KeyboardInterrupt
+        if now >= due:
+            show(scene(_thin(samples, parts.law)))
+            pause *= _SLOWER
+            due = time.perf_counter() + pause
+
+    run = simulate(parts.law, parts.q0, parts.p0, parts.t_span, **parts.options, watch=watch)
+    if failure is not None:
+        raise failure
+    if run.status == "interrupted":
+        raise KeyboardInterrupt
+    if len(run.t) > _SAMPLES and pause == _FIRST:  # nothing was shown yet, and the whole takes longer
+        show(scene(_thin(samples, parts.law)))
+    return shown(run, show)
+
+
+def _cost(parts: Start, gone: float, done: float, span: float, limit: float) -> str:
+    whole = gone * span / done if done > 0.0 else float("inf")
+    return (
+        f"this run takes about {whole / 60.0:.2g} minutes here ({len(parts.q0)} agents, {span:.4g} time units, "
+        f"{done:.3g} of them took {gone:.2g} s): expected at most {limit:g} s; shorten it, take fewer agents or softer "
+        "gains, or run the lines of Python below"
+    )
+
+
+def _thin(samples: list[Sample], law: Any) -> Trajectory:
+    """Some of the samples so far, as a run."""
+    some = [samples[k] for k in kept(len(samples), _FRAMES)]
+    t, q, p, u = (np.array([getattr(sample, name) for sample in some]) for name in "tqpu")
+    extra = {key: np.array([sample.extra[key] for sample in some]) for key in some[0].extra}
+    return Trajectory(t, q, p, u, law, extra, "interrupted", "under way")
+
+
+def shown(run: Trajectory, show: Callable[[bytes], None]) -> Trajectory:
+    """A run, shown as a whole: of a long one some samples, as the strip measures each.
+
+    Parameters
+    ----------
+    run : Trajectory
+        What is shown, and returned.
+    show : callable
+        As in `watched`.
+    """
+    most = kept(len(run.t), max(_SAMPLES, _NUMBERS // (2 * run.n * run.m)))
+    extra = {name: series[most] for name, series in run.extra.items()}
+    some = replace(run, t=run.t[most], q=run.q[most], p=run.p[most], u=run.u[most], extra=extra, between=None)
+    show(scene(some, values=_NUMBERS))
+    return run

@@ -1,0 +1,114 @@
+"""A process that answers the cases of one page: the newest alone, and what is under way is broken off for it."""
+
+from __future__ import annotations
+
+import _thread
+import os
+import signal
+import threading
+from contextlib import suppress
+from functools import partial
+from multiprocessing.connection import Connection
+from typing import Any
+
+from flockana.base.interrupts import interrupts_held, interrupts_recognised
+
+
+class Worker:
+    """Questions from a pipe, one after the other; an older one ends where a newer has come.
+
+    Parameters
+    ----------
+    pipe : Connection
+        Gives (number, data), takes (number, kind, content).
+    limit : float
+        Seconds that a run may take.
+    """
+
+    def __init__(self, pipe: Connection, limit: float) -> None:
+        self.pipe, self.limit = pipe, limit
+        self.newest: tuple[int, Any] = (0, None)
+        self.done = 0
+        self.breakable = False  # not while a law is compiled for its first run: that would only begin again
+        self.changed = threading.Condition()
+
+    def read(self) -> None:
+        """Note what comes, until the pipe closes."""
+        while True:
+            try:
+                question = self.pipe.recv()
+            except (EOFError, OSError):
+                return
+            with self.changed:
+                self.newest = question
+                self.changed.notify()
+            if self.breakable:
+                _thread.interrupt_main()
+
+    def answer_all(self) -> None:
+        """Answer, for ever."""
+        from flockana.explore.answers import answer
+
+        while True:
+            with self.changed:
+                self.changed.wait_for(lambda: self.newest[0] > self.done)
+                number, data = self.newest
+
+            try:
+                self._send(number, "begun", {})
+                with interrupts_recognised():
+                    send, newer = partial(self._send, number), partial(self._newer_than, number)
+                    answer(data, send, limit=self.limit, cancelled=newer)
+                self.done = number
+            finally:
+                self.breakable = False
+
+    def _newer_than(self, number: int) -> bool:
+        return self.newest[0] != number
+
+    def _send(self, number: int, kind: str, content: Any) -> None:
+        with interrupts_held():  # half a message would be the end of all
+            self.pipe.send((number, kind, content))
+        self.breakable = kind not in ("begun", "form", "done")
+        if self._newer_than(number):  # it came before it could break anything off
+            raise KeyboardInterrupt
+
+
+def work(pipe: Connection, limit: float) -> None:
+    """Answer what comes until the pipe closes; what a process of the explorer does.
+
+    Parameters
+    ----------
+    pipe : Connection
+        To the server.
+    limit : float
+        Seconds that a run may take.
+    """
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    worker = Worker(pipe, limit)
+    _warm()
+    pipe.send((0, "ready", {}))
+    threading.Thread(target=_read_to_the_end, args=(worker,), daemon=True).start()
+    while True:
+        with suppress(KeyboardInterrupt):  # a newer question, or one that came late: then the newest is asked again
+            worker.answer_all()
+
+
+def _read_to_the_end(worker: Worker) -> None:
+    worker.read()
+    os._exit(0)  # the server has ended, and with it whoever asked
+
+
+def _warm() -> None:
+    """Load what every answer needs, and the kernels of the commonest laws: a run, without its verdicts."""
+    from flockana.explore.answers import answer
+    from flockana.explore.case import Case
+
+    ran: list[str] = []
+    with suppress(KeyboardInterrupt):
+        answer(
+            Case("law", "Algorithm2", n=12, duration=0.5),
+            lambda kind, content: ran.append(kind),
+            limit=60.0,
+            cancelled=lambda: "ran" in ran,
+        )

@@ -1,0 +1,41 @@
+"""`flockana explore`: what cannot be opened is said before anything starts."""
+
+from __future__ import annotations
+
+import socket
+import sys
+
+COMMAND = ("explore",)
+
+
+def test_an_unknown_name_or_a_bad_file(call, tmp_path):
+    code, out, err = call("hexagn")
+    assert (code, out) == (2, "")
+    assert "did you mean 'hexagon'" in err
+    assert len(err.splitlines()) == 1
+    (tmp_path / "run.nc").write_text("none")
+    assert call("run.nc")[0] == 2
+    (tmp_path / "found.json").write_text("{}")
+    assert "holds no counterexample" in call("found.json")[2]
+    assert call("hexagon", "--seconds", "0")[0] == 2
+
+
+def test_without_the_extra_the_remedy_is_said(call, monkeypatch):
+    monkeypatch.setitem(sys.modules, "tornado.httpserver", None)
+    monkeypatch.delitem(sys.modules, "flockana.explore.server", raising=False)
+    code, _, err = call("hexagon")
+    assert code == 2
+    assert "pip install 'flockana[explore]'" in err
+    assert len(err.splitlines()) == 1
+
+
+def test_a_port_that_is_taken(call, monkeypatch, tmp_path):
+    monkeypatch.setenv("HOME", str(tmp_path))
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        code, _, err = call("hexagon", "--port", port, "--no-browser")
+    assert code == 2
+    assert f"--port {port}" in err
+    assert len(err.splitlines()) == 1
