@@ -74,6 +74,7 @@ class ObstacleTerm(Term):
             return None
         if not kinds:
             return nothing()
+        kinds = tuple(sorted(kinds, key=lambda kind: type(kind.obstacles[0]).__name__))  # no order compiles once more
         numbers = [body_numbers(beta.r, self.stiffness, self.damping, beta.par, *kind[2:]) for kind in kinds]
         act, energy, guard = body_functions(*(kind.kernels.bodies for kind in kinds))
         return TermKernel(act, energy, mixed_numbers(numbers), beta.panels, 0.0, guard)
