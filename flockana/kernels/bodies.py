@@ -1,19 +1,21 @@
-"""Obstacles of one kind for integrators that are compiled too: forces, potential, and what no step may leap over.
+"""Obstacles for integrators that are compiled too: forces, potential, and what no step may leap over.
 
-`numbers` are: how many there are, m, the range r', gains c1 and c2, the law's parameters; then where the parameters of
-each obstacle begin (K + 1), its ball (m + 1 each), and its parameters.
+Of one kind, `numbers` are: how many there are, m, the range r', gains c1 and c2, the law's parameters; then where the
+parameters of each obstacle begin (K + 1), its ball (m + 1 each), and its parameters. Of several kinds they are: where
+those of the first kind end, those of the first kind, those of the others.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from flockana.kernels.alpha import BETA_AREA
-from flockana.kernels.compiling import njit, register_jitable
+from flockana.kernels.compiling import Kernel, njit, register_jitable
 from flockana.kernels.listed import CompiledFunction, term_functions
 
 _COUNT, _DIMENSION, _REACH, _C1, _C2, _BETA = range(6)
@@ -74,26 +76,85 @@ def no_guard() -> CompiledFunction:
     return _guard(_no_guard)
 
 
-def lift_bodies(
-    forces: Callable[..., float], potential: Callable[..., float], share: Callable[..., float]
-) -> Callable[[], BodyFunctions]:
-    """Of one kind of obstacle (`flockana.kernels.obstacles`), compiled when first asked for."""
+@dataclass(frozen=True, eq=False)
+class Bodies:
+    """One kind of obstacle, or several: force, potential and guard, to be compiled as `BodyFunctions` are.
 
-    @cache
-    def made() -> BodyFunctions:
-        def act(t, x, v, u, frame, numbers, panels, first, second, size, order):
-            pars, starts, balls = _bodies(numbers)
-            law, reach, c1, c2 = numbers[_BETA:_STARTS], numbers[_REACH], numbers[_C1], numbers[_C2]
-            return c2 * forces(x + frame[0], v + frame[1], pars, starts, balls, law, reach, c1, c2, u)
+    Parameters
+    ----------
+    act, energy, guard : callable
+        Not yet compiled.
+    """
 
-        def energy(t, x, v, frame, numbers, panels, first, second, size, order):
-            pars, starts, balls = _bodies(numbers)
-            law, reach = numbers[_BETA:_STARTS], numbers[_REACH]
-            return numbers[_C1] * potential(x + frame[0], pars, starts, balls, law, panels, reach)
+    act: Callable[..., float]
+    energy: Callable[..., float]
+    guard: Callable[..., float]
 
-        def guard(points, allowance, numbers, shell, far, most):
-            return share(points, allowance, *_bodies(numbers), shell, far, most)
 
-        return BodyFunctions(*term_functions(act, energy), _guard(guard))
+def lift_bodies(forces: Callable[..., float], potential: Callable[..., float], share: Callable[..., float]) -> Bodies:
+    """Of one kind of obstacle (`flockana.kernels.obstacles`)."""
 
-    return made
+    def act(t, x, v, u, frame, numbers, panels, first, second, size, order):
+        pars, starts, balls = _bodies(numbers)
+        law, reach, c1, c2 = numbers[_BETA:_STARTS], numbers[_REACH], numbers[_C1], numbers[_C2]
+        return c2 * forces(x + frame[0], v + frame[1], pars, starts, balls, law, reach, c1, c2, u)
+
+    def energy(t, x, v, frame, numbers, panels, first, second, size, order):
+        pars, starts, balls = _bodies(numbers)
+        law, reach = numbers[_BETA:_STARTS], numbers[_REACH]
+        return numbers[_C1] * potential(x + frame[0], pars, starts, balls, law, panels, reach)
+
+    def guard(points, allowance, numbers, shell, far, most):
+        return share(points, allowance, *_bodies(numbers), shell, far, most)
+
+    return Bodies(act, energy, guard)
+
+
+def _both(one: Bodies, others: Bodies) -> Bodies:
+    """Obstacles of one kind and those of others, from `mixed_numbers`."""
+    act_1, act_2 = _inner(one.act), _inner(others.act)
+    energy_1, energy_2 = _inner(one.energy), _inner(others.energy)
+    guard_1, guard_2 = _inner(one.guard), _inner(others.guard)
+
+    def act(t, x, v, u, frame, numbers, panels, first, second, size, order):
+        own, rest = _parted(numbers)
+        power = act_1(t, x, v, u, frame, own, panels, first, second, size, order)
+        return power + act_2(t, x, v, u, frame, rest, panels, first, second, size, order)
+
+    def energy(t, x, v, frame, numbers, panels, first, second, size, order):
+        own, rest = _parted(numbers)
+        known = energy_1(t, x, v, frame, own, panels, first, second, size, order)
+        return known + energy_2(t, x, v, frame, rest, panels, first, second, size, order)
+
+    def guard(points, allowance, numbers, shell, far, most):
+        own, rest = _parted(numbers)
+        return guard_2(points, allowance, rest, shell, far, guard_1(points, allowance, own, shell, far, most))
+
+    return Bodies(act, energy, guard)
+
+
+def _inner(function: Callable[..., float]) -> Kernel:
+    return njit(error_model="numpy", nogil=True)(function)
+
+
+@register_jitable
+def _parted(numbers):
+    end = np.int64(numbers[0])
+    return numbers[1:end], numbers[end:]
+
+
+def mixed_numbers(kinds: Sequence[Any]) -> Any:
+    """The numbers of a term of several kinds, from those of each."""
+    *others, numbers = kinds
+    for own in reversed(others):
+        numbers = np.concatenate([[1 + own.size], own, numbers])
+    return numbers
+
+
+@cache
+def body_functions(*kinds: Bodies) -> BodyFunctions:
+    """Of obstacles of some kinds, in the order in which `mixed_numbers` has them; compiled when first asked for."""
+    *others, made = kinds
+    for one in reversed(others):
+        made = _both(one, made)
+    return BodyFunctions(*term_functions(made.act, made.energy), _guard(made.guard))

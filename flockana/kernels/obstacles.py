@@ -14,7 +14,7 @@ from math import sqrt
 import numpy as np
 
 from flockana.kernels.alpha import BETA_AREA, D_BETA, EPS, H, pair_beta, psi_beta
-from flockana.kernels.bodies import BodyFunctions, lift_bodies
+from flockana.kernels.bodies import Bodies, lift_bodies
 from flockana.kernels.compiling import njit, register_jitable
 from flockana.kernels.lift import source_digest
 from flockana.kernels.scalars import bump, bump_slope, sigma_1, sigma_norm
@@ -45,8 +45,8 @@ class ObstacleKernels:
     share : callable
         ``share(points, allowance, pars, starts, balls, shell, far, share)`` returns how much of a step may be taken so
         that no agent leaps over the distance `shell` (`lift_shells`).
-    listed : callable
-        Forces, potential and guard for compiled integrators, compiled when first asked for (`lift_bodies`).
+    bodies : Bodies
+        Forces, potential and guard for compiled integrators (`flockana.kernels.bodies`).
     turns : bool
         Whether the kind says how p̂ turns as an agent moves; if not, `braking` is right where p = 0 alone.
     """
@@ -57,7 +57,7 @@ class ObstacleKernels:
     slopes: Callable[..., None]
     braking: Callable[..., None]
     share: Callable[..., float]
-    listed: Callable[[], BodyFunctions]
+    bodies: Bodies
     turns: bool
 
 
@@ -189,8 +189,8 @@ def lift_obstacle(project: Callable[..., float], turn: Callable[..., None] | Non
                 axis[c] = 0.0
 
     share = lift_shells(project, digest)
-    listed = lift_bodies(forces, potential, share)
-    return ObstacleKernels(forces, potential, agents, slopes, braking, share, listed, turns)
+    bodies = lift_bodies(forces, potential, share)
+    return ObstacleKernels(forces, potential, agents, slopes, braking, share, bodies, turns)
 
 
 @register_jitable

@@ -182,10 +182,17 @@ def _pair_commands(points: int, reach: float, told: Translation) -> list[str]:
     ]
 
 
+_FIRST_ORDER = """
+dpd/ext/tstat depends on velocities, which LAMMPS's velocity-Verlet knows half a step late at the forces: its run is of
+first order in the timestep where this library's methods are of fourth or higher, so halve the timestep to see how far.
+"""
+
+
 def readme_text(title: str, table: PairTable, clock: Clock, told: Translation) -> str:
     """What is in the folder, what LAMMPS computes of the law, and how to read its run back."""
     sections = [("Exact", told.exact), ("Nearly", told.near), ("Missing", told.missing)]
     listed = "".join(f"{head}:\n" + "".join(f"  - {text}\n" for text in texts) for head, texts in sections if texts)
+    order = "" if told.consensus is None else _FIRST_ORDER
     stop = "" if table.r[0] < 1e-3 * table.r[-1] else " LAMMPS stops where two agents come nearer than that."
     return f"""{title}
 
@@ -196,7 +203,7 @@ Run `lmp -in {SCRIPT}` in this folder, or `mpirun -np 8 lmp -in {SCRIPT}`; it wr
 {DATA}  positions and velocities at the start
 {TABLE}  the pair force at {len(table.r)} distances from {table.r[0]:.6g} to {table.r[-1]:.6g}, their squares evenly \
 spaced.{stop}
-
+{order}
 {listed}
 Interpolated linearly, as LAMMPS does it, the table's force is off by at most {table.force_error:.3g} (of at most \
 {np.abs(table.force).max():.4g}),
