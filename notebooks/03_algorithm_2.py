@@ -196,8 +196,8 @@ assert 1 < places < 19  # some share a place, not all
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** ★ (1 point) Case 4 has $c_1^\gamma = 70$. Which $c_2^\gamma$ makes the centre of mass critically damped ($\zeta
-# = 1$)? (Four significant digits.)
+# **1.** ★ (1 point, derivation) Case 4 has $c_1^\gamma = 70$. Which $c_2^\gamma$ makes the centre of mass critically
+# damped ($\zeta = 1$)? (Four significant digits.)
 
 # %% tags=["answer"]
 c2_gamma = ...
@@ -209,8 +209,8 @@ c2_gamma = 2 * np.sqrt(70)
 grade(c2_gamma, 16.733201, digits=4, hint="compare the characteristic polynomial with (s + ω_n)²")
 
 # %% [markdown] tags=["exercise"]
-# **2.** ★★ (2 points) For which $k_v$ between 0 and 1 would the flock of case 4 follow on a circle of exactly the right
-# size? (Four significant digits.)
+# **2.** ★★ (2 points, design) For which $k_v$ between 0 and 1 would the flock of case 4 follow on a circle of exactly
+# the right size? (Four significant digits.)
 
 # %% tags=["answer"]
 k_v = ...
@@ -224,8 +224,9 @@ k_v = brentq(lambda k: predicted_gain(gains, omega, factor=k) - 1.0, 0.0, 1.0)
 grade(k_v, 0.7372359, digits=4, hint="predicted_gain has what you need; so has the transfer function, by hand")
 
 # %% [markdown] tags=["exercise"]
-# **3.** ★★ (2 points) A γ-agent on a straight line says $p_r = 0$ while it moves at speed 3. How far behind does the
-# centre stay, with $c_1^\gamma = 1.1$ and $c_2^\gamma = 2\sqrt{1.1}$? (Set $\ddot q_c = 0$; four significant digits.)
+# **3.** ★★ (2 points, derivation) A γ-agent on a straight line says $p_r = 0$ while it moves at speed 3. How far behind
+# does the centre stay, with $c_1^\gamma = 1.1$ and $c_2^\gamma = 2\sqrt{1.1}$? (Set $\ddot q_c = 0$; four significant
+# digits.)
 
 # %% tags=["answer"]
 lag = ...
@@ -237,8 +238,8 @@ lag = 2 * np.sqrt(1.1) * 3 / 1.1
 grade(lag, 5.7207755, digits=4, hint="which two forces on the centre balance?")
 
 # %% [markdown] tags=["exercise"]
-# **4.** ★ (1 point) Do seven agents coincide at $c_1^\gamma/c_1^\alpha = 3$, where nineteen do? Relax them, and answer
-# `True` or `False`.
+# **4.** ★ (1 point, reading) Do seven agents coincide at $c_1^\gamma/c_1^\alpha = 3$, where nineteen do? Relax them,
+# and answer `True` or `False`.
 
 # %% tags=["answer"]
 coincide = ...
@@ -250,8 +251,8 @@ coincide = bool(fl.min_distance(relaxed(alpha, 7, 3.0).q) < 1e-6)
 grade(coincide, False, hint="fl.min_distance(relaxed(alpha, 7, 3.0).q)")
 
 # %% [markdown] tags=["exercise"]
-# **5.** ★★★ (3 points) Design: choose $c_1^\gamma$ and $c_2^\gamma$, neither above 5, such that the centre of mass
-# returns like $e^{-2t}$ or faster from every start. Give the list $[c_1^\gamma, c_2^\gamma]$.
+# **5.** ★★★ (3 points, design) Design: choose $c_1^\gamma$ and $c_2^\gamma$, neither above 5, such that the centre of
+# mass returns like $e^{-2t}$ or faster from every start. Give the list $[c_1^\gamma, c_2^\gamma]$.
 
 # %% tags=["answer"]
 gains = ...
@@ -266,3 +267,23 @@ grade(
     form="list",
     hint="where are the poles? two of them",
 )
+
+# %% [markdown] tags=["exercise"]
+# **6.** ★★ (2 points, words) A report explains a circle of the flock that is smaller than its target's by the place
+# where the flock started. Why can no start explain the radius in the long run, and what can? In your own words, at
+# least 30 of them. (The check counts words, and your lecturer reads the text.)
+
+# %% tags=["answer"]
+explanation = ...
+
+# %% tags=["solution"]
+explanation = """The centre of mass obeys a stable linear equation of second order that is driven by the target.
+Whatever comes from the start is a solution of the homogeneous equation and dies out like its poles, so after a
+while only the response to the target is left. Its size is the modulus of the transfer function at the target's
+frequency, which depends on the gains, the frequency, and the velocity that the target tells."""
+# Rubric, a point each:
+# the part due to the start decays with the poles; what remains is the modulus of the transfer
+# function at the target's frequency.
+
+# %% tags=["check"]
+grade(explanation, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")

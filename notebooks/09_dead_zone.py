@@ -182,9 +182,9 @@ _ = plots.configuration(equilibrium.q, d=ramped.d1, r=1.2 * ramped.d1, ax=ax)
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** ★ (1 point) Two agents out of range approach each other head-on at relative speed 2 on a line. By how much does
-# the printed energy, of neighbours, rise at the instant at which they come into range? (Default parameters, without a
-# ramp; four significant digits.)
+# **1.** ★ (1 point, derivation) Two agents out of range approach each other head-on at relative speed 2 on a line. By
+# how much does the printed energy, of neighbours, rise at the instant at which they come into range? (Default
+# parameters, without a ramp; four significant digits.)
 
 # %% tags=["answer"]
 rise = ...
@@ -196,8 +196,8 @@ rise = hard.psi(hard.r)  # whatever the speed
 grade(rise, 5.81707271, digits=4, hint="what does a pair at the edge of the range cost?")
 
 # %% [markdown] tags=["exercise"]
-# **2.** ★★ (2 points) What is the greatest energy $\bar H(0)$ for which the corrected theorem promises that no two
-# agents come closer than 1? (Without a ramp; $\eta = 1$; four significant digits.)
+# **2.** ★★ (2 points, design) What is the greatest energy $\bar H(0)$ for which the corrected theorem promises that no
+# two agents come closer than 1? (Without a ramp; $\eta = 1$; four significant digits.)
 
 # %% tags=["answer"]
 energy = ...
@@ -209,8 +209,8 @@ energy = 2 * hard.k_r * (np.arcsinh(1.0) - np.arcsinh(1.0 / hard.d1))
 grade(energy, 239.764139, digits=4, hint="set the least distance to 1 and solve for the energy")
 
 # %% [markdown] tags=["exercise"]
-# **3.** ★★★ (3 points) Two agents 14 apart leave each other, each at speed $v$, with the default law. At which of the
-# speeds 1, 2, 3, 4 do they part for ever? Give a list, in any order.
+# **3.** ★★★ (3 points, experiment) Two agents 14 apart leave each other, each at speed $v$, with the default law. At
+# which of the speeds 1, 2, 3, 4 do they part for ever? Give a list, in any order.
 
 # %% tags=["answer"]
 parting = ...
@@ -228,9 +228,9 @@ parting = [v for v in (1, 2, 3, 4) if cohesion(v) == "refuted"]
 grade(parting, {3, 4}, hint="the printed theorem's claim of cohesion says when parting is certain")
 
 # %% [markdown] tags=["exercise"]
-# **4.** ★★ (2 points) Filippov: at the jump at $d_1$ a held pair feels a convex combination of the two forces beside
-# it, with the share that makes it 0. `hard.jumps()` gives both forces. What share of the repelling one is it, to three
-# significant digits?
+# **4.** ★★ (2 points, derivation) Filippov: at the jump at $d_1$ a held pair feels a convex combination of the two
+# forces beside it, with the share that makes it 0. `hard.jumps()` gives both forces. What share of the repelling one is
+# it, to three significant digits?
 
 # %% tags=["answer"]
 share = ...
@@ -243,8 +243,8 @@ share = contact.above / (contact.above - contact.below)
 grade(share, 0.001072077, digits=3, hint="share × one force + (1 − share) × the other = 0")
 
 # %% [markdown] tags=["exercise"]
-# **5.** ★★ (2 points) What least distance does the corrected theorem guarantee for $\bar H(0) = 100$, without a ramp
-# and with $\eta = 1$? (Four significant digits.)
+# **5.** ★★ (2 points, derivation) What least distance does the corrected theorem guarantee for $\bar H(0) = 100$,
+# without a ramp and with $\eta = 1$? (Four significant digits.)
 
 # %% tags=["answer"]
 nearest = ...
@@ -254,3 +254,23 @@ nearest = 1.0 / np.sinh(100.0 / (2.0 * hard.k_r) + np.arcsinh(1.0 / hard.d1))
 
 # %% tags=["check"]
 grade(nearest, 1.79401084, digits=4, hint="the formula is above; k_r is hard.k_r")
+
+# %% [markdown] tags=["exercise"]
+# **6.** ★★ (2 points, words) A fixed-step simulation of a pair at $d_1$ shows a small vibration that never ends. How
+# would you find out whether the vibration belongs to the law or to the integrator, and which is it here? In your own
+# words, at least 30 of them. (The check counts words, and your lecturer reads the text.)
+
+# %% tags=["answer"]
+chattering = ...
+
+# %% tags=["solution"]
+chattering = """Halve the step: the amplitude of what the integrator makes shrinks with the step and its frequency
+grows, while a motion of the law stays. Locating the switches, or a ramp in the place of the jump, shows the same.
+Here the vibration is the integrator's: in Filippov's sense the pair is held at the jump, and with the ramp it comes
+to rest."""
+# Rubric, a point each:
+# a test that separates the two: the step, located switches, or a ramp; it is the
+# integrator's, as the law holds the pair at the jump.
+
+# %% tags=["check"]
+grade(chattering, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")

@@ -111,8 +111,8 @@ for name, pairs in {"path": [(0, 1), (1, 2), (2, 3)], "complete": [(i, j) for j 
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** ★ (1 point) Two neighbours head 10° to the left and 10° to the right of due east. Under the mean of headings in
-# $[0, 2\pi)$, which way do they head after one step, in degrees, exactly?
+# **1.** ★ (1 point, derivation) Two neighbours head 10° to the left and 10° to the right of due east. Under the mean of
+# headings in $[0, 2\pi)$, which way do they head after one step, in degrees, exactly?
 
 # %% tags=["answer"]
 degrees = ...
@@ -124,8 +124,8 @@ degrees = (10.0 + 350.0) / 2.0
 grade(degrees, 180.0, hint="10° to the right of east is 350°; `fl.verify('jlm-cut')` has more of it")
 
 # %% [markdown] tags=["exercise"]
-# **2.** ★ (1 point) What delay does consensus on a star of 6 agents bear? (Its largest eigenvalue is its number of
-# agents; four significant digits.)
+# **2.** ★ (1 point, derivation) What delay does consensus on a star of 6 agents bear? (Its largest eigenvalue is its
+# number of agents; four significant digits.)
 
 # %% tags=["answer"]
 delay = ...
@@ -137,8 +137,8 @@ delay = np.pi / (2.0 * 6.0)
 grade(delay, 0.26179939, digits=4, hint="the margin is stated above for any net")
 
 # %% [markdown] tags=["exercise"]
-# **3.** ★ (1 point) Nets of four agents: link 0-1, then 1-2, then nothing, then 2-3, then 0-1, 1-2 and 2-3 at once.
-# Into how many contiguous, jointly connected windows do the five instants divide, at most? (A whole number.)
+# **3.** ★ (1 point, experiment) Nets of four agents: link 0-1, then 1-2, then nothing, then 2-3, then 0-1, 1-2 and 2-3
+# at once. Into how many contiguous, jointly connected windows do the five instants divide, at most? (A whole number.)
 
 # %% tags=["answer"]
 count = ...
@@ -151,8 +151,8 @@ count = len(fl.joint_windows(4, [np.array(net, dtype=int).reshape(-1, 2) for net
 grade(count, 2, hint="a window ends as soon as its links connect all four")
 
 # %% [markdown] tags=["exercise"]
-# **4.** ★★ (2 points) At 1.5 times the delay margin of two agents that are linked ($\lambda_2 = 2$): at what rate does
-# their difference grow, per time unit? (Four significant digits.)
+# **4.** ★★ (2 points, derivation) At 1.5 times the delay margin of two agents that are linked ($\lambda_2 = 2$): at
+# what rate does their difference grow, per time unit? (Four significant digits.)
 
 # %% tags=["answer"]
 rate = ...
@@ -164,8 +164,8 @@ rate = consensus_root(2.0, 1.5 * np.pi / 4.0).real
 grade(rate, 0.247105912, digits=4, hint="the deciding root is Lambert's; a rate is its real part")
 
 # %% [markdown] tags=["exercise"]
-# **5.** ★★★ (3 points) Design: six agents on a ring with weights $w$ on all links have $\lambda_n = 4w$ and $\lambda_2
-# = w$. Their messages take 0.5 time units. Which $w$ must not be reached? (Four significant digits.)
+# **5.** ★★★ (3 points, design) Design: six agents on a ring with weights $w$ on all links have $\lambda_n = 4w$ and
+# $\lambda_2 = w$. Their messages take 0.5 time units. Which $w$ must not be reached? (Four significant digits.)
 
 # %% tags=["answer"]
 weight = ...
@@ -175,3 +175,22 @@ weight = np.pi / (2.0 * 4.0 * 0.5)
 
 # %% tags=["check"]
 grade(weight, 0.78539816, digits=4, hint="the delay margin, solved for the weight")
+
+# %% [markdown] tags=["exercise"]
+# **6.** ★★ (2 points, words) Take two of the six theorems, one on energy and one on averaging. Which hypothesis keeps
+# the agents of each in touch, who sees to it, the law or an assumption, and what does a start look like that breaks it?
+# In your own words, at least 30 of them. (The check counts words, and your lecturer reads the text.)
+
+# %% tags=["answer"]
+touch = ...
+
+# %% tags=["solution"]
+touch = """For Algorithm 2 the pull of the target keeps the flock in a ball, so cohesion comes from the law, for every
+start. For averaging of headings the nets must connect the agents jointly, again and again, which is assumed
+about the whole run: two groups that head away from each other break it, and then their headings need not
+agree."""
+# Rubric, a point each:
+# for each theorem the hypothesis and who sees to it; a start that breaks one of them.
+
+# %% tags=["check"]
+grade(touch, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")

@@ -26,7 +26,8 @@ _PACKAGE = Path(__file__).resolve().parent
 _CHECKOUT = _PACKAGE.parent.parent
 _KERNEL = {"name": "python3", "language": "python", "display_name": "Python 3"}
 _LEFT_OUT = {"student": {"solution", "facts"}, "self-study": {"solution", "facts"}, "solutions": {"answer"}}
-_POSED = re.compile(r"\*\*(\d+)\.\*\* (★{1,3}) \((\d+) points?\)")
+_POSED = re.compile(r"\*\*(\d+)\.\*\* (★{1,3}) \((\d+) points?, (\w+)\)")
+KINDS = ("derivation", "design", "counterexample", "program", "experiment", "reading", "words")
 VERSIONS = tuple(_LEFT_OUT)
 
 
@@ -40,6 +41,8 @@ class Exercise:
         The variable that takes the answer.
     number, level, points : int
         Its place in the lecture, stars from 1 to 3, and what it counts.
+    kind : {"derivation", "design", "counterexample", "program", "experiment", "reading", "words"}
+        What it takes to answer: paper, a choice, a search, code, a computation of one's own, an output, sentences.
     form : str
         What is asked for, as `answered` takes it.
     """
@@ -48,6 +51,7 @@ class Exercise:
     number: int
     level: int
     points: int
+    kind: str
     form: str
 
 
@@ -120,16 +124,19 @@ def exercises(source: Path) -> Iterator[Exercise]:
     """
     posed = [cell for cell in jupytext.read(source).cells if {"exercise", "check"} & set(tags(cell))]
     for text, check in zip(posed[::2], posed[1::2], strict=True):
-        number, stars, points = _head(text.source, source)
+        number, stars, points, kind = _head(text.source, source)
         name, form = asked(check.source)
-        yield Exercise(name, number, stars, points, form)
+        yield Exercise(name, number, stars, points, kind, form)
 
 
-def _head(text: str, source: Path) -> tuple[int, int, int]:
+def _head(text: str, source: Path) -> tuple[int, int, int, str]:
     found = _POSED.search(text)
-    if found is None:
-        raise ArgumentError(f"{source.name}: an exercise begins {text[:60]!r}; expected '**1.** ★★ (2 points) ...'")
-    return int(found[1]), len(found[2]), int(found[3])
+    if found is None or found[4] not in KINDS:
+        raise ArgumentError(
+            f"{source.name}: an exercise begins {text[:60]!r}; expected '**1.** ★★ (2 points, kind) ...', "
+            f"kind one of {', '.join(KINDS)}"
+        )
+    return int(found[1]), len(found[2]), int(found[3]), found[4]
 
 
 def asked(check: str) -> tuple[str, str]:

@@ -70,6 +70,41 @@ def test_versions_of_a_lecture(source):
     assert all("= ..." in text for text in of(books["student"], "answer"))
 
 
+def test_every_kind_of_exercise_is_asked_for_and_outputs_are_read_once_at_most():
+    table = {number_of(source): [each.kind for each in build.exercises(source)] for source in SOURCES}
+    assert len(table) >= 15
+    for number, kinds in table.items():
+        assert kinds.count("reading") <= 1, number
+        assert kinds.count("words") >= 1, number
+        assert {"derivation", "design"} & set(kinds), number
+    asked = [kind for kinds in table.values() for kind in kinds]
+    assert asked.count("counterexample") >= 5
+    assert asked.count("derivation") >= 20
+    assert asked.count("design") >= 8
+    assert set(asked) == set(build.KINDS)
+    assert all(each.level == 3 for each in build.exercises(SOURCES[-2]) if each.name == "capstone")
+
+
+@pytest.mark.parametrize("source", SOURCES, ids=lambda path: path.stem)
+def test_what_a_person_reads_has_a_rubric_with_as_many_parts_as_points(source):
+    asked = build.exercises(source)
+    for each, solution in zip(asked, of(build.notebook(source, "solutions"), "solution"), strict=True):
+        assert (each.kind == "words") == (each.form == "text")
+        if each.kind == "words":
+            rubric = solution.partition("# Rubric, a point each:\n")[2]
+            assert rubric.rstrip().endswith(".")
+            assert rubric.count(";") + 1 == each.points
+
+
+@pytest.mark.parametrize("head", ["**1.** ★ (1 point) How", "**1.** ★ (1 point, riddle) How", "1. How"])
+def test_an_exercise_without_points_or_kind_is_refused(tmp_path, head):
+    source = tmp_path / "00_x.py"
+    posed = f'# %% [markdown] tags=["exercise"]\n# {head}\n\n# %% tags=["check"]\ngrade(x, 1)\n'
+    source.write_text(posed, encoding="utf-8")
+    with pytest.raises(ArgumentError, match=r"2 points, kind.*derivation, design"):
+        list(build.exercises(source))
+
+
 @pytest.mark.parametrize("source", SOURCES, ids=lambda path: path.stem)
 def test_a_lecture_says_what_it_needs_aims_at_and_rests_on(source):
     texts = [cell.source for cell in build.notebook(source, "student").cells if cell.cell_type == "markdown"]
