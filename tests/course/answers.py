@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 import flockana as fl
+from flockana.plots import subplots
 
 _STEPS = [(a, b, c) for a in (-1, 0, 1) for b in (-1, 0, 1) for c in (-1, 0, 1) if abs(a) + abs(b) + abs(c) in (0, 2)]
 THIRTEEN = np.array(_STEPS) * 7.0 / np.sqrt(2)
@@ -31,6 +32,17 @@ def connectivity(*, closed: bool = False, hops: int = 9) -> Callable[[Any, float
         return float((len(q) - len({tuple(row) for row in reached})) / (len(q) - 1))
 
     return found
+
+
+FIRST = fl.AlphaInteraction(d=1.9, r=2.8, eps=0.1, h=0.4, a=7.0, b=9.0)
+
+
+def six_axes(run: Any) -> Any:
+    """Six axes, each with a line."""
+    axes = np.ravel(subplots(2, 3)[1])
+    for ax in axes:
+        ax.plot(run.t, run.t)
+    return axes
 
 
 def in_one_place(q: Any, r: float) -> float:
@@ -195,5 +207,36 @@ ANSWERS: dict[str, dict[str, tuple[list[Any], list[Any]]]] = {
         "level": ([6.0, 2.0, 3.0, 4.01], [4, 4.0, Fraction(4)]),
         "wait": ([34.54, 17.3, 13.8, 17.26], [17.27, 17.2694, np.log(1e6) / 0.8]),
         "proved": (["", "convergence", 30], ["word " * 30, "The solution itself converges for all time. " * 6]),
+    },
+    "A1": {
+        "figures": ([lambda run: [], lambda run: None, in_one_place, 6], [six_axes, lambda run: list(six_axes(run))]),
+        "drift": ([1.0, 25.0, 1e-3, True], [0, 0.0, np.float64(1e-16)]),
+        "case_1": (["", "Too short.", 30], ["word " * 30, "A sentence of seven words stands here. " * 5]),
+        "period": ([6.28, 3.142, 1.0, 6.282], [6.283, 2 * np.pi, 6.28319]),
+        "far_side": ([300.0, 274.0, 25.0, 125.0], [275, 275.0, Fraction(275)]),
+        "case_2": (["", "Too short.", 30], ["word " * 30, "A sentence of seven words stands here. " * 5]),
+        "sine_ratio": ([0.85, 0.8517, 1.109, 85.18], [0.8518, 0.851764, np.float64(0.85176)]),
+        "case_3": (["", "Too short.", 30], ["word " * 30, "A sentence of seven words stands here. " * 5]),
+        "true_ratio": ([0.852, 1.1, 1.12, 1.104], [1.11, 1.109, np.float64(1.1093)]),
+        "equal_circles": ([16.73, 11.3, 11.32, 8.367], [11.31, 11.306, np.float64(11.3060009)]),
+        "faster_and_larger": (
+            [[70.0, 16.7, 1.0, 3.0], [70.0, 1.0, 8.4, 1.0], [70.0, 0.0, 1.0, 8.0], [1.0], 70.0],
+            [[70.0, 1.0, 1.0, 8.4], (1.0, 0.1, 0.1, 1.0)],
+        ),
+        "conclusion": (["", "Too short.", 30], ["word " * 30, "A sentence of seven words stands here. " * 5]),
+    },
+    "A2": {
+        "c": ([0.25, 0.1255, 0.1259, -0.126], [0.1260, 0.125988, 1 / 63**0.5]),
+        "action": (
+            [lambda z: 0.0, lambda z: FIRST.phi_alpha(z) + 1e-6, lambda z: fl.AlphaInteraction().phi_alpha(z), 1.0],
+            [FIRST.phi_alpha, lambda z: FIRST.phi_alpha(np.array([z]))[0]],
+        ),
+        "factor": ([10.0, 9.92, 9.921, 1.008], [9.922, 9.92168, np.float64(9.921680)]),
+        "share": ([0.0, 27.0, 0.5, True], [1, 1.0, Fraction(1)]),
+        "first_run": (["", "Too short.", 30], ["word " * 30, "A sentence of seven words stands here. " * 5]),
+        "wait": ([6.908, 13.8, 13.81, 27.63], [13.82, 13.8155, 2 * np.log(1000)]),
+        "goal": (["", "Too short.", 30], ["word " * 30, "A sentence of seven words stands here. " * 5]),
+        "rest": ([5.0, 5.35, 5.1, 4.3], [5.7, Fraction(57, 10), 5 + 0.7]),
+        "mended": ([[0.5, 0.5], [5.0, 4.0], [0.0, 0.5], [9.0, 2.0], 5.0], [[5.0, 1.2], (5, 1.3), np.array([4.0, 1.0])]),
     },
 }

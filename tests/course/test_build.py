@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import json
+import re
 import subprocess
 import sys
 
@@ -72,7 +73,7 @@ def test_versions_of_a_lecture(source):
 
 def test_every_kind_of_exercise_is_asked_for_and_outputs_are_read_once_at_most():
     table = {number_of(source): [each.kind for each in build.exercises(source)] for source in SOURCES}
-    assert len(table) >= 15
+    assert [*table] == ["00", "00a", *(f"{k:02d}" for k in range(1, 14)), "A1", "A2"]
     for number, kinds in table.items():
         assert kinds.count("reading") <= 1, number
         assert kinds.count("words") >= 1, number
@@ -82,7 +83,19 @@ def test_every_kind_of_exercise_is_asked_for_and_outputs_are_read_once_at_most()
     assert asked.count("derivation") >= 20
     assert asked.count("design") >= 8
     assert set(asked) == set(build.KINDS)
-    assert all(each.level == 3 for each in build.exercises(SOURCES[-2]) if each.name == "capstone")
+
+
+@pytest.mark.parametrize("source", SOURCES[-2:], ids=lambda path: path.stem)
+def test_an_assignment_states_the_points_that_its_questions_give(source):
+    """In all, and part by part: a part begins at its heading; what comes before counts with the first."""
+    text, points = source.read_text(encoding="utf-8"), [each.points for each in build.exercises(source)]
+    assert re.search(r"^# (\d+) points, those of the questions", text, re.MULTILINE)[1] == str(sum(points))
+    parts = [int(found) for found in re.findall(r"^# \| .* \| (\d+) \|$", text, re.MULTILINE)]
+    posed = of(build.notebook(source, "solutions"), "exercise")
+    starts = [k for k, cell in enumerate(posed) if cell.startswith("## ")]
+    found = [sum(points[a:b]) for a, b in zip(starts, [*starts[1:], len(points)], strict=True)]
+    found[0] += sum(points[: starts[0]])
+    assert parts == found
 
 
 @pytest.mark.parametrize("source", SOURCES, ids=lambda path: path.stem)
@@ -111,7 +124,8 @@ def test_a_lecture_says_what_it_needs_aims_at_and_rests_on(source):
     assert "**Aims.**" in texts[0]
     assert "**Lectures before this one:**" in texts[1]
     assert "| $q_i$, $p_i$, $u_i$ |" in texts[1]
-    assert sum("## Summary" in text for text in texts) == 1
+    summed_up = "## How it is marked" if number_of(source).startswith("A") else "## Summary"
+    assert sum(summed_up in text for text in texts) == 1
     assert "## References\n\n- " in texts[-1]
     assert "## Further reading\n\n- " in texts[-1]
 
