@@ -124,8 +124,7 @@ _ = plots.phase_portrait(
 # Algorithm 2, which adds a γ-agent (lecture 3). The first:
 
 # %%
-film = fl.scenario("notebook-algorithm1").run().animate(seconds=4, fps=10)
-film
+fl.scenario("notebook-algorithm1").run().player(height=560)
 
 # %% [markdown]
 # In the second the agents take on the γ-agent's velocity, but leave its place (the cross), and the flock splits.
@@ -133,11 +132,10 @@ film
 # all, and nothing holds the flock together. Cohesion, in the next lecture, needs $c_1^\gamma > 0$.
 
 # %%
-film = fl.scenario("notebook-algorithm2").run().animate(seconds=4, fps=10)
-film
+left = fl.scenario("notebook-algorithm2").run()
+left.player(height=560)
 
 # %% tags=["facts"]
-left = fl.scenario("notebook-algorithm2").run()
 assert left.law.gains.c1_gamma == 0.0
 assert left.metrics().connectivity[-1] < 1.0  # it splits
 

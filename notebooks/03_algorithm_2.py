@@ -76,7 +76,11 @@ print(fl.verify("os-3", flock).claim("i").detail)
 
 # %% [markdown]
 # The bound is far above $R$ because most of $H_\lambda$ is $c_1^\alpha V$, which sums over all pairs out of range too.
-#
+
+# %%
+flock.player(height=560)
+
+# %% [markdown]
 # ## The centre: a filter of second order
 #
 # $\ddot q_c = -c_1^\gamma (q_c - q_r) - c_2^\gamma (\dot q_c - p_r)$, exactly, with $\omega_n = \sqrt{c_1^\gamma}$ and
@@ -148,18 +152,27 @@ axes = plots.bode(responses, marks={"case 4": omega})
 #
 # The same $\lambda$ that holds the flock together presses on every link. Beyond a ratio $c_1^\gamma/c_1^\alpha$ that
 # falls with $n$, some agents share one place, in a strict local minimum of $U_\lambda$ (erratum E11): Theorem 3
-# promises no lattice. Nineteen agents, the closest two of which coincide at the largest ratio:
+# promises no lattice. Move the ratio, and watch nineteen agents; a number beside an agent counts those in its place:
 
 # %%
+from flockana.course.frames import slider
+
 alpha = fl.AlphaInteraction()
-figure, axes = plots.subplots(1, 3, size=(13, 4))
-for ax, ratio in zip(axes, (0.05, 0.8, 3.0), strict=True):
-    found = relaxed(alpha, 19, ratio)
-    title = f"c1γ/c1α = {ratio:g}: {found.kind}, closest pair {fl.min_distance(found.q):.3g}"
+ratios = (0.05, 0.2, 0.4, 0.6, 0.8, 1.0, 1.2, 1.6, 2.0, 3.0)
+settled = {ratio: relaxed(alpha, 19, ratio) for ratio in ratios}
+
+
+def at_rest(ax, ratio):
+    found = settled[ratio]
+    title = f"{found.kind}, closest pair {fl.min_distance(found.q):.3g}"
     plots.configuration(found.q, d=alpha.d, r=alpha.r, ax=ax, bar=False, title=title)
+    ax.set(xlim=(-18.0, 18.0), ylim=(-18.0, 18.0))
+
+
+slider(at_rest, ratios, name="c1γ/c1α", title="nineteen agents at rest", size=(4.6, 4.6), start=2)
 
 # %% tags=["facts"]
-places = len(np.unique(np.round(found.q, 4), axis=0))
+places = len(np.unique(np.round(settled[3.0].q, 4), axis=0))
 assert 1 < places < 19  # some share a place, not all
 
 

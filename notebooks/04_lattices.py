@@ -38,6 +38,22 @@ print(f"{len(q)} agents, {len(pairs)} links, α-lattice: {lattice.is_alpha_latti
 print(f"Theorem 5 allows 3n − 6 = {lattice.planar_bound(len(q))}; Harborth's sharp bound is {lattice.harborth(len(q))}")
 
 # %% [markdown]
+# The same 37 places, with the range moved: below $\kappa = 1$ there are no links, up to $\sqrt3$ those of the lattice,
+# and beyond it the second neighbours come into range.
+
+# %%
+from flockana.course.frames import slider
+
+
+def with_range(ax, ratio):
+    title = f"α-lattice: {lattice.is_alpha_lattice(q, d, ratio * d)}, {len(lattice.links(q, ratio * d))} links"
+    plots.configuration(q, d=d, r=ratio * d, ax=ax, bar=False, title=title)
+
+
+kappas = (0.95, 1.05, 1.2, 1.4, 1.6, 1.7, 1.75, 1.9, 2.05)
+slider(with_range, kappas, name="κ", title="links of a patch of the hexagonal lattice", size=(4.6, 4.6), start=2)
+
+# %% [markdown]
 # ## Theorem 5
 #
 # > **Theorem 5** (Olfati-Saber 2006). Let $q$ be an α-lattice of scale $d > 0$ and ratio $\kappa > 1$ with distinct

@@ -58,7 +58,13 @@ for ax, t in zip(axes, (8.0, 24.0, 50.0), strict=True):
     plots.snapshot(run, time=t, ax=ax, bar=False)
 
 # %% [markdown]
-# The flock splits and rejoins. How close did anyone come to an obstacle? Samples alone could miss the moment, so the
+# The flock splits and rejoins:
+
+# %%
+run.player(height=520)
+
+# %% [markdown]
+# How close did anyone come to an obstacle? Samples alone could miss the moment, so the
 # library bounds the distance along the whole path:
 
 # %%

@@ -65,6 +65,12 @@ for ax, mode in zip(axes, shapes, strict=True):
     plots.mode_shape(rest.q, pairs, mode.shape, ax=ax, title=plots.mode_title(mode))
 
 # %% [markdown]
+# The slowest of them in motion, much enlarged:
+
+# %%
+stability.mode_motion(flock, shapes[0]).player(height=520)
+
+# %% [markdown]
 # ## Does it tell the truth?
 #
 # Push the flock along its slowest structural mode by $10^{-4}$ and let the *nonlinear* law act. The mismatch

@@ -126,6 +126,41 @@ for name in ("chatter", "ramp"):
     print(fl.verify("L7").claim(name).detail)
 
 # %% [markdown]
+# As a film: a pair near $d_1$, step after step. With the jump every step that ends below $d_1$ throws the pair out, the
+# less far the shorter the step, for ever; with the ramp it comes to rest.
+
+# %%
+from flockana.course.frames import film
+
+
+def stepped(interaction, dt, end=80.0):
+    length, rate, found = 3.6, 0.0, []
+    for _ in range(round(end / dt)):  # both agents feel the force, and the damping k2 = 1
+        rate -= 2.0 * dt * (float(interaction.force(length)) + rate)
+        length += dt * rate
+        found.append(length)
+    return dt * np.arange(1, len(found) + 1), np.array(found)
+
+
+curves = {"jump, steps of 0.05": stepped(hard, 0.05), "jump, steps of 0.01": stepped(hard, 0.01)}
+curves["ramp, steps of 0.05"] = stepped(ramped, 0.05)
+
+
+def until(ax, end):
+    for name, (t, length) in curves.items():
+        ax.plot(t[t <= end], length[t <= end], label=name)
+    ax.set(xlim=(0.0, 80.0), ylim=(3.2, 5.2), xlabel="t (time)", ylabel="distance (length)")
+    ax.legend(loc="upper right")
+
+
+film(until, np.linspace(2.0, 80.0, 40), name="t", title="the distance of a pair at the jump", seconds=8.0)
+
+# %% tags=["facts"]
+late = [length[t > 60.0] for t, length in curves.values()]
+assert np.ptp(late[0]) > 2.0 * np.ptp(late[1]) > 0.05
+assert np.ptp(late[2]) < 1e-6
+
+# %% [markdown]
 # ## The theorem, printed and corrected
 #
 # Fifty agents in a box of 40, as far as the source says how; and the same in a box of 150:

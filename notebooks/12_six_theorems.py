@@ -103,6 +103,29 @@ for name, pairs in {"path": [(0, 1), (1, 2), (2, 3)], "complete": [(i, j) for j 
     print(f"{name:>9}: τ* = {margin.delay:.6f}, largest λ = {largest:.4g}")
 
 # %% [markdown]
+# Four agents on a path, each of which hears late. Move the delay, as a share of the margin:
+
+# %%
+from flockana.course.frames import slider
+
+path = fl.laplacian(4, np.array([(0, 1), (1, 2), (2, 3)])).toarray()
+bears = delay_margin(consensus_system(path)).delay
+step = bears / 200.0
+
+
+def late(ax, share):
+    wait = round(share * bears / step)
+    x = [np.array([2.0, -1.0, 0.5, -1.5])] * (wait + 1)  # at rest until now
+    for _ in range(4000):
+        x.append(x[-1] - step * path @ x[-1 - wait])
+    ax.plot(step * np.arange(len(x) - wait), x[wait:])
+    ax.set(xlim=(0.0, 20.0 * bears), ylim=(-4.0, 4.0), xlabel="t (time)", ylabel="$x_i$")
+
+
+shares = (0.0, 0.2, 0.4, 0.6, 0.8, 0.9, 1.0, 1.05, 1.1)
+slider(late, shares, name="τ/τ*", title="consensus of four agents that hear late", start=3)
+
+# %% [markdown]
 # ## Summary
 #
 # - Theorems on flocking either let an energy fall or average; both need a hypothesis that keeps the agents in touch.
