@@ -192,7 +192,7 @@ def _drawn(
     if len(values) < 2 or not 0 <= start < len(values):
         raise ArgumentError(f"{len(values)} values, start = {start}: expected at least two values, start one of them")
     figure, ax = subplots(size=size)
-    pictures = []
+    pictures: list[bytes] = []
     for value in values:
         ax.clear()
         draw(ax, value)

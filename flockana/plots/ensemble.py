@@ -12,6 +12,7 @@ from matplotlib.ticker import PercentFormatter
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.plots.style import BLUE, FAINT, GREEN, INK, MUTED, ORANGE, VERMILLION, ensure_axes
+from flockana.plots.symbols import typeset
 
 if TYPE_CHECKING:
     import xarray
@@ -278,7 +279,7 @@ def phase_diagram(
         values = phase[name].values.tolist()
         axis.set_ticks(range(len(values)), [f"{v:g}" if isinstance(v, int | float) else str(v) for v in values])
         axis.set_ticks(np.arange(-0.5, len(values)), minor=True)
-        axis.set_label_text(label or name)
+        axis.set_label_text(typeset(label or name))
     axes.grid(visible=False)
     axes.grid(which="minor", color="white", linewidth=2.0)
     axes.set_axisbelow(False)

@@ -35,6 +35,7 @@ from flockana.plots.style import (
     in_plane,
     lines,
 )
+from flockana.plots.symbols import typeset
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -228,7 +229,7 @@ def configuration(
         draw_obstacles(obstacles, ax=axes, view=seen[:, :m])
         if beta is not None:
             _beta_agents(axes, points, ObstacleField(tuple(obstacles), beta), size)
-    axes.set_title(title + ("" if p is None else velocity_arrows(axes, points, p)), fontsize=9)
+    axes.set_title(typeset(title) + ("" if p is None else velocity_arrows(axes, points, p)), fontsize=9)
     return frame_space(axes, seen, m)
 
 

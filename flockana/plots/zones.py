@@ -34,6 +34,7 @@ from flockana.plots.style import (
     hairline,
     lines,
 )
+from flockana.plots.symbols import typeset
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -101,7 +102,7 @@ def zones(
         seen.append(aliens)
         axes.scatter(*aliens.T, s=70, marker="X", color=VERMILLION, edgecolors="white", linewidths=0.6, zorder=4)
     fastest = velocity_arrows(axes, q, trajectory.p[k]) if velocities else ""
-    axes.set_title(f"t = {trajectory.t[k]:.4g}{fastest}", fontsize=9)
+    axes.set_title(typeset(f"t = {trajectory.t[k]:.4g}") + fastest, fontsize=9)
     return frame_space(axes, np.vstack(seen), m)
 
 
