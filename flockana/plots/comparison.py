@@ -20,6 +20,7 @@ from flockana.plots.style import (
     VERMILLION,
     ensure_axes,
     finish_over_time,
+    head,
     lines,
     subplots,
 )
@@ -77,7 +78,7 @@ def side_by_side(outcomes: Sequence[Outcome], *, ax: Any = None) -> Any:
     middle, half = 0.5 * (low + high), 0.54 * float((high - low).max())
     for outcome, panel in zip(outcomes, panels, strict=True):
         _paths(panel, outcome.run)
-        panel.set_title(f"{outcome.entry.name}\n{outcome.entry.theorem}: {outcome.verdict.status}", fontsize=9)
+        head(panel, f"{outcome.entry.name}\n{outcome.entry.theorem}: {outcome.verdict.status}", fontsize=9)
         panel.set(xlabel=typeset("x (length)"), ylabel=typeset("y (length)"), box_aspect=1.0)
         panel.set(xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half))
     return panels

@@ -21,6 +21,7 @@ from flockana.plots.style import (
     ensure_axes,
     finish,
     frame_space,
+    head,
     in_plane,
     lines,
 )
@@ -151,7 +152,7 @@ def mode_shape(q: Any, links: Any, shape: Any, *, target: Any = None, ax: Axes |
         mark[0, :m] = target
         axes.scatter(*mark.T, s=90, marker="*", color=PURPLE, edgecolors="white", linewidths=0.6, zorder=3.5)
         seen = np.vstack([seen, mark])
-    axes.set_title(typeset(title))
+    head(axes, title)
     if m == 2:  # neither arrows nor collections count in the view
         axes.update_datalim(seen)
         axes.autoscale_view()

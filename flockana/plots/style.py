@@ -60,6 +60,9 @@ _STYLE = {
 }
 
 
+LEGEND: dict[str, Any] = {"fontsize": 8, "framealpha": 0.85, "edgecolor": "none"}  # wherever the axes were made
+
+
 @contextmanager
 def style() -> Iterator[None]:
     """Draw in flockana's look inside a ``with`` block; outside of it nothing changes.
@@ -147,6 +150,12 @@ def finish_empty(ax: Any, y: str, reason: str) -> Axes:
     return finish(ax, y=y)
 
 
+def head(ax: Any, title: str, **look: Any) -> None:
+    """Write the title at the left above the axes, in flockana's look wherever they were made."""
+    look = {"fontsize": _STYLE["axes.titlesize"], "color": INK} | look
+    ax.set_title(typeset(title), loc="left", **look)
+
+
 def legend_above(ax: Any) -> None:
     """Put the legend above the axes, where it hides no data."""
     handles, labels = ax.get_legend_handles_labels()
@@ -160,7 +169,7 @@ def legend_above(ax: Any) -> None:
         borderaxespad=0.2,
         handlelength=1.8,
         columnspacing=1.2,
-        fontsize=_STYLE["legend.fontsize"],
+        **LEGEND,
     )
 
 
@@ -183,6 +192,8 @@ def colour_bar(ax: Any, colours: Any, label: str, *, extend: str = "neither", sh
     beside = ax.inset_axes((1.09 if hasattr(ax, "zaxis") else 1.03, 0.5 - 0.5 * share, 0.03, share))
     scale = ax.get_figure().colorbar(colours, cax=beside, extend=extend, label=typeset(label))
     scale.outline.set_visible(False)
+    beside.tick_params(labelsize=_STYLE["ytick.labelsize"], colors=MUTED)
+    beside.yaxis.label.set(size=_STYLE["axes.labelsize"], color=INK)
     return scale
 
 

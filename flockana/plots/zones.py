@@ -32,9 +32,9 @@ from flockana.plots.style import (
     finish_over_time,
     frame_space,
     hairline,
+    head,
     lines,
 )
-from flockana.plots.symbols import typeset
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -102,7 +102,7 @@ def zones(
         seen.append(aliens)
         axes.scatter(*aliens.T, s=70, marker="X", color=VERMILLION, edgecolors="white", linewidths=0.6, zorder=4)
     fastest = velocity_arrows(axes, q, trajectory.p[k]) if velocities else ""
-    axes.set_title(typeset(f"t = {trajectory.t[k]:.4g}") + fastest, fontsize=9)
+    head(axes, f"t = {trajectory.t[k]:.4g}{fastest}", fontsize=9)
     return frame_space(axes, np.vstack(seen), m)
 
 

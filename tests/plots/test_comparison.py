@@ -25,8 +25,8 @@ def test_all_are_drawn_on_one_equal_scale(outcomes):
         start, end = (np.asarray(points.get_offsets()) for points in ax.collections[-2:])
         assert np.array_equal(start, outcome.run.q[0])
         assert np.array_equal(end, outcome.run.q[-1])
-        assert outcome.entry.theorem in ax.get_title()
-        assert outcome.verdict.status in ax.get_title()
+        assert outcome.entry.theorem in ax.get_title(loc="left")
+        assert outcome.verdict.status in ax.get_title(loc="left")
 
 
 def test_lines_differ_by_dash_or_mark(outcomes):

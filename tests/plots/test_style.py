@@ -7,7 +7,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from flockana import plots
-from flockana.plots.style import finish, finish_empty, finish_over_time, frame_space, in_plane, lines
+from flockana.plots.style import colour_bar, finish, finish_empty, finish_over_time, frame_space, head, in_plane, lines
 
 
 @pytest.fixture
@@ -56,6 +56,18 @@ def test_a_line_has_no_second_coordinate(ax):
     assert (ax.get_xlabel(), ax.get_ylabel(), len(ax.get_yticks())) == ("$x$ (length)", "", 0)
     frame_space(ax, np.zeros((3, 2)), 2)
     assert (ax.get_ylabel(), ax.get_aspect()) == ("$y$ (length)", 1.0)
+
+
+def test_axes_that_others_made_get_titles_legends_and_colour_bars_in_the_style():
+    ax = Figure().add_subplot()
+    ax.plot([0, 1], [0, 1], label="a line")
+    finish(ax, "t (time)")
+    head(ax, "ζ = 1")
+    bar = colour_bar(ax, ax.scatter([0, 1], [0, 1], c=[0, 1]), "strain").ax
+    title = ax.title if ax.get_title() else ax._left_title
+    assert (title.get_text(), title.get_fontsize()) == (r"$\zeta$ = 1", 10)
+    assert ax.get_legend().get_frame().get_edgecolor()[3] == 0.0
+    assert (bar.yaxis.label.get_fontsize(), bar.get_yticklabels()[0].get_fontsize()) == (9, 8)
 
 
 OF_FILES = {"animate", "animate_mode"}  # films: of something, to a path
