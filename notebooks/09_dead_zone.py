@@ -163,6 +163,10 @@ assert np.ptp(late[2]) < 1e-6
 # %% [markdown]
 # ## The theorem, printed and corrected
 #
+# > **Theorem 1** (Li, Yuan and Liu, as printed, in our words). From finite initial energy (i) agents form cohesive
+# > flocks, in which none is farther than $r$ from its virtual leader; (ii) the energy does not rise, the flock ends
+# > in a local minimum of it, and velocities match; (iii) no two agents collide.
+#
 # Fifty agents in a box of 40, as far as the source says how; and the same in a box of 150:
 
 # %%
@@ -178,7 +182,11 @@ print(fl.verify("dead-zone-1-printed", wide))
 # how far an agent gets from that centre. The components that are left at the end never come within $r$ of each other
 # again.
 #
-# Of the theorem two things remain true, and are proved: the energy falls, and there is an explicit least distance. With
+# > **Corrected theorem.** Let each pair's potential be held constant beyond $r$, let $\bar H$ be the sum over all
+# > pairs and the kinetic energy, and let no two agents start in one place. Then $\bar H$ is continuous and $\dot{\bar
+# > H} = -k_2\,p^\top\hat L\,p \le 0$ across all switches, and no distance ever falls below $\rho_{\min}$.
+#
+# Both are proved. With
 # $\bar H(0)$ the energy at the start, a pair inside $d_1$ costs $2k_r(\operatorname{arsinh}(1/(\sqrt\eta\rho)) -
 # \operatorname{arsinh}(1/(\sqrt\eta d_1)))$ at least, and no two agents ever come closer than
 #

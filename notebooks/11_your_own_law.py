@@ -111,7 +111,11 @@ print(f"the balance closes to {abs(run.energy_residual).max() / run.energy()[0]:
 # %% [markdown]
 # ## The theorem
 #
-# While no pair is farther apart than $D$, every weight is at least $(s/n)(1+D^2)^{-\beta}$, and so
+# > **Theorem.** Let $p_c$ be the mean velocity and $K = \tfrac12\sum\|p_i - p_c\|^2$, and let no two agents of a
+# > solution be farther apart than $D$ while $0 \le t \le T$. Then $K(t) \le K(0)\,e^{-2s(1+D^2)^{-\beta}t}$ for those
+# > $t$.
+#
+# For then every weight is at least $(s/n)(1+D^2)^{-\beta}$, and so
 #
 # $$\dot K = -\tfrac12\sum_{i,j} a_{ij}\|p_j-p_i\|^2 \le -2s\,(1+D^2)^{-\beta} K .$$
 

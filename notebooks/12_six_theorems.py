@@ -43,6 +43,16 @@ for entry in ENTRIES:
     print(f"{entry.name} ({entry.theorem}):\n    {entry.promise}\n")
 
 # %% [markdown]
+# And in full, as the library checks them:
+
+# %%
+import textwrap
+
+for entry in ENTRIES:
+    print(f"{entry.theorem}. {fl.theorem(entry.theorem).title}")
+    print(textwrap.indent(textwrap.fill(fl.theorem(entry.theorem).statement, 100), "    "), "\n")
+
+# %% [markdown]
 # ## What happened
 
 # %%
@@ -68,8 +78,15 @@ for outcome in outcomes:
 # %% [markdown]
 # ## A hypothesis about the whole run: joint connectivity
 #
-# Jadbabaie, Lin and Morse let each agent take the mean heading of its neighbours. No single net need be connected: it
-# is enough that the links seen over a window of time connect all, window after window, for ever. Over a run we can see
+# Jadbabaie, Lin and Morse let each agent take the mean heading of itself and its neighbours, $\theta_i(t + 1) =
+# \frac{1}{1 + |N_i(t)|}\bigl(\theta_i(t) + \sum_{j \in N_i(t)} \theta_j(t)\bigr)$.
+#
+# > **Theorem** (Jadbabaie, Lin and Morse 2003). If there is an infinite sequence of contiguous, non-empty, bounded
+# > intervals of time, starting at $t = 0$, across each of which the agents are linked together, that is the union of
+# > the nets of the interval is connected, then all headings tend to a common one.
+#
+# No single net need be connected: it is enough that the links seen over a window of time connect all, window after
+# window, for ever. Over a run we can see
 # windows; "for ever" needs an argument. Two groups that meet:
 
 # %%
@@ -91,7 +108,10 @@ print(fl.verify("jlm-headings", fl.scenario("headings-part").run()))
 # %% [markdown]
 # ## A hypothesis about time: delay
 #
-# Olfati-Saber and Murray: $\dot x = -Lx(t-\tau)$ agrees if and only if $\tau < \pi/(2\lambda_n)$. The root that decides
+# > **Theorem** (Olfati-Saber and Murray 2004). On a fixed, undirected, connected net all solutions of $\dot x(t) =
+# > -Lx(t-\tau)$ tend to the mean of their starts if and only if $0 \le \tau < \pi/(2\lambda_n)$.
+#
+# The root that decides
 # is Lambert's: $s = W(-\lambda_n\tau)/\tau$. Better connected nets bear *less* delay:
 
 # %%

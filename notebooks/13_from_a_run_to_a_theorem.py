@@ -48,7 +48,12 @@ _ = plots.measure(run, "normalised_velocity_mismatch")
 #
 # $$U - U^* \ge G(\|w\|), \qquad \langle\nabla U, w\rangle \ge \|w\|\,G'(\|w\|).$$
 #
-# So to leave the ball of radius $\rho$ the energy must reach $U^* + G(\rho)$, which a start with less never has: the
+# > **Theorem.** Let all pairs that are linked at the triangle stay linked, and all curvatures as above be bounded
+# > below by $k$, within the distance $\rho$ of the orbit, with $G' > 0$ on $(0, \rho]$, and let $c_2^\gamma > 0$.
+# > Then every solution that starts at most $\rho$ from the orbit with an energy below $U^* + G(\rho)$ stays so near,
+# > and converges to the orbit with matched velocities.
+#
+# For to leave the ball of radius $\rho$ the energy must reach $U^* + G(\rho)$, which a start with less never has: the
 # energy only falls. `certify` bounds every pair's stress and slope by *ball arithmetic*, over all lengths that the ball
 # allows, and takes the largest ρ that it can prove.
 

@@ -85,6 +85,13 @@ def test_every_kind_of_exercise_is_asked_for_and_outputs_are_read_once_at_most()
     assert set(asked) == set(build.KINDS)
 
 
+@pytest.mark.parametrize("number", ["00a", "02", "03", "04", "05", "08", "09", "11", "12", "13"])
+def test_a_theorem_that_a_lecture_teaches_is_stated_in_it(number):
+    source = next(path for path in SOURCES if number_of(path) == number)
+    stated = re.findall(r"^# > \*\*(?:Theorem|Corrected)", source.read_text(encoding="utf-8"), re.MULTILINE)
+    assert len(stated) >= {"00a": 2, "08": 2, "09": 2, "12": 2}.get(number, 1)
+
+
 @pytest.mark.parametrize("source", SOURCES[-2:], ids=lambda path: path.stem)
 def test_an_assignment_states_the_points_that_its_questions_give(source):
     """In all, and part by part: a part begins at its heading; what comes before counts with the first."""
@@ -122,7 +129,7 @@ def test_an_exercise_without_points_or_kind_is_refused(tmp_path, head):
 def test_a_lecture_says_what_it_needs_aims_at_and_rests_on(source):
     texts = [cell.source for cell in build.notebook(source, "student").cells if cell.cell_type == "markdown"]
     assert "**Aims.**" in texts[0]
-    assert "**Lectures before this one:**" in texts[1]
+    assert re.search(r"\*\*Lectures before this one:\*\* .*\*\*Time:\*\* \d+ minutes", texts[1])
     assert "| $q_i$, $p_i$, $u_i$ |" in texts[1]
     summed_up = "## How it is marked" if number_of(source).startswith("A") else "## Summary"
     assert sum(summed_up in text for text in texts) == 1
