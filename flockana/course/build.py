@@ -29,6 +29,19 @@ _LEFT_OUT = {"student": {"solution", "facts"}, "self-study": {"solution", "facts
 _POSED = re.compile(r"\*\*(\d+)\.\*\* (★{1,3}) \((\d+) points?, (\w+)\)")
 KINDS = ("derivation", "design", "counterexample", "program", "experiment", "reading", "words")
 VERSIONS = tuple(_LEFT_OUT)
+_INSTALL = """# Where flockana is missing, as on Colab, this cell installs it; elsewhere it does nothing.
+import importlib.util
+
+missing = importlib.util.find_spec("flockana") is None
+if missing:
+    %pip install --quiet "flockana[course]\""""
+_COMPANIONS = """
+
+    from pathlib import Path
+
+    from flockana.course.build import copy_companions
+
+    copy_companions(Path())"""
 
 
 @dataclass(frozen=True)
@@ -104,6 +117,7 @@ def notebook(source: Path, version: str) -> Any:
     book.cells = [cell for cell in book.cells if not _LEFT_OUT[version] & set(tags(cell))]
     entry = next(each for each in course_map(source.parent) if each.number == number_of(source))
     book.cells.insert(1, nbformat.v4.new_markdown_cell(header(entry, source.parent)))
+    book.cells.insert(2, _install(source))
     book.cells.append(nbformat.v4.new_markdown_cell(references(entry)))
     for number, cell in enumerate(book.cells):
         cell["id"] = f"{entry.number}-{number:03d}"  # the same at every build
@@ -112,6 +126,23 @@ def notebook(source: Path, version: str) -> Any:
         elif {"solution", "check", "facts"} & set(tags(cell)):
             cell.metadata["jupyter"] = {"source_hidden": True}
     return book
+
+
+def _install(source: Path) -> Any:
+    """A cell that installs flockana where it is missing, as on Colab, with what this lecture imports from beside it."""
+    lines = _INSTALL + (_COMPANIONS if needs_companions(source) else "")
+    return nbformat.v4.new_code_cell(lines, metadata={"tags": ["install"], "jupyter": {"source_hidden": True}})
+
+
+def needs_companions(source: Path) -> bool:
+    """Whether a lecture imports from folders beside it.
+
+    Parameters
+    ----------
+    source : Path
+        One of `sources`.
+    """
+    return any(f"from {name}." in source.read_text(encoding="utf-8") for name in ("own_law", "proofs"))
 
 
 def exercises(source: Path) -> Iterator[Exercise]:

@@ -161,6 +161,21 @@ def test_a_number_that_is_not_exact_says_to_what_precision(source):
             assert "exactly" in said or "whole number" in said or "nearest integer" in said
 
 
+@pytest.mark.parametrize("source", SOURCES, ids=lambda path: path.stem)
+def test_a_notebook_installs_flockana_where_it_is_missing_and_only_there(source, monkeypatch):
+    (cell,) = of(build.notebook(source, "student"), "install")
+    assert build.notebook(source, "student").cells[2].source == cell  # before anything is imported
+    installed = []
+    plain = cell.replace('%pip install --quiet "flockana[course]"', 'installed.append("flockana[course]")')
+    assert plain != cell
+    exec(plain.partition("    from pathlib")[0], {"installed": installed})
+    assert installed == []
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    exec(plain.partition("    from pathlib")[0], {"installed": installed})
+    assert installed == ["flockana[course]"]
+    assert ("copy_companions" in cell) == (number_of(source) == "11")
+
+
 def test_everything_that_a_lecture_needs_is_written_beside_it(tmp_path):
     """Lecture 11 imports its own law, whose proof imports `proofs`: neither is in the package."""
     written = build.write(tmp_path)
