@@ -36,6 +36,16 @@ def test_a_picture_for_each_value_with_the_same_margins():
     assert found.texts == ("0.25", "0.5", "1")
 
 
+def test_the_margins_are_those_of_the_first_picture():
+    """Longer numbers beside the axes do not move them: the picture would tremble."""
+
+    def scaled(ax, top):
+        ax.set(ylim=(0, top), yticks=[top], facecolor="black")
+
+    first, second = (dark(each) for each in slider(scaled, [1.0, 12345678.0], name="top", title="a scale").pictures)
+    assert abs(first - second) < 0.02
+
+
 def test_its_page_needs_nothing_and_starts_where_it_should():
     found = slider(bar, [0.25, 0.5, 1.0], name="height", title="a <bar>", start=1)
     page = found.html()
