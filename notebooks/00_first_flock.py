@@ -75,7 +75,8 @@ print(fl.verify("os-3", run))
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** ★ (1 point) Run the scenario `collapse` and ask erratum E11 about it. What is the status of the verdict?
+# **1.** ★ (1 point, reading) Run the scenario `collapse` and ask erratum E11 about it. What is the status of the
+# verdict?
 
 # %% tags=["answer"]
 collapse_status = ...
@@ -88,26 +89,49 @@ _ = plots.snapshot(collapse)
 grade(collapse_status, "refuted", hint="fl.verify(name, run).status, one word")
 
 # %% [markdown] tags=["exercise"]
-# **2.** ★★ (2 points) Theorem 1 (`os-1`) assumes a flock that stays one. A run of `paper-fragmentation` breaks that at
-# $t = 0$ already: its relative connectivity $C = (n - \text{number of components})/(n-1)$ is below 1. (The verdict
-# names the instant at which $C$ is least, not the first at which it is below 1.) Give $C(0)$ to two significant digits.
+# **2.** ★★ (2 points, program) Theorem 1 (`os-1`) assumes a flock that stays one. A run of `paper-fragmentation` breaks
+# that at $t = 0$ already: its relative connectivity $C = (n - \text{number of components})/(n-1)$ is 0.13 there. (The
+# verdict names the instant at which $C$ is least, not the first at which it is below 1.) Write a function
+# `connectivity(q, r)` that computes $C$ from positions of shape (n, 2), $n \ge 2$, without the library. A component is
+# a largest set of agents that are linked by paths; two agents are linked if they are nearer than $r$.
 
 # %% tags=["answer"]
 connectivity = ...
 
+
 # %% tags=["solution"]
+def by_labels(q, r):
+    q = np.asarray(q, dtype=float)
+    linked = np.linalg.norm(q[:, None] - q, axis=2) < r
+    label = np.arange(len(q))
+    for _ in q:  # every agent takes the least label in its neighbourhood, until labels fill the components
+        label = np.where(linked, label, len(q)).min(axis=1)
+    return (len(q) - len(set(label.tolist()))) / (len(q) - 1)
+
+
+connectivity = by_labels
 fragments = fl.scenario("paper-fragmentation").run()
 print(fl.verify("os-1", fragments))
-connectivity = float(fragments.metrics().connectivity[0])
+print(connectivity(fragments.q[0], fragments.law.alpha.r), float(fragments.metrics().connectivity[0]))
 
 # %% tags=["check"]
-grade(connectivity, 0.128205, digits=2, hint="run.metrics() holds the connectivity at every sample")
+grade(
+    connectivity,
+    lambda f: np.allclose(
+        [f(np.array([[0.0, 0.0], [3.0, 4.0], [x, 0.0], [x + 4.0, 0.0], [9.0, 9.0]]), 5.0) for x in (2.0, 4.0, 7.0)]
+        + [f(np.array([[2.0 * k, 0.0] for k in (0, 3, 1, 4, 2, 5)]), 2.5)],
+        [0.75, 0.75, 0.25, 1.0],
+        atol=1e-12,
+    ),
+    form="function",
+    hint="try three agents in a row by hand, of which the outer two are out of range; and two exactly r apart",
+)
 
 # %% [markdown] tags=["exercise"]
-# **3.** ★ (1 point) scipy would have integrated with `rtol=1e-3` and `atol=1e-6`, had we not asked for better. Start
-# seven agents at rest in a hexagon that is 1.1 times too large, `1.1 * fl.lattice.hexagonal_patch(1, 7.0)`, under
-# `fl.Algorithm2(target=fl.StaticTarget((0.0, 0.0)))`, for 10 time units. What is the largest energy residual at those
-# tolerances, to two significant digits? (Compare it with the one at the library's own tolerances.)
+# **3.** ★ (1 point, experiment) scipy would have integrated with `rtol=1e-3` and `atol=1e-6`, had we not asked for
+# better. Start seven agents at rest in a hexagon that is 1.1 times too large, `1.1 * fl.lattice.hexagonal_patch(1,
+# 7.0)`, under `fl.Algorithm2(target=fl.StaticTarget((0.0, 0.0)))`, for 10 time units. What is the largest energy
+# residual at those tolerances, to two significant digits? (Compare it with the one at the library's own tolerances.)
 
 # %% tags=["answer"]
 residual = ...
@@ -124,8 +148,8 @@ print(f"{residual:.3g}, and {abs(tight.energy_residual).max():.3g} at the librar
 grade(residual, 0.0360221, digits=2, hint="fl.simulate takes rtol and atol; the residual has two signs")
 
 # %% [markdown] tags=["exercise"]
-# **4.** ★ (1 point) One agent without neighbours is at $(3, 0)$ with the velocity $(0, 2)$; the γ-agent rests at the
-# origin, $c_1^\gamma = 1$, $c_2^\gamma = 2$. How large is $\|u\|$, exactly?
+# **4.** ★ (1 point, derivation) One agent without neighbours is at $(3, 0)$ with the velocity $(0, 2)$; the γ-agent
+# rests at the origin, $c_1^\gamma = 1$, $c_2^\gamma = 2$. How large is $\|u\|$, exactly?
 
 # %% tags=["answer"]
 push = ...
@@ -137,9 +161,9 @@ push = float(np.hypot(-3.0, -2.0 * 2.0))
 grade(push, 5.0, hint="write down both components of u")
 
 # %% [markdown] tags=["exercise"]
-# **5.** ★★ (2 points) Counterexample hunt: is $d$ the only distance at which two agents exert no force on each other?
-# Give positions of two agents in the plane, an array of shape (2, 2), that are not 7 apart and feel no force under
-# Algorithm 1 with $d = 7$, $r = 8.4$.
+# **5.** ★★ (2 points, counterexample) Counterexample hunt: is $d$ the only distance at which two agents exert no force
+# on each other? Give positions of two agents in the plane, an array of shape (2, 2), that are not 7 apart and feel no
+# force under Algorithm 1 with $d = 7$, $r = 8.4$.
 
 # %% tags=["answer"]
 pair = ...
@@ -154,3 +178,22 @@ grade(
     form="list",
     hint="look at what the sum runs over",
 )
+
+# %% [markdown] tags=["exercise"]
+# **6.** ★★ (2 points, words) A verdict of a theorem about a run reads *vacuous*. One student says: the theorem is false
+# for this law. Another says: the theorem holds for this run. What is wrong with each, and what has been learnt? In your
+# own words, at least 30 of them. (The check counts words, and your lecturer reads the text.)
+
+# %% tags=["answer"]
+meaning = ...
+
+# %% tags=["solution"]
+meaning = """The theorem is an implication, and its hypothesis does not hold in this run. So the run says nothing
+against the theorem and nothing for it: the conclusion may hold or fail here. What has been learnt is that this
+theorem cannot be used to predict this run, and which hypothesis keeps it from that."""
+# Rubric, a point each:
+# an implication whose hypothesis fails is neither refuted nor confirmed; what is learnt is
+# which hypothesis fails, or that another theorem is needed.
+
+# %% tags=["check"]
+grade(meaning, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")

@@ -143,7 +143,7 @@ assert np.abs(np.linalg.eigvalsh(laplacians["two triangles"])[:2]).max() < 1e-12
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** ★ (1 point) Compute $\lambda_2$ of the path of three agents with unit weights by hand, exactly.
+# **1.** ★ (1 point, derivation) Compute $\lambda_2$ of the path of three agents with unit weights by hand, exactly.
 
 # %% tags=["answer"]
 lambda_2 = ...
@@ -155,7 +155,8 @@ lambda_2 = 1.0  # L = [[1, −1, 0], [−1, 2, −1], [0, −1, 1]] has the eige
 grade(lambda_2, 1.0, hint="an eigenvector is odd under turning the path around")
 
 # %% [markdown] tags=["exercise"]
-# **2.** ★ (1 point) A net of 12 agents has three components. What is the rank of its Laplacian? (A whole number.)
+# **2.** ★ (1 point, derivation) A net of 12 agents has three components. What is the rank of its Laplacian? (A whole
+# number.)
 
 # %% tags=["answer"]
 rank = ...
@@ -167,8 +168,8 @@ rank = 12 - 3
 grade(rank, 9, hint="what is the dimension of the kernel?")
 
 # %% [markdown] tags=["exercise"]
-# **3.** ★★ (2 points) Five agents on a complete net with unit weights: after what time has the disagreement surely
-# shrunk to a thousandth, by the bound above? (Four significant digits.)
+# **3.** ★★ (2 points, derivation) Five agents on a complete net with unit weights: after what time has the disagreement
+# surely shrunk to a thousandth, by the bound above? (Four significant digits.)
 
 # %% tags=["answer"]
 time = ...
@@ -180,8 +181,8 @@ time = np.log(1000.0) / 5.0  # λ_2 = n on the complete net
 grade(time, 1.38155106, digits=4, hint="first find the eigenvalues of L = nI − 𝟏𝟏ᵀ")
 
 # %% [markdown] tags=["exercise"]
-# **4.** ★★ (2 points) Design: for the damped mass $\ddot x = -x - c\dot x$, what is the least $c$ for which every
-# solution decays at the rate 0.8 at least, that is like $e^{-0.8t}$? (Exactly.)
+# **4.** ★★ (2 points, design) Design: for the damped mass $\ddot x = -x - c\dot x$, what is the least $c$ for which
+# every solution decays at the rate 0.8 at least, that is like $e^{-0.8t}$? (Exactly.)
 
 # %% tags=["answer"]
 damping = ...
@@ -193,8 +194,9 @@ damping = 1.6  # complex poles have the real part −c/2
 grade(damping, 1.6, hint="look at the real part of the poles while they are complex")
 
 # %% [markdown] tags=["exercise"]
-# **5.** ★★ (2 points) An agent on a line has the potential $\arctan(x)^2$ and the damping $-\dot x$. For which $c$ is
-# $\{\tfrac12 v^2 + \arctan(x)^2 \le c\}$ compact? Give the least upper bound of these $c$, to four significant digits.
+# **5.** ★★ (2 points, derivation) An agent on a line has the potential $\arctan(x)^2$ and the damping $-\dot x$. For
+# which $c$ is $\{\tfrac12 v^2 + \arctan(x)^2 \le c\}$ compact? Give the least upper bound of these $c$, to four
+# significant digits.
 
 # %% tags=["answer"]
 bound = ...
@@ -206,8 +208,8 @@ bound = (np.pi / 2.0) ** 2  # the height of the potential at infinity
 grade(bound, 2.46740110, digits=4, hint="how much energy does it take to get infinitely far?")
 
 # %% [markdown] tags=["exercise"]
-# **6.** ★★★ (3 points) In your own words, at least 30 of them: let $W \ge 0$ be continuously differentiable, $\dot W
-# \le 0$, and let all solutions be bounded. Must every solution converge to a *point*? Give a reason or a
+# **6.** ★★★ (3 points, words) In your own words, at least 30 of them: let $W \ge 0$ be continuously differentiable,
+# $\dot W \le 0$, and let all solutions be bounded. Must every solution converge to a *point*? Give a reason or a
 # counterexample. (A text; the check counts words, and your lecturer reads it.)
 
 # %% tags=["answer"]
@@ -217,6 +219,27 @@ argument = ...
 argument = """No. Take the undamped mass with W = (x² + v²)/2: W is constant along solutions, so its derivative is zero
 everywhere, and all solutions are bounded, but they go round circles for ever. LaSalle only promises convergence to the
 largest invariant set on which W no longer falls; here that is the whole level set."""
+# Rubric, a point each:
+# no; a counterexample with all three hypotheses checked; what LaSalle's principle promises
+# instead.
 
 # %% tags=["check"]
 grade(argument, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")
+
+# %% [markdown] tags=["exercise"]
+# **7.** ★★★ (3 points, design) Five agents may have four links of unit weight. Which four make consensus as fast as
+# four can, that is, $\lambda_2$ as large as possible? Give a list of pairs of numbers from 0 to 4.
+
+# %% tags=["answer"]
+fastest_net = ...
+
+# %% tags=["solution"]
+fastest_net = [(0, 1), (0, 2), (0, 3), (0, 4)]  # a tree with λ_2 = 1; in every other tree λ_2 is smaller
+
+# %% tags=["check"]
+grade(
+    fastest_net,
+    lambda net: len(net) == 4 and np.linalg.eigvalsh(fl.laplacian(5, np.array(net)).toarray())[1] > 1.0 - 1e-9,
+    form="list",
+    hint="four links that connect five agents form a tree; there are three kinds of them",
+)

@@ -126,8 +126,8 @@ print(f"as printed {(np.sqrt(1 + 0.1 * tiny**2) - 1) / 0.1:.3e},  as computed {a
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** ★ (1 point) For $a = 1$, $b = 5$: what is $c$, and what is $\phi(0)$ if $c$ is left out? Give the second
-# number, exactly.
+# **1.** ★ (1 point, derivation) For $a = 1$, $b = 5$: what is $c$, and what is $\phi(0)$ if $c$ is left out? Give the
+# second number, exactly.
 
 # %% tags=["answer"]
 phi_at_zero = ...
@@ -139,8 +139,8 @@ phi_at_zero = 0.5 * ((1 + 5) * 0 + (1 - 5))
 grade(phi_at_zero, -2.0, hint="which term of φ is left at s = 0?")
 
 # %% [markdown] tags=["exercise"]
-# **2.** ★★ (2 points) A lattice link costs nothing and a pair out of range costs $\psi_\alpha(r_\alpha)$. How many
-# pairs out of range weigh as much as one coincident pair, for `alpha`? (Three significant digits.)
+# **2.** ★★ (2 points, experiment) A lattice link costs nothing and a pair out of range costs $\psi_\alpha(r_\alpha)$.
+# How many pairs out of range weigh as much as one coincident pair, for `alpha`? (Three significant digits.)
 
 # %% tags=["answer"]
 pairs = ...
@@ -152,8 +152,8 @@ pairs = alpha.c_star / alpha.psi_alpha(alpha.r_alpha)
 grade(pairs, 71.183219, digits=3, hint="both potentials are printed above")
 
 # %% [markdown] tags=["exercise"]
-# **3.** ★ (1 point) At $h = 1$ the bump is an indicator, which the slides call "still differentiable". Ask erratum E10
-# and give the height of the jump, exactly.
+# **3.** ★ (1 point, reading) At $h = 1$ the bump is an indicator, which the slides call "still differentiable". Ask
+# erratum E10 and give the height of the jump, exactly.
 
 # %% tags=["answer"]
 jump = ...
@@ -166,7 +166,8 @@ jump = 1.0
 grade(jump, 1.0, hint="one-sided limits at z = 1")
 
 # %% [markdown] tags=["exercise"]
-# **4.** ★★ (2 points) Where is the attraction strongest? Give the distance of the pair, to four significant digits.
+# **4.** ★★ (2 points, experiment) Where is the attraction strongest? Give the distance of the pair, to four significant
+# digits.
 
 # %% tags=["answer"]
 strongest = ...
@@ -179,8 +180,8 @@ strongest = fine[np.argmax(alpha.phi_alpha(alpha.sigma_norm(fine)))]
 grade(strongest, 7.3139591, digits=4, hint="maximise φ_α between d and r")
 
 # %% [markdown] tags=["exercise"]
-# **5.** ★★★ (3 points) Derive the stiffness of a link: what is $\phi_\alpha'(d_\alpha)$ for `alpha`? (Four significant
-# digits; mind that $d_\alpha$ is on the taper of the bump.)
+# **5.** ★★★ (3 points, derivation) Derive the stiffness of a link: what is $\phi_\alpha'(d_\alpha)$ for `alpha`? (Four
+# significant digits; mind that $d_\alpha$ is on the taper of the bump.)
 
 # %% tags=["answer"]
 slope = ...
@@ -190,3 +191,38 @@ slope = 5.0 * 0.5 * (1.0 + np.cos(np.pi * (alpha.d_alpha / alpha.r_alpha - 0.2) 
 
 # %% tags=["check"]
 grade(slope, 0.896325033, digits=4, hint="product rule; one of the two terms vanishes at d_α")
+
+# %% [markdown] tags=["exercise"]
+# **6.** ★★ (2 points, design) Let $a = b$. Which value of $a$ makes a coincident pair cost $c^* = 1000$, with
+# everything else as in `alpha`? (How does $\phi$ depend on $a = b$? Four significant digits.)
+
+# %% tags=["answer"]
+strength = ...
+
+# %% tags=["solution"]
+strength = 5.0 * 1000.0 / alpha.c_star  # with a = b, φ is a σ₁(s): all energies are proportional to a
+print(fl.AlphaInteraction(d=7.0, r=8.4, eps=0.1, h=0.2, a=strength, b=strength).c_star)
+
+# %% tags=["check"]
+grade(strength, 95.449335, digits=4, hint="what is c for a = b, and what is left of φ?")
+
+# %% [markdown] tags=["exercise"]
+# **7.** ★★ (2 points, words) $n_{ij} = (q_j - q_i)/\sqrt{1 + \varepsilon\|q_j - q_i\|^2}$ is shorter than a unit
+# vector. What does that do to the force between two agents that come very near each other, and what would go wrong with
+# a unit vector in its place? In your own words, at least 30 of them. (The check counts words, and your lecturer reads
+# the text.)
+
+# %% tags=["answer"]
+smoothness = ...
+
+# %% tags=["solution"]
+smoothness = """Where two agents coincide the vector is 0 and smooth, so the force on each falls to 0 there and the
+law has a continuous derivative; solutions exist and are unique through a collision. A unit vector has no limit
+where the agents coincide: it jumps when they pass through each other, the potential has a corner there, and the
+right-hand side is not Lipschitz."""
+# Rubric, a point each:
+# the force vanishes smoothly at coincidence; a unit vector has no limit there, so that the
+# law would be discontinuous.
+
+# %% tags=["check"]
+grade(smoothness, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")

@@ -124,8 +124,7 @@ _ = plots.phase_portrait(
 # Algorithm 2, which adds a γ-agent (lecture 3). The first:
 
 # %%
-film = fl.scenario("notebook-algorithm1").run().animate(seconds=4, fps=10)
-film
+fl.scenario("notebook-algorithm1").run().player(height=560)
 
 # %% [markdown]
 # In the second the agents take on the γ-agent's velocity, but leave its place (the cross), and the flock splits.
@@ -133,11 +132,10 @@ film
 # all, and nothing holds the flock together. Cohesion, in the next lecture, needs $c_1^\gamma > 0$.
 
 # %%
-film = fl.scenario("notebook-algorithm2").run().animate(seconds=4, fps=10)
-film
+left = fl.scenario("notebook-algorithm2").run()
+left.player(height=560)
 
 # %% tags=["facts"]
-left = fl.scenario("notebook-algorithm2").run()
 assert left.law.gains.c1_gamma == 0.0
 assert left.metrics().connectivity[-1] < 1.0  # it splits
 
@@ -151,7 +149,7 @@ assert left.metrics().connectivity[-1] < 1.0  # it splits
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** ★ (1 point) In how many components does `run` end? (A whole number.)
+# **1.** ★ (1 point, reading) In how many components does `run` end? (A whole number.)
 
 # %% tags=["answer"]
 components = ...
@@ -164,8 +162,8 @@ components = len(set(labels))
 grade(components, 24, hint="fl.components(n, links) labels every agent, fl.links(q, r) finds the links")
 
 # %% [markdown] tags=["exercise"]
-# **2.** ★★ (2 points) From which start at rest, closer than $d$, does the pair of `law` just escape if there is no
-# damping? Give the distance to four significant digits. (At rest $H = \psi_\alpha$, and escape needs
+# **2.** ★★ (2 points, experiment) From which start at rest, closer than $d$, does the pair of `law` just escape if
+# there is no damping? Give the distance to four significant digits. (At rest $H = \psi_\alpha$, and escape needs
 # $\psi_\alpha(r_\alpha)$.)
 
 # %% tags=["answer"]
@@ -181,8 +179,8 @@ start = brentq(lambda s: psi(law.alpha.sigma_norm(s)) - psi(law.alpha.r_alpha), 
 grade(start, 6.567645, digits=4, hint="brentq; ψ_α takes a σ-norm, and escape is at r_α")
 
 # %% [markdown] tags=["exercise"]
-# **3.** ★★ (2 points) The momentum $\sum p_i$ of Algorithm 1 is conserved, because each pair acts equally and
-# oppositely. By how much does it change in `run`, relative to $\sum \|p_i(0)\|$? Is that above $10^{-10}$?
+# **3.** ★★ (2 points, experiment) The momentum $\sum p_i$ of Algorithm 1 is conserved, because each pair acts equally
+# and oppositely. By how much does it change in `run`, relative to $\sum \|p_i(0)\|$? Is that above $10^{-10}$?
 
 # %% tags=["answer"]
 above = ...
@@ -197,8 +195,8 @@ above = bool(change > 1e-10)
 grade(above, False, hint="run.p has shape (T, n, m)")
 
 # %% [markdown] tags=["exercise"]
-# **4.** ★★ (2 points) Two agents start at rest 6 apart, under `law` without its damping. At what relative speed do they
-# move once they are out of range? (Four significant digits.)
+# **4.** ★★ (2 points, derivation) Two agents start at rest 6 apart, under `law` without its damping. At what relative
+# speed do they move once they are out of range? (Four significant digits.)
 
 # %% tags=["answer"]
 parting = ...
@@ -210,9 +208,9 @@ parting = 2.0 * np.sqrt(psi(law.alpha.sigma_norm(6.0)) - psi(law.alpha.r_alpha))
 grade(parting, 3.2609838, digits=4, hint="H is conserved; each agent has half the relative speed")
 
 # %% [markdown] tags=["exercise"]
-# **5.** ★★★ (3 points) In your own words, at least 30 of them: which step of a proof of cohesion for Algorithm 1 by
-# LaSalle's principle fails, and what in Algorithm 2 could repair it? (A text; the check counts words, and your lecturer
-# reads it.)
+# **5.** ★★★ (3 points, words) In your own words, at least 30 of them: which step of a proof of cohesion for Algorithm 1
+# by LaSalle's principle fails, and what in Algorithm 2 could repair it? (A text; the check counts words, and your
+# lecturer reads it.)
 
 # %% tags=["answer"]
 gap = ...
@@ -221,6 +219,33 @@ gap = ...
 gap = """H falls, but its level sets are not bounded: a pair out of range costs a constant, however far apart it is,
 so agents can leave without more energy and the set is not compact. Algorithm 2 adds a pull that grows with
 the distance from the centre; then a level set bounds the size of the group."""
+# Rubric, a point each:
+# level sets of H are not bounded; because a pair out of range costs a constant; a pull that
+# grows with the distance, as the γ-agent's.
 
 # %% tags=["check"]
 grade(gap, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")
+
+# %% [markdown] tags=["exercise"]
+# **6.** ★★ (2 points, counterexample) A classmate claims: under Algorithm 1 a group that starts at rest and connected
+# stays connected. Give positions of a few agents in the plane, an array of shape (n, 2), $n \le 12$, that refute it:
+# one component at the start, more than one after 20 time units under `fl.Algorithm1()`.
+
+# %% tags=["answer"]
+torn = ...
+
+# %% tags=["solution"]
+torn = [[0.0, 0.0], [1.0, 0.0]]  # pushed apart with more energy than the damping takes before they are out of range
+
+# %% tags=["check"]
+grade(
+    torn,
+    lambda q: (
+        2 <= len(q) <= 12
+        and set(fl.components(len(q), fl.links(np.array(q, float), 8.4))) == {0}
+        and 1
+        in fl.components(len(q), fl.links(fl.simulate(fl.Algorithm1(), q, np.zeros((len(q), 2)), (0, 20)).q[-1], 8.4))
+    ),
+    form="list",
+    hint="at rest all energy is potential: where is there much of it?",
+)

@@ -14,7 +14,7 @@
 # # Algorithm 2: cohesion, and the γ-agent as a linear system
 #
 # **Aims.** See what the γ-agent adds: a bound on the size of the flock, and a centre of mass that is a linear filter.
-# Reproduce a course project's four simulations, and explain a figure of theirs by a transfer function.
+# Explain a figure of a course project by a transfer function.
 #
 # Algorithm 2 of Olfati-Saber (2006, section V) adds to Algorithm 1 the pull of a γ-agent with position $q_r$ and
 # velocity $p_r$ on each agent:
@@ -76,7 +76,11 @@ print(fl.verify("os-3", flock).claim("i").detail)
 
 # %% [markdown]
 # The bound is far above $R$ because most of $H_\lambda$ is $c_1^\alpha V$, which sums over all pairs out of range too.
-#
+
+# %%
+flock.player(height=560)
+
+# %% [markdown]
 # ## The centre: a filter of second order
 #
 # $\ddot q_c = -c_1^\gamma (q_c - q_r) - c_2^\gamma (\dot q_c - p_r)$, exactly, with $\omega_n = \sqrt{c_1^\gamma}$ and
@@ -94,50 +98,30 @@ import sympy
 symbolic.transfer_function(sympy.Symbol("k_v"))
 
 # %% [markdown]
-# ## An assignment in four cases
+# ## Two cases of a project
 #
-# A course project (`fl.cite(fl.scenario("msn-case1"))`) asks of 100 agents, for each of four settings: snapshots,
-# trajectories, velocities, connectivity and the centre of mass.
-
-
-# %%
-def assignment(case):
-    run = fl.scenario(case).run()
-    axes = plots.subplots(2, 3, size=(13, 7.4))[1]
-    plots.snapshot(run, time=0.0, ax=axes[0, 0], bar=False)
-    plots.snapshot(run, ax=axes[0, 1], bar=False)
-    plots.trajectories(run, ax=axes[0, 2])
-    plots.speeds(run, ax=axes[1, 0])
-    plots.measure(run, "connectivity", ax=axes[1, 1])
-    plots.centre_path(run, ax=axes[1, 2])
-    return run
-
-
-# %% [markdown]
-# **Case 1: Algorithm 1.** It falls apart, and the centre stays where it is.
+# A course project (`fl.cite(fl.scenario("msn-case1"))`) asks for four simulations of 100 agents; assignment A1 sets
+# them all. Here are two. **A target at rest, no damping** ($c_2^\gamma = 0$): the flock swings through the target, as
+# $\zeta = 0$ says.
 
 # %%
-case1 = assignment("msn-case1")
-
-# %% [markdown]
-# **Case 2: a target at rest, no damping** ($c_2^\gamma = 0$). The flock swings through the target, as $\zeta = 0$ says.
-
-# %%
-case2 = assignment("msn-case2")
+case2 = fl.scenario("msn-case2").run()
+figure, axes = plots.subplots(1, 3, size=(13, 3.6))
+plots.trajectories(case2, ax=axes[0])
+plots.speeds(case2, ax=axes[1])
+plots.centre_path(case2, ax=axes[2])
 period = tracking(case2).quantity("period")
 print(f"period: {period.predicted:.4f} predicted, {period.measured:.4f} measured")
 
 # %% [markdown]
-# **Case 3: a sine.**
+# **A target on a circle.** The flock follows, on a smaller circle:
 
 # %%
-case3 = assignment("msn-case3")
-
-# %% [markdown]
-# **Case 4: a circle.**
-
-# %%
-case4 = assignment("msn-case4")
+case4 = fl.scenario("msn-case4").run()
+figure, axes = plots.subplots(1, 3, size=(13, 3.6))
+plots.snapshot(case4, ax=axes[0], bar=False)
+plots.trajectories(case4, ax=axes[1])
+plots.centre_path(case4, ax=axes[2])
 
 # %% [markdown]
 # ## Why is the circle smaller?
@@ -168,18 +152,27 @@ axes = plots.bode(responses, marks={"case 4": omega})
 #
 # The same $\lambda$ that holds the flock together presses on every link. Beyond a ratio $c_1^\gamma/c_1^\alpha$ that
 # falls with $n$, some agents share one place, in a strict local minimum of $U_\lambda$ (erratum E11): Theorem 3
-# promises no lattice. Nineteen agents, the closest two of which coincide at the largest ratio:
+# promises no lattice. Move the ratio, and watch nineteen agents; a number beside an agent counts those in its place:
 
 # %%
+from flockana.course.frames import slider
+
 alpha = fl.AlphaInteraction()
-figure, axes = plots.subplots(1, 3, size=(13, 4))
-for ax, ratio in zip(axes, (0.05, 0.8, 3.0), strict=True):
-    found = relaxed(alpha, 19, ratio)
-    title = f"c1γ/c1α = {ratio:g}: {found.kind}, closest pair {fl.min_distance(found.q):.3g}"
+ratios = (0.05, 0.2, 0.4, 0.6, 0.8, 1.0, 1.2, 1.6, 2.0, 3.0)
+settled = {ratio: relaxed(alpha, 19, ratio) for ratio in ratios}
+
+
+def at_rest(ax, ratio):
+    found = settled[ratio]
+    title = f"{found.kind}, closest pair {fl.min_distance(found.q):.3g}"
     plots.configuration(found.q, d=alpha.d, r=alpha.r, ax=ax, bar=False, title=title)
+    ax.set(xlim=(-18.0, 18.0), ylim=(-18.0, 18.0))
+
+
+slider(at_rest, ratios, name="c1γ/c1α", title="nineteen agents at rest", size=(4.6, 4.6), start=2)
 
 # %% tags=["facts"]
-places = len(np.unique(np.round(found.q, 4), axis=0))
+places = len(np.unique(np.round(settled[3.0].q, 4), axis=0))
 assert 1 < places < 19  # some share a place, not all
 
 
@@ -196,8 +189,8 @@ assert 1 < places < 19  # some share a place, not all
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** ★ (1 point) Case 4 has $c_1^\gamma = 70$. Which $c_2^\gamma$ makes the centre of mass critically damped ($\zeta
-# = 1$)? (Four significant digits.)
+# **1.** ★ (1 point, derivation) Case 4 has $c_1^\gamma = 70$. Which $c_2^\gamma$ makes the centre of mass critically
+# damped ($\zeta = 1$)? (Four significant digits.)
 
 # %% tags=["answer"]
 c2_gamma = ...
@@ -209,8 +202,8 @@ c2_gamma = 2 * np.sqrt(70)
 grade(c2_gamma, 16.733201, digits=4, hint="compare the characteristic polynomial with (s + ω_n)²")
 
 # %% [markdown] tags=["exercise"]
-# **2.** ★★ (2 points) For which $k_v$ between 0 and 1 would the flock of case 4 follow on a circle of exactly the right
-# size? (Four significant digits.)
+# **2.** ★★ (2 points, design) For which $k_v$ between 0 and 1 would the flock of case 4 follow on a circle of exactly
+# the right size? (Four significant digits.)
 
 # %% tags=["answer"]
 k_v = ...
@@ -224,8 +217,9 @@ k_v = brentq(lambda k: predicted_gain(gains, omega, factor=k) - 1.0, 0.0, 1.0)
 grade(k_v, 0.7372359, digits=4, hint="predicted_gain has what you need; so has the transfer function, by hand")
 
 # %% [markdown] tags=["exercise"]
-# **3.** ★★ (2 points) A γ-agent on a straight line says $p_r = 0$ while it moves at speed 3. How far behind does the
-# centre stay, with $c_1^\gamma = 1.1$ and $c_2^\gamma = 2\sqrt{1.1}$? (Set $\ddot q_c = 0$; four significant digits.)
+# **3.** ★★ (2 points, derivation) A γ-agent on a straight line says $p_r = 0$ while it moves at speed 3. How far behind
+# does the centre stay, with $c_1^\gamma = 1.1$ and $c_2^\gamma = 2\sqrt{1.1}$? (Set $\ddot q_c = 0$; four significant
+# digits.)
 
 # %% tags=["answer"]
 lag = ...
@@ -237,8 +231,8 @@ lag = 2 * np.sqrt(1.1) * 3 / 1.1
 grade(lag, 5.7207755, digits=4, hint="which two forces on the centre balance?")
 
 # %% [markdown] tags=["exercise"]
-# **4.** ★ (1 point) Do seven agents coincide at $c_1^\gamma/c_1^\alpha = 3$, where nineteen do? Relax them, and answer
-# `True` or `False`.
+# **4.** ★ (1 point, reading) Do seven agents coincide at $c_1^\gamma/c_1^\alpha = 3$, where nineteen do? Relax them,
+# and answer `True` or `False`.
 
 # %% tags=["answer"]
 coincide = ...
@@ -250,8 +244,8 @@ coincide = bool(fl.min_distance(relaxed(alpha, 7, 3.0).q) < 1e-6)
 grade(coincide, False, hint="fl.min_distance(relaxed(alpha, 7, 3.0).q)")
 
 # %% [markdown] tags=["exercise"]
-# **5.** ★★★ (3 points) Design: choose $c_1^\gamma$ and $c_2^\gamma$, neither above 5, such that the centre of mass
-# returns like $e^{-2t}$ or faster from every start. Give the list $[c_1^\gamma, c_2^\gamma]$.
+# **5.** ★★★ (3 points, design) Design: choose $c_1^\gamma$ and $c_2^\gamma$, neither above 5, such that the centre of
+# mass returns like $e^{-2t}$ or faster from every start. Give the list $[c_1^\gamma, c_2^\gamma]$.
 
 # %% tags=["answer"]
 gains = ...
@@ -266,3 +260,23 @@ grade(
     form="list",
     hint="where are the poles? two of them",
 )
+
+# %% [markdown] tags=["exercise"]
+# **6.** ★★ (2 points, words) A report explains a circle of the flock that is smaller than its target's by the place
+# where the flock started. Why can no start explain the radius in the long run, and what can? In your own words, at
+# least 30 of them. (The check counts words, and your lecturer reads the text.)
+
+# %% tags=["answer"]
+explanation = ...
+
+# %% tags=["solution"]
+explanation = """The centre of mass obeys a stable linear equation of second order that is driven by the target.
+Whatever comes from the start is a solution of the homogeneous equation and dies out like its poles, so after a
+while only the response to the target is left. Its size is the modulus of the transfer function at the target's
+frequency, which depends on the gains, the frequency, and the velocity that the target tells."""
+# Rubric, a point each:
+# the part due to the start decays with the poles; what remains is the modulus of the transfer
+# function at the target's frequency.
+
+# %% tags=["check"]
+grade(explanation, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")

@@ -38,6 +38,22 @@ print(f"{len(q)} agents, {len(pairs)} links, α-lattice: {lattice.is_alpha_latti
 print(f"Theorem 5 allows 3n − 6 = {lattice.planar_bound(len(q))}; Harborth's sharp bound is {lattice.harborth(len(q))}")
 
 # %% [markdown]
+# The same 37 places, with the range moved: below $\kappa = 1$ there are no links, up to $\sqrt3$ those of the lattice,
+# and beyond it the second neighbours come into range.
+
+# %%
+from flockana.course.frames import slider
+
+
+def with_range(ax, ratio):
+    title = f"α-lattice: {lattice.is_alpha_lattice(q, d, ratio * d)}, {len(lattice.links(q, ratio * d))} links"
+    plots.configuration(q, d=d, r=ratio * d, ax=ax, bar=False, title=title)
+
+
+kappas = (0.95, 1.05, 1.2, 1.4, 1.6, 1.7, 1.75, 1.9, 2.05)
+slider(with_range, kappas, name="κ", title="links of a patch of the hexagonal lattice", size=(4.6, 4.6), start=2)
+
+# %% [markdown]
 # ## Theorem 5
 #
 # > **Theorem 5** (Olfati-Saber 2006). Let $q$ be an α-lattice of scale $d > 0$ and ratio $\kappa > 1$ with distinct
@@ -114,7 +130,8 @@ print(lattice.rigidity(q, pairs))
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** ★ (1 point) How many links can an α-lattice of 100 agents in the plane have at most? (A whole number.)
+# **1.** ★ (1 point, derivation) How many links can an α-lattice of 100 agents in the plane have at most? (A whole
+# number.)
 
 # %% tags=["answer"]
 most = ...
@@ -126,8 +143,8 @@ most = lattice.harborth(100)
 grade(most, 265, hint="Harborth's number, not 3n − 6")
 
 # %% [markdown] tags=["exercise"]
-# **2.** ★ (1 point) For $r = 1.2\,d$, at what least distance between any two agents does the extension guarantee that
-# no links cross? Give it as a multiple of $d$, to three significant digits.
+# **2.** ★ (1 point, derivation) For $r = 1.2\,d$, at what least distance between any two agents does the extension
+# guarantee that no links cross? Give it as a multiple of $d$, to three significant digits.
 
 # %% tags=["answer"]
 safe = ...
@@ -139,8 +156,8 @@ safe = 1.2 / np.sqrt(2)
 grade(safe, 0.848528, digits=3, hint="the extension is stated for r; put in what r is")
 
 # %% [markdown] tags=["exercise"]
-# **3.** ★★ (2 points) Build thirteen agents: an FCC site with its twelve nearest neighbours, as an array `thirteen` of
-# shape (13, 3) with scale $d = 7$. More than $3n - 6 = 33$ links are possible in space.
+# **3.** ★★ (2 points, design) Build thirteen agents: an FCC site with its twelve nearest neighbours, as an array
+# `thirteen` of shape (13, 3) with scale $d = 7$. More than $3n - 6 = 33$ links are possible in space.
 
 # %% tags=["answer"]
 thirteen = ...
@@ -159,7 +176,7 @@ grade(
 )
 
 # %% [markdown] tags=["exercise"]
-# **4.** ★ (1 point) Theorem 5 bounds the links of 2 agents by $3n - 6$. Is that right? (`True` or `False`.)
+# **4.** ★ (1 point, derivation) Theorem 5 bounds the links of 2 agents by $3n - 6$. Is that right? (`True` or `False`.)
 
 # %% tags=["answer"]
 bound_holds_for_two = ...
@@ -171,8 +188,8 @@ bound_holds_for_two = bool(len(lattice.links(lattice.line(2, d), r)) <= 3 * 2 - 
 grade(bound_holds_for_two, False, hint="erratum E6")
 
 # %% [markdown] tags=["exercise"]
-# **5.** ★★★ (3 points) Counterexample hunt: give four agents in the plane, an array of shape (4, 2), two of whose links
-# cross, for $r = 8.4$. (By the extension some two of them are nearer than $r/\sqrt2$.)
+# **5.** ★★★ (3 points, counterexample) Counterexample hunt: give four agents in the plane, an array of shape (4, 2),
+# two of whose links cross, for $r = 8.4$. (By the extension some two of them are nearer than $r/\sqrt2$.)
 
 # %% tags=["answer"]
 crossing = ...
@@ -189,3 +206,23 @@ grade(
     form="list",
     hint="which links could cross in a square?",
 )
+
+# %% [markdown] tags=["exercise"]
+# **6.** ★★ (2 points, words) Theorem 5(i) is proved by showing that no two links of a lattice cross. Why does that
+# prove planarity in the plane and nothing in space? Name a net that can be drawn in space without crossings and is not
+# planar. In your own words, at least 30 of them. (The check counts words, and your lecturer reads the text.)
+
+# %% tags=["answer"]
+planarity = ...
+
+# %% tags=["solution"]
+planarity = """A graph is planar if it can be drawn in the plane without crossing edges. In the plane the positions
+of the agents are such a drawing. In space links that do not meet are the rule: any graph can be drawn in space
+without crossings, for instance the complete graph of five nodes in general position, which is not planar by
+Kuratowski's theorem."""
+# Rubric, a point each:
+# planarity is about a drawing in the plane; an example such as the complete graph of five
+# nodes, or K3,3.
+
+# %% tags=["check"]
+grade(planarity, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")

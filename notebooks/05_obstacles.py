@@ -58,7 +58,13 @@ for ax, t in zip(axes, (8.0, 24.0, 50.0), strict=True):
     plots.snapshot(run, time=t, ax=ax, bar=False)
 
 # %% [markdown]
-# The flock splits and rejoins. How close did anyone come to an obstacle? Samples alone could miss the moment, so the
+# The flock splits and rejoins:
+
+# %%
+run.player(height=520)
+
+# %% [markdown]
+# How close did anyone come to an obstacle? Samples alone could miss the moment, so the
 # library bounds the distance along the whole path:
 
 # %%
@@ -115,8 +121,8 @@ _ = plots.energy(run, ax=ax)
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** ★ (1 point) An agent moves past a sphere of radius 2 at the origin: it is at $(4, 0)$ with velocity $(0, 3)$.
-# How fast is its β-agent? (Exactly.)
+# **1.** ★ (1 point, derivation) An agent moves past a sphere of radius 2 at the origin: it is at $(4, 0)$ with velocity
+# $(0, 3)$. How fast is its β-agent? (Exactly.)
 
 # %% tags=["answer"]
 speed = ...
@@ -128,8 +134,8 @@ speed = 2 / 4 * 3  # μ P p, and P p = p here
 grade(speed, 1.5, hint="which part of the velocity does P keep?")
 
 # %% [markdown] tags=["exercise"]
-# **2.** ★★ (2 points) Let `run` start with twice the velocity of the γ-agent (10 along x). What is the least clearance
-# that it reaches, to three significant digits?
+# **2.** ★★ (2 points, experiment) Let `run` start with twice the velocity of the γ-agent (10 along x). What is the
+# least clearance that it reaches, to three significant digits?
 
 # %% tags=["answer"]
 reached = ...
@@ -142,10 +148,10 @@ reached = fast.clearance().reached
 grade(reached, 4.12186, digits=3, hint="run it with another p0, and ask that run for its clearance")
 
 # %% [markdown] tags=["exercise"]
-# **3.** ★★★ (3 points) A γ-agent that stays at the origin reports $p_d = (1, 0)$. One agent is at rest at the origin;
-# $c_1^\gamma = 1$, $c_2^\gamma = 2$, no obstacle. Put $p = 0$ into $\dot H$: it is 0, and the condition $\tfrac
-# n2\langle p_c, p_d\rangle \le T$ holds, with equality. Does the energy stay? Compute $\ddot H$ at this instant,
-# exactly. (Then run it, and read what `os-6` says and why.)
+# **3.** ★★★ (3 points, derivation) A γ-agent that stays at the origin reports $p_d = (1, 0)$. One agent is at rest at
+# the origin; $c_1^\gamma = 1$, $c_2^\gamma = 2$, no obstacle. Put $p = 0$ into $\dot H$: it is 0, and the condition
+# $\tfrac n2\langle p_c, p_d\rangle \le T$ holds, with equality. Does the energy stay? Compute $\ddot H$ at this
+# instant, exactly. (Then run it, and read what `os-6` says and why.)
 
 # %% tags=["answer"]
 curvature = ...
@@ -167,8 +173,8 @@ assert abs(2.0 * first / 1e-3**2 - curvature) < 0.02 * curvature  # H rises as �
 grade(curvature, 4.0, hint="differentiate the third term of dH/dt; at rest only the part linear in p counts")
 
 # %% [markdown] tags=["exercise"]
-# **4.** ★★ (2 points) An agent moves with the velocity $(3, 4)$ near a wall with the normal $(0, 1)$. Compute $\langle
-# p, \hat p - p\rangle$, the power that its braking draws, exactly.
+# **4.** ★★ (2 points, derivation) An agent moves with the velocity $(3, 4)$ near a wall with the normal $(0, 1)$.
+# Compute $\langle p, \hat p - p\rangle$, the power that its braking draws, exactly.
 
 # %% tags=["answer"]
 work = ...
@@ -180,8 +186,8 @@ work = -(4.0**2)  # Pp = (3, 0), so p̂ − p = (0, −4)
 grade(work, -16.0, hint="split the velocity along and across the wall")
 
 # %% [markdown] tags=["exercise"]
-# **5.** ★★ (2 points) The pull of Algorithm 3 is bounded by $c_1^\gamma$. At what distance from the γ-agent is it at 99
-# % of that bound? (Four significant digits.)
+# **5.** ★★ (2 points, derivation) The pull of Algorithm 3 is bounded by $c_1^\gamma$. At what distance from the γ-agent
+# is it at 99 % of that bound? (Four significant digits.)
 
 # %% tags=["answer"]
 far = ...
@@ -191,3 +197,61 @@ far = 0.99 / np.sqrt(1.0 - 0.99**2)
 
 # %% tags=["check"]
 grade(far, 7.01792, digits=4, hint="invert σ₁")
+
+# %% [markdown] tags=["exercise"]
+# **6.** ★★★ (3 points, counterexample) Theorem 6 does not promise arrival. One agent under Algorithm 3 with $c_1^\gamma
+# = 1$, $c_2^\gamma = 2$ and the law's other gains as they are; the γ-agent rests at $(-60, 0)$, and a sphere of radius
+# 10 stands at the origin. Where does the agent rest for ever though it has not arrived? Give its position, a list of
+# two numbers, with a force below $10^{-6}$.
+
+# %% tags=["answer"]
+trap = ...
+
+# %% tags=["solution"]
+from scipy.optimize import brentq
+
+blocked = fl.Algorithm3(
+    gains=fl.Gains(c1_gamma=1.0, c2_gamma=2.0),
+    target=fl.StaticTarget((-60.0, 0.0)),
+    obstacles=(fl.Sphere((0.0, 0.0), 10.0),),
+)
+trap = [brentq(lambda x: blocked.acceleration(0.0, [[x, 0.0]], [[0.0, 0.0]])[0, 0], 10.5, 16.0, xtol=1e-13), 0.0]
+
+# %% tags=["check"]
+grade(
+    trap,
+    lambda q: (
+        np.hypot(*q) > 10.0
+        and np.hypot(q[0] + 60.0, q[1]) > 1.0
+        and np.linalg.norm(
+            fl.Algorithm3(
+                gains=fl.Gains(c1_gamma=1.0, c2_gamma=2.0),
+                target=fl.StaticTarget((-60.0, 0.0)),
+                obstacles=(fl.Sphere((0.0, 0.0), 10.0),),
+            ).acceleration(0.0, [q], [[0.0, 0.0]])
+        )
+        < 1e-6
+    ),
+    form="list",
+    hint="behind the sphere both forces act along one line, in opposite directions",
+)
+
+# %% [markdown] tags=["exercise"]
+# **7.** ★★ (2 points, words) An engineer runs Algorithm 3, sees some agents stuck behind an obstacle, and calls Theorem
+# 6 false. Is it? What does the theorem say about these agents, and what would have to be proved to exclude them? In
+# your own words, at least 30 of them. (The check counts words, and your lecturer reads the text.)
+
+# %% tags=["answer"]
+stuck = ...
+
+# %% tags=["solution"]
+stuck = """It is not: the theorem says that the energy does not rise, and agents at rest behind an obstacle have
+constant energy. They sit at a critical point of the total potential, where the pull and the repulsion cancel. To
+exclude them one would have to show that the potential has no local minimum other than the goal, which this one
+has."""
+# Rubric, a point each:
+# the theorem bounds the energy only, and is met at rest; one must exclude other minima of the
+# total potential.
+
+# %% tags=["check"]
+grade(stuck, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")

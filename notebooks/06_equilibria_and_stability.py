@@ -65,6 +65,12 @@ for ax, mode in zip(axes, shapes, strict=True):
     plots.mode_shape(rest.q, pairs, mode.shape, ax=ax, title=plots.mode_title(mode))
 
 # %% [markdown]
+# The slowest of them in motion, much enlarged:
+
+# %%
+stability.mode_motion(flock, shapes[0]).player(height=520)
+
+# %% [markdown]
 # ## Does it tell the truth?
 #
 # Push the flock along its slowest structural mode by $10^{-4}$ and let the *nonlinear* law act. The mismatch
@@ -128,23 +134,26 @@ assert abs(best_drawn - 2.0 * np.sqrt(law.gains.c1_gamma)) < 1e-12
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** ★ (1 point) Linearise Algorithm 1 about the exact hexagon of 19 (at rest). Which of its zero modes drift for
-# ever once they are given a velocity? Give the list of names.
+# **1.** ★★ (2 points, derivation) Linearise Algorithm 1, $c_2^\alpha > 0$, at an infinitesimally rigid α-lattice in
+# *space*, at rest. How often does the first-order system of positions and velocities have the eigenvalue 0, counted
+# with its algebraic multiplicity? (Translations lie in the kernels of both $S$ and $D$, rotations in that of $S$ only.
+# A whole number.)
 
 # %% tags=["answer"]
-drifting = ...
+zeros = ...
 
 # %% tags=["solution"]
-free = fl.linearise(fl.Algorithm1(), lattice.hexagonal_patch(2, 7.0))
-drifting = list(free.drifting)
+zeros = 2 * 3 + 3  # a translation gives a chain of two vectors: it may drift; a rotation is damped and gives one
+drifting = fl.linearise(fl.Algorithm1(), lattice.hexagonal_patch(2, 7.0)).drifting
+print("in the plane these drift:", drifting)
 
 # %% tags=["check"]
-grade(drifting, {"translation x", "translation y"}, hint="what can move for ever without a force?")
+grade(zeros, 9, hint="put x = ξ + tη into the linear equation: for which ξ and η does it solve it?")
 
 # %% [markdown] tags=["exercise"]
-# **2.** ★★ (2 points) Two agents under Algorithm 1, 7 apart, at rest. The only shape is the distance. What is its
-# damping ratio, to three significant digits? (By `linearise`, or from $\phi_\alpha'(d_\alpha)$ and $a_{ij}$ at $d$ by
-# hand.)
+# **2.** ★★ (2 points, derivation) Two agents under Algorithm 1, 7 apart, at rest. The only shape is the distance. What
+# is its damping ratio, to three significant digits? (By `linearise`, or from $\phi_\alpha'(d_\alpha)$ and $a_{ij}$ at
+# $d$ by hand.)
 
 # %% tags=["answer"]
 damping_ratio = ...
@@ -157,8 +166,8 @@ damping_ratio = pair.modes[0].damping_ratio
 grade(damping_ratio, 0.09291926, digits=3, hint="there is one mode")
 
 # %% [markdown] tags=["exercise"]
-# **3.** ★ (1 point) For which $c_2^\gamma$ does the centre of mass return fastest, with $c_1^\gamma = 1.1$ as it is?
-# (Four significant digits.)
+# **3.** ★ (1 point, derivation) For which $c_2^\gamma$ does the centre of mass return fastest, with $c_1^\gamma = 1.1$
+# as it is? (Four significant digits.)
 
 # %% tags=["answer"]
 best = ...
@@ -170,9 +179,9 @@ best = 2 * np.sqrt(1.1)
 grade(best, 2.0976177, digits=4, hint="where do two real poles meet?")
 
 # %% [markdown] tags=["exercise"]
-# **4.** ★★ (2 points) `linearise` refuses a state that is no equilibrium. Try the *exact* hexagon of 19 under `law`:
-# what does it name, relative to the forces of the law? Give it to two significant digits. (Read the message of the
-# error.)
+# **4.** ★★ (2 points, reading) `linearise` refuses a state that is no equilibrium. Try the *exact* hexagon of 19 under
+# `law`: what does it name, relative to the forces of the law? Give it to two significant digits. (Read the message of
+# the error.)
 
 # %% tags=["answer"]
 residual = ...
@@ -188,7 +197,7 @@ residual = fl.linearise(law, lattice.hexagonal_patch(2, 7.0), allow_residual=Tru
 grade(residual, 0.04442693, digits=2, hint="the error says it, relative to the forces")
 
 # %% [markdown] tags=["exercise"]
-# **5.** ★★★ (3 points) Design: one agent follows a γ-agent at rest with $c_1^\gamma = 1$, $c_2^\gamma = 2$, and
+# **5.** ★★★ (3 points, design) Design: one agent follows a γ-agent at rest with $c_1^\gamma = 1$, $c_2^\gamma = 2$, and
 # everything that it hears is late by $\tau$: $s^2 + (2s + 1)e^{-s\tau} = 0$. What is the delay margin, to four
 # significant digits? (At the margin $s = i\omega$: compare moduli first, then phases.)
 
@@ -201,3 +210,23 @@ delay = np.arctan(2.0 * omega_c) / omega_c
 
 # %% tags=["check"]
 grade(delay, 0.647409203, digits=4, hint="two real equations, for ω and for τ")
+
+# %% [markdown] tags=["exercise"]
+# **6.** ★★ (2 points, words) The linearised flock has eigenvalues 0, and yet we say that its shape converges. Why is
+# that no contradiction, and what does it mean for the place in which a flock ends? In your own words, at least 30 of
+# them. (The check counts words, and your lecturer reads the text.)
+
+# %% tags=["answer"]
+zero_modes = ...
+
+# %% tags=["solution"]
+zero_modes = """The zero eigenvalues belong to rotations about the target: they move along the set of equilibria, on
+which the energy is constant, and do not change any distance. Across that set all eigenvalues have negative real
+part, so distances converge. Which equilibrium of the set is reached depends on the start and on any disturbance;
+the orientation is not controlled."""
+# Rubric, a point each:
+# the zero modes are tangent to a set of equilibria of one shape; the orientation reached
+# depends on the start.
+
+# %% tags=["check"]
+grade(zero_modes, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")

@@ -101,8 +101,8 @@ for name in fl.theorems():
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** ★★ (2 points) With $a = b = 1$ instead of 5 (all else equal), from which $n$ on does no state have $V < c^*$?
-# (A whole number.)
+# **1.** ★★ (2 points, experiment) With $a = b = 1$ instead of 5 (all else equal), from which $n$ on does no state have
+# $V < c^*$? (A whole number.)
 
 # %% tags=["answer"]
 n_none = ...
@@ -114,8 +114,8 @@ n_none = none_from(fl.AlphaInteraction(a=1.0, b=1.0))
 grade(n_none, 23, hint="how do V and c* change when a = b does?")
 
 # %% [markdown] tags=["exercise"]
-# **2.** ★ (1 point) Erratum E9: a constant input $u = 2$ for one step $\Delta t = 0.1$ from rest. How far does the
-# printed update move the agent, exactly?
+# **2.** ★ (1 point, derivation) Erratum E9: a constant input $u = 2$ for one step $\Delta t = 0.1$ from rest. How far
+# does the printed update move the agent, exactly?
 
 # %% tags=["answer"]
 moved = ...
@@ -128,8 +128,8 @@ moved = (u * dt) * dt + 0.5 * u * dt**2
 grade(moved, 0.03, hint="the printed update uses the new velocity, and adds ½ u dt² to it")
 
 # %% [markdown] tags=["exercise"]
-# **3.** ★ (1 point) A run of `paper-flocking` keeps all agents apart. What is the status of claim `iv-none` of `os-3`
-# on it (one word), and why?
+# **3.** ★ (1 point, reading) A run of `paper-flocking` keeps all agents apart. What is the status of claim `iv-none` of
+# `os-3` on it (one word), and why?
 
 # %% tags=["answer"]
 status = ...
@@ -141,8 +141,8 @@ status = fl.verify("os-3", fl.scenario("paper-flocking").run()).claim("iv-none")
 grade(status, "vacuous", hint="is H_λ(0) < c*?")
 
 # %% [markdown] tags=["exercise"]
-# **4.** ★★ (2 points) Agents that are all out of each other's range have $V = \tfrac12 n(n-1)\psi_\alpha(r_\alpha)$.
-# From which $n$ on is that at least $c^*$? (A whole number.)
+# **4.** ★★ (2 points, derivation) Agents that are all out of each other's range have $V = \tfrac12
+# n(n-1)\psi_\alpha(r_\alpha)$. From which $n$ on is that at least $c^*$? (A whole number.)
 
 # %% tags=["answer"]
 scattered = ...
@@ -154,9 +154,9 @@ scattered = next(n for n in range(2, 99) if n * (n - 1) / 2 * alpha.psi_alpha(al
 grade(scattered, 13, hint="how many pairs out of range cost as much as c*?")
 
 # %% [markdown] tags=["exercise"]
-# **5.** ★★★ (3 points) In your own words, at least 30 of them: a strict local minimum of $V$ that is no lattice refutes
-# a claim about *almost every* solution of Algorithm 1 with a connected flock. Why is one such minimum enough? (A text;
-# the check counts words, and your lecturer reads it.)
+# **5.** ★★★ (3 points, words) In your own words, at least 30 of them: a strict local minimum of $V$ that is no lattice
+# refutes a claim about *almost every* solution of Algorithm 1 with a connected flock. Why is one such minimum enough?
+# (A text; the check counts words, and your lecturer reads it.)
 
 # %% tags=["answer"]
 basin = ...
@@ -165,6 +165,33 @@ basin = ...
 basin = """At a strict local minimum, up to motions of the whole, the energy is a Lyapunov function, and damping makes
 it fall, so the minimum attracts an open neighbourhood of states. An open set has positive measure, so the
 solutions that start in it are not almost none."""
+# Rubric, a point each:
+# the minimum is asymptotically stable, up to motions of the whole; so it attracts an open
+# set; which has positive measure, so that not almost every solution does otherwise.
 
 # %% tags=["check"]
 grade(basin, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")
+
+# %% [markdown] tags=["exercise"]
+# **6.** ★★ (2 points, counterexample) Is a state with $V \ge c^*$ bound to hold two agents that are nearly in one
+# place? Give positions in the plane, an array of shape (n, 2), $n \le 40$, of agents that are all at least 7 apart and
+# have $V \ge c^*$, for `alpha`.
+
+# %% tags=["answer"]
+costly = ...
+
+# %% tags=["solution"]
+costly = np.array([[9.0 * (k % 4), 9.0 * (k // 4)] for k in range(13)])  # all out of range: 78 pairs cost more than c*
+
+# %% tags=["check"]
+grade(
+    costly,
+    lambda q: (
+        2 <= len(q) <= 40
+        and np.shape(q)[1] == 2
+        and fl.min_distance(np.array(q, float)) >= 7.0 - 1e-9
+        and fl.AlphaInteraction().potential_energy(np.array(q, float)) >= fl.AlphaInteraction().c_star
+    ),
+    form="list",
+    hint="what does a pair out of range cost?",
+)

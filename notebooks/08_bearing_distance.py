@@ -189,8 +189,8 @@ _ = plots.pole_map(found.eigenvalues, ax=ax)
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** ★ (1 point) Halve the step to $\delta = 0.05$. Which speed can the printed bound (10) not exceed for long now?
-# (Four significant digits.)
+# **1.** ★ (1 point, experiment) Halve the step to $\delta = 0.05$. Which speed can the printed bound (10) not exceed
+# for long now? (Four significant digits.)
 
 # %% tags=["answer"]
 fastest = ...
@@ -202,8 +202,8 @@ fastest = float(bearing_distance.fastest_under_drag(0.05, 2, 4))
 grade(fastest, 1.62779186, digits=4, hint="the speed at which one step gains as much as the bound takes")
 
 # %% [markdown] tags=["exercise"]
-# **2.** ★ (1 point) Two agents: 1 perceives 0 and wants to be 1 away, both at rest, 0.5 apart. What is the acceleration
-# of agent 1 along the line from 0 to 1 ($\mu = 1$)? (Exactly.)
+# **2.** ★ (1 point, derivation) Two agents: 1 perceives 0 and wants to be 1 away, both at rest, 0.5 apart. What is the
+# acceleration of agent 1 along the line from 0 to 1 ($\mu = 1$)? (Exactly.)
 
 # %% tags=["answer"]
 push = ...
@@ -216,8 +216,8 @@ push = float(pair.acceleration(0.0, [[0.0], [0.5]], [[0.0], [0.0]])[1, 0])
 grade(push, 0.5, hint="a spring that is too short pushes: mind the sign")
 
 # %% [markdown] tags=["exercise"]
-# **3.** ★★ (2 points) How many zero modes, translations included, has the same law on a tree of 5 agents in space?
-# Count them with `linearise`, with all edges at their desired lengths. (A whole number.)
+# **3.** ★★ (2 points, experiment) How many zero modes, translations included, has the same law on a tree of 5 agents in
+# space? Count them with `linearise`, with all edges at their desired lengths. (A whole number.)
 
 # %% tags=["answer"]
 count = ...
@@ -231,8 +231,8 @@ count = len(linearise(chain, corners).zero_modes)
 grade(count, 11, hint="in space a bearing has two angles")
 
 # %% [markdown] tags=["exercise"]
-# **4.** ★★ (2 points) With the zones' own law in its letter (`zone-51-printed`), how close do two agents come in 20 s,
-# at the steps? (Three significant digits.)
+# **4.** ★★ (2 points, reading) With the zones' own law in its letter (`zone-51-printed`), how close do two agents come
+# in 20 s, at the steps? (Three significant digits.)
 
 # %% tags=["answer"]
 least = ...
@@ -244,8 +244,9 @@ least = float(printed.metrics().min_distance.min())
 grade(least, 0.07065939, digits=3, hint="the run's metrics hold the least distance at every step")
 
 # %% [markdown] tags=["exercise"]
-# **5.** ★★★ (3 points) Derive: the eigenvalues of an edge solve $s^2 + s + w = 0$ with $w = 1 - \rho/\|x\|$. Above
-# which ratio $\|x\|/\rho$ are they complex, so that the edge's length swings? (Four significant digits.)
+# **5.** ★★★ (3 points, derivation) Derive: the eigenvalues of an edge solve $s^2 + s + w = 0$ with $w = 1 -
+# \rho/\|x\|$. Above which ratio $\|x\|/\rho$ are they complex, so that the edge's length swings? (Four significant
+# digits.)
 
 # %% tags=["answer"]
 ratio = ...
@@ -255,3 +256,24 @@ ratio = 1.0 / (1.0 - 0.25)  # w > 1/4
 
 # %% tags=["check"]
 grade(ratio, 1.33333333, digits=4, hint="the sign of the discriminant")
+
+# %% [markdown] tags=["exercise"]
+# **6.** ★★ (2 points, words) The matrix $A_{cl}$ is Hurwitz at every state along some trajectory. Does the trajectory
+# therefore converge? Say why eigenvalues of a matrix that depends on the state do not decide that, and what the
+# corrected theorem relies on instead. In your own words, at least 30 of them. (The check counts words, and your
+# lecturer reads the text.)
+
+# %% tags=["answer"]
+frozen = ...
+
+# %% tags=["solution"]
+frozen = """Not therefore. Eigenvalues decide the behaviour of a linear system with a constant matrix; with a matrix
+that changes along the trajectory, solutions can grow though every frozen matrix is Hurwitz, and here the matrix is
+not even the derivative of the right-hand side. The corrected theorem linearises at an equilibrium, where the
+derivative is constant, and claims convergence only near the set of equilibria."""
+# Rubric, a point each:
+# frozen eigenvalues do not decide systems that vary; linearisation at an equilibrium holds in
+# a neighbourhood only.
+
+# %% tags=["check"]
+grade(frozen, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")

@@ -126,7 +126,46 @@ for name in ("chatter", "ramp"):
     print(fl.verify("L7").claim(name).detail)
 
 # %% [markdown]
+# As a film: a pair near $d_1$, step after step. With the jump every step that ends below $d_1$ throws the pair out, the
+# less far the shorter the step, for ever; with the ramp it comes to rest.
+
+# %%
+from flockana.course.frames import film
+
+
+def stepped(interaction, dt, end=80.0):
+    length, rate, found = 3.6, 0.0, []
+    for _ in range(round(end / dt)):  # both agents feel the force, and the damping k2 = 1
+        rate -= 2.0 * dt * (float(interaction.force(length)) + rate)
+        length += dt * rate
+        found.append(length)
+    return dt * np.arange(1, len(found) + 1), np.array(found)
+
+
+curves = {"jump, steps of 0.05": stepped(hard, 0.05), "jump, steps of 0.01": stepped(hard, 0.01)}
+curves["ramp, steps of 0.05"] = stepped(ramped, 0.05)
+
+
+def until(ax, end):
+    for name, (t, length) in curves.items():
+        ax.plot(t[t <= end], length[t <= end], label=name)
+    ax.set(xlim=(0.0, 80.0), ylim=(3.2, 5.2), xlabel="t (time)", ylabel="distance (length)")
+    ax.legend(loc="upper right")
+
+
+film(until, np.linspace(2.0, 80.0, 40), name="t", title="the distance of a pair at the jump", seconds=8.0)
+
+# %% tags=["facts"]
+late = [length[t > 60.0] for t, length in curves.values()]
+assert np.ptp(late[0]) > 2.0 * np.ptp(late[1]) > 0.05
+assert np.ptp(late[2]) < 1e-6
+
+# %% [markdown]
 # ## The theorem, printed and corrected
+#
+# > **Theorem 1** (Li, Yuan and Liu, as printed, in our words). From finite initial energy (i) agents form cohesive
+# > flocks, in which none is farther than $r$ from its virtual leader; (ii) the energy does not rise, the flock ends
+# > in a local minimum of it, and velocities match; (iii) no two agents collide.
 #
 # Fifty agents in a box of 40, as far as the source says how; and the same in a box of 150:
 
@@ -143,7 +182,11 @@ print(fl.verify("dead-zone-1-printed", wide))
 # how far an agent gets from that centre. The components that are left at the end never come within $r$ of each other
 # again.
 #
-# Of the theorem two things remain true, and are proved: the energy falls, and there is an explicit least distance. With
+# > **Corrected theorem.** Let each pair's potential be held constant beyond $r$, let $\bar H$ be the sum over all
+# > pairs and the kinetic energy, and let no two agents start in one place. Then $\bar H$ is continuous and $\dot{\bar
+# > H} = -k_2\,p^\top\hat L\,p \le 0$ across all switches, and no distance ever falls below $\rho_{\min}$.
+#
+# Both are proved. With
 # $\bar H(0)$ the energy at the start, a pair inside $d_1$ costs $2k_r(\operatorname{arsinh}(1/(\sqrt\eta\rho)) -
 # \operatorname{arsinh}(1/(\sqrt\eta d_1)))$ at least, and no two agents ever come closer than
 #
@@ -182,9 +225,9 @@ _ = plots.configuration(equilibrium.q, d=ramped.d1, r=1.2 * ramped.d1, ax=ax)
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** ★ (1 point) Two agents out of range approach each other head-on at relative speed 2 on a line. By how much does
-# the printed energy, of neighbours, rise at the instant at which they come into range? (Default parameters, without a
-# ramp; four significant digits.)
+# **1.** ★ (1 point, derivation) Two agents out of range approach each other head-on at relative speed 2 on a line. By
+# how much does the printed energy, of neighbours, rise at the instant at which they come into range? (Default
+# parameters, without a ramp; four significant digits.)
 
 # %% tags=["answer"]
 rise = ...
@@ -196,8 +239,8 @@ rise = hard.psi(hard.r)  # whatever the speed
 grade(rise, 5.81707271, digits=4, hint="what does a pair at the edge of the range cost?")
 
 # %% [markdown] tags=["exercise"]
-# **2.** ★★ (2 points) What is the greatest energy $\bar H(0)$ for which the corrected theorem promises that no two
-# agents come closer than 1? (Without a ramp; $\eta = 1$; four significant digits.)
+# **2.** ★★ (2 points, design) What is the greatest energy $\bar H(0)$ for which the corrected theorem promises that no
+# two agents come closer than 1? (Without a ramp; $\eta = 1$; four significant digits.)
 
 # %% tags=["answer"]
 energy = ...
@@ -209,8 +252,8 @@ energy = 2 * hard.k_r * (np.arcsinh(1.0) - np.arcsinh(1.0 / hard.d1))
 grade(energy, 239.764139, digits=4, hint="set the least distance to 1 and solve for the energy")
 
 # %% [markdown] tags=["exercise"]
-# **3.** ★★★ (3 points) Two agents 14 apart leave each other, each at speed $v$, with the default law. At which of the
-# speeds 1, 2, 3, 4 do they part for ever? Give a list, in any order.
+# **3.** ★★★ (3 points, experiment) Two agents 14 apart leave each other, each at speed $v$, with the default law. At
+# which of the speeds 1, 2, 3, 4 do they part for ever? Give a list, in any order.
 
 # %% tags=["answer"]
 parting = ...
@@ -228,9 +271,9 @@ parting = [v for v in (1, 2, 3, 4) if cohesion(v) == "refuted"]
 grade(parting, {3, 4}, hint="the printed theorem's claim of cohesion says when parting is certain")
 
 # %% [markdown] tags=["exercise"]
-# **4.** ★★ (2 points) Filippov: at the jump at $d_1$ a held pair feels a convex combination of the two forces beside
-# it, with the share that makes it 0. `hard.jumps()` gives both forces. What share of the repelling one is it, to three
-# significant digits?
+# **4.** ★★ (2 points, derivation) Filippov: at the jump at $d_1$ a held pair feels a convex combination of the two
+# forces beside it, with the share that makes it 0. `hard.jumps()` gives both forces. What share of the repelling one is
+# it, to three significant digits?
 
 # %% tags=["answer"]
 share = ...
@@ -243,8 +286,8 @@ share = contact.above / (contact.above - contact.below)
 grade(share, 0.001072077, digits=3, hint="share × one force + (1 − share) × the other = 0")
 
 # %% [markdown] tags=["exercise"]
-# **5.** ★★ (2 points) What least distance does the corrected theorem guarantee for $\bar H(0) = 100$, without a ramp
-# and with $\eta = 1$? (Four significant digits.)
+# **5.** ★★ (2 points, derivation) What least distance does the corrected theorem guarantee for $\bar H(0) = 100$,
+# without a ramp and with $\eta = 1$? (Four significant digits.)
 
 # %% tags=["answer"]
 nearest = ...
@@ -254,3 +297,23 @@ nearest = 1.0 / np.sinh(100.0 / (2.0 * hard.k_r) + np.arcsinh(1.0 / hard.d1))
 
 # %% tags=["check"]
 grade(nearest, 1.79401084, digits=4, hint="the formula is above; k_r is hard.k_r")
+
+# %% [markdown] tags=["exercise"]
+# **6.** ★★ (2 points, words) A fixed-step simulation of a pair at $d_1$ shows a small vibration that never ends. How
+# would you find out whether the vibration belongs to the law or to the integrator, and which is it here? In your own
+# words, at least 30 of them. (The check counts words, and your lecturer reads the text.)
+
+# %% tags=["answer"]
+chattering = ...
+
+# %% tags=["solution"]
+chattering = """Halve the step: the amplitude of what the integrator makes shrinks with the step and its frequency
+grows, while a motion of the law stays. Locating the switches, or a ramp in the place of the jump, shows the same.
+Here the vibration is the integrator's: in Filippov's sense the pair is held at the jump, and with the ramp it comes
+to rest."""
+# Rubric, a point each:
+# a test that separates the two: the step, located switches, or a ramp; it is the
+# integrator's, as the law holds the pair at the jump.
+
+# %% tags=["check"]
+grade(chattering, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")

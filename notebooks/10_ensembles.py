@@ -115,21 +115,23 @@ print(fl.replay(path))
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** ★ (1 point) You see 198 successes in 200 runs. What is the lower end of the 95 % interval, to four significant
-# digits?
+# **1.** ★★ (2 points, derivation) If all of $N$ runs succeed, the lower end $p$ of the 95 % interval of Clopper and
+# Pearson is the probability of success at which $N$ successes still happen with probability 2.5 %. Write that as an
+# equation and solve it for $N = 100$. (Four significant digits.)
 
 # %% tags=["answer"]
 lower = ...
 
 # %% tags=["solution"]
-lower = fl.clopper_pearson(198, 200)[0]
+lower = 0.025 ** (1 / 100)  # p^N = 0.025
+print(fl.clopper_pearson(100, 100))
 
 # %% tags=["check"]
-grade(lower, 0.96434533, digits=4, hint="two of the 200 failed: the function counts successes")
+grade(lower, 0.963783, digits=4, hint="the runs are independent: what is the probability that all succeed?")
 
 # %% [markdown] tags=["exercise"]
-# **2.** ★★ (2 points) How many successes without a failure does it take until the lower end exceeds 0.99? (A whole
-# number.)
+# **2.** ★★ (2 points, design) How many successes without a failure does it take until the lower end exceeds 0.99? (A
+# whole number.)
 
 # %% tags=["answer"]
 runs_needed = ...
@@ -141,7 +143,7 @@ runs_needed = next(N for N in range(1, 1000) if fl.clopper_pearson(N, N)[0] > 0.
 grade(runs_needed, 368, hint="a loop over N; the low end grows with N")
 
 # %% [markdown] tags=["exercise"]
-# **3.** ★ (1 point) Search for a start of `zone-tree` that breaks the bearing-distance Theorem 1 as printed
+# **3.** ★ (1 point, reading) Search for a start of `zone-tree` that breaks the bearing-distance Theorem 1 as printed
 # (`zone-1-printed`). After how many runs is one found? (A whole number.)
 
 # %% tags=["answer"]
@@ -154,8 +156,8 @@ evaluations = fl.falsify("zone-1-printed", "zone-tree", budget=20).evaluations
 grade(evaluations, 1, hint=".evaluations; the very first run will do")
 
 # %% [markdown] tags=["exercise"]
-# **4.** ★★ (2 points) A claim fails at one start in a hundred. With what probability do 60 random runs show no failure?
-# (Four significant digits.)
+# **4.** ★★ (2 points, derivation) A claim fails at one start in a hundred. With what probability do 60 random runs show
+# no failure? (Four significant digits.)
 
 # %% tags=["answer"]
 unseen = ...
@@ -167,8 +169,8 @@ unseen = 0.99**60
 grade(unseen, 0.547157, digits=4, hint="runs are independent")
 
 # %% [markdown] tags=["exercise"]
-# **5.** ★★ (2 points) And how many random runs does it take to see a failure with a probability of at least 0.95? (A
-# whole number.)
+# **5.** ★★ (2 points, derivation) And how many random runs does it take to see a failure with a probability of at least
+# 0.95? (A whole number.)
 
 # %% tags=["answer"]
 runs_for_one = ...
@@ -180,3 +182,23 @@ runs_for_one = math.ceil(math.log(0.05) / math.log(0.99))
 
 # %% tags=["check"]
 grade(runs_for_one, 299, hint="ask for the probability of none")
+
+# %% [markdown] tags=["exercise"]
+# **6.** ★★ (2 points, words) A search of $10^5$ runs for a counterexample found none, and a report says that the claim
+# is verified. What may the report say instead, and what does the number $10^5$ not tell, compared with $10^5$ random
+# runs? In your own words, at least 30 of them. (The check counts words, and your lecturer reads the text.)
+
+# %% tags=["answer"]
+honest = ...
+
+# %% tags=["solution"]
+honest = """It may say that this search, with this budget, seed, region and scenario, found no counterexample. The
+runs of a search are not independent draws: each start is chosen after the ones before, so no interval for a
+probability follows from their number. For random runs an interval would follow, for that distribution of starts
+only. Neither is a proof."""
+# Rubric, a point each:
+# nothing was found in a stated region with a stated budget, which verifies nothing; adaptive runs
+# are no independent sample, so no interval follows.
+
+# %% tags=["check"]
+grade(honest, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")

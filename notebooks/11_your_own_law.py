@@ -111,7 +111,11 @@ print(f"the balance closes to {abs(run.energy_residual).max() / run.energy()[0]:
 # %% [markdown]
 # ## The theorem
 #
-# While no pair is farther apart than $D$, every weight is at least $(s/n)(1+D^2)^{-\beta}$, and so
+# > **Theorem.** Let $p_c$ be the mean velocity and $K = \tfrac12\sum\|p_i - p_c\|^2$, and let no two agents of a
+# > solution be farther apart than $D$ while $0 \le t \le T$. Then $K(t) \le K(0)\,e^{-2s(1+D^2)^{-\beta}t}$ for those
+# > $t$.
+#
+# For then every weight is at least $(s/n)(1+D^2)^{-\beta}$, and so
 #
 # $$\dot K = -\tfrac12\sum_{i,j} a_{ij}\|p_j-p_i\|^2 \le -2s\,(1+D^2)^{-\beta} K .$$
 
@@ -150,8 +154,8 @@ for step in PROOF.steps():
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** ★ (1 point) Morse's potential $\psi(s) = e^{-2(s-1)} - 2e^{-(s-1)}$ holds two agents at 1. Give it as a formula
-# with range 4 and no adjacency. How many things does it lack? (A whole number.)
+# **1.** ★ (1 point, reading) Morse's potential $\psi(s) = e^{-2(s-1)} - 2e^{-(s-1)}$ holds two agents at 1. Give it as
+# a formula with range 4 and no adjacency. How many things does it lack? (A whole number.)
 
 # %% tags=["answer"]
 lacking = ...
@@ -164,8 +168,8 @@ lacking = len(morse.faults)
 grade(lacking, 2, hint="look at the force at both ends of the range: morse.faults")
 
 # %% [markdown] tags=["exercise"]
-# **2.** ★★ (2 points) How stiff is a link of the double well at its length $d$? That is the slope of the force there,
-# by hand or by `sympy`, exactly.
+# **2.** ★★ (2 points, derivation) How stiff is a link of the double well at its length $d$? That is the slope of the
+# force there, by hand or by `sympy`, exactly.
 
 # %% tags=["answer"]
 stiffness = ...
@@ -178,8 +182,8 @@ stiffness = float(sp.diff(psi, s, 2).subs({s: 2, d: 2, r: 3, k: sp.Rational(1, 1
 grade(stiffness, 8.0, hint="only one of the two squares vanishes at d")
 
 # %% [markdown] tags=["exercise"]
-# **3.** ★★ (2 points) Leave out the factor ½ in the rate that `flow` returns. What is the largest energy residual then,
-# relative to $K(0)$? (Derive a class from `CuckerSmale` and override `flow`.) To the nearest integer.
+# **3.** ★★ (2 points, experiment) Leave out the factor ½ in the rate that `flow` returns. What is the largest energy
+# residual then, relative to $K(0)$? (Derive a class from `CuckerSmale` and override `flow`.) To the nearest integer.
 
 # %% tags=["answer"]
 residual = ...
@@ -199,22 +203,30 @@ residual = round(abs(wrong.energy_residual).max() / wrong.energy()[0])
 grade(residual, 1, hint="what is left of the balance when the integral is doubled?")
 
 # %% [markdown] tags=["exercise"]
-# **4.** ★ (1 point) Ask the theorem about a run of `paper-fragmentation`. What is the status? (One word.)
+# **4.** ★★ (2 points, design) Write a pair potential as a formula in `s`, a text, that holds two agents at the distance
+# 1, has the range 3, needs no adjacency, and lacks nothing: `fl.pair_law(formula, adjacency=0, range=3.0,
+# length=1.0).faults` is empty.
 
 # %% tags=["answer"]
-status = ...
+formula = ...
 
 # %% tags=["solution"]
-status = fl.verify(THEOREM, fl.scenario("paper-fragmentation").run()).status
+formula = "(s**2 - 1)**2*(9 - s**2)**3"
+print(fl.pair_law(formula, adjacency=0, range=3.0, length=1.0).faults)
 
 # %% tags=["check"]
-grade(status, "vacuous", hint="is it a run of this law?")
+grade(
+    formula,
+    lambda text: not fl.pair_law(text, adjacency=0, range=3.0, length=1.0).faults,
+    form="word",
+    hint="what must force and stiffness do at both ends of the range, and at the length?",
+)
 
 # %% [markdown] tags=["exercise"]
-# **5.** ★★★ (3 points) For $\beta > \tfrac12$ a flock may disperse: $D$ grows without bound, the rate that the theorem
-# guarantees falls to 0, and it promises nothing. Take two agents on a line, 1 apart, leaving each other at relative
-# speed $w$, with $s = 1$, $\beta = 1$. The relative velocity obeys $\dot w = -w/(1+x^2)$, hence $w(t) = w(0) - \arctan
-# x(t) + \arctan 1$. Above which $w(0)$ do they never match velocities? (Four significant digits.)
+# **5.** ★★★ (3 points, derivation) For $\beta > \tfrac12$ a flock may disperse: $D$ grows without bound, the rate that
+# the theorem guarantees falls to 0, and it promises nothing. Take two agents on a line, 1 apart, leaving each other at
+# relative speed $w$, with $s = 1$, $\beta = 1$. The relative velocity obeys $\dot w = -w/(1+x^2)$, hence $w(t) = w(0) -
+# \arctan x(t) + \arctan 1$. Above which $w(0)$ do they never match velocities? (Four significant digits.)
 
 # %% tags=["answer"]
 escape = ...
@@ -226,7 +238,7 @@ escape = np.pi / 2 - np.arctan(1.0)
 grade(escape, 0.78539816, digits=4, hint="w must not reach 0 as x → ∞")
 
 # %% [markdown] tags=["exercise"]
-# **6.** ★★★ (3 points) Capstone: write a law of your own, its theorem and its proof, after the three files in
+# **6.** ★★★ (3 points, design) Capstone: write a law of your own, its theorem and its proof, after the three files in
 # `own_law/` (in cells, or in files beside this notebook). Any law will do that you can prove something about; try the
 # linear consensus $u_i = \frac sn\sum_j (p_j - p_i)$, and how fast its $K$ falls. Hand in the list `[THEOREM, run,
 # PROOF]`; the check verifies the theorem on the run and the steps of the proof, and your lecturer reads them.
@@ -292,3 +304,23 @@ grade(
     form="list",
     hint="fl.verify(THEOREM, run) must be verified, and every step of the proof hold",
 )
+
+# %% [markdown] tags=["exercise"]
+# **7.** ★★★ (3 points, words) Defend your capstone: state your theorem with all hypotheses, say where the proof uses
+# each of them, and give a law or a start for which the conclusion fails because one of them does. In your own words, at
+# least 30 of them. (The check counts words, and your lecturer reads the text.)
+
+# %% tags=["answer"]
+defence = ...
+
+# %% tags=["solution"]
+defence = """Linear consensus with a positive strength s on the complete net: the mismatch K falls like exp(-2 s t). The
+proof uses that every agent hears every other with the same weight, which gives the identity of the mean, and
+that s is positive, which makes the rate negative. If s is negative K grows. If the net has two components the
+velocities agree within each of them only, and K tends to a positive number."""
+# Rubric, a point each:
+# a complete statement; the place of each hypothesis in the proof; a counterexample where one
+# of them fails.
+
+# %% tags=["check"]
+grade(defence, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")

@@ -19,7 +19,6 @@
 # Three agents under Algorithm 2, one of them off its place by a push. Does *this* start flock?
 
 # %%
-import json
 import tempfile
 from pathlib import Path
 
@@ -49,7 +48,12 @@ _ = plots.measure(run, "normalised_velocity_mismatch")
 #
 # $$U - U^* \ge G(\|w\|), \qquad \langle\nabla U, w\rangle \ge \|w\|\,G'(\|w\|).$$
 #
-# So to leave the ball of radius $\rho$ the energy must reach $U^* + G(\rho)$, which a start with less never has: the
+# > **Theorem.** Let all pairs that are linked at the triangle stay linked, and all curvatures as above be bounded
+# > below by $k$, within the distance $\rho$ of the orbit, with $G' > 0$ on $(0, \rho]$, and let $c_2^\gamma > 0$.
+# > Then every solution that starts at most $\rho$ from the orbit with an energy below $U^* + G(\rho)$ stays so near,
+# > and converges to the orbit with matched velocities.
+#
+# For to leave the ball of radius $\rho$ the energy must reach $U^* + G(\rho)$, which a start with less never has: the
 # energy only falls. `certify` bounds every pair's stress and slope by *ball arithmetic*, over all lengths that the ball
 # allows, and takes the largest ρ that it can prove.
 
@@ -162,9 +166,9 @@ print(*of_tube, sep="\n")
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** ★★ (2 points) Two agents under Algorithm 1, 7 apart. A displacement by δ over all coordinates stretches the
-# link by $\sqrt2\,\delta$, and at $r = 8.4$ the link breaks. What is the largest ρ/d that any proof could reach? (Four
-# significant digits.)
+# **1.** ★★ (2 points, derivation) Two agents under Algorithm 1, 7 apart. A displacement by δ over all coordinates
+# stretches the link by $\sqrt2\,\delta$, and at $r = 8.4$ the link breaks. What is the largest ρ/d that any proof could
+# reach? (Four significant digits.)
 
 # %% tags=["answer"]
 largest = ...
@@ -176,7 +180,7 @@ largest = 1.4 / np.sqrt(2) / 7.0
 grade(largest, 0.14142136, digits=4, hint="how much longer may the link become?")
 
 # %% [markdown] tags=["exercise"]
-# **2.** ★ (1 point) And what does `certify` reach for these two, in d? (Two significant digits.)
+# **2.** ★ (1 point, reading) And what does `certify` reach for these two, in d? (Two significant digits.)
 
 # %% tags=["answer"]
 reached = ...
@@ -188,26 +192,21 @@ reached = fl.certify([[0.0, 0.0], [7.0, 0.0]], law=fl.Algorithm1()).share
 grade(reached, 0.07038571, digits=2, hint="fl.certify takes positions and a law")
 
 # %% [markdown] tags=["exercise"]
-# **3.** ★★ (2 points) Change the radius of the certificate above to 1.0 and have it checked. Which word does the error
-# begin with after "its"? (One word; read the message.)
+# **3.** ★★ (2 points, derivation) Along a ray the curvature of $U$ is at least $k(t) = 3 - \tfrac32 t$ up to the
+# distance $t = 2$. Which energy above $U^*$ must a state have to leave the ball of radius 2? (Compute $G(2)$, exactly.)
 
 # %% tags=["answer"]
-word = ...
+level = ...
 
 # %% tags=["solution"]
-file.write_text(json.dumps({**json.loads(file.read_text()), "radius": "1"}))
-try:
-    fl.check_certificate(file)
-except fl.errors.FlockanaError as error:
-    print(error)
-    word = str(error).split()[1]
+level = 3.0 * 2.0**2 / 2.0 - 1.5 * 2.0**3 / 6.0  # G(t) = 3 t²/2 − 1.5 t³/6
 
 # %% tags=["check"]
-grade(word, "digest", hint="the message of the error that fl.check_certificate raises")
+grade(level, 4.0, hint="integrate k twice, from 0")
 
 # %% [markdown] tags=["exercise"]
-# **4.** ★★ (2 points) The certified energy falls like $e^{-2\rho t}$ at least, with $\rho = 0.4$ per time unit. After
-# what time has it surely fallen to a millionth? (Four significant digits.)
+# **4.** ★★ (2 points, derivation) The certified energy falls like $e^{-2\rho t}$ at least, with $\rho = 0.4$ per time
+# unit. After what time has it surely fallen to a millionth? (Four significant digits.)
 
 # %% tags=["answer"]
 wait = ...
@@ -219,9 +218,9 @@ wait = np.log(1e6) / 0.8
 grade(wait, 17.2693882, digits=4, hint="mind the factor 2")
 
 # %% [markdown] tags=["exercise"]
-# **5.** ★★★ (3 points) In your own words, at least 30 of them: the tube ends in the basin. What is proved of this start
-# that the run alone does not show, and what is still not proved? (A text; the check counts words, and your lecturer
-# reads it.)
+# **5.** ★★★ (3 points, words) In your own words, at least 30 of them: the tube ends in the basin. What is proved of
+# this start that the run alone does not show, and what is still not proved? (A text; the check counts words, and your
+# lecturer reads it.)
 
 # %% tags=["answer"]
 proved = ...
@@ -230,6 +229,9 @@ proved = ...
 proved = """Proved is that the true solution, not only the computed one, enters the basin, hence converges to the
 triangle with matched velocities and never collides, for all time. Not proved is anything about other
 starts outside the tube and the basin, or about a law with other parameters."""
+# Rubric, a point each:
+# the true solution is enclosed, not only computed; from the basin convergence follows for all
+# time, without collisions; other starts and parameters remain open.
 
 # %% tags=["check"]
 grade(proved, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")

@@ -130,7 +130,7 @@ def test_ensemble_falsification_report_and_plots(run, toys):
     assert (found.claim, found.verdict.status) == ("slow", "verified")
     pictures = importlib.import_module("flockana.report.figures").pictures(run)
     assert [picture.caption for picture in pictures] == ["Largest speed."]
-    assert fl.plots.snapshot(run, velocities=False).get_title() == "t = 20"
+    assert fl.plots.snapshot(run, velocities=False).get_title(loc="left") == "$t$ = 20"
 
 
 def test_a_proof(toys):

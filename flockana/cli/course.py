@@ -18,6 +18,9 @@ def course_command(
     self_study: Annotated[
         bool, typer.Option("--self-study", help="Without solutions, but with checks that grade, and so hold values.")
     ] = False,
+    slides: Annotated[
+        bool, typer.Option("--slides", help="For `jupyter nbconvert --to slides --execute DIR/*.ipynb`.")
+    ] = False,
     grader: Annotated[
         Literal["otter", "nbgrader"] | None,
         typer.Option(help="Masters for a grader, with hidden tests: for `otter assign`, or nbgrader's folder source."),
@@ -27,16 +30,21 @@ def course_command(
 
     A student's copy checks the form of an answer only. Needs `pip install 'flockana[course]'`, which brings Jupyter.
     """
-    if solutions + self_study + (grader is not None) > 1:
-        raise ArgumentError("--solutions, --self-study, --grader: expected one of them; leave the others out")
+    if solutions + self_study + slides + (grader is not None) > 1:
+        raise ArgumentError("--solutions, --self-study, --slides, --grader: expected one of them; leave the others out")
     version: Literal["student", "self-study", "solutions"] = (
         "solutions" if solutions else "self-study" if self_study else "student"
     )
     try:
         from flockana.course.build import write
         from flockana.course.export import write_for
+        from flockana.course.slides import write_slides
     except ModuleNotFoundError as error:
         raise ArgumentError(f"{error.name} is not installed: pip install 'flockana[course]'") from error
-    for written in write(folder, version) if grader is None else write_for(folder, grader):
+    if grader is not None:
+        notebooks = write_for(folder, grader)
+    else:
+        notebooks = write_slides(folder) if slides else write(folder, version)
+    for written in notebooks:
         show_files(notebook=written)
     return OK

@@ -172,7 +172,7 @@ def _draw(figure: Any, linear: Linearisation, slow: tuple[Mode, ...]) -> None:
         centre = CentreOfMass(law.gains)
         omega = centre.natural_frequency * np.geomspace(0.03, 30.0, 200)
         plots.bode(
-            {"centre of mass, q_r to q_c": centre.frequency_response(omega)}, axes=left[1].subplots(2, 1, sharex=True)
+            {"centre of mass, q_r to q_c": centre.frequency_response(omega)}, ax=left[1].subplots(2, 1, sharex=True)
         )
     for k, mode in enumerate(inner[:2]):
         ax = halves[1].add_subplot(2, 1, k + 1, projection=space)

@@ -26,8 +26,22 @@ _PACKAGE = Path(__file__).resolve().parent
 _CHECKOUT = _PACKAGE.parent.parent
 _KERNEL = {"name": "python3", "language": "python", "display_name": "Python 3"}
 _LEFT_OUT = {"student": {"solution", "facts"}, "self-study": {"solution", "facts"}, "solutions": {"answer"}}
-_POSED = re.compile(r"\*\*(\d+)\.\*\* (★{1,3}) \((\d+) points?\)")
+_POSED = re.compile(r"\*\*(\d+)\.\*\* (★{1,3}) \((\d+) points?, (\w+)\)")
+KINDS = ("derivation", "design", "counterexample", "program", "experiment", "reading", "words")
 VERSIONS = tuple(_LEFT_OUT)
+_INSTALL = """# Where flockana is missing, as on Colab, this cell installs it; elsewhere it does nothing.
+import importlib.util
+
+missing = importlib.util.find_spec("flockana") is None
+if missing:
+    %pip install --quiet "flockana[course]\""""
+_COMPANIONS = """
+
+    from pathlib import Path
+
+    from flockana.course.build import copy_companions
+
+    copy_companions(Path())"""
 
 
 @dataclass(frozen=True)
@@ -40,6 +54,8 @@ class Exercise:
         The variable that takes the answer.
     number, level, points : int
         Its place in the lecture, stars from 1 to 3, and what it counts.
+    kind : {"derivation", "design", "counterexample", "program", "experiment", "reading", "words"}
+        What it takes to answer: paper, a choice, a search, code, a computation of one's own, an output, sentences.
     form : str
         What is asked for, as `answered` takes it.
     """
@@ -48,6 +64,7 @@ class Exercise:
     number: int
     level: int
     points: int
+    kind: str
     form: str
 
 
@@ -100,6 +117,7 @@ def notebook(source: Path, version: str) -> Any:
     book.cells = [cell for cell in book.cells if not _LEFT_OUT[version] & set(tags(cell))]
     entry = next(each for each in course_map(source.parent) if each.number == number_of(source))
     book.cells.insert(1, nbformat.v4.new_markdown_cell(header(entry, source.parent)))
+    book.cells.insert(2, _install(source))
     book.cells.append(nbformat.v4.new_markdown_cell(references(entry)))
     for number, cell in enumerate(book.cells):
         cell["id"] = f"{entry.number}-{number:03d}"  # the same at every build
@@ -108,6 +126,23 @@ def notebook(source: Path, version: str) -> Any:
         elif {"solution", "check", "facts"} & set(tags(cell)):
             cell.metadata["jupyter"] = {"source_hidden": True}
     return book
+
+
+def _install(source: Path) -> Any:
+    """A cell that installs flockana where it is missing, as on Colab, with what this lecture imports from beside it."""
+    lines = _INSTALL + (_COMPANIONS if needs_companions(source) else "")
+    return nbformat.v4.new_code_cell(lines, metadata={"tags": ["install"], "jupyter": {"source_hidden": True}})
+
+
+def needs_companions(source: Path) -> bool:
+    """Whether a lecture imports from folders beside it.
+
+    Parameters
+    ----------
+    source : Path
+        One of `sources`.
+    """
+    return any(f"from {name}." in source.read_text(encoding="utf-8") for name in ("own_law", "proofs"))
 
 
 def exercises(source: Path) -> Iterator[Exercise]:
@@ -120,16 +155,19 @@ def exercises(source: Path) -> Iterator[Exercise]:
     """
     posed = [cell for cell in jupytext.read(source).cells if {"exercise", "check"} & set(tags(cell))]
     for text, check in zip(posed[::2], posed[1::2], strict=True):
-        number, stars, points = _head(text.source, source)
+        number, stars, points, kind = _head(text.source, source)
         name, form = asked(check.source)
-        yield Exercise(name, number, stars, points, form)
+        yield Exercise(name, number, stars, points, kind, form)
 
 
-def _head(text: str, source: Path) -> tuple[int, int, int]:
+def _head(text: str, source: Path) -> tuple[int, int, int, str]:
     found = _POSED.search(text)
-    if found is None:
-        raise ArgumentError(f"{source.name}: an exercise begins {text[:60]!r}; expected '**1.** ★★ (2 points) ...'")
-    return int(found[1]), len(found[2]), int(found[3])
+    if found is None or found[4] not in KINDS:
+        raise ArgumentError(
+            f"{source.name}: an exercise begins {text[:60]!r}; expected '**1.** ★★ (2 points, kind) ...', "
+            f"kind one of {', '.join(KINDS)}"
+        )
+    return int(found[1]), len(found[2]), int(found[3]), found[4]
 
 
 def asked(check: str) -> tuple[str, str]:

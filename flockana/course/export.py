@@ -13,11 +13,10 @@ from typing import Any
 import nbformat
 
 from flockana.base.errors import ArgumentError
-from flockana.course.build import Exercise, copy_companions, exercises, notebook, sources, tags
+from flockana.course.build import Exercise, copy_companions, exercises, needs_companions, notebook, sources, tags
 from flockana.course.pages import number_of
 
 _IMPORTS = "from flockana.course import answered, grade\n\n"
-_COMPANIONS = ("own_law", "proofs")
 _NBGRADER_CONFIG = """c = get_config()
 c.ClearSolutions.code_stub = {"python": "# your code here"}
 """
@@ -53,7 +52,7 @@ def master(source: Path, grader: str) -> Any:
         kind = next((tag for tag in ("exercise", "solution", "check") if tag in tags(cell)), "")
         if kind:
             parts[kind] = cell
-        elif "facts" not in tags(cell):
+        elif not {"facts", "install"} & set(tags(cell)):
             cells.append(cell)
         if kind == "check":
             cells += posed(next(asked), parts["exercise"], parts["solution"].source, cell.source)
@@ -84,15 +83,11 @@ def write_for(folder: Path, grader: str) -> list[Path]:
         home.mkdir(parents=True, exist_ok=True)
         written.append(home / f"{source.stem}.ipynb")
         nbformat.write(master(source, grader), written[-1])
-        if _needs_companions(source):
+        if needs_companions(source):
             copy_companions(home)
     if grader == "nbgrader":
         (folder / "nbgrader_config.py").write_text(_NBGRADER_CONFIG, encoding="utf-8")
     return written
-
-
-def _needs_companions(source: Path) -> bool:
-    return any(f"from {name}." in source.read_text(encoding="utf-8") for name in _COMPANIONS)
 
 
 def _tests(check: str, exercise: Exercise) -> tuple[str, str]:
@@ -109,7 +104,7 @@ def _assignment(source: Path) -> str:
     files = ["own_law/__init__.py", "own_law/law.py", "own_law/theorem.py", "own_law/proof.py"]
     files += ["proofs/__init__.py", "proofs/proof.py"]
     listed = "".join(f"\n  - {name}" for name in files)
-    return "# ASSIGNMENT CONFIG\ninit_cell: true\nexport_cell: true" + f"\nfiles:{listed}" * _needs_companions(source)
+    return "# ASSIGNMENT CONFIG\ninit_cell: true\nexport_cell: true" + f"\nfiles:{listed}" * needs_companions(source)
 
 
 def _otter(exercise: Exercise, text: Any, solution: str, check: str) -> Iterator[Any]:

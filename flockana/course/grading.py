@@ -61,7 +61,7 @@ def grade(
         Largest difference that counts as none.
     hint : str
         Shown with an answer that is not right.
-    form : {"number", "word", "text", "truth value", "list"}, optional
+    form : {"number", "word", "text", "truth value", "list", "function"}, optional
         What is asked for, if `right` is a function; by default what `right` is.
 
     Returns
@@ -104,7 +104,7 @@ def answered(answer: Any, form: str) -> Grade:
     ----------
     answer : object
         The student's; ``...`` stands for no answer yet.
-    form : {"number", "word", "text", "truth value", "list", ""}
+    form : {"number", "word", "text", "truth value", "list", "function", ""}
         What is asked for; anything if empty.
 
     Returns
@@ -155,6 +155,7 @@ _FORMS: dict[str, Callable[[Any], bool]] = {
     "truth value": lambda x: isinstance(x, bool | np.bool_),
     "word": lambda x: isinstance(x, str),
     "text": lambda x: isinstance(x, str),
+    "function": callable,
     "list": lambda x: (
         isinstance(x, list | tuple | set | frozenset | range) or (isinstance(x, np.ndarray) and x.ndim > 0)
     ),

@@ -20,7 +20,7 @@ _ACCENTS = {'"': "\u0308", "'": "\u0301"}
 
 @dataclass(frozen=True)
 class Lecture:
-    """A lecture's entry in the map of the course.
+    """A lecture's entry in the map of the course, or an assignment's, whose number begins with A.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def course_map(folder: Path) -> list[Lecture]:
         If the table and the folder differ, or a lecture comes before one that it builds on.
     """
     table = tomllib.loads((folder / "lectures.toml").read_text(encoding="utf-8"))
-    files = {number_of(path): path for path in sorted(folder.glob("[0-9][0-9]*_*.py"))}
+    files = {number_of(path): path for path in sorted(folder.glob("[0-9A][0-9]*_*.py"))}
     if set(table) != set(files):
         raise ArgumentError(f"lectures.toml lists {sorted(table)}; the folder holds {sorted(files)}")
     found: list[Lecture] = []

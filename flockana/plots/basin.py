@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from flockana.plots.style import BLUE, INK, VERMILLION, ensure_axes
+from flockana.plots.style import BLUE, INK, LEGEND, VERMILLION, ensure_axes, head
+from flockana.plots.symbols import typeset
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -37,12 +38,12 @@ def sampled_basin(sampled: SampledBasin, *, level: float = 0.95, ax: Axes | None
     label = f"{sampled.runs} starts each"
     ax.errorbar(sampled.distances / d, sampled.shares, yerr=off, fmt="o", color=BLUE, label=label)
     ax.axvspan(0.0, basin.share, color=VERMILLION, alpha=0.15)
-    ax.axvline(basin.share, color=VERMILLION, label=f"certified ρ = {basin.share:.3f} d")
+    ax.axvline(basin.share, color=VERMILLION, label=typeset(f"certified ρ = {basin.share:.3f} d"))
     ax.axhline(1.0, color=INK, linewidth=0.5)
     ax.set_ylim(-0.05, 1.1)
     ax.set_xlim(left=0.0)
     ax.set_xlabel("distance from the orbit, over all coordinates, in d")
     ax.set_ylabel("share that returns")
-    ax.set_title(f"{type(basin.law).__name__}, n = {len(basin.rest)}: certified, and sampled")
-    ax.legend(loc="lower left")
+    head(ax, f"{type(basin.law).__name__}, n = {len(basin.rest)}: certified, and sampled")
+    ax.legend(loc="lower left", **LEGEND)
     return ax

@@ -20,9 +20,11 @@ from flockana.plots.style import (
     VERMILLION,
     ensure_axes,
     finish_over_time,
+    head,
     lines,
     subplots,
 )
+from flockana.plots.symbols import typeset
 from flockana.scenarios.one_start import RANGE
 
 if TYPE_CHECKING:
@@ -39,14 +41,14 @@ _MARKS = (None, "o", "s", "^")  # one for each time that the looks come round ag
 _FLOOR = 1e-8  # of the start: below it is what an integration leaves
 
 
-def side_by_side(outcomes: Sequence[Outcome], *, axes: Any = None) -> Any:
+def side_by_side(outcomes: Sequence[Outcome], *, ax: Any = None) -> Any:
     """Draw the paths of one start under each law, on the same scale: hollow where they start, links at the end.
 
     Parameters
     ----------
     outcomes : sequence of Outcome
         What `flockana.scenarios.one_start.compare` gave.
-    axes : sequence of Axes, optional
+    ax : sequence of Axes, optional
         One for each; by default a new figure, five in a row.
 
     Returns
@@ -61,24 +63,24 @@ def side_by_side(outcomes: Sequence[Outcome], *, axes: Any = None) -> Any:
     """
     if not outcomes:
         raise ArgumentError("outcomes is empty: expected those of flockana.scenarios.one_start.compare()")
-    if axes is None:
+    if ax is None:
         columns = min(_COLUMNS, len(outcomes))
         rows = -(-len(outcomes) // columns)
-        axes = np.ravel(subplots(rows, columns, size=(3.1 * columns, 3.2 * rows))[1])
-        for unused in axes[len(outcomes) :]:
+        ax = np.ravel(subplots(rows, columns, size=(3.1 * columns, 3.2 * rows))[1])
+        for unused in ax[len(outcomes) :]:
             unused.remove()
-        axes = axes[: len(outcomes)]
-    panels = np.ravel(axes)
+        ax = ax[: len(outcomes)]
+    panels = np.ravel(ax)
     if len(panels) != len(outcomes):
         raise ArgumentError(f"{len(panels)} axes for {len(outcomes)} laws: expected one for each")
     reached = np.concatenate([outcome.run.q.reshape(-1, 2) for outcome in outcomes])
     low, high = reached.min(axis=0), reached.max(axis=0)
     middle, half = 0.5 * (low + high), 0.54 * float((high - low).max())
-    for outcome, ax in zip(outcomes, panels, strict=True):
-        _paths(ax, outcome.run)
-        ax.set_title(f"{outcome.entry.name}\n{outcome.entry.theorem}: {outcome.verdict.status}", fontsize=9)
-        ax.set(xlabel="x (length)", ylabel="y (length)", box_aspect=1.0)
-        ax.set(xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half))
+    for outcome, panel in zip(outcomes, panels, strict=True):
+        _paths(panel, outcome.run)
+        head(panel, f"{outcome.entry.name}\n{outcome.entry.theorem}: {outcome.verdict.status}", fontsize=9)
+        panel.set(xlabel=typeset("x (length)"), ylabel=typeset("y (length)"), box_aspect=1.0)
+        panel.set(xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half))
     return panels
 
 

@@ -20,6 +20,7 @@ from flockana.plots.style import (
     hairline,
     style,
 )
+from flockana.plots.symbols import typeset
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -34,7 +35,7 @@ _NAMES = {"c1_alpha": "c1α", "c2_alpha": "c2α", "c1_gamma": "c1γ", "c2_gamma"
 _UNITS = {"c1": "1/time²", "c2": "1/time"}
 
 
-def bode(responses: Mapping[str, Any], *, marks: Mapping[str, float] | None = None, axes: Any = None) -> Any:
+def bode(responses: Mapping[str, Any], *, marks: Mapping[str, float] | None = None, ax: Any = None) -> Any:
     """Draw magnitude (decibels) and phase of scalar frequency responses, one above the other.
 
     Parameters
@@ -43,33 +44,33 @@ def bode(responses: Mapping[str, Any], *, marks: Mapping[str, float] | None = No
         By label, such as those of `CentreOfMass.frequency_response`; four at most.
     marks : mapping of str to float, optional
         Frequencies to point out, by label.
-    axes : sequence of two Axes, optional
+    ax : sequence of two Axes, optional
         Where to draw magnitude and phase; by default a new figure.
 
     Returns
     -------
     ndarray of matplotlib.axes.Axes, shape (2,)
     """
-    if axes is None:
+    if ax is None:
         import matplotlib.pyplot as plt
 
         with style():
-            axes = plt.subplots(2, 1, figsize=(5.2, 4.6), sharex=True)[1]
-    magnitude, phase = np.ravel(axes)
+            ax = plt.subplots(2, 1, figsize=(5.2, 4.6), sharex=True)[1]
+    magnitude, phase = panels = np.ravel(ax)
     for (label, response), (colour, dash) in zip(responses.items(), _DASHES, strict=False):
         gain, angle = np.abs(np.ravel(response.complex)), np.unwrap(np.angle(np.ravel(response.complex)))
         magnitude.semilogx(response.omega, 20.0 * np.log10(gain), color=colour, linestyle=dash, label=label)
         phase.semilogx(response.omega, np.degrees(angle), color=colour, linestyle=dash)
     for name, omega in (marks or {}).items():
-        for ax in (magnitude, phase):
-            ax.axvline(omega, color=MUTED, linewidth=0.9, linestyle=":")
+        for panel in panels:
+            panel.axvline(omega, color=MUTED, linewidth=0.9, linestyle=":")
         text = {"xytext": (3, 4), "textcoords": "offset points", "color": MUTED, "fontsize": 8}
-        magnitude.annotate(name, (omega, 0.0), xycoords=magnitude.get_xaxis_transform(), **text)
+        magnitude.annotate(typeset(name), (omega, 0.0), xycoords=magnitude.get_xaxis_transform(), **text)
     magnitude.axhline(0.0, color=FAINT, linewidth=1.2, linestyle="-", zorder=0)
     finish(magnitude, y="|q_c/q_r| (dB)")
     finish(phase, "ω (radians/time)", "phase (degrees)")
     phase.yaxis.set_major_locator(MultipleLocator(45.0))
-    return np.ravel(axes)
+    return panels
 
 
 def root_locus(sweep: Sweep, *, ax: Axes | None = None) -> Axes:
@@ -171,7 +172,7 @@ def delay_chart(sweeps: Mapping[str, MarginSweep], *, ax: Axes | None = None) ->
     for k, ((label, sweep), (colour, dash)) in enumerate(zip(sweeps.items(), _DASHES, strict=False)):
         if k == 0:
             ax.fill_between(sweep.values, 0.0, sweep.margins, color=BLUE, alpha=0.12, linewidth=0.0)
-            ax.set_xlabel(_gain_label(sweep.name))
+            ax.set_xlabel(typeset(_gain_label(sweep.name)))
             ax.set_xlim(sweep.values[0], sweep.values[-1])
         ax.plot(sweep.values, sweep.margins, color=colour, linestyle=dash, label=label)
     ax.text(0.03, 0.05, "stable", transform=ax.transAxes, color=MUTED)

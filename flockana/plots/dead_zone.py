@@ -22,8 +22,10 @@ from flockana.plots.style import (
     ensure_axes,
     finish,
     frame_space,
+    head,
     in_plane,
 )
+from flockana.plots.symbols import typeset
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -73,9 +75,9 @@ def dead_zone_force(interaction: DeadZoneInteraction, *, nearest: float | None =
     ax.axhline(0.0, color=MUTED, linewidth=0.8, linestyle="-")
     for name, place in (("d₁", interaction.d1), ("d₂", interaction.d2), ("r", interaction.r)):
         ax.axvline(place, color=MUTED, linewidth=0.8, linestyle=":")
-        ax.annotate(name, (place, 0.0), (3, 4), xycoords=("data", "axes fraction"), textcoords="offset points")
+        ax.annotate(typeset(name), (place, 0.0), (3, 4), xycoords=("data", "axes fraction"), textcoords="offset points")
     ax.set_xlim(0.0, far)
-    ax.set_title("below 0 it repels", color=MUTED, fontsize=8)
+    head(ax, "below 0 it repels", color=MUTED, fontsize=8)
     return finish(ax, "distance of the pair (length)", "F, force along the line (length/time²)")
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flockana.measures.windows import windows_of
-from flockana.plots.style import BLUE, FAINT, INK, VERMILLION, ensure_axes, finish_over_time
+from flockana.plots.style import BLUE, FAINT, INK, VERMILLION, ensure_axes, finish_over_time, head
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -75,5 +75,5 @@ def joint_windows(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
         axes.axvspan(rest, t[-1], facecolor="none", edgecolor=FAINT, hatch="//", linewidth=0, zorder=0)
     axes.plot(t, trajectory.metric("connectivity"), color=INK, linestyle="-", drawstyle="steps-post")
     axes.set_ylim(-0.03, 1.05)
-    axes.set_title(f"{len(windows)} windows of joint connectivity", fontsize=9)
+    head(axes, f"{len(windows)} windows of joint connectivity", fontsize=9)
     return finish_over_time(axes, t, "C, relative connectivity")

@@ -11,7 +11,8 @@ from matplotlib.ticker import PercentFormatter
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError, UnknownNameError
-from flockana.plots.style import BLUE, FAINT, GREEN, INK, MUTED, ORANGE, VERMILLION, ensure_axes
+from flockana.plots.style import BLUE, FAINT, GREEN, LEGEND, MUTED, ORANGE, VERMILLION, ensure_axes, head
+from flockana.plots.symbols import typeset
 
 if TYPE_CHECKING:
     import xarray
@@ -278,7 +279,7 @@ def phase_diagram(
         values = phase[name].values.tolist()
         axis.set_ticks(range(len(values)), [f"{v:g}" if isinstance(v, int | float) else str(v) for v in values])
         axis.set_ticks(np.arange(-0.5, len(values)), minor=True)
-        axis.set_label_text(label or name)
+        axis.set_label_text(typeset(label or name))
     axes.grid(visible=False)
     axes.grid(which="minor", color="white", linewidth=2.0)
     axes.set_axisbelow(False)
@@ -286,9 +287,16 @@ def phase_diagram(
     axes.set(xlim=(-0.5, codes.shape[0] - 0.5), ylim=(-0.5, codes.shape[1] - 0.5))
     handles = {text: handle for handle, text in zip(*axes.get_legend_handles_labels(), strict=True)}
     order = [name for name in names if name in handles]
-    axes.legend([handles[name] for name in order], order, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=len(order))
+    axes.legend(
+        [handles[name] for name in order],
+        order,
+        loc="lower left",
+        bbox_to_anchor=(0.0, 1.0),
+        ncols=len(order),
+        **LEGEND,
+    )
     if title:
-        axes.set_title(title, color=INK, pad=26)
+        head(axes, title, pad=26)
     return axes  # type: ignore[no-any-return]
 
 
@@ -321,7 +329,7 @@ def _finish(axes: Any, title: str) -> Axes:
     """Legend above the axes in as many columns as its texts leave room for, the title above it."""
     labels = axes.get_legend_handles_labels()[1]
     columns = max(1, min(4, len(labels), _LINE // (6 + max(len(text) for text in labels))))
-    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, borderaxespad=0.2, fontsize=8)
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, borderaxespad=0.2, **LEGEND)
     if title:
-        axes.set_title(title, pad=10 + 14 * -(-len(labels) // columns))
+        head(axes, title, pad=10 + 14 * -(-len(labels) // columns))
     return axes  # type: ignore[no-any-return]

@@ -9,7 +9,7 @@ from matplotlib.ticker import PercentFormatter
 
 from flockana.base.binomial import clopper_pearson
 from flockana.base.errors import ArgumentError
-from flockana.plots.style import BLUE, MUTED, ORANGE, ensure_axes, finish, legend_above
+from flockana.plots.style import BLUE, MUTED, ORANGE, ensure_axes, finish, head, legend_above
 
 if TYPE_CHECKING:
     import xarray
@@ -71,6 +71,6 @@ def informed_shares(
     axes.set_ylim(-0.03, 1.03)
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter(PercentFormatter(1.0))
-    axes.set_title(title)
+    head(axes, title)
     legend_above(axes)
     return finish(axes, "share of agents that are informed", "share")

@@ -13,6 +13,7 @@ from flockana.plots.style import (
     BLUE,
     GREEN,
     INK,
+    LEGEND,
     MUTED,
     ORANGE,
     PURPLE,
@@ -22,6 +23,7 @@ from flockana.plots.style import (
     ensure_axes,
     finish,
     frame_space,
+    head,
     in_plane,
     lines,
 )
@@ -103,8 +105,8 @@ def defect_map(
         edge: dict[str, Any] = {"edgecolors": INK, "linewidths": 0.5 if size > 10.0 else 0.0}
         edge |= {"depthshade": False} if m == 3 else {}
         axes.scatter(*these.T, s=size, marker=marker, color=colour, label=label, zorder=3, rasterized=raster, **edge)
-    axes.set_title(title)
-    look: dict[str, Any] = {"borderaxespad": 0.0, "fontsize": 8, "handletextpad": 0.2, "columnspacing": 1.0}
+    head(axes, title)
+    look = LEGEND | {"borderaxespad": 0.0, "handletextpad": 0.2, "columnspacing": 1.0}
     axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.14), ncols=2, **look)  # wider, it would squeeze the axes
     return frame_space(axes, x, m)
 

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flockana.measures.metrics import deviation_energy
-from flockana.plots.style import BLUE, MUTED, VERMILLION, ensure_axes, finish
+from flockana.plots.style import BLUE, MUTED, VERMILLION, ensure_axes, finish, legend_above
+from flockana.plots.symbols import typeset
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -55,7 +56,9 @@ def potential(interaction: AlphaInteraction, *, ax: Axes | None = None) -> Axes:
     ax = ensure_axes(ax)
     x = np.linspace(0.0, 1.15 * interaction.r, _SAMPLES)
     ax.plot(x, interaction.psi_alpha(interaction.sigma_norm(x)), color=VERMILLION, linestyle="-")
-    ax.annotate(f"c* = {interaction.c_star:.4g}", (0.0, interaction.c_star), (30, -4), textcoords="offset points")
+    ax.annotate(
+        typeset(f"c* = {interaction.c_star:.4g}"), (0.0, interaction.c_star), (30, -4), textcoords="offset points"
+    )
     return _frame(ax, interaction, "ψ_α, the pair's potential")
 
 
@@ -94,13 +97,13 @@ def deviation(interaction: AlphaInteraction, *, ax: Axes | None = None) -> Axes:
     _frame(ax, interaction, "energy, in its value at 0")
     ax.set_xlim(x[0], x[-1])
     ax.set_xlabel("place of one agent, seen from the other (length)")
-    ax.legend()
+    legend_above(ax)
     return ax
 
 
 def _frame(ax: Axes, interaction: AlphaInteraction, label: str) -> Axes:
     for name, x in (("d", interaction.d), ("r", interaction.r)):
         ax.axvline(x, color=MUTED, linewidth=0.8, linestyle=":")
-        ax.annotate(name, (x, 1.0), (3, -9), xycoords=("data", "axes fraction"), textcoords="offset points")
+        ax.annotate(typeset(name), (x, 1.0), (3, -9), xycoords=("data", "axes fraction"), textcoords="offset points")
     ax.set_xlim(0.0, 1.15 * interaction.r)
     return finish(ax, "distance of the pair (length)", label)

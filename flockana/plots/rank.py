@@ -8,7 +8,7 @@ import numpy as np
 
 from flockana.base.errors import ArgumentError
 from flockana.measures.nets import links, printed_rank_connectivity
-from flockana.plots.style import BLUE, INK, VERMILLION, ensure_axes, finish_over_time
+from flockana.plots.style import BLUE, INK, LEGEND, VERMILLION, ensure_axes, finish_over_time
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -48,5 +48,5 @@ def rank_connectivity(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes
         ax.plot(t[shown], ranks, color=colour, linewidth=1.0, label=name)
     ax.plot(t, trajectory.metric("connectivity"), color=INK, linestyle="--", label="C = rank(L)/(n − 1)")
     ax.set_ylim(-0.03, 1.05)
-    ax.legend(loc="lower right")
+    ax.legend(loc="lower right", **LEGEND)
     return finish_over_time(ax, t, "connectivity, three ways")

@@ -40,6 +40,11 @@ def plain(text: str) -> str:
     return re.sub(r"[{}$]", "", raised)
 
 
+def _typeset(text: str) -> bool:
+    """Whether a text has symbols in mathtext."""
+    return text.count("$") > 1
+
+
 @dataclass(frozen=True)
 class Ticks:
     """The ticks of one kind, major or minor.
@@ -179,13 +184,14 @@ class PlainScale(Artist):
         """Width, height and descent of a text, measured once."""
         key = text, font.get_size_in_points()
         if key not in self._known:
-            self._known[key] = renderer.get_text_width_height_descent(text, font, ismath=False)
+            self._known[key] = renderer.get_text_width_height_descent(text, font, ismath=_typeset(text))
         return self._known[key]
 
     def _label_size(self, renderer: Any) -> Size:
         font = self.scale.label.get_fontproperties()
         _, height, descent = self._size(renderer, "lp", font)
-        return self._size(renderer, self.scale.get_label_text(), font)[0], height, descent
+        width, own_height, own_descent = self._size(renderer, self.scale.get_label_text(), font)
+        return width, max(height, own_height), max(descent, own_descent)
 
     def _depth(self, renderer: Any, kinds: tuple[Ticks, ...]) -> float:
         """Pixels from the axes to the far side of marks and numbers."""
@@ -281,7 +287,7 @@ class PlainScale(Artist):
         context = renderer.new_gc()
         context.set_foreground(colour)
         height = renderer.get_canvas_width_height()[1]
-        renderer.draw_text(context, x, height - y if renderer.flipy() else y, text, font, angle)
+        renderer.draw_text(context, x, height - y if renderer.flipy() else y, text, font, angle, ismath=_typeset(text))
         context.restore()
 
 

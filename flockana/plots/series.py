@@ -88,25 +88,23 @@ def has_metric(trajectory: Trajectory, name: str) -> bool:
     return True
 
 
-def panel(trajectory: Trajectory, *, axes: Any = None) -> Any:
+def panel(trajectory: Trajectory, *, ax: Any = None) -> Any:
     """Draw C, R, Ẽ and K̃ (logarithmic) side by side.
 
     Parameters
     ----------
     trajectory : Trajectory
         The run.
-    axes : sequence of four Axes, optional
+    ax : sequence of four Axes, optional
         Where to draw; by default a new figure of two by two.
 
     Returns
     -------
     ndarray of matplotlib.axes.Axes, shape (4,)
     """
-    if axes is None:
-        axes = subplots(2, 2, size=(8.4, 5.0))[1]
-    flat = np.ravel(axes)
-    for name, ax in zip(PANEL, flat, strict=True):
-        measure(trajectory, name, ax=ax)
+    flat = np.ravel(subplots(2, 2, size=(8.4, 5.0))[1] if ax is None else ax)
+    for name, each in zip(PANEL, flat, strict=True):
+        measure(trajectory, name, ax=each)
     return flat
 
 

@@ -32,6 +32,7 @@ from flockana.plots.style import (
     colour_bar,
     ensure_axes,
     frame_space,
+    head,
     in_plane,
     lines,
 )
@@ -228,7 +229,7 @@ def configuration(
         draw_obstacles(obstacles, ax=axes, view=seen[:, :m])
         if beta is not None:
             _beta_agents(axes, points, ObstacleField(tuple(obstacles), beta), size)
-    axes.set_title(title + ("" if p is None else velocity_arrows(axes, points, p)), fontsize=9)
+    head(axes, title + ("" if p is None else velocity_arrows(axes, points, p)), fontsize=9)
     return frame_space(axes, seen, m)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,9 +21,11 @@ from flockana.plots.style import (
     ensure_axes,
     finish,
     frame_space,
+    head,
     in_plane,
     lines,
 )
+from flockana.plots.symbols import typeset
 from flockana.stability.modes import Mode
 from flockana.stability.motion import mode_motion
 
@@ -96,7 +98,9 @@ def _damping_rays(ax: Any) -> None:
             ax.plot([0.0, -reach], [0.0, sign * slope * reach], color=FAINT, linestyle="-", linewidth=0.7, zorder=0)
             if sign > 0.0:
                 inside = 0.97 * reach
-                ax.text(-inside, slope * inside, f"ζ = {ratio:g}", color=MUTED, fontsize=7, ha="left", va="top")
+                ax.text(
+                    -inside, slope * inside, typeset(f"ζ = {ratio:g}"), color=MUTED, fontsize=7, ha="left", va="top"
+                )
     ax.set_xlim(left, right)
     ax.set_ylim(low, high)
 
@@ -148,7 +152,7 @@ def mode_shape(q: Any, links: Any, shape: Any, *, target: Any = None, ax: Axes |
         mark[0, :m] = target
         axes.scatter(*mark.T, s=90, marker="*", color=PURPLE, edgecolors="white", linewidths=0.6, zorder=3.5)
         seen = np.vstack([seen, mark])
-    axes.set_title(title)
+    head(axes, title)
     if m == 2:  # neither arrows nor collections count in the view
         axes.update_datalim(seen)
         axes.autoscale_view()
@@ -187,6 +191,8 @@ def animate_mode(
     damped: bool = True,
     seconds: float = 4.0,
     fps: float = 15.0,
+    velocities: bool = False,
+    progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> Path:
     """Write a film of a mode: GIF always, MP4 where the program ffmpeg is installed.
 
@@ -200,7 +206,7 @@ def animate_mode(
         File to write, ``.gif`` or ``.mp4``.
     amplitude, periods, damped : object
         As for `flockana.stability.mode_motion`.
-    seconds, fps : float
+    seconds, fps, velocities, progress : object
         As for `flockana.plots.animate`.
 
     Returns
@@ -213,4 +219,4 @@ def animate_mode(
         As `flockana.plots.animate`.
     """
     run = mode_motion(linearisation, mode, amplitude=amplitude, periods=periods, damped=damped)
-    return animate(run, path, seconds=seconds, fps=fps)
+    return animate(run, path, seconds=seconds, fps=fps, velocities=velocities, progress=progress)

@@ -15,6 +15,7 @@ from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d.art3d import Line3DCollection  # type: ignore[import-untyped]
 
 from flockana.base.checks import FloatArray
+from flockana.plots.symbols import typeset
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -57,6 +58,9 @@ _STYLE = {
     "font.size": 9,
     "svg.hashsalt": "flockana",
 }
+
+
+LEGEND: dict[str, Any] = {"fontsize": 8, "framealpha": 0.85, "edgecolor": "none"}  # wherever the axes were made
 
 
 @contextmanager
@@ -123,9 +127,9 @@ def subplots(
 def finish(ax: Any, x: str = "", y: str = "") -> Axes:
     """Name the two axes of a drawing and put a legend above it if something in it has a label; returns the axes."""
     if x:
-        ax.set_xlabel(x)
+        ax.set_xlabel(typeset(x))
     if y:
-        ax.set_ylabel(y)
+        ax.set_ylabel(typeset(y))
     if ax.get_legend_handles_labels()[0]:
         legend_above(ax)
     return ax  # type: ignore[no-any-return]
@@ -142,21 +146,30 @@ def finish_empty(ax: Any, y: str, reason: str) -> Axes:
     """Leave the axes empty, with the reason in their middle."""
     ax.set_xticks([])
     ax.set_yticks([])
-    ax.text(0.5, 0.5, reason, ha="center", va="center", transform=ax.transAxes, color=MUTED)
+    ax.text(0.5, 0.5, typeset(reason), ha="center", va="center", transform=ax.transAxes, color=MUTED)
     return finish(ax, y=y)
+
+
+def head(ax: Any, title: str, **look: Any) -> None:
+    """Write the title at the left above the axes, in flockana's look wherever they were made."""
+    look = {"fontsize": _STYLE["axes.titlesize"], "color": INK} | look
+    ax.set_title(typeset(title), loc="left", **look)
 
 
 def legend_above(ax: Any) -> None:
     """Put the legend above the axes, where it hides no data."""
-    columns = 3 if len(ax.get_legend_handles_labels()[0]) in (3, 5, 6) else 4
+    handles, labels = ax.get_legend_handles_labels()
+    columns = 3 if len(handles) in (3, 5, 6) else 4
     ax.legend(
+        handles,
+        [typeset(label) for label in labels],
         loc="lower left",
         bbox_to_anchor=(0.0, 1.0),
         ncols=columns,
         borderaxespad=0.2,
         handlelength=1.8,
         columnspacing=1.2,
-        fontsize=_STYLE["legend.fontsize"],
+        **LEGEND,
     )
 
 
@@ -177,8 +190,10 @@ def colour_bar(ax: Any, colours: Any, label: str, *, extend: str = "neither", sh
         Of the height of the axes.
     """
     beside = ax.inset_axes((1.09 if hasattr(ax, "zaxis") else 1.03, 0.5 - 0.5 * share, 0.03, share))
-    scale = ax.get_figure().colorbar(colours, cax=beside, extend=extend, label=label)
+    scale = ax.get_figure().colorbar(colours, cax=beside, extend=extend, label=typeset(label))
     scale.outline.set_visible(False)
+    beside.tick_params(labelsize=_STYLE["ytick.labelsize"], colors=MUTED)
+    beside.yaxis.label.set(size=_STYLE["axes.labelsize"], color=INK)
     return scale
 
 
@@ -206,11 +221,11 @@ def lines(segments: Any, **look: Any) -> Any:
 def frame_space(ax: Any, points: FloatArray, m: int) -> Axes:
     """Label the axes of space and scale them equally: a cube about the points where m = 3; a line has no y."""
     if m == 1:
-        ax.set(xlabel="x (length)", yticks=[], ylim=(-1.0, 1.0))
+        ax.set(xlabel=typeset("x (length)"), yticks=[], ylim=(-1.0, 1.0))
         return ax  # type: ignore[no-any-return]
     names = "xyz"[:m]
     for name in names:
-        getattr(ax, f"set_{name}label")(f"{name} (length)")
+        getattr(ax, f"set_{name}label")(typeset(f"{name} (length)"))
     if m == 2:
         ax.set_aspect("equal", adjustable="datalim")
         return ax  # type: ignore[no-any-return]

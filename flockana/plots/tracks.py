@@ -8,6 +8,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.plots.style import BLUE, INK, MUTED, VERMILLION, ensure_axes, finish, frame_space, hairline, lines
+from flockana.plots.symbols import typeset
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -95,6 +96,6 @@ def _target(ax: Any, trajectory: Trajectory) -> tuple[FloatArray, ...]:
 
 def _frame(ax: Any, points: FloatArray, m: int) -> None:
     if m == 1:
-        ax.set(xlabel="t (time)", ylabel="x (length)")
+        ax.set(xlabel=typeset("t (time)"), ylabel=typeset("x (length)"))
     else:
         frame_space(ax, points, m)

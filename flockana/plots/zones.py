@@ -32,6 +32,7 @@ from flockana.plots.style import (
     finish_over_time,
     frame_space,
     hairline,
+    head,
     lines,
 )
 
@@ -101,7 +102,7 @@ def zones(
         seen.append(aliens)
         axes.scatter(*aliens.T, s=70, marker="X", color=VERMILLION, edgecolors="white", linewidths=0.6, zorder=4)
     fastest = velocity_arrows(axes, q, trajectory.p[k]) if velocities else ""
-    axes.set_title(f"t = {trajectory.t[k]:.4g}{fastest}", fontsize=9)
+    head(axes, f"t = {trajectory.t[k]:.4g}{fastest}", fontsize=9)
     return frame_space(axes, np.vstack(seen), m)
 
 

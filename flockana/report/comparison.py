@@ -109,7 +109,7 @@ def _pictures(outcomes: Sequence[Outcome]) -> tuple[Picture, ...]:
         axes = figure.subplots(rows, columns, squeeze=False).ravel()
         for unused in axes[len(outcomes) :]:
             unused.remove()
-        plots.side_by_side(outcomes, axes=axes[: len(outcomes)])
+        plots.side_by_side(outcomes, ax=axes[: len(outcomes)])
 
     def together(figure: Figure) -> None:
         plots.velocity_diameters(outcomes, ax=figure.subplots())

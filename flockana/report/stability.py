@@ -217,7 +217,7 @@ def bode_picture(verdicts: Sequence[tuple[str, Verdict]]) -> Picture | None:
 
     def draw(figure: Figure) -> None:
         axes = plots.bode(
-            {k: c.frequency_response(omegas) for k, c in centres.items()}, axes=figure.subplots(2, 1, sharex=True)
+            {k: c.frequency_response(omegas) for k, c in centres.items()}, ax=figure.subplots(2, 1, sharex=True)
         )
         plots.measured_gains(points, ax=axes[0])
 

@@ -29,6 +29,16 @@ def test_two_versions_at_once_are_refused(call, tmp_path):
     assert not (tmp_path / "new").exists()
 
 
+def test_slides(call, tmp_path):
+    code, said, _ = call("shown", "--slides")
+    assert code == 0
+    assert "notebook: shown/03_algorithm_2.ipynb" in said
+    assert "A1_four_cases" not in said
+    text = (tmp_path / "shown" / "03_algorithm_2.ipynb").read_text()
+    assert '"slide_type": "slide"' in text
+    assert "Exercises" not in text
+
+
 def test_masters_for_a_grader(call, tmp_path):
     code, said, _ = call("masters", "--grader", "nbgrader")
     assert code == 0

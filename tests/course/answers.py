@@ -5,6 +5,7 @@ Right answers are such as a student may hand in: rounded to what the question as
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from fractions import Fraction
 from types import SimpleNamespace
 from typing import Any
@@ -12,9 +13,41 @@ from typing import Any
 import numpy as np
 
 import flockana as fl
+from flockana.plots import subplots
 
 _STEPS = [(a, b, c) for a in (-1, 0, 1) for b in (-1, 0, 1) for c in (-1, 0, 1) if abs(a) + abs(b) + abs(c) in (0, 2)]
 THIRTEEN = np.array(_STEPS) * 7.0 / np.sqrt(2)
+
+
+GRID = np.array([[float(k % 4), float(k // 4)] for k in range(13)])
+TRAP = [14.197296408684533, 0.0]
+
+
+def connectivity(*, closed: bool = False, hops: int = 9) -> Callable[[Any, float], float]:
+    """The relative connectivity, with links of length r if `closed`, looking no farther than so many links."""
+
+    def found(q: Any, r: float) -> float:
+        length = np.linalg.norm(np.asarray(q)[:, None] - q, axis=2)
+        reached = np.linalg.matrix_power((length <= r if closed else length < r).astype(float), hops) > 0
+        return float((len(q) - len({tuple(row) for row in reached})) / (len(q) - 1))
+
+    return found
+
+
+FIRST = fl.AlphaInteraction(d=1.9, r=2.8, eps=0.1, h=0.4, a=7.0, b=9.0)
+
+
+def six_axes(run: Any) -> Any:
+    """Six axes, each with a line."""
+    axes = np.ravel(subplots(2, 3)[1])
+    for ax in axes:
+        ax.plot(run.t, run.t)
+    return axes
+
+
+def in_one_place(q: Any, r: float) -> float:
+    """One component, whatever the agents do."""
+    return 1.0
 
 
 def capstone(dimension: int, *, holds: bool) -> list[Any]:
@@ -27,13 +60,17 @@ def capstone(dimension: int, *, holds: bool) -> list[Any]:
 ANSWERS: dict[str, dict[str, tuple[list[Any], list[Any]]]] = {
     "00": {
         "collapse_status": (["verified", "vacuous", True, ["refuted"]], ["Refuted", " refuted "]),
-        "connectivity": ([0.21, 0.077, 0.12, 0.14, 1.0], [0.13, 0.128, 5 / 39, np.float64(0.13)]),
+        "connectivity": (
+            [lambda q, r: 0.128, in_one_place, connectivity(closed=True), connectivity(hops=1), 0.128205],
+            [connectivity(), connectivity(hops=99)],
+        ),
         "residual": ([2.1e-7, 0.035, 0.037, 0.04, 3.6], [0.036, 0.03602, np.float32(0.036)]),
         "push": ([3.0, 4.0, 7.0, -5.0], [5, 5.0, np.hypot(3, 4)]),
         "pair": (
             [[[0, 0], [7, 0]], [[0, 0], [8, 0]], [[0, 9]], 9.0],
             [[[0, 0], [9, 0]], np.array([[1.0, 2.0], [1.0, 2.0]])],
         ),
+        "meaning": (["", "Too short.", 30], ["word " * 30, "A sentence of seven words stands here. " * 5]),
     },
     "00a": {
         "lambda_2": ([0.0, 3.0, 2.0, 0.99], [1, 1.0, Fraction(1)]),
@@ -42,6 +79,10 @@ ANSWERS: dict[str, dict[str, tuple[list[Any], list[Any]]]] = {
         "damping": ([0.8, 2.0, 1.59, -1.6], [1.6, Fraction(8, 5), 2 * 0.8]),
         "bound": ([1.571, 2.47, 2.466, 2.468], [2.467, 2.4674, np.pi**2 / 4]),
         "argument": (["", "No.", 3], ["because " * 30, "Undamped masses go round in circles. " * 6]),
+        "fastest_net": (
+            [[(0, 1), (1, 2), (2, 3), (3, 4)], [(0, 1), (0, 2), (0, 3), (3, 4)], [(0, k) for k in (1, 2, 3)], 4],
+            [[(2, k) for k in (0, 1, 3, 4)], np.array([[k, 4] for k in range(4)])],
+        ),
     },
     "01": {
         "phi_at_zero": ([2.0, -1.99, 0.0, "-2"], [-2, np.float64(-2.0), Fraction(-2)]),
@@ -49,6 +90,8 @@ ANSWERS: dict[str, dict[str, tuple[list[Any], list[Any]]]] = {
         "jump": ([0.0, 0.99, True, -1.0], [1, np.int64(1), [1][0]]),
         "strongest": ([7.0, 7.31, 7.313, 7.32, 8.4], [7.314, 7.31396, np.array([7.314])]),
         "slope": ([5.0, 0.91, 0.9, 0.0], [0.8963, 0.896325033, np.float64(0.896325)]),
+        "strength": ([95, 95.4, 95.44, 95.46, 19.09], [95.45, 95.449, np.float64(95.449335)]),
+        "smoothness": (["", "Too short.", 30], ["word " * 30, "A sentence of seven words stands here. " * 5]),
     },
     "02": {
         "components": ([1, 23, 25, 35], [24, 24.0, np.int64(24)]),
@@ -56,6 +99,10 @@ ANSWERS: dict[str, dict[str, tuple[list[Any], list[Any]]]] = {
         "above": ([True, np.True_, 0, "False"], [False, np.False_]),
         "parting": ([3.2609838 / 2, 3.2609838 * 1.414, 1.0], [3.261, 3.2609838, np.float64(3.260984)]),
         "gap": (["", "compactness", 30], ["word " * 30, "Level sets of the energy are unbounded. " * 6]),
+        "torn": (
+            [[[0, 0], [7, 0]], [[0, 0], [9, 0]], [[0, 0]], 5, np.zeros((2, 2))],
+            [[[0, 0], [1, 0]], np.array([[1.0, 1.0], [1.0, 2.0], [1.0, 3.0]])],
+        ),
     },
     "03": {
         "c2_gamma": ([16.7, 8.367, 70, 16.74], [16.73, 2 * np.sqrt(70), 2 * 70**0.5]),
@@ -63,6 +110,7 @@ ANSWERS: dict[str, dict[str, tuple[list[Any], list[Any]]]] = {
         "lag": ([5.72, 2.86, 5.722, -5.721], [5.721, 5.7208, 6 / 1.1**0.5]),
         "coincide": ([True, np.True_, 0, "no"], [False, np.False_]),
         "gains": ([[5, 5], [1.1, 2.1], [70, 16.7], [4.0]], [[4.8, 4.2], (5, 4.4), np.array([4.5, 4.1])]),
+        "explanation": (["", "Too short.", 30], ["word " * 30, "A sentence of seven words stands here. " * 5]),
     },
     "04": {
         "most": ([294, 266, 264, 265.5], [265, 265.0, np.int64(265)]),
@@ -76,6 +124,7 @@ ANSWERS: dict[str, dict[str, tuple[list[Any], list[Any]]]] = {
             [[[0, 0], [7, 0], [7, 7], [0, 7]], [[0, 0], [6, 0], [12, 0], [18, 1]], [[0, 0]], 5],
             [[[0, 0], [5, 0], [5, 5], [0, 5]], np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 5.0], [0.0, 5.0]])],
         ),
+        "planarity": (["", "Too short.", 30], ["word " * 30, "A sentence of seven words stands here. " * 5]),
     },
     "05": {
         "speed": ([3.0, 0.0, 6.0, 1.49], [1.5, Fraction(3, 2), np.float32(1.5)]),
@@ -83,20 +132,16 @@ ANSWERS: dict[str, dict[str, tuple[list[Any], list[Any]]]] = {
         "curvature": ([True, 0.0, 2.0, -4.0], [4, 4.0, np.float64(4.0)]),
         "work": ([16.0, -25.0, -9.0, 0.0], [-16, -16.0, Fraction(-16)]),
         "far": ([0.99, 7.0, 7.1, 49.25], [7.018, 7.0179, 0.99 / (1 - 0.99**2) ** 0.5]),
+        "trap": ([[-60, 0], [0, 0], [12, 0], [20, 0], 12], [TRAP, np.array(TRAP), tuple(TRAP)]),
+        "stuck": (["", "Too short.", 30], ["word " * 30, "A sentence of seven words stands here. " * 5]),
     },
     "06": {
-        "drifting": (
-            [["translation x"], ["translation x", "rotation"], ["translation x"] * 2, "translation x"],
-            [
-                ["translation y", "translation x"],
-                ("translation x", "translation y"),
-                {"translation x", "translation y"},
-            ],
-        ),
+        "zeros": ([3, 6, 12, 8], [9, 9.0, np.int64(9)]),
         "damping_ratio": ([0.09, 0.0928, 0.093, 9.29], [0.0929, 0.09292, np.float64(0.0929193)]),
         "best": ([1.83, 1.0488, 2.1, 2.097], [2.098, 2 * 1.1**0.5, 2.0976]),
         "residual": ([0.04, 0.045, 0.043, 0.44], [0.044, 0.0444, np.float64(0.04443)]),
         "delay": ([0.647409203 / 2, 0.5, 2.058, 0.65], [0.6474, 0.647409203, np.float64(0.647409)]),
+        "zero_modes": (["", "Too short.", 30], ["word " * 30, "A sentence of seven words stands here. " * 5]),
     },
     "07": {
         "n_none": ([22, 24, 30, 4.6], [23, 23.0, np.int64(23)]),
@@ -104,6 +149,10 @@ ANSWERS: dict[str, dict[str, tuple[list[Any], list[Any]]]] = {
         "status": (["refuted", "verified", False, None], ["vacuous", "Vacuous"]),
         "scattered": ([12, 14, 71, 9], [13, 13.0, np.int64(13)]),
         "basin": (["", "open basin", 30], ["word " * 30, "Its basin of attraction is an open set. " * 6]),
+        "costly": (
+            [[[0, 0], [7, 0]], np.zeros((13, 2)), 7.0 * GRID[:12], 13, 1.1 * GRID],
+            [9.0 * GRID, (20.0 * GRID).tolist(), 8.4 * GRID[::-1] + 3.0],
+        ),
     },
     "08": {
         "fastest": ([2.0, 1.63, 1.627, 1.629], [1.628, 1.6278, 1.62779]),
@@ -111,6 +160,7 @@ ANSWERS: dict[str, dict[str, tuple[list[Any], list[Any]]]] = {
         "count": ([8, 3, 10, 12], [11, 11.0, np.int64(11)]),
         "least": ([0.07, 0.0706, 0.071, 1.5], [0.0707, 0.07066, 0.070659]),
         "ratio": ([1.0, 0.75, 1.33, 4.0], [1.333, Fraction(4, 3), 4 / 3]),
+        "frozen": (["", "Too short.", 30], ["word " * 30, "A sentence of seven words stands here. " * 5]),
     },
     "09": {
         "rise": ([5.81, 5.82, 5.816, 0.0], [5.817, 5.8171, 5.81707]),
@@ -118,24 +168,30 @@ ANSWERS: dict[str, dict[str, tuple[list[Any], list[Any]]]] = {
         "parting": ([[3], [2, 3, 4], [3, 3, 4], 3], [[4, 3], (3, 4), np.array([3.0, 4.0])]),
         "share": ([0.001, 0.00108, 0.00106, 0.999], [0.00107, 0.001072, 0.035 / 32.646681]),
         "nearest": ([1.79401084 / 2, 3.5, 0.6, 0.0], [1.794, 1.79401084, np.float64(1.794011)]),
+        "chattering": (["", "Too short.", 30], ["word " * 30, "A sentence of seven words stands here. " * 5]),
     },
     "10": {
-        "lower": ([0.99, 0.964, 0.9644, 0.9988], [0.9643, 0.96435, np.array(0.96434533)]),
+        "lower": ([0.975, 0.9751, 0.9637, 0.9639, 0.9705], [0.9638, 0.025**0.01, np.array(0.963783)]),
         "runs_needed": ([367, 369, 299, 100], [368, 368.0, np.int64(368)]),
         "evaluations": ([0, 2, 20], [1, np.int64(1)]),
         "unseen": ([0.6, 0.4528, 0.94, 0.547], [0.5472, 0.99**60, 0.54716]),
         "runs_for_one": ([298, 300, 95, 60], [299, 299.0, np.int64(299)]),
+        "honest": (["", "Too short.", 30], ["word " * 30, "A sentence of seven words stands here. " * 5]),
     },
     "11": {
         "lacking": ([0, 1, 3], [2, 2.0]),
         "stiffness": ([0.0, 4.0, 8.001, -8.0], [8, 8.0, Fraction(8)]),
         "residual": ([0, 2, 0.9, -1], [1, 1.0]),
-        "status": (["verified", "refuted", False], ["vacuous", "VACUOUS"]),
+        "formula": (
+            ["1/s + s", "(s - 1)**2*s**2", "(s**2 - 1)**2", 3, "(s - 1)**2*(3 - s)**3"],
+            ["(s**2 - 1)**2*(9 - s**2)**3", "(s**2 - 1)**2 * (9 - s**2)**2"],
+        ),
         "escape": ([0.785, 0.7863, 1.5708, 0.5], [0.7854, np.pi / 4, 0.785398]),
         "capstone": (
             [[], [1, 2, 3], "done", capstone(1, holds=False)],
             [capstone(1, holds=True), tuple(capstone(2, holds=True))],
         ),
+        "defence": (["", "Too short.", 30], ["word " * 30, "A sentence of seven words stands here. " * 5]),
     },
     "12": {
         "degrees": ([0.0, 10, 179.9, 360], [180, 180.0, np.float64(180)]),
@@ -143,12 +199,44 @@ ANSWERS: dict[str, dict[str, tuple[list[Any], list[Any]]]] = {
         "count": ([1, 3, 5], [2, 2.0]),
         "rate": ([0.247, 0.2470, 0.2472, -0.2471], [0.2471, 0.24711, 0.247106]),
         "weight": ([3.142, 0.785, 1.5708, 0.3927], [0.7854, np.pi / 4, 0.785398]),
+        "touch": (["", "Too short.", 30], ["word " * 30, "A sentence of seven words stands here. " * 5]),
     },
     "13": {
         "largest": ([0.2, 0.141, 0.1413, 0.1415], [0.1414, 0.2 / 2**0.5, 0.14142]),
         "reached": ([0.1414, 0.06, 0.08, 0.071], [0.07, 0.0704, 0.07038571]),
-        "word": (["radius", "digest is", 1], ["digest", "Digest"]),
+        "level": ([6.0, 2.0, 3.0, 4.01], [4, 4.0, Fraction(4)]),
         "wait": ([34.54, 17.3, 13.8, 17.26], [17.27, 17.2694, np.log(1e6) / 0.8]),
         "proved": (["", "convergence", 30], ["word " * 30, "The solution itself converges for all time. " * 6]),
+    },
+    "A1": {
+        "figures": ([lambda run: [], lambda run: None, in_one_place, 6], [six_axes, lambda run: list(six_axes(run))]),
+        "drift": ([1.0, 25.0, 1e-3, True], [0, 0.0, np.float64(1e-16)]),
+        "case_1": (["", "Too short.", 30], ["word " * 30, "A sentence of seven words stands here. " * 5]),
+        "period": ([6.28, 3.142, 1.0, 6.282], [6.283, 2 * np.pi, 6.28319]),
+        "far_side": ([300.0, 274.0, 25.0, 125.0], [275, 275.0, Fraction(275)]),
+        "case_2": (["", "Too short.", 30], ["word " * 30, "A sentence of seven words stands here. " * 5]),
+        "sine_ratio": ([0.85, 0.8517, 1.109, 85.18], [0.8518, 0.851764, np.float64(0.85176)]),
+        "case_3": (["", "Too short.", 30], ["word " * 30, "A sentence of seven words stands here. " * 5]),
+        "true_ratio": ([0.852, 1.1, 1.12, 1.104], [1.11, 1.109, np.float64(1.1093)]),
+        "equal_circles": ([16.73, 11.3, 11.32, 8.367], [11.31, 11.306, np.float64(11.3060009)]),
+        "faster_and_larger": (
+            [[70.0, 16.7, 1.0, 3.0], [70.0, 1.0, 8.4, 1.0], [70.0, 0.0, 1.0, 8.0], [1.0], 70.0],
+            [[70.0, 1.0, 1.0, 8.4], (1.0, 0.1, 0.1, 1.0)],
+        ),
+        "conclusion": (["", "Too short.", 30], ["word " * 30, "A sentence of seven words stands here. " * 5]),
+    },
+    "A2": {
+        "c": ([0.25, 0.1255, 0.1259, -0.126], [0.1260, 0.125988, 1 / 63**0.5]),
+        "action": (
+            [lambda z: 0.0, lambda z: FIRST.phi_alpha(z) + 1e-6, lambda z: fl.AlphaInteraction().phi_alpha(z), 1.0],
+            [FIRST.phi_alpha, lambda z: FIRST.phi_alpha(np.array([z]))[0]],
+        ),
+        "factor": ([10.0, 9.92, 9.921, 1.008], [9.922, 9.92168, np.float64(9.921680)]),
+        "share": ([0.0, 27.0, 0.5, True], [1, 1.0, Fraction(1)]),
+        "first_run": (["", "Too short.", 30], ["word " * 30, "A sentence of seven words stands here. " * 5]),
+        "wait": ([6.908, 13.8, 13.81, 27.63], [13.82, 13.8155, 2 * np.log(1000)]),
+        "goal": (["", "Too short.", 30], ["word " * 30, "A sentence of seven words stands here. " * 5]),
+        "rest": ([5.0, 5.35, 5.1, 4.3], [5.7, Fraction(57, 10), 5 + 0.7]),
+        "mended": ([[0.5, 0.5], [5.0, 4.0], [0.0, 0.5], [9.0, 2.0], 5.0], [[5.0, 1.2], (5, 1.3), np.array([4.0, 1.0])]),
     },
 }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import json
+import re
 import subprocess
 import sys
 
@@ -70,13 +71,68 @@ def test_versions_of_a_lecture(source):
     assert all("= ..." in text for text in of(books["student"], "answer"))
 
 
+def test_every_kind_of_exercise_is_asked_for_and_outputs_are_read_once_at_most():
+    table = {number_of(source): [each.kind for each in build.exercises(source)] for source in SOURCES}
+    assert [*table] == ["00", "00a", *(f"{k:02d}" for k in range(1, 14)), "A1", "A2"]
+    for number, kinds in table.items():
+        assert kinds.count("reading") <= 1, number
+        assert kinds.count("words") >= 1, number
+        assert {"derivation", "design"} & set(kinds), number
+    asked = [kind for kinds in table.values() for kind in kinds]
+    assert asked.count("counterexample") >= 5
+    assert asked.count("derivation") >= 20
+    assert asked.count("design") >= 8
+    assert set(asked) == set(build.KINDS)
+
+
+@pytest.mark.parametrize("number", ["00a", "02", "03", "04", "05", "08", "09", "11", "12", "13"])
+def test_a_theorem_that_a_lecture_teaches_is_stated_in_it(number):
+    source = next(path for path in SOURCES if number_of(path) == number)
+    stated = re.findall(r"^# > \*\*(?:Theorem|Corrected)", source.read_text(encoding="utf-8"), re.MULTILINE)
+    assert len(stated) >= {"00a": 2, "08": 2, "09": 2, "12": 2}.get(number, 1)
+
+
+@pytest.mark.parametrize("source", SOURCES[-2:], ids=lambda path: path.stem)
+def test_an_assignment_states_the_points_that_its_questions_give(source):
+    """In all, and part by part: a part begins at its heading; what comes before counts with the first."""
+    text, points = source.read_text(encoding="utf-8"), [each.points for each in build.exercises(source)]
+    assert re.search(r"^# (\d+) points, those of the questions", text, re.MULTILINE)[1] == str(sum(points))
+    parts = [int(found) for found in re.findall(r"^# \| .* \| (\d+) \|$", text, re.MULTILINE)]
+    posed = of(build.notebook(source, "solutions"), "exercise")
+    starts = [k for k, cell in enumerate(posed) if cell.startswith("## ")]
+    found = [sum(points[a:b]) for a, b in zip(starts, [*starts[1:], len(points)], strict=True)]
+    found[0] += sum(points[: starts[0]])
+    assert parts == found
+
+
+@pytest.mark.parametrize("source", SOURCES, ids=lambda path: path.stem)
+def test_what_a_person_reads_has_a_rubric_with_as_many_parts_as_points(source):
+    asked = build.exercises(source)
+    for each, solution in zip(asked, of(build.notebook(source, "solutions"), "solution"), strict=True):
+        assert (each.kind == "words") == (each.form == "text")
+        if each.kind == "words":
+            rubric = solution.partition("# Rubric, a point each:\n")[2]
+            assert rubric.rstrip().endswith(".")
+            assert rubric.count(";") + 1 == each.points
+
+
+@pytest.mark.parametrize("head", ["**1.** ★ (1 point) How", "**1.** ★ (1 point, riddle) How", "1. How"])
+def test_an_exercise_without_points_or_kind_is_refused(tmp_path, head):
+    source = tmp_path / "00_x.py"
+    posed = f'# %% [markdown] tags=["exercise"]\n# {head}\n\n# %% tags=["check"]\ngrade(x, 1)\n'
+    source.write_text(posed, encoding="utf-8")
+    with pytest.raises(ArgumentError, match=r"2 points, kind.*derivation, design"):
+        list(build.exercises(source))
+
+
 @pytest.mark.parametrize("source", SOURCES, ids=lambda path: path.stem)
 def test_a_lecture_says_what_it_needs_aims_at_and_rests_on(source):
     texts = [cell.source for cell in build.notebook(source, "student").cells if cell.cell_type == "markdown"]
     assert "**Aims.**" in texts[0]
-    assert "**Lectures before this one:**" in texts[1]
+    assert re.search(r"\*\*Lectures before this one:\*\* .*\*\*Time:\*\* \d+ minutes", texts[1])
     assert "| $q_i$, $p_i$, $u_i$ |" in texts[1]
-    assert sum("## Summary" in text for text in texts) == 1
+    summed_up = "## How it is marked" if number_of(source).startswith("A") else "## Summary"
+    assert sum(summed_up in text for text in texts) == 1
     assert "## References\n\n- " in texts[-1]
     assert "## Further reading\n\n- " in texts[-1]
 
@@ -103,6 +159,21 @@ def test_a_number_that_is_not_exact_says_to_what_precision(source):
             assert words[options["digits"].value] in said
         elif isinstance(right, ast.Constant | ast.UnaryOp) and build.asked(check)[1] == "number":
             assert "exactly" in said or "whole number" in said or "nearest integer" in said
+
+
+@pytest.mark.parametrize("source", SOURCES, ids=lambda path: path.stem)
+def test_a_notebook_installs_flockana_where_it_is_missing_and_only_there(source, monkeypatch):
+    (cell,) = of(build.notebook(source, "student"), "install")
+    assert build.notebook(source, "student").cells[2].source == cell  # before anything is imported
+    installed = []
+    plain = cell.replace('%pip install --quiet "flockana[course]"', 'installed.append("flockana[course]")')
+    assert plain != cell
+    exec(plain.partition("    from pathlib")[0], {"installed": installed})
+    assert installed == []
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    exec(plain.partition("    from pathlib")[0], {"installed": installed})
+    assert installed == ["flockana[course]"]
+    assert ("copy_companions" in cell) == (number_of(source) == "11")
 
 
 def test_everything_that_a_lecture_needs_is_written_beside_it(tmp_path):

@@ -79,7 +79,7 @@ def test_the_view_holds_still_and_holds_everything(m):
     for k in (0, 3):
         ax = frame(film, k)
         views.append([getattr(ax, f"get_{name}lim")() for name in "xyz"[:m]])
-        assert title(ax) == f"t = {[0, None, None, 2][k]}"
+        assert title(ax) == f"$t$ = {[0, None, None, 2][k]}"
     assert views[0] == views[1]
     low, high = np.array(views[0]).T
     everything = np.vstack([run.q.reshape(-1, m), np.zeros((1, m))])

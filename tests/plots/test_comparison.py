@@ -17,7 +17,7 @@ def outcomes():
 
 
 def test_all_are_drawn_on_one_equal_scale(outcomes):
-    panels = plots.side_by_side(outcomes, axes=[axes(), axes()])
+    panels = plots.side_by_side(outcomes, ax=[axes(), axes()])
     scales = [(ax.get_xlim(), ax.get_ylim()) for ax in panels]
     assert scales[0] == scales[1]
     assert np.ptp(scales[0][0]) == pytest.approx(np.ptp(scales[0][1]))
@@ -25,8 +25,8 @@ def test_all_are_drawn_on_one_equal_scale(outcomes):
         start, end = (np.asarray(points.get_offsets()) for points in ax.collections[-2:])
         assert np.array_equal(start, outcome.run.q[0])
         assert np.array_equal(end, outcome.run.q[-1])
-        assert outcome.entry.theorem in ax.get_title()
-        assert outcome.verdict.status in ax.get_title()
+        assert outcome.entry.theorem in ax.get_title(loc="left")
+        assert outcome.verdict.status in ax.get_title(loc="left")
 
 
 def test_lines_differ_by_dash_or_mark(outcomes):
@@ -58,7 +58,7 @@ def test_a_figure_of_its_own_has_a_panel_for_each(outcomes):
 
 def test_bad_numbers(outcomes):
     with pytest.raises(ArgumentError, match="1 axes for 2 laws"):
-        plots.side_by_side(outcomes, axes=[axes()])
+        plots.side_by_side(outcomes, ax=[axes()])
     for draw in (plots.side_by_side, plots.velocity_diameters):
         with pytest.raises(ArgumentError, match="outcomes is empty"):
             draw([])

@@ -24,13 +24,13 @@ def lines(ax):
 def test_bode_in_decibels_and_degrees():
     own, omega = Gains(c1_gamma=4.0, c2_gamma=4.0), np.array([1.0, 2.0, 4.0])
     responses = {f"{f:g}": CentreOfMass(own, f).frequency_response(omega) for f in (0.0, 1.0)}
-    top, bottom = draw.bode(responses, marks={"case 4": 2.0}, axes=axes(2))
+    top, bottom = draw.bode(responses, marks={"case 4": 2.0}, ax=axes(2))
     hidden = lines(top)["0"]
     np.testing.assert_allclose(hidden[:, 0], omega)
     np.testing.assert_allclose(hidden[1, 1], 20 * np.log10(0.5))  # 4/(8j)
     phases = bottom.get_lines()[0].get_ydata()
     np.testing.assert_allclose(phases[1], -90.0)
-    assert (top.get_ylabel(), bottom.get_xlabel()) == ("|q_c/q_r| (dB)", "ω (radians/time)")
+    assert (top.get_ylabel(), bottom.get_xlabel()) == ("$|q_c/q_r|$ (dB)", r"$\omega$ (radians/time)")
     assert [t.get_text() for t in top.texts] == ["case 4"]
     assert [t.get_text() for t in top.get_legend().get_texts()] == ["0", "1"]
 
@@ -49,7 +49,7 @@ def test_the_root_locus_starts_at_crosses_and_ends_at_dots():
     found = lines(ax)
     np.testing.assert_allclose(found["c1γ = 0"], [[-2.0, 0.0], [0.0, 0.0]], atol=1e-12)
     np.testing.assert_allclose(np.sort(found["c1γ = 2"], axis=0), [[-1.0, -1.0], [-1.0, 1.0]], atol=1e-12)
-    assert ax.get_xlabel() == "Re s (1/time)"
+    assert ax.get_xlabel() == "Re $s$ (1/time)"
 
 
 def test_the_gain_sweep_leaves_the_neutral_out():
@@ -57,7 +57,7 @@ def test_the_gain_sweep_leaves_the_neutral_out():
     ax = draw.gain_sweep(sweep, ax=axes())
     np.testing.assert_allclose(lines(ax)["the slowest"][:, 1], [-1.0, -2.0])
     assert "(1 neutral set apart)" in lines(ax)
-    assert ax.get_xlabel() == "c2α (1/time)"
+    assert ax.get_xlabel() == r"$c_2^\alpha$ (1/time)"
     assert sum(np.array_equal(line.get_ydata(), [-3.0, -4.0]) for line in ax.get_lines()) == 1
 
 
@@ -82,4 +82,4 @@ def test_the_delay_chart_shades_what_is_stable():
     ax = draw.delay_chart(sweeps, ax=axes())
     np.testing.assert_allclose(lines(ax)["pairs"][:, 1], [0.3, 0.2])
     assert ax.collections[0].get_paths()[0].vertices[:, 1].max() == 0.2
-    assert (ax.get_xlabel(), ax.get_ylim()[0]) == ("c1γ (1/time²)", 0.0)
+    assert (ax.get_xlabel(), ax.get_ylim()[0]) == (r"$c_1^\gamma$ (1/time$^2$)", 0.0)

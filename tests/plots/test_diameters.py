@@ -28,7 +28,7 @@ def test_windows_are_bands_to_the_instant_where_the_next_begins():
     ax = plots.joint_windows(meeting(), ax=axes())
     bands = [(band.get_x(), band.get_x() + band.get_width()) for band in ax.patches if isinstance(band, Rectangle)]
     assert bands[:2] == [(0.0, 4.0), (5.0, 6.0)]
-    assert ax.get_title() == "4 windows of joint connectivity"
+    assert ax.get_title(loc="left") == "4 windows of joint connectivity"
     assert ax.get_lines()[0].get_ydata().tolist() == [0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0]
 
 

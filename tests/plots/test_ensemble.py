@@ -86,7 +86,7 @@ def test_a_cell_is_divided_by_the_shares_of_its_seeds(ax):
     np.testing.assert_allclose([patch[:2] for patch in patches], expected)
     assert [patch[3] for patch in patches] == [*colours, colours[0], colours[2]]
     assert [text.get_text() for text in ax.get_legend().get_texts()] == ["flocking", "fragmentation", "collapse"]
-    assert ([text.get_text() for text in ax.get_xticklabels()], ax.get_xlabel()) == (["0.1", "0.2"], "x")
+    assert ([text.get_text() for text in ax.get_xticklabels()], ax.get_xlabel()) == (["0.1", "0.2"], "$x$")
     hatches = {p.get_hatch() for p in ax.patches}
     assert len(hatches) == 3  # told apart without colour
 

@@ -42,7 +42,7 @@ def test_every_dimension_is_drawn_and_labelled(m):
     q = np.zeros((2, m))
     q[1, 0] = 7.0
     ax = plots.defect_map(q, [[0, 1]], [1, 1], strain=[0.0], ax=axes(m))
-    assert ax.get_xlabel() == "x (length)"
+    assert ax.get_xlabel() == "$x$ (length)"
     ax.figure.canvas.draw()
 
 
@@ -74,7 +74,7 @@ def test_the_collapse_diagram_shows_lengths_coincidence_failure_and_onset():
     np.testing.assert_allclose(together.get_offsets(), [[19, 1.0]])
     np.testing.assert_allclose(failed.get_offsets(), [[7, 1.0]])
     np.testing.assert_allclose(ax.get_lines()[0].get_ydata(), [np.nan, 1.0])
-    assert (ax.get_yscale(), ax.get_xlabel()) == ("log", "n, agents")
+    assert (ax.get_yscale(), ax.get_xlabel()) == ("log", "$n$, agents")
 
 
 def test_brackets_are_drawn_by_size_whatever_their_order():

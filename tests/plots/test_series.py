@@ -39,7 +39,7 @@ def test_everything_draws_in_every_dimension_and_labels_its_units(m):
     for draw in (plots.energy, plots.energy_residual, plots.distances, plots.speeds, plots.centre_of_mass):
         ax = draw(run, ax=axes())
         ax.get_figure().canvas.draw()
-        assert ax.get_xlabel() == "t (time)"
+        assert ax.get_xlabel() == "$t$ (time)"
 
 
 def test_series_show_the_numbers_of_the_run():
@@ -70,7 +70,7 @@ def test_distances_show_samples_bound_and_the_law_s_lengths():
 
 def test_the_panel_draws_four_measures_and_only_the_mismatch_is_logarithmic():
     run = a_run()
-    drawn = plots.panel(run, axes=Figure().subplots(2, 2))
+    drawn = plots.panel(run, ax=Figure().subplots(2, 2))
     names = ("connectivity", "cohesion_radius", "normalised_deviation_energy", "normalised_velocity_mismatch")
     for ax, name in zip(drawn, names, strict=True):
         np.testing.assert_array_equal(ax.get_lines()[0].get_ydata(), run.metrics()[name])
@@ -114,7 +114,7 @@ def test_without_axes_new_ones_are_made_for_the_dimension():
     assert plots.trajectories(a_run(3)).name == "3d"
     assert plots.trajectories(a_run(2)).name == "rectilinear"
     run = simulate(Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 0.1))
-    assert plots.energy(run).get_ylabel() == "H, energy"
+    assert plots.energy(run).get_ylabel() == "$H$, energy"
     assert plots.panel(run).shape == (4,)
 
 

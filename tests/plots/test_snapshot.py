@@ -63,7 +63,7 @@ def test_a_snapshot_of_a_zone_law_shows_its_world(hunted):
         triangles.get_paths()[3].vertices[0], hunted.q[20, 3] + 3.0 * hunted.extra["heading"][20, 3]
     )
     fastest = np.linalg.norm(hunted.p[20], axis=1).max()
-    assert title(ax) == f"t = 2   longest arrow: {fastest:.3g} length/time"
+    assert title(ax) == f"$t$ = 2   longest arrow: {fastest:.3g} length/time"
     assert len(of(ax, Quiver)) == 1
     assert not of(plots.snapshot(hunted, ax=axes(), velocities=False), Quiver)
 
@@ -201,7 +201,7 @@ def test_the_longest_arrow_is_labelled_with_the_largest_speed_and_rest_has_no_ar
 def test_a_snapshot_shows_the_nearest_sample_and_the_target_then(m):
     run = a_run(m)
     ax = plots.snapshot(run, 0.52, ax=axes(m))
-    assert "t = 0.5" in ax.get_title(loc="left") + ax.get_title()
+    assert "$t$ = 0.5" in ax.get_title(loc="left") + ax.get_title()
     dots, star = (next(c for c in ax.collections if c.get_label() == name) for name in ("agents", "γ-agent"))
     if m == 3:
         np.testing.assert_allclose(points(dots), run.q[5])

@@ -28,8 +28,8 @@ def test_poles_are_where_they_are_and_zeros_and_growth_stand_out():
     np.testing.assert_array_equal(found["eigenvalues"], [[-1.0, 2.0], [-1.0, -2.0], [-4.0, 0.0]])
     np.testing.assert_array_equal(found["growing"], [[0.5, 0.0]])
     assert "zero eigenvalues: 2" in found
-    assert (ax.get_xlabel(), ax.get_ylabel()) == ("Re s (1/time)", "Im s (rad/time)")
-    assert "ζ = 0.5" in [text.get_text() for text in ax.texts]
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("Re $s$ (1/time)", "Im $s$ (rad/time)")
+    assert r"$\zeta$ = 0.5" in [text.get_text() for text in ax.texts]
     low, high = ax.get_ylim()
     assert low == -high
     ax.figure.canvas.draw()
@@ -76,7 +76,7 @@ def test_every_dimension_is_drawn(m):
     q = np.zeros((2, m))
     q[1, 0] = 7.0
     ax = plots.mode_shape(q, [[0, 1]], 1j * q, ax=axes(m))
-    assert ax.get_xlabel() == "x (length)"
+    assert ax.get_xlabel() == "$x$ (length)"
     ax.figure.canvas.draw()
 
 

@@ -1,10 +1,13 @@
 from __future__ import annotations
 
+import inspect
+
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from flockana.plots.style import finish, finish_empty, finish_over_time, frame_space, in_plane, lines
+from flockana import plots
+from flockana.plots.style import colour_bar, finish, finish_empty, finish_over_time, frame_space, head, in_plane, lines
 
 
 @pytest.fixture
@@ -15,15 +18,15 @@ def ax():
 def test_axes_are_named_and_labels_make_a_legend(ax):
     ax.plot([0.0, 1.0], [1.0, 2.0])
     assert finish(ax, "x (length)", "y (length)") is ax
-    assert (ax.get_xlabel(), ax.get_ylabel(), ax.get_legend()) == ("x (length)", "y (length)", None)
+    assert (ax.get_xlabel(), ax.get_ylabel(), ax.get_legend()) == ("$x$ (length)", "$y$ (length)", None)
     ax.plot([0.0, 1.0], [2.0, 1.0], label="a line")
     (text,) = finish(ax).get_legend().get_texts()
-    assert (text.get_text(), ax.get_xlabel()) == ("a line", "x (length)")
+    assert (text.get_text(), ax.get_xlabel()) == ("a line", "$x$ (length)")
 
 
 def test_a_drawing_over_time_goes_from_the_first_time_to_the_last(ax):
     finish_over_time(ax, np.array([2.0, 3.0, 7.0]), "H, energy")
-    assert (ax.get_xlim(), ax.get_xlabel(), ax.get_ylabel()) == ((2.0, 7.0), "t (time)", "H, energy")
+    assert (ax.get_xlim(), ax.get_xlabel(), ax.get_ylabel()) == ((2.0, 7.0), "$t$ (time)", "$H$, energy")
     before = ax.get_xlim()
     assert finish_over_time(ax, np.array([5.0]), "").get_xlim() == before  # one instant has no extent
 
@@ -31,7 +34,7 @@ def test_a_drawing_over_time_goes_from_the_first_time_to_the_last(ax):
 def test_empty_axes_say_why(ax):
     finish_empty(ax, "H, energy", "this law has no energy")
     assert [text.get_text() for text in ax.texts] == ["this law has no energy"]
-    assert (ax.get_ylabel(), len(ax.get_xticks()), len(ax.get_yticks())) == ("H, energy", 0, 0)
+    assert (ax.get_ylabel(), len(ax.get_xticks()), len(ax.get_yticks())) == ("$H$, energy", 0, 0)
 
 
 def test_agents_of_a_line_lie_on_the_axis():
@@ -50,6 +53,44 @@ def test_lines_are_of_their_space_even_if_there_are_none(m):
 
 def test_a_line_has_no_second_coordinate(ax):
     frame_space(ax, np.zeros((3, 2)), 1)
-    assert (ax.get_xlabel(), ax.get_ylabel(), len(ax.get_yticks())) == ("x (length)", "", 0)
+    assert (ax.get_xlabel(), ax.get_ylabel(), len(ax.get_yticks())) == ("$x$ (length)", "", 0)
     frame_space(ax, np.zeros((3, 2)), 2)
-    assert (ax.get_ylabel(), ax.get_aspect()) == ("y (length)", 1.0)
+    assert (ax.get_ylabel(), ax.get_aspect()) == ("$y$ (length)", 1.0)
+
+
+def test_axes_that_others_made_get_titles_legends_and_colour_bars_in_the_style():
+    ax = Figure().add_subplot()
+    ax.plot([0, 1], [0, 1], label="a line")
+    finish(ax, "t (time)")
+    head(ax, "ζ = 1")
+    bar = colour_bar(ax, ax.scatter([0, 1], [0, 1], c=[0, 1]), "strain").ax
+    title = ax.title if ax.get_title() else ax._left_title
+    assert (title.get_text(), title.get_fontsize()) == (r"$\zeta$ = 1", 10)
+    assert ax.get_legend().get_frame().get_edgecolor()[3] == 0.0
+    assert (bar.yaxis.label.get_fontsize(), bar.get_yticklabels()[0].get_fontsize()) == (9, 8)
+
+
+OF_FILES = {"animate", "animate_mode"}  # films: of something, to a path
+OTHERS = {"animation", "mode_title", "style", "subplots"}
+DRAWING = [name for name in plots.__all__ if inspect.isfunction(getattr(plots, name)) and name not in OF_FILES | OTHERS]
+
+
+@pytest.mark.parametrize("name", DRAWING)
+def test_what_draws_takes_its_data_and_then_options_by_name_one_of_which_is_where(name):
+    parameters = inspect.signature(getattr(plots, name)).parameters.values()
+    data = [one for one in parameters if one.kind is not one.KEYWORD_ONLY]
+    assert 1 <= len(data) <= 3
+    assert all(one.default is one.empty or (one.name in ("p", "time") and one.default is None) for one in data)
+    options = {one.name: one.default for one in parameters if one.kind is one.KEYWORD_ONLY}
+    assert options["ax"] is None
+    assert "axes" not in options
+
+
+def test_films_are_asked_for_alike():
+    assert len(DRAWING) > 45
+    run, mode = (inspect.signature(getattr(plots, name)).parameters for name in sorted(OF_FILES))
+    assert list(run)[:2] == ["trajectory", "path"]
+    assert list(mode)[:3] == ["linearisation", "mode", "path"]
+    for name in ("fps", "velocities", "progress"):
+        assert mode[name].kind is run[name].kind is inspect.Parameter.KEYWORD_ONLY
+        assert (name, mode[name].default) == (name, run[name].default) or callable(mode[name].default)

@@ -35,7 +35,7 @@ def test_triangles_point_ahead(run):
     np.testing.assert_allclose(corners[0], q + 3.0 * h)
     np.testing.assert_allclose(0.5 * (corners[1] + corners[2]), q)
     assert np.linalg.norm(corners[1] - corners[2]) == pytest.approx(3.0)
-    assert "t = 2" in ax.get_title(loc="left") + ax.get_title()
+    assert "$t$ = 2" in ax.get_title(loc="left") + ax.get_title()
 
 
 def test_the_world_is_drawn(run):

@@ -1,0 +1,215 @@
+"""Pictures that a slider or a film goes through, drawn beforehand: they move wherever a notebook or its HTML is shown.
+
+No kernel has to answer a slider, so that lectures run without widgets, headless too, and keep working when exported.
+"""
+
+from __future__ import annotations
+
+import base64
+import io
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from html import escape
+from typing import Any
+
+from flockana.base.checks import ensure_positive
+from flockana.base.errors import ArgumentError
+
+_DPI = 90
+_COLOURS = 64  # of a picture: enough for lines and a colour bar, and a third of the bytes
+_PAGE = """<!doctype html><meta charset="utf-8"><title>{title}</title>
+<style>body{{margin:0;font:14px sans-serif}}img{{display:block;width:100%;max-width:{width}px}}
+label{{display:flex;gap:.6em;align-items:center;max-width:{width}px}}input{{flex:1}}</style>
+<img alt="{title}" src="{first}"><label>{play}<span>{name}</span>
+<input type="range" min="0" max="{last}" value="{start}" aria-label="{name}"><output>{shown}</output></label>
+<noscript>Allow scripts in this frame to move the picture.</noscript>
+<script>
+const pictures = {pictures}, texts = {texts}, seconds = {seconds};
+const [image, input, output, button] = ["img", "input", "output", "button"].map(n => document.querySelector(n));
+const show = k => {{ input.value = k; image.src = pictures[k]; output.value = texts[k];
+  input.setAttribute("aria-valuetext", texts[k]); image.alt = {title_js} + ", " + texts[k]; }};
+let timer = null;
+const stop = () => {{ clearInterval(timer); timer = null; if (button) button.textContent = "Play"; }};
+input.oninput = () => {{ stop(); show(+input.value); }};
+if (button) button.onclick = () => {{
+  if (timer) return stop();
+  button.textContent = "Pause";
+  timer = setInterval(() => show((+input.value + 1) % pictures.length), 1000 * seconds / pictures.length);
+}};
+</script>"""
+
+
+@dataclass(frozen=True, eq=False)
+class Frames:
+    """Pictures, one for each value: a notebook shows them behind a slider.
+
+    Parameters
+    ----------
+    pictures : tuple of bytes
+        As PNG.
+    texts : tuple of str
+        The values, as they are shown.
+    name : str
+        What is moved.
+    title : str
+        What is to be seen, for those who cannot see it.
+    size : tuple of int
+        Width and height in pixels.
+    start : int
+        Which picture is shown first.
+    seconds : float
+        Of a film; 0 for a slider.
+    """
+
+    pictures: tuple[bytes, ...]
+    texts: tuple[str, ...]
+    name: str
+    title: str
+    size: tuple[int, int]
+    start: int = 0
+    seconds: float = 0.0
+
+    def __repr__(self) -> str:
+        """One line."""
+        return f"<{len(self.pictures)} pictures of {self.title}, {self.name} from {self.texts[0]} to {self.texts[-1]}>"
+
+    def html(self) -> str:
+        """The page that shows them, which needs neither network nor other files."""
+        sources = ["data:image/png;base64," + base64.b64encode(each).decode() for each in self.pictures]
+        return _PAGE.format(
+            title=escape(self.title),
+            title_js=_as_script(self.title),
+            name=escape(self.name),
+            play='<button type="button">Play</button>' if self.seconds else "",
+            first=sources[self.start],
+            last=len(sources) - 1,
+            start=self.start,
+            shown=escape(self.texts[self.start]),
+            width=self.size[0],
+            pictures=_as_script(sources),
+            texts=_as_script(self.texts),
+            seconds=self.seconds,
+        )
+
+    def _repr_html_(self) -> str:
+        look = f"width:100%;height:{self.size[1] + 40}px;border:0"
+        page = escape(self.html())
+        return f'<iframe title="{escape(self.title)}" sandbox="allow-scripts" style="{look}" srcdoc="{page}"></iframe>'
+
+
+def _as_script(value: Any) -> str:
+    """As a literal of a script, in which nothing can end the script."""
+    return json.dumps(value).replace("<", "\\u003c")
+
+
+def slider(
+    draw: Callable[[Any, Any], object],
+    values: Sequence[Any],
+    *,
+    name: str,
+    title: str,
+    size: tuple[float, float] = (6.0, 3.6),
+    start: int = 0,
+) -> Frames:
+    """A picture for each value, behind a slider.
+
+    Parameters
+    ----------
+    draw : callable
+        Takes axes and a value, and draws.
+    values : sequence
+        At least two.
+    name : str
+        What the slider moves.
+    title : str
+        What is to be seen, for those who cannot see it.
+    size : tuple of float
+        Width and height in inches.
+    start : int
+        Which value is shown first.
+
+    Returns
+    -------
+    Frames
+
+    Raises
+    ------
+    ArgumentError
+        If there are fewer than two values, or no value `start`.
+
+    Examples
+    --------
+    >>> slider(lambda ax, a: ax.plot([0, 1], [0, a]), [1, 2, 3], name="a", title="a line of slope a")
+    <3 pictures of a line of slope a, a from 1 to 3>
+    """
+    return _drawn(draw, values, name, title, size, start, 0.0)
+
+
+def film(
+    draw: Callable[[Any, Any], object],
+    values: Sequence[Any],
+    *,
+    name: str,
+    title: str,
+    size: tuple[float, float] = (6.0, 3.6),
+    seconds: float = 6.0,
+) -> Frames:
+    """A picture for each value, one after another at the touch of a button.
+
+    Parameters
+    ----------
+    draw, values, name, title, size : object
+        As for `slider`.
+    seconds : float
+        From the first picture to the last.
+
+    Returns
+    -------
+    Frames
+
+    Raises
+    ------
+    ArgumentError
+        If there are fewer than two values, or `seconds` is not positive.
+    """
+    return _drawn(draw, values, name, title, size, 0, ensure_positive("seconds", seconds))
+
+
+def _drawn(
+    draw: Callable[[Any, Any], object],
+    values: Sequence[Any],
+    name: str,
+    title: str,
+    size: tuple[float, float],
+    start: int,
+    seconds: float,
+) -> Frames:
+    from matplotlib import pyplot as plt
+
+    from flockana.plots import subplots
+
+    if len(values) < 2 or not 0 <= start < len(values):
+        raise ArgumentError(f"{len(values)} values, start = {start}: expected at least two values, start one of them")
+    figure, ax = subplots(size=size)
+    pictures: list[bytes] = []
+    for value in values:
+        ax.clear()
+        draw(ax, value)
+        if not pictures:  # the same margins in every picture
+            figure.canvas.draw()
+            figure.set_layout_engine("none")
+        pictures.append(_png(figure))
+    plt.close(figure)
+    texts = tuple(each if isinstance(each, str) else f"{each:.4g}" for each in values)
+    pixels = round(size[0] * _DPI), round(size[1] * _DPI)
+    return Frames(tuple(pictures), texts, name, title, pixels, start, seconds)
+
+
+def _png(figure: Any) -> bytes:
+    from PIL import Image
+
+    whole, small = io.BytesIO(), io.BytesIO()
+    figure.savefig(whole, format="png", dpi=_DPI, bbox_inches=None)
+    Image.open(whole).convert("RGB").quantize(_COLOURS).save(small, format="png", optimize=True)
+    return small.getvalue()

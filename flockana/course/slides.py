@@ -1,0 +1,75 @@
+"""Lectures as slides: a slide for each heading, the cells of a paragraph below it, exercises left out."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import nbformat
+
+from flockana.course.build import copy_companions, notebook, sources, tags
+
+_LEFT_OUT = {"exercise", "answer", "check", "install"}
+_HEADING = re.compile(r"(?m)^(?=##? )")
+
+
+def slides(source: Path) -> Any:
+    """The notebook of a lecture, marked for ``jupyter nbconvert --to slides --execute``.
+
+    Parameters
+    ----------
+    source : Path
+        One of `flockana.course.build.sources`.
+
+    Returns
+    -------
+    nbformat.NotebookNode
+    """
+    book = notebook(source, "student")
+    book.cells = [part for cell in book.cells if not _LEFT_OUT & set(tags(cell)) for part in _parts(cell)]
+    for number, cell in enumerate(book.cells):
+        cell["id"] = f"{source.stem[:3].strip('_')}-slide-{number:03d}"
+        cell.metadata["slideshow"] = {"slide_type": _kind(cell)}
+    return book
+
+
+def _parts(cell: Any) -> Iterator[Any]:
+    """A cell of text as one for each heading; any other as it is."""
+    if cell.cell_type != "markdown":
+        yield cell
+        return
+    for text in filter(str.strip, _HEADING.split(cell.source)):
+        yield nbformat.v4.new_markdown_cell(text.strip())
+
+
+def _kind(cell: Any) -> str:
+    if cell.cell_type != "markdown":
+        return "-"  # with the text above it
+    if cell.source.startswith("**Lectures before this one:**"):
+        return "skip"
+    return "slide" if cell.source.startswith("#") else "subslide"
+
+
+def write_slides(folder: Path) -> list[Path]:
+    """Write all lectures as slides, and what they import.
+
+    Parameters
+    ----------
+    folder : Path
+        Made if need be; files of the same names are replaced.
+
+    Returns
+    -------
+    list of Path
+        The notebooks.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    copy_companions(folder)
+    written = []
+    for source in sources():
+        if not source.name.startswith("A"):  # an assignment is handed out
+            written.append(folder / f"{source.stem}.ipynb")
+            nbformat.write(slides(source), written[-1])
+    return written
