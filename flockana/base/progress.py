@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from typing import Any
 
 _EVERY = 60.0  # seconds between lines off a terminal
+_BASIS = 0.1  # of the total: what is done from which on the time left is told
 
 
 @contextmanager
@@ -54,7 +55,9 @@ def _lines(total: float) -> Callable[[float, str], None]:
         told = now
         spent = now - started
         left = spent * (total - done) / done
-        sys.stderr.write(f"{done:.4g} of {total:.4g} in {spent:.0f} s, about {left:.0f} s left: {text}\n")
+        # before a tenth is done, parts that take longer than others would lead far off
+        ahead = f", about {left:.0f} s left" if done >= _BASIS * total else ""
+        sys.stderr.write(f"{done:.4g} of {total:.4g} in {spent:.0f} s{ahead}: {text}\n")
         sys.stderr.flush()
 
     return advance

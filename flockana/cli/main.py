@@ -23,6 +23,7 @@ from flockana.cli.equilibrium import equilibrium_command
 from flockana.cli.explore import explore_command
 from flockana.cli.export import export_command
 from flockana.cli.falsify import falsify_command
+from flockana.cli.home import prepare_home
 from flockana.cli.lattice import lattice_command
 from flockana.cli.prove import prove_command
 from flockana.cli.run import run_command
@@ -79,6 +80,7 @@ for _name, _command in _COMMANDS.items():
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line and exit with its status."""
     prepare_output()
+    prepare_home()
     try:
         with interrupts_recognised():
             code = app(args=None if arguments is None else list(arguments), prog_name=_NAME, standalone_mode=False)

@@ -38,7 +38,7 @@ def verify_command(
         Path | None,
         typer.Option(
             metavar="DIR",
-            help="Folder of the report; by default report, or report/NAME where one on all is kept.",
+            help="Folder of the report, by default report; a folder NAME within where it has a report on all.",
             show_default=False,
         ),
     ] = None,

@@ -26,7 +26,7 @@ from flockana.ensemble.work import COMPLETE, Job, Request, Scalar, reference, re
 from flockana.measures.measure import measures
 from flockana.scenarios import Scenario, scenarios
 from flockana.scenarios import scenario as named_scenario
-from flockana.scenarios.scenario import SOURCE
+from flockana.scenarios.given import SOURCE
 from flockana.theorems import Tolerances, theorem, theorems
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.ensemble.digest import mathematics
 from flockana.measures.measure import measures
 from flockana.scenarios import Scenario, scenario
-from flockana.scenarios.scenario import SOURCE
+from flockana.scenarios.given import SOURCE
 from flockana.theorems import Tolerances, Verdict
 
 Scalar = bool | int | float | str

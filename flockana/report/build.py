@@ -66,17 +66,25 @@ def report_folder(name: str | None) -> Path:
     >>> report_folder(None).name
     'report'
     """
-    there = None if name is None else _facts(FOLDER)
-    return FOLDER if name is None or there is None or there.get("of") is not None else FOLDER / name
+    return FOLDER if name is None or not _on_all(FOLDER) else FOLDER / name
+
+
+def _on_all(folder: Path) -> bool:
+    """Whether a folder has a report on the whole catalogue, or one of which that cannot be told."""
+    there = _facts(folder)
+    return there is not None and there.get("of") is None
 
 
 def _facts(folder: Path) -> dict[str, Any] | None:
-    """What the report of a folder tells of itself; None if there is none."""
+    """What the report of a folder tells of itself, None if there is none; one with damaged verdicts is whole."""
+    if not (folder / HTML).exists() and not (folder / JSON).exists():
+        return None
+    whole = {"complete": True, "of": None}
     try:
         data = json.loads((folder / JSON).read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError):
-        return None
-    return data if isinstance(data, dict) else None
+        return whole
+    return data if isinstance(data, dict) and isinstance(data.get("complete"), bool) else whole
 
 
 def write_report(
@@ -92,10 +100,13 @@ def write_report(
 ) -> Path:
     """Write ``index.html`` and ``verdicts.json``; existing ones are replaced only when the new ones are whole.
 
-    A report that is not complete leaves a complete one alone and goes to the folder ``unfinished`` within. `of` is what
-    was checked, by name; None for the whole catalogue.
+    A report that is not complete leaves a complete one alone and goes to the folder ``unfinished`` within; one on a
+    part leaves one on the whole catalogue alone and goes to a folder of its name. `of` is what was checked, by name;
+    None for the whole catalogue.
     """
     folder = ensure_directory(directory)
+    if of is not None and _on_all(folder):
+        folder = ensure_directory(folder / of)
     if not complete and (_facts(folder) or {}).get("complete"):
         folder = ensure_directory(folder / UNFINISHED)
     pages = [page(r) if isinstance(r, ScenarioResult | FixedResult) else r for r in results]

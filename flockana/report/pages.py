@@ -13,7 +13,8 @@ from flockana.player.scene import scene
 from flockana.report.figures import Picture, pictures
 from flockana.report.text import parameters
 from flockana.scenarios import Scenario
-from flockana.scenarios.scenario import SOURCE, differences
+from flockana.scenarios.given import SOURCE
+from flockana.scenarios.scenario import differences
 from flockana.theorems import Theorem, Verdict, theorem
 from flockana.theorems.theorem import Status
 

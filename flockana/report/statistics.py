@@ -16,7 +16,7 @@ from flockana.report.figures import Picture
 from flockana.report.image import svg
 from flockana.report.surveys import Survey, SurveyResult, request
 from flockana.scenarios import Scenario, scenario, scenarios
-from flockana.scenarios.scenario import SOURCE
+from flockana.scenarios.given import SOURCE
 from flockana.theorems import theorem
 
 if TYPE_CHECKING:

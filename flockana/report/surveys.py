@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from flockana.base.errors import ArgumentError
 from flockana.ensemble.work import Job, Record, Request, run_batch
 from flockana.scenarios import scenario, scenarios
-from flockana.scenarios.scenario import SOURCE
+from flockana.scenarios.given import SOURCE
 
 _AT_ONCE = 25  # runs in one survey: a few seconds, so that all processes end together
 

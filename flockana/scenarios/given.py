@@ -16,14 +16,16 @@ from flockana.base.checks import (
     ensure_points,
     ensure_time_span,
 )
-from flockana.base.errors import ArgumentError
+from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.laws.discrete import ensure_law
 from flockana.scenarios.start import is_later
+from flockana.theorems import theorems
 from flockana.theorems.theorem import Status
 
 if TYPE_CHECKING:
     from flockana.scenarios.scenario import Scenario
 
+SOURCE = "source"  # the id under which a source's own report is judged
 _SAMPLES = 4  # of q, p and u in three dimensions: the least that a run takes
 
 
@@ -88,6 +90,10 @@ def _ensure_statuses(name: str, statuses: Any) -> None:
     wrong = {key: status for key, status in statuses.items() if status not in known}
     if wrong:
         raise ArgumentError(f"{name} = {wrong!r}: expected statuses {', '.join(known)}")
+    judged = (*theorems(), SOURCE)
+    for key in statuses:
+        if not isinstance(key, str) or key.split(":")[0] not in judged:
+            raise UnknownNameError("theorem", key if not isinstance(key, str) else key.split(":")[0], judged)
 
 
 def ensure_options(name: str, build: Callable[..., Any], options: Mapping[str, Any]) -> None:

@@ -16,6 +16,7 @@ from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.interactions import BetaInteraction, Gains
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.scenarios.findings import in_source_units
+from flockana.scenarios.given import SOURCE
 from flockana.scenarios.obstacle_claims import (
     constrained,
     gets_past,
@@ -27,7 +28,7 @@ from flockana.scenarios.obstacle_claims import (
     touches,
     traps,
 )
-from flockana.scenarios.scenario import SOURCE, Report, Scenario
+from flockana.scenarios.scenario import Report, Scenario
 from flockana.scenarios.start import drawn_later
 from flockana.theorems.theorem import Status
 

@@ -16,13 +16,11 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law
 from flockana.scenarios.enclosure import Enclosure
-from flockana.scenarios.given import ensure_options, ensure_parts, ensure_seed
+from flockana.scenarios.given import SOURCE, ensure_options, ensure_parts, ensure_seed
 from flockana.scenarios.start import given_later
 from flockana.theorems import Claim, Tolerances, Verdict, verify
 from flockana.theorems.second_run import corroborated
 from flockana.theorems.theorem import Status
-
-SOURCE = "source"  # the id under which a source's own report is judged
 
 
 @dataclass(frozen=True)
@@ -85,7 +83,7 @@ class Scenario:
     Raises
     ------
     ArgumentError
-        On a law, start, time span, seed or status that is none, or an instant outside t_span.
+        On a law, start, time span, seed, theorem or status that is none, or an instant outside t_span.
 
     Examples
     --------

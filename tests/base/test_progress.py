@@ -73,3 +73,12 @@ def test_off_a_terminal_long_work_is_told_in_a_line_now_and_then(capsys, monkeyp
         clock[0] += 1000.0
         advance(4, "")
     assert capsys.readouterr().err == ""
+
+
+def test_the_time_left_is_not_told_before_a_tenth_is_done(capsys, monkeypatch):
+    clock = [0.0]
+    monkeypatch.setattr(progress.time, "monotonic", lambda: clock[0])
+    with progress_bar(40) as advance:
+        for clock[0], done in ((60.0, 3), (120.0, 4)):
+            advance(done, "")
+    assert capsys.readouterr().err.splitlines() == ["3 of 40 in 60 s: ", "4 of 40 in 120 s, about 1080 s left: "]

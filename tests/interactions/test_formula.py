@@ -259,3 +259,25 @@ def test_the_strength_of_a_force_without_bound_is_its_largest_from_half_the_dist
     """|1 - d²/s²| falls from 3 at d/2 to 0 at d and rises to 1 - d²/9 at the range."""
     pair = fl.pair_law("d**2/s + s", adjacency=0, range=3.0, length=length)
     assert pair.strength == pytest.approx(3.0, rel=0.03)
+
+
+@pytest.mark.parametrize(("share", "jumps"), [(1e-8, True), (1e-10, False)])
+def test_a_jump_of_the_potential_is_one_by_the_scale_of_force_times_range(share, jumps):
+    """The force is 7.5e5 at half the distance and the range 1e-3: 750 is the energy to compare with."""
+    height = share * 750.0
+    text = f"Piecewise((0.5*k*(s - r)**2 + {height!r}, s < 0.0005), (0.5*k*(s - r)**2, True))"
+    law = fl.pair_law(text, adjacency=0, range=1e-3, length=5e-4, parameters={"k": 1e9})
+    assert law.strength == pytest.approx(7.5e5, rel=0.02)
+    assert any("the potential jumps" in fault for fault in law.faults) is jumps
+
+
+def test_a_weight_that_is_a_number_is_declared_where_it_is_read():
+    law = fl.pair_law("0.37*s**2", adjacency=0.25, range=3.0, length=1.0)
+    assert law.force(2.0) == pytest.approx(2.0 * 0.37 * 2.0, rel=1e-15)
+
+
+def test_the_strength_of_a_force_that_acts_below_half_the_distance_only_is_its_largest():
+    """It has no bound where agents meet and is 0 from 0.1 on; the adjacency, which is 7, is no force."""
+    text = "Piecewise((s + 1/s*0.01, s < 0.1), (0.2, True))"
+    pair = fl.pair_law(text, adjacency=7, range=3.0, length=2.0)
+    assert pair.strength > 50.0

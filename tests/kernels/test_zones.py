@@ -188,6 +188,13 @@ def test_detection_is_closed():
         assert bool(law.step(0.0, q, 0.0 * q, memory)[3]["alien"].any()) is moves
 
 
+def test_an_alien_on_its_prey_stays_there():
+    """The way to it has no direction: 0/0 would end the run."""
+    law = ZoneFlocking(RADII, world=ZoneWorld(aliens=(Alien((0.0, 0.0)),)))
+    q = np.zeros((1, 2))
+    assert law.step(0.0, q, q, law.start(q, q))[3]["alien"].tolist() == [[0.0, 0.0]]
+
+
 def trembling(w, n, aliens, seed, step, share):
     """The weights of a step: a number of its own for each agent, whom it is about, and behaviour."""
 

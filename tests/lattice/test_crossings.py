@@ -303,3 +303,9 @@ def test_a_turn_is_decided_exactly_where_rounded_products_agree():
     q = np.array([[0.0, 0.0], [1.0, 1.0 - e], [1.0 + e, 1.0]])
     assert (1.0 - e) * (1.0 + e) == 1.0
     assert turns_left(q, [0, 0, 0], [1, 2, 1], [2, 1, 1]).tolist() == [True, False, False]
+
+
+def test_a_turn_is_decided_where_both_rounded_products_vanish():
+    """(1, 0) × (0, 1) > 0 at any size; at 1e-200 both products are 0."""
+    q = np.array([[0.0, 0.0], [1e-200, 0.0], [0.0, 1e-200]])
+    assert turns_left(q, [0, 0], [1, 2], [2, 1]).tolist() == [True, False]

@@ -4,6 +4,7 @@ import base64
 import json
 from dataclasses import replace
 from html.parser import HTMLParser
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from flockana.base.errors import FileError
 from flockana.environment.targets import CallableTarget, StaticTarget
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.player.codec import decode
-from flockana.report.build import ensure_directory, verdicts_json, write_report
+from flockana.report.build import ensure_directory, report_folder, verdicts_json, write_report
 from flockana.report.coverage import coverage
 from flockana.report.coverage.anchors import scenario_id, verdict_id
 from flockana.report.pages import FixedResult, ScenarioPage, ScenarioResult, page
@@ -136,6 +137,32 @@ def test_the_coverage_is_in_reports_on_the_whole_catalogue_and_links_what_they_s
     part = write_report(results, tmp_path / "part", of="E8").read_text(encoding="utf-8")
     assert "#coverage" not in part
     assert 'id="coverage"' not in part
+
+
+WHOLE = '{"complete": true, "of": null}'
+
+
+@pytest.mark.parametrize("verdicts", [WHOLE, WHOLE[:-1], "", "[]", '{"complete": 1}', "[" * 100_000, None])
+def test_a_whole_report_stays_even_if_its_verdicts_are_damaged(tmp_path, monkeypatch, verdicts):
+    monkeypatch.chdir(tmp_path)
+    folder = tmp_path / "report"
+    folder.mkdir()
+    (folder / "index.html").write_text("whole", encoding="utf-8")
+    if verdicts is not None:
+        (folder / "verdicts.json").write_text(verdicts, encoding="utf-8")
+    before = {path.name: path.read_bytes() for path in folder.iterdir()}
+    assert write_report([], folder, complete=False) == folder / "unfinished" / "index.html"
+    assert write_report([], folder, of="E8") == folder / "E8" / "index.html"
+    assert write_report([], folder, of="E8", complete=False) == folder / "E8" / "unfinished" / "index.html"
+    assert report_folder("E8") == Path("report/E8")
+    assert {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()} == before
+    assert write_report([], folder) == folder / "index.html"
+    assert (folder / "index.html").read_text(encoding="utf-8") != "whole"
+
+
+def test_a_report_on_a_part_takes_the_place_of_another(tmp_path):
+    for name in ("E8", "E1", "E8"):
+        assert write_report([], tmp_path, of=name) == tmp_path / "index.html"
 
 
 def test_a_scenarios_own_instants_come_first(result):

@@ -1,0 +1,45 @@
+"""A home that cannot be written, as in a container with any user: matplotlib's files go elsewhere in silence."""
+
+from __future__ import annotations
+
+import os
+import stat
+import sys
+import tempfile
+from pathlib import Path
+
+
+def prepare_home() -> None:
+    """Give matplotlib a private temporary folder, which processes inherit, if its own could not be made or written.
+
+    By itself it takes a new one each time, which costs seconds, and says so in three lines. What the user has chosen
+    stays, and where there is no such folder either, matplotlib tells.
+    """
+    if "MPLCONFIGDIR" in os.environ or not sys.platform.startswith("linux") or all(map(_writable, _folders())):
+        return
+    folder = Path(tempfile.gettempdir()) / f"flockana-matplotlib-{os.getuid()}"
+    try:
+        folder.mkdir(mode=0o700, exist_ok=True)
+        found = folder.lstat()
+    except OSError:
+        return
+    # settings are read from there: nobody else may write them
+    if stat.S_ISDIR(found.st_mode) and found.st_uid == os.getuid() and not found.st_mode & 0o077:
+        os.environ["MPLCONFIGDIR"] = str(folder)
+
+
+def _folders() -> tuple[Path, Path]:
+    """Where matplotlib keeps settings and fonts."""
+    home = Path(os.path.expanduser("~"))
+    chosen = (
+        os.environ.get("XDG_CONFIG_HOME") or home / ".config",
+        os.environ.get("XDG_CACHE_HOME") or home / ".cache",
+    )
+    config, cache = (Path(folder) / "matplotlib" for folder in chosen)
+    return config, cache
+
+
+def _writable(folder: Path) -> bool:
+    """Whether a folder can be written, or made."""
+    there = next(path for path in (folder, *folder.absolute().parents) if os.path.lexists(path))
+    return there.is_dir() and os.access(there, os.W_OK | os.X_OK)

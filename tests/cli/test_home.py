@@ -1,0 +1,63 @@
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+from flockana.cli import home
+
+pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="elsewhere matplotlib chooses otherwise")
+
+
+@pytest.fixture
+def prepared(monkeypatch, tmp_path):
+    """What matplotlib's folder is with such a home."""
+    monkeypatch.setattr(home.tempfile, "gettempdir", lambda: str(tmp_path))
+
+    def prepare(folder, **environment):
+        for name in ("MPLCONFIGDIR", "XDG_CONFIG_HOME", "XDG_CACHE_HOME"):
+            monkeypatch.setenv(name, "")  # so that it is restored
+            monkeypatch.delenv(name)
+        for name, value in {"HOME": str(folder), **environment}.items():
+            monkeypatch.setenv(name, value)
+        home.prepare_home()
+        return os.environ.get("MPLCONFIGDIR")
+
+    return prepare
+
+
+@pytest.fixture
+def no_home(tmp_path):
+    """A home that nobody can make, root neither."""
+    file = tmp_path / "file"
+    file.touch()
+    return file / "home"
+
+
+def test_a_home_that_cannot_be_made_is_replaced_by_a_private_folder(prepared, tmp_path, no_home):
+    folder = tmp_path / f"flockana-matplotlib-{os.getuid()}"
+    for _ in range(2):  # the second time it is there
+        assert prepared(no_home) == str(folder)
+    assert folder.stat().st_mode & 0o777 == 0o700
+    folder.chmod(0o777)
+    assert prepared(no_home) is None
+
+
+def test_a_home_that_can_be_written_and_a_users_choice_stay(prepared, tmp_path, no_home):
+    good = tmp_path / "good"
+    assert prepared(good) is None
+    assert prepared(no_home, XDG_CONFIG_HOME=str(good), XDG_CACHE_HOME=str(good)) is None
+    assert prepared(no_home, XDG_CONFIG_HOME=str(good)) is not None
+    assert prepared(no_home, MPLCONFIGDIR="chosen") == "chosen"
+    assert not good.exists()
+
+
+def test_matplotlib_says_nothing(no_home, tmp_path):
+    script = "from flockana.cli.home import prepare_home; prepare_home(); import matplotlib; matplotlib.get_cachedir()"
+    kept = {name: value for name, value in os.environ.items() if name not in ("MPLCONFIGDIR", "XDG_CACHE_HOME")}
+    environment = {**kept, "HOME": str(no_home), "XDG_CONFIG_HOME": "", "TMPDIR": str(tmp_path)}
+    command = [sys.executable, "-c", script]
+    found = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=100, check=True)
+    assert (found.stdout, found.stderr) == ("", "")
