@@ -9,6 +9,7 @@ from typing import Any
 
 from flint import arb
 
+from flockana.base.checks import FloatArray
 from flockana.certified.intervals import square
 from flockana.certified.series import Piece
 
@@ -29,6 +30,10 @@ class AgentTerm(ABC):
     def piece(self, x: Sequence[arb]) -> Piece:
         """The piece on which it is, anywhere in a box: `Piece.OUT` where it is 0, `Piece.CORE` where it is analytic."""
         return Piece.CORE
+
+    def switches(self, x: FloatArray, v: FloatArray) -> list[tuple[float, float]]:
+        """How far beyond each place where its pieces meet, and how fast it goes away; proposals in floating point."""
+        return []
 
     def drift(self, t: arb, x: Sequence[arb]) -> list[arb]:
         """Its derivative by time at a fixed state."""

@@ -19,6 +19,7 @@ from flockana.base.progress import progress_bar
 from flockana.certified.flow import Flow
 from flockana.certified.laws import ensure_enclosable, flow_of
 from flockana.certified.lohner import StateSet, Step, crossing_step, size, taylor_step, variation_order
+from flockana.certified.series import Piece
 from flockana.certified.tube import BITS, Tube
 
 _SHORTEST = 1e-7  # of the law's own time: nearer to a switch, it is crossed
@@ -55,7 +56,8 @@ def enclose(
     """Enclose every solution from a start, or from a box of starts, rigorously: Lohner's method in ball arithmetic.
 
     Where the pair law of every pair is analytic, a step is one of a Taylor polynomial, with its remainder bounded over
-    all states that the step may meet; at h r_α and r_α, where the law is only C¹, short steps of second order. A
+    all states that the step may meet; at h r_α and r_α, and h d_β and d_β of an obstacle, where the law is only C¹, short
+    steps of second order. The surface of a sphere is no such place. A
     parameter of the law is the decimal that it prints as, a coordinate or a time is its binary value.
 
     The set grows at each crossing by about the third power of its duration: a pair that grazes a switching distance, or
@@ -66,7 +68,7 @@ def enclose(
     Parameters
     ----------
     law : Algorithm1, Algorithm2 or Algorithm3
-        Under the latter two the γ-agent is a `StaticTarget` or a `LinearTarget`, and there is no obstacle.
+        Under the latter two the γ-agent is a `StaticTarget` or a `LinearTarget`; obstacles are `Sphere`s.
     q0, p0 : array_like, shape (n, m)
         Initial positions and velocities, exact.
     t_span : (float, float)
@@ -207,37 +209,42 @@ def _proposed(flow: Flow, t: float, current: StateSet, longest: float) -> tuple[
     half, m = flow.n * flow.m, flow.m
     q, p = state[:, 0].reshape(2, flow.n, m)
     wide, blown = (2.0 * sqrt(m) * float(part.max()) for part in (state[:half, 1], state[half:, 1]))
-    eps, unit = float(flow.pair.eps), sqrt(float(flow.pair.area))
-    switches = [unit * sqrt(((1.0 + eps * float(z)) ** 2 - 1.0) / eps) for z in (flow.pair.knee, flow.pair.cutoff)]
     h, crossing = longest, 0.0
-    for i, j in combinations(range(flow.n), 2):
-        apart, relative = q[j] - q[i], p[j] - p[i]
-        length = float(np.linalg.norm(apart))
-        speed = float(apart @ relative) / length if length > 0.0 else float(np.linalg.norm(relative))
-        for switch in switches:
-            gap = length - switch
-            fastest = abs(speed) + blown
-            if abs(gap) <= 1.5 * wide + 2.0 * _SHORTEST * fastest / flow.pace:
-                crossing = max(crossing, (wide + abs(gap)) / max(fastest, 1e-3 * wide * flow.pace, 1e-300))
-            elif gap * speed < 0.0:
-                h = min(h, 0.8 * (abs(gap) - wide) / abs(speed))
-            elif speed != 0.0:
-                h = min(h, max(6.0 * (abs(gap) - wide) / abs(speed), 2.0 * _SHORTEST / flow.pace))
+    for gap, speed in _gaps(flow, q, p):
+        fastest = abs(speed) + blown
+        if abs(gap) <= 1.5 * wide + 2.0 * _SHORTEST * fastest / flow.pace:
+            crossing = max(crossing, (wide + abs(gap)) / max(fastest, 1e-3 * wide * flow.pace, 1e-300))
+        elif gap * speed < 0.0:
+            h = min(h, 0.8 * (abs(gap) - wide) / abs(speed))
+        elif speed != 0.0:
+            h = min(h, max(6.0 * (abs(gap) - wide) / abs(speed), 2.0 * _SHORTEST / flow.pace))
     if crossing == 0.0:
         return h, None
     return h, float(min(max(1.5 * crossing, _SHORTEST / flow.pace), _LONGEST / flow.pace, longest))
 
 
+def _gaps(flow: Flow, q: FloatArray, p: FloatArray) -> Iterator[tuple[float, float]]:
+    """(how far beyond a switch, how fast it goes away), of each pair and of each agent in each term, switch by switch."""
+    eps, unit = float(flow.pair.eps), sqrt(float(flow.pair.area))
+    switches = [unit * sqrt(((1.0 + eps * float(z)) ** 2 - 1.0) / eps) for z in (flow.pair.knee, flow.pair.cutoff)]
+    for i, j in combinations(range(flow.n), 2):
+        apart, relative = q[j] - q[i], p[j] - p[i]
+        length = float(np.linalg.norm(apart))
+        speed = float(apart @ relative) / length if length > 0.0 else float(np.linalg.norm(relative))
+        yield from ((length - switch, speed) for switch in switches)
+    for term in flow.terms:
+        for x, v in zip(q, p, strict=True):
+            yield from term.switches(x, v)
+
+
 def _where(flow: Flow, current: StateSet) -> str:
-    """Which pairs are about a switching distance, in words."""
-    pieces = flow.pieces(current.hull)
-    pairs = [
-        pair for pair, piece in zip(combinations(range(flow.n), 2), pieces, strict=False) if piece.name == "SWITCH"
-    ]
+    """Which pairs and agents are about a switching distance, in words."""
+    names = [f"agents {i} and {j}" for i, j in combinations(range(flow.n), 2)]
+    names += [f"agent {i} and an obstacle" for _ in flow.terms for i in range(flow.n)]
+    about = [name for name, piece in zip(names, flow.pieces(current.hull), strict=True) if piece is Piece.SWITCH]
     width = max(float(x.rad()) for x in current.hull)
     if not isfinite(width):
         return "nothing is known of it any more"
-    named = ", ".join(f"{i} and {j}" for i, j in pairs[:3])
     return f"its half-width is {width:.2g}" + (
-        f", and agents {named} may be about a switching distance" if pairs else ""
+        f", and {', '.join(about[:3])} may be about a switching distance" if about else ""
     )

@@ -51,6 +51,15 @@ class Approach(NamedTuple):
     time: float
 
 
+class Touch(NamedTuple):
+    """How near an agent comes to an obstacle: a proved lower bound, which ones, and when (the step's begin)."""
+
+    lower: float
+    agent: int
+    obstacle: int
+    time: float
+
+
 @dataclass(frozen=True)
 class Tube:
     """Sets that hold every solution from a start or a box of starts, proved in ball arithmetic.
@@ -184,6 +193,38 @@ class Tube:
                 if (lower := down(distance.lower())) < least.lower:
                     least = Approach(lower, pair, t)
         return least
+
+    def clearances_during(self, k: int) -> list[list[arb]]:
+        """Balls that hold the clearance of each agent from each obstacle, obstacle by obstacle, from step k to the next.
+
+        Parameters
+        ----------
+        k : int
+            Step, the last one excluded.
+        """
+        with ctx.workprec(BITS):
+            return self._clearances(self.taken[k].during)
+
+    def _clearances(self, box: Sequence[arb]) -> list[list[arb]]:
+        """Of each obstacle and each agent, anywhere in a box."""
+        from flockana.certified.laws import sphere_terms
+
+        agents = [box[i : i + self.m] for i in range(0, self.n * self.m, self.m)]
+        terms = sphere_terms(self.law) if self.law.obstacles else ()
+        return [[term.clearance(x) for x in agents] for term in terms]
+
+    def min_clearance(self) -> Touch:
+        """A proved lower bound of the clearance of any agent from any obstacle, at all times of the tube."""
+        with ctx.workprec(BITS):
+            boxes = [self.boxes[0], *(step.during for step in self.taken)]
+            rows = [self._clearances(box) for box in boxes]
+        each = [
+            Touch(down(clearance.lower()), agent, obstacle, t)
+            for t, row in zip((self.t[0], *self.t), rows, strict=False)
+            for obstacle, own in enumerate(row)
+            for agent, clearance in enumerate(own)
+        ]
+        return min(each, key=lambda one: one.lower, default=Touch(inf, 0, 0, self.t[0]))
 
     def cohesion_radius(self) -> FloatArray:
         """Upper bounds of R = max ‖q_i − q_c‖ from each step to the next, proved, shape (T − 1,)."""
