@@ -27,6 +27,7 @@ _LONGEST = 0.1  # of the law's own time: the longest step that crosses a switch
 _TRIES = 40  # of ever shorter steps
 _SHRINK, _GROW = 0.5, 4.0
 _PART = 1e-4  # of its own width, which a step may add to a wide set
+_FAR = 1e3  # times what a step may add: one that adds more is taken again, shorter
 _BLUR = 1e-4  # by which a step may let the set grow
 
 
@@ -56,9 +57,9 @@ def enclose(
     """Enclose every solution from a start, or from a box of starts, rigorously: Lohner's method in ball arithmetic.
 
     Where the pair law of every pair is analytic, a step is one of a Taylor polynomial, with its remainder bounded over
-    all states that the step may meet; at h r_α and r_α, and h d_β and d_β of an obstacle, where the law is only C¹, short
-    steps of second order. The surface of a sphere is no such place. A
-    parameter of the law is the decimal that it prints as, a coordinate or a time is its binary value.
+    all states that the step may meet; at h r_α and r_α, and at h d_β and d_β of an obstacle, where the law is only C¹,
+    short steps of second order; the surface of a sphere is no such place. A parameter of the law is the decimal that it
+    prints as, a coordinate or a time is its binary value.
 
     The set grows at each crossing by about the third power of its duration: a pair that grazes a switching distance, or
     a wide set, is what the tube may break at. It then ends early, and says why. Three agents in the plane cost about
@@ -180,7 +181,9 @@ def _steps(
                 step = taylor_step(flow, arb(t), length, current, knobs.order)
             else:
                 step = crossing_step(flow, arb(t), length, current)
-            if step is not None and (crossing is not None or step.blur < _BLUR**0.5):
+            if step is not None and (
+                crossing is not None or (step.blur < _BLUR**0.5 and _excess(flow, step, knobs) < _FAR)
+            ):
                 break
             h, crossing = (_SHRINK * h, None) if crossing is None else (h, _SHRINK * crossing)
         if step is None:
@@ -191,11 +194,20 @@ def _steps(
             yield t, f"the set is wider than {2.0 * knobs.widest:g} d at t = {end:.6g}, where {_where(flow, current)}"
             return
         if crossing is None:
-            off = step.added / max(knobs.remainder * knobs.length, _PART * widest)
-            factors = [_factor(off, knobs.order), _factor(step.blur / _BLUR, variation_order(knobs.order)), _GROW]
+            factors = [
+                _factor(_excess(flow, step, knobs), knobs.order),
+                _factor(step.blur / _BLUR, variation_order(knobs.order)),
+                _GROW,
+            ]
             wanted = (end - t) * max(min(factors), 0.3)
         t, current = end, step.after
         yield t, step
+
+
+def _excess(flow: Flow, step: Step, knobs: _Settings) -> float:
+    """What a step adds, of what it may: the remainder of the knobs, or a part of the set's own width."""
+    widest = size(flow, [arb(x.rad()) for x in step.after.hull])
+    return step.added / max(knobs.remainder * knobs.length, _PART * widest)
 
 
 def _factor(excess: float, order: int) -> float:
@@ -224,7 +236,7 @@ def _proposed(flow: Flow, t: float, current: StateSet, longest: float) -> tuple[
 
 
 def _gaps(flow: Flow, q: FloatArray, p: FloatArray) -> Iterator[tuple[float, float]]:
-    """(how far beyond a switch, how fast it goes away), of each pair and of each agent in each term, switch by switch."""
+    """(how far beyond a switch, how fast it goes away), of each pair and of each agent in each term."""
     eps, unit = float(flow.pair.eps), sqrt(float(flow.pair.area))
     switches = [unit * sqrt(((1.0 + eps * float(z)) ** 2 - 1.0) / eps) for z in (flow.pair.knee, flow.pair.cutoff)]
     for i, j in combinations(range(flow.n), 2):

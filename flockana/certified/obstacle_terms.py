@@ -140,7 +140,8 @@ class SphereTerm(AgentTerm):
 
     def clearance(self, x: Sequence[arb]) -> arb:
         """‖x − y‖ − R, negative inside."""
-        return sum((square(a - b) for a, b in zip(x, self.centre, strict=True)), arb(0)).sqrt() - self.radius
+        squares = sum((square(a - b) for a, b in zip(x, self.centre, strict=True)), arb(0))
+        return squares.nonnegative_part().sqrt() - self.radius
 
     def piece(self, x: Sequence[arb]) -> Piece:
         """The piece of ρ_h on which the clearance is, anywhere in a box."""
@@ -155,13 +156,15 @@ class SphereTerm(AgentTerm):
         meet = [unit * sqrt(((1.0 + eps * float(z)) ** 2 - 1.0) / eps) for z in (self.beta.knee, self.beta.cutoff)]
         return [(clearance - switch, speed) for switch in meet]
 
-    def braking(self, x: Sequence[arb], v: Sequence[arb]) -> arb:
-        """b ⟨v, p̂ − v⟩ = −b ((1 − μ) ‖v − ⟨a, v⟩ a‖² + ⟨a, v⟩²), never positive where the clearance is not negative."""
+    def power(self, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> Any:
+        """c2β b ⟨v, p̂ − v⟩ = −c2β b ((1 − μ) ‖v − ⟨a, v⟩ a‖² + ⟨a, v⟩²): not positive unless the agent is inside."""
         a, distance = self._away(x)
-        radial = _dot(a, v)
-        across = sum((square(w - radial * k) for k, w in zip(a, v, strict=True)), arb(0))
-        weight = self.beta.weights(square(self.clearance(x)), Piece.SWITCH)[1]
-        return -weight * (self.clearance(x) / distance * across + square(radial))
+        clearance, radial = distance - self.radius, _dot(a, v)
+        across = sum((_squared(w - radial * k) for k, w in zip(a, v, strict=True)), 0 * radial)
+        adjacency = self.beta.weights(_squared(clearance), piece)[1]
+        if isinstance(adjacency, arb):
+            adjacency = adjacency.nonnegative_part()  # ρ_h >= 0, whatever its ball says
+        return -self.damping * adjacency * (clearance / distance * across + _squared(radial))
 
     def force(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> list[Any]:
         """The force at a position and a velocity."""

@@ -195,7 +195,7 @@ class Tube:
         return least
 
     def clearances_during(self, k: int) -> list[list[arb]]:
-        """Balls that hold the clearance of each agent from each obstacle, obstacle by obstacle, from step k to the next.
+        """Balls that hold the clearances of the agents from each obstacle, from step k to the next.
 
         Parameters
         ----------
@@ -219,7 +219,7 @@ class Tube:
             boxes = [self.boxes[0], *(step.during for step in self.taken)]
             rows = [self._clearances(box) for box in boxes]
         each = [
-            Touch(down(clearance.lower()), agent, obstacle, t)
+            Touch(down(clearance.lower()) if clearance.is_finite() else -inf, agent, obstacle, t)
             for t, row in zip((self.t[0], *self.t), rows, strict=False)
             for obstacle, own in enumerate(row)
             for agent, clearance in enumerate(own)
