@@ -20,7 +20,8 @@ from flockana.certified.flow import Flow
 from flockana.certified.laws import ensure_enclosable, flow_of
 from flockana.certified.lohner import StateSet, Step, crossing_step, size, taylor_step, variation_order
 from flockana.certified.series import Piece
-from flockana.certified.tube import BITS, Tube
+from flockana.certified.structural_energy import BITS
+from flockana.certified.tube import Tube
 
 _SHORTEST = 1e-7  # of the law's own time: nearer to a switch, it is crossed
 _LONGEST = 0.1  # of the law's own time: the longest step that crosses a switch

@@ -11,7 +11,8 @@ from flockana.certified.flow import Flow, Pieces, series_length
 from flockana.certified.intervals import exact, hull, psi_alpha, psi_beta, sigma_of_square, square
 from flockana.certified.laws import flow_of, sphere_terms
 from flockana.certified.series import Piece
-from flockana.certified.tube import BITS, Tube, scaled
+from flockana.certified.structural_energy import BITS, norm2, scaled
+from flockana.certified.tube import Tube
 
 _ORDER = 12  # of the rate's Taylor polynomials
 
@@ -28,16 +29,16 @@ def total_energy(law: Any, q: Sequence[Sequence[arb]], p: Sequence[Sequence[arb]
     """
     with ctx.workprec(BITS):
         gains, par, area = law.gains, scaled(law.alpha), arb(exact(law.alpha.unit)) ** 2
-        squares = [_norm2([b - a for a, b in zip(x, y, strict=True)]) for k, x in enumerate(q) for y in q[k + 1 :]]
+        squares = [norm2([b - a for a, b in zip(x, y, strict=True)]) for k, x in enumerate(q) for y in q[k + 1 :]]
         pairs = sum((psi_alpha(sigma_of_square(s2 / area, par.eps), par) for s2 in squares), arb(0)) * area
         start = [arb(exact(x)) for x in law.target.harmonic.terms[0].tolist()]
-        far = sum(((1 + _norm2([a - b for a, b in zip(x, start, strict=True)]) / area).sqrt() - 1 for x in q), arb(0))
+        far = sum(((1 + norm2([a - b for a, b in zip(x, start, strict=True)]) / area).sqrt() - 1 for x in q), arb(0))
         total = arb(exact(gains.c1_alpha)) * pairs + arb(exact(gains.c1_gamma)) * area * far
         for term in sphere_terms(law):
             beta = term.beta
             depths = [sigma_of_square(square(term.clearance(x)) / beta.area, beta.eps) for x in q]
             total += term.stiffness * beta.area * sum((psi_beta(z, beta.par) for z in depths), arb(0))
-        return total + sum(map(_norm2, p), arb(0)) / 2
+        return total + sum(map(norm2, p), arb(0)) / 2
 
 
 def powers_during(tube: Tube, flow: Flow, k: int) -> list[arb]:
@@ -73,7 +74,3 @@ def _rate(flow: Flow, t: arb, state: Sequence[arb], pieces: Pieces) -> list[arb]
     with series_length(_ORDER + 1):
         total = sum(flow.powers([arb_series(row) for row in path], pieces), arb_series([0]))
         return [total[j] for j in range(_ORDER + 1)]
-
-
-def _norm2(x: Sequence[arb]) -> arb:
-    return sum(map(square, x), arb(0))

@@ -10,8 +10,9 @@ from flockana.base.checks import FloatArray
 from flockana.certified.flow import Flow
 from flockana.certified.laws import flow_of
 from flockana.certified.series import Piece
+from flockana.certified.structural_energy import BITS
 from flockana.certified.total_energy import powers_during, total_energy, work
-from flockana.certified.tube import BITS, Tube, up
+from flockana.certified.tube import Tube, up
 from flockana.theorems.from_tube import decided, known
 from flockana.theorems.hypotheses import common_gains, condition
 from flockana.theorems.olfati_saber.energy import proved
@@ -30,8 +31,9 @@ def _rests(tube: Tube) -> Hypothesis:
 
 def _told(tube: Tube) -> FloatArray:
     """p_r, which is constant on a straight path."""
-    terms: FloatArray = tube.law.target.harmonic.terms
-    return terms[1] + terms[4]
+    terms = tube.law.target.harmonic.terms
+    told: FloatArray = terms[1] + terms[4]
+    return told
 
 
 def _slow_enough(tube: Tube, flow: Flow) -> tuple[Hypothesis, int]:
@@ -126,7 +128,6 @@ def os_6(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked
         rests = _rests(tube)
         needs = [common_gains(law), rests, slow, _stays_outside(tube)]
         if tube.status != "complete":
-            lack = {"holds": False, "stated": "over the whole time span"}
-            reason = f"the tube ends early: {tube.message}"
-            return needs, [known(name, reason, needs, **lack) for name in ("rate", "balance")]
+            reason, stated = f"the tube ends early: {tube.message}", "over the whole time span"
+            return needs, [known(name, reason, needs, holds=False, stated=stated) for name in ("rate", "balance")]
         return needs, [_never_rises(tube, flow, since, needs), _balance(tube, [rests, needs[0]], tolerances)]
