@@ -11,10 +11,11 @@ from flockana.equilibria.solve import find_equilibrium
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_patch, hexagonal_spiral
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.stability.delay import DelaySystem, delay_margin, delay_system, rightmost_roots, root_error
+from flockana.stability.delay import DelaySystem, delay_margin, delay_system, rightmost_roots, root_error, scalar_margin
 from flockana.stability.design import GainDesign, design_gains, gain_problem
 from flockana.stability.rounding import eigen
 from flockana.theorems.claims import judged
+from flockana.theorems.rounding import EPS
 from flockana.theorems.theorem import Checked, Claim, Theorem, Tolerances
 
 _WHAT = {
@@ -24,6 +25,7 @@ _WHAT = {
 }
 _WORTH = 0.01  # gain in the rate that counts: both searches end at roots that coalesce, and near the best only
 _CUSP = 1e-4  # relative error of a rate at coalescing roots
+_ALIKE = 1e-9  # relative, of the sweep's margin and the closed form's
 _AROUND = 0.02  # of the margin: how far to either side stability is looked at
 _DESIGNS: tuple[tuple[str, int, dict[str, Any], str], ...] = (
     ("printed", 12, {"rotation": "counted"}, "matrix as printed, rotation counted"),
@@ -34,7 +36,24 @@ _DESIGNS: tuple[tuple[str, int, dict[str, Any], str], ...] = (
 
 def _check_delays(tolerances: Tolerances) -> Checked:
     laws = Algorithm1(), Algorithm2(target=StaticTarget((0.0, 0.0)))
-    return [], [_delay(law, delayed) for law in laws for delayed in _WHAT]
+    return [], [*(_delay(law, delayed) for law in laws for delayed in _WHAT), _pair(laws[0])]
+
+
+def _pair(law: Algorithm1) -> Claim:
+    """Two agents on a line have one mode beside uniform motion: the sweep must find the closed form's delay."""
+    system = delay_system(law, find_equilibrium(law, [[0.0], [law.alpha.length]]).q, delayed="all")
+    stiffness, damping = (float(matrix[0, 0] - matrix[0, 1]) for matrix in system.late)
+    swept, exact = delay_margin(system).delay, scalar_margin(stiffness, damping).delay
+    off = abs(swept - exact) / exact
+    return judged(
+        "pair",
+        _ALIKE - off,
+        64.0 * EPS,
+        computed={"sweep": swept, "closed form": exact},
+        stated=f"τ* = atan2(ωd, k)/ω with ω² = ½(d² + √(d⁴ + 4k²)), to {_ALIKE:g} of it",
+        proof="second-order-modes",
+        detail=f"k = {stiffness:.5g}, d = {damping:.4g}: τ* = {exact:.6g}, off by {off:.1g} of it",
+    )
 
 
 def _delay(law: Algorithm1 | Algorithm2, delayed: str) -> Claim:
@@ -105,7 +124,8 @@ THEOREM = (
         statement=(
             "If what agents know of each other, or of everything, is τ old, the linearised flock is stable below a "
             "delay margin τ* and unstable just above it. τ* is found by a sweep over frequency, the roots to either "
-            "side by a discretisation of the delayed state (Breda, Maset, Vermiglio)."
+            "side by a discretisation of the delayed state (Breda, Maset, Vermiglio). Of two agents on a line τ* has a "
+            "closed form."
         ),
         source="ours",
         kind="fixed",
