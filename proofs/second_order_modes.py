@@ -127,6 +127,7 @@ PROOF = Proof(
         "continuously on τ (not checked by a machine)"
     ),
     rigour="smt",
+    theorems=("delay-margin",),
     steps=_steps,
     size=9,
 )

@@ -9,6 +9,7 @@ from typing import Any
 
 from flint import arb
 
+from flockana.base.checks import FloatArray
 from flockana.certified.intervals import square
 from flockana.certified.series import Piece
 
@@ -26,9 +27,17 @@ class AgentTerm(ABC):
     def slopes(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> tuple[Block, Block]:
         """Its derivatives by position and velocity, two tables."""
 
+    @abstractmethod
+    def power(self, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> Any:
+        """What it adds to dH/dt, beside what it takes from its own potential."""
+
     def piece(self, x: Sequence[arb]) -> Piece:
         """The piece on which it is, anywhere in a box: `Piece.OUT` where it is 0, `Piece.CORE` where it is analytic."""
         return Piece.CORE
+
+    def switches(self, x: FloatArray, v: FloatArray) -> list[tuple[float, float]]:
+        """How far beyond each place where its pieces meet, and how fast it goes away; proposals in floating point."""
+        return []
 
     def drift(self, t: arb, x: Sequence[arb]) -> list[arb]:
         """Its derivative by time at a fixed state."""
@@ -88,6 +97,11 @@ class Pull(AgentTerm):
             for k in range(m)
         ]
         return pull, drag
+
+    def power(self, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> Any:
+        """−c2γ ⟨v, v − p_r⟩, of a γ-agent whose place rests."""
+        speed = sum((square(w) if isinstance(w, arb) else w * w for w in v), 0 * v[0])
+        return -self.damping * (speed - sum((w * p for w, p in zip(v, self.told, strict=True)), 0 * v[0]))
 
     def drift(self, t: arb, x: Sequence[arb]) -> list[arb]:
         """Minus what moves with q_r: the force depends on x − q_r."""

@@ -1,4 +1,4 @@
-"""The motion that a checker of tubes believes in: Algorithms 1 and 2 in balls and series, from a certificate's numbers.
+"""The motion that a checker of tubes believes in: Algorithms 1 to 3 in balls and series, from a certificate's numbers.
 
 Only the scalar functions of `intervals` are shared with the prover.
 """
@@ -14,6 +14,7 @@ from typing import Any
 
 from flint import arb, arb_mat, arb_series
 
+from flockana.certified.check_sphere import Sphere
 from flockana.certified.intervals import (
     AlphaParameters,
     adjacency,
@@ -43,6 +44,8 @@ class Motion:
     told: Vector
     n: int
     m: int
+    bounded: bool
+    spheres: tuple[Sphere, ...]
 
     def shifted(self, path: Sequence[Vector], s: arb) -> list[Vector]:
         """Coefficients of q and then of p = q' about a time s into the step."""
@@ -72,18 +75,23 @@ class Motion:
             z, cutoff = sigma_of_square(sum(map(square, gap), arb(0)), self.par.eps), r_alpha(self.par)
             knee = ball(self.par.h) * cutoff
             found.append(0 if z < knee else 2 if z > cutoff else 1 if z > knee and z < cutoff else None)
-        return found
+        return found + [sphere.piece(x) for sphere in self.spheres for x in self.agents(q)]
 
     def force(self, t: arb, x: Sequence[arb_series], pieces: Sequence[int | None]) -> list[Any]:
         """u along series of q and p about a time."""
         size, m = self.n * self.m, self.m
-        p, g = self.agents(x[size:]), self.gain
-        u = [
-            -g["c1_gamma"] * (x[k] - arb_series([self.start[k % m] + self.velocity[k % m] * t, self.velocity[k % m]]))
-            - g["c2_gamma"] * (x[size + k] - self.told[k % m])
-            for k in range(size)
+        q, p, g = self.agents(x[:size]), self.agents(x[size:]), self.gain
+        away = [
+            x[k] - arb_series([self.start[k % m] + self.velocity[k % m] * t, self.velocity[k % m]]) for k in range(size)
         ]
-        for (i, j, gap), piece in zip(self.gaps(x), pieces, strict=True):
+        if self.bounded:
+            away = [a / (1 + sum((b * b for b in own), 0 * a)).sqrt() for own in self.agents(away) for a in own]
+        u = [-g["c1_gamma"] * a - g["c2_gamma"] * (x[size + k] - self.told[k % m]) for k, a in enumerate(away)]
+        for (i, sphere), piece in zip(self.near(), pieces[self.n * (self.n - 1) // 2 :], strict=True):
+            if piece != 2:
+                for k, push in enumerate(sphere.force(q[i], p[i], piece)):
+                    u[i * m + k] += push
+        for (i, j, gap), piece in zip(self.gaps(x), pieces, strict=False):
             if piece == 2:
                 continue
             stress, weight = self.pair(gap, piece)
@@ -92,6 +100,19 @@ class Motion:
                 u[i * m + k] += pull
                 u[j * m + k] -= pull
         return u
+
+    def near(self) -> list[tuple[int, Sphere]]:
+        """Every agent and sphere, in the order of `pieces`."""
+        return [(i, sphere) for sphere in self.spheres for i in range(self.n)]
+
+    def pull(self, x: Vector) -> list[Vector]:
+        """How the pull to a γ-agent at rest falls as an agent moves: c1γ ∂σ₁(x − q_r)/∂x on a box."""
+        away = [a - b for a, b in zip(x, self.start, strict=True)]
+        slant = (1 + sum(map(square, away), arb(0))).rsqrt()
+        cube, gain = slant * slant * slant, self.gain["c1_gamma"]
+        return [
+            [gain * ((slant if k == c else 0) - cube * a * b) for c, b in enumerate(away)] for k, a in enumerate(away)
+        ]
 
     def pair(self, gap: Sequence[arb_series], piece: int | None) -> tuple[Any, Any]:
         """(φ_α/√(1 + εs²), a_ij) of a pair, a series; of an unknown piece its value at the begin, as a number."""
@@ -112,7 +133,16 @@ class Motion:
         rows = [[arb(int(c == r + size)) for c in range(2 * size)] for r in range(2 * size)]
         for k in range(size):
             rows[size + k][k], rows[size + k][size + k] = -g["c1_gamma"], -g["c2_gamma"]
-        p = self.agents(box[size:])
+        q, p = self.agents(box[:size]), self.agents(box[size:])
+        for i in range(self.n if self.bounded else 0):
+            for k, row in enumerate(self.pull(list(q[i]))):
+                for c, value in enumerate(row):
+                    rows[size + i * m + k][i * m + c] = -value
+        for i, sphere in self.near():
+            for first, block in zip((i * m, size + i * m), sphere.slope(q[i], p[i]), strict=True):
+                for k in range(m):
+                    for c in range(m):
+                        rows[size + i * m + k][first + c] += block[k][c]
         for i, j, gap in self.gaps(box):
             s2 = sum(map(square, gap), arb(0))
             z, root = sigma_of_square(s2, par.eps), (1 + ball(par.eps) * s2).sqrt()
@@ -149,13 +179,20 @@ class Motion:
         return [[a - b for a, b in zip(row, means, strict=True)] for row in rows]
 
     def energy(self, x: Vector) -> arb:
-        """The structural energy: c1α V + c1γ J + K in the moving frame."""
+        """The structural energy, c1α V + c1γ J + K in the moving frame; with a bounded pull, all of it."""
         size = self.n * self.m
         pairs = (psi_alpha(sigma_of_square(square(length), self.par.eps), self.par) for length in self.lengths(x))
-        inertia, kinetic = (
-            sum((square(y) for row in self.centred(part) for y in row), arb(0)) / 2 for part in (x[:size], x[size:])
-        )
-        return self.gain["c1_alpha"] * sum(pairs, arb(0)) + self.gain["c1_gamma"] * inertia + kinetic
+        total = self.gain["c1_alpha"] * sum(pairs, arb(0))
+        if not self.bounded:
+            inertia, kinetic = (
+                sum((square(y) for row in self.centred(part) for y in row), arb(0)) / 2 for part in (x[:size], x[size:])
+            )
+            return total + self.gain["c1_gamma"] * inertia + kinetic
+        for y in self.agents(x[:size]):
+            far = sum((square(a - b) for a, b in zip(y, self.start, strict=True)), arb(0))
+            total += self.gain["c1_gamma"] * ((1 + far).sqrt() - 1)
+            total += sum((sphere.energy(y) for sphere in self.spheres), arb(0))
+        return total + sum(map(square, x[size:]), arb(0)) / 2
 
 
 def number(text: str) -> arb:

@@ -9,7 +9,8 @@ of ∂f/∂x on all states within the error of y,
 
 as long as the right-hand side keeps the run within the error that μ was bounded for, so that it never leaves it. f is
 C¹ at the distances where the pair law has two pieces, so that nothing special happens there. Only the scalar functions
-of `intervals` are shared with the prover. Algorithms 1 and 2 are known, with a γ-agent on a straight path.
+of `intervals` are shared with the prover. Algorithms 1 and 2 are known, with a γ-agent on a straight path, and
+Algorithm 3, with one at rest, among spheres.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from flint import arb, arb_mat, arb_series, ctx
 
 from flockana.certified.check import check_data, ensure
 from flockana.certified.check_motion import Motion, Vector, number
+from flockana.certified.check_sphere import Sphere
 from flockana.certified.decimals import at_least, at_most
 from flockana.certified.intervals import AlphaParameters, ball, c_star
 
@@ -49,16 +51,21 @@ class Run(Motion):
     def of(cls, data: Mapping[str, Any]) -> Run:
         """As the certificate says."""
         law, n, m = data["law"], len(data["q0"]), len(data["q0"][0])
-        ensure(law["algorithm"] in ("Algorithm1", "Algorithm2"), "its law is unknown")
+        ensure(law["algorithm"] in ("Algorithm1", "Algorithm2", "Algorithm3"), "its law is unknown")
+        bounded = law["algorithm"] == "Algorithm3"
         gain = {name: number(law[name]) for name in ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma")}
         ensure(all(g >= 0 for g in gain.values()), "a gain is negative")
-        ensure(law["algorithm"] == "Algorithm2" or not any(gain[k] > 0 for k in ("c1_gamma", "c2_gamma")), "a γ-agent")
+        ensure(law["algorithm"] != "Algorithm1" or not any(gain[k] > 0 for k in ("c1_gamma", "c2_gamma")), "a γ-agent")
         start, velocity, told = ([number(x) for x in law[name]] for name in ("start", "velocity", "told"))
         ensure(len(start) == len(velocity) == len(told) == m, "the γ-agent has another dimension")
+        ensure(not (bounded and any(x != 0 for x in velocity)), "its γ-agent moves")
+        spheres = tuple(Sphere.of(law, one) for one in law["spheres"]) if bounded else ()
+        ensure(all(len(one.centre) == m and one.radius > 0 for one in spheres), "a sphere of another dimension")
+        ensure(all(one.push >= 0 and one.drag >= 0 for one in spheres), "a gain is negative")
         par = AlphaParameters(**{name: law[name] for name in ("d", "r", "eps", "h", "a", "b")})
         weight = number(data["weight"])
         ensure(bool(weight > 0), "the weight is not positive")
-        return cls(par, gain, start, velocity, told, n, m, weight)
+        return cls(par, gain, start, velocity, told, n, m, bounded, spheres, weight)
 
     def follow(self, data: Mapping[str, Any]) -> Iterator[str]:
         """The run step by step, then what is claimed of all of it."""
@@ -67,7 +74,7 @@ class Run(Motion):
         ensure(len(times) == len(data["paths"]) + 1 == len(data["errors"]) + 1 and len(x0) == 2 * size, "its length")
         ensure(all(a < b for a, b in pairwise(times)), "its times do not rise")
         state, error = [ball(x) for x in x0], arb(0)
-        least, widest = [], []
+        least, widest, clear = [], [], []
         for t, end, coefficients, stated in zip(times[:-1], times[1:], data["paths"], data["errors"], strict=True):
             h, path = ball(end - t), [[ball(exact(c)) for c in row] for row in coefficients]
             ensure(
@@ -83,16 +90,21 @@ class Run(Motion):
             state, error = self.at(path, h), found
             least.append(min(length.lower() for length in self.lengths(box)))
             widest.append(max(radius.upper() for radius in self.radii(box)))
+            clear += [sphere.clearance(x).lower() for sphere in self.spheres for x in self.agents(box[:size])]
         yield f"the run is within the errors stated of the path, through {len(times) - 1} steps"
         ensure(same(data["distance"], min(least), down=True), "the least distance is not the one stated")
         yield f"no two agents come nearer than {data['distance']}"
         ensure(same(data["cohesion_radius"], max(widest), down=False), "the largest radius is not the one stated")
         yield f"no agent is farther than {data['cohesion_radius']} from the centre of mass"
+        if self.spheres:
+            ensure(same(data["clearance"], min(clear), down=True), "the least clearance is not the one stated")
+            yield f"no agent comes nearer than {data['clearance']} to a sphere"
         level = self.energy([ball(x) for x in x0])
         ensure(same(data["energy"], level.lower(), down=True), "the energy at the start is not the one stated")
         ensure(data["below_c_star"] is bool(level < self.gain["c1_alpha"] * c_star(self.par)), "H(0) < c*")
         yield f"the energy at the start is {data['energy']}, rounded down"
         if data["basin"] is not None:
+            ensure(not self.bounded, "a basin of Algorithm 3")
             yield from self.ends_in(data["basin"], data["law"], number(data["turn"]), state, error)
 
     def ends_in(

@@ -19,13 +19,16 @@ from flockana.base.progress import progress_bar
 from flockana.certified.flow import Flow
 from flockana.certified.laws import ensure_enclosable, flow_of
 from flockana.certified.lohner import StateSet, Step, crossing_step, size, taylor_step, variation_order
-from flockana.certified.tube import BITS, Tube
+from flockana.certified.series import Piece
+from flockana.certified.structural_energy import BITS
+from flockana.certified.tube import Tube
 
 _SHORTEST = 1e-7  # of the law's own time: nearer to a switch, it is crossed
 _LONGEST = 0.1  # of the law's own time: the longest step that crosses a switch
 _TRIES = 40  # of ever shorter steps
 _SHRINK, _GROW = 0.5, 4.0
 _PART = 1e-4  # of its own width, which a step may add to a wide set
+_FAR = 1e3  # times what a step may add: one that adds more is taken again, shorter
 _BLUR = 1e-4  # by which a step may let the set grow
 
 
@@ -55,8 +58,9 @@ def enclose(
     """Enclose every solution from a start, or from a box of starts, rigorously: Lohner's method in ball arithmetic.
 
     Where the pair law of every pair is analytic, a step is one of a Taylor polynomial, with its remainder bounded over
-    all states that the step may meet; at h r_α and r_α, where the law is only C¹, short steps of second order. A
-    parameter of the law is the decimal that it prints as, a coordinate or a time is its binary value.
+    all states that the step may meet; at h r_α and r_α, and at h d_β and d_β of an obstacle, where the law is only C¹,
+    short steps of second order; the surface of a sphere is no such place. A parameter of the law is the decimal that it
+    prints as, a coordinate or a time is its binary value.
 
     The set grows at each crossing by about the third power of its duration: a pair that grazes a switching distance, or
     a wide set, is what the tube may break at. It then ends early, and says why. Three agents in the plane cost about
@@ -66,7 +70,7 @@ def enclose(
     Parameters
     ----------
     law : Algorithm1, Algorithm2 or Algorithm3
-        Under the latter two the γ-agent is a `StaticTarget` or a `LinearTarget`, and there is no obstacle.
+        Under the latter two the γ-agent is a `StaticTarget` or a `LinearTarget`; obstacles are `Sphere`s.
     q0, p0 : array_like, shape (n, m)
         Initial positions and velocities, exact.
     t_span : (float, float)
@@ -178,7 +182,9 @@ def _steps(
                 step = taylor_step(flow, arb(t), length, current, knobs.order)
             else:
                 step = crossing_step(flow, arb(t), length, current)
-            if step is not None and (crossing is not None or step.blur < _BLUR**0.5):
+            if step is not None and (
+                crossing is not None or (step.blur < _BLUR**0.5 and _excess(flow, step, knobs) < _FAR)
+            ):
                 break
             h, crossing = (_SHRINK * h, None) if crossing is None else (h, _SHRINK * crossing)
         if step is None:
@@ -189,11 +195,20 @@ def _steps(
             yield t, f"the set is wider than {2.0 * knobs.widest:g} d at t = {end:.6g}, where {_where(flow, current)}"
             return
         if crossing is None:
-            off = step.added / max(knobs.remainder * knobs.length, _PART * widest)
-            factors = [_factor(off, knobs.order), _factor(step.blur / _BLUR, variation_order(knobs.order)), _GROW]
+            factors = [
+                _factor(_excess(flow, step, knobs), knobs.order),
+                _factor(step.blur / _BLUR, variation_order(knobs.order)),
+                _GROW,
+            ]
             wanted = (end - t) * max(min(factors), 0.3)
         t, current = end, step.after
         yield t, step
+
+
+def _excess(flow: Flow, step: Step, knobs: _Settings) -> float:
+    """What a step adds, of what it may: the remainder of the knobs, or a part of the set's own width."""
+    widest = size(flow, [arb(x.rad()) for x in step.after.hull])
+    return step.added / max(knobs.remainder * knobs.length, _PART * widest)
 
 
 def _factor(excess: float, order: int) -> float:
@@ -207,37 +222,42 @@ def _proposed(flow: Flow, t: float, current: StateSet, longest: float) -> tuple[
     half, m = flow.n * flow.m, flow.m
     q, p = state[:, 0].reshape(2, flow.n, m)
     wide, blown = (2.0 * sqrt(m) * float(part.max()) for part in (state[:half, 1], state[half:, 1]))
-    eps, unit = float(flow.pair.eps), sqrt(float(flow.pair.area))
-    switches = [unit * sqrt(((1.0 + eps * float(z)) ** 2 - 1.0) / eps) for z in (flow.pair.knee, flow.pair.cutoff)]
     h, crossing = longest, 0.0
-    for i, j in combinations(range(flow.n), 2):
-        apart, relative = q[j] - q[i], p[j] - p[i]
-        length = float(np.linalg.norm(apart))
-        speed = float(apart @ relative) / length if length > 0.0 else float(np.linalg.norm(relative))
-        for switch in switches:
-            gap = length - switch
-            fastest = abs(speed) + blown
-            if abs(gap) <= 1.5 * wide + 2.0 * _SHORTEST * fastest / flow.pace:
-                crossing = max(crossing, (wide + abs(gap)) / max(fastest, 1e-3 * wide * flow.pace, 1e-300))
-            elif gap * speed < 0.0:
-                h = min(h, 0.8 * (abs(gap) - wide) / abs(speed))
-            elif speed != 0.0:
-                h = min(h, max(6.0 * (abs(gap) - wide) / abs(speed), 2.0 * _SHORTEST / flow.pace))
+    for gap, speed in _gaps(flow, q, p):
+        fastest = abs(speed) + blown
+        if abs(gap) <= 1.5 * wide + 2.0 * _SHORTEST * fastest / flow.pace:
+            crossing = max(crossing, (wide + abs(gap)) / max(fastest, 1e-3 * wide * flow.pace, 1e-300))
+        elif gap * speed < 0.0:
+            h = min(h, 0.8 * (abs(gap) - wide) / abs(speed))
+        elif speed != 0.0:
+            h = min(h, max(6.0 * (abs(gap) - wide) / abs(speed), 2.0 * _SHORTEST / flow.pace))
     if crossing == 0.0:
         return h, None
     return h, float(min(max(1.5 * crossing, _SHORTEST / flow.pace), _LONGEST / flow.pace, longest))
 
 
+def _gaps(flow: Flow, q: FloatArray, p: FloatArray) -> Iterator[tuple[float, float]]:
+    """(how far beyond a switch, how fast it goes away), of each pair and of each agent in each term."""
+    eps, unit = float(flow.pair.eps), sqrt(float(flow.pair.area))
+    switches = [unit * sqrt(((1.0 + eps * float(z)) ** 2 - 1.0) / eps) for z in (flow.pair.knee, flow.pair.cutoff)]
+    for i, j in combinations(range(flow.n), 2):
+        apart, relative = q[j] - q[i], p[j] - p[i]
+        length = float(np.linalg.norm(apart))
+        speed = float(apart @ relative) / length if length > 0.0 else float(np.linalg.norm(relative))
+        yield from ((length - switch, speed) for switch in switches)
+    for term in flow.terms:
+        for x, v in zip(q, p, strict=True):
+            yield from term.switches(x, v)
+
+
 def _where(flow: Flow, current: StateSet) -> str:
-    """Which pairs are about a switching distance, in words."""
-    pieces = flow.pieces(current.hull)
-    pairs = [
-        pair for pair, piece in zip(combinations(range(flow.n), 2), pieces, strict=False) if piece.name == "SWITCH"
-    ]
+    """Which pairs and agents are about a switching distance, in words."""
+    names = [f"agents {i} and {j}" for i, j in combinations(range(flow.n), 2)]
+    names += [f"agent {i} and an obstacle" for _ in flow.terms for i in range(flow.n)]
+    about = [name for name, piece in zip(names, flow.pieces(current.hull), strict=True) if piece is Piece.SWITCH]
     width = max(float(x.rad()) for x in current.hull)
     if not isfinite(width):
         return "nothing is known of it any more"
-    named = ", ".join(f"{i} and {j}" for i, j in pairs[:3])
     return f"its half-width is {width:.2g}" + (
-        f", and agents {named} may be about a switching distance" if pairs else ""
+        f", and {', '.join(about[:3])} may be about a switching distance" if about else ""
     )

@@ -89,6 +89,23 @@ class Flow:
                     u[i] = [a + b for a, b in zip(u[i], term.force(t, q[i], p[i], own[i]), strict=True)]
         return [x for agent in u for x in agent]
 
+    def powers(self, state: Sequence[Any], pieces: Pieces) -> list[Any]:
+        """dH/dt, of all pairs and then of each term: −c2α Σ a_ij ‖p_j − p_i‖², and what the terms add by themselves."""
+        q, p = self.split(state)
+        zero = 0 * q[0][0]
+        heat = zero
+        for (i, j), piece in zip(combinations(range(self.n), 2), pieces, strict=False):
+            if piece is not Piece.OUT:
+                adjacency = _pair(_norm2(_minus(q[j], q[i])), self.pair, piece)[1]
+                if isinstance(adjacency, arb):
+                    adjacency = adjacency.nonnegative_part()  # ρ_h >= 0, whatever its ball says
+                heat = heat + adjacency * _norm2(_minus(p[j], p[i]))
+        terms = [
+            sum((term.power(q[i], p[i], own[i]) for i in range(self.n) if own[i] is not Piece.OUT), zero)
+            for term, own in self._agents(pieces)
+        ]
+        return [-self.damping * heat, *terms]
+
     def slopes(self, t: Any, state: Sequence[Any], pieces: Pieces) -> tuple[list[list[Any]], list[list[Any]]]:
         """(∂u/∂q, ∂u/∂p), square tables; what is 0 everywhere is the number 0."""
         (q, p), m, size = self.split(state), self.m, self.n * self.m

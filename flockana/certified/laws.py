@@ -11,7 +11,9 @@ from flockana.base.errors import ArgumentError
 from flockana.certified.agent_terms import AgentTerm, Pull
 from flockana.certified.flow import Flow
 from flockana.certified.intervals import exact
+from flockana.certified.obstacle_terms import BetaNumbers, SphereTerm
 from flockana.certified.series import PairNumbers
+from flockana.environment.obstacles import Sphere
 from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.interactions import AlphaInteraction
 from flockana.laws.algorithm3 import Algorithm3
@@ -36,8 +38,10 @@ def ensure_enclosable(law: Any) -> None:
                 f"target = {law.target!r}: expected StaticTarget or LinearTarget, whose path is exact; under "
                 "Algorithm 2 the shape moves alike with every target"
             )
-    if isinstance(law, Algorithm3) and law.obstacles:
-        raise ArgumentError(f"obstacles = {law.obstacles!r}: expected none; obstacles are not enclosed")
+    if isinstance(law, Algorithm3):
+        for k, obstacle in enumerate(law.obstacles):
+            if type(obstacle) is not Sphere:
+                raise ArgumentError(f"obstacles[{k}] = {obstacle!r}: expected a Sphere, the one kind known in balls")
 
 
 def flow_of(law: Any, n: int, m: int) -> Flow:
@@ -52,5 +56,17 @@ def flow_of(law: Any, n: int, m: int) -> Flow:
         told = tuple(a + b for a, b in zip(velocity, told, strict=True))  # p_r = dq_r/dt + what is told beside it
         terms = (Pull(start, velocity, told, arb(exact(gains.c1_gamma)), arb(exact(gains.c2_gamma)), unit),)
         rates += [gains.c2_gamma, sqrt(gains.c1_gamma)]
+    if isinstance(law, Algorithm3) and law.obstacles:
+        terms = (*terms, *sphere_terms(law))
+        rates += [gains.c2_beta, sqrt(gains.c1_beta)]
     pace = max(rates) or 1.0
     return Flow(n, m, PairNumbers.of(law.alpha), arb(exact(gains.c1_alpha)), arb(exact(gains.c2_alpha)), pace, terms)
+
+
+def sphere_terms(law: Algorithm3) -> tuple[SphereTerm, ...]:
+    """Of each obstacle of a law, at the present precision."""
+    gains: Any = law.gains
+    beta, pull, drag = BetaNumbers.of(law.beta), arb(exact(gains.c1_beta)), arb(exact(gains.c2_beta))
+    spheres = [cast(Sphere, obstacle) for obstacle in law.obstacles]
+    places = [(tuple(arb(exact(y)) for y in sphere.centre), arb(exact(sphere.radius))) for sphere in spheres]
+    return tuple(SphereTerm(beta, centre, radius, pull, drag) for centre, radius in places)

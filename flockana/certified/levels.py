@@ -22,7 +22,7 @@ from flockana.certified.intervals import (
     sigma_of_square,
     square,
 )
-from flockana.certified.tube import BITS, scaled
+from flockana.certified.structural_energy import BITS, scaled
 from flockana.equilibria.barrier import coincident_lattice, turan_pairs
 from flockana.lattice import harborth
 

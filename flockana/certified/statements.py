@@ -22,8 +22,9 @@ BASIN_PROSE = (
 TUBE = (
     "The solution from q0, p0 differs from the path of polynomials at no time of a step by more than its error, in the "
     "norm sqrt(weight^2 |q|^2 + |p|^2); no two agents come nearer than `distance`, and none is farther than "
-    "`cohesion_radius` from the centre of mass. If there is a basin, the end lies in it, turned by `turn`, and the run "
-    "converges to its orbit. The law is the one whose numbers stand here, decimals as they are written."
+    "`cohesion_radius` from the centre of mass, or nearer than `clearance` to a sphere, if there is one. If there is a "
+    "basin, the end lies in it, turned by `turn`, and the run converges to its orbit. The law is the one whose numbers "
+    "stand here, decimals as they are written."
 )
 TUBE_PROSE = (
     "f is C^1, with a derivative that is Lipschitz: the bump is C^1; so u is the integral of its slope along a path.",

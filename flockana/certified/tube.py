@@ -14,14 +14,13 @@ from flint import arb, ctx
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.certified.intervals import AlphaParameters, exact, psi_alpha, sigma_of_square, square
+from flockana.certified.structural_energy import BITS, energy_of, norm2, structural_energy
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 
 if TYPE_CHECKING:
     from flockana.certified.lohner import StateSet, Step
 
 Pair = tuple[int, int]
-BITS = 100
 
 
 class BasinLike(Protocol):
@@ -48,6 +47,15 @@ class Approach(NamedTuple):
 
     lower: float
     pair: Pair
+    time: float
+
+
+class Touch(NamedTuple):
+    """How near an agent comes to an obstacle: a proved lower bound, which ones, and when (the step's begin)."""
+
+    lower: float
+    agent: int
+    obstacle: int
     time: float
 
 
@@ -185,6 +193,38 @@ class Tube:
                     least = Approach(lower, pair, t)
         return least
 
+    def clearances_during(self, k: int) -> list[list[arb]]:
+        """Balls that hold the clearances of the agents from each obstacle, from step k to the next.
+
+        Parameters
+        ----------
+        k : int
+            Step, the last one excluded.
+        """
+        with ctx.workprec(BITS):
+            return self._clearances(self.taken[k].during)
+
+    def _clearances(self, box: Sequence[arb]) -> list[list[arb]]:
+        """Of each obstacle and each agent, anywhere in a box."""
+        from flockana.certified.laws import sphere_terms
+
+        agents = [box[i : i + self.m] for i in range(0, self.n * self.m, self.m)]
+        terms = sphere_terms(self.law) if self.law.obstacles else ()
+        return [[term.clearance(x) for x in agents] for term in terms]
+
+    def min_clearance(self) -> Touch:
+        """A proved lower bound of the clearance of any agent from any obstacle, at all times of the tube."""
+        with ctx.workprec(BITS):
+            boxes = [self.boxes[0], *(step.during for step in self.taken)]
+            rows = [self._clearances(box) for box in boxes]
+        each = [
+            Touch(down(clearance.lower()) if clearance.is_finite() else -inf, agent, obstacle, t)
+            for t, row in zip((self.t[0], *self.t), rows, strict=False)
+            for obstacle, own in enumerate(row)
+            for agent, clearance in enumerate(own)
+        ]
+        return min(each, key=lambda one: one.lower, default=Touch(inf, 0, 0, self.t[0]))
+
     def cohesion_radius(self) -> FloatArray:
         """Upper bounds of R = max ‖q_i − q_c‖ from each step to the next, proved, shape (T − 1,)."""
         with ctx.workprec(BITS):
@@ -213,7 +253,7 @@ class Tube:
         step, half = self.taken[k], self.n * self.m
         p = [step.during[i : i + self.m] for i in range(half, 2 * half, self.m)]
         with ctx.workprec(BITS):
-            return _energy(self.law, [_norm2(gap) for gap in step.relative], step.deviations, p)
+            return energy_of(self.law, [norm2(gap) for gap in step.relative], step.deviations, p)
 
     def ends_in(self, basin: BasinLike) -> bool:
         """Whether every state at the end lies in a certified basin of the same law: then all converge to its orbit.
@@ -226,41 +266,10 @@ class Tube:
         return bool(basin.law == self.law and basin.holds(*self.state(-1)))
 
 
-def structural_energy(law: Any, q: Sequence[Sequence[arb]], p: Sequence[Sequence[arb]]) -> arb:
-    """The energy of Algorithm 1 or 2 in the moving frame, on a box of states.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> zero = [[arb(0)], [arb(0)]]
-    >>> abs(structural_energy(Algorithm1(), zero, zero) / 30 - arb("52.383811786644864")) < arb("1e-13")
-    True
-    """
-    with ctx.workprec(BITS):
-        s2 = [_norm2([b - a for a, b in zip(x, y, strict=True)]) for x, y in combinations(q, 2)]
-        return _energy(law, s2, q, p)
-
-
-def _energy(law: Any, s2: Sequence[arb], q: Sequence[Sequence[arb]], p: Sequence[Sequence[arb]]) -> arb:
-    """The structural energy from squared distances, positions and velocities, boxes of the same states."""
-    par, area = scaled(law.alpha), arb(exact(law.alpha.unit)) ** 2
-    pairs = sum((psi_alpha(sigma_of_square(x / area, par.eps), par) for x in s2), arb(0)) * area
-    total = arb(exact(law.gains.c1_alpha)) * pairs + _inertia(p)
-    return total + arb(exact(law.gains.c1_gamma)) * _inertia(q) if isinstance(law, Algorithm2) else total
-
-
 def _ensure_energy(law: Any) -> None:
     """Raise on Algorithm 3, whose γ-agent has another energy."""
     if type(law) not in (Algorithm1, Algorithm2):
         raise ArgumentError(f"law = {law!r}: expected Algorithm1 or Algorithm2, whose structural energy this is")
-
-
-def scaled(alpha: Any) -> AlphaParameters:
-    """The pair law's exact parameters, in units of ℓ."""
-    unit = exact(alpha.unit)
-    lengths = {name: exact(getattr(alpha, name)) / unit for name in ("d", "r")}
-    rest = {name: exact(getattr(alpha, name)) for name in ("h", "a", "b")}
-    return AlphaParameters(**lengths, eps=exact(alpha.eps) * unit * unit, **rest)
 
 
 def up(x: arb) -> float:
@@ -273,17 +282,6 @@ def down(x: arb) -> float:
     return nextafter(float(x), -inf)
 
 
-def _norm2(x: Sequence[arb]) -> arb:
-    return sum(map(square, x), arb(0))
-
-
 def norm(x: Sequence[arb]) -> arb:
     """The length of a vector, a ball that is nowhere below 0."""
-    return _norm2(x).nonnegative_part().sqrt()
-
-
-def _inertia(x: Sequence[Sequence[arb]]) -> arb:
-    """½ Σ‖x_i − x_c‖²."""
-    columns = list(zip(*x, strict=True))
-    means = [sum(column, arb(0)) / len(x) for column in columns]
-    return sum((square(a - mean) for column, mean in zip(columns, means, strict=True) for a in column), arb(0)) / 2
+    return norm2(x).nonnegative_part().sqrt()

@@ -29,7 +29,8 @@ from flockana.certified.laws import flow_of
 from flockana.certified.series import Piece
 from flockana.certified.statements import FORMAT, TUBE, TUBE_PROSE
 from flockana.certified.tube import Tube
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.laws.algorithm3 import Algorithm3
+from flockana.laws.olfati_saber import Algorithm2
 
 _ORDER = 26  # of the paths
 _TRIES = 30  # of an error that holds itself up
@@ -81,8 +82,11 @@ def write_tube_certificate(tube: Tube, path: str | Path, *, basin: Basin | None 
 
 
 def _ensure_certifiable(tube: Tube, basin: Basin | None) -> None:
-    if type(tube.law) not in (Algorithm1, Algorithm2) or tube.law.alpha.unit != 1.0:
-        raise ArgumentError(f"law = {tube.law!r}: expected Algorithm1 or Algorithm2 with unit = 1")
+    law: Any = tube.law
+    if law.alpha.unit != 1.0 or (isinstance(law, Algorithm3) and law.beta.unit != 1.0):
+        raise ArgumentError(f"law = {law!r}: expected Algorithm1, 2 or 3 with unit = 1")
+    if type(law) is Algorithm3 and (basin is not None or tube.law.target.harmonic.terms[1].any()):
+        raise ArgumentError(f"law = {law!r}: expected a γ-agent at rest under Algorithm3, and no basin")
     if tube.n < 2 or tube.status != "complete" or any(tube.stats["radius"]):
         raise ArgumentError(f"{tube!r}: expected a complete tube of two agents or more from one start, radius=0")
     if basin is not None and (tube.m > 2 or not tube.ends_in(basin)):
@@ -91,7 +95,7 @@ def _ensure_certifiable(tube: Tube, basin: Basin | None) -> None:
 
 def _start(tube: Tube, weight: float) -> dict[str, Any]:
     law, gains, zero = tube.law, tube.law.gains, ["0"] * tube.m
-    led = isinstance(law, Algorithm2)
+    led = isinstance(law, Algorithm2 | Algorithm3)
     terms = law.target.harmonic.terms if led else np.zeros((5, tube.m))
     path = {"start": terms[0], "velocity": terms[1], "told": terms[1] + terms[4]}
     numbers = {name: _decimal(getattr(law.alpha, name)) for name in ("d", "r", "eps", "h", "a", "b")}
@@ -103,12 +107,23 @@ def _start(tube: Tube, weight: float) -> dict[str, Any]:
         "kind": "tube",
         "statement": TUBE,
         "prose": list(TUBE_PROSE),
-        "law": {"algorithm": type(law).__name__, **numbers, **told},
+        "law": {"algorithm": type(law).__name__, **numbers, **told, **_spheres(law)},
         "q0": [[_hexadecimal(arb(x)) for x in row] for row in tube.q0.tolist()],
         "p0": [[_hexadecimal(arb(x)) for x in row] for row in tube.p0.tolist()],
         "weight": _decimal(weight),
         "made_with": {"flockana": __version__, "python-flint": version("python-flint")},
     }
+
+
+def _spheres(law: Any) -> dict[str, Any]:
+    """What Algorithm 3 has beside: obstacles, and the law of β-agents."""
+    if not isinstance(law, Algorithm3):
+        return {}
+    numbers: dict[str, Any] = {f"beta_{name}": _decimal(getattr(law.beta, name)) for name in ("d", "eps", "h")}
+    numbers |= {name: _decimal(getattr(law.gains, name)) for name in ("c1_beta", "c2_beta")}
+    spheres: tuple[Any, ...] = law.obstacles
+    places = [{"centre": [_decimal(y) for y in one.centre], "radius": _decimal(one.radius)} for one in spheres]
+    return {**numbers, "spheres": places}
 
 
 def _paths(tube: Tube) -> list[list[list[str]]]:
@@ -136,8 +151,9 @@ def _polynomials(flow: Flow, t: arb, state: list[arb], pieces: tuple[Piece, ...]
 
 def _followed(run: Run, tube: Tube, paths: list[list[list[str]]]) -> dict[str, Any]:
     """Errors that hold themselves up, and what they leave of distances, radii and the energy."""
-    state, error, errors, least, widest = [arb(x) for x in (*tube.q0.ravel(), *tube.p0.ravel())], arb(0), [], [], []
-    start = list(state)
+    state, error = [arb(x) for x in (*tube.q0.ravel(), *tube.p0.ravel())], arb(0)
+    level = run.energy(state)
+    errors, least, widest, clear = list[str](), list[arb](), list[arb](), list[arb]()
     for t, end, text in zip(tube.t[:-1], tube.t[1:], paths, strict=True):
         h, path = arb(end) - arb(t), [[arb_of(c) for c in row] for row in text]
         error = run.jumped(state, path, error)
@@ -153,11 +169,12 @@ def _followed(run: Run, tube: Tube, paths: list[list[list[str]]]) -> dict[str, A
         state, error = run.at(path, h), found
         least.append(min(length.lower() for length in run.lengths(box)))
         widest.append(max(radius.upper() for radius in run.radii(box)))
-    level = run.energy(start)
+        clear += [one.clearance(x).lower() for one in run.spheres for x in run.agents(box[: tube.n * tube.m])]
     return {
         "errors": errors,
         "distance": at_least(arb(min(least))),
         "cohesion_radius": at_most(arb(max(widest))),
+        "clearance": at_least(arb(min(clear))) if clear else None,
         "energy": at_least(level.lower()),
         "below_c_star": bool(level < run.gain["c1_alpha"] * c_star(run.par)),
     }

@@ -56,7 +56,7 @@ TRUTHS = {
     "L9": {"r": "printed fraction", "v": "energy one-leader different-leaders acceleration acceleration-needed"},
     "L10": {"r": "printed-sufficient printed-necessary", "v": "sufficient not-necessary"},
     "tanner-minimum": {"r": "printed", "v": "corrected"},
-    "delay-margin": {"v": " ".join(f"algorithm-{k}-{late}" for k in (1, 2) for late in DELAYED)},
+    "delay-margin": {"v": " ".join([*(f"algorithm-{k}-{late}" for k in (1, 2) for late in DELAYED), "pair"])},
     "linearised-decay": {"v": "decay random range"},
     "zone-separation": {"r": "close-encounters", "v": "alone energy chain"},
     "delayed-consensus": {"v": "margin below above root-below root-above average"},

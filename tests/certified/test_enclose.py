@@ -16,8 +16,8 @@ from flockana import (
     CircleTarget,
     Gains,
     LinearTarget,
-    Sphere,
     StaticTarget,
+    Wall,
     enclose,
     simulate,
 )
@@ -246,9 +246,9 @@ def test_it_ends_where_it_breaks_and_says_why(capsys):
     [
         (Algorithm2(target=CircleTarget((0.0, 0.0), 1.0, 0.1)), {}, "expected StaticTarget or LinearTarget"),
         (
-            Algorithm3(target=StaticTarget((0.0, 0.0)), obstacles=(Sphere((9.0, 9.0), 1.0),)),
+            Algorithm3(target=StaticTarget((0.0, 0.0)), obstacles=(Wall((0.0, 9.0), (0.0, -1.0)),)),
             {},
-            "obstacles are not enclosed",
+            r"obstacles\[0\] = Wall.*expected a Sphere",
         ),
         (Algorithm2(gains=Gains(c1_gamma=(1.0, 2.0)), target=StaticTarget((0.0, 0.0))), {}, "given per agent"),
         (Algorithm1(), {"order": 3}, "order = 3: expected a whole number from 4 to 40"),

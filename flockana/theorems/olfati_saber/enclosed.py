@@ -8,7 +8,8 @@ from flint import arb, ctx
 
 from flockana.certified.intervals import c_star, exact
 from flockana.certified.levels import coincident_floor, coincident_state, disconnected_state, gain
-from flockana.certified.tube import BITS, Tube, down, scaled, up
+from flockana.certified.structural_energy import BITS, scaled
+from flockana.certified.tube import Tube, down, up
 from flockana.theorems.from_tube import (
     Enclosed,
     below,

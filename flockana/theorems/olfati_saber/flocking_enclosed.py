@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 from flint import arb, ctx
 
 from flockana.certified.intervals import exact, square
-from flockana.certified.tube import BITS, Pair, Tube, norm
+from flockana.certified.structural_energy import BITS
+from flockana.certified.tube import Pair, Tube, norm
 from flockana.theorems.from_tube import certain_links, decided, groups
 from flockana.theorems.hypotheses import condition
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances

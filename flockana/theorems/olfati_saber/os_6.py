@@ -7,6 +7,7 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.algorithm3 import Algorithm3
+from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.hypotheses import common_gains, law_with_common_gains
 from flockana.theorems.olfati_saber.energy import balance, never_rises, proved, stays_outside
 from flockana.theorems.olfati_saber.gamma_agent import declared_rate_is_true, target_rests
@@ -72,5 +73,6 @@ THEOREM = Theorem(
     kind="trajectory",
     law=law_with_common_gains("Algorithm 3", Algorithm3),
     check=_check,
+    enclosed=enclosed_by("os_6", "obstacles_enclosed"),
     claims=("rate", "balance"),
 )

@@ -1,0 +1,116 @@
+"""A sphere that rests, as a checker of tubes believes in it: from a certificate's numbers, by formulas of its own.
+
+With w = x − y, D = ‖w‖, e = w/D and the clearance c = D − R, z = ‖c‖_σ, an agent is pushed by
+−c1β φ_β(z) c/√(1 + εc²) e and braked by −c2β ρ_h G, G = v − (R/D)(v − ⟨e, v⟩ e), its velocity past its β-agent.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from flint import arb, arb_series
+
+from flockana.certified.intervals import (
+    BetaParameters,
+    ball,
+    bump,
+    bump_slope,
+    d_beta,
+    phi_beta,
+    phi_beta_slope,
+    psi_beta,
+    sigma_of_square,
+    square,
+)
+
+
+@dataclass(frozen=True)
+class Sphere:
+    """y, R, the β-pair law and its gains."""
+
+    par: BetaParameters
+    centre: tuple[arb, ...]
+    radius: arb
+    push: arb
+    drag: arb
+
+    @classmethod
+    def of(cls, law: Mapping[str, Any], one: Mapping[str, Any]) -> Sphere:
+        """As a certificate says; its text counts as the decimal that it is."""
+        par = BetaParameters(d=law["beta_d"], eps=law["beta_eps"], h=law["beta_h"])
+        centre = tuple(ball(Fraction(x)) for x in one["centre"])
+        numbers = (ball(Fraction(x)) for x in (one["radius"], law["c1_beta"], law["c2_beta"]))
+        return cls(par, centre, *numbers)
+
+    def clearance(self, x: Sequence[arb]) -> arb:
+        """‖x − y‖ − R."""
+        total = sum((square(a - b) for a, b in zip(x, self.centre, strict=True)), arb(0))
+        return total.nonnegative_part().sqrt() - self.radius
+
+    def height(self, x: Sequence[arb]) -> arb:
+        """‖c‖_σ."""
+        return sigma_of_square(square(self.clearance(x)), self.par.eps)
+
+    def energy(self, x: Sequence[arb]) -> arb:
+        """c1β ψ_β."""
+        return self.push * psi_beta(self.height(x), self.par)
+
+    def piece(self, x: Sequence[arb]) -> int | None:
+        """0 up to h d_β, 1 up to d_β, 2 beyond; None for an agent that may be on two."""
+        z, cutoff = self.height(x), d_beta(self.par)
+        knee = ball(self.par.h) * cutoff
+        return 0 if z < knee else 2 if z > cutoff else 1 if z > knee and z < cutoff else None
+
+    def force(self, x: Sequence[Any], v: Sequence[Any], piece: int | None) -> list[Any]:
+        """Along series of a position and a velocity; of an unknown piece the value at the begin, as numbers."""
+        if piece is None:
+            x, v = [a[0] for a in x], [a[0] for a in v]
+        e, distance = self._direction(x)
+        c, eps = distance - self.radius, ball(self.par.eps)
+        if piece is None:
+            z = sigma_of_square(square(c), self.par.eps)
+            action, rho = phi_beta(z, self.par), bump(z / d_beta(self.par), self.par.h)
+        else:
+            z, h = ((1 + eps * (c * c)).sqrt() - 1) / eps, ball(self.par.h)
+            rho = arb_series([1]) if piece == 0 else (1 + ((z / d_beta(self.par) - h) / (1 - h)).cos_pi()) / 2
+            s = z - d_beta(self.par)
+            action = rho * (s / (1 + s * s).sqrt() - 1)
+        size, along = self.push * action * c / (1 + eps * (c * c)).sqrt(), _dot(e, v)
+        share = self.radius / distance
+        return [-size * a - self.drag * rho * (w - share * (w - along * a)) for a, w in zip(e, v, strict=True)]
+
+    def slope(self, x: Sequence[arb], v: Sequence[arb]) -> tuple[list[list[arb]], list[list[arb]]]:
+        """∂(force)/∂x and ∂(force)/∂v on a box, across the pieces."""
+        e, distance = self._direction(x)
+        c, along, share = distance - self.radius, _dot(e, v), self.radius / distance
+        stretch, z = 1 + ball(self.par.eps) * square(c), sigma_of_square(square(c), self.par.eps)
+        action, rho = phi_beta(z, self.par), bump(z / d_beta(self.par), self.par.h)
+        fading = bump_slope(z / d_beta(self.par), self.par.h) / d_beta(self.par) * c / stretch.sqrt()
+        size = self.push * action * c / stretch.sqrt()
+        steeper = self.push * (phi_beta_slope(z, self.par) * square(c) + action / stretch.sqrt()) / stretch
+        by_x, by_v = [], []
+        for k, (a, w) in enumerate(zip(e, v, strict=True)):
+            slip, rows, brakes = w - share * (w - along * a), list[arb](), list[arb]()
+            for h, (b, u) in enumerate(zip(e, v, strict=True)):
+                aside = int(k == h) - a * b
+                turn = share / distance * (b * (w - a * along) + aside * along + a * (u - b * along))
+                rows.append(-steeper * a * b - size * aside / distance - self.drag * (fading * b * slip + rho * turn))
+                brakes.append(-self.drag * rho * ((1 - share) * int(k == h) + share * a * b))
+            by_x.append(rows)
+            by_v.append(brakes)
+        return by_x, by_v
+
+    def _direction(self, x: Sequence[Any]) -> tuple[list[Any], Any]:
+        """(e, D)."""
+        away = [a - b for a, b in zip(x, self.centre, strict=True)]
+        squares = [square(a) if isinstance(a, arb) else a * a for a in away]
+        distance = sum(squares[1:], squares[0]).sqrt()
+        return [a / distance for a in away], distance
+
+
+def _dot(a: Sequence[Any], b: Sequence[Any]) -> Any:
+    products = [x * y for x, y in zip(a, b, strict=True)]
+    return sum(products[1:], products[0])

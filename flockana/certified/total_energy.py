@@ -1,0 +1,76 @@
+"""The energy of Algorithm 3 with a γ-agent at rest, in balls, and the integral of its rate along a tube."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from flint import arb, arb_series, ctx
+
+from flockana.certified.flow import Flow, Pieces, series_length
+from flockana.certified.intervals import exact, hull, psi_alpha, psi_beta, sigma_of_square, square
+from flockana.certified.laws import flow_of, sphere_terms
+from flockana.certified.series import Piece
+from flockana.certified.structural_energy import BITS, norm2, scaled
+from flockana.certified.tube import Tube
+
+_ORDER = 12  # of the rate's Taylor polynomials
+
+
+def total_energy(law: Any, q: Sequence[Sequence[arb]], p: Sequence[Sequence[arb]]) -> arb:
+    """H = c1α V + c1β ΣΣ ψ_β + c1γ Σ ℓ² (√(1 + ‖q_i − q_r‖²/ℓ²) − 1) + ½ Σ‖p_i‖², every pair once, on a box of states.
+
+    Examples
+    --------
+    >>> from flockana import Algorithm3, StaticTarget
+    >>> law, zero = Algorithm3(target=StaticTarget((0.0,))), [[arb(0)]]
+    >>> total_energy(law, zero, [[arb(2)]]) == 2
+    True
+    """
+    with ctx.workprec(BITS):
+        gains, par, area = law.gains, scaled(law.alpha), arb(exact(law.alpha.unit)) ** 2
+        squares = [norm2([b - a for a, b in zip(x, y, strict=True)]) for k, x in enumerate(q) for y in q[k + 1 :]]
+        pairs = sum((psi_alpha(sigma_of_square(s2 / area, par.eps), par) for s2 in squares), arb(0)) * area
+        start = [arb(exact(x)) for x in law.target.harmonic.terms[0].tolist()]
+        far = sum(((1 + norm2([a - b for a, b in zip(x, start, strict=True)]) / area).sqrt() - 1 for x in q), arb(0))
+        total = arb(exact(gains.c1_alpha)) * pairs + arb(exact(gains.c1_gamma)) * area * far
+        for term in sphere_terms(law):
+            beta = term.beta
+            depths = [sigma_of_square(square(term.clearance(x)) / beta.area, beta.eps) for x in q]
+            total += term.stiffness * beta.area * sum((psi_beta(z, beta.par) for z in depths), arb(0))
+        return total + sum(map(norm2, p), arb(0)) / 2
+
+
+def powers_during(tube: Tube, flow: Flow, k: int) -> list[arb]:
+    """dH/dt by its parts (`Flow.powers`), balls that hold them at all times from step k to the next."""
+    box = tube.taken[k].during
+    return flow.powers(box, flow.pieces(box))
+
+
+def work(tube: Tube) -> arb:
+    """A ball that holds the integral of dH/dt over the tube, from the closed form of the rate.
+
+    On a step where every pair and agent is on one piece, the rate's Taylor polynomial is integrated, with its last
+    coefficient taken over all states of the step; elsewhere the step's length times the rate's range.
+    """
+    with ctx.workprec(BITS):
+        flow, total = flow_of(tube.law, tube.n, tube.m), arb(0)
+        for k, (start, end) in enumerate(zip(tube.t[:-1], tube.t[1:], strict=True)):
+            h, during = arb(end) - arb(start), tube.taken[k].during
+            pieces = flow.pieces(during)
+            if Piece.SWITCH in pieces:
+                total += h * sum(flow.powers(during, pieces), arb(0))
+                continue
+            first = _rate(flow, arb(start), tube.boxes[k], pieces)
+            last = _rate(flow, arb(start) + hull(arb(0), h), during, pieces)
+            total += sum((c * h ** (j + 1) / (j + 1) for j, c in enumerate(first[:_ORDER])), arb(0))
+            total += last[_ORDER] * h ** (_ORDER + 1) / (_ORDER + 1)
+        return total
+
+
+def _rate(flow: Flow, t: arb, state: Sequence[arb], pieces: Pieces) -> list[arb]:
+    """Taylor coefficients of dH/dt along the solutions from a box."""
+    path = flow.taylor(t, state, _ORDER, pieces)
+    with series_length(_ORDER + 1):
+        total = sum(flow.powers([arb_series(row) for row in path], pieces), arb_series([0]))
+        return [total[j] for j in range(_ORDER + 1)]

@@ -1,0 +1,83 @@
+"""The delay at which a flock loses stability."""
+
+from __future__ import annotations
+
+from flockana.environment.targets import StaticTarget
+from flockana.equilibria.solve import find_equilibrium
+from flockana.lattice import hexagonal_patch
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.stability.delay import DelaySystem, delay_margin, delay_system, rightmost_roots, root_error, scalar_margin
+from flockana.theorems.claims import judged
+from flockana.theorems.rounding import EPS
+from flockana.theorems.theorem import Checked, Claim, Theorem, Tolerances
+
+_WHAT = {
+    "all": "all terms delayed",
+    "pairs": "terms between agents delayed",
+    "neighbours": "only what is heard of other agents delayed",
+}
+_ALIKE = 1e-9  # relative, of the sweep's margin and the closed form's
+_AROUND = 0.02  # of the margin: how far to either side stability is looked at
+
+
+def _check_delays(tolerances: Tolerances) -> Checked:
+    laws = Algorithm1(), Algorithm2(target=StaticTarget((0.0, 0.0)))
+    return [], [*(_delay(law, delayed) for law in laws for delayed in _WHAT), _pair(laws[0])]
+
+
+def _pair(law: Algorithm1) -> Claim:
+    """Two agents on a line have one mode beside uniform motion: the sweep must find the closed form's delay."""
+    system = delay_system(law, find_equilibrium(law, [[0.0], [law.alpha.length]]).q, delayed="all")
+    stiffness, damping = (float(matrix[0, 0] - matrix[0, 1]) for matrix in system.late)
+    swept, exact = delay_margin(system).delay, scalar_margin(stiffness, damping).delay
+    off = abs(swept - exact) / exact
+    return judged(
+        "pair",
+        _ALIKE - off,
+        64.0 * EPS,
+        computed={"sweep": swept, "closed form": exact},
+        stated=f"τ* = atan2(ωd, k)/ω with ω² = ½(d² + √(d⁴ + 4k²)), to {_ALIKE:g} of it",
+        proof="second-order-modes",
+        detail=f"k = {stiffness:.5g}, d = {damping:.4g}: τ* = {exact:.6g}, off by {off:.1g} of it",
+    )
+
+
+def _delay(law: Algorithm1 | Algorithm2, delayed: str) -> Claim:
+    """A delay margin by a sweep over frequency, and to either side of it roots by discretising the delayed state."""
+    kind, q = type(law).__name__[-1], find_equilibrium(law, hexagonal_patch(1, law.alpha.length)).q
+    system = delay_system(law, q, delayed=delayed)
+    critical = delay_margin(system)
+    below, error_below = _rightmost(system, (1.0 - _AROUND) * critical.delay)
+    above, error_above = _rightmost(system, (1.0 + _AROUND) * critical.delay)
+    return judged(
+        f"algorithm-{kind}-{delayed}",
+        *min((-below, error_below), (above, error_above)),
+        computed={"n": len(q), "delay": critical.delay, "frequency": critical.frequency},
+        stated="the rightmost root has Re s < 0 just below the margin and Re s > 0 just above",
+        witness={"Re s below": below, "Re s above": above},
+        detail=f"hexagon of {len(q)}, Algorithm {kind}, {_WHAT[delayed]}: stable up to τ* = "
+        f"{critical.delay:.5g}, then a swing at {critical.frequency:.4g} rad per time unit; Re s = {below:.2g} "
+        f"at 0.98 τ*, {above:+.2g} at 1.02 τ*",
+    )
+
+
+def _rightmost(system: DelaySystem, delay: float) -> tuple[float, float]:
+    """The largest real part of a characteristic root, and its error."""
+    root = complex(rightmost_roots(system, delay, count=2)[0])
+    return root.real, root_error(system, root, delay)
+
+
+THEOREM = Theorem(
+    id="delay-margin",
+    title="The delay at which a flock loses stability",
+    statement=(
+        "If what agents know of each other, or of everything, is τ old, the linearised flock is stable below a "
+        "delay margin τ* and unstable just above it. τ* is found by a sweep over frequency, the roots to either "
+        "side by a discretisation of the delayed state (Breda, Maset, Vermiglio). Of two agents on a line τ* has a "
+        "closed form."
+    ),
+    source="ours",
+    kind="fixed",
+    check=_check_delays,
+    expected={"delay-margin": "verified"},
+)

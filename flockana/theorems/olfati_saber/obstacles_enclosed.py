@@ -1,0 +1,133 @@
+"""Theorem 6 of Olfati-Saber (2006), decided by a tube: the energy's rate and its balance among spheres."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from flint import arb, ctx
+
+from flockana.base.checks import FloatArray
+from flockana.certified.flow import Flow
+from flockana.certified.laws import flow_of
+from flockana.certified.series import Piece
+from flockana.certified.structural_energy import BITS
+from flockana.certified.total_energy import powers_during, total_energy, work
+from flockana.certified.tube import Tube, up
+from flockana.theorems.from_tube import decided, known
+from flockana.theorems.hypotheses import common_gains, condition
+from flockana.theorems.olfati_saber.energy import proved
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances
+
+if TYPE_CHECKING:
+    from flockana.certified.tube import BasinLike
+
+
+def _rests(tube: Tube) -> Hypothesis:
+    """The hypothesis that the γ-agent is static; those that are enclosed move on a straight path."""
+    moves = bool(tube.law.target.harmonic.terms[1].any())
+    detail = "it moves" if moves else f"q_r is fixed, p_r = {_told(tube).tolist()}"
+    return condition("the γ-agent is static", not moves, detail=detail)
+
+
+def _told(tube: Tube) -> FloatArray:
+    """p_r, which is constant on a straight path."""
+    terms = tube.law.target.harmonic.terms
+    told: FloatArray = terms[1] + terms[4]
+    return told
+
+
+def _slow_enough(tube: Tube, flow: Flow) -> tuple[Hypothesis, int]:
+    """(76), and the first step from which it certainly holds to the end, for the law's time scale at least."""
+    name = "(n/2)⟨p_c, p_d⟩ <= T from some t0 on (76)"
+    pull, half, m = flow.terms[0], tube.n * tube.m, tube.m
+    slack = []
+    for step in tube.taken:
+        p = step.during[half:]
+        pulls = [pull.power(p[i : i + m], p[i : i + m], Piece.CORE) for i in range(0, half, m)]
+        slack.append(-sum(pulls, arb(0)))
+    if not _told(tube).any() or all(x >= 0 for x in slack):
+        return condition(name, True, detail="at all times of the tube"), 0
+    doubtful = max(k for k, x in enumerate(slack) if not x >= 0)
+    since = doubtful + 1
+    if since < len(slack) and tube.t[-1] - tube.t[since] >= tube.law.scales.time:
+        return condition(name, True, detail=f"certainly from t0 = {tube.t[since]:.6g} to the end of the tube"), since
+    if any(x < 0 and tube.t[-1] - tube.t[k + 1] <= tube.law.scales.time for k, x in enumerate(slack)):
+        return condition(name, False, detail=f"certainly broken about t = {tube.t[doubtful]:.6g}, near the end"), 0
+    return Hypothesis(name, "assumed", detail="the tube is too wide or too short to tell"), 0
+
+
+def _stays_outside(tube: Tube) -> Hypothesis:
+    """The hypothesis that no agent enters an obstacle, between the steps too."""
+    name = "no agent enters an obstacle"
+    if not tube.law.obstacles:
+        return Hypothesis(name, "met", detail="there is none")
+    least = tube.min_clearance()
+    where = f"(agent {least.agent} at obstacles[{least.obstacle}], about t = {least.time:.4g})"
+    if least.lower > 0.0:
+        return Hypothesis(name, "met", least.lower, f"clearance at least {least.lower:.6g} {where}, proved")
+    inside = any(x < 0 for k in range(len(tube.taken)) for row in tube.clearances_during(k) for x in row)
+    text = "certainly inside" if inside else "the tube is too wide to tell"
+    return Hypothesis(name, "unmet" if inside else "assumed", least.lower, f"{text} {where}")
+
+
+def _never_rises(tube: Tube, flow: Flow, since: int, needs: list[Hypothesis]) -> Claim:
+    """The claim that dH/dt is not positive at any time from a step on; the margin is the fall over its terms' size.
+
+    With p_r = 0 and all agents outside, every term is minus a sum of squares: the margin is 1, at rest too.
+    """
+    squares = not _told(tube).any() and needs[-1].status == "met"
+    margin, highest, when = arb(1), arb(float("-inf")), tube.t[since]
+    for k in range(since, len(tube.taken)):
+        parts = powers_during(tube, flow, k)
+        total, size = sum(parts, arb(0)), sum((abs(x) for x in parts), arb(0))
+        if total.upper() > highest:
+            highest, when = total.upper(), tube.t[k]
+        if not squares:
+            share = -total / size if size > 0 else arb(0, 1)
+            margin = share if share.lower() < margin.lower() else margin
+    return decided(
+        "rate",
+        margin,
+        needs,
+        computed=up(highest),
+        stated="dH/dt <= 0" if since == 0 else f"dH/dt <= 0 for t >= {tube.t[since]:.6g}",
+        witness={"time": when},
+        proof=proved(_law_of(tube), "theorem6"),
+        detail=f"dH/dt is at most {up(highest):.3g} at all times from t = {tube.t[since]:g} to {tube.t[-1]:g}",
+    )
+
+
+def _balance(tube: Tube, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
+    """The claim that H(t) − H(0) is the integral of the closed-form rate, to a share of the larger |H|."""
+    first, last = total_energy(tube.law, *tube.state(0)), total_energy(tube.law, *tube.state(-1))
+    largest = abs(first).max(abs(last))
+    share = abs(last - first - work(tube)) / largest if largest > 0 else arb(0)
+    return decided(
+        "balance",
+        arb(tolerances.energy) - share,
+        needs,
+        computed=up(share.upper()),
+        stated=f"H(t) - H(0) = integral of dH/dt, to {tolerances.energy:g} of the largest |H|",
+        proof=proved(_law_of(tube), "theorem6"),
+        detail=f"H goes from {float(first):.6g} to {float(last):.6g}; the balance is off by {up(share.upper()):.2g} of "
+        "it at most",
+    )
+
+
+def _law_of(tube: Tube) -> Any:
+    """The tube as what has a law."""
+    return tube
+
+
+def os_6(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
+    """Theorem 6 for the starts of a tube, over its time."""
+    law = _law_of(tube)
+    with ctx.workprec(BITS):
+        flow = flow_of(tube.law, tube.n, tube.m)
+        slow, since = _slow_enough(tube, flow)
+        rests = _rests(tube)
+        needs = [common_gains(law), rests, slow, _stays_outside(tube)]
+        if tube.status != "complete":
+            reason, stated = f"the tube ends early: {tube.message}", "over the whole time span"
+            return needs, [known(name, reason, needs, holds=False, stated=stated) for name in ("rate", "balance")]
+        return needs, [_never_rises(tube, flow, since, needs), _balance(tube, [rests, needs[0]], tolerances)]

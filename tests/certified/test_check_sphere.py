@@ -1,0 +1,133 @@
+"""Certificates of runs past a sphere: the checker's own formulas, and that what was altered is rejected."""
+
+from __future__ import annotations
+
+import copy
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from flint import arb, arb_series
+
+from flockana import Algorithm3, BetaInteraction, Gains, LinearTarget, Sphere, StaticTarget, enclose
+from flockana.base.errors import ArgumentError
+from flockana.base.seals import sealed
+from flockana.certified.check import RejectedError, check_data
+from flockana.certified.check_tube import Run, capped
+from flockana.certified.tube_certificate import tube_certificate
+
+LAW = Algorithm3(
+    gains=Gains(c1_alpha=1.5, c2_alpha=2.0, c1_beta=100.0, c2_beta=20.0),
+    target=StaticTarget((4.0, 2.0)),
+    beta=BetaInteraction(d=1.0, r=1.25, h=0.5),
+    obstacles=(Sphere((0.25, 0.5), 1.0),),
+)
+START = np.array([[-1.5, 1.25], [-1.5, 6.0]]), np.array([[4.0, 3.0], [0.0, -1.0]])
+
+
+@pytest.fixture(scope="module")
+def tube():
+    return enclose(LAW, *START, (0.0, 0.0078125), order=12)
+
+
+@pytest.fixture(scope="module")
+def data(tube):
+    return json.loads(json.dumps(tube_certificate(tube)))
+
+
+def altered(data, *at, change):
+    other = copy.deepcopy(data)
+    place = other
+    for key in at[:-1]:
+        place = place[key]
+    place[at[-1]] = change(place[at[-1]])
+    return other
+
+
+def resealed(data):
+    return sealed({key: value for key, value in data.items() if key != "digest"})
+
+
+def more(value):
+    return repr(float(value) * 1.001 + 0.001)
+
+
+def test_it_holds_and_tells_the_clearance(data, tube):
+    steps = check_data(data).steps
+    assert steps[3] == f"no agent comes nearer than {data['clearance']} to a sphere"
+    assert tube.min_clearance().lower - 0.01 < float(data["clearance"]) <= tube.min_clearance().lower + 1e-3
+    assert float(data["energy"]) == pytest.approx(LAW.energy(0.0, *START), abs=1e-5)
+
+
+@pytest.mark.parametrize("x", [(-0.5, 1.375), (-0.75, 1.0), (-0.6, 0.9), (0.25, 2.5)])
+def test_the_checkers_force_and_slope_are_those_of_the_law(data, x):
+    q, p = np.array([x, START[0][1]]), START[1]
+    run = Run.of(data)
+    state = [arb(y) for y in (*q.ravel(), *p.ravel())]
+    found = np.array([[float(y) for y in row] for row in run.slope(state).tolist()])
+    np.testing.assert_allclose(found, LAW.jacobian(0.0, q, p), atol=1e-10)
+    expected = LAW.acceleration(0.0, q, p).ravel()
+    for pieces in (run.pieces(state[:4]), [None, None, None]):  # of series on their pieces, and across them
+        with capped(1):
+            u = run.force(arb(0), [arb_series([y]) for y in state], pieces)
+        np.testing.assert_allclose([float(y[0]) for y in u], expected, atol=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("at", "message"),
+    [
+        *(
+            (("law", name), "the error may exceed|the least clearance")
+            for name in ("beta_d", "beta_eps", "beta_h", "c1_beta", "c2_beta", "c1_alpha", "c1_gamma", "c2_gamma")
+        ),
+        (("law", "spheres", 0, "radius"), "the error may exceed|the least clearance"),
+        (("law", "spheres", 0, "centre", 0), "the error may exceed|the least clearance"),
+        (("law", "spheres", 0, "centre", 1), "the error may exceed|the least clearance"),
+        (("law", "start", 1), "the error may exceed"),
+        (("law", "velocity", 0), "its γ-agent moves"),
+        (("clearance",), "the least clearance"),
+        (("distance",), "the least distance"),
+        (("cohesion_radius",), "the largest radius"),
+        (("energy",), "the energy at the start"),
+    ],
+)
+def test_what_was_sealed_again_is_decided_by_the_mathematics(data, at, message):
+    with pytest.raises(RejectedError, match=message):
+        check_data(resealed(altered(data, *at, change=more)))
+
+
+def leaves(data, at=()):
+    if isinstance(data, dict | list):
+        for key, value in data.items() if isinstance(data, dict) else enumerate(data):
+            yield from leaves(value, (*at, key))
+    elif isinstance(data, bool | int | float) or (isinstance(data, str) and data[:1] in "-0123456789"):
+        yield at
+
+
+def test_any_one_number_that_is_altered_is_rejected(data):
+    def other(value):
+        if not isinstance(value, str):
+            return not value if isinstance(value, bool) else value + 1
+        return value[:-1] + ("2" if value[-1] != "2" else "3")
+
+    places = list(leaves(data))
+    assert ("law", "spheres", 0, "radius") in places
+    for at in places:
+        with pytest.raises(RejectedError, match="digest"):
+            check_data(altered(data, *at, change=other))
+
+
+def test_a_sphere_left_out_or_turned_is_rejected(data):
+    with pytest.raises(RejectedError, match="the error may exceed"):
+        check_data(resealed(altered(data, "law", "spheres", change=lambda spheres: [])))
+    with pytest.raises(RejectedError, match="another dimension"):
+        check_data(resealed(altered(data, "law", "spheres", 0, "centre", change=lambda centre: centre[:1])))
+    with pytest.raises(RejectedError, match="another dimension"):
+        check_data(resealed(altered(data, "law", "spheres", 0, "radius", change=lambda radius: f"-{radius}")))
+
+
+def test_a_moving_target_has_no_certificate():
+    moving = replace(LAW, target=LinearTarget((4.0, 2.0), (1.0, 0.0)))
+    with pytest.raises(ArgumentError, match="expected a γ-agent at rest"):
+        tube_certificate(enclose(moving, *START, (0.0, 0.0009765625), order=8))

@@ -1,0 +1,112 @@
+"""Theorem 6 from a tube past a sphere."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from flint import arb
+
+from flockana import (
+    Algorithm3,
+    AlphaInteraction,
+    BetaInteraction,
+    Gains,
+    LinearTarget,
+    Sphere,
+    StaticTarget,
+    enclose,
+    simulate,
+    verify,
+)
+from flockana.certified.flow import Flow
+from flockana.certified.laws import flow_of
+from flockana.certified.total_energy import powers_during, total_energy, work
+
+LAW = Algorithm3(
+    gains=Gains(c1_alpha=1.5, c2_alpha=2.0, c1_beta=100.0, c2_beta=20.0),
+    target=StaticTarget((4.0, 2.0)),
+    beta=BetaInteraction(d=1.0, r=1.25, h=0.5),
+    obstacles=(Sphere((0.0, 0.0), 1.0),),
+)
+START = np.array([[-1.5, 1.0], [-1.5, 6.0]]), np.array([[4.0, 3.0], [0.0, -1.0]])
+SPAN = (0.0, 0.0625)
+
+
+@pytest.fixture(scope="module")
+def tube():
+    """Two agents in range, one of them at a sphere."""
+    return enclose(LAW, *START, SPAN, order=12)
+
+
+def statuses(verdict):
+    return {claim.name: claim.status for claim in verdict.claims}
+
+
+def test_all_of_theorem_6_is_decided_and_its_rigour_reads_interval(tube):
+    verdict = verify("os-6", tube)
+    assert statuses(verdict) == {"rate": "verified", "balance": "verified"}
+    assert verdict.rigour == "interval"
+    assert {h.status for h in verdict.hypotheses} == {"met"}
+    assert "proved" in verdict.hypotheses[-1].detail
+    assert verdict.claim("rate").computed < -1.0
+
+
+def test_the_energy_its_rate_and_their_balance_are_those_of_the_run(tube):
+    run = simulate(LAW, *START, SPAN, rtol=1e-12, t_eval=tube.t)
+    for k in (0, -1):
+        assert abs(total_energy(LAW, *tube.state(k)) - float(run.energy()[k])).lower() < 1e-9
+    flow, rate = flow_of(LAW, 2, 2), run.energy_rate()
+    for k in range(len(tube.taken)):
+        during = sum(powers_during(tube, flow, k), arb(0)) + arb(0, 1e-7)
+        assert all(during.contains(arb(float(x))) for x in rate[k : k + 2])
+    assert abs(work(tube) - float(run.energy()[-1] - run.energy()[0])).lower() < 1e-9
+    assert work(tube).rad() < 1e-7
+
+
+def test_a_rate_of_another_law_does_not_balance(tube, monkeypatch):
+    own = Flow.powers
+    monkeypatch.setattr(Flow, "powers", lambda *a: [0.99 * x for x in own(*a)])
+    assert statuses(verify("os-6", tube)) == {"rate": "verified", "balance": "refuted"}
+
+
+def test_a_flock_that_is_told_to_move_breaks_the_condition_76():
+    """At rest with p_r told, dH/dt = 0 and then rises with the first motion towards p_r."""
+    told = replace(LAW, target=StaticTarget((-1.5, 6.0), (0.0, 4.0)))
+    tube = enclose(told, START[0], np.array([[0.0, 0.0], [0.0, 0.5]]), (0.0, 0.0625), order=12)
+    verdict = verify("os-6", tube)
+    assert verdict.hypotheses[3].status == "unmet"
+    assert statuses(verdict) == {"rate": "vacuous", "balance": "verified"}
+
+
+def test_a_moving_target_is_outside_the_theorem():
+    moving = replace(LAW, target=LinearTarget((4.0, 2.0), (1.0, 0.0)))
+    verdict = verify("os-6", enclose(moving, *START, (0.0, 0.015625), order=12))
+    assert set(statuses(verdict).values()) == {"vacuous"}
+
+
+def test_what_is_too_wide_or_ends_early_is_inconclusive(tube):
+    wide = enclose(LAW, *START, (0.0, 0.0078125), radius=(0.02, 0.0), order=8)
+    assert statuses(verify("os-6", wide))["balance"] == "inconclusive"
+    assert "too wide to tell" in verify("os-6", wide).claim("balance").detail
+    early = enclose(LAW, *START, (0.0, 1.0), steps=2, order=8)
+    verdict = verify("os-6", early)
+    assert statuses(verdict) == {"rate": "inconclusive", "balance": "inconclusive"}
+    assert "the tube ends early: it took 2 steps" in verdict.claim("rate").detail
+
+
+def test_a_tube_that_may_touch_the_sphere_assumes_that_it_does_not():
+    near = enclose(LAW, START[0] * 0.6, 0.0 * START[1], (0.0, 0.0009765625), radius=(0.2, 0.0), order=8, widest=10.0)
+    assert near.min_clearance().lower < 0.0
+    assert verify("os-6", near).hypotheses[-1].status == "assumed"
+
+
+def test_the_energy_in_other_units_of_length_is_that_of_the_law():
+    alpha, beta = AlphaInteraction(unit=1.5), BetaInteraction(d=3.0, r=4.0, eps=0.2, unit=2.0)
+    law = Algorithm3(alpha=alpha, beta=beta, target=StaticTarget((4.0, 2.0)), obstacles=(Sphere((0.0, 0.0), 1.0),))
+    q, p = START
+    ball = total_energy(
+        law, [[arb(x) for x in row] for row in q.tolist()], [[arb(x) for x in row] for row in p.tolist()]
+    )
+    assert float(ball) == pytest.approx(law.energy(0.0, q, p), rel=1e-10)
