@@ -9,6 +9,7 @@ from typing import Any
 import jupytext
 import nbformat
 
+from flockana.course import build
 from tools.site.cache import ROOT
 from tools.site.words import contents
 
@@ -33,7 +34,7 @@ def lecture(source: Path) -> Any:
 def write(folder: Path) -> None:
     """Write all that there are, what they import, and their index."""
     folder.mkdir(parents=True, exist_ok=True)
-    sources = sorted(SOURCES.glob("[0-9][0-9]_*.py"))
+    sources = build.sources()
     for source in sources:
         nbformat.write(lecture(source), folder / f"{source.stem}.ipynb")
     for helper in (path for path in SOURCES.iterdir() if path not in sources and path.name != "__pycache__"):
