@@ -14,7 +14,7 @@ from flockana.explore.worker import Worker, work
 
 
 @pytest.fixture
-def ask(monkeypatch):
+def ask(monkeypatch, answering):
     """Answer questions as `script` says, which runs beside with the other end of the pipe; gives what it returned."""
 
     def answer(data, send, *, limit, cancelled):
