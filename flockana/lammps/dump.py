@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import islice
+from itertools import islice, pairwise
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -18,6 +18,7 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import ensure_law
 
 _AXES = "xyz"
+_LARGEST = 2**53  # up to which every whole number is a float
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,6 +169,9 @@ def _snapshots(path: Path) -> list[Snapshot]:
     if not found:
         raise FileError(f"{path} holds no snapshot: expected a text dump of LAMMPS, style custom")
     ids = found[0].columns["id"]
+    for before, after in pairwise(found):
+        if after.step <= before.step:
+            raise FileError(f"{path}: step {after.step} follows step {before.step}; expected rising steps")
     for k, snapshot in enumerate(found):
         if snapshot.columns.keys() != found[0].columns.keys() or not np.array_equal(snapshot.columns["id"], ids):
             raise FileError(
@@ -187,11 +191,11 @@ def _parsed(file: TextIO, path: Path) -> Iterator[Snapshot]:
             continue
         item = line[len("ITEM:") :].split()
         if item[:1] == ["TIMESTEP"]:
-            step = int(_numbers(file, 1, 1, path)[0, 0])
+            step = _whole(file, "step", 0, path)
         elif item[:1] == ["TIME"]:
             time = float(_numbers(file, 1, 1, path)[0, 0])
         elif item[:3] == ["NUMBER", "OF", "ATOMS"]:
-            count = int(_numbers(file, 1, 1, path)[0, 0])
+            count = _whole(file, "number of atoms", 1, path)
         elif item[:2] == ["BOX", "BOUNDS"]:
             _numbers(file, 3, None, path)
         elif item[:1] == ["UNITS"]:
@@ -214,9 +218,16 @@ def _columns(file: TextIO, names: list[str], count: int, path: Path) -> dict[str
     values = _numbers(file, count, len(names), path)
     columns = {name: values[:, k] for k, name in enumerate(names)}
     order = np.argsort(columns["id"], kind="stable")
-    if count == 0 or (np.diff(columns["id"][order]) == 0.0).any():
-        raise FileError(f"{path}: a snapshot has no agents, or two of one id; expected each once")
+    if (np.diff(columns["id"][order]) == 0.0).any():
+        raise FileError(f"{path}: a snapshot has two agents of one id; expected each once")
     return {name: column[order] for name, column in columns.items()}
+
+
+def _whole(file: TextIO, name: str, least: int, path: Path) -> int:
+    value = float(_numbers(file, 1, 1, path)[0, 0])
+    if not least <= value <= _LARGEST or value != int(value):
+        raise FileError(f"{path}: {name} {value:g}; expected a whole number >= {least}; is it a damaged dump?")
+    return int(value)
 
 
 def _numbers(file: TextIO, rows: int, width: int | None, path: Path) -> FloatArray:

@@ -18,6 +18,7 @@ from flockana.ensemble.work import Job, Record
 from flockana.equilibria import find_equilibrium
 from flockana.equilibria.record import read_equilibrium, write_equilibrium
 from flockana.falsify import Counterexample
+from flockana.lammps.dump import read_lammps
 from flockana.laws.olfati_saber import Algorithm1
 
 LAW = Algorithm1()
@@ -198,6 +199,30 @@ def test_positions_from_a_damaged_csv_are_finite_or_refused(tmp_path):
         b"1e999",
     ]
     assert outcomes(read_csv, path, contents, finite) > 100
+
+
+def dump():
+    """Three snapshots of a pair, as LAMMPS writes them."""
+    for k in range(3):
+        yield f"ITEM: TIMESTEP\n{10 * k}\nITEM: TIME\n0.{k}\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS ss ss pp\n"
+        yield f"0 1\n0 1\n0 1\nITEM: ATOMS id x y vx vy\n1 0.{k} 0.0 1.0 0.0\n2 8.{k} 0.5 1.0 0.0\n"
+
+
+def test_a_damaged_dump_of_lammps_is_refused_or_a_run(tmp_path):
+    """Plain text without a digest: another digit is another number, which nobody can tell."""
+    path, whole = tmp_path / "pair.dump", "".join(dump()).encode()
+
+    def sound(run):
+        return run.n == 2 and (np.diff(run.t) > 0.0).all() and np.isfinite([run.q, run.p]).all()
+
+    def read(path):
+        return read_lammps(path, LAW)
+
+    path.write_bytes(whole)
+    assert sound(read(path))
+    assert outcomes(read, path, flipped(whole, 100), sound) > 75
+    boundaries = whole.count(b"ITEM: TIMESTEP") - 1
+    assert outcomes(read, path, (whole[:k] for k in range(len(whole))), sound) == len(whole) - boundaries
 
 
 def test_loading_makes_no_object_but_parameters(tmp_path):
