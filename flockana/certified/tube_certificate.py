@@ -56,6 +56,7 @@ def tube_certificate(tube: Tube, *, basin: Basin | None = None, weight: float = 
     Examples
     --------
     >>> from flockana.certified.enclose import enclose
+    >>> from flockana.laws.olfati_saber import Algorithm1
     >>> tube_certificate(enclose(Algorithm1(), [[0.0], [7.5]], [[0.0], [0.0]], (0.0, 0.0625)))["kind"]
     'tube'
     """

@@ -106,8 +106,9 @@ def test_a_report_on_a_part_leaves_the_one_on_all_alone(call, catalogue, monkeyp
     assert (code, "report: report/tiny/index.html" in out) == (0, True)
     assert Path("report/verdicts.json").read_bytes() == before
     assert json.loads(Path("report/tiny/verdicts.json").read_text(encoding="utf-8"))["of"] == "tiny"
-    call("verify", "tiny", "--report", "report")  # who names the folder means it
-    assert json.loads(Path("report/verdicts.json").read_text(encoding="utf-8"))["of"] == "tiny"
+    out = call("verify", "tiny", "--report", "report")[1]  # whoever names the folder too
+    assert "report: report/tiny/index.html" in out
+    assert Path("report/verdicts.json").read_bytes() == before
 
 
 @pytest.mark.parametrize("frame", [0, 1])

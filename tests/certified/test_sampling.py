@@ -29,7 +29,7 @@ def test_the_picture_shows_shares_and_the_certified_radius():
     np.testing.assert_allclose(points[:, 0], [0.2 / 7.0, 5.0 / 7.0])
     assert points[0, 1] == 1.0
     texts = [text.get_text() for text in ax.get_legend().get_texts()]
-    assert f"certified ρ = {basin.share:.3f} d" in texts
+    assert rf"certified $\rho$ = {basin.share:.3f} d" in texts
 
 
 def test_bad_distances_are_named():

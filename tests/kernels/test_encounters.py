@@ -62,9 +62,9 @@ def test_a_step_of_the_integrator_is_cut_by_ways_seen_from_the_mean_motion(m, li
     i, j = (each.astype(np.uint32) for each in pair_list(q0, 1e6))
     whole = share_of_pairs(points, ways, allowance, radii, FAR, i.astype(int), j.astype(int), 1.0)
     beside = np.concatenate([q0.mean(axis=0), np.full(18, np.nan)])[:m]
-    pairs = (i, j, i.size, q0 if listed else np.empty((0, m)), beside if listed else beside[:0])
+    pairs = (i, j, i.size, q0 if listed else np.empty((0, m)), beside if listed else beside[:0], None)
     none = np.empty(0)
-    system = [None] * 4 + [(40, m), None, None, (1e6, 0.0), None, lambda q, within, a, b: (i, j, i.size)]
+    system = [None] * 4 + [(40, m), None, None, (1e6, 0.0), None, lambda q, within, a, b: (i, j, i.size, None)]
     encounters = (radii, FAR, None, none, None)
     share, _ = _met.py_func(0.0, H, y0, f0, y1, f1, encounters, system, pairs, (i, j))
     assert share == pytest.approx(whole, rel=1e-9)

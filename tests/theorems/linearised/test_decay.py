@@ -227,7 +227,9 @@ def test_margins_lie_where_roots_cross():
     verdict = verify("delay-margin")
     assert verdict.status == "verified"
     assert verdict.claim("algorithm-2-all").computed["delay"] == pytest.approx(0.0127827452, rel=1e-6)
-    assert all(claim.witness["Re s below"] < 0.0 < claim.witness["Re s above"] for claim in verdict.claims)
+    crossing = [claim.witness for claim in verdict.claims if claim.name != "pair"]  # that one is a closed form
+    assert len(crossing) >= 4
+    assert all(each["Re s below"] < 0.0 < each["Re s above"] for each in crossing)
 
 
 def test_gains_of_their_own_pay_only_where_the_rotation_counts():
