@@ -21,7 +21,7 @@ from flockana.dynamics.between import Between, Recorder
 from flockana.dynamics.first_call import check_first_call
 from flockana.dynamics.iterate import count_steps, discrete
 from flockana.dynamics.rk4 import rk4
-from flockana.dynamics.sample import Sample, Tally, start_sample
+from flockana.dynamics.sample import Sample, Tally, copied, start_sample
 from flockana.dynamics.threads import ensure_threads
 from flockana.dynamics.tolerance import error_floor
 from flockana.dynamics.trajectory import Trajectory
@@ -30,7 +30,7 @@ from flockana.laws.law import Law
 
 ADAPTIVE = ("DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA")
 METHODS = (*ADAPTIVE, "RK4", *(SCIPY + method for method in ADAPTIVE))
-AS_SIMULATED = "as simulated"  # remembered of a run that `simulate` returned in this process
+AS_SIMULATED = "as simulated"  # the digest of its samples is remembered of a run that `simulate` returned
 
 
 def simulate(
@@ -107,6 +107,8 @@ def simulate(
     t_span = ensure_time_span(t_span)
     keep = _check_t_eval(t_eval, t_span)
     check_first_call(law, t_span[0], q0, p0)
+    if watch is not None and not callable(watch):
+        raise ArgumentError(f"watch = {watch!r}: expected a function of a sample, or None")
     tally, how, threads = Tally(), dict[str, Any](), ensure_threads(threads)
     if isinstance(law, DiscreteLaw):
         if dt is not None or method != "DOP853":
@@ -128,10 +130,13 @@ def simulate(
     kept, between = _collect(samples, t_span, tally, progress, watch)
     counts = {"method": method, "steps": tally.steps, "evaluations": tally.evaluations}
     stats = counts | tally.notes | how | {"seconds": time.perf_counter() - started}
-    kept = kept or [start_sample(law, q0, p0, t_span[0])]  # ended before the first time to keep
+    if not kept:  # ended before the first time to keep
+        kept = [start_sample(law, q0, p0, t_span[0])]
+        if watch is not None:
+            watch(_copy(kept[0]))
     t, q, p, u, extra = _stacked(kept)
     run = Trajectory(t, q, p, u, law, extra, tally.status, tally.message, stats, between)
-    run.remembered(AS_SIMULATED, lambda: True)
+    run.remembered(AS_SIMULATED, run.samples_digest)
     return run
 
 
@@ -185,6 +190,12 @@ def _check_t_eval(t_eval: Any, t_span: tuple[float, float]) -> FloatArray | None
     return times
 
 
+def _copy(sample: Sample) -> Sample:
+    """For who watches: whatever becomes of it, the run stays as it is."""
+    series = {name: np.array(getattr(sample, name)) for name in "qpu"}
+    return sample._replace(**series, extra=copied(sample.extra))
+
+
 def _collect(
     samples: Iterator[Sample],
     t_span: tuple[float, float],
@@ -202,7 +213,7 @@ def _collect(
                     if sample.wanted:
                         kept.append(sample)
                         if watch is not None:
-                            watch(sample)
+                            watch(_copy(sample))
                     recorder.add(sample.t, sample.q, sample.p, sample.u, sample=sample.wanted)
                     advance(sample.t - t_span[0], f"t = {sample.t:.4g}")
         except KeyboardInterrupt:

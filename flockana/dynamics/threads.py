@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
+from threading import Lock
 from typing import Any
 
 from flockana.base.checks import ensure_count
@@ -27,6 +30,11 @@ def ensure_threads(threads: Any) -> int:
     if number > 1:
         from numba import config
 
+        if _process.cache_info().currsize and _process() != os.getpid():
+            raise ArgumentError(
+                f"threads = {number}: the process that this one was forked from has used threads, and OpenMP would end "
+                "it; expected 1, or processes that are spawned"
+            )
         if number > config.NUMBA_NUM_THREADS:
             raise ArgumentError(
                 f"threads = {number}: expected 1 to {config.NUMBA_NUM_THREADS}, the number of cores, or what the "
@@ -50,9 +58,21 @@ def ensure_one_thread(law: Any, threads: int) -> None:
         )
 
 
+@cache
+def _process() -> int:
+    """The process that used threads first."""
+    return os.getpid()
+
+
+@cache
+def _turn() -> Lock:
+    """One run after the other: not every threading layer of numba takes calls from two threads at once."""
+    return Lock()
+
+
 @contextmanager
 def threads_of_numba(threads: int) -> Iterator[None]:
-    """Have numba use so many threads, of this thread's own calls only.
+    """Have numba use so many threads for what this thread calls; another that does so as well waits.
 
     Parameters
     ----------
@@ -64,9 +84,11 @@ def threads_of_numba(threads: int) -> Iterator[None]:
         return
     import numba
 
-    before = numba.get_num_threads()
-    numba.set_num_threads(threads)
-    try:
-        yield
-    finally:
-        numba.set_num_threads(before)
+    _process()
+    with _turn():
+        before = numba.get_num_threads()
+        numba.set_num_threads(threads)
+        try:
+            yield
+        finally:
+            numba.set_num_threads(before)

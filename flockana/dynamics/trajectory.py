@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
@@ -277,6 +278,17 @@ class Trajectory:
         if name not in self._memory:
             self._memory[name] = compute()
         return self._memory[name]  # type: ignore[no-any-return]
+
+    def samples_digest(self) -> bytes:
+        """Of all times, positions, velocities and accelerations, to the bit."""
+        digest = hashlib.blake2b()
+        for series in (self.t, self.q, self.p, self.u):
+            digest.update(np.ascontiguousarray(series).data)
+        return digest.digest()
+
+    def __getstate__(self) -> dict[str, Any]:
+        """All but what is remembered: a copy can be written to, and some measures are functions that do not travel."""
+        return {name: value for name, value in self.__dict__.items() if name not in ("_memory", "_own")}
 
     @cached_property
     def _memory(self) -> dict[str, Any]:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import xarray
 
+import flockana as fl
 from flockana.base.errors import ArgumentError, FileError
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
@@ -236,3 +237,11 @@ def test_a_file_without_its_velocities(tmp_path):
 def test_a_run_shows_itself_in_one_line():
     run = simulate(Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 1.0), t_eval=[0.0, 1.0])
     assert repr(run) == "<Trajectory of 2 agents, m = 1, Algorithm1, 2 samples, t = 0 to 1, complete>"
+
+
+def test_a_run_travels_after_its_measures_were_taken():
+    """Those of the dead zone are functions of the law's own until they are asked for."""
+    run = fl.simulate(fl.DeadZoneFlocking(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 1.0))
+    metrics = run.metrics()
+    again = pickle.loads(pickle.dumps(run))
+    np.testing.assert_array_equal(again.metrics()["literal_energy"], metrics["literal_energy"])

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from itertools import pairwise
 
 import numpy as np
@@ -101,3 +104,46 @@ def test_a_run_that_is_not_compiled_takes_one(how):
     law = SemiImplicitEuler(fl.DeadZoneFlocking(), dt=0.02)
     with pytest.raises(ArgumentError, match="threads = 2: the steps of a discrete law take one"):
         fl.simulate(law, [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 1.0), threads=2)
+
+
+FORKED = """
+import os
+import flockana as fl
+from flockana.base.errors import ArgumentError
+
+def run():
+    return fl.simulate(fl.Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 1.0), threads=2).status
+
+assert run() == "complete"
+child = os.fork()
+if not child:
+    try:
+        run()
+    except ArgumentError as error:
+        os._exit(7 if "processes that are spawned" in str(error) else 1)
+    os._exit(2)
+assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 7
+"""
+
+AT_ONCE = """
+from threading import Thread
+import flockana as fl
+ended = []
+def run():
+    ended.append(fl.simulate(fl.Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 9.0), threads=2).status)
+both = [Thread(target=run), Thread(target=run)]
+[each.start() for each in both]
+[each.join() for each in both]
+assert ended == ["complete", "complete"]
+"""
+
+
+@pytest.mark.skipif(NUMBERS < 2 or not hasattr(os, "fork"), reason="there is one core, or no fork")
+def test_a_forked_process_is_refused_threads_before_openmp_ends_it():
+    subprocess.run([sys.executable, "-c", FORKED], check=True, timeout=300)
+
+
+@pytest.mark.skipif(NUMBERS < 2, reason="there is one core")
+def test_two_threads_of_a_program_may_both_ask_for_threads():
+    environment = os.environ | {"NUMBA_THREADING_LAYER": "workqueue"}
+    subprocess.run([sys.executable, "-c", AT_ONCE], check=True, timeout=300, env=environment)

@@ -166,6 +166,32 @@ def test_a_copy_is_not_taken_for_what_simulate_returned(copied) -> None:
         verify("energy", run)
 
 
+def test_a_copy_remembers_no_check_of_what_it_was_copied_from() -> None:
+    run = fl.simulate(fl.Algorithm1(), *PAIR, (0.0, 2.0), t_eval=np.linspace(0.0, 2.0, 60))
+    verify("energy", run)
+    later = copy.deepcopy(run)
+    later.q[7] += 1e-4
+    with pytest.raises(ArgumentError, match="was it edited, or is it of another law"):
+        verify("energy", later)
+
+
+def test_an_edit_past_the_flags_is_seen() -> None:
+    run = fl.simulate(fl.Algorithm1(), *PAIR, (0.0, 2.0), t_eval=np.linspace(0.0, 2.0, 60))
+    run.q.setflags(write=True)
+    run.q[7] += 1e-4
+    run.q.setflags(write=False)
+    with pytest.raises(ArgumentError, match="was it edited, or is it of another law"):
+        verify("energy", run)
+
+
+def test_who_watches_a_run_cannot_edit_it() -> None:
+    def centred(sample):
+        sample.q[:] -= sample.q.mean(axis=0) - 50.0
+
+    watched = fl.simulate(fl.Algorithm1(), *PAIR, (0.0, 2.0), t_eval=[0.0, 0.7, 2.0], watch=centred)
+    np.testing.assert_array_equal(watched.q, fl.simulate(fl.Algorithm1(), *PAIR, (0.0, 2.0), t_eval=[0.0, 0.7, 2.0]).q)
+
+
 def test_a_law_that_is_another_function_each_time_is_refused_as_simulated() -> None:
     with pytest.raises(ArgumentError, match="was it edited, or is it of another law"):
         verify("energy", fl.simulate(Gusty(), *PAIR, (0.0, 2.0), t_eval=np.linspace(0.0, 2.0, 60)))
