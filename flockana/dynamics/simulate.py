@@ -192,8 +192,8 @@ def _check_t_eval(t_eval: Any, t_span: tuple[float, float]) -> FloatArray | None
 
 def _copy(sample: Sample) -> Sample:
     """For who watches: whatever becomes of it, the run stays as it is."""
-    series = {name: np.array(getattr(sample, name)) for name in "qpu"}
-    return sample._replace(**series, extra=copied(sample.extra))
+    q, p, u = (np.array(series) for series in (sample.q, sample.p, sample.u))
+    return sample._replace(q=q, p=p, u=u, extra=copied(sample.extra))
 
 
 def _collect(
