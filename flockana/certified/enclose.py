@@ -70,7 +70,7 @@ def enclose(
     Parameters
     ----------
     law : Algorithm1, Algorithm2 or Algorithm3
-        Under the latter two the γ-agent is a `StaticTarget` or a `LinearTarget`; obstacles are `Sphere`s.
+        Under the latter two the γ-agent is a `StaticTarget` or a `LinearTarget`; each obstacle is a `Sphere`.
     q0, p0 : array_like, shape (n, m)
         Initial positions and velocities, exact.
     t_span : (float, float)
