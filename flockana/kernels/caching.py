@@ -139,6 +139,8 @@ def _at_hand(made: Any) -> Any:
     Compiled code that is handed a function asks for its address twice in each call, by a signature that it keeps; to
     look that up by its types takes numba 0.1 ms.
     """
+    if numba.config.DISABLE_JIT:  # it is the function itself
+        return made
     look_up, found = made.get_compile_result, dict[int, tuple[Any, Any]]()
 
     def get_compile_result(signature: Any) -> Any:

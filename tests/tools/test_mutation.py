@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import subprocess
 import sys
@@ -101,6 +102,25 @@ def test_the_nearest_tests_come_first(project):
 )
 def test_what_a_file_of_the_package_is_tested_by(path, first):
     assert nearby.Nearby(command.PROJECT).order(f"flockana/{path}.py")[0] == first
+
+
+def test_a_copy_has_the_packages_and_not_what_runs_wrote(tmp_path):
+    project = tmp_path / "project"
+    for name in ("flockana/report/page.py", "tests/report/test_page.py", "report/index.html", ".venv/bin/python"):
+        (project / name).parent.mkdir(parents=True)
+        (project / name).touch()
+    copy = trial.clean_copy(project, tmp_path / "copies")
+    copied = sorted(str(one.relative_to(copy)) for one in copy.rglob("*") if one.is_file())
+    assert copied == ["flockana/report/page.py", "tests/report/test_page.py"]
+
+
+@pytest.mark.parametrize("name", ["kernels/test_sums", "laws/test_directed"])
+def test_kernels_run_as_python_too(name):
+    asked = [sys.executable, "-m", "pytest", "-xq", "-p", "no:cacheprovider", f"tests/{name}.py"]
+    done = subprocess.run(
+        asked, cwd=command.PROJECT, env={**os.environ, "NUMBA_DISABLE_JIT": "1"}, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stdout
 
 
 ASKED = """

@@ -23,7 +23,8 @@ from typing import Any
 
 _LOADED = ("numpy", "numba", "sympy", "scipy.integrate", "scipy.optimize", "scipy.sparse.linalg", "scipy.spatial")
 _LOADED += ("scipy.special", "networkx", "mpmath", "flint", "hypothesis", "pytest", "xarray", "h5netcdf")
-_IGNORED = shutil.ignore_patterns(".git", ".venv*", "report", ".hypothesis", "*.ipynb", "*.tmp*")
+_IGNORED = shutil.ignore_patterns(".git", ".venv*", ".hypothesis", "*.ipynb", "*.tmp*")
+_WRITTEN = {"report", "site", "dist", "course"}  # at the top: by runs, not by hands
 _SLACK, _COMPILING = 10.0, 60.0  # seconds that a test file may take beyond three times its own; if kernels are compiled
 
 
@@ -53,7 +54,11 @@ def clean_copy(project: Path, folder: Path) -> Path:
     """A copy of a project with what is compiled of it."""
     tree = folder / "clean"
     shutil.rmtree(tree, ignore_errors=True)
-    shutil.copytree(project, tree, ignore=_IGNORED)
+
+    def left_out(folder: str, names: list[str]) -> set[str]:
+        return _IGNORED(folder, names) | (_WRITTEN if Path(folder) == project else set())
+
+    shutil.copytree(project, tree, ignore=left_out)
     return tree
 
 

@@ -17,6 +17,7 @@ from tests.plots.artists import axes
 def test_the_claims():
     verdict = verify("L9")
     assert verdict.claim("energy").rigour == "symbolic"
+    assert verdict.claim("energy").witness == ["0", "0", "0"]  # in each dimension
     assert verdict.claim("different-leaders").computed == pytest.approx(2.0, abs=1e-3)
     assert verdict.claim("one-leader").computed < 1e-3
     assert verdict.claim("fraction").witness == {"force": 0.0, "distance": 20.0}
