@@ -29,6 +29,7 @@ from flockana.explore.worker import work
 HOST = "127.0.0.1"
 _TABS = 6
 _LENGTH = 32  # letters that a token has at least
+_TRIES = 3  # processes in a row that end before they say anything: then only a new question starts one
 _PATIENCE = 1.0  # seconds that a process has to begin with what is new
 _QUESTION = 1_000_000  # bytes at most
 _POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'nonce-{0}'; connect-src 'self'; img-src data:"
@@ -97,7 +98,8 @@ class Server:
 
     def take(self) -> Process:
         """A process that is, with luck, ready; another is started to be the next."""
-        taken, self.spare = self.spare or Process(self.limit), None
+        alive = self.spare is not None and self.spare.process.is_alive()
+        taken, self.spare = self.spare if alive else Process(self.limit), None
         asyncio.get_running_loop().call_later(2.0, self.prepare)
         return taken
 
@@ -142,7 +144,7 @@ class _Tab(WebSocketHandler):
 
     process: Process | None = None
     number, begun, asked = 0, 0, None
-    analysing = False
+    analysing, silent = False, 0
 
     def prepare(self) -> None:
         """Turn away whoever does not know the token."""
@@ -184,11 +186,10 @@ class _Tab(WebSocketHandler):
             asyncio.get_running_loop().call_later(_PATIENCE, self._replace_unless_begun, number)
 
     def _ask(self) -> None:
-        if self.process is not None:
-            try:
-                self.process.pipe.send((self.number, self.asked))
-            except OSError:  # it has ended; `deliver` hears of it
-                return
+        if self.process is None:
+            self._take()
+        with suppress(OSError):  # it has ended; `deliver` hears of it
+            self.process.pipe.send((self.number, self.asked))
 
     def _replace_unless_begun(self, number: int) -> None:
         """Solvers that do not hear of a newer question are left behind."""
@@ -199,15 +200,14 @@ class _Tab(WebSocketHandler):
     def deliver(self, message: Any) -> None:
         """What the process says, if it is of the newest question."""
         if message is None:
-            self._say(
-                {
-                    "number": self.number,
-                    "kind": "error",
-                    "text": "the process of this run ended: too little memory, or an error that the terminal shows",
-                }
-            )
-            self._take()
+            text = "the process of this run ended: too little memory, or an error that the terminal shows"
+            self._say({"number": self.number, "kind": "error", "text": text})
+            self.silent += 1
+            self.process = None
+            if self.silent < _TRIES:
+                self._take()
             return
+        self.silent = 0
         number, kind, content = message
         self.begun = max(self.begun, number)
         if number != self.number:

@@ -174,6 +174,41 @@ def test_a_process_that_ends_is_told_and_replaced(served):
     served(use)
 
 
+def test_processes_that_end_before_they_say_anything_are_not_started_without_end(served, monkeypatch):
+    class Stillborn(Echo):
+        def __init__(self, limit):
+            super().__init__(limit)
+            asyncio.get_running_loop().call_soon(self.die)
+
+        def die(self):
+            self.deliver(None)
+
+    async def use(url):
+        monkeypatch.setattr(module, "Process", Stillborn)
+        Echo.made[0].ended = True  # the server's first spare
+        tab = await opened(url)
+        for _ in range(module._TRIES):
+            assert "ended" in json.loads(await tab.read_message())["text"]
+        await asyncio.sleep(0.1)
+        made = len(Echo.made)
+        assert made == module._TRIES + 1
+        await tab.write_message(json.dumps({"number": 1, "case": FIRST}))  # who asks anew gets one more
+        assert "ended" in json.loads(await tab.read_message())["text"]
+        assert len(Echo.made) == made + 1
+
+    served(use)
+
+
+def test_a_spare_process_that_ended_is_no_ones(served):
+    async def use(url):
+        (spare,) = Echo.made
+        spare.ended = True
+        assert await answer(await opened(url), 1, FIRST) == FIRST
+        assert spare.asked == []
+
+    served(use)
+
+
 @pytest.mark.parametrize(
     "text", ["no json", "[]", '{"number": 1}', '{"number": "x", "case": {}}', '{"number": 1, "case": 3}']
 )
