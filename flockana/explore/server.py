@@ -30,7 +30,7 @@ HOST = "127.0.0.1"
 _TABS = 6
 _LENGTH = 32  # letters that a token has at least
 _TRIES = 3  # processes in a row that end before they say anything: then only a new question starts one
-_PATIENCE = 1.0  # seconds that a process has to begin with what is new
+_PATIENCE = 0.12, 1.0  # seconds that a process has to begin with what is new: if another is ready to, and if none is
 _QUESTION = 1_000_000  # bytes at most
 _POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'nonce-{0}'; connect-src 'self'; img-src data:"
 
@@ -51,6 +51,7 @@ class Process:
         with interrupts_hidden(), single_threaded_children():
             self.process.start()
         theirs.close()
+        self.ready = False
         self.deliver: Callable[[Any], None] = lambda message: None
         loop = asyncio.get_running_loop()
         threading.Thread(target=self._read, args=(loop,), daemon=True).start()
@@ -68,6 +69,7 @@ class Process:
                 return
 
     def _hand_on(self, message: Any) -> None:
+        self.ready = True
         self.deliver(message)  # to whoever has it now
 
     def end(self) -> None:
@@ -183,7 +185,8 @@ class _Tab(WebSocketHandler):
         self.number, self.asked = number, case
         self._ask()
         if self.analysing:
-            asyncio.get_running_loop().call_later(_PATIENCE, self._replace_unless_begun, number)
+            for seconds, at_once in zip(_PATIENCE, (True, False), strict=True):
+                asyncio.get_running_loop().call_later(seconds, self._replace_unless_begun, number, at_once)
 
     def _ask(self) -> None:
         if self.process is None:
@@ -191,8 +194,11 @@ class _Tab(WebSocketHandler):
         with suppress(OSError):  # it has ended; `deliver` hears of it
             self.process.pipe.send((self.number, self.asked))
 
-    def _replace_unless_begun(self, number: int) -> None:
-        """Solvers that do not hear of a newer question are left behind."""
+    def _replace_unless_begun(self, number: int, at_once: bool) -> None:
+        """Solvers that do not hear of a newer question are left behind: at once, if another process is ready."""
+        spare = self.server.spare
+        if at_once and not (spare is not None and spare.ready):
+            return
         if self.begun < number == self.number and self.process is not None:
             self._take()
             self._ask()

@@ -24,10 +24,11 @@ class Echo:
     """A process that answers at once with what it was asked, or when told to not at all."""
 
     made: list = []  # noqa: RUF012  # emptied by the fixture
+    quick = True
 
     def __init__(self, limit):
         self.pipe, self.process, self.asked, self.ended = self, self, [], False
-        self.deliver, self.deaf = lambda message: None, False
+        self.deliver, self.deaf, self.ready = lambda message: None, False, Echo.quick
         Echo.made.append(self)
 
     def send(self, question):
@@ -52,7 +53,7 @@ class Echo:
 def served(monkeypatch):
     """Call a coroutine with the address of a server whose processes echo."""
     monkeypatch.setattr(module, "Process", Echo)
-    monkeypatch.setattr(module, "_PATIENCE", 0.05)
+    monkeypatch.setattr(module, "_PATIENCE", (0.05, 0.3))
     Echo.made = []
 
     def call(use, first=FIRST):
@@ -142,7 +143,10 @@ def test_two_tabs_have_processes_of_their_own(served):
     assert all(each.ended for each in Echo.made)
 
 
-def test_the_newest_alone_is_answered_and_a_deaf_process_replaced(served):
+@pytest.mark.parametrize("quick", [True, False])
+def test_the_newest_alone_is_answered_and_a_deaf_process_replaced(served, monkeypatch, quick):
+    monkeypatch.setattr(Echo, "quick", quick)
+
     async def use(url):
         tab = await opened(url)
         await answer(tab, 1, FIRST)
