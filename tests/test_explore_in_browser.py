@@ -112,6 +112,10 @@ def test_it_plays(visit, address):
     tab.locator(".fp-clock", has_text="t = 1").first.wait_for()
     tab.get_by_role("button", name="Pause").click()
     assert tab.locator(".fp-row").count() > 5
+    marks = tab.locator(".fp-marks button")
+    assert marks.first.inner_text().startswith("t = 0: energy rate")  # where claims of the verdicts point
+    tab.get_by_role("button", name="os-1 ii").click()
+    assert clock.inner_text() == "t = 30"
 
 
 def test_a_changed_gain_changes_the_verdict_and_the_python(visit, address):

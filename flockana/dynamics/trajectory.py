@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from importlib import import_module
@@ -388,19 +388,21 @@ class Trajectory:
         """
         return import_module(PLOTS).Film(self, seconds, fps, velocities, ranges)
 
-    def player(self, *, height: int = 760) -> Any:
+    def player(self, *, height: int = 760, verdicts: Sequence[Any] = ()) -> Any:
         """The run in a player: a notebook shows it, and so does its export as HTML; ``.save(path)`` writes a page.
 
         Parameters
         ----------
         height : int
             Of its frame in a notebook, in pixels.
+        verdicts : sequence of Verdict
+            On the run: the instants that their claims point to are marked.
 
         Returns
         -------
         flockana.player.Player
         """
-        return import_module(PLAYER).Player(self, height)
+        return import_module(PLAYER).Player(self, height, verdicts=tuple(verdicts))
 
     def window(self, start: float, end: float) -> Trajectory:
         """The samples with start ≤ t ≤ end, as a run of their own.

@@ -18,6 +18,8 @@ from flockana.explore.parameters import numbers
 from flockana.explore.starts import Start
 from flockana.explore.watching import ensure_small, shown, watched
 from flockana.interactions import AlphaInteraction
+from flockana.player.marks import marks_of
+from flockana.scenarios.given import SOURCE
 from flockana.stability import linearise
 from flockana.theorems import theorem, verify
 
@@ -96,7 +98,7 @@ def form(case: Case, parts: Start) -> dict[str, Any]:
         "q0": parts.q0.tolist(),
         "duration": parts.t_span[1] - parts.t_span[0],
         "numbers": listed,
-        "theorems": [{"id": name, "title": theorem(name).title} for name in parts.theorems],
+        "theorems": [{"id": name, "title": theorem(name).title} for name in parts.theorems] + _reporting(parts),
         "ratio": _squeezed(parts.law),
         "python": program(parts),
     }
@@ -108,13 +110,23 @@ def _idle(law: Any) -> tuple[str, ...]:
     return unpulled if law.obstacles else (*unpulled, "c1_beta", "c2_beta")
 
 
+def _reporting(parts: Start) -> list[dict[str, str]]:
+    """The row of what the source reports, if it reports anything."""
+    return [] if parts.source is None else [{"id": SOURCE, "title": "What the source reports of this run"}]
+
+
 def _analysed(parts: Start, run: Trajectory) -> Iterator[tuple[str, Any]]:
     for name in parts.theorems:
         try:
-            verdict = verify(name, run, tolerances=parts.tolerances).to_dict()
+            found = verify(name, run, tolerances=parts.tolerances)
+            verdict = found.to_dict() | {"marks": marks_of(run, [found])}
         except FlockanaError as error:  # such as an erratum about another number of agents
             verdict = {"theorem": name, "status": "not checked", "error": str(error), "hypotheses": [], "claims": []}
-        yield "verdict", {**verdict, "title": theorem(name).title, "statement": theorem(name).statement}
+        yield "verdict", {**verdict, "statement": theorem(name).statement}
+    if parts.source is not None:
+        for found in parts.source.reported(run):
+            statement = " ".join(f"{report.name}: {report.text.rstrip('.')}." for report in parts.source.reports)
+            yield "verdict", found.to_dict() | {"marks": marks_of(run, [found]), "statement": statement}
     yield "poles", poles(run)
     if _squeezed(parts.law):
         yield "threshold", _threshold(parts.law.pair, *parts.q0.shape)

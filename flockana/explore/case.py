@@ -125,8 +125,9 @@ class Case:
             span = ensure_time_span((span[0], span[0] + ensure_finite_scalar("duration", self.duration)))
             options.pop("t_eval", None)  # its times are those of another span
             lines += [f"t_span = {span}", 'options.pop("t_eval", None)']
-        recorded = start.recorded if self.untouched else None
-        return replace(start, law=law, q0=q0, t_span=span, options=options, lines=tuple(lines), recorded=recorded)
+        recorded, source = (start.recorded, start.source) if self.untouched else (None, None)
+        parts = {"law": law, "q0": q0, "t_span": span, "options": options, "lines": tuple(lines)}
+        return replace(start, **parts, recorded=recorded, source=source)
 
 
 def program(parts: Start) -> str:
@@ -153,5 +154,6 @@ def program(parts: Start) -> str:
     kept = f", tolerances={parts.tolerances_text}" if parts.tolerances_text else ""
     run = ["run = saved"] if parts.recorded is not None else ["run = fl.simulate(law, q0, p0, t_span, **options)"]
     checks = [f"for name in {parts.theorems}:", f"    print(fl.verify(name, run{kept}))"] if parts.theorems else []
+    checks += ["print(*item.reported(run))"] if parts.source is not None else []
     head = [*imports[:1], *([""] if imports else []), *imports[1:], "import flockana as fl", ""]
     return "\n".join([*head, text, *run, *checks]) + "\n"

@@ -21,7 +21,7 @@ function ask(next, anew = false) {
 function send() {  // the newest case, and no other before the first frames of the last came
   dirty = true;
   if (waiting || !socket || socket.readyState !== WebSocket.OPEN) return;
-  dirty = false; waiting = true; number += 1; since = performance.now();
+  dirty = false; waiting = true; number += 1; marks = []; since = performance.now();
   say("running …");
   slow(number);
   socket.send(JSON.stringify({ number, case: asked }));
@@ -35,7 +35,7 @@ function arrived() { waiting = false; if (dirty) send(); }
 const acts = {
   form: (found) => { fail(""); form.show(asked, found); by("title").textContent = found.title; by("python").textContent = found.python; answers.expect(found.theorems); },
   ran: (found) => { if (found.status !== "complete") fail(`${found.status}: ${found.message}`); say(`${found.message}; verdicts …`); },
-  verdict: (found) => answers.verdict(found),
+  verdict: (found) => { answers.verdict(found); mark(number, (found.marks || []).map(([t, label]) => ({ t, label }))); },
   poles: (found) => answers.spectrum(found),
   threshold: (found) => form.mark(found),
   error: (found) => { fail(found.text); say("see above"); arrived(); },
@@ -63,6 +63,11 @@ function connect() {
   };
 }
 
+let marks = [];  // of verdicts that came before the last frames were shown
+function mark(of, found) {
+  marks.push(...found);
+  if (player && player.of === of && !busy) { player.mark(marks); marks = []; }
+}
 let newest = null, busy = false;
 async function coming(bytes) {  // the newest frames; those that came while others were drawn are left out
   newest = [number, bytes];
@@ -70,6 +75,7 @@ async function coming(bytes) {  // the newest frames; those that came while othe
   busy = true;
   while (newest) { const [of, data] = newest; newest = null; await show(of, data); }
   busy = false;
+  mark(number, []);
 }
 async function show(of, bytes) {
   while (handles.holding()) await new Promise((go) => setTimeout(go, 30));
@@ -83,6 +89,7 @@ async function show(of, bytes) {
   if (old) { keep(old, made, before, next); old.destroy(); before.remove(); }
   next.classList.remove("coming");
   player = made;
+  player.of = of;
   watch(next);
   const time = state.end ? last : Math.min(last, Math.max(run.t[0], state.time === null ? run.t[0] : state.time));
   state.time = time;

@@ -21,6 +21,7 @@ from flockana.laws.cucker_smale import CuckerSmale
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.scenarios import scenario, scenarios
+from flockana.scenarios.scenario import Scenario
 from flockana.theorems import Tolerances
 
 _FLOCK = 50  # agents of a law that is tried
@@ -56,6 +57,8 @@ class Start:
         These as an expression; empty for the usual ones.
     recorded : Trajectory, optional
         The run of a file, which is shown until something is changed.
+    source : Scenario, optional
+        One whose source reports something of the run, as long as nothing is changed.
     """
 
     title: str
@@ -69,6 +72,7 @@ class Start:
     tolerances: Tolerances = field(default_factory=Tolerances)
     tolerances_text: str = ""
     recorded: Trajectory | None = None
+    source: Scenario | None = None
 
 
 def law_names() -> tuple[str, ...]:
@@ -165,7 +169,8 @@ def from_scenario(name: str, *, seed: int = 0) -> Start:
         "law, q0, p0, t_span, options = item.law, item.q0.copy(), item.p0.copy(), item.t_span, dict(item.options)",
     )
     span = (float(item.t_span[0]), float(item.t_span[1]))
-    return Start(item.title, item.law, item.q0, item.p0, span, lines, item.options, item.theorems)
+    start = (item.title, item.law, item.q0, item.p0, span, lines, item.options, item.theorems)
+    return Start(*start, source=item if item.reports else None)
 
 
 @lru_cache(maxsize=1)

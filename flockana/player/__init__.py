@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
@@ -9,13 +10,15 @@ from typing import TYPE_CHECKING, Any
 
 from flockana.base.errors import ArgumentError
 from flockana.base.files import replacing
+from flockana.player.marks import marks_of
 from flockana.player.page import page, script, style
 from flockana.player.scene import scene
 
 if TYPE_CHECKING:
     from flockana.dynamics.trajectory import Trajectory
+    from flockana.theorems import Verdict
 
-__all__ = ["Player", "page", "scene", "script", "style"]
+__all__ = ["Player", "marks_of", "page", "scene", "script", "style"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,11 +33,14 @@ class Player:
         Of the frame in a notebook, in pixels.
     values : int
         Numbers of places and velocities that are kept at most; of a longer run some samples are left out.
+    verdicts : sequence of Verdict
+        On the run: the instants that their claims point to are marked.
     """
 
     trajectory: Trajectory
     height: int = 760
     values: int = 240_000
+    verdicts: Sequence[Verdict] = ()
 
     def __post_init__(self) -> None:
         for name in ("height", "values"):
@@ -47,7 +53,10 @@ class Player:
 
     def html(self) -> str:
         """The page that plays it, which needs neither network nor other files."""
-        return page(scene(self.trajectory, values=self.values))
+        return page(self._scene())
+
+    def _scene(self) -> bytes:
+        return scene(self.trajectory, values=self.values, marks=marks_of(self.trajectory, self.verdicts))
 
     def save(self, path: str) -> Path:
         """Write that page; an existing file is replaced only when the new one is whole.
@@ -93,4 +102,4 @@ class Player:
             "time": traitlets.Float(0.0).tag(sync=True),
         }
         kind = type("RunWidget", (anywidget.AnyWidget,), fields)
-        return kind(data=scene(self.trajectory, values=self.values), time=float(self.trajectory.t[0]))
+        return kind(data=self._scene(), time=float(self.trajectory.t[0]))

@@ -1,4 +1,4 @@
-// The player: a drawing, its strip, and the controls of both. Returns a promise of { show, play, pause, destroy, run }.
+// The player: a drawing, its strip, and the controls of both. Returns a promise of { show, play, pause, mark, destroy, run }.
 async function flockanaPlayer(place, bytes) {
   place.classList.add("flockana-player");
   let run;
@@ -47,7 +47,7 @@ async function flockanaPlayer(place, bytes) {
   const strip = flockanaStrip(add("div", "", place, { class: "fp-strip" }), run, (t) => { pause(); show(t); });
   const said = add("p", "", place, { class: "fp-hidden", "aria-live": "polite" });
   const drawing = flockanaDrawing(canvas, run);
-  const player = { show, play, pause, destroy, run, drawing, frames: 0, onpause: null };
+  const player = { show, play, pause, mark: strip.mark, destroy, run, drawing, frames: 0, onpause: null };
   let time = first, playing = false, before = 0, asked = 0;
 
   function redraw() { if (!asked) asked = requestAnimationFrame(step); }

@@ -21,8 +21,6 @@ function flockanaStrip(place, run, seek) {
     const graph = make("svg", { viewBox: "0 0 1000 40", preserveAspectRatio: "none", "aria-hidden": "true" });
     const y = (v) => (flat ? 20 : 37 - 34 * (v - low) / (high - low));
     make("polyline", { points: scaled.map((v, i) => `${x(t[i]).toFixed(1)},${y(v).toFixed(1)}`).join(" ") }, graph);
-    for (const { t: time, label: words } of run.marks)
-      make("title", {}, make("line", { x1: x(time), x2: x(time), y1: 0, y2: 40, class: "fp-mark" }, graph)).textContent = words;
     const cursor = make("line", { x1: 0, x2: 0, y1: 0, y2: 40, class: "fp-cursor" }, graph);
     row.append(name, graph, value);
     place.append(row);
@@ -32,20 +30,33 @@ function flockanaStrip(place, run, seek) {
     };
     graph.addEventListener("pointerdown", (event) => { graph.setPointerCapture(event.pointerId); at(event); });
     graph.addEventListener("pointermove", (event) => { if (event.buttons) at(event); });
-    rows.push({ label, values, cursor, value });
+    rows.push({ label, values, graph, cursor, value });
   });
-  if (run.marks.length) {
-    const list = document.createElement("div");
-    list.className = "fp-marks";
-    list.append("Instants: ");
-    for (const { t: time, label } of run.marks) {
+  const marked = new Map();
+  const list = document.createElement("div");
+  list.className = "fp-marks";
+  function mark(marks) {  // instants with their names, as buttons in order of time; of one time once
+    for (const { t: time, label } of marks) {
+      const known = marked.get(time);
+      const names = known && known !== label ? `${known}, ${label}` : label;
+      if (!known) for (const { graph, cursor } of rows) {
+        const line = make("line", { x1: x(time), x2: x(time), y1: 0, y2: 40, class: "fp-mark" });
+        make("title", {}, line).textContent = label;
+        graph.insertBefore(line, cursor);
+      }
+      marked.set(time, names);
+    }
+    if (!marked.size) return;
+    list.replaceChildren("Instants: ");
+    for (const [time, label] of [...marked].sort((a, b) => a[0] - b[0])) {
       const button = document.createElement("button");
       button.type = "button"; button.textContent = `t = ${Number(time.toPrecision(4))}: ${label}`;
       button.addEventListener("click", () => seek(time));
       list.append(button);
     }
-    place.append(list);
+    if (!list.parentNode) place.append(list);
   }
+  mark(run.marks);
   function value(values, time) {  // of the nearest sample: between samples nothing is known
     let low = 0, high = t.length - 1;
     while (high - low > 1) { const k = (low + high) >> 1; if (t[k] <= time) low = k; else high = k; }
@@ -59,5 +70,5 @@ function flockanaStrip(place, run, seek) {
     }
   }
   const words = (time) => rows.slice(0, 2).map((row) => `${row.label} ${Number(value(row.values, time).toPrecision(3))}`).join(", ");
-  return { show, words };
+  return { show, words, mark };
 }

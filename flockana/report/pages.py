@@ -8,6 +8,7 @@ from typing import Any
 
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.trajectory import Trajectory
+from flockana.player.marks import marks_of
 from flockana.player.page import text_of
 from flockana.player.scene import scene
 from flockana.report.figures import Picture, pictures
@@ -191,13 +192,7 @@ def _play(scenario: Scenario, run: Trajectory, verdicts: tuple[Verdict, ...]) ->
 
     Empty where places or velocities are so large that the player's numbers have no room for them.
     """
-    marks: dict[float, list[str]] = {float(time): ["as in the source"] for time in scenario.instants}
-    for verdict in verdicts:
-        for claim in verdict.claims:
-            time = claim.witness.get("time") if isinstance(claim.witness, Mapping) else None
-            if isinstance(time, float | int) and run.t[0] <= time <= run.t[-1]:
-                marks.setdefault(float(time), []).append(f"{verdict.theorem} {claim.name}")
-    named = [(time, ", ".join(names)) for time, names in sorted(marks.items())]
+    named = marks_of(run, verdicts, scenario.instants)
     try:
         played = scene(run, values=_VALUES, exact=False, title=f"{scenario.name}: {scenario.title}", marks=named)
     except ArgumentError:

@@ -125,3 +125,23 @@ def test_a_newer_question_ends_the_verdicts():
     with pytest.raises(KeyboardInterrupt):
         answer(Case("scenario", "head-on"), send, limit=60.0, cancelled=cancelled)
     assert found[-1] == "ran"
+
+
+def test_what_the_source_reports_is_told_as_long_as_nothing_is_changed():
+    found = told(Case("scenario", "zone-gap"))
+    assert [each["id"] for each in found["form"][0]["theorems"]][-1] == "source"
+    entry = fl.scenario("zone-gap")
+    (own,) = entry.reported(entry.run())
+    (said,) = (each for each in found["verdict"] if each["theorem"] == "source")
+    assert [(each["name"], each["status"]) for each in said["claims"]] == [(c.name, c.status) for c in own.claims]
+    assert all(report.name in said["statement"] for report in entry.reports)
+    assert "item.reported(run)" in found["form"][0]["python"]
+    moved = told(Case("scenario", "zone-gap", duration=5.0))
+    assert "source" not in [each["theorem"] for each in moved.get("verdict", [])]
+    assert "reported" not in moved["form"][0]["python"]
+
+
+def test_verdicts_mark_the_instants_that_their_claims_point_to(pair):
+    marks = {each["theorem"]: each["marks"] for each in pair["verdict"]}
+    assert [name for _, name in marks["energy"]] == ["energy rate", "energy balance"]
+    assert all(0.0 <= time <= 30.0 for each in marks.values() for time, _ in each)
