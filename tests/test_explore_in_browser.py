@@ -114,7 +114,7 @@ def test_it_plays(visit, address):
     assert tab.locator(".fp-row").count() > 5
     marks = tab.locator(".fp-marks button")
     assert marks.first.inner_text().startswith("t = 0: energy rate")  # where claims of the verdicts point
-    tab.get_by_role("button", name="os-1 ii").click()
+    tab.get_by_role("button", name="t = 30: os-1 ii", exact=True).click()
     assert clock.inner_text() == "t = 30"
 
 

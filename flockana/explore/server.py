@@ -100,8 +100,8 @@ class Server:
 
     def take(self) -> Process:
         """A process that is, with luck, ready; another is started to be the next."""
-        alive = self.spare is not None and self.spare.process.is_alive()
-        taken, self.spare = self.spare if alive else Process(self.limit), None
+        spare, self.spare = self.spare, None
+        taken = spare if spare is not None and spare.process.is_alive() else Process(self.limit)
         asyncio.get_running_loop().call_later(2.0, self.prepare)
         return taken
 
@@ -162,11 +162,12 @@ class _Tab(WebSocketHandler):
         self.server.tabs.add(self)
         self._take()
 
-    def _take(self) -> None:
+    def _take(self) -> Process:
         if self.process is not None:
             self.process.end()
-        self.process, self.analysing = self.server.take(), False
-        self.process.deliver = self.deliver
+        taken, self.analysing = self.server.take(), False
+        self.process, taken.deliver = taken, self.deliver
+        return taken
 
     def on_message(self, message: str | bytes) -> None:
         """Ask the process."""
@@ -189,10 +190,9 @@ class _Tab(WebSocketHandler):
                 asyncio.get_running_loop().call_later(seconds, self._replace_unless_begun, number, at_once)
 
     def _ask(self) -> None:
-        if self.process is None:
-            self._take()
+        process = self.process or self._take()
         with suppress(OSError):  # it has ended; `deliver` hears of it
-            self.process.pipe.send((self.number, self.asked))
+            process.pipe.send((self.number, self.asked))
 
     def _replace_unless_begun(self, number: int, at_once: bool) -> None:
         """Solvers that do not hear of a newer question are left behind: at once, if another process is ready."""
