@@ -115,7 +115,7 @@ def test_it_plays(visit, address):
     marks = tab.locator(".fp-marks button")
     assert marks.first.inner_text().startswith("t = 0: energy rate")  # where claims of the verdicts point
     tab.get_by_role("button", name="t = 30: os-1 ii", exact=True).click()
-    assert clock.inner_text() == "t = 30"
+    tab.locator(".fp-clock", has_text="t = 30").wait_for()
 
 
 def test_a_changed_gain_changes_the_verdict_and_the_python(visit, address):
