@@ -99,7 +99,7 @@ MEASURES = (
     Measure("order", "polar order", over_time=lambda flock: metrics.orders(flock.p), at_most_one=True),
     Measure(
         "coordination",
-        "C, mean cosine between velocities",
+        "mean cosine between velocities",
         over_time=lambda flock: metrics.coordinations(flock.p),
         at_most_one=True,
     ),

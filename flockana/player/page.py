@@ -7,6 +7,12 @@ from functools import cache
 from html import escape
 from importlib.resources import files
 
+# The drawing takes what height the strip leaves of the window, or of a notebook's frame.
+_WHOLE = (
+    "body{margin:0;padding:.5rem;background:var(--paper)}"
+    "main,#player{display:flex;flex-direction:column}main{min-height:calc(100vh - 1rem)}#player{flex:1 0 auto}"
+    "#player canvas{flex:1 0 15rem;height:15rem}"
+)
 SCRIPTS = ("decode.js", "drawing.js", "strip.js", "player.js")
 
 
@@ -51,7 +57,7 @@ def page(data: bytes, *, title: str = "A run") -> str:
     return (
         f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
         '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f"<style>body{{margin:0;padding:.5rem;background:var(--paper)}}\n{style()}</style></head>"
+        f"<style>{style()}\n{_WHOLE}</style></head>"
         f'<body><main><h1 class="fp-hidden">{escape(title)}</h1><div id="player"></div></main>'
         f'<script type="text/plain" id="run">{text_of(data)}</script><script>(() => {{\n{script()}'
         'flockanaPlayer(document.getElementById("player"), bytesOfText(document.getElementById("run").textContent));'
