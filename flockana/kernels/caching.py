@@ -5,9 +5,9 @@ What numba compiles it numbers, from one on in each process, in two places:
 - The files of a function, by an index. Two processes that compile at once may take one number for two signatures: then
   the index of the one names the code of the other, and what is loaded later is another function. Here a file is named
   for what is in it, and is written before the index.
-- The symbols of the machine code. Two closures of one name that two processes compiled may get one symbol. A third that
-  loads both gives the second the constants of the first, and if it lacks one, every call fails ("'descr' is NULL").
-  Here the name of a closure says what it closes over.
+- The symbols of the machine code. Two closures of one name that two processes compiled, of the package, of a user or of
+  numba itself, may get one symbol. A third that loads both calls the first where the second is meant: the sum over the
+  pairs of another law, with other constants. Here each process counts from a number of its own.
 
 numba looks at the time of the one file that a function is in. What it calls may be in others: here a function is as old
 as the contents of its file and of all files of the package that this imports, so an edited kernel is compiled again
@@ -17,9 +17,11 @@ with all that call it.
 from __future__ import annotations
 
 import hashlib
+import itertools
 import logging
 import os
 import re
+import secrets
 import stat
 import sys
 import tempfile
@@ -27,13 +29,12 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
-from types import FunctionType
 from typing import Any
 
 import numba
+from numba.core.bytecode import FunctionIdentity
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.core.registry import cpu_target
-from numba.core.serialize import dumps
 
 _SIGNATURES = 64  # kept of one function: in use are two or three
 
@@ -93,20 +94,14 @@ def sources_digest(file: str) -> str:
     return digest.hexdigest()
 
 
-def _named_for_its_cells(function: Callable[..., Any]) -> Any:
-    """The same function, whose qualified name (and with it symbol and index) no other closure of its code shares.
+def _count_apart() -> None:
+    """Number what is compiled from here on as no other process does."""
+    FunctionIdentity._unique_ids = itertools.count(secrets.randbits(64))
 
-    A closure itself keeps its name: what closes over it is looked up in the cache by what it closes over, before it is
-    compiled and after.
-    """
-    if not function.__closure__:
-        return function
-    known: Any = function
-    named = FunctionType(known.__code__, known.__globals__, known.__name__, known.__defaults__, known.__closure__)
-    cells = dumps(tuple(cell.cell_contents for cell in known.__closure__))
-    named.__qualname__ = f"{known.__qualname__}.{hashlib.sha256(cells).hexdigest()[:16]}"
-    named.__module__, named.__doc__ = known.__module__, known.__doc__
-    return named
+
+_count_apart()
+if hasattr(os, "register_at_fork"):  # else it goes on where its parent was, as its siblings do
+    os.register_at_fork(after_in_child=_count_apart)
 
 
 def dispatcher(function: Callable[..., Any], *, cache: bool, **options: Any) -> Any:
@@ -121,15 +116,14 @@ def dispatcher(function: Callable[..., Any], *, cache: bool, **options: Any) -> 
     **options
         Those of `numba.njit`.
     """
+    made = _at_hand(numba.njit(**options)(function))
     if not cache:
-        return _at_hand(numba.njit(**options)(function))
-    named = _named_for_its_cells(function)
-    made = _at_hand(numba.njit(**options)(named))
+        return made
     try:
-        made._cache = _Cache(named)
+        made._cache = _Cache(function)
     except RuntimeError:  # neither beside the sources nor at home is there a folder to write to
         with suppress(RuntimeError, OSError), _cached_in(temporary_folder()):
-            made._cache = _Cache(named)
+            made._cache = _Cache(function)
     return made
 
 
@@ -193,7 +187,6 @@ def inlined_type(function: Callable[..., Any]) -> Any:
     function : callable
         What is called.
     """
-    named = _named_for_its_cells(function)
-    numba.extending.register_jitable(named)
+    numba.extending.register_jitable(function)
     cpu_target.typing_context.refresh()
-    return cpu_target.typing_context.resolve_value_type(named)
+    return cpu_target.typing_context.resolve_value_type(function)

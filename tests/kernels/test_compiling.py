@@ -7,6 +7,8 @@ import pickle
 import shutil
 import subprocess
 import sys
+from itertools import pairwise
+from multiprocessing import get_context
 from pathlib import Path
 
 import numba
@@ -15,11 +17,11 @@ import pytest
 from numba.core.caching import IndexDataCacheFile
 from numba.core.serialize import dumps, loads
 
-from flockana.kernels import alpha, caching, dead_zone
+from flockana.kernels import caching
 from flockana.kernels.caching import NamedByContent
-from flockana.kernels.compiling import Inlined, njit, register_jitable
-from flockana.kernels.sweep import lift_sweep
+from flockana.kernels.compiling import njit, register_jitable
 
+ROOT = Path(__file__).parents[2]
 MODULE = """
 from flockana.kernels.compiling import Inlined, njit, register_jitable
 
@@ -37,12 +39,16 @@ import pytest
 from flockana.kernels.compiling import Inlined, njit, register_jitable
 
 def lifted(offset):
-    @njit(cache=True)
-    def over(x):
+    @njit()
+    def raised(x):
         out = np.empty(x.size)
         for k in range(x.size):
             out[k] = x[k] + offset
         return out
+
+    @njit(cache=True)
+    def over(x):
+        return raised(x)
     return over
 
 ONE, TEN = lifted(1.0), lifted(10.0)
@@ -120,18 +126,23 @@ def test_what_processes_compiled_one_by_one_another_may_load_together(tmp_path):
         subprocess.run(command, cwd=tmp_path, check=True, timeout=300)
 
 
-def test_what_the_sweeps_of_forces_call_has_a_symbol_of_its_own_in_each_dimension_and_law():
-    """Else a process that loads what two others compiled adds up m = 3 with the code for m = 2."""
-    called = [
-        cell.cell_contents
-        for pair in (alpha.pair_alpha, dead_zone.pair_dead_zone)
-        for m in (1, 2, 3)
-        for cell in lift_sweep(pair, m, 0)[0].py_func.__closure__
-        if isinstance(cell.cell_contents, Inlined)
-    ]
-    known = [numba.typeof(inlined).typing_key for inlined in called if inlined.function.__closure__]
-    names = {function.__qualname__ for function in known}
-    assert len(names) == len(known) == 6
+def number_of_one_more(_: object = None) -> int:
+    """What numba counts a function as that is compiled now."""
+    made = numba.njit(lambda x: x + 1)
+    made(1)
+    return next(iter(made.overloads.values())).type_annotation.func_id.unique_id
+
+
+def test_what_a_process_compiles_is_numbered_as_in_no_other():
+    """A child that is forked off would go on counting where its parent was, as another child does."""
+    code = "from tests.kernels.test_compiling import number_of_one_more; print(number_of_one_more())"
+    fresh = [int(subprocess.check_output([sys.executable, "-c", code], cwd=ROOT)) for _ in range(2)]
+    with get_context("fork").Pool(1, maxtasksperchild=1) as pool:
+        forked = pool.map(number_of_one_more, range(2), chunksize=1)
+    own = number_of_one_more()
+    assert number_of_one_more() == own + 1
+    numbers = sorted([own, *forked, *fresh])
+    assert min(b - a for a, b in pairwise(numbers)) > 2**32
 
 
 def test_without_a_cache_it_is_numbas():
