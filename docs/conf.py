@@ -25,7 +25,7 @@ extensions = [
     "keyboard",
 ]
 templates_path = ["_templates"]
-exclude_patterns = ["_ext", "generated/lectures/own_law", "generated/extra"]
+exclude_patterns = ["_ext", "generated/lectures/own_law", "generated/extra", "generated/first.md"]
 default_role = "py:obj"
 suppress_warnings = ["misc.highlighting_failure", "mystnb.unknown_mime_type", "myst-nb.lexer"]
 
@@ -48,6 +48,7 @@ html_static_path = ["_static"]
 html_extra_path = ["generated/extra"]  # runs that play, and the report
 html_css_files = ["flockana.css"]
 html_favicon = "_static/icon.svg"
+html_sidebars = {page: [] for page in ("index", "start", "generated/mathematics", "performance")}  # no pages below them
 html_copy_source = False
 html_show_sourcelink = False
 html_theme_options = {

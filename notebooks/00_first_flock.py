@@ -18,9 +18,11 @@
 # Each agent is a double integrator, $\dot q_i = p_i$, $\dot p_i = u_i$. Olfati-Saber's Algorithm 2 steers it by its
 # neighbours within a range $r$ and by a γ-agent $(q_r, p_r)$ (*IEEE TAC* 51(3), 2006):
 #
-# $$u_i = c_1^\alpha \sum_{j \in N_i} \phi_\alpha(\|q_j - q_i\|_\sigma)\, n_{ij}
-#       + c_2^\alpha \sum_{j \in N_i} a_{ij}(q)\,(p_j - p_i)
-#       - c_1^\gamma (q_i - q_r) - c_2^\gamma (p_i - p_r).$$
+# $$\begin{gathered}
+#   u_i = c_1^\alpha \sum_{j \in N_i} \phi_\alpha(\|q_j - q_i\|_\sigma)\, n_{ij}
+#   + c_2^\alpha \sum_{j \in N_i} a_{ij}(q)\,(p_j - p_i) \\[1ex]
+#   - c_1^\gamma (q_i - q_r) - c_2^\gamma (p_i - p_r).
+# \end{gathered}$$
 #
 # Here $N_i$ holds all $j \ne i$ with $\|q_j - q_i\| < r$, $n_{ij} = (q_j - q_i)/\sqrt{1 + \varepsilon\|q_j - q_i\|^2}$
 # points from $i$ to $j$, and the weight $a_{ij} = \rho_h(\|q_j - q_i\|_\sigma/r_\alpha)$ falls smoothly from 1 to 0 at

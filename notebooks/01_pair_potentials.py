@@ -44,8 +44,10 @@ _ = axes[1].set(xlabel="z", ylabel="bump ρ_h(z), h = 0.2")
 #
 # The action of a pair is an uneven sigmoid, cut off by the bump,
 #
-# $$\phi_\alpha(z) = \rho_h(z/r_\alpha)\,\phi(z - d_\alpha), \qquad
-#   \phi(s) = \tfrac12\left[(a+b)\,\sigma_1(s+c) + (a-b)\right], \qquad \sigma_1(s) = \frac{s}{\sqrt{1+s^2}},$$
+# $$\begin{gathered}
+#   \phi_\alpha(z) = \rho_h(z/r_\alpha)\,\phi(z - d_\alpha), \\[1ex]
+#   \phi(s) = \tfrac12\left[(a+b)\,\sigma_1(s+c) + (a-b)\right], \qquad \sigma_1(s) = \frac{s}{\sqrt{1+s^2}},
+# \end{gathered}$$
 #
 # with $c = |a-b|/\sqrt{4ab}$, so that $\phi(0) = 0$. Its integral from $d_\alpha$ is the potential $\psi_\alpha$. Let
 # sympy derive it, step by step:

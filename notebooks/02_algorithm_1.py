@@ -18,9 +18,11 @@
 #
 # Algorithm 1 of Olfati-Saber (2006, section IV) is a gradient term and a consensus term,
 #
-# $$u_i = c_1^\alpha \sum_{j\in N_i} \phi_\alpha(\|q_j-q_i\|_\sigma)\,n_{ij}
-#   + c_2^\alpha \sum_{j\in N_i} a_{ij}(q)(p_j-p_i)
-#   \quad\Longleftrightarrow\quad \dot p = -c_1^\alpha\nabla V(q) - c_2^\alpha \hat L(q)\,p.$$
+# $$\begin{gathered}
+#   u_i = c_1^\alpha \sum_{j\in N_i} \phi_\alpha(\|q_j-q_i\|_\sigma)\,n_{ij}
+#   + c_2^\alpha \sum_{j\in N_i} a_{ij}(q)(p_j-p_i) \\[1ex]
+#   \quad\Longleftrightarrow\quad \dot p = -c_1^\alpha\nabla V(q) - c_2^\alpha \hat L(q)\,p.
+# \end{gathered}$$
 #
 # Here $n_{ij} = (q_j-q_i)/\sqrt{1+\varepsilon\|q_j-q_i\|^2}$ and $a_{ij} = \rho_h(\|q_j-q_i\|_\sigma/r_\alpha)$. The
 # *collective potential* counts each pair once, those out of range too, of which each costs $\psi_\alpha(r_\alpha)$:

@@ -45,8 +45,10 @@ split
 #
 # The shape dissipates
 #
-# $$H_\lambda = c_1^\alpha V(x) + \tfrac{\lambda}{2}\sum\|x_i\|^2 + \tfrac12\sum\|v_i\|^2, \quad
-#   \lambda = c_1^\gamma, \qquad \dot H_\lambda = -c_2^\alpha\, v^\top \hat L v - c_2^\gamma \sum\|v_i\|^2 \le 0 .$$
+# $$\begin{gathered}
+#   H_\lambda = c_1^\alpha V(x) + \tfrac{\lambda}{2}\sum\|x_i\|^2 + \tfrac12\sum\|v_i\|^2, \\[1ex]
+#   \lambda = c_1^\gamma, \qquad \dot H_\lambda = -c_2^\alpha\, v^\top \hat L v - c_2^\gamma \sum\|v_i\|^2 \le 0 .
+# \end{gathered}$$
 #
 # All three terms are non-negative, and one agent at distance $R$ from the centre costs $\tfrac{\lambda}{2}R^2$. So
 # $R(t) \le \sqrt{2H_\lambda(t)/c_1^\gamma} \le \sqrt{2H_\lambda(0)/c_1^\gamma}$: no flock of Algorithm 2 with

@@ -20,20 +20,26 @@
 # point $\hat q_{ik}$, moving with the velocity $\hat p_{ik}$ that the agent's own motion gives it. For a sphere with
 # centre $y$ and radius $R$,
 #
-# $$\mu = \frac{R}{\|q_i - y\|},\quad a = \frac{q_i-y}{\|q_i-y\|},\quad P = I - aa^\top,\qquad
-#   \hat q_{ik} = \mu q_i + (1-\mu) y,\quad \hat p_{ik} = \mu P p_i ,$$
+# $$\begin{gathered}
+#   \mu = \frac{R}{\|q_i - y\|},\quad a = \frac{q_i-y}{\|q_i-y\|},\quad P = I - aa^\top, \\[1ex]
+#   \hat q_{ik} = \mu q_i + (1-\mu) y,\quad \hat p_{ik} = \mu P p_i ,
+# \end{gathered}$$
 #
 # and for a wall through $y$ with unit normal $a$: $\hat q_{ik} = Pq_i + (I-P)y$, $\hat p_{ik} = Pp_i$. An agent is to
 # keep the distance $d'$ from obstacles. With $d_\beta = \|d'\|_\sigma$ and $\sigma_1(z) = z/\sqrt{1+\|z\|^2}$ the
 # β-agents repel, and brake, within that distance:
 #
-# $$\phi_\beta(z) = \rho_h(z/d_\beta)\,(\sigma_1(z-d_\beta)-1) \le 0, \qquad
-#   b_{ik} = \rho_h(\|\hat q_{ik}-q_i\|_\sigma/d_\beta), \qquad
-#   \hat n_{ik} = \frac{\hat q_{ik}-q_i}{\sqrt{1+\varepsilon\|\hat q_{ik}-q_i\|^2}},$$
+# $$\begin{gathered}
+#   \phi_\beta(z) = \rho_h(z/d_\beta)\,(\sigma_1(z-d_\beta)-1) \le 0, \qquad
+#   b_{ik} = \rho_h(\|\hat q_{ik}-q_i\|_\sigma/d_\beta), \\[1ex]
+#   \hat n_{ik} = \frac{\hat q_{ik}-q_i}{\sqrt{1+\varepsilon\|\hat q_{ik}-q_i\|^2}},
+# \end{gathered}$$
 #
-# $$u_i^\beta = c_1^\beta\sum_k \phi_\beta(\|\hat q_{ik}-q_i\|_\sigma)\,\hat n_{ik}
-#   + c_2^\beta\sum_k b_{ik}(\hat p_{ik}-p_i), \qquad
-#   u_i^\gamma = -c_1^\gamma\,\sigma_1(q_i-q_r) - c_2^\gamma(p_i-p_r),$$
+# $$\begin{gathered}
+#   u_i^\beta = c_1^\beta\sum_k \phi_\beta(\|\hat q_{ik}-q_i\|_\sigma)\,\hat n_{ik}
+#   + c_2^\beta\sum_k b_{ik}(\hat p_{ik}-p_i), \\[1ex]
+#   u_i^\gamma = -c_1^\gamma\,\sigma_1(q_i-q_r) - c_2^\gamma(p_i-p_r),
+# \end{gathered}$$
 #
 # and $u_i = u_i^\alpha + u_i^\beta + u_i^\gamma$, where $u_i^\alpha$ is Algorithm 1. Because of $\sigma_1$ the pull of
 # a distant γ-agent is bounded.
@@ -85,8 +91,10 @@ _ = plots.components(run, ax=axes[1])
 #
 # the energy $H = V_\alpha + V_\beta + V_\gamma + T$ changes at
 #
-# $$\dot H = -c_2^\alpha\, p^\top \hat L p + c_2^\beta \sum_{i,k} b_{ik}\langle p_i, \hat p_{ik} - p_i\rangle
-#   - c_2^\gamma \bigl(2T - n \langle p_c, p_d\rangle\bigr), \qquad T = \tfrac12 \sum \|p_i\|^2 .$$
+# $$\begin{gathered}
+#   \dot H = -c_2^\alpha\, p^\top \hat L p + c_2^\beta \sum_{i,k} b_{ik}\langle p_i, \hat p_{ik} - p_i\rangle \\[1ex]
+#   - c_2^\gamma \bigl(2T - n \langle p_c, p_d\rangle\bigr), \qquad T = \tfrac12 \sum \|p_i\|^2 .
+# \end{gathered}$$
 #
 # > **Theorem 6** (Olfati-Saber 2006). Apply Algorithm 3 with a static γ-agent. If $\tfrac n2\langle p_c(t), p_d\rangle
 # > \le T(t)$ for all $t \ge t_0$, then $\dot H \le 0$ for all $t \ge t_0$.

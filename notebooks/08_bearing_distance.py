@@ -27,13 +27,17 @@
 # \|q_j-q_i\|$, the bearing $b_{ij} = (q_j-q_i)/d_{ij}$, the sets $R_i = \{j : d_{ij} \le c\}$, $A_i = \{j : r < d_{ij}
 # \le a\}$ and the aliens $S_i = \{k : 0 < d_{ik} \le s\}$, and weights $w$ whose sum over the set is $W$:
 #
-# $$u_i^{lc} = \frac1{W^{lc}}\sum_{A_i} w_{ij}^{lc}\,(q_j - q_i), \quad
-#   u_i^{la} = \frac1{W^{la}}\sum_{A_i} w_{ij}^{la}\,(p_j - p_i), \quad
-#   u_i^{ls} = \sum_{R_i} w_{ij}^{ls}\,(d_{ij}-c)\,b_{ij},$$
+# $$\begin{gathered}
+#   u_i^{lc} = \frac1{W^{lc}}\sum_{A_i} w_{ij}^{lc}\,(q_j - q_i), \quad
+#   u_i^{la} = \frac1{W^{la}}\sum_{A_i} w_{ij}^{la}\,(p_j - p_i), \\[1ex]
+#   u_i^{ls} = \sum_{R_i} w_{ij}^{ls}\,(d_{ij}-c)\,b_{ij},
+# \end{gathered}$$
 #
-# $$u_i^{ss} = \sum_{S_i} w_{ik}^{ss}\,(d_{ik}-s)\,b_{ik}, \quad
-#   u_i^{oa} = \sum_e w_i^{oa}\min(0,\, d_{ie}-c)\,b_{ie}, \quad
-#   u_i^{ga} = w_i^{ga}\Bigl(v^d\frac{p_i}{\|p_i\|} - p_i\Bigr),$$
+# $$\begin{gathered}
+#   u_i^{ss} = \sum_{S_i} w_{ik}^{ss}\,(d_{ik}-s)\,b_{ik}, \quad
+#   u_i^{oa} = \sum_e w_i^{oa}\min(0,\, d_{ie}-c)\,b_{ie}, \\[1ex]
+#   u_i^{ga} = w_i^{ga}\Bigl(v^d\frac{p_i}{\|p_i\|} - p_i\Bigr),
+# \end{gathered}$$
 #
 # where $e$ runs over the closest points of the obstacles that the agent's zone meets, $v^d$ is the desired speed, and a
 # sum over an empty set is 0. As in all lectures $q$ is a position and $p$ a velocity; the paper writes $p$ and $v$.

@@ -32,6 +32,7 @@ def generate(report: Path | None) -> None:
         for name in ("index.html", "verdicts.json"):
             shutil.copy(report / name, extra / "report")
     scenarios.write(GENERATED / "scenarios", extra, found, **full)
+    (GENERATED / "first.md").write_text(scenarios.first(images=report is not None), encoding="utf-8")
     theorems.write(GENERATED / "theorems", found, **full)
     lectures.write(GENERATED / "lectures")
     reference.write(GENERATED / "reference")

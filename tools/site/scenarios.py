@@ -10,10 +10,20 @@ from tools.site.runs import ran
 from tools.site.verdicts import Verdicts
 from tools.site.words import contents, plain, table
 
+FIRST = "paper-split-rejoin"
+FIRST_SHOWN = "A flock of 150 agents meets six discs, splits, and rejoins"
+
 
 def checked_on(theorem: str) -> tuple[str, ...]:
     """Scenarios of the catalogue that a theorem is checked on."""
     return tuple(name for name in scenarios() if theorem in scenario(name).theorems)
+
+
+def first(*, images: bool) -> str:
+    """What the first page shows: a flock that moves, or its picture."""
+    if images:
+        return f'<iframe class="run" title="{FIRST_SHOWN}" src="runs/{FIRST}.html"></iframe>\n'
+    return f"![{FIRST_SHOWN}](split-rejoin.png)\n"
 
 
 def page(case: Scenario, verdicts: Verdicts, *, images: bool, report: bool) -> str:
