@@ -21,7 +21,8 @@
 # \|q_j-q_i\|$,
 #
 # $$\begin{gathered}
-#   u_i = \sum_{\rho < r} \Bigl[ f(\rho)\,\frac{q_j-q_i}{\sqrt{1+\eta\rho^2}} + k_1 (q_j-q_i) + k_2 (p_j-p_i) \Bigr], \\[1ex]
+#   u_i = \sum_{\rho < r} \Bigl[ f(\rho)\,\frac{q_j-q_i}{\sqrt{1+\eta\rho^2}}
+#   + k_1 (q_j-q_i) + k_2 (p_j-p_i) \Bigr], \\[1ex]
 #   f = \begin{cases} -(2k_r/\rho^2 + k_\delta) & \rho < d_1 \\ 0 & d_1 \le \rho \le d_2 \\
 #   2k_r/(r_d-\rho)^2 + k_\delta & d_2 < \rho < r \end{cases}
 # \end{gathered}$$
