@@ -29,7 +29,7 @@ from cosmic_ray import plugins
 from cosmic_ray.ast import ast_nodes, get_ast
 from cosmic_ray.mutating import mutate_code
 
-PACKAGES = ("kernels", "symbolic", "measures", "lattice", "laws", "interactions", "theorems")
+PACKAGES = ("kernels", "symbolic", "measures", "lattice", "laws", "interactions", "theorems", "certified")
 _ARITHMETIC = "(Add|Sub|Mul|Div|FloorDiv|Mod|Pow)"
 _ORDER = "(Eq|NotEq|Lt|LtE|Gt|GtE)"
 _KINDS = re.compile(
