@@ -29,14 +29,14 @@ def outcome(folder, body, *options):
     """What pytest says of a test that hangs, by our configuration but with shorter limits."""
     (folder / "test_hanging.py").write_text(HANGING.format(body))
     command = [sys.executable, "-m", "pytest", "-c", CONFIGURATION, "--rootdir", folder, "-p", "no:cacheprovider"]
-    limits = ["-o", "timeout=3", "-o", "faulthandler_timeout=9"]
+    limits = ["-o", "timeout=2", "-o", "faulthandler_timeout=5"]
     return subprocess.run([*command, *limits, *options, folder], capture_output=True, text=True, cwd=folder)
 
 
 @pytest.mark.parametrize("options", [["-p", "no:xdist"], ["-n", "1"]], ids=["alone", "xdist"])
 def test_a_test_that_waits_fails_and_the_others_go_on(options, tmp_path):
     done = outcome(tmp_path, "pass", *options)
-    assert "test_hangs - Failed: Timeout (>3.0s)" in done.stdout
+    assert "test_hangs - Failed: Timeout (>2.0s)" in done.stdout
     assert (tmp_path / "after").exists()
 
 

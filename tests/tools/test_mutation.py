@@ -129,15 +129,19 @@ from pathlib import Path
 from tools.mutation import trial
 sys.path.append(str(Path(sys.argv[1]).parent / "libraries"))
 trial._SLACK = 0.5
+if sys.argv[2] == "3":
+    trial._spent = lambda child: 0.0  # it has ended
 with trial.mutated(Path(sys.argv[1]), "number.py", f"number = {sys.argv[2]}") as tree:
     result = trial.attempt(tree, ["test_first.py", "test_number.py"], {"test_number.py": 0.1}, 60.0, False)
-    print(json.dumps([result.outcome, result.by, result.killed]))
+    print(json.dumps([result.outcome, result.by, result.killed, result.killed or result.seconds >= 0.3]))
 """
 
 TESTS = """
+import time
 from number import number
 def test_right():
-    while number == 4:
+    begin = time.process_time()
+    while time.process_time() < begin + 0.3 or number == 4:
         pass
     assert number == 3
 """
@@ -146,11 +150,11 @@ def test_right():
 @pytest.mark.parametrize(
     ("number", "said"),
     [
-        ("3", ["survived", "", False]),
-        ("2", ["killed", "test_number.py::test_right", True]),
-        ("1 +", ["killed", "test_number.py", True]),
-        ("__import__('os')._exit(0)", ["killed", "test_number.py ended its process", True]),
-        ("4", ["timeout", "test_number.py", True]),
+        ("3", ["survived", "", False, True]),
+        ("2", ["killed", "test_number.py::test_right", True, True]),
+        ("1 +", ["killed", "test_number.py", True, True]),
+        ("__import__('os')._exit(0)", ["killed", "test_number.py ended its process", True, True]),
+        ("4", ["timeout", "test_number.py", True, True]),
     ],
 )
 def test_what_tests_say_of_a_mutant(tmp_path, number, said):

@@ -165,9 +165,9 @@ def attempt(
             with suppress(BlockingIOError):
                 text += os.read(read, 1 << 16).decode()
             said = [json.loads(line) for line in text.splitlines() if line.endswith("]")]
-            spent = _spent(child)
+            spent = max(_spent(child), sum(one[2] for one in said))  # of a child that has ended nothing is known
             if said and said[-1][1]:
-                return Result("killed", said[-1][1], spent or said[-1][2], len(said))
+                return Result("killed", said[-1][1], spent, len(said))
             if len(said) == len(files):
                 return Result("survived", "", spent, len(said))
             if ended:
