@@ -14,7 +14,7 @@ from matplotlib.patches import Polygon
 
 from flockana.base.checks import FloatArray
 from flockana.environment.obstacles import Obstacle
-from flockana.plots.style import FAINT, MUTED, ensure_axes
+from flockana.plots.style import FAINT, MUTED, ensure_axes, finish
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -45,6 +45,10 @@ def obstacles(items: Iterable[Obstacle], *, ax: Axes | None = None, view: Any = 
     axes = ensure_axes(ax, m=solids[0].dimension if solids else 2)
     for solid in solids:
         _draw(axes, solid, np.zeros((1, solid.dimension)) if view is None else np.asarray(view, dtype=np.float64))
+    if ax is None and axes.name != "3d":
+        axes.autoscale_view()  # patches do not move the limits by themselves
+        axes.set_aspect("equal", adjustable="datalim")
+        finish(axes, "x (length)", "y (length)")
     return axes  # type: ignore[no-any-return]  # the stubs have no three-dimensional axes
 
 

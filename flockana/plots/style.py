@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 import matplotlib as mpl
@@ -86,6 +87,10 @@ def style() -> Iterator[None]:
         mpl.interactive(interactive)
 
 
+_WIDER = 1.15  # than the axes may a legend be, for the names of their ticks stand beside them
+_EM = 0.55  # width of a letter, over its size
+
+
 def ensure_axes(ax: Any, *, m: int = 2) -> Any:
     """Return `ax`, or new axes in flockana's look: flat ones, or three-dimensional ones for m = 3."""
     if ax is not None:
@@ -129,7 +134,9 @@ def finish(ax: Any, x: str = "", y: str = "") -> Axes:
     if x:
         ax.set_xlabel(typeset(x))
     if y:
-        ax.set_ylabel(typeset(y))
+        letters = ax.get_window_extent().height / ax.figure.dpi * 72.0 / (_EM * ax.yaxis.label.get_size())
+        lines = [y] if "$" in y else wrap(y, max(int(1.1 * letters), 12))
+        ax.set_ylabel("\n".join(map(typeset, lines)))
     if ax.get_legend_handles_labels()[0]:
         legend_above(ax)
     return ax  # type: ignore[no-any-return]
@@ -157,20 +164,22 @@ def head(ax: Any, title: str, **look: Any) -> None:
 
 
 def legend_above(ax: Any) -> None:
-    """Put the legend above the axes, where it hides no data."""
+    """Put the legend above the axes, where it hides no data, in as many columns as are no wider than these."""
     handles, labels = ax.get_legend_handles_labels()
-    columns = 3 if len(handles) in (3, 5, 6) else 4
-    ax.legend(
-        handles,
-        [typeset(label) for label in labels],
-        loc="lower left",
-        bbox_to_anchor=(0.0, 1.0),
-        ncols=columns,
-        borderaxespad=0.2,
-        handlelength=1.8,
-        columnspacing=1.2,
-        **LEGEND,
-    )
+    for columns in range(min(len(handles), 3 if len(handles) in (3, 5, 6) else 4), 0, -1):
+        legend = ax.legend(
+            handles,
+            [typeset(label) for label in labels],
+            loc="lower left",
+            bbox_to_anchor=(0.0, 1.0),
+            ncols=columns,
+            borderaxespad=0.2,
+            handlelength=1.8,
+            columnspacing=1.2,
+            **LEGEND,
+        )
+        if columns == 1 or legend.get_window_extent().width <= _WIDER * ax.get_window_extent().width:
+            return
 
 
 def colour_bar(ax: Any, colours: Any, label: str, *, extend: str = "neither", share: float = 0.75) -> Any:

@@ -49,7 +49,7 @@ _RULES: tuple[tuple[str, Callable[[re.Match[str]], str]], ...] = (
     (r"\bd'(?!\w)", lambda m: "$d'$"),
     (r"(?<=least )V\b", lambda m: "$V$"),
     (r"\b([a-z])(?= = )", lambda m: f"${m[1]}$"),
-    (r"^([B-HJ-Zb-z])(?=,? [a-z(=]|$)", lambda m: f"${m[1]}$"),  # but no "a" or "I", which are words
+    (r"^([B-HJ-Zb-z](?=,? [a-z(=]|$)|a$)", lambda m: f"${m[1]}$"),  # but no "I", nor "a" before others, which are words
 )
 _ANY = re.compile("|".join(f"(?P<r{k}>{pattern})" for k, (pattern, _) in enumerate(_RULES)))
 

@@ -105,6 +105,15 @@ def test_a_snapshot_shows_the_obstacles_of_the_law(m):
     assert ax.get_xlim()[1] >= 25.0
 
 
+def test_axes_of_their_own_show_all_of_them_round():
+    ax = plots.obstacles((Sphere((25.0, 0.0), 5.0), Sphere((0.0, 40.0), 2.0)))
+    ax.get_figure().canvas.draw()
+    (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
+    assert left < -2.0 < 30.0 < right
+    assert low < -5.0 < 42.0 < high
+    assert ax.get_aspect() == 1.0
+
+
 def two_discs():
     """A made-up run: two agents part round a disc and meet again, sampled coarsely."""
     law = Algorithm3(target=StaticTarget((0.0, 0.0)), obstacles=(Sphere((0.0, 0.0), 1.0), Sphere((0.0, 90.0), 1.0)))

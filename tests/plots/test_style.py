@@ -70,6 +70,25 @@ def test_axes_that_others_made_get_titles_legends_and_colour_bars_in_the_style()
     assert (bar.yaxis.label.get_fontsize(), bar.get_yticklabels()[0].get_fontsize()) == (9, 8)
 
 
+@pytest.mark.parametrize(("words", "rows"), [("a line", 1), ("a line of some twenty letters", 3)])
+def test_a_legend_is_hardly_wider_than_its_axes(words, rows):
+    ax = Figure(figsize=(4.4, 3.4)).add_subplot()
+    for k in range(4):
+        ax.plot([0, k], [0, 1], label=words)
+    legend = finish(ax).get_legend()
+    assert legend.get_window_extent().width <= 1.15 * ax.get_window_extent().width
+    assert len({round(text.get_window_extent().y0) for text in legend.get_texts()}) <= rows
+
+
+def test_a_name_that_is_longer_than_its_axis_stands_in_lines():
+    low, high = (Figure(figsize=(4.0, height)).add_subplot() for height in (2.0, 6.0))
+    for ax in (low, high):
+        finish(ax, y="K\u0303, normalised velocity mismatch (length²/time²)")
+    assert high.get_ylabel() == "$\\tilde K$, normalised velocity mismatch (length$^2$/time$^2$)"
+    assert low.get_ylabel() == "$\\tilde K$, normalised\nvelocity mismatch\n(length$^2$/time$^2$)"
+    assert low.yaxis.label.get_window_extent().height <= 1.1 * low.get_window_extent().height
+
+
 OF_FILES = {"animate", "animate_mode"}  # films: of something, to a path
 OTHERS = {"animation", "mode_title", "style", "subplots"}
 DRAWING = [name for name in plots.__all__ if inspect.isfunction(getattr(plots, name)) and name not in OF_FILES | OTHERS]

@@ -29,6 +29,8 @@ from flockana.plots.symbols import typeset
         ("least V", "least $V$"),
         ("a (4 runs)", "a (4 runs)"),
         ("a run", "a run"),
+        ("a", "$a$"),
+        ("c", "$c$"),
         ("c1_alpha", "c1_alpha"),
         ("min_distance", "min_distance"),
         ("already $x_i$, γ", "already $x_i$, γ"),
