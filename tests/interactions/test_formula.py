@@ -271,6 +271,24 @@ def test_a_jump_of_the_potential_is_one_by_the_scale_of_force_times_range(share,
     assert any("the potential jumps" in fault for fault in law.faults) is jumps
 
 
+def test_a_series_stands_in_only_where_the_formula_loses_digits():
+    """sin(s)/s is 0/0 at 0; a polynomial is computed as it stands down to 0."""
+    bounds = [
+        fl.pair_law(potential, adjacency=0, range=3.0, length=1.0).par[3]  # below it the series holds
+        for potential in ("s**2*(s - r)**2", "0.25*(r**2 - s**2)**2", "sin(s)/s")
+    ]
+    assert bounds[:2] == [0.0, 0.0]
+    assert bounds[2] > 0.0
+
+
+@pytest.mark.parametrize(("d", "r"), [(2.9985, 3.0), (0.29985, 0.3), (7.0, 8.4)])
+def test_a_force_that_attracts_up_to_a_range_just_above_the_distance_only_has_a_lattice(d, r):
+    """Above the range the formula repels again, which no pair feels."""
+    pulls, pushes = (fl.pair_law(force=f"{sign}(s - d)*(r - s)", adjacency=0, range=r, length=d) for sign in ("", "-"))
+    assert pulls.lattice == (d, r)
+    assert pushes.lattice is None
+
+
 def test_a_weight_that_is_a_number_is_declared_where_it_is_read():
     law = fl.pair_law("0.37*s**2", adjacency=0.25, range=3.0, length=1.0)
     assert law.force(2.0) == pytest.approx(2.0 * 0.37 * 2.0, rel=1e-15)

@@ -90,6 +90,21 @@ def test_rigid_motions_depend_on_the_affine_hull(m, flat, count):
     assert rigid_motion_count(q + 1e3) == count
 
 
+@pytest.mark.parametrize(("thin", "count"), [(1e-7, 6), (1e-11, 5)])
+@pytest.mark.parametrize("unit", [1.0, 1e-9, 1e9])
+def test_what_counts_as_a_line_in_space_is_a_billionth_of_its_length_in_every_unit(unit, thin, count):
+    """And as well a thousand lengths from the origin, where coordinates round to less than that."""
+    bent = np.array([[0.0, 0.0, 0.0], [1.0, thin, 0.0], [2.0, 0.0, 0.0]])
+    assert rigid_motion_count(unit * bent) == count
+    assert rigid_motion_count(unit * (bent + 1e3)) == count
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e-9, 1e9])
+def test_agents_in_one_place_are_a_point_whatever_their_mean_rounds_to(unit):
+    """The mean of three times 0.1 is more than 0.1."""
+    assert rigid_motion_count(np.full((3, 3), 0.1 * unit)) == 3
+
+
 def test_a_zero_pivot_is_a_failure_and_no_answer():
     """A shift that is an eigenvalue of the first block: 1 − 1 = 0 on the diagonal."""
     from scipy.sparse import csr_array

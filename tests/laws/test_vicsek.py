@@ -69,6 +69,15 @@ def test_vectors_that_cancel_leave_a_heading_alone():
     assert after.tolist() == [0.5, 0.5 + pi]
 
 
+@pytest.mark.parametrize(("turn", "points"), [(1.5e-12, False), (3e-12, True)])
+def test_what_cancels_is_a_sum_that_is_small_for_the_number_of_vectors(turn, points):
+    """Half the agents look along x, half almost against them: each pair leaves a vector of length `turn` along y."""
+    law = HeadingAveraging(1.0, 0.1, 0.5, average="vectors")
+    headings = np.repeat([0.0, pi - turn], 20)
+    after = law.step(0.0, np.zeros((40, 2)), np.zeros((40, 2)), {"heading": headings})[3]["heading"]
+    assert after == pytest.approx(np.full(40, pi / 2), abs=1e-2) if points else after.tolist() == headings.tolist()
+
+
 def test_noise_repeats_and_stays_within_its_width():
     law = HeadingAveraging(1.0, 0.1, 0.5, noise=0.2, seed=3)
     q, headings = start()
