@@ -41,7 +41,8 @@ def test_an_error_of_the_velocity_becomes_one_of_the_place(h):
         grown, box = run.grown(arb(0), arb(h), path, arb(1e-6), arb(1e-5))
     assert grown >= 1e-6 * sqrt(1.0 + (10.0 * h) ** 2) * (1.0 - 1e-12)
     assert grown < 1e-6 * 2.0 ** (10.0 * h)
-    assert box[0].contains(arb(h + 1e-6))
+    assert box[0].contains(arb(h + 0.99e-6))  # a tenth of the bound 1e-5, as lengths count ten times
+    assert not box[0].contains(arb(h + 1.01e-6))
     assert box[2].contains(arb(1.0 + 0.99e-5))
 
 
