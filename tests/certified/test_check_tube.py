@@ -123,7 +123,7 @@ def test_what_is_positive_definite_is_so_to_the_last_minor(corner, holds):
 
 
 def test_an_error_in_the_worst_direction_grows_no_faster():
-    """Of all (wq, p) of one length, under q' = p: by a/2 + √(1 + a²/4) with a = wh, which is e^{a/2} to second order."""
+    """Under q' = p, of all (wq, p) of one length: by a/2 + √(1 + a²/4), a = wh, which is e^{a/2} to second order."""
     grown, _ = pair_on_a_line(weight=10.0).grown(
         arb(0), arb(1) / 10, [row(0, 0, 0, 0), row(20, 0, 0, 0)], arb(1) / 64, arb(1)
     )
