@@ -9,6 +9,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
+from flint import arb, arb_mat
 
 import flockana.certified.check
 from flockana import Algorithm1, certify
@@ -220,3 +221,37 @@ def test_a_stated_number_has_its_digits_and_no_more():
     assert not rounded("7.7399", Fraction("7.7405"))
     assert not rounded("7.739", Fraction("7.7405"))
     assert not rounded("7.741", Fraction("7.7405"))
+
+
+@pytest.mark.parametrize(
+    "choice",
+    [
+        {"eps": "0"},
+        {"eps": "-0.01"},
+        {"kappa": lambda choice, curvature: choice["eps"] * Fraction(499, 1000)},
+        {"theta": "1.001"},
+        {"theta": "-0.001"},
+        {"tau": "-1"},
+        {"tau": lambda choice, curvature: -2 * choice["eps"]},  # by which the rate would be larger
+        {"eps": lambda choice, curvature: curvature, "kappa": "1000000"},
+    ],
+    ids=str,
+)
+def test_what_makes_no_lyapunov_function_is_rejected_as_such(choice):
+    data = json.loads(json.dumps(basin_certificate(basin_of("pair", 1))))
+    own, curvature = {name: Fraction(x) for name, x in data["lyapunov"].items()}, Fraction(data["curvature"])
+    assert curvature > 1
+    for name, new in choice.items():
+        new = Fraction(new) if isinstance(new, str) else new(own, curvature)
+        data["lyapunov"][name] = f"{new.numerator}/{new.denominator}"
+    with pytest.raises(RejectedError, match="no Lyapunov function"):
+        check_data(resealed(data))
+
+
+@pytest.mark.parametrize(("corner", "holds"), [("1.51", True), ("1.5", False), ("1.49", False)])
+def test_a_matrix_less_a_shift_is_positive_definite_to_its_last_minor(corner, holds):
+    """[[3, 1], [1, x]] less 1 is so above x = 3/2, and a ball of such matrices if all of them are."""
+    for sign in (1, -1):
+        rows = [[arb(3), arb(sign)], [arb(sign), arb(corner)]]
+        assert check_basin.positive(arb_mat(rows), Fraction(1)) is holds
+    assert not check_basin.positive(arb_mat([[arb(3), arb(1)], [arb(1), arb(corner) + arb(0, 0.02)]]), Fraction(1))

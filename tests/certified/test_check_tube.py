@@ -41,7 +41,8 @@ def test_an_error_of_the_velocity_becomes_one_of_the_place(h):
         grown, box = run.grown(arb(0), arb(h), path, arb(1e-6), arb(1e-5))
     assert grown >= 1e-6 * sqrt(1.0 + (10.0 * h) ** 2) * (1.0 - 1e-12)
     assert grown < 1e-6 * 2.0 ** (10.0 * h)
-    assert box[0].contains(arb(h + 1e-6))
+    assert box[0].contains(arb(h + 0.99e-6))  # a tenth of the bound 1e-5, as lengths count ten times
+    assert not box[0].contains(arb(h + 1.01e-6))
     assert box[2].contains(arb(1.0 + 0.99e-5))
 
 
@@ -122,7 +123,7 @@ def test_what_is_positive_definite_is_so_to_the_last_minor(corner, holds):
 
 
 def test_an_error_in_the_worst_direction_grows_no_faster():
-    """Of all (wq, p) of one length, under q' = p: by a/2 + √(1 + a²/4) with a = wh, which is e^{a/2} to second order."""
+    """Under q' = p, of all (wq, p) of one length: by a/2 + √(1 + a²/4), a = wh, which is e^{a/2} to second order."""
     grown, _ = pair_on_a_line(weight=10.0).grown(
         arb(0), arb(1) / 10, [row(0, 0, 0, 0), row(20, 0, 0, 0)], arb(1) / 64, arb(1)
     )

@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import copy
 import json
+from math import sqrt
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
+from flint import arb, ctx
 
 from flockana import Algorithm1, Algorithm2, StaticTarget, certify, check_certificate, enclose, find_equilibrium
 from flockana.base.errors import ArgumentError
 from flockana.base.seals import sealed
+from flockana.certified import check_tube
 from flockana.certified.check import RejectedError, check_data
 from flockana.certified.tube_certificate import tube_certificate, write_tube_certificate
 
@@ -162,3 +167,58 @@ def test_what_has_no_certificate_is_said(tube):
     other = certify(find_equilibrium(Algorithm1(), [[-3.5], [3.5]]))
     with pytest.raises(ArgumentError, match="that the tube certainly ends in"):
         tube_certificate(tube, basin=other)
+
+
+def ends_in(monkeypatch, data, q, p, *, error=0.0, turn=0.0):
+    """Whether states within an error of (q, p), in the norm that counts places ten times, end in the basin."""
+    monkeypatch.setattr(check_tube, "check_data", lambda basin: SimpleNamespace(steps=()))  # it holds
+    with ctx.workprec(128):
+        run = check_tube.Run.of(data)
+        assert run.weight == 10
+        state = [arb(float(x)) for x in (*np.ravel(q), *np.ravel(p))]
+        return list(run.ends_in(data["basin"], data["law"], arb(turn), state, arb(error)))
+
+
+def rest_of(data):
+    return np.array([[float.fromhex(x) for x in row] for row in data["basin"]["positions"]])
+
+
+@pytest.mark.parametrize(
+    ("share", "error", "inside"), [(0.999, 0.0, True), (1.001, 0.0, False), (0.98, 0.01, True), (0.98, 0.1, False)]
+)
+def test_the_end_of_a_run_has_less_energy_than_the_basin_s_level(data, monkeypatch, share, error, inside):
+    """Velocities v and −v at the equilibrium have v² above it, and an error counts for the worst."""
+    rest, v = rest_of(data), sqrt(share * float(data["basin"]["level"]))
+    p = np.array([[v], [-v]])
+    if inside:
+        assert len(ends_in(monkeypatch, data, rest, p, error=error)) == 1
+        return
+    with pytest.raises(RejectedError, match="the energy at the end may be too high"):
+        ends_in(monkeypatch, data, rest, p, error=error)
+
+
+@pytest.mark.parametrize(("error", "inside"), [(1.5, True), (4.5, False)])
+def test_the_end_of_a_run_is_within_the_basin_s_radius(data, monkeypatch, error, inside):
+    """Two places off by a tenth of the error, one against the other, are √2 of that away; the radius is 0.537."""
+    calm = {**data, "basin": {**data["basin"], "level": "1000"}}  # to ask for the place alone
+    rest, still = rest_of(data), np.zeros((2, 1))
+    assert 0.3 * sqrt(2.0) < float(data["basin"]["radius"]) < 0.45 * sqrt(2.0)
+    if inside:
+        assert len(ends_in(monkeypatch, calm, rest + 5.0, still, error=error)) == 1
+        return
+    with pytest.raises(RejectedError, match="the end may be too far"):
+        ends_in(monkeypatch, calm, rest + 5.0, still, error=error)
+    with pytest.raises(RejectedError, match="the end may be too far"):
+        ends_in(monkeypatch, calm, -rest, still)  # the mirror image
+
+
+@pytest.mark.parametrize("angle", [0.5, -2.0])
+def test_the_end_of_a_run_is_compared_with_the_equilibrium_turned(monkeypatch, angle):
+    law = Algorithm2(target=StaticTarget((0.0, 0.0)))
+    basin = certify(find_equilibrium(law, [[-3.5, 0.0], [3.5, 0.0]]))
+    tube = enclose(law, basin.rest, np.zeros((2, 2)), (0.0, 0.0078125))
+    data = json.loads(json.dumps(tube_certificate(tube, basin=basin)))
+    turned = rest_of(data) @ np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    assert len(ends_in(monkeypatch, data, turned, 0.0 * turned, turn=angle)) == 1
+    with pytest.raises(RejectedError, match="the end may be too far"):
+        ends_in(monkeypatch, data, turned, 0.0 * turned, turn=-angle)

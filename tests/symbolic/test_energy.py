@@ -27,6 +27,7 @@ from flockana.symbolic import (
     structural_identity,
     sums,
 )
+from flockana.symbolic.energy import GenericPair
 
 DIMENSIONS = pytest.mark.parametrize("m", [1, 2, 3])
 
@@ -111,6 +112,22 @@ def test_algorithm_2_splits(m: int) -> None:
     assert not own.free_symbols & frame
     assert translational.free_symbols <= frame | {GAINS.c1_gamma, GAINS.c2_gamma}
     assert sp.hessian(sum(translational), sorted(frame, key=str)).is_zero_matrix
+
+
+@DIMENSIONS
+def test_the_steps_of_the_split_say_what_was_checked(m: int) -> None:
+    """Forces of opposite signs, differences that no common shift or drift changes, the own force itself."""
+    derivation = derive_split(m)
+    reaction, _, differences, own, _ = (step.equation for step in derivation.steps)
+    f_ij, f_ji = sp.symbols("f_ij f_ji")
+    assert reaction.subs({f_ij: 3, f_ji: -3}) == sp.true
+    assert reaction.subs({f_ij: 3, f_ji: 3}) == reaction.subs({f_ij: 0, f_ji: 3}) == sp.false
+    generic = GenericPair(m, (sums.X, sums.V))
+    shift = sp.Symbol("shift")
+    for vectors in (generic.q, generic.p):
+        moved = {symbol: symbol + shift for each in vectors for symbol in each}
+        assert all(sp.expand(arg.xreplace(moved) - arg) == 0 for arg in differences.rhs.args)
+    assert own == derivation.result[0]
 
 
 def test_algorithm_3_does_not_split(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -16,6 +16,7 @@ INTERPRETED = tuple(
     for name in (
         "kernels/test_scalars",
         "kernels/test_verlet",
+        "kernels/test_paths",
         "kernels/test_sums",
         "kernels/test_sweep",
         "kernels/test_ranges",

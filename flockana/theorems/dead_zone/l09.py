@@ -113,7 +113,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     from flockana.symbolic.led_dead_zone import led_energy_identity
 
     runs, residuals = _runs(), [row for m in (1, 2, 3) for row in led_energy_identity(m).residuals]
-    deaf = float(_slip(runs["not told"]).min())
+    deaf, late = float(_slip(runs["not told"]).min()), runs["not told"].t[1:]
     return [
         _printed(),
         equal(
@@ -135,7 +135,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             _ROUNDING,
             computed=deaf,
             stated="and it is not, if its acceleration is not known",
-            detail=f"without it some velocity is {deaf:.2g} of the leader's speed off, at t = 54 and t = 60",
+            detail=f"without it some velocity is {deaf:.2g} of the leader's speed off, at t = {late[0]:g} and t = {late[1]:g}",
         ),
     ]
 
