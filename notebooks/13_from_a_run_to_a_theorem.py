@@ -44,7 +44,8 @@ _ = plots.measure(run, "normalised_velocity_mismatch")
 # In the frame of the centre of mass $\dot x = v$, $\dot v = -\nabla U(x) - D(x)v$ with $U = c_1^\alpha V + \tfrac12
 # c_1^\gamma\|x\|^2$ and $D = c_2^\gamma I + c_2^\alpha\hat L(x)$. Turning the triangle costs nothing, so it is an
 # *orbit* of equilibria. Let $w$ be the displacement from the nearest of them. If the curvature of $U$ in the direction
-# of $w$ is at least $k(\xi)$ at the distance $\xi$ from the orbit, for $0 \le \xi \le \|w\|$, then with $G'' = k$, $G(0) = G'(0) = 0$
+# of $w$ is at least $k(\xi)$ at the distance $\xi$ from the orbit, for $0 \le \xi \le \|w\|$, then with $G'' = k$,
+# $G(0) = G'(0) = 0$
 #
 # $$U - U^* \ge G(\|w\|), \qquad \langle\nabla U, w\rangle \ge \|w\|\,G'(\|w\|).$$
 #
