@@ -99,8 +99,8 @@ for ax, (name, L) in zip(axes, laplacians.items(), strict=True):
 # A level set $\{W \le c\}$ is positively invariant where $\dot W \le 0$. What has to be shown is that it is *bounded*.
 #
 # **A damped mass.** $\ddot x = -x - c\dot x$, $c > 0$, has the energy $H = \tfrac12(x^2 + v^2)$, with $\dot H = -cv^2$.
-# Level sets are discs, hence compact. $\dot H = 0$ means $v = 0$; a solution stays in that set only if $\dot v = -x =
-# 0$ too. So the largest invariant subset is the origin, and every solution converges to it.
+# The sets $\{H \le H_0\}$ are discs, hence compact. $\dot H = 0$ means $v = 0$; a solution stays in that set only if
+# $\dot v = -x = 0$ too. So the largest invariant subset is the origin, and every solution converges to it.
 
 # %%
 mass = fl.Algorithm2(gains=fl.Gains(c1_gamma=1.0, c2_gamma=0.3), target=fl.StaticTarget((0.0,)))
@@ -112,7 +112,7 @@ _ = plots.phase_portrait(run.q[:, 0, 0], run.p[:, 0, 0], energy=(x, x, H), label
 # %% [markdown]
 # **What compactness is for.** Two agents repel each other with the potential $1/x$, $x > 0$ their distance, and damping
 # acts while they are near, at the rate $e^{-x}$: $\ddot x = 1/x^2 - e^{-x}\dot x$. Again $H = \tfrac12 v^2 + 1/x$
-# falls, $\dot H = -e^{-x}v^2 \le 0$. But a level set $\{H \le c\}$ reaches to $x = \infty$: it is not compact. LaSalle
+# falls, $\dot H = -e^{-x}v^2 \le 0$. But the set $\{H \le c\}$ reaches to $x = \infty$: it is not compact. LaSalle
 # says nothing, and the agents part for ever. This is what happens to flocks that fragment (lecture 02), and why
 # cohesion has to be shown first (lecture 03).
 
@@ -135,10 +135,11 @@ assert np.abs(np.linalg.eigvalsh(laplacians["two triangles"])[:2]).max() < 1e-12
 # %% [markdown]
 # ## Summary
 #
-# - $z^\top Lz = \tfrac12\sum a_{ij}(z_j - z_i)^2$; the eigenvalue 0 counts the components, $\lambda_2$ is the rate of
-# agreement. - An energy that falls gives convergence by LaSalle only on a *compact* invariant set, and then to the
-# largest invariant   set on which it no longer falls, which need not be a point. - For flocks the hard part is
-# compactness, that is cohesion.
+# - $z^\top Lz = \tfrac12\sum_{i,j} a_{ij}(z_j - z_i)^2$; the eigenvalue 0 counts the components, $\lambda_2$ is the
+#   rate of agreement.
+# - An energy that falls gives convergence by LaSalle only on a *compact* invariant set, and then to the largest
+#   invariant set on which it no longer falls, which need not be a point.
+# - For flocks the hard part is compactness, that is cohesion.
 
 # %% [markdown] tags=["exercise"]
 # ## Exercises

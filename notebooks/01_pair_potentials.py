@@ -83,7 +83,8 @@ _ = ax.set(xlabel="z = ‖q_j − q_i‖_σ", ylabel="ψ_α(z)")
 #
 # A lattice is where the deviation energy $E(q)$, a mean of $(\|q_j - q_i\| - d)^2$ over the links, is zero. But $E$ is
 # no potential to descend: it jumps where a pair comes into range, and has a corner where two agents coincide. The
-# collective potential $V$ is smooth at both (`python -m proofs deviation-energy`).
+# collective potential $V$, the sum of $\psi_\alpha$ over all pairs, has a continuous gradient at both
+# (`python -m proofs deviation-energy`).
 
 # %%
 _ = plots.deviation(alpha)

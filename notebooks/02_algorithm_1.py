@@ -101,8 +101,9 @@ print(fl.verify("os-1", run))
 #
 # ## Two agents, all there is to see
 #
-# With little damping a pair circles its well; with more energy than $\psi_\alpha(r_\alpha)$ it escapes. The level curve
-# of that energy, the *separatrix*, divides the two kinds of motion.
+# Without damping a pair whose energy is below $\psi_\alpha(r_\alpha)$ circles the well for ever, and one with more
+# escapes. The level curve of that energy, the *separatrix*, divides the two kinds of motion. With damping, as here, the
+# energy falls, so a pair inside the separatrix stays inside and spirals into the well.
 
 # %%
 law = fl.Algorithm1(gains=fl.Gains(c1_alpha=1.0, c2_alpha=0.2))

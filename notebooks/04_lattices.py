@@ -60,9 +60,9 @@ slider(with_range, kappas, name="κ", title="links of a patch of the hexagonal l
 # > nodes. Then (i) its net is planar, $m = 2, 3$; (ii) it has at most $3n - 6$ links, $m = 2$, $n \ge 3$; (iii) with $n
 # > > m + 1$ nodes it is not complete, $m = 1, 2, 3$.
 #
-# In the plane (i) holds for $\kappa \le \sqrt2$ and more, because links that cross would have a pair that is nearer
-# than $d$ allows; in space it is false (below). The sharp bound in (ii) is $\lfloor 3n - \sqrt{12n-3}\rfloor$ (Harborth
-# 1974), which hexagonal spirals reach.
+# In the plane (i) holds: if two links crossed, each of the length $d$, two of their ends would be at most $d/\sqrt2$
+# apart, hence neighbours, and neighbours are exactly $d$ apart. In space it is false (below). The sharp bound in (ii)
+# is $\lfloor 3n - \sqrt{12n-3}\rfloor$ (Harborth 1974), which hexagonal spirals reach.
 #
 # ## What a flock really ends in
 #

@@ -18,10 +18,10 @@
 #
 # Algorithm 3 (Olfati-Saber 2006, section VII) adds to each agent a β-agent on every obstacle in range: the closest
 # point $\hat q_{ik}$, moving with the velocity $\hat p_{ik}$ that the agent's own motion gives it. For a sphere with
-# centre $y$ and radius $R$,
+# centre $y$ and radius $R_k$,
 #
 # $$\begin{gathered}
-#   \mu = \frac{R}{\|q_i - y\|},\quad a = \frac{q_i-y}{\|q_i-y\|},\quad P = I - aa^\top, \\[1ex]
+#   \mu = \frac{R_k}{\|q_i - y\|},\quad a = \frac{q_i-y}{\|q_i-y\|},\quad P = I - aa^\top, \\[1ex]
 #   \hat q_{ik} = \mu q_i + (1-\mu) y,\quad \hat p_{ik} = \mu P p_i ,
 # \end{gathered}$$
 #

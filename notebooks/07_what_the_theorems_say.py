@@ -18,9 +18,9 @@
 #
 # ## A true statement that says nothing
 #
-# Theorem 1(iii) of Olfati-Saber (2006): if $H(x(0), v(0)) < c^* = \psi_\alpha(0)$, no two agents ever collide. True:
-# the energy does not rise, and a coincident pair alone costs $c^*$. But **every pair out of range costs
-# $\psi_\alpha(r_\alpha)$ too**, and there are about $n^2/2$ of those.
+# Theorem 1(iii) of Olfati-Saber (2006): if $H(x(0), v(0)) < c^* = \psi_\alpha(0)$, no two agents ever collide. (The
+# gains are 1 in this lecture.) True: the energy does not rise, and a coincident pair alone costs $c^*$. But **every
+# pair out of range costs $\psi_\alpha(r_\alpha)$ too**, and there are about $n^2/2$ of those.
 
 # %%
 import numpy as np

@@ -21,7 +21,6 @@
 # (1934). Even $N$ of $N$ leaves room: for $N = 60$ down to 0.94.
 
 # %%
-
 import flockana as fl
 from flockana import plots
 from flockana.course import grade

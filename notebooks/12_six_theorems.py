@@ -86,8 +86,7 @@ for outcome in outcomes:
 # > the nets of the interval is connected, then all headings tend to a common one.
 #
 # No single net need be connected: it is enough that the links seen over a window of time connect all, window after
-# window, for ever. Over a run we can see
-# windows; "for ever" needs an argument. Two groups that meet:
+# window, for ever. Over a run we can see windows; "for ever" needs an argument. Two groups that meet:
 
 # %%
 meet = fl.scenario("headings-meet").run()
@@ -111,8 +110,9 @@ print(fl.verify("jlm-headings", fl.scenario("headings-part").run()))
 # > **Theorem** (Olfati-Saber and Murray 2004). On a fixed, undirected, connected net all solutions of $\dot x(t) =
 # > -Lx(t-\tau)$ tend to the mean of their starts if and only if $0 \le \tau < \pi/(2\lambda_n)$.
 #
-# The root that decides
-# is Lambert's: $s = W(-\lambda_n\tau)/\tau$. Better connected nets bear *less* delay:
+# A disturbance along an eigenvector of $\lambda$ grows like $e^{st}$ with $s = -\lambda e^{-s\tau}$. The root that
+# decides is $s = W_0(-\lambda_n\tau)/\tau$ with Lambert's function, $W_0(z)\,e^{W_0(z)} = z$. A further link never
+# lowers $\lambda_n$, so a better connected net never bears *more* delay:
 
 # %%
 from flockana.stability import consensus_root, consensus_system, delay_margin

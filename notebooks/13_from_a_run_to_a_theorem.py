@@ -42,25 +42,31 @@ _ = plots.measure(run, "normalised_velocity_mismatch")
 # ## A basin
 #
 # In the frame of the centre of mass $\dot x = v$, $\dot v = -\nabla U(x) - D(x)v$ with $U = c_1^\alpha V + \tfrac12
-# c_1^\gamma\|x\|^2$ and $D = c_2^\gamma + c_2^\alpha\hat L(x)$. Turning the triangle costs nothing, so it is an
-# *orbit* of equilibria. Let $w$ be the displacement from the nearest of them. If on the way to distance $t$ the
-# curvature of $U$ along $w$ is at least $k(t)$, then with $G'' = k$, $G(0) = G'(0) = 0$
+# c_1^\gamma\|x\|^2$ and $D = c_2^\gamma I + c_2^\alpha\hat L(x)$. Turning the triangle costs nothing, so it is an
+# *orbit* of equilibria. Let $w$ be the displacement from the nearest of them. If the curvature of $U$ in the direction
+# of $w$ is at least $k(\xi)$ at the distance $\xi$ from the orbit, for $0 \le \xi \le \|w\|$, then with $G'' = k$,
+# $G(0) = G'(0) = 0$
 #
 # $$U - U^* \ge G(\|w\|), \qquad \langle\nabla U, w\rangle \ge \|w\|\,G'(\|w\|).$$
 #
-# > **Theorem.** Let all pairs that are linked at the triangle stay linked, and all curvatures as above be bounded
-# > below by $k$, within the distance $\rho$ of the orbit, with $G' > 0$ on $(0, \rho]$, and let $c_2^\gamma > 0$.
-# > Then every solution that starts at most $\rho$ from the orbit with an energy below $U^* + G(\rho)$ stays so near,
-# > and converges to the orbit with matched velocities.
+# > **Theorem.** Within the distance $\rho$ of the orbit let all curvatures as above be bounded below by $k$, with $G' >
+# > 0$ on $(0, \rho]$, and let $c_2^\gamma > 0$. Then every solution that starts at most $\rho$ from the orbit with an
+# > energy $U + \tfrac12\|v\|^2$ below $U^* + G(\rho)$ stays so near, and converges to the orbit with matched
+# > velocities.
 #
-# For to leave the ball of radius $\rho$ the energy must reach $U^* + G(\rho)$, which a start with less never has: the
-# energy only falls. `certify` bounds every pair's stress and slope by *ball arithmetic*, over all lengths that the ball
-# allows, and takes the largest ρ that it can prove.
+# For a state at the distance $\rho$ has at least the energy $U^* + G(\rho)$, which a start with less never reaches,
+# because the energy only falls. By LaSalle's principle the solution approaches states that stay at rest, where $\nabla
+# U = 0$; by the second inequality these have $w = 0$. (That it comes to rest at *one* point of the orbit, and how fast,
+# the library proves by a strict Lyapunov function.)
+#
+# `certify` bounds every pair's stress and slope by *ball arithmetic*, over all lengths that the ball allows, and takes
+# the largest $\rho$ that it can prove.
 
 # %%
 basin = fl.certify(rest)
 print(f"rho = {basin.share:.4f} d, level {float(basin.level):.3f}, no two agents nearer than {float(basin.distance)}")
-print(f"energy falls like exp(-{2 * float(basin.rate):.3f} t) at least, as the net stays connected: {basin.connected}")
+print(f"U + |v|^2/2 - U* is at most {float(basin.overshoot):.3g} exp(-{2 * float(basin.rate):.3f} t) of its start")
+print(f"the net stays connected: {basin.connected}")
 
 # %% [markdown]
 # Is our start in it? `above` gives upper bounds of the distance to the orbit and of the energy above it; `holds` is
@@ -227,21 +233,23 @@ reached = fl.certify([[0.0, 0.0], [7.0, 0.0]], law=fl.Algorithm1()).share
 grade(reached, 0.07038571, digits=2, hint="fl.certify takes positions and a law")
 
 # %% [markdown] tags=["exercise"]
-# **3.** ★★ (2 points, derivation) Along a ray the curvature of $U$ is at least $k(t) = 3 - \tfrac32 t$ up to the
-# distance $t = 2$. Which energy above $U^*$ must a state have to leave the ball of radius 2? (Compute $G(2)$, exactly.)
+# **3.** ★★ (2 points, derivation) Along a ray the curvature of $U$ is at least $k(\xi) = 3 - \tfrac32\xi$ up to the
+# distance $\xi = 2$. Which energy above $U^*$ must a state have to leave the ball of radius 2? (Compute $G(2)$,
+# exactly.)
 
 # %% tags=["answer"]
 level = ...
 
 # %% tags=["solution"]
-level = 3.0 * 2.0**2 / 2.0 - 1.5 * 2.0**3 / 6.0  # G(t) = 3 t²/2 − 1.5 t³/6
+level = 3.0 * 2.0**2 / 2.0 - 1.5 * 2.0**3 / 6.0  # G(ξ) = 3 ξ²/2 − 1.5 ξ³/6
 
 # %% tags=["check"]
 grade(level, 4.0, hint="integrate k twice, from 0")
 
 # %% [markdown] tags=["exercise"]
-# **4.** ★★ (2 points, derivation) The certified energy falls like $e^{-2\rho t}$ at least, with $\rho = 0.4$ per time
-# unit. After what time has it surely fallen to a millionth? (Four significant digits.)
+# **4.** ★★ (2 points, derivation) Of a basin it is certified that the energy above $U^*$ is at most
+# $e^{-2\cdot 0.4\,t}$ times that at the start. After what time has it surely fallen to a millionth of that? (Four
+# significant digits.)
 
 # %% tags=["answer"]
 wait = ...
