@@ -29,7 +29,7 @@ bench: .venv/.dev  ## measure everything, write report/performance; OPTIONS="--q
 proofs: .venv/.dev  ## run every executable proof
 	$(BIN)/python -m proofs
 
-notebooks: .venv/.dev  ## execute every notebook as it is delivered, from the wheel, in an environment of its own
+notebooks: wheel .venv/.dev  ## execute every notebook as it is delivered, where only the wheel is installed
 	$(BIN)/python tools/run_notebooks.py --wheel
 
 course: .venv/.dev  ## write course/student and course/solutions as .ipynb

@@ -1,10 +1,10 @@
 """Execute every lecture as it is delivered: written by `flockana course` to a clean folder, and run there.
 
 `python tools/run_notebooks.py [--wheel] [--student | --solutions] [NUMBER...]` runs those whose names begin so; by
-default all, of both versions, two at a time. With `--wheel` it builds the wheel, installs it with its extra in an
-environment of its own, and runs everything there, with no checkout on the path. A cell that fails, and a check that
-does not say what it should, fail the run: "right" with our solutions, "not answered" without. A lecture that takes over
-90 s of processor time, its worker processes included, is pointed out: that does not depend on what else runs.
+default all, of both versions, two at a time. With `--wheel` everything runs in the environment of `make wheel`, to
+which the wheel's extra is added, with no checkout on the path. A cell that fails, and a check that does not say what it
+should, fail the run: "right" with our solutions, "not answered" without. A lecture that takes over 90 s of processor
+time, its worker processes included, is pointed out: that does not depend on what else runs.
 """
 
 from __future__ import annotations
@@ -15,7 +15,6 @@ import subprocess
 import sys
 import tempfile
 import time
-import venv
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -75,15 +74,12 @@ def run(versions: list[str], numbers: list[str]) -> int:
 
 
 def run_from_wheel(arguments: list[str]) -> int:
-    """Build the wheel, install it in an environment of its own, and run this file there, away from the checkout."""
+    """Run this file where the wheel is installed, away from the checkout."""
     root = Path(__file__).resolve().parent.parent
+    python, wheel = str(root / ".venv-wheel/bin/python"), next((root / "dist").glob("flockana-*.whl"))
+    pip = [python, "-m", "pip", "--quiet", "--disable-pip-version-check"]
+    subprocess.run([*pip, "install", f"{wheel}[course]", "nbclient>=0.10"], check=True)
     with tempfile.TemporaryDirectory() as folder:
-        pip = ["-m", "pip", "--quiet", "--disable-pip-version-check"]
-        subprocess.run([sys.executable, *pip, "wheel", "--no-deps", "--wheel-dir", folder, str(root)], check=True)
-        venv.create(Path(folder, "venv"), with_pip=True)
-        python = str(Path(folder, "venv", "bin", "python"))
-        wheel = next(Path(folder).glob("flockana-*.whl"))
-        subprocess.run([python, *pip, "install", f"{wheel}[course]", "nbclient>=0.10"], check=True)
         alone = shutil.copy(__file__, folder)
         plain = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
         return subprocess.run([python, alone, *arguments], cwd=folder, env=plain, check=False).returncode
