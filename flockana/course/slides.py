@@ -18,7 +18,7 @@ from flockana.course.build import copy_companions, notebook, sources, tags
 _LEFT_OUT = {"exercise", "answer", "check", "install"}
 _HEADING = re.compile(r"(?m)^(?=##? )")
 _STYLE = """<style>
-.reveal .slides section:not(.stack) { max-height: 700px; overflow-y: auto; overflow-x: hidden; }
+.reveal .slides section:not(.stack) { box-sizing: border-box; max-height: 700px; overflow: hidden auto; }
 .reveal .slides pre { white-space: pre-wrap !important; overflow-wrap: anywhere; font-size: 12px; line-height: 1.35; }
 .reveal .slides .jp-OutputArea-output :is(img, svg) { max-width: 100%; max-height: 400px; }
 .reveal .slides :is(.MathJax_Display, mjx-container[display="true"]) { overflow-x: auto; overflow-y: hidden; }
