@@ -57,8 +57,8 @@ slider(with_range, kappas, name="κ", title="links of a patch of the hexagonal l
 # ## Theorem 5
 #
 # > **Theorem 5** (Olfati-Saber 2006). Let $q$ be an α-lattice of scale $d > 0$ and ratio $\kappa > 1$ with distinct
-# > nodes. Then (i) its net is planar, $m = 2, 3$; (ii) it has at most $3n - 6$ links, $m = 2$, $n \ge 3$; (iii) with $n
-# > > m + 1$ nodes it is not complete, $m = 1, 2, 3$.
+# > nodes. Then (i) its net is planar, $m = 2, 3$; (ii) it has at most $3n - 6$ links, $m = 2$, $n \ge 3$; (iii) with
+# > $n > m + 1$ nodes it is not complete, $m = 1, 2, 3$.
 #
 # In the plane (i) holds: if two links crossed, each of the length $d$, two of their ends would be at most $d/\sqrt2$
 # apart, hence neighbours, and neighbours are exactly $d$ apart. In space it is false (below). The sharp bound in (ii)

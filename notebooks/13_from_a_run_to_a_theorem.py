@@ -49,9 +49,9 @@ _ = plots.measure(run, "normalised_velocity_mismatch")
 #
 # $$U - U^* \ge G(\|w\|), \qquad \langle\nabla U, w\rangle \ge \|w\|\,G'(\|w\|).$$
 #
-# > **Theorem.** Within the distance $\rho$ of the orbit let all curvatures as above be bounded below by $k$, with $G' >
-# > 0$ on $(0, \rho]$, and let $c_2^\gamma > 0$. Then every solution that starts at most $\rho$ from the orbit with an
-# > energy $U + \tfrac12\|v\|^2$ below $U^* + G(\rho)$ stays so near, and converges to the orbit with matched
+# > **Theorem.** Within the distance $\rho$ of the orbit let all curvatures as above be bounded below by $k$, with
+# > $G' > 0$ on $(0, \rho]$, and let $c_2^\gamma > 0$. Then every solution that starts at most $\rho$ from the orbit
+# > with an energy $U + \tfrac12\|v\|^2$ below $U^* + G(\rho)$ stays so near, and converges to the orbit with matched
 # > velocities.
 #
 # For a state at the distance $\rho$ has at least the energy $U^* + G(\rho)$, which a start with less never reaches,

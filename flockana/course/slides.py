@@ -1,4 +1,8 @@
-"""Lectures as slides: a slide for each heading, the cells of a paragraph below it, exercises left out."""
+"""Lectures as slides: one for each heading and, below it, one for each cell; exercises left out.
+
+A slide has a fixed height, and nothing may be cut off: code and what it puts out have slides of their own, long lines
+are broken, figures are no larger than the slide, and what is still taller is scrolled.
+"""
 
 from __future__ import annotations
 
@@ -13,6 +17,12 @@ from flockana.course.build import copy_companions, notebook, sources, tags
 
 _LEFT_OUT = {"exercise", "answer", "check", "install"}
 _HEADING = re.compile(r"(?m)^(?=##? )")
+_STYLE = """<style>
+.reveal .slides section:not(.stack) { box-sizing: border-box; max-height: 700px; overflow: hidden auto; }
+.reveal .slides pre { white-space: pre-wrap !important; overflow-wrap: anywhere; font-size: 12px; line-height: 1.35; }
+.reveal .slides .jp-OutputArea-output :is(img, svg) { max-width: 100%; max-height: 400px; }
+.reveal .slides :is(.MathJax_Display, mjx-container[display="true"]) { overflow-x: auto; overflow-y: hidden; }
+</style>"""
 
 
 def slides(source: Path) -> Any:
@@ -29,6 +39,7 @@ def slides(source: Path) -> Any:
     """
     book = notebook(source, "student")
     book.cells = [part for cell in book.cells if not _LEFT_OUT & set(tags(cell)) for part in _parts(cell)]
+    book.cells[0].source += f"\n\n{_STYLE}"
     for number, cell in enumerate(book.cells):
         cell["id"] = f"{source.stem[:3].strip('_')}-slide-{number:03d}"
         cell.metadata["slideshow"] = {"slide_type": _kind(cell)}
@@ -46,7 +57,7 @@ def _parts(cell: Any) -> Iterator[Any]:
 
 def _kind(cell: Any) -> str:
     if cell.cell_type != "markdown":
-        return "-"  # with the text above it
+        return "subslide"
     if cell.source.startswith("**Lectures before this one:**"):
         return "skip"
     return "slide" if cell.source.startswith("#") else "subslide"

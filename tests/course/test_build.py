@@ -134,6 +134,7 @@ def test_a_lecture_says_what_it_needs_aims_at_and_rests_on(source):
     summed_up = "## How it is marked" if number_of(source).startswith("A") else "## Summary"
     assert sum(summed_up in text for text in texts) == 1
     assert not [text for text in texts if re.search(r"[.;,] - [A-Z]", text)]  # an item of a list that has lost its line
+    assert "\n> >" not in "".join(texts)  # a "greater than" that begins a line of a quotation
     assert "## References\n\n- " in texts[-1]
     assert "## Further reading\n\n- " in texts[-1]
 

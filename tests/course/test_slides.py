@@ -21,6 +21,9 @@ def test_a_slide_for_each_heading_and_all_that_is_shown(source):
     expected = re.findall(r"(?m)^# (##? .+)$", text)
     assert [head for head in heads if head in expected] == expected
     assert kinds[0] == "slide"
+    below = [kind for kind, cell in zip(kinds, book.cells, strict=True) if cell.cell_type == "code"]
+    assert set(below) == {"subslide"}  # beside its text a figure does not fit
+    assert book.cells[0].source.rstrip().endswith("</style>")
     assert kinds.count("skip") == 1
     assert len(expected) + 2 == kinds.count("slide")  # references and further reading
     shown = [cell.source for cell in build.notebook(source, "student").cells if not build.tags(cell)]
