@@ -4,8 +4,9 @@ Compiled code checks neither bounds nor types: an array's name that is bound aga
 that counts with a name that is still in use, once made a kernel read beyond an array. In each function that numba
 compiles, or that is inlined into one, this looks for
 
-- an argument, or an array made here, that is bound again other than to what it was (a sum, a scaled copy of itself);
-- a loop's variable that is also an argument, an array, or the variable of a loop around it;
+- an array, given or made here, that becomes a number, or a number that becomes one; an array that is given and is
+  replaced by one made here;
+- a loop's variable that is also an argument, an array, or the variable of a loop around it, or bound in the loop;
 - tuple targets that bind one name twice.
 
 Exit status 0 if there is none, 1 with one line per finding if there is.
@@ -42,13 +43,14 @@ def _compiled(function: Function) -> bool:
 def _of_function(function: Function) -> Iterator[Finding]:
     given = function.args
     arguments = {each.arg for each in (*given.posonlyargs, *given.args, *given.kwonlyargs)}
-    kinds: dict[str, str] = {}
+    indexed = {getattr(node.value, "id", "") for node in ast.walk(function) if isinstance(node, ast.Subscript)}
+    kinds = dict.fromkeys(arguments & indexed, "an array")
     for node in _own_nodes(function):
         if isinstance(node, ast.Assign):
             for target in node.targets:
                 yield from _twice(target)
-                if isinstance(target, ast.Name):
-                    yield from _bound_again(target, node.value, arguments, kinds)
+                for name, value in _pairs(target, node.value):
+                    yield from _bound_again(name, value, arguments, kinds)
     yield from _loops(function, arguments | {name for name, kind in kinds.items() if kind == "an array"}, ())
 
 
@@ -68,15 +70,22 @@ def _twice(target: ast.expr) -> Iterator[Finding]:
         yield target.lineno, f"{name} is bound twice at once"
 
 
+def _pairs(target: ast.expr, value: ast.expr) -> Iterator[tuple[ast.Name, ast.expr]]:
+    """Names with what each of them is bound to."""
+    if isinstance(target, ast.Name):
+        yield target, value
+    elif isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple) and len(target.elts) == len(value.elts):
+        for pair in zip(target.elts, value.elts, strict=True):
+            yield from _pairs(*pair)
+
+
 def _bound_again(target: ast.Name, value: ast.expr, arguments: set[str], kinds: dict[str, str]) -> Iterator[Finding]:
     name, kind = target.id, _kind(value)
-    itself = any(isinstance(node, ast.Name) and node.id == name for node in ast.walk(value))
     before = kinds.setdefault(name, kind)
-    known = {before, kind} <= {"an array", "a number"}
-    if known and before != kind:
+    if {before, kind} == {"an array", "a number"}:
         yield target.lineno, f"{name} is {before}, and then {kind}"
-    elif name in arguments and not itself and kind != "unknown":
-        yield target.lineno, f"the argument {name} is bound again, to {kind}"
+    elif name in arguments and kind == before == "an array":
+        yield target.lineno, f"the argument {name} is bound again, to an array of its own"
 
 
 def _kind(value: ast.expr) -> str:
@@ -92,9 +101,10 @@ def _kind(value: ast.expr) -> str:
 
 def _loops(node: ast.AST, taken: set[str], around: tuple[str, ...]) -> Iterator[Finding]:
     for child in ast.iter_child_nodes(node):
-        inner = around
         if isinstance(child, Function | ast.Lambda):
             continue
+        if isinstance(child, ast.Name) and isinstance(child.ctx, ast.Store) and child.id in around:
+            yield child.lineno, f"{child.id} is bound in the loop that counts with it"
         if isinstance(child, ast.For):
             names = [each.id for each in ast.walk(child.target) if isinstance(each, ast.Name) and each.id != "_"]
             for name in names:
@@ -102,8 +112,10 @@ def _loops(node: ast.AST, taken: set[str], around: tuple[str, ...]) -> Iterator[
                     yield child.lineno, f"the loop counts with {name}, an argument or an array"
                 if name in around:
                     yield child.lineno, f"the loop counts with {name}, as a loop around it does"
-            inner = (*around, *names)
-        yield from _loops(child, taken, inner)
+            body = ast.Module([*child.body, *child.orelse], [])
+            yield from _loops(body, taken, (*around, *names))
+            continue
+        yield from _loops(child, taken, around)
 
 
 def main() -> int:
@@ -111,7 +123,7 @@ def main() -> int:
     root = Path(__file__).resolve().parents[1]
     paths = (path for room in ROOMS for path in sorted((root / "flockana" / room).rglob("*.py")))
     lines = [f"{path.relative_to(root)}:{line}: {text}" for path in paths for line, text in findings(path.read_text())]
-    print("\n".join(lines) or "no name of a compiled function stands for two things")
+    sys.stdout.write("\n".join(lines or ["no name of a compiled function stands for two things"]) + "\n")
     return 1 if lines else 0
 
 
