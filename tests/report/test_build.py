@@ -93,6 +93,15 @@ def read(path):
     return checker
 
 
+def test_the_error_is_shown_beside_every_margin(result, tmp_path):
+    """Of hypotheses and of claims alike; one without an error says so."""
+    text = write_report([result], tmp_path, seed=5, seconds=1.5).read_text(encoding="utf-8")
+    for shown in (f'{show(-2.0)}<br><span class="muted">± {show(0.125)}</span>', f">± {show(1e-9)}</td>"):
+        assert shown in text
+    claims = text.split('<table class="claims">')[1:]
+    assert all('<th class="number">margin</th><th class="number">± error</th>' in table for table in claims)
+
+
 def test_the_page_is_whole_self_contained_and_escaped(result, tmp_path):
     written = write_report(
         [result, FixedResult(theorem("E8"), verify("E8"))], tmp_path / "new" / "folder", seed=5, seconds=1.5

@@ -218,7 +218,9 @@ class Guarantee:
         margin = seen / rate - 1.0
         known = 2.0 * self.run.law.weight.decay * self._error / (rate * max(self.bound, self.run.law.weight.length))
         with np.errstate(over="ignore"):  # at the threshold x_M is anything, and the error infinite
-            error = (self._blur[1] * (1.0 / v + 1.0 / self.v[0]) + 4.0 * EPS) / (t * rate) + known * (1.0 + seen / rate)
+            error = (self._blur[1] * (1.0 / v + 1.0 / self.v[0]) + 4.0 * EPS) / (t * rate) + known * (
+                1.0 + np.abs(seen) / rate
+            )
         k = int(np.argmin(margin + error))
         if margin[k] + error[k] >= 0.0:
             k = int(np.argmin(margin - error))
