@@ -245,3 +245,9 @@ def test_the_barrier_of_collisions_counts_with_its_gain():
         data = tube_certificate(tube)
         assert data["below_c_star"] is below
         assert check_data(json.loads(json.dumps(data))).kind == "tube"
+
+
+def test_a_basin_of_more_agents_is_another_flock_s(data, monkeypatch):
+    larger = {**data, "basin": {**data["basin"], "positions": [*data["basin"]["positions"], ["0x0p+0"]]}}
+    with pytest.raises(RejectedError, match="a basin of another flock"):
+        ends_in(monkeypatch, larger, rest_of(data), np.zeros((2, 1)))
