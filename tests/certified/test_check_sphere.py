@@ -127,6 +127,12 @@ def test_a_sphere_left_out_or_turned_is_rejected(data):
         check_data(resealed(altered(data, "law", "spheres", 0, "radius", change=lambda radius: f"-{radius}")))
 
 
+def test_no_basin_among_spheres_is_believed(data):
+    """Basins are those of Algorithms 1 and 2."""
+    with pytest.raises(RejectedError, match="a basin of Algorithm 3"):
+        check_data(resealed(altered(data, "basin", change=lambda none: {"kind": "basin"})))
+
+
 def test_a_moving_target_has_no_certificate():
     moving = replace(LAW, target=LinearTarget((4.0, 2.0), (1.0, 0.0)))
     with pytest.raises(ArgumentError, match="expected a γ-agent at rest"):

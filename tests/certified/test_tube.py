@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from types import SimpleNamespace
+
 import pytest
 from flint import arb, ctx
 
@@ -61,6 +64,9 @@ def test_the_least_clearance_is_attained():
     still = enclose(law, [[0.0, 4.0], [60.0, 40.0]], [[0.0, 0.0], [0.0, 0.0]], (0.0, 0.5)).min_clearance()
     assert (still.agent, still.obstacle) == (0, 1)
     assert 3.0 - 1e-12 < still.lower <= 3.0
+    start = replace(tube, t=tube.t[:1], sets=tube.sets[:1], taken=()).min_clearance()  # it broke at once
+    assert (start.agent, start.obstacle, start.time) == (0, 1, 0.0)
+    assert 13.0**0.5 - 1.0 - 1e-12 < start.lower <= 13.0**0.5 - 1.0
 
 
 @pytest.mark.parametrize(("number", "by"), [(1, 3), (-1, 3), (2, 3), (10**30, 7), (0, 1)])
@@ -69,3 +75,9 @@ def test_floats_are_on_the_safe_side(number, by):
     x = arb(number) / by
     assert arb(down(x)) < x < arb(up(x))
     assert up(x) - down(x) <= 2.0**-51 * abs(float(x)) + 1e-300
+
+
+def test_a_tube_ends_in_a_basin_of_its_own_law_only(meeting):
+    for law, inside in ((Algorithm1(), True), (Algorithm1(gains=Gains(c1_alpha=29.0)), False)):
+        assert meeting.ends_in(SimpleNamespace(law=law, holds=lambda q, p: True)) is inside
+    assert not meeting.ends_in(SimpleNamespace(law=Algorithm1(), holds=lambda q, p: False))

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from flint import arb, ctx
 
-from flockana import Algorithm1, Algorithm2, StaticTarget, certify, check_certificate, enclose, find_equilibrium
+from flockana import Algorithm1, Algorithm2, Gains, StaticTarget, certify, check_certificate, enclose, find_equilibrium
 from flockana.base.errors import ArgumentError
 from flockana.base.seals import sealed
 from flockana.certified import check_tube
@@ -96,6 +96,11 @@ def bits(value):
         *((("paths", 2, 1, k), bits, "the error may exceed") for k in range(4)),
         (("times", 3), bits, "the error may exceed"),
         (("errors", 4), lambda e: repr(float(e) / 10.0), "the error may exceed what is stated"),
+        (
+            ("errors", 4),
+            lambda e: repr(float(e) / 2.05),
+            "the error may exceed what is stated",
+        ),  # it was twice the last
         (("errors", 4), lambda e: repr(float(e) * 1e12), "is not the one proved|may exceed"),
         *(
             (("law", name), more, "the error may exceed")
@@ -110,6 +115,8 @@ def bits(value):
         (("energy",), more, "the energy at the start"),
         (("below_c_star",), lambda holds: not holds, "H\\(0\\) < c"),
         (("basin", "radius"), more, "."),
+        (("weight",), lambda w: f"-{w}", "the weight is not positive"),
+        (("weight",), lambda w: "0", "the weight is not positive"),
     ],
 )
 def test_what_was_sealed_again_is_decided_by_the_mathematics(data, at, change, message):
@@ -222,3 +229,25 @@ def test_the_end_of_a_run_is_compared_with_the_equilibrium_turned(monkeypatch, a
     assert len(ends_in(monkeypatch, data, turned, 0.0 * turned, turn=angle)) == 1
     with pytest.raises(RejectedError, match="the end may be too far"):
         ends_in(monkeypatch, data, turned, 0.0 * turned, turn=-angle)
+
+
+def test_times_that_do_not_rise_are_rejected(data):
+    for other in (data["times"][2], data["times"][1]):
+        with pytest.raises(RejectedError, match="its times do not rise"):
+            check_data(resealed(with_leaf(data, ("times", 3), lambda _, other=other: other)))
+
+
+def test_the_barrier_of_collisions_counts_with_its_gain():
+    """H(0) < c1α c*, c* = 52.4: of two agents that meet with a kinetic energy of 100, and c1α = 30 or 1."""
+    for gain, below in ((30.0, True), (1.0, False)):
+        law = Algorithm1(gains=Gains(c1_alpha=gain, c2_alpha=1.0))
+        tube = enclose(law, [[0.0], [7.0]], [[10.0], [-10.0]], (0.0, 0.0009765625))
+        data = tube_certificate(tube)
+        assert data["below_c_star"] is below
+        assert check_data(json.loads(json.dumps(data))).kind == "tube"
+
+
+def test_a_basin_of_more_agents_is_another_flock_s(data, monkeypatch):
+    larger = {**data, "basin": {**data["basin"], "positions": [*data["basin"]["positions"], ["0x0p+0"]]}}
+    with pytest.raises(RejectedError, match="a basin of another flock"):
+        ends_in(monkeypatch, larger, rest_of(data), np.zeros((2, 1)))

@@ -10,4 +10,5 @@ def test_the_stand_off(verdict_of):
     assert claim.computed.keys() == claim.stated.keys()
     for case, distance in claim.computed.items():
         assert distance == pytest.approx(claim.stated[case], abs=1e-9)
+    assert 0.9e-6 < claim.margin <= 1e-6  # what is left of 1e-6, in units of c
     assert abs(verdict_of("J12").claim("contact").computed["distance from the wall"]) < 1e-6

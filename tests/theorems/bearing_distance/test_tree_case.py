@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import both_ways, edge_vectors, random_out_tree
 from flockana.stability import linearise
-from flockana.theorems.bearing_distance.tree_case import characteristic_residual, tree_case
+from flockana.theorems.bearing_distance.tree_case import characteristic_residual, length_error, tree_case
 
 STAR, CHAIN, MIXED = ((0, 1), (0, 2), (0, 3)), ((0, 1), (1, 2), (2, 3)), ((0, 1), (1, 2), (1, 3), (0, 4))
 
@@ -81,3 +83,11 @@ def test_no_tree_no_case():
         tree_case(MinimalFlocking(edges=both_ways([(0, 1), (1, 2), (2, 0)]), spacing=1.0, normalised=False), 3) is None
     )
     assert tree_case(MinimalFlocking(edges=((0, 1),)), 3) is None  # agent 2 stands apart
+
+
+@pytest.mark.parametrize(("far", "shortest"), [(1000.0, 1.0), (1000.0, 0.5), (3.0, 4.0)])
+def test_lengths_round_by_how_far_from_the_origin_agents_are(far, shortest):
+    """Eight roundings of a length, and of positions in units of the shortest edge."""
+    run = SimpleNamespace(q=np.array([[[0.0, 1.0], [-far, 0.0]]]))
+    case = SimpleNamespace(rho=np.array([2.0 * shortest, shortest]))
+    assert length_error(case, run) == pytest.approx(8.0 * 2.0**-52 * (1.0 + far / shortest), rel=1e-14)
