@@ -16,11 +16,12 @@ test: .venv/.dev  ## the whole test suite
 attack: .venv/.dev  ## attack the verdicts with thousands of new cases, for hours; ATTACK=N examples a test
 	$(BIN)/python -m pytest tests/adversarial --attack=$(or $(ATTACK),2000) -n 2
 
-check: .venv/.dev  ## format, lint, types, import direction, the coverage page
+check: .venv/.dev  ## format, lint, types, import direction, names in compiled code, the coverage page
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/python tools/import_lint.py
+	$(BIN)/python tools/rebinding_lint.py
 	$(BIN)/python -m tools.coverage_page --check
 
 bench: .venv/.dev  ## measure everything, write report/performance; OPTIONS="--quick" or "--out docs"
