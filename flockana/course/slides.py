@@ -17,9 +17,10 @@ from flockana.course.build import copy_companions, notebook, sources, tags
 
 _LEFT_OUT = {"exercise", "answer", "check", "install"}
 _HEADING = re.compile(r"(?m)^(?=##? )")
+_A_LINE = 240  # characters of a text that need no slide to themselves
 _STYLE = """<style>
 .reveal .slides section:not(.stack) { box-sizing: border-box; max-height: 700px; overflow: hidden auto; }
-.reveal .slides pre { white-space: pre-wrap !important; overflow-wrap: anywhere; font-size: 12px; line-height: 1.35; }
+.reveal .slides pre { white-space: pre-wrap !important; overflow-wrap: anywhere; font-size: 12px !important; }
 .reveal .slides .jp-OutputArea-output :is(img, svg) { max-width: 100%; max-height: 400px; }
 .reveal .slides :is(.MathJax_Display, mjx-container[display="true"]) { overflow-x: auto; overflow-y: hidden; }
 </style>"""
@@ -40,9 +41,9 @@ def slides(source: Path) -> Any:
     book = notebook(source, "student")
     book.cells = [part for cell in book.cells if not _LEFT_OUT & set(tags(cell)) for part in _parts(cell)]
     book.cells[0].source += f"\n\n{_STYLE}"
-    for number, cell in enumerate(book.cells):
+    for number, (before, cell) in enumerate(zip([None, *book.cells], book.cells, strict=False)):
         cell["id"] = f"{source.stem[:3].strip('_')}-slide-{number:03d}"
-        cell.metadata["slideshow"] = {"slide_type": _kind(cell)}
+        cell.metadata["slideshow"] = {"slide_type": _kind(cell, before)}
     return book
 
 
@@ -55,9 +56,10 @@ def _parts(cell: Any) -> Iterator[Any]:
         yield nbformat.v4.new_markdown_cell(text.strip())
 
 
-def _kind(cell: Any) -> str:
+def _kind(cell: Any, before: Any) -> str:
     if cell.cell_type != "markdown":
-        return "subslide"
+        leads = before.cell_type == "markdown" and not before.source.startswith("#")
+        return "-" if leads and len(before.source) <= _A_LINE else "subslide"
     if cell.source.startswith("**Lectures before this one:**"):
         return "skip"
     return "slide" if cell.source.startswith("#") else "subslide"
