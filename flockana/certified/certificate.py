@@ -14,6 +14,7 @@ from typing import Any
 from flint import fmpq
 
 from flockana._version import __version__
+from flockana.base.errors import ArgumentError
 from flockana.base.files import write_whole
 from flockana.base.seals import sealed
 from flockana.certified.basin import Basin
@@ -22,7 +23,7 @@ from flockana.certified.statements import BASIN, BASIN_PROSE, FORMAT
 
 
 def basin_certificate(basin: Basin) -> dict[str, Any]:
-    """The certificate as plain data, with its digest.
+    """The certificate as plain data, with its digest; `ArgumentError` of what is no basin.
 
     Examples
     --------
@@ -31,6 +32,8 @@ def basin_certificate(basin: Basin) -> dict[str, Any]:
     >>> basin_certificate(certify([[0.0], [7.0]], law=Algorithm1()))["kind"]
     'basin'
     """
+    if not isinstance(basin, Basin):
+        raise ArgumentError(f"basin = {basin!r}: expected a basin, as certify(...) gives it")
     proof = basin.proof
     u, shells, bounds, found = proof.structure, proof.shells, proof.bounds, proof.decay
     parameters = {name: written(getattr(u.par, name)) for name in ("d", "r", "eps", "h", "a", "b")}
@@ -75,6 +78,13 @@ def write_certificate(basin: Basin, path: str | Path) -> None:
         Of `certify`.
     path : str or Path
         File, usually .json.
+
+    Raises
+    ------
+    ArgumentError
+        If it is no basin.
+    FileError
+        If the file cannot be written.
     """
     write_whole(path, json.dumps(basin_certificate(basin), indent=1) + "\n")
 

@@ -121,6 +121,13 @@ def ensure(holds: bool, otherwise: str) -> None:
         raise RejectedError(otherwise)
 
 
+def whole(value: Any) -> int:
+    """The whole number that is stated, which 1.5, "1" and true are not."""
+    ensure(type(value) is int, f"{value!r}: expected a whole number")
+    number: int = value
+    return number
+
+
 def unit(stated: Fraction, digits: int) -> Fraction:
     """One in the last of so many significant digits of a stated number."""
     exponent = 0

@@ -78,11 +78,22 @@ def write_tube_certificate(tube: Tube, path: str | Path, *, basin: Basin | None 
         File, usually .json.
     basin : Basin, optional
         In which it ends.
+
+    Raises
+    ------
+    ArgumentError
+        On a tube of which there is no certificate.
+    FileError
+        If the file cannot be written.
     """
     write_whole(path, json.dumps(tube_certificate(tube, basin=basin), indent=1) + "\n")
 
 
 def _ensure_certifiable(tube: Tube, basin: Basin | None) -> None:
+    if not isinstance(tube, Tube):
+        raise ArgumentError(f"tube = {tube!r}: expected a tube, as enclose(...) gives it")
+    if not isinstance(basin, Basin | None):
+        raise ArgumentError(f"basin = {basin!r}: expected a basin, as certify(...) gives it, or None")
     law: Any = tube.law
     if law.alpha.unit != 1.0 or (isinstance(law, Algorithm3) and law.beta.unit != 1.0):
         raise ArgumentError(f"law = {law!r}: expected Algorithm1, 2 or 3 with unit = 1")

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from flockana.base.errors import ArgumentError
+from flockana.base.errors import ArgumentError, FileError
 from flockana.cli.show import show_files
 from flockana.cli.status import OK
 
@@ -41,10 +41,17 @@ def course_command(
         from flockana.course.slides import write_slides
     except ModuleNotFoundError as error:
         raise ArgumentError(f"{error.name} is not installed: pip install 'flockana[course]'") from error
-    if grader is not None:
-        notebooks = write_for(folder, grader)
-    else:
-        notebooks = write_slides(folder) if slides else write(folder, version)
+    from flockana.report.build import ensure_directory
+
+    ensure_directory(folder)
+    try:
+        if grader is not None:
+            notebooks = write_for(folder, grader)
+        else:
+            notebooks = write_slides(folder) if slides else write(folder, version)
+    except OSError as error:
+        reason = error.strerror or "some of its files could not be copied"  # as shutil tells it
+        raise FileError(f"cannot write all of the course to {folder}: {reason}; choose another folder") from error
     for written in notebooks:
         show_files(notebook=written)
     return OK

@@ -66,10 +66,13 @@ def prove_command(
 
 
 def _module(name: str) -> Any:
-    """A module of the checkout's `proofs`, which is no part of the installed package."""
+    """A module of the checkout's `proofs`, which is no part of the installed package.
+
+    A course's folder has a `proofs` too, without what runs them, and may come first where modules are looked for.
+    """
     for root in (Path(__file__).parents[2], Path.cwd()):
-        if (root / "proofs" / "proof.py").is_file():
-            if str(root) not in sys.path:
+        if (root / "proofs" / "run.py").is_file():
+            if sys.path[:1] != [str(root)]:
                 sys.path.insert(0, str(root))
             return importlib.import_module(f"proofs.{name}")
     raise ArgumentError(

@@ -6,6 +6,8 @@ and go between samples, so predicates about nets speak of the sampled times.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import numpy.typing as npt
 
@@ -16,7 +18,8 @@ from flockana.dynamics.trajectory import Trajectory
 BoolArray = npt.NDArray[np.bool_]
 
 
-def _ensure_run(trajectory: Trajectory) -> Trajectory:
+def ensure_run(trajectory: Any) -> Trajectory:
+    """Return what is a run, or raise `ArgumentError`."""
     if not isinstance(trajectory, Trajectory):
         raise ArgumentError(f"trajectory = {trajectory!r}: expected a run, as simulate(...) gives it")
     return trajectory
@@ -30,7 +33,7 @@ def is_flock(trajectory: Trajectory) -> BoolArray:
     trajectory : Trajectory
         A run of a law with an interaction range.
     """
-    result: BoolArray = _ensure_run(trajectory).metrics().connectivity.values == 1.0
+    result: BoolArray = ensure_run(trajectory).metrics().connectivity.values == 1.0
     return result
 
 
@@ -51,7 +54,7 @@ def is_quasi_flock(trajectory: Trajectory, *, share: float = 0.5) -> BoolArray:
     """
     if (giant := ensure_nonnegative("share", share)) >= 1.0:
         raise ArgumentError(f"share = {giant:g}: expected a share from 0 to below 1, such as 0.5")
-    result: BoolArray = _ensure_run(trajectory).metrics().giant_share.values > giant
+    result: BoolArray = ensure_run(trajectory).metrics().giant_share.values > giant
     return result
 
 
@@ -65,7 +68,7 @@ def is_cohesive(trajectory: Trajectory, radius: float) -> bool:
     radius : float
         In the unit of q.
     """
-    return bool(_ensure_run(trajectory).metrics().cohesion_radius.max() <= ensure_positive("radius", radius))
+    return bool(ensure_run(trajectory).metrics().cohesion_radius.max() <= ensure_positive("radius", radius))
 
 
 def is_dynamic_flock(trajectory: Trajectory) -> bool:

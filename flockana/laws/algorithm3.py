@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
+from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.environment.beta import ObstacleField
 from flockana.environment.obstacles import Obstacle
@@ -27,7 +28,10 @@ def ensure_obstacles(given: Any) -> tuple[Obstacle, ...]:
     >>> ensure_obstacles([])
     ()
     """
-    ensure_part("obstacles", given, Iterable, "a sequence such as (Sphere((5, 0), 1),)")
+    expected = "a sequence such as (Sphere((5, 0), 1),)"
+    ensure_part("obstacles", given, Iterable, expected)
+    if getattr(given, "ndim", 1) == 0:  # numpy's numbers are iterable by their type alone
+        raise ArgumentError(f"obstacles = {given!r}: expected {expected}")
     obstacles = tuple(given)
     for k, obstacle in enumerate(obstacles):
         ensure_part(f"obstacles[{k}]", obstacle, Obstacle, "an obstacle such as Sphere((5, 0), 1)")

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-import numpy as np
-
-from flockana.base.checks import ensure_count
+from flockana.base.checks import ensure_count, ensure_fits, ensure_links
 from flockana.base.errors import ArgumentError
 from flockana.measures.measure import Measure
 from flockana.measures.nets import LinkArray, links
@@ -31,16 +29,24 @@ def joint_windows(n: int, nets: Iterable[LinkArray]) -> tuple[tuple[int, int], .
     tuple of (int, int)
         First instant of each window and the first after it.
 
+    Raises
+    ------
+    ArgumentError
+        If n is no whole number >= 1 or too large, or nets are no sequence of links among agents 0 … n − 1.
+
     Examples
     --------
-    >>> one, other, none = np.array([[0, 1]]), np.array([[1, 2]]), np.empty((0, 2), dtype=int)
+    >>> one, other, none = [[0, 1]], [[1, 2]], []
     >>> joint_windows(3, [one, other, none, other, one, none])
     ((0, 2), (2, 5))
     """
     n = ensure_count("n", n)
+    ensure_fits(f"what is told of n = {n} agents,", (5, n), "ask for fewer agents")
+    if not isinstance(nets, Iterable) or isinstance(nets, str | bytes) or getattr(nets, "ndim", 1) == 0:
+        raise ArgumentError(f"nets = {nets!r}: expected the links at each instant, such as [[[0, 1]], [[1, 2]]]")
     windows, start, leader, parts = [], 0, list(range(n)), n
     for k, net in enumerate(nets):
-        for i, j in np.asarray(net).tolist():
+        for i, j in ensure_links(net, n).tolist():
             one, other = _root(leader, i), _root(leader, j)
             if one != other:
                 leader[one], parts = other, parts - 1

@@ -16,6 +16,7 @@ from flockana.base.checks import FloatArray, ensure_positive
 from flockana.base.errors import ArgumentError, FileError
 from flockana.base.files import ensure_path, ensure_target, replacing
 from flockana.base.interrupts import interrupts_held
+from flockana.dynamics.predicates import ensure_run
 from flockana.laws.discrete import DiscreteLaw
 from flockana.plots.snapshot import drawn_law, in_view, snapshot
 from flockana.plots.style import style
@@ -80,12 +81,13 @@ def animation(
     Raises
     ------
     ArgumentError
-        If seconds or fps is not positive, or they ask for too many frames.
+        If it is no run, seconds or fps is not positive, or they ask for too many frames.
     """
     from matplotlib.animation import FuncAnimation
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
+    ensure_run(trajectory)
     frames = frame_count(seconds, fps)
     film, view = equal_times(trajectory, frames), film_view(trajectory)
     times = np.linspace(trajectory.t[0], trajectory.t[-1], frames)  # of a map, some frames may show the same step
@@ -144,7 +146,7 @@ def animate(
     Raises
     ------
     ArgumentError
-        On a bad file name, or bad seconds or fps.
+        If it is no run; on a bad file name, or bad seconds or fps.
     FileError
         If the file cannot be written, or ffmpeg is missing.
     """

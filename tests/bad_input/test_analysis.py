@@ -112,6 +112,9 @@ def cases():
     yield "clopper_pearson level", POSITIVE | {"per cent": 95.0}, lambda v: fl.clopper_pearson(1, 3, level=v)
     yield "shares", {"none": None, "a number": 3}, fl.shares
     yield "cite", OTHERS, fl.cite
+    runs = OTHERS | {"a list": [], "a law": LAW}
+    yield "animate", runs, lambda v: fl.animate(v, "it.gif")
+    yield "compose obstacles", OTHERS | {"no axis": np.array(1.0)}, lambda v: fl.compose(obstacles=v)
 
 
 @pytest.mark.parametrize(("table", "call"), rows(cases()))

@@ -43,6 +43,7 @@ OUTPUTS = [
     ("ensemble", "three-agents-1d", "--seeds", 1, "--theorem", "energy", "--jobs", 1, "-o", "it.nc"),
     ("animate", "tiny", "-o", "it.gif", "--seconds", "0.2"),
 ]
+NO_FOLDER = ["/dev/null", "/proc/it", "a-file"]
 
 
 def outputs():
@@ -64,6 +65,31 @@ def test_a_full_disk_is_one_line_and_the_old_file_stays(call, request, tmp_path,
     assert out or arguments[0] == "animate"  # what was computed is told
     assert (tmp_path / name).read_text() == "good"
     assert os.listdir(tmp_path) == [name]
+
+
+@posix
+@pytest.mark.parametrize("folder", NO_FOLDER)
+@pytest.mark.parametrize("kind", [(), ("--slides",), ("--grader", "otter")], ids=" ".join)
+def test_a_course_goes_to_a_folder(refused, tmp_path, folder, kind):
+    (tmp_path / "a-file").write_text("good")
+    refused("choose a folder you may write to", "course", folder, *kind)
+    assert (tmp_path / "a-file").read_text() == "good"
+
+
+@posix
+def test_a_course_that_does_not_fit_is_one_line(call):
+    with full_disk(2000):
+        code, _, err = call("course", "lectures")
+    assert (code, err.count("\n"), "cannot write all of the course to lectures: " in err) == (2, 1, True)
+
+
+def test_proofs_are_not_looked_for_in_a_course_s_folder(tmp_path):
+    """It has a `proofs` too, for students' own, and `python -m` looks there first."""
+    (tmp_path / "proofs").mkdir()
+    (tmp_path / "proofs" / "__init__.py").touch()
+    (tmp_path / "proofs" / "proof.py").touch()
+    done = command("prove", "no-such", folder=tmp_path)
+    assert (done.returncode, b"unknown proof 'no-such'" in done.stderr) == (2, True)
 
 
 @posix
@@ -151,12 +177,13 @@ def test_a_seed_that_would_do_nothing_is_refused(refused, arguments, message):
     refused(message, *arguments)
 
 
-def command(*arguments, module="flockana", stdout=subprocess.PIPE, **environment):
+def command(*arguments, module="flockana", stdout=subprocess.PIPE, folder=None, **environment):
     known = os.pathsep.join(filter(None, [os.getcwd(), os.environ.get("PYTHONPATH", "")]))
     return subprocess.run(
         [sys.executable, "-m", module, *arguments],
         stdout=stdout,
         stderr=subprocess.PIPE,
+        cwd=folder,
         env=os.environ | {"PYTHONPATH": known} | environment,
         timeout=120,
     )

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 import flockana as fl
@@ -70,6 +71,10 @@ def cases():
             yield f"{name} size {k}", table, build
         yield f"{name} d", POSITIVE, lambda v, f=function, axes=axes: f(*[2] * axes, v)
     yield "hexagonal_patch k", without(SIZES, "zero"), lambda v: lattice.hexagonal_patch(v, 7.0)
+    yield "joint_windows n", SIZES, lambda v: fl.joint_windows(v, [[[0, 1]]])
+    yield "joint_windows links", without(LINKS, "none"), lambda v: fl.joint_windows(3, [v])
+    nets = {"none": None, "a number": 3, "a text": "01", "no axis": np.array(1.0), "numbers": [0, 1]}
+    yield "joint_windows nets", nets, lambda v: fl.joint_windows(3, v)
     yield "max_ratio", NAMES, lattice.max_ratio
 
 

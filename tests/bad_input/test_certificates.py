@@ -1,0 +1,73 @@
+"""Damaged certificates, and what is no certificate: rejected in words, at once, and never by an error of another's."""
+
+from __future__ import annotations
+
+import copy
+import json
+
+import numpy as np
+import pytest
+
+import flockana as fl
+from flockana.base.errors import ArgumentError, FileError
+from flockana.base.seals import sealed
+from flockana.certified.check import RejectedError, check_data
+from tests.bad_input.test_fuzz import flipped, shortened
+
+WEIRD = (None, True, -1, 1.5, "", "nan", "1e999999", "0x1p4000", "1/0", [], {}, "9" * 1000, {"__class__": "x"})
+
+
+@pytest.fixture(scope="module")
+def certificate(tmp_path_factory):
+    path = tmp_path_factory.mktemp("certified") / "pair.json"
+    fl.write_certificate(fl.certify([[0.0], [7.0]], law=fl.Algorithm1()), path)
+    return path.read_bytes()
+
+
+def test_a_damaged_certificate_is_refused_or_rejected(tmp_path, certificate):
+    path, outcomes = tmp_path / "it.json", []
+    for content in (*flipped(certificate, 300), *shortened(certificate, 60)):
+        path.write_bytes(content)
+        with pytest.raises((FileError, RejectedError)) as told:
+            fl.check_certificate(path)
+        outcomes.append(told.type)
+    assert set(outcomes) == {FileError, RejectedError}
+
+
+def places(value, path=()):
+    """Every place of the data, long lists by their first two entries."""
+    if path:
+        yield path
+    if isinstance(value, dict | list):
+        entries = value.items() if isinstance(value, dict) else list(enumerate(value))[:2]
+        for key, inner in entries:
+            yield from places(inner, (*path, key))
+
+
+def test_one_that_was_sealed_again_is_rejected(certificate):
+    """Its digest fits: what is not as it must be is seen by what it says. No text here is a number that would do."""
+    data = json.loads(certificate)
+    at = [path for path in places(data) if path[0] not in ("digest", "made_with")]
+    rng = np.random.default_rng(0)
+    for k, path in enumerate(at):
+        changed = copy.deepcopy({key: value for key, value in data.items() if key != "digest"})
+        inner = changed
+        for key in path[:-1]:
+            inner = inner[key]
+        inner[path[-1]] = WEIRD[(k + int(rng.integers(len(WEIRD)))) % len(WEIRD)]
+        try:
+            check_data(sealed(changed))
+        except RejectedError:
+            continue
+        pytest.fail(f"{path}: {inner[path[-1]]!r} is believed")
+
+
+@pytest.mark.parametrize(
+    "other", [None, 3, "x", [[0.0], [7.0]], fl.Algorithm1()], ids=lambda other: type(other).__name__
+)
+def test_what_is_no_basin_and_no_tube_has_no_certificate(tmp_path, other):
+    with pytest.raises(ArgumentError, match="expected a basin, as certify"):
+        fl.write_certificate(other, tmp_path / "it.json")
+    with pytest.raises(ArgumentError, match="expected a tube, as enclose"):
+        fl.write_tube_certificate(other, tmp_path / "it.json")
+    assert list(tmp_path.iterdir()) == []
