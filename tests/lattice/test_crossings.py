@@ -198,6 +198,15 @@ def test_coplanar_links_in_space():
     assert crossings(q @ shear, pairs).tolist() == found.tolist()
 
 
+@pytest.mark.parametrize("axis", [0, 1, 2])
+@pytest.mark.parametrize(("end", "crossing"), [((4.0, 1.0), False), ((0.0, 3.0), True)])
+def test_in_a_plane_of_two_axes_the_projection_on_them_decides(axis, end, crossing):
+    """From (3, 0) beside a diagonal, or across it: in the other projections both links lie on one line."""
+    plane = np.array([(0.0, 0.0), (4.0, 4.0), (3.0, 0.0), end])
+    q = np.insert(plane, axis, 0.1, axis=1)
+    assert crossings(q, [[0, 1], [2, 3]]).tolist() == [[0, 1]] * crossing
+
+
 @given(st.randoms(use_true_random=False), st.floats(0.0, 6.28), st.floats(-1e3, 1e3))
 def test_names_turns_and_shifts_do_not_matter(random, angle, shift):
     rng = np.random.default_rng(random.randrange(2**32))

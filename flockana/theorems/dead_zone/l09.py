@@ -135,7 +135,8 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             _ROUNDING,
             computed=deaf,
             stated="and it is not, if its acceleration is not known",
-            detail=f"without it some velocity is {deaf:.2g} of the leader's speed off, at t = {late[0]:g} and t = {late[1]:g}",
+            detail=f"without it some velocity is {deaf:.2g} of the leader's speed off, at t = {late[0]:g} and "
+            f"t = {late[1]:g}",
         ),
     ]
 
