@@ -284,3 +284,8 @@ def test_in_space_it_is_so_below_the_bound_of_the_two_sizes(radius, unique):
     tetrahedron = [[arb(x) for x in row] for row in ((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1))]
     most = (12 - arb(48).sqrt()) / (1 + arb(3).sqrt()) / arb(48).sqrt().sqrt()
     assert net.projects(tetrahedron, most * radius) is unique
+
+
+def test_a_law_that_damps_nothing_proves_no_rate():
+    with pytest.raises(RejectedError, match="nothing damps"):
+        check_data(resealed(changed(pair_data(), ("law", "c2_alpha"), Fraction(0))))
