@@ -186,7 +186,8 @@ def _first_touch(stack, spans, tol):
 def closest_pair(points, reach, allowance, first, second, stop, tol):
     """Over the pairs given: (lower bound, distance reached, parameter, i, j); i = -1 if none comes below `stop`.
 
-    `reach` bounds how far each agent gets from its first control point.
+    The parameter is -1 where the bound is below `stop`, by the tolerance, and no place of the curve is. `reach` bounds
+    how far each agent gets from its first control point.
     """
     lower, reached, where, a, b = stop, stop, -1.0, -1, -1
     stack, spans = np.empty((_DEPTH + 2, 6, 3)), np.empty((_DEPTH + 2, 2))
@@ -199,7 +200,7 @@ def closest_pair(points, reach, allowance, first, second, stop, tol):
         proven, value, at = _least_distance(stack, spans, lower + slack, max(tol, 0.01 * slack))
         if proven - slack < lower:
             lower = max(0.0, proven - slack)
-            where, a, b = max(at, 0.0), i, j
+            where, a, b = at, i, j
         if at >= 0.0:
             reached = min(reached, value)
         if lower == 0.0:

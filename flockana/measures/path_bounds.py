@@ -89,7 +89,8 @@ def closest_approach(
                 continue
             bounds[k] = low
             if low < lower:
-                lower, when, pair = low, float(t[k] + at * h), (int(min(a, b)), int(max(a, b)))
+                share = at if at >= 0.0 else float(at_samples[k + 1] < at_samples[k])  # nowhere below both ends
+                lower, when, pair = low, float(t[k] + share * h), (int(min(a, b)), int(max(a, b)))
             reached = min(reached, distance)
     return ClosestApproach(lower, reached, when, pair, bounds)
 

@@ -238,7 +238,7 @@ def test_a_stated_number_has_its_digits_and_no_more():
     ids=str,
 )
 def test_what_makes_no_lyapunov_function_is_rejected_as_such(choice):
-    data = json.loads(json.dumps(basin_certificate(basin_of("pair", 1))))
+    data = pair_data()
     own, curvature = {name: Fraction(x) for name, x in data["lyapunov"].items()}, Fraction(data["curvature"])
     assert curvature > 1
     for name, new in choice.items():
@@ -255,3 +255,37 @@ def test_a_matrix_less_a_shift_is_positive_definite_to_its_last_minor(corner, ho
         rows = [[arb(3), arb(sign)], [arb(sign), arb(corner)]]
         assert check_basin.positive(arb_mat(rows), Fraction(1)) is holds
     assert not check_basin.positive(arb_mat([[arb(3), arb(1)], [arb(1), arb(corner) + arb(0, 0.02)]]), Fraction(1))
+
+
+def pair_data():
+    return json.loads(json.dumps(basin_certificate(basin_of("pair", 1))))
+
+
+def test_a_radius_in_which_two_agents_may_meet_is_rejected():
+    """They rest 7 apart, and √2 times 6 is more."""
+    with pytest.raises(RejectedError, match="agents may collide"):
+        check_data(resealed(changed(pair_data(), ("radius",), Fraction(6))))
+
+
+@pytest.mark.parametrize(("radius", "unique"), [("2.82842", True), ("2.82843", False)])
+def test_the_nearest_point_of_an_orbit_is_unique_below_the_size_of_the_net(monkeypatch, radius, unique):
+    """Of a square whose corners are (±1, ±1) the size is √8, and a basin with another one has no such point."""
+    net = check_net.Net({**pair_data(), "positions": [["0x1p0", "0x1p0"]] * 4})
+    square = [[arb(x), arb(y)] for x in (1, -1) for y in (1, -1)]
+    assert net.projects(square, arb(radius)) is unique
+    monkeypatch.setattr(check_net.Net, "projects", lambda self, x, radius: unique)
+    assert rejected(pair_data()) is not unique
+
+
+@pytest.mark.parametrize(("radius", "unique"), [(0.999, True), (1.001, False)])
+def test_in_space_it_is_so_below_the_bound_of_the_two_sizes(radius, unique):
+    """Σ x xᵀ = 4·1 of a tetrahedron: (1 + √3) r √|4·1| < tr − |4·1|, in the norm √48 of 4·1."""
+    net = check_net.Net({**pair_data(), "positions": [["0x1p0"] * 3] * 4})
+    tetrahedron = [[arb(x) for x in row] for row in ((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1))]
+    most = (12 - arb(48).sqrt()) / (1 + arb(3).sqrt()) / arb(48).sqrt().sqrt()
+    assert net.projects(tetrahedron, most * radius) is unique
+
+
+def test_a_law_that_damps_nothing_proves_no_rate():
+    with pytest.raises(RejectedError, match="nothing damps"):
+        check_data(resealed(changed(pair_data(), ("law", "c2_alpha"), Fraction(0))))

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from flockana.base.errors import ArgumentError
 from flockana.kernels.crossings import grid
 from flockana.lattice import bcc, crossings, fcc, links, separation, simple_cubic, square, triangular
-from flockana.lattice.crossings import turns_left
+from flockana.lattice.crossings import _meet_in_space, turns_left
 
 
 def rational_meet(a, b, c, d) -> bool:
@@ -196,6 +196,16 @@ def test_coplanar_links_in_space():
     assert found.tolist() == rational_crossings(q, pairs)
     shear = np.array([[1.0, 0.25, 0.5], [0.0, 1.0, 0.125], [0.0, 0.0, 1.0]])  # exact in binary
     assert crossings(q @ shear, pairs).tolist() == found.tolist()
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+@pytest.mark.parametrize(("end", "crossing"), [((4, 1), False), ((0, 3), True)])
+def test_in_a_plane_of_two_axes_the_projection_on_them_decides(axis, end, crossing):
+    """From (3, 0) beside a diagonal, or across it: in the other projections both links lie on one line."""
+    plane = [(0, 0), (4, 4), (3, 0), end]
+    points = [(*place[:axis], 5, *place[axis:]) for place in plane]
+    assert _meet_in_space(*points) is crossing
+    assert crossings(np.array(points, dtype=float), [[0, 1], [2, 3]]).tolist() == [[0, 1]] * crossing
 
 
 @given(st.randoms(use_true_random=False), st.floats(0.0, 6.28), st.floats(-1e3, 1e3))

@@ -144,6 +144,38 @@ def test_one_agent_and_one_sample():
     assert (found.lower, found.time, found.pair, found.lower_by_interval.size) == (1.0, 4.0, (1, 2), 0)
 
 
+@pytest.mark.parametrize(("speed", "when"), [(-1.0, 5.0), (1.0, 0.0)])
+def test_the_time_of_a_least_distance_at_a_sample_is_that_sample_s(speed, when):
+    """An agent comes from (10, 1), or goes there from (5, 1): the other one stays at 0."""
+    t = np.array([0.0, 2.0, 5.0])
+    q = np.zeros((3, 2, 2))
+    q[:, 1, 0], q[:, 1, 1] = (10.0 if speed < 0.0 else 5.0) + speed * t, 1.0
+    p = np.zeros((3, 2, 2))
+    p[:, 1, 0] = speed
+    found = closest_approach(t, q, p, 0.0 * p)
+    assert found.time == when
+    assert found.distance == pytest.approx(np.sqrt(26.0), rel=1e-15)
+    assert np.sqrt(26.0) * (1.0 - 1e-6) < found.lower <= np.sqrt(26.0)
+
+
+@pytest.mark.parametrize("height", [0.75, 1.0, 3.0])
+def test_a_bound_is_as_near_as_the_least_distance_asks_however_far_the_other_end_is(height):
+    """A thousand lengths away at the begin of a step; with a bend, so that no one hull tells."""
+    found = closest_approach(
+        np.array([0.0, 1.0]),
+        *(
+            np.array([[[0.0, 0.0], first], [[0.0, 0.0], last]])
+            for first, last in (
+                ([1000.5, height], [0.5, height]),
+                ([-1900.0, 0.0], [-100.0, 0.0]),
+                ([1800.0, 0.0],) * 2,
+            )
+        ),
+    )
+    least = np.hypot(0.5, height)
+    assert least * (1.0 - 1.1e-6) < found.lower <= least
+
+
 def test_the_right_pair_among_many():
     """Thirty still agents on a grid and one that passes two of them at 0.05."""
     grid = np.stack(np.meshgrid(np.arange(6.0), np.arange(5.0)), -1).reshape(-1, 2)
