@@ -1,6 +1,6 @@
 """Lower bounds of the dependencies as constraints for pip: `python tools/dependencies.py > lowest.txt`.
 
-`>=x` becomes `==x` for all that flockana needs and for what its tests need. What these need in their turn is left to
+`>=x` becomes `==x` for all that flockana, its tests and its lectures need. What these need in their turn is left to
 pip, which takes the newest: so it is with a user whose lock file is old.
 """
 
