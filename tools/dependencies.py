@@ -1,6 +1,6 @@
 """Lower bounds of the dependencies as constraints for pip: `python tools/dependencies.py > lowest.txt`.
 
-`>=x` becomes `==x` for all that flockana needs and for what its tests need. What these need in their turn is left to
+`>=x` becomes `==x` for all that flockana, its tests and its lectures need. What these need in their turn is left to
 pip, which takes the newest: so it is with a user whose lock file is old.
 """
 
@@ -13,7 +13,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 PROJECT = Path(__file__).resolve().parent.parent / "pyproject.toml"
-EXTRAS = ("test", "cluster", "proofs")  # what the test suite runs on; linters and notebooks are no part of it
+EXTRAS = ("test", "cluster", "proofs", "course")  # what tests and lectures run on; linters are no part of it
 _BOUND = re.compile(r"^([A-Za-z0-9._-]+)>=([0-9.]+)$")
 
 
@@ -36,7 +36,7 @@ def lowest(path: Path = PROJECT) -> list[str]:
     """The constraints that hold every direct dependency at its lower bound."""
     project = tomllib.loads(path.read_text())["project"]
     extras = project["optional-dependencies"]
-    return pinned([*project["dependencies"], *(one for name in EXTRAS for one in extras[name])])
+    return pinned(dict.fromkeys([*project["dependencies"], *(one for name in EXTRAS for one in extras[name])]))
 
 
 if __name__ == "__main__":

@@ -198,7 +198,7 @@ def colour_bar(ax: Any, colours: Any, label: str, *, extend: str = "neither", sh
     share : float
         Of the height of the axes.
     """
-    beside = ax.inset_axes((1.09 if hasattr(ax, "zaxis") else 1.03, 0.5 - 0.5 * share, 0.03, share))
+    beside = ax.inset_axes((1.03, 0.5 - 0.5 * share, 0.03, share))
     scale = ax.get_figure().colorbar(colours, cax=beside, extend=extend, label=typeset(label))
     scale.outline.set_visible(False)
     beside.tick_params(labelsize=_STYLE["ytick.labelsize"], colors=MUTED)

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from flockana import plots
 from flockana.plots.style import colour_bar, finish, finish_empty, finish_over_time, frame_space, head, in_plane, lines
+from tests.plots.artists import a_run
 
 
 @pytest.fixture
@@ -87,6 +88,23 @@ def test_a_name_that_is_longer_than_its_axis_stands_in_lines():
     assert high.get_ylabel() == "$\\tilde K$, normalised velocity mismatch (length$^2$/time$^2$)"
     assert low.get_ylabel() == "$\\tilde K$, normalised\nvelocity mismatch\n(length$^2$/time$^2$)"
     assert low.yaxis.label.get_window_extent().height <= 1.1 * low.get_window_extent().height
+
+
+OF_A_RUN = ["snapshot", "centre_path", "energy_residual", "distances"]
+
+
+@pytest.mark.parametrize("name", OF_A_RUN)
+@pytest.mark.parametrize("m", [2, 3])
+def test_nothing_that_is_written_beside_a_drawing_is_cut_off(name, m):
+    """In the figure that the function makes: labels, numbers, titles, legends and colour bars."""
+    drawn = getattr(plots, name)(a_run(m))
+    figure = np.ravel(drawn)[0].figure
+    figure.canvas.draw()
+    for ax in figure.axes:
+        box = ax.get_tightbbox(figure.canvas.get_renderer())
+        assert min(box.x0, box.y0) >= -1.0  # a pixel
+        assert box.x1 <= figure.bbox.x1 + 1.0
+        assert box.y1 <= figure.bbox.y1 + 1.0
 
 
 OF_FILES = {"animate", "animate_mode"}  # films: of something, to a path
