@@ -87,11 +87,12 @@ def work(pipe: Connection, limit: float) -> None:
     signal.signal(signal.SIGINT, signal.default_int_handler)
     worker = Worker(pipe, limit)
     _warm()
-    pipe.send((0, "ready", {}))
-    threading.Thread(target=_read_to_the_end, args=(worker,), daemon=True).start()
-    while True:
-        with suppress(KeyboardInterrupt):  # a newer question, or one that came late: then the newest is asked again
-            worker.answer_all()
+    with suppress(BrokenPipeError):  # the server was ended, by force
+        pipe.send((0, "ready", {}))
+        threading.Thread(target=_read_to_the_end, args=(worker,), daemon=True).start()
+        while True:
+            with suppress(KeyboardInterrupt):  # a newer question, or one that came late: then the newest is asked again
+                worker.answer_all()
 
 
 def _read_to_the_end(worker: Worker) -> None:

@@ -106,3 +106,14 @@ def test_a_process_of_its_own_answers_and_ends_with_the_server():
     mine.close()
     process.join(60.0)
     assert process.exitcode == 0
+
+
+def test_where_the_server_is_ended_by_force_it_ends_without_a_word(capfd):
+    context = get_context("spawn")
+    mine, theirs = context.Pipe()
+    process = context.Process(target=work, args=(theirs, 60.0), daemon=True)
+    process.start()
+    theirs.close()
+    mine.close()  # before it says that it is ready
+    process.join(120)
+    assert (process.exitcode, capfd.readouterr().err) == (0, "")
