@@ -19,7 +19,13 @@ BoolArray = npt.NDArray[np.bool_]
 
 
 def ensure_run(trajectory: Any) -> Trajectory:
-    """Return what is a run, or raise `ArgumentError`."""
+    """Return what is a run, or raise `ArgumentError`.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        What was given as one.
+    """
     if not isinstance(trajectory, Trajectory):
         raise ArgumentError(f"trajectory = {trajectory!r}: expected a run, as simulate(...) gives it")
     return trajectory

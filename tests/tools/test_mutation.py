@@ -95,7 +95,7 @@ def test_the_nearest_tests_come_first(project):
     ("path", "first"),
     [
         ("lattice/measure", "tests/lattice/test_measure.py"),  # its own
-        ("kernels/paths", "tests/kernels/test_encounters.py"),  # has none: that of what imports it
+        ("kernels/listed", "tests/dynamics/test_compiled.py"),  # has none: that of what imports it
         ("theorems/slides/e13", "tests/theorems/olfati_saber/test_collisions.py"),  # names the theorem
         ("theorems/dead_zone/l01", "tests/adversarial/test_fixed.py::test_what_is_printed_and_what_is_true[L1]"),
     ],
