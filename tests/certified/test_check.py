@@ -235,7 +235,7 @@ def test_a_stated_number_has_its_digits_and_no_more():
         {"tau": lambda choice, curvature: -2 * choice["eps"]},  # by which the rate would be larger
         {"eps": lambda choice, curvature: curvature, "kappa": "1000000"},
     ],
-    ids=str,
+    ids=["eps 0", "eps < 0", "kappa", "theta > 1", "theta < 0", "tau < 0", "tau and rate", "curvature"],
 )
 def test_what_makes_no_lyapunov_function_is_rejected_as_such(choice):
     data = pair_data()
