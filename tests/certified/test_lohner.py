@@ -168,6 +168,7 @@ def test_a_step_that_is_too_long_is_none():
         (lambda t, x: arb(1) / 2, arb(1), arb(1), (arb(1) / 2).exp()),  # x' = x/2
         (lambda t, x: arb(3), arb(1), arb(1), arb(3).exp()),  # 1 + 3 for e³ holds too little
         (lambda t, x: 2 * t, arb(1), arb(6) / 5, (arb(36) / 25).exp()),  # x' = 2tx: nothing at the begin
+        (lambda t, x: 2 * t, arb(1), arb(1) / 10, (arb(1) / 100).exp()),  # the same in a short step: it grows
         (lambda t, x: 2 * (x - 1), arb(1, 1), arb(1), arb(4)),  # x' = (x - 1)² from 3/2: nothing at the box's middle
     ],
 )

@@ -28,7 +28,7 @@ from .table import table
 KILLED, BAD_INPUT, SURVIVED, INTERRUPTED = 0, 2, 3, 130
 PROJECT = Path(__file__).resolve().parents[2]
 REVIEWED = Path(__file__).with_name("equivalent.toml")
-QUICK = 4  # mutants of each package
+QUICK = 3  # mutants of each package
 
 
 def arguments() -> argparse.ArgumentParser:
