@@ -14,6 +14,7 @@ import numpy as np
 
 from flockana.kernels.bodies import guard_signature
 from flockana.kernels.compiling import njit
+from flockana.kernels.copies import put
 from flockana.kernels.encounters import farthest_ways, mean_way, share_of_listed
 from flockana.kernels.listed import MOST_TERMS, signatures
 from flockana.kernels.paths import bernstein
@@ -143,11 +144,13 @@ def _sampled(t, h, at, y, rates, trial, due, begin, method, interpolant, between
 @njit(cache=True, error_model="numpy", nogil=True)
 def _with_room(kept, due, at):
     """Room for the samples due before a time, and those kept so far."""
-    needed = np.searchsorted(due, at)
+    needed = len(kept)
+    while needed < due.size and due[needed] < at:
+        needed += 1
     if needed <= len(kept):
         return kept
     more = np.empty((max(needed, 2 * len(kept)), *kept.shape[1:]))
-    more[: len(kept)] = kept
+    put(kept, more)
     return more
 
 
@@ -182,8 +185,11 @@ def _advance(
     method, fixed, end = (tableau_a, tableau_c, rows, stages), exponent == 0.0, rows[stages]
     encounters = (np.empty_like(radii), far, guard, bodies, shell)
     for i in range(n):
-        encounters[0][i] = radii[np.int64(order[i])]
-    rates = np.zeros((rows.max() + 1, y.size))
+        put(radii[np.int64(order[i])], encounters[0][i])
+    kept = np.int64(0)
+    for row in rows:
+        kept = max(kept, row + 1)
+    rates = np.zeros((kept, y.size))
     now, reached, trial = np.empty(y.size), np.empty(y.size), np.empty(y.size)
     _moved(y, order, shape, False, now)
     _moved(f, order, shape, False, rates[0])
@@ -249,7 +255,7 @@ def _advance(
             later = np.inf if at == stops[stop] else GROWTH * h
         stop += at == stops[stop]
         t, h, now, reached = at, later, reached, now
-        rates[0] = rates[end]
+        put(rates[end], rates[0])
         times[made], work[made] = t, _record(t, now, rates[0], system, states[made])
         made += 1
     last, slope = reached, trial  # no longer needed: memory is used again

@@ -54,10 +54,10 @@ class NamedByContent(IndexDataCacheFile):
 class _Cache(FunctionCache):
     """numba's cache of a function, with such files."""
 
-    def __init__(self, function: Callable[..., Any]) -> None:
+    def __init__(self, function: Callable[..., Any], suffix: str) -> None:
         super().__init__(function)
         own: IndexDataCacheFile = self._cache_file  # type: ignore[has-type]
-        base = own._index_name.removesuffix(".nbi")
+        base = own._index_name.removesuffix(".nbi") + suffix
         file = getattr(sys.modules.get(function.__module__), "__file__", None)
         stamp = own._source_stamp if file is None else sources_digest(file)
         self._cache_file = NamedByContent(own._cache_path, base, stamp)
@@ -105,7 +105,7 @@ if hasattr(os, "register_at_fork"):  # else it goes on where its parent was, as 
 
 
 def dispatcher(function: Callable[..., Any], *, cache: bool, **options: Any) -> Any:
-    """numba's dispatcher of a function.
+    """numba's dispatcher of a function, to be called from Python.
 
     Parameters
     ----------
@@ -117,13 +117,57 @@ def dispatcher(function: Callable[..., Any], *, cache: bool, **options: Any) -> 
         Those of `numba.njit`.
     """
     made = _at_hand(numba.njit(**options)(function))
-    if not cache:
-        return made
+    if function.__module__.startswith("flockana."):  # what others write may write to what it is handed
+        made = _for_frozen_arrays(made)
+    return _cached(made, function, "") if cache else made
+
+
+def called_by_kernels(function: Callable[..., Any], *, cache: bool, **options: Any) -> Any:
+    """numba's dispatcher of a function, to be called by what is compiled: without what Python would need to call it.
+
+    Parameters
+    ----------
+    function : callable
+        What to compile.
+    cache : bool
+        Keep what is compiled on disk.
+    **options
+        Those of `numba.njit`.
+    """
+    made = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **options)(function)
+    return _cached(made, function, ".inner") if cache else made
+
+
+def _cached(made: Any, function: Callable[..., Any], suffix: str) -> Any:
+    """The same dispatcher, which keeps on disk what it compiles."""
     try:
-        made._cache = _Cache(function)
+        made._cache = _Cache(function, suffix)
     except RuntimeError:  # neither beside the sources nor at home is there a folder to write to
         with suppress(RuntimeError, OSError), _cached_in(temporary_folder()):
-            made._cache = _Cache(function)
+            made._cache = _Cache(function, suffix)
+    return made
+
+
+def _for_frozen_arrays(made: Any) -> Any:
+    """The same dispatcher, which calls for arrays that cannot be written to what it compiled for those that can.
+
+    To numba they are two types, and results are frozen: each kernel would be compiled twice and more. No kernel writes
+    to an array that it does not make but to those named `out`, which are made for it.
+    """
+    if numba.config.DISABLE_JIT:
+        return made
+    compiled = made.compile
+
+    def compile_for(signature: Any) -> Any:
+        asked, _ = numba.core.sigutils.normalize_signature(signature)
+        writable = tuple(kind.copy(readonly=False) if isinstance(kind, numba.types.Array) else kind for kind in asked)
+        if writable == tuple(asked):
+            return compiled(signature)
+        code = compiled(writable)
+        made._insert([kind._code for kind in asked], code, False)
+        return code
+
+    made.compile = compile_for
     return made
 
 

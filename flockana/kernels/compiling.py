@@ -46,14 +46,21 @@ class Kernel(_Known):
 
     @cached_property
     def dispatcher(self) -> Any:
-        """What numba made of it."""
+        """What numba made of it, to be called from Python."""
         from flockana.kernels.caching import dispatcher
 
         return dispatcher(self.function, **self.options)
 
+    @cached_property
+    def inner(self) -> Any:
+        """What numba made of it, to be called from other kernels."""
+        from flockana.kernels.caching import called_by_kernels
+
+        return called_by_kernels(self.function, **self.options)
+
     @property
     def _numba_type_(self) -> Any:
-        return self.dispatcher._numba_type_
+        return self.inner._numba_type_
 
     def __call__(self, *arguments: Any) -> Any:
         """Compute it, compiled."""

@@ -13,6 +13,7 @@ from math import inf, log, log1p, sqrt
 import numpy as np
 
 from flockana.kernels.compiling import njit, register_jitable
+from flockana.kernels.copies import put
 from flockana.kernels.scalars import on_panels
 
 REPULSION, DEAD, ATTRACTION, OUT = 0, 1, 2, 3
@@ -229,7 +230,7 @@ def semi_implicit_steps(q, p, par, c2, dt, steps):
         if not _moved(x, then) <= 0.5 * skin:
             skin = 1e-3 * r + _AHEAD * dt * _moved(v, np.zeros((m, n)))
             kept = _listed(x, par, skin, near, degree, first, second, inside)
-            then[:] = x
+            put(x, then)
         for k in range(kept):
             total = 0.0
             for c in range(m):

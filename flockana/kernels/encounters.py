@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from flockana.kernels.compiling import njit
+from flockana.kernels.copies import put
 from flockana.kernels.paths import _DEPTH, ALLOWED, _first_touch, _hull_bound, quintic, reach_of
 from flockana.kernels.sums import column_means
 
@@ -184,8 +185,10 @@ def share_of_listed(h, q0, p0, u0, q1, p1, u1, mean, farthest, radii, far, first
     points, reach, allowance = np.zeros((2, 6, 3)), np.empty(2), np.empty(2)
     own, (way, blur), m = np.empty((2, radii.shape[1])), farthest, q0.shape[1]
     travel = 2.0 * way * _WIDER
-    low = radii[:, 0].min() if travel <= far else 0.0
-    high = (radii[:, -1].max() + 2.0 * blur + travel) * _WIDER
+    low, high = radii[0, 0], radii[0, -1]
+    for agent in range(1, len(radii)):
+        low, high = min(low, radii[agent, 0]), max(high, radii[agent, -1])
+    low, high = low if travel <= far else 0.0, (high + 2.0 * blur + travel) * _WIDER
     low2, high2 = low * low, high * high
     for k in range(first.size):
         i, j = np.uint64(first[k]), np.uint64(second[k])
@@ -195,7 +198,7 @@ def share_of_listed(h, q0, p0, u0, q1, p1, u1, mean, farthest, radii, far, first
         if low2 <= s2 < high2:
             for a in range(2):
                 one = i if a == 0 else j
-                own[a] = radii[one]
+                put(radii[one], own[a])
                 allowance[a] = quintic(h, q0[one], p0[one], u0[one], q1[one], p1[one], u1[one], points[a])
                 for node in range(6):  # by its indices: compiled code does not check that shapes agree
                     for c in range(m):

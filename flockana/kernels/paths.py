@@ -17,6 +17,7 @@ from __future__ import annotations
 import numpy as np
 
 from flockana.kernels.compiling import njit
+from flockana.kernels.copies import put
 
 ALLOWED = 0.35  # of ‖L2‖ + ‖L3‖: the largest quotient of a single truncated power is 0.3453
 _DEPTH = 48  # halvings of an interval: below rounding of the time itself
@@ -263,7 +264,7 @@ def farthest(points, allowance, floor, tol):
         common += allowance[i] / n
     for i in range(n):
         slack = allowance[i] + common
-        stack[0] = points[i]
+        put(points[i], stack[0])
         bound, where = _largest_distance(stack, spans, max(upper, floor + tol) - slack, tol)
         if bound + slack > upper:
             upper, agent, at = bound + slack, i, where

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from flockana.kernels.compiling import njit
+from flockana.kernels.copies import put
 from flockana.kernels.grid import sort_into_grid
 from flockana.kernels.neighbours import _FORWARD, _MARGIN, _fill_cells, _pad, _sort_into_cells
 from flockana.kernels.sums import LANES, column_means, repeated
@@ -34,7 +35,8 @@ def _grown(first, second, needed):
     """The same pairs with room for so many, or twice as many as now."""
     room = max(np.int64(needed), 2 * first.size)
     more_first, more_second = np.empty(room, np.uint32), np.empty(room, np.uint32)
-    more_first[: first.size], more_second[: first.size] = first, second
+    put(first, more_first)
+    put(second, more_second)
     return more_first, more_second
 
 

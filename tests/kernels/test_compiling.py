@@ -180,6 +180,48 @@ def test_kernels_call_kernels_and_scalar_functions_by_name_and_so_do_functions_o
     assert (raised.__name__, raised.__doc__, doubled.__doc__) == ("raised", "Twice x, and one.", "Twice x.")
 
 
+def test_of_a_kernel_of_the_package_frozen_arrays_need_no_second_one():
+    def total(x):
+        whole = 0.0
+        for k in range(x.size):
+            whole += x[k]
+        return whole
+
+    total.__module__ = "flockana.kernels.sums"
+    kernel, x = njit()(total), np.arange(5.0)
+    x.flags.writeable = False
+    assert kernel(x) == 10.0
+    assert kernel(x + 1.0) == 15.0
+    assert kernel(x) == 10.0
+    assert len(kernel.overloads) == 1
+
+
+def test_a_kernel_of_others_cannot_write_to_what_is_frozen():
+    @njit()
+    def spoil(x):
+        x[0] = 7.0
+
+    x = np.zeros(3)
+    x.flags.writeable = False
+    with pytest.raises(numba.TypingError, match="readonly"):
+        spoil(x)
+    assert x[0] == 0.0
+
+
+def test_a_kernel_called_by_kernels_has_nothing_that_python_would_need():
+    @njit()
+    def inner(x):
+        return x + 1.0
+
+    @njit()
+    def outer(x):
+        return 2.0 * inner(x)
+
+    assert outer(1.0) == 4.0
+    assert [len(kernel.overloads) for kernel in (inner.inner, inner.dispatcher)] == [1, 0]
+    assert inner(2.0) == 3.0
+
+
 def test_what_is_known_by_name_is_pickled_by_name():
     """What a closure over it is called then depends on no address and no process."""
     for known in (raised, doubled):

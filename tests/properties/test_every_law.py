@@ -138,6 +138,18 @@ def test_a_symmetry_that_a_law_lacks_is_seen_to_fail(law, symmetry):
 
 
 @pytest.mark.parametrize("name", LAWS)
+def test_a_state_that_cannot_be_written_gives_the_same_and_stays_what_it_was(name):
+    """Compiled code writes where it likes: that it leaves what it is handed alone is shown here."""
+    q, p, *_ = state(3)
+    free, frozen = (q.copy(), p.copy()), (q.copy(), p.copy())
+    for x in frozen:
+        x.flags.writeable = False
+    told, again = answer(LAWS[name][0], *free), answer(LAWS[name][0], *frozen)
+    assert all(np.array_equal(a, b) for a, b in zip(told, again, strict=True) if a is not None)
+    assert all(np.array_equal(x, was) for x, was in zip((*free, *frozen), (q, p, q, p), strict=True))
+
+
+@pytest.mark.parametrize("name", LAWS)
 def test_what_a_law_says_of_itself_is_true_or_false_and_not_a_method(name):
     law = LAWS[name][0]
     said = [getattr(law, word) for word in ("conservative", "splits", "located", "moving") if hasattr(law, word)]
