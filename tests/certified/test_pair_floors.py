@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from flint import arb, ctx, fmpq
 
 from flockana import Algorithm1, Algorithm2, StaticTarget
+from flockana.certified.check_net import Net
 from flockana.certified.damping import damping
 from flockana.certified.decimals import floored, raised, written
 from flockana.certified.lyapunov import Bounds, decay, rate_of
@@ -14,6 +17,7 @@ from flockana.certified.pair_floors import SHELLS, LengthCells, points, proposed
 from flockana.certified.shells import Surroundings
 from flockana.certified.structure import Structure
 from flockana.interactions import AlphaInteraction
+from tests.certified.conftest import text_of
 
 LAW = Algorithm1()
 U = Structure.of(LAW, 2, 2)
@@ -58,6 +62,54 @@ def test_proposed_bounds_are_proved_and_samples_leave_no_room_for_much_better_on
         assert not cells.holds(SHELLS, a, floored(arb(true + 0.01 * abs(true) + 1e-3), 6))
         above = floored(arb(1.001 * float(stiff.min()) + 1.0), 6)
         assert not cells.holds(SHELLS, above, b)
+
+
+def curves(length):
+    """F'' and T = F'/ℓ of a pair in floating point, and its largest |F''|."""
+    alpha, root = LAW.alpha, np.sqrt(1 + LAW.alpha.eps * length**2)
+    action = 30.0 * alpha.phi_alpha(alpha.sigma_norm(length))
+    stiff = 30.0 * alpha.phi_alpha_slope(alpha.sigma_norm(length)) * (length / root) ** 2 + action / root**3
+    return stiff, action / root
+
+
+def largest_across(rest, eta, along):
+    """The largest β on a fine net of displacements, those of length η and those across among them."""
+    length = rest + np.linspace(-eta, eta, 1001)[1:-1, None]
+    stiff, pull = curves(length)
+    turned = np.linspace(0.002, 1.0, 500) * (eta**2 - (length - rest) ** 2) / (2.0 * length * rest)  # 1 − cos
+    inward, across = length * (1.0 - turned) - rest, length**2 * turned * (2.0 - turned)
+    outward = (length**2 - rest * length * (1.0 - turned)) / length
+    form = stiff * outward**2 + pull * (inward**2 + across - outward**2)
+    return float(((form - along * inward**2) / across).min())
+
+
+def provers(rest, eta):
+    """Those of the certificate and of its checker, up to the length η."""
+    cells = LengthCells(U, arb(rest), fmpq(round(1000 * eta), 1000))
+    net = Net(text_of(LAW))
+    yield lambda a, b: cells.holds(SHELLS, a, b)
+    yield lambda a, b: net.floor_holds(arb(rest), Fraction(round(1000 * eta), 1000), as_fraction(a), as_fraction(b))
+
+
+def as_fraction(number):
+    return Fraction(int(number.p), int(number.q))
+
+
+@pytest.mark.parametrize(
+    ("rest", "eta", "slack"), [(6.8, 0.2, 0.05), (6.8, 0.2, 0.5), (7.0, 0.05, 0.05), (7.6, 0.2, 0.05), (7.6, 0.6, 0.5)]
+)
+def test_what_is_proved_of_a_pair_is_nearly_all_that_is_true(rest, eta, slack):
+    """Below the true β by what the direction of a pair costs, K (η/ℓ0)², nothing is refused; above it nothing holds."""
+    x = np.linspace(-eta, eta, 1001)
+    stiff = curves(rest + x)[0]
+    most = float(np.abs(stiff).max())
+    along = floored(arb(float(stiff.min()) - slack * most), 6)
+    true = largest_across(rest, eta, float(along.p) / float(along.q))
+    with ctx.workdps(25):
+        for holds in provers(rest, eta):
+            assert holds(along, floored(arb(true - 0.4 * most * (eta / rest) ** 2), 6))
+            assert not holds(along, floored(arb(true + 1e-3 * abs(true) + 1e-4), 6))
+            assert not holds(floored(arb(float(stiff.min()) + 1e-3 * most), 6), fmpq(-1000))
 
 
 def test_the_pair_of_a_structure_is_that_of_the_law():
