@@ -12,6 +12,7 @@ from flockana import Algorithm1, Algorithm2, StaticTarget
 from flockana.certified.check_net import Net
 from flockana.certified.damping import damping
 from flockana.certified.decimals import floored, raised, written
+from flockana.certified.intervals import square
 from flockana.certified.lyapunov import Bounds, decay, rate_of
 from flockana.certified.pair_floors import SHELLS, LengthCells, points, proposed_across
 from flockana.certified.shells import Surroundings
@@ -72,7 +73,7 @@ def curves(length):
     return stiff, action / root
 
 
-def largest_across(rest, eta, along):
+def largest_across(rest, eta, along, curves=curves):
     """The largest β on a fine net of displacements, those of length η and those across among them."""
     length = rest + np.linspace(-eta, eta, 1001)[1:-1, None]
     stiff, pull = curves(length)
@@ -83,16 +84,59 @@ def largest_across(rest, eta, along):
     return float(((form - along * inward**2) / across).min())
 
 
-def provers(rest, eta):
-    """Those of the certificate and of its checker, up to the length η."""
-    cells = LengthCells(U, arb(rest), fmpq(round(1000 * eta), 1000))
-    net = Net(text_of(LAW))
+class Made:
+    """A pair at rest at length 1 with F'' = stiff + dip x², T = pull + steeper x, one that no law has."""
+
+    def __init__(self, stiff, pull, steeper=0.0, dip=0.0):
+        self.numbers = stiff, pull, steeper, dip
+
+    def __call__(self, length):
+        stiff, pull, steeper, dip = self.numbers
+        return stiff + dip * (length - 1) ** 2, pull + steeper * (length - 1)
+
+    def of_length(self, length):
+        x, (stiff, pull, steeper, dip) = length - 1, map(arb, self.numbers)
+        return stiff + dip * square(x), pull + steeper * x
+
+    def stiffness(self, s):
+        return self.of_length(s.sqrt())[0]
+
+    def tension(self, s):
+        return self.of_length(s.sqrt())[1]
+
+
+def provers(rest, eta, pair=None):
+    """Those of the certificate and of its checker, up to the length η; of a pair that was made up, or of the law's."""
+    cells, net = LengthCells(pair or U, arb(rest), fmpq(round(10_000 * eta), 10_000)), Net(text_of(LAW))
+    if pair:
+        net.stiffness, net.tension = (lambda x, k=k: pair.of_length(x)[k] for k in (0, 1))
     yield lambda a, b: cells.holds(SHELLS, a, b)
-    yield lambda a, b: net.floor_holds(arb(rest), Fraction(round(1000 * eta), 1000), as_fraction(a), as_fraction(b))
+    yield lambda a, b: net.floor_holds(arb(rest), as_fraction(cells.reach), as_fraction(a), as_fraction(b))
 
 
 def as_fraction(number):
     return Fraction(int(number.p), int(number.q))
+
+
+@pytest.mark.parametrize(
+    ("eta", "pair"), [(0.125, Made(1.75, -1.25)), (0.75, Made(-0.5, 1.75, 4.0)), (0.0625, Made(-2.0, -0.5))]
+)
+def test_where_a_coarse_cell_would_do_it_still_is_a_bound(eta, pair):
+    """With α = F'' to the digit each cell has only its own width to spare."""
+    along = fmpq(*pair.numbers[0].as_integer_ratio())
+    true = largest_across(1.0, eta, pair.numbers[0], lambda length: pair(length + 0.0 * length))
+    with ctx.workdps(25):
+        for holds in provers(1.0, eta, pair):
+            assert not holds(along, floored(arb(true + 2e-3 * max(1.0, abs(true))), 6))
+            assert holds(along, floored(arb(true - 4.0 * eta**2), 6))
+
+
+def test_a_stiffness_that_is_least_at_rest_bounds_what_is_along():
+    """F'' = 1 + 100 x²: only within a hundredth of its length has the pair less than 1.01."""
+    with ctx.workdps(25):
+        for holds in provers(1.0, 0.5, Made(1.0, 0.0, 0.0, 100.0)):
+            assert not holds(fmpq(101, 100), fmpq(-1000))
+            assert holds(fmpq(99, 100), fmpq(-1000))
 
 
 @pytest.mark.parametrize(
