@@ -131,6 +131,12 @@ def test_where_a_coarse_cell_would_do_it_still_is_a_bound(eta, pair):
             assert holds(along, floored(arb(true - 4.0 * eta**2), 6))
 
 
+def test_nothing_is_proved_of_a_pair_of_which_nothing_is_known():
+    with ctx.workdps(25):
+        for holds in provers(1.0, 0.5, Made(float("nan"), 0.0)):
+            assert not holds(fmpq(-10), fmpq(-10))
+
+
 def test_a_stiffness_that_is_least_at_rest_bounds_what_is_along():
     """F'' = 1 + 100 x²: only within a hundredth of its length has the pair less than 1.01."""
     with ctx.workdps(25):
