@@ -70,7 +70,10 @@ class Net:
         return total
 
     def equilibrium(self) -> list[list[arb]]:
-        """Krawczyk's test of (∇U + Σ μ held, ⟨turns, x − positions⟩, Σ x_i): balls around the zero, where μ = 0."""
+        """Krawczyk's test of (∇U + Σ μ held, ⟨turns, x⟩, Σ x_i): balls around the zero, where μ = 0.
+
+        The turns are those of the positions, to which they are orthogonal.
+        """
         n, m = self.n, self.m
         turns = self.turns(self.centre)
         held = turns + self.shifts()
@@ -79,22 +82,20 @@ class Net:
         products = [[inner(a, b) for b in turns] for a in moving]
         ensure(not turns or bool(arb_mat(products).det() != 0), "the rotations are not independent")
         size = len(start) + len(held)
-        shift = self.krawczyk(start, [self.box] * size, start, held)
+        shift = self.krawczyk(start, [self.box] * size, held)
         ensure(all(abs(y) < self.box for y in shift), "Krawczyk's test fails: no isolated equilibrium in the box")
         near = [y + change for y, change in zip(start, shift, strict=False)]
         middles, radii = [y.mid() for y in near], [y.rad() for y in near] + [arb(0)] * len(held)
-        shift = self.krawczyk(middles, radii, start, held)  # once more, about what was found: the zero stays inside
+        shift = self.krawczyk(middles, radii, held)  # once more, about what was found: the zero stays inside
         found = [y + change for y, change in zip(middles, shift, strict=False)]
         return [found[m * i : m * i + m] for i in range(n)]
 
-    def krawczyk(self, centre: list[arb], radii: list[arb], start: list[arb], held: list[list[arb]]) -> list[arb]:
+    def krawczyk(self, centre: list[arb], radii: list[arb], held: list[list[arb]]) -> list[arb]:
         """(1 − Y F'(B)) (B − c) − Y F(c), c the centre with μ = 0 and B the box about it of those radii."""
         size = len(centre)
         wide = self.slope(self.rows([y + arb(0, r) for y, r in zip(centre, radii, strict=False)]), held)
         factor = middle(middle(wide).inv())
-        turned = len(held) - self.m
-        offsets = [inner(motion, start) for motion in held[:turned]] + [arb(0)] * self.m
-        value = self.force(self.rows(centre)) + [inner(g, centre) - o for g, o in zip(held, offsets, strict=True)]
+        value = self.force(self.rows(centre)) + [inner(motion, centre) for motion in held]
         one = arb_mat([[arb(int(i == j)) for j in range(size + len(held))] for i in range(size + len(held))])
         moved = (one - factor * wide) * arb_mat([[arb(0, r)] for r in radii]) - factor * arb_mat([[y] for y in value])
         return [row[0] for row in moved.tolist()]

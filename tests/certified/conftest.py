@@ -40,3 +40,11 @@ def displaced(basin, share: float, rng) -> np.ndarray:
     w = rng.standard_normal(basin.rest.size)
     w -= motions @ (motions.T @ w)
     return share * float(basin.radius) * (w / np.linalg.norm(w)).reshape(basin.rest.shape)
+
+
+def text_of(law, positions=((0.0,), (7.0,)), box="0.01", **changes):
+    """What the certificate of a basin says of a law, and of positions."""
+    names = {name: getattr(law.alpha, name) for name in ("d", "r", "eps", "h", "a", "b")}
+    names |= {name: getattr(law.gains, name) for name in ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma")}
+    said = {"algorithm": "Algorithm2"} | {name: str(value) for name, value in (names | changes).items()}
+    return {"law": said, "positions": [[float(x).hex() for x in row] for row in positions], "box": box}

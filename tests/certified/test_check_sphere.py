@@ -60,7 +60,10 @@ def test_it_holds_and_tells_the_clearance(data, tube):
     assert float(data["energy"]) == pytest.approx(LAW.energy(0.0, *START), abs=1e-5)
 
 
-@pytest.mark.parametrize("x", [(-0.5, 1.375), (-0.75, 1.0), (-0.6, 0.9), (0.25, 2.5)])
+NEAR, TAPERED = [(-0.5, 1.375), (-0.75, 1.0), (-0.6, 0.9), (0.25, 2.5)], [(0.25, 2.35), (-0.9, 1.9)]
+
+
+@pytest.mark.parametrize("x", NEAR + TAPERED)
 def test_the_checkers_force_and_slope_are_those_of_the_law(data, x):
     q, p = np.array([x, START[0][1]]), START[1]
     run = Run.of(data)
@@ -72,6 +75,23 @@ def test_the_checkers_force_and_slope_are_those_of_the_law(data, x):
         with capped(1):
             u = run.force(arb(0), [arb_series([y]) for y in state], pieces)
         np.testing.assert_allclose([float(y[0]) for y in u], expected, atol=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("clearance", "off", "piece"),
+    [
+        *((clearance, off, 0) for clearance, off in ((0.6, 0.0), (0.7, 0.002), (-0.2, 0.1))),
+        *((clearance, off, 1) for clearance, off in ((0.71, 0.0), (0.85, 0.09), (0.99, 0.0))),
+        *((clearance, off, 2) for clearance, off in ((1.01, 0.0), (1.5, 0.3))),
+        *((clearance, off, None) for clearance, off in ((0.7, 0.01), (0.0, 0.8), (1.0, 0.01), (0.85, 0.2), (1.5, 0.9))),
+    ],
+)
+def test_a_box_of_places_is_on_a_piece_only_if_all_of_it_is(data, clearance, off, piece):
+    """φ_β is in its core up to ‖c‖_σ = ½ d_β, which is c = 0.703, and on its taper up to d_β, c = 1."""
+    sphere = Run.of(data).spheres[0]
+    for side in (1.0, -1.0):
+        x = [arb(0.25 + side * (1.0 + clearance), off), arb(0.5)]
+        assert sphere.piece(x) == piece
 
 
 @pytest.mark.parametrize(

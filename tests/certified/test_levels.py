@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from flint import arb, ctx
 
 from flockana import Algorithm1, AlphaInteraction, Gains
 from flockana.certified import levels
-from flockana.equilibria.barrier import collision_bounds
+from flockana.equilibria.barrier import coincident_lattice, collision_bounds
 from flockana.theorems.olfati_saber.os_1 import disconnected_energy
 
 LONG = AlphaInteraction(r=9.8)  # κ = 1.4: cliques of 4 in the plane
@@ -47,3 +48,91 @@ def test_a_state_left_behind_has_the_energy_of_its_lattice_and_none_where_there_
         assert abs(ball - arb(stated)) < 1e-12 * stated
     assert levels.disconnected_state(AlphaInteraction(r=12.2), 7, 2) is None  # κ > √3
     assert levels.disconnected_state(AlphaInteraction(r=12.1), 7, 2) is not None
+
+
+HEAVY = Algorithm1(alpha=AlphaInteraction(unit=2.0), gains=Gains(c1_alpha=3.0, c2_alpha=1.0))
+WEAK = AlphaInteraction(d=1.0, r=10.0)  # what holds a pair out to r costs more than what keeps it apart
+
+
+def test_a_unit_of_length_counts_twice():
+    """V in units of ℓ², with the gain that makes up for it, is the energy of the law at the same state."""
+    assert levels.gain(HEAVY) == 12
+    q = coincident_lattice(HEAVY.alpha, 5, 2)
+    found = levels.gain(HEAVY) * levels.coincident_state(HEAVY.alpha, 5, 2)
+    assert float(found) == pytest.approx(HEAVY.structural_energy(q, np.zeros_like(q)), rel=1e-12)
+
+
+def test_a_floor_is_a_ball_about_a_number_that_no_digits_write():
+    assert not levels.coincident_floor(LONG, 7, 2).is_exact()
+
+
+@pytest.mark.parametrize("n", [2, 9])
+def test_where_pairs_cost_more_apart_than_together_only_the_coincident_pair_counts(n):
+    par = levels.scaled(WEAK)
+    with ctx.workprec(100):
+        assert levels.c_star(par) < levels.far_potential(par)
+        assert levels._shortest_bound(par) is None
+        assert levels._largest_clique(par, 2) is None
+        assert levels.coincident_floor(WEAK, n, 2).overlaps(levels.c_star(par))
+
+
+@pytest.mark.parametrize("r", [7.5, 8.4, 9.8, 12.0, 15.0, 18.0])
+def test_below_the_shortest_length_of_a_bound_pair_a_pair_costs_more_than_one_apart(r):
+    par = levels.scaled(AlphaInteraction(r=r))
+    with ctx.workprec(100):
+        shortest = levels._shortest_bound(par)
+        if shortest is None:
+            assert not levels.c_star(par) > levels.far_potential(par)
+            return
+        assert levels.psi_alpha(levels.sigma_norm(arb(shortest), par.eps), par) > levels.far_potential(par)
+        longer = arb(shortest) + arb("1e-9")
+        assert levels.psi_alpha(levels.sigma_norm(longer, par.eps), par) < levels.far_potential(par)
+
+
+def ratio_of(points):
+    """The longest distance over the shortest."""
+    i, j = np.triu_indices(len(points), 1)
+    lengths = np.linalg.norm(np.asarray(points)[j] - np.asarray(points)[i], axis=1)
+    return lengths.max() / lengths.min()
+
+
+def ring(k, *more):
+    return [*([np.cos(a), np.sin(a)] for a in 2.0 * np.pi * np.arange(k) / k), *more]
+
+
+def test_the_least_ratios_are_those_of_the_best_sets_of_points():
+    """A square, a pentagon, a pentagon and a hexagon about their centre; in space a triangle between two points."""
+    best = {4: ring(4), 5: ring(5), 6: ring(5, [0.0, 0.0]), 7: ring(6, [0.0, 0.0])}
+    found = levels._least_ratios(2)
+    assert {k: float(ratio) for k, ratio in found.items()} == pytest.approx({k: ratio_of(x) for k, x in best.items()})
+    half = np.sqrt(0.75)
+    bipyramid = [[x, y, 0.0] for x, y in ring(3)] + [[0.0, 0.0, half], [0.0, 0.0, -half]]
+    assert {k: float(ratio) for k, ratio in levels._least_ratios(3).items()} == pytest.approx({5: ratio_of(bipyramid)})
+    assert levels._least_ratios(1) == {}
+
+
+@pytest.mark.parametrize(
+    ("r", "m", "most"), [(7.5, 1, 2), (9.8, 1, 2), (15.0, 1, 5), (7.5, 2, 3), (9.8, 2, 4), (7.5, 3, 4), (9.8, 3, 26)]
+)
+def test_so_many_points_fit(r, m, most):
+    """Between the shortest distance of a bound pair and r: ratios of 1.10, 1.60 and 4.27."""
+    par = levels.scaled(AlphaInteraction(r=r))
+    with ctx.workprec(100):
+        assert levels._largest_clique(par, m) == most
+
+
+def test_one_agent_alone_is_not_left_behind_and_of_two_one_is():
+    alpha = AlphaInteraction()
+    assert levels.disconnected_state(alpha, 1, 2) is None
+    with ctx.workprec(100):
+        assert levels.disconnected_state(alpha, 2, 2).overlaps(levels.far_potential(levels.scaled(alpha)))
+
+
+def test_on_a_line_a_lattice_is_exact_below_twice_its_length():
+    """κ = 1.9: agents d apart hold to their neighbours alone; at κ = 2 they hold to the next as well."""
+    alpha = AlphaInteraction(d=5.0, r=9.5)
+    with ctx.workprec(100):
+        far = levels.far_potential(levels.scaled(alpha))
+        assert levels.disconnected_state(alpha, 5, 1).overlaps(7 * far)  # 10 pairs less 3 bonds
+    assert levels.disconnected_state(alpha, 5, 2) is None
+    assert levels.disconnected_state(AlphaInteraction(d=5.0, r=10.0), 5, 1) is None

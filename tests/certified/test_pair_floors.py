@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from flint import arb, ctx, fmpq
 
 from flockana import Algorithm1, Algorithm2, StaticTarget
+from flockana.certified import shells
+from flockana.certified.check_net import Net
 from flockana.certified.damping import damping
 from flockana.certified.decimals import floored, raised, written
+from flockana.certified.intervals import square
 from flockana.certified.lyapunov import Bounds, decay, rate_of
 from flockana.certified.pair_floors import SHELLS, LengthCells, points, proposed_across
 from flockana.certified.shells import Surroundings
 from flockana.certified.structure import Structure
 from flockana.interactions import AlphaInteraction
+from tests.certified.conftest import text_of
 
 LAW = Algorithm1()
 U = Structure.of(LAW, 2, 2)
@@ -58,6 +64,103 @@ def test_proposed_bounds_are_proved_and_samples_leave_no_room_for_much_better_on
         assert not cells.holds(SHELLS, a, floored(arb(true + 0.01 * abs(true) + 1e-3), 6))
         above = floored(arb(1.001 * float(stiff.min()) + 1.0), 6)
         assert not cells.holds(SHELLS, above, b)
+
+
+def curves(length):
+    """F'' and T = F'/ℓ of a pair in floating point, and its largest |F''|."""
+    alpha, root = LAW.alpha, np.sqrt(1 + LAW.alpha.eps * length**2)
+    action = 30.0 * alpha.phi_alpha(alpha.sigma_norm(length))
+    stiff = 30.0 * alpha.phi_alpha_slope(alpha.sigma_norm(length)) * (length / root) ** 2 + action / root**3
+    return stiff, action / root
+
+
+def largest_across(rest, eta, along, curves=curves):
+    """The largest β on a fine net of displacements, those of length η and those across among them."""
+    length = rest + np.linspace(-eta, eta, 1001)[1:-1, None]
+    stiff, pull = curves(length)
+    turned = np.linspace(0.002, 1.0, 500) * (eta**2 - (length - rest) ** 2) / (2.0 * length * rest)  # 1 − cos
+    inward, across = length * (1.0 - turned) - rest, length**2 * turned * (2.0 - turned)
+    outward = (length**2 - rest * length * (1.0 - turned)) / length
+    form = stiff * outward**2 + pull * (inward**2 + across - outward**2)
+    return float(((form - along * inward**2) / across).min())
+
+
+class Made:
+    """A pair at rest at length 1 with F'' = stiff + dip x², T = pull + steeper x, one that no law has."""
+
+    def __init__(self, stiff, pull, steeper=0.0, dip=0.0):
+        self.numbers = stiff, pull, steeper, dip
+
+    def __call__(self, length):
+        stiff, pull, steeper, dip = self.numbers
+        return stiff + dip * (length - 1) ** 2, pull + steeper * (length - 1)
+
+    def of_length(self, length):
+        x, (stiff, pull, steeper, dip) = length - 1, map(arb, self.numbers)
+        return stiff + dip * square(x), pull + steeper * x
+
+    def stiffness(self, s):
+        return self.of_length(s.sqrt())[0]
+
+    def tension(self, s):
+        return self.of_length(s.sqrt())[1]
+
+
+def provers(rest, eta, pair=None):
+    """Those of the certificate and of its checker, up to the length η; of a pair that was made up, or of the law's."""
+    cells, net = LengthCells(pair or U, arb(rest), fmpq(round(10_000 * eta), 10_000)), Net(text_of(LAW))
+    if pair:
+        net.stiffness, net.tension = (lambda x, k=k: pair.of_length(x)[k] for k in (0, 1))
+    yield lambda a, b: cells.holds(SHELLS, a, b)
+    yield lambda a, b: net.floor_holds(arb(rest), as_fraction(cells.reach), as_fraction(a), as_fraction(b))
+
+
+def as_fraction(number):
+    return Fraction(int(number.p), int(number.q))
+
+
+@pytest.mark.parametrize(
+    ("eta", "pair"), [(0.125, Made(1.75, -1.25)), (0.75, Made(-0.5, 1.75, 4.0)), (0.0625, Made(-2.0, -0.5))]
+)
+def test_where_a_coarse_cell_would_do_it_still_is_a_bound(eta, pair):
+    """With α = F'' to the digit each cell has only its own width to spare."""
+    along = fmpq(*pair.numbers[0].as_integer_ratio())
+    true = largest_across(1.0, eta, pair.numbers[0], lambda length: pair(length + 0.0 * length))
+    with ctx.workdps(25):
+        for holds in provers(1.0, eta, pair):
+            assert not holds(along, floored(arb(true + 2e-3 * max(1.0, abs(true))), 6))
+            assert holds(along, floored(arb(true - 4.0 * eta**2), 6))
+
+
+def test_nothing_is_proved_of_a_pair_of_which_nothing_is_known():
+    with ctx.workdps(25):
+        for holds in provers(1.0, 0.5, Made(float("nan"), 0.0)):
+            assert not holds(fmpq(-10), fmpq(-10))
+
+
+def test_a_stiffness_that_is_least_at_rest_bounds_what_is_along():
+    """F'' = 1 + 100 x²: only within a hundredth of its length has the pair less than 1.01."""
+    with ctx.workdps(25):
+        for holds in provers(1.0, 0.5, Made(1.0, 0.0, 0.0, 100.0)):
+            assert not holds(fmpq(101, 100), fmpq(-1000))
+            assert holds(fmpq(99, 100), fmpq(-1000))
+
+
+@pytest.mark.parametrize(
+    ("rest", "eta", "slack"), [(6.8, 0.2, 0.05), (6.8, 0.2, 0.5), (7.0, 0.05, 0.05), (7.6, 0.2, 0.05), (7.6, 0.6, 0.5)]
+)
+def test_what_is_proved_of_a_pair_is_nearly_all_that_is_true(rest, eta, slack):
+    """Below the true β by what the direction of a pair costs, K (η/ℓ0)², nothing is refused; above it nothing holds."""
+    x = np.linspace(-eta, eta, 1001)
+    stiff = curves(rest + x)[0]
+    most = float(np.abs(stiff).max())
+    along = floored(arb(float(stiff.min()) - slack * most), 6)
+    true = largest_across(rest, eta, float(along.p) / float(along.q))
+    with ctx.workdps(25):
+        for holds in provers(rest, eta):
+            assert holds(along, floored(arb(true - 0.4 * most * (eta / rest) ** 2), 6))
+            assert not holds(along, floored(arb(true + 1e-3 * abs(true) + 1e-4), 6))
+            assert not holds(floored(arb(float(stiff.min()) + 1e-3 * most), 6), fmpq(-1000))
 
 
 def test_the_pair_of_a_structure_is_that_of_the_law():
@@ -147,3 +250,40 @@ def test_pairs_that_may_come_into_range_have_bounds_too():
         around = Surroundings(LAW, u, [arb(-8), arb(0), arb("8.5")])
         assert [bond.pairs for bond in around.bonds(fmpq(1, 20))] == [((0, 1),)]
         assert [bond.pairs for bond in around.bonds(fmpq(1, 5))] == [((0, 1),), ((1, 2),)]
+        wide = Surroundings(LAW, u, [arb(-8), arb(0), arb("8.55", "0.2")])
+        assert [bond.pairs for bond in wide.bonds(fmpq(1, 100))] == [((0, 1),), ((1, 2),)]
+
+
+def test_pairs_of_one_bond_have_all_their_lengths_in_one_ball():
+    with ctx.workdps(25):
+        around = Surroundings(LAW, Structure.of(LAW, 3, 1), [arb(-7), arb(0), arb("7.0000005")])
+        (bond,) = around.bonds(fmpq(1, 10))
+        assert bond.pairs == ((0, 1), (1, 2))
+        assert bond.rest.contains(7)
+        assert bond.rest.contains(arb("7.0000005").mid())
+
+
+def test_a_matrix_that_nothing_is_proved_of_leaves_no_shells(monkeypatch):
+    with ctx.workdps(25):
+        u = Structure.of(LAW, 2, 1)
+        around = Surroundings(LAW, u, [arb("-3.5"), arb("3.5")])
+        floors = around.proposed(0.1)
+        found = shells.prove(around, floors)
+        assert found is not None
+        monkeypatch.setattr(shells, "least_eigenvalue", lambda matrix: None)
+        assert shells.prove(around, floors) is None
+
+
+def test_a_curvature_is_below_that_of_every_matrix_in_the_balls():
+    """Of two agents on a line it is 2α: with α in a ball, twice the least."""
+    with ctx.workdps(25):
+        around = Surroundings(LAW, Structure.of(LAW, 2, 1), [arb("-3.5"), arb("3.5")])
+        bonds = around.bonds(fmpq(1, 10))
+        for along in (arb(3), arb(3, 0.5), arb(-3, 0.5)):
+            found = around.curvature(bonds, [along], [fmpq(0)])
+            assert found <= 2 * along.lower()
+            assert found > 2 * along.lower() - (2 if along.rad() > 0 else arb("0.01"))
+
+
+def test_root_two_is_rounded_up():
+    assert shells.ROOT_TWO**2 > 2
