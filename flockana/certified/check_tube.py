@@ -55,8 +55,9 @@ class Run(Motion):
         bounded = law["algorithm"] == "Algorithm3"
         gain = {name: number(law[name]) for name in ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma")}
         ensure(all(g >= 0 for g in gain.values()), "a gain is negative")
-        ensure(law["algorithm"] != "Algorithm1" or not any(gain[k] > 0 for k in ("c1_gamma", "c2_gamma")), "a γ-agent")
         start, velocity, told = ([number(x) for x in law[name]] for name in ("start", "velocity", "told"))
+        led = (gain["c1_gamma"], gain["c2_gamma"], *start, *velocity, *told)
+        ensure(law["algorithm"] != "Algorithm1" or all(x == 0 for x in led), "Algorithm 1 has no γ-agent")
         ensure(len(start) == len(velocity) == len(told) == m, "the γ-agent has another dimension")
         ensure(not (bounded and any(x != 0 for x in velocity)), "its γ-agent moves")
         spheres = tuple(Sphere.of(law, one) for one in law["spheres"]) if bounded else ()
@@ -103,6 +104,7 @@ class Run(Motion):
         ensure(same(data["energy"], level.lower(), down=True), "the energy at the start is not the one stated")
         ensure(data["below_c_star"] is bool(level < self.gain["c1_alpha"] * c_star(self.par)), "H(0) < c*")
         yield f"the energy at the start is {data['energy']}, rounded down"
+        ensure(data["basin"] is not None or data["turn"] == "0", "a turn of no basin")
         if data["basin"] is not None:
             ensure(not self.bounded, "a basin of Algorithm 3")
             yield from self.ends_in(data["basin"], data["law"], number(data["turn"]), state, error)

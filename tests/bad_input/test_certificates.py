@@ -17,10 +17,13 @@ from tests.bad_input.test_fuzz import flipped, shortened
 WEIRD = (None, True, -1, 1.5, "", "nan", "1e999999", "0x1p4000", "1/0", [], {}, "9" * 1000, {"__class__": "x"})
 
 
-@pytest.fixture(scope="module")
-def certificate(tmp_path_factory):
-    path = tmp_path_factory.mktemp("certified") / "pair.json"
-    fl.write_certificate(fl.certify([[0.0], [7.0]], law=fl.Algorithm1()), path)
+@pytest.fixture(scope="module", params=["basin", "tube"])
+def certificate(request, tmp_path_factory):
+    path, law = tmp_path_factory.mktemp("certified") / "pair.json", fl.Algorithm1()
+    if request.param == "basin":
+        fl.write_certificate(fl.certify([[0.0], [7.0]], law=law), path)
+    else:
+        fl.write_tube_certificate(fl.enclose(law, [[0.0], [7.0]], [[10.0], [-10.0]], (0.0, 0.0009765625)), path)
     return path.read_bytes()
 
 
@@ -54,7 +57,8 @@ def test_one_that_was_sealed_again_is_rejected(certificate):
         inner = changed
         for key in path[:-1]:
             inner = inner[key]
-        inner[path[-1]] = WEIRD[(k + int(rng.integers(len(WEIRD)))) % len(WEIRD)]
+        turned = np.roll(np.arange(len(WEIRD)), k + int(rng.integers(len(WEIRD))))
+        inner[path[-1]] = next(WEIRD[j] for j in turned if WEIRD[j] != inner[path[-1]])
         try:
             check_data(sealed(changed))
         except RejectedError:
