@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import replace
 
 import mpmath
@@ -26,9 +25,8 @@ from flockana.base.errors import ArgumentError
 from flockana.certified import lohner
 from flockana.certified.laws import flow_of
 from flockana.certified.series import Piece
+from tests.certified.conftest import ALONE, oscillator
 
-MODULE = sys.modules[enclose.__module__]  # which has the function's name
-ALONE = Gains(c1_gamma=1.25, c2_gamma=1.0)  # the roots are −½ ± i
 TOLD = Algorithm2(target=StaticTarget((0.0, 0.0)))
 TRIANGLE = np.array([[-4.625, -2.5], [4.5, -2.75], [0.25, 5.5]])
 
@@ -52,14 +50,6 @@ def inside(run, tube, slack):
         (np.abs(x - y) <= radii + slack).all()
         for x, y, radii in ((run.q, tube.q, tube.radii[:, 0]), (run.p, tube.p, tube.radii[:, 1]))
     )
-
-
-def oscillator(t):
-    """e^{−t/2}(cos t + ½ sin t) and its derivative, the solution from 1 at rest."""
-    with ctx.workprec(200):
-        t = arb(t)
-        fade = (-t / 2).exp()
-        return fade * (t.cos() + t.sin() / 2), -fade * t.sin() * arb(1.25)
 
 
 @pytest.mark.parametrize("order", [4, 9, 16])
@@ -92,36 +82,6 @@ def test_a_target_that_moves_and_one_that_lies_are_followed():
     assert moving.state(-1)[0][0][0].contains(position + 3)
     assert moving.state(-1)[1][0][0].contains(velocity + 3)
     assert lying.state(-1)[0][0][0].contains(position + 1)  # it rests where 1.25 q = 1 · 1.25
-
-
-def test_a_run_that_starts_later_follows_the_target_from_there():
-    law = Algorithm2(gains=ALONE, target=LinearTarget((0.0,), (3.0,)))
-    tube = enclose(law, [[7.0]], [[3.0]], (2.0, 3.0))
-    assert (tube.status, tube.message, tube.t[0], tube.t[-1]) == ("complete", "", 2.0, 3.0)
-    assert tube.state(-1)[0][0][0].contains(oscillator(1.0)[0] + 9)
-
-
-def test_one_radius_is_that_of_places_and_of_velocities():
-    tube = enclose(Algorithm2(gains=ALONE, target=StaticTarget((0.0,))), [[1.0]], [[0.0]], (0.0, 0.125), radius=0.25)
-    q, p = (state[0][0] for state in tube.state(0))
-    for ball, middle in ((q, 1.0), (p, 0.0)):
-        assert all(ball.overlaps(arb(middle + off)) for off in (-0.25, 0.25))
-        assert not any(ball.overlaps(arb(middle + off)) for off in (-0.26, 0.26))
-
-
-def test_a_tube_that_was_interrupted_holds_what_it_has_and_says_so(monkeypatch):
-    steps = MODULE._steps
-
-    def stopped(*given):
-        for k, step in enumerate(steps(*given)):
-            if k == 2:
-                raise KeyboardInterrupt
-            yield step
-
-    monkeypatch.setattr(MODULE, "_steps", stopped)
-    tube = enclose(Algorithm2(gains=ALONE, target=StaticTarget((0.0,))), [[1.0]], [[0.0]], (0.0, 3.0))
-    assert (tube.status, len(tube.taken), len(tube.t)) == ("interrupted", 2, 3)
-    assert tube.message == f"interrupted: it ends at t = {tube.t[-1]:g}"
 
 
 def test_two_agents_out_of_range_move_uniformly():
