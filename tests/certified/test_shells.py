@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from flint import arb, ctx, fmpq
 
 from flockana import Algorithm1
 from flockana.certified import shells
+from flockana.certified.intervals import ball
+from flockana.certified.pair_floors import LengthCells
 from flockana.certified.shells import SHELLS, Shells, Surroundings
 from flockana.certified.structure import Structure
 
@@ -45,6 +49,40 @@ def test_pairs_of_one_bond_have_all_their_lengths_in_one_ball():
         assert bond.pairs == ((0, 1), (1, 2))
         assert bond.rest.contains(7)
         assert bond.rest.contains(arb("7.0000005").mid())
+
+
+def test_what_is_proved_was_asked_of_each_bond_up_to_the_end_of_each_shell(monkeypatch):
+    asked, holds = [], LengthCells.holds
+
+    def noted(self, shell, along, across):
+        asked.append((self.rest, self.reach, shell, along, across))
+        return holds(self, shell, along, across) and len(asked) != refused
+
+    monkeypatch.setattr(LengthCells, "holds", noted)
+    with ctx.workdps(25):
+        around = Surroundings(LAW, Structure.of(LAW, 3, 1), [arb(-7), arb(0), arb("7.25")])
+        floors, refused = around.proposed(0.12345678), None
+        found = shells.prove(around, floors)
+        assert found.radius == fmpq(1234, 10_000)
+        expected = zip(found.along, found.across, strict=True)
+        assert asked == [
+            (bond.rest, shells.ROOT_TWO * found.radius, i + 1, a[k], b[k])
+            for i, (a, b) in enumerate(expected)
+            for k, bond in enumerate(found.bonds)
+        ]
+        assert len(asked) == 2 * SHELLS
+        for i in range(SHELLS):
+            proved = around.curvature(found.bonds, found.along[i], found.across[i])
+            assert ball(found.curvatures[i]) <= proved
+            for stated, proposed in ((found.along[i], floors.along[i]), (found.across[i], floors.across[i])):
+                assert all(float(y.p) / float(y.q) <= x for y, x in zip(stated, proposed, strict=True))
+        for number in (1, 2, 7):  # of the bound that is not proved
+            asked.clear()
+            refused = number
+            assert shells.prove(around, floors) is None
+        asked.clear()
+        refused = None
+        assert shells.prove(around, replace(floors, along=floors.along[:, :1])) is None
 
 
 def test_a_matrix_that_nothing_is_proved_of_leaves_no_shells(monkeypatch):
