@@ -7,7 +7,7 @@ import json
 from fractions import Fraction
 
 import pytest
-from flint import ctx
+from flint import arb, ctx
 
 from flockana.base.seals import sealed
 from flockana.certified.certificate import basin_certificate
@@ -87,3 +87,14 @@ def test_two_agents_that_are_free_to_meet_have_no_basin(data, monkeypatch):
     monkeypatch.setattr(Net, "equilibrium", lambda self: [self.centre[0], self.centre[0], self.centre[2]])
     with pytest.raises(RejectedError, match="agents may collide"):
         checked(data)
+
+
+@pytest.mark.parametrize(("share", "unseen"), [(0.0, True), (0.99, True), (1.01, False)])
+def test_a_pair_out_of_range_that_may_come_into_it_is_missed(data, monkeypatch, share, unseen):
+    """At rest it is out of range by a share of what two agents may come nearer."""
+    far = 8.4 + share * 1.4142136 * float(data["radius"])
+    monkeypatch.setattr(Net, "equilibrium", lambda self: [[arb(x), arb(0)] for x in (0.0, 7.0, far)])
+    data["bonds"][0]["pairs"] = [[0, 1], [1, 2]]
+    with pytest.raises(RejectedError) as error:
+        checked(data)
+    assert ("may come into range unseen" in str(error.value)) is unseen
