@@ -189,9 +189,9 @@ print(fl.verify("dead-zone-1-printed", wide))
 # > pairs and the kinetic energy, and let no two agents start in one place. Then $\bar H$ is continuous and $\dot{\bar
 # > H} = -k_2\,p^\top\hat L\,p \le 0$ across all switches, and no distance ever falls below $d_{\min}$.
 #
-# Both are proved. With
-# $\bar H(0)$ the energy at the start, a pair inside $d_1$ costs $2k_r(\operatorname{arsinh}(1/(\sqrt\eta\,d_{ij})) -
-# \operatorname{arsinh}(1/(\sqrt\eta d_1)))$ at least, and no two agents ever come closer than
+# Both are proved. With $\bar H(0)$ the energy at the start, a pair inside $d_1$ costs at least
+# $2k_r(\operatorname{arsinh}(1/(\sqrt\eta\,d_{ij})) - \operatorname{arsinh}(1/(\sqrt\eta\,d_1)))$, and no two agents
+# ever come closer than
 #
 # $$d_{\min} = \frac{1}{\sqrt\eta\,\sinh\bigl(\bar H(0)/(2k_r)
 #   + \operatorname{arsinh}(1/(\sqrt\eta\, d_1))\bigr)} .$$
