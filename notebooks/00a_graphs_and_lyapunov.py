@@ -59,11 +59,11 @@ for name, L in laplacians.items():
 #
 # $$\dot x = -Lx, \qquad x(t) = e^{-Lt} x(0).$$
 #
-# Because $\mathbf 1^\top L = 0$ the mean $\bar x$ stays. Let $\delta = x - \bar x\mathbf 1$ be the disagreement, which
+# Because $\mathbf 1^\top L = 0$ the mean $\bar x$ stays. Let $x_\perp = x - \bar x\mathbf 1$ be the disagreement, which
 # is orthogonal to $\mathbf 1$. On a connected net the smallest eigenvalue of $L$ on such vectors is $\lambda_2$, so
 #
-# $$\tfrac{d}{dt}\tfrac12\|\delta\|^2 = -\delta^\top L\delta \le -\lambda_2\|\delta\|^2
-#   \quad\Longrightarrow\quad \|\delta(t)\| \le e^{-\lambda_2 t}\|\delta(0)\| .$$
+# $$\tfrac{d}{dt}\tfrac12\|x_\perp\|^2 = -x_\perp^\top Lx_\perp \le -\lambda_2\|x_\perp\|^2
+#   \quad\Longrightarrow\quad \|x_\perp(t)\| \le e^{-\lambda_2 t}\|x_\perp(0)\| .$$
 #
 # A better connected net agrees faster; a net with two components agrees within each of them only.
 
@@ -96,9 +96,10 @@ for ax, (name, L) in zip(axes, laplacians.items(), strict=True):
 # > starts in $\Omega$ stays in it. Let $\dot W \le 0$ on $\Omega$. Then every solution that starts in $\Omega$
 # > approaches the largest invariant subset of $\{x \in \Omega : \dot W(x) = 0\}$.
 #
-# A level set $\{W \le c\}$ is positively invariant where $\dot W \le 0$. What has to be shown is that it is *bounded*.
+# A level set $\{W \le W_0\}$ is positively invariant where $\dot W \le 0$. What has to be shown is that it is
+# *bounded*.
 #
-# **A damped mass.** $\ddot x = -x - c\dot x$, $c > 0$, has the energy $H = \tfrac12(x^2 + v^2)$, with $\dot H = -cv^2$.
+# **A damped mass.** $\ddot x = -x - k\dot x$, $k > 0$, has the energy $H = \tfrac12(x^2 + v^2)$, with $\dot H = -kv^2$.
 # The sets $\{H \le H_0\}$ are discs, hence compact. $\dot H = 0$ means $v = 0$; a solution stays in that set only if
 # $\dot v = -x = 0$ too. So the largest invariant subset is the origin, and every solution converges to it.
 
@@ -112,7 +113,7 @@ _ = plots.phase_portrait(run.q[:, 0, 0], run.p[:, 0, 0], energy=(x, x, H), label
 # %% [markdown]
 # **What compactness is for.** Two agents repel each other with the potential $1/x$, $x > 0$ their distance, and damping
 # acts while they are near, at the rate $e^{-x}$: $\ddot x = 1/x^2 - e^{-x}\dot x$. Again $H = \tfrac12 v^2 + 1/x$
-# falls, $\dot H = -e^{-x}v^2 \le 0$. But the set $\{H \le c\}$ reaches to $x = \infty$: it is not compact. LaSalle
+# falls, $\dot H = -e^{-x}v^2 \le 0$. But the set $\{H \le H_0\}$ reaches to $x = \infty$: it is not compact. LaSalle
 # says nothing, and the agents part for ever. This is what happens to flocks that fragment (lecture 02), and why
 # cohesion has to be shown first (lecture 03).
 
@@ -182,21 +183,21 @@ time = np.log(1000.0) / 5.0  # λ_2 = n on the complete net
 grade(time, 1.38155106, digits=4, hint="first find the eigenvalues of L = nI − 𝟏𝟏ᵀ")
 
 # %% [markdown] tags=["exercise"]
-# **4.** ★★ (2 points, design) Design: for the damped mass $\ddot x = -x - c\dot x$, what is the least $c$ for which
+# **4.** ★★ (2 points, design) Design: for the damped mass $\ddot x = -x - k\dot x$, what is the least $k$ for which
 # every solution decays at the rate 0.8 at least, that is like $e^{-0.8t}$? (Exactly.)
 
 # %% tags=["answer"]
 damping = ...
 
 # %% tags=["solution"]
-damping = 1.6  # complex poles have the real part −c/2
+damping = 1.6  # complex poles have the real part −k/2
 
 # %% tags=["check"]
 grade(damping, 1.6, hint="look at the real part of the poles while they are complex")
 
 # %% [markdown] tags=["exercise"]
 # **5.** ★★ (2 points, derivation) An agent on a line has the potential $\arctan(x)^2$ and the damping $-\dot x$. For
-# which $c$ is $\{\tfrac12 v^2 + \arctan(x)^2 \le c\}$ compact? Give the least upper bound of these $c$, to four
+# which $H_0$ is $\{\tfrac12 v^2 + \arctan(x)^2 \le H_0\}$ compact? Give the least upper bound of these $H_0$, to four
 # significant digits.
 
 # %% tags=["answer"]

@@ -83,12 +83,12 @@ _ = plots.components(run, ax=axes[2])
 # v) = c_1^\alpha V(x) + \tfrac12\sum\|v_i\|^2$. A group is *cohesive* if one ball about its centre holds it at all
 # times, and a *flock* while its net is connected.
 #
-# > **Theorem 1** (Olfati-Saber 2006). Let $\Omega_c = \{(x, v) : H(x, v) \le c\}$ be such that every solution of
+# > **Theorem 1** (Olfati-Saber 2006). Let $\Omega = \{(x, v) : H(x, v) \le H_0\}$ be such that every solution of
 # > Algorithm 1 that starts in it is a cohesive flock for all times. Then (i) almost every solution that starts in
-# > $\Omega_c$ converges to an equilibrium $(x^*, 0)$ where $x^*$ is an α-lattice; (ii) all agents asymptotically move
-# > with the same velocity; (iii) if $c < c^* = c_1^\alpha\psi_\alpha(0)$, no two agents ever collide.
+# > $\Omega$ converges to an equilibrium $(x^*, 0)$ where $x^*$ is an α-lattice; (ii) all agents asymptotically move
+# > with the same velocity; (iii) if $H_0 < c^* = c_1^\alpha\psi_\alpha(0)$, no two agents ever collide.
 #
-# The proof is LaSalle's: cohesion makes $\Omega_c$ compact, $\dot H = 0$ forces equal velocities on a connected net.
+# The proof is LaSalle's: cohesion makes $\Omega$ compact, $\dot H = 0$ forces equal velocities on a connected net.
 # Claim (i) is false as printed (erratum E3, lecture 07): minima of $V$ need not be lattices.
 
 # %%

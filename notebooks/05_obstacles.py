@@ -21,11 +21,11 @@
 # centre $y$ and radius $R_k$,
 #
 # $$\begin{gathered}
-#   \mu = \frac{R_k}{\|q_i - y\|},\quad a = \frac{q_i-y}{\|q_i-y\|},\quad P = I - aa^\top, \\[1ex]
+#   \mu = \frac{R_k}{\|q_i - y\|},\quad e = \frac{q_i-y}{\|q_i-y\|},\quad P = I - ee^\top, \\[1ex]
 #   \hat q_{ik} = \mu q_i + (1-\mu) y,\quad \hat p_{ik} = \mu P p_i ,
 # \end{gathered}$$
 #
-# and for a wall through $y$ with unit normal $a$: $\hat q_{ik} = Pq_i + (I-P)y$, $\hat p_{ik} = Pp_i$. An agent is to
+# and for a wall through $y$ with unit normal $e$: $\hat q_{ik} = Pq_i + (I-P)y$, $\hat p_{ik} = Pp_i$. An agent is to
 # keep the distance $d'$ from obstacles. With $d_\beta = \|d'\|_\sigma$ and $\sigma_1(z) = z/\sqrt{1+\|z\|^2}$ the
 # β-agents repel, and brake, within that distance:
 #

@@ -18,10 +18,10 @@
 #
 # In the frame of the centre of mass Algorithm 2 is $\dot x = v$, $\dot v = -\nabla U_\lambda(x) - (c_2^\gamma I +
 # c_2^\alpha \hat L(x))v$ with $U_\lambda = c_1^\alpha V + \lambda J$, $\lambda = c_1^\gamma$. Near a minimum $x^*$ of
-# $U_\lambda$, where $v = 0$,
+# $U_\lambda$, where $v = 0$, and with $z = x - x^*$ small,
 #
-# $$\delta\ddot x + \underbrace{(c_2^\gamma I + c_2^\alpha \hat L)}_{D}\,\delta\dot x
-#   + \underbrace{\nabla^2 U_\lambda(x^*)}_{S}\,\delta x = 0, \qquad (s^2 I + s D + S)\,\nu = 0 .$$
+# $$\ddot z + \underbrace{(c_2^\gamma I + c_2^\alpha \hat L)}_{D}\,\dot z
+#   + \underbrace{\nabla^2 U_\lambda(x^*)}_{S}\,z = 0, \qquad (s^2 I + s D + S)\,\nu = 0 .$$
 #
 # $D$ is the damping, $S$ the stiffness, $s$ a pole and $\nu$ its mode. ($\lambda$ stays $c_1^\gamma$; $K$ stays the
 # velocity mismatch $\tfrac12\sum\|v_i\|^2$.)

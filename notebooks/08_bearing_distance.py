@@ -16,31 +16,33 @@
 # **Aims.** Run a law that knows only bearings and distances. Then read its theorem, refute it with a counterexample,
 # and see what can be saved.
 #
-# Jond (2025; `fl.cite(fl.scenario("zone-51"))`) surrounds each agent with zones, $0 < r \le c < a < s$: flockmates
-# up to $c$ repel, those between $r$ and $a$ attract and align, intruders up to $s$ repel. The law is a map from step to
-# step,
+# Jond (2025; `fl.cite(fl.scenario("zone-51"))`) surrounds each agent with zones of radii $0 < z_r \le z_c <
+# z_a < z_s$: flockmates up to $z_c$ repel, those between $z_r$ and $z_a$ attract and align, intruders up to $z_s$
+# repel. The law is a map from step to step,
 #
 # $$u_i = u_i^{lc} + u_i^{la} + u_i^{ls} + u_i^{ss} + u_i^{oa} + u_i^{ga}, \qquad
-#   p_i \leftarrow p_i + \delta\, u_i, \qquad q_i \leftarrow q_i + \delta\, p_i ,$$
+#   p_i \leftarrow p_i + \Delta t\, u_i, \qquad q_i \leftarrow q_i + \Delta t\, p_i ,$$
 #
 # with cohesion, alignment, separation (local and strategic), obstacle avoidance and global speed. With $d_{ij} =
-# \|q_j-q_i\|$, the bearing $b_{ij} = (q_j-q_i)/d_{ij}$, the sets $R_i = \{j : d_{ij} \le c\}$, $A_i = \{j : r < d_{ij}
-# \le a\}$ and the aliens $S_i = \{k : 0 < d_{ik} \le s\}$, and weights $w$ whose sum over the set is $W$:
+# \|q_j-q_i\|$, the bearing $b_{ij} = (q_j-q_i)/d_{ij}$, the sets $R_i = \{j : d_{ij} \le z_c\}$, $A_i = \{j :
+# z_r < d_{ij} \le z_a\}$ and the aliens $S_i = \{k : 0 < d_{ik} \le z_s\}$, and weights $w$ whose sum over the set is
+# $\bar w$:
 #
 # $$\begin{gathered}
-#   u_i^{lc} = \frac1{W^{lc}}\sum_{A_i} w_{ij}^{lc}\,(q_j - q_i), \quad
-#   u_i^{la} = \frac1{W^{la}}\sum_{A_i} w_{ij}^{la}\,(p_j - p_i), \\[1ex]
-#   u_i^{ls} = \sum_{R_i} w_{ij}^{ls}\,(d_{ij}-c)\,b_{ij},
+#   u_i^{lc} = \frac1{\bar w^{lc}}\sum_{A_i} w_{ij}^{lc}\,(q_j - q_i), \quad
+#   u_i^{la} = \frac1{\bar w^{la}}\sum_{A_i} w_{ij}^{la}\,(p_j - p_i), \\[1ex]
+#   u_i^{ls} = \sum_{R_i} w_{ij}^{ls}\,(d_{ij}-z_c)\,b_{ij},
 # \end{gathered}$$
 #
 # $$\begin{gathered}
-#   u_i^{ss} = \sum_{S_i} w_{ik}^{ss}\,(d_{ik}-s)\,b_{ik}, \quad
-#   u_i^{oa} = \sum_e w_i^{oa}\min(0,\, d_{ie}-c)\,b_{ie}, \\[1ex]
+#   u_i^{ss} = \sum_{S_i} w_{ik}^{ss}\,(d_{ik}-z_s)\,b_{ik}, \quad
+#   u_i^{oa} = \sum_e w_i^{oa}\min(0,\, d_{ie}-z_c)\,b_{ie}, \\[1ex]
 #   u_i^{ga} = w_i^{ga}\Bigl(v^d\frac{p_i}{\|p_i\|} - p_i\Bigr),
 # \end{gathered}$$
 #
 # where $e$ runs over the closest points of the obstacles that the agent's zone meets, $v^d$ is the desired speed, and a
-# sum over an empty set is 0. As in all lectures $q$ is a position and $p$ a velocity; the paper writes $p$ and $v$.
+# sum over an empty set is 0. As in all lectures $q$ is a position and $p$ a velocity; the paper writes $p$ and
+# $v$, and the radii without $z$, as `ZoneFlocking` does.
 
 # %%
 import numpy as np
@@ -70,8 +72,8 @@ for ax, case, t in zip(axes, ("zone-gap", "zone-gap", "zone-gap-buffer"), (4.0, 
 # %% [markdown]
 # ## Two forms, and where they part
 #
-# From a bearing $b_{ij}$ and a distance $d_{ij}$ an agent knows $q_j - q_i = d\,b$, and from their rates
-# $p_j - p_i = d\,\dot b + \dot d\,b$ (13). So each behaviour has a form without positions:
+# From a bearing $b_{ij}$ and a distance $d_{ij}$ an agent knows $q_j - q_i = d_{ij}b_{ij}$, and from their rates
+# $p_j - p_i = d_{ij}\dot b_{ij} + \dot d_{ij}b_{ij}$ (13). So each behaviour has a form without positions:
 
 # %%
 print("both forms agree:", bearing_distance.derive_equivalence().holds)
@@ -148,7 +150,7 @@ print(f"edges {lengths.min():.3f} to {lengths.max():.3f} long, largest force {np
 
 # %% [markdown]
 # $x = 0$ is not even desirable: it means that all agents collide. Where did the proof go wrong? An edge of length
-# $\|x\|$ contributes $s^2 + s + w$ with $w = \mu(1 - \rho/\|x\|)$ to the characteristic polynomial of $A_{cl}$
+# $\|x\|$ contributes $s^2 + s + w$ with $w = w_0(1 - \rho/\|x\|)$ to the characteristic polynomial of $A_{cl}$
 # (erratum J2):
 
 # %%
@@ -193,7 +195,7 @@ _ = plots.pole_map(found.eigenvalues, ax=ax)
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** ★ (1 point, experiment) Halve the step to $\delta = 0.05$. Which speed can the printed bound (10) not exceed
+# **1.** ★ (1 point, experiment) Halve the step to $\Delta t = 0.05$. Which speed can the printed bound (10) not exceed
 # for long now? (Four significant digits.)
 
 # %% tags=["answer"]
@@ -207,7 +209,7 @@ grade(fastest, 1.62779186, digits=4, hint="the speed at which one step gains as 
 
 # %% [markdown] tags=["exercise"]
 # **2.** ★ (1 point, derivation) Two agents: 1 perceives 0 and wants to be 1 away, both at rest, 0.5 apart. What is the
-# acceleration of agent 1 along the line from 0 to 1 ($\mu = 1$)? (Exactly.)
+# acceleration of agent 1 along the line from 0 to 1 ($w_0 = 1$)? (Exactly.)
 
 # %% tags=["answer"]
 push = ...

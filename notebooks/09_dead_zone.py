@@ -17,14 +17,14 @@
 # an integrator, and sort a printed theorem into what is true, what is false and what can be mended.
 #
 # Li, Yuan and Liu (`fl.cite(fl.theorem("dead-zone-1-printed"))`) let agents repel below $d_1 = r_b-\delta$, attract
-# above $d_2 = r_b+\delta$, and leave each other alone between. Made definite (errata L1, L2), with $\rho =
+# above $d_2 = r_b+\delta$, and leave each other alone between. Made definite (errata L1, L2), with $d_{ij} =
 # \|q_j-q_i\|$,
 #
 # $$\begin{gathered}
-#   u_i = \sum_{\rho < r} \Bigl[ f(\rho)\,\frac{q_j-q_i}{\sqrt{1+\eta\rho^2}}
+#   u_i = \sum_{d_{ij} < r} \Bigl[ f(d_{ij})\,\frac{q_j-q_i}{\sqrt{1+\eta d_{ij}^2}}
 #   + k_1 (q_j-q_i) + k_2 (p_j-p_i) \Bigr], \\[1ex]
-#   f = \begin{cases} -(2k_r/\rho^2 + k_\delta) & \rho < d_1 \\ 0 & d_1 \le \rho \le d_2 \\
-#   2k_r/(r_d-\rho)^2 + k_\delta & d_2 < \rho < r \end{cases}
+#   f = \begin{cases} -(2k_r/d_{ij}^2 + k_\delta) & d_{ij} < d_1 \\ 0 & d_1 \le d_{ij} \le d_2 \\
+#   2k_r/(r_d-d_{ij})^2 + k_\delta & d_2 < d_{ij} < r \end{cases}
 # \end{gathered}$$
 
 # %%
@@ -49,8 +49,8 @@ for jump in hard.jumps():
 #
 # ## The potential, in closed form
 #
-# The source calls $f$ a bounded potential (erratum L3). It is a force, unbounded as $1/\rho^2$. Its potential is
-# unbounded too, but only as $-2k_r\ln\rho$, because $q_j - q_i$ is no unit vector:
+# The source calls $f$ a bounded potential (erratum L3). It is a force, unbounded as $1/d_{ij}^2$. Its potential is
+# unbounded too, but only as $-2k_r\ln d_{ij}$, because $q_j - q_i$ is no unit vector:
 
 # %%
 potential = symbolic.dead_zone.derive_potential()
@@ -102,9 +102,9 @@ for rtol in (1e-6, 1e-8, 1e-10):
 # %% [markdown]
 # ## Sliding
 #
-# Just above $d_1$ the pull $k_1\rho$ draws two agents together, just below it they repel. Damped, they bounce at $d_1$
-# ever lower, and the switches come ever faster: in the end the pair is *held at the jump*, a sliding mode in Filippov's
-# sense. No solver of smooth pieces gets beyond that point, and the run says so.
+# Just above $d_1$ the pull $k_1 d_{ij}$ draws two agents together, just below it they repel. Damped, they bounce at
+# $d_1$ ever lower, and the switches come ever faster: in the end the pair is *held at the jump*, a sliding mode in
+# Filippov's sense. No solver of smooth pieces gets beyond that point, and the run says so.
 
 # %%
 pair, rest = np.array([[0.0, 0.0], [5.0, 0.0]]), np.zeros((2, 2))
@@ -187,13 +187,13 @@ print(fl.verify("dead-zone-1-printed", wide))
 #
 # > **Corrected theorem.** Let each pair's potential be held constant beyond $r$, let $\bar H$ be the sum over all
 # > pairs and the kinetic energy, and let no two agents start in one place. Then $\bar H$ is continuous and $\dot{\bar
-# > H} = -k_2\,p^\top\hat L\,p \le 0$ across all switches, and no distance ever falls below $\rho_{\min}$.
+# > H} = -k_2\,p^\top\hat L\,p \le 0$ across all switches, and no distance ever falls below $d_{\min}$.
 #
-# Both are proved. With
-# $\bar H(0)$ the energy at the start, a pair inside $d_1$ costs $2k_r(\operatorname{arsinh}(1/(\sqrt\eta\rho)) -
-# \operatorname{arsinh}(1/(\sqrt\eta d_1)))$ at least, and no two agents ever come closer than
+# Both are proved. With $\bar H(0)$ the energy at the start, a pair inside $d_1$ costs at least
+# $2k_r(\operatorname{arsinh}(1/(\sqrt\eta\,d_{ij})) - \operatorname{arsinh}(1/(\sqrt\eta\,d_1)))$, and no two agents
+# ever come closer than
 #
-# $$\rho_{\min} = \frac{1}{\sqrt\eta\,\sinh\bigl(\bar H(0)/(2k_r)
+# $$d_{\min} = \frac{1}{\sqrt\eta\,\sinh\bigl(\bar H(0)/(2k_r)
 #   + \operatorname{arsinh}(1/(\sqrt\eta\, d_1))\bigr)} .$$
 #
 # A third, that velocities match *within* components, is seen in this run and not proved:

@@ -87,7 +87,7 @@ print(fl.verify("energy", fl.simulate(cut, q0, 0.0 * q0, (0.0, 1.0))))
 #
 # Not every law is a sum over a potential. That of Cucker and Smale (*IEEE TAC* 52(5), 2007) has none:
 #
-# $$u_i = \sum_j a_{ij}(p_j - p_i), \qquad a_{ij} = \frac{s}{n}\,\bigl(1 + \|q_j - q_i\|^2\bigr)^{-\beta}.$$
+# $$u_i = \sum_j a_{ij}(p_j - p_i), \qquad a_{ij} = \frac{g}{n}\,\bigl(1 + \|q_j - q_i\|^2\bigr)^{-\beta}.$$
 #
 # The three files of this example are in `own_law/`, beside this notebook. In the library's repository they would go to
 # `flockana/laws/`, `flockana/theorems/` and `proofs/`, where they are found by themselves.
@@ -112,12 +112,12 @@ print(f"the balance closes to {abs(run.energy_residual).max() / run.energy()[0]:
 # ## The theorem
 #
 # > **Theorem.** Let $p_c$ be the mean velocity and $K = \tfrac12\sum\|p_i - p_c\|^2$, and let no two agents of a
-# > solution be farther apart than $D$ while $0 \le t \le T$. Then $K(t) \le K(0)\,e^{-2s(1+D^2)^{-\beta}t}$ for those
+# > solution be farther apart than $B$ while $0 \le t \le t_1$. Then $K(t) \le K(0)\,e^{-2g(1+B^2)^{-\beta}t}$ for those
 # > $t$.
 #
-# For then every weight is at least $(s/n)(1+D^2)^{-\beta}$, and so
+# For then every weight is at least $(g/n)(1+B^2)^{-\beta}$, and so
 #
-# $$\dot K = -\tfrac12\sum_{i,j} a_{ij}\|p_j-p_i\|^2 \le -2s\,(1+D^2)^{-\beta} K .$$
+# $$\dot K = -\tfrac12\sum_{i,j} a_{ij}\|p_j-p_i\|^2 \le -2g\,(1+B^2)^{-\beta} K .$$
 
 # %%
 from own_law.theorem import THEOREM
@@ -223,9 +223,9 @@ grade(
 )
 
 # %% [markdown] tags=["exercise"]
-# **5.** ★★★ (3 points, derivation) For $\beta > \tfrac12$ a flock may disperse: $D$ grows without bound, the rate that
+# **5.** ★★★ (3 points, derivation) For $\beta > \tfrac12$ a flock may disperse: $B$ grows without bound, the rate that
 # the theorem guarantees falls to 0, and it promises nothing. Take two agents on a line, 1 apart, leaving each other at
-# relative speed $w$, with $s = 1$, $\beta = 1$. The relative velocity obeys $\dot w = -w/(1+x^2)$, hence $w(t) = w(0) -
+# relative speed $w$, with $g = 1$, $\beta = 1$. The relative velocity obeys $\dot w = -w/(1+x^2)$, hence $w(t) = w(0) -
 # \arctan x(t) + \arctan 1$. Above which $w(0)$ do they never match velocities? (Four significant digits.)
 
 # %% tags=["answer"]
@@ -274,19 +274,19 @@ def decays(run, tolerances):
 
 
 def proof_steps():
-    strength, v = sp.Symbol("s", positive=True), sp.symbols("v1:4", real=True)
+    strength, v = sp.Symbol("g", positive=True), sp.symbols("v1:4", real=True)
     mean = sum(v) / 3
     identity = sum(w - v[0] for w in v) / 3 - (mean - v[0])
     yield Step("(1/n) Σ_j (p_j − p_i) = p_c − p_i", sp.expand(identity) == 0)
     K = sum((w - mean) ** 2 for w in v) / 2
     rate = sum(sp.diff(K, w) * strength * (mean - w) for w in v)
-    yield Step("dK/dt = −2 s K", sp.expand(rate + 2 * strength * K) == 0)
+    yield Step("dK/dt = −2 g K", sp.expand(rate + 2 * strength * K) == 0)
 
 
 own_theorem = Theorem(
     id="linear-consensus",
-    title="The mismatch of linear consensus falls at the rate 2s",
-    statement="K(t) = K(0) exp(−2 s t).",
+    title="The mismatch of linear consensus falls at the rate 2g",
+    statement="K(t) = K(0) exp(−2 g t).",
     source="ours",
     kind="trajectory",
     check=decays,
@@ -294,7 +294,7 @@ own_theorem = Theorem(
     law=law_is("linear consensus", LinearConsensus),
     claims=("decay",),
 )
-own_proof = Proof("linear-consensus", "K(t) = K(0) exp(−2 s t), n = 3, m = 1", "s > 0", "symbolic", proof_steps)
+own_proof = Proof("linear-consensus", "K(t) = K(0) exp(−2 g t), n = 3, m = 1", "g > 0", "symbolic", proof_steps)
 capstone = [own_theorem, fl.simulate(LinearConsensus(), q0, p0, (0.0, 2.0)), own_proof]
 
 # %% tags=["check"]
@@ -314,9 +314,9 @@ grade(
 defence = ...
 
 # %% tags=["solution"]
-defence = """Linear consensus with a positive strength s on the complete net: the mismatch K falls like exp(-2 s t). The
+defence = """Linear consensus with a positive strength g on the complete net: the mismatch K falls like exp(-2 g t). The
 proof uses that every agent hears every other with the same weight, which gives the identity of the mean, and
-that s is positive, which makes the rate negative. If s is negative K grows. If the net has two components the
+that g is positive, which makes the rate negative. If g is negative K grows. If the net has two components the
 velocities agree within each of them only, and K tends to a positive number."""
 # Rubric, a point each:
 # a complete statement; the place of each hypothesis in the proof; a counterexample where one

@@ -110,7 +110,7 @@ print(fl.verify("jlm-headings", fl.scenario("headings-part").run()))
 # > **Theorem** (Olfati-Saber and Murray 2004). On a fixed, undirected, connected net all solutions of $\dot x(t) =
 # > -Lx(t-\tau)$ tend to the mean of their starts if and only if $0 \le \tau < \pi/(2\lambda_n)$.
 #
-# A disturbance along an eigenvector of $\lambda$ grows like $e^{st}$ with $s = -\lambda e^{-s\tau}$. The root that
+# A disturbance along an eigenvector of $\lambda_k$ grows like $e^{st}$ with $s = -\lambda_k e^{-s\tau}$. The root that
 # decides is $s = W_0(-\lambda_n\tau)/\tau$ with Lambert's function, $W_0(z)\,e^{W_0(z)} = z$. A further link never
 # lowers $\lambda_n$, so a better connected net never bears *more* delay:
 

@@ -49,22 +49,22 @@ _ = plots.measure(run, "normalised_velocity_mismatch")
 #
 # $$U - U^* \ge G(\|w\|), \qquad \langle\nabla U, w\rangle \ge \|w\|\,G'(\|w\|).$$
 #
-# > **Theorem.** Within the distance $\rho$ of the orbit let all curvatures as above be bounded below by $k$, with
-# > $G' > 0$ on $(0, \rho]$, and let $c_2^\gamma > 0$. Then every solution that starts at most $\rho$ from the orbit
-# > with an energy $U + \tfrac12\|v\|^2$ below $U^* + G(\rho)$ stays so near, and converges to the orbit with matched
+# > **Theorem.** Within the distance $\xi_0$ of the orbit let all curvatures as above be bounded below by $k$, with
+# > $G' > 0$ on $(0, \xi_0]$, and let $c_2^\gamma > 0$. Then every solution that starts at most $\xi_0$ from the orbit
+# > with an energy $U + \tfrac12\|v\|^2$ below $U^* + G(\xi_0)$ stays so near, and converges to the orbit with matched
 # > velocities.
 #
-# For a state at the distance $\rho$ has at least the energy $U^* + G(\rho)$, which a start with less never reaches,
+# For a state at the distance $\xi_0$ has at least the energy $U^* + G(\xi_0)$, which a start with less never reaches,
 # because the energy only falls. By LaSalle's principle the solution approaches states that stay at rest, where $\nabla
 # U = 0$; by the second inequality these have $w = 0$. (That it comes to rest at *one* point of the orbit, and how fast,
 # the library proves by a strict Lyapunov function.)
 #
 # `certify` bounds every pair's stress and slope by *ball arithmetic*, over all lengths that the ball allows, and takes
-# the largest $\rho$ that it can prove.
+# the largest $\xi_0$ that it can prove.
 
 # %%
 basin = fl.certify(rest)
-print(f"rho = {basin.share:.4f} d, level {float(basin.level):.3f}, no two agents nearer than {float(basin.distance)}")
+print(f"radius {basin.share:.4f} d, level {float(basin.level):.3f}, no two agents nearer than {float(basin.distance)}")
 print(f"U + |v|^2/2 - U* is at most {float(basin.overshoot):.3g} exp(-{2 * float(basin.rate):.3f} t) of its start")
 print(f"the net stays connected: {basin.connected}")
 
@@ -207,9 +207,9 @@ print(*of_tube, sep="\n")
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** ★★ (2 points, derivation) Two agents under Algorithm 1, 7 apart. A displacement by δ over all coordinates
-# stretches the link by $\sqrt2\,\delta$, and at $r = 8.4$ the link breaks. What is the largest ρ/d that any proof could
-# reach? (Four significant digits.)
+# **1.** ★★ (2 points, derivation) Two agents under Algorithm 1, 7 apart. A displacement by $\xi$ over all coordinates
+# stretches the link by $\sqrt2\,\xi$, and at $r = 8.4$ the link breaks. What is the largest $\xi_0/d$ that any proof
+# could reach? (Four significant digits.)
 
 # %% tags=["answer"]
 largest = ...

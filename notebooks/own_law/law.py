@@ -12,12 +12,12 @@ from flockana.base.checks import FloatArray, ensure_positive
 
 @dataclass(frozen=True)
 class CuckerSmale(Law):
-    """u_i = Σ_j a_ij (p_j − p_i) with a_ij = (s/n) (1 + ‖q_j − q_i‖²)^−β   (Cucker and Smale 2007).
+    """u_i = Σ_j a_ij (p_j − p_i) with a_ij = (g/n) (1 + ‖q_j − q_i‖²)^−β   (Cucker and Smale 2007).
 
     Parameters
     ----------
     strength : float
-        s > 0, per unit of time.
+        g > 0, per unit of time.
     decay : float
         β > 0.
     """

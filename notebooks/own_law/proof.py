@@ -25,24 +25,24 @@ def steps() -> Iterator[Step]:
             f"m = {m}: ‖v − w‖² = ‖v‖² + ‖w‖² − 2⟨v, w⟩, whence Σ_i Σ_j ‖v_i − v_j‖² = 2nΣ‖v_i‖² = 4nK",
             sp.expand((v - w).dot(v - w) - v.dot(v) - w.dot(w) + 2 * v.dot(w)) == 0,
         )
-    s, D, x = (sp.Symbol(name, positive=True) for name in ("s", "D", "x"))
+    g, B, x = (sp.Symbol(name, positive=True) for name in ("g", "B", "x"))
     beta = sp.Symbol("beta", positive=True)
     slope = sp.diff((1 + x) ** -beta, x)
-    yield Step("(1 + x)^−β falls, so a_ij ≥ (s/n)(1 + D²)^−β for every pair within D", bool(slope.is_negative))
+    yield Step("(1 + x)^−β falls, so a_ij ≥ (g/n)(1 + B²)^−β for every pair within B", bool(slope.is_negative))
     t, K0 = sp.Symbol("t", nonnegative=True), sp.Symbol("K0", positive=True)
-    rate = 2 * s * (1 + D**2) ** -beta
+    rate = 2 * g * (1 + B**2) ** -beta
     bound = K0 * sp.exp(-rate * t)
     yield Step(
-        "dK/dt ≤ −½ (s/n)(1 + D²)^−β · 4nK, and the bound solves the equation (Grönwall)",
+        "dK/dt ≤ −½ (g/n)(1 + B²)^−β · 4nK, and the bound solves the equation (Grönwall)",
         sp.simplify(sp.diff(bound, t) + rate * bound) == 0 and bound.subs(t, 0) == K0,
-        latex=r"\dot K \le -2 s (1+D^2)^{-\beta} K",
+        latex=r"\dot K \le -2 g (1+B^2)^{-\beta} K",
     )
 
 
 PROOF = Proof(
     id="cucker-smale",
-    statement="K(t) ≤ K(0) exp(−2 s (1 + D²)^−β t) while no pair is farther apart than D",
-    hypotheses="s, β > 0; the law of Cucker and Smale",
+    statement="K(t) ≤ K(0) exp(−2 g (1 + B²)^−β t) while no pair is farther apart than B",
+    hypotheses="g, β > 0; the law of Cucker and Smale",
     rigour="symbolic",
     steps=steps,
 )

@@ -6,12 +6,14 @@ from functools import cache
 
 import numpy as np
 import pytest
+from flint import arb, ctx
 
-from flockana import Algorithm1, Algorithm2, StaticTarget, certify, find_equilibrium, lattice
+from flockana import Algorithm1, Algorithm2, Gains, StaticTarget, certify, find_equilibrium, lattice
 
 TETRAHEDRON = 7.0 / np.sqrt(8.0) * np.array([[1.0, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
 STARTS = {"pair": lattice.hexagonal_spiral(2, 7.0), "triangle": lattice.hexagonal_spiral(3, 7.0)}
 STARTS |= {"hexagon": lattice.hexagonal_patch(1, 7.0), "tetrahedron": TETRAHEDRON}
+ALONE = Gains(c1_gamma=1.25, c2_gamma=1.0)  # of one agent and its target: the roots are −½ ± i
 NAMES = ("pair", "triangle", "hexagon", "tetrahedron")
 
 
@@ -48,3 +50,11 @@ def text_of(law, positions=((0.0,), (7.0,)), box="0.01", **changes):
     names |= {name: getattr(law.gains, name) for name in ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma")}
     said = {"algorithm": "Algorithm2"} | {name: str(value) for name, value in (names | changes).items()}
     return {"law": said, "positions": [[float(x).hex() for x in row] for row in positions], "box": box}
+
+
+def oscillator(t):
+    """e^{−t/2}(cos t + ½ sin t) and its derivative, the solution from 1 at rest."""
+    with ctx.workprec(200):
+        t = arb(t)
+        fade = (-t / 2).exp()
+        return fade * (t.cos() + t.sin() / 2), -fade * t.sin() * arb(1.25)

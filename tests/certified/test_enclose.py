@@ -25,8 +25,8 @@ from flockana.base.errors import ArgumentError
 from flockana.certified import lohner
 from flockana.certified.laws import flow_of
 from flockana.certified.series import Piece
+from tests.certified.conftest import ALONE, oscillator
 
-ALONE = Gains(c1_gamma=1.25, c2_gamma=1.0)  # the roots are −½ ± i
 TOLD = Algorithm2(target=StaticTarget((0.0, 0.0)))
 TRIANGLE = np.array([[-4.625, -2.5], [4.5, -2.75], [0.25, 5.5]])
 
@@ -50,14 +50,6 @@ def inside(run, tube, slack):
         (np.abs(x - y) <= radii + slack).all()
         for x, y, radii in ((run.q, tube.q, tube.radii[:, 0]), (run.p, tube.p, tube.radii[:, 1]))
     )
-
-
-def oscillator(t):
-    """e^{−t/2}(cos t + ½ sin t) and its derivative, the solution from 1 at rest."""
-    with ctx.workprec(200):
-        t = arb(t)
-        fade = (-t / 2).exp()
-        return fade * (t.cos() + t.sin() / 2), -fade * t.sin() * arb(1.25)
 
 
 @pytest.mark.parametrize("order", [4, 9, 16])

@@ -76,7 +76,7 @@ def test_where_pairs_cost_more_apart_than_together_only_the_coincident_pair_coun
         assert levels.coincident_floor(WEAK, n, 2).overlaps(levels.c_star(par))
 
 
-@pytest.mark.parametrize("r", [7.5, 8.4, 9.8, 12.0, 15.0, 18.0])
+@pytest.mark.parametrize("r", [7.5, 8.4, 12.0, 16.0, 18.0])
 def test_below_the_shortest_length_of_a_bound_pair_a_pair_costs_more_than_one_apart(r):
     par = levels.scaled(AlphaInteraction(r=r))
     with ctx.workprec(100):

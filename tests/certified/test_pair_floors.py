@@ -9,14 +9,12 @@ import pytest
 from flint import arb, ctx, fmpq
 
 from flockana import Algorithm1, Algorithm2, StaticTarget
-from flockana.certified import shells
 from flockana.certified.check_net import Net
 from flockana.certified.damping import damping
 from flockana.certified.decimals import floored, raised, written
 from flockana.certified.intervals import square
 from flockana.certified.lyapunov import Bounds, decay, rate_of
 from flockana.certified.pair_floors import SHELLS, LengthCells, points, proposed_across
-from flockana.certified.shells import Surroundings
 from flockana.certified.structure import Structure
 from flockana.interactions import AlphaInteraction
 from tests.certified.conftest import text_of
@@ -242,48 +240,3 @@ def test_stated_decimals_are_on_the_safe_side_to_the_digit():
     assert written(floored(arb("-0.0123416"), 4)) == "-0.01235"
     assert floored(fmpq(1, 4), 3) == fmpq(1, 4)
     assert floored(fmpq(0), 3) == 0
-
-
-def test_pairs_that_may_come_into_range_have_bounds_too():
-    with ctx.workdps(25):
-        u = Structure.of(LAW, 3, 1)
-        around = Surroundings(LAW, u, [arb(-8), arb(0), arb("8.5")])
-        assert [bond.pairs for bond in around.bonds(fmpq(1, 20))] == [((0, 1),)]
-        assert [bond.pairs for bond in around.bonds(fmpq(1, 5))] == [((0, 1),), ((1, 2),)]
-        wide = Surroundings(LAW, u, [arb(-8), arb(0), arb("8.55", "0.2")])
-        assert [bond.pairs for bond in wide.bonds(fmpq(1, 100))] == [((0, 1),), ((1, 2),)]
-
-
-def test_pairs_of_one_bond_have_all_their_lengths_in_one_ball():
-    with ctx.workdps(25):
-        around = Surroundings(LAW, Structure.of(LAW, 3, 1), [arb(-7), arb(0), arb("7.0000005")])
-        (bond,) = around.bonds(fmpq(1, 10))
-        assert bond.pairs == ((0, 1), (1, 2))
-        assert bond.rest.contains(7)
-        assert bond.rest.contains(arb("7.0000005").mid())
-
-
-def test_a_matrix_that_nothing_is_proved_of_leaves_no_shells(monkeypatch):
-    with ctx.workdps(25):
-        u = Structure.of(LAW, 2, 1)
-        around = Surroundings(LAW, u, [arb("-3.5"), arb("3.5")])
-        floors = around.proposed(0.1)
-        found = shells.prove(around, floors)
-        assert found is not None
-        monkeypatch.setattr(shells, "least_eigenvalue", lambda matrix: None)
-        assert shells.prove(around, floors) is None
-
-
-def test_a_curvature_is_below_that_of_every_matrix_in_the_balls():
-    """Of two agents on a line it is 2α: with α in a ball, twice the least."""
-    with ctx.workdps(25):
-        around = Surroundings(LAW, Structure.of(LAW, 2, 1), [arb("-3.5"), arb("3.5")])
-        bonds = around.bonds(fmpq(1, 10))
-        for along in (arb(3), arb(3, 0.5), arb(-3, 0.5)):
-            found = around.curvature(bonds, [along], [fmpq(0)])
-            assert found <= 2 * along.lower()
-            assert found > 2 * along.lower() - (2 if along.rad() > 0 else arb("0.01"))
-
-
-def test_root_two_is_rounded_up():
-    assert shells.ROOT_TWO**2 > 2

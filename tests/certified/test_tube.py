@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
 from flint import arb, ctx
 
-from flockana import Algorithm1, Algorithm3, Gains, Sphere, StaticTarget, enclose
+from flockana import Algorithm1, Algorithm2, Algorithm3, Gains, LinearTarget, Sphere, StaticTarget, enclose
 from flockana.certified.tube import down, up
+from tests.certified.conftest import ALONE, oscillator
 
+MODULE = sys.modules[enclose.__module__]  # which has the function's name
 FREE = Gains(c1_alpha=0.0, c2_alpha=0.0, c1_beta=0.0, c2_beta=0.0, c1_gamma=0.0, c2_gamma=0.0)
 
 
@@ -81,3 +84,33 @@ def test_a_tube_ends_in_a_basin_of_its_own_law_only(meeting):
     for law, inside in ((Algorithm1(), True), (Algorithm1(gains=Gains(c1_alpha=29.0)), False)):
         assert meeting.ends_in(SimpleNamespace(law=law, holds=lambda q, p: True)) is inside
     assert not meeting.ends_in(SimpleNamespace(law=Algorithm1(), holds=lambda q, p: False))
+
+
+def test_a_run_that_starts_later_follows_the_target_from_there():
+    law = Algorithm2(gains=ALONE, target=LinearTarget((0.0,), (3.0,)))
+    tube = enclose(law, [[7.0]], [[3.0]], (2.0, 3.0))
+    assert (tube.status, tube.message, tube.t[0], tube.t[-1]) == ("complete", "", 2.0, 3.0)
+    assert tube.state(-1)[0][0][0].contains(oscillator(1.0)[0] + 9)
+
+
+def test_one_radius_is_that_of_places_and_of_velocities():
+    tube = enclose(Algorithm2(gains=ALONE, target=StaticTarget((0.0,))), [[1.0]], [[0.0]], (0.0, 0.125), radius=0.25)
+    q, p = (state[0][0] for state in tube.state(0))
+    for ball, middle in ((q, 1.0), (p, 0.0)):
+        assert all(ball.overlaps(arb(middle + off)) for off in (-0.25, 0.25))
+        assert not any(ball.overlaps(arb(middle + off)) for off in (-0.26, 0.26))
+
+
+def test_a_tube_that_was_interrupted_holds_what_it_has_and_says_so(monkeypatch):
+    steps = MODULE._steps
+
+    def stopped(*given):
+        for k, step in enumerate(steps(*given)):
+            if k == 2:
+                raise KeyboardInterrupt
+            yield step
+
+    monkeypatch.setattr(MODULE, "_steps", stopped)
+    tube = enclose(Algorithm2(gains=ALONE, target=StaticTarget((0.0,))), [[1.0]], [[0.0]], (0.0, 3.0))
+    assert (tube.status, len(tube.taken), len(tube.t)) == ("interrupted", 2, 3)
+    assert tube.message == f"interrupted: it ends at t = {tube.t[-1]:g}"

@@ -16,7 +16,7 @@ from flockana import lattice
 from flockana.base.errors import ArgumentError
 from flockana.course import build, grade
 from flockana.course.pages import number_of
-from tests.course.answers import ANSWERS
+from tests.course.answers import ANSWERS, connectivity
 
 SOURCES = build.sources()
 
@@ -90,6 +90,29 @@ def test_a_theorem_that_a_lecture_teaches_is_stated_in_it(number):
     source = next(path for path in SOURCES if number_of(path) == number)
     stated = re.findall(r"^# > \*\*(?:Theorem|Corrected)", source.read_text(encoding="utf-8"), re.MULTILINE)
     assert len(stated) >= {"00a": 2, "08": 2, "09": 2, "12": 2}.get(number, 1)
+
+
+def test_the_start_that_breaks_theorem_1_is_as_unconnected_as_lecture_00_says():
+    """At t = 0 already; the instant that a verdict names is the worst, later."""
+    posed = of(build.notebook(SOURCES[0], "student"), "exercise")[1]
+    case = fl.scenario("paper-fragmentation")
+    reached = connectivity()(case.q0, case.law.alpha.r)
+    assert reached < 1.0
+    assert f"$C = (n - \\text{{number of components}})/(n-1)$ is {reached:.2f} there" in " ".join(posed.split())
+
+
+def test_lecture_09_calls_proved_what_is_proved_and_nothing_else():
+    source = next(path for path in SOURCES if number_of(path) == "09")
+    text = " ".join(cell.source for cell in build.notebook(source, "student").cells if cell.cell_type == "markdown")
+    assert "Then $\\bar H$ is continuous" in text
+    assert "Both are proved." in text
+    assert "velocities match *within* components, is seen in this run and not proved" in text
+    run = fl.simulate(fl.DeadZoneFlocking(), [[0.0, 0.0], [5.0, 0.0]], np.zeros((2, 2)), (0.0, 0.5))
+    claims = fl.verify("dead-zone-1-corrected", run).claims
+    assert {claim.name for claim in claims if claim.proof is not None} == {
+        "rate",
+        "distance",
+    }  # the other two: measured
 
 
 @pytest.mark.parametrize("source", SOURCES[-2:], ids=lambda path: path.stem)

@@ -11,6 +11,29 @@ from flockana.base.errors import ArgumentError
 from flockana.course import build, pages
 
 FOLDER = build.lectures()
+_GREEK = (
+    r"\\(?:alpha|beta|gamma|delta|epsilon|varepsilon|zeta|eta|theta|kappa|lambda|mu|nu|xi|pi|rho|sigma|tau|phi|psi|omega"
+    r"|Gamma|Delta|Theta|Lambda|Xi|Pi|Sigma|Phi|Psi|Omega|ell)(?![a-zA-Z])"
+)
+_NO_SYMBOL = r"\\(?:text|mathrm|operatorname|mathbf|mathbb|begin|end)(?:\{[^{}]*\}|\s*\w)"
+_INDEX = r"(?:\{[^{}]*\}|\\[a-zA-Z]+|[\w*])"
+_DUMMY = set("efgijkpqstuvwxyz")  # sums, functions and their arguments; and what has the same letter in every lecture
+
+
+def letters(formula):
+    """The letters of a formula that stand alone: capitals, Greek ones, and such small ones as name a quantity.
+
+    With an index or a prime, as in ``d_1``, it is another symbol; so are ``\\Delta t``, ``\\Delta(A)`` and ``c^*``.
+    """
+    formula = re.sub(r"\\Delta(?: t\b|\(A\))|c\^\*|\\t?frac\{d\}\{dt\}|\\pi\b|\\mathbf 1|\bdt\b", " ", formula)
+    formula = re.sub(_NO_SYMBOL, " ", formula)
+    for _ in range(3):
+        formula = re.sub(rf"\^\s*{_INDEX}", "", formula)
+    for _ in range(3):
+        formula = re.sub(rf"(?:{_GREEK}|[A-Za-z])?_{_INDEX}|[A-Za-z]'+", " ", formula)
+    greek = set(re.findall(_GREEK, formula))
+    plain = re.sub(r"\\[a-zA-Z]+|\w{2,}", lambda found: "" if found[0][0] == "\\" else found[0], formula)
+    return greek | set(re.findall(r"[A-Za-z]", plain)) - _DUMMY
 
 
 def test_the_map_holds_every_lecture_after_those_that_it_builds_on():
@@ -56,6 +79,8 @@ def test_one_table_defines_every_symbol_once():
     numbers = {each.number for each in pages.course_map(FOLDER)}
     symbols = [symbol for row in table for symbol in re.findall(r"\$([^$]+)\$", row["symbol"])]
     assert len(symbols) == len(set(symbols))
+    rows = [set().union(*map(letters, re.findall(r"\$([^$=]+)", row["symbol"]))) for row in table]
+    assert sum(map(len, rows)) == len(set().union(*rows))
     assert all(row["lectures"] == "all" or set(row["lectures"].split()) <= numbers for row in table)
     page = pages.notation_page(FOLDER)
     assert all(row["meaning"] in page for row in table)
@@ -63,7 +88,7 @@ def test_one_table_defines_every_symbol_once():
 
 @pytest.mark.parametrize("source", build.sources(), ids=lambda path: path.stem)
 def test_a_lecture_lists_the_symbols_that_it_uses(source):
-    """Of the symbols that had two meanings once."""
+    """Of the symbols with an index that had two meanings once."""
     entry = next(each for each in pages.course_map(FOLDER) if each.number == pages.number_of(source))
     text, head = source.read_text(), pages.header(entry, FOLDER)
     for pattern, row in (
@@ -77,3 +102,17 @@ def test_a_lecture_lists_the_symbols_that_it_uses(source):
     ):
         if re.search(pattern, text):
             assert row in head, row
+
+
+@pytest.mark.parametrize("source", build.sources(), ids=lambda path: path.stem)
+def test_every_letter_of_a_lecture_is_in_the_table_and_lists_the_lecture(source):
+    """So one row, with one meaning, stands for it in all lectures (`test_one_table_defines_every_symbol_once`)."""
+    number, known = pages.number_of(source), set()
+    for row in pages.notation(FOLDER):
+        if row["lectures"] == "all" or number in row["lectures"].split():
+            for symbol in re.findall(r"\$([^$]+)\$", row["symbol"]):
+                known |= letters(symbol)
+    text = "\n".join(line[2:] for line in source.read_text(encoding="utf-8").splitlines() if line.startswith("# "))
+    formulas = ["".join(pair) for pair in re.findall(r"\$\$(.*?)\$\$|\$([^$]+)\$", text, re.DOTALL)]
+    assert len(formulas) > 3
+    assert {each: [f for f in formulas if each in letters(f)] for f in formulas for each in letters(f) - known} == {}

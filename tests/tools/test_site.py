@@ -10,6 +10,7 @@ import re
 from pathlib import Path
 from xml.etree import ElementTree
 
+import nbformat
 import pytest
 
 import flockana
@@ -18,7 +19,7 @@ from flockana.report.stills import stills
 from flockana.scenarios import scenario
 from flockana.scenarios import scenarios as scenario_names
 from flockana.theorems.catalogue import catalogue
-from tools.site import cache, links, mathematics, reference, runs, scenarios, theorems, verdicts
+from tools.site import cache, lectures, links, mathematics, reference, runs, scenarios, slides, theorems, verdicts
 from tools.site.formulas import DERIVATIONS
 
 INNER = {"pair_derivation"}  # of a formula that a user writes
@@ -195,3 +196,29 @@ def test_what_is_kept_is_made_again_when_its_code_changes(tmp_path, monkeypatch)
     monkeypatch.setattr(cache, "digest", lambda folders: "b" * 16)
     assert cache.kept("k", "n", ("x",), lambda: next(made)) == 2
     assert len(list((tmp_path / "k").iterdir())) == 1
+
+
+def test_slides_show_what_the_page_of_their_lecture_put_out(tmp_path):
+    """Each code cell of the slides is one of the page's, with its output: nothing is executed twice."""
+    for source in slides.lectures():
+        book = lectures.lecture(source)
+        for number, cell in enumerate(book.cells):
+            if cell.cell_type == "code":
+                cell["outputs"] = [nbformat.v4.new_output("stream", text=f"output of cell {number}")]
+        nbformat.write(book, tmp_path / f"{source.stem}.ipynb")
+        texts = {cell.source: cell.outputs[0].text for cell in book.cells if cell.cell_type == "code"}
+        code = [cell for cell in slides.shown(source, tmp_path).cells if cell.cell_type == "code"]
+        assert len(code) > 1
+        assert [cell.outputs[0].text for cell in code] == [texts[cell.source] for cell in code]
+
+
+def test_a_page_of_slides_for_each_lecture_and_a_link_to_it(tmp_path, monkeypatch):
+    pytest.importorskip("nbconvert")
+    monkeypatch.setattr(slides, "sources", lambda: lectures.SOURCES.glob("00a*.py"))
+    slides.write(tmp_path / "slides", None)
+    page = (tmp_path / "slides" / "00a_graphs_and_lyapunov.html").read_text(encoding="utf-8")
+    assert page.count("<section>") > 10
+    assert list(links.dead(tmp_path)) == []
+    lectures.write(tmp_path / "generated" / "lectures")
+    index = (tmp_path / "generated" / "lectures" / "index.md").read_text(encoding="utf-8")
+    assert '<a href="../../slides/00a_graphs_and_lyapunov.html">00a</a>' in index

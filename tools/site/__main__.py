@@ -14,7 +14,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from tools.site import lectures, links, mathematics, proofs, reference, scenarios, theorems, verdicts
+from tools.site import lectures, links, mathematics, proofs, reference, scenarios, slides, theorems, verdicts
 from tools.site.cache import ROOT
 
 SOURCE, SITE = ROOT / "docs", ROOT / "site"
@@ -65,6 +65,7 @@ def main(arguments: list[str]) -> int:
     shutil.rmtree(html, ignore_errors=True)  # with it what an older build left
     if build("html", html, draft=chosen.draft):
         return 1
+    slides.write(html / "slides", None if chosen.draft else SITE / "jupyter_execute" / "generated" / "lectures")
     lost = list(links.dead(html))
     sys.stdout.write("".join(f"{line}\n" for line in lost))
     if chosen.external and build("linkcheck", SITE / "linkcheck"):

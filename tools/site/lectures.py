@@ -10,6 +10,8 @@ import jupytext
 import nbformat
 
 from flockana.course import build
+from flockana.course.pages import number_of
+from tools.site import slides
 from tools.site.cache import ROOT
 from tools.site.words import contents
 
@@ -48,4 +50,6 @@ def write(folder: Path) -> None:
         "# Lectures\n\nEach was executed when this page was built. Solutions unfold with a click; `make course` writes "
         "notebooks for students, without them."
     )
-    (folder / "index.md").write_text(f"{opening}\n\n{contents(source.stem for source in sources)}\n", encoding="utf-8")
+    shown = " · ".join(f'<a href="../../slides/{each.stem}.html">{number_of(each)}</a>' for each in slides.lectures())
+    text = f"{opening}\n\n{contents(source.stem for source in sources)}\n\nAs slides: {shown}\n"
+    (folder / "index.md").write_text(text, encoding="utf-8")

@@ -43,7 +43,8 @@ def dead(folder: Path) -> Iterator[str]:
                 continue
             goal = (file.parent / unquote(parts.path)).resolve() if parts.path else file
             goal = goal / "index.html" if goal.is_dir() else goal
+            names = {parts.fragment, unquote(parts.fragment)}  # a browser tries both
             if not goal.is_file():
                 yield f"{file.relative_to(folder)}: {target} is no file"
-            elif parts.fragment and goal.suffix == ".html" and unquote(parts.fragment) not in _read(goal).ids:
+            elif parts.fragment and goal.suffix == ".html" and not names & _read(goal).ids:
                 yield f"{file.relative_to(folder)}: {target} names no element"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -108,6 +110,34 @@ def test_a_wrong_acceleration_is_found(monkeypatch):
 )
 def test_varying_leader_is_vacuous_otherwise(law):
     assert {*statuses(verify("su-varying", simulate(law, Q, P, (0.0, 1.0)))).values()} == {"vacuous"}
+
+
+class Said:
+    """A γ-agent that tells one velocity and moves at another."""
+
+    def __init__(self, told, moving):
+        self.told, self.moving = told, moving
+
+    def state(self, t):
+        return [5.0 * t, 0.0], self.told(t)
+
+    def rate(self, t):
+        return self.moving(t)
+
+
+@pytest.mark.parametrize(
+    ("told", "moving", "off"),
+    [
+        (lambda t: [3.0, -1.0], lambda t: [3.0, -1.0], 0.0),
+        (lambda t: [3.0 + 0.5 * t, -1.0], lambda t: [3.0 + 0.5 * t, -1.0], 1.0),
+        (lambda t: [3.0, -1.25], lambda t: [3.0, -1.0], 0.25),
+    ],
+)
+def test_a_velocity_is_constant_if_none_that_is_told_or_moved_at_differs_from_the_first(told, moving, off):
+    run = SimpleNamespace(law=SimpleNamespace(target=Said(told, moving)), t=np.array([0.0, 1.0, 2.0]))
+    found = leader_frame.constant_velocity(run)
+    assert found.status == ("unmet" if off else "assumed")
+    assert not off or found.margin == -off
 
 
 def test_at_constant_velocity_nothing_need_be_told():

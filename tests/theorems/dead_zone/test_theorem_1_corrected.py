@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -11,6 +13,7 @@ from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.theorems import verify
+from flockana.theorems.dead_zone.theorem_1_corrected import _rate
 from tests.theorems.made_up import statuses
 
 
@@ -82,3 +85,11 @@ def test_claims_name_the_proof_of_what_they_say():
     for key, expected in (("corrected", {"rate", "distance"}), ("printed", {"energy", "collision"})):
         claims = verify(f"dead-zone-1-{key}", run).claims
         assert {claim.name for claim in claims if claim.proof == "dead-zone"} == expected
+
+
+def test_every_sample_at_which_the_energy_rises_counts_however_slowly():
+    run = SimpleNamespace(t=np.array([0.0, 1.0, 2.0, 3.0]), energy=lambda: np.zeros(4))
+    claim = _rate(run, np.array([-3.0, 0.5, 1e-300, 0.0]), [])
+    assert (claim.status, claim.margin, claim.computed) == ("refuted", -2.0, 0.5)
+    assert claim.witness == {"time": 1.0, "samples at which it is positive": 2}
+    assert _rate(run, np.array([-3.0, -0.5, -1e-300, 0.0]), []).status == "verified"

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from flockana.lattice import harborth
+from flockana.theorems.slides import e06
 from flockana.theorems.slides.e06 import link_counts
+from flockana.theorems.theorem import Tolerances
 
 
 def test_the_counts_of_the_erratum(verdict_of):
@@ -16,3 +18,12 @@ def test_the_counts_of_the_erratum(verdict_of):
     assert verdict.claim("printed").witness == {"n": [1, 2]}
     assert verdict.claim("corrected").witness == {"n with 3n - 6 links": [3]}
     assert verdict.claim("corrected").margin == 0.5
+
+
+def test_one_link_too_many_would_refute_the_bound(monkeypatch):
+    table = link_counts() | {7: (16, 15, 16)}
+    monkeypatch.setattr(e06, "link_counts", lambda: table)
+    printed, corrected, sharp = e06.THEOREM.check(Tolerances())[1]
+    assert (corrected.status, corrected.margin) == ("refuted", -0.5)
+    assert printed.witness == {"n": [1, 2, 7]}
+    assert sharp.status == "verified"
