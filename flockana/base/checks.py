@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Collection
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.errors import ArgumentError
+from flockana.base.errors import ArgumentError, UnknownNameError
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -225,6 +226,45 @@ def ensure_count(name: str, value: Any) -> int:
     if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 1:
         raise ArgumentError(f"{name} = {value!r}: expected a whole number >= 1")
     return int(value)
+
+
+def ensure_seed(seed: Any) -> int:
+    """Return a seed, a whole number >= 0.
+
+    Examples
+    --------
+    >>> ensure_seed(7)
+    7
+    """
+    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
+        raise ArgumentError(f"seed = {seed!r}: expected a whole number >= 0")
+    return int(seed)
+
+
+def ensure_flag(name: str, value: Any) -> bool:
+    """Return `value` if it is True or False.
+
+    Examples
+    --------
+    >>> ensure_flag("strict", True)
+    True
+    """
+    if not isinstance(value, bool | np.bool_):
+        raise ArgumentError(f"{name} = {value!r}: expected True or False")
+    return bool(value)
+
+
+def ensure_known(kind: str, name: Any, known: Collection[str]) -> str:
+    """Return `name` if it is one of those known.
+
+    Examples
+    --------
+    >>> ensure_known("method", "RK4", ("RK4", "DOP853"))
+    'RK4'
+    """
+    if not isinstance(name, str) or name not in known:
+        raise UnknownNameError(kind, name, known)
+    return name
 
 
 def ensure_dimension(m: int) -> int:

@@ -28,7 +28,9 @@ def progress_bar(
     >>> with progress_bar(2, enabled=False) as advance:
     ...     advance(1, "second run")
     """
-    console = _console() if enabled else None
+    from flockana.base.checks import ensure_flag  # and numpy, which to list needs not
+
+    console = _console() if ensure_flag("progress", enabled) else None
     if console is None:
         yield _lines(total) if enabled else lambda done, text: None
         return

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.binomial import clopper_pearson
-from flockana.base.checks import FloatArray, ensure_count, ensure_positive
+from flockana.base.checks import FloatArray, ensure_count, ensure_positive, ensure_seed, ensure_series
 from flockana.base.errors import ArgumentError
 from flockana.certified.basin import Basin
 from flockana.dynamics.simulate import simulate
@@ -87,11 +87,13 @@ def sample_basin(
     >>> sample_basin(pair, [0.3, 12.0], runs=4).returned.tolist()
     [4, 0]
     """
+    if not isinstance(basin, Basin):
+        raise ArgumentError(f"basin = {basin!r}: expected a basin, as certify(...) gives it")
     runs, end = ensure_count("runs", runs), ensure_positive("t_end", t_end)
-    sizes = np.array([ensure_positive("distances", x) for x in distances])
-    if not sizes.size:
-        raise ArgumentError("distances is empty: expected one or more")
-    rng, motions = np.random.default_rng(seed), rigid_motions(basin.rest)
+    sizes = ensure_series("distances", distances)
+    if not sizes.size or not (sizes > 0.0).all():
+        raise ArgumentError(f"distances = {sizes.tolist()}: expected one or more numbers > 0")
+    rng, motions = np.random.default_rng(ensure_seed(seed)), rigid_motions(basin.rest)
     still = np.zeros_like(basin.rest)
     centre = np.zeros(basin.rest.shape[1]) if basin.law.target is None else basin.law.target.state(0.0)[0]
     drift = still if basin.law.target is None else still + basin.law.target.state(0.0)[1]

@@ -12,8 +12,16 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_fits, ensure_positive, ensure_state, ensure_time_span, real_array
-from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.base.checks import (
+    FloatArray,
+    ensure_fits,
+    ensure_known,
+    ensure_positive,
+    ensure_state,
+    ensure_time_span,
+    real_array,
+)
+from flockana.base.errors import ArgumentError
 from flockana.base.interrupts import interrupts_recognised
 from flockana.base.progress import progress_bar
 from flockana.dynamics.adaptive import SCIPY, adaptive
@@ -168,8 +176,7 @@ def _ensure_samples_fit(dt: float, t_span: tuple[float, float], q0: FloatArray, 
 
 
 def _ensure_method(method: str, dt: float | None) -> str:
-    if method not in METHODS:
-        raise UnknownNameError("method", method, METHODS)
+    ensure_known("method", method, METHODS)
     if method == "RK4" and dt is None:
         raise ArgumentError("dt = None: method RK4 needs a fixed step, such as dt=0.005")
     if method != "RK4" and dt is not None:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from flockana.base.checks import ensure_known
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.progress import progress_bar
 from flockana.dynamics.trajectory import Trajectory
@@ -220,8 +221,7 @@ def _ensure_theorems(names: Any) -> tuple[str, ...] | None:
         raise ArgumentError(f"theorems = {names!r}: expected several names, such as ['os-1', '{SOURCE}']")
     chosen = tuple(dict.fromkeys(names))
     for name in chosen:
-        if name not in (SOURCE, *theorems()):
-            raise UnknownNameError("theorem", name, (SOURCE, *theorems()))
+        ensure_known("theorem", name, (SOURCE, *theorems()))
         if name != SOURCE and theorem(name).kind != "trajectory":
             raise ArgumentError(f"{name} is not about a run: expected theorems about motion, such as os-1")
     return chosen
@@ -232,8 +232,7 @@ def _ensure_scenario(
 ) -> str:
     """The name of a scenario whose options are good: those of the catalogue are tried once each."""
     if isinstance(scenario, str):
-        if scenario not in scenarios():
-            raise UnknownNameError("scenario", scenario, scenarios())
+        ensure_known("scenario", scenario, scenarios())
         for job in job_grid(axes, fixed, [seed]):
             named_scenario(scenario, seed, **dict(job.options))
         return scenario

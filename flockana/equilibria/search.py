@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_points, ensure_positive
-from flockana.base.errors import ArgumentError, SolverError, UnknownNameError
+from flockana.base.checks import FloatArray, ensure_known, ensure_points, ensure_positive
+from flockana.base.errors import ArgumentError, SolverError
 from flockana.equilibria.congruence import congruent
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.solve import METHODS, Equilibrium, find_equilibrium
@@ -152,8 +152,7 @@ def search(law: Any, starts: Iterable[Any], *, method: str = "minimise", executo
     >>> result.best.kind, len(result.best.links), len(result.failures)
     ('minimum', 3, 0)
     """
-    if method not in METHODS:
-        raise UnknownNameError("method", method, METHODS)
+    ensure_known("method", method, METHODS)
     points = [ensure_points(f"starts[{k}]", start) for k, start in enumerate(starts)]
     if not points or any(point.shape != points[0].shape for point in points):
         raise ArgumentError(f"starts: expected at least one, all of one shape, got {sorted({p.shape for p in points})}")

@@ -10,8 +10,16 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_count, ensure_finite_scalar, ensure_points, ensure_positive
-from flockana.base.errors import SolverError, UnknownNameError
+from flockana.base.checks import (
+    FloatArray,
+    ensure_count,
+    ensure_finite_scalar,
+    ensure_flag,
+    ensure_known,
+    ensure_points,
+    ensure_positive,
+)
+from flockana.base.errors import SolverError
 from flockana.equilibria.classify import (
     DENSE_SIZE,
     MAX_SIZE,
@@ -164,8 +172,8 @@ def find_equilibrium(
     """
     q = ensure_points("q0", q0)
     law = ensure_flock_law(law, q.shape[1])
-    if method not in METHODS:
-        raise UnknownNameError("method", method, METHODS)
+    ensure_known("method", method, METHODS)
+    ensure_flag("strict", strict)
     if method == "minimise":
         method = "ipopt" if q.size <= _SMALL else "descent"
     ensure_small(*q.shape, most=MAX_SIZE if method == "descent" else DENSE_SIZE)

@@ -10,8 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_count, ensure_dimension
-from flockana.base.errors import UnknownNameError
+from flockana.base.checks import FloatArray, ensure_count, ensure_dimension, ensure_known
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.obstacles import Sphere
 from flockana.environment.targets import StaticTarget
@@ -126,8 +125,7 @@ def from_law(name: str, *, n: int = _FLOCK, m: int = 2, seed: int = 0) -> Start:
     >>> from_law("Algorithm1", n=7).q0.shape
     (7, 2)
     """
-    if name not in law_names():
-        raise UnknownNameError("law", name, law_names())
+    ensure_known("law", name, law_names())
     n, m = ensure_count("n", n), ensure_dimension(m)
     length = 1.0 if name == "CuckerSmale" else 7.0
     side, speed, end = round(_SPREAD * length * n ** (1 / m), 3), round(_SPEED * length, 3), _SPANS[name]

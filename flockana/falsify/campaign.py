@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_count
+from flockana.base.checks import FloatArray, ensure_count, ensure_seed
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.progress import progress_bar
 from flockana.falsify.evaluate import Evaluation, Problem, units
@@ -102,7 +102,7 @@ def falsify(
     True
     """
     item = named_theorem(theorem) if isinstance(theorem, str) else theorem
-    budget, seed = ensure_count("budget", budget), _ensure_seed(seed)
+    budget, seed = ensure_count("budget", budget), ensure_seed(seed)
     begin = named_scenario(scenario, seed) if isinstance(scenario, str) else scenario
     _ensure_kinds(item, begin, tolerances, surrogate)
     space = search_space(begin, vary=vary, region=region, speed=speed, parameters=parameters)
@@ -143,12 +143,6 @@ def falsify(
         ended=ended,
         message=record.message,
     )
-
-
-def _ensure_seed(seed: Any) -> int:
-    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
-        raise ArgumentError(f"seed = {seed!r}: expected a whole number >= 0")
-    return int(seed)
 
 
 def _ensure_kinds(theorem: Any, scenario: Any, tolerances: Any, surrogate: Any) -> None:

@@ -10,8 +10,15 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive, ensure_state, ensure_time_span
-from flockana.base.errors import ArgumentError, FileError, UnknownNameError
+from flockana.base.checks import (
+    FloatArray,
+    ensure_finite_scalar,
+    ensure_known,
+    ensure_positive,
+    ensure_state,
+    ensure_time_span,
+)
+from flockana.base.errors import ArgumentError, FileError
 from flockana.base.files import ensure_path, replacing
 from flockana.lammps.script import (
     DATA,
@@ -134,8 +141,7 @@ def export_lammps(
     law.check_dimension(q0.shape[1])
     law.check_start(q0, p0)
     points, samples = _count("points", points, 2, _MOST_POINTS), _count("samples", samples, 1, 10**9)
-    if consensus not in CONSENSUS:
-        raise UnknownNameError("choice of consensus", consensus, CONSENSUS)
+    ensure_known("choice of consensus", consensus, CONSENSUS)
     first = _first_distance(term, q0, inner)
     start, end = ensure_time_span(t_span)
     clock = _clock(law, start, end, dt, samples)

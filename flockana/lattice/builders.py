@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_count, ensure_fits, ensure_positive
-from flockana.base.errors import UnknownNameError
+from flockana.base.checks import FloatArray, ensure_count, ensure_fits, ensure_known, ensure_positive
 
 _STEPS = np.array(
     [(1.0, 0.0), (0.5, 0.75**0.5), (-0.5, 0.75**0.5), (-1.0, 0.0), (-0.5, -(0.75**0.5)), (0.5, -(0.75**0.5))]
@@ -49,8 +48,7 @@ def max_ratio(name: str) -> float:
     >>> round(max_ratio("bcc"), 4)  # below the usual 1.2
     1.1547
     """
-    if not isinstance(name, str) or name not in _MAX_RATIO:
-        raise UnknownNameError("lattice", name, _MAX_RATIO)
+    ensure_known("lattice", name, _MAX_RATIO)
     return _MAX_RATIO[name]
 
 

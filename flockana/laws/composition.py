@@ -9,7 +9,14 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import ensure_count, ensure_finite_scalar, ensure_nonnegative, ensure_positive, ensure_state
+from flockana.base.checks import (
+    ensure_count,
+    ensure_finite_scalar,
+    ensure_flag,
+    ensure_nonnegative,
+    ensure_positive,
+    ensure_state,
+)
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
@@ -104,8 +111,7 @@ class Composition(GainedLaw):
             ensure_one_dimension(self.obstacles, self.target.dimension, "the target has")
         elif self.obstacles:
             ensure_one_dimension(self.obstacles, self.obstacles[0].dimension, "obstacles[0] has")
-        if not isinstance(self.told, bool):
-            raise ArgumentError(f"told = {self.told!r}: expected True or False")
+        ensure_flag("told", self.told)
         if self.told and (self.target is None or self.target.harmonic is None):
             raise ArgumentError(
                 f"told = True, target = {self.target!r}: expected a γ-agent whose acceleration is known, such as "
@@ -267,16 +273,16 @@ def compose(
         raise ArgumentError(f"consensus = {consensus!r} without a net: give net=AlphaInteraction(...), or a pair")
     given = {
         "c1_alpha": (pair, gradient),
-        "c2_alpha": (pair or net, consensus if consensus is not None else 0.0),
-        "c1_beta": (obstacles, repulsion),
-        "c2_beta": (obstacles, braking),
+        "c2_alpha": (net if pair is None else pair, consensus if consensus is not None else 0.0),
+        "c1_beta": (obstacles or None, repulsion),
+        "c2_beta": (obstacles or None, braking),
         "c1_gamma": (navigation, pull),
         "c2_gamma": (navigation, match),
     }
-    own = {name: _of_informed(gain, name, informed, agents) for name, (part, gain) in given.items() if part}
+    own = {name: _of_informed(gain, name, informed, agents) for name, (part, gain) in given.items() if part is not None}
     unit = _bend(bounded, pair)
     thrust, brake = _along(drag, speed)
-    plain = not (net or told or thrust or brake) and pair is not None
+    plain = not (net is not None or ensure_flag("told", told) or thrust or brake) and pair is not None
     if plain and navigation is None and not obstacles:
         return Algorithm1(pair, Gains(**own))  # type: ignore[arg-type]  # validated there
     if plain and navigation is not None and not obstacles and unit is None:

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
+from flockana.base.checks import FloatArray, ensure_flag
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.interactions.weights import RationalWeight
@@ -51,8 +51,7 @@ class CuckerSmale(SumOfTerms):
     def __post_init__(self) -> None:
         if not isinstance(self.weight, RationalWeight):
             raise ArgumentError(f"weight = {self.weight!r}: expected RationalWeight(strength, decay, length)")
-        if not isinstance(self.mean, bool):
-            raise ArgumentError(f"mean = {self.mean!r}: expected True or False")
+        ensure_flag("mean", self.mean)
 
     @property
     def scales(self) -> Scales:

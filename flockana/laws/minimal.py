@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_points
+from flockana.base.checks import FloatArray, ensure_flag, ensure_points
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.units import times
@@ -82,8 +82,7 @@ class MinimalFlocking(Law):
     def __post_init__(self) -> None:
         if self.beta is not None and self.spacing is not None:
             raise ArgumentError(f"beta = {self.beta} and spacing = {self.spacing}: expected one of them, or neither")
-        if not isinstance(self.normalised, bool):
-            raise ArgumentError(f"normalised = {self.normalised!r}: expected True or False")
+        ensure_flag("normalised", self.normalised)
         for name in ("radius", "beta", "spacing"):
             if name == "radius" or getattr(self, name) is not None:
                 object.__setattr__(self, name, per_agent(name, getattr(self, name)))

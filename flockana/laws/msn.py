@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive
+from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_flag, ensure_positive
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 from flockana.interactions import AlphaInteraction, Gains
@@ -73,8 +73,7 @@ class MSNDiscretisation(DiscreteLaw):
             )
         if self.target is not None:
             ensure_one_gain(self.law.gains)
-        if not isinstance(self.in_place, bool):
-            raise ArgumentError(f"in_place = {self.in_place!r}: expected True or False")
+        ensure_flag("in_place", self.in_place)
         object.__setattr__(self, "dt", ensure_positive("dt", self.dt))
         object.__setattr__(self, "position_factor", ensure_finite_scalar("position_factor", self.position_factor))
 

@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import PercentFormatter
 
-from flockana.base.checks import FloatArray
-from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.base.checks import FloatArray, ensure_known
+from flockana.base.errors import ArgumentError
 from flockana.plots.style import BLUE, FAINT, GREEN, LEGEND, MUTED, ORANGE, VERMILLION, ensure_axes, head
 from flockana.plots.symbols import typeset
 
@@ -313,8 +313,7 @@ def _ensure_table(table: xarray.Dataset, parameters: set[str], claims: Iterable[
     known = [str(name) for name in table.claim.values]
     chosen = known if claims is None else list(claims)
     for name in chosen:
-        if name not in known:
-            raise UnknownNameError("claim", name, known)
+        ensure_known("claim", name, known)
     if not chosen:
         raise ArgumentError("no claims: expected at least one; were theorems checked?")
     return chosen

@@ -6,14 +6,13 @@ import inspect
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, get_args
 
-import numpy as np
-
 from flockana.base.checks import (
     ensure_count,
     ensure_dimension,
     ensure_finite_scalar,
     ensure_fits,
     ensure_points,
+    ensure_seed,
     ensure_time_span,
 )
 from flockana.base.errors import ArgumentError, UnknownNameError
@@ -27,29 +26,6 @@ if TYPE_CHECKING:
 
 SOURCE = "source"  # the id under which a source's own report is judged
 _SAMPLES = 4  # of q, p and u in three dimensions: the least that a run takes
-
-
-def ensure_seed(seed: Any) -> int:
-    """Return a seed, a whole number >= 0.
-
-    Parameters
-    ----------
-    seed : int
-        What the caller gave.
-
-    Raises
-    ------
-    ArgumentError
-        On anything else.
-
-    Examples
-    --------
-    >>> ensure_seed(7)
-    7
-    """
-    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
-        raise ArgumentError(f"seed = {seed!r}: expected a whole number >= 0")
-    return int(seed)
 
 
 def ensure_parts(scenario: Scenario) -> None:

@@ -11,8 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
-from flockana.base.errors import UnknownNameError
+from flockana.base.checks import FloatArray, ensure_known
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import LinearTarget
@@ -233,8 +232,7 @@ def compare(names: Iterable[str] | None = None, *, seed: int = 0) -> tuple[Outco
     known = {entry.name: entry for entry in ENTRIES}
     chosen = tuple(known) if names is None else tuple(names)
     for name in chosen:
-        if name not in known:
-            raise UnknownNameError("law", name, tuple(known))
+        ensure_known("law", name, tuple(known))
     q, p = one_start(seed)
     return tuple(_outcome(known[name], q, p) for name in chosen)
 

@@ -7,8 +7,7 @@ from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import Any
 
-from flockana.base.checks import FloatArray
-from flockana.base.errors import UnknownNameError
+from flockana.base.checks import FloatArray, ensure_known, ensure_seed
 from flockana.base.modules import modules
 from flockana.base.units import rescale, times
 from flockana.dynamics.simulate import simulate
@@ -16,7 +15,7 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law
 from flockana.scenarios.enclosure import Enclosure
-from flockana.scenarios.given import SOURCE, ensure_options, ensure_parts, ensure_seed
+from flockana.scenarios.given import SOURCE, ensure_options, ensure_parts
 from flockana.scenarios.start import given_later
 from flockana.theorems import Claim, Tolerances, Verdict, verify
 from flockana.theorems.second_run import corroborated
@@ -279,8 +278,7 @@ def scenario(name: str, seed: int = 0, **options: Any) -> Scenario:
     >>> scenario("collapse", seed=1).name
     'collapse'
     """
-    if name not in catalogue():
-        raise UnknownNameError("scenario", name, scenarios())
+    ensure_known("scenario", name, scenarios())
     build = catalogue()[name]
     ensure_options(name, build, options)
     return build(seed=ensure_seed(seed), **options)

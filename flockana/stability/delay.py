@@ -15,8 +15,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_count, ensure_positive
-from flockana.base.errors import UnknownNameError
+from flockana.base.checks import FloatArray, ensure_count, ensure_known, ensure_positive
 from flockana.equilibria.curvature import EPS
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.stability.blocks import NEUTRAL, law_blocks
@@ -105,8 +104,7 @@ def delay_system(law: Algorithm1 | Algorithm2, q: Any, *, delayed: str = "all", 
     >>> [block.tolist() for block in one.late], one.neutral
     ([[[1.1]], [[2.0976176963403033]]], 0)
     """
-    if delayed not in DELAYED:
-        raise UnknownNameError("set of delayed terms", delayed, DELAYED)
+    ensure_known("set of delayed terms", delayed, DELAYED)
     flock = law_blocks(law, q, strict=strict)
     neutral, zero = flock.neutral.shape[1] + flock.drifting.shape[1], np.zeros_like(flock.stiffness)
     if delayed == "all":

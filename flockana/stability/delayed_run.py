@@ -7,8 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_count, ensure_fits, ensure_positive, ensure_state, ensure_time_span
-from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.base.checks import (
+    FloatArray,
+    ensure_count,
+    ensure_fits,
+    ensure_known,
+    ensure_positive,
+    ensure_state,
+    ensure_time_span,
+)
+from flockana.base.errors import ArgumentError
 from flockana.dynamics.encounters import Encounters, State
 from flockana.dynamics.iterate import count_steps
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
@@ -81,8 +89,7 @@ def simulate_delayed(
     0.75
     """
     ensure_pairs_and_pull(law)
-    if delayed not in DELAYED:
-        raise UnknownNameError("set of delayed terms", delayed, DELAYED)
+    ensure_known("set of delayed terms", delayed, DELAYED)
     q, p = ensure_state(q0, p0)
     law.check_dimension(q.shape[1])
     law.check_start(q, p)

@@ -30,8 +30,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_count, ensure_nonnegative, ensure_points
-from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.base.checks import FloatArray, ensure_count, ensure_known, ensure_nonnegative, ensure_points
+from flockana.base.errors import ArgumentError
 from flockana.equilibria.terminal import rigid_motions
 from flockana.interactions import Gains
 from flockana.interactions.alpha import AlphaInteraction
@@ -212,8 +212,7 @@ def gain_problem(
     q = ensure_points("q", q)
     n, m = q.shape
     for name, value, known in (("form", form, FORMS), ("rotation", rotation, ROTATIONS)):
-        if value not in known:
-            raise UnknownNameError(name, value, known)
+        ensure_known(name, value, known)
     damping = gains.c2_alpha * alpha.laplacian(q).toarray()
     if form == "simplified":
         return GainProblem(np.zeros((n, n)), damping[::m, ::m], np.zeros((n, 0)), n)

@@ -10,6 +10,7 @@ import numpy as np
 from flockana.base.checks import (
     FloatArray,
     ensure_finite_scalar,
+    ensure_flag,
     ensure_links,
     ensure_points,
     ensure_positive,
@@ -99,6 +100,7 @@ def linearise(
     if p is None:
         p = np.zeros_like(q) if target is None else np.tile(target.rate(t), (len(q), 1))
     q, p = ensure_state(q, p)
+    ensure_flag("allow_residual", allow_residual)
     tolerance = ensure_positive("force_tolerance", force_tolerance)
     zero = None if zero is None else ensure_positive("zero", zero)
     matrix = _finite_jacobian(law, t, q, p)

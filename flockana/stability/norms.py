@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_count, ensure_positive
-from flockana.base.errors import SolverError, UnknownNameError
+from flockana.base.checks import FloatArray, ensure_count, ensure_known, ensure_positive
+from flockana.base.errors import SolverError
 from flockana.equilibria.curvature import EPS
 from flockana.equilibria.solve import find_equilibrium
 from flockana.lattice import hexagonal_spiral
@@ -52,8 +52,7 @@ def disturbance_system(flock: Blocks, *, output: str = "shape") -> StateSpace | 
     """
     import control
 
-    if output not in OUTPUTS:
-        raise UnknownNameError("output", output, OUTPUTS)
+    ensure_known("output", output, OUTPUTS)
     a, b, positions, _ = flock.quotient()
     seen = complement(flock.rigid)
     if output == "deviations":

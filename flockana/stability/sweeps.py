@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_points
-from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.base.checks import FloatArray, ensure_known, ensure_nonnegative, ensure_points
+from flockana.base.errors import ArgumentError
 from flockana.equilibria.solve import find_equilibrium
 from flockana.interactions import Gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain
@@ -130,8 +130,7 @@ def centre_locus(gains: Gains, name: str, values: Any) -> tuple[Sweep, TransferF
     import control
 
     ensure_one_gain(gains)
-    if name not in GAINS[2:]:
-        raise UnknownNameError("gain", name, GAINS[2:])
+    ensure_known("gain", name, GAINS[2:])
     levels = _rising(values)
     rows: list[ComplexArray] = []
     for level in levels.tolist():
@@ -226,5 +225,4 @@ def margin_sweep(
 
 def _ensure_gain(law: Any, name: str) -> None:
     known = GAINS[:2] if law.target is None else GAINS
-    if name not in known:
-        raise UnknownNameError("gain", name, known)
+    ensure_known("gain", name, known)

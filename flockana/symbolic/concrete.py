@@ -13,8 +13,8 @@ from itertools import combinations
 
 import sympy as sp
 
-from flockana.base.checks import ensure_dimension
-from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.base.checks import ensure_dimension, ensure_known
+from flockana.base.errors import ArgumentError
 from flockana.symbolic import sums
 from flockana.symbolic.derivation import Step, latex_steps
 from flockana.symbolic.functions import HALF
@@ -65,8 +65,7 @@ class ConcreteFlock:
     kinetic_factor: sp.Expr = HALF
 
     def __post_init__(self) -> None:
-        if self.law not in LAWS:
-            raise UnknownNameError("law", self.law, LAWS)
+        ensure_known("law", self.law, LAWS)
         if not isinstance(self.n, int) or self.n < 1:
             raise ArgumentError(f"n = {self.n!r}: expected a number of agents >= 1")
         ensure_dimension(self.m)

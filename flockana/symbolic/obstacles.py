@@ -12,8 +12,7 @@ from dataclasses import dataclass
 import sympy as sp
 from sympy.core.function import UndefinedFunction
 
-from flockana.base.checks import ensure_dimension
-from flockana.base.errors import UnknownNameError
+from flockana.base.checks import ensure_dimension, ensure_known
 from flockana.symbolic.derivation import Derivation, Step
 from flockana.symbolic.functions import HALF
 from flockana.symbolic.norms import EPS, sigma_norm, sigma_norm_gradient
@@ -79,8 +78,7 @@ class GenericObstacle:
     z = sp.Symbol("z_ik", nonnegative=True)
 
     def __init__(self, kind: str, m: int) -> None:
-        if kind not in KINDS:
-            raise UnknownNameError("kind of obstacle", kind, KINDS)
+        ensure_known("kind of obstacle", kind, KINDS)
         self.kind, self.m = kind, ensure_dimension(m)
         self.x, self.p, y = (vector(name, m) for name in ("x", "p_i", "y"))
         q = y + self.x

@@ -1,0 +1,77 @@
+"""Every public function, each of its arguments in turn something strange: refused in words, or taken for what it is."""
+
+from __future__ import annotations
+
+import inspect
+
+import numpy as np
+import pytest
+
+import flockana as fl
+from flockana.base.errors import FlockanaError
+
+STRANGE = {
+    "matrix": np.zeros((2, 5)),
+    "masked": np.ma.masked_array([1.0, 2.0], [0, 1]),
+    "list": [[1]],
+    "NaN": [np.nan, 1.0],
+    "object": object(),
+    "text": "\0",
+    "huge": 10**30,
+}
+SLOW = {"falsify", "prove", "verify", "search_minima"}  # some of what is strange here is fine, and takes them long
+
+MUCH = {("runs", "huge"), ("t_end", "huge")}  # one may ask for it
+
+
+@pytest.fixture(scope="module")
+def usual(tmp_path_factory):
+    """What the arguments are otherwise."""
+    law, q, p = fl.Algorithm1(), np.array([[0.0, 0.0], [7.0, 0.0]]), np.zeros((2, 2))
+    folder = tmp_path_factory.mktemp("out")
+    run = fl.simulate(law, q, p, (0.0, 0.1))
+    shared = {"law": law, "t_span": (0.0, 0.1), "path": folder / "it", "folder": folder / "them", "name": "hexagon"}
+    rest = fl.find_equilibrium(law, q)
+    shared |= {"d": 7.0, "r": 8.4, "n": 2, "pairs": [[0, 1]], "nets": [[[0, 1]]], "x": q, "successes": 1, "trials": 2}
+    shared |= {"item": law, "equilibrium": rest, "linearisation": fl.linearise(law, rest)}
+    shared |= {"basin": fl.certify([[0.0], [7.0]], law=law), "distances": [0.1]}
+    shared |= {"tube": fl.enclose(law, q, p, (0.0, 0.0009765625)), "adjacency": lambda s2, par: 1.0}
+    shared |= {"range": 8.4, "length": 7.0, "scenario": "hexagon", "seeds": []}
+    places = dict.fromkeys(("q", "q0", "positions", "configuration"), q) | dict.fromkeys(("p", "p0"), p)
+    return shared | places | {"run": run, "trajectory": run, "subject": run, "theorem": "os-3", "target": "os-3"}
+
+
+def required(function):
+    parameters = inspect.signature(function).parameters.values()
+    return [
+        p.name
+        for p in parameters
+        if p.default is inspect.Parameter.empty and p.kind not in (p.VAR_POSITIONAL, p.VAR_KEYWORD)
+    ]
+
+
+FUNCTIONS = [name for name in fl.__all__ if inspect.isfunction(getattr(fl, name)) and name not in SLOW]
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_what_is_strange_is_refused_in_words(name, usual):
+    function = getattr(fl, name)
+    if not set(required(function)) <= set(usual):
+        pytest.skip("it asks for what stands in tables of its own")
+    for parameter in inspect.signature(function).parameters.values():
+        if parameter.kind in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD):
+            continue
+        for kind, value in STRANGE.items():
+            if (parameter.name, kind) in MUCH:
+                continue
+            given = {key: usual[key] for key in required(function)} | {parameter.name: value}
+            try:
+                function(**given)
+            except FlockanaError as told:
+                assert str(told), (name, parameter.name, kind)
+            except Exception as other:  # whatever it is, it is not ours
+                pytest.fail(f"{name}({parameter.name}: {kind}) raises {type(other).__name__}: {other}")
+
+
+def test_there_are_functions_to_ask(usual):
+    assert sum(set(required(getattr(fl, name))) <= set(usual) for name in FUNCTIONS) >= 30
