@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import pytest
 from flint import arb, ctx
 
-from flockana import Algorithm1, Algorithm2, Algorithm3, Gains, LinearTarget, Sphere, StaticTarget, enclose
+from flockana import Algorithm1, Algorithm2, Algorithm3, Gains, LinearTarget, Sphere, StaticTarget, enclose, simulate
 from flockana.certified.tube import down, up
 from tests.certified.conftest import ALONE, oscillator
 
@@ -91,6 +91,15 @@ def test_a_run_that_starts_later_follows_the_target_from_there():
     tube = enclose(law, [[7.0]], [[3.0]], (2.0, 3.0))
     assert (tube.status, tube.message, tube.t[0], tube.t[-1]) == ("complete", "", 2.0, 3.0)
     assert tube.state(-1)[0][0][0].contains(oscillator(1.0)[0] + 9)
+
+
+def test_a_switch_that_is_crossed_later_is_crossed_under_the_target_of_then():
+    """A link forms 1.5 ms after t = 2, when the target is at 6 and not at 0."""
+    law, q, p = Algorithm2(target=LinearTarget((0.0,), (3.0,))), [[1.8], [10.2015]], [[3.0], [2.0]]
+    tube = enclose(law, q, p, (2.0, 2.0078125))
+    run = simulate(law, q, p, (2.0, 2.0078125), rtol=1e-12, atol=1e-12)
+    assert (abs(run.q[-1] - tube.q[-1]) <= tube.radii[-1, 0] + 1e-9).all()
+    assert (abs(run.p[-1] - tube.p[-1]) <= tube.radii[-1, 1] + 1e-8).all()
 
 
 def test_one_radius_is_that_of_places_and_of_velocities():
