@@ -36,6 +36,17 @@ def test_signs_and_solutions_are_those_of_the_dense_matrix(n, m):
             np.testing.assert_allclose(found.solve(right), expected, atol=1e-13 * condition * np.abs(expected).max())
 
 
+@pytest.mark.parametrize("m", [1, 2])
+def test_agents_are_halved_so_no_front_is_large(m):
+    """1600 on a square lattice or a line: a leaf has 64 at most, the widest separator is one row of 40."""
+    side = 40 if m == 2 else 1600
+    q = np.stack(np.meshgrid(*[np.arange(side, dtype=float)] * m, indexing="ij"), axis=-1).reshape(-1, m)
+    matrix = rigidity_matrix(q, links(q, 1.5))
+    fronts = Elimination(csr_array(matrix.T @ matrix + eye_array(q.size)), q)._fronts
+    assert max(front.rows.stop - front.rows.start for front in fronts) <= 64 * m
+    assert max(front.boundary.size for front in fronts) <= 4 * 42 * m
+
+
 def test_a_long_link_is_no_trouble():
     """Places decide about the time only: here the two ends of a chain are linked, and agents stand in no order."""
     n = 500

@@ -39,6 +39,19 @@ def test_a_straight_line_past_a_sphere() -> None:
     assert (found.agent, found.obstacle) == (0, 0)
 
 
+@pytest.mark.parametrize("chunk", [1, 4, 6, 100])
+def test_the_closest_point_is_told_whatever_is_handled_at_once(chunk, monkeypatch) -> None:
+    """Two agents in ten intervals; the second grazes the disc in the eighth, between its samples."""
+    monkeypatch.setattr("flockana.measures.clearance._CHUNK", chunk)
+    t = np.linspace(0.0, 10.0, 11)
+    q = np.stack([np.stack([t - 7.3, np.full(11, y)], axis=1) for y in (9.0, 3.0)], axis=1)
+    p = np.broadcast_to([1.0, 0.0], q.shape)
+    found = clearance(t, q, p, np.zeros_like(q), [Sphere((50.0, 50.0), 1.0), Sphere((0.0, 0.0), 2.0)])
+    assert found.lower == pytest.approx(1.0, abs=1e-7)
+    assert found.time == pytest.approx(7.3, abs=1e-4)
+    assert (found.agent, found.obstacle) == (1, 1)
+
+
 def test_a_passage_through_an_obstacle_is_not_missed() -> None:
     """Both samples are outside; the path runs through the centre, or through the polygon's depth of 1.5."""
     assert clearance(*_straight([-9.0, 0.0], [8.0, 0.0]), [Sphere((0.0, 0.0), 2.0)]).lower == pytest.approx(
