@@ -130,6 +130,16 @@ def test_where_a_coarse_cell_would_do_it_still_is_a_bound(eta, pair):
             assert holds(along, floored(arb(true - 4.0 * eta**2), 6))
 
 
+def test_the_least_of_a_square_in_the_turn_may_be_within_and_not_at_its_end():
+    """F'' = ½, T = −¼ and α = −2: the pair gives way most where it has turned a part of what it may."""
+    pair, along = Made(0.5, -0.25), fmpq(-2)
+    true = largest_across(1.0, 0.5, -2.0, lambda length: pair(length + 0.0 * length))
+    with ctx.workdps(25):
+        for holds in provers(1.0, 0.5, pair):
+            assert not holds(along, floored(arb(true + 2e-3), 6))
+            assert holds(along, floored(arb(true - 0.5), 6))
+
+
 def test_nothing_is_proved_of_a_pair_of_which_nothing_is_known():
     with ctx.workdps(25):
         for holds in provers(1.0, 0.5, Made(float("nan"), 0.0)):
