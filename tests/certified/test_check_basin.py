@@ -7,13 +7,14 @@ import json
 from fractions import Fraction
 
 import pytest
-from flint import arb, ctx
+from flint import arb, ctx, fmpq
 
 from flockana.base.seals import sealed
 from flockana.certified.certificate import basin_certificate
 from flockana.certified.check import RejectedError, check_data, unit
 from flockana.certified.check_basin import DIGITS
 from flockana.certified.check_net import ROOT_TWO, Net
+from flockana.certified.decimals import floored, written
 from tests.certified.conftest import basin_of
 
 
@@ -106,3 +107,22 @@ def test_the_nearest_point_is_asked_to_be_unique_in_all_of_the_radius(data, monk
     checked(data)
     (radius,) = asked
     assert radius.overlaps(arb(data["radius"]))
+
+
+@pytest.mark.parametrize("share", [Fraction(1, 2), Fraction(-1, 2)])
+def test_the_rate_counts_all_that_damps_the_velocities(share):
+    """With κ so large that the second of the three rates is the least, at `share` of what it is without damping."""
+    data = copy.deepcopy(json.loads(json.dumps(basin_certificate(basin_of("triangle", 2)))))
+    eps, theta, tau = (Fraction(data["lyapunov"][name]) for name in ("eps", "theta", "tau"))
+    curvature, surplus, degree = (Fraction(data[name]) for name in ("curvature", "surplus", "degree"))
+    c2_alpha, c2_gamma = (Fraction(data["law"][name]) for name in ("c2_alpha", "c2_gamma"))
+    most = c2_gamma + 2 * c2_alpha * degree
+    free = theta * curvature + 2 * (theta * surplus + (1 - theta) * curvature)
+    kappa = (1 - share * min(1, theta * (curvature + eps * tau) / free)) * free / most
+    rate = eps * (free - kappa * most) / (curvature + eps * tau) / 2
+    data["lyapunov"]["kappa"], data["rate"] = str(kappa), written(floored(fmpq(rate.numerator, rate.denominator), 3))
+    if share > 0:
+        checked(data)
+    else:
+        with pytest.raises(RejectedError, match="the rate is not that of F"):
+            checked(data)
