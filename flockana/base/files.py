@@ -22,6 +22,8 @@ def ensure_path(path: Any, *, action: str = "read", remedy: str = "choose anothe
     name = os.fspath(path) if isinstance(path, str | os.PathLike) else None
     if not isinstance(name, str):
         raise FileError(f"cannot {action} {path!r}: it is no path; {remedy}")
+    if not name:  # a variable that is not set: files would go to wherever one happens to be
+        raise FileError(f"cannot {action} '': the name is empty; {remedy}")
     if "\0" in name:  # HDF5 would take what precedes it
         raise FileError(f"cannot {action} {name!r}: null byte; {remedy}")
     return Path(name)

@@ -65,6 +65,11 @@ def _kind(cell: Any, before: Any) -> str:
     return "slide" if cell.source.startswith("#") else "subslide"
 
 
+def shown() -> list[Path]:
+    """What has slides: an assignment has none, as it is handed out."""
+    return [source for source in sources() if not source.name.startswith("A")]
+
+
 def write_slides(folder: Path) -> list[Path]:
     """Write all lectures as slides, and what they import.
 
@@ -81,8 +86,7 @@ def write_slides(folder: Path) -> list[Path]:
     folder.mkdir(parents=True, exist_ok=True)
     copy_companions(folder)
     written = []
-    for source in sources():
-        if not source.name.startswith("A"):  # an assignment is handed out
-            written.append(folder / f"{source.stem}.ipynb")
-            nbformat.write(slides(source), written[-1])
+    for source in shown():
+        written.append(folder / f"{source.stem}.ipynb")
+        nbformat.write(slides(source), written[-1])
     return written

@@ -104,8 +104,8 @@ if hasattr(os, "register_at_fork"):  # else it goes on where its parent was, as 
     os.register_at_fork(after_in_child=_count_apart)
 
 
-def dispatcher(function: Callable[..., Any], *, cache: bool, **options: Any) -> Any:
-    """numba's dispatcher of a function, to be called from Python.
+def dispatcher(function: Callable[..., Any], *, cache: bool, inner: bool = False, **options: Any) -> Any:
+    """numba's dispatcher of a function.
 
     Parameters
     ----------
@@ -113,29 +113,18 @@ def dispatcher(function: Callable[..., Any], *, cache: bool, **options: Any) -> 
         What to compile.
     cache : bool
         Keep what is compiled on disk.
+    inner : bool
+        To be called by what is compiled alone: without what Python would need to call it.
     **options
         Those of `numba.njit`.
     """
-    made = _at_hand(numba.njit(**options)(function))
-    if function.__module__.startswith("flockana."):  # what others write may write to what it is handed
-        made = _for_frozen_arrays(made)
-    return _cached(made, function, "") if cache else made
-
-
-def called_by_kernels(function: Callable[..., Any], *, cache: bool, **options: Any) -> Any:
-    """numba's dispatcher of a function, to be called by what is compiled: without what Python would need to call it.
-
-    Parameters
-    ----------
-    function : callable
-        What to compile.
-    cache : bool
-        Keep what is compiled on disk.
-    **options
-        Those of `numba.njit`.
-    """
-    made = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **options)(function)
-    return _cached(made, function, ".inner") if cache else made
+    if inner:
+        made = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **options)(function)
+    else:
+        made = _at_hand(numba.njit(**options)(function))
+        if function.__module__.startswith("flockana."):  # what others write may write to what it is handed
+            made = _for_frozen_arrays(made)
+    return _cached(made, function, ".inner" if inner else "") if cache else made
 
 
 def _cached(made: Any, function: Callable[..., Any], suffix: str) -> Any:

@@ -54,9 +54,9 @@ class Kernel(_Known):
     @cached_property
     def inner(self) -> Any:
         """What numba made of it, to be called from other kernels."""
-        from flockana.kernels.caching import called_by_kernels
+        from flockana.kernels.caching import dispatcher
 
-        return called_by_kernels(self.function, **self.options)
+        return dispatcher(self.function, inner=True, **self.options)
 
     @property
     def _numba_type_(self) -> Any:

@@ -111,7 +111,7 @@ class Composition(GainedLaw):
             ensure_one_dimension(self.obstacles, self.target.dimension, "the target has")
         elif self.obstacles:
             ensure_one_dimension(self.obstacles, self.obstacles[0].dimension, "obstacles[0] has")
-        ensure_flag("told", self.told)
+        object.__setattr__(self, "told", ensure_flag("told", self.told))
         if self.told and (self.target is None or self.target.harmonic is None):
             raise ArgumentError(
                 f"told = True, target = {self.target!r}: expected a γ-agent whose acceleration is known, such as "
@@ -263,7 +263,7 @@ def compose(
         if net is not None:
             raise ArgumentError(f"net = {net!r} beside consensus = {consensus!r}: expected one of the two weights")
         net, consensus = consensus, 1.0
-    obstacles = ensure_obstacles(obstacles)
+    obstacles, told = ensure_obstacles(obstacles), ensure_flag("told", told)
     _ensure_parts("pair", pair, gradient=gradient)
     _ensure_parts("consensus", consensus, net=net)
     _ensure_parts("navigation", navigation, pull=pull, match=match, informed=informed, bounded=bounded, told=told)
@@ -282,7 +282,7 @@ def compose(
     own = {name: _of_informed(gain, name, informed, agents) for name, (part, gain) in given.items() if part is not None}
     unit = _bend(bounded, pair)
     thrust, brake = _along(drag, speed)
-    plain = not (net is not None or ensure_flag("told", told) or thrust or brake) and pair is not None
+    plain = net is None and pair is not None and not (told or thrust or brake)
     if plain and navigation is None and not obstacles:
         return Algorithm1(pair, Gains(**own))  # type: ignore[arg-type]  # validated there
     if plain and navigation is not None and not obstacles and unit is None:

@@ -51,7 +51,7 @@ class CuckerSmale(SumOfTerms):
     def __post_init__(self) -> None:
         if not isinstance(self.weight, RationalWeight):
             raise ArgumentError(f"weight = {self.weight!r}: expected RationalWeight(strength, decay, length)")
-        ensure_flag("mean", self.mean)
+        object.__setattr__(self, "mean", ensure_flag("mean", self.mean))
 
     @property
     def scales(self) -> Scales:

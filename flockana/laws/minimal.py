@@ -82,7 +82,7 @@ class MinimalFlocking(Law):
     def __post_init__(self) -> None:
         if self.beta is not None and self.spacing is not None:
             raise ArgumentError(f"beta = {self.beta} and spacing = {self.spacing}: expected one of them, or neither")
-        ensure_flag("normalised", self.normalised)
+        object.__setattr__(self, "normalised", ensure_flag("normalised", self.normalised))
         for name in ("radius", "beta", "spacing"):
             if name == "radius" or getattr(self, name) is not None:
                 object.__setattr__(self, name, per_agent(name, getattr(self, name)))

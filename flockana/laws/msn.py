@@ -73,7 +73,7 @@ class MSNDiscretisation(DiscreteLaw):
             )
         if self.target is not None:
             ensure_one_gain(self.law.gains)
-        ensure_flag("in_place", self.in_place)
+        object.__setattr__(self, "in_place", ensure_flag("in_place", self.in_place))
         object.__setattr__(self, "dt", ensure_positive("dt", self.dt))
         object.__setattr__(self, "position_factor", ensure_finite_scalar("position_factor", self.position_factor))
 

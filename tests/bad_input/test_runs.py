@@ -119,7 +119,7 @@ def paths():
     yield "animate", PATHS | {"a picture": "x.png"}, lambda v: fl.animate(RUN, v, seconds=0.1, fps=10)
     yield "animate seconds", POSITIVE, lambda v: fl.animate(RUN, "x.gif", seconds=v)
     yield "animate fps", POSITIVE | {"too many": 1e9}, lambda v: fl.animate(RUN, "x.gif", fps=v)
-    folders = {"none": None, "a number": 3, "null byte": "a\0b", "a file": __file__}
+    folders = {"none": None, "a number": 3, "null byte": "a\0b", "empty": "", "a file": __file__}
     yield "export_lammps", folders, lambda v: fl.export_lammps(LAW, Q, P, (0, 1), v)
 
 

@@ -200,21 +200,21 @@ def test_what_is_kept_is_made_again_when_its_code_changes(tmp_path, monkeypatch)
 
 def test_slides_show_what_the_page_of_their_lecture_put_out(tmp_path):
     """Each code cell of the slides is one of the page's, with its output: nothing is executed twice."""
-    for source in slides.lectures():
+    for source in slides.shown():
         book = lectures.lecture(source)
         for number, cell in enumerate(book.cells):
             if cell.cell_type == "code":
                 cell["outputs"] = [nbformat.v4.new_output("stream", text=f"output of cell {number}")]
         nbformat.write(book, tmp_path / f"{source.stem}.ipynb")
         texts = {cell.source: cell.outputs[0].text for cell in book.cells if cell.cell_type == "code"}
-        code = [cell for cell in slides.shown(source, tmp_path).cells if cell.cell_type == "code"]
+        code = [cell for cell in slides.with_outputs(source, tmp_path).cells if cell.cell_type == "code"]
         assert len(code) > 1
         assert [cell.outputs[0].text for cell in code] == [texts[cell.source] for cell in code]
 
 
 def test_a_page_of_slides_for_each_lecture_and_a_link_to_it(tmp_path, monkeypatch):
     pytest.importorskip("nbconvert")
-    monkeypatch.setattr(slides, "sources", lambda: lectures.SOURCES.glob("00a*.py"))
+    monkeypatch.setattr(slides, "shown", lambda: lectures.SOURCES.glob("00a*.py"))
     slides.write(tmp_path / "slides", None)
     page = (tmp_path / "slides" / "00a_graphs_and_lyapunov.html").read_text(encoding="utf-8")
     assert page.count("<section>") > 10

@@ -9,9 +9,8 @@ from typing import Any
 import jupytext
 import nbformat
 
-from flockana.course import build
+from flockana.course import build, slides
 from flockana.course.pages import number_of
-from tools.site import slides
 from tools.site.cache import ROOT
 from tools.site.words import contents
 
@@ -50,6 +49,6 @@ def write(folder: Path) -> None:
         "# Lectures\n\nEach was executed when this page was built. Solutions unfold with a click; `make course` writes "
         "notebooks for students, without them."
     )
-    shown = " · ".join(f'<a href="../../slides/{each.stem}.html">{number_of(each)}</a>' for each in slides.lectures())
+    shown = " · ".join(f'<a href="../../slides/{each.stem}.html">{number_of(each)}</a>' for each in slides.shown())
     text = f"{opening}\n\n{contents(source.stem for source in sources)}\n\nAs slides: {shown}\n"
     (folder / "index.md").write_text(text, encoding="utf-8")

@@ -7,11 +7,10 @@ from typing import Any
 
 import nbformat
 
-from flockana.course.build import sources
-from flockana.course.slides import slides
+from flockana.course.slides import shown, slides
 
 
-def shown(source: Path, executed: Path | None) -> Any:
+def with_outputs(source: Path, executed: Path | None) -> Any:
     """The slides of a lecture with the outputs that the same cells have in ``executed``, a folder; without it, none."""
     book = slides(source)
     if executed is None:
@@ -23,11 +22,6 @@ def shown(source: Path, executed: Path | None) -> Any:
             found = done[cell.source]
             cell["outputs"], cell["execution_count"] = found.outputs, found.execution_count
     return book
-
-
-def lectures() -> list[Path]:
-    """What has slides: an assignment has none, as it is handed out."""
-    return [source for source in sources() if not source.name.startswith("A")]
 
 
 def write(folder: Path, executed: Path | None) -> None:
@@ -44,6 +38,6 @@ def write(folder: Path, executed: Path | None) -> None:
 
     folder.mkdir(parents=True, exist_ok=True)
     exporter = SlidesExporter()
-    for source in lectures():
-        page, _ = exporter.from_notebook_node(shown(source, executed))
+    for source in shown():
+        page, _ = exporter.from_notebook_node(with_outputs(source, executed))
         (folder / f"{source.stem}.html").write_text(page, encoding="utf-8")
