@@ -31,20 +31,20 @@ PATIENCE = 4  # steps in a row that halving did not mend, after which none is ha
 GROWTH = 8.0  # times its last length may a step of RK4 grow, and by so much it is shortened at once
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def _spacing(t):
     return np.nextafter(abs(t), np.inf) - abs(t)
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def _at_rest(t, h, points, view):
+def _at_rest(t, h, points, view, frame):
     """The same paths, seen from where the obstacles are at rest."""
     seen, m = points.copy(), view[1].size
     for k in range(6):
-        place = frame_at(t + 0.2 * k * h, *view)[0]
+        frame_at(t + 0.2 * k * h, view[0], view[1], view[2], frame)
         for i in range(len(points)):
             for c in range(m):
-                seen[i, k, c] += place[c]
+                seen[i, k, c] += frame[0, c]
     return seen
 
 
@@ -60,7 +60,7 @@ def _met(t, h, y0, f0, y1, f1, encounters, system, pairs, scratch):
     q1, p1, u1 = y1[:size].reshape(n, m), y1[size : 2 * size].reshape(n, m), f1[size : 2 * size].reshape(n, m)
     if bodies.size:
         points, _, allowance = bernstein(h, q0, p0, u0, q1, p1, u1)
-        share = guard(_at_rest(t, h, points, system[5]), allowance, bodies, shell[0], shell[1], share)
+        share = guard(_at_rest(t, h, points, system[5], system[13]), allowance, bodies, shell[0], shell[1], share)
     if not radii.size or n == 1:
         return share, scratch
     mean = mean_way(h, q0, p0, u0, q1, p1, u1)
@@ -81,7 +81,7 @@ def _met(t, h, y0, f0, y1, f1, encounters, system, pairs, scratch):
     return share_of_listed(h, q0, p0, u0, q1, p1, u1, mean, ways, radii, far, first, second, share), scratch
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def _balanced(t, at, y, reached, balance, ledger, tried, halved, system, pairs):
     """(how much of a step may be taken, halvings so far) by the energy's balance; the ledger is kept."""
     if ledger[0] != t:
@@ -101,7 +101,7 @@ def _balanced(t, at, y, reached, balance, ledger, tried, halved, system, pairs):
     return 1.0, 0
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def _moved(vector, order, shape, back, out):
     """The vector in the order given, or from there back."""
     n, m = shape
@@ -113,11 +113,11 @@ def _moved(vector, order, shape, back, out):
     out[2 * n * m] = vector[2 * n * m]
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def _record(t, y, f, system, out):
     """Positions, velocities and accelerations as they are, in the agents' own order; returns the work."""
-    (n, m), view, order = system[4], system[5], system[8]
-    frame = frame_at(t, *view)
+    (n, m), view, order, frame = system[4], system[5], system[8], system[13]
+    frame_at(t, view[0], view[1], view[2], frame)
     for i in range(n):
         own = np.int64(order[i])
         for c in range(m):
@@ -154,7 +154,7 @@ def _with_room(kept, due, at):
     return more
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def _controlled(h, error, exponent, rejected):
     """(next step, whether this one stands), as scipy's solvers choose."""
     factor = _SAFETY * error**exponent
@@ -180,7 +180,7 @@ def _advance(
     order = spatial_order(start, reach[0] + reach[1]) if reach[0] > 0.0 else np.arange(n).astype(np.uint64)
     system = (
         (act0, act1, act2, act3, act4), (energy0, energy1, energy2, energy3, energy4),
-        numbers, panels, shape, view, moving, reach, order, search, terms, of_pairs, summed,
+        numbers, panels, shape, view, moving, reach, order, search, terms, of_pairs, summed, np.empty((2, m)),
     )  # fmt: skip
     method, fixed, end = (tableau_a, tableau_c, rows, stages), exponent == 0.0, rows[stages]
     encounters = (np.empty_like(radii), far, guard, bodies, shell)
@@ -219,7 +219,7 @@ def _advance(
                 status = CROWDED
                 break
             if not fixed:
-                error = error_of(now, reached, h, estimates, rates, rows, n * m, rtol, floor)
+                error = error_of(now, reached, h, estimates, rates, rows, n * m, rtol, floor, trial)
                 later, passes = _controlled(h, error, exponent, rejected)
                 if not passes:
                     h, rejected = later, True

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from flockana.kernels.alpha import BETA_AREA
-from flockana.kernels.compiling import Kernel, njit, register_jitable
+from flockana.kernels.compiling import Kernel, njit
 from flockana.kernels.listed import CompiledFunction, term_functions
 
 _COUNT, _DIMENSION, _REACH, _C1, _C2, _BETA = range(6)
@@ -40,7 +40,7 @@ def body_numbers(reach: float, c1: float, c2: float, law: Any, pars: Any, starts
     return np.concatenate([[count, m, reach, c1, c2], law, starts, balls.ravel(), pars])
 
 
-@register_jitable
+@njit(error_model="numpy", nogil=True)
 def _bodies(numbers):
     """(parameters, where each obstacle's begin, balls)."""
     count, m = np.int64(numbers[_COUNT]), np.int64(numbers[_DIMENSION])
@@ -137,7 +137,7 @@ def _inner(function: Callable[..., float]) -> Kernel:
     return njit(error_model="numpy", nogil=True)(function)
 
 
-@register_jitable
+@njit(error_model="numpy", nogil=True)
 def _parted(numbers):
     end = np.int64(numbers[0])
     return numbers[1:end], numbers[end:]

@@ -118,6 +118,7 @@ def dispatcher(function: Callable[..., Any], *, cache: bool, inner: bool = False
     **options
         Those of `numba.njit`.
     """
+    options = {"_nrt": True, **options}  # else it is as what calls it first: with references counted, or without
     if inner:
         made = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **options)(function)
     else:
@@ -215,11 +216,14 @@ def temporary_folder() -> Path:
 def inlined_type(function: Callable[..., Any]) -> Any:
     """numba's type of a function that it compiles into those that call it.
 
+    Those of this folder give numbers and allocate nothing: the arrays that they are handed need not be counted, which
+    would take longer than they do. What others write may allocate.
+
     Parameters
     ----------
     function : callable
         What is called.
     """
-    numba.extending.register_jitable(function)
+    numba.extending.register_jitable(_nrt=not function.__module__.startswith("flockana.kernels."))(function)
     cpu_target.typing_context.refresh()
     return cpu_target.typing_context.resolve_value_type(function)

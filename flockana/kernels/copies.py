@@ -5,7 +5,7 @@ from __future__ import annotations
 from flockana.kernels.compiling import njit
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def put(values, into):
     """Write an array to the front of another; both are contiguous."""
     source, target = values.reshape(values.size), into.reshape(into.size)

@@ -12,14 +12,14 @@ import numpy as np
 from flockana.kernels.compiling import njit
 from flockana.kernels.copies import put
 from flockana.kernels.paths import _DEPTH, ALLOWED, _first_touch, _hull_bound, quintic, reach_of
-from flockana.kernels.sums import column_means
+from flockana.kernels.sums import column_mean
 
 _STRIP = 512  # agents at once
 _WIDER = 1.0 + 1e-9  # for the rounding of bounds
 SLACK = 1.1  # a step that is too long by less than this is not worth another
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _load(points, i, j, curve):
     """The pair's relative control points into `curve`; the largest distance from the first of them."""
     way = 0.0
@@ -32,12 +32,15 @@ def _load(points, i, j, curve):
     return np.sqrt(way)
 
 
-@njit(cache=True)
-def _ahead(points, i, j, s, far):
-    """How much of the step lies between s and the pair's next closest approach, or a way of `far`; -1 if it parts."""
+@njit(cache=True, _nrt=False)
+def _ahead(points, i, j, s, far, room):
+    """How much of the step lies between s and the pair's next closest approach, or a way of `far`; -1 if it parts.
+
+    `room` is for six control points.
+    """
     closing, speed2 = 0.0, 0.0
     for x in range(3):
-        b = np.empty(6)
+        b = room[:, x]
         for k in range(6):
             b[k] = points[j, k, x] - points[i, k, x]
         for level in range(4):
@@ -51,7 +54,7 @@ def _ahead(points, i, j, s, far):
     return min(closing / speed2, far / np.sqrt(speed2))
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _visit(points, i, j, edge, far, stack, spans):
     """Share of the step at which a pair that starts beyond `edge` is first well within it; 1 if it ends so.
 
@@ -63,18 +66,18 @@ def _visit(points, i, j, edge, far, stack, spans):
     s = _first_touch(stack, spans, edge)
     if s < 0.0:
         return 1.0
-    ahead = _ahead(points, i, j, s, far)
+    ahead = _ahead(points, i, j, s, far, stack[1])
     return 1.0 if ahead < 0.0 or s + SLACK * ahead >= 1.0 else s + ahead
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _apart2(points, i, j, k):
     """Squared distance of the pair's control points k."""
     x, y, z = points[j, k, 0] - points[i, k, 0], points[j, k, 1] - points[i, k, 1], points[j, k, 2] - points[i, k, 2]
     return x * x + y * y + z * z
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _share(points, reach, allowance, radii, far, i, j, share, stack, spans):
     """The share of the step that one pair allows, if less than `share`."""
     s2, travel, slack = _apart2(points, i, j, 0), reach[i] + reach[j], allowance[i] + allowance[j]
@@ -139,13 +142,16 @@ def share_of_pairs(points, reach, allowance, radii, far, first, second, share):
 @njit(cache=True, error_model="numpy", nogil=True)
 def mean_way(h, q0, p0, u0, q1, p1, u1):
     """How far the control points of the flock's mean path are from the first of them, (6, 3)."""
-    way, m = np.zeros((6, 3)), q0.shape[1]
-    gone = column_means(q1) - column_means(q0)
-    out, back = h * column_means(p0) / 5.0, h * column_means(p1) / 5.0
-    bend0, bend1 = h * h * column_means(u0) / 20.0, h * h * column_means(u1) / 20.0
-    for c in range(m):
-        way[1, c], way[2, c], way[5, c] = out[c], 2.0 * out[c] + bend0[c], gone[c]
-        way[3, c], way[4, c] = gone[c] - 2.0 * back[c] + bend1[c], gone[c] - back[c]
+    way = np.zeros((6, 3))
+    for c in range(q0.shape[1]):
+        gone, out, back = (
+            column_mean(q1, c) - column_mean(q0, c),
+            h * column_mean(p0, c) / 5.0,
+            h * column_mean(p1, c) / 5.0,
+        )
+        way[1, c], way[2, c] = out, 2.0 * out + h * h * column_mean(u0, c) / 20.0
+        way[3, c], way[4, c] = gone - 2.0 * back + h * h * column_mean(u1, c) / 20.0, gone - back
+        way[5, c] = gone
     return way
 
 
@@ -178,18 +184,11 @@ def farthest_ways(h, q0, p0, u0, q1, p1, u1, mean):
     return far, blur
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def share_of_listed(h, q0, p0, u0, q1, p1, u1, mean, farthest, radii, far, first, second, share):
-    """As `share_of_pairs` of the paths between two states: control points only of pairs that may matter."""
-    stack, spans = np.empty((_DEPTH + 2, 6, 3)), np.empty((_DEPTH + 2, 2))
-    points, reach, allowance = np.zeros((2, 6, 3)), np.empty(2), np.empty(2)
-    own, (way, blur), m = np.empty((2, radii.shape[1])), farthest, q0.shape[1]
-    travel = 2.0 * way * _WIDER
-    low, high = radii[0, 0], radii[0, -1]
-    for agent in range(1, len(radii)):
-        low, high = min(low, radii[agent, 0]), max(high, radii[agent, -1])
-    low, high = low if travel <= far else 0.0, (high + 2.0 * blur + travel) * _WIDER
-    low2, high2 = low * low, high * high
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def _share_of_band(h, ends, mean, low2, high2, radii, far, first, second, share, room):
+    """The share that the pairs allow whose squared distance is in a band where the step begins."""
+    (q0, p0, u0, q1, p1, u1), (stack, spans, points, reach, allowance, own) = ends, room
+    m = q0.shape[1]
     for k in range(first.size):
         i, j = np.uint64(first[k]), np.uint64(second[k])
         s2 = 0.0
@@ -206,3 +205,18 @@ def share_of_listed(h, q0, p0, u0, q1, p1, u1, mean, farthest, radii, far, first
                 reach[a] = reach_of(points[a]) + allowance[a]
             share = _share(points, reach, allowance, own, far, 0, 1, share, stack, spans)
     return share
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def share_of_listed(h, q0, p0, u0, q1, p1, u1, mean, farthest, radii, far, first, second, share):
+    """As `share_of_pairs` of the paths between two states: control points only of pairs that may matter."""
+    stack, spans = np.empty((_DEPTH + 2, 6, 3)), np.empty((_DEPTH + 2, 2))
+    points, reach, allowance = np.zeros((2, 6, 3)), np.empty(2), np.empty(2)
+    own, (way, blur) = np.empty((2, radii.shape[1])), farthest
+    travel = 2.0 * way * _WIDER
+    low, high = radii[0, 0], radii[0, -1]
+    for agent in range(1, len(radii)):
+        low, high = min(low, radii[agent, 0]), max(high, radii[agent, -1])
+    low, high = low if travel <= far else 0.0, (high + 2.0 * blur + travel) * _WIDER
+    ends, room = (q0, p0, u0, q1, p1, u1), (stack, spans, points, reach, allowance, own)
+    return _share_of_band(h, ends, mean, low * low, high * high, radii, far, first, second, share, room)

@@ -6,7 +6,6 @@ Pairs pass in blocks: differences are gathered, those within range kept without 
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import suppress
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -49,15 +48,10 @@ def term_functions(
     """Force and energy of a term, compiled so that compiled code may be handed them.
 
     An energy that allocates nothing need count no references: for each array that it hands on, that costs as much as
-    the potential of a pair. If it does allocate after all, they are counted.
+    the potential of a pair.
     """
-    from numba.core.errors import NumbaError
-
     force, potential = signatures()
-    if not allocates:
-        with suppress(NumbaError):
-            return _compiled(act, force), _compiled(energy, potential, _nrt=False)
-    return _compiled(act, force), _compiled(energy, potential)
+    return _compiled(act, force), _compiled(energy, potential, **({} if allocates else {"_nrt": False}))
 
 
 def _compiled(function: Callable[..., float], signature: Any, **options: Any) -> CompiledFunction:
@@ -105,32 +99,30 @@ def lift_listed(
         add = lift_block(pair, m)
 
         @register_jitable
-        def gather(x, limit, first, second, begin, end, near, d, s2):
+        def gather(x, limit, first, second, begin, end, near, s2):
             count = 0
             for k in range(begin, end):
                 i, j = np.uint64(first[k]), np.uint64(second[k])
                 square = 0.0
                 for c in range(m):
                     gap = x[j, c] - x[i, c]
-                    d[c, count] = gap
                     square += gap * gap
                 s2[count], near[0, count], near[1, count] = square, i, j
                 count += square < limit
             return count
 
-        @njit(error_model="numpy", nogil=True)  # a pair law of a user's may allocate
-        def sweep(x, v, u, numbers, first, second, size, near, d, s2, w, a):
+        @njit(error_model="numpy", nogil=True, _nrt=False)
+        def sweep(x, v, u, numbers, first, second, size, near, room):
             total, c1, c2, r = 0.0 * digest, numbers[0], numbers[1], numbers[2]
             par, limit = _as_tuple(numbers[4:]), max(r * r, 5e-324)
             for begin in range(0, size, BLOCK):
-                count = gather(x, limit, first, second, begin, min(begin + BLOCK, size), near, d, s2)
-                total += add(count, near[0], near[1], d, s2, w, a, v, u, par, c1, c2)
+                count = gather(x, limit, first, second, begin, min(begin + BLOCK, size), near, room[0])
+                total += add(count, near[0], near[1], room[0], room[1], room[2], x, v, u, par, c1, c2)
             return -c2 * total
 
         def act(t, x, v, u, frame, numbers, panels, first, second, size, order):
-            d, s2, w, a = np.empty((m, BLOCK)), np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
-            near = np.empty((2, BLOCK), np.uint64)
-            return sweep(x, v, u, numbers, first, second, size, near, d, s2, w, a)
+            near, room = np.empty((2, BLOCK), np.uint64), np.empty((3, BLOCK))
+            return sweep(x, v, u, numbers, first, second, size, near, room)
 
         def energy(t, x, v, frame, numbers, panels, first, second, size, order):
             total, near, r, par = 0.0 * digest, 0, numbers[2], numbers[4:]

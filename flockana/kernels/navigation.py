@@ -13,12 +13,12 @@ import numpy as np
 
 from flockana.kernels.compiling import njit, register_jitable
 from flockana.kernels.listed import CompiledFunction, term_functions
-from flockana.kernels.sums import column_means, pull_to, squared_differences
+from flockana.kernels.sums import pull_to, squared_deviations
 
 _MOVING, _UNIT, _GAINS, _OMEGA, _FACTOR, _PATH = range(6)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def navigate(x, v, u, target, velocity, c1, c2, unit, moving, order):
     """Add −c1γ ℓ σ₁((q − q_r)/ℓ) − c2γ (p − p_r) to u, and return its power.
 
@@ -28,7 +28,7 @@ def navigate(x, v, u, target, velocity, c1, c2, unit, moving, order):
     (n, m), power = x.shape, 0.0
     if moving:
         pull_to(u, x, v, target[0], target[1], c1[0], c2[0])
-        return -c2[0] * squared_differences(v, column_means(v))
+        return -c2[0] * squared_deviations(v)
     for i in range(n):
         own = np.int64(order[i]) if c1.size > 1 else 0
         bend = 1.0
@@ -45,52 +45,54 @@ def navigate(x, v, u, target, velocity, c1, c2, unit, moving, order):
 
 
 @register_jitable
-def _follow(t, x, v, u, frame, numbers, order):
-    """`navigate` to the path that the numbers are of."""
-    m = x.shape[1]
-    omega, factor, gains = numbers[_OMEGA], numbers[_FACTOR], np.int64(numbers[_GAINS])
+def _place(t, co, si, path, k):
+    """Coordinate k of the path, from the cosine and sine of ωt."""
+    return path[0, k] + path[1, k] * t + path[2, k] * co + path[3, k] * si
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def _follow(t, x, v, u, frame, numbers, order, target):
+    """`navigate` to the path that the numbers are of; `target` is room for it."""
+    m, omega, gains = x.shape[1], numbers[_OMEGA], np.int64(numbers[_GAINS])
     path, c = numbers[_PATH : _PATH + 5 * m].reshape(5, m), numbers[_PATH + 5 * m :]
-    co, si, target = cos(omega * t), sin(omega * t), np.empty((3, m))
+    co, si = cos(omega * t), sin(omega * t)
     for k in range(m):
         rate = path[1, k] + omega * (path[3, k] * co - path[2, k] * si)
-        target[0, k] = path[0, k] + path[1, k] * t + path[2, k] * co + path[3, k] * si - frame[0, k]
-        target[1, k], target[2, k] = factor * rate + path[4, k] - frame[1, k], rate
+        target[0, k] = _place(t, co, si, path, k) - frame[0, k]
+        target[1, k], target[2, k] = numbers[_FACTOR] * rate + path[4, k] - frame[1, k], rate
     return navigate(x, v, u, target, frame[1], c[:gains], c[gains:], numbers[_UNIT], numbers[_MOVING] != 0.0, order)
 
 
 @njit(cache=True, error_model="numpy")
 def follow(t, x, v, u, numbers):
     """`navigate` to the path that the numbers are of, seen from where it is at rest and in the agents' own order."""
-    return _follow(t, x, v, u, np.zeros((2, x.shape[1])), numbers, np.arange(x.shape[0]).astype(np.uint64))
+    (n, m), gains = x.shape, numbers[_GAINS]
+    order = np.arange(n if gains > 1.0 else 0).astype(np.uint64)
+    return _follow(t, x, v, u, np.zeros((2, m)), numbers, order, np.empty((3, m)))
 
 
 def act(t, x, v, u, frame, numbers, panels, first, second, size, order):
     """`follow` for compiled integrators."""
-    return _follow(t, x, v, u, frame, numbers, order)
+    return _follow(t, x, v, u, frame, numbers, order, np.empty((3, x.shape[1])))
 
 
 def energy(t, x, v, frame, numbers, panels, first, second, size, order):
     """½ c1γ Σ‖x_i‖² in the moving frame, or Σ c1γ_i ℓ² (√(1 + ‖q_i − q_r‖²/ℓ²) − 1)."""
-    n, m = x.shape
-    omega, unit = numbers[_OMEGA], numbers[_UNIT]
-    gains, path = np.int64(numbers[_GAINS]), numbers[_PATH : _PATH + 5 * m].reshape(5, m)
-    c1, total = numbers[_PATH + 5 * m :][:gains], 0.0
+    (n, m), unit, gains = x.shape, numbers[_UNIT], numbers[_GAINS]
+    path, c1, total = numbers[_PATH : _PATH + 5 * m].reshape(5, m), numbers[_PATH + 5 * m :], 0.0
     if numbers[_MOVING] != 0.0:
-        return 0.5 * c1[0] * squared_differences(x, column_means(x))
-    q_r = np.empty(m)
-    for k in range(m):
-        turn = path[2, k] * cos(omega * t) + path[3, k] * sin(omega * t)
-        q_r[k] = path[0, k] + path[1, k] * t + turn - frame[0, k]
+        return 0.5 * c1[0] * squared_deviations(x)
+    co, si = cos(numbers[_OMEGA] * t), sin(numbers[_OMEGA] * t)
     for i in range(n):
         square = 0.0
         for k in range(m):
-            square += (x[i, k] - q_r[k]) ** 2
+            square += (x[i, k] - (_place(t, co, si, path, k) - frame[0, k])) ** 2
         bend = sqrt(1.0 + square / (unit * unit)) if unit > 0.0 else 1.0
-        total += c1[np.int64(order[i]) if gains > 1 else 0] * square / (bend + 1.0)
+        total += c1[np.int64(order[i]) if gains > 1.0 else 0] * square / (bend + 1.0)
     return total
 
 
 @cache
 def compiled() -> tuple[CompiledFunction, CompiledFunction]:
     """Force and energy, compiled when first asked for."""
-    return term_functions(act, energy)
+    return term_functions(act, energy, allocates=False)

@@ -13,7 +13,7 @@ import numpy as np
 
 from flockana.kernels.compiling import njit
 from flockana.kernels.listed import CompiledFunction, term_functions
-from flockana.kernels.sums import column_means, squared_differences
+from flockana.kernels.sums import column_mean, column_squares
 
 _MOVING, _THRUST, _BRAKE = range(3)
 _OMEGA, _PATH = 1, 2
@@ -23,7 +23,9 @@ _OMEGA, _PATH = 1, 2
 def push_along(v, u, velocity, thrust, brake, moving):
     """Add (thrust − brake ‖p_i‖²) p_i to u, and return its power; `velocity` is that of the frame v is seen from."""
     (n, m), power = v.shape, 0.0
-    centre = column_means(v) if moving else -velocity
+    centre = -velocity
+    for k in range(m if moving else 0):
+        centre[k] = column_mean(v, k)
     for i in range(n):
         square = 0.0
         for k in range(m):
@@ -33,8 +35,11 @@ def push_along(v, u, velocity, thrust, brake, moving):
             push = factor * (v[i, k] + velocity[k])
             u[i, k] += push
             power += push * (v[i, k] - centre[k])
-    # a drag alone, in the moving frame: squares, of which none cancels
-    return thrust * squared_differences(v, centre) if brake == 0.0 else power
+    if brake == 0.0:  # a drag alone: squares, of which none cancels
+        power = 0.0
+        for k in range(m):
+            power += thrust * column_squares(v, k, centre[k])
+    return power
 
 
 @njit(cache=True, error_model="numpy", nogil=True)

@@ -23,12 +23,12 @@ ALLOWED = 0.35  # of ‖L2‖ + ‖L3‖: the largest quotient of a single trunc
 _DEPTH = 48  # halvings of an interval: below rounding of the time itself
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _norm(x):
     return np.sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2])
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def quintic(h, a, p0, u0, b, p1, u1, out):
     """The control points of one agent's quintic from a to b into `out`, (6, 3), and its error allowance."""
     off2, off3 = 0.0, 0.0
@@ -58,7 +58,7 @@ def bernstein(h, q0, p0, u0, q1, p1, u1):
     return points, reach, allowance
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def reach_of(c):
     """How far a curve's control points (6, 3) get from the first: a bound for the curve."""
     s2 = 0.0
@@ -95,7 +95,7 @@ def control_points(h, q0, p0, u0, q1, p1, u1):
     return points, reach, allowance
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _start(points, reach, i, j, stop, stack):
     """Load the pair's relative curve into the stack, unless its ends already rule out a distance below stop."""
     s2 = 0.0
@@ -109,7 +109,7 @@ def _start(points, reach, i, j, stop, stack):
     return True
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _hull_bound(c):
     """A lower bound of the curve's distance to 0: its control points projected on their mean direction."""
     axis0, axis1, axis2 = 0.0, 0.0, 0.0
@@ -124,7 +124,7 @@ def _hull_bound(c):
     return bound
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _halve(stack, spans, top):
     """De Casteljau: the left half of the curve stack[top] goes on top of it, the right half remains in place."""
     c, left, right = stack[top], spans[top, 0], spans[top, 1]
@@ -138,7 +138,7 @@ def _halve(stack, spans, top):
     spans[top + 1, 0], spans[top + 1, 1] = left, middle
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _least_distance(stack, spans, stop, tol):
     """(lower bound, distance, parameter) of the curve stack[0]: its closest point to 0 is within tol of both.
 
@@ -164,7 +164,7 @@ def _least_distance(stack, spans, stop, tol):
     return proven, best, where
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _first_touch(stack, spans, tol):
     """The first parameter at which the curve stack[0] is within tol of 0, -1 if it never is (work space as above)."""
     spans[0, 0], spans[0, 1] = 0.0, 1.0
@@ -220,7 +220,7 @@ def touching_pairs(points, reach, first, second, tol, out):
         out[k] = _first_touch(stack, spans, tol)
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _largest_distance(stack, spans, enough, tol):
     """(upper bound, parameter) of how far the curve stack[0] gets from 0: within tol, or no more than `enough`."""
     proven, best, where = 0.0, 0.0, -1.0

@@ -12,8 +12,8 @@ from math import sqrt
 import numpy as np
 
 from flockana.kernels.compiling import njit
-from flockana.kernels.sums import column_means, squared_differences
-from flockana.kernels.verlet import kept_up
+from flockana.kernels.sums import column_squares, squared_deviations
+from flockana.kernels.verlet import listed_anew, outdated
 
 _STRIP = 1024  # components at once: what is summed over the stages stays in the first-level cache
 
@@ -35,31 +35,36 @@ def combine(y, h, weights, rates, rows, count, out):
             total[k] = start[k] + h * total[k]
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def frame_at(t, start, origin, drift):
-    """Place and velocity of the frame that the vectors are seen from."""
-    frame = np.empty((2, origin.size))
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def frame_at(t, start, origin, drift, frame):
+    """Write place and velocity of the frame that the vectors are seen from."""
     for c in range(origin.size):
         frame[0, c], frame[1, c] = origin[c] + drift[c] * (t - start), drift[c]
-    return frame
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def rate_of(t, y, f, system, pairs):
     """Write the rate of the vector y into f; returns the pairs, listed anew if need be."""
-    (n, m), view, reach = system[4], system[5], system[7]
-    if reach[0] > 0.0:
-        pairs = kept_up(y[: n * m].reshape(n, m), reach[0], reach[1], pairs, system[9])
-    _act(t, y, f, frame_at(t, *view), system, pairs[0], pairs[1], pairs[2], pairs[5])
+    pairs = _kept_up(y, system, pairs)
+    _act(t, y, f, system, pairs)
     return pairs
 
 
+@njit(cache=True, error_model="numpy", nogil=True)
+def _kept_up(y, system, pairs):
+    """The list itself while it holds every pair within reach, or else a new one."""
+    (n, m), (reach, skin) = system[4], system[7]
+    q = y[: n * m].reshape(n, m)
+    return listed_anew(q, reach + skin, pairs, system[9]) if reach > 0.0 and outdated(q, skin, pairs) else pairs
+
+
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
-def _act(t, y, f, frame, system, first, second, count, slabs):
+def _act(t, y, f, system, pairs):
     """The rate of y into f, its pairs being listed."""
-    acts, _, numbers, panels, (n, m), _, _, _, order, _, terms, of_pairs, summed = system
-    size, power = n * m, 0.0
+    acts, _, numbers, panels, (n, m), view, _, _, order, _, terms, of_pairs, summed, frame = system
+    (first, second, count, _, _, slabs), size, power = pairs, n * m, 0.0
     x, v, u = y[:size].reshape(n, m), y[size : 2 * size].reshape(n, m), f[size : 2 * size].reshape(n, m)
+    frame_at(t, view[0], view[1], view[2], frame)
     for k in range(size):
         f[k], f[size + k] = y[size + k], 0.0
     for k in range(terms):
@@ -70,27 +75,45 @@ def _act(t, y, f, frame, system, first, second, count, slabs):
     f[2 * size] = power
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def energy_of(t, y, system, pairs):
     """H of a vector whose pairs are listed: potential energies, and the kinetic one in the law's frame."""
-    _, energies, numbers, panels, (n, m), view, moving, _, order, _, terms, _, _ = system
+    _, energies, numbers, panels, (n, m), view, moving, _, order, _, terms, _, _, frame = system
     x, v = y[: n * m].reshape(n, m), y[n * m : 2 * n * m].reshape(n, m)
-    first, second, count, _, _, _ = pairs
-    frame = frame_at(t, *view)
-    total = 0.5 * squared_differences(v, column_means(v) if moving else -frame[1])
+    (first, second, count, _, _, _), total = pairs, 0.0
+    frame_at(t, view[0], view[1], view[2], frame)
+    if moving:
+        total = 0.5 * squared_deviations(v)
+    else:
+        for c in range(m):
+            total += 0.5 * column_squares(v, c, -frame[1, c])
     for k in range(terms):
         total += energies[k](t, x, v, frame, numbers[k], panels[k], first, second, count, order)
     return total
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def stages_of(t, h, y, rates, reached, trial, method, begin, end, system, pairs):
-    """Stages `begin` to `end` of a step; `reached` is its end once the last stage of the step itself is through."""
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def _stages(t, h, y, rates, reached, trial, method, begin, end, system, pairs):
+    """Stages up to `end`, or to one for which the list is outdated; returns which, combined but not evaluated."""
     a, c, rows, stages = method
+    (n, m), (reach, skin) = system[4], system[7]
     for s in range(begin, end):
         into = reached if s == stages else trial
         combine(y, h, a[s], rates, rows, s, into)
-        pairs = rate_of(t + c[s] * h, into, rates[rows[s]], system, pairs)
+        if reach > 0.0 and outdated(into[: n * m].reshape(n, m), skin, pairs):
+            return s
+        _act(t + c[s] * h, into, rates[rows[s]], system, pairs)
+    return end
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def stages_of(t, h, y, rates, reached, trial, method, begin, end, system, pairs):
+    """Stages `begin` to `end` of a step; `reached` is its end once the last stage of the step itself is through."""
+    _, c, rows, stages = method
+    s = _stages(t, h, y, rates, reached, trial, method, begin, end, system, pairs)
+    while s < end:
+        pairs = rate_of(t + c[s] * h, reached if s == stages else trial, rates[rows[s]], system, pairs)
+        s = _stages(t, h, y, rates, reached, trial, method, s + 1, end, system, pairs)
     return pairs
 
 
@@ -105,37 +128,44 @@ def interpolated(theta, h, y, rates, rows, interpolant, trial):
     combine(y, h, weights, rates, rows, count, trial)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def allowed(k, size, floor):
     """The absolute tolerance of component k: a position, a velocity, or the work."""
     return floor[0] if k < size else (floor[1] if k < 2 * size else floor[2])
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def error_of(y, reached, h, estimates, rates, rows, size, rtol, floor):
-    """The estimated error of a step over what is allowed, as scipy's solvers weigh it."""
-    squares, stages, strip = np.zeros(2), estimates.shape[1], np.empty(_STRIP)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def _estimate(weights, y, reached, rates, rows, size, rtol, floor, strip):
+    """The sum of squares of one estimate of a step's error over what is allowed; `strip` is room."""
+    total = 0.0
     for begin in range(0, y.size, _STRIP):
         end = min(begin + _STRIP, y.size)
-        for row in range(estimates.shape[0]):
-            strip[:] = 0.0
-            for j in range(stages):
-                if estimates[row, j] != 0.0:
-                    rate, weight = rates[rows[j], begin:end], estimates[row, j]
-                    for k in range(end - begin):
-                        strip[k] += weight * rate[k]
-            for k in range(begin, end):
-                scale = allowed(k, size, floor) + max(abs(y[k]), abs(reached[k])) * rtol
-                squares[row] += (strip[k - begin] / scale) ** 2
-    square, other = squares
+        for k in range(end - begin):
+            strip[k] = 0.0
+        for j in range(weights.size):
+            if weights[j] != 0.0:
+                rate, weight = rates[rows[j], begin:end], weights[j]
+                for k in range(end - begin):
+                    strip[k] += weight * rate[k]
+        for k in range(begin, end):
+            scale = allowed(k, size, floor) + max(abs(y[k]), abs(reached[k])) * rtol
+            total += (strip[k - begin] / scale) ** 2
+    return total
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def error_of(y, reached, h, estimates, rates, rows, size, rtol, floor, strip):
+    """The estimated error of a step over what is allowed, as scipy's solvers weigh it."""
+    square = _estimate(estimates[0], y, reached, rates, rows, size, rtol, floor, strip)
     if estimates.shape[0] == 1:
         return abs(h) * sqrt(square / y.size)
+    other = _estimate(estimates[1], y, reached, rates, rows, size, rtol, floor, strip)
     if square == 0.0 and other == 0.0:
         return 0.0
     return abs(h) * square / sqrt((square + 0.01 * other) * y.size)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def _weighed(a, b, y, size, rtol, floor):
     """The root mean square of a − b over what is allowed."""
     total = 0.0

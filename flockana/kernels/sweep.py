@@ -19,15 +19,16 @@ BLOCK = 512  # pairs: what is known of them stays in the first-level cache
 
 
 def lift_block(pair: Callable[..., Any], m: int) -> Callable[..., Any]:
-    """What a block of pairs adds to u, from their differences d and squared distances s2; returns Σ a ‖p_j − p_i‖².
+    """What a block of pairs adds to u, from their squared distances s2; returns Σ a ‖p_j − p_i‖².
 
     w and a are room for what the law gives; `par` is a tuple: constants in registers, which no array can alias.
     """
 
     @register_jitable
-    def add(count, first, second, d, s2, w, a, v, u, par, c1, c2):
+    def add(count, first, second, s2, w, a, x, v, u, par, c1, c2):
         for k in range(count):
-            w[k], a[k] = pair(s2[k], par)
+            stress, adjacency = pair(s2[k], par)
+            w[k], a[k] = c1 * stress, adjacency
         total = 0.0
         for k in range(count):
             i, j = first[k], second[k]
@@ -35,7 +36,7 @@ def lift_block(pair: Callable[..., Any], m: int) -> Callable[..., Any]:
             for c in range(m):
                 slip = v[j, c] - v[i, c]
                 v2 += slip * slip
-                f = c1 * w[k] * d[c, k] + c2 * a[k] * slip
+                f = w[k] * (x[j, c] - x[i, c]) + c2 * a[k] * slip
                 u[i, c] += f
                 u[j, c] -= f
             total += a[k] * v2
@@ -54,16 +55,10 @@ def lift_sweep(pair: Callable[..., Any], m: int, digest: int) -> tuple[Callable[
     """
     add = lift_block(pair, m)
 
-    @njit(cache=True, error_model="numpy")
-    def forces(q, p, r, par, c1, c2, u):
-        total = 0.0 * digest
-        order, start, rows = sort_into_grid(q, r)
-        if start.size == 0:
-            return False, 0.0
-        x, v, forced, r2 = q[order], p[order], np.zeros(q.shape), max(r * r, 5e-324)
-        first, second = np.empty(BLOCK, np.uint64), np.empty(BLOCK, np.uint64)
-        d, s2, w, a = np.empty((m, BLOCK)), np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
-        count = 0
+    @njit(error_model="numpy", _nrt=False)
+    def sweep(start, rows, x, v, forced, r2, par, c1, c2, near, room):
+        first, second, s2, w, a = near[0], near[1], room[0], room[1], room[2]
+        count, total = 0, 0.0 * digest
         for cell in range(start.size - 2):
             for i in range(start[cell], start[cell + 1]):
                 for row in range(-1, np.int64(rows.size)):
@@ -75,14 +70,25 @@ def lift_sweep(pair: Callable[..., Any], m: int, digest: int) -> tuple[Callable[
                         square = 0.0
                         for c in range(m):
                             gap = x[j, c] - x[i, c]
-                            d[c, count] = gap
                             square += gap * gap
                         s2[count], first[count], second[count] = square, i, j
                         count += square < r2
                         if count == BLOCK:
-                            total += add(count, first, second, d, s2, w, a, v, forced, par, c1, c2)
+                            total += add(count, first, second, s2, w, a, x, v, forced, par, c1, c2)
                             count = 0
-        total += add(count, first, second, d, s2, w, a, v, forced, par, c1, c2)
+        return total + add(count, first, second, s2, w, a, x, v, forced, par, c1, c2)
+
+    @njit(cache=True, error_model="numpy")
+    def forces(q, p, r, par, c1, c2, u):
+        order, start, rows = sort_into_grid(q, r)
+        if start.size == 0:
+            return False, 0.0
+        x, v, forced = np.empty(q.shape), np.empty(q.shape), np.zeros(q.shape)
+        for k in range(order.size):
+            for c in range(m):
+                x[k, c], v[k, c] = q[order[k], c], p[order[k], c]
+        near, room = np.empty((2, BLOCK), np.uint64), np.empty((3, BLOCK))
+        total = sweep(start, rows, x, v, forced, max(r * r, 5e-324), par, c1, c2, near, room)
         for k in range(order.size):
             for c in range(m):
                 u[order[k], c] += forced[k, c]
@@ -91,16 +97,14 @@ def lift_sweep(pair: Callable[..., Any], m: int, digest: int) -> tuple[Callable[
     @njit(cache=True, error_model="numpy")
     def forces_of(q, p, first, second, par, c1, c2, u):
         total = 0.0 * digest
-        d, s2, w, a = np.empty((m, BLOCK)), np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
+        s2, w, a = np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
         for begin in range(0, first.size, BLOCK):
             i, j = first[begin : begin + BLOCK], second[begin : begin + BLOCK]
             for k in range(i.size):
                 s2[k] = 0.0
                 for c in range(m):
-                    gap = q[j[k], c] - q[i[k], c]
-                    d[c, k] = gap
-                    s2[k] += gap * gap
-            total += add(i.size, i, j, d, s2, w, a, p, u, par, c1, c2)
+                    s2[k] += (q[j[k], c] - q[i[k], c]) ** 2
+            total += add(i.size, i, j, s2, w, a, q, p, u, par, c1, c2)
         return total
 
     return forces, forces_of

@@ -15,7 +15,7 @@ from flockana.kernels.compiling import njit
 from flockana.kernels.copies import put
 from flockana.kernels.grid import sort_into_grid
 from flockana.kernels.neighbours import _FORWARD, _MARGIN, _fill_cells, _pad, _sort_into_cells
-from flockana.kernels.sums import LANES, column_means, repeated
+from flockana.kernels.sums import column_mean
 
 _ROOM = 8  # pairs an agent, to begin with
 SKIN = 0.15  # of the range: what a list holds beyond it, so that it lasts some steps
@@ -115,26 +115,20 @@ def list_pairs(q, reach, first, second):
         first, second = _grown(first, second, count + n)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def strayed(q, reference, mean):
     """A bound of the squared distance that any agent has gone from its place, seen from the flock's mean motion.
 
     `mean` is that of the places. The bound is the diagonal of the box of all ways: at most m times the largest square.
     """
-    n, m = q.shape
-    a, b, lanes, whole = q.reshape(n * m), reference.reshape(n * m), np.zeros(LANES), n * m // LANES * LANES
-    wide = repeated(column_means(q) - mean)
-    for begin in range(0, whole, LANES):
-        for k in range(LANES):
-            way = abs(a[begin + k] - b[begin + k] - wide[k])
-            lanes[k] = way if way > lanes[k] else lanes[k]
-    for k in range(whole, n * m):
-        lanes[k - whole] = max(lanes[k - whole], abs(a[k] - b[k] - wide[k - whole]))
-    diagonal = 0.0
+    (n, m), diagonal = q.shape, 0.0
     for c in range(m):
-        longest = 0.0
-        for k in range(c, LANES, m):
-            longest = max(longest, lanes[k])
+        drift, longest, other = column_mean(q, c) - mean[c], 0.0, 0.0
+        for i in range(0, n - 1, 2):  # two lanes: a maximum waits for the one before
+            way, next_way = abs(q[i, c] - reference[i, c] - drift), abs(q[i + 1, c] - reference[i + 1, c] - drift)
+            longest, other = way if way > longest else longest, next_way if next_way > other else other
+        way = abs(q[n - 1, c] - reference[n - 1, c] - drift)
+        longest = max(longest, other, way)
         diagonal += longest * longest
     return diagonal
 
@@ -146,17 +140,20 @@ def empty_list(n):
     return first, second, np.int64(0), np.empty((0, 0)), np.empty(0), np.zeros(2, np.int64)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def kept_up(q, reach, skin, pairs, search):
-    """The list itself while it holds every pair closer than `reach`, or else a new one by `search` (`list_pairs`).
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def outdated(q, skin, pairs):
+    """Whether a list may lack a pair that is within reach now."""
+    return not pairs[3].size or 4.0 * strayed(q, pairs[3], pairs[4]) > skin * skin
 
-    It is handed in so that it is compiled once, not into all that keeps lists.
-    """
-    first, second, _, places, mean, _ = pairs
-    if places.size and not 4.0 * strayed(q, places, mean) > skin * skin:
-        return pairs
-    first, second, count, slabs = search(q, reach + skin, first, second)
-    return first, second, count, q.copy(), column_means(q), slabs
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def listed_anew(q, reach, pairs, search):
+    """A new list in the room of an old one, by `search`: `list_pairs`, handed in so that it is compiled once."""
+    first, second, count, slabs = search(q, reach, pairs[0], pairs[1])
+    mean = np.empty(q.shape[1])
+    for c in range(mean.size):
+        mean[c] = column_mean(q, c)
+    return first, second, count, q.copy(), mean, slabs
 
 
 @cache

@@ -13,8 +13,10 @@ def test_they_are_the_sums(seed, n, m):
     rng = np.random.default_rng(seed)
     x, v, u = rng.normal(size=(3, n, m))
     row, other = rng.normal(size=(2, m))
-    np.testing.assert_allclose(sums.column_means(x), x.mean(axis=0), atol=1e-14)
-    assert sums.squared_differences(x, row) == pytest.approx(np.square(x - row).sum(), rel=1e-13)
+    for c in range(m):
+        assert sums.column_mean(x, c) == pytest.approx(x[:, c].mean(), abs=1e-14)
+        assert sums.column_squares(x, c, row[c]) == pytest.approx(np.square(x[:, c] - row[c]).sum(), rel=1e-13)
+    assert sums.squared_deviations(x) == pytest.approx(np.square(x - x.mean(axis=0)).sum(), rel=1e-13, abs=1e-30)
     expected = u - 0.7 * (x - row) - 1.3 * (v - other)
     sums.pull_to(u, x, v, row, other, 0.7, 1.3)
     np.testing.assert_allclose(u, expected, atol=1e-13)

@@ -35,7 +35,7 @@ def test_steps_errors_and_interpolants_are_those_of_scipy(solver):
         if s == stages:
             np.testing.assert_allclose(out, theirs.y, rtol=1e-14)
             floor = (1e-1, 1e-1, 1e-1)
-            error = error_of(y0, out, h, estimates, rates, rows, 2, 1e-1, floor)
+            error = error_of(y0, out, h, estimates, rates, rows, 2, 1e-1, floor, np.empty_like(y0))
             scale = 0.1 + np.maximum(abs(y0), abs(theirs.y)) * 0.1
             own = theirs.K_extended if solver is DOP853 else theirs.K
             expected = theirs._estimate_error_norm(own[: stages + 1], h, scale)

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flockana.kernels.neighbours import pair_list
-from flockana.kernels.verlet import empty_list, kept_up, list_pairs, spatial_order, strayed
+from flockana.kernels.verlet import empty_list, list_pairs, listed_anew, outdated, spatial_order, strayed
 
 
 def listed(q, reach, room=1):
@@ -42,19 +42,18 @@ def test_the_bound_of_ways_holds_and_is_not_far_off(seed, n, m):
 
 def test_a_list_is_kept_until_an_agent_has_gone_half_the_skin_in_the_moving_frame():
     q = np.array([[0.0, 0.0], [9.0, 0.0], [30.0, 0.0], [39.5, 0.0]])
-    pairs = kept_up(q, 9.0, 1.0, empty_list(4), list_pairs)
+    assert outdated(q, 1.0, empty_list(4))
+    pairs = listed_anew(q, 10.0, empty_list(4), list_pairs)
     assert pairs[2] == 2  # both within range and skin
 
-    def kept(places):
-        return np.array_equal(kept_up(places, 9.0, 1.0, pairs, list_pairs)[3], q)  # where it was made
-
     moved = q + np.array([100.0, -50.0])
-    assert kept(moved)  # a common motion is none
+    assert not outdated(moved, 1.0, pairs)  # a common motion is none
     moved[3] += [0.6, 0.0]  # 0.45 from the mean of all
-    assert kept(moved)
+    assert not outdated(moved, 1.0, pairs)
     moved[3] += [0.1, 0.0]
-    assert not kept(moved)
-    assert kept_up(moved, 9.0, 1.0, pairs, list_pairs)[2] == 1  # the second pair is beyond both now
+    assert outdated(moved, 1.0, pairs)
+    pairs = listed_anew(moved, 10.0, pairs, list_pairs)
+    assert pairs[2] == 1 and not outdated(moved, 1.0, pairs)  # the second pair is beyond both now
 
 
 def test_too_many_pairs_are_told_before_memory_is_full():
@@ -73,7 +72,8 @@ def test_the_order_is_one_of_all_agents_and_neighbours_follow_each_other():
 
 def test_what_is_not_finite_ends_no_list():
     q = np.array([[0.0], [0.5], [np.nan]])
-    assert kept_up(q, 1.0, 0.1, empty_list(3), list_pairs)[2] == pytest.approx(1)
+    pairs = listed_anew(q, 1.1, empty_list(3), list_pairs)
+    assert pairs[2] == 1 and not outdated(q, 0.1, pairs)
 
 
 def test_a_law_without_pairs_needs_no_list():
