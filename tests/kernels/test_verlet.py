@@ -53,7 +53,8 @@ def test_a_list_is_kept_until_an_agent_has_gone_half_the_skin_in_the_moving_fram
     moved[3] += [0.1, 0.0]
     assert outdated(moved, 1.0, pairs)
     pairs = listed_anew(moved, 10.0, pairs, list_pairs)
-    assert pairs[2] == 1 and not outdated(moved, 1.0, pairs)  # the second pair is beyond both now
+    assert pairs[2] == 1
+    assert not outdated(moved, 1.0, pairs)
 
 
 def test_too_many_pairs_are_told_before_memory_is_full():
@@ -73,7 +74,8 @@ def test_the_order_is_one_of_all_agents_and_neighbours_follow_each_other():
 def test_what_is_not_finite_ends_no_list():
     q = np.array([[0.0], [0.5], [np.nan]])
     pairs = listed_anew(q, 1.1, empty_list(3), list_pairs)
-    assert pairs[2] == 1 and not outdated(q, 0.1, pairs)
+    assert pairs[2] == 1
+    assert not outdated(q, 0.1, pairs)
 
 
 def test_a_law_without_pairs_needs_no_list():
