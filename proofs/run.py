@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from multiprocessing import get_context
 from multiprocessing.connection import Connection, wait
@@ -165,7 +166,8 @@ def _work(name: str, package: str, pipe: Connection) -> None:
         reason = remedy if library else f"stopped by {type(error).__name__}: {error}"
     except Exception as error:  # a fault of the proof, not of the theorem
         reason = f"stopped by {type(error).__name__}: {error}"
-    pipe.send(("end", reason))
+    with suppress(BrokenPipeError):  # nobody is there any more to be told
+        pipe.send(("end", reason))
 
 
 def _told(proof: Proof) -> dict[str, Any]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import json
+import multiprocessing
 import signal
 import subprocess
 import sys
@@ -149,6 +150,16 @@ def test_leaving_early_leaves_no_process(toys):
     results.close()
     assert hanging.exitcode == -signal.SIGKILL
     assert active_children() == []
+
+
+def test_a_process_whose_parent_was_killed_ends_without_a_word(toys, capfd):
+    ours, theirs = multiprocessing.Pipe(duplex=False)
+    ours.close()
+    orphan = multiprocessing.get_context("spawn").Process(target=run._work, args=("holds", toys, theirs))
+    orphan.start()
+    theirs.close()
+    orphan.join()
+    assert (orphan.exitcode, capfd.readouterr().err) == (0, "")
 
 
 def test_a_false_step_outweighs_an_unknown_one():
