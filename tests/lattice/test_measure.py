@@ -38,6 +38,12 @@ def test_without_links_nothing_is_a_lattice():
     assert classify(float("nan"), lattice=1.0, quasi=1.0) == "neither"
 
 
+def test_the_bounds_of_the_names_belong_to_them():
+    above = [np.nextafter(bound, 1.0) for bound in (0.25, 0.5)]
+    named = [classify(strain, lattice=0.25, quasi=0.5) for strain in (0.25, above[0], 0.5, above[1])]
+    assert named == ["α-lattice", "quasi-α-lattice", "quasi-α-lattice", "neither"]
+
+
 def test_the_tolerance_is_relative_to_d():
     q = [[0.0], [D * (1.0 + 1e-7)]]
     assert not is_alpha_lattice(q, D, R)
@@ -80,6 +86,19 @@ def test_a_vacancy_is_a_hole_and_its_neighbours_are_not_defects():
     found = defects(q, links(q, R))
     assert found.counts == {6: 12}  # 37 agents: 18 at the rim, 6 at the hole, 1 gone
     assert sorted(set(found.coordination.tolist())) == [3, 4, 5, 6]
+
+
+def test_neighbours_that_are_not_linked_close_no_face():
+    """A spoke of the wheel is led on to an agent outside, which makes other links but none between its neighbours."""
+    angle = 2.0 * np.pi * np.arange(6) / 6
+    q = np.concatenate([[[0.0, 0.0]], np.column_stack([np.cos(angle), np.sin(angle)]), [[5.0, 5.0]]])
+    spokes = [[0, k] for k in range(1, 7)]
+    rim = [[k, k % 6 + 1] for k in range(1, 7)]
+    assert defects(q, spokes + rim).interior.tolist() == [True] + 7 * [False]
+    for missing in range(6):
+        left = [link for k, link in enumerate(rim) if k != missing]
+        outer = [[k, 7] for k in range(1, 7)]
+        assert not defects(q, spokes + left + outer).interior[0]
 
 
 def test_squares_are_no_triangles():
