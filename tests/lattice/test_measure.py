@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import permutations
+
 import numpy as np
 import pytest
 
@@ -88,17 +90,17 @@ def test_a_vacancy_is_a_hole_and_its_neighbours_are_not_defects():
     assert sorted(set(found.coordination.tolist())) == [3, 4, 5, 6]
 
 
-def test_neighbours_that_are_not_linked_close_no_face():
-    """A spoke of the wheel is led on to an agent outside, which makes other links but none between its neighbours."""
-    angle = 2.0 * np.pi * np.arange(6) / 6
-    q = np.concatenate([[[0.0, 0.0]], np.column_stack([np.cos(angle), np.sin(angle)]), [[5.0, 5.0]]])
-    spokes = [[0, k] for k in range(1, 7)]
-    rim = [[k, k % 6 + 1] for k in range(1, 7)]
-    assert defects(q, spokes + rim).interior.tolist() == [True] + 7 * [False]
-    for missing in range(6):
-        left = [link for k, link in enumerate(rim) if k != missing]
-        outer = [[k, 7] for k in range(1, 7)]
-        assert not defects(q, spokes + left + outer).interior[0]
+def test_an_open_face_is_seen_however_the_agents_are_numbered():
+    """A wheel of four with each of its rim's links missing, in every order of its agents."""
+    q = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
+    spokes, rim = [[0, k] for k in range(1, 5)], [[1, 2], [2, 3], [3, 4], [4, 1]]
+    for order in permutations(range(5)):
+        number = np.array(order)
+        placed = np.empty_like(q)
+        placed[number] = q
+        assert defects(placed, number[spokes + rim]).interior.nonzero()[0].tolist() == [number[0]]
+        for k in range(4):
+            assert not defects(placed, number[spokes + rim[:k] + rim[k + 1 :]]).interior.any()
 
 
 def test_squares_are_no_triangles():
