@@ -200,3 +200,15 @@ def test_the_compiled_steps_give_the_same_bits_on_every_processor(ramp, m):
 def test_a_square_tells_the_range_to_the_bit(r):
     square = _square_of_range(r)
     assert sqrt(square) >= r > sqrt(np.nextafter(square, 0.0))
+
+
+def test_steps_that_leap_out_of_the_lists_skin_make_a_new_list():
+    """From rest, with a step so long that the first one already moves agents far: as steps taken one by one."""
+    pair, rng = DeadZoneInteraction(), np.random.default_rng(3)
+    q, p, dt = rng.uniform(0.0, 2.0 * pair.range, (12, 2)), np.zeros((12, 2)), 1.0
+    together = semi_implicit_steps(q, p, pair.par, 1.0, dt, 6)
+    for step in range(6):
+        one = semi_implicit_steps(q, p, pair.par, 1.0, dt, 1)
+        q, p = one[0][0], one[1][0]
+        for found, wanted in zip(together, one, strict=True):
+            np.testing.assert_allclose(found[step], wanted[0], rtol=1e-9, atol=1e-9)

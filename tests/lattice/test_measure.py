@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import permutations
+
 import numpy as np
 import pytest
 
@@ -36,6 +38,12 @@ def test_without_links_nothing_is_a_lattice():
     assert np.isnan(edge_length_error([[0.0], [100.0]], D, R))
     assert not is_alpha_lattice([[0.0], [100.0]], D, R)
     assert classify(float("nan"), lattice=1.0, quasi=1.0) == "neither"
+
+
+def test_the_bounds_of_the_names_belong_to_them():
+    above = [np.nextafter(bound, 1.0) for bound in (0.25, 0.5)]
+    named = [classify(strain, lattice=0.25, quasi=0.5) for strain in (0.25, above[0], 0.5, above[1])]
+    assert named == ["α-lattice", "quasi-α-lattice", "quasi-α-lattice", "neither"]
 
 
 def test_the_tolerance_is_relative_to_d():
@@ -80,6 +88,19 @@ def test_a_vacancy_is_a_hole_and_its_neighbours_are_not_defects():
     found = defects(q, links(q, R))
     assert found.counts == {6: 12}  # 37 agents: 18 at the rim, 6 at the hole, 1 gone
     assert sorted(set(found.coordination.tolist())) == [3, 4, 5, 6]
+
+
+def test_an_open_face_is_seen_however_the_agents_are_numbered():
+    """A wheel of four with each of its rim's links missing, in every order of its agents."""
+    q = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
+    spokes, rim = [[0, k] for k in range(1, 5)], [[1, 2], [2, 3], [3, 4], [4, 1]]
+    for order in permutations(range(5)):
+        number = np.array(order)
+        placed = np.empty_like(q)
+        placed[number] = q
+        assert defects(placed, number[spokes + rim]).interior.nonzero()[0].tolist() == [number[0]]
+        for k in range(4):
+            assert not defects(placed, number[spokes + rim[:k] + rim[k + 1 :]]).interior.any()
 
 
 def test_squares_are_no_triangles():

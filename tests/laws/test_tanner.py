@@ -10,7 +10,8 @@ import flockana as fl
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.tanner import FixedNetFlocking, ProximityFlocking
-from flockana.symbolic.matching import matching_identity
+from flockana.symbolic.matching import WEIGHT, matching_identity
+from flockana.symbolic.pair import vector
 
 RNG = np.random.default_rng(5)
 Q, P = RNG.normal(0.0, 1.0, (5, 2)), RNG.normal(0.0, 1.0, (5, 2))
@@ -41,6 +42,15 @@ def test_the_potential_and_its_derivatives():
 def test_the_energy_identity(m):
     assert matching_identity(m).holds
     assert matching_identity(m, potential=False).holds
+
+
+def test_the_energy_is_that_of_three_pairs_and_of_the_deviations_from_their_mean():
+    """With a(s²) = s² and velocities 0, 3, 6 at 0, 1, 3: deviations −3, 0, 3, and 9·1 + 9·4 + 36·9 lost."""
+    identity = matching_identity(1, potential=False)
+    symbols = [vector(f"{name}_{i}", 1)[0] for name in "qp" for i in range(3)]
+    places = dict(zip(symbols, (0, 1, 3, 0, 3, 6), strict=True))
+    kinetic, lost = (step.equation.replace(WEIGHT, lambda square: square).subs(places) for step in identity.steps)
+    assert (kinetic, lost) == (9, -369)
 
 
 @pytest.mark.parametrize("name", LAWS)

@@ -50,3 +50,10 @@ def test_a_measure_says_what_it_is():
     measure = measures()["cohesion_radius"]
     assert (measure.label, measure.summary) == ("R, cohesion radius (length)", "R, cohesion radius, at the end")
     assert measures()["order"].label == "polar order"
+
+
+def test_axes_end_at_1_for_shares_and_cosines_alone_and_are_logarithmic_for_what_decays():
+    known = measures().items()
+    shares = {"connectivity", "giant_share", "followers", "order", "coordination"}
+    assert {name for name, it in known if it.at_most_one} == shares
+    assert {name for name, it in known if it.logarithmic} == {"normalised_velocity_mismatch", "velocity_diameter"}

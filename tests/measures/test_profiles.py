@@ -33,3 +33,9 @@ def test_bad_arguments():
             pair_distance_profile(q)
     with pytest.raises(ArgumentError, match="expected numbers from 0 to 1"):
         pair_distance_profile(np.zeros((1, 2, 2)), (0.5, 1.5))
+    with pytest.raises(ArgumentError, match="expected numbers from 0 to 1"):
+        pair_distance_profile(np.zeros((1, 2, 2)), (-0.5, 0.5))
+
+
+def test_two_agents_have_one_distance():
+    assert pair_distance_profile([[[0.0], [3.0]], [[1.0], [6.0]]], (0.0, 0.5, 1.0)).tolist() == [[3.0] * 3, [5.0] * 3]

@@ -53,6 +53,12 @@ def test_bad_numbers_of_agents():
         joint_windows(0, [])
 
 
+@pytest.mark.parametrize("nets", [7, None, "ab", b"ab", np.array(3.0)])
+def test_what_is_no_sequence_of_nets_is_refused(nets):
+    with pytest.raises(ArgumentError, match="expected the links at each instant"):
+        joint_windows(2, nets)
+
+
 @given(st.integers(1, 7), st.integers(1, 3), st.integers(0, 99))
 def test_the_diameter_is_the_greatest_distance(n, m, seed):
     x = np.random.default_rng(seed).normal(size=(n, m))

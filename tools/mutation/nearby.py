@@ -30,6 +30,7 @@ INTERPRETED = tuple(
         "laws/test_minimal",
         "laws/test_directed",
         "environment/test_obstacles",
+        "environment/test_zone_obstacles",
     )
 )
 _IMPORT = re.compile(r"^\s*from (flockana[\w.]*) import (\([^)]*\)|.+)$|^\s*import (flockana[\w.]+)", re.MULTILINE)
