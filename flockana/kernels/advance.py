@@ -41,7 +41,7 @@ def _at_rest(t, h, points, view, frame):
     """The same paths, seen from where the obstacles are at rest."""
     seen, m = points.copy(), view[1].size
     for k in range(6):
-        frame_at(t + 0.2 * k * h, view[0], view[1], view[2], frame)
+        frame_at(t + 0.2 * k * h, view, frame)
         for i in range(len(points)):
             for c in range(m):
                 seen[i, k, c] += frame[0, c]
@@ -117,7 +117,7 @@ def _moved(vector, order, shape, back, out):
 def _record(t, y, f, system, out):
     """Positions, velocities and accelerations as they are, in the agents' own order; returns the work."""
     (n, m), view, order, frame = system[4], system[5], system[8], system[13]
-    frame_at(t, view[0], view[1], view[2], frame)
+    frame_at(t, view, frame)
     for i in range(n):
         own = np.int64(order[i])
         for c in range(m):

@@ -141,21 +141,25 @@ def _cached(made: Any, function: Callable[..., Any], suffix: str) -> Any:
 def _for_frozen_arrays(made: Any) -> Any:
     """The same dispatcher, which calls for arrays that cannot be written to what it compiled for those that can.
 
-    To numba they are two types, and results are frozen: each kernel would be compiled twice and more. No kernel writes
-    to an array that it does not make but to those named `out`, which are made for it.
+    To numba they are two types, and results are frozen: each kernel would be compiled twice and more. What callers may
+    hand in to be written to is named `u` or `out`: there numba refuses a frozen array as ever.
     """
     if numba.config.DISABLE_JIT:
         return made
-    compiled = made.compile
+    names = made.py_func.__code__.co_varnames[: made.py_func.__code__.co_argcount]
+    compiled, written = made.compile, {k for k, name in enumerate(names) if name in ("u", "out")}
 
     def compile_for(signature: Any) -> Any:
         asked, _ = numba.core.sigutils.normalize_signature(signature)
-        writable = tuple(kind.copy(readonly=False) if isinstance(kind, numba.types.Array) else kind for kind in asked)
+        writable = tuple(
+            kind.copy(readonly=False) if isinstance(kind, numba.types.Array) and k not in written else kind
+            for k, kind in enumerate(asked)
+        )
         if writable == tuple(asked):
             return compiled(signature)
-        code = compiled(writable)
-        made._insert([kind._code for kind in asked], code, False)
-        return code
+        found = compiled(writable)
+        made._insert([kind._code for kind in asked], found, False)
+        return found
 
     made.compile = compile_for
     return made

@@ -144,11 +144,8 @@ def mean_way(h, q0, p0, u0, q1, p1, u1):
     """How far the control points of the flock's mean path are from the first of them, (6, 3)."""
     way = np.zeros((6, 3))
     for c in range(q0.shape[1]):
-        gone, out, back = (
-            column_mean(q1, c) - column_mean(q0, c),
-            h * column_mean(p0, c) / 5.0,
-            h * column_mean(p1, c) / 5.0,
-        )
+        gone = column_mean(q1, c) - column_mean(q0, c)
+        out, back = h * column_mean(p0, c) / 5.0, h * column_mean(p1, c) / 5.0
         way[1, c], way[2, c] = out, 2.0 * out + h * h * column_mean(u0, c) / 20.0
         way[3, c], way[4, c] = gone - 2.0 * back + h * h * column_mean(u1, c) / 20.0, gone - back
         way[5, c] = gone

@@ -51,7 +51,7 @@ def term_functions(
     the potential of a pair.
     """
     force, potential = signatures()
-    return _compiled(act, force), _compiled(energy, potential, **({} if allocates else {"_nrt": False}))
+    return _compiled(act, force), _compiled(energy, potential, _nrt=allocates)
 
 
 def _compiled(function: Callable[..., float], signature: Any, **options: Any) -> CompiledFunction:

@@ -36,8 +36,9 @@ def combine(y, h, weights, rates, rows, count, out):
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
-def frame_at(t, start, origin, drift, frame):
+def frame_at(t, view, frame):
     """Write place and velocity of the frame that the vectors are seen from."""
+    start, origin, drift = view
     for c in range(origin.size):
         frame[0, c], frame[1, c] = origin[c] + drift[c] * (t - start), drift[c]
 
@@ -64,7 +65,7 @@ def _act(t, y, f, system, pairs):
     acts, _, numbers, panels, (n, m), view, _, _, order, _, terms, of_pairs, summed, frame = system
     (first, second, count, _, _, slabs), size, power = pairs, n * m, 0.0
     x, v, u = y[:size].reshape(n, m), y[size : 2 * size].reshape(n, m), f[size : 2 * size].reshape(n, m)
-    frame_at(t, view[0], view[1], view[2], frame)
+    frame_at(t, view, frame)
     for k in range(size):
         f[k], f[size + k] = y[size + k], 0.0
     for k in range(terms):
@@ -81,7 +82,7 @@ def energy_of(t, y, system, pairs):
     _, energies, numbers, panels, (n, m), view, moving, _, order, _, terms, _, _, frame = system
     x, v = y[: n * m].reshape(n, m), y[n * m : 2 * n * m].reshape(n, m)
     (first, second, count, _, _, _), total = pairs, 0.0
-    frame_at(t, view[0], view[1], view[2], frame)
+    frame_at(t, view, frame)
     if moving:
         total = 0.5 * squared_deviations(v)
     else:

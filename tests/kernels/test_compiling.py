@@ -17,6 +17,7 @@ import pytest
 from numba.core.caching import IndexDataCacheFile
 from numba.core.serialize import dumps, loads
 
+from flockana.interactions import AlphaInteraction
 from flockana.kernels import caching
 from flockana.kernels.caching import NamedByContent
 from flockana.kernels.compiling import njit, register_jitable
@@ -194,6 +195,14 @@ def test_of_a_kernel_of_the_package_frozen_arrays_need_no_second_one():
     assert kernel(x + 1.0) == 15.0
     assert kernel(x) == 10.0
     assert len(kernel.overloads) == 1
+
+
+def test_no_kernel_of_the_package_writes_to_frozen_accelerations():
+    q, u = np.array([[0.0, 0.0], [8.0, 0.0]]), np.zeros((2, 2))
+    u.flags.writeable = False
+    with pytest.raises(numba.TypingError, match="readonly array"):
+        AlphaInteraction().forces(q, 0.0 * q, stiffness=1.0, damping=1.0, out=u)
+    assert not u.any()
 
 
 def test_a_kernel_of_others_cannot_write_to_what_is_frozen():
