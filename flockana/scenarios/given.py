@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any, get_args
 
 from flockana.base.checks import (
@@ -11,11 +11,12 @@ from flockana.base.checks import (
     ensure_dimension,
     ensure_finite_scalar,
     ensure_fits,
+    ensure_known,
     ensure_points,
     ensure_seed,
     ensure_time_span,
 )
-from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.base.errors import ArgumentError
 from flockana.laws.discrete import ensure_law
 from flockana.scenarios.start import is_later
 from flockana.theorems import theorems
@@ -66,10 +67,26 @@ def _ensure_statuses(name: str, statuses: Any) -> None:
     wrong = {key: status for key, status in statuses.items() if status not in known}
     if wrong:
         raise ArgumentError(f"{name} = {wrong!r}: expected statuses {', '.join(known)}")
-    judged = (*theorems(), SOURCE)
-    for key in statuses:
-        if not isinstance(key, str) or key.split(":")[0] not in judged:
-            raise UnknownNameError("theorem", key if not isinstance(key, str) else key.split(":")[0], judged)
+    unnamed = [key for key in statuses if not isinstance(key, str)]
+    if unnamed:
+        raise ArgumentError(f"{name} has a key {unnamed[0]!r}: expected the id of a theorem")
+
+
+def ensure_judged(names: Iterable[str]) -> None:
+    """Raise unless there are such theorems: asked before a run, as to list scenarios needs none of them.
+
+    Parameters
+    ----------
+    names : iterable of str
+        Ids, of a scenario's expectations.
+
+    Raises
+    ------
+    UnknownNameError
+        If there is no such theorem; the closest name is suggested.
+    """
+    for name in names:
+        ensure_known("theorem", name, theorems())
 
 
 def ensure_options(name: str, build: Callable[..., Any], options: Mapping[str, Any]) -> None:

@@ -15,7 +15,7 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law
 from flockana.scenarios.enclosure import Enclosure
-from flockana.scenarios.given import SOURCE, ensure_options, ensure_parts
+from flockana.scenarios.given import SOURCE, ensure_judged, ensure_options, ensure_parts
 from flockana.scenarios.start import given_later
 from flockana.theorems import Claim, Tolerances, Verdict, verify
 from flockana.theorems.second_run import corroborated
@@ -82,7 +82,7 @@ class Scenario:
     Raises
     ------
     ArgumentError
-        On a law, start, time span, seed, theorem or status that is none, or an instant outside t_span.
+        On a law, start, time span, seed or status that is none, or an instant outside t_span.
 
     Examples
     --------
@@ -132,7 +132,13 @@ class Scenario:
         ----------
         progress : bool
             Show a progress bar.
+
+        Raises
+        ------
+        UnknownNameError
+            If a status is expected of a theorem that there is not.
         """
+        ensure_judged(self.theorems)
         return simulate(self.law, self.q0, self.p0, self.t_span, progress=progress, **self.options)
 
     def verify(self, trajectory: Trajectory, *, tolerances: Tolerances | None = None) -> tuple[Verdict, ...]:

@@ -87,10 +87,12 @@ def cases():
     statuses = OTHERS | {
         "no status": {"energy": "fine"},
         "none of them": {"energy": None},
-        "no theorem": {"no-such": "refuted"},
     }
     yield "Scenario expected", statuses, lambda v: made(expected=v)
     yield "Scenario shipped", statuses, lambda v: made(shipped=v)
+    unknown = {"no theorem": {"no-such": "refuted"}, "no theorem's claim": {"no-such:i": "refuted"}}
+    yield "Scenario expected theorem", unknown, lambda v: made(expected=v).run()
+    yield "Scenario shipped theorem", unknown, lambda v: made(seed=1, shipped=v).run()
     yield "Scenario instants", {"outside": (2.0,)}, lambda v: made(instants=v)
     several = {"none": None, "a text": "ab", "negative": [-1], "fractions": [0.5], "none of them": [], "twice": [1, 1]}
     yield "ensemble seeds", several | {"a number": 3, "truth values": [True]}, lambda v: ensemble(seeds=v)
