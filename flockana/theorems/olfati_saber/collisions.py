@@ -28,7 +28,8 @@ Pair = tuple[int, int]
 
 def contacts_of(run: Trajectory, tolerances: Tolerances) -> tuple[Contact, ...]:
     """Contacts of a run: pairs whose interpolated paths come within the contact distance."""
-    return contacts(*run.path[:4], tol=tolerances.contact * run.law.alpha.length)
+    tol = tolerances.contact * run.law.alpha.length
+    return run.remembered(f"contacts within {tol!r}", lambda: contacts(*run.path[:4], tol=tol))
 
 
 def passed(run: Trajectory, tolerances: Tolerances) -> dict[Pair, float]:
@@ -47,6 +48,10 @@ def passed(run: Trajectory, tolerances: Tolerances) -> dict[Pair, float]:
 def near(run: Trajectory, tolerances: Tolerances) -> list[set[Pair]]:
     """Pairs that may meet, by interval between samples: their paths, allowance included, come that near."""
     noise = _noise(run, tolerances)
+    return run.remembered(f"near within {noise!r}", lambda: _near(run, noise))
+
+
+def _near(run: Trajectory, noise: float) -> list[set[Pair]]:
     lower = run.closest_approach().lower_by_interval
     pairs: list[set[Pair]] = [set() for _ in lower]
     t, *states, slack = run.path

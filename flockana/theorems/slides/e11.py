@@ -9,19 +9,19 @@ from typing import Any
 
 from flockana.base.errors import SolverError
 from flockana.dynamics.trajectory import Trajectory
-from flockana.equilibria.collapse import natural_ratio, nudged, squeezed, threshold
+from flockana.equilibria.collapse import CONTACT, natural_ratio, nudged, squeezed, threshold
 from flockana.equilibria.gradient_flow import gradient_flow
 from flockana.equilibria.terminal import TerminalState, surroundings, terminal_state
 from flockana.interactions import AlphaInteraction
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm2, paper_pair
-from flockana.measures.metrics import velocity_mismatch
+from flockana.measures.metrics import coincident_pairs, velocity_mismatch
 from flockana.theorems.claims import judged
 from flockana.theorems.hypotheses import condition, law_is
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
 
 _RINGS = (1, 2, 3)  # hexagons of 7, 19 and 37 agents
-_LOWEST, _FACTOR = 0.06, 1.3  # where the search starts, of `natural_ratio`, and its steps
+_SAFE, _FACTOR = 1.2, 1.3  # where the search for one ring starts, of `natural_ratio`, and its steps
 _HALVINGS = 3
 
 
@@ -31,12 +31,12 @@ def collapses(law: Algorithm2, rings: int, ratio: float) -> bool:
     limit = gradient_flow(pressed, nudged(hexagonal_patch(rings, law.alpha.length), law.alpha.length))
     if not limit.converged:
         raise SolverError(f"at c1γ/c1α = {ratio:.4g} the gradient flow did not settle (force {limit.force:.2g})")
-    return terminal_state(pressed, limit.q, 0.0 * limit.q).coincident > 0
+    return coincident_pairs(limit.q, CONTACT * law.alpha.length) > 0
 
 
 def collapse_threshold(law: Algorithm2, rings: int) -> tuple[float, float]:
     """(largest ratio c1γ/c1α at which the gradient flow of a hexagonal patch was seen safe, least seen to collapse)."""
-    lowest = _LOWEST * natural_ratio(paper_pair(law))
+    lowest = _SAFE * natural_ratio(paper_pair(law)) / rings**2  # what presses on the middle adds up over the radius
     return threshold(lambda ratio: collapses(law, rings, ratio), lowest=lowest, factor=_FACTOR, halvings=_HALVINGS)
 
 
