@@ -219,9 +219,8 @@ def _factor(excess: float, order: int) -> float:
 def _proposed(flow: Flow, t: float, current: StateSet, longest: float) -> tuple[float, float | None]:
     """(length of a Taylor step, length of one across a switch if the set lies on one): proposals in floating point."""
     state = np.array([[float(x.mid()), float(x.rad())] for x in current.hull])
-    half, m = flow.n * flow.m, flow.m
-    q, p = state[:, 0].reshape(2, flow.n, m)
-    wide, blown = (2.0 * sqrt(m) * float(part.max()) for part in (state[:half, 1], state[half:, 1]))
+    (q, p), radii = state[:, 0].reshape(2, flow.n, flow.m), state[:, 1].reshape(2, -1)
+    wide, blown = (2.0 * sqrt(flow.m) * float(part.max()) for part in radii)
     h, crossing = longest, 0.0
     for gap, speed in _gaps(flow, q, p):
         fastest = abs(speed) + blown

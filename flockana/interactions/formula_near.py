@@ -60,8 +60,7 @@ def near_zero(cut: Cut, end: float) -> Near:
     weight, slope = cut.function(piece.weight), cut.function(piece.slope)
     closed = np.zeros((0, 0))
     first, second = float(weight(end * _CLOSE)), float(weight(end * _CLOSER))
-    scale = max(abs(float(weight(end * share))) for share in (0.05, 0.25, 0.5) if isfinite(float(weight(end * share))))
-    scale = max(scale, abs(first)) if isfinite(first) else scale
+    scale = max(abs(w) for w in (first, *(float(weight(end * share)) for share in (0.05, 0.25, 0.5))) if isfinite(w))
     if not (isfinite(first) and isfinite(second)) or abs(first - second) > _AGREED * max(scale, abs(first)):
         return Near("excluded", 0.0, none, closed)
     if not _cancels(cut, piece, end, scale):

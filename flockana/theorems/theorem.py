@@ -137,6 +137,11 @@ class Claim:
         Identifier of an executable proof.
     detail : str
         The statement and the evidence, in one sentence.
+
+    Raises
+    ------
+    ArgumentError
+        On an error below 0, with which every margin would decide.
     """
 
     name: str
@@ -149,6 +154,10 @@ class Claim:
     witness: Any = None
     proof: str | None = None
     detail: str = ""
+
+    def __post_init__(self) -> None:
+        if self.error is not None and self.error < 0.0:
+            raise ArgumentError(f"claim {self.name!r} has error = {self.error:g}: expected none below 0")
 
 
 @dataclass(frozen=True)

@@ -50,6 +50,18 @@ def test_acceleration_and_jacobian_are_those_of_the_law(m, beta):
     np.testing.assert_allclose(found, getattr(expected, "toarray", lambda: expected)(), rtol=1e-10, atol=1e-10)
 
 
+def test_switches_are_where_the_taper_begins_and_where_the_force_ends():
+    """An agent 2.5 from the surface of a sphere off the origin, going away at 0.6·2 + 0.8·1; with ε = 0, z is ½ s²."""
+    beta = BetaInteraction(d=2.0, r=3.0, eps=1e-12, h=0.5)
+    law = Algorithm3(target=StaticTarget((0.0, 0.0)), beta=beta, obstacles=(Sphere((4.0, -1.0), 2.5),))
+    (term,) = sphere_terms(law)
+    found = term.switches(np.array([4.0 + 3.0, -1.0 + 4.0]), np.array([2.0, 1.0]))
+    np.testing.assert_allclose(found, [(2.5 - np.sqrt(0.5) * 2.0, 2.0), (2.5 - 2.0, 2.0)], rtol=1e-3)
+    assert term.switches(np.array([4.0, -1.0]), np.array([3.0, 4.0]))[0] == pytest.approx(
+        (-2.5 - np.sqrt(2.0), 5.0), rel=1e-3
+    )
+
+
 @pytest.mark.parametrize("beta", BETAS)
 def test_taylor_coefficients_are_those_of_the_flow_and_of_its_derivative(beta):
     """Of series on each piece: the force's against its hull, the slopes' against differences of paths."""

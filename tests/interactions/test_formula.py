@@ -279,6 +279,8 @@ def test_a_series_stands_in_only_where_the_formula_loses_digits():
     ]
     assert bounds[:2] == [0.0, 0.0]
     assert bounds[2] > 0.0
+    in_z = fl.pair_law("z*(z - 1)**2*(z - 2)", parameters={"eps": 0.1}, adjacency=0, range=3.0, length=1.0)
+    assert in_z.par[3] == 0.0
 
 
 @pytest.mark.parametrize(("d", "r"), [(2.9985, 3.0), (0.29985, 0.3), (7.0, 8.4)])

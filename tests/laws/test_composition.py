@@ -279,6 +279,14 @@ WRONG = {
     "repulsion": ({"pair": PAIR, "repulsion": 1.0}, "repulsion = 1.0 without its part: give obstacles="),
     "negative": ({"pair": PAIR, "gradient": -1.0}, "c1_alpha = -1: expected a gain >= 0"),
     "drag": ({"drag": -1.0}, "drag"),
+    "pull of the informed": (
+        {"pair": PAIR, "navigation": LEADER, "informed": (0,), "agents": 2, "pull": -1.0},
+        "^pull = -1: expected a number >= 0",
+    ),
+    "match of the informed": (
+        {"pair": PAIR, "navigation": LEADER, "informed": (0,), "agents": 2, "match": -2.0},
+        "^match = -2: expected a number >= 0",
+    ),
     "speed": ({"speed": 2.0}, r"speed = 2.0: expected \(α, β\)"),
     "pair": ({"pair": 3.0}, "alpha = 3.0: expected"),
     "told": (

@@ -48,13 +48,14 @@ def test_each_agent_has_the_bump_of_its_own_range():
     assert DirectedNet(Algorithm1(), (5.9, 20.0)).acceleration(0.0, q, p)[0, 0] == 0.0
 
 
-@pytest.mark.parametrize("angle", [0.0, 0.3, 0.9, 1.04, 1.06, 2.0, pi])
-def test_a_cone_fades_as_a_range_does(angle):
-    """An agent that moves along x, another at an angle from there, view 120°: ρ_h((1 − cos θ)/(1 − cos 60°))."""
+@pytest.mark.parametrize("view", [0.5 * pi, 2.0 * pi / 3.0])
+@pytest.mark.parametrize("angle", [0.0, 0.3, 0.7, 0.8, 0.9, 1.04, 1.06, 2.0, pi])
+def test_a_cone_fades_as_a_range_does(angle, view):
+    """An agent that moves along x, another at an angle from there: ρ_h((1 − cos θ)/(1 − cos ½ view))."""
     alpha, slow = AlphaInteraction(), 1e-3
-    law, whole = DirectedNet(Algorithm1(gains=UNIT), view=2.0 * pi / 3.0, slow=slow), Algorithm1(gains=UNIT)
+    law, whole = DirectedNet(Algorithm1(gains=UNIT), view=view, slow=slow), Algorithm1(gains=UNIT)
     q, p = [[0.0, 0.0], [6.0 * cos(angle), 6.0 * sin(angle)]], [[2.0, 0.0], [2.0, 0.0]]
-    cone = alpha.bump((1.0 - cos(angle)) / 0.5)
+    cone = alpha.bump((1.0 - cos(angle)) / (1.0 - cos(0.5 * view)))
     share = (slow**2 + 4.0 * cone) / (slow**2 + 4.0)
     np.testing.assert_allclose(
         law.acceleration(0.0, q, p)[0], share * whole.acceleration(0.0, q, p)[0], atol=1e-12, rtol=1e-10

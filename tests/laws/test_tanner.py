@@ -38,6 +38,30 @@ def test_the_potential_and_its_derivatives():
     assert POTENTIAL.nearest(0.0) == POTENTIAL.d
 
 
+def test_a_potential_is_of_unit_strength_and_distance_by_itself():
+    assert fl.LogPotential() == fl.LogPotential(1.0, 1.0)
+
+
+def test_a_pair_slides_where_each_side_drives_it_into_the_other():
+    """0 and 1 at R: while near, 1 is drawn away by 2 and 3; once all three let go, 2 and 3 draw 0 after it."""
+    q = np.array([[1.3, 2.0], [3.0, 2.0], [4.9, 2.2], [4.9, 1.8]])
+    near, far = 0, 1
+    before = np.array([near, far, far, near, near, far], np.int8)
+    after = np.array([far, near, near, far, far, far], np.int8)
+    law, rest = ProximityFlocking(POTENTIAL, 1.7, 1.5), np.zeros((4, 2))
+    own, drawn = 2.0 * 1.7 * float(POTENTIAL.weight(1.7**2)), 2.0 * 1.9 * float(POTENTIAL.weight(1.9**2 + 0.2**2))
+    assert drawn > own > 0.0
+    said = "agents 0 and 1 slide at distance 1.7 = R: each side drives them into the other"
+    assert law.sliding(before, after, 0.0, q, rest) == said
+    assert law.sliding(after, before, 0.0, q, rest) == said
+    assert law.sliding(before, before, 0.0, q, rest) is None
+    apart, turning = rest.copy(), rest.copy()
+    apart[1, 0], turning[1, 1] = 1e-3, 1.0
+    assert law.sliding(before, after, 0.0, q, apart) is None  # it passes through
+    bend = 1.0 / 1.7
+    assert (law.sliding(before, after, 0.0, q, turning) == said) is bool(drawn - own > 0.0 > bend - drawn)
+
+
 @pytest.mark.parametrize("m", [1, 2, 3])
 def test_the_energy_identity(m):
     assert matching_identity(m).holds

@@ -18,6 +18,7 @@ _RADII = ZoneRadii(_R, c=_C, a=_A)
 _UNBOUNDED = 1e6  # an input bound that never acts
 _DRIVE, _WEIGHT, _DESIRED = 5.0, 12.0, 3.0
 _STEP, _STEPS = 0.02, 2000  # s; with the zone's own the approach is damped, and with 0.1 s it would overshoot
+_PLACE, _HEADING = (30.0, 0.5 * _SIDE), (_DESIRED, 0.0)  # of an agent that runs head on at a wall
 _NEAR = 1e-3  # relative: on either side of where the zone ends
 
 
@@ -42,7 +43,7 @@ def _braking(law: ZoneFlocking, distance: float, speed: float) -> float:
 
 def _head_on(law: ZoneFlocking) -> FloatArray:
     """Distances from the wall over time of an agent that runs head on at it."""
-    q, p = np.array([[30.0, 0.5 * _SIDE]]), np.array([[_DESIRED, 0.0]])
+    q, p = np.array([_PLACE]), np.array([_HEADING])
     distances: FloatArray = _SIDE - law.iterate(0.0, q, p, law.start(q, p), _STEPS)[0][:, 0, 0]
     return distances
 
@@ -70,7 +71,7 @@ def _clamped() -> Claim:
         0.0,
         computed={"steps in which the two runs differ": different},
         stated="more reaction space: with the altitude a_i an agent brakes earlier than with c_i",
-        witness={"q(0)": (30.0, 0.5 * _SIDE), "p(0)": (_DESIRED, 0.0), "steps": long.size},
+        witness={"q(0)": _PLACE, "p(0)": _HEADING, "steps": long.size},
         detail=f"with min(0, d - c) nothing acts beyond c: head on the runs with a_i and with c_i are the same in "
         f"{long.size - different} of {long.size} steps (oblique to a wall it acts longer, not farther off)",
     )

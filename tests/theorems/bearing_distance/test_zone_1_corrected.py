@@ -187,6 +187,7 @@ def test_characteristic_residual_tells_polynomials_apart():
     A = np.array([[0.0, 1.0], [-2.0, -3.0]])
     assert characteristic_residual(A, [(3.0, 2.0)]) < 1e-14
     assert characteristic_residual(A, [(3.0, 2.001)]) > 1e-6
+    assert characteristic_residual(A, [(0.0, 2.0)]) > 0.1  # of the same determinant
 
 
 def test_separation_alone_oscillates_and_alignment_does_not_exclude_a_collision():

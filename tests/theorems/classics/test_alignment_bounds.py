@@ -79,6 +79,15 @@ def test_sums_that_are_not_divided_count_every_agent():
     assert margins[0] == pytest.approx(margins[1], rel=1e-12)
 
 
+def test_a_net_that_starts_just_at_the_range_is_not_certain_to_be_one():
+    """Rounding alone says on which side of R two agents are that begin there, though they come together at once."""
+    law = fl.ProximityFlocking()
+    run = fl.simulate(law, [[0.0], [law.r]], [[0.1], [-0.1]], (0.0, 0.5))
+    assert fl.verify("tanner-switching", run).hypotheses[-1].status == "assumed"
+    nearer = fl.simulate(law, [[0.0], [0.99 * law.r]], [[0.1], [-0.1]], (0.0, 0.5))
+    assert fl.verify("tanner-switching", nearer).hypotheses[-1].status == "met"
+
+
 @pytest.mark.parametrize(("share", "status"), [(0.9, "met"), (1.1, "assumed")])
 def test_connectedness_is_certain_below_the_energy_of_a_cut(share, status):
     """Two agents at d with a share of V(R) as their energy: seen for so short a time that they are still linked."""
