@@ -93,7 +93,8 @@ def clearance(
         points, allowance = curves[:, :, :m].reshape(-1, n, 6, m), off.reshape(-1, n)
         if slack is not None:
             allowance = allowance + slack[part]
-        reach = [np.linalg.norm(points - points[:, :, end], axis=3).max(axis=2) + allowance for end in (_FIRST, _LAST)]
+        ways = (points - points[:, :, end] for end in (_FIRST, _LAST))
+        reach = [np.sqrt(np.einsum("kixm,kixm->kix", way, way).max(axis=2)) + allowance for way in ways]
         for obstacle, least in zip(obstacles, least_of, strict=True):
             near = np.maximum(least.at_samples[part] - reach[0], least.at_samples[after] - reach[1]) < least.lower
             row, agent = np.nonzero(near)

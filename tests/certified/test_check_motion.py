@@ -75,6 +75,14 @@ def test_force_and_slope_are_those_of_the_law(law):
     np.testing.assert_allclose(found, law.jacobian(T, Q, P), atol=1e-10)
 
 
+def test_a_path_is_shifted_by_the_binomial_theorem_and_differentiated():
+    """1 + 2t + 3t² + 4t³ about ½: 3.25, 8, 9, 4, and its derivative's 8, 18, 12; as exact in a place and a speed."""
+    motion, cubic = motion_of(LED), [[arb(1), arb(2), arb(3), arb(4)]]
+    found = [[float(x) for x in row] for row in motion.shifted(cubic, arb(0.5))]
+    assert found == [[3.25, 8.0, 9.0, 4.0], [8.0, 18.0, 12.0]]
+    assert [float(x) for x in motion.at(cubic, arb(0.5))] == [3.25, 8.0]
+
+
 @pytest.mark.parametrize("law", [LED, AMONG], ids=["led", "among spheres"])
 def test_the_force_along_a_path_rises_as_the_law_s_does(law):
     """The second coefficient along (q + sp, p) at the time T + s, the γ-agent moving too."""
