@@ -81,8 +81,8 @@ def read_pair(potential: str, force: str, adjacency: str, names: list[str]) -> P
         raise ArgumentError(f"parameter {bad[0]!r}: expected a name that has no meaning of its own, such as 'k'")
     symbols: dict[str, sp.Symbol] = {"s": S, "z": Z} | {name: sp.Symbol(name, positive=True) for name in OWN}
     symbols |= {name: EPS if name == "eps" else sp.Symbol(name, real=True) for name in names}
-    main = read_formula(force or potential, symbols, where="force" if force else "potential")
-    weight = read_formula(adjacency, symbols, where="adjacency")
+    main = _in_fractions(read_formula(force or potential, symbols, where="force" if force else "potential"))
+    weight = _in_fractions(read_formula(adjacency, symbols, where="adjacency"))
     used = main.free_symbols | weight.free_symbols
     if {S, Z} <= used:
         raise ArgumentError("the formula is in s and in z: expected the distance s alone, or the σ-norm z alone")
@@ -95,6 +95,11 @@ def read_pair(potential: str, force: str, adjacency: str, names: list[str]) -> P
     if idle:
         raise ArgumentError(f"parameter {idle[0]!r} is in no formula: leave it out, or use it")
     return PairFormula(main, weight, Z if in_norm else S, bool(force))
+
+
+def _in_fractions(expression: sp.Expr) -> sp.Expr:
+    """The same with 0.1 as 1/10: what cancels between derived terms cancels to the last digit."""
+    return expression.xreplace({number: sp.Rational(repr(float(number))) for number in expression.atoms(sp.Float)})
 
 
 @dataclass(frozen=True)
@@ -242,7 +247,7 @@ class Cut:
         def at(distance: Any) -> Any:
             with mpmath.workdps(DIGITS):
                 try:
-                    found = mpmath.mpmathify(compiled(mpmath.mpf(distance), *values))
+                    found = 1 * mpmath.mpmathify(compiled(mpmath.mpf(distance), *values))  # of pi alone a number too
                 except (ZeroDivisionError, ValueError, OverflowError):
                     return mpmath.nan
                 return found if isinstance(found, mpmath.mpf) else mpmath.nan

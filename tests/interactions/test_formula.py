@@ -57,6 +57,8 @@ def test_the_papers_law_as_a_formula_is_the_papers_law():
         ("sin(s)/s", {}),
         ("exp(-s**2/k)", {"k": 2.0}),
         ("sin(z)/z", {"eps": 0.1}),
+        ("cos(pi*s)", {}),
+        ("cos(1.37*s)", {}),
     ],
 )
 def test_removable_singularities_lose_no_digit(potential, parameters):
@@ -67,7 +69,7 @@ def test_removable_singularities_lose_no_digit(potential, parameters):
     def psi(x):
         z = (mpmath.sqrt(1 + mpmath.mpf("0.1") * x) - 1) / mpmath.mpf("0.1")
         names = {"s": mpmath.sqrt(x), "z": z, **{k: mpmath.mpf(v) for k, v in parameters.items()}}
-        known = {"cos": mpmath.cos, "sin": mpmath.sin, "exp": mpmath.exp}
+        known = {"cos": mpmath.cos, "sin": mpmath.sin, "exp": mpmath.exp, "pi": mpmath.pi}
         return eval(potential, known, names)  # of this test's own
 
     w, _, slope = terms(law, s)
@@ -289,6 +291,12 @@ def test_a_force_that_attracts_up_to_a_range_just_above_the_distance_only_has_a_
     pulls, pushes = (fl.pair_law(force=f"{sign}(s - d)*(r - s)", adjacency=0, range=r, length=d) for sign in ("", "-"))
     assert pulls.lattice == (d, r)
     assert pushes.lattice is None
+
+
+@pytest.mark.parametrize(("force", "lattice"), [("sin(4*(s - 1))", (1.0, 3.0)), ("sin(4*(1 - s))", None)])
+def test_a_force_that_turns_again_further_out_holds_at_the_distance_all_the_same(force, lattice):
+    """At 2 it pushes where at 1.001 it pulls."""
+    assert fl.pair_law(force=force, adjacency=0, range=3.0, length=1.0).lattice == lattice
 
 
 def test_a_weight_that_is_a_number_is_declared_where_it_is_read():
