@@ -8,6 +8,7 @@ import pytest
 from flockana.environment.obstacles import Sphere, Wall
 from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.interactions import AlphaInteraction, DeadZoneInteraction, Gains
+from flockana.kernels.listed import MOST_TERMS
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.laws.dead_zone import DeadZoneFlocking
@@ -67,6 +68,47 @@ def test_each_term_s_power_is_the_rate_of_its_energy_and_work(name):
             slope[k] = (law.potential_energy(t, Q + e) - law.potential_energy(t, Q - e)) / (2.0 * h)
         force = law.flow(t, Q, 0.0 * Q)[0]
         np.testing.assert_allclose(force - force.mean(axis=0), -slope, atol=1e-5 * np.abs(slope).max())
+
+
+class Drawn(Navigation):
+    """One that acts in its own way: it has no compiled form."""
+
+    def act(self, t, q, p, u):
+        return super().act(t, q, p, u)
+
+
+class Added(Algorithm1):
+    """One with two terms more than Algorithm 1."""
+
+    more = ()
+
+    @property
+    def terms(self):
+        return (*super().terms, *self.more)
+
+
+@pytest.mark.parametrize("name", SUMS)
+def test_integrators_get_every_term_or_none(name):
+    law, compiled = SUMS[name], SUMS[name].compiled(2)
+    if name == "pushed":  # its own flow
+        assert compiled is None
+    else:
+        assert (len(compiled.terms), compiled.moving) == (len(law.terms), law.moving)
+
+
+@pytest.mark.parametrize(
+    ("more", "terms"),
+    [
+        ((), 1),
+        ((Navigation(TARGET, Gains()),) * (MOST_TERMS - 1), MOST_TERMS),
+        ((Navigation(TARGET, Gains()),) * MOST_TERMS, None),
+        ((Drawn(TARGET, Gains()),), None),
+        ((Navigation(TARGET, Gains()), Drawn(TARGET, Gains())), None),
+    ],
+)
+def test_a_term_without_a_compiled_form_and_one_too_many_leave_the_law_without(more, terms):
+    found = type("Own", (Added,), {"more": more})().compiled(2)
+    assert (None if found is None else len(found.terms)) == terms
 
 
 def test_what_laws_have():
