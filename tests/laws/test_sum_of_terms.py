@@ -8,7 +8,6 @@ import pytest
 from flockana.environment.obstacles import Sphere, Wall
 from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.interactions import AlphaInteraction, DeadZoneInteraction, Gains
-from flockana.kernels.listed import MOST_TERMS
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.laws.dead_zone import DeadZoneFlocking
@@ -17,6 +16,7 @@ from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.notebook import PushedAlgorithm1, PushedAlgorithm2
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.laws.semi_implicit import SemiImplicitEuler
+from flockana.laws.sum_of_terms import MOST_TERMS
 from flockana.laws.terms.navigation import Navigation
 from flockana.laws.terms.obstacles import ObstacleTerm
 from flockana.laws.terms.pairs import PairTerm

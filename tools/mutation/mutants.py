@@ -40,7 +40,7 @@ _KINDS = re.compile(
     "|ReplaceContinueWithBreak|ExceptionReplacer|NumberReplacer|RemoveDecorator|ZeroIterationForLoop)"
 )
 _COMPILING = re.compile(
-    r"\s*@\s*(?:\w+\.)*(njit|register_jitable|vectorize|lift\w*|override|abstractmethod|overload)\b"
+    r"\s*@\s*(?:\w+\.)*(njit|register_jitable|vectorize|lift\w*|override|abstractmethod|overload|(?:lru_)?cache)\b"
 )
 _TEXTS = ("raise_stmt", "assert_stmt", "fstring", "tfpdef")
 
@@ -80,7 +80,7 @@ def _operators() -> dict[str, Any]:
 
 
 def _means_nothing(node: Any) -> bool:
-    """Whether a change at a node is a text, a type or a way to compile."""
+    """Whether a change at a node is a text, a type, a way to compile, or of what is kept for the next time."""
     below, above = None, node
     while above is not None:
         kind = above.type
