@@ -9,6 +9,7 @@ import pytest
 from flockana import Tolerances, verify
 from flockana.stability.delay import DELAYED
 from tests.adversarial.cases import FALSE, REFUTED, TRUE, VERIFIED
+from tests.adversarial.published import changes
 
 # from the list of errata: `r` what is printed and false, `v` what is true; a search may come back without an answer
 TRUTHS = {
@@ -83,6 +84,7 @@ def test_what_is_printed_and_what_is_true(name, verdict_of):
     assert {claim: said[claim] for claim, allowed in expected(name).items() if said[claim] not in allowed} == {}
     assert said == {claim.name: claim.status for claim in verify(name).claims}  # and so the second time
     assert all(claim.detail for claim in verdict_of(name).claims)
+    assert changes(verdict_of(name)) == []
 
 
 @pytest.mark.attack
