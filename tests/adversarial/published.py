@@ -1,6 +1,7 @@
-"""What is printed of theorems that need no run, number by number, in `published.json`: a change of it must be meant.
+"""What is printed of theorems that need no run, and of short runs of the catalogue: a change of it must be meant.
 
-`python -m tests.adversarial.published` writes the file anew.
+Number by number in `published.json`; of runs in `published_runs.json`, whose margins may be off by their own errors.
+`python -m tests.adversarial.published` writes both anew.
 """
 
 from __future__ import annotations
@@ -9,13 +10,17 @@ import json
 import re
 from functools import cache
 from itertools import zip_longest
+from math import isfinite, isinf, isnan
 from pathlib import Path
 
 _FILE = Path(__file__).with_suffix(".json")
+_RUNS = Path(__file__).with_name("published_runs.json")
+LONG = 0.4  # seconds: a run and its verdicts that take longer are left to `flockana verify`
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _SAME, _ERROR, _PRINTED = 1e-4, 0.05, 0.02  # relative: integrators and BLAS differ between processors by less
-_NOISE, _TIMES = 1e-7, 30.0  # what is below may come from rounding alone, and be so many times as large,
+_NOISE, _TIMES = 1e-7, 100.0  # what is below may come from rounding alone, and be so many times as large,
 _NOTHING = 1e-14  # or nothing at all
+_OF_RUN = 1e-3  # relative, of a margin beyond the errors
 
 
 def data_of(verdict):
@@ -27,6 +32,46 @@ def data_of(verdict):
 @cache
 def _published():
     return json.loads(_FILE.read_text("utf-8"))
+
+
+@cache
+def published_runs():
+    """Verdicts of scenarios, by name and by theorem."""
+    return json.loads(_RUNS.read_text("utf-8"))
+
+
+def changes_of_run(name, verdicts):
+    """Where margins are off what was published by more than their errors, or errors are of another size."""
+    was, now = published_runs()[name], {verdict.theorem: _margins(verdict) for verdict in verdicts}
+    if was.keys() != now.keys() or any(was[key].keys() != now[key].keys() for key in was):
+        return [f"{name}: other claims than published"]
+    lines = []
+    for theorem, claims in was.items():
+        for claim, (status, margin, error) in claims.items():
+            found, other, own = now[theorem][claim]
+            sizes = [_number(x) for x in (margin, other, error, own)]
+            if status != found or not _near(*sizes):
+                lines.append(f"{name}/{theorem}/{claim}: {(status, margin, error)} is now {(found, other, own)}")
+    return lines
+
+
+def _margins(verdict):
+    return {claim["name"]: [claim["status"], claim["margin"], claim["error"]] for claim in verdict.to_dict()["claims"]}
+
+
+def _number(x):
+    return float("nan") if x is None else float(x)
+
+
+def _near(margin, other, error, own):
+    if isnan(margin) or isnan(other) or isinf(margin) or isinf(other):
+        alike = (isnan(margin) and isnan(other)) or margin == other
+    else:
+        slack = sum(x for x in (error, own) if isfinite(x))
+        alike = abs(margin - other) <= slack + _OF_RUN * max(abs(margin), abs(other)) + _NOTHING
+    if not (isfinite(error) and isfinite(own)):
+        return alike and (error == own or (isnan(error) and isnan(own)))
+    return alike and (max(error, own) < _NOTHING or max(error, own) <= _TIMES * min(error, own))
 
 
 def changes(verdict):
@@ -47,9 +92,9 @@ def _changes(path, was, now):
 
 def _alike(path, was, now):
     if isinstance(was, str) and isinstance(now, str):
-        numbers = zip(_NUMBER.findall(was), _NUMBER.findall(now), strict=False)
+        numbers = [tuple(map(float, pair)) for pair in zip(_NUMBER.findall(was), _NUMBER.findall(now), strict=False)]
         plain = _NUMBER.sub("#", was) == _NUMBER.sub("#", now)
-        return plain and all(_close(float(a), float(b), _PRINTED) for a, b in numbers)
+        return plain and all(_close(a, b, _PRINTED) or max(abs(a), abs(b)) < _NOISE for a, b in numbers)
     if isinstance(was, bool | None) or isinstance(now, bool | None) or not {type(was), type(now)} <= {int, float}:
         return was == now
     return _close(was, now, _ERROR if "error" in path.rsplit("/", 1)[-1] else _SAME)
@@ -62,11 +107,22 @@ def _close(was, now, share):
 
 
 def write():
-    """Write the file."""
+    """Write both files."""
+    from time import process_time
+
+    from flockana.scenarios import scenario, scenarios
     from flockana.theorems import theorem, theorems, verify
 
-    said = {name: data_of(verify(name)) for name in theorems() if theorem(name).kind == "fixed"}
-    _FILE.write_text(json.dumps(said, indent=1, ensure_ascii=False) + "\n", "utf-8")
+    fixed = {name: data_of(verify(name)) for name in theorems() if theorem(name).kind == "fixed"}
+    runs = {}
+    for name in scenarios():
+        scenario(name).run()  # compiled from here on
+        start, entry = process_time(), scenario(name)
+        verdicts = entry.verify(entry.run())
+        if process_time() - start <= LONG:
+            runs[name] = {verdict.theorem: _margins(verdict) for verdict in verdicts}
+    for file, data in ((_FILE, fixed), (_RUNS, runs)):
+        file.write_text(json.dumps(data, indent=1, ensure_ascii=False) + "\n", "utf-8")
 
 
 if __name__ == "__main__":

@@ -11,6 +11,7 @@ from flockana.base.errors import ArgumentError
 from flockana.laws.discrete import DiscreteLaw
 from flockana.scenarios import scenario, scenarios
 from tests.adversarial.cases import Case
+from tests.adversarial.published import changes_of_run, published_runs
 from tests.adversarial.transforms import UNITS, UnchangedError, in_units, later, renumbered, rigid
 
 QUICK = {  # one change each in the sample; every change of every scenario in the attack
@@ -53,6 +54,13 @@ CHANGES = {name: (lambda case, rng, by=by: in_units(case, *by)) for name, by in 
     "twice the tolerance": tighter(2.0),
     "a hundredth of the tolerance": tighter(0.01),
 }
+
+
+@pytest.mark.parametrize("name", published_runs())
+def test_short_runs_say_what_was_published(name):
+    """Status, margin and size of the error, claim by claim."""
+    entry = scenario(name)
+    assert changes_of_run(name, entry.verify(entry.run())) == []
 
 
 def pairs():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.adversarial.published import _alike, _changes
+from tests.adversarial.published import _alike, _changes, _near, _number
 
 
 @pytest.mark.parametrize(
@@ -16,14 +16,14 @@ from tests.adversarial.published import _alike, _changes
         ("x/error", 1e-3, 1.04e-3, True),
         ("x/error", 1e-3, 1.1e-3, False),
         ("x/error", 1e-9, 2e-8, True),
-        ("x/error", 1e-9, 4e-8, False),
+        ("x/error", 1e-10, 2e-8, False),
         ("x/error", 1e-9, -1e-9, False),
         ("x/computed", 0.0, 5e-15, True),
         ("x/computed", 0.0, 1e-13, False),
         ("x/computed", True, 1, True),
         ("x/computed", True, False, False),
         ("x/computed", None, 0.0, False),
-        ("x/detail", "at 1.23e-16 of 4", "at 2.5e-16 of 4.01", True),
+        ("x/detail", "at 1.23e-16 of 4", "at 2.5e-9 of 4.01", True),
         ("x/detail", "at 1.23 of 4", "at 1.23 of 4.2", False),
         ("x/detail", "at 1.23 of 4", "at 1.23 off 4", False),
     ],
@@ -39,3 +39,27 @@ def test_every_place_of_a_change_is_named():
         "E1/a/computed/2: None is now 4.0",
         "E1/b: 1 is now None",
     ]
+
+
+@pytest.mark.parametrize(
+    ("was", "now", "near"),
+    [
+        ((1.0, 1e-6), (1.0005, 1e-6), True),
+        ((1.0, 1e-6), (1.01, 1e-6), False),
+        ((1.0, 0.006), (1.01, 0.006), True),
+        ((1.0, 1e-6), (1.0, 2e-4), False),
+        ((1.0, 1e-6), (1.0, 5e-5), True),
+        ((1.0, 1e-16), (1.0, 0.0), True),
+        ((1.0, None), (1.0, None), True),
+        ((1.0, None), (1.0, 0.0), False),
+        ((None, None), (None, None), True),
+        ((None, 0.0), (1.0, 0.0), False),
+        ((1.0, "inf"), (0.9995, "inf"), True),
+        ((1.0, "inf"), (1.0, 1.0), False),
+        (("inf", 0.0), ("inf", 0.0), True),
+        (("inf", 0.0), (1e9, 0.0), False),
+    ],
+)
+def test_which_margins_of_runs_are_near(was, now, near):
+    margin, error, other, own = map(_number, (*was, *now))
+    assert bool(_near(margin, other, error, own)) is near
