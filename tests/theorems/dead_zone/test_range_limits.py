@@ -333,3 +333,11 @@ def test_one_agent_is_a_flock():
 def test_one_sample_shows_nothing_of_what_happens():
     run = simulate(LAW, [[0.0, 0.0], [16.0, 0.0]], [[1.0, 0.0], [-1.0, 0.0]], (0.0, 2.0)).window(0.0, 0.0)
     assert said("dead-zone-1-printed", run)["energy"] == "inconclusive"
+
+
+@pytest.mark.parametrize("law", [DeadZoneFlocking(), SemiImplicitEuler(DeadZoneFlocking(), 0.01)], ids=["flow", "map"])
+@pytest.mark.parametrize(("beyond", "pair"), [(0.0, None), (1e-15, None), (1e-13, (0, 1))])
+def test_what_starts_at_the_range_but_for_rounding_does_not_enter(law, beyond, pair):
+    """Places of 15 are rounded to 2e-15, and so is their difference."""
+    run = simulate(law, [[0.0], [15.0 * (1.0 + beyond)]], [[1.0], [-1.0]], (0.0, 0.5))
+    assert first_entry(run, 15.0).pair == pair
