@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 import flockana as fl
-from flockana.theorems.classics.links_kept import THEOREM
+from flockana.laws.link_keeping import LinkKeeping
+from flockana.theorems.classics.links_kept import THEOREM, _length_bound
 
 
 def test_a_chain_holds():
@@ -30,3 +31,12 @@ def test_longer_links_than_the_level_allows_are_refuted():
     far = replace(run, law=replace(run.law, r=0.65))  # no run of this law: links grow to 0.7
     claims = {claim.name: claim.status for claim in THEOREM.check(far, fl.Tolerances())[1]}
     assert (claims["links"], claims["connected"]) == ("refuted", "refuted")
+
+
+def test_a_link_that_swings_out_between_two_samples_is_bounded_by_both_its_ends():
+    """At rest at 0.25 each, and back there a second later at a speed of 2: a control point of each path is at 1.05."""
+    q, p = np.array([[[-0.25], [0.25]]] * 2), np.array([[[0.0], [0.0]], [[2.0], [-2.0]]])
+    for order in (slice(None), slice(None, None, -1)):  # or back in time
+        signs = 1.0 if order == slice(None) else -1.0
+        run = fl.Trajectory([0.0, 1.0], q[order], signs * p[order], 0.0 * q, law=LinkKeeping(((0, 1),)))
+        assert 2.1 <= _length_bound(run) < 2.6  # the path's own error is allowed for
