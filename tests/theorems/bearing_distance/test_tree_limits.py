@@ -17,7 +17,7 @@ from flockana.measures.perception import both_ways, edge_vectors, random_out_tre
 from flockana.theorems import verify
 from flockana.theorems.bearing_distance.tree_case import tree_case
 from flockana.theorems.bearing_distance.tree_limits import edge_shares, settles
-from flockana.theorems.bearing_distance.tree_spectrum import tree_spectrum
+from flockana.theorems.bearing_distance.tree_spectrum import POLYNOMIAL, tree_spectrum
 from tests.theorems.made_up import said
 
 TREE = ((0, 1), (1, 2), (1, 3), (0, 4))
@@ -183,6 +183,7 @@ def test_the_spectrum_of_a_chain_is_right_though_its_eigenvalues_cannot_be_compu
     found = tree_spectrum(case, q)
     assert (found.zeros, found.slowest) == (n - 1, pytest.approx(0.5))
     assert found.margin > found.error
+    assert found.error * POLYNOMIAL == pytest.approx(64.0 * (4.0 * (n - 1)) ** 2 * 2.0**-52)  # of rows 2 (n - 1) m
     if n == 40:
         assert np.sort(np.linalg.eigvals(case.edge_system(q)).real)[-n] > -0.4  # not -0.5: what eigenvalues would say
 

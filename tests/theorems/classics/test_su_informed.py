@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from flockana import compose, scenario, simulate, verify
+from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import CircleTarget, LinearTarget
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
@@ -54,6 +55,18 @@ def test_links_over_windows_join_who_is_near_an_informed_agent():
     run = simulate(law, q, np.tile([1.0, -0.5], (9, 1)), (0.0, 2.0))
     assert leader_frame.linked_to_informed(run).tolist() == [True] * 7 + [False] * 2
     assert leader_frame.informed(run).tolist() == [True, False, True] + [False] * 6
+
+
+@pytest.mark.parametrize(
+    ("near", "linked"),
+    [((6, 7, 8, 10), True), ((5, 7, 8, 9), True), ((6, 8, 10), False), ((6, 7, 8), False), ((7, 8, 10), False)],
+)
+def test_a_link_at_one_sample_of_each_window_is_enough(near, linked):
+    """Eleven samples of two agents; the four windows of the last half end at 6¼, 7½, 8¾ and 10."""
+    law = compose(**(FEW | {"agents": 2, "informed": (0,)}))
+    q = np.array([[[0.0, 0.0], [7.0 if t in near else 50.0, 0.0]] for t in range(11)])
+    run = Trajectory(np.arange(11.0), q, 0.0 * q, 0.0 * q, law)
+    assert leader_frame.linked_to_informed(run).tolist() == [True, linked]
 
 
 def test_few_lead_all_that_are_linked():
