@@ -5,16 +5,21 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from flockana.environment.copies import Copies
 from flockana.environment.obstacles import Sphere, Wall
+from flockana.environment.spring import Spring
 from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.interactions import AlphaInteraction, DeadZoneInteraction, Gains
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.laws.dead_zone import DeadZoneFlocking
+from flockana.laws.led_dead_zone import LedDeadZoneFlocking
+from flockana.laws.link_keeping import LinkKeeping
 from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.notebook import PushedAlgorithm1, PushedAlgorithm2
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.laws.peer_to_peer import PeerToPeer
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.laws.sum_of_terms import MOST_TERMS
 from flockana.laws.terms.navigation import Navigation
@@ -68,6 +73,22 @@ def test_each_term_s_power_is_the_rate_of_its_energy_and_work(name):
             slope[k] = (law.potential_energy(t, Q + e) - law.potential_energy(t, Q - e)) / (2.0 * h)
         force = law.flow(t, Q, 0.0 * Q)[0]
         np.testing.assert_allclose(force - force.mean(axis=0), -slope, atol=1e-5 * np.abs(slope).max())
+
+
+OWN = PeerToPeer(Copies(Q + 3.0, 0.0 * Q, Spring((3.0, 1.0), 0.2, 0.1)), gains=Gains(c1_gamma=(1.0, 2.0, 0.5, 4.0)))
+LINKED = LinkKeeping(((0, 1), (1, 2)), r=20.0)
+LED = LedDeadZoneFlocking(leaders=(StaticTarget((1.0, 2.0)), TARGET), group=(0, 1, 1, 0), pinned=(0, 1), c1=0.7)
+
+
+@pytest.mark.parametrize("law", [*(law for name, law in SUMS.items() if name != "pushed"), LED, LINKED, OWN])
+def test_stiffness_is_the_second_derivative_of_the_potential_energy(law):
+    """Along ways of all coordinates at once, of the shape alone where the energy is the shape's."""
+    t, h, stiffness = 0.7, 1e-3, law.stiffness(Q, 0.7)
+    for way in np.random.default_rng(2).normal(size=(6, *Q.shape)):
+        way -= way.mean(axis=0) if law.moving else 0.0
+        energies = [law.potential_energy(t, Q + k * h * way) for k in (-2, -1, 0, 1, 2)]
+        found = np.dot([-1.0, 16.0, -30.0, 16.0, -1.0], energies) / (12.0 * h * h)
+        assert way.ravel() @ (stiffness @ way.ravel()) == pytest.approx(found, rel=1e-5, abs=1e-5)
 
 
 class Drawn(Navigation):
