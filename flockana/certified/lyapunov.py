@@ -77,7 +77,8 @@ def decay(bounds: Bounds) -> Decay:
     >>> 0.19 < float(of_spring.rate) < 0.5
     True
     """
-    eps = 0.5 * float(bounds.curvature) ** 0.5 * np.geomspace(_LEAST, 1.0, _STEPS)
+    widest = min(0.5 * float(bounds.curvature) ** 0.5, float(bounds.least))  # beyond, e > ½ or no speed falls
+    eps = widest * np.geomspace(_LEAST, 1.0, _STEPS)
     low, high = np.zeros_like(eps), np.minimum(eps, 2.0 * float(bounds.least))
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)

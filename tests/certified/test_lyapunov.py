@@ -88,3 +88,5 @@ def test_of_a_spring_between_its_own_inequalities():
 
 def test_where_curvature_is_so_small_that_choices_are_close_there_is_a_rate_still():
     assert decay(Bounds(fmpq(1, 50), fmpq(1, 500), fmpq(3), fmpq(30))).rate > fmpq(36, 10**5)
+    assert decay(Bounds(fmpq(1), fmpq(1), fmpq(1, 10**9), fmpq(1))).rate > fmpq(1, 10**10)  # next to no damping
+    assert decay(Bounds(fmpq(1), fmpq(-(10**6)), fmpq(1), fmpq(10**6))).rate > fmpq(3, 10**13)
