@@ -299,6 +299,15 @@ def test_a_force_that_turns_again_further_out_holds_at_the_distance_all_the_same
     assert fl.pair_law(force=force, adjacency=0, range=3.0, length=1.0).lattice == lattice
 
 
+@pytest.mark.parametrize(
+    ("adjacency", "vanishes"),
+    [("1e6*(r - s) + 1e-5", True), ("1e6*(r - s) + 1", False), ("1e-12*(r - s)", True), ("1e-12*(1 + r - s)", False)],
+)
+def test_an_adjacency_vanishes_at_the_range_by_its_own_scale(adjacency, vanishes):
+    law = fl.pair_law("s**2*(s - r)**2", adjacency=adjacency, range=3.0, length=1.0)
+    assert ("the adjacency does not vanish at the range, s = 3" not in law.faults) is vanishes
+
+
 def test_a_weight_that_is_a_number_is_declared_where_it_is_read():
     law = fl.pair_law("0.37*s**2", adjacency=0.25, range=3.0, length=1.0)
     assert law.force(2.0) == pytest.approx(2.0 * 0.37 * 2.0, rel=1e-15)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -318,3 +320,7 @@ def test_a_run_of_other_agents_than_were_informed_is_refused():
 def test_a_misspelt_gain_is_told_the_gain():
     with pytest.raises(UnknownNameError, match="did you mean 'gradient'"):
         compose(pair=AlphaInteraction(), gradiant=2.0)
+
+
+def test_a_composition_has_no_gain_but_those_given():
+    assert fields(Composition)[1].default == Gains(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)

@@ -24,8 +24,9 @@ from __future__ import annotations
 __all__ = ["area"] + ["b"]
 
 
+@lru_cache(maxsize=32)
 @njit(cache=True)
-def area(a: float | None, b=2) -> float | None:
+def area(a: float | None, *, b=2) -> float | None:
     """3 * 4."""
     if a < b:
         raise ValueError(f"{a + 1}: expected more than {b}" + "!")
@@ -57,11 +58,13 @@ def test_mutants_are_of_what_is_computed_and_not_of_texts_types_or_compiling(pro
     counts, found = drawn(project)
     assert counts == {"laws": len(found)}
     assert {one.before for one in found} == {
-        "def area(a: float | None, b=2) -> float | None:",
+        "def area(a: float | None, *, b=2) -> float | None:",
         "if a < b:",
         "c: int | None = a * b",
         "return area(a) - -1",
     }
+    defaults = {one.after.replace(" ", "") for one in found if one.before.startswith("def area")}
+    assert defaults == {f"defarea(a:float|None,*,b={number})->float|None:" for number in (1, 3)}
     changed = {one.after for one in found if one.before == "if a < b:"}
     assert changed == {*(f"if a {sign} b:" for sign in ("==", "!=", "<=", ">", ">=")), "if not a < b:"}
     products = {one.after for one in found if "a * b" in one.before}

@@ -90,6 +90,8 @@ def _means_nothing(node: Any) -> bool:
             return True
         if kind == "funcdef" and (below is above.annotation or above.name.value == "__repr__"):
             return True
+        if kind == "parameters" and below is not None and below.type == "operator":
+            return True  # the star before those that go by name
         if kind == "if_stmt" and above.children[1].get_code().strip() == "TYPE_CHECKING":
             return True
         if kind == "expr_stmt" and above.children[0].get_code().strip() in ("__all__", "__slots__"):

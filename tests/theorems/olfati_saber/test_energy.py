@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from flockana.interactions import Gains
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems import Tolerances, verify
-from flockana.theorems.olfati_saber.energy import balance, never_rises
+from flockana.theorems.olfati_saber.energy import balance, falling_share, never_rises
 from tests.theorems.made_up import SCALINGS, hexagon, hypothesis, judged, same_in_all_units, statuses
 
 LAW = Algorithm1()
@@ -196,3 +197,12 @@ class TestThePrintedEnergy:
         claim = verify("energy-printed", run).claim("printed-run")
         assert claim.status == "verified"
         assert claim.margin > claim.error > 0.0
+
+
+@pytest.mark.parametrize("unit", [1e-30, 1.0, 1e30])
+def test_the_share_that_falls_is_a_pure_number(unit):
+    """All of what has one sign, a third of what may cancel as much again as it is, and 1 where nothing moves."""
+    rate, cancels = unit * np.array([-1.0, -1.0, 1.0, 0.0]), unit * np.array([0.0, 1.0, 0.0, 0.0])
+    share, rounding = falling_share(SimpleNamespace(n=3), rate, cancels)
+    np.testing.assert_allclose(share, [1.0, 1.0 / 3.0, -1.0, 1.0], rtol=1e-15)
+    assert rounding == 73.0 * 2.0**-52
