@@ -1,46 +1,28 @@
-"""The catalogues are lists: what draws, derives, solves and compiles stays where it is."""
+"""The two listing commands leave the process as they found it."""
 
 from __future__ import annotations
 
-import subprocess
-import sys
+import gc
+import os
 
 import pytest
 
-from flockana.scenarios import scenario, scenarios
-from flockana.theorems import theorems
-
-HEAVY = (
-    "numba",
-    "llvmlite",
-    "scipy",
-    "sympy",
-    "casadi",
-    "matplotlib",
-    "PIL",
-    "xarray",
-    "networkx",
-    "control",
-    "jinja2",
-)
-PROGRAM = """
-import sys
-from flockana.cli.main import main
-try:
-    main([sys.argv[1]])
-except SystemExit as end:
-    print(end.code, [name for name in sys.argv[2:] if name in sys.modules], file=sys.stderr)
-"""
+from flockana.cli.catalogue import scenarios_command, theorems_command
 
 
-@pytest.mark.parametrize(("command", "names"), [("scenarios", scenarios), ("theorems", theorems)])
-def test_a_list_names_all_and_loads_nothing_heavy(command, names):
-    run = subprocess.run([sys.executable, "-c", PROGRAM, command, *HEAVY], capture_output=True, text=True, check=True)
-    assert run.stderr.split("\n")[-2] == "0 []"
-    assert all(f" {name} " in run.stdout for name in names())
-
-
-def test_what_a_list_says_of_a_start_is_so():
-    for name in scenarios():
-        item = scenario(name)
-        assert item.shape == item.q0.shape == item.p0.shape == scenario(name, seed=1).shape, name
+@pytest.mark.parametrize("command", [scenarios_command, theorems_command])
+@pytest.mark.parametrize(("collects", "threads"), [(True, None), (False, "2")])
+def test_garbage_is_collected_and_threads_start_as_before(monkeypatch, capsys, command, collects, threads):
+    if threads is None:
+        monkeypatch.delenv("OPENBLAS_NUM_THREADS", raising=False)
+    else:
+        monkeypatch.setenv("OPENBLAS_NUM_THREADS", threads)
+    before = gc.isenabled()
+    (gc.enable if collects else gc.disable)()
+    try:
+        command()
+        assert gc.isenabled() is collects
+    finally:
+        (gc.enable if before else gc.disable)()
+    assert os.environ.get("OPENBLAS_NUM_THREADS") == threads
+    assert len(capsys.readouterr().out.splitlines()) > 80
