@@ -49,8 +49,8 @@ def changes_of_run(name, verdicts):
     for theorem, claims in was.items():
         for claim, (status, margin, error) in claims.items():
             found, other, own = now[theorem][claim]
-            sizes = [_number(x) for x in (margin, other, error, own)]
-            if status != found or not _near(*sizes):
+            sizes = [number(x) for x in (margin, other, error, own)]
+            if status != found or not near(*sizes):
                 lines.append(f"{name}/{theorem}/{claim}: {(status, margin, error)} is now {(found, other, own)}")
     return lines
 
@@ -59,38 +59,42 @@ def _margins(verdict):
     return {claim["name"]: [claim["status"], claim["margin"], claim["error"]] for claim in verdict.to_dict()["claims"]}
 
 
-def _number(x):
+def number(x):
+    """One of a verdict's numbers as it is written; NaN where there is none."""
     return float("nan") if x is None else float(x)
 
 
-def _near(margin, other, error, own):
+def near(margin, other, error, own):
+    """Whether two margins of runs, with their errors, are the same but for integration and rounding."""
     if isnan(margin) or isnan(other) or isinf(margin) or isinf(other):
-        alike = (isnan(margin) and isnan(other)) or margin == other
+        same = (isnan(margin) and isnan(other)) or margin == other
     else:
         slack = sum(x for x in (error, own) if isfinite(x))
-        alike = abs(margin - other) <= slack + _OF_RUN * max(abs(margin), abs(other)) + _NOTHING
+        same = abs(margin - other) <= slack + _OF_RUN * max(abs(margin), abs(other)) + _NOTHING
     if not (isfinite(error) and isfinite(own)):
-        return alike and (error == own or (isnan(error) and isnan(own)))
-    return alike and (max(error, own) < _NOTHING or max(error, own) <= _TIMES * min(error, own))
+        return same and (error == own or (isnan(error) and isnan(own)))
+    return same and (max(error, own) < _NOTHING or max(error, own) <= _TIMES * min(error, own))
 
 
 def changes(verdict):
     """Where a verdict is not what was published, one line each."""
-    return list(_changes(verdict.theorem, _published().get(verdict.theorem), data_of(verdict)))
+    return list(differences(verdict.theorem, _published().get(verdict.theorem), data_of(verdict)))
 
 
-def _changes(path, was, now):
+def differences(path, was, now):
+    """Where two verdicts differ by more than rounding, one line each."""
     if isinstance(was, dict) and isinstance(now, dict):
         for key in {**was, **now}:
-            yield from _changes(f"{path}/{key}", was.get(key), now.get(key))
+            yield from differences(f"{path}/{key}", was.get(key), now.get(key))
     elif isinstance(was, list) and isinstance(now, list):
         for k, pair in enumerate(zip_longest(was, now)):
-            yield from _changes(f"{path}/{k}", *pair)
-    elif not _alike(path, was, now):
+            yield from differences(f"{path}/{k}", *pair)
+    elif not alike(path, was, now):
         yield f"{path}: {was!r} is now {now!r}"
 
 
-def _alike(path, was, now):
+def alike(path, was, now):
+    """Whether two values are the same but for rounding; texts word by word, and number by number."""
     if isinstance(was, str) and isinstance(now, str):
         numbers = [tuple(map(float, pair)) for pair in zip(_NUMBER.findall(was), _NUMBER.findall(now), strict=False)]
         plain = _NUMBER.sub("#", was) == _NUMBER.sub("#", now)

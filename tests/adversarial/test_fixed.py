@@ -84,7 +84,7 @@ def test_what_is_printed_and_what_is_true(name, verdict_of):
     assert {claim: said[claim] for claim, allowed in expected(name).items() if said[claim] not in allowed} == {}
     assert said == {claim.name: claim.status for claim in verify(name).claims}  # and so the second time
     assert all(claim.detail for claim in verdict_of(name).claims)
-    assert changes(verdict_of(name)) == []
+    assert changes(verdict_of(name)) == [], "if it is meant: python -m tests.adversarial.published"
 
 
 @pytest.mark.attack

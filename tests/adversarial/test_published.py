@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from tests.adversarial.published import _alike, _changes, _near, _number
+from tests.adversarial.published import alike, differences, near, number
 
 
 @pytest.mark.parametrize(
-    ("path", "was", "now", "alike"),
+    ("path", "was", "now", "expected"),
     [
         ("x/margin", 1.0, 1.00009, True),
         ("x/margin", 1.0, 1.0002, False),
@@ -28,13 +28,13 @@ from tests.adversarial.published import _alike, _changes, _near, _number
         ("x/detail", "at 1.23 of 4", "at 1.23 off 4", False),
     ],
 )
-def test_what_is_alike(path, was, now, alike):
-    assert _alike(path, was, now) is alike
+def test_what_is_alike(path, was, now, expected):
+    assert alike(path, was, now) is expected
 
 
 def test_every_place_of_a_change_is_named():
     was, now = {"a": {"computed": [1.0, 2.0]}, "b": 1}, {"a": {"computed": [1.0, 3.0, 4.0]}}
-    assert list(_changes("E1", was, now)) == [
+    assert list(differences("E1", was, now)) == [
         "E1/a/computed/1: 2.0 is now 3.0",
         "E1/a/computed/2: None is now 4.0",
         "E1/b: 1 is now None",
@@ -42,7 +42,7 @@ def test_every_place_of_a_change_is_named():
 
 
 @pytest.mark.parametrize(
-    ("was", "now", "near"),
+    ("was", "now", "expected"),
     [
         ((1.0, 1e-6), (1.0005, 1e-6), True),
         ((1.0, 1e-6), (1.01, 1e-6), False),
@@ -60,6 +60,6 @@ def test_every_place_of_a_change_is_named():
         (("inf", 0.0), (1e9, 0.0), False),
     ],
 )
-def test_which_margins_of_runs_are_near(was, now, near):
-    margin, error, other, own = map(_number, (*was, *now))
-    assert bool(_near(margin, other, error, own)) is near
+def test_which_margins_of_runs_are_near(was, now, expected):
+    margin, error, other, own = map(number, (*was, *now))
+    assert bool(near(margin, other, error, own)) is expected
