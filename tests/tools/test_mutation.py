@@ -107,6 +107,19 @@ def test_what_a_file_of_the_package_is_tested_by(path, first):
     assert nearby.Nearby(command.PROJECT).order(f"flockana/{path}.py")[0] == first
 
 
+def test_a_theorem_on_runs_is_asked_of_short_runs_soon():
+    order = nearby.Nearby(command.PROJECT).order("flockana/theorems/classics/tanner_switching.py")
+    short = "tests/adversarial/test_catalogue.py::test_short_runs_say_what_was_published"
+    assert {f"{short}[tanner-switching]", f"{short}[tanner-switching-parts]"} <= set(order[:3])
+
+
+def test_what_decides_from_a_tube_is_asked_for_by_what_names_it():
+    order = nearby.Nearby(command.PROJECT).order
+    assert "tests/theorems/olfati_saber/test_os_3.py" in order("flockana/theorems/olfati_saber/enclosed.py")[:4]
+    first = order("flockana/theorems/olfati_saber/flocking_enclosed.py")[0]
+    assert first == "tests/theorems/olfati_saber/test_alpha_flocking.py"
+
+
 def test_a_copy_has_the_packages_and_not_what_runs_wrote(tmp_path):
     project = tmp_path / "project"
     for name in ("flockana/report/page.py", "tests/report/test_page.py", "report/index.html", ".venv/bin/python"):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from functools import cache
 from itertools import chain
@@ -34,8 +35,11 @@ INTERPRETED = tuple(
     )
 )
 _IMPORT = re.compile(r"^\s*from (flockana[\w.]*) import (\([^)]*\)|.+)$|^\s*import (flockana[\w.]+)", re.MULTILINE)
+_LATER = re.compile(r'\benclosed_by\("\w+"(?:, "(\w+)")?\)')  # a module beside it that is loaded when asked for
 _THEOREM = re.compile(r'\b(?:id=|erratum\(\s*)"([\w-]+)"')
 _FIXED = "tests/adversarial/test_fixed.py"  # asks for every theorem that needs no run, by its id
+_RUNS = "tests/adversarial/published_runs.json"  # what is asked of short runs, by scenario and by theorem
+_OF_RUN = "tests/adversarial/test_catalogue.py::test_short_runs_say_what_was_published"
 _DEFINED = re.compile(r"^(?:def|class) (\w+)|^(\w+)(?:: [^=\n]+)? = ", re.MULTILINE)
 
 
@@ -43,7 +47,7 @@ def _breadth(test: str) -> int:
     """0 for tests of the rooms that compute, 1 for others, 2 for those that run much at once."""
     room = Path(test).parts[1]
     wide = ("adversarial", "bad_input", "cli", "ensemble", "falsify", "report")
-    return 0 if room in PACKAGES or _FIXED in test else 2 if room in wide else 1
+    return 0 if room in PACKAGES or _FIXED in test or _OF_RUN in test else 2 if room in wide else 1
 
 
 class Nearby:
@@ -62,6 +66,8 @@ class Nearby:
         self.homes = self._homes()
         theorems = ((path, text) for path, text in self.texts.items() if path.startswith("flockana/theorems/"))
         self.ids = {name: path for path, text in theorems for name in _THEOREM.findall(text)}
+        runs = root / _RUNS
+        self.runs: dict[str, dict[str, object]] = json.loads(runs.read_text("utf-8")) if runs.exists() else {}
         self.users: dict[str, list[str]] = {}
         for path, text in self.texts.items():
             for used in self._used(path, text) | self._named(text if path.startswith("tests/") else ""):
@@ -85,6 +91,7 @@ class Nearby:
             for thing in re.findall(r"\w+", things):
                 inside = [home for home in self.homes.get(thing, ()) if home.startswith(f"{file}/")]
                 used |= {f"{file}/{thing}.py", *(inside if f"{file}.py" not in self.texts else ())}
+        used |= {str(Path(path).with_name(f"{name or 'enclosed'}.py")) for name in _LATER.findall(text)}
         return {one for one in used if one in self.texts and one != path}
 
     def _named(self, text: str) -> set[str]:
@@ -94,6 +101,12 @@ class Nearby:
     def _fixed(self, paths: list[str]) -> list[str]:
         """The theorems among some files that need no run."""
         return [name for name, path in self.ids.items() if path in paths and f'"{name}":' in self.texts.get(_FIXED, "")]
+
+    def _short_runs(self, paths: list[str]) -> list[str]:
+        """Short runs of which the theorems among some files are asked, three of each theorem."""
+        mine = [name for name, path in self.ids.items() if path in paths]
+        runs = [[run for run, said in self.runs.items() if name in said][:3] for name in mine]
+        return list(dict.fromkeys(chain(*runs)))
 
     def own(self, path: str) -> list[str]:
         """The tests that are named for a file."""
@@ -118,6 +131,7 @@ class Nearby:
             asked += [one for one in reached if ">>>" in self.texts[one]]
             asked += [user for user in users if Path(user).name.startswith("test_") and user != _FIXED]
             asked += [f"{_FIXED}::test_what_is_printed_and_what_is_true[{name}]" for name in self._fixed(reached)]
+            asked += [f"{_OF_RUN}[{name}]" for name in self._short_runs(reached)]
             levels.append(sorted(asked, key=lambda one: (one not in self.own(path), room not in one, _breadth(one))))
             seen |= set(users)
             reached = [user for user in users if user.startswith("flockana/")]
