@@ -9,7 +9,17 @@ import pytest
 
 import flockana as fl
 from flockana.lattice import hexagonal_patch
-from flockana.theorems.sampling import mismatch_between, stretch_between
+from flockana.laws.msn import MSNDiscretisation
+from flockana.theorems.sampling import (
+    fastest_between,
+    least_between,
+    mismatch_between,
+    nets_at,
+    nets_between,
+    radius_between,
+    spread_between,
+    stretch_between,
+)
 
 COARSE = np.linspace(0.0, 3.0, 7)
 
@@ -56,3 +66,63 @@ def test_where_steps_were_not_kept_speeds_are_unknown(runs):
     bound = mismatch_between(thin)
     assert bound[0] == np.inf
     np.testing.assert_array_equal(bound[1:], mismatch_between(coarse)[1:])
+
+
+def straight(q, p, until, samples=2):
+    """A run of agents out of each other's range, at constant velocities."""
+    return fl.simulate(fl.Algorithm1(), q, p, (0.0, until), t_eval=np.linspace(0.0, until, samples))
+
+
+@pytest.mark.parametrize(
+    ("apart", "speed", "until", "expected"),
+    [
+        (99.0, 1.0, 1.0, 1.0 / 8.0 * 2.0 * 2.0**2 / 99.0),  # h²/8 (2w²/l): it passes w h/2 slowly
+        (99.0, 1.0, 3.0, 9.0 / 8.0 * 2.0 * 2.0**2 / 99.0),
+        (99.0, 20.0, 3.0, 0.5 * 40.0 * 3.0),  # might come nearer than half of it: w h/2
+    ],
+)
+def test_straight_ways_may_stray_by_what_their_speeds_allow(apart, speed, until, expected):
+    run = straight([[0.0, 0.0], [apart, 0.0]], [[-speed, 0.0], [speed, 0.0]], until)
+    assert stretch_between(run) == pytest.approx([expected], rel=1e-8)
+    assert fastest_between(run) == pytest.approx([speed], rel=1e-9)
+    assert mismatch_between(run) == pytest.approx([0.5 * speed**2], rel=1e-9)
+    ends = 0.5 * apart + speed * until
+    assert radius_between(run) == pytest.approx([ends], rel=1e-9)
+    assert spread_between(run) == pytest.approx(np.sqrt(2.0) * ends, rel=1e-9)
+    assert least_between(run, [0], [1]) == pytest.approx(apart, rel=1e-9)
+
+
+@pytest.mark.parametrize(("share", "open_links"), [(0.9, 1), (1.1, 0)])
+@pytest.mark.parametrize("until", [1.0, 2.0])
+def test_a_pair_is_open_as_far_from_the_range_as_it_might_come_between_samples(share, open_links, until):
+    """Two pass abreast, at relative speed 0.2: their distance may sink by h²/8 (2w²/r), which tells of others, too."""
+    r, w = 8.4, 0.2
+    gap = share * until**2 / 8.0 * 2.0 * w**2 / r
+    q = [[0.0, 0.0], [r + gap, 0.0], [50.0, 0.0], [50.0, 7.0]]
+    run = straight(q, [[0.0, 0.0], [0.0, w], [0.0, 3.0], [0.0, 3.0]], until)
+    net = nets_between(run)
+    assert net.open_links.tolist() == [open_links]
+    assert net.links.tolist() == [1]
+    assert (net.components.tolist(), net.components_least.tolist()) == ([3], [3 - open_links])
+    assert (net.giant.tolist(), net.giant_most.tolist()) == ([2], [2])
+    assert nets_at(run).open_links.tolist() == [0, 0]
+
+
+def test_a_link_that_parts_is_open_while_it_does():
+    run = straight([[0.0, 0.0], [8.35, 0.0]], [[0.0, 0.0], [0.9, 0.0]], 1.0, 6)
+    apart = np.linalg.norm(run.q[:, 1] - run.q[:, 0], axis=1)
+    linked = apart < 8.4
+    assert linked[0]
+    assert not linked[-1]
+    net = nets_between(run)
+    assert net.open_links.tolist() == (linked[:-1] & ~linked[1:]).astype(float).tolist()
+    assert nets_at(run).links.tolist() == linked.astype(float).tolist()
+    assert nets_at(run).components.tolist() == (2.0 - linked).tolist()
+
+
+def test_a_map_moves_at_its_samples_only():
+    run = fl.simulate(MSNDiscretisation(fl.Algorithm1(), dt=0.5), [[0.0], [99.0]], [[1.0], [-1.0]], (0.0, 1.0))
+    assert stretch_between(run).tolist() == [0.0, 0.0]
+    assert mismatch_between(run) == pytest.approx([0.5, 0.5])
+    assert radius_between(run) == pytest.approx([49.5, 49.0])
+    assert nets_between(run).components.tolist() == [2.0, 2.0]
