@@ -154,8 +154,8 @@ def barrier(
         lipschitz = lipschitz_within(float(window))
         if lipschitz > 0.0:
             reach = min(reach, 0.5 * curvature / lipschitz)
-        inner = curvature - lipschitz * distance
-        if reach > 4.0 * distance and inner > 0.5 * curvature:
+        inner = curvature - lipschitz * distance  # 7/8 of the curvature at least, if the distance is reach/4 at most
+        if reach > 4.0 * distance:
             best = max(best, reach**2 * (0.5 * inner - lipschitz * reach / 6.0))
     return float(best)
 

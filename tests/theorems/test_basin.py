@@ -65,6 +65,16 @@ def test_the_barrier_of_a_cubic_well():
     assert barrier(curvature, 1.0, [4.0], lambda window: 0.0) == 0.0  # the minimum is too far for its window
 
 
+@pytest.mark.parametrize(("distance", "found"), [(0.08, True), (0.09, False)])
+def test_a_minimum_near_by_lowers_the_curvature_that_is_left(distance, found):
+    """ρ = λ/2L = 1/3 takes a minimum within ρ/4; what is left of the curvature is λ − L times the distance."""
+    curvature, lipschitz, reach = 2.0, 3.0, 1.0 / 3.0
+    height = barrier(curvature, distance, [10.0], lambda window: lipschitz)
+    left = curvature - lipschitz * distance
+    assert height == pytest.approx(found * reach**2 * (0.5 * left - lipschitz * reach / 6.0), rel=1e-14)
+    assert barrier(np.nan, 0.0, [1.0], lambda window: 1.0) == 0.0
+
+
 def test_the_lipschitz_constant_of_one_pair_is_exact():
     """Two agents on a line: the Hessian is F'' (1, -1)ᵀ(1, -1), of norm 2F'', which changes by 2T |Δs| = 2T √2 |a|."""
     assert lipschitz_constant(2, np.array([[0, 1]]), np.array([5.0])) == pytest.approx(2.0 * sqrt(2.0) * 5.0)

@@ -95,3 +95,10 @@ def test_connectedness_is_certain_below_the_energy_of_a_cut(share, status):
     speed = sqrt(share * float(law.potential.energy(law.r**2)))  # each: H = speed²
     run = fl.simulate(law, [[0.0], [1.0]], [[-speed], [speed]], (0.0, 0.1))
     assert fl.verify("tanner-switching", run).hypotheses[-1].status == status
+
+
+def test_a_flock_at_one_point_that_moves_as_one_has_no_size_to_compare():
+    run = fl.simulate(fl.CuckerSmale(), [[1.0, 2.0]] * 2, [[3.0, 0.0]] * 2, (0.0, 1.0))
+    bounded = fl.verify("ha-liu", run).claim("bounded")
+    assert (bounded.status, bounded.margin, bounded.error) == ("inconclusive", 0.0, inf)
+    assert "x_M = 0" in bounded.detail
