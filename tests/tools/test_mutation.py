@@ -116,8 +116,8 @@ def test_a_theorem_on_runs_is_asked_of_short_runs_soon():
 def test_what_decides_from_a_tube_is_asked_for_by_what_names_it():
     order = nearby.Nearby(command.PROJECT).order
     assert "tests/theorems/olfati_saber/test_os_3.py" in order("flockana/theorems/olfati_saber/enclosed.py")[:4]
-    first = order("flockana/theorems/olfati_saber/flocking_enclosed.py")[0]
-    assert first == "tests/theorems/olfati_saber/test_alpha_flocking.py"
+    theorem = "tests/theorems/olfati_saber/test_alpha_flocking.py"
+    assert theorem in order("flockana/theorems/olfati_saber/flocking_enclosed.py")[:3]
 
 
 def test_a_copy_has_the_packages_and_not_what_runs_wrote(tmp_path):
