@@ -16,7 +16,7 @@ from flockana.interactions import Gains
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems import Tolerances, verify
-from flockana.theorems.olfati_saber.energy import balance, falling_share, never_rises
+from flockana.theorems.olfati_saber.energy import balance, falling_share, never_rises, stays_outside
 from tests.theorems.made_up import SCALINGS, hexagon, hypothesis, judged, same_in_all_units, statuses
 
 LAW = Algorithm1()
@@ -206,3 +206,20 @@ def test_the_share_that_falls_is_a_pure_number(unit):
     share, rounding = falling_share(SimpleNamespace(n=3), rate, cancels)
     np.testing.assert_allclose(share, [1.0, 1.0 / 3.0, -1.0, 1.0], rtol=1e-15)
     assert rounding == 73.0 * 2.0**-52
+
+
+@pytest.mark.parametrize(
+    ("lower", "reached", "status", "margin"),
+    [
+        (0.5, 0.6, "met", 0.5),
+        (-0.1, 0.2, "assumed", -0.1),
+        (-0.1, -1e-16, "assumed", -0.1),  # in contact but for rounding
+        (-0.4, -0.3, "unmet", -0.3),
+    ],
+)
+def test_whether_an_agent_has_entered_an_obstacle(lower, reached, status, margin):
+    least = SimpleNamespace(lower=lower, reached=reached, agent=3, obstacle=1, time=2.5)
+    law = SimpleNamespace(obstacles=(1,))
+    need = stays_outside(SimpleNamespace(law=law, q=np.ones((2, 1, 1)), clearance=lambda: least))
+    assert (need.status, need.margin) == (status, margin)
+    assert "(agent 3 at obstacles[1], t = 2.5)" in need.detail
