@@ -205,3 +205,17 @@ def test_statements_name_their_source():
     for name in ("zone-1-printed", "zone-1-corrected", "zone-separation"):
         assert theorem(name).references == ("jond-2025",)
         assert theorem(name).source.startswith("Jond")
+
+
+def test_the_rate_is_that_from_where_the_flock_stays_near():
+    """Length errors of 0.5, then within 0.01 and falling as exp(-0.6 t): what came before does not count."""
+    law = MinimalFlocking(edges=((0, 1),), spacing=2.0)
+    run = simulate(law, [[0.0], [3.0]], [[0.0], [0.0]], (0.0, 20.0), t_eval=np.linspace(0.0, 20.0, 41))
+    off = np.where(run.t < 1.9, 0.5, 9e-3 * np.exp(-0.6 * (run.t - 2.0)))
+    made = replace(run, q=np.stack([np.zeros(41), 2.0 * (1.0 + off)], axis=1)[:, :, None])
+    claim = claim_of("zone-1-corrected", made, "exponential")
+    slowest = claim.witness["slowest rate of the spectrum"]
+    assert claim.computed == pytest.approx(0.6, rel=1e-6)
+    assert claim.margin == pytest.approx(0.6 / slowest - 0.5, rel=1e-6)
+    assert claim.error == pytest.approx(1e-3 / 5.0)
+    assert "fall from 0.009 to" in claim.detail

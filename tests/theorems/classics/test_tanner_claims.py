@@ -59,3 +59,12 @@ def test_a_consensus_that_drives_apart_is_no_case_of_the_energy_theorem():
     assert verdict.claim("rate").status == "vacuous"
     assert verdict.claim("balance").status == "verified"
     assert verify("collision-energy", run).status == "vacuous"
+
+
+def test_at_the_minimum_an_error_of_the_distance_counts_squared():
+    """V = k (d²/s² − 1 − ln d²/s²) is flat at d: far from the origin rounding moves the bound by itself, no more."""
+    q = np.array([[1e6, 0.0], [1e6 + 1.0, 0.0]])
+    run = simulate(FixedNetFlocking(edges=((0, 1),)), q, 0.0 * q, (0.0, 1.0))
+    claim = verify("tanner-fixed", run).claim("no-collision")
+    assert claim.status != "refuted"
+    assert 1e-9 < claim.error < 1e-7

@@ -74,3 +74,19 @@ def test_what_parts_for_ever_does():
     middle, end = (components_of(q, p, law) for q, p in zip(run.q[1:], run.p[1:], strict=True))
     assert middle.parting
     assert (end.count, end.parting) == (middle.count, True)
+
+
+def test_parts_with_one_velocity_may_turn_to_meet_for_all_that_rounding_tells():
+    """Of two velocities that differ by less than their rounding the direction is not known: any path may be it."""
+    law, q = DeadZoneFlocking(), np.array([[0.0, 0.0], [3.5, 0.0], [50.0, 0.0], [53.5, 0.0]])
+    same = components_of(q, np.full((4, 2), 1.0), law)
+    assert same.apart.error == pytest.approx(50.0 / law.interaction.r)
+    ulp = np.full((4, 2), 1.0)
+    ulp[2:, 0] += 2.0**-50
+    assert components_of(q, ulp, law).apart.error == pytest.approx(50.0 / law.interaction.r)
+    slow = np.full((4, 2), 1.0)
+    slow[2:, 0] += 1e-9
+    blur = 2.0 * 4.0 * np.finfo(float).eps * 1.0  # two means of two agents each
+    expected = 50.0 * 4.0 * blur / 1e-9 / law.interaction.r
+    assert components_of(q, slow, law).apart.error == pytest.approx(expected, rel=1e-6)
+    assert not any(components_of(q, p, law).parting for p in (np.full((4, 2), 1.0), ulp))
