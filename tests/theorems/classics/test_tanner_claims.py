@@ -68,3 +68,11 @@ def test_at_the_minimum_an_error_of_the_distance_counts_squared():
     claim = verify("tanner-fixed", run).claim("no-collision")
     assert claim.status != "refuted"
     assert 1e-9 < claim.error < 1e-7
+
+
+def test_off_the_minimum_an_error_of_the_distance_moves_the_bound_by_as_much():
+    """Of 8ε(s + |q|) in d²/s² half of that, times s: V' = 2k(1 − d²/s²)/s; the bound itself is compared to 8ε|q|."""
+    q = np.array([[1e6, 0.0], [1e6 + 0.8, 0.0]])
+    run = simulate(FixedNetFlocking(edges=((0, 1),)), q, 0.0 * q, (0.0, 0.1))
+    claim = verify("tanner-fixed", run).claim("no-collision")
+    assert claim.error == pytest.approx((8.0 + 4.0) * np.finfo(float).eps * 1e6, rel=0.05)

@@ -269,3 +269,9 @@ def test_verdicts_are_plain_data():
     for q in (fcc(2, 2, 2, D), square(3, 3, D), [[0.0, 0.0]]):
         data = json.loads(json.dumps(verify("os-5", q=q, d=D, r=R).to_dict()))
         assert [c["name"] for c in data["claims"]] == list(CLAIMS)
+
+
+@pytest.mark.parametrize(("r", "status"), [(D, "unmet"), (np.nextafter(D, 8.0), "met"), (0.9 * D, "unmet")])
+def test_the_ratio_is_above_one(r, status):
+    need = next(h for h in verify("os-5", q=[[0.0, 0.0], [D, 0.0]], d=D, r=r).hypotheses if h.name.startswith("κ"))
+    assert (need.status, need.margin) == (status, pytest.approx(r / D - 1.0, abs=1e-15))
