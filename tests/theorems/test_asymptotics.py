@@ -83,7 +83,7 @@ def test_where_a_net_can_flex_the_strain_and_the_speeds_must_both_die_out():
     assert settles.computed < 1e-9
     assert settles.margin == pytest.approx(TOLERANCES.lattice, rel=1e-3)
     assert settles.witness["links"] == 2
-    short = lattice_limit(simulate(law, 1.05 * chain, np.zeros((3, 2)), (0.0, 0.1)), [], TOLERANCES, name="i")
+    short = lattice_limit(simulate(law, 1.05 * chain, np.zeros((3, 2)), (0.0, 1e-3)), [], TOLERANCES, name="i")
     assert short.status == "inconclusive"
     assert short.computed == pytest.approx(0.05, rel=0.05)
     assert "at the end:" in short.detail
