@@ -6,8 +6,11 @@ import mpmath
 import numpy as np
 import pytest
 
+from flockana.environment.obstacles import Sphere
+from flockana.environment.targets import StaticTarget
 from flockana.interactions import AlphaInteraction, Gains
-from flockana.laws.olfati_saber import Algorithm1
+from flockana.laws.algorithm3 import Algorithm3
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.rounding import energy_error, frame_error, pair_force_error, spread_error
 
 PAIRS = [
@@ -95,3 +98,31 @@ def test_the_frame_and_the_spread():
                 assert worst <= frame_error(x)
                 half = sum(value**2 for row in exact for value in row) / 2
                 assert abs(float(0.5 * np.sum(own * own) - half)) <= spread_error(x)[k]
+
+
+@pytest.mark.parametrize(("n", "pairs"), [(2, 1), (3, 3), (5, 10)])
+def test_what_an_energy_of_zero_at_rest_is_off_by_is_that_of_its_pairs(n, pairs):
+    """Each by 1e-13 c*, and by the force times the rounding of its length; c1α times."""
+    pair, eps = PAIRS[1], np.finfo(float).eps
+    q = np.zeros((1, n, 1))
+    q[0, -1, 0] = -50.0
+    law = Algorithm1(pair, Gains(c1_alpha=2.0))
+    bound = energy_error(law, q, 0.0 * q, np.zeros(1))[0]
+    each = 1e-13 * pair.c_star + 8.0 * eps * 1.01 * pair.strength * (pair.range + 50.0)
+    assert bound == pytest.approx(2.0 * pairs * each, rel=1e-12)
+    more = energy_error(law, q, 0.0 * q, np.array([-7.0]))[0] - bound
+    assert more == pytest.approx((pairs + n + 8) * eps * 7.0, rel=1e-3)
+
+
+def test_a_pull_and_an_obstacle_add_theirs():
+    """The pull by the square of the farthest place from the γ-agent; an obstacle by its largest energy and force."""
+    eps, q = np.finfo(float).eps, np.array([[[0.0, 0.0], [-50.0, 0.0]]])
+    pull = Gains(c1_alpha=0.0, c1_gamma=3.0)
+    law = Algorithm2(gains=pull, target=StaticTarget((0.0, 20.0)))
+    bound = energy_error(law, q, 0.0 * q, np.zeros(1))[0]
+    assert bound == pytest.approx(3.0 * (2 + 8) * eps * 70.0**2, rel=1e-12)
+    among = Algorithm3(gains=pull, target=law.target, obstacles=(Sphere((100.0, 0.0), 10.0),) * 2)
+    beta = among.beta
+    each = 1e-13 * float(beta.psi_beta(0.0)) + 16.0 * eps * 2.0 / np.sqrt(beta.eps) * (beta.r + 70.0)
+    more = energy_error(among, q, 0.0 * q, np.zeros(1))[0] - bound
+    assert more == pytest.approx(2.0 * among.gains.c1_beta * 2 * each, rel=1e-9)

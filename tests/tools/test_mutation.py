@@ -99,7 +99,7 @@ def test_the_nearest_tests_come_first(project):
     [
         ("lattice/measure", "tests/lattice/test_measure.py"),  # its own
         ("kernels/listed", "tests/dynamics/test_compiled.py"),  # has none: that of what imports it
-        ("theorems/slides/e13", "tests/theorems/olfati_saber/test_collisions.py"),  # names the theorem
+        ("theorems/olfati_saber/lattice_limit", "tests/theorems/olfati_saber/test_os_1.py"),  # names the theorem
         ("theorems/dead_zone/l01", "tests/adversarial/test_fixed.py::test_what_is_printed_and_what_is_true[L1]"),
     ],
 )

@@ -137,3 +137,17 @@ def test_who_hears_one_agent_is_counted_in_whole_numbers():
     assert joined.mixes
     assert joined.factor < 1.0
     assert not cut.mixes
+
+
+def test_a_block_is_of_its_own_steps_and_rounds_with_each():
+    """Of two agents a block is one window; a third of a step more, a third of the rounding more."""
+    both = np.array([[0, 1]])
+    headings = np.tile([0.25, 1.5], (6, 1))
+    first, second = blocks([both] * 5, headings, [(0, 2), (2, 5)])
+    assert [(b.start, b.stop) for b in (first, second)] == [(0, 2), (2, 5)]
+    assert second.error == pytest.approx(1.5 * first.error, rel=1e-12)
+    assert 2.0 * 2.0 * np.finfo(float).eps * 1.5 < first.error < 1e-13
+    assert (first.factor, first.mixes) == (0.0, True)
+    apart = np.empty((0, 2), dtype=int)
+    (lonely,) = blocks([apart] * 2, headings, [(0, 2)])
+    assert (lonely.factor, lonely.mixes) == (1.0, False)

@@ -30,7 +30,7 @@ def test_the_proof_is_of_this_start_for_as_long_as_both_pairs_take(own, start, u
 def test_another_start_or_law_has_no_proof(own):
     later = (0.0, 0.04)
     assert proof_of(own.law, own.q0, np.nextafter(own.p0, 0.0), later) is None
-    assert proof_of(own.law, np.asarray(own.q0) + [[0.0], [0.0], [1e-9]], own.p0, later) is None
+    assert proof_of(own.law, np.add(own.q0, [[0.0], [0.0], [1e-9]]), own.p0, later) is None
     other = replace(own.law, gains=replace(own.law.gains, c2_alpha=1.5))
     assert proof_of(other, own.q0, own.p0, later) is None
 
