@@ -14,7 +14,7 @@ from flockana.base.errors import ArgumentError
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.theorems import Claim, Theorem, Tolerances, verify
-from flockana.theorems.second_run import corroborated, second_run
+from flockana.theorems.second_run import corroborated, ensure_fits, second_run
 from flockana.theorems.theorem import judge
 
 SPRING = fl.Algorithm2(
@@ -252,3 +252,23 @@ def test_one_sample_shows_no_motion() -> None:
     run = oscillation(t_eval=[0.0])
     claim = verify(returns_to_the_start(0.5), run).claims[0]
     assert (claim.status, claim.detail) == ("inconclusive", "one sample shows no motion")
+
+
+@dataclass(frozen=True)
+class Watched(SemiImplicitEuler):
+    """A map that notes the times at which it is asked to step."""
+
+    asked: list = field(default_factory=list, compare=False)
+
+    def step(self, t, q, p, memory):
+        self.asked.append(t)
+        return super().step(t, q, p, memory)
+
+
+@pytest.mark.parametrize(("steps", "again"), [(50, 12), (5, 5), (12, 12)])
+def test_steps_of_a_map_from_its_first_to_its_last_are_made_again(steps: int, again: int) -> None:
+    law = Watched(fl.DeadZoneFlocking(), dt=0.125)
+    run = fl.simulate(law, *PAIR, (0.0, 0.125 * steps))
+    law.asked.clear()
+    ensure_fits(run)
+    assert (len(law.asked), law.asked[0], law.asked[-1]) == (again, 0.0, 0.125 * (steps - 1))
