@@ -13,6 +13,8 @@ from itertools import zip_longest
 from math import isfinite, isinf, isnan
 from pathlib import Path
 
+from flockana.theorems import theorem, theorems, verify
+
 _FILE = Path(__file__).with_suffix(".json")
 _RUNS = Path(__file__).with_name("published_runs.json")
 LONG = 1.2  # seconds: a run and its verdicts that take longer are left to `flockana verify`
@@ -41,27 +43,51 @@ def published_runs():
     return json.loads(_RUNS.read_text("utf-8"))
 
 
-def changes_of_run(name, verdicts):
+def changes_of_run(name, run, verdicts):
     """Where margins are off what was published by more than their errors, errors are of another size, or what was
-    computed is another number or text.
+    computed is another number or text; and where a theorem says another thing of this run alone, without a second one.
     """
-    was, now = published_runs()[name], {verdict.theorem: _said_of_run(verdict) for verdict in verdicts}
+    was, now = published_runs()[name], {verdict.theorem: _said_of_run(verdict, run) for verdict in verdicts}
     if was.keys() != now.keys() or any(was[key].keys() != now[key].keys() for key in was):
-        return [f"{name}: other claims than published"]
-    lines = []
-    for theorem, claims in was.items():
-        for claim, before in claims.items():
-            after = now[theorem][claim]
-            (status, margin, error, computed), (found, other, own, new) = before, after
-            same = status == found and near(*(number(x) for x in (margin, other, error, own)))
-            if not same or not _same_of_run(computed, new, max(number(error), number(own))):
-                lines.append(f"{name}/{theorem}/{claim}: {before} is now {after}")
-    return lines
+        return [f"{name}: other claims or hypotheses than published"]
+    return [
+        f"{name}/{theorem}/{what}: {before} is now {after}"
+        for theorem, said in was.items()
+        for what, before in said.items()
+        if not _as_published(before, after := now[theorem][what])
+    ]
 
 
-def _said_of_run(verdict):
+def _said_of_run(verdict, run):
+    """Status and margin of each hypothesis; of each claim its errors, with a second run and alone, and its value."""
+    named, alone = theorems(), {}
+    if verdict.theorem in named:
+        alone = {claim.name: claim.error for claim in theorem(verdict.theorem).examine(run, verdict.tolerances)[1]}
+    said = verdict.to_dict()
+    needs = {need["name"]: [need["status"], need["margin"]] for need in said["hypotheses"]}
     kept = ("status", "margin", "error", "computed")
-    return {claim["name"]: [claim[key] for key in kept] for claim in verdict.to_dict()["claims"]}
+    claims = {claim["name"]: [*(claim[key] for key in kept), alone.get(claim["name"])] for claim in said["claims"]}
+    return needs | claims
+
+
+def _as_published(before, after):
+    (status, margin, *more), (found, other, *rest) = before, after
+    if not more:
+        return status == found and near(number(margin), number(other), 0.0, 0.0)
+    (error, computed, alone), (own, new, by_itself) = more, rest
+    return (
+        status == found
+        and near(number(margin), number(other), number(error), number(own))
+        and _same_of_run(computed, new, max(number(error), number(own)))
+        and _same_error(number(alone), number(by_itself))
+    )
+
+
+def _same_error(was, now):
+    """An error by a formula, which is smooth in what it is of."""
+    if not (isfinite(was) and isfinite(now)):
+        return was == now or (isnan(was) and isnan(now))
+    return _close(was, now, _ERROR)
 
 
 def _same_of_run(was, now, error):
@@ -127,7 +153,6 @@ def write():
     from time import process_time
 
     from flockana.scenarios import scenario, scenarios
-    from flockana.theorems import theorem, theorems, verify
 
     fixed = {name: data_of(verify(name)) for name in theorems() if theorem(name).kind == "fixed"}
     runs = {}
@@ -135,9 +160,9 @@ def write():
         entry = scenario(name)
         entry.verify(entry.run())  # compiled and loaded from here on
         start = process_time()
-        verdicts = entry.verify(entry.run())
+        verdicts = entry.verify(run := entry.run())
         if process_time() - start <= LONG and name not in ROUNDED:
-            runs[name] = {verdict.theorem: _said_of_run(verdict) for verdict in verdicts}
+            runs[name] = {verdict.theorem: _said_of_run(verdict, run) for verdict in verdicts}
     for file, data in ((_FILE, fixed), (_RUNS, runs)):
         file.write_text(json.dumps(data, indent=1, ensure_ascii=False) + "\n", "utf-8")
 
