@@ -28,6 +28,7 @@ from flockana.stability.decay import (
     velocity_mismatch,
 )
 from flockana.theorems import Tolerances, verify
+from tests.adversarial.published import changes
 
 
 @pytest.fixture(scope="module")
@@ -39,6 +40,10 @@ def hexagon():
 @pytest.fixture(scope="module")
 def verdict():
     return verify("linearised-decay")
+
+
+def test_it_says_what_was_published(verdict):
+    assert changes(verdict) == []
 
 
 def test_a_bond_decays_as_its_spring_and_damper_say():
@@ -232,6 +237,7 @@ def test_margins_lie_where_roots_cross():
     crossing = [claim.witness for claim in verdict.claims if claim.name != "pair"]  # that one is a closed form
     assert len(crossing) >= 4
     assert all(each["Re s below"] < 0.0 < each["Re s above"] for each in crossing)
+    assert changes(verdict) == []
 
 
 def test_gains_of_their_own_pay_only_where_the_rotation_counts():
@@ -240,3 +246,4 @@ def test_gains_of_their_own_pay_only_where_the_rotation_counts():
     assert ratios["printed"] == pytest.approx(1.208, abs=5e-3)
     assert 1.0 <= ratios["apart"] < 1.01
     assert ratios["simplified"] == pytest.approx(1.035, abs=3e-3)
+    assert changes(verdict) == []

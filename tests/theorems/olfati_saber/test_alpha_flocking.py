@@ -49,6 +49,20 @@ def test_each_condition_is_looked_at(name, claim, q, p):
     assert {c.status for c in verdict.claims if c.name != claim} == {"verified"}
 
 
+@pytest.mark.parametrize("name", BOTH)
+def test_what_was_before_the_window_does_not_count_between_its_samples(name):
+    """Far from a lattice at first, in one from half of the time on; and as far again at one sample of that."""
+    near, lattice = np.array([[0.0], [5.0]]), np.array([[0.0], [7.0]])
+    t = 1e-3 * np.arange(9.0)
+    settled = made_up(LAW, [near] * 3 + [lattice] * 6, t=t)
+    tolerances = Tolerances(settle=0.5)
+    claim = judged(name, settled, tolerances).claim("deviation")
+    assert (claim.status, claim.computed) == ("verified", 0.0)
+    back = made_up(LAW, [near] * 3 + [lattice] * 3 + [near] + [lattice] * 2, t=t)
+    again = judged(name, back, tolerances).claim("deviation")
+    assert (again.status, again.computed) == ("refuted", pytest.approx(2.0 * (2.0 / 7.0) ** 2 / 3.0))
+
+
 def test_cohesion_is_growth_over_the_window():
     q = np.array([[0.0], [5.0]])
     run = made_up(LAW, [q, q, 1.2 * q, 1.6 * q], t=np.arange(4.0))  # at rest at each

@@ -8,11 +8,16 @@ import pytest
 from flockana.interactions import Gains
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.theorems.slides.e03 import random_disc, rhombus_with_double_agent
+from tests.adversarial.published import changes
 
 
 @pytest.fixture(scope="module")
 def e3(verdict_of):
     return verdict_of("E3")
+
+
+def test_it_says_what_was_published(e3):
+    assert changes(e3) == []
 
 
 def test_e3_the_double_agent_is_a_minimum_by_differences_of_the_force_alone(e3):
