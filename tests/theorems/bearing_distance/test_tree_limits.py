@@ -204,6 +204,19 @@ def test_a_wrong_spectrum_is_told():
     assert tree_spectrum(replace(case, law=triangle), q).margin < 0.0
 
 
+@pytest.mark.parametrize(("length", "time"), UNITS)
+def test_by_how_much_matrices_are_not_symmetric_is_an_error_in_every_unit(length, time):
+    """The one pulls at the other with 3, and is pulled at with 2: K is off its transpose by a third of the largest."""
+    path, uneven = both_ways(((0, 1), (1, 2))), np.full((3, 3), 3.0)
+    uneven[0, 1] = 2.0
+    mutual, shared = (MinimalFlocking(edges=path, spacing=2.0, mu=each, normalised=False) for each in (3.0, uneven))
+    case = tree_case(rescale(mutual, length=length, time=time), 3)
+    q = length * np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 2.0]])
+    assert tree_spectrum(case, q).error < 1e-12
+    found = tree_spectrum(replace(case, law=rescale(shared, length=length, time=time)), q)
+    assert found.error == pytest.approx(1.0 / 3.0, rel=1e-6)
+
+
 @pytest.mark.parametrize("name", ["zone-1-printed", "zone-1-corrected"])
 @pytest.mark.parametrize("m", [1, 2])
 def test_coincident_linked_agents_have_no_bearing_and_make_no_crash(name, m):

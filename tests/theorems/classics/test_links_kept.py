@@ -43,3 +43,10 @@ def test_a_link_that_swings_out_between_two_samples_is_bounded_by_both_its_ends(
         claim = next(each for each in THEOREM.check(run, fl.Tolerances())[1] if each.name == "connected")
         assert (claim.status, claim.computed) == ("inconclusive", 0.5)
         assert "0.5 at a sample and at most 2.52 between" in claim.detail  # twice 1.05, and the path's own error
+
+
+def test_one_sample_keeps_no_link():
+    run = fl.scenario("links-kept").run()
+    start = fl.Trajectory(run.t[:1], run.q[:1], run.p[:1], run.u[:1], run.law, extra={"work": run.extra["work"][:1]})
+    claims = {claim.name: claim.status for claim in THEOREM.check(start, fl.Tolerances())[1]}
+    assert (claims["links"], claims["connected"]) == ("inconclusive", "inconclusive")

@@ -65,6 +65,7 @@ def test_t0_is_the_first_sample_after_which_the_condition_stays() -> None:
     assert 0 < k < len(slack)
     assert condition.status == "met"
     assert f"t0 = {run.t[k]:.6g}" in condition.detail
+    assert f"broken at {100.0 * np.mean(slack < 0.0):.2g} % of the samples before" in condition.detail
     assert condition.margin == slack[k:].min()
     assert verdict.status == "verified"
     assert f"t >= {run.t[k]:.6g}" in verdict.claim("rate").stated
