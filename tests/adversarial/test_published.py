@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import copy
+
 import pytest
 
+from flockana.scenarios import scenario
+from tests.adversarial import published
 from tests.adversarial.published import alike, differences, near, number
 
 
@@ -63,3 +67,39 @@ def test_every_place_of_a_change_is_named():
 def test_which_margins_of_runs_are_near(was, now, expected):
     margin, error, other, own = map(number, (*was, *now))
     assert bool(near(margin, other, error, own)) is expected
+
+
+@pytest.fixture(scope="module")
+def judged():
+    """A short run with its verdicts."""
+    entry = scenario("head-on")
+    run = entry.run()
+    return run, entry.verify(run)
+
+
+@pytest.mark.parametrize(
+    ("what", "place", "value"),
+    [
+        ("H(0) < c*", 0, "unmet"),
+        ("H(0) < c*", 1, 800.0),
+        ("twice", 0, "refuted"),
+        ("twice", 1, 4.9),  # 4.8393, to 6.5e-5 by both runs and to 7e-9 by the first alone
+        ("twice", 2, 1e-2),
+        ("twice", 3, 4.9),
+        ("twice", 4, 1e-6),
+    ],
+)
+def test_each_change_of_a_run_is_told(judged, monkeypatch, what, place, value):
+    assert published.changes_of_run("head-on", *judged) == []
+    said = copy.deepcopy(published.published_runs())
+    said["head-on"]["collision-energy"][what][place] = value
+    monkeypatch.setattr(published, "published_runs", lambda: said)
+    (line,) = published.changes_of_run("head-on", *judged)
+    assert line.startswith(f"head-on/collision-energy/{what}: ")
+
+
+def test_a_claim_that_is_missing_is_told(judged, monkeypatch):
+    said = copy.deepcopy(published.published_runs())
+    del said["head-on"]["collision-energy"]["twice"]
+    monkeypatch.setattr(published, "published_runs", lambda: said)
+    assert published.changes_of_run("head-on", *judged) == ["head-on: other claims or hypotheses than published"]
