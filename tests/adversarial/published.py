@@ -24,6 +24,7 @@ _SAME, _ERROR, _PRINTED = 1e-4, 0.05, 0.02  # relative: integrators and BLAS dif
 _NOISE, _TIMES = 1e-7, 100.0  # what is below may come from rounding alone, and be so many times as large,
 _NOTHING = 1e-14  # or nothing at all
 _OF_RUN = 1e-3  # relative, of a margin beyond the errors
+_ROUNDED = 1e-18  # an error of nothing
 
 
 def data_of(verdict):
@@ -84,10 +85,10 @@ def _as_published(before, after):
 
 
 def _same_error(was, now):
-    """An error by a formula, which is smooth in what it is of."""
+    """An error by a formula, which is smooth in what it is of: however small, it is the same on every processor."""
     if not (isfinite(was) and isfinite(now)):
         return was == now or (isnan(was) and isnan(now))
-    return _close(was, now, _ERROR)
+    return abs(was - now) <= max(_ERROR * max(was, now), _ROUNDED)
 
 
 def _same_of_run(was, now, error):

@@ -86,7 +86,7 @@ def judged():
         ("twice", 1, 4.9),  # 4.8393, to 6.5e-5 by both runs and to 7e-9 by the first alone
         ("twice", 2, 1e-2),
         ("twice", 3, 4.9),
-        ("twice", 4, 1e-6),
+        ("twice", 4, 7.5e-9),
     ],
 )
 def test_each_change_of_a_run_is_told(judged, monkeypatch, what, place, value):
