@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import pickle
 from dataclasses import dataclass, field, replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from flockana.base.errors import ArgumentError
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.theorems import Claim, Theorem, Tolerances, verify
+from flockana.theorems import second_run as module
 from flockana.theorems.second_run import corroborated, ensure_fits, second_run
 from flockana.theorems.theorem import judge
 
@@ -190,6 +192,19 @@ def test_who_watches_a_run_cannot_edit_it() -> None:
 
     watched = fl.simulate(fl.Algorithm1(), *PAIR, (0.0, 2.0), t_eval=[0.0, 0.7, 2.0], watch=centred)
     np.testing.assert_array_equal(watched.q, fl.simulate(fl.Algorithm1(), *PAIR, (0.0, 2.0), t_eval=[0.0, 0.7, 2.0]).q)
+
+
+@pytest.mark.parametrize("own_step", [False, True])
+def test_an_interval_that_is_not_integrated_to_its_end_accuses_nobody(monkeypatch, own_step: bool) -> None:
+    """Either of the two integrations may fail before the next sample, from a state in which the law cannot go on."""
+    integrated = module._integrated
+
+    def early(*of, **how):
+        return SimpleNamespace(t=of[0].t[:1]) if how.get("own_step", False) == own_step else integrated(*of, **how)
+
+    run = fl.simulate(fl.Algorithm1(), *PAIR, (0.0, 2.0))
+    monkeypatch.setattr(module, "_integrated", early)
+    ensure_fits(run)
 
 
 def test_a_law_that_is_another_function_each_time_is_refused_as_simulated() -> None:

@@ -9,6 +9,7 @@ from flockana.environment.zone_obstacles import Box
 from flockana.environment.zone_world import ZoneWorld
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
+from flockana.theorems.bearing_distance import j16
 
 RADII = ZoneRadii(1.5, c=3.0, a=5.0)
 
@@ -20,6 +21,12 @@ def test_nobody_moves_and_pairs_go_straight_on(verdict_of):
     growing = verdict.claim("growing").computed
     assert list(growing.values())[:2] == [pytest.approx(740.0, rel=1e-3)] * 2  # 5 m/s is less than they part by
     assert list(growing.values())[2] < 5.0
+
+
+@pytest.mark.parametrize("gaps", [(4.0, 740.0, 1.0), (740.0, 4.0, 1.0), (740.0, 740.0, 6.0)])
+def test_growing_is_refuted_by_any_one_of_its_three_gaps(monkeypatch, gaps):
+    monkeypatch.setattr(j16, "_last_gap", lambda growth, q, p: gaps[(0.0, 5.0, 10.0).index(growth)])
+    assert j16._lone().status == "refuted"
 
 
 def test_the_mirror_image_of_an_agent_never_meets_it():

@@ -59,7 +59,9 @@ def test_those_who_are_pulled_stay(name):
     verdict = verify("cohesion", run_of(**FALLING[name]))
     decided = "verified" if name != "dead zone" else verdict.status
     assert (verdict.status, verdict.claim("bound").margin > 0.0) == (decided, True)
-    assert verify("cohesion", run_of(**FALLING["drag"])).status == "vacuous"
+    assert verdict.hypotheses[0].detail == ""
+    nobody = verify("cohesion", run_of(**FALLING["drag"]))
+    assert (nobody.status, nobody.hypotheses[0].detail) == ("vacuous", "the γ-agent pulls nobody")
 
 
 def test_the_bound_is_exact():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import sqrt
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -151,6 +152,21 @@ class TestErratum13:
     def test_without_pair_forces_there_is_no_c_star(self):
         law = Algorithm2(gains=Gains(c1_alpha=0.0), target=StaticTarget((0.0,)))
         assert verify("E13", simulate(law, *E13_START, (0.0, 0.01))).status == "vacuous"
+
+
+@pytest.mark.parametrize(("slack", "pairs"), [(0.4, set()), (0.6, {(0, 1)})])
+def test_what_a_path_may_be_off_by_brings_agents_near(slack, pairs):
+    """Two at rest at the distance 1, each known up to the slack of its path."""
+    t, q, zeros = np.array([0.0, 1.0]), np.array([[[0.0], [1.0]]] * 2), np.zeros((2, 2, 1))
+    run = SimpleNamespace(
+        t=t,
+        q=q,
+        law=Algorithm1(),
+        path=(t, q, zeros, zeros, np.full((1, 2), slack)),
+        closest_approach=lambda: SimpleNamespace(lower_by_interval=np.zeros(1)),
+        remembered=lambda key, make: make(),
+    )
+    assert near(run, Tolerances()) == [pairs]
 
 
 def test_pairs_that_end_at_one_place_never_certainly_met():
