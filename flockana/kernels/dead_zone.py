@@ -220,16 +220,17 @@ def semi_implicit_steps(q, p, par, c2, dt, steps):
     n, m = q.shape
     all_q, all_p, all_u = np.empty((steps, n, m)), np.empty((steps, n, m)), np.empty((steps, n, m))
     x, v, u, z = q.T.copy(), p.T.copy(), np.empty((m, n)), np.zeros((m, n + 3))
-    near, degree, then, skin, kept = np.zeros((n + 3, n), np.uint8), np.empty(n), np.full((m, n), inf), 0.0, 0
+    near, degree, then, skin, kept = np.zeros((n + 3, n)), np.empty(n), np.full((m, n), inf), 0.0, 0
     most = n * (n - 1) // 2
     first, second, inside = np.empty(most, np.uint32), np.empty(most, np.uint32), np.empty(most, np.uint8)
+    ends = np.empty(n, np.uint32)  # of each agent's pairs with later ones in the list
     s2, w, d = np.empty(most), np.empty(most), np.empty((m, most))
     r, k_1, square = par[R], par[K_1], _square_of_range(par[R])
     held = (par[0], par[1], par[2], 0.0, par[4], par[5], par[6], par[7], par[8])  # without k₁, in registers
     for step in range(steps):
         if not _moved(x, then) <= 0.5 * skin:
             skin = 1e-3 * r + _AHEAD * dt * _moved(v, np.zeros((m, n)))
-            kept = _listed(x, par, skin, near, degree, first, second, inside)
+            kept = _listed(x, par, skin, near, degree, first, second, inside, ends)
             put(x, then)
         for k in range(kept):
             total = 0.0
@@ -254,10 +255,17 @@ def semi_implicit_steps(q, p, par, c2, dt, steps):
                     u_c[i] += (a_0[i] * z_0 + a_1[i] * z_1) + (a_2[i] * z_2 + a_3[i] * z_3)
             for i in range(n):
                 u_c[i] -= degree[i] * z_c[i]
-            for k in range(kept):
-                f = w[k] * d[c, k]
-                u_c[first[k]] += f
-                u_c[second[k]] -= f
+        begin = 0
+        for i in range(n):
+            for c in range(m):
+                u_c, d_c = u[c], d[c]
+                own = u_c[i]  # in a register, not stored and loaded again from pair to pair
+                for k in range(begin, ends[i]):
+                    f = w[k] * d_c[k]
+                    own += f
+                    u_c[second[k]] -= f
+                u_c[i] = own
+            begin = ends[i]
         for i in range(n):
             for c in range(m):
                 v[c, i] += dt * u[c, i]
@@ -284,7 +292,7 @@ def _crossed(s2, square, kept, near, degree, first, second, inside):
         now = s2[k] < square
         if now != (inside[k] == 1):
             i, j, more = first[k], second[k], 1.0 if now else -1.0
-            inside[k] = near[i, j] = near[j, i] = now
+            inside[k], near[i, j], near[j, i] = now, now, now
             degree[i] += more
             degree[j] += more
 
@@ -307,10 +315,10 @@ def _moved(x, then):
 
 
 @njit(cache=True)
-def _listed(x, par, skin, near, degree, first, second, inside):
+def _listed(x, par, skin, near, degree, first, second, inside, ends):
     """List pairs within a skin of where they act by more than k₁ or come into range.
 
-    Who is in range of whom goes to `near`, and of how many to `degree`.
+    Who is in range of whom goes to `near`, of how many to `degree`, and where each agent's pairs end to `ends`.
     """
     m, n = x.shape
     low, high, r = par[D_1] + skin, min(par[D_2], par[R]) - skin, par[R]
@@ -326,6 +334,7 @@ def _listed(x, par, skin, near, degree, first, second, inside):
             degree[i] += near[i, j]
             degree[j] += near[i, j]
             if not low <= s <= high and not s >= r + skin:
-                first[kept], second[kept], inside[kept] = i, j, near[i, j]
+                first[kept], second[kept], inside[kept] = i, j, s < r
                 kept += 1
+        ends[i] = kept
     return kept

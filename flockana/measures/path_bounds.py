@@ -166,10 +166,11 @@ def contacts(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, *, tol:
         for i, j in pair_blocks(q[k], tol + 2.0 * float(reach.max())):
             at = np.empty(i.size)
             touching_pairs(points, reach, i, j, tol, at)
-            for hit in np.flatnonzero(at >= 0.0):
-                a, b = sorted((int(i[hit]), int(j[hit])))
+            hit = at >= 0.0
+            i, j, shares = i[hit], j[hit], at[hit].tolist()
+            for a, b, share in zip(np.minimum(i, j).tolist(), np.maximum(i, j).tolist(), shares, strict=True):
                 if (a, b) not in first:
                     before, after = q[k, b] - q[k, a], q[k + 1, b] - q[k + 1, a]
                     crossed = q.shape[2] == 1 and bool(before[0] * after[0] < 0.0)
-                    first[a, b] = Contact(a, b, float(t[k] + at[hit] * h), crossed)
+                    first[a, b] = Contact(a, b, float(t[k] + share * h), crossed)
     return tuple(sorted(first.values(), key=lambda c: (c.time, c.i, c.j)))

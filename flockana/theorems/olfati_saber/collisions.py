@@ -62,7 +62,8 @@ def _near(run: Trajectory, noise: float) -> list[set[Pair]]:
         for i, j in pair_blocks(states[0][k], within + 2.0 * float(reach.max())):
             at = np.empty(i.size)
             touching_pairs(points, reach, i, j, within, at)
-            pairs[of_sample[k]] |= {(int(min(i[h], j[h])), int(max(i[h], j[h]))) for h in np.flatnonzero(at >= 0.0)}
+            i, j = i[at >= 0.0], j[at >= 0.0]
+            pairs[of_sample[k]].update(zip(np.minimum(i, j).tolist(), np.maximum(i, j).tolist(), strict=True))
     return pairs
 
 
