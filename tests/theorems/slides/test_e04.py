@@ -21,6 +21,7 @@ from flockana.interactions import AlphaInteraction
 from flockana.lattice import harborth, hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.theorems import verify
+from flockana.theorems.slides import e04
 
 ALPHA = AlphaInteraction()
 
@@ -32,6 +33,12 @@ def test_the_figures_of_the_erratum(verdict_of):
     barrier = verdict.claim("barrier").computed
     assert barrier[3]["together"] - barrier[3]["ground"] == pytest.approx(52.384, abs=5e-4)
     assert barrier[7]["together"] - barrier[7]["ground"] == pytest.approx(50.176, abs=5e-4)
+
+
+@pytest.mark.parametrize("reach", [13, 15])
+def test_another_largest_lattice_is_refuted(monkeypatch, reach):
+    monkeypatch.setattr(e04, "lattice_reach", lambda alpha: reach)
+    assert e04._reached(ALPHA).status == "refuted"
 
 
 def test_the_barrier_at_seven_is_a_count_of_links():
