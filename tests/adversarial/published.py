@@ -29,7 +29,7 @@ _ROUNDED = 1e-18  # an error of nothing
 
 def data_of(verdict):
     """What a verdict says, as plain data."""
-    kept = ("name", "status", "rigour", "computed", "stated", "margin", "error", "witness", "detail")
+    kept = ("name", "status", "rigour", "proof", "computed", "stated", "margin", "error", "witness", "detail")
     return {claim.pop("name"): claim for claim in ({k: c[k] for k in kept} for c in verdict.to_dict()["claims"])}
 
 
@@ -60,14 +60,18 @@ def changes_of_run(name, run, verdicts):
 
 
 def _said_of_run(verdict, run):
-    """Status and margin of each hypothesis; of each claim its errors, with a second run and alone, and its value."""
+    """Status and margin of each hypothesis; of each claim its errors, with a second run and alone, its value, and how
+    it is known."""
     named, alone = theorems(), {}
     if verdict.theorem in named:
         alone = {claim.name: claim.error for claim in theorem(verdict.theorem).examine(run, verdict.tolerances)[1]}
     said = verdict.to_dict()
     needs = {need["name"]: [need["status"], need["margin"]] for need in said["hypotheses"]}
     kept = ("status", "margin", "error", "computed")
-    claims = {claim["name"]: [*(claim[key] for key in kept), alone.get(claim["name"])] for claim in said["claims"]}
+    claims = {
+        claim["name"]: [*(claim[key] for key in kept), alone.get(claim["name"]), claim["rigour"], claim["proof"]]
+        for claim in said["claims"]
+    }
     return needs | claims
 
 
@@ -75,9 +79,9 @@ def _as_published(before, after):
     (status, margin, *more), (found, other, *rest) = before, after
     if not more:
         return status == found and near(number(margin), number(other), 0.0, 0.0)
-    (error, computed, alone), (own, new, by_itself) = more, rest
+    (error, computed, alone, *known), (own, new, by_itself, *how) = more, rest
     return (
-        status == found
+        (status, known) == (found, how)
         and near(number(margin), number(other), number(error), number(own))
         and _same_of_run(computed, new, max(number(error), number(own)))
         and _same_error(number(alone), number(by_itself))

@@ -168,6 +168,15 @@ def test_a_copy_is_not_taken_for_what_simulate_returned(copied) -> None:
         verify("energy", run)
 
 
+def test_an_edit_of_a_failed_run_is_seen_by_where_its_velocities_lead() -> None:
+    """No second run is made of it, and no work was kept: of a state that is moved with its input, only that tells."""
+    run = oscillation(t_eval=np.linspace(0.0, 2.0 * np.pi, 60))
+    moved = 1e-4 * (np.arange(60) == 7)[:, None, None]
+    edited = replace(run, q=run.q + moved, u=run.u - moved, status="failed", extra={})
+    with pytest.raises(ArgumentError, match=r"q at t = .* is off by .* from where Algorithm2 leads"):
+        ensure_fits(edited)
+
+
 def test_a_copy_remembers_no_check_of_what_it_was_copied_from() -> None:
     run = fl.simulate(fl.Algorithm1(), *PAIR, (0.0, 2.0), t_eval=np.linspace(0.0, 2.0, 60))
     verify("energy", run)

@@ -48,6 +48,18 @@ def test_e12_on_one_agent(path):
     ]
 
 
+@pytest.mark.parametrize(("frequency", "proof"), [(0.95, "tracking-gain"), (1.05, None)])
+def test_the_proof_is_of_targets_that_turn_slowly(frequency, proof):
+    """The gain is above 1 for ω² < 2 c1γ, and below it for faster ones."""
+    law = Algorithm2(
+        gains=Gains(c1_gamma=20.0, c2_gamma=9.0),
+        target=RescaledVelocity(CircleTarget((0.0, 0.0), 2.0, frequency * np.sqrt(40.0) / (2.0 * pi)), 0.25),
+    )
+    run = simulate(law, [[1.0, 1.0]], [[0.0, 0.0]], (0.0, 20.0))
+    claim = verify("E12", run).claim("printed")
+    assert (claim.proof, claim.status) == (proof, "refuted" if proof else "verified")
+
+
 def test_e12_does_not_pass_a_gain_that_is_wrong():
     """The same run with a law that says another factor: the prediction misses it by more than the tolerance."""
     law = Algorithm2(gains=Gains(c1_gamma=20.0, c2_gamma=9.0), target=CircleTarget((0.0, 0.0), 2.0, 0.5))
