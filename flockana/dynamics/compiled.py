@@ -27,7 +27,7 @@ from flockana.laws.law import Law
 from flockana.laws.terms.term import Compiled
 
 METHODS = ("DOP853", "RK45", "RK23", "RK4")  # that there are compiled
-_STEPS, _NUMBERS = 128, 6_000_000  # in one call, at most: steps, and numbers kept of them
+_STEPS, _NUMBERS = 512, 6_000_000  # in one call, at most: steps, and numbers kept of them
 _UNLISTED = "scipy-DOP853"  # which looks at pairs in blocks
 EXACT = Floor(0.0, 0.0, 0.0)
 

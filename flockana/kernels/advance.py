@@ -69,8 +69,8 @@ def _met(t, h, y0, f0, y1, f1, encounters, system, pairs, scratch):
     for i in range(n):
         widest = max(widest, radii[i, -1])
     within = (widest + 2.0 * (farthest + blur)) * (1.0 + 1e-9)
-    first, second, count, places, centre, _ = pairs
-    held = system[7][0] + system[7][1] - 2.0 * np.sqrt(strayed(q0, places, centre)) if places.size else 0.0
+    first, second, count, places, _ = pairs
+    held = system[7][0] + system[7][1] - 2.0 * np.sqrt(strayed(q0, places)) if places.size else 0.0
     if within > held:  # the list may lack a pair that was so near where the step began
         first, second, count, _ = system[9](q0, within, scratch[0], scratch[1])
         scratch = (first, second)

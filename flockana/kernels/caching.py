@@ -221,13 +221,15 @@ def inlined_type(function: Callable[..., Any]) -> Any:
     """numba's type of a function that it compiles into those that call it.
 
     Those of this folder give numbers and allocate nothing: the arrays that they are handed need not be counted, which
-    would take longer than they do. What others write may allocate.
+    would take longer than they do. What others write may allocate. All are inlined, however long: a loop with a call in
+    it is not vectorised.
 
     Parameters
     ----------
     function : callable
         What is called.
     """
-    numba.extending.register_jitable(_nrt=not function.__module__.startswith("flockana.kernels."))(function)
+    own = function.__module__.startswith("flockana.kernels.")
+    numba.extending.register_jitable(_nrt=not own, forceinline=True)(function)
     cpu_target.typing_context.refresh()
     return cpu_target.typing_context.resolve_value_type(function)

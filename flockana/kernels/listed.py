@@ -101,6 +101,8 @@ def lift_listed(
         @register_jitable
         def gather(x, limit, first, second, begin, end, near, s2):
             count = 0
+            if x.shape[1] != m:
+                return count  # never, as in `lift_block`
             for k in range(begin, end):
                 i, j = np.uint64(first[k]), np.uint64(second[k])
                 square = 0.0
@@ -124,22 +126,22 @@ def lift_listed(
             near, room = np.empty((2, BLOCK), np.uint64), np.empty((3, BLOCK))
             return sweep(x, v, u, numbers, first, second, size, near, room)
 
-        def energy(t, x, v, frame, numbers, panels, first, second, size, order):
-            total, near, r, par = 0.0 * digest, 0, numbers[2], numbers[4:]
-            limit = max(r * r, 5e-324)
-            for k in range(size):
-                i, j = np.uint64(first[k]), np.uint64(second[k])
-                square = 0.0
-                for c in range(m):
-                    gap = x[j, c] - x[i, c]
-                    square += gap * gap
-                if square < limit:
-                    total += potential(square, par, panels)
-                    near += 1
+        @njit(error_model="numpy", nogil=True, _nrt=False)
+        def summed(x, numbers, panels, first, second, size, near, s2):
+            total, r, par, pairs = 0.0 * digest, numbers[2], numbers[4:], 0
+            for begin in range(0, size, BLOCK):
+                count = gather(x, max(r * r, 5e-324), first, second, begin, min(begin + BLOCK, size), near, s2)
+                pairs += count
+                for k in range(count):
+                    total += potential(s2[k], par, panels)
             n = x.shape[0]
-            beyond = n * (n - 1) // 2 - near
+            beyond = n * (n - 1) // 2 - pairs
             return numbers[0] * (total + beyond * numbers[3] if beyond > 0 else total)  # it may be infinite there
 
-        return term_functions(act, energy, allocates=False)
+        def energy(t, x, v, frame, numbers, panels, first, second, size, order):
+            near, s2 = np.empty((2, BLOCK), np.uint64), np.empty(BLOCK)
+            return summed(x, numbers, panels, first, second, size, near, s2)
+
+        return term_functions(act, energy)
 
     return of

@@ -63,7 +63,7 @@ def _kept_up(y, system, pairs):
 def _act(t, y, f, system, pairs):
     """The rate of y into f, its pairs being listed."""
     acts, _, numbers, panels, (n, m), view, _, _, order, _, terms, of_pairs, summed, frame = system
-    (first, second, count, _, _, slabs), size, power = pairs, n * m, 0.0
+    (first, second, count, _, slabs), size, power = pairs, n * m, 0.0
     x, v, u = y[:size].reshape(n, m), y[size : 2 * size].reshape(n, m), f[size : 2 * size].reshape(n, m)
     frame_at(t, view, frame)
     for k in range(size):
@@ -81,7 +81,7 @@ def energy_of(t, y, system, pairs):
     """H of a vector whose pairs are listed: potential energies, and the kinetic one in the law's frame."""
     _, energies, numbers, panels, (n, m), view, moving, _, order, _, terms, _, _, frame = system
     x, v = y[: n * m].reshape(n, m), y[n * m : 2 * n * m].reshape(n, m)
-    (first, second, count, _, _, _), total = pairs, 0.0
+    (first, second, count, _, _), total = pairs, 0.0
     frame_at(t, view, frame)
     if moving:
         total = 0.5 * squared_deviations(v)

@@ -36,8 +36,11 @@ def taper(z, h):
     """
     y = (0.5 * pi / (1.0 - h)) * (1.0 - z)
     x = y * y
-    high = _S6 + x * (_S7 + x * (_S8 + x * (_S9 + x * _S10)))
-    sine = y * (1.0 + x * (_S1 + x * (_S2 + x * (_S3 + x * (_S4 + x * (_S5 + x * high))))))
+    x2 = x * x
+    low, middle = (1.0 + x * _S1) + x2 * (_S2 + x * _S3), (_S4 + x * _S5) + x2 * (_S6 + x * _S7)
+    high = (_S8 + x * _S9) + x2 * _S10
+    x4 = x2 * x2
+    sine = y * (low + x4 * (middle + x4 * high))
     rho = 1.0 if z < h else sine * sine
     return 0.0 if z >= 1.0 else rho
 
@@ -99,7 +102,8 @@ def phi_integral(s, a, b, c):
 def on_panels(z, panels):
     """A function given by panels of polynomials at z: each row is (left, right, coefficients), rows in rising order.
 
-    A coefficient is that of a power of x, which is −1 at the left end and 1 at the right one; their number is odd.
+    A coefficient is that of a power of x, which is −1 at the left end and 1 at the right one; they are one more than a
+    multiple of four, whose four sums need not wait for each other.
     Points outside take the value at the nearest end. No branch hangs on z: a loop over it runs ahead of itself.
     """
     row, rest = 0, panels.shape[0]
@@ -111,8 +115,10 @@ def on_panels(z, panels):
     x = (2.0 * z - left - right) / (right - left)
     if abs(x) > 1.0:  # not by min and max, which would turn a NaN into a number
         x = 1.0 if x > 0.0 else -1.0
-    y, even, odd = x * x, 0.0, 0.0
-    for k in range(panels.shape[1] - 1, 2, -2):
-        even = y * even + panels[row, k]
-        odd = y * odd + panels[row, k - 1]
-    return y * even + panels[row, 2] + x * odd
+    last = panels.shape[1] - 1
+    a, b, c, d, x2 = panels[row, last], 0.0, 0.0, 0.0, x * x
+    x4 = x2 * x2
+    for k in range(last - 4, 1, -4):
+        a, b = x4 * a + panels[row, k], x4 * b + panels[row, k + 1]
+        c, d = x4 * c + panels[row, k + 2], x4 * d + panels[row, k + 3]
+    return (a + x2 * c) + x * (b + x2 * d)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.kernels.compiling import njit
+from flockana.kernels.compiling import njit, register_jitable
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -53,11 +53,18 @@ def squared_deviations(x):
     return total
 
 
+@register_jitable
+def _pull_to(u, x, v, place, velocity, c1, c2, m):
+    for c in range(m):
+        x_c, v_c = place[c], velocity[c]
+        for i in range(x.shape[0]):
+            u[i, c] -= c1 * (x[i, c] - x_c) + c2 * (v[i, c] - v_c)
+
+
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def pull_to(u, x, v, place, velocity, c1, c2):
     """u −= c1 (x − place) + c2 (v − velocity)."""
-    n, m = x.shape
-    for c in range(m):
-        x_c, v_c = place[c], velocity[c]
-        for i in range(n):
-            u[i, c] -= c1 * (x[i, c] - x_c) + c2 * (v[i, c] - v_c)
+    if x.shape[1] == v.shape[1] == u.shape[1] == 2:  # said outright, it lets the compiler take several agents at once
+        _pull_to(u, x, v, place, velocity, c1, c2, 2)
+    else:
+        _pull_to(u, x, v, place, velocity, c1, c2, x.shape[1])

@@ -18,28 +18,51 @@ from flockana.kernels.grid import sort_into_grid
 BLOCK = 512  # pairs: what is known of them stays in the first-level cache
 
 
+# The differences of two rows at once: all is read before anything is written, which might be the same place.
+@register_jitable
+def _apart1(x, i, j):
+    return (x[j, 0] - x[i, 0],)
+
+
+@register_jitable
+def _apart2(x, i, j):
+    return x[j, 0] - x[i, 0], x[j, 1] - x[i, 1]
+
+
+@register_jitable
+def _apart3(x, i, j):
+    return x[j, 0] - x[i, 0], x[j, 1] - x[i, 1], x[j, 2] - x[i, 2]
+
+
+_APART = {1: _apart1, 2: _apart2, 3: _apart3}
+
+
 def lift_block(pair: Callable[..., Any], m: int) -> Callable[..., Any]:
     """What a block of pairs adds to u, from their squared distances s2; returns Σ a ‖p_j − p_i‖².
 
     w and a are room for what the law gives; `par` is a tuple: constants in registers, which no array can alias.
     """
 
+    apart = _APART[m]
+
     @register_jitable
     def add(count, first, second, s2, w, a, x, v, u, par, c1, c2):
+        if not (x.shape[1] == m and v.shape[1] == m and u.shape[1] == m):
+            return np.nan  # never: the compiler now knows that rows are m numbers apart
         for k in range(count):
             stress, adjacency = pair(s2[k], par)
             w[k], a[k] = c1 * stress, adjacency
         total = 0.0
         for k in range(count):
-            i, j = first[k], second[k]
-            v2 = 0.0
+            i, j, weight, drag = first[k], second[k], w[k], c2 * a[k]
+            gap, slip, v2 = apart(x, i, j), apart(v, i, j), 0.0
             for c in range(m):
-                slip = v[j, c] - v[i, c]
-                v2 += slip * slip
-                f = w[k] * (x[j, c] - x[i, c]) + c2 * a[k] * slip
-                u[i, c] += f
-                u[j, c] -= f
+                v2 += slip[c] * slip[c]
             total += a[k] * v2
+            for c in range(m):
+                u[i, c] += weight * gap[c] + drag * slip[c]
+            for c in range(m):
+                u[j, c] -= weight * gap[c] + drag * slip[c]
         return total
 
     return add
@@ -59,6 +82,8 @@ def lift_sweep(pair: Callable[..., Any], m: int, digest: int) -> tuple[Callable[
     def sweep(start, rows, x, v, forced, r2, par, c1, c2, near, room):
         first, second, s2, w, a = near[0], near[1], room[0], room[1], room[2]
         count, total = 0, 0.0 * digest
+        if x.shape[1] != m:
+            return np.nan  # as above
         for cell in range(start.size - 2):
             for i in range(start[cell], start[cell + 1]):
                 for row in range(-1, np.int64(rows.size)):

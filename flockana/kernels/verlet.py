@@ -11,11 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from flockana.kernels.compiling import njit
+from flockana.kernels.compiling import njit, register_jitable
 from flockana.kernels.copies import put
 from flockana.kernels.grid import sort_into_grid
 from flockana.kernels.neighbours import _FORWARD, _MARGIN, _fill_cells, _pad, _sort_into_cells
-from flockana.kernels.sums import column_mean
 
 _ROOM = 8  # pairs an agent, to begin with
 SKIN = 0.15  # of the range: what a list holds beyond it, so that it lasts some steps
@@ -115,45 +114,49 @@ def list_pairs(q, reach, first, second):
         first, second = _grown(first, second, count + n)
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
-def strayed(q, reference, mean):
-    """A bound of the squared distance that any agent has gone from its place, seen from the flock's mean motion.
+@register_jitable
+def _widened(low, high, way):
+    return way if way < low else low, way if way > high else high
 
-    `mean` is that of the places. The bound is the diagonal of the box of all ways: at most m times the largest square.
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def strayed(q, reference):
+    """A bound of the squared distance that any agent has gone from its place, seen from where it is least.
+
+    Half the diagonal of the box of all ways: a motion that all share brings no two nearer, whatever it is.
     """
     (n, m), diagonal = q.shape, 0.0
     for c in range(m):
-        drift, longest, other = column_mean(q, c) - mean[c], 0.0, 0.0
-        for i in range(0, n - 1, 2):  # two lanes: a maximum waits for the one before
-            way, next_way = abs(q[i, c] - reference[i, c] - drift), abs(q[i + 1, c] - reference[i + 1, c] - drift)
-            longest, other = way if way > longest else longest, next_way if next_way > other else other
-        way = abs(q[n - 1, c] - reference[n - 1, c] - drift)
-        longest = max(longest, other, way)
-        diagonal += longest * longest
+        low = high = a = b = d = e = f = g = q[0, c] - reference[0, c]
+        for i in range(0, n - 3, 4):  # four lanes: an extreme waits for the one before
+            low, high = _widened(low, high, q[i, c] - reference[i, c])
+            a, b = _widened(a, b, q[i + 1, c] - reference[i + 1, c])
+            d, e = _widened(d, e, q[i + 2, c] - reference[i + 2, c])
+            f, g = _widened(f, g, q[i + 3, c] - reference[i + 3, c])
+        for i in range(n // 4 * 4, n):
+            low, high = _widened(low, high, q[i, c] - reference[i, c])
+        diagonal += (0.5 * (max(max(high, b), max(e, g)) - min(min(low, a), min(d, f)))) ** 2
     return diagonal
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def empty_list(n):
-    """(first, second, count, places, their mean, slabs) of a list that is yet to be made."""
+    """(first, second, count, places, slabs) of a list that is yet to be made."""
     first, second = np.empty(_ROOM * n, np.uint32), np.empty(_ROOM * n, np.uint32)
-    return first, second, np.int64(0), np.empty((0, 0)), np.empty(0), np.zeros(2, np.int64)
+    return first, second, np.int64(0), np.empty((0, 0)), np.zeros(2, np.int64)
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def outdated(q, skin, pairs):
     """Whether a list may lack a pair that is within reach now."""
-    return not pairs[3].size or 4.0 * strayed(q, pairs[3], pairs[4]) > skin * skin
+    return not pairs[3].size or 4.0 * strayed(q, pairs[3]) > skin * skin
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def listed_anew(q, reach, pairs, search):
     """A new list in the room of an old one, by `search`: `list_pairs`, handed in so that it is compiled once."""
     first, second, count, slabs = search(q, reach, pairs[0], pairs[1])
-    mean = np.empty(q.shape[1])
-    for c in range(mean.size):
-        mean[c] = column_mean(q, c)
-    return first, second, count, q.copy(), mean, slabs
+    return first, second, count, q.copy(), slabs
 
 
 @cache

@@ -52,7 +52,7 @@ def test_pairs_of_a_list_cut_a_step_as_they_do_with_all_control_points(m, speed)
 @pytest.mark.parametrize("listed", [False, True])
 @pytest.mark.parametrize("m", [1, 2, 3])
 def test_a_step_of_the_integrator_is_cut_by_ways_seen_from_the_mean_motion(m, listed):
-    """Not from the list's centre, an array of fewer numbers that stands in memory beside whatever there is."""
+    """Whether the list holds all that may meet, or pairs are searched for."""
     q0, p0, u0, q1, p1, u1 = ends(40, m, 12.0)
     y0, f0, y1, f1 = (
         np.append(np.concatenate([a.ravel(), b.ravel()]), 0.0) for a, b in ((q0, p0), (p0, u0), (q1, p1), (p1, u1))
@@ -61,8 +61,7 @@ def test_a_step_of_the_integrator_is_cut_by_ways_seen_from_the_mean_motion(m, li
     ways, radii = centred(points, allowance), np.full((40, 2), [R / 2, R])
     i, j = (each.astype(np.uint32) for each in pair_list(q0, 1e6))
     whole = share_of_pairs(points, ways, allowance, radii, FAR, i.astype(int), j.astype(int), 1.0)
-    beside = np.concatenate([q0.mean(axis=0), np.full(18, np.nan)])[:m]
-    pairs = (i, j, i.size, q0 if listed else np.empty((0, m)), beside if listed else beside[:0], None)
+    pairs = (i, j, i.size, q0 if listed else np.empty((0, m)), None)
     none = np.empty(0)
     system = [None] * 4 + [(40, m), None, None, (1e6, 0.0), None, lambda q, within, a, b: (i, j, i.size, None)]
     encounters = (radii, FAR, None, none, None)

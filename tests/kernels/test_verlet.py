@@ -35,9 +35,11 @@ def test_the_bound_of_ways_holds_and_is_not_far_off(seed, n, m):
     rng = np.random.default_rng(seed)
     q, way = rng.normal(size=(n, m)), rng.normal(size=(n, m))
     later = q + way + rng.normal(size=m)
-    longest = np.square(way - way.mean(axis=0)).sum(axis=1).max()
-    bound = strayed(later, q, q.mean(axis=0))
+    middle = 0.5 * (way.min(axis=0) + way.max(axis=0))
+    longest = np.square(way - middle).sum(axis=1).max()
+    bound = strayed(later, q)
     assert longest * (1 - 1e-12) - 1e-12 <= bound <= m * longest * (1 + 1e-12) + 1e-12
+    assert bound == pytest.approx(0.25 * np.sum(np.ptp(way, axis=0) ** 2), rel=1e-12, abs=1e-12)
 
 
 def test_a_list_is_kept_until_an_agent_has_gone_half_the_skin_in_the_moving_frame():
@@ -48,9 +50,9 @@ def test_a_list_is_kept_until_an_agent_has_gone_half_the_skin_in_the_moving_fram
 
     moved = q + np.array([100.0, -50.0])
     assert not outdated(moved, 1.0, pairs)  # a common motion is none
-    moved[3] += [0.6, 0.0]  # 0.45 from the mean of all
+    moved[3] += [0.98, 0.0]  # 0.49 from half way to the others
     assert not outdated(moved, 1.0, pairs)
-    moved[3] += [0.1, 0.0]
+    moved[3] += [0.04, 0.0]
     assert outdated(moved, 1.0, pairs)
     pairs = listed_anew(moved, 10.0, pairs, list_pairs)
     assert pairs[2] == 1
