@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -22,6 +22,21 @@ class Sample(NamedTuple):
     u: FloatArray
     extra: dict[str, FloatArray]
     wanted: bool = True
+
+
+class Samples(NamedTuple):
+    """Several wanted instants of a run, in order: as a `Sample`, with a first axis of time."""
+
+    t: FloatArray
+    q: FloatArray
+    p: FloatArray
+    u: FloatArray
+    extra: dict[str, FloatArray]
+
+    def each(self) -> Iterator[Sample]:
+        """One after the other."""
+        for k, t in enumerate(self.t.tolist()):
+            yield Sample(t, self.q[k], self.p[k], self.u[k], {name: values[k] for name, values in self.extra.items()})
 
 
 @dataclass
