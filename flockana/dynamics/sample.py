@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
 from flockana.laws.discrete import DiscreteLaw
@@ -27,7 +28,7 @@ class Sample(NamedTuple):
 class Samples(NamedTuple):
     """Several wanted instants of a run, in order: as a `Sample`, with a first axis of time."""
 
-    t: FloatArray
+    t: npt.NDArray[np.floating]
     q: FloatArray
     p: FloatArray
     u: FloatArray
