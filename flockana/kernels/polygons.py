@@ -151,8 +151,6 @@ def ways_from_boundary(start, end, at_start, at_end, edges):
             met[i], zero = _crossings(ax, ay, bx, by, edges)
         if at_start[i] < 0.0 or at_end[i] < 0.0:
             met[i] = 1
-        elif (at_start[i] == 0.0 or at_end[i] == 0.0) and met[i] == 0:
-            met[i] = UNSURE
         if length > 0.0:
             least = _from_corners(ax, ay, bx, by, edges, least, length)
         distance[i] = 0.0 if zero else least
