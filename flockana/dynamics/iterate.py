@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
-from flockana.dynamics.sample import Sample, Tally, copied
+from flockana.dynamics.sample import Samples, Tally, copied
 from flockana.laws.discrete import DiscreteLaw
 
 IndexArray = npt.NDArray[np.int64]
@@ -34,15 +34,17 @@ def discrete(
     t_span: tuple[float, float],
     keep: FloatArray | None,
     tally: Tally,
-) -> Iterator[Sample]:
+) -> Iterator[Samples]:
     """Iterate the map; sample k holds the state at t0 + k dt and the input that brought it there.
 
-    Of times to keep the nearest steps are given, each once: between its steps a map has no state.
+    Samples come as many at once as steps are made at once: one by one they would cost more than a compiled step. Of
+    times to keep the nearest steps are given, each once: between its steps a map has no state.
     """
     q, p, memory, t0, dt = q0, p0, law.start(q0, p0), t_span[0], law.dt
     steps = count_steps(*t_span, dt, np.floor)
     if keep is None or _nearest(np.array([t0]), keep, dt).size:
-        yield Sample(t0, q, p, np.zeros_like(q), copied(memory))
+        extra = {name: values[None] for name, values in copied(memory).items()}
+        yield Samples(np.array([t0]), q[None], p[None], np.zeros((1, *q.shape)), extra)
     at_once = max(1, min(law.steps_at_once, _NUMBERS // (3 * q0.size)))
     for first in range(0, steps, at_once):
         some = min(at_once, steps - first)
@@ -51,9 +53,11 @@ def discrete(
         good = some if known.all() else int(np.argmin(known))
         times = t0 + np.arange(first, first + good + 1) * dt  # with the step before: what is nearest to it is done
         wanted = np.arange(1, good + 1) if keep is None else _nearest(times, keep, dt)
-        for k in (wanted[wanted > 0] - 1).tolist():
-            extra = {name: values[k] for name, values in series.items()}
-            yield Sample(float(times[k + 1]), qs[k], ps[k], us[k], extra)
+        wanted = wanted[wanted > 0]
+        if wanted.size:
+            # of all steps a view, of some a copy: the others are let go
+            at = slice(0, good) if wanted.size == good else wanted - 1
+            yield Samples(times[wanted], qs[at], ps[at], us[at], {name: values[at] for name, values in series.items()})
         tally.steps, tally.evaluations = tally.steps + good, tally.evaluations + good
         if good < some:
             tally.fail(f"the map left the finite numbers at t = {t0 + (first + good + 1) * dt:g}")

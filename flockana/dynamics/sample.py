@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
 from flockana.laws.discrete import DiscreteLaw
@@ -22,6 +23,21 @@ class Sample(NamedTuple):
     u: FloatArray
     extra: dict[str, FloatArray]
     wanted: bool = True
+
+
+class Samples(NamedTuple):
+    """Several wanted instants of a run, in order: as a `Sample`, with a first axis of time."""
+
+    t: npt.NDArray[np.floating]
+    q: FloatArray
+    p: FloatArray
+    u: FloatArray
+    extra: dict[str, FloatArray]
+
+    def each(self) -> Iterator[Sample]:
+        """One after the other."""
+        for k, t in enumerate(self.t.tolist()):
+            yield Sample(t, self.q[k], self.p[k], self.u[k], {name: values[k] for name, values in self.extra.items()})
 
 
 @dataclass

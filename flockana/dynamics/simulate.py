@@ -29,7 +29,7 @@ from flockana.dynamics.between import Between, Recorder
 from flockana.dynamics.first_call import check_first_call
 from flockana.dynamics.iterate import count_steps, discrete
 from flockana.dynamics.rk4 import rk4
-from flockana.dynamics.sample import Sample, Tally, copied, start_sample
+from flockana.dynamics.sample import Sample, Samples, Tally, copied, start_sample
 from flockana.dynamics.threads import ensure_threads
 from flockana.dynamics.tolerance import error_floor
 from flockana.dynamics.trajectory import Trajectory
@@ -125,7 +125,7 @@ def simulate(
             raise ArgumentError(f"threads = {threads}: the steps of a discrete law take one; expected 1")
         method, how = "discrete", {"dt": _ensure_step("law.dt", law.dt, t_span)}
         _ensure_samples_fit(how["dt"], t_span, q0, keep)
-        samples = discrete(law, q0, p0, t_span, keep, tally)
+        samples: Iterator[Sample | Samples] = discrete(law, q0, p0, t_span, keep, tally)
     elif _ensure_method(method, dt) == "RK4":
         how = {"dt": _ensure_step("dt", dt, t_span)}
         _ensure_samples_fit(how["dt"], t_span, q0, keep)
@@ -139,25 +139,32 @@ def simulate(
     counts = {"method": method, "steps": tally.steps, "evaluations": tally.evaluations}
     stats = counts | tally.notes | how | {"seconds": time.perf_counter() - started}
     if not kept:  # ended before the first time to keep
-        kept = [start_sample(law, q0, p0, t_span[0])]
+        first = start_sample(law, q0, p0, t_span[0])
+        kept = [first]
         if watch is not None:
-            watch(_copy(kept[0]))
+            watch(_copy(first))
     t, q, p, u, extra = _stacked(kept)
     run = Trajectory(t, q, p, u, law, extra, tally.status, tally.message, stats, between)
     run.remembered(AS_SIMULATED, run.samples_digest)
     return run
 
 
-def _stacked(kept: list[Sample]) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, dict[str, FloatArray]]:
+def _stacked(
+    kept: list[Sample | Samples],
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, dict[str, FloatArray]]:
     """(t, q, p, u, extra) of a run; each sample is let go as soon as it is copied, so a run is not held twice."""
-    shape, t = (len(kept), *kept[0].q.shape), np.array([sample.t for sample in kept])
+    one = kept[0] if isinstance(kept[0], Sample) else next(kept[0].each())
+    end = sum(np.size(samples.t) for samples in kept)
+    shape, t = (end, *one.q.shape), np.empty(end)
     q, p, u = np.empty(shape), np.empty(shape), np.empty(shape)
-    extra = {key: np.empty((len(kept), *np.shape(value))) for key, value in kept[0].extra.items()}
-    for k in reversed(range(len(kept))):
-        sample = kept.pop()
-        q[k], p[k], u[k] = sample.q, sample.p, sample.u
+    extra = {key: np.empty((end, *np.shape(value))) for key, value in one.extra.items()}
+    while kept:
+        samples = kept.pop()
+        start = end - np.size(samples.t)
+        t[start:end], q[start:end], p[start:end], u[start:end] = samples.t, samples.q, samples.p, samples.u
         for key, series in extra.items():
-            series[k] = sample.extra[key]
+            series[start:end] = samples.extra[key]
+        end = start
     return t, q, p, u, extra
 
 
@@ -204,26 +211,45 @@ def _copy(sample: Sample) -> Sample:
 
 
 def _collect(
-    samples: Iterator[Sample],
+    samples: Iterator[Sample | Samples],
     t_span: tuple[float, float],
     tally: Tally,
     progress: bool,
     watch: Callable[[Sample], object] | None,
-) -> tuple[list[Sample], Between | None]:
+) -> tuple[list[Sample | Samples], Between | None]:
     """Drain the integrator: the samples, and its steps between them; on Ctrl-C keep what there is."""
-    kept: list[Sample] = []
+    kept: list[Sample | Samples] = []
     recorder = Recorder()
     with progress_bar(t_span[1] - t_span[0], enabled=progress, counted=False, steady=True) as advance:
         try:
             with interrupts_recognised():
-                for sample in samples:
-                    if sample.wanted:
+                for sample in samples if watch is None else _one_by_one(samples):
+                    if isinstance(sample, Samples):  # of a map, which has nothing between them
                         kept.append(sample)
-                        if watch is not None:
-                            watch(_copy(sample))
-                    recorder.add(sample.t, sample.q, sample.p, sample.u, sample=sample.wanted)
-                    advance(sample.t - t_span[0], f"t = {sample.t:.4g}")
+                    else:
+                        if sample.wanted:
+                            kept.append(sample)
+                            if watch is not None:
+                                watch(_copy(sample))
+                        recorder.add(sample.t, sample.q, sample.p, sample.u, sample=sample.wanted)
+                    if progress:
+                        t = _end(sample)
+                        advance(t - t_span[0], f"t = {t:.4g}")
         except KeyboardInterrupt:
-            until = f"the last sample is at t = {kept[-1].t:g}" if kept else "no sample was reached but the start"
+            until = f"the last sample is at t = {_end(kept[-1]):g}" if kept else "no sample was reached but the start"
             tally.status, tally.message = "interrupted", f"interrupted: {until}"
     return kept, recorder.between()
+
+
+def _one_by_one(samples: Iterator[Sample | Samples]) -> Iterator[Sample]:
+    """Each sample by itself, for who watches."""
+    for found in samples:
+        if isinstance(found, Samples):
+            yield from found.each()
+        else:
+            yield found
+
+
+def _end(found: Sample | Samples) -> float:
+    """The time of the last of some samples."""
+    return float(found.t[-1]) if isinstance(found, Samples) else found.t

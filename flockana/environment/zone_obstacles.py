@@ -17,6 +17,8 @@ from flockana.base.checks import FloatArray, ensure_points, ensure_vector
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 from flockana.environment.obstacles import Sphere
+from flockana.kernels.polygons import from_boundary, ways_from_boundary
+from flockana.kernels.segments import UNSURE
 
 
 @dataclass(frozen=True)
@@ -81,11 +83,15 @@ class SimplePolygon:
         q : array_like, shape (N, 2)
             Points.
         """
-        import shapely
+        q = ensure_points("q", q)
+        if q.shape[1] != 2:
+            raise ArgumentError(f"q has shape {q.shape}: expected (N, 2), points of the plane of {self}")
+        distance, inside = from_boundary(q, self.edges)
+        if (unsure := inside == UNSURE).any():
+            import shapely
 
-        points = shapely.points(ensure_points("q", q))
-        distance = shapely.distance(points, self._shape.boundary)
-        signed: FloatArray = np.where(shapely.contains(self._shape, points), -distance, distance)
+            inside[unsure] = shapely.contains(self._shape, shapely.points(q[unsure]))
+        signed: FloatArray = np.where(inside == 1, -distance, distance)
         return signed
 
     def clearance_on_way(
@@ -102,13 +108,16 @@ class SimplePolygon:
         ends : tuple of ndarray, shapes (N,), optional
             Signed distances of both, where they are known already.
         """
-        import shapely
-
-        ways = shapely.linestrings(np.stack([start, end], axis=1))
         ends = (self.clearance(start), self.clearance(end)) if ends is None else ends
-        least = np.minimum(shapely.distance(ways, self._shape.boundary), np.minimum(*ends))
+        distance, met = ways_from_boundary(start, end, *ends, self.edges)
+        if (unsure := met == UNSURE).any():
+            import shapely
+
+            ways = shapely.linestrings(np.stack([start[unsure], end[unsure]], axis=1))
+            met[unsure] = shapely.intersects(ways, self._shape)
+        least = np.minimum(distance, np.minimum(*ends))
         deepest = 0.5 * (ends[0] + ends[1] - np.linalg.norm(end - start, axis=1))
-        bound: FloatArray = np.where(shapely.intersects(ways, self._shape), np.minimum(least, deepest), least)
+        bound: FloatArray = np.where(met == 1, np.minimum(least, deepest), least)
         return bound
 
     def enclosing_circle(self) -> Sphere:

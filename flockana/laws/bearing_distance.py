@@ -294,7 +294,7 @@ class ZoneFlocking(DiscreteLaw):
     ) -> Mapping[str, tuple[str, Any]]:
         n = q.shape[1]
         r, c, a, _ = self.radii.arrays(n)
-        parts, counts = compiled.fragments(q, a), compiled.populations(q, r, c, a)
+        parts, counts = compiled.fragments(q, a), cache(lambda: compiled.populations(q, r, c, a))
         series = {
             "connectivity": (
                 "C = rank(L)/(n − 1), of agents within a",
@@ -303,7 +303,7 @@ class ZoneFlocking(DiscreteLaw):
             "giant_share": ("C*, share of nodes", parts[:, 1] / n),
         }
         for k, zone in enumerate(("repulsion", "conflict", "attraction")):
-            series[f"in_{zone}"] = (f"mean number of agents in the zone of {zone}", counts[:, k])
+            series[f"in_{zone}"] = (f"mean number of agents in the zone of {zone}", lambda k=k: counts()[:, k])
         if "alien" in extra:
             gaps = np.linalg.norm(q[:, :, None] - extra["alien"][:, None], axis=3)
             series["alien_distance"] = ("least distance from an alien", gaps.min(axis=(1, 2)))

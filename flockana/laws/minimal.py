@@ -11,9 +11,10 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_flag, ensure_points
 from flockana.base.errors import ArgumentError
+from flockana.base.overrides import speaks_for
 from flockana.base.scales import Scales
 from flockana.base.units import times
-from flockana.kernels.minimal import edge_forces, perceived_edges, perceived_forces
+from flockana.kernels.minimal import AT_ONCE, edge_forces, perceived_edges, perceived_forces, semi_implicit_steps
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.edges import EdgeData, PerAgent, PerPair, per_agent, per_pair, weighed_edges
 from flockana.laws.law import Law
@@ -218,6 +219,46 @@ class MinimalFlocking(Law):
         pairs = [(value, what.get((i, j))) for (j, i), value in what.items()]
         return all(back is not None and np.allclose(value, back, rtol=_EQUAL, atol=0.0) for value, back in pairs)
 
+    @property
+    def _one_weight(self) -> bool:
+        """Whether all that are perceived are heeded alike."""
+        return self.edges is None and isinstance(self.mu, float) and isinstance(self.sigma, float)
+
+    def _alike(self, n: int) -> tuple[FloatArray, FloatArray, bool, Any, Any, bool]:
+        """What the kernels of such a law read: radius, spacing, whether it is shared, μ, σ, whether normalised."""
+        radius = np.full(n, self.radius)
+        spacing = self.spacing if self.beta is None else np.array(self.beta) * radius
+        lengths = np.full(n, 1.0 if spacing is None else spacing)
+        return radius, lengths, self.spacing is None, self.mu, self.sigma, self.normalised
+
+    def steps_many(self, n: int) -> bool:
+        """Whether `semi_implicit` steps a flock of this size: a small one, all heeded alike, by the law's own `flow`.
+
+        Parameters
+        ----------
+        n : int
+            Number of agents.
+        """
+        return self._one_weight and n <= AT_ONCE and speaks_for(type(self), "semi_implicit", ("flow",))
+
+    def semi_implicit(
+        self, q: FloatArray, p: FloatArray, dt: float, steps: int
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Semi-implicit Euler steps in one compiled loop: q, p after each step and u before, shape (steps, n, m).
+
+        Only where `steps_many` says so.
+
+        Parameters
+        ----------
+        q, p : ndarray, shape (n, m)
+            Positions and velocities.
+        dt : float
+            Step.
+        steps : int
+            How many.
+        """
+        return semi_implicit_steps(q, p, *self._alike(len(q)), dt, steps)
+
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
         """(u, dH/dt), unchecked, with dH/dt = −Σ σ ‖v_i − v_j‖² over links if the law is `reciprocal`, else NaN.
 
@@ -229,11 +270,8 @@ class MinimalFlocking(Law):
             Positions and velocities.
         """
         u = np.zeros_like(q)
-        if self.edges is None and isinstance(self.mu, float) and isinstance(self.sigma, float):
-            radius, shared = np.full(len(q), self.radius), self.spacing is None
-            spacing = self.spacing if self.beta is None else np.array(self.beta) * radius
-            spacing = np.full(len(q), 1.0 if spacing is None else spacing)
-            perceived_forces(q, p, radius, spacing, shared, self.mu, self.sigma, self.normalised, u)
+        if self._one_weight:
+            perceived_forces(q, p, *self._alike(len(q)), u)
             return u, float("nan")
         dissipated = edge_forces(q, p, *self.edge_data(q), u)
         return u, -0.5 * dissipated if self.reciprocal else float("nan")
@@ -372,5 +410,12 @@ class DiscreteMinimalFlocking(SemiImplicitEuler):
         if not isinstance(self.law, MinimalFlocking):
             raise ArgumentError(f"law = {self.law!r}: expected MinimalFlocking(...)")
         super().__post_init__()
+
+    def iterate(  # noqa: D102
+        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray], steps: int
+    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
+        if self.law.steps_many(len(q)) and speaks_for(type(self), "iterate", ("step", "start")):
+            return (*self.law.semi_implicit(q, p, self.dt, steps), {})
+        return super().iterate(t, q, p, memory, steps)
 
     hamiltonian = DiscreteLaw.hamiltonian  # none: H is the continuous law's

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TypeGuard
 
 from flockana.base.checks import FloatArray
+from flockana.base.overrides import speaks_for
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.law import Law
@@ -57,7 +58,7 @@ class SemiImplicitEuler(Scheme):
     def iterate(  # noqa: D102
         self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray], steps: int
     ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
-        if _is_compiled(self.law):
+        if _is_compiled(self.law) and speaks_for(type(self), "iterate", ("step", "start")):
             return (*self.law.semi_implicit(q, p, self.dt, steps), {})
         return super().iterate(t, q, p, memory, steps)
 

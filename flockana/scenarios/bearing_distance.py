@@ -20,6 +20,7 @@ from flockana.environment.zone_obstacles import Box, SimplePolygon
 from flockana.environment.zone_world import Alien, ZoneWorld
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
+from flockana.measures.metrics import diameters
 from flockana.measures.nets import components, links
 from flockana.scenarios.findings import component_counts, finding, in_source_units
 from flockana.scenarios.scenario import Report, Scenario
@@ -110,9 +111,10 @@ def _range(run: Trajectory, tolerances: Tolerances) -> Claim:
     whole = component_counts(run) == 1
     if not whole.any():
         return finding("range", float("nan"), "the flock is never cohesive", stated="up to 10 when cohesive")
-    spans = [float(np.linalg.norm(q[:, None] - q[None], axis=2).max()) for q in run.q[whole]]
-    text = f"while the flock is one component its largest distance is {min(spans):.3g} to {max(spans):.3g}"
-    return finding("range", 10.0 - max(spans), text, computed=max(spans), stated="up to 10 when cohesive")
+    spans = diameters(run.q[whole])
+    text = f"while the flock is one component its largest distance is {spans.min():.3g} to {spans.max():.3g}"
+    most = float(spans.max())
+    return finding("range", 10.0 - most, text, computed=most, stated="up to 10 when cohesive")
 
 
 def _contained(run: Trajectory, tolerances: Tolerances) -> Claim:

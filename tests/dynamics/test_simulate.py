@@ -315,6 +315,44 @@ def test_discrete_runs_that_end_early():
     assert (stopped.status, stopped.t.tolist()) == ("interrupted", [0.0, 0.25, 0.5])
 
 
+class ByThrees(Counter):
+    """The same, three steps at once."""
+
+    steps_at_once = 3
+
+
+@pytest.mark.parametrize("t_eval", [None, [0.0, 0.5, 0.75, 2.5], [1.0], [0.25, 0.5, 0.75, 1.9]])
+@pytest.mark.parametrize("fails_at", [np.inf, 1.0, 0.75])
+def test_how_many_steps_a_map_makes_at_once_changes_nothing(fails_at, t_eval):
+    runs = [
+        simulate(law(fails_at=fails_at), [[0.0]], [[5.0]], (0.0, 2.6), t_eval=t_eval) for law in (Counter, ByThrees)
+    ]
+    one, three = ((run.status, run.message, run.stats["steps"]) for run in runs)
+    assert one == three
+    for name in ("t", "q", "p", "u"):
+        np.testing.assert_array_equal(*(getattr(run, name) for run in runs))
+    np.testing.assert_array_equal(*(run.extra["count"] for run in runs))
+
+
+def test_who_watches_a_map_sees_each_step_and_may_end_it_between_steps_made_at_once():
+    seen = []
+    whole = simulate(ByThrees(), [[0.0]], [[5.0]], (0.0, 2.0), watch=seen.append)
+    assert [sample.t for sample in seen] == whole.t.tolist()
+    assert [sample.q.tolist() for sample in seen] == whole.q.tolist()
+    assert [sample.extra["count"].tolist() for sample in seen] == whole.extra["count"].tolist()
+
+    def end(sample):
+        if sample.t >= 1.25:
+            raise KeyboardInterrupt
+
+    ended = simulate(ByThrees(), [[0.0]], [[5.0]], (0.0, 2.0), watch=end)
+    assert (ended.status, ended.t.tolist()) == ("interrupted", [0.0, 0.25, 0.5, 0.75, 1.0, 1.25])
+    assert ended.message == "interrupted: the last sample is at t = 1.25"
+    stopped = simulate(ByThrees(fails_at=1.0, error=KeyboardInterrupt), [[0.0]], [[5.0]], (0.0, 2.0))
+    assert stopped.t.tolist() == [0.0, 0.25, 0.5, 0.75]  # the steps that were being made are lost
+    assert stopped.message == "interrupted: the last sample is at t = 0.75"
+
+
 def test_a_law_without_energy_has_no_balance():
     class Drift(Law):
         def flow(self, t, q, p):

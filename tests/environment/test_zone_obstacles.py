@@ -187,6 +187,48 @@ def test_clearances_against_shapely():
             assert least == pytest.approx(way.distance(shape), rel=1e-12)
 
 
+def test_clearances_where_rounding_decides_are_shapelys():
+    """Points on edges that no float is on, ways that begin there, and ways that touch a corner or lead into it."""
+    corners = np.array([(0.0, 0.0), (1.0, 1.0 / 3.0), (0.7, 1.1), (0.4, 0.6), (0.1, 0.9)])
+    polygon, shape, share = SimplePolygon(corners), shapely.Polygon(corners), np.linspace(0.0, 1.0, 41)[:, None]
+    on_edges = np.concatenate([a + share * (b - a) for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True)])
+    points = shapely.points(on_edges)
+    assert 0 < np.count_nonzero(shapely.contains(shape, points)) < 150
+    distance = shapely.distance(points, shape.boundary)
+    assert distance.max() < 1e-15
+    wanted = np.where(shapely.contains(shape, points), -distance, distance)
+    np.testing.assert_allclose(polygon.clearance(on_edges), wanted, rtol=0.0, atol=1e-17)
+    start = np.concatenate([on_edges, 2.0 * on_edges - (0.5, 2.0)])
+    end = np.concatenate([on_edges - np.array([0.5, 0.25]), np.full(on_edges.shape, (0.5, 2.0))])
+    ways, ends = shapely.linestrings(np.stack([start, end], axis=1)), (polygon.clearance(start), polygon.clearance(end))
+    least = np.minimum(shapely.distance(ways, shape.boundary), np.minimum(*ends))
+    deepest = np.minimum(least, 0.5 * (ends[0] + ends[1] - np.linalg.norm(end - start, axis=1)))
+    enters = shapely.intersects(ways, shape)
+    assert np.count_nonzero(~enters & (deepest < least - 0.1)) > 10
+    bound = polygon.clearance_on_way(start, end)
+    np.testing.assert_allclose(bound, np.where(enters, deepest, least), rtol=0.0, atol=1e-15)
+    np.testing.assert_array_equal(bound, polygon.clearance_on_way(start, end, ends))
+
+
+def test_points_are_of_the_plane():
+    with pytest.raises(ArgumentError, match=r"q has shape \(1, 3\): expected \(N, 2\), points of the plane"):
+        ARROW.clearance([[0.0, 0.0, 0.0]])
+
+
+def test_a_world_is_as_clear_as_the_nearest_of_its_obstacles_at_each_sample_and_on_each_way():
+    rng, ball = np.random.default_rng(6), Sphere((5.0, 5.0), 0.5)
+    world, q, taken = ZoneWorld((ARROW, ball)), rng.uniform(-1.0, 6.0, (30, 4, 2)), np.arange(0, 29, 3)
+    at, on_way = world.clearances(q, taken)
+    assert (at.shape, on_way.shape) == ((30, 4), (10, 4))
+    for k in range(30):
+        np.testing.assert_array_equal(at[k], np.minimum(ARROW.clearance(q[k]), ball.clearance(q[k])))
+    for row, k in zip(on_way, taken, strict=True):
+        ways = q[k], q[k + 1]
+        np.testing.assert_array_equal(
+            row, np.minimum(ARROW.clearance_on_way(*ways), ball_clearance_on_way(ball, *ways))
+        )
+
+
 def test_the_bound_of_a_way_through_a_ball_is_exact():
     ball = Sphere((0.0, 0.0), 2.0)
     found = ball_clearance_on_way(ball, np.array([[-5.0, 1.0], [3.0, 0.0]]), np.array([[5.0, 1.0], [3.0, 0.0]]))

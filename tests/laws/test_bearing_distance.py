@@ -185,6 +185,7 @@ def test_measures_are_in_the_metrics():
     k = 37
     d = np.linalg.norm(run.q[k][:, None] - run.q[k], axis=2)
     np.testing.assert_allclose(found.in_attraction[k], ((d > 3.0) & (d <= 5.0)).sum() / 10.0)
+    np.testing.assert_allclose(found.in_conflict[k], ((d > 1.5) & (d <= 3.0)).sum() / 10.0)
     np.testing.assert_allclose(found.in_repulsion[k], ((d > 0.0) & (d <= 1.5)).sum() / 10.0)
     np.testing.assert_allclose(found.coordination[k], coordination(run.p[k]))
     gaps = np.linalg.norm(run.q[k] - run.extra["alien"][k], axis=1)

@@ -14,6 +14,7 @@ from flockana.base.serialize import from_data, to_data
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.kernels.minimal import perceived_edges
+from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.minimal import DiscreteMinimalFlocking, MinimalFlocking
 from flockana.measures.perception import (
     both_ways,
@@ -227,6 +228,117 @@ def test_one_discrete_step_is_velocity_first():
     np.testing.assert_allclose(after_q, q + dt * (p + dt * expected), rtol=0, atol=1e-13)
     np.testing.assert_allclose(u, expected, rtol=0, atol=1e-13)
     assert memory == {}
+
+
+def one_by_one(law, q, p, steps):
+    """By `step`, and by `step` alone."""
+    return DiscreteLaw.iterate(law, 0.0, q, p, {}, steps)[:3]
+
+
+def assert_same_bits(found, expected):
+    for one, other in zip(found, expected, strict=True):
+        assert one.shape == other.shape
+        assert one.tobytes() == other.tobytes()
+
+
+@pytest.mark.parametrize("m", [1, 2, 3])
+@pytest.mark.parametrize(
+    "options",
+    [
+        {},
+        {"radius": tuple(np.linspace(0.1, 4.0, 20))},
+        {"radius": tuple(np.linspace(0.1, 4.0, 20)), "beta": tuple(np.linspace(1.0, 0.1, 20)), "mu": 0.7},
+        {"radius": 3.0, "spacing": 1.5, "mu": 0.4, "sigma": 0.1, "normalised": False},
+        {"radius": tuple(np.linspace(1.0, 5.0, 20)), "spacing": tuple(np.linspace(2.0, 0.5, 20)), "sigma": 0.3},
+        {"radius": 3.0, "beta": 0.3, "sigma": 0.0},
+        {"radius": 1e-200, "mu": 2.0},  # whose square is no number: coincident agents perceive each other
+        {"radius": 1e200, "spacing": 1.0},
+    ],
+)
+@pytest.mark.filterwarnings("ignore:overflow encountered in multiply")  # the square of 1e200
+def test_steps_made_at_once_are_steps_one_by_one_to_the_bit(options, m):
+    q, p = state(20, m, seed=m, size=4.0)
+    q[3] = q[4]  # coincident, and apart after a step
+    q[5, 0] = 100.0  # alone
+    law, (at, now) = MinimalFlocking(**options).discrete(0.1), (q.copy(), p.copy())
+    *found, memory = law.iterate(0.0, q, p, {}, 40)
+    assert memory == {}
+    assert_same_bits(found, one_by_one(law, q, p, 40))
+    assert_same_bits((q, p), (at, now))
+
+
+def test_steps_made_at_once_perceive_up_to_the_radius_and_whatever_the_memory_order():
+    q, p = np.array([[0.0, 0.0], [3.0, 0.0], [0.0, 7.0], [3.0, 11.0]]), np.zeros((4, 2))
+    law = MinimalFlocking((3.0, 2.999, 4.999, 5.0), normalised=False).discrete(1.0)
+    u = law.iterate(0.0, q, p, {}, 1)[2][0]
+    assert u[0].tolist() == [2.0, 0.0]  # one neighbour, so one metre is wanted, and 3 are found
+    assert u[1].tolist() == u[2].tolist() == [0.0, 0.0]
+    assert u[3].tolist() == pytest.approx([-3.0 * 0.8, -4.0 * 0.8])  # 5 are found
+    as_columns = law.iterate(0.0, np.asfortranarray(q), np.asfortranarray(p), {}, 3)[:3]
+    assert_same_bits(as_columns, one_by_one(law, q, p, 3))
+
+
+def test_the_square_of_a_radius_may_have_few_digits():
+    """The search is strict, and a few roundings more than 1e-160 have the same square."""
+    law, q, p = (
+        MinimalFlocking(1e-160, spacing=1.0).discrete(0.1),
+        np.array([[0.0], [1e-160], [1e-160]]),
+        np.zeros((3, 1)),
+    )
+    p[2] = 1.0
+    found = law.iterate(0.0, q, p, {}, 2)[:3]
+    assert found[2][0].ravel().tolist() == [0.0, 1.0, -1.0]
+    assert_same_bits(found, one_by_one(law, q, p, 2))
+
+
+@pytest.mark.parametrize("n", [1, 128, 129])
+def test_flocks_of_any_size_are_stepped_as_one_by_one(n):
+    law, (q, p) = MinimalFlocking(2.0).discrete(0.1), state(n, 2, size=8.0)
+    assert law.law.steps_many(n) == (n <= 128)
+    assert_same_bits(law.iterate(0.0, q, p, {}, 3)[:3], one_by_one(law, q, p, 3))
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_tables_and_edges_are_stepped_by_the_law_itself(case):
+    law, (q, p) = law_of(**CASES[case]).discrete(0.1), state(5, 2)
+    assert not law.law.steps_many(5)
+    assert_same_bits(law.iterate(0.0, q, p, {}, 3)[:3], one_by_one(law, q, p, 3))
+
+
+class Pulled(MinimalFlocking):
+    """A wind blows, too."""
+
+    def flow(self, t, q, p):
+        u, rate = super().flow(t, q, p)
+        return u + 1.0, rate
+
+
+class PulledSteps(DiscreteMinimalFlocking):
+    """The wind moves positions."""
+
+    def step(self, t, q, p, memory):
+        q, p, u, memory = super().step(t, q, p, memory)
+        return q + 1.0, p, u, memory
+
+
+class Counted(DiscreteMinimalFlocking):
+    """Remembers something."""
+
+    def start(self, q, p):
+        return {"count": np.zeros(1)}
+
+
+@pytest.mark.parametrize("law", [Pulled().discrete(), PulledSteps(MinimalFlocking())])
+def test_a_subclass_is_not_bypassed(law):
+    q, p = state(5, 2)
+    blown, calm = simulate(law, q, p, (0.0, 0.5)), simulate(MinimalFlocking().discrete(), q, p, (0.0, 0.5))
+    assert_same_bits((blown.q[1:], blown.p[1:], blown.u[1:]), one_by_one(law, q, p, 5))
+    assert np.abs(blown.q[1] - calm.q[1]).min() > 0.009  # dt² of the wind
+
+
+def test_what_a_subclass_remembers_is_kept():
+    run = simulate(Counted(MinimalFlocking()), *state(5, 2), (0.0, 0.5))
+    assert run.extra["count"].shape == (6, 1)
 
 
 def test_the_discrete_variant_approaches_the_flow_at_first_order():

@@ -37,3 +37,22 @@ def test_a_step_is_by_the_laws_own_force_whatever_it_inherits(law):
     np.testing.assert_allclose(p, P + 0.01 * u, rtol=0.0, atol=1e-13)
     np.testing.assert_allclose(q, Q + 0.01 * p, rtol=0.0, atol=1e-13)
     np.testing.assert_allclose(SemiImplicitEuler(law, 0.01).iterate(0.0, Q, P, {}, 1)[1][-1], p, rtol=0.0, atol=1e-13)
+
+
+class Drifting(SemiImplicitEuler):
+    """A scheme of one's own, which remembers something."""
+
+    def start(self, q, p):
+        return {"drift": np.zeros(1)}
+
+    def step(self, t, q, p, memory):
+        q, p, u, _ = super().step(t, q, p, memory)
+        return q + 1.0, p, u, {"drift": memory["drift"] + 1.0}
+
+
+def test_a_scheme_that_steps_otherwise_does_so_many_steps_at_once():
+    scheme = Drifting(DeadZoneFlocking(), 0.01)
+    q, _, _, memory = scheme.iterate(0.0, Q, P, scheme.start(Q, P), 3)
+    assert memory["drift"].tolist() == [[1.0], [2.0], [3.0]]
+    still = SemiImplicitEuler(DeadZoneFlocking(), 0.01).iterate(0.0, Q, P, {}, 1)[0]
+    np.testing.assert_array_equal(q[0], still[0] + 1.0)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+from math import dist
 
 import numpy as np
 import pytest
@@ -156,6 +157,17 @@ def test_breaking_up_and_finding_together():
             assert claim_of(entry, doctored, name).status == ("verified" if holds else "refuted"), (pattern, name)
     never = replace(run.window(0.0, 0.65), q=away)
     assert claim_of(entry, never, "range").status == "inconclusive"
+
+
+def test_the_range_is_the_largest_distance_while_the_flock_is_one_component():
+    run = ran("zone-52")
+    together = [q.tolist() for q, count in zip(run.q, component_counts(run), strict=True) if count == 1]
+    spans = [max(dist(x, y) for x in q for y in q) for q in together]
+    claim = claim_of(scenario("zone-52"), run, "range")
+    assert 100 < len(spans) < len(run.t)
+    assert claim.computed == pytest.approx(max(spans), rel=1e-15)
+    assert claim.margin == 10.0 - claim.computed
+    assert f"largest distance is {min(spans):.3g} to {max(spans):.3g}" in claim.detail
 
 
 def test_the_gap_is_passed_with_directed_zones_only():
