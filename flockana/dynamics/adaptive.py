@@ -16,7 +16,7 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.dynamics.compiled import engine_of, stepped
 from flockana.dynamics.encounters import Encounters
-from flockana.dynamics.sample import Sample, Tally, finite, has_energy
+from flockana.dynamics.sample import Sample, Samples, Tally, finite, has_energy
 from flockana.dynamics.stepping import ONE_STEP, Balance, Check, Flow, Frame, Meetings, Stepper
 from flockana.dynamics.switches import Switches
 from flockana.dynamics.threads import ensure_one_thread
@@ -39,7 +39,7 @@ def adaptive(
     keep: FloatArray | None,
     tally: Tally,
     threads: int = 1,
-) -> Iterator[Sample]:
+) -> Iterator[Sample | Samples]:
     """Samples and steps of a run, each kept as soon as it is made.
 
     A step that leaps over an encounter, or (with a method that has no past) breaks the energy's balance by more than

@@ -15,7 +15,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.dynamics.encounters import Encounters
-from flockana.dynamics.sample import Sample, Tally
+from flockana.dynamics.sample import Sample, Samples, Tally
 from flockana.dynamics.stepping import BALANCED, ONE_STEP, Frame
 from flockana.dynamics.threads import threads_of_numba
 from flockana.dynamics.tolerance import Floor
@@ -167,7 +167,7 @@ def stepped(
     wanted: frozenset[float] | None,
     tally: Tally,
     reason: Callable[[int, float], str],
-) -> Iterator[Sample]:
+) -> Iterator[Sample | Samples]:
     """Steps to the last of the stops, and samples at the times that are due, in order of time.
 
     A step, and the start, is wanted if its time is among those given; None: every step is. `reason` says in words why
@@ -182,14 +182,12 @@ def stepped(
     while stops.size:
         status, t, y, f, h, evaluations, redone, passed, sampled, steps, between = engine.run(now, stops, due, ledger)
         tally.evaluations, tally.notes["redone"] = tally.evaluations + evaluations, tally.notes["redone"] + redone
-        on_the_way = deque(zip(due.tolist(), *between, strict=False))
-        for at, (q, p, u), work in zip(steps[0].tolist(), *steps[1:], strict=True):
-            while on_the_way and on_the_way[0][0] <= at:
-                earlier, seen, done = on_the_way.popleft()
-                if earlier < at:
-                    yield Sample(earlier, seen[0], seen[1], seen[2], {"work": np.array(done)})
-            tally.steps += 1
-            yield Sample(at, q, p, u, {"work": np.array(work)}, wanted is None or at in wanted)
+        made, states, work = steps
+        tally.steps += made.size
+        if wanted is not None:
+            yield from _chosen(wanted, due, between, steps)
+        elif made.size:  # together: one by one they would cost as much as the steps of a small flock
+            yield Samples(made, states[:, 0], states[:, 1], states[:, 2], {"work": work})
         if status == CROWDED:
             tally.fail(f"more pairs within reach at t = {t:g} than a list has room for: try method='{_UNLISTED}'")
         elif status != RUNNING:
@@ -197,3 +195,14 @@ def stepped(
         if status != RUNNING:
             return
         now, stops, due = Point(t, y, f, h), stops[passed:], due[sampled:]
+
+
+def _chosen(wanted: frozenset[float], due: FloatArray, between: Any, steps: Any) -> Iterator[Sample]:
+    """Each step, wanted or not, and the samples between them, in order of time."""
+    on_the_way = deque(zip(due.tolist(), *between, strict=False))
+    for at, (q, p, u), work in zip(steps[0].tolist(), *steps[1:], strict=True):
+        while on_the_way and on_the_way[0][0] <= at:
+            earlier, seen, done = on_the_way.popleft()
+            if earlier < at:
+                yield Sample(earlier, seen[0], seen[1], seen[2], {"work": np.array(done)})
+        yield Sample(at, q, p, u, {"work": np.array(work)}, at in wanted)

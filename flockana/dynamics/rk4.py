@@ -10,7 +10,7 @@ from flockana.base.checks import FloatArray
 from flockana.dynamics.compiled import engine_of, stepped
 from flockana.dynamics.encounters import Encounters, State
 from flockana.dynamics.iterate import count_steps
-from flockana.dynamics.sample import Sample, Tally, finite, has_energy
+from flockana.dynamics.sample import Sample, Samples, Tally, finite, has_energy
 from flockana.dynamics.threads import ensure_one_thread
 from flockana.kernels.advance import GROWTH
 from flockana.laws.law import Law
@@ -25,7 +25,7 @@ def rk4(
     keep: FloatArray | None,
     tally: Tally,
     threads: int = 1,
-) -> Iterator[Sample]:
+) -> Iterator[Sample | Samples]:
     """Classical RK4 on (q, p, work); steps are shortened to land on the times to keep, and to meet every encounter.
 
     A step that would leap over an encounter is made again, and shorter: dt is the longest step, and what a step does

@@ -224,7 +224,7 @@ def _collect(
         try:
             with interrupts_recognised():
                 for sample in samples if watch is None else _one_by_one(samples):
-                    if isinstance(sample, Samples):  # of a map, which has nothing between them
+                    if isinstance(sample, Samples):  # all that there are: nothing is between them
                         kept.append(sample)
                     else:
                         if sample.wanted:
