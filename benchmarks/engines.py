@@ -1,5 +1,7 @@
 """One force evaluation with the upkeep of its list, against molecular dynamics engines.
 
+Ours are evaluations as in a run: over a list that is kept while it holds, of agents sorted a hundred evaluations ago.
+
 The engines evaluate a Lennard-Jones force, which has no velocity consensus and no square roots: less work on the same
 pairs. Its strength is next to nothing, so that agents fly straight on in all of them, and everybody looks after the
 same list. An engine that is not installed is left out with a notice (`pip install flockana[bench]`).
@@ -18,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.flocks import D, Flock, R, gas, lattice
+from benchmarks.listed import flight
 from benchmarks.rows import Asked, Found, Row
 from benchmarks.timing import interleaved, ratio
 from flockana.environment.targets import StaticTarget
@@ -58,24 +61,13 @@ def study(*, quick: bool) -> Found:
     return Found(rows, notices)
 
 
-def our_evaluations(flock: Flock) -> Callable[[], object]:
-    """Evaluations along the straight ways of the agents, from where the last turn ended."""
-    law, (q, p) = Algorithm2(target=StaticTarget((0.0, 0.0))), flock
-    moved = q.copy()
-
-    def turn() -> None:
-        for _ in range(EVALUATIONS):
-            moved[:] += DT * p
-            law.flow(0.0, moved, p)
-
-    return turn
-
-
 def _compared(
     kind: str, flock: Flock, engines: Mapping[str, Callable[[Flock], Callable[[], object]]], rounds: int
 ) -> list[Row]:
     n, pairs = len(flock[0]), sum(i.size for i, _ in pair_blocks(flock[0], R))
-    calls = {"ours": our_evaluations(flock)} | {name: build(flock) for name, build in engines.items()}
+    law = Algorithm2(target=StaticTarget((0.0, 0.0)))
+    calls: dict[str, Callable[[], object]] = {"ours": flight(law, *flock, DT, EVALUATIONS)}
+    calls |= {name: build(flock) for name, build in engines.items()}
     found = interleaved(calls, rounds=rounds)
     per_pair = {name: 1e9 * float(np.median(seconds)) / (EVALUATIONS * pairs) for name, seconds in found.items()}
     unit = "ns per pair"

@@ -2,7 +2,8 @@
 
 Agents are sorted by cell. Candidates are gathered into blocks, those within range kept without a branch; the pair law
 runs over a block in a loop that the compiler turns into vector instructions, if the law has no branches of its own;
-and what it gives is added to both agents. One dimension, one loop: m is a constant of the compiled code.
+and what it gives is added to both agents. One dimension, one loop: m is a constant of the compiled code. A product and
+a sum may round once (`CONTRACTED`); the compiler may do nothing else that arithmetic forbids, so a NaN stays one.
 """
 
 from __future__ import annotations
@@ -16,6 +17,9 @@ from flockana.kernels.compiling import njit, register_jitable
 from flockana.kernels.grid import sort_into_grid
 
 BLOCK = 512  # pairs: what is known of them stays in the first-level cache
+CONTRACTED = {
+    "contract"
+}  # numba's `fastmath`: saves a fifth of the law's time where a processor has such an instruction
 
 
 # The differences of two rows at once: all is read before anything is written, which might be the same place.
@@ -78,7 +82,7 @@ def lift_sweep(pair: Callable[..., Any], m: int, digest: int) -> tuple[Callable[
     """
     add = lift_block(pair, m)
 
-    @njit(error_model="numpy", _nrt=False)
+    @njit(error_model="numpy", _nrt=False, fastmath=CONTRACTED)
     def sweep(start, rows, x, v, forced, r2, par, c1, c2, near, room):
         first, second, s2, w, a = near[0], near[1], room[0], room[1], room[2]
         count, total = 0, 0.0 * digest
