@@ -147,7 +147,7 @@ def test_a_block_is_of_its_own_steps_and_rounds_with_each():
     headings = np.tile([0.25, 1.5], (6, 1))
     first, second = blocks([both] * 5, headings, [(0, 2), (2, 5)])
     assert [(b.start, b.stop) for b in (first, second)] == [(0, 2), (2, 5)]
-    assert second.error == pytest.approx(1.5 * first.error, rel=1e-12)
+    assert second.error == pytest.approx(1.5 * first.error, rel=1e-12, abs=0.0)
     assert 2.0 * 2.0 * np.finfo(float).eps * 1.5 < first.error < 1e-13
     assert (first.factor, first.mixes) == (0.0, True)
     apart = np.empty((0, 2), dtype=int)
