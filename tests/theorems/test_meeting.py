@@ -42,6 +42,12 @@ def test_a_narrow_well_at_the_length_of_the_law_is_seen():
     assert meeting(run_of(pair, 2)).floor == pytest.approx(-2.5 * 1.9997**2, rel=1e-12)
 
 
+def test_the_distances_that_are_looked_at_end_at_the_range():
+    """4001 of them, so that the least, halfway, is one; of others up to 200 none is so near."""
+    pair = pair_law("-k*(s-r)**2*s**2", adjacency="(1-s/r)**2", range=2.94, length=2.0, parameters={"k": 1.0})
+    assert meeting(run_of(pair, 2)).floor == pytest.approx(-2.5 * 1.47**4, rel=1e-12)
+
+
 def test_the_least_is_known_of_the_papers_law_alone():
     alpha, other = AlphaInteraction(), pair_law("k*(s-r)**2", adjacency=0, range=3.0, length=2.0, parameters={"k": 1.0})
     assert meeting(run_of(alpha)) == (2.5 * alpha.c_star, 0.0)

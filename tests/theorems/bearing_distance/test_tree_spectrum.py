@@ -54,11 +54,12 @@ def test_an_undirected_path_has_the_spectrum_of_its_laplacian_along_itself(n, m)
     assert found.slowest == pytest.approx(-roots.real.max(), rel=1e-9)
 
 
-def test_an_undirected_pair_in_the_plane():
+@pytest.mark.parametrize("a", [0.7, 5.0])
+def test_an_undirected_pair_in_the_plane(a):
     """κ = 2μ once, γ = 2a twice, and 0 for what is left: each kernel is as large as it should be."""
-    found = spectrum_of(both_ways([(0, 1)]), 2, 2, mu=3.0, sigma=0.7)
+    found = spectrum_of(both_ways([(0, 1)]), 2, 2, mu=3.0, sigma=a)
     assert (found.zeros, found.margin) == (1, pytest.approx(1.0, rel=1e-9))
-    assert found.slowest == pytest.approx(0.7, rel=1e-9)  # of s² + 2a s + 2μ, which swings
+    assert found.slowest == pytest.approx(a - sqrt(max(a * a - 6.0, 0.0)), rel=1e-9)  # of s² + 2a s + 2μ
 
 
 def test_without_alignment_the_modes_that_drift_are_no_longer_simple():

@@ -47,13 +47,13 @@ def test_of_two_edges_the_one_that_keeps_more_refutes():
     assert edges.computed == pytest.approx([2.0, 2.5])
 
 
-@pytest.mark.parametrize("lengths", [(1.5, 3.0), (3.0, 1.5), (1.9, 1.5), (1.5, 1.9)])
+@pytest.mark.parametrize("lengths", [(1.5, 3.0), (3.0, 1.5), (1.9, 1.5), (1.5, 1.9), (3.0, 0.25), (0.25, 0.5)])
 def test_an_edge_too_short_makes_a_cl_unstable(lengths):
     """By the positive root of s² + a s + μ(1 − ρ/|x|), of the shorter edge; the margin is |x|/ρ − 1."""
     claim = at_rest(*lengths).claim("hurwitz")
-    w = MU * (1.0 - 2.0 / 1.5)
+    w = MU * (1.0 - 2.0 / min(lengths))
     assert claim.status == "refuted"
-    assert claim.margin == pytest.approx(-0.25, rel=1e-12)
+    assert claim.margin == pytest.approx(0.5 * min(lengths) - 1.0, rel=1e-12)
     assert claim.computed == pytest.approx(0.5 * (sqrt(A * A - 4.0 * w) - A), rel=1e-12)
     assert claim.error == pytest.approx(8.0 * EPS * (1.0 + 0.5 * sum(lengths)), rel=1e-9, abs=0.0)
     assert claim.witness["|x_e|/ρ"] == pytest.approx([0.5 * x for x in lengths])

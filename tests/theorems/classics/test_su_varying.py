@@ -7,15 +7,17 @@ from math import exp
 import numpy as np
 import pytest
 
-from flockana.environment.targets import StaticTarget
-from flockana.interactions import Gains
+from flockana import CircleTarget, StaticTarget, compose, pair_law
+from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.theorems.classics.leader_frame import as_the_leader_sees
 from flockana.theorems.classics.su_varying import centre_of, convergence_rate
-from tests.theorems.made_up import judged, made_up, statuses
+from tests.theorems.made_up import hypothesis, judged, made_up, statuses
 
 EPS = np.finfo(float).eps
 LAW = Algorithm2(gains=Gains(c1_gamma=1.0, c2_gamma=2.0), target=StaticTarget((3.0, 0.0)))  # critically damped
+CIRCLE = CircleTarget((0.0, 0.0), 9.0, 0.05)
+OTHER = pair_law("k*(s-d)**2*(s-r)**2/2", adjacency="(1-s/r)**2", range=8.4, length=7.0, parameters={"k": 1.0})
 APART = np.array([[0.0, 3.5], [0.0, -3.5]])
 
 
@@ -81,3 +83,15 @@ def test_what_it_is_off_by_is_a_share_of_where_it_starts():
     """Half of the way back after a time of 1, where it should have gone to 2/e of it."""
     claim = judged("su-varying", motion(lambda t: (20.0 - 10.0 * t, 0.0), times=(0.0, 1.0))).claim("centre")
     assert claim.computed == pytest.approx(2.0 * exp(-1.0) - 0.5, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("changes", "status"),
+    [({}, "met"), ({"pair": OTHER}, "unmet"), ({"told": False}, "unmet"), ({"drag": 0.1}, "unmet")],
+    ids=["its own", "another pair law", "not told", "with drag"],
+)
+def test_the_law_is_that_of_the_paper_and_told(changes, status):
+    law = compose(**({"pair": AlphaInteraction(), "consensus": 9.0, "navigation": CIRCLE, "told": True} | changes))
+    verdict = judged("su-varying", made_up(law, [APART, APART]))
+    assert hypothesis(verdict, "told the leader's acceleration").status == status
+    assert (statuses(verdict)["centre"] == "vacuous") == (status == "unmet")

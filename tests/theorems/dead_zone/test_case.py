@@ -104,13 +104,14 @@ def test_the_law_is_that_of_its_steps_and_no_other():
 def test_two_that_part_keep_half_the_square_of_their_speed(speed):
     """16 apart, 1 beyond the range of 15, and each at its own velocity for ever: the lesser of 1/15 and the drift."""
     q, p = np.array([[0.0], [16.0]]), np.array([[-speed], [speed]])
-    run = made_up(LAW, [q, q + p], [p, p])
+    run = made_up(LAW, [q - p, q, q + p], [0.5 * p, p, p])
     end = final_components(run, LAW)
     gap = (16.0 + 2.0 * speed - 15.0) / 15.0
     claim = velocities_match(run, end, [], name="velocity")
     assert claim.status == "refuted"
     assert claim.margin == pytest.approx(-min(gap, 0.5 * speed**2 / LAW.scales.speed**2), rel=1e-9)
     assert claim.computed == pytest.approx(0.5 * speed**2, rel=1e-12)
+    assert claim.witness == {"time": 2.0, "K̃ at the start": pytest.approx(0.125 * speed**2)}
     assert settling(end).margin == pytest.approx(min(gap, 1.0), rel=1e-9)
 
 

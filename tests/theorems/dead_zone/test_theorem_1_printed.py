@@ -80,6 +80,7 @@ def test_the_energy_of_neighbours_rises_as_a_pair_comes_into_range(law, places, 
     assert (claim.status, claim.margin, claim.error) == (status, margin, 0.0)
     jump = law.interaction.far_potential
     assert (jump > 0.0) == (law is LAW)
+    assert claim.computed == (jump if status == "refuted" else 0.0)
     assert (f"H rises by {jump:.4g}" in claim.detail) == (status == "refuted")
     assert ("nothing jumps" in claim.detail) == (law is FLAT)
 
