@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 from flockana import compose, pair_law
-from flockana.interactions import AlphaInteraction
+from flockana.interactions import AlphaInteraction, Gains
+from flockana.laws.composition import Composition
 from flockana.laws.olfati_saber import Algorithm1
-from tests.theorems.made_up import hypothesis, judged, made_up
+from flockana.theorems.rounding import energy_error
+from tests.theorems.made_up import hypothesis, judged, made_up, statuses
 
 WELL = pair_law(
     "k*((s-r)**2*(2*s+r) - r**3/2)*(s-r)**2", adjacency="(1-s/r)**2", range=3.0, length=2.0, parameters={"k": 1.0}
@@ -52,6 +54,16 @@ def test_of_another_pair_law_the_least_of_all_pairs_is_taken_off(places, speed):
 
 
 def test_the_energy_is_that_of_the_start():
-    q, p = np.array([[[0.0], [7.0]], [[0.0], [6.0]]]), np.array([[[10.0], [-10.0]], [[9.0], [-9.0]]])
-    found = hypothesis(judged("collision-energy", made_up(Algorithm1(), q, p)), "H(0) < c*")
+    q, p = np.array([[[0.0], [7.0]], [[-900.0], [6.0]]]), np.array([[[10.0], [-10.0]], [[9.0], [-9.0]]])
+    law = Algorithm1()
+    found = hypothesis(judged("collision-energy", made_up(law, q, p)), "H(0) < c*")
+    assert found.error == pytest.approx(energy_error(law, q[:1], p[:1], np.array([100.0]))[0], rel=1e-9, abs=0.0)
     assert found.margin == pytest.approx(30.0 * AlphaInteraction().c_star - 100.0, rel=1e-9)
+
+
+@pytest.mark.parametrize(("thrust", "status"), [(-0.5, "verified"), (0.0, "verified"), (0.5, "vacuous")])
+def test_a_composition_that_is_driven_gains_energy(thrust, status):
+    law = Composition(alpha=AlphaInteraction(), gains=Gains(), target=None, thrust=thrust)
+    verdict = verdict_of(law, 0.0, 7.0)
+    assert set(statuses(verdict).values()) == {status}
+    assert (verdict.hypotheses[-1].name == "no thrust: α <= 0") == (thrust > 0.0)
