@@ -111,7 +111,7 @@ def test_what_an_energy_of_zero_at_rest_is_off_by_is_that_of_its_pairs(n, pairs)
     each = 1e-13 * pair.c_star + 8.0 * eps * 1.01 * pair.strength * (pair.range + 50.0)
     assert bound == pytest.approx(2.0 * pairs * each, rel=1e-12)
     more = energy_error(law, q, 0.0 * q, np.array([-7.0]))[0] - bound
-    assert more == pytest.approx((pairs + n + 8) * eps * 7.0, rel=1e-3)
+    assert more == pytest.approx((pairs + n + 8) * eps * 7.0, rel=1e-3, abs=0.0)
 
 
 def test_a_pull_and_an_obstacle_add_theirs():

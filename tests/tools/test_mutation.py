@@ -108,9 +108,9 @@ def test_what_a_file_of_the_package_is_tested_by(path, first):
 
 
 def test_a_theorem_on_runs_is_asked_of_short_runs_soon():
-    order = nearby.Nearby(command.PROJECT).order("flockana/theorems/classics/tanner_switching.py")
+    order = nearby.Nearby(command.PROJECT).order("flockana/theorems/classics/cucker_smale.py")
     short = "tests/adversarial/test_catalogue.py::test_short_runs_say_what_was_published"
-    assert {f"{short}[tanner-switching]", f"{short}[tanner-switching-parts]"} <= set(order[:3])
+    assert {f"{short}[cucker-smale]", f"{short}[cucker-smale-steep]"} <= set(order[:3])
 
 
 def test_what_decides_from_a_tube_is_asked_for_by_what_names_it():

@@ -90,4 +90,4 @@ def test_lengths_round_by_how_far_from_the_origin_agents_are(far, shortest):
     """Eight roundings of a length, and of positions in units of the shortest edge."""
     run = SimpleNamespace(q=np.array([[[0.0, 1.0], [-far, 0.0]]]))
     case = SimpleNamespace(rho=np.array([2.0 * shortest, shortest]))
-    assert length_error(case, run) == pytest.approx(8.0 * 2.0**-52 * (1.0 + far / shortest), rel=1e-14)
+    assert length_error(case, run) == pytest.approx(8.0 * 2.0**-52 * (1.0 + far / shortest), rel=1e-14, abs=0.0)

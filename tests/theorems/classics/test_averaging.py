@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 import numpy as np
 import pytest
 
@@ -145,9 +147,19 @@ def test_a_block_is_of_its_own_steps_and_rounds_with_each():
     headings = np.tile([0.25, 1.5], (6, 1))
     first, second = blocks([both] * 5, headings, [(0, 2), (2, 5)])
     assert [(b.start, b.stop) for b in (first, second)] == [(0, 2), (2, 5)]
-    assert second.error == pytest.approx(1.5 * first.error, rel=1e-12)
+    assert second.error == pytest.approx(1.5 * first.error, rel=1e-12, abs=0.0)
     assert 2.0 * 2.0 * np.finfo(float).eps * 1.5 < first.error < 1e-13
     assert (first.factor, first.mixes) == (0.0, True)
     apart = np.empty((0, 2), dtype=int)
     (lonely,) = blocks([apart] * 2, headings, [(0, 2)])
     assert (lonely.factor, lonely.mixes) == (1.0, False)
+
+
+def test_nothing_is_certain_where_rounding_hides_how_fast_the_net_averages(monkeypatch):
+    """With numbers so coarse that 1 − ρ of a path of three is within (3 + 4) ε: ρ = ½."""
+    q, heading = np.array([[0.0, 0.0], [0.7, 0.0], [1.4, 0.0]]), np.full(3, 1.5)
+    for eps, certainly in ((1e-6, True), (0.51 / 7.0, False), (0.9 / 7.0, False)):
+        monkeypatch.setattr(sys.modules["flockana.theorems.classics.averaging"], "EPS", eps)
+        found = for_ever_connected(LAW, q, heading)
+        assert certain(found) is certainly
+        assert ("rounding hides" in found.text) is not certainly

@@ -6,6 +6,7 @@ from math import inf, sqrt
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
@@ -63,3 +64,15 @@ def test_elsewhere_nothing_is_known(law, s):
 def test_one_agent_is_held_by_nothing_and_goes_nowhere():
     basin = hold(LAW, np.zeros((1, 2)), np.ones((1, 2)))
     assert (basin.excess, basin.barrier, basin.reach, basin.verb) == (0.0, inf, 0.0, "held")
+
+
+@pytest.mark.parametrize("n", [2, 3])
+def test_at_the_contact_itself_the_force_is_what_its_sums_round(n):
+    """Of each coordinate (n + 16) ε times Λ r, Λ the stiffness: 2F' of a pair, 3F' of a triangle; the force is 0."""
+    s = brentq(lambda s: float(LAW.interaction.force(np.array([s]))[0]), 3.499, 3.49999, xtol=1e-15, rtol=1e-15)
+    q = s * np.array([[0.0, 0.0], [1.0, 0.0], [0.5, sqrt(0.75)]])[:n, : n - 1]
+    basin = hold(LAW, q, np.zeros_like(q))
+    stiff = n * slope(s)
+    rounding = sqrt(q.size) * (n + 16.0) * np.finfo(float).eps * stiff * LAW.interaction.r
+    assert 0.5 * basin.distance * basin.curvature == pytest.approx(rounding, rel=0.05, abs=0.0)
+    assert basin.excess == pytest.approx(rounding**2 / basin.curvature, rel=0.1, abs=0.0)

@@ -8,13 +8,16 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.optimize import brentq
 
 import flockana as fl
 from flockana.base.units import rescale
+from flockana.equilibria.gradient_flow import structural_force
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_patch, hexagonal_spiral
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.olfati_saber.attraction import attraction, lipschitz_within
+from flockana.theorems.rounding import pair_force_error
 from flockana.theorems.slides.e03 import rhombus_with_double_agent
 
 LAW1 = Algorithm1()
@@ -144,3 +147,29 @@ def test_units_places_turns_and_names_change_nothing(seed, length, time):
         two = attraction(law, x, v)
         assert two.barrier / by == pytest.approx(one.barrier, rel=1e-5)
         assert two.certificate.margin == pytest.approx(one.certificate.margin, abs=1e-5)
+
+
+@pytest.mark.parametrize("n", [2, 3, 7])
+def test_a_lattice_has_no_force_but_what_its_sums_round(n):
+    """c1α times what a pair is off by, once for each neighbour and once more, over all coordinates."""
+    q = np.array([[7.0, 0.0], [0.0, 0.0], [3.5, 7.0 * np.sqrt(0.75)]])[:n] if n < 7 else hexagonal_patch(1, 7.0)
+    found = attraction(LAW1, q, 0.0 * q)
+    near = n - 1  # of the agent in the middle
+    rounding = np.sqrt(2.0 * n) * 30.0 * pair_force_error(LAW1.alpha) * (near + 1.0)
+    force = np.linalg.norm(structural_force(LAW1, q))
+    assert force < 0.1 * rounding
+    assert 0.5 * found.distance * found.curvature == pytest.approx(force + rounding, rel=1e-9, abs=0.0)
+    assert found.excess == pytest.approx((force + rounding) ** 2 / found.curvature, rel=1e-9, abs=0.0)
+
+
+def test_a_pull_rounds_with_the_place():
+    """Two agents whose repulsion the pull to the γ-agent between them balances: 16 ε of the pull besides."""
+    law = Algorithm2(gains=Gains(c1_alpha=1.0, c2_alpha=1.0, c1_gamma=1.0, c2_gamma=1.0), target=LAW2.target)
+
+    def state(s):
+        return np.array([[-s, 0.0], [s, 0.0]])
+
+    s = brentq(lambda s: structural_force(law, state(s))[1, 0], 3.0, 3.5, xtol=1e-18, rtol=1e-15)
+    found, force = attraction(law, state(s), np.zeros((2, 2))), np.linalg.norm(structural_force(law, state(s)))
+    rounding = 2.0 * (2.0 * pair_force_error(law.alpha) + 16.0 * np.finfo(float).eps * s)
+    assert 0.5 * found.distance * found.curvature == pytest.approx(force + rounding, rel=1e-9, abs=0.0)

@@ -110,3 +110,34 @@ def test_the_energy_in_other_units_of_length_is_that_of_the_law():
         law, [[arb(x) for x in row] for row in q.tolist()], [[arb(x) for x in row] for row in p.tolist()]
     )
     assert float(ball) == pytest.approx(law.energy(0.0, q, p), rel=1e-10)
+
+
+def slow_at_first(speed, span):
+    """One agent at half of p_r; pulled from far with c1γ = p_r, it has v = p_r (2 − 1.5 e^−t), c2γ being 1."""
+    law = Algorithm3(gains=Gains(c1_gamma=speed, c2_gamma=1.0), target=StaticTarget((1e3, 0.0), (speed, 0.0)))
+    tube = enclose(law, np.zeros((1, 2)), np.array([[0.5 * speed, 0.0]]), span, order=20)
+    return tube, verify("os-6", tube)
+
+
+@pytest.mark.parametrize(("speed", "start"), [(1.0, 0.0), (1.0, 100.0), (0.01, 0.0), (0.01, 100.0)])
+def test_the_condition_76_is_met_from_the_step_on_after_the_agent_is_as_fast_as_told(speed, start):
+    """That is at ln 1.5; after it the rate −v (v − p_r) falls, and a share of it is the same at any speed."""
+    tube, verdict = slow_at_first(speed, (start, start + 1.0))
+    rate = verdict.claim("rate")
+    since = rate.witness["time"]
+    k = tube.t.index(since)
+    assert tube.t[k - 1] < start + np.log(1.5) < since
+    assert f"t >= {since:.6g}" in rate.stated
+    v = 2.0 - 1.5 * np.exp(start - since)
+    assert -(speed**2) * v * (v - 1.0) <= rate.computed < -0.5 * speed**2 * v * (v - 1.0)
+    assert [h.status for h in verdict.hypotheses] == ["met"] * 5
+    assert statuses(verdict) == {"rate": "verified", "balance": "verified"}
+    assert rate.margin == pytest.approx(0.251964, abs=1e-5)
+
+
+@pytest.mark.parametrize(("end", "status"), [(0.18, "unmet"), (0.7, "assumed"), (0.9, "assumed"), (0.93, "met")])
+def test_the_condition_76_is_met_for_the_time_of_the_law_or_not_known(end, status):
+    """It is broken up to ln 1.5 and certain from 0.776 on; the law's time is 0.142."""
+    tube, verdict = slow_at_first(1.0, (0.0, end))
+    assert tube.law.scales.time == pytest.approx(0.1421, abs=1e-4)
+    assert verdict.hypotheses[3].status == status

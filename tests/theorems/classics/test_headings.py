@@ -1,0 +1,104 @@
+"""The theorem of Jadbabaie, Lin and Morse on headings written by hand."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from flockana.laws.vicsek import HeadingAveraging
+from tests.theorems.made_up import hypothesis, judged, made_up, statuses
+
+LAW = HeadingAveraging(range=1.0, speed=0.01, dt=0.5)
+NEAR, APART = [[0.0, 0.0], [0.5, 0.0]], [[0.0, 0.0], [5.0, 0.0]]
+
+
+def verdict_of(headings, places=None, dt=0.5, law=LAW):
+    """Two agents that stay where they are told, whatever their headings."""
+    q = [NEAR] * len(headings) if places is None else places
+    run = made_up(law, q, t=dt * np.arange(len(headings)))
+    return judged("jlm-headings", replace(run, extra={"heading": np.array(headings, dtype=float)}))
+
+
+def test_two_that_hear_each_other_agree_after_one_step():
+    verdict = verdict_of([[0.0, 1.0], [0.5, 0.5], [0.5, 0.5]])
+    assert set(statuses(verdict).values()) == {"verified"}
+    assert {h.status for h in verdict.hypotheses} == {"met"}
+    assert verdict.claim("hull").computed == 0.0
+    assert verdict.claim("contraction").computed == 0.0  # ½(1, 1) of both: nothing is left of a spread
+    assert verdict.claim("contraction").witness == {"blocks": 2, "steps of the first missed": None}
+    assert verdict.claim("agreement").witness == {"heading": 0.5}
+    assert "2 windows seen, of 1 steps at most" in hypothesis(verdict, "for ever").detail
+
+
+@pytest.mark.parametrize(
+    ("headings", "out", "first"),
+    [
+        ([[0.0, 1.0], [0.5, 0.5], [0.5, 0.5 + 1e-15]], 1, 1),
+        ([[0.0, 1.0], [0.0, 1.0 + 1e-15], [0.0, 1.0]], 1, 0),
+        ([[0.0, 1.0], [-1e-15, 1.0], [-1e-15, 1.0]], 1, 0),
+        ([[0.0, 1.0], [-0.1, 1.1], [-0.2, 1.2]], 2, 0),
+        ([[0.0, 1.0], [0.0, 1.0], [0.1, 0.9]], 0, None),
+    ],
+)
+def test_every_step_at_which_a_heading_leaves_the_span_counts(headings, out, first):
+    claim = verdict_of(headings).claim("hull")
+    assert claim.witness == {"steps at which one does": out, "first": first}
+    assert (claim.margin, claim.error) == (-out or 1.0, 0.0)
+    assert claim.status == ("refuted" if out else "verified")
+    assert claim.computed == pytest.approx(np.ptp(headings[-1]))
+
+
+@pytest.mark.parametrize(("left", "missed"), [(0.0, False), (1e-16, False), (1e-12, True), (0.5, True)])
+def test_what_the_nets_do_not_leave_of_a_spread_is_missed(left, missed):
+    """Both take the mean of both in the first step; in the second they are apart again."""
+    verdict = verdict_of([[0.0, 1.0], [0.5 - 0.5 * left, 0.5 + 0.5 * left], [0.5, 0.5]])
+    claim = verdict.claim("contraction")
+    assert claim.status == ("refuted" if missed else "verified")
+    assert claim.margin == (-1.0 if missed else 1.0)
+    assert claim.witness["steps of the first missed"] == ((0, 1) if missed else None)
+
+
+def test_two_that_never_hear_each_other_are_in_no_window():
+    verdict = verdict_of([[3.0, 0.1]] * 3, [APART] * 3)
+    assert statuses(verdict) == {"hull": "verified", "contraction": "vacuous", "agreement": "vacuous"}
+    assert hypothesis(verdict, "for ever").status == "unmet"  # the second is ahead, and they head apart
+    assert "0 windows seen, of 0 steps at most" in hypothesis(verdict, "for ever").detail
+
+
+def test_what_comes_after_the_run_may_not_be_known():
+    """Apart, and on the way to each other."""
+    verdict = verdict_of([[0.1, 3.0]] * 3, [APART] * 3)
+    assert hypothesis(verdict, "for ever").status == "assumed"
+    assert verdict.claim("agreement").status == "inconclusive"
+    assert verdict.claim("agreement").witness is None
+
+
+def test_a_window_is_as_long_as_it_takes_to_meet():
+    verdict = verdict_of([[0.0, 1.0], [0.0, 1.0], [0.0, 1.0], [0.5, 0.5]], [APART, APART, NEAR, NEAR])
+    assert "1 windows seen, of 3 steps at most" in hypothesis(verdict, "for ever").detail
+    assert verdict.claim("contraction").status == "verified"
+
+
+@pytest.mark.parametrize(
+    ("dt", "kept"), [(0.5, True), (0.5 * (1.0 + 1e-7), True), (0.5 * (1.0 + 3e-6), False), (1.0, False)]
+)
+def test_samples_are_a_step_apart(dt, kept):
+    verdict = verdict_of([[0.0, 1.0], [0.5, 0.5]], dt=dt)
+    assert hypothesis(verdict, "every step").status == ("met" if kept else "unmet")
+    assert (statuses(verdict)["hull"] == "vacuous") is not kept
+
+
+def test_headings_must_be_kept():
+    run = made_up(LAW, [NEAR, NEAR], t=[0.0, 0.5])
+    assert hypothesis(judged("jlm-headings", run), "every step").status == "unmet"
+
+
+def test_what_lasts_is_that_of_the_end():
+    """Apart at first, and with headings so different that they might part again: in the end neither."""
+    verdict = verdict_of([[0.0, 300.0], [150.0, 150.0], [150.0, 150.0]], [APART, NEAR, NEAR])
+    assert hypothesis(verdict, "for ever").status == "met"
+    assert verdict.claim("agreement").witness == {"heading": 150.0}
+    unsettled = verdict_of([[150.0, 150.0], [150.0, 150.0], [0.0, 300.0]])
+    assert hypothesis(unsettled, "for ever").status == "assumed"

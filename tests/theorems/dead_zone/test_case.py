@@ -1,0 +1,133 @@
+"""What both dead-zone theorems say of distances and of velocities, on motions by hand."""
+
+from __future__ import annotations
+
+from math import inf, isnan, log
+
+import numpy as np
+import pytest
+
+from flockana.interactions.dead_zone import DeadZoneInteraction
+from flockana.laws.dead_zone import DeadZoneFlocking
+from flockana.laws.olfati_saber import Algorithm1
+from flockana.laws.semi_implicit import SemiImplicitEuler
+from flockana.theorems.dead_zone.case import (
+    dead_zone_law,
+    final_components,
+    hypotheses,
+    no_collision,
+    settling,
+    velocities_match,
+)
+from tests.theorems.made_up import made_up
+
+EPS, LAW = np.finfo(float).eps, DeadZoneFlocking()
+PATH = 1e-5  # a path's least distance is bounded from below to some 1e-6 of it
+STEPS = SemiImplicitEuler(LAW, 1.0)
+
+
+def passing(law, beside):
+    """Two agents that pass each other in a second, free of forces: 4 apart along x at both ends, and so far beside."""
+    q = np.array([[[-2.0, 0.0], [2.0, beside]], [[2.0, 0.0], [-2.0, beside]]])
+    p = np.array([[4.0, 0.0], [-4.0, 0.0]])
+    return made_up(law, q, [p, p])
+
+
+@pytest.mark.parametrize("bound", [1e-30, 0.5, 2.9, 3.1])
+def test_the_margin_is_the_logarithm_of_the_distance_over_the_bound(bound):
+    claim = no_collision(passing(LAW, 3.0), bound, 7.0, [], name="distance")
+    assert claim.margin == pytest.approx(log(3.0 / bound), abs=PATH)
+    assert claim.error == pytest.approx(16.0 * EPS * 3.0 / 3.0 + 1e-9, rel=1e-5, abs=0.0)
+    assert claim.status == ("verified" if bound < 3.0 else "refuted")
+    assert 3.0 - PATH <= claim.computed <= 3.0
+    assert claim.witness["time"] == pytest.approx(0.5, abs=0.01)
+
+
+def test_without_a_bound_it_is_the_distance_in_units():
+    claim = no_collision(passing(LAW, 3.0), 0.0, 7.0, [], name="collision")
+    assert claim.margin == pytest.approx(3.0 / 7.0, abs=PATH)
+    assert claim.error == pytest.approx(4.0 * EPS * 3.0 / 7.0 + EPS, rel=1e-9, abs=0.0)
+    assert claim.status == "verified"
+
+
+@pytest.mark.parametrize(("law", "least"), [(LAW, 3.0), (STEPS, 5.0)])
+def test_a_map_has_nothing_between_its_samples(law, least):
+    assert no_collision(passing(law, 3.0), 1.0, 7.0, [], name="distance").computed == pytest.approx(least, abs=PATH)
+
+
+def test_one_sample_is_all_that_is_known():
+    run = passing(LAW, 3.0)
+    one = made_up(LAW, run.q[:1], run.p[:1])
+    claim = no_collision(one, 1.0, 7.0, [], name="distance")
+    assert (claim.computed, claim.witness["time"]) == (pytest.approx(5.0), 0.0)
+
+
+@pytest.mark.parametrize("bound", [0.5, 0.0])
+def test_agents_that_meet_refute_it_without_a_bound_and_with_one_nothing_is_known(bound):
+    """A logarithm has no margin at 0, but the distance has."""
+    claim = no_collision(passing(STEPS, 0.0), bound, 7.0, [], name="distance")
+    assert claim.status == "verified"  # the samples alone
+    q = np.zeros((2, 2, 1))
+    claim = no_collision(made_up(STEPS, q), bound, 7.0, [], name="distance")
+    assert claim.status != "verified"
+    assert isnan(claim.margin) == (bound > 0.0)
+    assert claim.error == (inf if bound else EPS)
+
+
+def test_one_agent_has_no_distances():
+    for bound in (0.0, 1.0):
+        claim = no_collision(made_up(LAW, np.zeros((2, 1, 2))), bound, 7.0, [], name="distance")
+        assert (claim.margin, claim.error, claim.status) == (1.0, EPS, "verified")
+
+
+def test_far_from_the_origin_a_distance_is_less_exact():
+    run = passing(LAW, 3.0)
+    claim = no_collision(made_up(LAW, run.q + 1e9, run.p), 1.0, 7.0, [], name="distance")
+    assert claim.error == pytest.approx(16.0 * EPS * 1e9 / 3.0 + 1e-9, rel=1e-3, abs=0.0)
+
+
+def test_the_law_is_that_of_its_steps_and_no_other():
+    class Other(DeadZoneInteraction):
+        pass
+
+    q = np.array([[[0.0], [5.0]]] * 2)
+    assert dead_zone_law(made_up(LAW, q)) is LAW
+    assert dead_zone_law(made_up(STEPS, q)) is LAW
+    assert dead_zone_law(made_up(DeadZoneFlocking(Other()), q)) is None
+    assert dead_zone_law(made_up(Algorithm1(), q)) is None
+    assert [h.status for h in hypotheses(made_up(LAW, q))] == ["met", "met"]
+    assert hypotheses(made_up(LAW, q))[1].margin == 5.0
+    assert [h.status for h in hypotheses(made_up(Algorithm1(), 0.0 * q))] == ["unmet", "unmet"]
+
+
+@pytest.mark.parametrize("speed", [0.25, 3.0])
+def test_two_that_part_keep_half_the_square_of_their_speed(speed):
+    """16 apart, 1 beyond the range of 15, and each at its own velocity for ever: the lesser of 1/15 and the drift."""
+    q, p = np.array([[0.0], [16.0]]), np.array([[-speed], [speed]])
+    run = made_up(LAW, [q - p, q, q + p], [0.5 * p, p, p])
+    end = final_components(run, LAW)
+    gap = (16.0 + 2.0 * speed - 15.0) / 15.0
+    claim = velocities_match(run, end, [], name="velocity")
+    assert claim.status == "refuted"
+    assert claim.margin == pytest.approx(-min(gap, 0.5 * speed**2 / LAW.scales.speed**2), rel=1e-9)
+    assert claim.computed == pytest.approx(0.5 * speed**2, rel=1e-12)
+    assert claim.witness == {"time": 2.0, "K̃ at the start": pytest.approx(0.125 * speed**2)}
+    assert settling(end).margin == pytest.approx(min(gap, 1.0), rel=1e-9)
+
+
+def test_two_that_may_meet_again_decide_nothing():
+    q, p = np.array([[0.0], [16.0]]), np.array([[1.0], [-1.0]])
+    run = made_up(LAW, [q, q], [p, p])
+    end = final_components(run, LAW)
+    assert velocities_match(run, end, [], name="velocity").status == "inconclusive"
+    assert settling(end).margin == -1.0  # 15 short of being 0 apart
+
+
+def test_one_component_settles_if_its_energy_cannot_break_it():
+    """Two agents at rest in the dead zone, where only k₁ pulls: their energy is less than ψ(r)."""
+    q = np.array([[[0.0], [5.0]]] * 2)
+    run = made_up(LAW, q)
+    claim = velocities_match(run, final_components(run, LAW), [], name="velocity")
+    share = float(LAW.interaction.psi(5.0)) / LAW.interaction.far_potential
+    assert claim.status == "verified"
+    assert claim.margin == pytest.approx(1.0 - share, rel=1e-9)
