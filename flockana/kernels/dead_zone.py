@@ -232,12 +232,12 @@ def semi_implicit_steps(q, p, par, c2, dt, steps):
             skin = 1e-3 * r + _AHEAD * dt * _moved(v, np.zeros((m, n)))
             kept = _listed(x, par, skin, near, degree, first, second, inside, ends)
             put(x, then)
-        for k in range(kept):
-            total = 0.0
-            for c in range(m):
-                d[c, k] = x[c, second[k]] - x[c, first[k]]
-                total += d[c, k] * d[c, k]
-            s2[k] = total
+        for c in range(m):
+            x_c, d_c = x[c], d[c]
+            for k in range(kept):
+                d_c[k] = x_c[second[k]] - x_c[first[k]]
+            for k in range(kept):
+                s2[k] = d_c[k] * d_c[k] + (s2[k] if c > 0 else 0.0)
         changed = 0
         for k in range(kept):
             w[k] = pair_dead_zone(s2[k], held)[0] if s2[k] < square else 0.0
@@ -266,11 +266,13 @@ def semi_implicit_steps(q, p, par, c2, dt, steps):
                     u_c[second[k]] -= f
                 u_c[i] = own
             begin = ends[i]
-        for i in range(n):
-            for c in range(m):
-                v[c, i] += dt * u[c, i]
-                x[c, i] += dt * v[c, i]
-                all_q[step, i, c], all_p[step, i, c], all_u[step, i, c] = x[c, i], v[c, i], u[c, i]
+        for c in range(m):
+            x_c, v_c, u_c = x[c], v[c], u[c]
+            for i in range(n):
+                v_c[i] += dt * u_c[i]
+                x_c[i] += dt * v_c[i]
+            for i in range(n):
+                all_q[step, i, c], all_p[step, i, c], all_u[step, i, c] = x_c[i], v_c[i], u_c[i]
     return all_q, all_p, all_u
 
 
@@ -305,7 +307,8 @@ def _moved(x, then):
     for c in range(m):
         mean = 0.0
         for i in range(n):
-            mean += (x[c, i] - then[c, i]) / n
+            mean += x[c, i] - then[c, i]
+        mean /= n
         for i in range(n):
             most[i] += (x[c, i] - then[c, i] - mean) ** 2
     largest = 0.0
