@@ -47,7 +47,7 @@ def test_a_force_that_keeps_its_direction_is_told(monkeypatch):
 
     class Pushed(DeadZoneFlocking):
         def acceleration(self, t, q, p):
-            return super().acceleration(t, q, p) + [10.0, 0.0]
+            return super().acceleration(t, q, p) + np.array([10.0, 0.0])
 
     monkeypatch.setattr(l01, "DeadZoneFlocking", Pushed)
     claim = {claim.name: claim for claim in theorem("L1").examine(Tolerances())[1]}["corrected"]
