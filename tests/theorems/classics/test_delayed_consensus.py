@@ -9,8 +9,9 @@ from math import pi
 import mpmath
 import numpy as np
 import pytest
+from flint import acb, arb
 
-from flockana.stability import delay_margin
+from flockana.stability import consensus_system, delay_margin
 from flockana.theorems import Tolerances, theorem
 from flockana.theorems.classics import delayed_consensus
 from flockana.theorems.classics.delayed_consensus import root_enclosure
@@ -121,3 +122,36 @@ def test_columns_sum_to_nothing(verdict_of):
     assert (claim.status, claim.error) == ("verified", 0.0)
     assert claim.margin == pytest.approx(14 * EPS - claim.computed, rel=1e-12, abs=0.0)
     assert 0.0 <= claim.computed < 4 * EPS
+
+
+def test_columns_that_sum_to_something_are_told_by_the_largest_share(monkeypatch):
+    """A quarter more that the first agent has from itself than from the second: a twelfth of 3, the least λ_n."""
+
+    def uneven(matrix):
+        system = consensus_system(matrix)
+        late = system.late[1].copy()
+        late[0, :2] += (0.25, -0.25) if len(matrix) < 7 else (0.0, 0.0)
+        return replace(system, late=(system.late[0], late))
+
+    monkeypatch.setattr(delayed_consensus, "consensus_system", uneven)
+    claim = theorem("delayed-consensus").examine(Tolerances())[1][-1]
+    assert claim.status == "refuted"
+    assert claim.computed == pytest.approx(0.25 / 3.0, rel=1e-9)
+    assert claim.margin == pytest.approx(-0.25 / 3.0, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("real", "statuses"),
+    [
+        (arb(-1, 0.5), ["verified", "refuted"]),
+        (arb(0.25, 0.125), ["refuted", "verified"]),
+        (arb(2.0), ["refuted", "verified"]),
+        (arb(-2.0), ["verified", "refuted"]),
+        (arb(0, 0.1), ["inconclusive", "inconclusive"]),
+        (arb(0.5, 3.0), ["inconclusive", "inconclusive"]),
+    ],
+)
+def test_a_ball_decides_if_it_is_on_one_side(monkeypatch, real, statuses):
+    monkeypatch.setattr(delayed_consensus, "root_enclosure", lambda share: acb(real, 1))
+    claims = theorem("delayed-consensus").examine(Tolerances())[1]
+    assert [claim.status for claim in claims[3:5]] == statuses
