@@ -65,7 +65,7 @@ def test_one_agent_meets_nobody():
 def test_without_a_gain_it_says_nothing(law, missed):
     tube = tube_of(0.0, 7.0, law=law)
     one = verify("os-1", tube)
-    assert [h.name for h in one.hypotheses if h.status == "unmet"][0].startswith(missed)
+    assert next(h.name for h in one.hypotheses if h.status == "unmet").startswith(missed)
     assert set(statuses(one).values()) == {"vacuous"}
     assert (set(statuses(verify("collision-energy", tube)).values()) == {"vacuous"}) == (missed == "c1α")
 
