@@ -28,6 +28,13 @@ def test_one_agent_is_its_own_centre():
     assert (claim.status, claim.margin, claim.computed) == ("verified", 1.0, 0.0)
 
 
+def test_far_from_the_origin_the_centre_is_known_less_well():
+    """Of one agent by twice the rounding of a place in its frame, of r = 15."""
+    for place in (0.0, 3.0, 1e6):
+        claim, eps = of_line(place).claim("cohesion"), np.finfo(float).eps
+        assert claim.error == pytest.approx(2.0 * 5.0 * eps * place / 15.0 + 4.0 * eps, rel=1e-9, abs=0.0)
+
+
 def test_two_at_their_contact_are_half_of_it_away():
     claim = of_line(0.0, CONTACT).claim("cohesion")
     assert claim.status == "verified"

@@ -1,0 +1,78 @@
+"""A fixed net: connected or not, and which pairs may not meet, on agents by hand."""
+
+from __future__ import annotations
+
+from math import exp
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from flockana import FixedNetFlocking
+from tests.theorems.made_up import hypothesis, judged, made_up, same_in_all_units, statuses
+
+NAMES = ["energy", "no-collision", "velocities", "critical"]
+
+
+def at_rest(edges, *places):
+    q = np.array(places)[:, None]
+    return made_up(FixedNetFlocking(edges=edges), [q, q, q])
+
+
+@pytest.mark.parametrize(
+    ("edges", "parts"),
+    [(((0, 1), (1, 2)), 1), (((0, 2), (1, 2)), 1), (((0, 1),), 2), (((1, 2),), 2), ((), 3)],
+)
+def test_a_net_is_connected_or_says_nothing(edges, parts):
+    verdict = judged("tanner-fixed", at_rest(edges, 0.0, 1.0, 2.0))
+    need = hypothesis(verdict, "connected")
+    assert (need.status, need.margin) == ("met" if parts == 1 else "unmet", 1.5 - parts)
+    assert need.detail == f"{parts} component(s)"
+    assert [claim.name for claim in verdict.claims] == NAMES
+    assert (set(statuses(verdict).values()) == {"vacuous"}) == (parts > 1)
+    assert parts == 1 or verdict.claim("energy").detail == f"the net is connected: {parts} component(s)"
+
+
+def test_those_that_are_joined_may_not_meet_and_the_others_may():
+    """Joined at 1.2, twice: V of both is what one may have; the ends, which nothing joins, are at one place."""
+    verdict = judged("tanner-fixed", at_rest(((0, 1), (1, 2)), 0.0, 1.2, 0.0))
+    claim = verdict.claim("no-collision")
+
+    def lacks(s):
+        return 1.0 / s**2 - 1.0 + 2.0 * np.log(s) - 2.0 * (1.0 / 1.44 - 1.0 + 2.0 * np.log(1.2))
+
+    assert (claim.status, claim.computed, claim.proof) == ("verified", pytest.approx(1.2), "tanner")
+    assert claim.margin == pytest.approx(1.2 - brentq(lacks, 0.3, 1.0, xtol=1e-14), rel=1e-9)
+    assert verdict.claim("energy").proof == "tanner"
+
+
+@pytest.mark.parametrize(
+    ("edges", "least"), [(((0, 1), (1, 2)), 0.9), (((0, 2), (1, 2)), 0.9), (((0, 1), (0, 2)), 0.9)]
+)
+def test_the_nearest_of_all_that_are_joined(edges, least):
+    """Three about their places, of which each net has another two; the nearest is 0.9 in all."""
+    places = {((0, 1), (1, 2)): (0.0, 1.1, 2.0), ((0, 2), (1, 2)): (0.0, 2.0, 1.1), ((0, 1), (0, 2)): (1.1, 0.0, 2.0)}
+    claim = judged("tanner-fixed", at_rest(edges, *places[edges])).claim("no-collision")
+    assert claim.computed == pytest.approx(least, rel=1e-12)
+
+
+def settling(rate):
+    """Two that come to their distance at a rate, and slow down by it."""
+    t = np.linspace(0.0, 20.0, 201)
+    fall = np.exp(-rate * t)[:, None, None] * np.array([[-0.1], [0.1]])
+    q = np.array([[-0.5], [0.5]]) + fall
+    return made_up(FixedNetFlocking(edges=((0, 1),)), q, -rate * fall, t, rate**2 * fall)
+
+
+def test_what_falls_steadily_comes_to_rest():
+    verdict = judged("tanner-fixed", settling(1.0))
+    assert verdict.claim("velocities").status == verdict.claim("critical").status == "verified"
+    s = 1.0 + 0.2 * exp(-20.0)
+    assert verdict.claim("critical").computed == pytest.approx(abs(-2.0 / s**3 + 2.0 / s), rel=1e-4, abs=0.0)
+    slow = judged("tanner-fixed", settling(0.1))
+    assert slow.claim("velocities").status == slow.claim("critical").status == "inconclusive"
+
+
+@pytest.mark.parametrize("scaling", [(1e-3, 60.0), (25.4, 1e-2)])
+def test_in_all_units(scaling):
+    same_in_all_units("tanner-fixed", settling(1.0), scaling)

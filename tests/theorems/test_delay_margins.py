@@ -1,0 +1,87 @@
+"""Delay margins: of a pair in closed form, of a sweep that is off, and to which side roots are looked at."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import atan2, sqrt
+
+import numpy as np
+import pytest
+
+from flockana import Algorithm1, Algorithm2, StaticTarget
+from flockana.equilibria.solve import find_equilibrium
+from flockana.lattice import hexagonal_patch
+from flockana.stability import delay_margin, delay_system, rightmost_roots
+from flockana.theorems import Tolerances, delay_margins, theorem
+
+EPS = np.finfo(float).eps
+NAMES = [f"algorithm-{kind}-{what}" for kind in "12" for what in ("all", "pairs", "neighbours")]
+WORDS = {
+    "all": "all terms delayed",
+    "pairs": "terms between agents delayed",
+    "neighbours": "only what is heard of other agents delayed",
+}
+LAWS = {"1": Algorithm1(), "2": Algorithm2(target=StaticTarget((0.0, 0.0)))}
+
+
+def closed_form():
+    """Of two at the distance 7, k and d by differences of their forces: τ* = atan2(ωd, k)/ω."""
+    law, h = Algorithm1(), 1e-5
+
+    def force(stretch, speed):
+        return float(law.acceleration(0.0, [[0.0], [7.0 + stretch]], [[0.0], [speed]])[0, 0])
+
+    k, d = (force(h, 0.0) - force(-h, 0.0)) / h, (force(0.0, h) - force(0.0, -h)) / h
+    omega = sqrt(0.5 * (d * d + sqrt(d**4 + 4.0 * k * k)))
+    return k, d, atan2(omega * d, k) / omega
+
+
+def test_a_pair_has_the_delay_of_the_closed_form(verdict_of):
+    claim, (k, d, delay) = verdict_of("delay-margin").claim("pair"), closed_form()
+    assert claim.computed == {"sweep": pytest.approx(delay, rel=1e-6), "closed form": pytest.approx(delay, rel=1e-6)}
+    off = abs(claim.computed["sweep"] / claim.computed["closed form"] - 1.0)
+    assert (claim.status, claim.error) == ("verified", 64.0 * EPS)
+    assert claim.margin == pytest.approx(1e-9 - off, rel=1e-5, abs=0.0)
+    assert claim.detail.startswith(f"k = {k:.5g}, d = {d:.4g}: τ* = 0.00869249")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_roots_a_fiftieth_to_either_side(verdict_of, name):
+    """Found again at 0.98 and 1.02 of the delay; the margin is the nearer of them to the axis."""
+    claim, (_, kind, what) = verdict_of("delay-margin").claim(name), name.split("-")
+    law = LAWS[kind]
+    q = find_equilibrium(law, hexagonal_patch(1, 7.0)).q
+    system = delay_system(law, q, delayed=what)
+    critical = delay_margin(system)
+    below, above = (float(rightmost_roots(system, share * critical.delay, count=2)[0].real) for share in (0.98, 1.02))
+    assert claim.status == "verified"
+    assert claim.computed == {
+        "n": 7,
+        "delay": pytest.approx(critical.delay, rel=1e-12),
+        "frequency": pytest.approx(critical.frequency, rel=1e-12),
+    }
+    assert claim.witness == {"Re s below": pytest.approx(below, rel=1e-9), "Re s above": pytest.approx(above, rel=1e-9)}
+    assert claim.margin == pytest.approx(min(-below, above), rel=1e-9)
+    assert 0.0 < claim.error < 1e-11
+    assert f"hexagon of 7, Algorithm {kind}, {WORDS[what]}: stable up to τ* = {critical.delay:.5g}" in claim.detail
+
+
+@pytest.mark.parametrize("share", [0.9, 1.1])
+def test_a_sweep_that_is_off_by_a_tenth_is_refuted(monkeypatch, share):
+    """The pair by a tenth less the 1e-9 allowed, the hexagons by the root on the wrong side, whose error it is."""
+
+    def swept(system):
+        found = delay_margin(system)
+        return replace(found, delay=share * found.delay)
+
+    monkeypatch.setattr(delay_margins, "delay_margin", swept)
+    monkeypatch.setattr(delay_margins, "root_error", lambda system, s, delay: abs(s.real) * 1e-3)
+    for claim in theorem("delay-margin").examine(Tolerances())[1]:
+        assert claim.status == "refuted"
+        if claim.name == "pair":
+            assert claim.margin == pytest.approx(1e-9 - 0.1, rel=1e-9)
+            assert "off by 0.1 of it" in claim.detail
+        else:
+            wrong = claim.witness["Re s below" if share > 1.0 else "Re s above"]
+            assert (wrong > 0.0) == (share > 1.0)
+            assert (claim.margin, claim.error) == (-abs(wrong), abs(wrong) * 1e-3)
