@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from flockana.kernels.compiling import njit, register_jitable
-from flockana.kernels.sweep import BLOCK, CONTRACTED, lift_block
+from flockana.kernels.sweep import BLOCK, lift_block
 
 CompiledFunction = Callable[..., float]
 PARAMETERS = 32  # of a pair law, at most
@@ -113,7 +113,7 @@ def lift_listed(
                 count += square < limit
             return count
 
-        @njit(error_model="numpy", nogil=True, _nrt=False, fastmath=CONTRACTED)
+        @njit(error_model="numpy", nogil=True, _nrt=False)
         def sweep(x, v, u, numbers, first, second, size, near, room):
             total, c1, c2, r = 0.0 * digest, numbers[0], numbers[1], numbers[2]
             par, limit = _as_tuple(numbers[4:]), max(r * r, 5e-324)

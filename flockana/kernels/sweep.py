@@ -2,8 +2,8 @@
 
 Agents are sorted by cell. Candidates are gathered into blocks, those within range kept without a branch; the pair law
 runs over a block in a loop that the compiler turns into vector instructions, if the law has no branches of its own;
-and what it gives is added to both agents. One dimension, one loop: m is a constant of the compiled code. A product and
-a sum may round once (`CONTRACTED`); the compiler may do nothing else that arithmetic forbids, so a NaN stays one.
+and what it gives is added to both agents. One dimension, one loop: m is a constant of the compiled code.
+The compiler may not fuse products and sums, though it would save a fourteenth: every processor gives the same bits.
 """
 
 from __future__ import annotations
@@ -82,7 +82,7 @@ def lift_sweep(pair: Callable[..., Any], m: int, digest: int) -> tuple[Callable[
     """
     add = lift_block(pair, m)
 
-    @njit(error_model="numpy", _nrt=False, fastmath=CONTRACTED)
+    @njit(error_model="numpy", _nrt=False)
     def sweep(start, rows, x, v, forced, r2, par, c1, c2, near, room):
         first, second, s2, w, a = near[0], near[1], room[0], room[1], room[2]
         count, total = 0, 0.0 * digest
