@@ -94,6 +94,18 @@ class SimplePolygon:
         signed: FloatArray = np.where(inside == 1, -distance, distance)
         return signed
 
+    def holds(self, point: FloatArray) -> bool:
+        """Whether one point is inside or on the boundary; to tell that needs no compiled code.
+
+        Parameters
+        ----------
+        point : ndarray, shape (2,)
+            The point.
+        """
+        import shapely
+
+        return bool(shapely.distance(self._shape, shapely.Point(point)) == 0.0)
+
     def clearance_on_way(
         self, start: FloatArray, end: FloatArray, ends: tuple[FloatArray, FloatArray] | None = None
     ) -> FloatArray:

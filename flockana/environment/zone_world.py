@@ -62,7 +62,7 @@ class Alien:
             return
         if not isinstance(self.territory, SimplePolygon) or start.size != 2:
             raise ArgumentError(f"territory = {self.territory!r}: expected a SimplePolygon, of an alien in the plane")
-        if self.territory.clearance(start[None])[0] > 0.0:
+        if not self.territory.holds(start):
             raise ArgumentError(f"start = {self.start}: expected a point of the alien's territory {self.territory}")
 
 

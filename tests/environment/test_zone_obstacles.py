@@ -282,3 +282,9 @@ def test_starts_that_cannot_be():
     ):
         with pytest.raises(ArgumentError, match=message):
             world.check_start(np.array([[5.0, 5.0], bad]))
+
+
+def test_a_polygon_holds_its_boundary_and_what_is_within():
+    triangle = SimplePolygon([(0.0, 0.0), (4.0, 0.0), (0.0, 4.0)])
+    points = ((1.0, 1.0), (0.0, 0.0), (2.0, 2.0), (3.0, 3.0), (-1e-9, 1.0))
+    assert [triangle.holds(np.array(point)) for point in points] == [True, True, True, False, False]
