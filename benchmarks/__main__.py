@@ -26,6 +26,7 @@ STUDIES = (
     "engines",
     "runs",
     "precision",
+    "before",
     "costs",
     "million",
     "zones",

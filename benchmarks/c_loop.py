@@ -38,6 +38,8 @@ def compiled() -> ctypes.CDLL | None:
     loaded.flock_build.argtypes = [ctypes.c_void_p, _DOUBLES, _DOUBLES, ctypes.c_double]
     loaded.flock_build.restype = ctypes.c_long
     loaded.flock_flow.argtypes, loaded.flock_flow.restype = [ctypes.c_void_p, *[_DOUBLES] * 6], ctypes.c_double
+    loaded.flock_repeat.argtypes = [ctypes.c_void_p, *[_DOUBLES] * 6, ctypes.c_long, ctypes.c_double]
+    loaded.flock_repeat.restype = ctypes.c_double
     return loaded
 
 
@@ -75,6 +77,11 @@ class Loop:
         """(u, dH/dt) over a list of its own."""
         self.build(q, p)
         return self.flow(q, p)
+
+    def repeated(self, q: FloatArray, p: FloatArray, times: int, *, rebuild: bool) -> tuple[FloatArray, float]:
+        """(u, dH/dt), computed so many times in one call, over the list that is kept or one of its own each time."""
+        given = q, p, self._law, self._gains, self._target, self._u
+        return self._u, self._c.flock_repeat(self._flock, *given, times, self._range if rebuild else 0.0)
 
     def close(self) -> None:
         """Give the memory back."""

@@ -9,29 +9,44 @@ import numpy as np
 
 from benchmarks.flocks import R
 from flockana.base.checks import FloatArray
+from flockana.kernels.compiling import njit
 from flockana.kernels.verlet import SKIN, empty_list, list_pairs, listed_anew, outdated, spatial_order
 from flockana.laws.olfati_saber import Algorithm2
+
+REACH = (1.0 + SKIN) * R
 
 
 def listed_evaluation(
     law: Algorithm2, q: FloatArray, p: FloatArray
 ) -> tuple[Callable[[], tuple[FloatArray, float]], Any]:
-    """An evaluation over a list that is kept, as within a run: agents in the order of cells, which is given too."""
-    compiled = law.compiled(2)
-    assert compiled is not None
-    order, few = spatial_order(q, (1.0 + SKIN) * R), np.empty(1, np.uint32)
+    """An evaluation over a list that is kept, in one call: agents in the order of cells, which is given too."""
+    order, few = spatial_order(q, REACH), np.empty(1, np.uint32)
     x, v, own = q[order].copy(), p[order].copy(), np.arange(len(q), dtype=np.uint64)
-    first, second, count, _ = list_pairs(x, (1.0 + SKIN) * R, few, few)
-    still, terms = (
-        np.zeros((2, 2)),
-        [(term.act, np.array(term.numbers), np.array(term.panels)) for term in compiled.terms],
-    )
+    first, second, count, _ = list_pairs(x, REACH, few, few)
+    rate, given = _rate(law)
 
     def call() -> tuple[FloatArray, float]:
-        u = np.zeros(x.shape)
-        return u, sum(act(0.0, x, v, u, still, *given, first, second, count, own) for act, *given in terms)
+        u = np.empty(x.shape)
+        return u, rate(x, v, u, first, second, count, own, *given)
 
     return call, order
+
+
+def _rate(law: Algorithm2) -> tuple[Callable[..., float], tuple[FloatArray, ...]]:
+    """All terms of the law in one compiled call, as a run evaluates them; and what they read."""
+    form = law.compiled(2)
+    assert form is not None
+    pairs, pull = form.terms
+    force, follow = pairs.act, pull.act
+
+    @njit(error_model="numpy")
+    def rate(x, v, u, first, second, count, own, still, one, panels, other, none):  # type: ignore[no-untyped-def]
+        u[:] = 0.0
+        power = force(0.0, x, v, u, still, one, panels, first, second, count, own)
+        return power + follow(0.0, x, v, u, still, other, none, first, second, count, own)
+
+    arrays = (np.array(array) for term in form.terms for array in (term.numbers, term.panels))
+    return rate, (np.zeros((2, 2)), *arrays)
 
 
 def flight(law: Algorithm2, q: FloatArray, p: FloatArray, dt: float, evaluations: int) -> Callable[[], FloatArray]:
@@ -39,24 +54,16 @@ def flight(law: Algorithm2, q: FloatArray, p: FloatArray, dt: float, evaluations
 
     As in a run: agents are sorted when a turn begins, pairs are listed anew when the list may lack one.
     """
-    reach = (1.0 + SKIN) * R
-    compiled, moved, own = law.compiled(2), q.copy(), np.arange(len(q), dtype=np.uint64)
-    assert compiled is not None
-    still, terms = (
-        np.zeros((2, 2)),
-        [(term.act, np.array(term.numbers), np.array(term.panels)) for term in compiled.terms],
-    )
+    moved, own, (rate, given) = q.copy(), np.arange(len(q), dtype=np.uint64), _rate(law)
 
     def turn() -> FloatArray:
-        order = spatial_order(moved, reach)
+        order = spatial_order(moved, REACH)
         x, v, u, pairs = moved[order], p[order], np.empty(q.shape), empty_list(len(q))
         for _ in range(evaluations):
             x += dt * v
             if outdated(x, SKIN * R, pairs):
-                pairs = listed_anew(x, reach, pairs, list_pairs)
-            u[:] = 0.0
-            for act, *given in terms:
-                act(0.0, x, v, u, still, *given, pairs[0], pairs[1], pairs[2], own)
+                pairs = listed_anew(x, REACH, pairs, list_pairs)
+            rate(x, v, u, *pairs[:3], own, *given)
         moved[order], felt[order] = x, u
         return felt
 

@@ -152,3 +152,15 @@ double flock_flow(flock *f, const double *q, const double *p, const pair_law *la
     }
     return -g->c2_alpha * dissipation - g->c2_gamma * (sum_2 - (sum_x * sum_x + sum_y * sum_y) / n);
 }
+
+/* The same so many times, over a new list each time unless `reach` is 0: of a small flock, what a call from elsewhere
+ * costs is as much as what it does. */
+double flock_repeat(flock *f, const double *q, const double *p, const pair_law *law, const gains *g,
+                    const double *target, double *u, long times, double reach) {
+    double rate = 0.0;
+    for (long k = 0; k < times; k++) {
+        if (reach > 0.0) flock_build(f, q, p, reach);
+        rate = flock_flow(f, q, p, law, g, target, u);
+    }
+    return rate;
+}

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.rows import Asked, Found, Row
+from benchmarks.rows import Found, Row
 from benchmarks.runs import methods, peer
 from benchmarks.timing import seconds_of
 from flockana.base.checks import FloatArray
@@ -19,22 +19,22 @@ TOLERANCES = tuple(10.0**-k for k in range(4, 13))
 STEPS = (0.04, 0.02, 0.01, 0.005, 0.0025)
 FINEST = 1e-13  # of the reference
 LONGEST = 5.0  # seconds of a run, from which on a method is not asked for more
-_SAMPLES = 61
+SAMPLES = 61
 
 
 def study(*, quick: bool) -> Found:
     """Every method at nine tolerances, and RK4 at five steps; every third of them where a few minutes must do."""
     case = scenario("paper-flocking")
-    reference = _run(case, {"rtol": FINEST}).q
+    reference = run(case, {"rtol": FINEST}).q
     lines = [(name, "rtol", TOLERANCES[:: 3 if quick else 1]) for name in methods()]
     lines.append(("RK4", "dt", STEPS[:: 2 if quick else 1]))
     series, notices = list[dict[str, Any]](), list[str]()
     for method, knob, settings in lines:
         for setting in settings:
             options = {"method": method, knob: setting}
-            run = _run(case, options)
-            error = _error(run.q, reference, case.law.alpha.d) if run.status == "complete" else np.inf
-            seconds = seconds_of(partial(_run, case, options))
+            made = run(case, options)
+            error = way_off(made.q, reference, case.law.alpha.d) if made.status == "complete" else np.inf
+            seconds = seconds_of(partial(run, case, options))
             series.append({"method": method, knob: setting, "error": error, "seconds": seconds})
             if seconds > LONGEST and setting != settings[-1]:
                 notices.append(
@@ -48,13 +48,13 @@ def study(*, quick: bool) -> Found:
 
 def _in_turns(case: Any, series: list[dict[str, Any]], *, rounds: int) -> list[list[float]]:
     """CPU seconds of further runs of each, all of them once in every round."""
-    calls = [partial(_run, case, {k: v for k, v in point.items() if k in ("method", "rtol", "dt")}) for point in series]
+    calls = [partial(run, case, {k: v for k, v in point.items() if k in ("method", "rtol", "dt")}) for point in series]
     taken = [[seconds_of(call) for call in calls] for _ in range(rounds)]
     return [[one[k] for one in taken] for k in range(len(series))]
 
 
 def at_equal_error(series: list[dict[str, Any]]) -> list[Row]:
-    """Each compiled method against solve_ivp's: what it takes, on its own line, for the errors that the other made.
+    """Each compiled method against solve_ivp's under the same law.
 
     Parameters
     ----------
@@ -64,34 +64,47 @@ def at_equal_error(series: list[dict[str, Any]]) -> list[Row]:
     rows = []
     for method in methods():
         other = peer(method)
-        if other is None:
-            continue
-        ours, theirs = (
-            np.array(
-                sorted((p["error"], p["seconds"]) for p in series if p["method"] == name and p["error"] < np.inf)
-            ).T
-            for name in (method, other)
-        )
-        if not ours.size or not theirs.size:
-            continue
-        reached = (theirs[0] >= ours[0, 0]) & (theirs[0] <= ours[0, -1])
-        taken = np.exp(np.interp(np.log(theirs[0, reached]), *np.log(ours)))
-        gains = theirs[1, reached] / taken
-        if not gains.size:
-            continue
-        asked = Asked(">=", 10.0) if method == "DOP853" else None
-        name, worst = f"{method} at equal error: times faster, median of {len(gains)}", f"at least {gains.min():.3g}"
-        value = 1e3 * float(np.median(taken))
-        rows.append(Row(STUDY, name, 150, value, "ms", other, float(np.median(gains)), asked, worst))
+        taken, gains = faster_at_equal_error(series, method, other) if other else (np.empty(0), np.empty(0))
+        if gains.size:
+            name, worst = (
+                f"{method} at equal error: times faster, median of {gains.size}",
+                f"at least {gains.min():.3g}",
+            )
+            value = 1e3 * float(np.median(taken))
+            rows.append(Row(STUDY, name, 150, value, "ms", str(other), float(np.median(gains)), None, worst))
     return rows
 
 
-def _run(case: Any, options: dict[str, Any]) -> Any:
-    times = np.linspace(*case.t_span, _SAMPLES)
+def faster_at_equal_error(series: list[dict[str, Any]], method: str, other: str) -> tuple[FloatArray, FloatArray]:
+    """(seconds that a method takes, on its own line, for the errors that another made; how many times faster it is).
+
+    Parameters
+    ----------
+    series : list of dict
+        Method, error and seconds of each run.
+    method, other : str
+        Which two.
+    """
+    ours, theirs = (
+        np.array(sorted((p["error"], p["seconds"]) for p in series if p["method"] == name and p["error"] < np.inf))
+        .reshape(-1, 2)
+        .T
+        for name in (method, other)
+    )
+    if not ours.size:
+        return np.empty(0), np.empty(0)
+    reached = (theirs[0] >= ours[0, 0]) & (theirs[0] <= ours[0, -1])
+    taken = np.exp(np.interp(np.log(theirs[0, reached]), *np.log(ours)))
+    return taken, theirs[1, reached] / taken
+
+
+def run(case: Any, options: dict[str, Any]) -> Any:
+    """The figure's run, kept at so many times."""
+    times = np.linspace(*case.t_span, SAMPLES)
     return simulate(case.law, case.q0, case.p0, case.t_span, t_eval=times, **options)
 
 
-def _error(q: FloatArray, reference: FloatArray, d: float) -> float:
+def way_off(q: FloatArray, reference: FloatArray, d: float) -> float:
     """The farthest that any agent is, at any sample, from where the reference has it, in units of d."""
     return float(np.linalg.norm(q - reference, axis=2).max() / d)
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from benchmarks.c_loop import Loop, compiled
 from benchmarks.flocks import FLOCKS, gas
 from benchmarks.listed import listed_evaluation
 from benchmarks.numpy_laws import by_agents, by_all_pairs
+from benchmarks.pairs import SKIN
 from benchmarks.rows import Asked, Found, Row
 from benchmarks.timing import interleaved, ratio
 from flockana.environment.targets import StaticTarget
@@ -14,6 +16,8 @@ from flockana.laws.olfati_saber import Algorithm2
 
 STUDY = "Right-hand side against numpy"
 _DENSE = {150: 200.0, 1000: 1000.0}
+_QUICK = Asked("<=", 8.0, "value")
+_TIMES = 100  # that the C loop repeats itself in a call
 _LOOP = {150: 100.0, 1000: None}
 
 
@@ -52,7 +56,20 @@ def _alone(law: Algorithm2, rounds: int) -> list[Row]:
     q, p = FLOCKS["lattice"](150)
     listed, order = listed_evaluation(law, q, p)
     np.testing.assert_allclose(listed()[0], law.flow(0.0, q, p)[0][order], rtol=0.0, atol=1e-10)
-    found = interleaved({"searched": lambda: law.flow(0.0, q, p), "kept": listed}, rounds=rounds)
-    asked, what = Asked("<=", 8.0, "value"), "one evaluation of a lattice, seen from Python"
-    texts = {"searched": what, "kept": f"{what}, over a kept list"}
-    return [Row(STUDY, texts[k], 150, 1e6 * float(np.median(found[k])), "µs", asked=asked) for k in texts]
+    calls, library = {"searched": lambda: law.flow(0.0, q, p), "kept": listed}, compiled()
+    if library is not None:
+        kept, fresh = Loop(library, law, len(q)), Loop(library, law, len(q))
+        kept.build(q, p, SKIN)
+        calls |= {
+            "C kept": lambda: kept.repeated(q, p, _TIMES, rebuild=False),
+            "C searched": lambda: fresh.repeated(q, p, _TIMES, rebuild=True),
+        }
+    found, rows = interleaved(calls, rounds=rounds), []
+    what = "one evaluation of a lattice, seen from Python"
+    for ours, text, theirs in (("searched", what, "rebuilt"), ("kept", f"{what}, over a kept list", "kept")):
+        value, against = 1e6 * float(np.median(found[ours])), found.get(f"C {ours}")
+        rows.append(Row(STUDY, text, 150, value, "µs", asked=_QUICK if ours == "kept" else None))
+        if against is not None:
+            other = f"C, called from C, list {theirs}: {1e6 * np.median(against) / _TIMES:.3g} µs"
+            rows.append(Row(STUDY, text, 150, value, "µs", other, ratio(_TIMES * found[ours], against)))
+    return rows

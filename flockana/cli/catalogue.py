@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import gc
-import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+
+from flockana.cli.threads import one_thread_for_matrices
 
 
 def scenarios_command() -> None:
@@ -30,14 +31,12 @@ def theorems_command() -> None:
 
 @contextmanager
 def _at_once() -> Iterator[None]:
-    """Start no threads of linear algebra, of which a list needs none, and look for no garbage in what is imported."""
-    collects, threads = gc.isenabled(), os.environ.get("OPENBLAS_NUM_THREADS")
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    """Start no threads, of which a list needs none, and look for no garbage in what is imported."""
+    collects = gc.isenabled()
     gc.disable()
     try:
-        yield
+        with one_thread_for_matrices():
+            yield
     finally:
         if collects:
             gc.enable()
-        if threads is None:
-            os.environ.pop("OPENBLAS_NUM_THREADS")

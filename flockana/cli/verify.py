@@ -14,6 +14,7 @@ from flockana.cli.options import AnySeed, Jobs
 from flockana.cli.show import show_files
 from flockana.cli.status import BAD_INPUT, INTERRUPTED, OK, UNEXPECTED
 from flockana.cli.streams import in_output_encoding
+from flockana.cli.threads import one_thread_for_matrices
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from flockana.report.work import Task
 
 
+@one_thread_for_matrices()
 def verify_command(
     name: Annotated[
         str | None,
@@ -60,8 +62,6 @@ def verify_command(
     Exit status: 0 all as expected, 2 bad input, 3 some verdict differs from the expected, 130 interrupted.
     """
     from flockana.ensemble.processes import cores
-    from flockana.report.build import ensure_directory, report_folder, verdicts_json, write_report
-    from flockana.report.comparison import comparison_section
     from flockana.report.statistics import gather
     from flockana.report.surveys import SurveyResult, surveys
     from flockana.report.work import plan
@@ -77,6 +77,8 @@ def verify_command(
         tasks = plan(name, seed=seed, figures=not no_report)
         many = () if no_report and seeds is None else surveys(name, seeds, seed=seed)
     if not no_report:
+        from flockana.report.build import ensure_directory, report_folder
+
         report = ensure_directory(report or report_folder(name))
     results, code, failure = (
         ([_saved(name, on, not no_report)], OK, None) if on else _check_all((*tasks, *many), jobs or cores())
@@ -89,6 +91,9 @@ def verify_command(
     seconds, complete = time.perf_counter() - started, code in (OK, UNEXPECTED)
     written = None
     if report is not None and not no_report and (pages or complete):
+        from flockana.report.build import write_report
+        from flockana.report.comparison import comparison_section
+
         comparison = comparison_section(seed) if complete and name is None else None
         try:
             written = write_report(
@@ -104,6 +109,8 @@ def verify_command(
         except FileError as error:  # the verdicts are still to be told
             failure = failure or error
     if as_json:
+        from flockana.report.build import verdicts_json
+
         text = verdicts_json(pages, seed=seed, seconds=seconds, complete=complete, statistics=statistics)
         typer.echo(in_output_encoding(text), nl=False)
     else:

@@ -4,20 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.trajectory import Trajectory
 from flockana.player.marks import marks_of
 from flockana.player.page import text_of
 from flockana.player.scene import scene
-from flockana.report.figures import Picture, pictures
 from flockana.report.text import parameters
 from flockana.scenarios import Scenario
 from flockana.scenarios.given import SOURCE
 from flockana.scenarios.scenario import differences
 from flockana.theorems import Theorem, Verdict, theorem
 from flockana.theorems.theorem import Status
+
+if TYPE_CHECKING:
+    from flockana.report.figures import Picture
 
 _VALUES = 24_000  # numbers of places and velocities of a run in the page: all runs together take 2 MB of it
 
@@ -180,11 +182,18 @@ def page(result: ScenarioResult | FixedResult, *, figures: bool = True) -> Page:
         scenario.source,
         _facts(scenario, run),
         tuple(_scenario_finding(scenario, verdict) for verdict in result.verdicts),
-        pictures(run, scenario.instants) if figures else (),
+        _pictures(scenario, run) if figures else (),
         trouble,
         tuple(scenario.references),
         _play(scenario, run, result.verdicts) if figures else "",
     )
+
+
+def _pictures(scenario: Scenario, run: Trajectory) -> tuple[Picture, ...]:
+    """Its figures; without them nothing that draws is imported."""
+    from flockana.report.figures import pictures
+
+    return pictures(run, scenario.instants)
 
 
 def _play(scenario: Scenario, run: Trajectory, verdicts: tuple[Verdict, ...]) -> str:

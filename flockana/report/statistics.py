@@ -8,12 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana import plots
 from flockana.base.errors import ArgumentError
 from flockana.ensemble import shares
 from flockana.ensemble.dataset import to_dataset
-from flockana.report.figures import Picture
-from flockana.report.image import svg
 from flockana.report.surveys import Survey, SurveyResult, request
 from flockana.scenarios import Scenario, scenario, scenarios
 from flockana.scenarios.given import SOURCE
@@ -22,6 +19,8 @@ from flockana.theorems import theorem
 if TYPE_CHECKING:
     import xarray
     from matplotlib.figure import Figure
+
+    from flockana.report.figures import Picture
 
 TEMPLATE = "statistics.html.j2"  # takes `statistics`, the section
 
@@ -157,6 +156,10 @@ def statistics_section(
 
 def _picture(tables: Sequence[xarray.Dataset]) -> Picture:
     import xarray
+
+    from flockana import plots
+    from flockana.report.figures import Picture
+    from flockana.report.image import svg
 
     named = [
         table.drop_vars("incomplete").assign_coords(

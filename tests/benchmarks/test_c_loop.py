@@ -28,7 +28,9 @@ def test_force_and_power_are_the_law_s(library, kind):
     u, rate = law.flow(0.0, q, p)
     loop = Loop(library, law, len(q))
     assert loop.build(q, p) == sum(i.size for i, _ in pair_blocks(q, R))
-    for found in (loop.flow(q, p), loop.rebuilt_flow(q, p)):
+    repeated = (lambda: loop.repeated(q, p, 3, rebuild=False), lambda: loop.repeated(q, p, 3, rebuild=True))
+    for compute in (lambda: loop.flow(q, p), lambda: loop.rebuilt_flow(q, p), *repeated):
+        found = compute()
         np.testing.assert_allclose(found[0], u, rtol=0.0, atol=1e-12 * np.abs(u).max())
         assert found[1] == pytest.approx(rate, rel=1e-12)
     loop.close()

