@@ -18,7 +18,7 @@ from flockana.kernels.bodies import Bodies, lift_bodies
 from flockana.kernels.compiling import njit, register_jitable
 from flockana.kernels.lift import source_digest
 from flockana.kernels.scalars import bump, bump_slope, sigma_1, sigma_norm
-from flockana.kernels.shells import lift_shells, out_of_reach
+from flockana.kernels.shells import lift_shells, within_reach
 
 
 @dataclass(frozen=True)
@@ -108,11 +108,11 @@ def lift_obstacle(project: Callable[..., float], turn: Callable[..., None] | Non
         total = 0.0 * digest
         n, m = q.shape
         x, v, gap, rate = np.empty(m), np.empty(m), np.empty(m), np.empty(m)  # no slices: a view costs as much as a sum
+        near = np.empty(n, np.int64)
         for k in range(balls.shape[0]):
             par = pars[starts[k] : starts[k + 1]]
-            for i in range(n):
-                if out_of_reach(q, i, balls, k, reach):
-                    continue
+            for e in range(within_reach(q, balls, k, reach, near)):
+                i = near[e]
                 for c in range(m):
                     x[c], v[c] = q[i, c], p[i, c]
                 clearance = project(x, v, par, gap, rate)
@@ -130,14 +130,14 @@ def lift_obstacle(project: Callable[..., float], turn: Callable[..., None] | Non
         total = 0.0 * digest
         n, m = q.shape
         x, still, gap, rate = np.empty(m), np.zeros(m), np.empty(m), np.empty(m)
+        near = np.empty(n, np.int64)
         for k in range(balls.shape[0]):
             par = pars[starts[k] : starts[k + 1]]
-            for i in range(n):
-                if not out_of_reach(q, i, balls, k, reach):
-                    for c in range(m):
-                        x[c] = q[i, c]
-                    clearance = project(x, still, par, gap, rate)
-                    total += psi_beta(sigma_norm(clearance * clearance, beta[0]), beta, panels)
+            for e in range(within_reach(q, balls, k, reach, near)):
+                for c in range(m):
+                    x[c] = q[near[e], c]
+                clearance = project(x, still, par, gap, rate)
+                total += psi_beta(sigma_norm(clearance * clearance, beta[0]), beta, panels)
         return total
 
     @njit(cache=True)

@@ -27,6 +27,22 @@ def out_of_reach(q, i, balls, k, reach):
     return s2 > (balls[k, m] + reach) ** 2
 
 
+@register_jitable
+def within_reach(q, balls, k, reach, near):
+    """Write which points are within `reach` of ball k (and which are nowhere: NaN), in rising order; how many."""
+    (n, m), count = q.shape, 0
+    x, limit = balls[k], (balls[k, balls.shape[1] - 1] + reach) ** 2
+    if m == 2:  # no loop in the loop: most are far, and all that is asked of them is this
+        for i in range(n):
+            near[count] = i
+            count += not ((q[i, 0] - x[0]) ** 2 + (q[i, 1] - x[1]) ** 2 > limit)
+        return count
+    for i in range(n):
+        near[count] = i
+        count += not out_of_reach(q, i, balls, k, reach)
+    return count
+
+
 @njit(cache=True, error_model="numpy", nogil=True)
 def _point(curve, s, out):
     """Write the point of a Bézier curve (degree + 1, 3) at s into the first components of `out`."""

@@ -15,7 +15,7 @@ from flockana import scenario
 from flockana.theorems import Tolerances
 from tools.portability import __main__ as command
 from tools.portability import crew, worker
-from tools.portability.crew import Unit, carry_out
+from tools.portability.crew import Unit, WorkerError, carry_out
 from tools.portability.findings import Findings, Row, differences, table
 from tools.portability.variants import NATIVE, Change, Environment, changes, environments, no_effect
 
@@ -251,6 +251,22 @@ def matrix(environments, names, jobs=2):
     return findings
 
 
+@pytest.mark.parametrize("kept", [True, False])
+def test_what_is_compiled_for_another_processor_has_a_folder_of_its_own(tmp_path, monkeypatch, kept):
+    given = []
+
+    class Asked(crew.Child):
+        def __init__(self, environment, caches):
+            given.append(caches)
+            raise WorkerError("asked")
+
+    monkeypatch.setattr(crew, "Child", Asked)
+    generic = Environment("generic", {"NUMBA_CPU_NAME": "generic"})
+    units = [Unit(generic, "a", (Change(NATIVE),))]
+    carry_out(units, Findings(AVX512, Counter()), jobs=1, caches=tmp_path if kept else None)
+    assert (given[0] == tmp_path) is kept
+
+
 @pytest.mark.parametrize("jobs", [1, 3])
 def test_every_entry_is_run_once_in_every_environment(fake_worker, jobs):
     generic = Environment("generic", {"NUMBA_CPU_NAME": "generic"})
@@ -344,8 +360,9 @@ def test_a_child_that_does_not_begin_is_bad_input(fake_worker, tmp_path, capsys)
 # the command
 
 
-def test_what_was_found_before_an_interrupt_is_told(monkeypatch, capsys, fake_worker):
-    def interrupted(units, findings, *, jobs):
+def test_what_was_found_before_an_interrupt_is_told(monkeypatch, capsys, fake_worker, tmp_path):
+    def interrupted(units, findings, *, jobs, caches):
+        assert caches == tmp_path
         for unit, status in zip(units, ("verified", "refuted"), strict=False):
             outcomes = {one.name: verdicts({"E:i": status}) for one in unit.changes}
             findings.found(unit, {"outcomes": outcomes, "seconds": 1.0})
@@ -353,7 +370,7 @@ def test_what_was_found_before_an_interrupt_is_told(monkeypatch, capsys, fake_wo
 
     monkeypatch.setattr(command, "ask_machine", lambda: AVX512 | {"scenarios": ["flock", "other"], "fixed": []})
     monkeypatch.setattr(command, "carry_out", interrupted)
-    assert command.main(["flock", "--variants", "moved-1"]) == 130
+    assert command.main(["flock", "--variants", "moved-1", "--caches", str(tmp_path)]) == 130
     printed = capsys.readouterr().out
     assert "i      moved-1  refuted  verified" in printed
     assert printed.endswith("interrupted: some was not tried\n")

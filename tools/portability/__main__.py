@@ -39,6 +39,9 @@ def arguments() -> argparse.ArgumentParser:
     )
     parser.add_argument("--no-verdicts", action="store_true", help="make the runs alone, for their balance of energy")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="processes (default: cores)")
+    parser.add_argument(
+        "--caches", type=Path, metavar="DIR", help="keep what numba compiles for other processors there"
+    )
     parser.add_argument("--json", type=Path, metavar="FILE", help="write all outcomes there")
     return parser
 
@@ -122,7 +125,7 @@ def main(given: Sequence[str] | None = None) -> int:
     findings = Findings(native, Counter(_variant(unit, one) for unit in units for one in unit.changes))
     variants = list(findings.planned)
     try:
-        carry_out(units, findings, jobs=options.jobs)
+        carry_out(units, findings, jobs=options.jobs, caches=options.caches and options.caches.resolve())
     except KeyboardInterrupt:
         _report(findings, variants, options)
         sys.stdout.write("interrupted: some was not tried\n")

@@ -251,7 +251,7 @@ class _Crew:
             child.end()
 
 
-def carry_out(units: Iterable[Unit], listener: Listener, *, jobs: int) -> None:
+def carry_out(units: Iterable[Unit], listener: Listener, *, jobs: int, caches: Path | None = None) -> None:
     """Work through all units.
 
     Parameters
@@ -262,9 +262,11 @@ def carry_out(units: Iterable[Unit], listener: Listener, *, jobs: int) -> None:
         Who is told.
     jobs : int
         Children at a time.
+    caches : Path, optional
+        Folder for what numba compiles for other processors, each in one of its own; by default it is not kept.
     """
     with tempfile.TemporaryDirectory(prefix="portability-") as folder:
-        crew = _Crew(units, listener, Path(folder))
+        crew = _Crew(units, listener, caches or Path(folder))
         threads = [threading.Thread(target=crew.work) for _ in range(jobs)]
         try:
             for thread in threads:
