@@ -27,7 +27,6 @@ ROUNDING = 2.0**-50  # of the coordinates
 _DEPTH = 40  # halvings: below any resolved motion
 _MOST = 100_000  # parts open at once: beyond it the bound stays as weak as it is
 _CHUNK = 50_000  # agent-intervals handled at once
-_FIRST, _LAST = slice(0, 1), slice(5, 6)  # control points
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,16 +88,16 @@ def clearance(
         after = slice(part.start + 1, part.stop + 1)
         h = (t[after] - t[part])[:, None, None]
         ends = (x.reshape(-1, m) for k in (part, after) for x in (q[k], h * p[k], h * h * u[k]))
-        curves, _, off = bernstein(1.0, *ends)
-        points, allowance = curves[:, :, :m].reshape(-1, n, 6, m), off.reshape(-1, n)
-        if slack is not None:
-            allowance = allowance + slack[part]
-        ways = (points - points[:, :, end] for end in (_FIRST, _LAST))
-        reach = [np.sqrt(np.einsum("kixm,kixm->kix", way, way).max(axis=2)) + allowance for way in ways]
+        curves, reach, off = (x.reshape(-1, n, *x.shape[1:]) for x in bernstein(1.0, *ends))
+        points, more = curves[..., :m], 0.0 if slack is None else slack[part]
         for obstacle, least in zip(obstacles, least_of, strict=True):
-            near = np.maximum(least.at_samples[part] - reach[0], least.at_samples[after] - reach[1]) < least.lower
-            row, agent = np.nonzero(near)
-            bound = refine(obstacle, points[row, agent], allowance[row, agent], least.lower, tol)
+            row, agent = np.nonzero(least.at_samples[part] - (reach + more) < least.lower)
+            back = points[row, agent] - points[row, agent, 5:]  # from their last points fewer get so far
+            reach_back = np.sqrt(np.einsum("kxm,kxm->kx", back, back).max(axis=1, initial=0.0))
+            allowance = (off + more)[row, agent]
+            near = least.at_samples[after][row, agent] - (reach_back + allowance) < least.lower
+            row, agent = row[near], agent[near]
+            bound = refine(obstacle, points[row, agent], allowance[near], least.lower, tol)
             least.update(bound, t, row + part.start, agent)
     k = min(range(len(least_of)), key=lambda each: least_of[each].reached, default=-1)
     bounds = np.array([least.lower for least in least_of])
