@@ -13,6 +13,7 @@ import typer
 
 from flockana._version import __version__
 from flockana.base.errors import FlockanaError
+from flockana.base.garbage import garbage_seldom_sought
 from flockana.base.interrupts import interrupts_recognised
 from flockana.cli.animate import animate_command
 from flockana.cli.catalogue import scenarios_command, theorems_command
@@ -82,7 +83,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     prepare_output()
     prepare_home()
     try:
-        with interrupts_recognised():
+        with interrupts_recognised(), garbage_seldom_sought():
             code = app(args=None if arguments is None else list(arguments), prog_name=_NAME, standalone_mode=False)
         finish_output()
     except FlockanaError as error:

@@ -1,4 +1,4 @@
-"""The two listing commands leave the process as they found it."""
+"""Commands that start fewer threads and look for garbage seldom leave the process as they found it."""
 
 from __future__ import annotations
 
@@ -7,7 +7,11 @@ import os
 
 import pytest
 
+from flockana.base.garbage import SELDOM
+from flockana.cli import main as program
 from flockana.cli.catalogue import scenarios_command, theorems_command
+from flockana.cli.verify import verify_command
+from flockana.report import work
 
 
 @pytest.mark.parametrize("command", [scenarios_command, theorems_command])
@@ -26,3 +30,28 @@ def test_garbage_is_collected_and_threads_start_as_before(monkeypatch, capsys, c
         (gc.enable if before else gc.disable)()
     assert os.environ.get("OPENBLAS_NUM_THREADS") == threads
     assert len(capsys.readouterr().out.splitlines()) > 80
+
+
+def test_a_command_seldom_looks_for_garbage_and_the_process_does_as_before(monkeypatch):
+    before, seen = gc.get_threshold(), []
+    monkeypatch.setattr(program, "app", lambda **given: seen.append(gc.get_threshold()))
+    with pytest.raises(SystemExit):
+        program.main([])
+    assert seen == [SELDOM]
+    assert gc.get_threshold() == before
+    assert SELDOM[0] > 100 * 700  # Python's own, up to 3.13
+
+
+def test_verify_starts_one_thread_for_matrices_unless_told(monkeypatch):
+    seen = []
+    monkeypatch.setattr(
+        work, "plan", lambda *given, **options: seen.append(os.environ.get("OPENBLAS_NUM_THREADS")) or ()
+    )
+    for threads, expected in ((None, "1"), ("2", "2")):
+        if threads is None:
+            monkeypatch.delenv("OPENBLAS_NUM_THREADS", raising=False)
+        else:
+            monkeypatch.setenv("OPENBLAS_NUM_THREADS", threads)
+        verify_command("hexagon", no_report=True, as_json=True)
+        assert seen.pop() == expected
+        assert os.environ.get("OPENBLAS_NUM_THREADS") == threads
