@@ -12,6 +12,7 @@ from flockana.environment.obstacles import Obstacle, Sphere, Wall
 from flockana.environment.polygon import Polygon
 from flockana.interactions import AlphaInteraction, BetaInteraction
 from flockana.lattice import hexagonal_patch
+from flockana.kernels.paths import bernstein
 from flockana.measures.clearance import at_once, clearance, constrained_lattice, refine
 
 OBSTACLES: tuple[Obstacle, ...] = (
@@ -119,6 +120,24 @@ def test_the_allowance_is_taken_off() -> None:
     found = refine(Wall((0.0, 0.0), (0.0, 1.0)), curve, np.array([0.25]), np.inf, 1e-9)
     assert found.lower == pytest.approx(2.75, abs=1e-12)
     assert found.value == pytest.approx(3.0, abs=1e-12)
+
+
+def test_whom_it_passes_over_could_not_have_come_lower() -> None:
+    """Against every path of every agent, halved as far as need be, from whichever end it starts far off."""
+    rng, passed = np.random.default_rng(0), 0
+    for _ in range(1500):
+        obstacle = OBSTACLES[rng.integers(len(OBSTACLES))]
+        q, u = rng.uniform(-8.0, 8.0, (2, 5, 2)), rng.uniform(-20.0, 20.0, (2, 5, 2))
+        p, slack = rng.uniform(-9.0, 9.0, (2, 5, 2)), rng.uniform(0.0, 3.0, (1, 5)) * rng.integers(2)
+        still = slice(0, 4)  # these stand, and one of them is at times the nearest
+        p[:, still], u[:, still], q[1, still], slack[:, still] = 0.0, 0.0, q[0, still], 0.0
+        found = clearance(np.array([0.0, 1.0]), q, p, u, [obstacle], slack)
+        curves, _, off = bernstein(1.0, q[0], p[0], u[0], q[1], p[1], u[1])
+        least = obstacle.clearance(q.reshape(-1, 2)).min()
+        every = refine(obstacle, curves[:, :, :2], off + slack[0], np.inf, 1e-9)
+        assert found.lower == pytest.approx(min(least, every.lower), abs=1e-6)
+        passed += found.lower > least - 1e-9
+    assert 150 < passed < 1350
 
 
 def test_no_obstacles() -> None:
