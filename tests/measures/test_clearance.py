@@ -11,8 +11,8 @@ from flockana.environment.capsule import Capsule
 from flockana.environment.obstacles import Obstacle, Sphere, Wall
 from flockana.environment.polygon import Polygon
 from flockana.interactions import AlphaInteraction, BetaInteraction
-from flockana.lattice import hexagonal_patch
 from flockana.kernels.paths import bernstein
+from flockana.lattice import hexagonal_patch
 from flockana.measures.clearance import at_once, clearance, constrained_lattice, refine
 
 OBSTACLES: tuple[Obstacle, ...] = (
