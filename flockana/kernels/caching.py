@@ -36,6 +36,8 @@ from numba.core.bytecode import FunctionIdentity
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.core.registry import cpu_target
 
+from flockana.kernels.turns import Turn
+
 _SIGNATURES = 64  # kept of one function: in use are two or three
 
 
@@ -61,6 +63,14 @@ class _Cache(FunctionCache):
         file = getattr(sys.modules.get(function.__module__), "__file__", None)
         stamp = own._source_stamp if file is None else sources_digest(file)
         self._cache_file = NamedByContent(own._cache_path, base, stamp)
+        self.turn = Turn(own._cache_path, base)
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """What was compiled before, or by another process in the meantime; None, and it is our turn to compile it."""
+        found = super().load_overload(sig, target_context)
+        if found is None and self.turn.take():
+            found = super().load_overload(sig, target_context)
+        return found
 
 
 def _imported(file: Path) -> set[Path]:
@@ -135,6 +145,22 @@ def _cached(made: Any, function: Callable[..., Any], suffix: str) -> Any:
     except RuntimeError:  # neither beside the sources nor at home is there a folder to write to
         with suppress(RuntimeError, OSError), _cached_in(temporary_folder()):
             made._cache = _Cache(function, suffix)
+    return _in_turn(made)
+
+
+def _in_turn(made: Any) -> Any:
+    """The same dispatcher, which gives its turn to others when it has compiled, or failed to."""
+    if not isinstance(getattr(made, "_cache", None), _Cache) or numba.config.DISABLE_JIT:
+        return made
+    compiled = made.compile
+
+    def compile_in_turn(signature: Any) -> Any:
+        try:
+            return compiled(signature)
+        finally:
+            made._cache.turn.give()
+
+    made.compile = compile_in_turn
     return made
 
 
