@@ -9,6 +9,7 @@ from flockana.base.errors import ArgumentError, FlockanaError, SolverError, Unkn
 from flockana.base.interrupts import interrupts_recognised
 from flockana.ensemble.batches import work_through
 from flockana.ensemble.executors import crew
+from flockana.laws.discrete import DiscreteLaw
 from flockana.report.pages import FixedResult, Page, ScenarioResult, page
 from flockana.report.surveys import Survey, SurveyResult, make_survey
 from flockana.scenarios import scenario, scenarios
@@ -107,11 +108,28 @@ def check_all(
         return
     lost: list[str] = []
     with crew(jobs=min(jobs, len(tasks))) as workers:
-        for done in work_through(tasks, _check_batch, workers, watch=watch):
+        for done in work_through(_begun_apart(tasks), _check_batch, workers, watch=watch):
             yield from (result for _, result in done if result is not None)
             lost += [task.name for task, result in done if result is None]
     if lost:
         raise SolverError(f"{', '.join(lost)}: the worker process ended; if memory is short, try --jobs 1")
+
+
+def _begun_apart(tasks: Sequence[Task | Survey]) -> list[Task | Survey]:
+    """Tasks in the order in which they are begun: one of a flow, all of maps, the other ones.
+
+    Two workers that compile for the first time then compile different kernels, the one an integrator with its checks,
+    the other the loops of maps, and do not wait for each other (`flockana.kernels.turns`).
+    """
+    maps, others = list[Task | Survey](), list[Task | Survey]()
+    for task in tasks:
+        (maps if _of_a_map(task) else others).append(task)
+    return [*others[:1], *maps, *others[1:]]
+
+
+def _of_a_map(task: Task | Survey) -> bool:
+    subject = task.scenario if isinstance(task, Survey) else task.name
+    return subject in scenarios() and isinstance(scenario(subject).law, DiscreteLaw)
 
 
 def _check_batch(tasks: tuple[Task | Survey, ...]) -> tuple[Page | SurveyResult, ...]:

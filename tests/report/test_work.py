@@ -1,0 +1,29 @@
+"""The order in which tasks are begun: two workers compile different kernels first, and nothing is left out."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from flockana.laws.discrete import DiscreteLaw
+from flockana.report.surveys import Survey, surveys
+from flockana.report.work import _begun_apart, plan
+from flockana.scenarios import scenario, scenarios
+
+
+def test_one_flow_is_begun_then_all_maps_then_the_others():
+    tasks = (*plan(figures=False), *surveys(None, None))
+    begun = _begun_apart(tasks)
+    assert Counter(begun) == Counter(tasks)
+    subjects = [task.scenario if isinstance(task, Survey) else task.name for task in begun]
+    maps = [name in scenarios() and isinstance(scenario(name).law, DiscreteLaw) for name in subjects]
+    count = sum(maps)
+    assert count > 100
+    assert maps == [False] + [True] * count + [False] * (len(maps) - count - 1)
+    assert begun[0] == tasks[0]
+
+
+def test_one_task_is_begun_as_it_is():
+    for name in ("zone-51", "hexagon", "E8"):
+        assert _begun_apart(plan(name)) == list(plan(name))
+    unknown = (Survey("module:function", (0,)), *plan("E8"))
+    assert _begun_apart(unknown) == list(unknown)
