@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 _THREADS = "OPENBLAS_NUM_THREADS"
+_SAID = (_THREADS, "OMP_NUM_THREADS")
 
 
 @contextmanager
@@ -16,10 +17,11 @@ def one_thread_for_matrices() -> Iterator[None]:
     The matrices of a small flock are done before a second thread has begun. Beside other work the two wait for each
     other: the eigenvalues of 150 agents take a hundred times as long.
     """
-    before = os.environ.get(_THREADS)
-    os.environ.setdefault(_THREADS, "1")
+    said = any(name in os.environ for name in _SAID)
+    if not said:
+        os.environ[_THREADS] = "1"
     try:
         yield
     finally:
-        if before is None:
-            os.environ.pop(_THREADS)
+        if not said:
+            os.environ.pop(_THREADS, None)

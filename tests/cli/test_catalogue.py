@@ -47,11 +47,11 @@ def test_verify_starts_one_thread_for_matrices_unless_told(monkeypatch):
     monkeypatch.setattr(
         work, "plan", lambda *given, **options: seen.append(os.environ.get("OPENBLAS_NUM_THREADS")) or ()
     )
-    for threads, expected in ((None, "1"), ("2", "2")):
-        if threads is None:
-            monkeypatch.delenv("OPENBLAS_NUM_THREADS", raising=False)
-        else:
-            monkeypatch.setenv("OPENBLAS_NUM_THREADS", threads)
+    for name, threads, expected in (("", "", "1"), ("OPENBLAS_NUM_THREADS", "2", "2"), ("OMP_NUM_THREADS", "2", None)):
+        for each in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
+            monkeypatch.delenv(each, raising=False)
+        if name:
+            monkeypatch.setenv(name, threads)
         verify_command("hexagon", no_report=True, as_json=True)
         assert seen.pop() == expected
-        assert os.environ.get("OPENBLAS_NUM_THREADS") == threads
+        assert os.environ.get("OPENBLAS_NUM_THREADS") == (threads if name.startswith("OPEN") else None)
