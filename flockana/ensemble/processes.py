@@ -60,7 +60,7 @@ class ProcessPool(ProcessPoolExecutor):
 def _begin_worker() -> None:
     """Ctrl-C goes to every process of the terminal; the parent alone answers it. And nothing outlives the parent."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    gc.set_threshold(*SELDOM)
+    gc.set_threshold(SELDOM)
     parent = multiprocessing.parent_process()
     if parent is not None:
         threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True).start()

@@ -108,10 +108,10 @@ def lift_obstacle(project: Callable[..., float], turn: Callable[..., None] | Non
         total = 0.0 * digest
         n, m = q.shape
         x, v, gap, rate = np.empty(m), np.empty(m), np.empty(m), np.empty(m)  # no slices: a view costs as much as a sum
-        near = np.empty(n, np.int64)
+        near, s2 = np.empty(n, np.int64), np.empty(n)
         for k in range(balls.shape[0]):
             par = pars[starts[k] : starts[k + 1]]
-            for e in range(within_reach(q, balls, k, reach, near)):
+            for e in range(within_reach(q, balls, k, reach, s2, near)):
                 i = near[e]
                 for c in range(m):
                     x[c], v[c] = q[i, c], p[i, c]
@@ -130,10 +130,10 @@ def lift_obstacle(project: Callable[..., float], turn: Callable[..., None] | Non
         total = 0.0 * digest
         n, m = q.shape
         x, still, gap, rate = np.empty(m), np.zeros(m), np.empty(m), np.empty(m)
-        near = np.empty(n, np.int64)
+        near, s2 = np.empty(n, np.int64), np.empty(n)
         for k in range(balls.shape[0]):
             par = pars[starts[k] : starts[k + 1]]
-            for e in range(within_reach(q, balls, k, reach, near)):
+            for e in range(within_reach(q, balls, k, reach, s2, near)):
                 for c in range(m):
                     x[c] = q[near[e], c]
                 clearance = project(x, still, par, gap, rate)

@@ -28,18 +28,17 @@ def out_of_reach(q, i, balls, k, reach):
 
 
 @register_jitable
-def within_reach(q, balls, k, reach, near):
+def within_reach(q, balls, k, reach, s2, near):
     """Write which points are within `reach` of ball k (and which are nowhere: NaN), in rising order; how many."""
     (n, m), count = q.shape, 0
-    x, limit = balls[k], (balls[k, balls.shape[1] - 1] + reach) ** 2
-    if m == 2:  # no loop in the loop: most are far, and all that is asked of them is this
+    for c in range(m):
+        x = balls[k, c]
         for i in range(n):
-            near[count] = i
-            count += not ((q[i, 0] - x[0]) ** 2 + (q[i, 1] - x[1]) ** 2 > limit)
-        return count
+            s2[i] = (s2[i] if c > 0 else 0.0) + (q[i, c] - x) ** 2
+    limit = (balls[k, m] + reach) ** 2
     for i in range(n):
         near[count] = i
-        count += not out_of_reach(q, i, balls, k, reach)
+        count += not s2[i] > limit
     return count
 
 

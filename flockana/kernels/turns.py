@@ -46,7 +46,7 @@ class Turn:
                 try:
                     fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB, 1, self._byte)
                     self._taken = True
-                except (BlockingIOError, PermissionError):  # another process has it
+                except BlockingIOError:  # another process has it
                     time.sleep(_LOOK)
         return self._taken
 
@@ -54,7 +54,8 @@ class Turn:
         """Let others have it."""
         if self._taken:
             self._taken = False
-            fcntl.lockf(_file(self._folder), fcntl.LOCK_UN, 1, self._byte)
+            with suppress(OSError):  # what was compiled is as good
+                fcntl.lockf(_file(self._folder), fcntl.LOCK_UN, 1, self._byte)
 
 
 @cache

@@ -121,15 +121,15 @@ def _begun_apart(tasks: Sequence[Task | Survey]) -> list[Task | Survey]:
     Two workers that compile for the first time then compile different kernels, the one an integrator with its checks,
     the other the loops of maps, and do not wait for each other (`flockana.kernels.turns`).
     """
-    maps, others = list[Task | Survey](), list[Task | Survey]()
-    for task in tasks:
-        (maps if _of_a_map(task) else others).append(task)
+    subjects = {_subject(task) for task in tasks}.intersection(scenarios())
+    of_maps = {subject for subject in subjects if isinstance(scenario(subject).law, DiscreteLaw)}
+    maps = [task for task in tasks if _subject(task) in of_maps]
+    others = [task for task in tasks if _subject(task) not in of_maps]
     return [*others[:1], *maps, *others[1:]]
 
 
-def _of_a_map(task: Task | Survey) -> bool:
-    subject = task.scenario if isinstance(task, Survey) else task.name
-    return subject in scenarios() and isinstance(scenario(subject).law, DiscreteLaw)
+def _subject(task: Task | Survey) -> str:
+    return task.scenario if isinstance(task, Survey) else task.name
 
 
 def _check_batch(tasks: tuple[Task | Survey, ...]) -> tuple[Page | SurveyResult, ...]:

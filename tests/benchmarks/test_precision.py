@@ -22,6 +22,7 @@ def test_a_method_that_is_twelve_times_cheaper_is_told_so_whatever_its_tolerance
     ours, theirs = line("DOP853", 1.0, (1.5, 4.0, 9.7)), line("scipy-DOP853", 12.0, (2, 4, 6, 8))
     (row,) = gain_of(monkeypatch, ours + theirs)
     assert row.ratio == pytest.approx(12.0, rel=1e-12)
+    assert row.verdict == "yes"
     assert "median of 4" in row.name
 
 

@@ -37,9 +37,8 @@ def test_a_command_seldom_looks_for_garbage_and_the_process_does_as_before(monke
     monkeypatch.setattr(program, "app", lambda **given: seen.append(gc.get_threshold()))
     with pytest.raises(SystemExit):
         program.main([])
-    assert seen == [SELDOM]
+    assert [threshold[0] for threshold in seen] == [SELDOM]
     assert gc.get_threshold() == before
-    assert SELDOM[0] > 100 * 700  # Python's own, up to 3.13
 
 
 def test_verify_starts_one_thread_for_matrices_unless_told(monkeypatch):
