@@ -30,7 +30,11 @@ _PHI_ALPHA_SLOPE = lift_scalar(kernel.phi_alpha_slope)
 _PSI_ALPHA = lift_scalar(kernel.psi_alpha)
 _SIGMA_NORM = lift_scalar(sigma_norm)
 _ALPHA = lift(
-    kernel.pair_alpha, kernel.pair_alpha_slope, kernel.pair_alpha_potential, kernel.pair_alpha_adjacency_slope
+    kernel.stress_alpha,
+    kernel.pair_alpha_slope,
+    kernel.pair_alpha_potential,
+    kernel.pair_alpha_adjacency_slope,
+    norm=kernel.norm_alpha,
 )
 
 

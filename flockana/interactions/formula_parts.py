@@ -25,7 +25,7 @@ _HALVINGS = 12  # of a panel
 _TAIL = 4e-15  # last coefficients of a panel, relative to the strength, or to the largest where that is larger
 _ROUGH = 1e-9  # the same, where halving no longer helps
 _HEAD = 4  # r², ψ(r), ε, bound of the series; its coefficients follow if there is one
-Texts = tuple[str, str, str, str]
+Texts = tuple[str, str, str, str, str | None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -241,7 +241,7 @@ def _far(cut: Cut, view: _View, panels: FloatArray, *, forces: bool) -> float:
 
 
 def _texts(cut: Cut, near: Near, *, forces: bool) -> tuple[Texts, list[Any]]:
-    """Texts of pair, slope, potential and adjacency slope, and the constants that they read."""
+    """Texts of pair, slope, potential, adjacency slope and norm, and the constants that they read."""
     from flockana.symbolic import pair_formula as pf
     from flockana.symbolic.printing import Constants, function_text
 
@@ -257,14 +257,15 @@ def _texts(cut: Cut, near: Near, *, forces: bool) -> tuple[Texts, list[Any]]:
     if not forces:
         rows.append([each("potential")])
     floor = [] if near.kind == "excluded" else ["s2 = max(s2, par[0]*1e-60)"]  # a form 0/0 at 0 has its limit there
-    norm = ["root = sqrt(1.0 + par[2]*s2)", "z = s2/(root + 1.0)", "y = z"] if in_norm else ["y = s2"]
+    norm = [*floor, "root = sqrt(1.0 + par[2]*s2)", "z = s2/(root + 1.0)"]
+    of_square = [*norm, "y = z"] if in_norm else [*floor, "y = s2"]
     marks = [f"m{k} = par[{head + k}]" for k in range(len(cut.marks) - 2)]
 
-    def text(arguments: str, wanted: list[list[Any]], after: str) -> str:
+    def text(arguments: str, wanted: list[list[Any]], after: str, before: list[str] = of_square) -> str:
         used = {symbol for row in wanted for value in row for symbol in value.free_symbols}
         names = (f"c{k}" for k in range(first, first + len(taken.values)))
         constants = [f"{name} = par[{name[1:]}]" for name in names if any(str(s) == name for s in used)]
-        return function_text("NAME", arguments, [*floor, *norm, *marks, *constants], wanted, after)
+        return function_text("NAME", arguments, [*before, *marks, *constants], wanted, after)
 
     weight, slope, energy = "v0", "v0", "v0"
     if near.kind == "series":
@@ -277,11 +278,13 @@ def _texts(cut: Cut, near: Near, *, forces: bool) -> tuple[Texts, list[Any]]:
         if not forces
         else _integrated(in_norm)
     )
+    pair = ("z, root, par", rows[0], f"{weight}, v1", ["y = z"]) if in_norm else ("s2, par", rows[0], f"{weight}, v1")
     texts = (
-        text("s2, par", rows[0], f"{weight}, v1"),
+        text(*pair),
         text("s2, par", rows[1], slope),
         potential,
         text("s2, par", rows[2], "v0"),
+        function_text("NAME", "s2, par", norm, [], "z, root") if in_norm else None,
     )
     return texts, taken.values
 

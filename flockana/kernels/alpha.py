@@ -57,13 +57,25 @@ def adjacency_alpha(z, par):
 
 
 @register_jitable
-def pair_alpha(s2, par):
-    """(stress s_ij, adjacency a_ij) of a pair at squared distance s2."""
+def norm_alpha(s2, par):
+    """(‖x‖_σ, √(1 + ε‖x‖²)) of a pair at squared distance s2 within range: `sigma_norm` without its branch."""
     root = sqrt(1.0 + par[EPS] * s2)
-    z = s2 / (root + 1.0)  # the σ-norm, s2 being within range
+    return s2 / (root + 1.0), root
+
+
+@register_jitable
+def stress_alpha(z, root, par):
+    """(stress s_ij, adjacency a_ij) of a pair from what `norm_alpha` gives."""
     rho = taper(z * (1.0 / par[R_ALPHA]), par[H])
     above, below = phi_parts((z - par[D_ALPHA]) * (1.0 / par[AREA]), par[A], par[B], par[C])
     return rho * above / (below * root), rho
+
+
+@register_jitable
+def pair_alpha(s2, par):
+    """(stress s_ij, adjacency a_ij) of a pair at squared distance s2."""
+    z, root = norm_alpha(s2, par)
+    return stress_alpha(z, root, par)
 
 
 @register_jitable

@@ -36,6 +36,7 @@ from numba.core.bytecode import FunctionIdentity
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.core.registry import cpu_target
 
+from flockana.kernels.packing import Packing
 from flockana.kernels.turns import Turn
 
 _SIGNATURES = 64  # kept of one function: in use are two or three
@@ -128,6 +129,7 @@ def dispatcher(function: Callable[..., Any], *, cache: bool, inner: bool = False
     **options
         Those of `numba.njit`.
     """
+    options = {"pipeline_class": Packing, **options}
     options = {"_nrt": True, **options}  # else it is as what calls it first: with references counted, or without
     if inner:
         made = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **options)(function)

@@ -11,23 +11,31 @@ _HIGH, _MIDDLE, _LOW = 1.5707963267341256, 6.077100506303966e-11, 2.022266248795
 
 
 @register_jitable
-def _of_quarter(x, m):
-    """The sine of x − ½πm, which is at most ½π in size, by its series."""
-    y = ((x - m * _HIGH) - m * _MIDDLE) - m * _LOW
-    x2 = y * y
-    high = _S6 + x2 * (_S7 + x2 * (_S8 + x2 * (_S9 + x2 * _S10)))
-    return y * (1.0 + x2 * (_S1 + x2 * (_S2 + x2 * (_S3 + x2 * (_S4 + x2 * (_S5 + x2 * high))))))
+def quarter_sine(y):
+    """sin y for |y| ≤ ½π, to rounding of itself: its series, in parts that need not wait for each other."""
+    x = y * y
+    x2 = x * x
+    low, middle = (1.0 + x * _S1) + x2 * (_S2 + x * _S3), (_S4 + x * _S5) + x2 * (_S6 + x * _S7)
+    high = (_S8 + x * _S9) + x2 * _S10
+    x4 = x2 * x2
+    return y * (low + x4 * (middle + x4 * high))
+
+
+@register_jitable
+def _reduced(x, m):
+    """x − ½πm."""
+    return ((x - m * _HIGH) - m * _MIDDLE) - m * _LOW
 
 
 @register_jitable
 def sine(x):
     """sin x to 2e-16 for |x| up to a million."""
-    k = floor(x / pi + 0.5)
-    return (1.0 - 2.0 * (k - 2.0 * floor(0.5 * k))) * _of_quarter(x, 2.0 * k)
+    k = floor(x * (1.0 / pi) + 0.5)
+    return (1.0 - 2.0 * (k - 2.0 * floor(0.5 * k))) * quarter_sine(_reduced(x, 2.0 * k))
 
 
 @register_jitable
 def cosine(x):
     """cos x to 2e-16 for |x| up to a million."""
-    k = floor(x / pi)
-    return (2.0 * (k - 2.0 * floor(0.5 * k)) - 1.0) * _of_quarter(x, 2.0 * k + 1.0)
+    k = floor(x * (1.0 / pi))
+    return (2.0 * (k - 2.0 * floor(0.5 * k)) - 1.0) * quarter_sine(_reduced(x, 2.0 * k + 1.0))

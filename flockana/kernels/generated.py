@@ -47,16 +47,22 @@ def generated(text: str, name: str) -> Callable[..., Any]:
 
 
 @lru_cache(maxsize=_KEPT)
-def generated_kernels(pair: str, slope: str, potential: str, adjacency_slope: str) -> PairKernels:
+def generated_kernels(
+    pair: str, slope: str, potential: str, adjacency_slope: str, norm: str | None = None
+) -> PairKernels:
     """The sums over pairs of a law whose scalar functions are generated, the same for the same texts.
 
     Parameters
     ----------
     pair, slope, potential, adjacency_slope : str
         Texts of the functions that `lift` takes.
+    norm : str, optional
+        That of its norm, if the law begins with one.
     """
     texts = {"pair": pair, "slope": slope, "potential": potential, "adjacency_slope": adjacency_slope}
-    return lift(*(generated(text, name) for name, text in texts.items()), error_model="numpy")
+    functions = (generated(text, name) for name, text in texts.items())
+    begins = None if norm is None else generated(norm, "norm")
+    return lift(*functions, norm=begins, error_model="numpy")
 
 
 @lru_cache(maxsize=_KEPT)

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.kernels.compiling import njit
+from flockana.kernels.compiling import njit, register_jitable
 from flockana.kernels.listed import CompiledFunction, lift_listed
 from flockana.kernels.sweep import lift_sweep
 
@@ -71,6 +71,7 @@ def lift(
     potential: Callable[..., Any],
     adjacency_slope: Callable[..., float] | None = None,
     *,
+    norm: Callable[..., Any] | None = None,
     error_model: str = "python",
 ) -> PairKernels:
     """Compile the pair sums of a law given by scalar functions of the squared distance s².
@@ -85,6 +86,8 @@ def lift(
         ``potential(s2, par, panels)`` = ψ, whose gradient in q_i is −w (q_j − q_i).
     adjacency_slope : callable, optional
         ``adjacency_slope(s2, par)`` = da/d(s²): only the Jacobian at unequal velocities needs it.
+    norm : callable, optional
+        ``norm(s2, par) -> (z, root)``: two numbers that the law begins with. If given, it is ``pair(z, root, par)``.
     error_model : {"python", "numpy"}
         numba's: whether a division by zero raises, outside the sums of forces, or gives an infinity or NaN.
 
@@ -92,7 +95,8 @@ def lift(
     -------
     PairKernels
     """
-    digest = source_digest(pair, slope, potential)
+    digest = source_digest(pair, slope, potential, *([] if norm is None else [norm]))
+    at = pair if norm is None else _of_square(norm, pair)
 
     @njit(cache=True, error_model=error_model)
     def energy(q, i, j, par, panels):
@@ -111,14 +115,25 @@ def lift(
             s2 = 0.0
             for c in range(q.shape[1]):
                 s2 += (q[j[k], c] - q[i[k], c]) ** 2
-            out[0, k], out[1, k] = pair(s2, par)
+            out[0, k], out[1, k] = at(s2, par)
             out[2, k] = slope(s2, par)
         return out
 
-    sweeps = tuple(lift_sweep(pair, m, digest) for m in (1, 2, 3))
-    listed = lift_listed(pair, potential, digest)
+    sweeps = tuple(lift_sweep(pair, m, norm, digest) for m in (1, 2, 3))
+    listed = lift_listed(pair, potential, norm, digest)
     slopes = None if adjacency_slope is None else lift_scalar(adjacency_slope, error_model=error_model)
     return PairKernels(sweeps, listed, energy, terms, slopes)
+
+
+def _of_square(norm: Callable[..., Any], pair: Callable[..., Any]) -> Callable[..., Any]:
+    """The law as a function of the squared distance."""
+
+    @register_jitable
+    def at(s2, par):
+        z, root = norm(s2, par)
+        return pair(z, root, par)
+
+    return at
 
 
 def lift_scalar(function: Callable[..., float], *, error_model: str = "python") -> Callable[..., Any]:

@@ -90,13 +90,13 @@ def _as_tuple(par):
 
 
 def lift_listed(
-    pair: Callable[..., Any], potential: Callable[..., Any], digest: int
+    pair: Callable[..., Any], potential: Callable[..., Any], norm: Callable[..., Any] | None, digest: int
 ) -> Callable[[int], tuple[CompiledFunction, CompiledFunction]]:
     """By dimension: force and potential of a pair law, compiled when first asked for; `listed_numbers` are theirs."""
 
     @cache
     def of(m: int) -> tuple[CompiledFunction, CompiledFunction]:
-        add = lift_block(pair, m)
+        add = lift_block(pair, m, norm)
 
         @register_jitable
         def gather(x, limit, first, second, begin, end, near, s2):

@@ -17,9 +17,6 @@ from flockana.kernels.compiling import njit, register_jitable
 from flockana.kernels.grid import sort_into_grid
 
 BLOCK = 512  # pairs: what is known of them stays in the first-level cache
-CONTRACTED = {
-    "contract"
-}  # numba's `fastmath`: saves a fifth of the law's time where a processor has such an instruction
 
 
 # The differences of two rows at once: all is read before anything is written, which might be the same place.
@@ -41,21 +38,48 @@ def _apart3(x, i, j):
 _APART = {1: _apart1, 2: _apart2, 3: _apart3}
 
 
-def lift_block(pair: Callable[..., Any], m: int) -> Callable[..., Any]:
+def _at_once(pair: Callable[..., Any]) -> Callable[..., None]:
+    """The law of a block of pairs, w and a, from their squared distances."""
+
+    @register_jitable
+    def law(count, s2, w, a, par, c1):
+        for k in range(count):
+            stress, adjacency = pair(s2[k], par)
+            w[k], a[k] = c1 * stress, adjacency
+
+    return law
+
+
+def _by_norm(pair: Callable[..., Any], norm: Callable[..., Any]) -> Callable[..., None]:
+    """The same where a law begins with a norm.
+
+    Roots and divisions wait for each other, and a processor looks only some hundred instructions ahead: two short loops
+    keep its dividing unit busier than one long one.
+    """
+
+    @register_jitable
+    def law(count, s2, w, a, par, c1):
+        for k in range(count):
+            w[k], a[k] = norm(s2[k], par)
+        for k in range(count):
+            stress, adjacency = pair(w[k], a[k], par)
+            w[k], a[k] = c1 * stress, adjacency
+
+    return law
+
+
+def lift_block(pair: Callable[..., Any], m: int, norm: Callable[..., Any] | None) -> Callable[..., Any]:
     """What a block of pairs adds to u, from their squared distances s2; returns Σ a ‖p_j − p_i‖².
 
     w and a are room for what the law gives; `par` is a tuple: constants in registers, which no array can alias.
     """
-
-    apart = _APART[m]
+    law, apart = _at_once(pair) if norm is None else _by_norm(pair, norm), _APART[m]
 
     @register_jitable
     def add(count, first, second, s2, w, a, x, v, u, par, c1, c2):
         if not (x.shape[1] == m and v.shape[1] == m and u.shape[1] == m):
             return np.nan  # never: the compiler now knows that rows are m numbers apart
-        for k in range(count):
-            stress, adjacency = pair(s2[k], par)
-            w[k], a[k] = c1 * stress, adjacency
+        law(count, s2, w, a, par, c1)
         total = 0.0
         for k in range(count):
             i, j, weight, drag = first[k], second[k], w[k], c2 * a[k]
@@ -72,7 +96,9 @@ def lift_block(pair: Callable[..., Any], m: int) -> Callable[..., Any]:
     return add
 
 
-def lift_sweep(pair: Callable[..., Any], m: int, digest: int) -> tuple[Callable[..., Any], Callable[..., float]]:
+def lift_sweep(
+    pair: Callable[..., Any], m: int, norm: Callable[..., Any] | None, digest: int
+) -> tuple[Callable[..., Any], Callable[..., float]]:
     """Compile the sums of a pair law in m dimensions: over all pairs within a range, and over the pairs given.
 
     The first, ``forces(q, p, r, par, c1, c2, u)``, adds c1 w (q_j − q_i) + c2 a (p_j − p_i) to u_i, its opposite to
@@ -80,7 +106,7 @@ def lift_sweep(pair: Callable[..., Any], m: int, digest: int) -> tuple[Callable[
     the second, ``forces_of(q, p, i, j, par, c1, c2, u)``, does so for pairs that are within range and returns the sum.
     ``par`` is a tuple.
     """
-    add = lift_block(pair, m)
+    add = lift_block(pair, m, norm)
 
     @njit(error_model="numpy", _nrt=False)
     def sweep(start, rows, x, v, forced, r2, par, c1, c2, near, room):
