@@ -38,6 +38,5 @@ class Packing(CompilerBase):
         """Its steps."""
         steps = DefaultPassBuilder.define_nopython_pipeline(self.state)
         steps.passes[:] = [(PackedLowering if each is NativeLowering else each, why) for each, why in steps.passes]
-        steps._finalized = False
         steps.finalize()
         return [steps]
