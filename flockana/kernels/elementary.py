@@ -29,13 +29,13 @@ def _reduced(x, m):
 
 @register_jitable
 def sine(x):
-    """sin x to 2e-16 for |x| up to a million."""
+    """sin x to 4e-16 for |x| up to a million."""
     k = floor(x * (1.0 / pi) + 0.5)
     return (1.0 - 2.0 * (k - 2.0 * floor(0.5 * k))) * quarter_sine(_reduced(x, 2.0 * k))
 
 
 @register_jitable
 def cosine(x):
-    """cos x to 2e-16 for |x| up to a million."""
+    """cos x to 4e-16 for |x| up to a million."""
     k = floor(x * (1.0 / pi))
     return (2.0 * (k - 2.0 * floor(0.5 * k)) - 1.0) * quarter_sine(_reduced(x, 2.0 * k + 1.0))
