@@ -13,6 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 LINES = (("an evaluation", "flow", "o"), ("a step of RK4", "step", "s"), ("a short run of DOP853", "adaptive", "^"))
+MARKERS = {"DOP853": "o", "RK45": "s", "RK23": "^", "LSODA": "D", "RK4": "v"}  # scipy's share them, dashed
 
 Series = Sequence[Mapping[str, Any]]
 
@@ -49,8 +50,10 @@ def _work_precision(points: Series) -> Figure:
     axes = figure.subplots()
     for method, group in groupby(points, key=lambda point: str(point["method"])):
         reached = [point for point in group if isfinite(point["error"])]
-        style = "--" if method.startswith("scipy-") else "-"
-        axes.plot([p["error"] for p in reached], [p["seconds"] for p in reached], style, marker="o", label=method)
+        own = method.removeprefix("scipy-")
+        look = {"marker": MARKERS[own], "color": f"C{[*MARKERS].index(own)}", "label": method}
+        style = "--" if method != own else "-"
+        axes.plot([p["error"] for p in reached], [p["seconds"] for p in reached], style, **look)
     axes.invert_xaxis()
     _finish(axes, "farthest off, in units of d", "CPU time, s")
     axes.set_title("Fig. 10: 150 agents, 60 time units", fontsize=10)
