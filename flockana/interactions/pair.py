@@ -131,7 +131,7 @@ class PairInteraction(ABC):
         """
         u = np.zeros_like(q) if out is None else out
         forces, forces_of = self.kernels.sweeps[q.shape[1] - 1]
-        summed, dissipation = forces(q, p, self.range, self._constants, stiffness, damping, u)
+        summed, dissipation = forces(q, p, self.range, self._constants, stiffness, damping, u, np.empty((3, *q.shape)))
         if not summed:  # too sparse for a grid of cells
             for i, j in pair_blocks(q, self.range):
                 dissipation += forces_of(q, p, i, j, self._constants, stiffness, damping, u)
