@@ -1,7 +1,7 @@
 """A million agents for a hundred steps.
 
 Their γ-agent pulls the harder the farther they are, here up to 7000: the flock shrinks so fast that a list of pairs
-lasts less than a step, which is most of the time.
+lasts less than a step, and that many pairs may meet within one.
 """
 
 from __future__ import annotations

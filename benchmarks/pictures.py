@@ -13,7 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 LINES = (("an evaluation", "flow", "o"), ("a step of RK4", "step", "s"), ("a short run of DOP853", "adaptive", "^"))
-MARKERS = {"DOP853": "o", "RK45": "s", "RK23": "^", "LSODA": "D", "RK4": "v"}  # scipy's share them, dashed
+MARKERS = "os^Dv*P"
 
 Series = Sequence[Mapping[str, Any]]
 
@@ -48,11 +48,12 @@ def _work_precision(points: Series) -> Figure:
     """CPU time against the error that was reached, a line for each method."""
     figure = Figure(figsize=(6.0, 4.2), dpi=110, layout="tight")
     axes = figure.subplots()
+    known = list(dict.fromkeys(str(point["method"]).removeprefix("scipy-") for point in points))
     for method, group in groupby(points, key=lambda point: str(point["method"])):
         reached = [point for point in group if isfinite(point["error"])]
-        own = method.removeprefix("scipy-")
-        look = {"marker": MARKERS[own], "color": f"C{[*MARKERS].index(own)}", "label": method}
-        style = "--" if method != own else "-"
+        own = method.removeprefix("scipy-")  # scipy's stepping of the same method looks alike, dashed
+        look = {"marker": MARKERS[known.index(own) % len(MARKERS)], "color": f"C{known.index(own)}", "label": method}
+        style = "-" if method == own else "--"
         axes.plot([p["error"] for p in reached], [p["seconds"] for p in reached], style, **look)
     axes.invert_xaxis()
     _finish(axes, "farthest off, in units of d", "CPU time, s")

@@ -16,7 +16,7 @@ from flint import arb, ctx
 
 from flockana.certified.decimals import small
 from flockana.kernels import dead_zone as dead_zone_kernel
-from flockana.kernels import elementary, scalars
+from flockana.kernels import scalars
 from flockana.kernels.compiling import Inlined
 from flockana.symbolic.dead_zone import D_1, D_2, ETA, K_1, K_DELTA, K_R, R_D, RHO, R, force
 from flockana.symbolic.functions import taper
@@ -88,7 +88,7 @@ def sine_error() -> arb:
     for k in range(1, TERMS + 1):
         power *= half * half
         term = arb(1) / factorial(2 * k + 1)
-        total += abs(abs(arb(getattr(elementary, f"_S{k}"))) - term) * power
+        total += abs(abs(arb(getattr(scalars, f"_S{k}"))) - term) * power
     ends = abs(arb(pi) / 2 - half)  # π of the library is a float: the argument is off by that at most
     return 2 * (total + ends) + (total + ends) ** 2
 
@@ -97,12 +97,14 @@ def _taper() -> Iterator[Step]:
     y = sp.Symbol("y", nonnegative=True)
     z, h = sp.symbols("z h", positive=True)
     series = sum((sp.Rational((-1) ** k, factorial(2 * k + 1)) * y ** (2 * k + 1) for k in range(TERMS + 1)), sp.S.Zero)
-    close = [sp.Rational(getattr(elementary, f"_S{k}")) * factorial(2 * k + 1) - (-1) ** k for k in range(1, TERMS + 1)]
-    names = {f"_S{k}": sp.Symbol(f"S{k}") for k in range(1, TERMS + 1)}
-    coefficients = {names[f"_S{k}"]: sp.Rational((-1) ** k, factorial(2 * k + 1)) for k in range(1, TERMS + 1)}
+    close = [sp.Rational(getattr(scalars, f"_S{k}")) * factorial(2 * k + 1) - (-1) ** k for k in range(1, TERMS + 1)]
+    coefficients = {sp.Symbol(f"S{k}"): sp.Rational((-1) ** k, factorial(2 * k + 1)) for k in range(1, TERMS + 1)}
     rest, more = sp.symbols("A B", positive=True)  # h < z < 1
     place, inner = 1 - rest, 1 - rest - more
-    found = on_symbols(scalars.taper, **names)(place, inner).subs(coefficients)
+    code = FunctionType(
+        scalars.taper.function.__code__, {f"_S{k}": sp.Symbol(f"S{k}") for k in range(1, TERMS + 1)} | {"pi": sp.pi}
+    )
+    found = binary(sp.sympify(code(place, inner))).subs(coefficients)
     argument = sp.pi / 2 * (1 - place) / (1 - inner)
     yield Step(
         f"taper: its polynomial is the square of the series of the sine, to y^{2 * TERMS + 1}, y = ½π(1 - z)/(1 - h)",

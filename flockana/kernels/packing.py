@@ -1,8 +1,9 @@
 """numba's compiler, which packs numbers that lie side by side into one vector: an agent's place is two or three.
 
-LLVM calls it superword-level parallelism. It moves no operation over another, so results keep their bits. numba has it
-for a whole process or not at all, and where a scalar function was packed the loop around it is not vectorised any more:
-here it is for kernels, when all that they call has been compiled, and not for what is inlined into them.
+LLVM calls it superword-level parallelism. Each operation stays what it is, of the same two numbers, so results keep
+their bits. numba has it for a whole process or not at all, and where a scalar function was packed the loop around it is
+not vectorised any more: here it is for kernels, when all that they call has been compiled, and not for what is inlined
+into them.
 """
 
 from __future__ import annotations

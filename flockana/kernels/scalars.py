@@ -5,12 +5,12 @@ They are plain Python functions that numba may also inline into a compiled loop 
 
 from __future__ import annotations
 
-from math import inf, pi, sin, sqrt
+from math import factorial, inf, pi, sin, sqrt
 
 from flockana.kernels.compiling import register_jitable
-from flockana.kernels.elementary import quarter_sine
 
 _FLAT = 1e140  # from here on φ is its limit, and squares would overflow
+_S1, _S2, _S3, _S4, _S5, _S6, _S7, _S8, _S9, _S10 = ((-1.0) ** k / factorial(2 * k + 1) for k in range(1, 11))
 
 
 @register_jitable
@@ -32,9 +32,15 @@ def sigma_1(s):
 def taper(z, h):
     """ρ_h(z) for z ≥ 0: 1 up to h, a raised cosine on [h, 1], 0 from there on.
 
-    ½(1 + cos πt) = sin² ½π(1 − t), which keeps its digits where it is small; a loop over it is vectorised.
+    ½(1 + cos πt) = sin² ½π(1 − t) by the series of the sine, to rounding of itself; a loop over it is vectorised.
     """
-    sine = quarter_sine((0.5 * pi / (1.0 - h)) * (1.0 - z))
+    y = (0.5 * pi / (1.0 - h)) * (1.0 - z)
+    x = y * y
+    x2 = x * x
+    low, middle = (1.0 + x * _S1) + x2 * (_S2 + x * _S3), (_S4 + x * _S5) + x2 * (_S6 + x * _S7)
+    high = (_S8 + x * _S9) + x2 * _S10
+    x4 = x2 * x2
+    sine = y * (low + x4 * (middle + x4 * high))
     rho = 1.0 if z < h else sine * sine
     return 0.0 if z >= 1.0 else rho
 

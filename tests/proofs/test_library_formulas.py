@@ -14,7 +14,7 @@ from flint import arb, ctx
 
 from flockana.certified.intervals import AlphaParameters, BetaParameters, psi_alpha, psi_beta
 from flockana.interactions import AlphaInteraction, BetaInteraction
-from flockana.kernels import alpha, elementary, obstacles, scalars
+from flockana.kernels import alpha, obstacles, scalars
 from flockana.kernels import dead_zone as kernel
 from flockana.kernels.compiling import Inlined
 from proofs import library_formulas, library_pairs, library_potentials
@@ -32,7 +32,7 @@ def wrong_action(s, par):
 
 def test_a_slip_in_a_kernel_is_told(monkeypatch):
     monkeypatch.setattr(scalars, "sigma_norm", Inlined(wrong_sigma_norm))
-    monkeypatch.setattr(elementary, "_S3", elementary._S3 * (1.0 + 2.0**-50))
+    monkeypatch.setattr(scalars, "_S3", scalars._S3 * (1.0 + 2.0**-50))
     broken = failing(library_formulas._steps())
     assert [text.partition(":")[0] for text in broken] == ["σ-norm", "taper"]
 
