@@ -61,7 +61,7 @@ def flight(law: Algorithm2, q: FloatArray, p: FloatArray, dt: float, evaluations
         x, v, u, pairs = moved[order], p[order], np.empty(q.shape), empty_list(len(q))
         for _ in range(evaluations):
             x += dt * v
-            if outdated(x, SKIN * R, pairs):
+            if outdated(x, R, SKIN * R, pairs):
                 pairs = listed_anew(x, REACH, pairs, list_pairs)
             rate(x, v, u, *pairs[:3], own, *given)
         moved[order], felt[order] = x, u

@@ -1,7 +1,7 @@
 """A million agents for a hundred steps.
 
-Their γ-agent pulls the harder the farther they are, here up to 7000: the flock shrinks so fast that a list of pairs
-lasts less than a step, and that many pairs may meet within one.
+Their γ-agent draws them together, the harder the farther they are, the outermost by several ranges a step: lists of
+pairs, and who may meet within a step, are judged beside that common motion.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.kernels.paths import bernstein
+from flockana.kernels.detours import detours
 
 MOST = 2**24  # numbers that are kept of the steps between samples: 128 MiB
 
@@ -148,7 +148,7 @@ class Recorder:
             if not knot.sample:
                 leave = not leave
                 if leave and k + 1 < len(self._knots):
-                    kept[-1] = kept[-1]._replace(slack=_deviation(kept[-1], knot, self._knots[k + 1]))
+                    kept[-1] = _by_way_of(knot, kept[-1], self._knots[k + 1])
                     continue
                 self._held += 3 * knot.q.size
             kept.append(knot)
@@ -166,19 +166,8 @@ class _Knot(NamedTuple):
     slack: FloatArray
 
 
-def _deviation(before: _Knot, middle: _Knot, after: _Knot) -> FloatArray:
-    """How far every agent's path from `before` to `after` may be from that by way of `middle`."""
-    share, rows = (middle.t - before.t) / (after.t - before.t), [_points(before, after)]
-    for _ in range(5):  # de Casteljau
-        rows.append(rows[-1][:, :-1] + share * (rows[-1][:, 1:] - rows[-1][:, :-1]))
-    left = np.stack([row[:, 0] for row in rows], axis=1)
-    right = np.stack([row[:, -1] for row in reversed(rows)], axis=1)
-    parts = ((left, before, middle), (right, middle, after))
-    off = [np.linalg.norm(part - _points(a, b), axis=2).max(axis=1) + a.slack for part, a, b in parts]
-    farthest: FloatArray = np.maximum(*off)
-    return farthest
-
-
-def _points(a: _Knot, b: _Knot) -> FloatArray:
-    points: FloatArray = bernstein(b.t - a.t, a.q, a.p, a.u, b.q, b.p, b.u)[0]
-    return points
+def _by_way_of(middle: _Knot, before: _Knot, after: _Knot) -> _Knot:
+    """The one before, whose path from there to the one after leaves out a step."""
+    knots = (before, middle, after)
+    states = (np.ascontiguousarray(array) for knot in knots for array in (knot.q, knot.p, knot.u))
+    return before._replace(slack=detours(*(knot.t for knot in knots), *states, before.slack, middle.slack))

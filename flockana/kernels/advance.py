@@ -15,12 +15,12 @@ import numpy as np
 from flockana.kernels.bodies import guard_signature
 from flockana.kernels.compiling import njit
 from flockana.kernels.copies import put
-from flockana.kernels.encounters import farthest_ways, mean_way, share_of_listed
+from flockana.kernels.encounters import band, common_way, farthest_ways, share_of_listed
 from flockana.kernels.listed import MOST_TERMS, signatures
 from flockana.kernels.paths import bernstein
 from flockana.kernels.runge_kutta import energy_of, error_of, first_step, frame_at, interpolated, rate_of, stages_of
 from flockana.kernels.sums import finite
-from flockana.kernels.verlet import empty_list, search_of_pairs, spatial_order, strayed
+from flockana.kernels.verlet import empty_list, holds, search_of_pairs, spatial_order
 
 RUNNING, TOO_SMALL, NOT_FINITE, CROWDED = range(4)
 _SAFETY, _LEAST, _MOST = 0.9, 0.2, 10.0  # scipy's: factors of a step
@@ -63,22 +63,17 @@ def _met(t, h, y0, f0, y1, f1, encounters, system, pairs, scratch):
         share = guard(_at_rest(t, h, points, system[5], system[13]), allowance, bodies, shell[0], shell[1], share)
     if not radii.size or n == 1:
         return share, scratch
-    mean = mean_way(h, q0, p0, u0, q1, p1, u1)
-    farthest, blur = farthest_ways(h, q0, p0, u0, q1, p1, u1, mean)
-    widest = 0.0
-    for i in range(n):
-        widest = max(widest, radii[i, -1])
-    within = (widest + 2.0 * (farthest + blur)) * (1.0 + 1e-9)
+    common = common_way(h, q0, p0, u0, q1, p1, u1)
+    between = band(common, farthest_ways(h, q0, p0, u0, q1, p1, u1, common), radii, far)
     first, second, count, places, _ = pairs
-    held = system[7][0] + system[7][1] - 2.0 * np.sqrt(strayed(q0, places)) if places.size else 0.0
-    if within > held:  # the list may lack a pair that was so near where the step began
-        first, second, count, _ = system[9](q0, within, scratch[0], scratch[1])
+    reach, skin = system[7]
+    if not (places.size and holds(q0, between[1], reach + skin, places)):  # it may lack a pair so near at the beginning
+        first, second, count, _ = system[9](q0, between[1], scratch[0], scratch[1])
         scratch = (first, second)
         if count < 0:
             return np.nan, scratch
-    ways = (farthest, blur)
     first, second = first[:count], second[:count]
-    return share_of_listed(h, q0, p0, u0, q1, p1, u1, mean, ways, radii, far, first, second, share), scratch
+    return share_of_listed(h, q0, p0, u0, q1, p1, u1, common[0], between, radii, far, first, second, share), scratch
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)

@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.kernels.compiling import njit
+from flockana.kernels.compiling import njit, register_jitable
 from flockana.kernels.copies import put
 from flockana.kernels.paths import _DEPTH, ALLOWED, _first_touch, _hull_bound, quintic, reach_of
-from flockana.kernels.sums import column_mean
+from flockana.kernels.sums import column_mean, slope_along
 
 _STRIP = 512  # agents at once
 _WIDER = 1.0 + 1e-9  # for the rounding of bounds
+_STEEP = 0.5  # a slope from which on the common way says too little of how near two agents come
 SLACK = 1.1  # a step that is too long by less than this is not worth another
 
 
@@ -139,23 +140,48 @@ def share_of_pairs(points, reach, allowance, radii, far, first, second, share):
     return share
 
 
+@register_jitable
+def _ways(gone, out, back, bend0, bend1):
+    """How far a quintic's control points are from the first of them; linear, so of means and of slopes too."""
+    return out, 2.0 * out + bend0, gone - 2.0 * back + bend1, gone - back, gone
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def steepest(slope):
+    """The largest of all slopes."""
+    most = 0.0
+    for k in range(6):
+        for c in range(3):
+            most = max(most, abs(slope[k, c]))
+    return most
+
+
 @njit(cache=True, error_model="numpy", nogil=True)
-def mean_way(h, q0, p0, u0, q1, p1, u1):
-    """How far the control points of the flock's mean path are from the first of them, (6, 3)."""
-    way = np.zeros((6, 3))
+def common_way(h, q0, p0, u0, q1, p1, u1):
+    """(mean, slope, centre) of how far all agents' control points are from the first of them: 6 × 3, twice, and 3.
+
+    The slope is by how much a way along a coordinate grows with the place there, seen from the centre; none where it is
+    steep.
+    """
+    mean, slope, centre, s, z = np.zeros((6, 3)), np.zeros((6, 3)), np.zeros(3), h / 5.0, h * h / 20.0
     for c in range(q0.shape[1]):
-        gone = column_mean(q1, c) - column_mean(q0, c)
-        out, back = h * column_mean(p0, c) / 5.0, h * column_mean(p1, c) / 5.0
-        way[1, c], way[2, c] = out, 2.0 * out + h * h * column_mean(u0, c) / 20.0
-        way[3, c], way[4, c] = gone - 2.0 * back + h * h * column_mean(u1, c) / 20.0, gone - back
-        way[5, c] = gone
-    return way
+        centre[c] = column_mean(q0, c)
+        out, back, bend0, bend1 = column_mean(p0, c), column_mean(p1, c), column_mean(u0, c), column_mean(u1, c)
+        ways = _ways(column_mean(q1, c) - centre[c], s * out, s * back, z * bend0, z * bend1)
+        mean[1, c], mean[2, c], mean[3, c], mean[4, c], mean[5, c] = ways
+        out, back = slope_along(q0, p0, c, 0.0), slope_along(q0, p1, c, 0.0)
+        bend0, bend1 = slope_along(q0, u0, c, 0.0), slope_along(q0, u1, c, 0.0)
+        ways = _ways(slope_along(q0, q1, c, 1.0) - 1.0, s * out, s * back, z * bend0, z * bend1)
+        slope[1, c], slope[2, c], slope[3, c], slope[4, c], slope[5, c] = ways
+    if not steepest(slope) < _STEEP:
+        slope = np.zeros((6, 3))
+    return mean, slope, centre
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def farthest_ways(h, q0, p0, u0, q1, p1, u1, mean):
-    """(the longest way of an agent beside the mean one, the largest allowance): of `control_points`, to rounding."""
-    n, m = q0.shape
+def farthest_ways(h, q0, p0, u0, q1, p1, u1, common):
+    """(the longest way of an agent beside the common one, the largest allowance): of `control_points`, to rounding."""
+    (n, m), (mean, slope, centre) = q0.shape, common
     ways, off = np.empty((5, _STRIP)), np.empty((2, _STRIP))
     far, blur, s, z = 0.0, 0.0, h / 5.0, h * h / 20.0
     for begin in range(0, n, _STRIP):
@@ -163,15 +189,17 @@ def farthest_ways(h, q0, p0, u0, q1, p1, u1, mean):
         ways[:], off[:] = 0.0, 0.0
         for c in range(m):
             m1, m2, m3, m4, m5 = mean[1, c], mean[2, c], mean[3, c], mean[4, c], mean[5, c]
+            s1, s2, s3, s4, s5 = slope[1, c], slope[2, c], slope[3, c], slope[4, c], slope[5, c]
             for k in range(count):
                 i = begin + k
-                gone, out, back = q1[i, c] - q0[i, c], s * p0[i, c], s * p1[i, c]
+                gone, out, back, along = q1[i, c] - q0[i, c], s * p0[i, c], s * p1[i, c], q0[i, c] - centre[c]
                 bend0, bend1 = z * u0[i, c], z * u1[i, c]
-                ways[0, k] += (out - m1) ** 2
-                ways[1, k] += (2.0 * out + bend0 - m2) ** 2
-                ways[2, k] += (gone - 2.0 * back + bend1 - m3) ** 2
-                ways[3, k] += (gone - back - m4) ** 2
-                ways[4, k] += (gone - m5) ** 2
+                w1, w2, w3, w4, w5 = _ways(gone, out, back, bend0, bend1)
+                ways[0, k] += (w1 - (m1 + s1 * along)) ** 2
+                ways[1, k] += (w2 - (m2 + s2 * along)) ** 2
+                ways[2, k] += (w3 - (m3 + s3 * along)) ** 2
+                ways[3, k] += (w4 - (m4 + s4 * along)) ** 2
+                ways[4, k] += (w5 - (m5 + s5 * along)) ** 2
                 off[0, k] += (out + 0.5 * back + bend0 - 0.3 * gone) ** 2
                 off[1, k] += (0.3 * gone - back - 0.5 * out + bend1) ** 2
         for k in range(count):
@@ -204,16 +232,26 @@ def _share_of_band(h, ends, mean, low2, high2, radii, far, first, second, share,
     return share
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def share_of_listed(h, q0, p0, u0, q1, p1, u1, mean, farthest, radii, far, first, second, share):
-    """As `share_of_pairs` of the paths between two states: control points only of pairs that may matter."""
-    stack, spans = np.empty((_DEPTH + 2, 6, 3)), np.empty((_DEPTH + 2, 2))
-    points, reach, allowance = np.zeros((2, 6, 3)), np.empty(2), np.empty(2)
-    own, (way, blur) = np.empty((2, radii.shape[1])), farthest
-    travel = 2.0 * way * _WIDER
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def band(common, farthest, radii, far):
+    """(low, high): between which distances, where a step begins, a pair may cut it short.
+
+    Two agents at the distance s go no farther, one seen from the other, than s times the steepest slope of the common
+    way and twice the longest way beside it.
+    """
+    (way, blur), steep = farthest, steepest(common[1])
     low, high = radii[0, 0], radii[0, -1]
     for agent in range(1, len(radii)):
         low, high = min(low, radii[agent, 0]), max(high, radii[agent, -1])
-    low, high = low if travel <= far else 0.0, (high + 2.0 * blur + travel) * _WIDER
+    high = (high + 2.0 * (blur + way)) / (1.0 - steep) * _WIDER
+    return low if (steep * high + 2.0 * way) * _WIDER <= far else 0.0, high
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def share_of_listed(h, q0, p0, u0, q1, p1, u1, mean, between, radii, far, first, second, share):
+    """As `share_of_pairs` of the paths between two states, looking only at pairs of that band where they begin."""
+    stack, spans = np.empty((_DEPTH + 2, 6, 3)), np.empty((_DEPTH + 2, 2))
+    points, reach, allowance = np.zeros((2, 6, 3)), np.empty(2), np.empty(2)
+    own, (low, high) = np.empty((2, radii.shape[1])), between
     ends, room = (q0, p0, u0, q1, p1, u1), (stack, spans, points, reach, allowance, own)
     return _share_of_band(h, ends, mean, low * low, high * high, radii, far, first, second, share, room)

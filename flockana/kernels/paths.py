@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.kernels.compiling import njit
+from flockana.kernels.compiling import njit, register_jitable
 from flockana.kernels.copies import put
 
 ALLOWED = 0.35  # of ‖L2‖ + ‖L3‖: the largest quotient of a single truncated power is 0.3453
@@ -28,15 +28,20 @@ def _norm(x):
     return np.sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2])
 
 
+@register_jitable
+def polygon(h, a, p0, u0, b, p1, u1):
+    """The control points of one coordinate's quintic from a to b."""
+    out, back, bend0, bend1 = h * p0 / 5.0, h * p1 / 5.0, h * h * u0 / 20.0, h * h * u1 / 20.0
+    return a, a + out, a + 2.0 * out + bend0, b - 2.0 * back + bend1, b - back, b
+
+
 @njit(cache=True, _nrt=False)
 def quintic(h, a, p0, u0, b, p1, u1, out):
     """The control points of one agent's quintic from a to b into `out`, (6, 3), and its error allowance."""
     off2, off3 = 0.0, 0.0
     for k in range(a.size):
-        out[0, k], out[5, k] = a[k], b[k]
-        out[1, k], out[4, k] = a[k] + h * p0[k] / 5.0, b[k] - h * p1[k] / 5.0
-        out[2, k] = a[k] + 2.0 * h * p0[k] / 5.0 + h * h * u0[k] / 20.0
-        out[3, k] = b[k] - 2.0 * h * p1[k] / 5.0 + h * h * u1[k] / 20.0
+        points = polygon(h, a[k], p0[k], u0[k], b[k], p1[k], u1[k])
+        out[0, k], out[1, k], out[2, k], out[3, k], out[4, k], out[5, k] = points
         c1, c2 = a[k] + h * p0[k] / 3.0, b[k] - h * p1[k] / 3.0
         off2 += (out[2, k] - (a[k] + 6.0 * c1 + 3.0 * c2) / 10.0) ** 2
         off3 += (out[3, k] - (3.0 * c1 + 6.0 * c2 + b[k]) / 10.0) ** 2

@@ -56,7 +56,7 @@ def _kept_up(y, system, pairs):
     """The list itself while it holds every pair within reach, or else a new one."""
     (n, m), (reach, skin) = system[4], system[7]
     q = y[: n * m].reshape(n, m)
-    return listed_anew(q, reach + skin, pairs, system[9]) if reach > 0.0 and outdated(q, skin, pairs) else pairs
+    return listed_anew(q, reach + skin, pairs, system[9]) if reach > 0.0 and outdated(q, reach, skin, pairs) else pairs
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -101,7 +101,7 @@ def _stages(t, h, y, rates, reached, trial, method, begin, end, system, pairs):
     for s in range(begin, end):
         into = reached if s == stages else trial
         combine(y, h, a[s], rates, rows, s, into)
-        if reach > 0.0 and outdated(into[: n * m].reshape(n, m), skin, pairs):
+        if reach > 0.0 and outdated(into[: n * m].reshape(n, m), reach, skin, pairs):
             return s
         _act(t + c[s] * h, into, rates[rows[s]], system, pairs)
     return end

@@ -9,6 +9,8 @@ import numpy as np
 
 from flockana.kernels.compiling import njit, register_jitable
 
+_SAMPLE = 256  # agents whose slope is told from noise well enough
+
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def finite(x):
@@ -51,6 +53,20 @@ def squared_deviations(x):
     for c in range(x.shape[1]):
         total += column_squares(x, c, column_mean(x, c))
     return total
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def slope_along(x, y, c, flat):
+    """By how much y_ic grows with x_ic, by least squares over some hundred agents; `flat` where x_ic is one for all."""
+    n, stride = x.shape[0], x.shape[0] // _SAMPLE + 1
+    centre = squares = products = 0.0
+    for i in range(0, n, stride):
+        centre += x[i, c]
+    centre /= (n + stride - 1) // stride
+    for i in range(0, n, stride):
+        above = x[i, c] - centre
+        squares, products = squares + above * above, products + above * (y[i, c] - y[0, c])
+    return products / squares if squares > 0.0 else flat
 
 
 @register_jitable

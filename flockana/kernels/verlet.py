@@ -1,4 +1,4 @@
-"""A Verlet list: the pairs within a range and a skin, good until an agent has moved half the skin in the flock's frame.
+"""A Verlet list: the pairs within a range and a skin, good until ways beside the flock's own differ by the skin.
 
 A list is a half list of two index arrays with room to spare. Agents sorted by cell keep what a pair needs close in
 memory. Where the list was made in a grid its slabs follow each other (`flockana.kernels.slabs`), else it is one slab.
@@ -15,6 +15,7 @@ from flockana.kernels.compiling import njit, register_jitable
 from flockana.kernels.copies import put
 from flockana.kernels.grid import sort_into_grid
 from flockana.kernels.neighbours import _FORWARD, _MARGIN, _fill_cells, _pad, _sort_into_cells
+from flockana.kernels.sums import slope_along
 
 _ROOM = 8  # pairs an agent, to begin with
 SKIN = 0.15  # of the range: what a list holds beyond it, so that it lasts some steps
@@ -120,23 +121,38 @@ def _widened(low, high, way):
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
-def strayed(q, reference):
-    """A bound of the squared distance that any agent has gone from its place, seen from where it is least.
+def _spread(q, reference, c, stretch):
+    """How far apart the agents' ways are along coordinate c, beside a stretch of the flock: that of the box of all."""
+    n = q.shape[0]
+    low = high = a = b = d = e = f = g = q[0, c] - stretch * reference[0, c]
+    for i in range(0, n - 3, 4):  # four lanes: an extreme waits for the one before
+        low, high = _widened(low, high, q[i, c] - stretch * reference[i, c])
+        a, b = _widened(a, b, q[i + 1, c] - stretch * reference[i + 1, c])
+        d, e = _widened(d, e, q[i + 2, c] - stretch * reference[i + 2, c])
+        f, g = _widened(f, g, q[i + 3, c] - stretch * reference[i + 3, c])
+    for i in range(n // 4 * 4, n):
+        low, high = _widened(low, high, q[i, c] - stretch * reference[i, c])
+    return max(max(high, b), max(e, g)) - min(min(low, a), min(d, f))
 
-    Half the diagonal of the box of all ways: a motion that all share brings no two nearer, whatever it is.
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def holds(q, within, made, reference):
+    """Whether a list of all pairs closer than `made` at the places `reference` lacks none closer than `within` now.
+
+    A motion that all share brings no two nearer, and one that stretches each coordinate by a factor brings them nearer
+    by the least of these factors: the ways are seen beside it, and differ by no more than the diagonal of their box.
+    Only where the first does not do is the second asked: a flock drawn together by its target.
     """
-    (n, m), diagonal = q.shape, 0.0
-    for c in range(m):
-        low = high = a = b = d = e = f = g = q[0, c] - reference[0, c]
-        for i in range(0, n - 3, 4):  # four lanes: an extreme waits for the one before
-            low, high = _widened(low, high, q[i, c] - reference[i, c])
-            a, b = _widened(a, b, q[i + 1, c] - reference[i + 1, c])
-            d, e = _widened(d, e, q[i + 2, c] - reference[i + 2, c])
-            f, g = _widened(f, g, q[i + 3, c] - reference[i + 3, c])
-        for i in range(n // 4 * 4, n):
-            low, high = _widened(low, high, q[i, c] - reference[i, c])
-        diagonal += (0.5 * (max(max(high, b), max(e, g)) - min(min(low, a), min(d, f)))) ** 2
-    return diagonal
+    square = 0.0
+    for c in range(q.shape[1]):
+        square += _spread(q, reference, c, 1.0) ** 2
+    if np.sqrt(square) <= made - within:
+        return True
+    square, least = 0.0, np.inf
+    for c in range(q.shape[1]):
+        stretch = slope_along(reference, q, c, 1.0)
+        square, least = square + _spread(q, reference, c, stretch) ** 2, min(least, stretch)
+    return np.sqrt(square) <= least * made - within
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
@@ -147,9 +163,9 @@ def empty_list(n):
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
-def outdated(q, skin, pairs):
+def outdated(q, reach, skin, pairs):
     """Whether a list may lack a pair that is within reach now."""
-    return not pairs[3].size or 4.0 * strayed(q, pairs[3]) > skin * skin
+    return not (pairs[3].size and holds(q, reach, reach + skin, pairs[3]))
 
 
 @njit(cache=True, error_model="numpy", nogil=True)

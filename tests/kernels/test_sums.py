@@ -22,6 +22,25 @@ def test_they_are_the_sums(seed, n, m):
     np.testing.assert_allclose(u, expected, atol=1e-13)
 
 
+@given(st.integers(0, 10**6), st.integers(2, 200), st.integers(1, 3), st.floats(-1e3, 1e3))
+def test_a_slope_is_that_of_least_squares(seed, n, m, place):
+    rng = np.random.default_rng(seed)
+    x, y = rng.normal(place, 1.0, (n, m)), rng.normal(size=(n, m))
+    for c in range(m):
+        assert sums.slope_along(x, y, c, 7.0) == pytest.approx(
+            np.polyfit(x[:, c] - place, y[:, c], 1)[0], rel=1e-6, abs=1e-9
+        )
+        assert sums.slope_along(x, 5.0 - 0.7 * x, c, 7.0) == pytest.approx(-0.7, rel=1e-9)
+
+
+@pytest.mark.parametrize("n", [255, 256, 257, 512, 5000])
+def test_a_slope_of_many_is_told_from_some_hundred(n):
+    x = np.random.default_rng(n).normal(size=(n, 2))
+    assert sums.slope_along(x, 1.0 + 0.3 * x, 1, 7.0) == pytest.approx(0.3, rel=1e-12)
+    assert sums.slope_along(x[:1], x[:1], 0, 7.0) == 7.0
+    assert sums.slope_along(np.ones((n, 1)), x, 0, 7.0) == 7.0
+
+
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
 @pytest.mark.parametrize("where", [0, 7, 12])
 def test_one_that_is_not_finite_is_found(bad, where):

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flockana.kernels.neighbours import pair_list
-from flockana.kernels.verlet import empty_list, list_pairs, listed_anew, outdated, spatial_order, strayed
+from flockana.kernels.verlet import empty_list, holds, list_pairs, listed_anew, outdated, spatial_order
 
 
 def listed(q, reach, room=1):
@@ -30,33 +30,76 @@ def test_agents_in_one_place_and_one_agent_alone():
     assert listed(np.zeros((1, 2)), 1.0) == []
 
 
-@given(st.integers(0, 10**6), st.integers(1, 40), st.integers(1, 3))
-def test_the_bound_of_ways_holds_and_is_not_far_off(seed, n, m):
+def kept(q, made):
+    return listed_anew(q, made, empty_list(len(q)), list_pairs)
+
+
+@given(
+    st.integers(0, 10**6),
+    st.integers(2, 40),
+    st.integers(1, 3),
+    st.floats(0.5, 1.5),
+    st.floats(0.0, 0.3),
+    st.booleans(),
+)
+def test_a_list_that_holds_lacks_no_pair(seed, n, m, factor, noise, turned):
+    """Whatever the flock does: drawn together or apart, each coordinate in its own way, or turned."""
     rng = np.random.default_rng(seed)
-    q, way = rng.normal(size=(n, m)), rng.normal(size=(n, m))
-    later = q + way + rng.normal(size=m)
-    middle = 0.5 * (way.min(axis=0) + way.max(axis=0))
-    longest = np.square(way - middle).sum(axis=1).max()
-    bound = strayed(later, q)
-    assert longest * (1 - 1e-12) - 1e-12 <= bound <= m * longest * (1 + 1e-12) + 1e-12
-    assert bound == pytest.approx(0.25 * np.sum(np.ptp(way, axis=0) ** 2), rel=1e-12, abs=1e-12)
+    q = rng.uniform(-3.0, 3.0, (n, m))
+    later = (
+        q * rng.uniform(min(factor, 1.0), max(factor, 1.0), m) + rng.normal(size=m) + noise * rng.normal(size=q.shape)
+    )
+    if turned:
+        later = later @ np.linalg.qr(rng.normal(size=(m, m)))[0]
+    gaps, apart = (np.linalg.norm(x[:, None] - x[None], axis=2) for x in (q, later))
+    missing = apart[gaps >= 1.5].min(initial=np.inf)  # the nearest of those that a list made for 1.5 lacks
+    for within in (0.3, 0.8, 1.2, 1.45):
+        assert not (holds(later, within, 1.5, q) and missing < within * (1.0 - 1e-12))
 
 
-def test_a_list_is_kept_until_an_agent_has_gone_half_the_skin_in_the_moving_frame():
+def test_a_list_is_kept_until_ways_differ_by_the_skin_beside_the_moving_flock():
     q = np.array([[0.0, 0.0], [9.0, 0.0], [30.0, 0.0], [39.5, 0.0]])
-    assert outdated(q, 1.0, empty_list(4))
-    pairs = listed_anew(q, 10.0, empty_list(4), list_pairs)
+    assert outdated(q, 9.0, 1.0, empty_list(4))
+    pairs = kept(q, 10.0)
     assert pairs[2] == 2  # both within range and skin
 
     moved = q + np.array([100.0, -50.0])
-    assert not outdated(moved, 1.0, pairs)  # a common motion is none
-    moved[3] += [0.98, 0.0]  # 0.49 from half way to the others
-    assert not outdated(moved, 1.0, pairs)
-    moved[3] += [0.04, 0.0]
-    assert outdated(moved, 1.0, pairs)
+    assert not outdated(moved, 9.0, 1.0, pairs)  # a common motion is none
+    moved[2] -= [0.98, 0.0]
+    assert not outdated(moved, 9.0, 1.0, pairs)
+    moved[2] -= [0.04, 0.0]
+    assert outdated(moved, 9.0, 1.0, pairs)
     pairs = listed_anew(moved, 10.0, pairs, list_pairs)
     assert pairs[2] == 1
-    assert not outdated(moved, 1.0, pairs)
+    assert not outdated(moved, 9.0, 1.0, pairs)
+
+
+@pytest.mark.parametrize("m", [1, 2, 3])
+def test_a_list_of_a_flock_drawn_together_is_kept_until_that_has_used_up_the_skin(m):
+    """Drawn together by 1 / 11, a pair that was 11 apart is 10 apart; the ways of the outermost are far longer."""
+    q = np.random.default_rng(m).uniform(-300.0, 300.0, (403, m))
+    pairs = kept(q, 11.0)
+    for factors in np.ones(m) - np.eye(m):  # along one coordinate only, the others as they were
+        drawn = q * np.where(factors == 0.0, 10.0 / 11.0 + 1e-9, 1.0) + 1000.0
+        assert not outdated(drawn, 10.0, 1.0, pairs)
+        assert outdated(q * np.where(factors == 0.0, 10.0 / 11.0 - 1e-9, 1.0) + 1000.0, 10.0, 1.0, pairs)
+    nudged = q * 0.95 + 1000.0  # leaves 11 · 0.95 − 10 for all other ways
+    nudged[7] += 0.44 / np.sqrt(m)
+    assert not outdated(nudged, 10.0, 1.0, pairs)
+    nudged[7] += 0.1 / np.sqrt(m)
+    assert outdated(nudged, 10.0, 1.0, pairs)
+    apart = 1.2 * q  # leaves 13.2 − 10
+    apart[7] += 2.0 / np.sqrt(m)
+    assert not outdated(apart, 10.0, 1.0, pairs)
+    assert outdated(-q, 10.0, 1.0, pairs)
+
+
+def test_a_flock_on_a_line_is_drawn_together_along_it():
+    q = np.zeros((300, 2))
+    q[:, 1] = 8.0 * np.arange(300)
+    pairs = kept(q, 11.0)
+    assert not outdated(q * 0.95, 10.0, 1.0, pairs)
+    assert outdated(q * 0.9, 10.0, 1.0, pairs)
 
 
 def test_too_many_pairs_are_told_before_memory_is_full():
@@ -77,7 +120,7 @@ def test_what_is_not_finite_ends_no_list():
     q = np.array([[0.0], [0.5], [np.nan]])
     pairs = listed_anew(q, 1.1, empty_list(3), list_pairs)
     assert pairs[2] == 1
-    assert not outdated(q, 0.1, pairs)
+    assert not outdated(q, 1.0, 0.1, pairs)
 
 
 def test_a_law_without_pairs_needs_no_list():

@@ -1,0 +1,54 @@
+"""How far the paths of a long step are from those by way of a middle one: what leaving out a step may change.
+
+Both are quintics (`flockana.kernels.paths`). The long one is parted at the middle by de Casteljau; the difference of
+two curves stays in the hull of the differences of their control points.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flockana.kernels.compiling import njit, register_jitable
+from flockana.kernels.paths import polygon
+
+_STRIP = 512  # agents at once
+
+
+@register_jitable
+def _parted(points, share):
+    """The control points of a curve's part up to `share`, and of its rest."""
+    a0, a1, a2, a3, a4, a5 = points
+    b0, b1, b2 = a0 + share * (a1 - a0), a1 + share * (a2 - a1), a2 + share * (a3 - a2)
+    b3, b4 = a3 + share * (a4 - a3), a4 + share * (a5 - a4)
+    c0, c1, c2, c3 = b0 + share * (b1 - b0), b1 + share * (b2 - b1), b2 + share * (b3 - b2), b3 + share * (b4 - b3)
+    d0, d1, d2 = c0 + share * (c1 - c0), c1 + share * (c2 - c1), c2 + share * (c3 - c2)
+    e0, e1 = d0 + share * (d1 - d0), d1 + share * (d2 - d1)
+    f0 = e0 + share * (e1 - e0)
+    return (a0, b0, c0, d0, e0, f0), (f0, e1, d2, c3, b4, a5)
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def detours(t0, t1, t2, q0, p0, u0, q1, p1, u1, q2, p2, u2, slack0, slack1):
+    """By agent: how far its path from t0 to t2 may be from that by way of t1, whose parts may be off by slacks."""
+    (n, m), share, farthest = q0.shape, (t1 - t0) / (t2 - t0), np.empty(q0.shape[0])
+    off = np.empty((5, _STRIP))
+    for begin in range(0, n, _STRIP):
+        count = min(_STRIP, n - begin)
+        off[:] = 0.0
+        for c in range(m):
+            for k in range(count):
+                i = begin + k
+                long = polygon(t2 - t0, q0[i, c], p0[i, c], u0[i, c], q2[i, c], p2[i, c], u2[i, c])
+                left, right = _parted(long, share)
+                before = polygon(t1 - t0, q0[i, c], p0[i, c], u0[i, c], q1[i, c], p1[i, c], u1[i, c])
+                after = polygon(t2 - t1, q1[i, c], p1[i, c], u1[i, c], q2[i, c], p2[i, c], u2[i, c])
+                off[0, k] += (left[3] - before[3]) ** 2  # those before are the same: paths begin alike, and end alike
+                off[1, k] += (left[4] - before[4]) ** 2
+                off[2, k] += (left[5] - before[5]) ** 2  # where the parts meet
+                off[3, k] += (right[1] - after[1]) ** 2
+                off[4, k] += (right[2] - after[2]) ** 2
+        for k in range(count):
+            one, other = max(off[0, k], off[1, k]), max(off[3, k], off[4, k])
+            one, other = np.sqrt(max(one, off[2, k])), np.sqrt(max(other, off[2, k]))
+            farthest[begin + k] = max(one + slack0[begin + k], other + slack1[begin + k])
+    return farthest
