@@ -57,7 +57,7 @@ def squared_deviations(x):
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def slope_along(x, y, c, flat):
-    """By how much y_ic grows with x_ic, by least squares over some hundred agents; `flat` where x_ic is one for all."""
+    """By how much y_ic grows with x_ic, by least squares over some hundred agents; `flat` where that is no number."""
     n, stride = x.shape[0], x.shape[0] // _SAMPLE + 1
     centre = squares = products = 0.0
     for i in range(0, n, stride):
@@ -66,7 +66,8 @@ def slope_along(x, y, c, flat):
     for i in range(0, n, stride):
         above = x[i, c] - centre
         squares, products = squares + above * above, products + above * (y[i, c] - y[0, c])
-    return products / squares if squares > 0.0 else flat
+    slope = products / squares if squares > 0.0 else flat
+    return slope if np.isfinite(slope) else flat
 
 
 @register_jitable

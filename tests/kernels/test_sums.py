@@ -39,6 +39,8 @@ def test_a_slope_of_many_is_told_from_some_hundred(n):
     assert sums.slope_along(x, 1.0 + 0.3 * x, 1, 7.0) == pytest.approx(0.3, rel=1e-12)
     assert sums.slope_along(x[:1], x[:1], 0, 7.0) == 7.0
     assert sums.slope_along(np.ones((n, 1)), x, 0, 7.0) == 7.0
+    assert sums.slope_along(1e200 * x, 1e200 * x, 0, 7.0) == 7.0  # squares beyond all numbers
+    assert sums.slope_along(x, np.full((n, 1), np.nan), 0, 7.0) == 7.0
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
