@@ -1,4 +1,4 @@
-"""Least and greatest distances of a flock at many instants, over all pairs: for few agents faster than any search."""
+"""Least and greatest distances of a flock at many instants: for few agents all pairs are faster than any search."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from math import inf, sqrt
 import numpy as np
 
 from flockana.kernels.compiling import njit
+from flockana.kernels.sums import column_mean
 
 
 @njit(cache=True)
@@ -25,17 +26,50 @@ def least_distances(q):
     return distances
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def _square(x, i, place):
+    total = 0.0
+    for c in range(place.size):
+        total += (x[i, c] - place[c]) ** 2
+    return total
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def _farthest(x, place):
+    """(agent, squared distance) of who is farthest from a place."""
+    agent, most = 0, 0.0
+    for i in range(len(x)):
+        s2 = _square(x, i, place)
+        if s2 > most:
+            agent, most = i, s2
+    return agent, most
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
 def greatest_distances(q):
-    """Greatest distance between two agents at each instant, shape (T,) of (T, n, m); 0 for one agent."""
-    distances = np.empty(len(q))
+    """Greatest distance between two agents at each instant, shape (T,) of (T, n, m); 0 for one agent.
+
+    Two agents are no farther from each other than both together from their centre: all pairs are looked at only of
+    those so far out that they may be farther than two that are found at once.
+    """
+    distances, rim, centre = np.empty(len(q)), np.empty(q.shape[1], np.int64), np.empty(q.shape[2])
     for k in range(len(q)):
-        most = 0.0
-        for i in range(q.shape[1]):
-            for j in range(i):
+        x, count = q[k], 0
+        for c in range(centre.size):
+            centre[c] = column_mean(x, c)
+        one, outermost = _farthest(x, centre)
+        other, _ = _farthest(x, x[one])
+        _, most = _farthest(x, x[other])
+        least = sqrt(most) * (1.0 - 1e-9) - sqrt(outermost)
+        for i in range(len(x)):
+            if sqrt(_square(x, i, centre)) >= least:
+                rim[count] = i
+                count += 1
+        for a in range(count):
+            for b in range(a):
                 s2 = 0.0
-                for c in range(q.shape[2]):
-                    s2 += (q[k, j, c] - q[k, i, c]) ** 2
+                for c in range(centre.size):
+                    s2 += (x[rim[b], c] - x[rim[a], c]) ** 2
                 most = max(most, s2)
         distances[k] = sqrt(most)
     return distances

@@ -319,7 +319,7 @@ def min_distances(q: FloatArray) -> FloatArray:
 
 
 def diameters(x: FloatArray) -> FloatArray:
-    """`diameter` over time, unchecked: pair by pair, in time n² and no memory.
+    """`diameter` over time, unchecked: of all pairs those are looked at whose agents are far out.
 
     Parameters
     ----------
