@@ -15,6 +15,7 @@ from flockana.equilibria.potential import Potential
 from flockana.equilibria.search import lattice_starts, random_starts
 from flockana.equilibria.solve import all_pairs
 from flockana.interactions import AlphaInteraction
+from flockana.kernels.neighbours import pair_blocks
 from flockana.lattice import harborth, hexagonal_spiral
 from flockana.laws.olfati_saber import Algorithm1
 
@@ -103,8 +104,10 @@ def _starts(alpha: AlphaInteraction, n: int, m: int, count: int, seed: int) -> l
 
 def _most_linked_first(q: FloatArray, alpha: AlphaInteraction) -> FloatArray:
     """The agent with the most neighbours, which is the cheapest to double, in front."""
-    near = np.linalg.norm(q[:, None] - q[None], axis=2) < alpha.r
-    order = np.argsort(-near.sum(axis=1), kind="stable")
+    links = np.zeros(len(q), dtype=np.int64)
+    for i, j in pair_blocks(q, alpha.r):
+        links += np.bincount(i, minlength=len(q)) + np.bincount(j, minlength=len(q))
+    order = np.argsort(-links, kind="stable")
     return np.ascontiguousarray(q[order])
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tracemalloc
 from itertools import combinations
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 
 from flockana.equilibria.barrier import (
     bound_range,
+    coincident_lattice,
     collision_barrier,
     collision_bounds,
     energy_floor,
@@ -108,6 +110,27 @@ def test_collision_bounds_enclose_the_searched_barrier():
         low, high = collision_bounds(ALPHA, n)
         assert low <= collision_barrier(ALPHA, n, starts=3).together + 1e-9 <= high + 2e-9
     assert collision_bounds(ALPHA, 1)[0] == np.inf
+
+
+@pytest.mark.parametrize("m", [1, 2, 3])
+@pytest.mark.parametrize("n", [2, 3, 8, 60])
+def test_the_agent_of_most_links_is_doubled(n, m):
+    q = coincident_lattice(ALPHA, n, m)
+    near = np.linalg.norm(q[1:, None] - q[None, 1:], axis=2) < ALPHA.r
+    np.testing.assert_array_equal(q[0], q[1])
+    assert near[0].sum() == near.sum(axis=1).max()
+    assert len(np.unique(q, axis=0)) == n - 1
+
+
+def test_bounds_of_a_large_flock_need_no_table_of_all_pairs():
+    tracemalloc.start()
+    try:
+        low, high = collision_bounds(ALPHA, 4000)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert low < high
+    assert peak < 16e6  # a truth value for each of all pairs
 
 
 def test_theorem_1_gets_the_sharper_claim():
