@@ -11,8 +11,6 @@ import numpy as np
 from flockana.kernels.compiling import njit, register_jitable
 from flockana.kernels.paths import polygon
 
-_STRIP = 512  # agents at once
-
 
 @register_jitable
 def _parted(points, share):
@@ -31,24 +29,18 @@ def _parted(points, share):
 def detours(t0, t1, t2, q0, p0, u0, q1, p1, u1, q2, p2, u2, slack0, slack1):
     """By agent: how far its path from t0 to t2 may be from that by way of t1, whose parts may be off by slacks."""
     (n, m), share, farthest = q0.shape, (t1 - t0) / (t2 - t0), np.empty(q0.shape[0])
-    off = np.empty((5, _STRIP))
-    for begin in range(0, n, _STRIP):
-        count = min(_STRIP, n - begin)
-        off[:] = 0.0
+    for i in range(n):
+        d1 = d2 = d3 = d4 = d5 = 0.0
         for c in range(m):
-            for k in range(count):
-                i = begin + k
-                long = polygon(t2 - t0, q0[i, c], p0[i, c], u0[i, c], q2[i, c], p2[i, c], u2[i, c])
-                left, right = _parted(long, share)
-                before = polygon(t1 - t0, q0[i, c], p0[i, c], u0[i, c], q1[i, c], p1[i, c], u1[i, c])
-                after = polygon(t2 - t1, q1[i, c], p1[i, c], u1[i, c], q2[i, c], p2[i, c], u2[i, c])
-                off[0, k] += (left[3] - before[3]) ** 2  # those before are the same: paths begin alike, and end alike
-                off[1, k] += (left[4] - before[4]) ** 2
-                off[2, k] += (left[5] - before[5]) ** 2  # where the parts meet
-                off[3, k] += (right[1] - after[1]) ** 2
-                off[4, k] += (right[2] - after[2]) ** 2
-        for k in range(count):
-            one, other = max(off[0, k], off[1, k]), max(off[3, k], off[4, k])
-            one, other = np.sqrt(max(one, off[2, k])), np.sqrt(max(other, off[2, k]))
-            farthest[begin + k] = max(one + slack0[begin + k], other + slack1[begin + k])
+            long = polygon(t2 - t0, q0[i, c], p0[i, c], u0[i, c], q2[i, c], p2[i, c], u2[i, c])
+            left, right = _parted(long, share)
+            before = polygon(t1 - t0, q0[i, c], p0[i, c], u0[i, c], q1[i, c], p1[i, c], u1[i, c])
+            after = polygon(t2 - t1, q1[i, c], p1[i, c], u1[i, c], q2[i, c], p2[i, c], u2[i, c])
+            d1 += (left[3] - before[3]) ** 2  # the first three are the same: both paths begin alike
+            d2 += (left[4] - before[4]) ** 2
+            d3 += (left[5] - before[5]) ** 2  # where the parts meet
+            d4 += (right[1] - after[1]) ** 2
+            d5 += (right[2] - after[2]) ** 2  # the last three are the same
+        one, other = np.sqrt(max(max(d1, d2), d3)), np.sqrt(max(max(d4, d5), d3))
+        farthest[i] = max(one + slack0[i], other + slack1[i])
     return farthest

@@ -14,7 +14,6 @@ from flockana.kernels.copies import put
 from flockana.kernels.paths import _DEPTH, ALLOWED, _first_touch, _hull_bound, quintic, reach_of
 from flockana.kernels.sums import column_mean, slope_along
 
-_STRIP = 512  # agents at once
 _WIDER = 1.0 + 1e-9  # for the rounding of bounds
 _STEEP = 0.5  # a slope from which on the common way says too little of how near two agents come
 SLACK = 1.1  # a step that is too long by less than this is not worth another
@@ -178,34 +177,26 @@ def common_way(h, q0, p0, u0, q1, p1, u1):
     return mean, slope, centre
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def farthest_ways(h, q0, p0, u0, q1, p1, u1, common):
     """(the longest way of an agent beside the common one, the largest allowance): of `control_points`, to rounding."""
     (n, m), (mean, slope, centre) = q0.shape, common
-    ways, off = np.empty((5, _STRIP)), np.empty((2, _STRIP))
     far, blur, s, z = 0.0, 0.0, h / 5.0, h * h / 20.0
-    for begin in range(0, n, _STRIP):
-        count = min(_STRIP, n - begin)
-        ways[:], off[:] = 0.0, 0.0
+    for i in range(n):
+        d1 = d2 = d3 = d4 = d5 = off2 = off3 = 0.0
         for c in range(m):
-            m1, m2, m3, m4, m5 = mean[1, c], mean[2, c], mean[3, c], mean[4, c], mean[5, c]
-            s1, s2, s3, s4, s5 = slope[1, c], slope[2, c], slope[3, c], slope[4, c], slope[5, c]
-            for k in range(count):
-                i = begin + k
-                gone, out, back, along = q1[i, c] - q0[i, c], s * p0[i, c], s * p1[i, c], q0[i, c] - centre[c]
-                bend0, bend1 = z * u0[i, c], z * u1[i, c]
-                w1, w2, w3, w4, w5 = _ways(gone, out, back, bend0, bend1)
-                ways[0, k] += (w1 - (m1 + s1 * along)) ** 2
-                ways[1, k] += (w2 - (m2 + s2 * along)) ** 2
-                ways[2, k] += (w3 - (m3 + s3 * along)) ** 2
-                ways[3, k] += (w4 - (m4 + s4 * along)) ** 2
-                ways[4, k] += (w5 - (m5 + s5 * along)) ** 2
-                off[0, k] += (out + 0.5 * back + bend0 - 0.3 * gone) ** 2
-                off[1, k] += (0.3 * gone - back - 0.5 * out + bend1) ** 2
-        for k in range(count):
-            way = max(max(max(ways[0, k], ways[1, k]), max(ways[2, k], ways[3, k])), ways[4, k])
-            slack = ALLOWED * (np.sqrt(off[0, k]) + np.sqrt(off[1, k]))
-            far, blur = max(far, np.sqrt(way) + slack), max(blur, slack)
+            gone, out, back, along = q1[i, c] - q0[i, c], s * p0[i, c], s * p1[i, c], q0[i, c] - centre[c]
+            bend0, bend1 = z * u0[i, c], z * u1[i, c]
+            w1, w2, w3, w4, w5 = _ways(gone, out, back, bend0, bend1)
+            d1 += (w1 - (mean[1, c] + slope[1, c] * along)) ** 2
+            d2 += (w2 - (mean[2, c] + slope[2, c] * along)) ** 2
+            d3 += (w3 - (mean[3, c] + slope[3, c] * along)) ** 2
+            d4 += (w4 - (mean[4, c] + slope[4, c] * along)) ** 2
+            d5 += (w5 - (mean[5, c] + slope[5, c] * along)) ** 2
+            off2 += (out + 0.5 * back + bend0 - 0.3 * gone) ** 2
+            off3 += (0.3 * gone - back - 0.5 * out + bend1) ** 2
+        slack = ALLOWED * (np.sqrt(off2) + np.sqrt(off3))
+        far, blur = max(far, np.sqrt(max(max(max(d1, d2), max(d3, d4)), d5)) + slack), max(blur, slack)
     return far, blur
 
 

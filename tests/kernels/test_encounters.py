@@ -46,6 +46,25 @@ def test_the_longest_way_and_the_largest_allowance_are_those_of_the_control_poin
     assert found == pytest.approx((beside.max(), allowance.max()), rel=1e-12)
 
 
+@pytest.mark.parametrize("node", [1, 2, 3, 4, 5])
+def test_each_control_point_may_be_the_farthest(node):
+    """Of one agent among 99 at rest."""
+    ways = np.zeros(6)
+    ways[node] = 40.0
+    gone, out, back = ways[5], ways[1], ways[5] - ways[4]
+    q0 = np.random.default_rng(0).uniform(0.0, 900.0, (100, 2))
+    p0, u0, q1, p1, u1 = np.zeros_like(q0), np.zeros_like(q0), q0.copy(), np.zeros_like(q0), np.zeros_like(q0)
+    q1[7, 0] += gone
+    p0[7, 0], p1[7, 0] = 5.0 * out / H, 5.0 * back / H
+    u0[7, 0], u1[7, 0] = 20.0 * (ways[2] - 2.0 * out) / H**2, 20.0 * (ways[3] - gone + 2.0 * back) / H**2
+    states = q0, p0, u0, q1, p1, u1
+    points, _, allowance = bernstein(H, *states)
+    assert points[7, :, 0] - q0[7, 0] == pytest.approx(ways, abs=1e-12)
+    farthest, blur = farthest_ways(H, *states, common_way(H, *states))
+    assert blur == pytest.approx(allowance[7])
+    assert 0.9 < (farthest - blur) / 40.0 <= 1.0  # beside what it adds to the mean itself
+
+
 def test_only_what_is_drawn_together_by_less_than_half_has_slopes():
     still = np.zeros((90, 2))
     q0 = np.random.default_rng(0).uniform(0.0, 900.0, (90, 2))
