@@ -1,7 +1,7 @@
 """A million agents for a hundred steps.
 
-Their γ-agent draws them together, the harder the farther they are, the outermost by several ranges a step: lists of
-pairs, and who may meet within a step, are judged beside that common motion.
+Their γ-agent draws them together, the harder the farther they are, in the end the outermost by more than a range a
+step: lists of pairs, and who may meet within a step, are judged beside that common motion.
 """
 
 from __future__ import annotations

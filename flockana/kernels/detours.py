@@ -29,13 +29,15 @@ def _parted(points, share):
 def detours(t0, t1, t2, q0, p0, u0, q1, p1, u1, q2, p2, u2, slack0, slack1):
     """By agent: how far its path from t0 to t2 may be from that by way of t1, whose parts may be off by slacks."""
     (n, m), share, farthest = q0.shape, (t1 - t0) / (t2 - t0), np.empty(q0.shape[0])
+    s, s0, s1 = (t2 - t0) / 5.0, (t1 - t0) / 5.0, (t2 - t1) / 5.0
+    z, z0, z1 = (t2 - t0) ** 2 / 20.0, (t1 - t0) ** 2 / 20.0, (t2 - t1) ** 2 / 20.0
     for i in range(n):
         d1 = d2 = d3 = d4 = d5 = 0.0
         for c in range(m):
-            long = polygon(t2 - t0, q0[i, c], p0[i, c], u0[i, c], q2[i, c], p2[i, c], u2[i, c])
+            long = polygon(q0[i, c], q2[i, c], s * p0[i, c], s * p2[i, c], z * u0[i, c], z * u2[i, c])
             left, right = _parted(long, share)
-            before = polygon(t1 - t0, q0[i, c], p0[i, c], u0[i, c], q1[i, c], p1[i, c], u1[i, c])
-            after = polygon(t2 - t1, q1[i, c], p1[i, c], u1[i, c], q2[i, c], p2[i, c], u2[i, c])
+            before = polygon(q0[i, c], q1[i, c], s0 * p0[i, c], s0 * p1[i, c], z0 * u0[i, c], z0 * u1[i, c])
+            after = polygon(q1[i, c], q2[i, c], s1 * p1[i, c], s1 * p2[i, c], z1 * u1[i, c], z1 * u2[i, c])
             d1 += (left[3] - before[3]) ** 2  # the first three are the same: both paths begin alike
             d2 += (left[4] - before[4]) ** 2
             d3 += (left[5] - before[5]) ** 2  # where the parts meet

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.kernels.compiling import njit, register_jitable
+from flockana.kernels.compiling import njit
 from flockana.kernels.copies import put
-from flockana.kernels.paths import _DEPTH, ALLOWED, _first_touch, _hull_bound, quintic, reach_of
+from flockana.kernels.paths import _DEPTH, ALLOWED, _first_touch, _hull_bound, polygon, quintic, reach_of
 from flockana.kernels.sums import column_mean, slope_along
 
 _WIDER = 1.0 + 1e-9  # for the rounding of bounds
@@ -139,12 +139,6 @@ def share_of_pairs(points, reach, allowance, radii, far, first, second, share):
     return share
 
 
-@register_jitable
-def _ways(gone, out, back, bend0, bend1):
-    """How far a quintic's control points are from the first of them; linear, so of means and of slopes too."""
-    return out, 2.0 * out + bend0, gone - 2.0 * back + bend1, gone - back, gone
-
-
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def steepest(slope):
     """The largest of all slopes."""
@@ -166,12 +160,12 @@ def common_way(h, q0, p0, u0, q1, p1, u1):
     for c in range(q0.shape[1]):
         centre[c] = column_mean(q0, c)
         out, back, bend0, bend1 = column_mean(p0, c), column_mean(p1, c), column_mean(u0, c), column_mean(u1, c)
-        ways = _ways(column_mean(q1, c) - centre[c], s * out, s * back, z * bend0, z * bend1)
-        mean[1, c], mean[2, c], mean[3, c], mean[4, c], mean[5, c] = ways
+        ways = polygon(0.0, column_mean(q1, c) - centre[c], s * out, s * back, z * bend0, z * bend1)
+        _, mean[1, c], mean[2, c], mean[3, c], mean[4, c], mean[5, c] = ways
         out, back = slope_along(q0, p0, c, 0.0), slope_along(q0, p1, c, 0.0)
         bend0, bend1 = slope_along(q0, u0, c, 0.0), slope_along(q0, u1, c, 0.0)
-        ways = _ways(slope_along(q0, q1, c, 1.0) - 1.0, s * out, s * back, z * bend0, z * bend1)
-        slope[1, c], slope[2, c], slope[3, c], slope[4, c], slope[5, c] = ways
+        ways = polygon(0.0, slope_along(q0, q1, c, 1.0) - 1.0, s * out, s * back, z * bend0, z * bend1)
+        _, slope[1, c], slope[2, c], slope[3, c], slope[4, c], slope[5, c] = ways
     if not steepest(slope) < _STEEP:
         slope = np.zeros((6, 3))
     return mean, slope, centre
@@ -187,7 +181,7 @@ def farthest_ways(h, q0, p0, u0, q1, p1, u1, common):
         for c in range(m):
             gone, out, back, along = q1[i, c] - q0[i, c], s * p0[i, c], s * p1[i, c], q0[i, c] - centre[c]
             bend0, bend1 = z * u0[i, c], z * u1[i, c]
-            w1, w2, w3, w4, w5 = _ways(gone, out, back, bend0, bend1)
+            _, w1, w2, w3, w4, w5 = polygon(0.0, gone, out, back, bend0, bend1)
             d1 += (w1 - (mean[1, c] + slope[1, c] * along)) ** 2
             d2 += (w2 - (mean[2, c] + slope[2, c] * along)) ** 2
             d3 += (w3 - (mean[3, c] + slope[3, c] * along)) ** 2

@@ -29,9 +29,8 @@ def _norm(x):
 
 
 @register_jitable
-def polygon(h, a, p0, u0, b, p1, u1):
-    """The control points of one coordinate's quintic from a to b."""
-    out, back, bend0, bend1 = h * p0 / 5.0, h * p1 / 5.0, h * h * u0 / 20.0, h * h * u1 / 20.0
+def polygon(a, b, out, back, bend0, bend1):
+    """The control points of a coordinate's quintic from a to b: of h p / 5 and h² u / 20 at both ends, and linear."""
     return a, a + out, a + 2.0 * out + bend0, b - 2.0 * back + bend1, b - back, b
 
 
@@ -40,7 +39,8 @@ def quintic(h, a, p0, u0, b, p1, u1, out):
     """The control points of one agent's quintic from a to b into `out`, (6, 3), and its error allowance."""
     off2, off3 = 0.0, 0.0
     for k in range(a.size):
-        points = polygon(h, a[k], p0[k], u0[k], b[k], p1[k], u1[k])
+        bends = h * h * u0[k] / 20.0, h * h * u1[k] / 20.0
+        points = polygon(a[k], b[k], h * p0[k] / 5.0, h * p1[k] / 5.0, bends[0], bends[1])
         out[0, k], out[1, k], out[2, k], out[3, k], out[4, k], out[5, k] = points
         c1, c2 = a[k] + h * p0[k] / 3.0, b[k] - h * p1[k] / 3.0
         off2 += (out[2, k] - (a[k] + 6.0 * c1 + 3.0 * c2) / 10.0) ** 2
