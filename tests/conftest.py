@@ -5,6 +5,7 @@ With ``--attack N`` it draws N new ones for each test of tests/adversarial, from
 
 from __future__ import annotations
 
+import gc
 import os
 import secrets
 import signal
@@ -37,6 +38,9 @@ def pytest_addoption(parser):
 
 @pytest.hookimpl(tryfirst=True)  # before hypothesis reads its seed
 def pytest_configure(config):
+    from flockana.base.garbage import SELDOM
+
+    gc.set_threshold(SELDOM)  # as in the program itself: to look through all that is imported takes a tenth of a suite
     config.addinivalue_line("markers", "attack: takes minutes; only with --attack")
     if examples := config.getoption("attack"):
         if config.option.hypothesis_seed is None:
@@ -52,6 +56,10 @@ def pytest_xdist_auto_num_workers(config):
     from flockana.ensemble.processes import cores
 
     return cores() + 1
+
+
+def pytest_collection_finish(session):
+    gc.freeze()  # what was collected is no garbage
 
 
 def pytest_report_header(config):

@@ -36,6 +36,7 @@ from numba.core.bytecode import FunctionIdentity
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.core.registry import cpu_target
 
+from flockana.kernels.compiler import Compiler
 from flockana.kernels.packing import Packing
 from flockana.kernels.turns import Turn
 
@@ -258,6 +259,6 @@ def inlined_type(function: Callable[..., Any]) -> Any:
         What is called.
     """
     own = function.__module__.startswith("flockana.kernels.")
-    numba.extending.register_jitable(_nrt=not own, forceinline=True)(function)
+    numba.extending.register_jitable(_nrt=not own, forceinline=True, pipeline_class=Compiler)(function)
     cpu_target.typing_context.refresh()
     return cpu_target.typing_context.resolve_value_type(function)

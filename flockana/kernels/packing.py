@@ -11,9 +11,11 @@ from __future__ import annotations
 from typing import Any
 
 from numba import config
-from numba.core.compiler import CompilerBase, DefaultPassBuilder
+from numba.core.compiler import DefaultPassBuilder
 from numba.core.compiler_machinery import register_pass
 from numba.core.typed_passes import NativeLowering
+
+from flockana.kernels.compiler import Compiler
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
@@ -32,8 +34,8 @@ class PackedLowering(NativeLowering):
         return lowered
 
 
-class Packing(CompilerBase):
-    """numba's compiler, whose last step is that."""
+class Packing(Compiler):
+    """The compiler, whose last step is that."""
 
     def define_pipelines(self) -> list[Any]:
         """Its steps."""
