@@ -96,10 +96,11 @@ class Engine:
         view = (frame.t0, frame.origin[:size].copy(), frame.drift[:size].copy())
         arrays = (tuple(np.array(getattr(term, name)) for term in terms) for name in ("numbers", "panels"))
         helpers = search_of_pairs()[0], sum_of_slabs(self.threads > 1)
-        functions = (*helpers, *(term.act for term in terms), *(term.energy for term in terms))
-        guard, bodies = next(((term.guard, term.numbers) for term in terms if term.guard), (no_guard(), np.empty(0)))
+        guards = (term.guard or no_guard() for term in terms)
+        functions = (*helpers, *(term.act for term in terms), *(term.energy for term in terms), *guards)
         met = self.encounters
-        around = ((self.form.reach, SKIN * self.form.reach), met.radii, met.far, guard, bodies, (met.shell, met.skirt))
+        bodies = met.bodies is not None
+        around = ((self.form.reach, SKIN * self.form.reach), met.radii, met.far, bodies, (met.shell, met.skirt))
         allowed = (self.allowed.rtol, tuple(self.allowed.floor), self.allowed.balance)
         return (
             *functions,
@@ -150,7 +151,8 @@ def engine_of(
     encounters = Encounters.of(law, len(q0))
     if form is None:
         return None
-    if sum(term.guard is not None for term in form.terms) != (encounters.bodies is not None):
+    bodies = 0 if encounters.bodies is None else len(encounters.bodies.kinds)
+    if sum(term.guard is not None for term in form.terms) != bodies:
         return None  # obstacles that no term, or more than one, keeps from being leapt over
     balance = (BALANCED * rtol, BALANCED * floor.energy) if method in ONE_STEP else (0.0, 0.0)
     frame = Frame.of(t0, q0, p0, energetic=True)

@@ -54,13 +54,15 @@ def _met(t, h, y0, f0, y1, f1, encounters, system, pairs, scratch):
 
     NaN where there are too many pairs to look at.
     """
-    (n, m), (radii, far, guard, bodies, shell) = system[4], encounters
+    (n, m), (radii, far, bodies, guards, shell) = system[4], encounters
     size, share = n * m, 1.0
     q0, p0, u0 = y0[:size].reshape(n, m), y0[size : 2 * size].reshape(n, m), f0[size : 2 * size].reshape(n, m)
     q1, p1, u1 = y1[:size].reshape(n, m), y1[size : 2 * size].reshape(n, m), f1[size : 2 * size].reshape(n, m)
-    if bodies.size:
+    if bodies:
         points, _, allowance = bernstein(h, q0, p0, u0, q1, p1, u1)
-        share = guard(_at_rest(t, h, points, system[5], system[13]), allowance, bodies, shell[0], shell[1], share)
+        seen = _at_rest(t, h, points, system[5], system[13])
+        for k in range(system[10]):
+            share = guards[k](seen, allowance, system[2][k], shell[0], shell[1], share)
     if not radii.size or n == 1:
         return share, scratch
     common = common_way(h, q0, p0, u0, q1, p1, u1)
@@ -160,10 +162,12 @@ def _controlled(h, error, exponent, rejected):
 
 
 def _advance(
-    search, summed, act0, act1, act2, act3, act4, energy0, energy1, energy2, energy3, energy4,
+    search, summed, act0, act1, act2, act3, act4, act5, act6, act7,
+    energy0, energy1, energy2, energy3, energy4, energy5, energy6, energy7,
+    guard0, guard1, guard2, guard3, guard4, guard5, guard6, guard7,
     numbers, panels, shape, view, moving, terms, of_pairs,
     tableau_a, tableau_c, estimates, interpolant, rows, stages, exponent,
-    reach, radii, far, guard, bodies, shell, rtol, floor, balance, ledger, t, y, f, h, stops, due, most,
+    reach, radii, far, bodies, shell, rtol, floor, balance, ledger, t, y, f, h, stops, due, most,
 ):  # fmt: skip
     """Make up to `most` steps that stand, to the last of `stops`.
 
@@ -174,11 +178,14 @@ def _advance(
     start = y[: n * m].copy().reshape(n, m)
     order = spatial_order(start, reach[0] + reach[1]) if reach[0] > 0.0 else np.arange(n).astype(np.uint64)
     system = (
-        (act0, act1, act2, act3, act4), (energy0, energy1, energy2, energy3, energy4),
+        (act0, act1, act2, act3, act4, act5, act6, act7),
+        (energy0, energy1, energy2, energy3, energy4, energy5, energy6, energy7),
         numbers, panels, shape, view, moving, reach, order, search, terms, of_pairs, summed, np.empty((2, m)),
     )  # fmt: skip
     method, fixed, end = (tableau_a, tableau_c, rows, stages), exponent == 0.0, rows[stages]
-    encounters = (np.empty_like(radii), far, guard, bodies, shell)
+    encounters = (
+        np.empty_like(radii), far, bodies, (guard0, guard1, guard2, guard3, guard4, guard5, guard6, guard7), shell,
+    )  # fmt: skip
     for i in range(n):
         put(radii[np.int64(order[i])], encounters[0][i])
     kept = np.int64(0)
@@ -223,7 +230,7 @@ def _advance(
                 status = NOT_FINITE
                 break
             share = 1.0
-            if bodies.size or (radii.size and n > 1):
+            if bodies or (radii.size and n > 1):
                 share, scratch = _met(
                     t, h, now, rates[0], reached, rates[end], encounters, system, pairs, scratch
                 )  # fmt: skip
@@ -271,14 +278,15 @@ def advance() -> Callable[..., Any]:
     def several(kind: Any, count: int) -> Any:
         return types.containers.UniTuple(kind, count)
 
-    act, energy = (types.FunctionType(signature) for signature in signatures())
+    act, energy, guard = (types.FunctionType(signature) for signature in (*signatures(), guard_signature()))
     matrix, vector = float64[:, ::1], float64[::1]
     search = types.FunctionType(search_of_pairs()[1])
-    law = (search, types.FunctionType(slabs_signature()), *(act,) * MOST_TERMS, *(energy,) * MOST_TERMS)
+    terms = (kind for each in (act, energy, guard) for kind in (each,) * MOST_TERMS)
+    law = (search, types.FunctionType(slabs_signature()), *terms)
     law = (*law, several(vector, MOST_TERMS), several(matrix, MOST_TERMS))
     view = (several(int64, 2), types.containers.Tuple((float64, vector, vector)), boolean, int64, boolean[::1])
     method = (matrix, vector, matrix, matrix, int64[::1], int64, float64)
-    around = (several(float64, 2), matrix, float64, types.FunctionType(guard_signature()), vector, several(float64, 2))
+    around = (several(float64, 2), matrix, float64, boolean, several(float64, 2))
     limits = (float64, several(float64, 3), several(float64, 2), vector)
     point = (float64, vector, vector, float64)
     made = njit(cache=True, error_model="numpy", nogil=True)(_advance)

@@ -1,13 +1,13 @@
 """Obstacles for integrators that are compiled too: forces, potential, and what no step may leap over.
 
 Of one kind, `numbers` are: how many there are, m, the range r', gains c1 and c2, the law's parameters; then where the
-parameters of each obstacle begin (K + 1), its ball (m + 1 each), and its parameters. Of several kinds they are: where
-those of the first kind end, those of the first kind, those of the others.
+parameters of each obstacle begin (K + 1), its ball (m + 1 each), and its parameters. Each kind is a term of its own: in
+what company it is compiles nothing.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, NamedTuple
@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from flockana.kernels.alpha import BETA_AREA
-from flockana.kernels.compiling import Kernel, njit
+from flockana.kernels.compiling import njit
 from flockana.kernels.listed import CompiledFunction, term_functions
 
 _COUNT, _DIMENSION, _REACH, _C1, _C2, _BETA = range(6)
@@ -78,7 +78,7 @@ def no_guard() -> CompiledFunction:
 
 @dataclass(frozen=True, eq=False)
 class Bodies:
-    """One kind of obstacle, or several: force, potential and guard, to be compiled as `BodyFunctions` are.
+    """One kind of obstacle: force, potential and guard, to be compiled as `BodyFunctions` are.
 
     Parameters
     ----------
@@ -110,51 +110,7 @@ def lift_bodies(forces: Callable[..., float], potential: Callable[..., float], s
     return Bodies(act, energy, guard)
 
 
-def _both(one: Bodies, others: Bodies) -> Bodies:
-    """Obstacles of one kind and those of others, from `mixed_numbers`."""
-    act_1, act_2 = _inner(one.act), _inner(others.act)
-    energy_1, energy_2 = _inner(one.energy), _inner(others.energy)
-    guard_1, guard_2 = _inner(one.guard), _inner(others.guard)
-
-    def act(t, x, v, u, frame, numbers, panels, first, second, size, order):
-        own, rest = _parted(numbers)
-        power = act_1(t, x, v, u, frame, own, panels, first, second, size, order)
-        return power + act_2(t, x, v, u, frame, rest, panels, first, second, size, order)
-
-    def energy(t, x, v, frame, numbers, panels, first, second, size, order):
-        own, rest = _parted(numbers)
-        known = energy_1(t, x, v, frame, own, panels, first, second, size, order)
-        return known + energy_2(t, x, v, frame, rest, panels, first, second, size, order)
-
-    def guard(points, allowance, numbers, shell, far, most):
-        own, rest = _parted(numbers)
-        return guard_2(points, allowance, rest, shell, far, guard_1(points, allowance, own, shell, far, most))
-
-    return Bodies(act, energy, guard)
-
-
-def _inner(function: Callable[..., float]) -> Kernel:
-    return njit(error_model="numpy", nogil=True)(function)
-
-
-@njit(error_model="numpy", nogil=True)
-def _parted(numbers):
-    end = np.int64(numbers[0])
-    return numbers[1:end], numbers[end:]
-
-
-def mixed_numbers(kinds: Sequence[Any]) -> Any:
-    """The numbers of a term of several kinds, from those of each."""
-    *others, numbers = kinds
-    for own in reversed(others):
-        numbers = np.concatenate([[1 + own.size], own, numbers])
-    return numbers
-
-
 @cache
-def body_functions(*kinds: Bodies) -> BodyFunctions:
-    """Of obstacles of some kinds, in the order in which `mixed_numbers` has them; compiled when first asked for."""
-    *others, made = kinds
-    for one in reversed(others):
-        made = _both(one, made)
-    return BodyFunctions(*term_functions(made.act, made.energy), _guard(made.guard))
+def body_functions(kind: Bodies) -> BodyFunctions:
+    """Of a kind of obstacle, compiled when first asked for."""
+    return BodyFunctions(*term_functions(kind.act, kind.energy), _guard(kind.guard))

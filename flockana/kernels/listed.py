@@ -16,7 +16,7 @@ from flockana.kernels.sweep import BLOCK, lift_block
 
 CompiledFunction = Callable[..., float]
 PARAMETERS = 32  # of a pair law, at most
-MOST_TERMS = 5  # of a law: a compiled integrator takes their functions one by one (`flockana.kernels.advance`)
+MOST_TERMS = 8  # of a law: a compiled integrator takes their functions one by one (`flockana.kernels.advance`)
 
 
 class Signatures(NamedTuple):

@@ -11,7 +11,7 @@ from flockana.base.checks import FloatArray, ensure_points
 from flockana.base.overrides import speaks_for
 from flockana.kernels.listed import MOST_TERMS
 from flockana.laws.law import Law, block_diagonal
-from flockana.laws.terms.term import Compiled, Term
+from flockana.laws.terms.term import Compiled, Term, TermKernel
 from flockana.measures.frame import moving_frame
 
 if TYPE_CHECKING:
@@ -73,9 +73,13 @@ class SumOfTerms(Law):
         """
         if not speaks_for(type(self), "compiled", ("flow", "hamiltonian", "potential_energy")):
             return None
-        kernels = [term.compiled(m) for term in self.terms if speaks_for(type(term), "compiled", ("act", "energy"))]
-        known = [kernel for kernel in kernels if kernel is not None]
-        return Compiled(tuple(known), self.moving) if len(known) == len(self.terms) <= MOST_TERMS else None
+        kernels: list[TermKernel] = []
+        for term in self.terms:
+            known = term.compiled(m) if speaks_for(type(term), "compiled", ("act", "energy")) else None
+            if known is None:
+                return None
+            kernels += [known] if isinstance(known, TermKernel) else known
+        return Compiled(tuple(kernels), self.moving) if len(kernels) <= MOST_TERMS else None
 
     def potential_energy(self, t: float, q: FloatArray) -> float:
         """Σ U^T, unchecked.

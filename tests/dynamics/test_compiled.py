@@ -27,6 +27,7 @@ from flockana.kernels.lift import lift
 from flockana.kernels.listed import PARAMETERS
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.laws.terms.obstacles import ObstacleTerm
 from flockana.laws.terms.pairs import PairTerm
 
 TARGETS = [
@@ -66,6 +67,15 @@ class Stepped(Algorithm3):
     def flow(self, t, q, p):
         """As it was."""
         return super().flow(t, q, p)
+
+
+class LastOfAll(Algorithm3):
+    """Algorithm 3, its obstacles the last of its terms."""
+
+    @property
+    def terms(self):
+        """As they are, in another order."""
+        return tuple(sorted(super().terms, key=lambda term: isinstance(term, ObstacleTerm)))
 
 
 def start(n=12, m=2, seed=0, spread=18.0):
@@ -162,7 +172,8 @@ def test_no_encounter_is_leapt_over():
 def test_no_obstacle_is_leapt_over(body, beside):
     """RK4's steps hang on encounters alone; the force's kink at d' makes others differ by rounding."""
     q, p = np.array([[0.0, 0.0], [0.0, 8.0]]), np.array([[21.0, 0.5], [20.0, 0.0]])
-    law = Algorithm3(target=LinearTarget((0.0, 3.5), (20.0, 0.0)), obstacles=[body, *beside])
+    kind = LastOfAll if beside else Algorithm3
+    law = kind(target=LinearTarget((0.0, 3.5), (20.0, 0.0)), obstacles=[*beside, body])
     stepped = Stepped(law.alpha, law.gains, law.target, law.beta, law.obstacles)
     ours, plain = (simulate(one, q, p, (0.0, 3.0), method="RK4", dt=2.0) for one in (law, stepped))
     assert (ours.stats["steps"], ours.stats["redone"]) == (plain.stats["steps"], plain.stats["redone"])
@@ -243,6 +254,13 @@ def test_a_law_that_changes_what_its_form_stands_for_is_stepped():
 
         obstacle_field = Algorithm3(target=TARGETS[0], obstacles=[Sphere((50.0, 50.0), 1.0)]).obstacle_field
 
+    class Doubled(Algorithm3):
+        """With the same obstacles in two of its terms."""
+
+        @property
+        def terms(self):
+            return (*super().terms, *(term for term in super().terms if isinstance(term, ObstacleTerm)))
+
     q, p = start()
     plain = [
         Plain(target=TARGETS[1]),
@@ -251,6 +269,7 @@ def test_a_law_that_changes_what_its_form_stands_for_is_stepped():
         Strong(),
         Algorithm1(Weighed()),
         Fenced(target=TARGETS[1]),
+        Doubled(target=TARGETS[1], obstacles=[Sphere((50.0, 50.0), 1.0)]),
     ]
     for law in plain:
         assert engine_of(law, q, p, 0.0, "DOP853", 1e-8, Floor(1e-8, 1e-8, 1e-8)) is None, law

@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from flockana.environment.beta import ObstacleField
 from flockana.environment.copies import Copies
 from flockana.environment.obstacles import Sphere, Wall
 from flockana.environment.spring import Spring
 from flockana.environment.targets import LinearTarget, StaticTarget
-from flockana.interactions import AlphaInteraction, DeadZoneInteraction, Gains
+from flockana.interactions import AlphaInteraction, BetaInteraction, DeadZoneInteraction, Gains
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.laws.dead_zone import DeadZoneFlocking
@@ -28,6 +29,7 @@ from flockana.laws.terms.pairs import PairTerm
 
 TARGET = LinearTarget((9.0, 1.0), (1.0, -0.5))
 SOLIDS = (Sphere((20.0, 0.0), 3.0), Wall((0.0, -9.0), (0.0, 1.0)))
+FENCES = ObstacleTerm(ObstacleField(SOLIDS, BetaInteraction()), 1.0, 1.0)
 EACH = Gains(c1_gamma=(1.0, 2.0, 3.0, 1.0), c2_gamma=(2.0, 1.0, 1.0, 0.5))
 SUMS = {
     "1": Algorithm1(),
@@ -114,7 +116,19 @@ def test_integrators_get_every_term_or_none(name):
     if name == "pushed":  # its own flow
         assert compiled is None
     else:
-        assert (len(compiled.terms), compiled.moving) == (len(law.terms), law.moving)
+        kinds = {type(one) for one in law.obstacles}  # each is a term of its own
+        terms = len(law.terms) + (len(kinds) - 1 if kinds else 0)
+        assert (len(compiled.terms), compiled.moving) == (terms, law.moving)
+
+
+def test_of_obstacles_each_kind_is_compiled_once_whatever_is_beside_it():
+    both = Algorithm3(target=TARGET, obstacles=(*SOLIDS[::-1], *SOLIDS)).compiled(2)
+    alone = Algorithm3(target=TARGET, obstacles=SOLIDS[:1]).compiled(2)
+    (only,) = (term for term in alone.terms if term.guard)
+    wall, sphere = (term for term in both.terms if term.guard)
+    for name in ("act", "energy", "guard"):
+        assert getattr(sphere, name) is getattr(only, name) is not getattr(wall, name)
+    assert (sphere.numbers[0], wall.numbers[0], only.numbers[0]) == (2, 2, 1)
 
 
 @pytest.mark.parametrize(
@@ -123,6 +137,8 @@ def test_integrators_get_every_term_or_none(name):
         ((), 1),
         ((Navigation(TARGET, Gains()),) * (MOST_TERMS - 1), MOST_TERMS),
         ((Navigation(TARGET, Gains()),) * MOST_TERMS, None),
+        ((FENCES,) * 3, 7),
+        ((FENCES,) * 4, None),
         ((Drawn(TARGET, Gains()),), None),
         ((Navigation(TARGET, Gains()), Drawn(TARGET, Gains())), None),
     ],

@@ -9,8 +9,8 @@ from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.environment.beta import ObstacleField, check_free
 from flockana.environment.obstacles import Obstacle
-from flockana.kernels.bodies import body_functions, body_numbers, mixed_numbers
-from flockana.laws.terms.term import Invariance, Term, TermKernel, nothing
+from flockana.kernels.bodies import body_functions, body_numbers
+from flockana.laws.terms.term import Invariance, Term, TermKernel
 
 _SUMS = ("kinds", "forces", "potential_energy")  # as every field has them, from its obstacles' kernels
 
@@ -68,16 +68,16 @@ class ObstacleTerm(Term):
         """
         check_free(q, self.field.obstacles)
 
-    def compiled(self, m: int) -> TermKernel | None:  # noqa: D102
-        kinds, beta = self.field.kinds, self.field.beta
+    def compiled(self, m: int) -> tuple[TermKernel, ...] | None:
+        """Each kind of obstacle as a term."""
         if not all(getattr(type(self.field), name) is getattr(ObstacleField, name) for name in _SUMS):
             return None
-        if not kinds:
-            return nothing()
-        kinds = tuple(sorted(kinds, key=lambda kind: type(kind.obstacles[0]).__name__))  # no order compiles once more
-        numbers = [body_numbers(beta.r, self.stiffness, self.damping, beta.par, *kind[2:]) for kind in kinds]
-        act, energy, guard = body_functions(*(kind.kernels.bodies for kind in kinds))
-        return TermKernel(act, energy, mixed_numbers(numbers), beta.panels, 0.0, guard)
+        beta, kernels = self.field.beta, []
+        for kind in self.field.kinds:
+            act, energy, guard = body_functions(kind.kernels.bodies)
+            numbers = body_numbers(beta.r, self.stiffness, self.damping, beta.par, *kind[2:])
+            kernels.append(TermKernel(act, energy, numbers, beta.panels, 0.0, guard))
+        return tuple(kernels)
 
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
         return self.damping * self.field.forces(q, p, u, stiffness=self.stiffness, damping=self.damping)

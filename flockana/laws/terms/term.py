@@ -141,8 +141,10 @@ class Term(ABC):
             Positions.
         """
 
-    def compiled(self, m: int) -> TermKernel | None:
-        """The term for integrators that are compiled too; None, and the law is stepped by scipy's, unless it has one.
+    def compiled(self, m: int) -> TermKernel | tuple[TermKernel, ...] | None:
+        """The term, or several that add up to it, for integrators that are compiled too.
+
+        None, and the law is stepped by scipy's, unless it has one.
 
         Parameters
         ----------
