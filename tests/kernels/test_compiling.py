@@ -15,6 +15,7 @@ import numba
 import numpy as np
 import pytest
 from numba.core.caching import IndexDataCacheFile
+from numba.core.codegen import JITCodeLibrary
 from numba.core.serialize import dumps, loads
 
 from flockana.interactions import AlphaInteraction
@@ -330,3 +331,20 @@ def test_where_nothing_can_be_written_kernels_are_kept_in_a_private_temporary_fo
         assert len(list(folder.rglob("*.nbc"))) == 2
     finally:
         caching.temporary_folder.cache_clear()
+
+
+def test_where_a_function_is_that_is_handed_on_is_asked_once(monkeypatch):
+    asked, address = [], JITCodeLibrary.get_pointer_to_function
+    monkeypatch.setattr(
+        JITCodeLibrary, "get_pointer_to_function", lambda library, name: asked.append(name) or address(library, name)
+    )
+    twice, thrice = njit()(lambda x: 2.0 * x), njit()(lambda x: 3.0 * x)
+    apply = njit()(lambda function, x: function(x))
+    for one in (twice, thrice):
+        one.compile(numba.float64(numba.float64))
+        one.disable_compile()
+    apply.compile((numba.types.FunctionType(numba.float64(numba.float64)), numba.float64))
+    apply.disable_compile()
+    asked.clear()
+    assert [apply(one.dispatcher, x) for x in (1.0, 2.0) for one in (twice, thrice, twice)] == [2, 3, 2, 4, 6, 4]
+    assert len(asked) == len(set(asked)) == 4  # of each, for compiled code and for C
