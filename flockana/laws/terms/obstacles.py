@@ -69,7 +69,13 @@ class ObstacleTerm(Term):
         check_free(q, self.field.obstacles)
 
     def compiled(self, m: int) -> tuple[TermKernel, ...] | None:
-        """Each kind of obstacle as a term."""
+        """Each kind of obstacle as a term.
+
+        Parameters
+        ----------
+        m : int
+            Dimension of the flock.
+        """
         if not all(getattr(type(self.field), name) is getattr(ObstacleField, name) for name in _SUMS):
             return None
         beta, kernels = self.field.beta, []
