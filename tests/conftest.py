@@ -82,6 +82,15 @@ def verdict_of():
 
 
 @pytest.fixture
+def garbage_often_sought():
+    """Garbage is sought as Python does by itself, not as seldom as tests have it: a change can be seen."""
+    before = gc.get_threshold()
+    gc.set_threshold(700, 10, 10)
+    yield
+    gc.set_threshold(*before)
+
+
+@pytest.fixture
 def answering():
     """Ctrl-C is answered here, even if whoever started the tests ignores it, which is inherited."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)

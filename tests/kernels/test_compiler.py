@@ -49,6 +49,7 @@ def test_numba_lists_none_by_name_for_a_kernel_and_what_is_inlined_into_it(monke
     assert not listed
 
 
+@pytest.mark.usefixtures("garbage_often_sought")
 def test_garbage_is_seldom_sought_while_a_function_is_compiled(monkeypatch):
     seen, compiled = [], compiler.CompilerBase.compile_extra
 
@@ -58,6 +59,7 @@ def test_garbage_is_seldom_sought_while_a_function_is_compiled(monkeypatch):
 
     monkeypatch.setattr(compiler.CompilerBase, "compile_extra", watched)
     before = gc.get_threshold()
+    assert before[0] < SELDOM
     assert njit()(lambda x: 2 * x)(21) == 42
     with pytest.raises(TypingError):
         njit()(lambda x: x.nothing)(1.0)
