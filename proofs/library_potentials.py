@@ -38,7 +38,7 @@ DIGITS = 80
 TERMS = 140  # of the expansion about the middle of a panel
 RADIUS = arb("1.5")  # of the circle on which it is bounded, in half widths of the panel
 ARCS = 256
-STATED = {"error": "2e-15"}  # in units of c*; the panels themselves hang on the processor, in their last places
+STATED = {"error": "1e-15"}  # in units of c*; the panels themselves may hang on the processor, in their last places
 
 Series = Any  # an arb_series, or an acb of an arc
 Action = Callable[[Series], Series]

@@ -37,26 +37,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
 _NAME = "flockana"
-app = typer.Typer(
-    name=_NAME,
-    help="Do these flocks do what the theorems say?",
-    no_args_is_help=False,
-    rich_markup_mode=None,  # its tables break sentences, and name types that say nothing
-    context_settings={"help_option_names": ["-h", "--help"]},
-)
-
-
-@app.callback(invoke_without_command=True)
-def _flockana(
-    context: typer.Context,
-    version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False,
-) -> None:
-    if version:
-        typer.echo(f"flockana {__version__}")
-    elif context.invoked_subcommand is None:
-        typer.echo(context.get_help())
-
-
 _COMMANDS: dict[str, Callable[..., Any]] = {
     "verify": verify_command,
     "run": run_command,
@@ -74,8 +54,31 @@ _COMMANDS: dict[str, Callable[..., Any]] = {
     "course": course_command,
     "explore": explore_command,
 }
-for _name, _command in _COMMANDS.items():
-    app.command(_name)(_command)
+
+
+def _flockana(
+    context: typer.Context,
+    version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False,
+) -> None:
+    if version:
+        typer.echo(f"flockana {__version__}")
+    elif context.invoked_subcommand is None:
+        typer.echo(context.get_help())
+
+
+def _app(asked: str) -> typer.Typer:
+    """The program with the command that is asked for, as to read the options of all takes time; else with all."""
+    app = typer.Typer(
+        name=_NAME,
+        help="Do these flocks do what the theorems say?",
+        no_args_is_help=False,
+        rich_markup_mode=None,  # its tables break sentences, and name types that say nothing
+        context_settings={"help_option_names": ["-h", "--help"]},
+    )
+    app.callback(invoke_without_command=True)(_flockana)
+    for name in [asked] if asked in _COMMANDS else _COMMANDS:
+        app.command(name)(_COMMANDS[name])
+    return app
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -84,7 +87,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     prepare_home()
     try:
         with interrupts_recognised(), garbage_seldom_sought():
-            code = app(args=None if arguments is None else list(arguments), prog_name=_NAME, standalone_mode=False)
+            given = list(sys.argv[1:] if arguments is None else arguments)
+            code = _app(given[0] if given else "")(args=given, prog_name=_NAME, standalone_mode=False)
         finish_output()
     except FlockanaError as error:
         complain(error)

@@ -13,7 +13,7 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.interactions.formula_near import TERMS, Near, near_zero
-from flockana.kernels.tables import NODES, integral_panels
+from flockana.kernels.tables import integral_panels, series_nodes, series_of
 
 if TYPE_CHECKING:
     from flockana.symbolic.pair_formula import Cut
@@ -215,12 +215,8 @@ def _panels(cut: Cut, view: _View, d: float) -> FloatArray:
 
 def _resolved(values: Any, left: float, right: float, scale: float, depth: int) -> list[float]:
     """Right ends of panels on which a function is a polynomial to rounding."""
-    from numpy.polynomial import chebyshev
-
-    half = 0.5 * (right - left)
-    found = values(0.5 * (left + right) + half * chebyshev.chebpts1(NODES))
-    nodes, refused = chebyshev.chebpts1(NODES), not np.isfinite(found).all()
-    series = np.abs(chebyshev.chebfit(nodes, np.nan_to_num(found), NODES - 1))
+    found = values(0.5 * (left + right) + 0.5 * (right - left) * series_nodes())
+    refused, series = not np.isfinite(found).all(), np.abs(series_of(np.nan_to_num(found)))
     tail = series[-2:].max() / max(series.max(), scale)
     if refused or (depth >= _HALVINGS and tail > _ROUGH):
         raise ArgumentError("the force cannot be integrated within the range: expected the potential, by its formula")

@@ -1,8 +1,13 @@
-"""Panels of polynomials for an integral that has no closed form: built once, to rounding; `on_panels` evaluates."""
+"""Panels of polynomials for an integral that has no closed form: built once, to rounding; `on_panels` evaluates.
+
+What leads from values to coefficients is the same for every panel: three matrices, whose products are summed here. The
+solvers of linear algebra, which sum otherwise on other processors, have no part in it.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 
 import numpy as np
 import numpy.typing as npt
@@ -66,18 +71,80 @@ def integral_panels(
     >>> bool(abs(polynomial.polyval(-1.0, panels[0, 2:])) < 1e-14)  # z² at 0
     True
     """
-    nodes = chebyshev.chebpts1(NODES)
-    panels = np.zeros((edges.size - 1, 3 + NODES))
-    first = int(np.searchsorted(edges, anchor))
-    for rows, start in ((range(first - 1, -1, -1), 1.0), (range(first, edges.size - 1), -1.0)):
+    half, middle = 0.5 * np.diff(edges)[:, None], 0.5 * (edges[:-1] + edges[1:])[:, None]
+    values = function((middle + half * series_nodes()).ravel()).reshape(-1, NODES)
+    integrals: FloatArray = half * _times(series_of(values), _integration())
+    at_left, at_right = integrals[:, ::2].sum(axis=1) - integrals[:, 1::2].sum(axis=1), integrals.sum(axis=1)
+    first, last = int(np.searchsorted(edges, anchor)), edges.size - 1
+    for rows, start, end in ((range(first - 1, -1, -1), at_right, at_left), (range(first, last), at_left, at_right)):
         reached = value
         for k in rows:
-            left, right = edges[k], edges[k + 1]
-            half = 0.5 * (right - left)
-            series = chebyshev.chebfit(nodes, function(0.5 * (left + right) + half * nodes), NODES - 1)
-            integral = half * chebyshev.chebint(series)
-            integral[0] += reached - chebyshev.chebval(start, integral)
-            powers = chebyshev.cheb2poly(integral)  # without the zeros at its end
-            panels[k, 0], panels[k, 1], panels[k, 2 : 2 + powers.size] = left, right, powers
-            reached = float(chebyshev.chebval(-start, integral))
-    return panels
+            rise = reached - start[k]
+            integrals[k, 0] += rise
+            reached = end[k] + rise
+    return np.hstack([edges[:-1, None], edges[1:, None], _times(integrals, _powers())])
+
+
+def series_nodes() -> FloatArray:
+    """Where `series_of` asks for a function on [−1, 1]: the zeros of T_N, shape (NODES,)."""
+    return _cosines()[:, 1]
+
+
+def series_of(values: FloatArray) -> FloatArray:
+    """Coefficients of the Chebyshev polynomials, of functions on [−1, 1].
+
+    Parameters
+    ----------
+    values : ndarray, shape (..., NODES)
+        Their values at `series_nodes`.
+
+    Returns
+    -------
+    ndarray, shape (..., NODES)
+
+    Examples
+    --------
+    >>> series_of(2.0 * series_nodes() ** 2).round(15)[:4].tolist()  # 1 + T₂
+    [1.0, 0.0, 1.0, 0.0]
+    """
+    return _times(values, _orthogonality())
+
+
+def _times(rows: FloatArray, matrix: FloatArray) -> FloatArray:
+    """Rows times a matrix, summed in an order that no processor changes."""
+    product: FloatArray = (rows[..., :, None] * matrix).sum(axis=-2)
+    return product
+
+
+@cache
+def _cosines() -> FloatArray:
+    """T_j(x_k) = cos πj(2k + 1)/2N, shape (N, N), each from the first quadrant: a recurrence would add errors up."""
+    quadrant = np.append(np.cos(0.5 * np.pi / NODES * np.arange(NODES)), 0.0)
+    turns = np.outer(2 * np.arange(NODES) + 1, np.arange(NODES)) % (4 * NODES)  # a quadrant has N steps
+    turns = np.minimum(turns, 4 * NODES - turns)
+    cosines: FloatArray = np.where(turns > NODES, -1.0, 1.0) * quadrant[NODES - np.abs(NODES - turns)]
+    return cosines
+
+
+@cache
+def _orthogonality() -> FloatArray:
+    """From values to a series: c_j = 2/N Σ_k f(x_k) T_j(x_k), of c₀ the half."""
+    matrix = _cosines() * (2.0 / NODES)
+    matrix[:, 0] *= 0.5
+    return matrix
+
+
+@cache
+def _integration() -> FloatArray:
+    """From a series to that of its integral from 0."""
+    return np.asarray(chebyshev.chebint(np.eye(NODES)).T, dtype=np.float64)
+
+
+@cache
+def _powers() -> FloatArray:
+    """From a series to coefficients of powers: those of T_j, all of them integers."""
+    matrix = np.zeros((NODES + 1, NODES + 1))
+    for j, series in enumerate(np.eye(NODES + 1)):
+        powers = chebyshev.cheb2poly(series)
+        matrix[j, : powers.size] = powers
+    return matrix

@@ -36,7 +36,7 @@ def test_garbage_is_collected_and_threads_start_as_before(monkeypatch, capsys, c
 def test_a_command_seldom_looks_for_garbage_and_the_process_does_as_before(monkeypatch):
     before, seen = gc.get_threshold(), []
     assert before[0] < SELDOM
-    monkeypatch.setattr(program, "app", lambda **given: seen.append(gc.get_threshold()))
+    monkeypatch.setattr(program, "_app", lambda asked: lambda **given: seen.append(gc.get_threshold()))
     with pytest.raises(SystemExit):
         program.main([])
     assert [threshold[0] for threshold in seen] == [SELDOM]

@@ -14,6 +14,7 @@ import pytest
 from PIL import Image
 
 from flockana.base.errors import FlockanaError, SolverError
+from flockana.cli import main as command_line
 from flockana.dynamics.trajectory import Trajectory
 from flockana.ensemble import executors
 from flockana.laws.olfati_saber import Algorithm1
@@ -319,6 +320,11 @@ def test_version_and_help(call):
     assert "--install-completion" in call("--help")[1]
     code, out, _ = call()
     assert (code, "verify" in out) == (0, True)
+
+
+def test_the_options_of_the_command_that_is_asked_for_are_read_and_no_others():
+    assert [one.name for one in command_line._app("stability").registered_commands] == ["stability"]
+    assert len(command_line._app("").registered_commands) == len(command_line._app("--help").registered_commands) > 10
 
 
 def test_processes_work_in_parallel():

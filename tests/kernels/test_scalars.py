@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from flockana.kernels import alpha as law
 from flockana.kernels import scalars
-from flockana.kernels.tables import integral_panels, panel_edges
+from flockana.kernels.tables import NODES, integral_panels, panel_edges, series_nodes, series_of
 
 
 def test_sigma_norm_by_hand():
@@ -138,6 +138,23 @@ def test_on_panels_is_the_polynomial_and_keeps_nan():
     assert scalars.on_panels(9.0, panels) == pytest.approx(8.0, abs=3e-15)  # the nearest end
     assert scalars.on_panels(-9.0, panels) == pytest.approx(-1.0, abs=3e-15)
     assert isnan(scalars.on_panels(nan, panels))
+
+
+def test_an_integral_is_summed_from_its_anchor_to_both_sides():
+    edges = np.array([-1.0, 0.25, 0.5, 2.0])
+    panels = integral_panels(np.exp, edges, anchor=0.25, value=3.0)
+    assert np.array_equal(panels[:, :2], np.column_stack([edges[:-1], edges[1:]]))
+    for row, left, right in zip(panels, edges[:-1], edges[1:], strict=True):
+        for x in np.linspace(-1.0, 1.0, 11):
+            z = 0.5 * (left + right) + 0.5 * (right - left) * x
+            expected = 3.0 + np.exp(z) - np.exp(0.25)
+            assert np.polynomial.polynomial.polyval(x, row[2:]) == pytest.approx(expected, abs=4e-15)
+
+
+def test_the_series_of_a_chebyshev_polynomial_is_its_own():
+    angles = np.arccos(series_nodes())
+    series = series_of(np.cos(np.outer(np.arange(NODES), angles)))
+    np.testing.assert_allclose(series, np.eye(NODES), atol=3e-15)  # j times the rounding of an angle
 
 
 @given(st.floats(0, 1e4), st.floats(1e-6, 1e4), st.floats(-10, 1e4))

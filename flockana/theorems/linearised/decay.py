@@ -136,7 +136,7 @@ def _terminal(run: Trajectory) -> tuple[Linearisation | None, str]:
     if law.target is not None:
         law = replace(law, target=StaticTarget(law.target.position(float(run.t[-1]))))
     try:
-        linear = linearise(law, find_equilibrium(law, run.q[-1]))
+        linear = linearise(law, find_equilibrium(law, run.q[-1], method="descent"))  # from beside it, a few steps
     except FlockanaError as error:
         return None, str(error)
     return linear, f"residual {linear.residual:.2g}, decay rate {linear.decay_rate:.4g}"
