@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
     from flockana.report.pages import Page
     from flockana.report.statistics import StatisticsSection
-    from flockana.report.surveys import Survey, SurveyResult
-    from flockana.report.work import Task
+    from flockana.report.surveys import Survey
+    from flockana.report.work import Done, Task, Work
 
 
 @one_thread_for_matrices()
@@ -62,13 +62,14 @@ def verify_command(
     Exit status: 0 all as expected, 2 bad input, 3 some verdict differs from the expected, 130 interrupted.
     """
     from flockana.ensemble.processes import cores
+    from flockana.report.pages import Page
     from flockana.report.statistics import gather
     from flockana.report.surveys import SurveyResult, surveys
-    from flockana.report.work import plan
+    from flockana.report.work import Comparison, plan
 
     started = time.perf_counter()
     if on is not None:
-        tasks: tuple[Task, ...] = ()
+        tasks: tuple[Task | Comparison, ...] = ()
         many: tuple[Survey, ...] = ()
         _ensure_checkable(name, seeds, seed)
         seed = 0
@@ -76,6 +77,8 @@ def verify_command(
         seed = seed or 0
         tasks = plan(name, seed=seed, figures=not no_report)
         many = () if no_report and seeds is None else surveys(name, seeds, seed=seed)
+        if name is None and not no_report:
+            tasks = (*tasks, Comparison(seed))
     if not no_report:
         from flockana.report.build import ensure_directory, report_folder
 
@@ -83,7 +86,7 @@ def verify_command(
     results, code, failure = (
         ([_saved(name, on, not no_report)], OK, None) if on else _check_all((*tasks, *many), jobs or cores())
     )
-    pages = [result for result in results if not isinstance(result, SurveyResult)]
+    pages = [result for result in results if isinstance(result, Page)]
     surveyed = [result for result in results if isinstance(result, SurveyResult)]
     statistics = gather(many, surveyed, figures=not no_report)
     if code == OK and any(page.surprises for page in pages):
@@ -92,9 +95,9 @@ def verify_command(
     written = None
     if report is not None and not no_report and (pages or complete):
         from flockana.report.build import write_report
-        from flockana.report.comparison import comparison_section
+        from flockana.report.comparison import ComparisonSection
 
-        comparison = comparison_section(seed) if complete and name is None else None
+        comparison = next((result for result in results if isinstance(result, ComparisonSection)), None)
         try:
             written = write_report(
                 pages,
@@ -120,18 +123,16 @@ def verify_command(
     return code
 
 
-def _check_all(
-    tasks: Sequence[Task | Survey], jobs: int
-) -> tuple[list[Page | SurveyResult], int, FlockanaError | None]:
+def _check_all(tasks: Sequence[Work], jobs: int) -> tuple[list[Done], int, FlockanaError | None]:
     """(results in the order of the tasks, exit status, error): what was done before an error or Ctrl-C is kept."""
     from flockana.report.work import check_all
 
-    results: dict[str, Page | SurveyResult] = {}
+    results: dict[str, Done] = {}
     code, failure = OK, None
     try:
         with progress_bar(len(tasks)) as advance:
 
-            def watch(under_way: Sequence[Task | Survey]) -> None:
+            def watch(under_way: Sequence[Work]) -> None:
                 advance(len(results), ", ".join(task.name for task in under_way))
 
             for result in check_all(tasks, jobs=jobs, watch=watch):

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from flockana import plots
 from flockana.report.figures import Picture
 from flockana.report.image import svg
+from flockana.report.work import MANY_LAWS
 from flockana.scenarios.one_start import UNTIL, Outcome, compare
 from flockana.theorems.theorem import Verdict, unmet
 
@@ -62,6 +63,11 @@ class ComparisonSection:
 
     rows: tuple[Row, ...]
     pictures: tuple[Picture, ...]
+
+    @property
+    def name(self) -> str:
+        """As that of the task that makes it."""
+        return MANY_LAWS
 
 
 @cache

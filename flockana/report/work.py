@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeAlias
 
 from flockana.base.errors import ArgumentError, FlockanaError, SolverError, UnknownNameError
 from flockana.base.interrupts import interrupts_recognised
@@ -15,7 +16,11 @@ from flockana.report.surveys import Survey, SurveyResult, make_survey
 from flockana.scenarios import scenario, scenarios
 from flockana.theorems import theorem, theorems, verify
 
+if TYPE_CHECKING:
+    from flockana.report.comparison import ComparisonSection
+
 ERRATA = "errata"
+MANY_LAWS = "one start under many laws"
 
 
 @dataclass(frozen=True)
@@ -41,6 +46,28 @@ class Task:
     seed: int = 0
     only: tuple[str, ...] = ()
     figures: bool = True
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """The section on one start under many laws, to be made; a number only, so it can be sent.
+
+    Parameters
+    ----------
+    seed : int
+        Of the start.
+    """
+
+    seed: int = 0
+
+    @property
+    def name(self) -> str:
+        """As progress shows it."""
+        return MANY_LAWS
+
+
+Work = Task | Survey | Comparison
+Done: TypeAlias = "Page | SurveyResult | ComparisonSection"
 
 
 def plan(name: str | None = None, *, seed: int = 0, figures: bool = True) -> tuple[Task, ...]:
@@ -75,12 +102,16 @@ def plan(name: str | None = None, *, seed: int = 0, figures: bool = True) -> tup
     return (*runs, *fixed)
 
 
-def check(task: Task | Survey) -> Page | SurveyResult:
+def check(task: Work) -> Done:
     """Run and verify one task in this process; an error names the task."""
     try:
         with interrupts_recognised():
             if isinstance(task, Survey):
                 return make_survey(task)
+            if isinstance(task, Comparison):
+                from flockana.report.comparison import comparison_section
+
+                return comparison_section(task.seed)
             if task.fixed:
                 return page(FixedResult(theorem(task.name), verify(task.name)))
             item = scenario(task.name, task.seed)
@@ -95,11 +126,11 @@ def check(task: Task | Survey) -> Page | SurveyResult:
 
 
 def check_all(
-    tasks: Sequence[Task | Survey],
+    tasks: Sequence[Work],
     *,
     jobs: int = 1,
-    watch: Callable[[tuple[Task | Survey, ...]], None] = lambda under_way: None,
-) -> Iterator[Page | SurveyResult]:
+    watch: Callable[[tuple[Work, ...]], None] = lambda under_way: None,
+) -> Iterator[Done]:
     """Run and verify tasks in so many processes, giving each result as it is done; Ctrl-C stops what runs and raises.
 
     A task that ends its process (for want of memory, say) is named in an error, when all others are done.
@@ -115,7 +146,7 @@ def check_all(
         raise SolverError(f"{', '.join(lost)}: the worker process ended; if memory is short, try --jobs 1")
 
 
-def _begun_apart(tasks: Sequence[Task | Survey]) -> list[Task | Survey]:
+def _begun_apart(tasks: Sequence[Work]) -> list[Work]:
     """Tasks in the order in which they are begun: one of a flow, all of maps, the other ones.
 
     Two workers that compile for the first time then compile different kernels, the one an integrator with its checks,
@@ -128,9 +159,9 @@ def _begun_apart(tasks: Sequence[Task | Survey]) -> list[Task | Survey]:
     return [*others[:1], *maps, *others[1:]]
 
 
-def _subject(task: Task | Survey) -> str:
+def _subject(task: Work) -> str:
     return task.scenario if isinstance(task, Survey) else task.name
 
 
-def _check_batch(tasks: tuple[Task | Survey, ...]) -> tuple[Page | SurveyResult, ...]:
+def _check_batch(tasks: tuple[Work, ...]) -> tuple[Done, ...]:
     return tuple(check(task) for task in tasks)

@@ -9,8 +9,11 @@ import pytest
 from markupsafe import escape
 
 from flockana.base.errors import UnknownNameError
+from flockana.cli.verify import verify_command
+from flockana.report import work
 from flockana.report.build import write_report
 from flockana.report.comparison import comparison_section
+from flockana.report.work import Task
 from flockana.scenarios.one_start import ENTRIES, compare, one_start
 from flockana.theorems import theorem
 
@@ -36,6 +39,18 @@ def test_it_is_part_of_the_page(section, tmp_path):
     assert all(str(escape(entry.promise)) in page for entry in ENTRIES)
     assert len(re.findall(r'class="drawn"', page)) == len(section.pictures) == 2
     assert 'id="one-start"' not in write_report([], tmp_path).read_text(encoding="utf-8")
+
+
+def test_it_is_made_among_the_tasks_of_the_catalogue_where_there_is_a_report(section, tmp_path, monkeypatch):
+    made = []
+    monkeypatch.setattr(work, "plan", lambda *given, **options: (Task("E8", fixed=True),))
+    monkeypatch.setattr("flockana.report.surveys.surveys", lambda *given, **options: ())
+    monkeypatch.setattr("flockana.report.comparison.comparison_section", lambda seed: made.append(seed) or section)
+    assert verify_command(seed=5, report=tmp_path, jobs=1) == 0
+    assert made == [5]
+    assert 'id="one-start"' in (tmp_path / "index.html").read_text(encoding="utf-8")
+    assert verify_command(no_report=True, jobs=1) == verify_command(name="E8", report=tmp_path / "E8", jobs=1) == 0
+    assert made == [5]
 
 
 def test_every_law_has_the_same_start():
