@@ -34,6 +34,18 @@ except SystemExit as end:
     assert python(code).splitlines()[-1] == "0 []"
 
 
+def test_a_run_is_verified_without_loading_what_derives_solves_or_draws():
+    code = """
+import sys
+from flockana.cli.main import main
+try:
+    main(["verify", "hexagon", "--no-report"])
+except SystemExit as end:
+    print(end.code, [m for m in ("sympy", "casadi", "matplotlib", "control", "xarray") if m in sys.modules])
+"""
+    assert python(code).splitlines()[-1] == "0 []"
+
+
 @pytest.mark.parametrize("name", flockana.__all__)
 def test_every_public_name_resolves(name):
     value = getattr(flockana, name)

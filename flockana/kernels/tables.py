@@ -123,6 +123,7 @@ def _cosines() -> FloatArray:
     turns = np.outer(2 * np.arange(NODES) + 1, np.arange(NODES)) % (4 * NODES)  # a quadrant has N steps
     turns = np.minimum(turns, 4 * NODES - turns)
     cosines: FloatArray = np.where(turns > NODES, -1.0, 1.0) * quadrant[NODES - np.abs(NODES - turns)]
+    cosines.setflags(write=False)  # handed out, and kept
     return cosines
 
 
