@@ -11,11 +11,13 @@ from collections.abc import Iterable
 from math import floor
 
 import numpy as np
+import numpy.typing as npt
 
+from flockana.base.checks import FloatArray
 from flockana.dynamics.trajectory import Trajectory
 from flockana.kernels.neighbours import pair_blocks
 from flockana.kernels.paths import control_points, touching_pairs
-from flockana.measures.metrics import coincident_pairs
+from flockana.measures.metrics import pairs_at_one_place
 from flockana.measures.path_bounds import ROUNDING, Contact, contacts
 from flockana.theorems.claims import judged
 from flockana.theorems.hypotheses import below, condition
@@ -24,12 +26,15 @@ from flockana.theorems.rounding import energy_error
 from flockana.theorems.theorem import Claim, Hypothesis, HypothesisStatus, Tolerances
 
 Pair = tuple[int, int]
+IndexArray = npt.NDArray[np.intp]
 
 
 def contacts_of(run: Trajectory, tolerances: Tolerances) -> tuple[Contact, ...]:
     """Contacts of a run: pairs whose interpolated paths come within the contact distance."""
     tol = tolerances.contact * run.law.alpha.length
-    return run.remembered(f"contacts within {tol!r}", lambda: contacts(*run.path[:4], tol=tol))
+    return run.remembered(
+        f"contacts within {tol!r}", lambda: contacts(*run.path[:4], tol=tol, intervals=_intervals(run, tol)[0])
+    )
 
 
 def passed(run: Trajectory, tolerances: Tolerances) -> dict[Pair, float]:
@@ -52,11 +57,10 @@ def near(run: Trajectory, tolerances: Tolerances) -> list[set[Pair]]:
 
 
 def _near(run: Trajectory, noise: float) -> list[set[Pair]]:
-    lower = run.closest_approach().lower_by_interval
-    pairs: list[set[Pair]] = [set() for _ in lower]
+    pairs: list[set[Pair]] = [set() for _ in run.t[1:]]
     t, *states, slack = run.path
-    of_sample = np.searchsorted(run.t, t[:-1], side="right") - 1
-    for k in np.flatnonzero(lower[of_sample] <= noise):
+    intervals, of_sample = _intervals(run, noise)
+    for k in intervals:
         points, reach, allowance = control_points(t[k + 1] - t[k], *(x[s] for s in (k, k + 1) for x in states))
         within = noise + 2.0 * float((allowance if slack is None else allowance + slack[k]).max())
         for i, j in pair_blocks(states[0][k], within + 2.0 * float(reach.max())):
@@ -65,6 +69,13 @@ def _near(run: Trajectory, noise: float) -> list[set[Pair]]:
             i, j = i[at >= 0.0], j[at >= 0.0]
             pairs[of_sample[k]].update(zip(np.minimum(i, j).tolist(), np.maximum(i, j).tolist(), strict=True))
     return pairs
+
+
+def _intervals(run: Trajectory, distance: float) -> tuple[IndexArray, IndexArray]:
+    """Intervals of the path in which a pair may come so near; and between which samples each of its intervals lies."""
+    lower = run.closest_approach().lower_by_interval
+    of_sample = np.searchsorted(run.t, run.path[0][:-1], side="right") - 1
+    return np.flatnonzero(~(lower[of_sample] > distance)), of_sample
 
 
 def _noise(run: Trajectory, tolerances: Tolerances) -> float:
@@ -183,7 +194,7 @@ def pairs_at_one_instant(
     allowed = np.floor((energy - error) / c_star)
     at_most = np.floor((energy + error) / c_star)
     together = np.array([len(pairs) for pairs in near(run, tolerances)])
-    exactly = np.array([_coincident(q) for q in run.q])  # to the last bit: nothing else is certain at an instant
+    exactly = _at_one_place(run.q)  # nothing else is certain at an instant
     spare = np.minimum(allowed[:-1], allowed[1:]) - together
     worst, broken = (int(np.argmin(spare)) if spare.size else 0), int(np.argmin(at_most - exactly))
     refuted = bool(at_most[broken] < exactly[broken])
@@ -203,7 +214,10 @@ def pairs_at_one_instant(
     )
 
 
-def _coincident(q: np.ndarray) -> int:
-    """Number of pairs at one and the same place, to the last bit."""
-    tiny = float(np.finfo(float).tiny)
-    return coincident_pairs(q, tiny) if len(np.unique(q, axis=0)) < len(q) else 0
+def _at_one_place(q: FloatArray) -> IndexArray:
+    """Pairs at one place to the last bit, at each instant: none where all first components differ, as nearly always."""
+    pairs = np.zeros(len(q), dtype=np.intp)
+    ties = (np.diff(np.sort(q[:, :, 0], axis=1), axis=1) == 0.0).any(axis=1)
+    for k in np.flatnonzero(ties):
+        pairs[k] = pairs_at_one_place(q[k])
+    return pairs

@@ -17,7 +17,8 @@ from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.measures.path_bounds import contacts
 from flockana.theorems import Tolerances, verify
-from flockana.theorems.olfati_saber.collisions import below_multiple, near, passed
+from flockana.theorems.olfati_saber import collisions
+from flockana.theorems.olfati_saber.collisions import below_multiple, contacts_of, near, passed
 from tests.theorems.made_up import SCALINGS, judged, made_up, same_in_all_units, statuses
 
 ALPHA = AlphaInteraction(a=5e4, b=5e4)
@@ -167,6 +168,25 @@ def test_what_a_path_may_be_off_by_brings_agents_near(slack, pairs):
         remembered=lambda key, make: make(),
     )
     assert near(run, Tolerances()) == [pairs]
+
+
+def test_contacts_are_sought_where_agents_may_be_so_near_and_all_are_found(e13):
+    sparse = simulate(e13.law, e13.q[0], e13.p[0], (0.0, 0.05), t_eval=[0.0, 0.02, 0.05])
+    for run in (e13, sparse):
+        found = contacts_of(run, Tolerances())
+        assert [(each.i, each.j) for each in found] == [(0, 1), (0, 2)]
+        assert found == contacts(*run.path[:4], tol=Tolerances().contact * ALPHA.d)
+        t, intervals = run.path[0], collisions._intervals(run, Tolerances().contact * ALPHA.d)[0]
+        assert all(((t[intervals] <= each.time) & (each.time <= t[intervals + 1])).any() for each in found)
+        assert intervals.size < (0.5 * t.size if run is e13 else t.size)
+
+
+def test_pairs_at_one_place_are_counted_at_each_instant():
+    q = np.array(
+        [[[0.0, 1.0], [0.0, 2.0], [3.0, 0.0]], [[0.0, 1.0], [0.0, 1.0], [-0.0, 1.0]], [[0.0, 1.0]] * 2 + [[5.0, 1.0]]]
+    )
+    assert collisions._at_one_place(q).tolist() == [0, 3, 1]
+    assert collisions._at_one_place(q[:, :1]).tolist() == [0, 0, 0]
 
 
 def test_pairs_that_end_at_one_place_never_certainly_met():
