@@ -10,7 +10,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.kernels.tables import NODES
+from flockana.kernels.tables import NODES, series_nodes, series_of
 
 if TYPE_CHECKING:
     from flockana.symbolic.pair_formula import Cut
@@ -126,9 +126,9 @@ def _energy_panel(cut: Cut, bound: float) -> FloatArray:
     potential = cut.pieces[0].potential
     if potential is None:
         return np.zeros((0, 0))
-    nodes, exact = chebyshev.chebpts1(NODES), cut.function(potential)
-    values = np.array([float(exact(0.5 * bound * (1.0 + x))) for x in nodes])
+    exact = cut.function(potential)
+    values = np.array([float(exact(0.5 * bound * (1.0 + x))) for x in series_nodes()])
     panel = np.zeros((1, 3 + NODES))
-    powers = chebyshev.cheb2poly(chebyshev.chebfit(nodes, values, 11))
+    powers = chebyshev.cheb2poly(series_of(values)[:12])
     panel[0, :2], panel[0, 2 : 2 + powers.size] = (0.0, bound), powers
     return panel

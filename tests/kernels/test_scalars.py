@@ -155,6 +155,8 @@ def test_the_series_of_a_chebyshev_polynomial_is_its_own():
     angles = np.arccos(series_nodes())
     series = series_of(np.cos(np.outer(np.arange(NODES), angles)))
     np.testing.assert_allclose(series, np.eye(NODES), atol=3e-15)  # j times the rounding of an angle
+    with pytest.raises(ValueError, match="read-only"):
+        series_nodes()[0] = 0.0
 
 
 @given(st.floats(0, 1e4), st.floats(1e-6, 1e4), st.floats(-10, 1e4))
