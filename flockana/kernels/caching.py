@@ -37,6 +37,7 @@ from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.core.registry import cpu_target
 
 from flockana.kernels.compiler import Compiler
+from flockana.kernels.inner import Inner, InnerResults
 from flockana.kernels.packing import Packing
 from flockana.kernels.turns import Turn
 
@@ -58,10 +59,12 @@ class NamedByContent(IndexDataCacheFile):
 class _Cache(FunctionCache):
     """numba's cache of a function, with such files."""
 
-    def __init__(self, function: Callable[..., Any], suffix: str) -> None:
+    suffix = ""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
         super().__init__(function)
         own: IndexDataCacheFile = self._cache_file  # type: ignore[has-type]
-        base = own._index_name.removesuffix(".nbi") + suffix
+        base = own._index_name.removesuffix(".nbi") + self.suffix
         file = getattr(sys.modules.get(function.__module__), "__file__", None)
         stamp = own._source_stamp if file is None else sources_digest(file)
         self._cache_file = NamedByContent(own._cache_path, base, stamp)
@@ -73,6 +76,12 @@ class _Cache(FunctionCache):
         if found is None and self.turn.take():
             found = super().load_overload(sig, target_context)
         return found
+
+
+class _InnerCache(_Cache):
+    """The same of one that only kernels call."""
+
+    suffix, _impl_class = ".bitcode", InnerResults
 
 
 def _imported(file: Path) -> set[Path]:
@@ -130,24 +139,23 @@ def dispatcher(function: Callable[..., Any], *, cache: bool, inner: bool = False
     **options
         Those of `numba.njit`.
     """
-    options = {"pipeline_class": Packing, **options}
     options = {"_nrt": True, **options}  # else it is as what calls it first: with references counted, or without
     if inner:
-        made = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **options)(function)
+        made = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, pipeline_class=Inner, **options)(function)
     else:
-        made = _at_hand(numba.njit(**options)(function))
+        made = _at_hand(numba.njit(pipeline_class=Packing, **options)(function))
         if function.__module__.startswith("flockana."):  # what others write may write to what it is handed
             made = _for_frozen_arrays(made)
-    return _cached(made, function, ".inner" if inner else "") if cache else made
+    return _cached(made, function, _InnerCache if inner else _Cache) if cache else made
 
 
-def _cached(made: Any, function: Callable[..., Any], suffix: str) -> Any:
+def _cached(made: Any, function: Callable[..., Any], kind: type[_Cache]) -> Any:
     """The same dispatcher, which keeps on disk what it compiles."""
     try:
-        made._cache = _Cache(function, suffix)
+        made._cache = kind(function)
     except RuntimeError:  # neither beside the sources nor at home is there a folder to write to
         with suppress(RuntimeError, OSError), _cached_in(temporary_folder()):
-            made._cache = _Cache(function, suffix)
+            made._cache = kind(function)
     return _in_turn(made)
 
 
