@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from flockana.report.pages import Page
     from flockana.report.statistics import StatisticsSection
     from flockana.report.surveys import Survey
-    from flockana.report.work import Done, Task, Work
+    from flockana.report.work import Done, Work
 
 
 @one_thread_for_matrices()
@@ -62,65 +62,92 @@ def verify_command(
     Exit status: 0 all as expected, 2 bad input, 3 some verdict differs from the expected, 130 interrupted.
     """
     from flockana.ensemble.processes import cores
-    from flockana.report.pages import Page
-    from flockana.report.statistics import gather
-    from flockana.report.surveys import SurveyResult, surveys
-    from flockana.report.work import Comparison, plan
 
     started = time.perf_counter()
     if on is not None:
-        tasks: tuple[Task | Comparison, ...] = ()
-        many: tuple[Survey, ...] = ()
         _ensure_checkable(name, seeds, seed)
-        seed = 0
-    else:
-        seed = seed or 0
-        tasks = plan(name, seed=seed, figures=not no_report)
-        many = () if no_report and seeds is None else surveys(name, seeds, seed=seed)
-        if name is None and not no_report:
-            tasks = (*tasks, Comparison(seed))
-    if not no_report:
-        from flockana.report.build import ensure_directory, report_folder
-
-        report = ensure_directory(report or report_folder(name))
+    work, many = ((), ()) if on is not None else _planned(name, seeds, seed or 0, figures=not no_report)
+    folder = None if no_report else _folder(report, name)
     results, code, failure = (
-        ([_saved(name, on, not no_report)], OK, None) if on else _check_all((*tasks, *many), jobs or cores())
+        ([_saved(name, on, not no_report)], OK, None) if on is not None else _check_all(work, jobs or cores())
     )
-    pages = [result for result in results if isinstance(result, Page)]
-    surveyed = [result for result in results if isinstance(result, SurveyResult)]
-    statistics = gather(many, surveyed, figures=not no_report)
+    pages, statistics = _gathered(results, many, figures=not no_report)
     if code == OK and any(page.surprises for page in pages):
         code = UNEXPECTED
-    seconds, complete = time.perf_counter() - started, code in (OK, UNEXPECTED)
-    written = None
-    if report is not None and not no_report and (pages or complete):
-        from flockana.report.build import write_report
-        from flockana.report.comparison import ComparisonSection
-
-        comparison = next((result for result in results if isinstance(result, ComparisonSection)), None)
+    seconds, complete, written = time.perf_counter() - started, code in (OK, UNEXPECTED), None
+    if folder is not None and (pages or complete):
         try:
-            written = write_report(
-                pages,
-                report,
-                seed=seed,
-                seconds=seconds,
-                complete=complete,
-                statistics=statistics,
-                comparison=comparison,
-                of=name,
-            )
+            written = _written(folder, results, pages, statistics, seed or 0, seconds, complete, name)
         except FileError as error:  # the verdicts are still to be told
             failure = failure or error
     if as_json:
         from flockana.report.build import verdicts_json
 
-        text = verdicts_json(pages, seed=seed, seconds=seconds, complete=complete, statistics=statistics)
+        text = verdicts_json(pages, seed=seed or 0, seconds=seconds, complete=complete, statistics=statistics)
         typer.echo(in_output_encoding(text), nl=False)
     else:
         _print_verdicts(pages, statistics, seconds, written, name)
     if failure is not None:
         raise failure
     return code
+
+
+def _planned(
+    name: str | None, seeds: int | None, seed: int, *, figures: bool
+) -> tuple[tuple[Work, ...], tuple[Survey, ...]]:
+    """All that is to be done, and the surveys among it."""
+    from flockana.report.surveys import surveys
+    from flockana.report.work import Comparison, plan
+
+    tasks = plan(name, seed=seed, figures=figures)
+    many = surveys(name, seeds, seed=seed) if figures or seeds is not None else ()
+    compared = (Comparison(seed),) if name is None and figures else ()
+    return (*tasks, *compared, *many), many
+
+
+def _folder(report: Path | None, name: str | None) -> Path:
+    from flockana.report.build import ensure_directory, report_folder
+
+    return ensure_directory(report or report_folder(name))
+
+
+def _gathered(
+    results: Sequence[Done], many: Sequence[Survey], *, figures: bool
+) -> tuple[list[Page], StatisticsSection | None]:
+    """Pages and shares of runs, from what was done."""
+    from flockana.report.pages import Page
+    from flockana.report.statistics import gather
+    from flockana.report.surveys import SurveyResult
+
+    pages = [result for result in results if isinstance(result, Page)]
+    surveyed = [result for result in results if isinstance(result, SurveyResult)]
+    return pages, gather(many, surveyed, figures=figures)
+
+
+def _written(
+    folder: Path,
+    results: Sequence[Done],
+    pages: Sequence[Page],
+    statistics: StatisticsSection | None,
+    seed: int,
+    seconds: float,
+    complete: bool,
+    name: str | None,
+) -> Path:
+    """Where the report is, written."""
+    from flockana.report.build import write_report
+    from flockana.report.comparison import ComparisonSection
+
+    return write_report(
+        pages,
+        folder,
+        seed=seed,
+        seconds=seconds,
+        complete=complete,
+        statistics=statistics,
+        comparison=next((result for result in results if isinstance(result, ComparisonSection)), None),
+        of=name,
+    )
 
 
 def _check_all(tasks: Sequence[Work], jobs: int) -> tuple[list[Done], int, FlockanaError | None]:
