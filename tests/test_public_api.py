@@ -46,6 +46,18 @@ except SystemExit as end:
     assert python(code).splitlines()[-1] == "0 []"
 
 
+def test_a_run_is_made_without_scipy_s_integrators_and_what_they_load():
+    """They take as long to load as all else that a short run does."""
+    code = """
+import sys
+from flockana.laws.olfati_saber import Algorithm1
+from flockana.dynamics.simulate import simulate
+run = simulate(Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 1.0))
+print(run.status, [m for m in ("scipy.integrate", "scipy.optimize", "scipy.linalg") if m in sys.modules])
+"""
+    assert python(code).splitlines()[-1] == "complete []"
+
+
 @pytest.mark.parametrize("name", flockana.__all__)
 def test_every_public_name_resolves(name):
     value = getattr(flockana, name)

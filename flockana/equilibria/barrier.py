@@ -121,12 +121,14 @@ def bound_range(alpha: AlphaInteraction) -> tuple[float, float]:
     >>> round(bound_range(AlphaInteraction())[0], 3)
     6.568
     """
-    from scipy.optimize import brentq
-
     if alpha.c_star <= alpha.far_potential:
         return 0.0, alpha.r
-    excess = lambda s: float(alpha.psi_alpha(alpha.sigma_norm(s))) - alpha.far_potential  # noqa: E731
-    return float(brentq(excess, 0.0, alpha.d, xtol=1e-12 * alpha.d)), alpha.r
+    low, high = 0.0, alpha.d  # ψ_α falls from c* to 0
+    while high - low > 1e-12 * alpha.d:
+        middle = 0.5 * (low + high)
+        above = float(alpha.psi_alpha(alpha.sigma_norm(middle))) > alpha.far_potential
+        low, high = (middle, high) if above else (low, middle)
+    return high, alpha.r
 
 
 def largest_clique(ratio: float, m: int) -> int | None:

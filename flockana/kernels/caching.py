@@ -35,10 +35,10 @@ import numba
 from numba.core.bytecode import FunctionIdentity
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.core.registry import cpu_target
+from numba.core.runtime import rtsys
 
 from flockana.kernels.compiler import Compiler
-from flockana.kernels.inner import Inner, InnerResults
-from flockana.kernels.packing import Packing
+from flockana.kernels.libraries import Inner, InnerResults, Outer, OuterResults
 from flockana.kernels.turns import Turn
 
 _SIGNATURES = 64  # kept of one function: in use are two or three
@@ -59,7 +59,7 @@ class NamedByContent(IndexDataCacheFile):
 class _Cache(FunctionCache):
     """numba's cache of a function, with such files."""
 
-    suffix = ""
+    suffix, _impl_class = ".code", OuterResults
 
     def __init__(self, function: Callable[..., Any]) -> None:
         super().__init__(function)
@@ -72,14 +72,20 @@ class _Cache(FunctionCache):
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """What was compiled before, or by another process in the meantime; None, and it is our turn to compile it."""
-        found = super().load_overload(sig, target_context)
+        found = self._loaded(sig, target_context)
         if found is None and self.turn.take():
-            found = super().load_overload(sig, target_context)
+            found = self._loaded(sig, target_context)
         return found
+
+    def _loaded(self, sig: Any, target_context: Any) -> Any:
+        """What was compiled before: to run it takes numba's memory, not all that numba can compile."""
+        rtsys.initialize(target_context)
+        with self._guard_against_spurious_io_errors():
+            return self._load_overload(sig, target_context)
 
 
 class _InnerCache(_Cache):
-    """The same of one that only kernels call."""
+    """The same of one that kernels alone call."""
 
     suffix, _impl_class = ".bitcode", InnerResults
 
@@ -143,7 +149,7 @@ def dispatcher(function: Callable[..., Any], *, cache: bool, inner: bool = False
     if inner:
         made = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, pipeline_class=Inner, **options)(function)
     else:
-        made = _at_hand(numba.njit(pipeline_class=Packing, **options)(function))
+        made = _at_hand(numba.njit(pipeline_class=Outer, **options)(function))
         if function.__module__.startswith("flockana."):  # what others write may write to what it is handed
             made = _for_frozen_arrays(made)
     return _cached(made, function, _InnerCache if inner else _Cache) if cache else made

@@ -1,13 +1,16 @@
-"""The coefficients of the explicit Runge-Kutta methods, from scipy's, as `flockana.kernels.runge_kutta` reads them."""
+"""The coefficients of the explicit Runge-Kutta methods, as `flockana.kernels.runge_kutta` reads them."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from functools import cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import polynomial
+
+from flockana.kernels import dop853
 
 FloatArray = npt.NDArray[np.float64]
 IndexArray = npt.NDArray[np.int64]
@@ -50,11 +53,11 @@ def tableau(method: str) -> Tableau:
         a[4, :4] = np.array([1.0, 2.0, 2.0, 1.0]) / 6.0
         c, estimates, interpolant = np.array([0.0, 0.5, 0.5, 1.0, 1.0]), np.zeros((1, 5)), np.zeros((5, 1))
         return Tableau(a, c, estimates, interpolant, _rows(a, estimates, interpolant), 4, 0.0)
+    if method == "DOP853":
+        return _dop853()
     import scipy.integrate
 
     solver = getattr(scipy.integrate, method)
-    if method == "DOP853":
-        return _dop853(solver)
     stages = solver.n_stages
     a = np.zeros((stages + 1, stages + 1))
     a[:stages, : solver.A.shape[1]], a[stages, :stages] = solver.A, solver.B
@@ -64,24 +67,24 @@ def tableau(method: str) -> Tableau:
     return Tableau(a, np.append(solver.C, 1.0), estimates, interpolant, rows, stages, exponent)
 
 
-def _dop853(solver: Any) -> Tableau:
-    """DOP853, its interpolant in powers of θ: that of scipy goes by θ and 1 − θ in turns."""
-    stages, extra = solver.n_stages, len(solver.A_EXTRA)
-    count = stages + 1 + extra
-    a = np.zeros((count, count))
-    a[:stages, :stages], a[stages, :stages] = solver.A, solver.B
-    a[stages + 1 :] = solver.A_EXTRA
-    whole, first, last = np.append(solver.B, np.zeros(1 + extra)), np.eye(count)[0], np.eye(count)[stages]
-    rows = np.vstack([whole, first - whole, 2.0 * whole - (first + last), solver.D])
+def _dop853() -> Tableau:
+    """DOP853, its interpolant in powers of θ: as published it goes by θ and 1 − θ in turns."""
+    stages, count = dop853.STAGES, len(dop853.C)
+    a, estimates = _filled(dop853.A, count), _filled((dop853.E5, dop853.E3), stages + 1)
+    whole, first, last = a[stages], np.eye(count)[0], np.eye(count)[stages]
+    rows = np.vstack([whole, first - whole, 2.0 * whole - (first + last), _filled(dop853.D, count)])
     interpolant, ways = np.zeros((count, len(rows))), ((0.0, 1.0), (1.0, -1.0))
     power = np.ones(1)
     for k, row in enumerate(rows):
         power = np.asarray(polynomial.polymul(power, ways[k % 2]), dtype=np.float64)
         interpolant[:, : len(power) - 1] += np.outer(row, power[1:])
-    estimates = np.array([solver.E5, solver.E3])
-    exponent = -1.0 / (solver.error_estimator_order + 1)
-    c, rows = np.concatenate([solver.C, [1.0], solver.C_EXTRA]), _rows(a, estimates, interpolant)
-    return Tableau(a, c, estimates, interpolant, rows, stages, exponent)
+    kept, exponent = _rows(a, estimates, interpolant), -1.0 / (dop853.ORDER + 1)
+    return Tableau(a, np.array(dop853.C), estimates, interpolant, kept, stages, exponent)
+
+
+def _filled(rows: Sequence[Mapping[int, float]], count: int) -> FloatArray:
+    """Rows of so many numbers, from those that are not 0."""
+    return np.array([[row.get(k, 0.0) for k in range(count)] for row in rows])
 
 
 def _rows(a: FloatArray, estimates: FloatArray, interpolant: FloatArray) -> IndexArray:

@@ -46,6 +46,20 @@ def test_steps_errors_and_interpolants_are_those_of_scipy(solver):
         np.testing.assert_allclose(out, dense(0.3 + theta * h), rtol=1e-13, atol=1e-14)
 
 
+def test_the_numbers_of_dop853_are_those_of_scipy():
+    a, c, estimates, *_ = tableau("DOP853")
+    stages = DOP853.n_stages
+    for own, theirs in (
+        (a[:stages, :stages], DOP853.A),
+        (a[stages, :stages], DOP853.B),
+        (a[stages + 1 :], DOP853.A_EXTRA),
+        (c, [*DOP853.C, 1.0, *DOP853.C_EXTRA]),
+        (estimates, [DOP853.E5, DOP853.E3]),
+    ):
+        np.testing.assert_array_equal(own, theirs)
+    assert tableau("DOP853").exponent == -1.0 / (DOP853.error_estimator_order + 1)
+
+
 def test_rates_that_nothing_reads_again_make_room():
     for method, count in (("DOP853", 12), ("RK45", 6), ("RK23", 4), ("RK4", 4)):
         rows = tableau(method).rows

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from flockana.kernels.compiling import njit
-from flockana.kernels.inner import InnerLibrary
+from flockana.kernels.libraries import InnerLibrary, OuterLibrary
 
 FILE = """
 import numpy as np
@@ -82,7 +82,7 @@ def test_it_has_no_machine_code_and_its_callers_have_all_of_it():
     assert sum_of_thirds(x) == expected
     inner, outer = library(third.inner), library(sum_of_thirds.dispatcher)
     assert isinstance(inner, InnerLibrary)
-    assert not isinstance(outer, InnerLibrary)
+    assert isinstance(outer, OuterLibrary)
     (name,) = (each.name for each in inner.get_defined_functions())
     assert inner.get_pointer_to_function(name) == 0
     assert not inner.codegen._engine.is_symbol_defined(name)
@@ -91,7 +91,7 @@ def test_it_has_no_machine_code_and_its_callers_have_all_of_it():
 def test_called_from_python_it_is_a_kernel_like_others():
     assert sum_of_thirds(np.ones(3)) == 1.0
     assert third(6.0) == 2.0
-    assert not isinstance(library(third.dispatcher), InnerLibrary)
+    assert isinstance(library(third.dispatcher), OuterLibrary)
 
 
 @pytest.mark.parametrize("compiler", [njit(), numba.njit], ids=["ours", "numba's"])
