@@ -310,11 +310,11 @@ def min_distances(q: FloatArray) -> FloatArray:
     q : ndarray, shape (T, n, m)
         Positions.
     """
-    from scipy.spatial import KDTree
-
     if q.shape[1] < _TREE:
         distances: FloatArray = least_distances(q)
         return distances
+    from scipy.spatial import KDTree
+
     return np.array([np.asarray(KDTree(x).query(x, k=2)[0])[:, 1].min() for x in q])
 
 
