@@ -68,6 +68,7 @@ class _Cache(FunctionCache):
         file = getattr(sys.modules.get(function.__module__), "__file__", None)
         stamp = own._source_stamp if file is None else sources_digest(file)
         self._cache_file = NamedByContent(own._cache_path, base, stamp)
+        self._of_the_package = function.__module__.startswith("flockana.")
         self.turn = Turn(own._cache_path, base)
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
@@ -78,8 +79,11 @@ class _Cache(FunctionCache):
         return found
 
     def _loaded(self, sig: Any, target_context: Any) -> Any:
-        """What was compiled before: to run it takes numba's memory, not all that numba can compile."""
-        rtsys.initialize(target_context)
+        """What was compiled before; of the package, without loading all that numba could compile."""
+        if self._of_the_package:
+            rtsys.initialize(target_context)
+        else:  # it may call what numba, or an extension of it, names only when that is loaded
+            target_context.refresh()
         with self._guard_against_spurious_io_errors():
             return self._load_overload(sig, target_context)
 

@@ -114,6 +114,20 @@ def test_what_it_raises_is_raised_with_its_numbers(compiler):
     assert told.value.args == ("too large", 5.0)
 
 
+def test_kernels_of_the_package_are_loaded_without_what_numba_could_compile():
+    code = """
+import sys
+import numpy as np
+from flockana.kernels.instants import least_distances
+print(least_distances(np.zeros((1, 2, 2)) + [[0.0], [4.0]])[0] ** 2, "numba.np.linalg" in sys.modules)
+"""
+    for _ in range(2):  # the first may have to compile it
+        told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=300)
+    distance, loaded = told.stdout.split()
+    assert float(distance) == pytest.approx(32.0, rel=1e-14)
+    assert loaded == "False"
+
+
 def test_another_process_reads_it_and_compiles_what_is_new(tmp_path):
     (tmp_path / "kept.py").write_text(FILE)
 
