@@ -2,8 +2,8 @@
 
 numba optimises each function with all that it calls, and makes machine code of it; each of its callers takes in all
 that it calls and does the same again. Where Python never calls a function, nothing ever runs the first of these: here
-there is none, and to compile takes a fifth less. And what Python calls, no kernel takes in: on disk it is machine code
-alone, which is loaded in a third of the time.
+there is none, and to compile takes a fifth less. And what Python calls is hardly ever taken in by others: numba reads
+its text in LLVM's language whenever it loads it, here it is read when somebody asks for it.
 """
 
 from __future__ import annotations
@@ -64,10 +64,12 @@ class InnerLibrary(JITCodeLibrary):
 
 
 class OuterLibrary(JITCodeLibrary):
-    """What Python calls, or is called by its address: machine code, and once it was kept nothing else."""
+    """What Python calls, or is called by its address: machine code."""
+
+    _bitcode = b""  # of one that was kept, until it is read
 
     @classmethod
-    def read(cls, codegen: Any, name: str, kept: tuple[bytes, list[str]]) -> OuterLibrary:
+    def read(cls, codegen: Any, name: str, kept: tuple[bytes, bytes, list[str]]) -> OuterLibrary:
         """What was kept.
 
         Parameters
@@ -76,23 +78,29 @@ class OuterLibrary(JITCodeLibrary):
             numba's, which runs it.
         name : str
             Of the function.
-        kept : (bytes, list of str)
-            Machine code, and the names in it.
+        kept : (bytes, bytes, list of str)
+            As `serialize_using_object_code` gives it.
         """
-        code, names = kept
+        code, bitcode, names = kept
         library = cls(codegen, name)
         library.enable_object_caching()
         library._set_compiled_object(code)
         library._finalize_final_module()
+        library._bitcode = bitcode
         codegen._engine._defined_symbols.update(names)
         return library
 
-    def serialize_using_object_code(self) -> tuple[str, str, tuple[bytes, list[str]]]:
-        """What is kept on disk: machine code, and the names in it, which numba would read from the bitcode."""
+    def _get_module_for_linking(self) -> Any:
+        if self._bitcode:
+            self._shared_module, self._bitcode = llvm.parse_bitcode(self._bitcode), b""
+        return super()._get_module_for_linking()
+
+    def serialize_using_object_code(self) -> tuple[str, str, tuple[bytes, bytes, list[str]]]:
+        """What is kept on disk: machine code, its text, and the names in it, which numba reads from the text."""
         self._ensure_finalized()
-        module = self._final_module
+        module = self._get_module_for_linking()
         named = [each for each in (*module.functions, *module.global_variables) if not each.is_declaration]
-        return self.name, "code", (self._get_compiled_object(), [each.name for each in named])
+        return self.name, "code", (self._get_compiled_object(), module.as_bitcode(), [each.name for each in named])
 
 
 class _Naming:

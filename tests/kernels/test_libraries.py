@@ -50,6 +50,9 @@ except ValueError as error:
     assert error.args == ("too many", 3), error.args
 else:
     raise AssertionError("nothing was raised")
+import numba
+directly = kernel.dispatcher  # a kernel of numba takes it in itself
+assert numba.njit(lambda x: directly(x) + 1.0)(np.array([1.0, 2.0])) == expected + 1.0
 hits = (sum(each.stats.cache_hits.values()) for each in (inner.inner, middle.inner, kernel))
 print(*hits)
 """
