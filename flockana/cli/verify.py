@@ -66,7 +66,8 @@ def verify_command(
     started = time.perf_counter()
     if on is not None:
         _ensure_checkable(name, seeds, seed)
-    work, many = ((), ()) if on is not None else _planned(name, seeds, seed or 0, figures=not no_report)
+    seed = seed or 0
+    work, many = ((), ()) if on is not None else _planned(name, seeds, seed, figures=not no_report)
     folder = None if no_report else _folder(report, name)
     results, code, failure = (
         ([_saved(name, on, not no_report)], OK, None) if on is not None else _check_all(work, jobs or cores())
@@ -77,13 +78,13 @@ def verify_command(
     seconds, complete, written = time.perf_counter() - started, code in (OK, UNEXPECTED), None
     if folder is not None and (pages or complete):
         try:
-            written = _written(folder, results, pages, statistics, seed or 0, seconds, complete, name)
+            written = _written(folder, results, pages, statistics, seed, seconds, complete, name)
         except FileError as error:  # the verdicts are still to be told
             failure = failure or error
     if as_json:
         from flockana.report.build import verdicts_json
 
-        text = verdicts_json(pages, seed=seed or 0, seconds=seconds, complete=complete, statistics=statistics)
+        text = verdicts_json(pages, seed=seed, seconds=seconds, complete=complete, statistics=statistics)
         typer.echo(in_output_encoding(text), nl=False)
     else:
         _print_verdicts(pages, statistics, seconds, written, name)

@@ -123,7 +123,7 @@ def bound_range(alpha: AlphaInteraction) -> tuple[float, float]:
     """
     if alpha.c_star <= alpha.far_potential:
         return 0.0, alpha.r
-    low, high = 0.0, alpha.d  # ψ_α falls from c* to 0
+    low, high = 0.0, alpha.d  # ψ_α falls from c* to 0; scipy.optimize takes longer to load than this
     while high - low > 1e-12 * alpha.d:
         middle = 0.5 * (low + high)
         above = float(alpha.psi_alpha(alpha.sigma_norm(middle))) > alpha.far_potential

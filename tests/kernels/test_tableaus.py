@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import DOP853, RK23, RK45
 
+from flockana.kernels import dop853
 from flockana.kernels.runge_kutta import combine, error_of, interpolated
 from flockana.kernels.tableaus import tableau
 
@@ -55,6 +56,7 @@ def test_the_numbers_of_dop853_are_those_of_scipy():
         (a[stages + 1 :], DOP853.A_EXTRA),
         (c, [*DOP853.C, 1.0, *DOP853.C_EXTRA]),
         (estimates, [DOP853.E5, DOP853.E3]),
+        ([[row.get(k, 0.0) for k in range(len(c))] for row in dop853.D], DOP853.D),
     ):
         np.testing.assert_array_equal(own, theirs)
     assert tableau("DOP853").exponent == -1.0 / (DOP853.error_estimator_order + 1)
