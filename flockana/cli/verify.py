@@ -98,12 +98,12 @@ def _planned(
 ) -> tuple[tuple[Work, ...], tuple[Survey, ...]]:
     """All that is to be done, and the surveys among it."""
     from flockana.report.surveys import surveys
-    from flockana.report.work import Comparison, plan
+    from flockana.report.work import LINEARISED, MANY_LAWS, Section, plan
 
     tasks = plan(name, seed=seed, figures=figures)
     many = surveys(name, seeds, seed=seed) if figures or seeds is not None else ()
-    compared = (Comparison(seed),) if name is None and figures else ()
-    return (*tasks, *compared, *many), many
+    sections = (Section(MANY_LAWS, seed), Section(LINEARISED)) if name is None and figures else ()
+    return (*tasks, *sections, *many), many
 
 
 def _folder(report: Path | None, name: str | None) -> Path:
@@ -138,6 +138,7 @@ def _written(
     """Where the report is, written."""
     from flockana.report.build import write_report
     from flockana.report.comparison import ComparisonSection
+    from flockana.report.stability import LinearisedFlocks
 
     return write_report(
         pages,
@@ -147,6 +148,7 @@ def _written(
         complete=complete,
         statistics=statistics,
         comparison=next((result for result in results if isinstance(result, ComparisonSection)), None),
+        flocks=next((result for result in results if isinstance(result, LinearisedFlocks)), None),
         of=name,
     )
 

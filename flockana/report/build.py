@@ -30,7 +30,7 @@ from flockana.report.figures import Picture
 from flockana.report.image import named
 from flockana.report.lattices import lattice_section
 from flockana.report.pages import FixedPage, FixedResult, Page, ScenarioPage, ScenarioResult, page
-from flockana.report.stability import stability_section
+from flockana.report.stability import LinearisedFlocks, stability_section
 from flockana.report.statistics import StatisticsSection
 from flockana.report.text import deciding_claim, markup, show, source_name, tolerance_rows
 
@@ -96,6 +96,7 @@ def write_report(
     complete: bool = True,
     statistics: StatisticsSection | None = None,
     comparison: ComparisonSection | None = None,
+    flocks: LinearisedFlocks | None = None,
     of: str | None = None,
 ) -> Path:
     """Write ``index.html`` and ``verdicts.json``; existing ones are replaced only when the new ones are whole.
@@ -111,7 +112,7 @@ def write_report(
         folder = ensure_directory(folder / UNFINISHED)
     pages = [page(r) if isinstance(r, ScenarioResult | FixedResult) else r for r in results]
     run = _run_facts(seed, seconds, complete) | {"of": of}
-    texts = {JSON: _json(pages, run, statistics), HTML: _html(pages, run, statistics, comparison)}
+    texts = {JSON: _json(pages, run, statistics), HTML: _html(pages, run, statistics, comparison, flocks)}
     with ExitStack() as both:  # neither takes its place before both are whole
         partials = {name: both.enter_context(replacing(folder / name, remedy=_REMEDY)) for name in texts}
         for name, text in texts.items():
@@ -180,6 +181,7 @@ def _html(
     run: dict[str, Any],
     statistics: StatisticsSection | None,
     comparison: ComparisonSection | None,
+    flocks: LinearisedFlocks | None,
 ) -> str:
     findings = [finding for page in pages for finding in page.findings]
     counts: Counter[str] = Counter(finding.verdict.status for finding in findings)
@@ -193,7 +195,7 @@ def _html(
             lattices=lattice_section(pages),
             statistics=statistics,
             comparison=comparison,
-            stability=stability_section(pages),
+            stability=stability_section(pages, flocks),
             coverage={"sources": coverage(), "anchors": anchors(pages)} if run["of"] is None else None,
             counts=[(status, counts[status]) for status in _STATUSES],
             surprises=_surprises(pages),

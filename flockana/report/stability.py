@@ -19,6 +19,7 @@ from flockana.report.control import Download, control_pictures, state_space
 from flockana.report.figures import Picture
 from flockana.report.image import svg
 from flockana.report.pages import Page
+from flockana.report.work import LINEARISED
 from flockana.scenarios import scenario, scenarios
 from flockana.stability import Linearisation, linearise
 from flockana.stability.centre_path import path_and_factor
@@ -63,35 +64,61 @@ class Row:
 
 
 @dataclass(frozen=True)
-class StabilitySection:
-    """Poles, decay rates, linear range and delay margins, for the report.
+class LinearisedFlocks:
+    """What the section shows whatever the verdicts are.
 
     Parameters
     ----------
-    flocks : tuple of Picture
-        Poles and modes.
-    rows : tuple of Row
-        The decay table.
-    pictures : tuple of Picture
-        Linear range and Bode plot, where their verdicts are at hand.
-    margins : tuple of str
-        Findings on delays and gains.
+    poles : tuple of Picture
+        Poles and modes of a flock under each algorithm.
     control : tuple of Picture
         Step response, root locus and norms.
     downloads : tuple of Download
         State spaces.
     """
 
-    flocks: tuple[Picture, ...]
+    poles: tuple[Picture, ...]
+    control: tuple[Picture, ...]
+    downloads: tuple[Download, ...]
+
+    @property
+    def name(self) -> str:
+        """As that of the task that makes it."""
+        return LINEARISED
+
+
+@dataclass(frozen=True)
+class StabilitySection:
+    """Poles, decay rates, linear range and delay margins, for the report.
+
+    Parameters
+    ----------
+    flocks : LinearisedFlocks
+        Pictures and data of flocks under the algorithms.
+    rows : tuple of Row
+        The decay table.
+    pictures : tuple of Picture
+        Linear range and Bode plot, where their verdicts are at hand.
+    margins : tuple of str
+        Findings on delays and gains.
+    """
+
+    flocks: LinearisedFlocks
     rows: tuple[Row, ...]
     pictures: tuple[Picture, ...]
     margins: tuple[str, ...]
-    control: tuple[Picture, ...] = ()
-    downloads: tuple[Download, ...] = ()
 
 
-def stability_section(pages: Iterable[Page]) -> StabilitySection | None:
-    """Gather the section from the verdicts; None if none of them is about the linearisation."""
+def stability_section(pages: Iterable[Page], flocks: LinearisedFlocks | None = None) -> StabilitySection | None:
+    """Gather the section from the verdicts; None if none of them is about the linearisation.
+
+    Parameters
+    ----------
+    pages : iterable of Page
+        With the verdicts.
+    flocks : LinearisedFlocks, optional
+        Made before; by default they are made here.
+    """
     verdicts = [(page.name, finding.verdict) for page in pages for finding in page.findings]
     decays = [(name, v) for name, v in verdicts if v.theorem in _DECAYS]
     margins = [v for _, v in verdicts if v.theorem in _MARGINS]
@@ -101,12 +128,19 @@ def stability_section(pages: Iterable[Page]) -> StabilitySection | None:
     margin_texts = [claim.detail for v in margins for claim in v.claims]
     if any(v.theorem == "heterogeneous-gains" for v in margins):
         margin_texts.append(_LONGER)
-    flocks = _flocks()
     return StabilitySection(
-        flock_pictures(flocks),
+        flocks or linearised_flocks(),
         tuple(row for name, v in decays for row in _rows(name, v)),
         tuple(picture for picture in pictures if picture is not None),
         tuple(margin_texts),
+    )
+
+
+def linearised_flocks() -> LinearisedFlocks:
+    """Find the equilibria, linearise and draw."""
+    flocks = _flocks()
+    return LinearisedFlocks(
+        flock_pictures(flocks),
         control_pictures(),
         tuple(
             state_space(flock, f"{name}.json".lower().replace(" ", "-"), f"19 agents, {name}") for name, flock in flocks

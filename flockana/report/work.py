@@ -18,9 +18,10 @@ from flockana.theorems import theorem, theorems, verify
 
 if TYPE_CHECKING:
     from flockana.report.comparison import ComparisonSection
+    from flockana.report.stability import LinearisedFlocks
 
 ERRATA = "errata"
-MANY_LAWS = "one start under many laws"
+MANY_LAWS, LINEARISED = "one start under many laws", "linearised flocks"
 
 
 @dataclass(frozen=True)
@@ -49,25 +50,23 @@ class Task:
 
 
 @dataclass(frozen=True)
-class Comparison:
-    """The section on one start under many laws, to be made; a number only, so it can be sent.
+class Section:
+    """What the report shows beside verdicts, to be made; a name and a number only, so it can be sent.
 
     Parameters
     ----------
+    name : str
+        `MANY_LAWS` or `LINEARISED`.
     seed : int
         Of the start.
     """
 
+    name: str
     seed: int = 0
 
-    @property
-    def name(self) -> str:
-        """As progress shows it."""
-        return MANY_LAWS
 
-
-Work = Task | Survey | Comparison
-Done: TypeAlias = "Page | SurveyResult | ComparisonSection"
+Work = Task | Survey | Section
+Done: TypeAlias = "Page | SurveyResult | ComparisonSection | LinearisedFlocks"
 
 
 def plan(name: str | None = None, *, seed: int = 0, figures: bool = True) -> tuple[Task, ...]:
@@ -108,10 +107,8 @@ def check(task: Work) -> Done:
         with interrupts_recognised():
             if isinstance(task, Survey):
                 return make_survey(task)
-            if isinstance(task, Comparison):
-                from flockana.report.comparison import comparison_section
-
-                return comparison_section(task.seed)
+            if isinstance(task, Section):
+                return _section(task)
             if task.fixed:
                 return page(FixedResult(theorem(task.name), verify(task.name)))
             item = scenario(task.name, task.seed)
@@ -123,6 +120,13 @@ def check(task: Work) -> Done:
     except FlockanaError as error:
         # one plain kind: errors with constructors of their own do not survive the way between processes
         raise FlockanaError(f"{task.name}: {error}") from None
+
+
+def _section(task: Section) -> ComparisonSection | LinearisedFlocks:
+    from flockana.report.comparison import comparison_section
+    from flockana.report.stability import linearised_flocks
+
+    return comparison_section(task.seed) if task.name == MANY_LAWS else linearised_flocks()
 
 
 def check_all(

@@ -13,6 +13,7 @@ from flockana.cli.verify import verify_command
 from flockana.report import work
 from flockana.report.build import write_report
 from flockana.report.comparison import comparison_section
+from flockana.report.stability import LinearisedFlocks
 from flockana.report.work import Task
 from flockana.scenarios.one_start import ENTRIES, compare, one_start
 from flockana.theorems import theorem
@@ -46,11 +47,13 @@ def test_it_is_made_among_the_tasks_of_the_catalogue_where_there_is_a_report(sec
     monkeypatch.setattr(work, "plan", lambda *given, **options: (Task("E8", fixed=True),))
     monkeypatch.setattr("flockana.report.surveys.surveys", lambda *given, **options: ())
     monkeypatch.setattr("flockana.report.comparison.comparison_section", lambda seed: made.append(seed) or section)
+    flocks = LinearisedFlocks((), (), ())
+    monkeypatch.setattr("flockana.report.stability.linearised_flocks", lambda: made.append("flocks") or flocks)
     assert verify_command(seed=5, report=tmp_path, jobs=1) == 0
-    assert made == [5]
+    assert made == [5, "flocks"]
     assert 'id="one-start"' in (tmp_path / "index.html").read_text(encoding="utf-8")
     assert verify_command(no_report=True, jobs=1) == verify_command(name="E8", report=tmp_path / "E8", jobs=1) == 0
-    assert made == [5]
+    assert made == [5, "flocks"]
 
 
 def test_every_law_has_the_same_start():

@@ -7,8 +7,10 @@ from flockana.plots.decay import linear_range, measured_gains
 from flockana.plots.style import subplots
 from flockana.report import stability
 from flockana.report.build import write_report
+from flockana.report.control import Download
+from flockana.report.figures import Picture
 from flockana.report.pages import Finding, FixedPage
-from flockana.report.stability import stability_section
+from flockana.report.stability import LinearisedFlocks, stability_section
 from flockana.theorems import Claim, Verdict
 
 
@@ -67,6 +69,17 @@ def test_the_section_shows_what_the_verdicts_hold(pages, tmp_path):
     assert 'id="linearised-stability"' in text
     assert 'href="#linearised-stability"' in text
     assert "2.00040" in text
+
+
+def test_flocks_made_before_are_not_made_again(pages, tmp_path, monkeypatch):
+    monkeypatch.setattr(stability, "linearised_flocks", None)  # a call would raise
+    given = LinearisedFlocks(
+        (Picture("Poles of 19", "<svg></svg>"),), (), (Download("19.json", "19 agents", "data:,1"),)
+    )
+    assert stability_section(pages, given).flocks is given
+    text = write_report(pages, tmp_path, flocks=given).read_text(encoding="utf-8")
+    assert "Poles of 19" in text
+    assert '<a download="19.json" href="data:,1">19 agents</a>' in text
 
 
 def test_a_last_state_is_named_for_its_run(pages):
