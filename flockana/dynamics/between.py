@@ -117,14 +117,17 @@ class Recorder:
     """
 
     def __init__(self, most: int = MOST) -> None:
-        self.most, self._held = most, 0
+        self.most, self._held, self._thinned = most, 0, False
         self._knots: list[_Knot] = []
+        self._exact = np.empty(0)  # slack of a path through all steps, the same for every knot
 
     def add(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray, *, sample: bool) -> None:
         """The next sample or step; steps before the first sample are nobody's."""
         if not (sample or self._knots):
             return
-        self._knots.append(_Knot(t, q, p, u, sample, np.zeros(len(q))))
+        if not self._knots:
+            self._exact = np.zeros(len(q))
+        self._knots.append(_Knot(t, q, p, u, sample, self._exact))
         self._held += 0 if sample else 3 * q.size
         if self._held > self.most:
             self._thin()
@@ -136,13 +139,13 @@ class Recorder:
         own = [knot for knot in knots if not knot.sample]
         if not own:
             return None
-        slack = np.array([knot.slack for knot in knots[:-1]])
-        t, q, p, u = (np.array([getattr(knot, name) for knot in own]) for name in ("t", "q", "p", "u"))
-        return Between(t, q, p, u, slack if slack.any() else None)
+        slack = np.array([knot.slack for knot in knots[:-1]]) if self._thinned else None
+        t, q, p, u = (np.array(series) for series in zip(*(knot[:4] for knot in own), strict=True))
+        return Between(t, q, p, u, slack)
 
     def _thin(self) -> None:
         """Leave out every other step."""
-        kept, leave, self._held = self._knots[:1], False, 0
+        kept, leave, self._held, self._thinned = self._knots[:1], False, 0, True
         for k in range(1, len(self._knots)):
             knot = self._knots[k]
             if not knot.sample:

@@ -207,4 +207,7 @@ def _chosen(wanted: frozenset[float], due: FloatArray, between: Any, steps: Any)
             earlier, seen, done = on_the_way.popleft()
             if earlier < at:
                 yield Sample(earlier, seen[0], seen[1], seen[2], {"work": np.array(done)})
-        yield Sample(at, q, p, u, {"work": np.array(work)}, at in wanted)
+        if at in wanted:
+            yield Sample(at, q, p, u, {"work": np.array(work)})
+        else:
+            yield Sample(at, q, p, u, {}, wanted=False)

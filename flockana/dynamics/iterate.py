@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
-from flockana.dynamics.sample import Samples, Tally, copied
-from flockana.laws.discrete import DiscreteLaw
+from flockana.dynamics.sample import Samples, Tally, copied, finite
+from flockana.laws.discrete import DiscreteLaw, IndexArray
 
-IndexArray = npt.NDArray[np.int64]
 _NUMBERS = 6_000_000  # kept of the steps made at once, at most
 
 
@@ -42,31 +41,69 @@ def discrete(
     """
     q, p, memory, t0, dt = q0, p0, law.start(q0, p0), t_span[0], law.dt
     steps = count_steps(*t_span, dt, np.floor)
-    if keep is None or _nearest(np.array([t0]), keep, dt).size:
+    wanted = None if keep is None else _nearest(t0, dt, steps, keep)
+    if wanted is None or 0 in wanted:
         extra = {name: values[None] for name, values in copied(memory).items()}
         yield Samples(np.array([t0]), q[None], p[None], np.zeros((1, *q.shape)), extra)
     at_once = max(1, min(law.steps_at_once, _NUMBERS // (3 * q0.size)))
     for first in range(0, steps, at_once):
-        some = min(at_once, steps - first)
-        qs, ps, us, series = law.iterate(t0 + first * dt, q, p, memory, some)
+        last = min(first + at_once, steps)
+        own = np.arange(first + 1, last + 1) if wanted is None else wanted[(wanted > first) & (wanted <= last)]
+        made, states = _stretch(law, t0 + first * dt, q, p, memory, own - first, last - first)
+        qs, ps, us, series = states
         known = np.isfinite(qs).all(axis=(1, 2)) & np.isfinite(ps).all(axis=(1, 2))
-        good = some if known.all() else int(np.argmin(known))
-        times = t0 + np.arange(first, first + good + 1) * dt  # with the step before: what is nearest to it is done
-        wanted = np.arange(1, good + 1) if keep is None else _nearest(times, keep, dt)
-        wanted = wanted[wanted > 0]
-        if wanted.size:
+        good = made.size if known.all() else int(np.argmin(known))
+        kept = np.flatnonzero(np.isin(made[:good] + first, own))
+        if kept.size:
             # of all steps a view, of some a copy: the others are let go
-            at = slice(0, good) if wanted.size == good else wanted - 1
-            yield Samples(times[wanted], qs[at], ps[at], us[at], {name: values[at] for name, values in series.items()})
-        tally.steps, tally.evaluations = tally.steps + good, tally.evaluations + good
-        if good < some:
+            at = slice(0, good) if kept.size == made.size else kept
+            some = {name: values[at] for name, values in series.items()}
+            yield Samples(t0 + (made[at] + first) * dt, qs[at], ps[at], us[at], some)
+        done = int(made[good - 1]) if good else 0
+        tally.steps, tally.evaluations = tally.steps + done, tally.evaluations + done
+        if good < made.size:
             tally.fail(f"the map left the finite numbers at t = {t0 + (first + good + 1) * dt:g}")
             return
         # a copy: a law may change its memory in place
         q, p, memory = qs[-1], ps[-1], copied({name: values[-1] for name, values in series.items()})
 
 
-def _nearest(times: npt.NDArray[np.floating], keep: FloatArray, dt: float) -> IndexArray:
-    """Which steps are nearest to a time to keep, each once; of two as near the earlier."""
-    nearest = np.searchsorted(times + 0.5 * dt, keep)
-    return np.unique(nearest[nearest < times.size])
+def _stretch(
+    law: DiscreteLaw,
+    t: float,
+    q: FloatArray,
+    p: FloatArray,
+    memory: Mapping[str, FloatArray],
+    own: IndexArray,
+    steps: int,
+) -> tuple[IndexArray, tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]]:
+    """(numbers of steps, what `iterate` gives of them): of its own and the last where the law can, or of all of them.
+
+    All of them also where the map has left the finite numbers: which was the first?
+    """
+    if own.size < steps:
+        few = np.union1d(own, [steps])
+        states = law.visit(t, q, p, copied(memory), few)
+        if states is not None and finite(*states[:2]):
+            return few, states
+    return np.arange(1, steps + 1), law.iterate(t, q, p, memory, steps)
+
+
+def _nearest(t0: float, dt: float, steps: int, keep: FloatArray) -> IndexArray:
+    """Numbers of the steps that are nearest to a time to keep, each once; of two as near the earlier.
+
+    Examples
+    --------
+    >>> _nearest(0.0, 1.0, 9, np.array([0.0, 0.4, 2.5, 2.6, 9.4, 9.6])).tolist()
+    [0, 2, 3, 9]
+    """
+    k = np.maximum(np.ceil((keep - t0) / dt - 0.5), 0.0).astype(np.int64)
+
+    def before(steps: IndexArray) -> npt.NDArray[np.bool_]:
+        return np.asarray(t0 + steps * dt + 0.5 * dt < keep)
+
+    while (late := before(k)).any():  # a quotient may round to the step beside
+        k += late
+    while (early := (k > 0) & ~before(k - 1)).any():
+        k -= early
+    return np.unique(k[k <= steps])

@@ -14,7 +14,9 @@ from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
 from flockana.interactions.dead_zone import DeadZoneInteraction
-from flockana.kernels.dead_zone import ATTRACTION, DEAD, OUT, semi_implicit_steps, zone_forces, zone_margins, zones
+from flockana.kernels.dead_zone import ATTRACTION, DEAD, OUT, zone_forces, zone_margins, zones
+from flockana.kernels.dead_zone_steps import semi_implicit_steps
+from flockana.laws.discrete import IndexArray
 from flockana.laws.sum_of_terms import SumOfTerms
 from flockana.laws.switched import Margins, Pieces, SwitchedLaw
 from flockana.laws.terms.pairs import PairTerm
@@ -153,7 +155,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         return {"literal_energy": ("H of neighbours only", literal)}
 
     def semi_implicit(
-        self, q: FloatArray, p: FloatArray, dt: float, steps: int
+        self, q: FloatArray, p: FloatArray, dt: float, steps: int, wanted: IndexArray | None = None
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Semi-implicit Euler steps in one compiled loop: q, p after each step and u before, shape (steps, n, m).
 
@@ -165,9 +167,12 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
             Step.
         steps : int
             How many.
+        wanted : ndarray of int, shape (S,), optional
+            The steps to keep, numbered from 1, rising; by default all of them.
         """
+        kept = np.arange(1, steps + 1) if wanted is None else wanted
         stepped: tuple[FloatArray, FloatArray, FloatArray] = semi_implicit_steps(
-            q, p, self.interaction.par, self.k2, dt, steps
+            q, p, self.interaction.par, self.k2, dt, kept
         )
         return stepped
 

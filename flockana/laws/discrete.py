@@ -7,12 +7,15 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
+import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
 from flockana.laws.law import Law, LawOfMotion
+
+IndexArray = npt.NDArray[np.int64]
 
 
 class DiscreteLaw(LawOfMotion):
@@ -96,6 +99,26 @@ class DiscreteLaw(LawOfMotion):
         stacked = [np.stack(series) for series in zip(*states, strict=True)]
         series = {name: np.stack([each[name] for each in memories]) for name in memory}
         return stacked[0], stacked[1], stacked[2], series
+
+    def visit(
+        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray], wanted: IndexArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]] | None:
+        """What `iterate` gives, to the bit, of some steps only: where that costs less. None by default: it does not.
+
+        Once the state is not finite it must stay so, as the steps in between are not seen.
+
+        Parameters
+        ----------
+        t : float
+            Time at the start of the first step.
+        q, p : ndarray, shape (n, m)
+            Positions and velocities; not to be changed in place.
+        memory : mapping of str to ndarray
+            What else the law remembers.
+        wanted : ndarray of int, shape (S,)
+            The steps, numbered from 1, rising.
+        """
+        return None
 
     def start(self, q: FloatArray, p: FloatArray) -> Mapping[str, FloatArray]:
         """The memory before the first step; empty by default.

@@ -10,6 +10,7 @@ from flockana.base.checks import FloatArray
 from flockana.base.overrides import speaks_for
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
+from flockana.laws.discrete import IndexArray
 from flockana.laws.law import Law
 from flockana.laws.scheme import Scheme
 
@@ -61,6 +62,13 @@ class SemiImplicitEuler(Scheme):
         if _is_compiled(self.law) and speaks_for(type(self), "iterate", ("step", "start")):
             return (*self.law.semi_implicit(q, p, self.dt, steps), {})
         return super().iterate(t, q, p, memory, steps)
+
+    def visit(  # noqa: D102
+        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray], wanted: IndexArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]] | None:
+        if _is_compiled(self.law) and speaks_for(type(self), "visit", ("iterate", "step", "start")):
+            return (*self.law.semi_implicit(q, p, self.dt, int(wanted[-1]), wanted), {})
+        return super().visit(t, q, p, memory, wanted)
 
 
 def _is_compiled(law: Law) -> TypeGuard[DeadZoneFlocking]:

@@ -7,8 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.dynamics.iterate import _nearest
 from flockana.dynamics.simulate import ADAPTIVE, METHODS, simulate
 from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.interactions import Gains
@@ -321,17 +324,38 @@ class ByThrees(Counter):
     steps_at_once = 3
 
 
-@pytest.mark.parametrize("t_eval", [None, [0.0, 0.5, 0.75, 2.5], [1.0], [0.25, 0.5, 0.75, 1.9]])
+class Visiting(ByThrees):
+    """The same, which gives the steps that are wanted and no others."""
+
+    def visit(self, t, q, p, memory, wanted):
+        *states, series = self.iterate(t, q, p, memory, int(wanted[-1]))
+        return *(values[wanted - 1] for values in states), {"count": series["count"][wanted - 1]}
+
+
+@pytest.mark.parametrize("other", [ByThrees, Visiting])
+@pytest.mark.parametrize("t_eval", [None, [0.0, 0.5, 0.75, 2.5], [1.0], [0.25, 0.5, 0.75, 1.9], [2.2]])
 @pytest.mark.parametrize("fails_at", [np.inf, 1.0, 0.75])
-def test_how_many_steps_a_map_makes_at_once_changes_nothing(fails_at, t_eval):
-    runs = [
-        simulate(law(fails_at=fails_at), [[0.0]], [[5.0]], (0.0, 2.6), t_eval=t_eval) for law in (Counter, ByThrees)
-    ]
-    one, three = ((run.status, run.message, run.stats["steps"]) for run in runs)
-    assert one == three
+def test_how_many_steps_a_map_makes_and_gives_at_once_changes_nothing(fails_at, t_eval, other):
+    runs = [simulate(law(fails_at=fails_at), [[0.0]], [[5.0]], (0.0, 2.6), t_eval=t_eval) for law in (Counter, other)]
+    one, many = ((run.status, run.message, run.stats["steps"], run.stats["evaluations"]) for run in runs)
+    assert one == many
     for name in ("t", "q", "p", "u"):
         np.testing.assert_array_equal(*(getattr(run, name) for run in runs))
     np.testing.assert_array_equal(*(run.extra["count"] for run in runs))
+
+
+@given(
+    st.floats(-1e6, 1e6),
+    st.floats(1e-3, 10.0),
+    st.integers(1, 40),
+    st.lists(st.floats(0.0, 1.0), min_size=1, max_size=6, unique=True),
+)
+def test_of_each_time_the_nearest_step_is_kept(t0, dt, steps, shares):
+    times = t0 + np.arange(steps + 1) * dt
+    keep = np.array(sorted({t0 + share * (times[-1] - t0 + dt) for share in shares} | {times[steps // 2] + 0.5 * dt}))
+    found = _nearest(t0, dt, steps, keep)
+    first = [next((k for k, t in enumerate(times) if t + 0.5 * dt >= wanted), steps + 1) for wanted in keep]
+    assert found.tolist() == sorted({k for k in first if k <= steps})
 
 
 def test_who_watches_a_map_sees_each_step_and_may_end_it_between_steps_made_at_once():

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from math import sqrt
 
 import mpmath as mp
 import numpy as np
@@ -14,7 +13,7 @@ from scipy.integrate import quad
 
 from flockana.base.errors import ArgumentError
 from flockana.interactions import DeadZoneInteraction
-from flockana.kernels.dead_zone import _square_of_range, semi_implicit_steps, zone_forces, zone_margins, zones
+from flockana.kernels.dead_zone import zone_forces, zone_margins, zones
 
 CASES = [
     {},
@@ -146,69 +145,3 @@ def test_least_distance_is_where_repulsion_has_that_potential(eta):
 def test_bad_parameters_are_named(options, message):
     with pytest.raises(ArgumentError, match=message):
         DeadZoneInteraction(**options)
-
-
-def euler_step_in_python(q, p, pair, k2, dt):
-    """One semi-implicit Euler step in Python's own floats, every operation in the order that the kernel writes down."""
-    n, m = q.shape
-    x, v = q.T.tolist(), p.T.tolist()
-    z = [[pair.k1 * (x[c][i] - x[c][0]) + k2 * (v[c][i] - v[c][0]) for i in range(n)] + [0.0] * 3 for c in range(m)]
-    u, pushed = [[0.0] * n for _ in range(m)], []
-    near = [[0.0] * n for _ in range(n + 3)]
-    steep = 1.0 / pair.ramp if pair.ramp > 0.0 else 1e300
-    for i in range(n):
-        for j in range(i + 1, n):
-            s2 = 0.0
-            for c in range(m):
-                s2 += (x[c][j] - x[c][i]) * (x[c][j] - x[c][i])
-            s = sqrt(s2)
-            if s >= pair.r:
-                continue
-            gap = s if s < pair.d1 else pair.r_d - s
-            gap *= gap
-            share = max(0.0, min(1.0, (s - pair.d2) * steep)) - max(0.0, min(1.0, (pair.d1 - s) * steep))
-            w = share * (2.0 * pair.k_r + pair.k_delta * gap) / (gap * sqrt(1.0 + pair.eta * s2))
-            pushed.append((i, j, w))
-            near[i][j] = near[j][i] = 1.0
-    for c in range(m):
-        for i in range(n):
-            for j in range(0, n, 4):
-                terms = [near[j + k][i] * z[c][j + k] for k in range(4)]
-                u[c][i] += (terms[0] + terms[1]) + (terms[2] + terms[3])
-            u[c][i] -= sum(near[j][i] for j in range(n)) * z[c][i]
-        for i, j, w in pushed:  # most push nobody: what the kernel leaves out is zero
-            u[c][i] += w * (x[c][j] - x[c][i])
-            u[c][j] -= w * (x[c][j] - x[c][i])
-    v = [[v[c][i] + dt * u[c][i] for i in range(n)] for c in range(m)]
-    x = [[x[c][i] + dt * v[c][i] for i in range(n)] for c in range(m)]
-    return np.array(x).T, np.array(v).T, np.array(u).T
-
-
-@pytest.mark.parametrize(("ramp", "m"), [(0.25, 2), (0.0, 2), (0.25, 3)])
-def test_the_compiled_steps_give_the_same_bits_on_every_processor(ramp, m):
-    """Those of Python's floats: no sum is reordered and no product fused, whatever the compiler may do elsewhere."""
-    pair, rng = DeadZoneInteraction(ramp=ramp), np.random.default_rng(m)
-    q, p = rng.uniform(0.0, 20.0, (21, m)), rng.uniform(-1.0, 1.0, (21, m))
-    found = semi_implicit_steps(q, p, pair.par, 1.0, 0.01, 60)  # more than a list lasts
-    for step in range(60):
-        q, p, u = euler_step_in_python(q, p, pair, 1.0, 0.01)
-        for mine, theirs in zip((q, p, u), found, strict=True):
-            np.testing.assert_array_equal(mine, theirs[step])
-
-
-@pytest.mark.parametrize("r", [15.0, 0.1, 1e-170, 3.3333333333333335, 1e150])
-def test_a_square_tells_the_range_to_the_bit(r):
-    square = _square_of_range(r)
-    assert sqrt(square) >= r > sqrt(np.nextafter(square, 0.0))
-
-
-def test_steps_that_leap_out_of_the_lists_skin_make_a_new_list():
-    """From rest, with a step so long that the first one already moves agents far: as steps taken one by one."""
-    pair, rng = DeadZoneInteraction(), np.random.default_rng(3)
-    q, p, dt = rng.uniform(0.0, 2.0 * pair.range, (12, 2)), np.zeros((12, 2)), 1.0
-    together = semi_implicit_steps(q, p, pair.par, 1.0, dt, 6)
-    for step in range(6):
-        one = semi_implicit_steps(q, p, pair.par, 1.0, dt, 1)
-        q, p = one[0][0], one[1][0]
-        for found, wanted in zip(together, one, strict=True):
-            np.testing.assert_allclose(found[step], wanted[0], rtol=1e-9, atol=1e-9)

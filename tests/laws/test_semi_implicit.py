@@ -56,3 +56,14 @@ def test_a_scheme_that_steps_otherwise_does_so_many_steps_at_once():
     assert memory["drift"].tolist() == [[1.0], [2.0], [3.0]]
     still = SemiImplicitEuler(DeadZoneFlocking(), 0.01).iterate(0.0, Q, P, {}, 1)[0]
     np.testing.assert_array_equal(q[0], still[0] + 1.0)
+
+
+def test_only_a_scheme_that_steps_as_compiled_gives_some_steps_of_many():
+    wanted = np.array([2, 5])
+    law = SemiImplicitEuler(DeadZoneFlocking(), 0.01)
+    *states, memory = law.visit(0.0, Q, P, {}, wanted)
+    assert memory == {}
+    for found, every in zip(states, law.iterate(0.0, Q, P, {}, 5), strict=False):
+        np.testing.assert_array_equal(found, every[wanted - 1])
+    for other in (Drifting(DeadZoneFlocking(), 0.01), SemiImplicitEuler(Pulled(), 0.01)):
+        assert other.visit(0.0, Q, P, other.start(Q, P), wanted) is None

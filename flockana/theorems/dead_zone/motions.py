@@ -18,6 +18,6 @@ def advance(
 ) -> tuple[FloatArray, FloatArray]:
     """Positions and velocities at t_end, by semi-implicit Euler steps of which only the last is kept."""
     for _ in range(round(t_end / (500 * dt))):
-        states = law.semi_implicit(q, p, dt, 500)
+        states = law.semi_implicit(q, p, dt, 500, np.array([500]))
         q, p = states[0][-1], states[1][-1]
     return q, p

@@ -1,0 +1,190 @@
+"""Semi-implicit Euler steps of the dead-zone law, many in one loop."""
+
+from __future__ import annotations
+
+from math import inf, sqrt
+
+import numpy as np
+
+from flockana.kernels.compiling import njit, register_jitable
+from flockana.kernels.copies import put
+from flockana.kernels.dead_zone import D_1, D_2, K_1, R, pair_dead_zone
+
+_AHEAD = 30.0  # steps that a list is made for, at the speeds of its time
+
+
+# Loops over arrays without branches become vector instructions: no check for a zero divisor stands in their way. The
+# order of every sum is written down, so that all processors give the same bits, and so does every list that is kept.
+# Two components are summed at a time: what is read of a pair serves both. An odd one goes with a row of zeros.
+@njit(cache=True, error_model="numpy")
+def semi_implicit_steps(q, p, par, c2, dt, wanted):
+    """Semi-implicit Euler steps of the law: q, p after those that are wanted, by rising numbers, and the u applied.
+
+    Neighbours pull by k₁ and c₂ alone where nothing else acts, which is a sum over a table of who is in range. Pairs
+    that may act otherwise, or come into range, are listed with a skin: the list holds until somebody has moved by half
+    of it, seen from the centre.
+    """
+    n, m = q.shape
+    shape = (wanted.size, n, m)
+    kept_q, kept_p, kept_u = np.empty(shape), np.empty(shape), np.empty(shape)
+    rows, wide = m + m % 2, 4 * ((n + 3) // 4)
+    x, v, u, z = np.zeros((rows, n)), np.zeros((rows, n)), np.zeros((rows, wide)), np.zeros((rows, wide))
+    for c in range(m):
+        x[c], v[c] = q[:, c], p[:, c]
+    near, degree, then, skin, kept = np.zeros((wide, wide)), np.empty(n), np.full((rows, n), inf), 0.0, 0
+    drift, squares, since, row = np.zeros(rows), np.empty(n), 0, 0
+    most = n * (n - 1) // 2
+    first, second, inside = np.empty(most, np.uint32), np.empty(most, np.uint32), np.empty(most, np.uint8)
+    ends = np.empty(n, np.uint32)  # of each agent's pairs with later ones in the list
+    s2, w, d = np.empty(most), np.empty(most), np.empty((rows, most))
+    r, k_1, square = par[R], par[K_1], _square_of_range(par[R])
+    held = (par[0], par[1], par[2], 0.0, par[4], par[5], par[6], par[7], par[8])  # without k₁, in registers
+    for step in range(1, wanted[-1] + 1):
+        if _out_of(x, then, drift, (step - since) * dt, 0.25 * skin * skin, squares):
+            skin = 1e-3 * r + _AHEAD * dt * _spread(v, drift)
+            kept = _listed(x, par, skin, near, degree, first, second, inside, ends)
+            put(x, then)
+            since = step
+        s2[:kept] = 0.0
+        for c in range(0, rows, 2):
+            _part(x[c], x[c + 1], first, second, kept, d[c], d[c + 1], s2)
+        changed = 0
+        for k in range(kept):
+            w[k] = pair_dead_zone(s2[k], held)[0] if s2[k] < square else 0.0
+            changed += (s2[k] < square) != (inside[k] == 1)
+        if changed:
+            _crossed(s2, square, kept, near, degree, first, second, inside)
+        for c in range(rows):
+            for i in range(n):
+                z[c, i], u[c, i] = k_1 * (x[c, i] - x[c, 0]) + c2 * (v[c, i] - v[c, 0]), 0.0
+        for c in range(0, rows, 2):
+            _gather(near, degree, z[c], z[c + 1], u[c], u[c + 1])
+            _scatter(w, d[c], d[c + 1], second, ends, u[c], u[c + 1])
+        for c in range(m):
+            x_c, v_c, u_c = x[c], v[c], u[c]
+            for i in range(n):
+                v_c[i] += dt * u_c[i]
+                x_c[i] += dt * v_c[i]
+        if step == wanted[row]:
+            for c in range(m):
+                for i in range(n):
+                    kept_q[row, i, c], kept_p[row, i, c], kept_u[row, i, c] = x[c, i], v[c, i], u[c, i]
+            row += 1
+    return kept_q, kept_p, kept_u
+
+
+@register_jitable
+def _part(x, y, first, second, kept, d, e, s2):
+    """Two components d, e of what parts each listed pair; their squares are added to s2."""
+    for k in range(kept):
+        i, j = first[k], second[k]
+        d[k], e[k] = x[j] - x[i], y[j] - y[i]
+    for k in range(kept):
+        s2[k] = e[k] * e[k] + (d[k] * d[k] + s2[k])
+
+
+@register_jitable
+def _gather(near, degree, y, z, u, v):
+    """Σ_j near[i, j] (y_j − y_i), added to u, and the same of z to v."""
+    for j in range(0, len(y), 4):
+        a_0, a_1, a_2, a_3 = near[j], near[j + 1], near[j + 2], near[j + 3]
+        y_0, y_1, y_2, y_3 = y[j], y[j + 1], y[j + 2], y[j + 3]
+        z_0, z_1, z_2, z_3 = z[j], z[j + 1], z[j + 2], z[j + 3]
+        for i in range(len(y)):
+            u[i] += (a_0[i] * y_0 + a_1[i] * y_1) + (a_2[i] * y_2 + a_3[i] * y_3)
+            v[i] += (a_0[i] * z_0 + a_1[i] * z_1) + (a_2[i] * z_2 + a_3[i] * z_3)
+    for i in range(len(degree)):
+        u[i] -= degree[i] * y[i]
+        v[i] -= degree[i] * z[i]
+
+
+@register_jitable
+def _scatter(w, d, e, second, ends, u, v):
+    """Forces w d and w e of listed pairs on both their agents, added to u and v."""
+    begin = 0
+    for i in range(len(ends)):
+        own, other = u[i], v[i]  # in registers, not stored and loaded again from pair to pair
+        for k in range(begin, ends[i]):
+            j, f, g = second[k], w[k] * d[k], w[k] * e[k]
+            own += f
+            other += g
+            u[j] -= f
+            v[j] -= g
+        u[i], v[i], begin = own, other, ends[i]
+
+
+@njit(cache=True)
+def _square_of_range(r):
+    """The least number whose square root is not below r: `s2 < square` says that √s2 < r, to the bit."""
+    square = r * r
+    while sqrt(square) >= r:
+        square = np.nextafter(square, 0.0)
+    while sqrt(square) < r:
+        square = np.nextafter(square, inf)
+    return square
+
+
+@njit(cache=True)
+def _crossed(s2, square, kept, near, degree, first, second, inside):
+    """Note which pairs of the list have come into range or left it."""
+    for k in range(kept):
+        now = s2[k] < square
+        if now != (inside[k] == 1):
+            i, j, more = first[k], second[k], 1.0 if now else -1.0
+            inside[k], near[i, j], near[j, i] = now, now, now
+            degree[i] += more
+            degree[j] += more
+
+
+@register_jitable
+def _out_of(x, then, drift, passed, square, squares):
+    """Whether anybody has moved by more than the root of `square`, or by NaN, beside what drifts on together."""
+    squares[:] = 0.0
+    for c in range(len(x)):
+        x_c, then_c, gone = x[c], then[c], passed * drift[c]
+        for i in range(len(squares)):
+            squares[i] += (x_c[i] - then_c[i] - gone) ** 2
+    far = 0
+    for i in range(len(squares)):
+        far += not squares[i] <= square
+    return far > 0
+
+
+@njit(cache=True)
+def _spread(v, drift):
+    """The largest speed beside the mean velocity, which goes to `drift`."""
+    largest = 0.0
+    for c in range(len(v)):
+        drift[c] = v[c].mean()
+    for i in range(v.shape[1]):
+        square = 0.0
+        for c in range(len(v)):
+            square += (v[c, i] - drift[c]) ** 2
+        largest = max(largest, square)
+    return sqrt(largest)
+
+
+@njit(cache=True)
+def _listed(x, par, skin, near, degree, first, second, inside, ends):
+    """List pairs within a skin of where they act by more than k₁ or come into range.
+
+    Who is in range of whom goes to `near`, of how many to `degree`, and where each agent's pairs end to `ends`.
+    """
+    m, n = x.shape
+    low, high, r = par[D_1] + skin, min(par[D_2], par[R]) - skin, par[R]
+    kept = 0
+    degree[:] = 0.0
+    for i in range(n):
+        for j in range(i + 1, n):
+            s2 = 0.0
+            for c in range(m):
+                s2 += (x[c, j] - x[c, i]) ** 2
+            s = sqrt(s2)
+            near[i, j] = near[j, i] = s < r
+            degree[i] += near[i, j]
+            degree[j] += near[i, j]
+            if not low <= s <= high and not s >= r + skin:
+                first[kept], second[kept], inside[kept] = i, j, s < r
+                kept += 1
+        ends[i] = kept
+    return kept
