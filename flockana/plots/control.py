@@ -41,7 +41,8 @@ def bode(responses: Mapping[str, Any], *, marks: Mapping[str, float] | None = No
     Parameters
     ----------
     responses : mapping of str to control.FrequencyResponseData
-        By label, such as those of `CentreOfMass.frequency_response`; four at most.
+        By label, such as those of `CentreOfMass.frequency_response`, or what has `omega` and `complex` as they have;
+        four at most.
     marks : mapping of str to float, optional
         Frequencies to point out, by label.
     ax : sequence of two Axes, optional

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import pi
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 from matplotlib.figure import Figure
 
 from flockana import plots
@@ -227,6 +228,13 @@ def _range(verdicts: Sequence[Verdict]) -> Picture | None:
     return Picture(text, svg(draw, (6.5, 4.0)))
 
 
+class _Response(NamedTuple):
+    """What is drawn of a frequency response, without loading python-control for two curves of a known formula."""
+
+    omega: npt.NDArray[np.float64]
+    complex: npt.NDArray[np.complex128]
+
+
 def bode_picture(verdicts: Sequence[tuple[str, Verdict]]) -> Picture | None:
     """The project's γ-agent, with the p_r that it hands over and with the true one; what its runs show."""
     points, centres, words = {}, {}, []
@@ -251,7 +259,8 @@ def bode_picture(verdicts: Sequence[tuple[str, Verdict]]) -> Picture | None:
 
     def draw(figure: Figure) -> None:
         axes = plots.bode(
-            {k: c.frequency_response(omegas) for k, c in centres.items()}, ax=figure.subplots(2, 1, sharex=True)
+            {k: _Response(omegas, c.response(omegas)) for k, c in centres.items()},
+            ax=figure.subplots(2, 1, sharex=True),
         )
         plots.measured_gains(points, ax=axes[0])
 
