@@ -49,11 +49,11 @@ def discrete(
     for first in range(0, steps, at_once):
         last = min(first + at_once, steps)
         own = np.arange(first + 1, last + 1) if wanted is None else wanted[(wanted > first) & (wanted <= last)]
-        made, states = _stretch(law, t0 + first * dt, q, p, memory, own - first, last - first)
+        made, rows, states = _stretch(law, t0 + first * dt, q, p, memory, own - first, last - first)
         qs, ps, us, series = states
         known = np.isfinite(qs).all(axis=(1, 2)) & np.isfinite(ps).all(axis=(1, 2))
         good = made.size if known.all() else int(np.argmin(known))
-        kept = np.flatnonzero(np.isin(made[:good] + first, own))
+        kept = rows[rows < good]
         if kept.size:
             # of all steps a view, of some a copy: the others are let go
             at = slice(0, good) if kept.size == made.size else kept
@@ -76,17 +76,18 @@ def _stretch(
     memory: Mapping[str, FloatArray],
     own: IndexArray,
     steps: int,
-) -> tuple[IndexArray, tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]]:
-    """(numbers of steps, what `iterate` gives of them): of its own and the last where the law can, or of all of them.
+) -> tuple[IndexArray, IndexArray, tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]]:
+    """(numbers of steps, which of them are its own, what `iterate` gives of all these).
 
-    All of them also where the map has left the finite numbers: which was the first?
+    They are its own and the last where the law can leave out others; all where it cannot, or where the map has left the
+    finite numbers: which step was the first?
     """
     if own.size < steps:
-        few = np.union1d(own, [steps])
+        few = own if own.size and own[-1] == steps else np.append(own, steps)
         states = law.visit(t, q, p, copied(memory), few)
         if states is not None and finite(*states[:2]):
-            return few, states
-    return np.arange(1, steps + 1), law.iterate(t, q, p, memory, steps)
+            return few, np.arange(own.size), states
+    return np.arange(1, steps + 1), own - 1, law.iterate(t, q, p, memory, steps)
 
 
 def _nearest(t0: float, dt: float, steps: int, keep: FloatArray) -> IndexArray:
