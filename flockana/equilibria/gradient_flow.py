@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from threading import RLock
 from typing import Any
 
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_points, ensure_positive
+from flockana.base.errors import SolverError
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain
 from flockana.measures.frame import moving_frame
 
 _NEWTON_FROM = 1e-7  # relative force at which Newton's method takes over: a weak bond near r pulls no harder before
+_MOST_STEPS = 100_000  # 200 agents take some thousands; far from all numbers of use steps shrink without end
 _NEWTON_AGAIN = 0.1  # of the force at which it led astray
 _NEWTON_STEPS = 20
+_ONE_AT_A_TIME = RLock()  # before scipy 1.17 a process has one LSODA, whichever thread it is in
 _NEWTON_REACH = 1e-3  # of d: a step farther than that is no polishing, and might end where a bond lets go at r
 
 
@@ -53,6 +57,11 @@ def structural_force(law: Algorithm1 | Algorithm2, q: FloatArray) -> FloatArray:
 def gradient_flow(law: Algorithm1 | Algorithm2, q0: Any, *, tol: float = 1e-11, horizon: float = 1e4) -> GradientLimit:
     """Follow q' = −∇U from q0 until the force vanishes; the last digits by Newton's method.
 
+    Raises
+    ------
+    SolverError
+        Where the force is not finite.
+
     Examples
     --------
     >>> limit = gradient_flow(Algorithm1(), [[0.0, 0.0], [6.0, 0.0]])
@@ -67,25 +76,36 @@ def gradient_flow(law: Algorithm1 | Algorithm2, q0: Any, *, tol: float = 1e-11, 
     shape, scale = q.shape, law.scales.force
     tol, horizon = ensure_positive("tol", tol), ensure_positive("horizon", horizon)
     pace = law.alpha.length / scale
-    solver = LSODA(
-        lambda t, y: pace * structural_force(law, y.reshape(shape)).ravel(),
-        0.0,
-        q.ravel(),
-        horizon,
-        rtol=1e-6,
-        atol=1e-8 * law.alpha.length,
-        jac=lambda t, y: -pace * law.stiffness(y.reshape(shape)).toarray(),
-    )
-    here, force, level = q, np.inf, _NEWTON_FROM
-    while solver.status == "running":
-        solver.step()
-        here = solver.y.reshape(shape)
-        force = _largest(structural_force(law, here)) / scale
-        if force <= level:
-            polished, least = _polished(law, here, tol)
-            if _largest(polished - here) <= _NEWTON_REACH * law.alpha.length and least <= tol:
-                return GradientLimit(polished, least, float(solver.t), True)
-            level = _NEWTON_AGAIN * force  # that was another equilibrium: flow on towards this one
+
+    def rate(t: float, y: FloatArray) -> FloatArray:
+        force = structural_force(law, y.reshape(shape)).ravel()
+        if not np.isfinite(force).all():  # LSODA would try to step over it for ever
+            far = float(np.abs(y).max())
+            raise SolverError(f"the force is not finite, with coordinates up to {far:.3g}: start nearer to the origin")
+        return pace * force
+
+    with _ONE_AT_A_TIME, np.errstate(over="ignore", invalid="ignore"):  # what overflows raises, in words
+        solver = LSODA(
+            rate,
+            0.0,
+            q.ravel(),
+            horizon,
+            rtol=1e-6,
+            atol=1e-8 * law.alpha.length,
+            jac=lambda t, y: -pace * law.stiffness(y.reshape(shape)).toarray(),
+        )
+        here, force, level = q, np.inf, _NEWTON_FROM
+        for _ in range(_MOST_STEPS):
+            if solver.status != "running":
+                break
+            solver.step()
+            here = solver.y.reshape(shape)
+            force = _largest(structural_force(law, here)) / scale
+            if force <= level:
+                polished, least = _polished(law, here, tol)
+                if _largest(polished - here) <= _NEWTON_REACH * law.alpha.length and least <= tol:
+                    return GradientLimit(polished, least, float(solver.t), True)
+                level = _NEWTON_AGAIN * force  # that was another equilibrium: flow on towards this one
     return GradientLimit(here, force, float(solver.t), False)
 
 

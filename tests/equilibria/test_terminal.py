@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 
+from flockana.base.errors import SolverError
 from flockana.environment.targets import StaticTarget
 from flockana.equilibria.curvature import least_curvature
 from flockana.equilibria.gradient_flow import gradient_flow, structural_force
@@ -118,6 +121,26 @@ class TestGradientFlow:
         """Two agents out of range attract nobody: no long step may bring them together."""
         q0 = np.array([[0.0], [9.0]])
         np.testing.assert_allclose(gradient_flow(LAW1, q0).q, q0)
+
+    def test_where_the_force_overflows_it_says_so(self):
+        law = Algorithm2(gains=Gains(c1_gamma=1e10), target=StaticTarget((0.0, 0.0)))
+        with pytest.raises(SolverError, match=r"the force is not finite, with coordinates up to 1e\+300: start nearer"):
+            gradient_flow(law, [[0.0, 0.0], [1e300, 0.0]])
+
+    def test_a_flow_without_end_ends(self, monkeypatch):
+        whole = gradient_flow(LAW1, [[0.0], [6.0]])
+        monkeypatch.setattr("flockana.equilibria.gradient_flow._MOST_STEPS", 2)
+        limit = gradient_flow(LAW1, [[0.0], [6.0]])
+        assert not limit.converged
+        assert 0.0 < limit.time < whole.time
+        assert limit.force > 1e-6
+
+    def test_threads_may_flow_at_once(self):
+        starts = [np.random.default_rng(k).uniform(0.0, 14.0, (6, 2)) for k in range(4)]
+        with ThreadPoolExecutor(4) as threads:
+            together = list(threads.map(lambda q0: gradient_flow(LAW1, q0).q, starts))
+        for q0, q in zip(starts, together, strict=True):
+            np.testing.assert_array_equal(q, gradient_flow(LAW1, q0).q)
 
     def test_a_weak_bond_near_the_range_is_followed_to_its_end(self):
         """At 8.39 of 8.4 the pull is a hundred-thousandth of its greatest; the limit is still the distance d."""
