@@ -22,6 +22,7 @@ INTERPRETED = tuple(
         "kernels/test_sweep",
         "kernels/test_ranges",
         "kernels/test_dead_zone",
+        "kernels/test_dead_zone_steps",
         "kernels/test_left_right",
         "kernels/test_rank",
         "kernels/test_tableaus",
