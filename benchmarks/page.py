@@ -9,16 +9,16 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.pictures import draw
-from benchmarks.rows import from_json, table
+from benchmarks.rows import from_json, missed, table
 
 _HEAD = """# Performance
 
-Written by `{command}`; nothing on this page is typed by hand. Times are CPU times on one core, medians over rounds in
-which all that is compared takes turns; a ratio is the median of the ratios of the rounds. Unless a row says "faster", a
-ratio is our time over that of what stands beside it. Flocks live in the plane, d = 7 and r = 8.4: a triangular lattice
-disturbed by 3 % of d (6 neighbours), the same with its agents in no order, and a uniform gas (12 neighbours on
-average). Times per pair count the pairs in range once each. The C loop (`benchmarks/pair_loop.c`) keeps a flat half
-list with a skin of 1, compiled by the machine's own compiler with -O3 -march=native -ffast-math.
+Written by `{command}`; no measurement on this page is typed by hand. Times are CPU times on one core, medians over
+rounds in which all that is compared takes turns; a ratio is the median of the ratios of the rounds. Unless a row says
+"faster", a ratio is our time over that of what stands beside it. Flocks live in the plane, d = 7 and r = 8.4: a
+triangular lattice disturbed by 3 % of d (6 neighbours), the same with its agents in no order, and a uniform gas (12
+neighbours on average). Times per pair count the pairs in range once each. The C loop (`benchmarks/pair_loop.c`) keeps a
+flat half list with a skin of 1, compiled by the machine's own compiler with -O3 -march=native -ffast-math.
 """
 
 
@@ -45,8 +45,11 @@ def text(record: Mapping[str, Any], pictures: list[str]) -> str:
     machine = "".join(f"| {name} | {value} |\n" for name, value in record["machine"].items())
     parts = [_HEAD.format(command=record["command"]), f"| machine | |\n|---|---|\n{machine}"]
     parts += [f"![{name.removesuffix('.png')}]({name})\n" for name in pictures]
-    for study, rows in groupby(from_json(record["rows"]), key=lambda row: row.study):
-        parts.append(f"## {study}\n\n{table(list(rows))}")
+    rows = from_json(record["rows"])
+    for study, own in groupby(rows, key=lambda row: row.study):
+        parts.append(f"## {study}\n\n{table(list(own))}")
+    if short := missed(rows):
+        parts.append(f"## Asked for and not reached\n\n{short}")
     if record["notices"]:
         parts.append("## Left out\n\n" + "".join(f"- {line}\n" for line in record["notices"]))
     return "\n".join(parts)

@@ -22,7 +22,18 @@ STUDY = "Time per pair"
 SKIN = 1.0  # of the list that the C loop keeps
 STEPS, DT = 10, 0.005  # of the run whose evaluations are counted
 _SIZES = (10_000, 100_000, 1_000_000)
-_WITHIN = Asked("<=", 1.5)
+_WITHIN = Asked(
+    "<=",
+    1.5,
+    why="The C loop fuses products with sums and reorders them for the widest vectors there are; ours gives the same "
+    "bits on every processor.",
+)
+_GROWS = Asked(
+    "<=",
+    1.5,
+    why="At 10⁴ the flock is in the caches; at 10⁶ each agent is fetched from memory to be sorted, out of order if the "
+    "flock is.",
+)
 
 
 def study(*, quick: bool) -> Found:
@@ -37,7 +48,7 @@ def study(*, quick: bool) -> Found:
             per_agent[n] = float(np.median(found["ours"])) / n
         largest = max(per_agent)
         growth = per_agent[largest] / per_agent[10_000]
-        asked = _WITHIN if largest == 1_000_000 else None
+        asked = _GROWS if largest == 1_000_000 else None
         value = 1e9 * per_agent[largest]
         rows.append(Row(STUDY, f"{name}: time per agent", largest, value, "ns", "that at n = 10 000", growth, asked))
     return Found(rows, () if library else (MISSING,))

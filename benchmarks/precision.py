@@ -18,6 +18,10 @@ STUDY = "Work and precision, Fig. 10"
 TOLERANCES = tuple(10.0**-k for k in range(4, 13))
 STEPS = (0.04, 0.02, 0.01, 0.005, 0.0025)
 FINEST = 1e-13  # of the reference
+_TODAY = (
+    "Scipy steps the law as it is now, whose evaluations take the same time in both; against the code that the bound "
+    "was asked of it is kept (below)."
+)
 LONGEST = 5.0  # seconds of a run, from which on a method is not asked for more
 SAMPLES = 61
 
@@ -70,7 +74,7 @@ def at_equal_error(series: list[dict[str, Any]]) -> list[Row]:
                 f"{method} at equal error: times faster, median of {gains.size}",
                 f"at least {gains.min():.3g}",
             )
-            asked = Asked(">=", 10.0) if method == "DOP853" else None
+            asked = Asked(">=", 10.0, why=_TODAY) if method == "DOP853" else None
             value = 1e3 * float(np.median(taken))
             rows.append(Row(STUDY, name, 150, value, "ms", str(other), float(np.median(gains)), asked, worst))
     return rows

@@ -10,11 +10,12 @@ from typing import Any, Literal
 
 @dataclass(frozen=True)
 class Asked:
-    """A bound on a row's ratio to its baseline, or on its own value."""
+    """A bound on a row's ratio to its baseline, or on its own value; and what is in the way where it is not kept."""
 
     sense: Literal["<=", ">="]
     bound: float
     of: Literal["ratio", "value"] = "ratio"
+    why: str = ""
 
     def met(self, row: Row) -> bool:
         """Whether the row keeps it; a number that is missing does not."""
@@ -108,19 +109,39 @@ def table(rows: Sequence[Row]) -> str:
     return head + "".join(_line(row) for row in rows)
 
 
+def missed(rows: Iterable[Row]) -> str:
+    """The rows that do not keep what is asked of them, and why, as a Markdown list; empty if there are none.
+
+    >>> asked = Asked("<=", 0.5, "value", "Python alone takes half of it.")
+    >>> missed([Row("Command line", "scenarios", None, 0.6, "s", asked=asked)])
+    '- Command line, scenarios: 0.6 s, asked median <= 0.5. Python alone takes half of it.\\n'
+    """
+    lines = []
+    for row in rows:
+        if row.asked is not None and row.verdict == "no":
+            found = f"{number(row.value)} {row.unit}" if row.asked.of == "value" else f"ratio {number(row.ratio)}"
+            against = f" (against {row.baseline})" if row.baseline and row.asked.of == "ratio" else ""
+            name = ", ".join((row.study, row.name, *(() if row.n is None else (f"n = {_count(row.n)}",))))
+            lines.append(f"- {name}: {found}{against}, asked {_asked(row.asked)}. {row.asked.why}".rstrip() + "\n")
+    return "".join(lines)
+
+
+def _asked(asked: Asked) -> str:
+    return f"{'' if asked.of == 'ratio' else 'median '}{asked.sense} {number(asked.bound)}"
+
+
+def _count(n: int) -> str:
+    return f"{n:,}".replace(",", " ")
+
+
 def _line(row: Row) -> str:
-    asked = (
-        ""
-        if row.asked is None
-        else f"{'' if row.asked.of == 'ratio' else 'median '}{row.asked.sense} {number(row.asked.bound)}"
-    )
     cells = (
         row.name + (f" ({row.note})" if row.note else ""),
-        "" if row.n is None else f"{row.n:,}".replace(",", " "),
+        "" if row.n is None else _count(row.n),
         f"{number(row.value)} {row.unit}",
         row.baseline,
         number(row.ratio),
-        asked,
+        "" if row.asked is None else _asked(row.asked),
         row.verdict,
     )
     return "| " + " | ".join(cells) + " |\n"

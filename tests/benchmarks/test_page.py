@@ -11,7 +11,12 @@ ADAPTIVE = {"adaptive": 1e-3, "adaptive_memory": 5.0}
 RECORD = {
     "command": "python -m benchmarks --quick",
     "machine": {"processor": "one that computes", "cores": "2 available"},
-    "rows": to_json([Row("Pairs", "gas", 1000, 2.0, "ns per pair", "C", 1.2, Asked("<=", 1.5))]),
+    "rows": to_json(
+        [
+            Row("Pairs", "gas", 1000, 2.0, "ns per pair", "C", 1.2, Asked("<=", 1.5, why="It is met.")),
+            Row("Pairs", "lattice", 1000, 2.0, "ns per pair", "C", 1.7, Asked("<=", 1.5, why="C fuses products.")),
+        ]
+    ),
     "notices": ["no compiler"],
     "series": {
         "cost": [
@@ -38,6 +43,9 @@ def test_page_json_and_pictures_are_written_and_the_page_can_be_written_again(tm
     for words in ("`python -m benchmarks --quick`", "| processor | one that computes |", "## Pairs", "- no compiler"):
         assert words in page
     assert "| gas | 1 000 | 2 ns per pair | C | 1.2 | <= 1.5 | yes |" in page
+    assert page.count("## Asked for and not reached\n\n- Pairs, lattice, n = 1 000: ratio 1.7 (against C)") == 1
+    assert "asked <= 1.5. C fuses products." in page
+    assert "It is met." not in page
     again = write(json.loads(paths[0].read_text()), tmp_path / "again")
     assert again[1].read_text() == page
 

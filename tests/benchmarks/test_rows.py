@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from benchmarks.rows import Asked, Row, from_json, table, to_json
+from benchmarks.rows import Asked, Row, from_json, missed, table, to_json
 
 
 @pytest.mark.parametrize(
@@ -32,3 +32,18 @@ def test_the_table_shows_name_size_value_bound_and_verdict():
     text = table([Row("s", "gas", 10_000, 17.24, "ns per pair", "C: 6 ns", 2.9, Asked("<=", 1.5), "twice")])
     assert text.splitlines()[2] == "| gas (twice) | 10 000 | 17.2 ns per pair | C: 6 ns | 2.9 | <= 1.5 | no |"
     assert "| median <= 8 |" in table([Row("s", "x", 150, 35.0, "µs", asked=Asked("<=", 8.0, "value"))])
+
+
+def test_what_is_missed_is_told_with_its_reason():
+    asked = Asked("<=", 0.5, "value", "Python alone takes half of it.")
+    rows = [
+        Row("Command line", "scenarios", None, 0.6, "s", "a shell", asked=asked),
+        Row("Command line", "help", None, 0.4, "s", asked=asked),
+        Row("Pairs", "gas", 10_000, 9.0, "ns", "C", 1.62, Asked("<=", 1.5)),
+        Row("Pairs", "gas", 10_000, 9.0, "ns"),
+    ]
+    assert missed(rows) == (
+        "- Command line, scenarios: 0.6 s, asked median <= 0.5. Python alone takes half of it.\n"
+        "- Pairs, gas, n = 10 000: ratio 1.62 (against C), asked <= 1.5.\n"
+    )
+    assert missed(rows[1:2]) == ""
