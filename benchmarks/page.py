@@ -13,7 +13,7 @@ from benchmarks.rows import from_json, missed, table
 
 _HEAD = """# Performance
 
-Written by `{command}`; no measurement on this page is typed by hand. Times are CPU times on one core, medians over
+Written by `{command}`; no number in its tables is typed by hand. Times are CPU times on one core, medians over
 rounds in which all that is compared takes turns; a ratio is the median of the ratios of the rounds. Unless a row says
 "faster", a ratio is our time over that of what stands beside it. Flocks live in the plane, d = 7 and r = 8.4: a
 triangular lattice disturbed by 3 % of d (6 neighbours), the same with its agents in no order, and a uniform gas (12

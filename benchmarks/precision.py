@@ -19,8 +19,8 @@ TOLERANCES = tuple(10.0**-k for k in range(4, 13))
 STEPS = (0.04, 0.02, 0.01, 0.005, 0.0025)
 FINEST = 1e-13  # of the reference
 _TODAY = (
-    "Scipy steps the law as it is now, whose evaluations take the same time in both; against the code that the bound "
-    "was asked of it is kept (below)."
+    "Scipy steps the law as it is now, whose evaluations take the same time in both; the bound was asked of the code "
+    "of before, which has a table of its own."
 )
 LONGEST = 5.0  # seconds of a run, from which on a method is not asked for more
 SAMPLES = 61

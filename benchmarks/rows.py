@@ -119,8 +119,9 @@ def missed(rows: Iterable[Row]) -> str:
     lines = []
     for row in rows:
         if row.asked is not None and row.verdict == "no":
-            found = f"{number(row.value)} {row.unit}" if row.asked.of == "value" else f"ratio {number(row.ratio)}"
-            against = f" (against {row.baseline})" if row.baseline and row.asked.of == "ratio" else ""
+            of_value, share = row.asked.of == "value", number(row.ratio) or "missing"
+            found = f"{number(row.value)} {row.unit}" if of_value else f"ratio {share}"
+            against = f" (against {row.baseline})" if row.baseline and not of_value else ""
             name = ", ".join((row.study, row.name, *(() if row.n is None else (f"n = {_count(row.n)}",))))
             lines.append(f"- {name}: {found}{against}, asked {_asked(row.asked)}. {row.asked.why}".rstrip() + "\n")
     return "".join(lines)

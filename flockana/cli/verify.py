@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from flockana.base.errors import ArgumentError, FileError, FlockanaError
+from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.base.progress import progress_bar
 from flockana.cli.options import AnySeed, Jobs
 from flockana.cli.show import show_files
@@ -79,7 +79,7 @@ def verify_command(
     if folder is not None and (pages or complete):
         try:
             written = _written(folder, results, pages, statistics, seed, seconds, complete, name)
-        except FileError as error:  # the verdicts are still to be told
+        except FlockanaError as error:  # the verdicts are still to be told
             failure = failure or error
     if as_json:
         from flockana.report.build import verdicts_json
@@ -138,7 +138,7 @@ def _written(
     """Where the report is, written."""
     from flockana.report.build import write_report
     from flockana.report.comparison import ComparisonSection
-    from flockana.report.stability import LinearisedFlocks
+    from flockana.report.stability import NO_FLOCKS, LinearisedFlocks
 
     return write_report(
         pages,
@@ -148,7 +148,8 @@ def _written(
         complete=complete,
         statistics=statistics,
         comparison=next((result for result in results if isinstance(result, ComparisonSection)), None),
-        flocks=next((result for result in results if isinstance(result, LinearisedFlocks)), None),
+        # of the whole catalogue they are a task; where it failed or was not reached they are left out, not made again
+        flocks=next((r for r in results if isinstance(r, LinearisedFlocks)), NO_FLOCKS if name is None else None),
         of=name,
     )
 

@@ -140,7 +140,7 @@ class Recorder:
         if not own:
             return None
         slack = np.array([knot.slack for knot in knots[:-1]]) if self._thinned else None
-        t, q, p, u = (np.array(series) for series in zip(*(knot[:4] for knot in own), strict=True))
+        t, q, p, u = (np.array([getattr(knot, name) for knot in own]) for name in ("t", "q", "p", "u"))
         return Between(t, q, p, u, slack)
 
     def _thin(self) -> None:

@@ -48,7 +48,9 @@ def discrete(
     at_once = max(1, min(law.steps_at_once, _NUMBERS // (3 * q0.size)))
     for first in range(0, steps, at_once):
         last = min(first + at_once, steps)
-        own = np.arange(first + 1, last + 1) if wanted is None else wanted[(wanted > first) & (wanted <= last)]
+        own = np.arange(first + 1, last + 1)
+        if wanted is not None:
+            own = wanted[slice(*np.searchsorted(wanted, [first + 1, last + 1]))]
         made, rows, states = _stretch(law, t0 + first * dt, q, p, memory, own - first, last - first)
         qs, ps, us, series = states
         known = np.isfinite(qs).all(axis=(1, 2)) & np.isfinite(ps).all(axis=(1, 2))
@@ -84,7 +86,7 @@ def _stretch(
     """
     if own.size < steps:
         few = own if own.size and own[-1] == steps else np.append(own, steps)
-        states = law.visit(t, q, p, copied(memory), few)
+        states = law.visit(t, q, p, memory, few)
         if states is not None and finite(*states[:2]):
             return few, np.arange(own.size), states
     return np.arange(1, steps + 1), own - 1, law.iterate(t, q, p, memory, steps)

@@ -39,7 +39,7 @@ def semi_implicit_steps(q, p, par, c2, dt, wanted):
     s2, w, d = np.empty(most), np.empty(most), np.empty((rows, most))
     r, k_1, square = par[R], par[K_1], _square_of_range(par[R])
     held = (par[0], par[1], par[2], 0.0, par[4], par[5], par[6], par[7], par[8])  # without k₁, in registers
-    for step in range(1, wanted[-1] + 1):
+    for step in range(1, wanted[-1] + 1 if wanted.size else 1):
         if _out_of(x, then, drift, (step - since) * dt, 0.25 * skin * skin, squares):
             skin = 1e-3 * r + _AHEAD * dt * _spread(v, drift)
             kept = _listed(x, par, skin, near, degree, first, second, inside, ends)
@@ -138,13 +138,16 @@ def _crossed(s2, square, kept, near, degree, first, second, inside):
 
 @register_jitable
 def _out_of(x, then, drift, passed, square, squares):
-    """Whether anybody has moved by more than the root of `square`, or by NaN, beside what drifts on together."""
+    """Whether anybody has moved by more than the root of `square`, or by NaN, beside what drifts on together.
+
+    Where `square` is infinite a list would hold for ever, and pairs at distances that overflow are on none: new lists.
+    """
     squares[:] = 0.0
     for c in range(len(x)):
         x_c, then_c, gone = x[c], then[c], passed * drift[c]
         for i in range(len(squares)):
             squares[i] += (x_c[i] - then_c[i] - gone) ** 2
-    far = 0
+    far = 0 if square < inf else 1
     for i in range(len(squares)):
         far += not squares[i] <= square
     return far > 0

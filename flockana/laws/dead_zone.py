@@ -157,7 +157,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
     def semi_implicit(
         self, q: FloatArray, p: FloatArray, dt: float, steps: int, wanted: IndexArray | None = None
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Semi-implicit Euler steps in one compiled loop: q, p after each step and u before, shape (steps, n, m).
+        """Semi-implicit Euler steps in one compiled loop: q, p after each step kept and u before, shape (S, n, m).
 
         Parameters
         ----------
@@ -166,7 +166,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         dt : float
             Step.
         steps : int
-            How many.
+            How many; after the last that is wanted none is made.
         wanted : ndarray of int, shape (S,), optional
             The steps to keep, numbered from 1, rising; by default all of them.
         """

@@ -114,7 +114,7 @@ class DiscreteLaw(LawOfMotion):
         q, p : ndarray, shape (n, m)
             Positions and velocities; not to be changed in place.
         memory : mapping of str to ndarray
-            What else the law remembers.
+            What else the law remembers; not to be changed in place either, as the steps may be made again.
         wanted : ndarray of int, shape (S,)
             The steps, numbered from 1, rising.
         """

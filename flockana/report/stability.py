@@ -88,6 +88,9 @@ class LinearisedFlocks:
         return LINEARISED
 
 
+NO_FLOCKS = LinearisedFlocks((), (), ())
+
+
 @dataclass(frozen=True)
 class StabilitySection:
     """Poles, decay rates, linear range and delay margins, for the report.

@@ -86,3 +86,23 @@ def test_of_some_steps_it_is_what_all_steps_are():
             semi_implicit_steps(q, p, pair.par, 1.0, 0.01, np.array(wanted)), every, strict=True
         ):
             np.testing.assert_array_equal(found, all_of_them[np.array(wanted) - 1])
+
+
+def test_a_list_does_not_outlast_distances_that_overflow():
+    """The third agent leaps from 1e200 to the others; no pair with it was on a list while its distance was infinite."""
+    pair = DeadZoneInteraction()
+    q, p = np.array([[0.0, 0.0], [8.0, 0.0], [4.0, 1e200]]), np.array([[0.0, 0.0], [0.0, 0.0], [0.0, -1e200]])
+    together = semi_implicit_steps(q, p, pair.par, 1.0, 1.0, np.array([1, 2]))
+    for step in range(2):
+        one = semi_implicit_steps(q, p, pair.par, 1.0, 1.0, np.array([1]))
+        q, p = one[0][0], one[1][0]
+        for found, wanted in zip(together, one, strict=True):
+            np.testing.assert_array_equal(found[step], wanted[0])
+    assert together[2][1, 2, 1] == 2e200
+
+
+def test_no_steps_are_none():
+    pair, q = DeadZoneInteraction(), np.array([[0.0, 0.0], [3.0, 0.0]])
+    assert [found.shape for found in semi_implicit_steps(q, 0.0 * q, pair.par, 1.0, 0.01, np.arange(1, 1))] == [
+        (0, 2, 2)
+    ] * 3

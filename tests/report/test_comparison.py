@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 from markupsafe import escape
 
-from flockana.base.errors import UnknownNameError
+from flockana.base.errors import FlockanaError, SolverError, UnknownNameError
 from flockana.cli.verify import verify_command
 from flockana.report import work
 from flockana.report.build import write_report
 from flockana.report.comparison import comparison_section
+from flockana.report.figures import Picture
 from flockana.report.stability import LinearisedFlocks
 from flockana.report.work import Task
 from flockana.scenarios.one_start import ENTRIES, compare, one_start
@@ -54,6 +55,32 @@ def test_it_is_made_among_the_tasks_of_the_catalogue_where_there_is_a_report(sec
     assert 'id="one-start"' in (tmp_path / "index.html").read_text(encoding="utf-8")
     assert verify_command(no_report=True, jobs=1) == verify_command(name="E8", report=tmp_path / "E8", jobs=1) == 0
     assert made == [5, "flocks"]
+
+
+def test_linearised_flocks_of_the_tasks_are_in_the_page_and_their_failure_loses_nothing(
+    section, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.setattr(work, "plan", lambda *given, **options: (Task("delay-margin", fixed=True),))
+    monkeypatch.setattr("flockana.report.surveys.surveys", lambda *given, **options: ())
+    monkeypatch.setattr("flockana.report.comparison.comparison_section", lambda seed: section)
+    made = [LinearisedFlocks((Picture("Poles of 19", "<svg></svg>"),), (), ())]
+    monkeypatch.setattr("flockana.report.stability.linearised_flocks", made.pop)
+    assert verify_command(report=tmp_path, jobs=1) == 0
+    assert "Poles of 19" in (tmp_path / "index.html").read_text(encoding="utf-8")
+
+    def fail():
+        made.append(None)
+        raise SolverError("no equilibrium")
+
+    monkeypatch.setattr("flockana.report.stability.linearised_flocks", fail)
+    with pytest.raises(FlockanaError, match=r"^linearised flocks: no equilibrium$"):
+        verify_command(report=tmp_path, jobs=1)
+    assert made == [None]
+    assert "delay-margin" in capsys.readouterr().out
+    page = (tmp_path / "unfinished" / "index.html").read_text(encoding="utf-8")
+    assert 'id="linearised-stability"' in page
+    assert "Poles of 19" not in page
+    assert "State space to download" not in page
 
 
 def test_every_law_has_the_same_start():
