@@ -14,11 +14,11 @@ from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain
 from flockana.measures.frame import moving_frame
 
 _NEWTON_FROM = 1e-7  # relative force at which Newton's method takes over: a weak bond near r pulls no harder before
-_MOST_STEPS = 100_000  # 200 agents take some thousands; far from all numbers of use steps shrink without end
 _NEWTON_AGAIN = 0.1  # of the force at which it led astray
 _NEWTON_STEPS = 20
-_ONE_AT_A_TIME = RLock()  # before scipy 1.17 two LSODAs in threads of one process may not step in turns
 _NEWTON_REACH = 1e-3  # of d: a step farther than that is no polishing, and might end where a bond lets go at r
+_MOST_STEPS = 100_000  # 200 agents take some thousands; far from all numbers of use steps shrink without end
+_ONE_AT_A_TIME = RLock()  # before scipy 1.17 two LSODAs in threads of one process may not step in turns
 
 
 @dataclass(frozen=True)

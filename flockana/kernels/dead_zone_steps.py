@@ -22,7 +22,7 @@ def semi_implicit_steps(q, p, par, c2, dt, wanted):
 
     Neighbours pull by k₁ and c₂ alone where nothing else acts, which is a sum over a table of who is in range. Pairs
     that may act otherwise, or come into range, are listed with a skin: the list holds until somebody has moved by half
-    of it, seen from the centre.
+    of it beside the mean velocity of its making.
     """
     n, m = q.shape
     shape = (wanted.size, n, m)
