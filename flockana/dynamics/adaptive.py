@@ -53,8 +53,7 @@ def adaptive(
         yield from _by_scipy(law, q0, p0, t_span, method.removeprefix(SCIPY), rtol, floor, keep, tally, switches)
         return
     ends, due = np.array([t_span[1]]), np.empty(0) if keep is None else keep
-    wanted = None if keep is None else frozenset(keep.tolist())
-    yield from stepped(engine, q0, p0, ends, due, wanted, tally, lambda *at: _gave_up(method, *at))
+    yield from stepped(engine, q0, p0, ends, due, keep, tally, lambda *at: _gave_up(method, *at))
 
 
 def _by_scipy(

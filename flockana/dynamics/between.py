@@ -14,6 +14,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
+from flockana.dynamics.sample import Sample, Samples
 from flockana.kernels.detours import detours
 
 MOST = 2**24  # numbers that are kept of the steps between samples: 128 MiB
@@ -108,7 +109,7 @@ def merged(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, between: 
 
 
 class Recorder:
-    """Takes in samples and the steps between them, in order of time, and keeps the steps in bounded memory.
+    """Takes in samples and the steps between them, and keeps the steps in bounded memory.
 
     Parameters
     ----------
@@ -118,59 +119,62 @@ class Recorder:
 
     def __init__(self, most: int = MOST) -> None:
         self.most, self._held, self._thinned = most, 0, False
-        self._knots: list[_Knot] = []
-        self._exact = np.empty(0)  # slack of a path through all steps, the same for every knot
+        self._samples: list[Samples] = []
+        self._steps: list[Samples] = []
+        self._slack: dict[float, FloatArray] = {}  # by time: of the path from there to the next, where it is off
 
-    def add(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray, *, sample: bool) -> None:
-        """The next sample or step; steps before the first sample are nobody's."""
-        if not (sample or self._knots):
+    def add(self, some: Sample | Samples) -> None:
+        """The next samples, or steps before them."""
+        if isinstance(some, Sample):
+            some = Samples.of(some)
+        if some.wanted:
+            self._samples.append(some)
             return
-        if not self._knots:
-            self._exact = np.zeros(len(q))
-        self._knots.append(_Knot(t, q, p, u, sample, self._exact))
-        self._held += 0 if sample else 3 * q.size
-        if self._held > self.most:
+        if not self._samples:  # earlier ones are nobody's
+            self._steps, self._held = [], 0
+        self._steps.append(some)
+        self._held += 3 * some.q.size
+        if self._held > self.most and self._samples:
             self._thin()
 
     def between(self) -> Between | None:
         """What is between the samples; None if nothing is."""
-        last = max((k for k, knot in enumerate(self._knots) if knot.sample), default=0)
-        knots = self._knots[: last + 1]
-        own = [knot for knot in knots if not knot.sample]
-        if not own:
+        if not (self._steps and self._samples):
             return None
-        slack = np.array([knot.slack for knot in knots[:-1]]) if self._thinned else None
-        t, q, p, u = (np.array([getattr(knot, name) for knot in own]) for name in ("t", "q", "p", "u"))
-        return Between(t, q, p, u, slack)
+        times = np.concatenate([some.t for some in self._samples])
+        t, q, p, u = (np.concatenate([getattr(some, name) for some in self._steps]) for name in ("t", "q", "p", "u"))
+        inside = (t > times[0]) & (t < times[-1])
+        if not inside.any():
+            return None
+        if not inside.all():
+            t, q, p, u = t[inside], q[inside], p[inside], u[inside]
+        if not self._thinned:
+            return Between(t, q, p, u)
+        exact, knots = np.zeros(q.shape[1]), np.sort(np.concatenate([times, t]))
+        return Between(t, q, p, u, np.array([self._slack.get(knot, exact) for knot in knots[:-1].tolist()]))
 
     def _thin(self) -> None:
-        """Leave out every other step."""
-        kept, leave, self._held, self._thinned = self._knots[:1], False, 0, True
-        for k in range(1, len(self._knots)):
-            knot = self._knots[k]
-            if not knot.sample:
+        """Leave out every other step; the others are copied, and all memory is let go."""
+        first = self._samples[0].t[0]
+        knots = sorted((one for some in (*self._samples, *self._steps) for one in some.each()), key=lambda one: one.t)
+        knots = [one for one in knots if one.t >= first]
+        exact, before, kept, leave = np.zeros(len(knots[0].q)), knots[0], list[Sample](), False
+        for one, after in zip(knots[1:], [*knots[2:], None], strict=True):
+            if not one.wanted:
                 leave = not leave
-                if leave and k + 1 < len(self._knots):
-                    kept[-1] = _by_way_of(knot, kept[-1], self._knots[k + 1])
+                if leave and after is not None:
+                    slacks = (self._slack.get(before.t, exact), self._slack.pop(one.t, exact))
+                    self._slack[before.t] = _detours(before, one, after, *slacks)
                     continue
-                self._held += 3 * knot.q.size
-            kept.append(knot)
-        self._knots = kept
+                kept.append(one)
+            before = one
+        t, q, p, u = (np.array([getattr(one, name) for one in kept]) for name in ("t", "q", "p", "u"))
+        self._steps, self._held, self._thinned = [Samples(t, q, p, u, {}, wanted=False)], 3 * q.size, True
 
 
-class _Knot(NamedTuple):
-    """A sample or a step, and what the path from there to the next may be off by."""
-
-    t: float
-    q: FloatArray
-    p: FloatArray
-    u: FloatArray
-    sample: bool
-    slack: FloatArray
-
-
-def _by_way_of(middle: _Knot, before: _Knot, after: _Knot) -> _Knot:
-    """The one before, whose path from there to the one after leaves out a step."""
+def _detours(before: Sample, middle: Sample, after: Sample, slack: FloatArray, later: FloatArray) -> FloatArray:
+    """What the path from before to after may be off by, if it leaves out the step in the middle."""
     knots = (before, middle, after)
     states = (np.ascontiguousarray(array) for knot in knots for array in (knot.q, knot.p, knot.u))
-    return before._replace(slack=detours(*(knot.t for knot in knots), *states, before.slack, middle.slack))
+    farthest: FloatArray = detours(*(knot.t for knot in knots), *states, slack, later)
+    return farthest

@@ -5,13 +5,13 @@ What it decides, it decides as the step-by-step integrators do (`adaptive`, `rk4
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
 from flockana.dynamics.encounters import Encounters
@@ -30,6 +30,7 @@ METHODS = ("DOP853", "RK45", "RK23", "RK4")  # that there are compiled
 _STEPS, _NUMBERS = 512, 6_000_000  # in one call, at most: steps, and numbers kept of them
 _UNLISTED = "scipy-DOP853"  # which looks at pairs in blocks
 EXACT = Floor(0.0, 0.0, 0.0)
+BoolArray = npt.NDArray[np.bool_]
 
 
 class Allowed(NamedTuple):
@@ -166,19 +167,19 @@ def stepped(
     p0: FloatArray,
     stops: FloatArray,
     due: FloatArray,
-    wanted: frozenset[float] | None,
+    wanted: FloatArray | None,
     tally: Tally,
     reason: Callable[[int, float], str],
 ) -> Iterator[Sample | Samples]:
-    """Steps to the last of the stops, and samples at the times that are due, in order of time.
+    """Steps to the last of the stops, and samples at the times that are due, some at a time.
 
-    A step, and the start, is wanted if its time is among those given; None: every step is. `reason` says in words why
-    a run ended early, of its status and time.
+    A step, and the start, is wanted if its time is among those given, which rise; None: every step is. `reason` says in
+    words why a run ended early, of its status and time.
     """
     first, now = engine.start(q0, p0)
     ledger = np.array([np.nan, 0.0, 0.0, 0.0])
     tally.evaluations, tally.notes["redone"] = tally.evaluations + 1, 0
-    if wanted is None or first.t in wanted:
+    if wanted is None or _among(np.array([first.t]), wanted)[0]:
         yield first
     stops, due = stops[stops > first.t], due[due > first.t]
     while stops.size:
@@ -187,8 +188,8 @@ def stepped(
         made, states, work = steps
         tally.steps += made.size
         if wanted is not None:
-            yield from _chosen(wanted, due, between, steps)
-        elif made.size:  # together: one by one they would cost as much as the steps of a small flock
+            yield from _parted(wanted, due[:sampled], between, steps)
+        elif made.size:
             yield Samples(made, states[:, 0], states[:, 1], states[:, 2], {"work": work})
         if status == CROWDED:
             tally.fail(f"more pairs within reach at t = {t:g} than a list has room for: try method='{_UNLISTED}'")
@@ -199,15 +200,32 @@ def stepped(
         now, stops, due = Point(t, y, f, h), stops[passed:], due[sampled:]
 
 
-def _chosen(wanted: frozenset[float], due: FloatArray, between: Any, steps: Any) -> Iterator[Sample]:
-    """Each step, wanted or not, and the samples between them, in order of time."""
-    on_the_way = deque(zip(due.tolist(), *between, strict=False))
-    for at, (q, p, u), work in zip(steps[0].tolist(), *steps[1:], strict=True):
-        while on_the_way and on_the_way[0][0] <= at:
-            earlier, seen, done = on_the_way.popleft()
-            if earlier < at:
-                yield Sample(earlier, seen[0], seen[1], seen[2], {"work": np.array(done)})
-        if at in wanted:
-            yield Sample(at, q, p, u, {"work": np.array(work)})
-        else:
-            yield Sample(at, q, p, u, {}, wanted=False)
+def _parted(wanted: FloatArray, due: FloatArray, between: Any, steps: Any) -> Iterator[Samples]:
+    """The steps that are no samples, then the samples; one by one they would cost as much as the steps of small flocks.
+
+    Steps come first: a run that is interrupted after them has no samples whose steps are not known.
+    """
+    (made, states, work), (seen, done) = steps, between
+    chosen, apart = _among(made, wanted), ~_among(due, made)  # where a step ended there is nothing in what is between
+    if not chosen.all():
+        t, other = (made[~chosen], states[~chosen]) if chosen.any() else (made, states)
+        yield Samples(t, other[:, 0], other[:, 1], other[:, 2], {}, wanted=False)
+    if chosen.any() or apart.any():
+        t = np.concatenate([made[chosen], due[apart]])
+        order = np.argsort(t)
+        some, its_work = (
+            np.concatenate([own[chosen], others[apart]])[order] for own, others in ((states, seen), (work, done))
+        )
+        yield Samples(t[order], some[:, 0], some[:, 1], some[:, 2], {"work": its_work})
+
+
+def _among(times: FloatArray, some: FloatArray) -> BoolArray:
+    """Which times are among some others, which rise.
+
+    Examples
+    --------
+    >>> _among(np.array([0.0, 1.0, 3.0]), np.array([1.0, 2.0])).tolist()
+    [False, True, False]
+    """
+    nearest = np.append(some, np.nan)[np.searchsorted(some, times)]
+    return np.asarray(nearest == times)

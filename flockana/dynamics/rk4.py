@@ -33,9 +33,9 @@ def rk4(
     """
     engine = engine_of(law, q0, p0, t_span[0], "RK4", threads=threads)
     if engine is not None:
-        stops = dict(_stops(t_span, dt, keep))
-        marked = frozenset(t for t, wanted in stops.items() if wanted)
-        yield from stepped(engine, q0, p0, np.array(list(stops)), np.empty(0), marked, tally, lambda _, t: _left(t, dt))
+        stops = np.array([t for t, _ in _stops(t_span, dt, keep)])
+        marked = stops if keep is None else keep
+        yield from stepped(engine, q0, p0, stops, np.empty(0), marked, tally, lambda _, t: _left(t, dt))
         return
     ensure_one_thread(law, threads)
     energetic, encounters = has_energy(law, t_span[0], q0, p0), Encounters.of(law, len(q0))

@@ -26,18 +26,26 @@ class Sample(NamedTuple):
 
 
 class Samples(NamedTuple):
-    """Several wanted instants of a run, in order: as a `Sample`, with a first axis of time."""
+    """Several instants of a run, in order: as a `Sample`, with a first axis of time; all of them wanted, or none."""
 
     t: npt.NDArray[np.floating]
     q: FloatArray
     p: FloatArray
     u: FloatArray
     extra: dict[str, FloatArray]
+    wanted: bool = True
+
+    @classmethod
+    def of(cls, one: Sample) -> Samples:
+        """One instant as several."""
+        extra = {name: np.asarray(value)[None] for name, value in one.extra.items()}
+        return cls(np.array([one.t]), one.q[None], one.p[None], one.u[None], extra, one.wanted)
 
     def each(self) -> Iterator[Sample]:
         """One after the other."""
         for k, t in enumerate(self.t.tolist()):
-            yield Sample(t, self.q[k], self.p[k], self.u[k], {name: values[k] for name, values in self.extra.items()})
+            extra = {name: values[k] for name, values in self.extra.items()}
+            yield Sample(t, self.q[k], self.p[k], self.u[k], extra, self.wanted)
 
 
 @dataclass

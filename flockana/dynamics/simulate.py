@@ -219,22 +219,19 @@ def _collect(
 ) -> tuple[list[Sample | Samples], Between | None]:
     """Drain the integrator: the samples, and its steps between them; on Ctrl-C keep what there is."""
     kept: list[Sample | Samples] = []
-    recorder = Recorder()
+    recorder, reached = Recorder(), t_span[0]
     with progress_bar(t_span[1] - t_span[0], enabled=progress, counted=False, steady=True) as advance:
         try:
             with interrupts_recognised():
-                for sample in samples if watch is None else _one_by_one(samples):
-                    if isinstance(sample, Samples):  # all that there are: nothing is between them
-                        kept.append(sample)
-                    else:
-                        if sample.wanted:
-                            kept.append(sample)
-                            if watch is not None:
-                                watch(_copy(sample))
-                        recorder.add(sample.t, sample.q, sample.p, sample.u, sample=sample.wanted)
+                for found in samples if watch is None else _one_by_one(samples):
+                    if found.wanted:
+                        kept.append(found)
+                        if watch is not None and isinstance(found, Sample):
+                            watch(_copy(found))
+                    recorder.add(found)
                     if progress:
-                        t = _end(sample)
-                        advance(t - t_span[0], f"t = {t:.4g}")
+                        reached = max(reached, _end(found))
+                        advance(reached - t_span[0], f"t = {reached:.4g}")
         except KeyboardInterrupt:
             until = f"the last sample is at t = {_end(kept[-1]):g}" if kept else "no sample was reached but the start"
             tally.status, tally.message = "interrupted", f"interrupted: {until}"

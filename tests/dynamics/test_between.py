@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import tracemalloc
 from dataclasses import replace
 
 import numpy as np
@@ -12,6 +13,7 @@ from flockana.base.errors import ArgumentError
 from flockana.base.units import rescale
 from flockana.dynamics.between import Between, Recorder, merged
 from flockana.dynamics.compiled import METHODS as COMPILED
+from flockana.dynamics.sample import Sample, Samples
 from flockana.dynamics.simulate import METHODS, simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.obstacles import Sphere
@@ -127,8 +129,8 @@ def thinned(runs):
     every, _, _ = runs
     recorder = Recorder(most=3 * every.q[0].size * len(every.t) // 5)
     for k in range(len(every.t)):
-        sample = k in (0, len(every.t) // 2, len(every.t) - 1)
-        recorder.add(float(every.t[k]), every.q[k], every.p[k], every.u[k], sample=sample)
+        wanted = k in (0, len(every.t) // 2, len(every.t) - 1)
+        recorder.add(Sample(float(every.t[k]), every.q[k], every.p[k], every.u[k], {}, wanted))
     keep = [0, len(every.t) // 2, len(every.t) - 1]
     return merged(every.t[keep], every.q[keep], every.p[keep], every.u[keep], recorder.between())
 
@@ -138,6 +140,37 @@ class TestBoundedMemory:
         every, _, _ = runs
         assert len(every.t) // 12 < len(thinned.t) - 3 <= len(every.t) // 5
         assert set(thinned.t) <= set(every.t)
+
+    def test_what_is_left_out_is_let_go(self):
+        """Steps come in blocks of one array: a view of one step would hold the whole of them."""
+        most, block = 300_000, np.zeros((100, 3, 100, 2))
+        recorder = Recorder(most=most)
+        tracemalloc.start()
+        for k in range(100):
+            t = np.arange(100.0) + 100.0 * k
+            q, p, u = np.moveaxis(block.copy(), 1, 0)
+            recorder.add(Samples(t[:1], q[:1].copy(), p[:1].copy(), u[:1].copy(), {}))
+            recorder.add(Samples(t[1:], q[1:], p[1:], u[1:], {}, wanted=False))
+        held, _ = tracemalloc.get_traced_memory()
+        tracemalloc.stop()
+        assert 3 * recorder.between().q.size <= most
+        assert held < 2 * 8 * most
+
+    def test_blocks_are_what_their_steps_are(self, runs):
+        """Until the memory is full, to the bit, whichever way steps and samples come."""
+        every, _, _ = runs
+        ends = [0, len(every.t) // 2, len(every.t) - 2]  # the last step leads to no sample
+        one_by_one, together = Recorder(), Recorder()
+        for k in range(len(every.t)):
+            one_by_one.add(Sample(float(every.t[k]), every.q[k], every.p[k], every.u[k], {}, k in ends))
+        wanted = np.isin(np.arange(len(every.t)), ends)
+        together.add(Samples.of(Sample(float(every.t[0]), every.q[0], every.p[0], every.u[0], {})))
+        for some, flag in ((~wanted, False), (wanted & (every.t > 0.0), True)):
+            together.add(Samples(every.t[some], every.q[some], every.p[some], every.u[some], {}, flag))
+        for name in ("t", "q", "p", "u"):
+            here, there = (getattr(recorder.between(), name) for recorder in (one_by_one, together))
+            np.testing.assert_array_equal(here, there)
+        assert len(one_by_one.between().t) == len(every.t) - 4
 
     def test_the_slack_is_how_far_the_paths_differ(self, runs, thinned):
         """Steps that were left out lie within it of the path through those that were kept."""
