@@ -30,3 +30,11 @@ def garbage_seldom_sought() -> Iterator[None]:
         yield
     finally:
         gc.set_threshold(*before)
+
+
+def look_no_more() -> None:
+    """Take all that there is for no garbage, in a process that is about to end.
+
+    Else Python would look through everything that was imported twice more: a tenth of a short command.
+    """
+    gc.freeze()

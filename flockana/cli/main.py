@@ -13,7 +13,7 @@ import typer
 
 from flockana._version import __version__
 from flockana.base.errors import FlockanaError
-from flockana.base.garbage import garbage_seldom_sought
+from flockana.base.garbage import garbage_seldom_sought, look_no_more
 from flockana.base.interrupts import interrupts_recognised
 from flockana.cli.animate import animate_command
 from flockana.cli.catalogue import scenarios_command, theorems_command
@@ -89,6 +89,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
         with interrupts_recognised(), garbage_seldom_sought():
             given = list(sys.argv[1:] if arguments is None else arguments)
             code = _app(given[0] if given else "")(args=given, prog_name=_NAME, standalone_mode=False)
+            if arguments is None:
+                look_no_more()
         finish_output()
     except FlockanaError as error:
         complain(error)

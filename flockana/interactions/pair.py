@@ -247,15 +247,16 @@ class PairInteraction(ABC):
         from scipy.sparse import coo_array
 
         n, m = q.shape
-        axes = np.arange(m)
         rows, columns, values = [], [], []
         for i, j in pair_blocks(q, self.range) if pairs is None else pairs:
             block = block_of(i, j, q[j] - q[i], self.kernels.terms(q, i, j, self.par))
-            for a, b, sign in ((i, i, 1.0), (j, j, 1.0), (i, j, -1.0), (j, i, -1.0)):
-                shape = (i.size, m, m)
-                rows.append(np.broadcast_to((a[:, None] * m + axes)[:, :, None], shape).ravel())
-                columns.append(np.broadcast_to((b[:, None] * m + axes)[:, None, :], shape).ravel())
-                values.append((sign * block).ravel())
+            ends = np.stack([i, j, i, j, j, i]).reshape(3, 2, -1)[..., None] * m + np.arange(m)
+            own, (one, other) = ends[0], ends[1:]
+            for row, column, value in ((own, own, block), (one, other, -block)):
+                shape = (*row.shape, m)
+                rows.append(np.broadcast_to(row[..., None], shape).ravel())
+                columns.append(np.broadcast_to(column[..., None, :], shape).ravel())
+                values.append(np.broadcast_to(value, shape).ravel())
         entries = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
         return coo_array(entries, shape=(n * m, n * m)).tocsr()
 

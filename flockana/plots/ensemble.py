@@ -139,23 +139,51 @@ def share_bars(
         If the table has parameters, or no such claim.
     """
     chosen = _ensure_table(table, set(), claims, "verified")
-    axes = ensure_axes(ax)
-    rows = np.arange(len(chosen))[::-1]
+    axes, part = ensure_axes(ax), table.sel(claim=chosen)
+    shares = {
+        of: np.array([part[name].sel(of=of).values for name in ("share", "low", "high")])
+        for of in ("verified", "refuted")
+    }
+    return draw_bars(axes, chosen, shares, part.runs.values, table.attrs["level"], title)
+
+
+def draw_bars(
+    axes: Any, claims: Sequence[str], shares: Mapping[str, FloatArray], runs: Any, level: float, title: str = ""
+) -> Axes:
+    """Draw rows of `share_bars`: shares, and the ends of their intervals, of claims verified and refuted, shape (3, M).
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Where to draw.
+    claims : sequence of str, length M
+        How to name the rows.
+    shares : mapping of str to ndarray
+        By ``"verified"`` and ``"refuted"``; NaN where a claim was checked on no run.
+    runs : array_like, shape (M,)
+        On how many each was checked.
+    level : float
+        Confidence of each interval.
+    title : str
+        Above the axes.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    rows = np.arange(len(claims))[::-1]
     for of, colour, mark, shift in (("verified", BLUE, "o", 0.12), ("refuted", VERMILLION, "s", -0.12)):
-        part = table.sel(claim=chosen, of=of)
-        share, low, high = part.share.values, part.low.values, part.high.values
+        share, low, high = shares[of]
         known = np.isfinite(share)
         axes.hlines(rows[known] + shift, low[known], high[known], color=colour, linewidth=1.4)
         fill = colour if of == "verified" else "white"
         style = {"color": colour, "markerfacecolor": fill, "markersize": 5, "linestyle": "none"}
         axes.plot(share[known], rows[known] + shift, mark, label=of, **style)
-    axes.set_yticks(rows, chosen)
-    axes.set_ylim(-0.6, len(chosen) - 0.4)
+    axes.set_yticks(rows, claims)
+    axes.set_ylim(-0.6, len(claims) - 0.4)
     axes.set_xlim(-0.03, 1.03)
     axes.xaxis.set_major_formatter(PercentFormatter(1.0))
-    axes.set_xlabel(
-        f"share of {_several(table.runs.sel(claim=chosen).values)} runs, {100 * table.attrs['level']:g} % intervals"
-    )
+    axes.set_xlabel(f"share of {_several(runs)} runs, {100 * level:g} % intervals")
     return _finish(axes, title)
 
 

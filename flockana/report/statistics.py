@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
+from math import nan
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.base.errors import ArgumentError
-from flockana.ensemble import shares
-from flockana.ensemble.dataset import to_dataset
-from flockana.report.surveys import Survey, SurveyResult, request
-from flockana.scenarios import Scenario, scenario, scenarios
+from flockana.base.binomial import clopper_pearson
+from flockana.ensemble.work import COMPLETE, Record
+from flockana.report.surveys import Survey, SurveyResult
+from flockana.scenarios import Scenario, scenario
 from flockana.scenarios.given import SOURCE
 from flockana.theorems import theorem
 
 if TYPE_CHECKING:
-    import xarray
     from matplotlib.figure import Figure
 
     from flockana.report.figures import Picture
@@ -42,11 +42,16 @@ class Share:
     low: float
     high: float
 
+    @property
+    def share(self) -> float:
+        """Of the runs; NaN if the claim was checked on none."""
+        return self.count / self.runs if self.runs else nan
+
     def __str__(self) -> str:
         """As per cent: share and interval."""
         if not self.runs:
             return "—"
-        return f"{100.0 * self.count / self.runs:.1f} % [{100.0 * self.low:.1f}, {100.0 * self.high:.1f}]"
+        return f"{100.0 * self.share:.1f} % [{100.0 * self.low:.1f}, {100.0 * self.high:.1f}]"
 
 
 @dataclass(frozen=True)
@@ -130,87 +135,49 @@ class StatisticsSection:
         return {"level": self.level, "scenarios": [asdict(entry) for entry in self.entries]}
 
 
-def gather(asked: Sequence[Survey], made: Iterable[SurveyResult], *, figures: bool = True) -> StatisticsSection | None:
+def gather(
+    asked: Sequence[Survey], made: Iterable[SurveyResult], *, level: float = 0.95, figures: bool = True
+) -> StatisticsSection | None:
     """The section of all scenarios whose surveys were all made; None if there is no such."""
     records = {result.survey: result.records for result in made}
-    datasets = []
+    entries = []
     for name in dict.fromkeys(survey.scenario for survey in asked):
         batches = [survey for survey in asked if survey.scenario == name]
         if all(survey in records for survey in batches):  # half a table is not shown as if it were whole
-            seeds = [seed for survey in batches for seed in survey.seeds]
-            runs = [record for survey in batches for record in records[survey]]
-            datasets.append(to_dataset(request(name), {}, {}, seeds, runs))
-    return statistics_section(datasets, figures=figures) if datasets else None
+            entries.append(entry_of(name, [record for survey in batches for record in records[survey]], level))
+    if not entries:
+        return None
+    return StatisticsSection(level, tuple(entries), _picture(entries, level) if figures else None)
 
 
-def statistics_section(
-    datasets: Iterable[xarray.Dataset], *, level: float = 0.95, figures: bool = True
-) -> StatisticsSection:
-    """Gather the section from ensembles of scenarios of the catalogue."""
-    given = tuple(datasets)
-    entries = tuple(_entry(ensemble, level) for ensemble in given)
-    tables = [shares(ensemble, level=level) for ensemble in given] if figures else []
-    drawn = [table for table in tables if table.claim.size]
-    return StatisticsSection(level, entries, _picture(drawn) if drawn else None)
-
-
-def _picture(tables: Sequence[xarray.Dataset]) -> Picture:
-    import xarray
-
-    from flockana import plots
-    from flockana.report.figures import Picture
-    from flockana.report.image import svg
-
-    named = [
-        table.drop_vars("incomplete").assign_coords(
-            claim=[f"{table.attrs['scenario']}: {claim.partition(':')[2]}" for claim in table.claim.values.tolist()]
-        )
-        for table in tables
-    ]
-    whole = xarray.concat(named, "claim", combine_attrs="override")
-
-    def draw(figure: Figure) -> None:
-        plots.share_bars(whole, ax=figure.subplots())
-
-    text = (
-        "In which share of the seeds each claim is verified (discs) and refuted (squares), with intervals; what is "
-        "missing to 100 % is vacuous or inconclusive. The tables below say what each claim is."
-    )
-    return Picture(text, svg(draw, (7.5, 1.1 + 0.19 * whole.claim.size)))
-
-
-def _entry(dataset: xarray.Dataset, level: float) -> Entry:
-    name = dataset.attrs.get("scenario")
-    if name not in scenarios() or {*dataset.run.dims} != {"seed"}:
-        raise ArgumentError(
-            f"an ensemble of {name} over {', '.join(map(str, dataset.run.dims))}: expected one of a "
-            "scenario of the catalogue over seeds alone; select values of the others by .sel(...)"
-        )
-    table = shares(dataset, level=level)
-    options = {str(key): value.item() for key, value in dataset.coords.items() if not value.dims}
-    item = scenario(name, int(dataset.seed[0]), **options)
+def entry_of(name: str, records: Sequence[Record], level: float) -> Entry:
+    """The records of one scenario's runs, all with the same options; the shares are those of `flockana.shares`."""
+    options = dict(records[0].job.options)
+    item = scenario(name, records[0].job.seed, **options)
+    labels = dict.fromkeys(label for record in records for label in record.claims)
     return Entry(
         name,
         item.title,
         item.settings,
         ", ".join(f"{key} = {value}" for key, value in options.items()),
-        int(dataset.seed.size),
-        int(table.incomplete),
-        float(np.mean(dataset.seconds)),
-        tuple(_row(item, table.sel(claim=claim)) for claim in table.claim.values),
+        len(records),
+        sum(record.status != COMPLETE for record in records),
+        float(np.mean([record.seconds for record in records])),
+        tuple(_row(item, label, records, level) for label in labels),
     )
 
 
-def _row(item: Scenario, part: xarray.Dataset) -> Row:
-    label = str(part.claim.item())
+def _row(item: Scenario, label: str, records: Sequence[Record], level: float) -> Row:
+    """One claim over the runs on which it was checked."""
     name, _, claim = label.partition(":")
-    runs = int(part.runs)
+    statuses = Counter(record.claims[label][0] for record in records if label in record.claims)
+    runs = statuses.total()
     verified, refuted = (
-        Share(int(part[of]), runs, *(float(part[end].sel(of=of)) for end in ("low", "high")))
+        Share(statuses[of], runs, *map(float, clopper_pearson(statuses[of], runs, level=level)))
         for of in ("verified", "refuted")
     )
-    counts = int(part.vacuous), int(part.inconclusive)
-    return Row(name, claim, _text(item, name, claim), verified, refuted, *counts, item.expected.get(label, ""))
+    others = statuses["vacuous"], statuses["inconclusive"]
+    return Row(name, claim, _text(item, name, claim), verified, refuted, *others, item.expected.get(label, ""))
 
 
 def _text(item: Scenario, name: str, claim: str) -> str:
@@ -218,3 +185,26 @@ def _text(item: Scenario, name: str, claim: str) -> str:
     if name != SOURCE:
         return theorem(name).title
     return next((report.text for report in item.reports if report.name == claim), claim)
+
+
+def _picture(entries: Sequence[Entry], level: float) -> Picture | None:
+    from flockana.plots.ensemble import draw_bars
+    from flockana.report.figures import Picture
+    from flockana.report.image import svg
+
+    rows = {f"{entry.scenario}: {row.claim}": row for entry in entries for row in entry.rows}
+    if not rows:
+        return None
+
+    def draw(figure: Figure) -> None:
+        shares = {
+            of: np.array([(each.share, each.low, each.high) for each in (getattr(row, of) for row in rows.values())]).T
+            for of in ("verified", "refuted")
+        }
+        draw_bars(figure.subplots(), [*rows], shares, [row.verified.runs for row in rows.values()], level)
+
+    text = (
+        "In which share of the seeds each claim is verified (discs) and refuted (squares), with intervals; what is "
+        "missing to 100 % is vacuous or inconclusive. The tables below say what each claim is."
+    )
+    return Picture(text, svg(draw, (7.5, 1.1 + 0.19 * len(rows))))

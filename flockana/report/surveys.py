@@ -9,7 +9,7 @@ from flockana.ensemble.work import Job, Record, Request, run_batch
 from flockana.scenarios import scenario, scenarios
 from flockana.scenarios.given import SOURCE
 
-_AT_ONCE = 25  # runs in one survey: a few seconds, so that all processes end together
+_AT_ONCE = 10  # runs in one survey: about a second at most, so that all processes end together
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ def surveys(name: str | None, count: int | None, *, seed: int = 0) -> tuple[Surv
     Examples
     --------
     >>> [survey.name for survey in surveys("zone-51", 30)]
-    ['zone-51, seeds 0 to 24', 'zone-51, seeds 25 to 29']
+    ['zone-51, seeds 0 to 9', 'zone-51, seeds 10 to 19', 'zone-51, seeds 20 to 29']
     """
     if name is None:
         usual = {subject: scenario(subject, seed).seeds for subject in scenarios()}

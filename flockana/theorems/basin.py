@@ -181,12 +181,12 @@ def lipschitz_constant(n: int, pairs: LinkArray, third: FloatArray) -> float:
 def third_derivative(
     s: FloatArray, along: FloatArray, across: FloatArray, *, least_step: float, noise: FloatArray | float = 0.0
 ) -> FloatArray:
-    """Norm of the third derivative of each pair's potential F(|x|), at worst over the lengths s, shape (M, points).
+    """Norm of the third derivative of each pair's potential F(|x|), at worst over the lengths s, shape (points, M).
 
     It is F''' along the pair three times, the slope of `along` = F'', and `across` = (F'/s)' along it once and across
     twice; of unit vectors the second kind makes 3 e (1 - e²) <= 2/√3 at most. F''' is a difference quotient.
     """
-    step = np.diff(s, axis=1)
-    change = np.divide(np.abs(np.diff(along, axis=1)), step, out=np.zeros_like(step), where=step > least_step)
-    norm: FloatArray = _SAFETY * change.max(axis=1) + noise + 2.0 / sqrt(3.0) * np.abs(across).max(axis=1)
+    step = np.diff(s, axis=0)
+    change = np.divide(np.abs(np.diff(along, axis=0)), step, out=np.zeros_like(step), where=step > least_step)
+    norm: FloatArray = _SAFETY * change.max(axis=0) + noise + 2.0 / sqrt(3.0) * np.abs(across).max(axis=0)
     return norm

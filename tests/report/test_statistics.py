@@ -8,11 +8,11 @@ import pytest
 from rich.console import Console
 
 from flockana.base.errors import ArgumentError
-from flockana.ensemble import clopper_pearson, ensemble
-from flockana.ensemble.work import Record
+from flockana.ensemble import clopper_pearson, ensemble, shares
+from flockana.ensemble.work import Job, Record, Request, run_batch
 from flockana.report.build import page_environment, verdicts_json, write_report
 from flockana.report.console import statistics_table
-from flockana.report.statistics import TEMPLATE, Share, gather, statistics_section
+from flockana.report.statistics import TEMPLATE, Share, entry_of, gather
 from flockana.report.surveys import make_survey, surveys
 from flockana.report.work import check_all
 from flockana.scenarios import scenario
@@ -49,9 +49,10 @@ def test_the_page_holds_every_row(section):
 
 
 def test_expectations_and_options_of_the_scenario_are_shown():
-    found = ensemble("phase", [0, 1], theorems=["energy", "os-3"], metrics=[], parameters={"n": 4}, jobs=1)
-    (entry,) = statistics_section([found], level=0.9).entries
-    assert entry.options == "n = 4"
+    jobs = tuple(Job(seed, (("n", 4),)) for seed in (0, 1))
+    entry = entry_of("phase", run_batch(Request("phase", ("energy", "os-3"), ()), jobs), 0.9)
+    assert (entry.options, entry.runs) == ("n = 4", 2)
+    assert (entry.rows[0].verified.low, entry.rows[0].verified.high) == clopper_pearson(2, 2, level=0.9)
     assert entry.title.startswith("4 agents")
     assert {row.theorem for row in entry.rows} == {"energy", "os-3"}
 
@@ -66,9 +67,6 @@ def test_bad_input_is_refused():
         surveys("os-1", 2)
     with pytest.raises(ArgumentError, match="--seeds 2: zone-tree is no scenario with"):
         surveys("zone-tree", 2)
-    wide = ensemble("phase", [0], theorems=[], metrics=[], parameters={"n": [3, 4]}, jobs=1)
-    with pytest.raises(ArgumentError, match="an ensemble of phase over n, seed: expected one of a scenario"):
-        statistics_section([wide])
 
 
 def test_the_catalogue_asks_for_itself_and_seeds_are_split_among_processes():
@@ -82,7 +80,7 @@ def test_the_catalogue_asks_for_itself_and_seeds_are_split_among_processes():
         seeds = [seed for one in asked if one.scenario == name for seed in one.seeds]
         assert seeds == list(range(7, 7 + scenario(name).seeds))
         assert scenario(name).settings.startswith(("printed", "recommended"))
-    assert max(len(one.seeds) for one in asked) == 25
+    assert max(len(one.seeds) for one in asked) == 10
     assert {one.seeds for one in surveys(None, 2)} == {(0, 1)}
     assert [one.scenario for one in surveys(None, 2)] == names
     assert surveys(None, 0) == surveys("zone-51", None) == surveys("zone-51", 0) == surveys("os-1", None) == ()
@@ -92,9 +90,16 @@ def test_surveys_in_any_order_give_what_one_ensemble_gives():
     asked = surveys("zone-51", 30)
     made = [make_survey(one) for one in reversed(asked)]
     (entry,) = gather(asked, made, figures=False).entries
-    whole = ensemble("zone-51", range(30), theorems=["source"], metrics=[], jobs=1)
-    (other,) = statistics_section([whole], figures=False).entries
-    assert (entry.runs, entry.rows, entry.settings) == (30, other.rows, "recommended settings")
+    assert (entry.runs, entry.incomplete, entry.settings) == (30, 0, "recommended settings")
+    table = shares(ensemble("zone-51", range(30), theorems=["source"], metrics=[], jobs=1))
+    assert [f"{row.theorem}:{row.claim}" for row in entry.rows] == table.claim.values.tolist()
+    for row in entry.rows:
+        part = table.sel(claim=f"{row.theorem}:{row.claim}")
+        for of, found in (("verified", row.verified), ("refuted", row.refuted)):
+            ends = (float(part[name].sel(of=of)) for name in ("share", "low", "high"))
+            assert (found.count, found.runs) == (int(part[of]), int(part.runs))
+            assert (found.share, found.low, found.high) == tuple(ends)
+        assert (row.vacuous, row.inconclusive) == (int(part.vacuous), int(part.inconclusive))
 
 
 def test_half_a_scenario_is_left_out():

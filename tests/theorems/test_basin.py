@@ -84,7 +84,7 @@ def test_the_lipschitz_constant_of_one_pair_is_exact():
 
 def test_the_third_derivative_covers_a_known_one():
     """F = s⁴: F''' = 24 s, at worst at the longest length, within the safety of the difference quotient."""
-    s = np.linspace(1.0, 2.0, 49)[None]
+    s = np.linspace(1.0, 2.0, 49)[:, None]
     along, across = 12.0 * s**2, 8.0 * s  # F'' and (F'/s)'
     bound = float(third_derivative(s, along, across, least_step=0.0)[0])
     exact = 48.0 + 2.0 / sqrt(3.0) * 16.0

@@ -106,10 +106,10 @@ def _third(law: DeadZoneFlocking, lengths: FloatArray, slack: float) -> FloatArr
     """Norm of the third derivative of each pair's potential, at worst over lengths within the slack."""
     if not lengths.size:
         return np.zeros(0)
-    s = np.maximum(lengths[:, None] + slack * np.linspace(-1.0, 1.0, _POINTS), 1e-12 * law.interaction.d1)
+    s = np.maximum(lengths + slack * np.linspace(-1.0, 1.0, _POINTS)[:, None], 1e-12 * law.interaction.d1)
     weight, slope = (x.reshape(s.shape) for x in _weights(law, s.ravel()))
     along, across = weight + 2.0 * s * s * slope, 2.0 * s * slope  # F', and (F' - F/s)/s
-    noise = 16.0 * EPS * np.abs(along).max(axis=1) / np.diff(s, axis=1).max(axis=1)
+    noise = 16.0 * EPS * np.abs(along).max(axis=0) / np.diff(s, axis=0).max(axis=0)
     return third_derivative(s, along, across, least_step=0.0, noise=noise)
 
 
@@ -122,5 +122,7 @@ def _weights(law: DeadZoneFlocking, s: FloatArray) -> tuple[FloatArray, FloatArr
 
 def _stability(law: DeadZoneFlocking, q: FloatArray, stiffest: float, dt: float) -> float:
     """1 - (dt²Λ + 2 dt Γ)/2, positive where every mode of the map decays, with room."""
-    dissipation = law.k2 * float(np.linalg.eigvalsh(law.interaction.laplacian(q).toarray())[-1])
+    m = q.shape[1]
+    by_agent = law.interaction.laplacian(q).toarray()[::m, ::m]  # each component has the same
+    dissipation = law.k2 * float(np.linalg.eigvalsh(by_agent)[-1])
     return 1.0 - 0.5 * (dt * dt * stiffest + 2.0 * dt * dissipation)

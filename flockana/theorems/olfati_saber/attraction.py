@@ -96,8 +96,8 @@ def lipschitz_within(law: Algorithm1 | Algorithm2, q: FloatArray, window: float)
 
 def _third(alpha: AlphaInteraction, lengths: FloatArray, slack: float) -> FloatArray:
     """Norm of the third derivative of ψ_α(‖x‖_σ) for each pair, at worst over lengths within the slack."""
-    s = np.abs(lengths[:, None] + slack * np.linspace(-1.0, 1.0, _POINTS))
-    s = np.maximum(np.sort(s, axis=1), 1e-12 * alpha.d)
+    s = np.abs(lengths + slack * np.linspace(-1.0, 1.0, _POINTS)[:, None])
+    s = np.maximum(np.sort(s, axis=0), 1e-12 * alpha.d)
     root, z = np.sqrt(1.0 + alpha.eps * s**2), alpha.sigma_norm(s)
     action = alpha.phi_alpha(z)
     along = alpha.phi_alpha_slope(z) * (s / root) ** 2 + action / root**3
