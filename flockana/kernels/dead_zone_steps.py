@@ -31,12 +31,13 @@ def semi_implicit_steps(q, p, par, c2, dt, wanted):
     x, v, u, z = np.zeros((rows, n)), np.zeros((rows, n)), np.zeros((rows, wide)), np.zeros((rows, wide))
     for c in range(m):
         x[c], v[c] = q[:, c], p[:, c]
-    near, degree, then, skin, kept = np.zeros((4 * ((n + 3) // 4), wide)), np.empty(n), np.full((rows, n), inf), 0.0, 0
+    near, degree = np.zeros((4 * ((n + 3) // 4), wide), np.bool_), np.empty(n)
+    then, skin, kept = np.full((rows, n), inf), 0.0, 0
     drift, squares, since, row = np.zeros(rows), np.empty(n), 0, 0
     most = n * (n - 1) // 2
     first, second, inside = np.empty(most, np.uint32), np.empty(most, np.uint32), np.empty(most, np.uint8)
     ends = np.empty(n, np.uint32)  # of each agent's pairs with later ones in the list
-    s2, w, d = np.empty(most), np.empty(most), np.empty((rows, most))
+    s2, w, d, both = np.empty(most), np.empty(most), np.empty((rows // 2, most, 2)), np.empty((n, 2))
     r, k_1, square = par[R], par[K_1], _square_of_range(par[R])
     held = (par[0], par[1], par[2], 0.0, par[4], par[5], par[6], par[7], par[8])  # without k₁, in registers
     for step in range(1, wanted[-1] + 1 if wanted.size else 1):
@@ -47,7 +48,7 @@ def semi_implicit_steps(q, p, par, c2, dt, wanted):
             since = step
         s2[:kept] = 0.0
         for c in range(0, rows, 2):
-            _part(x[c], x[c + 1], first, second, kept, d[c], d[c + 1], s2)
+            _part(x[c], x[c + 1], first, second, kept, d[c // 2], s2)
         changed = 0
         for k in range(kept):
             w[k] = pair_dead_zone(s2[k], held)[0] if s2[k] < square else 0.0
@@ -59,7 +60,7 @@ def semi_implicit_steps(q, p, par, c2, dt, wanted):
                 z[c, i], u[c, i] = k_1 * (x[c, i] - x[c, 0]) + c2 * (v[c, i] - v[c, 0]), 0.0
         for c in range(0, rows, 2):
             _gather(near, degree, z[c], z[c + 1], u[c], u[c + 1])
-            _scatter(w, d[c], d[c + 1], second, ends, u[c], u[c + 1])
+            _scatter(w, d[c // 2], second, ends, u[c], u[c + 1], both)
         for c in range(m):
             x_c, v_c, u_c = x[c], v[c], u[c]
             for i in range(n):
@@ -74,13 +75,13 @@ def semi_implicit_steps(q, p, par, c2, dt, wanted):
 
 
 @register_jitable
-def _part(x, y, first, second, kept, d, e, s2):
-    """Two components d, e of what parts each listed pair; their squares are added to s2."""
+def _part(x, y, first, second, kept, d, s2):
+    """Two components of what parts each listed pair; their squares are added to s2."""
     for k in range(kept):
         i, j = first[k], second[k]
-        d[k], e[k] = x[j] - x[i], y[j] - y[i]
-    for k in range(kept):
-        s2[k] = e[k] * e[k] + (d[k] * d[k] + s2[k])
+        dx, dy = x[j] - x[i], y[j] - y[i]
+        d[k, 0], d[k, 1] = dx, dy
+        s2[k] = dy * dy + (dx * dx + s2[k])
 
 
 @register_jitable
@@ -91,26 +92,31 @@ def _gather(near, degree, y, z, u, v):
         y_0, y_1, y_2, y_3 = y[j], y[j + 1], y[j + 2], y[j + 3]
         z_0, z_1, z_2, z_3 = z[j], z[j + 1], z[j + 2], z[j + 3]
         for i in range(len(y)):
-            u[i] += (a[0, i] * y_0 + a[1, i] * y_1) + (a[2, i] * y_2 + a[3, i] * y_3)
-            v[i] += (a[0, i] * z_0 + a[1, i] * z_1) + (a[2, i] * z_2 + a[3, i] * z_3)
+            a_0, a_1, a_2, a_3 = a[0, i], a[1, i], a[2, i], a[3, i]
+            u[i] += ((y_0 if a_0 else 0.0) + (y_1 if a_1 else 0.0)) + ((y_2 if a_2 else 0.0) + (y_3 if a_3 else 0.0))
+            v[i] += ((z_0 if a_0 else 0.0) + (z_1 if a_1 else 0.0)) + ((z_2 if a_2 else 0.0) + (z_3 if a_3 else 0.0))
     for i in range(len(degree)):
         u[i] -= degree[i] * y[i]
         v[i] -= degree[i] * z[i]
 
 
 @register_jitable
-def _scatter(w, d, e, second, ends, u, v):
-    """Forces w d and w e of listed pairs on both their agents, added to u and v."""
+def _scatter(w, d, second, ends, u, v, both):
+    """Forces w d of listed pairs on both their agents, added to u and v: side by side, the two are one vector."""
+    for i in range(len(ends)):
+        both[i, 0], both[i, 1] = u[i], v[i]
     begin = 0
     for i in range(len(ends)):
-        own, other = u[i], v[i]  # in registers, not stored and loaded again from pair to pair
+        own, other = both[i, 0], both[i, 1]  # in registers, not stored and loaded again from pair to pair
         for k in range(begin, ends[i]):
-            j, f, g = second[k], w[k] * d[k], w[k] * e[k]
+            j, f, g = second[k], w[k] * d[k, 0], w[k] * d[k, 1]
             own += f
             other += g
-            u[j] -= f
-            v[j] -= g
-        u[i], v[i], begin = own, other, ends[i]
+            both[j, 0] -= f
+            both[j, 1] -= g
+        both[i, 0], both[i, 1], begin = own, other, ends[i]
+    for i in range(len(ends)):
+        u[i], v[i] = both[i, 0], both[i, 1]
 
 
 @njit(cache=True)

@@ -44,7 +44,7 @@ class SemiImplicitEuler(Scheme):
     True
     """
 
-    steps_at_once = 500  # of the dead-zone law, whose loop is compiled: 2 µs a step of 50 agents
+    steps_at_once = 2000  # of the dead-zone law, whose loop is compiled: 2 µs a step of 50 agents
 
     def step(  # noqa: D102
         self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
