@@ -71,26 +71,36 @@ class PairNumbers:
 
 def pair_series(s2: arb_series, law: PairNumbers, piece: Piece) -> tuple[arb_series, arb_series]:
     """(stress s_ij, adjacency a_ij) along a path of squared distances, on one piece that is not `Piece.OUT`."""
-    slant = (1 + law.eps * (s2 / law.area)).rsqrt()
-    z = ((1 + law.eps * (s2 / law.area)) * slant - 1) / law.eps
-    rho = _bump(z, law, piece)
-    return rho * _action(z, law)[0] * slant, rho
+    slant, z = _slant_and_norm(s2, law)
+    rho, (s, root) = _bump(z, law, piece), _shifted(z, law)
+    return rho * _action(s, root, law) * slant, rho
 
 
 def pair_slopes(s2: arb_series, law: PairNumbers, piece: Piece) -> tuple[arb_series, arb_series]:
     """(d s_ij/d s², d a_ij/d s²) along a path of squared distances, on one piece that is not `Piece.OUT`."""
-    slant = (1 + law.eps * (s2 / law.area)).rsqrt()
-    z = ((1 + law.eps * (s2 / law.area)) * slant - 1) / law.eps
-    (action, action_slope), rho, rho_slope = _action(z, law), _bump(z, law, piece), _bump_slope(z, law, piece)
+    slant, z = _slant_and_norm(s2, law)
+    rho, rho_slope, (s, root) = _bump(z, law, piece), _bump_slope(z, law, piece), _shifted(z, law)
+    action, action_slope = _action(s, root, law), (law.a + law.b) / 2 * (root * root * root)
     along = rho_slope * action + rho * action_slope - law.eps * slant * rho * action
     return along * slant * slant / (2 * law.area), rho_slope * slant / (2 * law.area)
 
 
-def _action(z: arb_series, law: PairNumbers) -> tuple[arb_series, arb_series]:
-    """(φ(z − d_α), its derivative)."""
+def _slant_and_norm(s2: arb_series, law: PairNumbers) -> tuple[arb_series, arb_series]:
+    """(1/√(1 + εs²), z = (√(1 + εs²) − 1)/ε)."""
+    square = 1 + law.eps * (s2 / law.area)
+    slant = square.rsqrt()
+    return slant, (square * slant - 1) / law.eps
+
+
+def _shifted(z: arb_series, law: PairNumbers) -> tuple[arb_series, arb_series]:
+    """(s = z − d_α + c, 1/√(1 + s²)), of which φ and its slope are made."""
     s = z + law.offset
-    root = (1 + s * s).rsqrt()
-    return ((law.a + law.b) * (s * root) + (law.a - law.b)) / 2, (law.a + law.b) / 2 * (root * root * root)
+    return s, (1 + s * s).rsqrt()
+
+
+def _action(s: arb_series, root: arb_series, law: PairNumbers) -> arb_series:
+    """φ(z − d_α)."""
+    return ((law.a + law.b) * (s * root) + (law.a - law.b)) / 2
 
 
 def _bump(z: arb_series, law: PairNumbers, piece: Piece) -> arb_series:
