@@ -156,6 +156,17 @@ class TestBoundedMemory:
         assert 3 * recorder.between().q.size <= most
         assert held < 2 * 8 * most
 
+    def test_steps_before_the_first_sample_are_not_held(self):
+        recorder, block = Recorder(), np.zeros((100, 3, 100, 2))
+        tracemalloc.start()
+        for k in range(20):
+            q, p, u = np.moveaxis(block.copy(), 1, 0)
+            recorder.add(Samples(np.arange(100.0) + 100.0 * k, q, p, u, {}, wanted=False))
+        held, _ = tracemalloc.get_traced_memory()
+        tracemalloc.stop()
+        assert held < 2 * block.nbytes
+        assert recorder.between() is None
+
     def test_blocks_are_what_their_steps_are(self, runs):
         """Until the memory is full, to the bit, whichever way steps and samples come."""
         every, _, _ = runs
