@@ -124,7 +124,7 @@ class Recorder:
         self._slack: dict[float, FloatArray] = {}  # by time: of the path from there to the next, where it is off
 
     def add(self, some: Sample | Samples) -> None:
-        """The next samples, or steps before them."""
+        """The next samples, or the next steps: before steps are added, the samples among all before them have been."""
         if isinstance(some, Sample):
             some = Samples.of(some)
         if some.wanted:
@@ -132,15 +132,15 @@ class Recorder:
             return
         if not self._samples:  # earlier ones are nobody's
             self._steps, self._held = [], 0
+        self._keep_to_memory()
         self._steps.append(some)
         self._held += 3 * some.q.size
-        if self._held > self.most and self._samples:
-            self._thin()
 
     def between(self) -> Between | None:
         """What is between the samples; None if nothing is."""
         if not (self._steps and self._samples):
             return None
+        self._keep_to_memory()
         times = np.concatenate([some.t for some in self._samples])
         t, q, p, u = (np.concatenate([getattr(some, name) for some in self._steps]) for name in ("t", "q", "p", "u"))
         inside = (t > times[0]) & (t < times[-1])
@@ -153,8 +153,13 @@ class Recorder:
         exact, knots = np.zeros(q.shape[1]), np.sort(np.concatenate([times, t]))
         return Between(t, q, p, u, np.array([self._slack.get(knot, exact) for knot in knots[:-1].tolist()]))
 
-    def _thin(self) -> None:
-        """Leave out every other step; the others are copied, and all memory is let go."""
+    def _keep_to_memory(self) -> None:
+        """Leave out every other step if there are too many; the others are copied, and all memory is let go.
+
+        Where a step is left out, no sample may come between its neighbours any more.
+        """
+        if self._held <= self.most or not self._samples:
+            return
         first = self._samples[0].t[0]
         knots = sorted((one for some in (*self._samples, *self._steps) for one in some.each()), key=lambda one: one.t)
         knots = [one for one in knots if one.t >= first]

@@ -238,10 +238,10 @@ def _collect(
     return kept, recorder.between()
 
 
-def _one_by_one(samples: Iterator[Sample | Samples]) -> Iterator[Sample]:
-    """Each sample by itself, for who watches."""
+def _one_by_one(samples: Iterator[Sample | Samples]) -> Iterator[Sample | Samples]:
+    """Each sample by itself, for who watches; steps as they come."""
     for found in samples:
-        if isinstance(found, Samples):
+        if isinstance(found, Samples) and found.wanted:
             yield from found.each()
         else:
             yield found

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 import tracemalloc
 from dataclasses import replace
+from functools import partial
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -26,6 +28,7 @@ from flockana.measures.path_bounds import closest_approach, cohesion_bound
 
 LAW = Algorithm2(gains=Gains(c1_gamma=4.0, c2_gamma=0.2), target=StaticTarget((0.0, 0.0)))
 ENDS = (0.0, 6.0)
+simulate_module = import_module("flockana.dynamics.simulate")  # where a function has the module's name
 
 
 def start(n=8, seed=7):
@@ -124,21 +127,27 @@ class TestKeeping:
         assert run.between.t[-1] < 1.0
 
 
-@pytest.fixture(scope="module")
-def thinned(runs):
+@pytest.fixture(scope="module", params=[1, 3, 8, 20])
+def thinned(request, runs):
+    """A run whose steps come so many at a time, and after them the samples among them: first, last, and each 13th."""
     every, _, _ = runs
-    recorder = Recorder(most=3 * every.q[0].size * len(every.t) // 5)
-    for k in range(len(every.t)):
-        wanted = k in (0, len(every.t) // 2, len(every.t) - 1)
-        recorder.add(Sample(float(every.t[k]), every.q[k], every.p[k], every.u[k], {}, wanted))
-    keep = [0, len(every.t) // 2, len(every.t) - 1]
+    recorder, keep = Recorder(most=3 * every.q[0].size * len(every.t) // 5), _sampled(every)
+    for first in range(0, len(every.t), request.param):
+        some = np.arange(first, min(first + request.param, len(every.t)))
+        for of, wanted in ((np.setdiff1d(some, keep), False), (np.intersect1d(some, keep), True)):
+            if of.size:
+                recorder.add(Samples(every.t[of], every.q[of], every.p[of], every.u[of], {}, wanted))
     return merged(every.t[keep], every.q[keep], every.p[keep], every.u[keep], recorder.between())
+
+
+def _sampled(every):
+    return [*range(0, len(every.t) - 1, 13), len(every.t) - 1]
 
 
 class TestBoundedMemory:
     def test_no_more_is_kept_than_allowed(self, runs, thinned):
         every, _, _ = runs
-        assert len(every.t) // 12 < len(thinned.t) - 3 <= len(every.t) // 5
+        assert len(every.t) // 12 < len(thinned.t) - len(_sampled(every)) <= len(every.t) // 5
         assert set(thinned.t) <= set(every.t)
 
     def test_what_is_left_out_is_let_go(self):
@@ -199,14 +208,22 @@ class TestBoundedMemory:
         assert closest_approach(*thinned).lower <= float(min_distances(fine.q).min())
         assert cohesion_bound(*thinned).max() >= every.cohesion_bound()
 
+    def test_of_a_run_that_is_watched_the_same_is_kept(self, monkeypatch):
+        q, p = start(6)
+        monkeypatch.setattr(simulate_module, "Recorder", partial(Recorder, most=30 * 3 * q.size))
+        how = {"method": "RK4", "dt": 0.001, "t_eval": np.linspace(0.0, 3.0, 100)}  # several blocks of steps
+        watched, alone = (simulate(LAW, q, p, (0.0, 3.0), watch=watch, **how).between for watch in ([].append, None))
+        for name in ("t", "q", "p", "u", "slack"):
+            np.testing.assert_array_equal(getattr(watched, name), getattr(alone, name))
+
     def test_windows_and_files_keep_the_slack(self, runs, thinned, tmp_path):
         every, _, _ = runs
-        keep = np.isin(thinned.t, every.t[[0, len(every.t) // 2, len(every.t) - 1]])
+        keep = np.isin(thinned.t, every.t[_sampled(every)])
         between = Between(*(x[~keep] for x in thinned[:4]), thinned.slack)
         run = Trajectory(*(x[keep] for x in thinned[:4]), LAW, between=between)
         again = Trajectory.load(run.save(tmp_path / "thin.nc"))
         np.testing.assert_array_equal(again.path.slack, thinned.slack)
-        half = again.window(0.0, float(again.t[1]))
+        half = again.window(0.0, float(again.t[len(again.t) // 2]))
         assert len(half.between.slack) == len(half.path.t) - 1
         assert half.min_distance() >= again.min_distance() == run.min_distance()
 
