@@ -119,21 +119,19 @@ class Recorder:
 
     def __init__(self, most: int = MOST) -> None:
         self.most, self._held, self._thinned = most, 0, False
-        self._samples: list[Samples] = []
+        self._samples: list[Sample | Samples] = []  # as they came: no memory beside the run's own
         self._steps: list[Samples] = []
         self._slack: dict[float, FloatArray] = {}  # by time: of the path from there to the next, where it is off
 
     def add(self, some: Sample | Samples) -> None:
         """The next samples, or the next steps: before steps are added, the samples among all before them have been."""
-        if isinstance(some, Sample):
-            some = Samples.of(some)
         if some.wanted:
             self._samples.append(some)
             return
         if not self._samples:  # earlier ones are nobody's
             self._steps, self._held = [], 0
         self._keep_to_memory()
-        self._steps.append(some)
+        self._steps.append(Samples.of(some) if isinstance(some, Sample) else some)
         self._held += 3 * some.q.size
 
     def between(self) -> Between | None:
@@ -141,7 +139,7 @@ class Recorder:
         if not (self._steps and self._samples):
             return None
         self._keep_to_memory()
-        times = np.concatenate([some.t for some in self._samples])
+        times = np.concatenate([np.atleast_1d(some.t) for some in self._samples])
         t, q, p, u = (np.concatenate([getattr(some, name) for some in self._steps]) for name in ("t", "q", "p", "u"))
         inside = (t > times[0]) & (t < times[-1])
         if not inside.any():
@@ -160,7 +158,7 @@ class Recorder:
         """
         if self._held <= self.most or not self._samples:
             return
-        first = self._samples[0].t[0]
+        first = next(self._samples[0].each()).t
         knots = sorted((one for some in (*self._samples, *self._steps) for one in some.each()), key=lambda one: one.t)
         knots = [one for one in knots if one.t >= first]
         exact, before, kept, leave = np.zeros(len(knots[0].q)), knots[0], list[Sample](), False

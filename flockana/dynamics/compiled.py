@@ -30,7 +30,6 @@ METHODS = ("DOP853", "RK45", "RK23", "RK4")  # that there are compiled
 _STEPS, _NUMBERS = 512, 6_000_000  # in one call, at most: steps, and numbers kept of them
 _UNLISTED = "scipy-DOP853"  # which looks at pairs in blocks
 EXACT = Floor(0.0, 0.0, 0.0)
-BoolArray = npt.NDArray[np.bool_]
 
 
 class Allowed(NamedTuple):
@@ -219,8 +218,8 @@ def _parted(wanted: FloatArray, due: FloatArray, between: Any, steps: Any) -> It
         yield Samples(t[order], some[:, 0], some[:, 1], some[:, 2], {"work": its_work})
 
 
-def _among(times: FloatArray, some: FloatArray) -> BoolArray:
-    """Which times are among some others, which rise.
+def _among(times: FloatArray, some: FloatArray) -> npt.NDArray[np.bool_]:
+    """Which times are among some others, which rise: `np.isin` would sort them again for each block of steps.
 
     Examples
     --------

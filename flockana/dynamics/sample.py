@@ -24,6 +24,10 @@ class Sample(NamedTuple):
     extra: dict[str, FloatArray]
     wanted: bool = True
 
+    def each(self) -> Iterator[Sample]:
+        """Itself, as of several."""
+        yield self
+
 
 class Samples(NamedTuple):
     """Several instants of a run, in order: as a `Sample`, with a first axis of time; all of them wanted, or none."""

@@ -153,7 +153,7 @@ def _stacked(
     kept: list[Sample | Samples],
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, dict[str, FloatArray]]:
     """(t, q, p, u, extra) of a run; each sample is let go as soon as it is copied, so a run is not held twice."""
-    one = kept[0] if isinstance(kept[0], Sample) else next(kept[0].each())
+    one = next(kept[0].each())
     end = sum(np.size(samples.t) for samples in kept)
     shape, t = (end, *one.q.shape), np.empty(end)
     q, p, u = np.empty(shape), np.empty(shape), np.empty(shape)
@@ -241,10 +241,7 @@ def _collect(
 def _one_by_one(samples: Iterator[Sample | Samples]) -> Iterator[Sample | Samples]:
     """Each sample by itself, for who watches; steps as they come."""
     for found in samples:
-        if isinstance(found, Samples) and found.wanted:
-            yield from found.each()
-        else:
-            yield found
+        yield from found.each() if found.wanted else (found,)
 
 
 def _end(found: Sample | Samples) -> float:
