@@ -51,13 +51,24 @@ def connected(address: str, count: int) -> Iterator[tuple[Executor, Callable[[],
 
 def _own_cluster(count: int) -> Any:
     """Start worker processes on this machine."""
-    from distributed import LocalCluster
+    from distributed import LocalCluster, Nanny
+
+    class LimitedNanny(Nanny):  # type: ignore[misc]
+        async def close(self, *args: Any, **options: Any) -> Any:
+            started = self.process and self.process.process
+            try:
+                return await super().close(*args, **options)
+            finally:  # a process that was given up while it started is let go, not ended
+                if started is not None and started.is_alive():
+                    await started.kill()
+                    await started.join(_CLOSE)
 
     cluster = LocalCluster.__new__(LocalCluster)  # so that there is something to close if the constructor fails
     try:
         cluster.__init__(
             n_workers=count,
             threads_per_worker=1,
+            worker_class=LimitedNanny,
             host="127.0.0.1",
             dashboard_address="127.0.0.1:0",
             silence_logs=50,

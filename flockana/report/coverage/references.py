@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
 from pathlib import Path
+from pkgutil import iter_modules
 from typing import Any
 
 import flockana
@@ -104,9 +105,14 @@ def _walked(kind: str, name: str) -> tuple[Any, Any]:
             try:
                 found = import_module(f"{path}.{part}")
             except ModuleNotFoundError:
-                known = [f"{path}.{other}" for other in dir(holder) if not other.startswith("_")]
-                raise UnknownNameError(kind, name, known) from None
+                raise UnknownNameError(kind, name, [f"{path}.{other}" for other in _names(holder)]) from None
     return found, holder
+
+
+def _names(holder: Any) -> list[str]:
+    """Public names in a module or class; of a package also its modules that nobody has imported yet."""
+    within = {module.name for module in iter_modules(getattr(holder, "__path__", []))}
+    return sorted(name for name in {*dir(holder), *within} if not name.startswith("_"))
 
 
 def _file(found: Any, holder: Any) -> str:

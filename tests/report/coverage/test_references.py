@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import pytest
 
+import flockana.laws
 from flockana.base.errors import ArgumentError, FileError, UnknownNameError
 from flockana.report.coverage import Reference, locate, references
 
@@ -58,6 +59,12 @@ def test_a_wrong_name_is_told_with_those_near_it(kind, name, nearest):
     with pytest.raises(UnknownNameError, match=f"unknown {kind} '{name}'") as raised:
         locate(Reference(kind, name))
     assert nearest in str(raised.value)
+
+
+def test_names_near_a_wrong_one_do_not_hang_on_what_has_been_imported(monkeypatch):
+    monkeypatch.delattr(flockana.laws, "notebook", raising=False)  # as if nobody had imported it
+    with pytest.raises(UnknownNameError, match=r"did you mean 'flockana\.laws\.notebook'\?"):
+        locate(Reference("function", "flockana.laws.notebok"))
 
 
 def test_a_report_or_claim_of_what_is_none_names_it():
