@@ -18,6 +18,7 @@ from flockana.dynamics.sample import Sample, Samples
 from flockana.kernels.detours import detours
 
 MOST = 2**24  # numbers that are kept of the steps between samples: 128 MiB
+_TOGETHER = 256  # steps that came one at a time are put into one array, each: small arrays are mostly overhead
 
 
 class Course(NamedTuple):
@@ -121,6 +122,7 @@ class Recorder:
         self.most, self._held, self._thinned = most, 0, False
         self._samples: list[Sample | Samples] = []  # as they came: no memory beside the run's own
         self._steps: list[Samples] = []
+        self._single: list[Sample] = []  # the last steps, as far as they came one at a time
         self._slack: dict[float, FloatArray] = {}  # by time: of the path from there to the next, where it is off
 
     def add(self, some: Sample | Samples) -> None:
@@ -129,13 +131,25 @@ class Recorder:
             self._samples.append(some)
             return
         if not self._samples:  # earlier ones are nobody's
-            self._steps, self._held = [], 0
+            self._steps, self._single, self._held = [], [], 0
         self._keep_to_memory()
-        self._steps.append(Samples.of(some) if isinstance(some, Sample) else some)
         self._held += 3 * some.q.size
+        if isinstance(some, Sample):
+            self._single.append(some)
+            if len(self._single) < _TOGETHER:
+                return
+        self._put_together()
+        if isinstance(some, Samples):
+            self._steps.append(some)
+
+    def _put_together(self) -> None:
+        if self._single:
+            self._steps.append(Samples.of(self._single))
+            self._single = []
 
     def between(self) -> Between | None:
         """What is between the samples; None if nothing is."""
+        self._put_together()
         if not (self._steps and self._samples):
             return None
         self._keep_to_memory()
@@ -158,6 +172,7 @@ class Recorder:
         """
         if self._held <= self.most or not self._samples:
             return
+        self._put_together()
         first = next(self._samples[0].each()).t
         knots = sorted((one for some in (*self._samples, *self._steps) for one in some.each()), key=lambda one: one.t)
         knots = [one for one in knots if one.t >= first]
@@ -171,8 +186,8 @@ class Recorder:
                     continue
                 kept.append(one)
             before = one
-        t, q, p, u = (np.array([getattr(one, name) for one in kept]) for name in ("t", "q", "p", "u"))
-        self._steps, self._held, self._thinned = [Samples(t, q, p, u, {}, wanted=False)], 3 * q.size, True
+        self._steps, self._thinned = [Samples.of(kept)], True
+        self._held = 3 * self._steps[0].q.size
 
 
 def _detours(before: Sample, middle: Sample, after: Sample, slack: FloatArray, later: FloatArray) -> FloatArray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -40,10 +40,10 @@ class Samples(NamedTuple):
     wanted: bool = True
 
     @classmethod
-    def of(cls, one: Sample) -> Samples:
-        """One instant as several."""
-        extra = {name: np.asarray(value)[None] for name, value in one.extra.items()}
-        return cls(np.array([one.t]), one.q[None], one.p[None], one.u[None], extra, one.wanted)
+    def of(cls, steps: Sequence[Sample]) -> Samples:
+        """Steps between samples, in one array each."""
+        t, q, p, u = (np.array([getattr(step, name) for step in steps]) for name in ("t", "q", "p", "u"))
+        return cls(t, q, p, u, {}, wanted=False)
 
     def each(self) -> Iterator[Sample]:
         """One after the other."""

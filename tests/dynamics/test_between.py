@@ -165,6 +165,19 @@ class TestBoundedMemory:
         assert 3 * recorder.between().q.size <= most
         assert held < 2 * 8 * most
 
+    def test_single_steps_of_few_agents_take_their_numbers_and_no_objects(self):
+        recorder, steps = Recorder(), 4000
+        recorder.add(Sample(-1.0, *np.zeros((3, 2, 1)), {}))
+        tracemalloc.start()
+        for k in range(steps):
+            recorder.add(Sample(float(k), *(np.full((2, 1), float(k)) for _ in range(3)), {}, wanted=False))
+        held, _ = tracemalloc.get_traced_memory()
+        tracemalloc.stop()
+        recorder.add(Sample(float(steps), *np.zeros((3, 2, 1)), {}))
+        assert held < 4 * 8 * (7 * steps)
+        np.testing.assert_array_equal(recorder.between().t, np.arange(steps))
+        np.testing.assert_array_equal(recorder.between().u[:, 1, 0], np.arange(steps))
+
     def test_steps_before_the_first_sample_are_not_held(self):
         recorder, block = Recorder(), np.zeros((100, 3, 100, 2))
         tracemalloc.start()
@@ -184,7 +197,7 @@ class TestBoundedMemory:
         for k in range(len(every.t)):
             one_by_one.add(Sample(float(every.t[k]), every.q[k], every.p[k], every.u[k], {}, k in ends))
         wanted = np.isin(np.arange(len(every.t)), ends)
-        together.add(Samples.of(Sample(float(every.t[0]), every.q[0], every.p[0], every.u[0], {})))
+        together.add(Sample(float(every.t[0]), every.q[0], every.p[0], every.u[0], {}))
         for some, flag in ((~wanted, False), (wanted & (every.t > 0.0), True)):
             together.add(Samples(every.t[some], every.q[some], every.p[some], every.u[some], {}, flag))
         for name in ("t", "q", "p", "u"):
