@@ -53,8 +53,9 @@ def discrete(
             own = wanted[slice(*np.searchsorted(wanted, [first + 1, last + 1]))]
         made, rows, states = _stretch(law, t0 + first * dt, q, p, memory, own - first, last - first)
         qs, ps, us, series = states
-        known = np.isfinite(qs).all(axis=(1, 2)) & np.isfinite(ps).all(axis=(1, 2))
-        good = made.size if known.all() else int(np.argmin(known))
+        good = made.size
+        if not finite(qs, ps):
+            good = int(np.argmin(np.isfinite(qs).all(axis=(1, 2)) & np.isfinite(ps).all(axis=(1, 2))))
         kept = rows[rows < good]
         if kept.size:
             # of all steps a view, of some a copy: the others are let go

@@ -145,7 +145,8 @@ def simulate(
             watch(_copy(first))
     t, q, p, u, extra = _stacked(kept)
     run = Trajectory(t, q, p, u, law, extra, tally.status, tally.message, stats, between)
-    run.remembered(AS_SIMULATED, run.samples_digest)
+    if not isinstance(law, DiscreteLaw):  # steps of a map are made again to see whether they lead to the samples
+        run.remembered(AS_SIMULATED, run.samples_digest)
     return run
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from flockana.base.checks import FloatArray
+from flockana.base.vectors import lengths
 from flockana.laws.switched import Pieces, SwitchedLaw
 
 Way = Callable[[float], FloatArray]
@@ -74,7 +75,7 @@ def turns(law: SwitchedLaw, pieces: Pieces, way: Way, start: float, end: float) 
     times = 0.5 * (start + end) + 0.5 * (end - start) * _NODES
     places = np.stack([way(t) for t in times.tolist()])  # (nodes, n, m)
     series = np.tensordot(_TO_SERIES, places, axes=1)
-    reach = np.sum(np.linalg.norm(series[1:], axis=2), axis=0)  # an agent's way from its mean place, series[0]
+    reach = np.sum(lengths(series[1:]), axis=0)  # an agent's way from its mean place, series[0]
     rows, columns = np.triu_indices(len(reach), 1)
     near = law.margins(pieces, series[0]).inside <= (reach[rows] + reach[columns]) * (1.0 + 1e-9)
     times_of_turns: set[float] = set()

@@ -17,6 +17,7 @@ from flockana.base.checks import FloatArray, real_array
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.scales import Scales
 from flockana.base.units import rescale, times
+from flockana.base.vectors import centres, lengths
 from flockana.dynamics import saved
 from flockana.dynamics.between import Between, Course, merged
 from flockana.laws.discrete import ensure_law
@@ -132,8 +133,8 @@ class Trajectory:
         """The law's natural length and time; under a law that has none, the flock's extent and the run's duration."""
         if self.law.scales is not None:
             return self.law.scales  # type: ignore[no-any-return]
-        extent = float(np.linalg.norm(self.q - self.q.mean(axis=1, keepdims=True), axis=2).max())
-        travel = float(np.linalg.norm(self.q - self.q[0], axis=2).max())
+        extent = float(lengths(self.q - centres(self.q)[:, None]).max())
+        travel = float(lengths(self.q - self.q[0]).max())
         return Scales(extent or travel or 1.0, float(self.t[-1] - self.t[0]) or 1.0)
 
     def in_units(self, length: float, time: float) -> Trajectory:

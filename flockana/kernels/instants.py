@@ -10,19 +10,25 @@ from flockana.kernels.compiling import njit
 from flockana.kernels.sums import column_mean
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy", nogil=True)
 def least_distances(q):
-    """Least distance between two agents at each instant, shape (T,) of (T, n, m); ∞ for one agent."""
-    distances = np.empty(len(q))
-    for k in range(len(q)):
-        least = inf
-        for i in range(q.shape[1]):
+    """Least distance between two agents at each instant, shape (T,) of (T, n, m); ∞ for one agent.
+
+    Each agent keeps the least square to those after it, so that the inner loop is compiled to SIMD.
+    """
+    count, n, m = q.shape
+    distances, x, least = np.empty(count), np.zeros((3, n)), np.empty(n)
+    for k in range(count):
+        for i in range(n):
+            for c in range(m):
+                x[c, i] = q[k, i, c]
+        least[:] = inf
+        for i in range(1, n):
+            x0, x1, x2 = x[0, i], x[1, i], x[2, i]
             for j in range(i):
-                s2 = 0.0
-                for c in range(q.shape[2]):
-                    s2 += (q[k, j, c] - q[k, i, c]) ** 2
-                least = min(least, s2)
-        distances[k] = sqrt(least)
+                s2 = (x[0, j] - x0) ** 2 + (x[1, j] - x1) ** 2 + (x[2, j] - x2) ** 2
+                least[j] = min(least[j], s2)
+        distances[k] = sqrt(least.min())
     return distances
 
 

@@ -14,6 +14,7 @@ from flockana.base.errors import ArgumentError
 from flockana.base.overrides import speaks_for
 from flockana.base.scales import Scales
 from flockana.base.units import times
+from flockana.base.vectors import lengths
 from flockana.kernels.minimal import AT_ONCE, edge_forces, perceived_edges, perceived_forces, semi_implicit_steps
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.edges import EdgeData, PerAgent, PerPair, per_agent, per_pair, weighed_edges
@@ -298,7 +299,7 @@ class MinimalFlocking(Law):
     ) -> Mapping[str, Any]:
         if self.edges is not None:
             head, tail, _, rho, _ = self._frozen
-            errors = np.abs(np.linalg.norm(q[:, tail] - q[:, head], axis=2) - rho)
+            errors = np.abs(lengths(q[:, tail] - q[:, head]) - rho)
             text = "largest edge error | ‖x_e‖ − ρ_e | (length)"
             return {"edge_error": Series(text, errors.max(axis=1), logarithmic=True)} | _profile(q)
         return self._net_series(q) | _profile(q)

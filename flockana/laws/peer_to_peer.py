@@ -11,6 +11,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.scales import Scales
+from flockana.base.vectors import lengths
 from flockana.environment.copies import Copies
 from flockana.interactions import AlphaInteraction, Gains, PairInteraction
 from flockana.laws.olfati_saber import GAINS, PAIR, alpha_scales, ensure_part
@@ -76,7 +77,7 @@ class PeerToPeer(SumOfTerms):
         self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
     ) -> Mapping[str, Any]:
         places = np.array([self.copies.state(float(time))[0] for time in t])
-        spread = np.linalg.norm(places - places.mean(axis=1, keepdims=True), axis=2).max(axis=1)
+        spread = lengths(places - places.mean(axis=1, keepdims=True)).max(axis=1)
         away = np.linalg.norm(q.mean(axis=1) - places.mean(axis=1), axis=1)
         return {
             "copies_apart": ("largest distance of a copy from the mean of all (length)", spread),

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_points
+from flockana.base.vectors import lengths
 from flockana.environment.beta import ObstacleField
 from flockana.environment.obstacles import Obstacle
 from flockana.interactions import AlphaInteraction, BetaInteraction
@@ -177,7 +178,7 @@ def at_once(obstacle: Obstacle, curves: FloatArray, middle: FloatArray, tol: flo
         outward = -gap / here[:, None]  # the gradient of the signed distance, inside too
     plane = np.einsum("km,kcm->kc", outward, hull).min(axis=1)
     plane[~np.isfinite(plane) | (np.abs(here) <= tol)] = -inf  # no direction there: only the distance bounds
-    return here, here + np.maximum(plane, -np.linalg.norm(hull, axis=2).max(axis=1))
+    return here, here + np.maximum(plane, -lengths(hull).max(axis=1))
 
 
 def _halves(curves: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_points, ensure_positive
+from flockana.base.vectors import centres, lengths
 from flockana.kernels.components import labelled, squared_excess, unite
 from flockana.kernels.instants import greatest_distances, least_distances
 from flockana.kernels.neighbours import pair_blocks
@@ -286,7 +287,7 @@ def cohesion_radii(q: FloatArray) -> FloatArray:
     q : ndarray, shape (T, n, m)
         Positions.
     """
-    radii: FloatArray = np.linalg.norm(_centred(q), axis=2).max(axis=1)
+    radii: FloatArray = lengths(_centred(q)).max(axis=1)
     return radii
 
 
@@ -338,8 +339,7 @@ def orders(p: FloatArray) -> FloatArray:
     p : ndarray, shape (T, n, m)
         Velocities.
     """
-    lengths: FloatArray = np.linalg.norm(_headings(p).mean(axis=1), axis=1)
-    return lengths
+    return lengths(centres(_headings(p)))
 
 
 def coordinations(p: FloatArray) -> FloatArray:
@@ -358,12 +358,12 @@ def coordinations(p: FloatArray) -> FloatArray:
 
 
 def _centred(x: FloatArray) -> FloatArray:
-    centred: FloatArray = x - x.mean(axis=1, keepdims=True)
+    centred: FloatArray = x - centres(x)[:, None]
     return centred
 
 
 def _headings(p: FloatArray) -> FloatArray:
     """Directions of motion; 0 of agents at rest."""
-    speed = np.linalg.norm(p, axis=2, keepdims=True)
+    speed = lengths(p)[..., None]
     headings: FloatArray = np.divide(p, speed, out=np.zeros_like(p), where=speed > 0.0)
     return headings

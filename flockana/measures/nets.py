@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray, ensure_count, ensure_links, ensure_points, ensure_positive, ensure_series
+from flockana.base.vectors import lengths
 from flockana.kernels.components import labelled, unite
 from flockana.kernels.neighbours import pair_list
 from flockana.kernels.rank import rank_modulo
@@ -59,8 +60,7 @@ def link_lengths(q: FloatArray, pairs: LinkArray) -> FloatArray:
     >>> link_lengths(np.array([[0.0, 0.0], [3.0, 4.0]]), np.array([[0, 1]], dtype=np.int32)).tolist()
     [5.0]
     """
-    lengths: FloatArray = np.linalg.norm(q[pairs[:, 1]] - q[pairs[:, 0]], axis=1)
-    return lengths
+    return lengths(q[pairs[:, 1]] - q[pairs[:, 0]])
 
 
 def components(n: int, pairs: LinkArray) -> npt.NDArray[np.int32]:

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
+from flockana.base.vectors import lengths
 from flockana.environment.obstacles import Obstacle, Sphere, Wall
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.laws.led_dead_zone import LedDeadZoneFlocking
@@ -226,7 +227,7 @@ def _series(run: Trajectory) -> list[tuple[str, str, bool, FloatArray]]:
         if name in run._metric_names:
             it = run.measure(name)
             found.append((name, it.label, bool(it.logarithmic), run.metric(name)))
-    found.append(("effort", "control effort: greatest ‖u‖", False, np.linalg.norm(run.u, axis=2).max(axis=1)))
+    found.append(("effort", "control effort: greatest ‖u‖", False, lengths(run.u).max(axis=1)))
     return [each for each in found if np.isfinite(each[-1]).all()]  # a number that is none has no place in a strip
 
 

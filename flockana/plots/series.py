@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.ticker import FormatStrFormatter, MaxNLocator, NullFormatter
 
 from flockana.base.errors import UnknownNameError
+from flockana.base.vectors import lengths
 from flockana.laws.discrete import DiscreteLaw
 from flockana.measures.profiles import pair_distance_profile
 from flockana.plots.dense import velocities_between
@@ -291,7 +292,7 @@ def speeds(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     """
     ax = ensure_axes(ax)
     (t, p), target = velocities_between(trajectory), trajectory.law.target
-    speed = np.linalg.norm(p, axis=2)
+    speed = lengths(p)
     width, alpha = hairline(trajectory.n)
     ax.plot(t, speed, color=BLUE, linestyle="-", linewidth=width, alpha=alpha)
     ax.plot([], [], color=BLUE, linestyle="-", linewidth=0.8, label="agents")

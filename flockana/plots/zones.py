@@ -11,6 +11,7 @@ from matplotlib.patches import Circle, Polygon, Rectangle
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar
 from flockana.base.errors import ArgumentError
+from flockana.base.vectors import lengths
 from flockana.environment.obstacles import Sphere
 from flockana.environment.zone_world import ZoneWorld
 from flockana.laws.bearing_distance import ZoneFlocking
@@ -191,7 +192,7 @@ def zone_distances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     if first.size > _AS_LINES:
         pair_distances(trajectory, ax=ax)
     else:
-        apart = np.linalg.norm(trajectory.q[:, first] - trajectory.q[:, second], axis=2)
+        apart = lengths(trajectory.q[:, first] - trajectory.q[:, second])
         width, alpha = hairline(2 * max(1, first.size))
         ax.plot(trajectory.t, apart, color=BLUE, linestyle="-", linewidth=width, alpha=alpha)
         ax.plot([], [], color=BLUE, linestyle="-", linewidth=0.8, label="pairs")
@@ -219,7 +220,7 @@ def zone_speeds(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     matplotlib.axes.Axes
     """
     law, ax = _law(trajectory), ensure_axes(ax)
-    _agents(ax, trajectory, np.linalg.norm(trajectory.p, axis=2))
+    _agents(ax, trajectory, lengths(trajectory.p))
     ax.axhline(law.desired_speed, color=GREEN, linestyle=":", linewidth=1.2, label="desired")
     ax.axhline(law.v_max, color=VERMILLION, linestyle="--", linewidth=1.1, label="bound")
     ax.set_ylim(0.0, 1.08 * law.v_max)
@@ -241,7 +242,7 @@ def zone_controls(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     matplotlib.axes.Axes
     """
     law, ax = _law(trajectory), ensure_axes(ax)
-    _agents(ax, trajectory, np.linalg.norm(trajectory.u, axis=2))
+    _agents(ax, trajectory, lengths(trajectory.u))
     ax.axhline(law.u_max, color=VERMILLION, linestyle="--", linewidth=1.1, label="bound")
     ax.set_ylim(0.0, 1.08 * law.u_max)
     return finish_over_time(ax, trajectory.t, "input ‖u‖ (length/time²)")

@@ -10,6 +10,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.modules import modules
+from flockana.base.vectors import lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.plots.series import PANEL, has_metric
 from flockana.plots.snapshot import drawn_law
@@ -116,7 +117,7 @@ def speeds(run: Trajectory, levels: Sequence[tuple[float, str]] = ()) -> Chart:
     levels : sequence of (float, str)
         Bounds, with their names.
     """
-    return _spread("speeds (length/time)", run.t, np.linalg.norm(run.p, axis=2), levels)
+    return _spread("speeds (length/time)", run.t, lengths(run.p), levels)
 
 
 def effort(run: Trajectory, levels: Sequence[tuple[float, str]] = ()) -> Chart:
@@ -129,7 +130,7 @@ def effort(run: Trajectory, levels: Sequence[tuple[float, str]] = ()) -> Chart:
     levels : sequence of (float, str)
         Bounds, with their names.
     """
-    size = np.linalg.norm(run.u, axis=2)
+    size = lengths(run.u)
     curves = Curve(size.max(axis=1), "greatest"), Curve(size.mean(axis=1), "mean")
     return Chart("control effort ‖u‖ (length/time²)", run.t, curves, levels=levels)
 

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from flockana import plots
 from flockana.base.checks import FloatArray
+from flockana.base.vectors import lengths
 from flockana.lattice import harborth, hexagonal_spiral
 from flockana.report.figures import Picture
 from flockana.report.image import svg
@@ -83,7 +84,7 @@ def lattice_section(pages: Iterable[Page]) -> LatticeSection | None:
 
 def _links(q: FloatArray, r: float) -> int:
     """How many pairs are closer than r: of so few agents without the kernels, which take longer to load."""
-    return int(np.count_nonzero(np.linalg.norm(q[:, None] - q, axis=2) < r) - len(q)) // 2
+    return int(np.count_nonzero(lengths(q[:, None] - q) < r) - len(q)) // 2
 
 
 def _end(name: str, verdict: Verdict) -> EndState | None:

@@ -125,21 +125,20 @@ def _world(solids: Sequence[Obstacle], wires: Sequence[FloatArray], put: Any, sc
 
 def _walls(solids: Sequence[Obstacle], q: FloatArray, put: Any) -> str:
     """Of each wall in space a grid about the foot of the run's centre, as the player draws it."""
-    path = ""
-    low, high = q.min(axis=(0, 1)), q.max(axis=(0, 1))
-    for solid in solids:
-        if isinstance(solid, Wall) and solid.dimension == 3:
-            y, a = solid.par[:3], solid.par[3:]
-            foot = 0.5 * (low + high) - ((0.5 * (low + high) - y) @ a) * a
-            u = np.cross(a, np.eye(3)[np.argmin(np.abs(a))])
-            axes = (
-                0.6 * float((high - low).max()) * np.array([u / np.linalg.norm(u), np.cross(a, u) / np.linalg.norm(u)])
-            )
-            for k in np.linspace(-1.0, 1.0, 5):
-                for ends in (((k, -1.0), (k, 1.0)), ((-1.0, k), (1.0, k))):
-                    (x0, y0), (x1, y1) = put(_flat(foot + np.array(ends) @ axes)).tolist()
-                    path += f"M{x0:.0f} {y0:.0f}L{x1:.0f} {y1:.0f}"
-    return f'<path class="box" d="{path}"/>' if path else ""
+    walls = [solid for solid in solids if isinstance(solid, Wall) and solid.dimension == 3]
+    if not walls:
+        return ""
+    path, low, high = "", q.min(axis=(0, 1)), q.max(axis=(0, 1))
+    for wall in walls:
+        y, a = wall.par[:3], wall.par[3:]
+        foot = 0.5 * (low + high) - ((0.5 * (low + high) - y) @ a) * a
+        u = np.cross(a, np.eye(3)[np.argmin(np.abs(a))])
+        axes = 0.6 * float((high - low).max()) * np.array([u / np.linalg.norm(u), np.cross(a, u) / np.linalg.norm(u)])
+        for k in np.linspace(-1.0, 1.0, 5):
+            for ends in (((k, -1.0), (k, 1.0)), ((-1.0, k), (1.0, k))):
+                (x0, y0), (x1, y1) = put(_flat(foot + np.array(ends) @ axes)).tolist()
+                path += f"M{x0:.0f} {y0:.0f}L{x1:.0f} {y1:.0f}"
+    return f'<path class="box" d="{path}"/>'
 
 
 def _points(corners: Any) -> str:

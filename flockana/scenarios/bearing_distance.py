@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
+from flockana.base.vectors import lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.zone_obstacles import Box, SimplePolygon
 from flockana.environment.zone_world import Alien, ZoneWorld
@@ -73,13 +74,13 @@ def _radius(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _speed(run: Trajectory, tolerances: Tolerances) -> Claim:
-    mean = float(_late(run, np.linalg.norm(run.p, axis=2).mean(axis=1), 5.0).mean())
+    mean = float(_late(run, lengths(run.p).mean(axis=1), 5.0).mean())
     text = f"the mean speed from t = 5 on is {mean:.3f}"
     return finding("speed", _NEAR * SPEED - abs(mean - SPEED), text, computed=mean, stated="about 3")
 
 
 def _bounds(run: Trajectory, tolerances: Tolerances) -> Claim:
-    speed, force = (float(np.linalg.norm(x, axis=2).max()) for x in (run.p, run.u))
+    speed, force = (float(lengths(x).max()) for x in (run.p, run.u))
     margin = min(1.0 + _KEPT - x / bound for x, bound in ((speed, run.law.v_max), (force, run.law.u_max)))
     text = f"the largest speed is {speed:.4g} of {run.law.v_max:g}, the largest input {force:.4g} of {run.law.u_max:g}"
     return finding("bounds", margin, text, computed=(speed, force), stated=(run.law.v_max, run.law.u_max))

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from flockana.base.vectors import lengths
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import Gains
@@ -103,7 +104,7 @@ def _swing(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _fastest_at_target(run: Trajectory, tolerances: Tolerances) -> Claim:
-    k = int(np.argmax(np.linalg.norm(run.p, axis=2).mean(axis=1)))
+    k = int(np.argmax(lengths(run.p).mean(axis=1)))
     away = np.linalg.norm(run.q.mean(axis=1) - run.law.target.position(0.0), axis=1)
     share = float(away[k] / away.max())
     text = (
@@ -126,7 +127,7 @@ def _smaller(name: str) -> Callable[[Trajectory, Tolerances], Claim]:
 def _spikes(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Outliers in speed after iteration 50, when the net has long been connected."""
     late = run.window(50 * DT, float(run.t[-1]))
-    own = np.linalg.norm(late.p, axis=2).max(axis=1)
+    own = lengths(late.p).max(axis=1)
     flock = float(np.linalg.norm(late.p.mean(axis=1), axis=1).mean())
     ratio, k = float(own.max()) / flock, int(np.argmax(own))
     apart = float((late.metric("connectivity") < 1.0).mean())
@@ -169,7 +170,7 @@ def _separated(iteration: int) -> Callable[[Trajectory, Tolerances], Claim]:
     def check(run: Trajectory, tolerances: Tolerances) -> Claim:
         late = run.window(iteration * DT, float(run.t[-1]))
         apart = int((late.metric("connectivity") < 1.0).sum())
-        k, i = np.unravel_index(int(np.linalg.norm(late.p, axis=2).argmax()), late.p.shape[:2])
+        k, i = np.unravel_index(int(lengths(late.p).argmax()), late.p.shape[:2])
         q, target = late.q[k], run.law.target.position(float(late.t[k]))
         mates = int((np.linalg.norm(q - q[i], axis=1) < run.law.alpha.r).sum()) - 1
         away = np.linalg.norm(q - target, axis=1)

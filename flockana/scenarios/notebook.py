@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from flockana.base.vectors import lengths
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import StaticTarget
@@ -132,7 +133,7 @@ def _departs(run: Trajectory, tolerances: Tolerances) -> Claim:
             **_integrator(run.law.law),
         ),
     )
-    apart = np.linalg.norm(run.q - flow.q, axis=2).max(axis=1) / law.alpha.d
+    apart = lengths(run.q - flow.q).max(axis=1) / law.alpha.d
     beyond = np.flatnonzero(apart > _FOLLOWED)
     since = f"from t = {run.t[beyond[0]]:.3g} on" if beyond.size else "at no time"
     energy, true = run.energy()[-1], flow.energy()[-1]

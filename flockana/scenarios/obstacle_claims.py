@@ -8,6 +8,7 @@ from math import inf
 import numpy as np
 
 from flockana.base.checks import FloatArray
+from flockana.base.vectors import lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.obstacles import Obstacle
 from flockana.measures.clearance import ConstrainedLattice, constrained_lattice
@@ -106,7 +107,7 @@ def traps(run: Trajectory, tolerances: Tolerances) -> Claim:
     held = blocked(run.q[-1], run.law.target.position(float(run.t[-1])), run.law.obstacles)
     last = run.t >= run.t[-1] - 0.1 * (run.t[-1] - run.t[0])
     limit = tolerances.agreement * run.law.gains.c1_gamma * run.law.alpha.unit / run.law.gains.c2_gamma
-    slow = np.linalg.norm(run.p[last], axis=2).max(axis=0) < limit
+    slow = lengths(run.p[last]).max(axis=0) < limit
     count = int((held & slow).sum())
     detail = (
         f"until t = {run.t[-1]:g} {count} of {run.n} agents rest (slower than {limit:.3g}, {tolerances.agreement:g} of "
@@ -126,7 +127,7 @@ def rests(run: Trajectory, tolerances: Tolerances) -> Claim:
     law, late = run.law, np.flatnonzero(run.t >= run.t[-1] - 0.1 * (run.t[-1] - run.t[0]))
     still = np.zeros_like(run.p[0])
     forces = np.array([np.linalg.norm(law.acceleration(run.t[k], run.q[k], still), axis=1).max() for k in late])
-    forces, speeds = forces / run.scales.force, np.linalg.norm(run.p[late], axis=2).max(axis=1) / run.scales.speed
+    forces, speeds = forces / run.scales.force, lengths(run.p[late]).max(axis=1) / run.scales.speed
     lefts = np.maximum(forces / tolerances.force, speeds / np.sqrt(tolerances.velocity))
     calmest = int(np.argmin(lefts))
     t, force, speed = (float(series[calmest]) for series in (run.t[late], forces, speeds))

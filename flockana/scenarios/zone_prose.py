@@ -12,6 +12,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_count
 from flockana.base.errors import ArgumentError
+from flockana.base.vectors import lengths
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.zone_world import Alien, ZoneWorld
@@ -68,7 +69,7 @@ def _walled(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _hazards(run: Trajectory, tolerances: Tolerances) -> Claim:
-    gaps = np.linalg.norm(run.q[:, : len(_HAZARD)] - run.extra["alien"][:, :1], axis=2).min(axis=0)
+    gaps = lengths(run.q[:, : len(_HAZARD)] - run.extra["alien"][:, :1]).min(axis=0)
     stated = _SEEN - _SPEED * _DRIVE / np.array(_HAZARD)
     off = float(np.abs(gaps - stated).max()) / _SEEN
     text = f"agents with w^ss = 12, 15, 20 keep {', '.join(f'{gap:.3f}' for gap in gaps)} m from the alien, as s - v^d "

@@ -11,6 +11,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_positive
 from flockana.base.errors import ArgumentError
+from flockana.base.vectors import lengths
 from flockana.dynamics.simulate import simulate
 from flockana.measures.frame import moving_frame
 from flockana.measures.nets import links
@@ -263,7 +264,7 @@ def linear_range(
         line = mode_motion(flock, mode, amplitude=size, periods=1.0 + 3.0 * bool(mode.frequency), samples=97)
         q, _ = _run(flock, line.q[0] - flock.q, line.p[0], line.t)
         drift = _off_centre(flock, q - line.q)
-        deviations.append(float(np.linalg.norm(drift, axis=2).max()) / size)
+        deviations.append(float(lengths(drift).max()) / size)
         changes.append(len({links(x, reach).tobytes() for x in q}) > 1 if np.isfinite(reach) else False)
     return LinearRange(
         name or type(flock.law).__name__, levels, np.array(deviations), np.array(changes), _margin(flock, mode, reach)

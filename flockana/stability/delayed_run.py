@@ -17,6 +17,7 @@ from flockana.base.checks import (
     ensure_time_span,
 )
 from flockana.base.errors import ArgumentError
+from flockana.base.vectors import lengths
 from flockana.dynamics.encounters import Encounters, State
 from flockana.dynamics.iterate import count_steps
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
@@ -150,7 +151,7 @@ def simulate_delayed(
 def _heard_of_others(term: PairTerm, q: FloatArray, p: FloatArray, q_old: FloatArray, p_old: FloatArray) -> FloatArray:
     """What a pair term makes of an agent's own state now and of the others' as they were, shape (n, m)."""
     n, u = len(q), np.zeros_like(q)
-    apart = np.linalg.norm(q_old[None, :, :] - q[:, None, :], axis=2) < term.pair.range
+    apart = lengths(q_old[None, :, :] - q[:, None, :]) < term.pair.range
     i, j = np.nonzero(apart & ~np.eye(n, dtype=bool))
     weight, adjacency, _ = term.pair.kernels.terms(np.vstack([q, q_old]), i, n + j, term.pair.par)
     force = term.stiffness * weight[:, None] * (q_old[j] - q[i]) + term.damping * adjacency[:, None] * (p_old[j] - p[i])

@@ -6,6 +6,7 @@ from math import isfinite
 
 import numpy as np
 
+from flockana.base.vectors import lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.measures.nets import links
 from flockana.theorems.olfati_saber.collisions import contacts_of
@@ -26,7 +27,7 @@ def squash(x: float) -> float:
 def pairs_apart(run: Trajectory, claim: Claim) -> float:
     """Lead for a count of pairs that meet: distance of the nearest pair that has not met, over d."""
     i, j = np.triu_indices(run.n, 1)
-    apart = np.linalg.norm(run.q[:, i] - run.q[:, j], axis=2).min(axis=0)
+    apart = lengths(run.q[:, i] - run.q[:, j]).min(axis=0)
     touched = {(contact.i, contact.j) for contact in contacts_of(run, Tolerances())}
     others = [x for x, a, b in zip(apart.tolist(), i.tolist(), j.tolist(), strict=True) if (a, b) not in touched]
     return squash(min(others, default=0.0) / run.law.lattice[0])

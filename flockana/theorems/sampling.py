@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
+from flockana.base.vectors import lengths
 from flockana.dynamics.between import Course
 from flockana.dynamics.trajectory import Trajectory
 from flockana.kernels.paths import bernstein
@@ -32,7 +33,7 @@ def _motion(run: Trajectory) -> FloatArray:
         ends = (x[k + side] for side in (0, 1) for x in (path.q, path.p, path.u))
         points, _, allowance = bernstein(h, *ends)
         legs = 5.0 / h * np.diff(points - points.mean(axis=0), axis=1)
-        sizes = [np.linalg.norm(x, axis=2).max() for x in (legs, 4.0 / h * np.diff(legs, axis=1))]
+        sizes = [lengths(x).max() for x in (legs, 4.0 / h * np.diff(legs, axis=1))]
         bounds[:, k] = *sizes, (allowance if path.slack is None else allowance + path.slack[k]).max()
     return run.over_intervals(np.maximum, bounds)
 
@@ -251,8 +252,8 @@ def _relative(path: Course, steps: range, pairs: LinkArray) -> tuple[FloatArray,
         h = float(path.t[k + 1] - path.t[k])
         points = bernstein(h, *(x[k + side] for side in (0, 1) for x in (path.q, path.p, path.u)))[0]
         legs = 5.0 / h * np.diff(points[pairs[:, 1]] - points[pairs[:, 0]], axis=1)
-        speed = np.maximum(speed, np.linalg.norm(legs, axis=2).max(axis=1))
-        force = np.maximum(force, np.linalg.norm(4.0 / h * np.diff(legs, axis=1), axis=2).max(axis=1))
+        speed = np.maximum(speed, lengths(legs).max(axis=1))
+        force = np.maximum(force, lengths(4.0 / h * np.diff(legs, axis=1)).max(axis=1))
     return speed, force
 
 

@@ -6,6 +6,7 @@ from math import tanh
 
 import numpy as np
 
+from flockana.base.vectors import lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.theorems.bearing_distance.random_starts import runs_from_random_starts
@@ -31,7 +32,7 @@ def dragged_speed(dt: float, *, u_max: float = 2.0, v_max: float = 4.0) -> float
 
 def _late_speed(run: Trajectory) -> float:
     """Mean speed of all agents over the second half of a run."""
-    return float(np.linalg.norm(run.p[len(run.t) // 2 :], axis=2).mean())
+    return float(lengths(run.p[len(run.t) // 2 :]).mean())
 
 
 def _check(tolerances: Tolerances) -> list[Claim]:

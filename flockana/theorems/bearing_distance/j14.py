@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flockana.base.checks import FloatArray
+from flockana.base.vectors import lengths
 from flockana.dynamics.simulate import simulate
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
@@ -70,7 +71,7 @@ def _speeds(informed: int) -> list[float]:
     """Mean speed over the second half of runs of ten agents of whom so many are informed, by seed."""
     weights = ZoneWeights(speed=tuple([5.0] * informed + [0.0] * (_AGENTS - informed)))
     runs = (simulate(ZoneFlocking(_RADII, weights), *separated_start(k), (0.0, _DURATION)) for k in range(_SEEDS))
-    return [float(np.linalg.norm(run.p[len(run.t) // 2 :], axis=2).mean()) for run in runs]
+    return [float(lengths(run.p[len(run.t) // 2 :]).mean()) for run in runs]
 
 
 def _check(tolerances: Tolerances) -> list[Claim]:

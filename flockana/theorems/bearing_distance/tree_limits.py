@@ -22,6 +22,7 @@ from math import inf, sqrt
 import numpy as np
 
 from flockana.base.checks import FloatArray
+from flockana.base.vectors import lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.measures.perception import edge_vectors
 from flockana.theorems.bearing_distance.tree_case import TreeCase
@@ -85,7 +86,7 @@ def settles(case: TreeCase, q: FloatArray, p: FloatArray) -> Certificate:
 
 def velocity_claim(case: TreeCase, run: Trajectory, needs: list[Hypothesis], *, stated: str) -> Claim:
     """The claim that the velocities at both ends of every edge match in the limit."""
-    speeds = np.linalg.norm(edge_vectors(run.p[[0, -1]], case.links), axis=2).max(axis=1)
+    speeds = lengths(edge_vectors(run.p[[0, -1]], case.links)).max(axis=1)
     return limit_claim(
         "velocities",
         needs,

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray
+from flockana.base.vectors import lengths
 from flockana.dynamics.between import Between
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import LinearTarget, StaticTarget
@@ -108,7 +109,7 @@ def comes_to_rest(
     run: Trajectory, who: np.ndarray, needs: list[Hypothesis], tolerances: Tolerances, name: str
 ) -> Claim:
     """The claim that the velocities of some agents, of a run in its leader's frame, die out."""
-    speeds = np.linalg.norm(run.p[:, who], axis=2).max(axis=1, initial=0.0)
+    speeds = lengths(run.p[:, who]).max(axis=1, initial=0.0)
     scale = run.scales.speed
     amplitude = speeds + numerical_noise(run, scale) + 4.0 * EPS * float(np.abs(run.p).max())
     falls = decay(run.t, amplitude, floor=float(np.sqrt(tolerances.velocity)) * scale).certificate

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from flockana.base.vectors import lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.kernels.paths import control_points
 from flockana.laws.link_keeping import LinkKeeping
@@ -33,7 +34,7 @@ def _length_bound(run: Trajectory) -> float:
     for k in range(len(t) - 1):
         points, _, allowance = control_points(t[k + 1] - t[k], *(x[s] for s in (k, k + 1) for x in states))
         off = allowance if slack is None else allowance + slack[k]
-        apart = np.linalg.norm(points[ends[:, 1]] - points[ends[:, 0]], axis=2).max(axis=1)
+        apart = lengths(points[ends[:, 1]] - points[ends[:, 0]]).max(axis=1)
         bound = max(bound, float((apart + 2.0 * np.max(off)).max(initial=0.0)))
     return bound
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from flockana.base.vectors import lengths
 from flockana.dynamics.tolerance import FLOOR
 from flockana.dynamics.trajectory import Trajectory
 from flockana.theorems.asymptotics import velocities_match
@@ -43,7 +44,7 @@ def no_collision(run: Trajectory, i: Any, j: Any, proof: str) -> Claim:
     """
     if not len(i):
         return judged("no-collision", 1.0, 0.0, detail="no pair is joined")
-    gaps = np.linalg.norm(run.q[:, j] - run.q[:, i], axis=2)
+    gaps = lengths(run.q[:, j] - run.q[:, i])
     k = int(gaps.min(axis=1).argmin())
     energy, blur = float(run.energy()[0]), _energy_error(run, i, j)
     least, between = float(gaps[k].min()), least_between(run, i, j)

@@ -7,6 +7,7 @@ from math import inf
 import numpy as np
 
 from flockana.base.checks import FloatArray
+from flockana.base.vectors import centres, lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.kernels.paths import bernstein
 from flockana.laws.algorithm3 import Algorithm3
@@ -42,14 +43,14 @@ def bound(energy: float, gains: FloatArray, unit: float | None) -> FloatArray:
 
 def farthest(run: Trajectory, place: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Largest distance of each agent from a place, at the samples, and at most between them too."""
-    seen = np.linalg.norm(run.q - place, axis=2).max(axis=0)
+    seen = lengths(run.q - place).max(axis=0)
     most, path = seen.copy(), run.path
     there = np.zeros(3)  # as paths are, whatever the dimension
     there[: run.m] = place
     for k, h in enumerate(np.diff(path.t).tolist()):
         points, _, allowance = bernstein(h, *(x[k + side] for side in (0, 1) for x in (path.q, path.p, path.u)))
         off = allowance if path.slack is None else allowance + path.slack[k]
-        most = np.maximum(most, np.linalg.norm(points - there, axis=2).max(axis=1) + off)
+        most = np.maximum(most, lengths(points - there).max(axis=1) + off)
     return seen, most
 
 
@@ -62,7 +63,7 @@ def stays_within(run: Trajectory, needs: list[Hypothesis], *, name: str = "bound
     energy -= 0.0 if law.alpha is None else meeting(run).floor
     allowed, blurred = (bound(height, gains, unit)[pulled] for height in (energy, energy + error))
     if law.moving:
-        seen = np.linalg.norm(run.q - run.q.mean(axis=1, keepdims=True), axis=2).max(axis=0)[pulled]
+        seen = lengths(run.q - centres(run.q)[:, None]).max(axis=0)[pulled]
         least = float((allowed - seen).min())
         off = float(radius_between(run).max(initial=0.0)) - float(seen.max()) if least > 0.0 else 0.0
         slack, rounding = np.full(seen.shape, max(off, 0.0)), np.sqrt(run.m) * frame_error(run.q)

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray
+from flockana.base.vectors import lengths
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.theorems.claims import erratum, judged
@@ -25,7 +26,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     def printed(x: FloatArray) -> FloatArray:
         """u_i = Σ_j φ_zi ∘ n_ij with φ_zi = Σ_j f_ij n_ij, the only product of (7) and (9) that gives a vector."""
         delta = x[None] - x[:, None]
-        rho = np.linalg.norm(delta, axis=2)
+        rho = lengths(delta)
         n = delta / np.sqrt(1.0 + pair.eta * rho**2)[:, :, None]
         f = np.where(rho > 0.0, pair.action(np.where(rho > 0.0, rho, 8.0)), 0.0)
         u: FloatArray = np.einsum("ij,ijc->ic", f, n) * n.sum(axis=1)

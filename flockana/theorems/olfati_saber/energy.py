@@ -7,6 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from flockana.base.checks import FloatArray
+from flockana.base.vectors import lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.obstacles import Sphere, Wall
 from flockana.interactions import FormulaInteraction
@@ -64,18 +65,17 @@ def cancelling(run: Trajectory, since: int = 0) -> FloatArray:
     of a γ-agent that moves, or whose acceleration is told. The others, −c2α pᵀL̂p, −c2γ‖v‖² and those of drag, are sums
     of squares.
     """
-    law, p, size = run.law, run.p[since:], np.zeros(len(run.t) - since)
+    law, q, p = run.law, run.q[since:], run.p[since:]
     if law.moving or (law.target is None and not law.obstacles):
-        return size
-    q, speed = run.q[since:], np.linalg.norm(p, axis=2)
-    for k, t in enumerate(run.t[since:] if law.target is not None else ()):
-        (q_r, p_r), rate = law.target.state(float(t)), law.target.rate(float(t))
-        away = np.linalg.norm(q[k] - q_r, axis=1)
-        size[k] = np.max(law.gains.c2_gamma) * float(speed[k] @ (speed[k] + np.linalg.norm(p_r)))
-        size[k] += np.max(law.gains.c1_gamma) * float(np.linalg.norm(rate)) * float(away.sum())
-    braking = law.gains.c2_beta * 2.0 * len(law.obstacles)
-    total: FloatArray = size + braking * np.sum(speed**2, axis=1)
-    return total
+        return np.zeros(len(p))
+    speed = lengths(p)
+    size: FloatArray = law.gains.c2_beta * 2.0 * len(law.obstacles) * np.sum(speed**2, axis=1)
+    if law.target is not None:
+        told = [(*law.target.state(t), law.target.rate(t)) for t in run.t[since:].tolist()]
+        q_r, p_r, rate = (np.array(each)[:, None] for each in zip(*told, strict=True))
+        size += np.max(law.gains.c2_gamma) * np.sum(speed * (speed + lengths(p_r)), axis=1)
+        size += np.max(law.gains.c1_gamma) * np.sum(lengths(rate) * lengths(q - q_r), axis=1)
+    return size
 
 
 def falling_share(run: Trajectory, rate: FloatArray, cancels: FloatArray) -> tuple[FloatArray, float]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flockana.base.checks import FloatArray
+from flockana.base.vectors import lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.theorems.from_tube import enclosed_by
@@ -31,7 +32,7 @@ def _condition(run: Trajectory) -> tuple[Hypothesis, int]:
     """
     slack = condition_76(run)
     told = np.array([np.linalg.norm(run.law.target.state(float(t))[1]) for t in run.t])
-    terms = 0.5 * np.sum(run.p**2, axis=(1, 2)) + 0.5 * told * np.linalg.norm(run.p, axis=2).sum(axis=1)
+    terms = 0.5 * np.sum(run.p**2, axis=(1, 2)) + 0.5 * told * lengths(run.p).sum(axis=1)
     rounding = np.where(told > 0.0, (run.n + 8) * EPS * terms, 0.0)
     broken = np.flatnonzero(slack < -rounding)
     since = 0 if broken.size == 0 else int(broken[-1]) + 1

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from flockana.base.vectors import lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.theorems.hypotheses import law_is
@@ -20,9 +21,10 @@ def _by_rate(run: Trajectory, claim: Claim, needs: list[Hypothesis]) -> Claim:
 
     V_α too much adds c1α ⟨∇V, p⟩ to the rate, which has no sign.
     """
-    forces = [run.law.alpha.forces(q, 0.0 * q, stiffness=run.law.gains.c1_alpha, damping=0.0)[0] for q in run.q]
+    stiffness = run.law.gains.c1_alpha
+    forces = np.array([run.law.alpha.forces(q, 0.0 * q, stiffness=stiffness, damping=0.0)[0] for q in run.q])
     power = np.array([float(np.vdot(u, p)) for u, p in zip(forces, run.p, strict=True)])
-    turned = np.linalg.norm(forces, axis=2) * np.linalg.norm(run.p, axis=2)
+    turned = lengths(forces) * lengths(run.p)
     share, error = falling_share(run, run.energy_rate() - power, cancelling(run) + turned.sum(axis=1))
     margin = float(share.min())
     status = judge(margin, error, needs)
