@@ -66,7 +66,7 @@ def closest_approach(
     """
     lower, reached, when, pair = np.inf, np.inf, float(t[0]), (-1, -1)
     bounds = np.full(len(t) - 1, np.inf)
-    at_samples = min_distances(q)
+    at_samples, extents = min_distances(q), np.abs(q).max(axis=(1, 2))
     if q.shape[1] == 1:
         return ClosestApproach(np.inf, np.inf, when, pair, bounds)
     k = int(np.argmin(at_samples))
@@ -78,7 +78,7 @@ def closest_approach(
         if slack is not None:
             reach, allowance = reach + slack[k], allowance + slack[k]
         stop = float(min(at_samples[k], at_samples[k + 1]))
-        noise = ROUNDING * float(np.abs(q[k]).max())
+        noise = ROUNDING * float(extents[k])
         bounds[k] = stop if stop > noise else 0.0
         if bounds[k] == 0.0:
             lower = 0.0

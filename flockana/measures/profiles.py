@@ -10,6 +10,7 @@ import numpy as np
 from flockana.base.checks import FloatArray, real_array
 from flockana.base.errors import ArgumentError
 
+_DISTANCES = 2**17  # that are held at once, at most, unless those of one instant are more
 QUARTERS = (0.0, 0.25, 0.5, 0.75, 1.0)
 
 
@@ -45,5 +46,9 @@ def pair_distance_profile(q: Any, shares: Sequence[float] = QUARTERS) -> FloatAr
         raise ArgumentError(f"shares = {shares!r}: expected numbers from 0 to 1")
     if positions.shape[1] < 2:
         return np.full((len(positions), wanted.size), np.nan)
-    profile: FloatArray = np.array([np.quantile(pdist(instant), wanted) for instant in positions])
-    return profile.reshape(len(positions), wanted.size)
+    profile = np.empty((len(positions), wanted.size))
+    at_once = max(1, 2 * _DISTANCES // positions.shape[1] ** 2)
+    for first in range(0, len(positions), at_once):  # a call of np.quantile costs as much as thousands of distances
+        block = slice(first, first + at_once)
+        profile[block] = np.quantile([pdist(instant) for instant in positions[block]], wanted, axis=1).T
+    return profile

@@ -120,9 +120,9 @@ def _kept(values: FloatArray) -> npt.NDArray[np.intp]:
     if samples <= 2 * _SPANS:
         return np.arange(samples)
     edges = np.linspace(0, samples, _SPANS + 1).astype(int)
-    found = {0, samples - 1}
+    found, numbers = {0, samples - 1}, np.nan_to_num(values)
     for first, last in pairwise(edges.tolist()):
-        part = np.nan_to_num(values[first:last])
+        part = numbers[first:last]
         found |= {int(first + part.argmin()), int(first + part.argmax())}
     return np.array(sorted(found))
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.spatial.distance import pdist
 
 from flockana.base.errors import ArgumentError
 from flockana.measures.metrics import min_distance
@@ -39,3 +40,12 @@ def test_bad_arguments():
 
 def test_two_agents_have_one_distance():
     assert pair_distance_profile([[[0.0], [3.0]], [[1.0], [6.0]]], (0.0, 0.5, 1.0)).tolist() == [[3.0] * 3, [5.0] * 3]
+
+
+@pytest.mark.parametrize(("n", "count"), [(8, 5000), (700, 3)])
+def test_instants_in_blocks_are_those_one_by_one(n, count):
+    """More of them than are held at once, and more pairs at one instant."""
+    q, shares = np.random.default_rng(n).normal(size=(count, n, 2)), (0.0, 0.3, 1.0)
+    np.testing.assert_array_equal(
+        pair_distance_profile(q, shares), [np.quantile(pdist(instant), shares) for instant in q]
+    )
