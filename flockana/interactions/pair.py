@@ -244,21 +244,27 @@ class PairInteraction(ABC):
 
     def _assemble(self, q: FloatArray, block_of: Any, pairs: Pairs | None = None) -> csr_array:
         """Sum ±B over pairs: B on the two diagonal blocks, −B on the two others."""
-        from scipy.sparse import coo_array
+        from scipy.sparse import bsr_array
 
         n, m = q.shape
-        rows, columns, values = [], [], []
-        for i, j in pair_blocks(q, self.range) if pairs is None else pairs:
-            block = block_of(i, j, q[j] - q[i], self.kernels.terms(q, i, j, self.par))
-            ends = np.stack([i, j, i, j, j, i]).reshape(3, 2, -1)[..., None] * m + np.arange(m)
-            own, (one, other) = ends[0], ends[1:]
-            for row, column, value in ((own, own, block), (one, other, -block)):
-                shape = (*row.shape, m)
-                rows.append(np.broadcast_to(row[..., None], shape).ravel())
-                columns.append(np.broadcast_to(column[..., None, :], shape).ravel())
-                values.append(np.broadcast_to(value, shape).ravel())
-        entries = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
-        return coo_array(entries, shape=(n * m, n * m)).tocsr()
+        found = [
+            (i.copy(), j.copy(), block_of(i, j, q[j] - q[i], self.kernels.terms(q, i, j, self.par)))
+            for i, j in (pair_blocks(q, self.range) if pairs is None else pairs)
+        ]
+        if not found:
+            return bsr_array((n * m, n * m), blocksize=(m, m)).tocsr()
+        i, j, blocks = (np.concatenate(each) for each in zip(*found, strict=True))
+        own = np.zeros((n, m, m))
+        for end in (i, j):
+            np.add.at(own, end, blocks)
+        met = np.flatnonzero(np.bincount(np.concatenate([i, j]), minlength=n))
+        rows, columns = np.concatenate([i, j, met]), np.concatenate([j, i, met])
+        order = np.lexsort((columns, rows))
+        starts = np.append(0, np.cumsum(np.bincount(rows, minlength=n)))
+        values = np.concatenate([-blocks, -blocks, own[met]])[order]
+        summed = bsr_array((values, columns[order], starts), shape=(n * m, n * m)).tocsr()
+        summed.sum_duplicates()  # of a pair that was given twice
+        return summed
 
 
 _MOST_COUNTED = 1e140  # units of ℓ²: φ squares them
