@@ -15,6 +15,7 @@ from flockana.measures.frame import moving_frame
 
 _NEWTON_FROM = 1e-7  # relative force at which Newton's method takes over: a weak bond near r pulls no harder before
 _NEWTON_AGAIN = 0.1  # of the force at which it led astray
+_NOT_YET = 10.0  # times the force that is waited for: where it was asked for last, a correction beside a step's end
 _NEWTON_STEPS = 20
 _NEWTON_REACH = 1e-3  # of d: a step farther than that is no polishing, and might end where a bond lets go at r
 _MOST_STEPS = 100_000  # 200 agents take some thousands; far from all numbers of use steps shrink without end
@@ -77,9 +78,13 @@ def gradient_flow(law: Algorithm1 | Algorithm2, q0: Any, *, tol: float = 1e-11, 
     tol, horizon = ensure_positive("tol", tol), ensure_positive("horizon", horizon)
     pace = law.alpha.length / scale
 
+    nearby = np.inf  # largest component of the force where it was asked for last, beside the end of a step
+
     def rate(t: float, y: FloatArray) -> FloatArray:
+        nonlocal nearby
         force = structural_force(law, y.reshape(shape)).ravel()
-        if not np.isfinite(force).all():  # LSODA would try to step over it for ever
+        nearby = float(np.abs(force).max())
+        if not nearby < np.inf:  # LSODA would try to step over it for ever
             far = float(np.abs(y).max())
             raise SolverError(f"the force is not finite, with coordinates up to {far:.3g}: start nearer to the origin")
         return pace * force
@@ -94,11 +99,13 @@ def gradient_flow(law: Algorithm1 | Algorithm2, q0: Any, *, tol: float = 1e-11, 
             atol=1e-8 * law.alpha.length,
             jac=lambda t, y: -pace * law.stiffness(y.reshape(shape)).toarray(),
         )
-        here, force, level = q, np.inf, _NEWTON_FROM
+        level = _NEWTON_FROM
         for _ in range(_MOST_STEPS):
             if solver.status != "running":
                 break
             solver.step()
+            if nearby > _NOT_YET * level * scale:
+                continue
             here = solver.y.reshape(shape)
             force = _largest(structural_force(law, here)) / scale
             if force <= level:
@@ -106,7 +113,8 @@ def gradient_flow(law: Algorithm1 | Algorithm2, q0: Any, *, tol: float = 1e-11, 
                 if _largest(polished - here) <= _NEWTON_REACH * law.alpha.length and least <= tol:
                     return GradientLimit(polished, least, float(solver.t), True)
                 level = _NEWTON_AGAIN * force  # that was another equilibrium: flow on towards this one
-    return GradientLimit(here, force, float(solver.t), False)
+        here = solver.y.reshape(shape)
+        return GradientLimit(here, _largest(structural_force(law, here)) / scale, float(solver.t), False)
 
 
 def _polished(law: Algorithm1 | Algorithm2, q: FloatArray, tol: float) -> tuple[FloatArray, float]:
