@@ -290,9 +290,10 @@ def test_a_cluster_of_ones_own_starts_and_ends():
     )
 
 
+@pytest.mark.parametrize("limit", [0.3, 3.0])  # given up while the process is made, and while it is waited for
 @pytest.mark.parametrize("python", ["exit 1", "sleep 1000"], ids=["ends", "hangs"])
-def test_worker_processes_that_do_not_start_are_told_with_the_remedy(python, tmp_path, monkeypatch):
-    monkeypatch.setattr(cluster, "START", 3.0)
+def test_worker_processes_that_do_not_start_are_told_with_the_remedy(python, limit, tmp_path, monkeypatch):
+    monkeypatch.setattr(cluster, "START", limit)
     broken = tmp_path / "python"
     broken.write_text(f"#!/bin/sh\nexec {python}\n")
     broken.chmod(0o755)
