@@ -54,6 +54,7 @@ class Counter(DiscreteLaw):
     dt: float = 0.25
     fails_at: float = np.inf
     error: type[BaseException] | None = None
+    spares: bool = False
 
     def start(self, q, p):
         return {"count": np.zeros(1)}
@@ -62,7 +63,7 @@ class Counter(DiscreteLaw):
         if t >= self.fails_at:
             if self.error is not None:
                 raise self.error
-            return q * np.nan, p, 0 * q, memory
+            return q if self.spares else q * np.nan, p * np.nan, 0 * q, memory
         memory["count"] += 1.0
         return q + 1.0, p, np.full_like(q, t), memory
 
@@ -311,9 +312,10 @@ def test_discrete_keeps_the_nearest_steps():
 
 
 def test_discrete_runs_that_end_early():
-    failed = simulate(Counter(fails_at=0.5), [[0.0]], [[0.0]], (0.0, 2.0))
-    assert (failed.status, failed.t.tolist()) == ("failed", [0.0, 0.25, 0.5])
-    assert failed.message == "the map left the finite numbers at t = 0.75"
+    for spares in (False, True):  # positions
+        failed = simulate(Counter(fails_at=0.5, spares=spares), [[0.0]], [[0.0]], (0.0, 2.0))
+        assert (failed.status, failed.t.tolist()) == ("failed", [0.0, 0.25, 0.5])
+        assert failed.message == "the map left the finite numbers at t = 0.75"
     stopped = simulate(Counter(fails_at=0.5, error=KeyboardInterrupt), [[0.0]], [[0.0]], (0.0, 2.0))
     assert (stopped.status, stopped.t.tolist()) == ("interrupted", [0.0, 0.25, 0.5])
 

@@ -14,6 +14,8 @@ from hypothesis import strategies as st
 
 from flockana.base.errors import ArgumentError
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
+from flockana.kernels.neighbours import BLOCK, pair_list
+from flockana.lattice import hexagonal_patch
 
 
 @pytest.mark.parametrize(
@@ -155,6 +157,19 @@ def test_hessian_of_a_pair_by_hand():
         np.testing.assert_allclose(computed, expected, atol=1e-13 * np.abs(expected).max())
     assert alpha.hessian(np.array([[0.0, 0.0], [8.4, 0.0]])).nnz == 0
     assert alpha.hessian(np.zeros((1, 3))).toarray().tolist() == np.zeros((3, 3)).tolist()
+
+
+def test_pairs_that_come_in_several_blocks_are_summed_as_in_one():
+    """Whose arrays are used again for the next; and none at all."""
+    alpha, q = AlphaInteraction(), hexagonal_patch(45, 7.0)
+    q += 0.1 * np.random.default_rng(0).normal(size=q.shape)
+    i, j = pair_list(q, alpha.range)
+    assert i.size > 2 * BLOCK
+    for matrix in (alpha.hessian, alpha.laplacian):
+        found, expected = matrix(q), matrix(q, [(i, j)])
+        assert abs(found - expected).max() <= 1e-14 * abs(expected).max()
+        assert found.nnz == expected.nnz == 4 * (2 * i.size + len(q))
+        assert (matrix(q, []).shape, matrix(q, []).nnz) == ((2 * len(q), 2 * len(q)), 0)
 
 
 def test_laplacian_of_a_path_by_hand():

@@ -68,6 +68,13 @@ def test_a_near_miss_keeps_its_distance():
     assert contacts(T01, q, p, u, tol=0.0101)[0].time == pytest.approx(0.5 - 0.01, abs=1e-6)
 
 
+def test_a_distance_within_the_rounding_of_the_places_is_none():
+    far = np.array([[[1e9], [1e9 + 2.4e-7]]] * 2)  # two of the last digit's steps
+    still = np.zeros_like(far)
+    assert closest_approach(T01, far, still, still).lower == 0.0
+    assert closest_approach(T01, far - 1e9, still, still).lower == pytest.approx(2.4e-7, rel=0.01)
+
+
 def test_passing_in_the_plane():
     """Straight lines that miss by 0.3; a common drift of 10⁴ per unit time changes nothing."""
 

@@ -41,6 +41,13 @@ def test_a_peak_of_one_sample_is_drawn():
     assert len(points(Chart("x", np.arange(5001.0), (Curve(values),)).svg())) < 200
 
 
+def test_what_is_missing_hides_no_peak():
+    values = np.ones(5001)
+    values[2341:2350] = np.nan
+    values[2345] = 2.0
+    assert points(Chart("x", np.arange(5001.0), (Curve(values),)).svg())[:, 1].min() < _TOP + 0.1 * _HEIGHT
+
+
 def test_levels_are_named_and_words_escaped():
     text = Chart("<x>", np.arange(3.0), (Curve(np.arange(3.0), "a & b"),), levels=((1.0, "bound"),)).svg()
     assert "bound</text>" in text
