@@ -22,13 +22,17 @@ def least_distances(q):
         for i in range(n):
             for c in range(m):
                 x[c, i] = q[k, i, c]
-        least[:] = inf
+        for i in range(n):
+            least[i] = inf
         for i in range(1, n):
             x0, x1, x2 = x[0, i], x[1, i], x[2, i]
             for j in range(i):
                 s2 = (x[0, j] - x0) ** 2 + (x[1, j] - x1) ** 2 + (x[2, j] - x2) ** 2
                 least[j] = min(least[j], s2)
-        distances[k] = sqrt(least.min())
+        closest = inf
+        for i in range(n):
+            closest = min(closest, least[i])
+        distances[k] = sqrt(closest)
     return distances
 
 
