@@ -38,7 +38,7 @@ from flockana.laws.law import Law
 
 ADAPTIVE = ("DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA")
 METHODS = (*ADAPTIVE, "RK4", *(SCIPY + method for method in ADAPTIVE))
-AS_SIMULATED = "as simulated"  # the digest of its samples is remembered of a run that `simulate` returned
+AS_SIMULATED = "as simulated"  # the digest of its samples, of a run of a flow that `simulate` returned
 
 
 def simulate(

@@ -77,7 +77,6 @@ def gradient_flow(law: Algorithm1 | Algorithm2, q0: Any, *, tol: float = 1e-11, 
     shape, scale = q.shape, law.scales.force
     tol, horizon = ensure_positive("tol", tol), ensure_positive("horizon", horizon)
     pace = law.alpha.length / scale
-
     nearby = np.inf  # largest component of the force where it was asked for last, beside the end of a step
 
     def rate(t: float, y: FloatArray) -> FloatArray:

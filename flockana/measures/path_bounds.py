@@ -66,7 +66,8 @@ def closest_approach(
     """
     lower, reached, when, pair = np.inf, np.inf, float(t[0]), (-1, -1)
     bounds = np.full(len(t) - 1, np.inf)
-    at_samples, extents = min_distances(q), np.abs(q).max(axis=(1, 2))
+    at_samples = min_distances(q)
+    extents = np.maximum(q.max(axis=(1, 2)), -q.min(axis=(1, 2)))  # |q| would be another run's memory
     if q.shape[1] == 1:
         return ClosestApproach(np.inf, np.inf, when, pair, bounds)
     k = int(np.argmin(at_samples))

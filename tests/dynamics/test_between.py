@@ -188,7 +188,7 @@ class TestBoundedMemory:
             recorder.add(some if at_once > 1 else next(some.each()))
         held, _ = tracemalloc.get_traced_memory()
         tracemalloc.stop()
-        assert held < 2 * block.nbytes + 2000
+        assert held < max(2 * block.nbytes, 16_000)  # some objects beside; all 20 steps are 96,000 at least
         assert recorder.between() is None
 
     def test_blocks_are_what_their_steps_are(self, runs):
