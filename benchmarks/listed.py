@@ -10,6 +10,7 @@ import numpy as np
 from benchmarks.flocks import R
 from flockana.base.checks import FloatArray
 from flockana.kernels.compiling import njit
+from flockana.kernels.sweep import BLOCK
 from flockana.kernels.verlet import SKIN, empty_list, list_pairs, listed_anew, outdated, spatial_order
 from flockana.laws.olfati_saber import Algorithm2
 
@@ -40,13 +41,13 @@ def _rate(law: Algorithm2) -> tuple[Callable[..., float], tuple[FloatArray, ...]
     force, follow = pairs.act, pull.act
 
     @njit(error_model="numpy")
-    def rate(x, v, u, first, second, count, own, still, one, panels, other, none):  # type: ignore[no-untyped-def]
+    def rate(x, v, u, first, second, count, own, near, room, still, one, panels, other, none):  # type: ignore[no-untyped-def]
         u[:] = 0.0
-        power = force(0.0, x, v, u, still, one, panels, first, second, count, own)
-        return power + follow(0.0, x, v, u, still, other, none, first, second, count, own)
+        power = force(0.0, x, v, u, still, one, panels, first, second, count, own, near, room)
+        return power + follow(0.0, x, v, u, still, other, none, first, second, count, own, near, room)
 
     arrays = (np.array(array) for term in form.terms for array in (term.numbers, term.panels))
-    return rate, (np.zeros((2, 2)), *arrays)
+    return rate, (np.empty((2, BLOCK), np.uint64), np.empty((3, BLOCK)), np.zeros((2, 2)), *arrays)
 
 
 def flight(law: Algorithm2, q: FloatArray, p: FloatArray, dt: float, evaluations: int) -> Callable[[], FloatArray]:

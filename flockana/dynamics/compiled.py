@@ -21,6 +21,7 @@ from flockana.dynamics.threads import threads_of_numba
 from flockana.dynamics.tolerance import Floor
 from flockana.kernels.advance import CROWDED, RUNNING, advance
 from flockana.kernels.bodies import no_guard
+from flockana.kernels.sweep import BLOCK
 from flockana.kernels.tableaus import Tableau, tableau
 from flockana.kernels.verlet import SKIN, list_pairs, search_of_pairs
 from flockana.laws.law import Law
@@ -130,9 +131,10 @@ class Engine:
         if count < 0:
             return False
         own, energy = np.arange(len(q), dtype=np.uint64), 0.5 * float(np.vdot(p, p))
+        near, room = np.empty((2, BLOCK), np.uint64), np.empty((3, BLOCK))
         for term in self.form.terms:
             numbers, panels = np.array(term.numbers), np.array(term.panels)
-            energy += term.energy(self.frame.t0, q, p, still, numbers, panels, first, second, count, own)
+            energy += term.energy(self.frame.t0, q, p, still, numbers, panels, first, second, count, own, near, room)
         return bool(np.isfinite(energy))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import gc
 import multiprocessing
 import os
@@ -13,7 +14,7 @@ from contextlib import contextmanager
 from multiprocessing.connection import wait as wait_for_end
 from typing import Any
 
-from flockana.base.garbage import SELDOM
+from flockana.base.garbage import SELDOM, look_no_more
 from flockana.base.interrupts import interrupts_held, interrupts_hidden
 
 _END = 10.0  # seconds in which killed processes are gone
@@ -61,6 +62,7 @@ def _begin_worker() -> None:
     """Ctrl-C goes to every process of the terminal; the parent alone answers it. And nothing outlives the parent."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     gc.set_threshold(SELDOM)
+    atexit.register(look_no_more)
     parent = multiprocessing.parent_process()
     if parent is not None:
         threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True).start()

@@ -20,6 +20,7 @@ from flockana.kernels.listed import MOST_TERMS, signatures
 from flockana.kernels.paths import bernstein
 from flockana.kernels.runge_kutta import energy_of, error_of, first_step, frame_at, interpolated, rate_of, stages_of
 from flockana.kernels.sums import finite
+from flockana.kernels.sweep import BLOCK
 from flockana.kernels.verlet import empty_list, holds, search_of_pairs, spatial_order
 
 RUNNING, TOO_SMALL, NOT_FINITE, CROWDED = range(4)
@@ -181,6 +182,7 @@ def _advance(
         (act0, act1, act2, act3, act4, act5, act6, act7),
         (energy0, energy1, energy2, energy3, energy4, energy5, energy6, energy7),
         numbers, panels, shape, view, moving, reach, order, search, terms, of_pairs, summed, np.empty((2, m)),
+        np.empty((2, BLOCK), np.uint64), np.empty((3, BLOCK)),
     )  # fmt: skip
     method, fixed, end = (tableau_a, tableau_c, rows, stages), exponent == 0.0, rows[stages]
     encounters = (

@@ -79,7 +79,7 @@ def lift_weight(weight: Callable[..., float], slope: Callable[..., float]) -> We
     def match(x, v, gain, r2, par, u):
         return everywhere(x, v, gain, r2, par, u)
 
-    def act(t, x, v, u, frame, numbers, panels, first, second, size, order):
+    def act(t, x, v, u, frame, numbers, panels, first, second, size, order, near, room):
         gain, r2, par = numbers[0], numbers[2] * numbers[2], numbers[3:]
         if numbers[1] != 0.0:
             gain /= len(x)
@@ -92,12 +92,12 @@ def lift_weight(weight: Callable[..., float], slope: Callable[..., float]) -> We
 
     @cache
     def compiled() -> tuple[CompiledFunction, CompiledFunction]:
-        return term_functions(act, no_energy)
+        return term_functions(act, no_energy, allocates=False)
 
     return WeightKernels(match, lift_scalar(weight), lift_scalar(slope), compiled)
 
 
-def no_energy(t, x, v, frame, numbers, panels, first, second, size, order):
+def no_energy(t, x, v, frame, numbers, panels, first, second, size, order, near, room):
     """Velocity consensus stores none."""
     return 0.0
 

@@ -94,12 +94,12 @@ class Bodies:
 def lift_bodies(forces: Callable[..., float], potential: Callable[..., float], share: Callable[..., float]) -> Bodies:
     """Of one kind of obstacle (`flockana.kernels.obstacles`)."""
 
-    def act(t, x, v, u, frame, numbers, panels, first, second, size, order):
+    def act(t, x, v, u, frame, numbers, panels, first, second, size, order, near, room):
         pars, starts, balls = _bodies(numbers)
         law, reach, c1, c2 = numbers[_BETA:_STARTS], numbers[_REACH], numbers[_C1], numbers[_C2]
         return c2 * forces(x + frame[0], v + frame[1], pars, starts, balls, law, reach, c1, c2, u)
 
-    def energy(t, x, v, frame, numbers, panels, first, second, size, order):
+    def energy(t, x, v, frame, numbers, panels, first, second, size, order, near, room):
         pars, starts, balls = _bodies(numbers)
         law, reach = numbers[_BETA:_STARTS], numbers[_REACH]
         return numbers[_C1] * potential(x + frame[0], pars, starts, balls, law, panels, reach)

@@ -58,7 +58,7 @@ def sort_into_cells(q, reach):
     return Cells(order.astype(np.int64), start.astype(np.int64), rows.astype(np.int64), cell)
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def gather(i, q, reach, cells, near):
     """Bring the indices of all that may be within reach of agent i, itself included, into `near`; how many they are.
 
@@ -91,15 +91,17 @@ def gather(i, q, reach, cells, near):
     return count
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _sort(near, count):
-    """By insertion where they are few, as they are in rows that are sorted each."""
-    if count > _FEW:
-        near[:count].sort()
-        return
-    for k in range(1, count):
-        j, at = near[k], k
-        while at > 0 and near[at - 1] > j:
-            near[at] = near[at - 1]
-            at -= 1
-        near[at] = j
+    """Shell's sort: by insertion alone where they are few, as they are in rows that are sorted each."""
+    gap = 1
+    while count > _FEW and gap < count // 9:
+        gap = 3 * gap + 1
+    while gap > 0:
+        for k in range(gap, count):
+            j, at = near[k], k
+            while at >= gap and near[at - gap] > j:
+                near[at] = near[at - gap]
+                at -= gap
+            near[at] = j
+        gap //= 3

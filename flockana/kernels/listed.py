@@ -22,9 +22,10 @@ MOST_TERMS = 8  # of a law: a compiled integrator takes their functions one by o
 class Signatures(NamedTuple):
     """numba's types of what a term gives: x and v are seen from a frame, the agents in an order of their own.
 
-    ``act(t, x, v, u, frame, numbers, panels, first, second, count, order)`` adds to u and returns the power,
-    ``energy(t, x, v, frame, numbers, panels, first, second, count, order)`` returns the potential energy. The rows of
-    `frame` are its place and velocity, `order` has every agent's own number.
+    ``act(t, x, v, u, frame, numbers, panels, first, second, count, order, near, room)`` adds to u and returns the
+    power, ``energy(t, x, v, frame, numbers, panels, first, second, count, order, near, room)`` returns the potential
+    energy. The rows of `frame` are its place and velocity, `order` has every agent's own number; `near`, (2, BLOCK),
+    and `room`, (3, BLOCK), are any term's to write to.
     """
 
     act: Any
@@ -37,7 +38,8 @@ def signatures() -> Signatures:
     from numba import float64, int64, uint32, uint64
 
     matrix, vector, indices = float64[:, ::1], float64[::1], uint32[::1]
-    shared = (matrix, vector, matrix, indices, indices, int64, uint64[::1])
+    room = (uint64[:, ::1], matrix)
+    shared = (matrix, vector, matrix, indices, indices, int64, uint64[::1], *room)
     act, energy = float64(float64, matrix, matrix, matrix, *shared), float64(float64, matrix, matrix, *shared)
     return Signatures(act, energy)
 
@@ -47,11 +49,11 @@ def term_functions(
 ) -> tuple[CompiledFunction, CompiledFunction]:
     """Force and energy of a term, compiled so that compiled code may be handed them.
 
-    An energy that allocates nothing need count no references: for each array that it hands on, that costs as much as
-    the potential of a pair.
+    A term that allocates nothing need count no references: for each array that it hands on, that costs as much as the
+    potential of a pair.
     """
     force, potential = signatures()
-    return _compiled(act, force), _compiled(energy, potential, _nrt=allocates)
+    return _compiled(act, force, _nrt=allocates), _compiled(energy, potential, _nrt=allocates)
 
 
 def _compiled(function: Callable[..., float], signature: Any, **options: Any) -> CompiledFunction:
@@ -61,18 +63,18 @@ def _compiled(function: Callable[..., float], signature: Any, **options: Any) ->
     return made.dispatcher
 
 
-def _no_force(t, x, v, u, frame, numbers, panels, first, second, size, order):
+def _no_force(t, x, v, u, frame, numbers, panels, first, second, size, order, near, room):
     return 0.0
 
 
-def _no_energy(t, x, v, frame, numbers, panels, first, second, size, order):
+def _no_energy(t, x, v, frame, numbers, panels, first, second, size, order, near, room):
     return 0.0
 
 
 @cache
 def no_term() -> tuple[CompiledFunction, CompiledFunction]:
     """Force and energy of nothing."""
-    return term_functions(_no_force, _no_energy)
+    return term_functions(_no_force, _no_energy, allocates=False)
 
 
 def listed_numbers(c1: float, c2: float, r: float, far: float, par: Any) -> Any:
@@ -122,8 +124,7 @@ def lift_listed(
                 total += add(count, near[0], near[1], room[0], room[1], room[2], x, v, u, par, c1, c2)
             return -c2 * total
 
-        def act(t, x, v, u, frame, numbers, panels, first, second, size, order):
-            near, room = np.empty((2, BLOCK), np.uint64), np.empty((3, BLOCK))
+        def act(t, x, v, u, frame, numbers, panels, first, second, size, order, near, room):
             return sweep(x, v, u, numbers, first, second, size, near, room)
 
         @njit(error_model="numpy", nogil=True, _nrt=False)
@@ -138,10 +139,9 @@ def lift_listed(
             beyond = n * (n - 1) // 2 - pairs
             return numbers[0] * (total + beyond * numbers[3] if beyond > 0 else total)  # it may be infinite there
 
-        def energy(t, x, v, frame, numbers, panels, first, second, size, order):
-            near, s2 = np.empty((2, BLOCK), np.uint64), np.empty(BLOCK)
-            return summed(x, numbers, panels, first, second, size, near, s2)
+        def energy(t, x, v, frame, numbers, panels, first, second, size, order, near, room):
+            return summed(x, numbers, panels, first, second, size, near, room[0])
 
-        return term_functions(act, energy)
+        return term_functions(act, energy, allocates=False)
 
     return of

@@ -52,7 +52,7 @@ def _place(t, co, si, path, k):
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def _follow(t, x, v, u, frame, numbers, order, target):
-    """`navigate` to the path that the numbers are of; `target` is room for it."""
+    """`navigate` to the path that the numbers are of; `target` is room for it, three rows of m numbers or more."""
     m, omega, gains = x.shape[1], numbers[_OMEGA], np.int64(numbers[_GAINS])
     path, c = numbers[_PATH : _PATH + 5 * m].reshape(5, m), numbers[_PATH + 5 * m :]
     co, si = cos(omega * t), sin(omega * t)
@@ -71,12 +71,12 @@ def follow(t, x, v, u, numbers):
     return _follow(t, x, v, u, np.zeros((2, m)), numbers, order, np.empty((3, m)))
 
 
-def act(t, x, v, u, frame, numbers, panels, first, second, size, order):
+def act(t, x, v, u, frame, numbers, panels, first, second, size, order, near, room):
     """`follow` for compiled integrators."""
-    return _follow(t, x, v, u, frame, numbers, order, np.empty((3, x.shape[1])))
+    return _follow(t, x, v, u, frame, numbers, order, room)
 
 
-def energy(t, x, v, frame, numbers, panels, first, second, size, order):
+def energy(t, x, v, frame, numbers, panels, first, second, size, order, near, room):
     """½ c1γ Σ‖x_i‖² in the moving frame, or Σ c1γ_i ℓ² (√(1 + ‖q_i − q_r‖²/ℓ²) − 1)."""
     (n, m), unit, gains = x.shape, numbers[_UNIT], numbers[_GAINS]
     path, c1, total = numbers[_PATH : _PATH + 5 * m].reshape(5, m), numbers[_PATH + 5 * m :], 0.0

@@ -19,13 +19,12 @@ _MOVING, _THRUST, _BRAKE = range(3)
 _OMEGA, _PATH = 1, 2
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def push_along(v, u, velocity, thrust, brake, moving):
-    """Add (thrust − brake ‖p_i‖²) p_i to u, and return its power; `velocity` is that of the frame v is seen from."""
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def _push_along(v, u, velocity, thrust, brake, moving, centre):
+    """`push_along`; `centre` is room for m numbers."""
     (n, m), power = v.shape, 0.0
-    centre = -velocity
-    for k in range(m if moving else 0):
-        centre[k] = column_mean(v, k)
+    for k in range(m):
+        centre[k] = column_mean(v, k) if moving else -velocity[k]
     for i in range(n):
         square = 0.0
         for k in range(m):
@@ -43,6 +42,12 @@ def push_along(v, u, velocity, thrust, brake, moving):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
+def push_along(v, u, velocity, thrust, brake, moving):
+    """Add (thrust − brake ‖p_i‖²) p_i to u, and return its power; `velocity` is that of the frame v is seen from."""
+    return _push_along(v, u, velocity, thrust, brake, moving, np.empty(v.shape[1]))
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def push_all(v, u, velocity, push, moving):
     """Add one acceleration to all, and return its power: 0 in the moving frame."""
     (n, m), power = v.shape, 0.0
@@ -53,29 +58,29 @@ def push_all(v, u, velocity, push, moving):
     return 0.0 if moving else power
 
 
-def _act_along(t, x, v, u, frame, numbers, panels, first, second, size, order):
-    return push_along(v, u, frame[1], numbers[_THRUST], numbers[_BRAKE], numbers[_MOVING] != 0.0)
+def _act_along(t, x, v, u, frame, numbers, panels, first, second, size, order, near, room):
+    return _push_along(v, u, frame[1], numbers[_THRUST], numbers[_BRAKE], numbers[_MOVING] != 0.0, room[0])
 
 
-def _act_all(t, x, v, u, frame, numbers, panels, first, second, size, order):
+def _act_all(t, x, v, u, frame, numbers, panels, first, second, size, order, near, room):
     m, omega = x.shape[1], numbers[_OMEGA]
-    path, push = numbers[_PATH : _PATH + 5 * m].reshape(5, m), np.empty(m)
+    path, push = numbers[_PATH : _PATH + 5 * m].reshape(5, m), room[0]
     for k in range(m):
         push[k] = -omega * omega * (path[2, k] * cos(omega * t) + path[3, k] * sin(omega * t))
     return push_all(v, u, frame[1], push, numbers[_MOVING] != 0.0)
 
 
-def _no_energy(t, x, v, frame, numbers, panels, first, second, size, order):
+def _no_energy(t, x, v, frame, numbers, panels, first, second, size, order, near, room):
     return 0.0
 
 
 @cache
 def along() -> tuple[CompiledFunction, CompiledFunction]:
     """Force of `push_along` and no energy, compiled when first asked for."""
-    return term_functions(_act_along, _no_energy)
+    return term_functions(_act_along, _no_energy, allocates=False)
 
 
 @cache
 def on_all() -> tuple[CompiledFunction, CompiledFunction]:
     """Force of `push_all` and no energy, compiled when first asked for."""
-    return term_functions(_act_all, _no_energy)
+    return term_functions(_act_all, _no_energy, allocates=False)

@@ -15,6 +15,7 @@ from numba import prange  # so this file is imported where a run is compiled
 
 from flockana.kernels.compiling import njit
 from flockana.kernels.listed import CompiledFunction, signatures
+from flockana.kernels.sweep import BLOCK
 
 
 @cache
@@ -45,7 +46,8 @@ def sum_of_slabs(threads: bool) -> CompiledFunction:
             for k in prange((slabs.size - parity) // 2):
                 s = 2 * k + parity
                 pairs = first[slabs[s] : slabs[s + 1]], second[slabs[s] : slabs[s + 1]]
-                powers[s] = act(t, x, v, u, frame, numbers, panels, pairs[0], pairs[1], pairs[0].size, order)
+                near, room = np.empty((2, BLOCK), np.uint64), np.empty((3, BLOCK))
+                powers[s] = act(t, x, v, u, frame, numbers, panels, *pairs, pairs[0].size, order, near, room)
         for s in range(powers.size):
             total += powers[s]
         return total

@@ -121,18 +121,28 @@ def _widened(low, high, way):
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
-def _spread(q, reference, c, stretch):
-    """How far apart the agents' ways are along coordinate c, beside a stretch of the flock: that of the box of all."""
-    n = q.shape[0]
-    low = high = a = b = d = e = f = g = q[0, c] - stretch * reference[0, c]
-    for i in range(0, n - 3, 4):  # four lanes: an extreme waits for the one before
-        low, high = _widened(low, high, q[i, c] - stretch * reference[i, c])
-        a, b = _widened(a, b, q[i + 1, c] - stretch * reference[i + 1, c])
-        d, e = _widened(d, e, q[i + 2, c] - stretch * reference[i + 2, c])
-        f, g = _widened(f, g, q[i + 3, c] - stretch * reference[i + 3, c])
-    for i in range(n // 4 * 4, n):
-        low, high = _widened(low, high, q[i, c] - stretch * reference[i, c])
-    return max(max(high, b), max(e, g)) - min(min(low, a), min(d, f))
+def _spreads(q, reference, c, d, along_c, along_d):
+    """How far apart the agents' ways are in coordinates c and d, beside a stretch of each: two wait less than one."""
+    low_c = high_c = q[0, c] - along_c * reference[0, c]
+    low_d = high_d = q[0, d] - along_d * reference[0, d]
+    for i in range(1, q.shape[0]):
+        low_c, high_c = _widened(low_c, high_c, q[i, c] - along_c * reference[i, c])
+        low_d, high_d = _widened(low_d, high_d, q[i, d] - along_d * reference[i, d])
+    return high_c - low_c, high_d - low_d
+
+
+@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+def _diagonal(q, reference, stretched):
+    """(diagonal of the box of all agents' ways, least stretch), beside how the flock is stretched, or beside none."""
+    m, square, least = q.shape[1], 0.0, np.inf
+    for c in range(0, m, 2):
+        d, along_c, along_d = min(c + 1, m - 1), 1.0, 1.0
+        if stretched:
+            along_c, along_d = slope_along(reference, q, c, 1.0), slope_along(reference, q, d, 1.0)
+        spread_c, spread_d = _spreads(q, reference, c, d, along_c, along_d)
+        square += spread_c**2 + (spread_d**2 if d > c else 0.0)
+        least = min(least, min(along_c, along_d))
+    return np.sqrt(square), least
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -143,16 +153,11 @@ def holds(q, within, made, reference):
     by the least of these factors: the ways are seen beside it, and differ by no more than the diagonal of their box.
     Only where the first does not do is the second asked: a flock drawn together by its target.
     """
-    square = 0.0
-    for c in range(q.shape[1]):
-        square += _spread(q, reference, c, 1.0) ** 2
-    if np.sqrt(square) <= made - within:
+    diagonal, _ = _diagonal(q, reference, False)
+    if diagonal <= made - within:
         return True
-    square, least = 0.0, np.inf
-    for c in range(q.shape[1]):
-        stretch = slope_along(reference, q, c, 1.0)
-        square, least = square + _spread(q, reference, c, stretch) ** 2, min(least, stretch)
-    return np.sqrt(square) <= least * made - within
+    diagonal, least = _diagonal(q, reference, True)
+    return diagonal <= least * made - within
 
 
 @njit(cache=True, error_model="numpy", nogil=True)

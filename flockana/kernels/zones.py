@@ -2,7 +2,8 @@
 
 Equation numbers are those of Jond's paper on bearing-distance flocking. The position form is (3) to (8); the bearing
 form is (14), (15) and (18) to (21), from distances, bearings b and their rates alone. Neighbours are looked for in
-cells and summed in the order of their indices, so that the sums are those over all agents.
+cells and summed in the order of their indices, so that the sums are those over all agents. What allocates nothing
+counts no references, which for ten agents takes as long as what it computes.
 """
 
 from __future__ import annotations
@@ -86,14 +87,14 @@ class World(NamedTuple):
     pace: FloatArray
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def saturation(norm, bound):
     """Factor by which (9) and (10) shorten a vector of this norm: tanh(x)/x at x = norm/bound, 1 at 0."""
     x = norm / bound
     return 1.0 - x * x / 3.0 if x < _NEAR_ZERO else tanh(x) / x
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _length(x):
     s2 = 0.0
     for k in range(x.size):
@@ -101,13 +102,13 @@ def _length(x):
     return sqrt(s2)
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _weight(table, i, j):
     """That of a pair in a table, which is one number if all are equal."""
     return table[0, 0] if table.size == 1 else table[i, j]
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _trembling(settings, step, i, j, behaviour):
     """Factor of a weight in this step."""
     if settings.weight_noise == 0.0:
@@ -115,7 +116,7 @@ def _trembling(settings, step, i, j, behaviour):
     return 1.0 + settings.weight_noise * noise(settings.seed, step, i, j, behaviour)
 
 
-@njit(cache=True, forceinline=True)  # a call would hand over a hundred numbers
+@njit(cache=True, _nrt=False, forceinline=True)  # a call would hand over a hundred numbers
 def _neighbours(i, near, q, p, a, step, zones, settings, bearing, out):
     """Cohesion, alignment and separation of agent i; nobody but those in `near` is within its zones.
 
@@ -169,7 +170,7 @@ def _neighbours(i, near, q, p, a, step, zones, settings, bearing, out):
     return nearest
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _aliens(i, q, alien, step, zones, settings, annulus, out):
     """Strategic separation (7) of agent i from the aliens that it watches."""
     m = q.shape[1]
@@ -184,7 +185,7 @@ def _aliens(i, q, alien, step, zones, settings, annulus, out):
                 out[STRATEGIC, k] += w * (d - zones.s[i]) * ((alien[e, k] - q[i, k]) / d)
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def altitude(speed, r, c, a, settings, choices):
     """Length of the obstacle zone along the heading: c, a, or from r at rest to a at the greatest speed."""
     if choices.zone_length == 2:
@@ -192,7 +193,7 @@ def altitude(speed, r, c, a, settings, choices):
     return a if choices.zone_length == 1 else c
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _grown(reach, a, nearest, settings):
     """Radius of attraction in the next step: a with one who attracts within a, as it is with one beyond, else more."""
     if nearest <= a:
@@ -200,7 +201,7 @@ def _grown(reach, a, nearest, settings):
     return reach if nearest <= reach else reach + settings.dt * settings.growth
 
 
-@njit(cache=True, forceinline=True)  # a call would hand over a hundred numbers
+@njit(cache=True, _nrt=False, forceinline=True)  # a call would hand over a hundred numbers
 def behave(i, near, q, p, heading, estimate, a, alien, step, zones, settings, choices, world, out):
     """Write the six behaviours of agent i, who has `near` about it and is attracted up to a, into out (6, m).
 
@@ -252,7 +253,7 @@ def behaviours(q, p, heading, estimate, reach, alien, step, zones, settings, cho
     return components
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _move(i, q, p, u, step, settings, literal):
     """(j), (k): agent i takes its input and a gust, is bounded in speed, and moves with its new velocity."""
     m = q.shape[1]
@@ -267,7 +268,7 @@ def _move(i, q, p, u, step, settings, literal):
         q[i, k] += settings.dt * p[i, k]
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _hunt(alien, q, dt, world):
     """Every alien goes for the nearest agent that it detects, and stays in its territory."""
     m = q.shape[1]
@@ -292,6 +293,34 @@ def _hunt(alien, q, dt, world):
                 alien[e, 1] += gy
 
 
+@njit(cache=True, _nrt=False)
+def _take_step(
+    q, p, u, heading, estimate, reach, alien, step, cells, near, zones, settings, choices, world, out, total
+):  # fmt: skip
+    """One step of all agents, then of the aliens; the cells serve throughout it."""
+    (n, m), in_turn, literal = q.shape, choices.order == 1, choices.speed_bound == 1
+    for i in range(n):
+        count = gather(i, q, reach[i], cells, near)
+        nearest = behave(
+            i, near[:count], q, p, heading, estimate, reach[i], alien, step, zones, settings, choices, world, out
+        )
+        if settings.growth > 0.0:
+            reach[i] = _grown(reach[i], zones.a[i], nearest, settings)
+        total[:] = 0.0
+        for term in range(6):
+            for k in range(m):
+                total[k] += out[term, k]
+        factor = saturation(_length(total), settings.u_max)
+        for k in range(m):
+            u[i, k] = factor * total[k]
+        if in_turn:
+            _move(i, q, p, u, step, settings, literal)
+    if not in_turn:
+        for i in range(n):
+            _move(i, q, p, u, step, settings, literal)
+    _hunt(alien, q, settings.dt, world)
+
+
 @njit(cache=True)
 def run(q, p, heading, estimate, reach, alien, first, zones, settings, choices, world, steps):
     """Take `steps` steps from the one of this number; the six arrays of state are changed.
@@ -308,80 +337,75 @@ def run(q, p, heading, estimate, reach, alien, first, zones, settings, choices, 
     )
     aliens, reaches = np.empty((steps, alien.shape[0], m)), np.empty((steps, n))
     u, out, total = np.empty((n, m)), np.empty((6, m)), np.empty(m)
-    in_turn, literal = choices.order == 1, choices.speed_bound == 1
     near = np.arange(n)
-    further = settings.dt * settings.v_max if in_turn else 0.0  # those before agent i have moved since the cells
+    further = settings.dt * settings.v_max if choices.order == 1 else 0.0  # those before agent i have moved since
     for taken in range(steps):
-        step = first + taken
-        cells = sort_into_cells(q, reach.max() + further)
-        for i in range(n):
-            count = gather(i, q, reach[i], cells, near)
-            nearest = behave(
-                i, near[:count], q, p, heading, estimate, reach[i], alien, step, zones, settings, choices, world, out
-            )
-            if settings.growth > 0.0:
-                reach[i] = _grown(reach[i], zones.a[i], nearest, settings)
-            total[:] = 0.0
-            for term in range(6):
-                for k in range(m):
-                    total[k] += out[term, k]
-            factor = saturation(_length(total), settings.u_max)
-            for k in range(m):
-                u[i, k] = factor * total[k]
-            if in_turn:
-                _move(i, q, p, u, step, settings, literal)
-        if not in_turn:
-            for i in range(n):
-                _move(i, q, p, u, step, settings, literal)
-        _hunt(alien, q, settings.dt, world)
+        step, cells = first + taken, sort_into_cells(q, reach.max() + further)
+        _take_step(
+            q, p, u, heading, estimate, reach, alien, step, cells, near, zones, settings, choices, world, out, total
+        )
         qs[taken], ps[taken], us[taken], hs[taken], es[taken] = q, p, u, heading, estimate
         reaches[taken], aliens[taken] = reach, alien
     return qs, ps, us, hs, es, reaches, aliens
 
 
+@njit(cache=True, _nrt=False)
+def _count_neighbours(q, r, c, a, cells, near, shares):
+    """Add to (3,) shares how many agents are in the zones of repulsion, conflict and attraction of one, on average."""
+    n, m = q.shape
+    for i in range(n):
+        for j in near[: gather(i, q, a[i], cells, near)]:
+            d2 = 0.0
+            for k in range(m):
+                d2 += (q[j, k] - q[i, k]) ** 2
+            d = sqrt(d2)
+            if j == i or d > a[i]:
+                continue
+            shares[0 if d <= r[i] else 1 if d <= c[i] else 2] += 1.0 / n
+
+
 @njit(cache=True)
 def populations(q, r, c, a):
     """Mean number of agents in the zones of repulsion, conflict and attraction of an agent, (T, n, m) -> (T, 3)."""
-    steps, n, m = q.shape
-    shares, near = np.zeros((steps, 3)), np.arange(n)
-    for t in range(steps):
-        cells = sort_into_cells(q[t], a.max())
-        for i in range(n):
-            for j in near[: gather(i, q[t], a[i], cells, near)]:
+    shares, near = np.zeros((q.shape[0], 3)), np.arange(q.shape[1])
+    for t in range(q.shape[0]):
+        _count_neighbours(q[t], r, c, a, sort_into_cells(q[t], a.max()), near, shares[t])
+    return shares
+
+
+@njit(cache=True, _nrt=False)
+def _count_fragments(q, a, reach, cells, near, seen, stack):
+    """(components, agents in the largest); `seen` and `stack` are room."""
+    (n, m), components, largest = q.shape, 0, 0
+    for i in range(n):
+        seen[i] = False
+    for root in range(n):
+        if seen[root]:
+            continue
+        seen[root], stack[0], waiting, size = True, root, 1, 0
+        while waiting:
+            waiting -= 1
+            i = stack[waiting]
+            size += 1
+            for j in near[: gather(i, q, reach, cells, near)]:
                 d2 = 0.0
                 for k in range(m):
-                    d2 += (q[t, j, k] - q[t, i, k]) ** 2
-                d = sqrt(d2)
-                if j == i or d > a[i]:
-                    continue
-                shares[t, 0 if d <= r[i] else 1 if d <= c[i] else 2] += 1.0 / n
-    return shares
+                    d2 += (q[j, k] - q[i, k]) ** 2
+                if not seen[j] and sqrt(d2) <= max(a[i], a[j]):
+                    seen[j], stack[waiting] = True, j
+                    waiting += 1
+        components += 1
+        largest = max(largest, size)
+    return components, largest
 
 
 @njit(cache=True)
 def fragments(q, a):
     """(Components, agents in the largest) over time, (T, 2); linked are those of whom one attracts the other."""
-    steps, n, m = q.shape
-    counts = np.zeros((steps, 2), np.int64)
-    seen, stack, near, reach = np.empty(n, np.bool_), np.empty(n, np.int64), np.arange(n), a.max()
+    steps, n, _ = q.shape
+    counts, reach = np.zeros((steps, 2), np.int64), a.max()
+    seen, stack, near = np.empty(n, np.bool_), np.empty(n, np.int64), np.arange(n)
     for t in range(steps):
         cells = sort_into_cells(q[t], reach)
-        seen[:] = False
-        for root in range(n):
-            if seen[root]:
-                continue
-            seen[root], stack[0], waiting, size = True, root, 1, 0
-            while waiting:
-                waiting -= 1
-                i = stack[waiting]
-                size += 1
-                for j in near[: gather(i, q[t], reach, cells, near)]:
-                    d2 = 0.0
-                    for k in range(m):
-                        d2 += (q[t, j, k] - q[t, i, k]) ** 2
-                    if not seen[j] and sqrt(d2) <= max(a[i], a[j]):
-                        seen[j], stack[waiting] = True, j
-                        waiting += 1
-            counts[t, 0] += 1
-            counts[t, 1] = max(counts[t, 1], size)
+        counts[t, 0], counts[t, 1] = _count_fragments(q[t], a, reach, cells, near, seen, stack)
     return counts
