@@ -24,8 +24,7 @@ def near_each(q, cells, reach):
 
 
 def all_within(q, reach):
-    apart = np.linalg.norm(q[:, None] - q[None], axis=2)
-    return [np.flatnonzero(row <= reach).tolist() for row in apart]
+    return [np.flatnonzero(np.linalg.norm(q - one, axis=1) <= reach).tolist() for one in q]
 
 
 @pytest.mark.parametrize(("n", "m", "spacing"), [(400, 1, 1.0), (600, 2, 2.5), (4000, 3, 2.5)])

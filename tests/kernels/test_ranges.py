@@ -53,17 +53,16 @@ def test_most_of_what_is_well_resolved_is_decided():
         h = 0.1
 
         def at(t, x=x, v=v, turn=turn):
-            """A circle: position, velocity, acceleration of the second agent; the first is at rest."""
+            """A circle: place, velocity and acceleration at times t, shape (3, 2, ...)."""
             c, s = np.cos(turn * t), np.sin(turn * t)
-            spin = np.array([[c, -s], [s, c]])
-            velocity = spin @ v
-            place = x + np.array([[s, c - 1.0], [1.0 - c, s]]) @ v / turn
-            push = turn * np.array([-velocity[1], velocity[0]])
-            return [np.array([np.zeros(2), each]) for each in (place, velocity, push)]
+            velocity = np.array([c * v[0] - s * v[1], s * v[0] + c * v[1]])
+            way = np.array([s * v[0] + (c - 1.0) * v[1], (1.0 - c) * v[0] + s * v[1]]) / turn
+            place = x.reshape(2, *[1] * np.ndim(t)) + way
+            return np.array([place, velocity, turn * np.array([-velocity[1], velocity[0]])])
 
-        enters, unsure, _ = found(h, at(0.0), at(h))
-        times = np.linspace(0.0, h, 2001)
-        gap = np.array([np.linalg.norm(at(t)[0][1]) for t in times]) - R
+        start, end = ([np.array([np.zeros(2), each]) for each in at(t)] for t in (0.0, h))  # the first agent is at rest
+        enters, unsure, _ = found(h, start, end)
+        gap = np.linalg.norm(at(np.linspace(0.0, h, 2001))[0], axis=0) - R
         truth = bool((np.maximum.accumulate(gap > 0.0) & (gap < 0.0)).any())
         assert unsure or enters == truth
         decided += not unsure
