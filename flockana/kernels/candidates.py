@@ -73,10 +73,12 @@ def gather(i, q, reach, cells, near):
     cells : Cells
         Of positions that nobody has left by more than half of what the cells' reach exceeds this one by.
     near : ndarray of int64, shape (n,)
-        Where to write, in rising order; 0 to n − 1 at first, and that is what it stays where there are no cells.
+        Where to write, in rising order: 0 to n − 1 where there are no cells.
     """
     n, m = q.shape
     if cells.start.size == 0:
+        for k in range(n):  # an instant before this one may have had cells
+            near[k] = k
         return n
     count, c, most = 0, cells.cell[i], reach * reach * _SLACK
     for row in range(-cells.rows.size, cells.rows.size + 1):

@@ -245,7 +245,7 @@ def behaviours(q, p, heading, estimate, reach, alien, step, zones, settings, cho
     """The six behaviours of all agents at one instant, shape (6, n, m); headings and estimates are changed."""
     n, m = q.shape
     components, out = np.empty((6, n, m)), np.empty((6, m))
-    cells, near = sort_into_cells(q, reach.max()), np.arange(n)
+    cells, near = sort_into_cells(q, reach.max()), np.empty(n, np.int64)
     for i in range(n):
         count = gather(i, q, reach[i], cells, near)
         behave(i, near[:count], q, p, heading, estimate, reach[i], alien, step, zones, settings, choices, world, out)
@@ -337,7 +337,7 @@ def run(q, p, heading, estimate, reach, alien, first, zones, settings, choices, 
     )
     aliens, reaches = np.empty((steps, alien.shape[0], m)), np.empty((steps, n))
     u, out, total = np.empty((n, m)), np.empty((6, m)), np.empty(m)
-    near = np.arange(n)
+    near = np.empty(n, np.int64)
     further = settings.dt * settings.v_max if choices.order == 1 else 0.0  # those before agent i have moved since
     for taken in range(steps):
         step, cells = first + taken, sort_into_cells(q, reach.max() + further)
@@ -367,7 +367,7 @@ def _count_neighbours(q, r, c, a, cells, near, shares):
 @njit(cache=True)
 def populations(q, r, c, a):
     """Mean number of agents in the zones of repulsion, conflict and attraction of an agent, (T, n, m) -> (T, 3)."""
-    shares, near = np.zeros((q.shape[0], 3)), np.arange(q.shape[1])
+    shares, near = np.zeros((q.shape[0], 3)), np.empty(q.shape[1], np.int64)
     for t in range(q.shape[0]):
         _count_neighbours(q[t], r, c, a, sort_into_cells(q[t], a.max()), near, shares[t])
     return shares
@@ -404,7 +404,7 @@ def fragments(q, a):
     """(Components, agents in the largest) over time, (T, 2); linked are those of whom one attracts the other."""
     steps, n, _ = q.shape
     counts, reach = np.zeros((steps, 2), np.int64), a.max()
-    seen, stack, near = np.empty(n, np.bool_), np.empty(n, np.int64), np.arange(n)
+    seen, stack, near = np.empty(n, np.bool_), np.empty(n, np.int64), np.empty(n, np.int64)
     for t in range(steps):
         cells = sort_into_cells(q[t], reach)
         counts[t, 0], counts[t, 1] = _count_fragments(q[t], a, reach, cells, near, seen, stack)

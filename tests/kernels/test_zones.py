@@ -7,9 +7,11 @@ from math import isclose, tanh
 import numpy as np
 import pytest
 
+from flockana.dynamics.simulate import simulate
 from flockana.environment.zone_obstacles import Box, SimplePolygon
 from flockana.environment.zone_world import Alien, ZoneWorld
 from flockana.interactions import ZoneNoise, ZoneRadii, ZoneWeights
+from flockana.kernels.candidates import sort_into_cells
 from flockana.kernels.zones import fragments, populations, saturation
 from flockana.laws.bearing_distance import BEHAVIOURS, ZoneFlocking
 from tests.kernels.test_noise import uniform
@@ -157,6 +159,27 @@ def test_populations_and_fragments_against_matrices():
         reached = np.linalg.matrix_power((d[k] <= A) + np.eye(8), 8) > 0
         sizes = reached.sum(axis=1)
         assert fragments(q, np.full(8, A))[k].tolist() == [round(sum(1.0 / sizes)), sizes.max()]
+
+
+def test_a_flock_that_draws_together_until_no_cells_are_left_is_stepped_as_from_step_to_step():
+    """Cells serve at first; when all are near each other nobody may be summed twice, or left out."""
+    law = ZoneFlocking(weights=ZoneWeights(separation=0.5, cohesion_gain=2.0, alignment_gain=0.0, speed=0.0))
+    q, p = np.random.default_rng(0).uniform(0.0, 18.0, (100, 2)), np.zeros((100, 2))
+    run, memory = simulate(law, q, p, (0.0, 4.0)), law.start(q, p)
+    for k in range(1, len(run.t)):
+        q, p, _, memory = law.step(float(run.t[k - 1]), q, p, memory)
+        np.testing.assert_array_equal(run.q[k], q)
+    assert sort_into_cells(run.q[0], law.radii.a).start.size > 0 == sort_into_cells(run.q[-1], law.radii.a).start.size
+
+
+def test_instants_are_counted_each_by_itself():
+    wide, dense = np.random.default_rng(1).uniform(0.0, [[[60.0, 60.0]], [[4.0, 4.0]]], (2, 100, 2))
+    a = np.full(100, 5.0)
+    together = fragments(np.stack([wide, dense]), a), populations(np.stack([wide, dense]), a / 9.0, a / 3.0, a)
+    for k, q in enumerate((wide, dense)):
+        np.testing.assert_array_equal(together[0][k], fragments(q[None], a)[0])
+        np.testing.assert_array_equal(together[1][k], populations(q[None], a / 9.0, a / 3.0, a)[0])
+    assert together[0][1].tolist() == [1, 100]
 
 
 def test_one_who_sees_farther_links_both():
