@@ -237,6 +237,10 @@ class FormulaInteraction(PairInteraction):
         ------
         ArgumentError
             If a parameter has no `powers`, or the formula has a number in it that has a unit.
+
+        Notes
+        -----
+        A force without a time among its parameters' powers is a length, as φ_α is: its gain carries the time.
         """
         powers: dict[str, Powers] = {"eps": (-2, 0)} | {name: (a, b) for name, a, b in self.powers}
         missing = [name for name, _ in self.parameters if name not in powers]
@@ -249,10 +253,12 @@ class FormulaInteraction(PairInteraction):
             (name, value * length ** powers[name][0] * time ** powers[name][1]) for name, value in self.parameters
         )
         other = replace(self, r=self.r * length, d=self.d * length, parameters=scaled)
-        if not self._parts.same_as(other._parts, length, length / time**2, _SAME):
+        force = length / time**2 if any(b for _, _, b in self.powers) else length
+        if not self._parts.same_as(other._parts, length, force, _SAME):
             raise ArgumentError(
                 "the formula has a number in it that has a unit, or parameters with wrong powers: expected a force "
-                "that scales as length/time² and an adjacency that does not, to change units"
+                "that scales as length/time², or as length if no parameter has a time, and an adjacency that scales as "
+                "neither, to change units"
             )
         return other
 

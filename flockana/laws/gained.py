@@ -41,4 +41,5 @@ def timed(pair: PairInteraction | Weight | None) -> bool:
     >>> timed(AlphaInteraction()), timed(DeadZoneInteraction())
     (False, True)
     """
-    return any(power for _, power in getattr(pair, "units", {}).values())
+    of_formula = (power for _, _, power in getattr(pair, "powers", ()))
+    return any(power for _, power in getattr(pair, "units", {}).values()) or any(of_formula)

@@ -131,6 +131,27 @@ def test_the_unit_of_sigma_1_stands_in_the_formulas_too() -> None:
     np.testing.assert_allclose(law.flow(0.0, here, 0.0 * here)[0][0], -sum(slopes), rtol=1e-12)
 
 
+@pytest.mark.parametrize("units", [{"k": (-2, -2)}, {"k": (-2, 0)}])
+@pytest.mark.parametrize("compose", [fl.Algorithm1, lambda alpha: fl.Algorithm2(alpha, target=fl.StaticTarget((9.0,)))])
+def test_a_formula_has_the_time_in_its_parameters_or_in_its_gain(compose, units) -> None:
+    """Once, not twice: V = k (s − 7)² (s − 9)² is a squared speed, or a squared length as ψ_α is."""
+    pair = fl.pair_law(
+        "k*(s-d)**2*(s-r)**2",
+        adjacency="(1-s/r)**2",
+        range=9.0,
+        length=7.0,
+        parameters={"k": 0.01},
+        units=units,
+    )
+    law, length, time = compose(pair), 3.0, 1000.0
+    q, p = np.array([[0.0], [5.0], [11.0]]), np.array([[1.0], [0.0], [-0.5]])
+    other = rescale(law, length=length, time=time)
+    u = other.acceleration(0.0, length * q, length / time * p) * time**2 / length
+    np.testing.assert_allclose(u, law.acceleration(0.0, q, p), rtol=1e-12)
+    energy = other.energy(0.0, length * q, length / time * p) * (time / length) ** 2
+    assert energy == pytest.approx(law.energy(0.0, q, p), rel=1e-12)
+
+
 def test_powers_of_two_change_nothing_but_the_exponent() -> None:
     q, p = state()
     law = fl.Algorithm2(target=SINE)
