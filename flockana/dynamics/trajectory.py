@@ -187,7 +187,7 @@ class Trajectory:
 
     @property
     def energy_residual(self) -> FloatArray:
-        """H(t) − H(0) − ∫ dH/dt, shape (T,): what the integration got wrong, measured by the energy identity.
+        """H − ∫ dH/dt less that of the first sample, (T,): what the integration got wrong, by the energy identity.
 
         Raises
         ------
@@ -196,8 +196,8 @@ class Trajectory:
         """
         if "work" not in self.extra:
             raise ArgumentError("this run has no energy balance: its law has no energy")
-        energy = self.energy()
-        residual: FloatArray = energy - energy[0] - self.extra["work"]
+        energy, work = self.energy(), self.extra["work"]
+        residual: FloatArray = energy - energy[0] - (work - work[0])  # the first may be later than the start
         return residual
 
     def metrics(self) -> xarray.Dataset:
@@ -281,9 +281,9 @@ class Trajectory:
         return self._memory[name]  # type: ignore[no-any-return]
 
     def samples_digest(self) -> bytes:
-        """Of all times, positions, velocities and accelerations, to the bit."""
+        """Of all times, positions, velocities, accelerations and further series, to the bit."""
         digest = hashlib.sha256()
-        for series in (self.t, self.q, self.p, self.u):
+        for series in (self.t, self.q, self.p, self.u, *(self.extra[name] for name in sorted(self.extra))):
             digest.update(np.ascontiguousarray(series).data)
         return digest.digest()
 

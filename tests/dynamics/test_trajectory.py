@@ -81,6 +81,14 @@ def test_min_distance_is_a_bound_of_the_samples():
     assert RUN.min_distance() == RUN.closest_approach().lower <= float(RUN.metrics().min_distance.min())
 
 
+def test_the_energys_balance_counts_from_the_first_sample():
+    q, p = [[0.0, 0.0], [5.0, 0.0], [3.0, 6.0]], [[1.0, 0.0], [0.0, 2.0], [-1.0, 0.0]]
+    late = simulate(Algorithm1(), q, p, (0.0, 2.0), t_eval=[1.0, 1.5, 2.0])
+    assert abs(late.extra["work"][0]) > 1.0
+    assert np.abs(late.energy_residual).max() < 1e-5
+    assert [c.status for c in fl.verify("energy", late).claims] == ["verified", "verified"]
+
+
 def test_window():
     part = RUN.window(0.25, 0.75)
     np.testing.assert_allclose(part.t, [0.3, 0.4, 0.5, 0.6, 0.7])
