@@ -168,6 +168,11 @@ class DeadZoneInteraction(PairInteraction):
         return tuple(sorted({self.d1, min(self.d2, self.r), self.r}))
 
     @property
+    def coincidence(self) -> bool:
+        """No: the repulsion is infinite at 0."""
+        return False
+
+    @property
     def strength(self) -> float:
         """`contact_force`."""
         return self.contact_force

@@ -247,10 +247,12 @@ class PairInteraction(ABC):
         from scipy.sparse import bsr_array
 
         n, m = q.shape
-        found = [
-            (i.copy(), j.copy(), block_of(i, j, q[j] - q[i], self.kernels.terms(q, i, j, self.par)))
-            for i, j in (pair_blocks(q, self.range) if pairs is None else pairs)
-        ]
+        found = []
+        for i, j in pair_blocks(q, self.range) if pairs is None else pairs:
+            delta = q[j] - q[i]
+            if not self.coincidence:
+                _ensure_apart(i, j, delta)
+            found.append((i.copy(), j.copy(), block_of(i, j, delta, self.kernels.terms(q, i, j, self.par))))
         if not found:
             return bsr_array((n * m, n * m), blocksize=(m, m)).tocsr()
         i, j, blocks = (np.concatenate(each) for each in zip(*found, strict=True))
@@ -263,6 +265,16 @@ class PairInteraction(ABC):
         starts = np.append(0, np.cumsum(np.bincount(rows, minlength=n)))
         values = np.concatenate([-blocks, -blocks, own[met]])[order]
         return bsr_array((values, columns[order], starts), shape=(n * m, n * m)).tocsr()
+
+
+def _ensure_apart(i: Any, j: Any, delta: FloatArray) -> None:
+    """Raise where the square of a distance is 0: the force has no limit there, and no derivative."""
+    met = np.flatnonzero(np.einsum("kc,kc->k", delta, delta) == 0.0)
+    if met.size:
+        raise ArgumentError(
+            f"agents {i[met[0]]} and {j[met[0]]} are {np.linalg.norm(delta[met[0]]):g} apart: the pair law has no "
+            "derivative there; expected distinct positions"
+        )
 
 
 _MOST_COUNTED = 1e140  # units of ℓ²: φ squares them

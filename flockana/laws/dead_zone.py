@@ -87,8 +87,8 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         q, p : ndarray, shape (n, m)
             Initial positions and velocities.
         """
-        super().check_start(q, p)
         ensure_apart(q)
+        super().check_start(q, p)
 
     def acceleration(self, t: float, q: Any, p: Any) -> FloatArray:
         """Control input u(q, p).

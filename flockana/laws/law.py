@@ -254,9 +254,13 @@ class Law(LawOfMotion):
         Raises
         ------
         ArgumentError
-            On wrong shapes, or values that are not finite.
+            On wrong shapes, values that are not finite, or agents at one place where their force has no limit.
         """
-        return self.flow(*self._checked(t, q, p))[0]
+        t, q, p = self._checked(t, q, p)
+        u = self.flow(t, q, p)[0]
+        if not np.isfinite(u).all():
+            self.check_start(q, p)  # tells who is where the law has no input
+        return u
 
     def energy(self, t: float, q: Any, p: Any) -> float:
         """The law's energy H (arguments and errors as `acceleration`).

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pickle
 import re
-from dataclasses import FrozenInstanceError
+from dataclasses import FrozenInstanceError, replace
 from math import sqrt
 
 import numpy as np
@@ -12,6 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import flockana as fl
 from flockana.base.errors import ArgumentError
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
 from flockana.kernels.neighbours import BLOCK, pair_list
@@ -200,3 +201,24 @@ def test_extreme_bumps_still_work():
     assert steep.far_potential == pytest.approx(5.0 * (sqrt(1 + (steep.r_alpha - steep.d_alpha) ** 2) - 1.0), rel=1e-12)
     early = AlphaInteraction(h=1e-300)
     assert 0.0 < early.c_star < AlphaInteraction().c_star
+
+
+@pytest.mark.parametrize("formula", [None, "1/s", "log(s)", "exp(-s)"])
+def test_coincident_agents_have_no_derivative_where_their_force_has_no_limit(formula):
+    pair = fl.DeadZoneInteraction() if formula is None else fl.pair_law(formula, adjacency="1-s/r", range=5.0, length=4.0)
+    law, q, p = fl.Algorithm1(pair), [[0.0, 0.0], [0.0, 0.0], [1.0, 1.0]], [[1.0, 0.0], [0.0, 0.0], [0.0, 0.0]]
+    with pytest.raises(ArgumentError, match="agents 0 and 1 coincide"):
+        law.acceleration(0.0, q, p)
+    for derivative in (lambda: law.jacobian(0.0, q, p), lambda: law.stiffness(q)):
+        with pytest.raises(ArgumentError, match="agents 0 and 1 are 0 apart: the pair law has no derivative there"):
+            derivative()
+
+
+def test_a_run_that_was_edited_so_that_agents_coincide_is_refused_as_such():
+    run = fl.simulate(fl.DeadZoneFlocking(), [[0.0, 0.0], [5.0, 0.0], [3.0, 6.0]], np.eye(3, 2), (0.0, 3.0))
+    q = run.q.copy()
+    q[-1, 0] = q[-1, 1]
+    with pytest.raises(ArgumentError, match=r"u at t = 3 is off by nan .* was it edited"):
+        fl.verify("energy", replace(run, q=q))
+    with pytest.raises(ArgumentError, match="agents 0 and 1 are 0 apart"):
+        fl.DeadZoneFlocking().jacobian(0.0, q[-1], run.p[-1])
