@@ -38,7 +38,7 @@ from flockana.laws.law import Law
 
 ADAPTIVE = ("DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA")
 METHODS = (*ADAPTIVE, "RK4", *(SCIPY + method for method in ADAPTIVE))
-AS_SIMULATED = "as simulated"  # the digest of its samples, of a run of a flow that `simulate` returned
+AS_SIMULATED = "as simulated"  # the digest of its samples, of a run that `simulate` returned
 
 
 def simulate(
@@ -145,8 +145,7 @@ def simulate(
             watch(_copy(first))
     t, q, p, u, extra = _stacked(kept)
     run = Trajectory(t, q, p, u, law, extra, tally.status, tally.message, stats, between)
-    if not isinstance(law, DiscreteLaw):  # steps of a map are made again to see whether they lead to the samples
-        run.remembered(AS_SIMULATED, run.samples_digest)
+    run.remembered(AS_SIMULATED, run.samples_digest)
     return run
 
 

@@ -14,11 +14,12 @@ from typing import Any
 import numpy as np
 
 from flockana.base.errors import ArgumentError, FlockanaError
-from flockana.dynamics.simulate import AS_SIMULATED, simulate
+from flockana.dynamics.simulate import simulate
 from flockana.dynamics.tolerance import FINEST
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.switched import SwitchedLaw
+from flockana.theorems.map_steps import as_simulated, ensure_steps_of_map
 from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
 
 TIGHTER = 1e-2  # the second run's tolerances over the first's
@@ -114,7 +115,7 @@ def ensure_fits(run: Trajectory) -> None:
 
 def _ensure_fits(run: Trajectory) -> bool:
     if isinstance(run.law, DiscreteLaw):
-        _ensure_steps_of_map(run)
+        ensure_steps_of_map(run)
         return True
     difference = np.abs(run.u - run._flows[0]).max(axis=(1, 2))
     if isinstance(run.law, SwitchedLaw):
@@ -136,7 +137,11 @@ def _rounded_input(run: Trajectory, k: int) -> float:
     """How much of a force comes from the rounding of a sample: compiled runs compute it in a frame of their own."""
     if run.law.compiled(run.m) is None:
         return 0.0
-    forces = zip(run.law.derivatives(run.t[k], run.q[k], run.p[k]), (run.q[k], run.p[k]), strict=True)
+    try:
+        slopes = run.law.derivatives(run.t[k], run.q[k], run.p[k])
+    except FlockanaError:  # where the law has none no run comes
+        return 0.0
+    forces = zip(slopes, (run.q[k], run.p[k]), strict=True)
     return float(sum(abs(slope) @ np.spacing(np.abs(x).ravel()) for slope, x in forces).max())
 
 
@@ -156,7 +161,7 @@ def _suspicious_intervals(run: Trajectory) -> list[int]:
     if count == 0:
         return []
     spread = np.linspace(0, count - 1, INTERVALS)
-    if run.remembered(AS_SIMULATED, lambda: b"") == run.samples_digest():
+    if as_simulated(run):
         return sorted({int(k) for k in spread})
     h = np.diff(run.t)[:, None, None]
     (q0, q1), (p0, p1), (u0, u1) = ((x[:-1], x[1:]) for x in (run.q, run.p, run.u))
@@ -194,20 +199,3 @@ def _ensure_leads_on(run: Trajectory, k: int) -> None:
                 f"from the sample at t = {run.t[k]:g} (to {allowed:.2g}): expected a run as simulate returned it; was "
                 "it edited, or is it of another law?"
             )
-
-
-def _ensure_steps_of_map(run: Trajectory) -> None:
-    """Raise unless some steps of the map, computed anew, lead to the samples; steps not kept are passed over."""
-    law: DiscreteLaw = run.law
-    at = np.flatnonzero(np.abs(np.diff(run.t) - law.dt) <= 1e-6 * law.dt)
-    chosen = at[np.linspace(0, at.size - 1, min(at.size, 2 * INTERVALS)).astype(int)] if at.size else at
-    for k in chosen.tolist():
-        memory = {name: series[k].copy() for name, series in run.extra.items()}
-        q, p, _, _ = law.step(float(run.t[k]), run.q[k], run.p[k], memory)
-        for name, sample, value in (("q", run.q[k + 1], q), ("p", run.p[k + 1], p)):
-            unit = (run.scales.length if name == "q" else run.scales.speed) + float(np.abs(value).max())
-            if not np.abs(sample - value).max() <= SAME_INPUT * unit:
-                raise ArgumentError(
-                    f"{name} at t = {run.t[k + 1]:g} is not where a step of {type(law).__name__} leads from "
-                    f"t = {run.t[k]:g}: expected a run as simulate returned it; was it edited, or is it of another law?"
-                )
