@@ -13,6 +13,7 @@ from flockana.kernels.instants import greatest_distances, least_distances
 from flockana.kernels.neighbours import pair_blocks
 
 _TREE = 300  # agents from which on a search tree beats all pairs
+_SQUARED = 1e-140, 1e150  # between which the square of a speed is a number of full precision
 
 
 def net_measures(q: Any, d: float, r: float) -> tuple[float, float, float]:
@@ -364,6 +365,13 @@ def _centred(x: FloatArray) -> FloatArray:
 
 def _headings(p: FloatArray) -> FloatArray:
     """Directions of motion; 0 of agents at rest."""
-    speed = lengths(p)[..., None]
+    with np.errstate(over="ignore"):
+        speed = lengths(p)
+    if (far := ~((speed > _SQUARED[0]) & (speed < _SQUARED[1])) & (p != 0.0).any(axis=2)).any():
+        powers = np.frexp(np.abs(p[far]).max(axis=1))[1]  # of two: nothing is rounded
+        p, speed = p.copy(), speed.copy()
+        p[far] = np.ldexp(p[far], -powers[:, None])
+        speed[far] = lengths(p[far][None])[0]
+    speed = speed[..., None]
     headings: FloatArray = np.divide(p, speed, out=np.zeros_like(p), where=speed > 0.0)
     return headings

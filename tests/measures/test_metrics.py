@@ -72,6 +72,17 @@ def test_over_time_they_are_what_their_formulas_say(n, m):
         assert metrics.coordinations(p)[k] == pytest.approx(mean, abs=1e-12, nan_ok=True)
 
 
+@pytest.mark.parametrize("unit", [2.0**-1000, 2.0**-560, 2.0**-470, 2.0**500, 2.0**600, 2.0**1000])
+def test_directions_hang_on_no_unit_however_small_or_large(unit):
+    """A flock that comes to rest has speeds whose squares are 0."""
+    p = np.random.default_rng(0).normal(size=(12, 2))
+    p[3] = 0.0
+    assert metrics.order(unit * p) == pytest.approx(metrics.order(p), rel=1e-15)
+    assert metrics.coordination(unit * p) == pytest.approx(metrics.coordination(p), rel=1e-13)
+    mixed = np.array([[unit, 0.0], [1.0, 0.0], [0.0, 0.0]])
+    assert (metrics.order(mixed), metrics.coordination(mixed)) == (2.0 / 3.0, 1.0)
+
+
 def test_order():
     assert metrics.order([[1.0, 0.0], [0.0, 3.0]]) == pytest.approx(np.sqrt(0.5), rel=1e-15)
     assert metrics.order([[2.0, 0.0], [0.0, 0.0]]) == 0.5
