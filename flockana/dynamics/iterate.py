@@ -61,7 +61,8 @@ def discrete(
             # of all steps a view, of some a copy: the others are let go
             at = slice(0, good) if kept.size == made.size else kept
             some = {name: values[at] for name, values in series.items()}
-            yield Samples(t0 + (made[at] + first) * dt, qs[at], ps[at], us[at], some)
+            t = np.minimum(t0 + (made[at] + first) * dt, t_span[1])  # which the last step may pass by its rounding
+            yield Samples(t, qs[at], ps[at], us[at], some)
         done = int(made[good - 1]) if good else 0
         tally.steps, tally.evaluations = tally.steps + done, tally.evaluations + done
         if good < made.size:

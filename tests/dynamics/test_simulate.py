@@ -18,6 +18,7 @@ from flockana.interactions import Gains
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.laws.semi_implicit import SemiImplicitEuler
 from tests.programs import out_of_a_kernel
 
 LAW = Algorithm2(gains=Gains(c1_alpha=3.0, c2_alpha=1.0), target=LinearTarget((5.0, 0.0), (1.0, 0.5)))
@@ -457,3 +458,12 @@ def test_who_watches_sees_each_kept_sample_as_it_comes_and_may_end_the_run():
     ended = simulate(law, q0, p0, (0.0, 1.0), t_eval=[0.25, 0.5, 1.0], watch=end)
     assert (ended.status, ended.t.tolist()) == ("interrupted", [0.25, 0.5])
     np.testing.assert_array_equal(ended.q, run.q[:2])
+
+
+def test_a_map_ends_no_later_than_its_span():
+    """Its times can be asked for again."""
+    law, end = SemiImplicitEuler(Algorithm1(), dt=1e-8), 1e-5 * (1.0 - 1e-16)
+    run = simulate(law, [[0.0, 0.0], [5.0, 0.0]], np.zeros((2, 2)), (0.0, end))
+    assert 1000 * law.dt > end == run.t[-1]
+    again = simulate(law, run.q[0], run.p[0], (0.0, end), t_eval=run.t)
+    np.testing.assert_array_equal(again.q, run.q)
