@@ -71,7 +71,7 @@ def falsify(
         Bounds for numbers of the law, by dotted name, such as ``{"gains.c1_gamma": (0.1, 10.0)}``.
     surrogate : callable, optional
         ``surrogate(trajectory, claim) -> float`` in [0, 1], lower the nearer to breaking: it orders runs of equal
-        margins, which counts often have. Some claims have one of ours.
+        margins, which counts often have. Some claims have one of ours. None is asked where unmet hypotheses lead back.
     tolerances : Tolerances, optional
         Thresholds of the verdicts.
     deepen : bool

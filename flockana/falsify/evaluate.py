@@ -16,7 +16,7 @@ from flockana.falsify.space import Space
 from flockana.scenarios import Scenario
 from flockana.theorems import Claim, Theorem, Tolerances, Verdict, theorem, verify
 from flockana.theorems.leads import squash
-from flockana.theorems.theorem import Lead
+from flockana.theorems.theorem import Lead, unmet
 
 
 @dataclass(frozen=True)
@@ -111,6 +111,8 @@ class Problem:
     def _grade(self, run: Trajectory, verdict: Verdict, claim: Claim) -> float:
         checked = self.theorem if isinstance(self.theorem, Theorem) else theorem(self.theorem)
         lead = self.surrogate or checked.leads.get(claim.name)
+        if claim.status == "vacuous" and unmet(verdict.hypotheses):
+            lead = None  # unmet hypotheses lead back; and the law may not have what a surrogate measures
         aid = 0.0 if lead is None else min(max(float(lead(run, claim)), 0.0), 1.0)
         unit = self.scales.get(claim.name, 1.0)
         value = grade(claim, verdict.hypotheses, scale=unit, lead=aid, limit=claim.name in checked.limits)

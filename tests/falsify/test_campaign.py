@@ -185,6 +185,22 @@ class TestGrades:
             one = verify(name, run).claim(claim)
             assert 0.0 <= lead(run, one) <= 1.0
 
+    @pytest.mark.parametrize("entry", ["cucker-smale", "headings-meet", "minimal-2d-printed", "tanner-switching"])
+    def test_no_surrogate_is_asked_where_the_law_is_another(self, entry):
+        """It may have no lattice and no pair force, which surrogates measure by."""
+        begin = scenario(entry)
+        for name in theorems():
+            if theorem(name).leads:
+                found = falsify(name, begin, budget=1)
+                assert {found.worst_status(claim) for claim in found.statuses} == {"vacuous"}, name
+
+    def test_a_surrogate_is_asked_where_a_claim_alone_is_vacuous(self):
+        run, asked = HEAD_ON.run(), Problem(None, OWN, Tolerances(), surrogate=lambda run, claim: 0.5)
+        claim = Claim("slow", "vacuous")
+        met, unmet = (Verdict("slow", (Hypothesis("a", status, 0.0),), (claim,)) for status in ("met", "unmet"))
+        assert asked.graded(run, met).grade == 2.0 + 0.5e-3
+        assert asked.graded(run, unmet).grade == 2.0
+
 
 def made_up(*states):
     q = np.array(states, dtype=float)
