@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from flockana.theorems import Verdict
 
 _CROSSING = "each decided exactly, for the positions as stored"
-_MANY = 1000  # crossings from which on they are not counted: the theorem's check lists so many
 
 
 def lattice_command(
@@ -80,6 +79,7 @@ def lattice_facts(given: Source, pairs: LinkArray, verdict: Verdict) -> dict[str
     from flockana.lattice.measure import GUARD
     from flockana.measures.metrics import deviation_energy, min_distance
     from flockana.measures.nets import components, link_lengths
+    from flockana.theorems.olfati_saber.os_5 import LISTED
 
     q, d, r = given.q, given.d, given.r
     (n, m), lengths = q.shape, link_lengths(q, pairs)
@@ -104,8 +104,8 @@ def lattice_facts(given: Source, pairs: LinkArray, verdict: Verdict) -> dict[str
         "least distance": min_distance(q) if n > 1 else None,
         "components": int(components(n, pairs).max()) + 1,
         "complete": is_complete(n, pairs),
-        "crossings": crossings,
-        "crossings listed at most": _MANY,
+        "crossings": LISTED if isinstance(crossings, str) else crossings,  # a text says that there are more
+        "crossings listed at most": LISTED,
         "planar graph": graph.computed == "planar",
         "kuratowski": None if witness is None else {"kind": witness["kind"], "links": len(witness["links"])},
         "planar bound": planar_bound(n),
@@ -152,7 +152,7 @@ def _rows(facts: dict[str, Any]) -> list[tuple[str, str]]:
         scale += f"; this pattern is an α-lattice up to κ = {largest:.5g}"
     linked, error = facts["links"] > 0, facts["edge-length error"]
     harborth = "" if facts["harborth"] is None else f", an α-lattice of the plane {facts['harborth']} (Harborth)"
-    counted = f"at least {facts['crossings']}" if facts["crossings"] >= _MANY else f"{facts['crossings'] or 'none'}"
+    counted = f"{'at least ' if facts['crossings'] >= facts['crossings listed at most'] else ''}{facts['crossings']}"
     rows = [
         ("agents, dimension", f"n = {facts['n']}, m = {facts['m']}"),
         ("d and r", scale),
@@ -162,7 +162,7 @@ def _rows(facts: dict[str, Any]) -> list[tuple[str, str]]:
         ("shortest, longest link", f"{facts['shortest link']:.8g}, {facts['longest link']:.8g}" if linked else "none"),
         ("least distance", "one agent" if facts["least distance"] is None else f"{facts['least distance']:.8g}"),
         ("components", f"{facts['components']}; {'' if facts['complete'] else 'not '}complete"),
-        ("crossings", f"{counted}; {_CROSSING}"),
+        ("crossings", f"{counted if facts['crossings'] else 'none'}; {_CROSSING}"),
         ("graph", _planarity(facts)),
         ("rigidity", _rigidity_text(facts["rigidity"])),
         ("neighbours: agents", _counts(facts["coordination"])),

@@ -68,6 +68,17 @@ def test_a_square_bends_and_its_diagonals_cross_once_they_are_links(call, found)
     assert "0 of 7 interior agents without six neighbours, charge 0" in " ".join(call("hexagonal-spiral:19")[1].split())
 
 
+def test_crossings_are_counted_up_to_what_the_theorems_check_lists(call, found, monkeypatch):
+    os_5 = importlib.import_module("flockana.theorems.olfati_saber.os_5")
+    counted = found("square:12x12", "--r", 20)
+    assert (counted["crossings"], counted["crossings listed at most"]) == (15911, os_5.LISTED)
+    assert "crossings 15911; each decided" in " ".join(call("square:12x12", "--r", 20)[1].split())
+    monkeypatch.setattr(os_5, "LISTED", 200)
+    counted = found("square:6x6", "--r", 20)
+    assert (counted["crossings"], counted["crossings listed at most"]) == (200, 200)
+    assert "crossings at least 200; each decided" in " ".join(call("square:6x6", "--r", 20)[1].split())
+
+
 def test_a_seven_fold_defect_is_counted(call, tmp_path):
     angle = np.arange(7) * 2.0 * np.pi / 7.0
     ring = np.column_stack([np.cos(angle), np.sin(angle)]) * 7.5

@@ -34,7 +34,7 @@ CLAIMS = (
     "extension-links",
     "extension-quantitative",
 )
-_LISTED = 100_000  # crossings that are listed at most; beyond, every count of them says "at least"
+LISTED = 100_000  # crossings that are listed at most; beyond, every count of them says "at least"
 _SHOWN = 10  # and shown as witness
 _WITNESS_LIMIT = 20_000  # links of which a Kuratowski subgraph is still found in about a minute
 _CROSSINGS, _COUNTS = "theorem5-crossings", "theorem5-counts"  # executable proofs
@@ -53,7 +53,7 @@ class Net:
         self.lengths = link_lengths(q, self.links)
         self.strain = float(np.abs(self.lengths - d).max() / d) if len(self.links) else float("nan")
         self.closest = min_distance(q)
-        self.crossings = crossings(q, self.links, limit=_LISTED)
+        self.crossings = crossings(q, self.links, limit=LISTED)
 
     def agents(self, pair: Any) -> list[list[int]]:
         """The agents of two links."""
@@ -63,7 +63,7 @@ class Net:
     def crossing_count(self) -> int | str:
         """How many pairs of links cross, or that there are more than are listed."""
         count = len(self.crossings)
-        return f"at least {count}" if count >= _LISTED else count
+        return f"at least {count}" if count >= LISTED else count
 
     @property
     def crossing_text(self) -> str:

@@ -169,7 +169,7 @@ def test_the_crossings_of_a_collapsed_flock_are_counted_in_full():
 
 
 def test_more_crossings_than_are_listed_are_said_to_be_at_least_so_many(monkeypatch):
-    monkeypatch.setattr(os_5, "_LISTED", 100)
+    monkeypatch.setattr(os_5, "LISTED", 100)
     verdict = verify("os-5", q=np.random.default_rng(0).normal(size=(40, 2)), d=D, r=R)
     for name in ("i", "extension", "extension-quantitative"):
         assert verdict.claim(name).computed == "at least 100"
