@@ -8,6 +8,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import ExitStack
 from hashlib import sha256
+from itertools import islice
+from math import prod
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -32,6 +34,9 @@ from flockana.theorems import Tolerances, theorem, theorems
 
 if TYPE_CHECKING:
     import xarray
+
+MOST = 1_000_000  # runs of one ensemble: each is held in memory, with its record, until the dataset is made
+_REMEDY = "split them into several ensembles"
 
 
 def ensemble(
@@ -59,7 +64,7 @@ def ensemble(
     scenario : str or callable
         A name of the catalogue, or a function ``seed, **options -> Scenario`` from the top of a module.
     seeds : iterable of int
-        Seeds, each >= 0 and given once.
+        Seeds, each >= 0 and given once; with all combinations of options at most a million runs.
     theorems : iterable of str, optional
         Which to check, ``"source"`` standing for what the source reports; by default all of the scenario's own and
         what its source reports. Empty for none.
@@ -114,6 +119,9 @@ def ensemble(
     ensure_crew(executor, cluster, jobs)
     seeds = ensure_seeds(seeds)
     axes, fixed = _split(parameters)
+    runs = prod(map(len, axes.values()), start=len(seeds))
+    if runs > MOST:
+        raise ArgumentError(f"{runs} runs: expected at most {MOST}, seeds times values of options; {_REMEDY}")
     chosen = _ensure_metrics(metrics)
     _ensure_names(axes, fixed, chosen)
     if tolerances is not None and not isinstance(tolerances, Tolerances):
@@ -155,7 +163,9 @@ def ensure_seeds(seeds: Any) -> tuple[int, ...]:
     """
     if isinstance(seeds, str) or not isinstance(seeds, Iterable):
         raise ArgumentError(f"seeds = {seeds!r}: expected several whole numbers, such as range(200)")
-    given = tuple(seeds)
+    given = tuple(islice(seeds, MOST + 1))  # there may be no end of them
+    if len(given) > MOST:
+        raise ArgumentError(f"seeds: there are more than {MOST}; expected at most so many, {_REMEDY}")
     for seed in given:
         if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or not 0 <= seed < 2**63:
             raise ArgumentError(f"seed {seed!r}: expected a whole number >= 0, below 2^63")
@@ -178,7 +188,9 @@ def _split(parameters: Any) -> tuple[dict[str, list[Scalar]], dict[str, Scalar]]
         if isinstance(given, str) or not isinstance(given, Iterable):
             fixed[name] = _scalar(name, given)
             continue
-        values = [_scalar(name, value) for value in given]
+        values = [_scalar(name, value) for value in islice(given, MOST + 1)]
+        if len(values) > MOST:
+            raise ArgumentError(f"{name}: there are more than {MOST} values; expected at most so many, {_REMEDY}")
         if not values or len(set(values)) < len(values) or len({isinstance(v, str) for v in values}) > 1:
             raise ArgumentError(f"{name} = {values}: expected at least one value, all different and of one kind")
         axes[name] = values

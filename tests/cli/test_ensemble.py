@@ -69,6 +69,7 @@ def test_options_are_read_as_what_they_look_like():
         (["hexagon", "--theorem", "E8"], "E8 is not about a run"),
         (["hexagon", "--set", "m=2"], "hexagon has no option m"),
         (["hexagon", "--seeds", 0], "Invalid value for '--seeds'"),
+        (["hexagon", "--seeds", 100_000_000_000], "seeds: there are more than 1000000; expected at most so many"),
         (["hexagon", "--level", 95], "level = 95"),
         (["hexagon", "-o", "x.csv"], "ends in .nc"),
         (["hexagon", "--plot", "x.gif"], "ends in .png or"),

@@ -7,6 +7,7 @@ import time
 from collections import deque
 from concurrent.futures import ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from itertools import count
 
 import numpy as np
 import pytest
@@ -294,6 +295,14 @@ BAD = [
     ({"seeds": []}, ArgumentError, "there are none"),
     ({"seeds": 200}, ArgumentError, r"seeds = 200: expected several .*range\(200\)"),
     ({"seeds": [1, 2, 1]}, ArgumentError, "seed 1 comes twice"),
+    ({"seeds": range(10**11)}, ArgumentError, "seeds: there are more than 1000000; expected at most so many, split"),
+    ({"seeds": count()}, ArgumentError, "seeds: there are more than 1000000"),
+    ({"parameters": {"ratio": count()}}, ArgumentError, "ratio: there are more than 1000000 values"),
+    (
+        {"seeds": range(1001), "parameters": {"ratio": range(1000)}},
+        ArgumentError,
+        "1001000 runs: expected at most 1000000, seeds times values of options; split",
+    ),
     ({"seeds": [1, -2]}, ArgumentError, "seed -2"),
     ({"seeds": [True]}, ArgumentError, "seed True"),
     ({"theorems": ["os-9"]}, UnknownNameError, "unknown theorem 'os-9'"),
