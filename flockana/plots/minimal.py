@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.base.checks import ensure_finite_scalar
 from flockana.base.errors import ArgumentError
 from flockana.laws.minimal import MinimalFlocking
-from flockana.plots.snapshot import configuration, draw_sample, drawn_law
+from flockana.plots.snapshot import configuration, draw_sample, drawn_law, nearest_sample
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -50,13 +49,12 @@ def perception(
     Raises
     ------
     ArgumentError
-        If it is a run of another law.
+        If it is a run of another law, or on a time that is not of the run.
     """
     law = drawn_law(trajectory)
     if not isinstance(law, MinimalFlocking):
         raise ArgumentError(f"law = {trajectory.law!r}: expected a run of MinimalFlocking")
-    when = trajectory.t[-1] if time is None else ensure_finite_scalar("time", time)
-    return _draw(law, trajectory, int(np.argmin(np.abs(trajectory.t - when))), ax=ax, velocities=velocities, bar=bar)
+    return _draw(law, trajectory, nearest_sample(trajectory.t, time), ax=ax, velocities=velocities, bar=bar)
 
 
 @draw_sample.register(MinimalFlocking)

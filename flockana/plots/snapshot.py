@@ -45,6 +45,7 @@ if TYPE_CHECKING:
 _ARROW = 0.07  # longest arrow as a share of the axes' width
 _MANY = 4.0  # links per agent beyond which they are drawn thinner; a lattice has 3
 _AT_REST = 1e-4  # share of the law's own speed below which a run is drawn without arrows: rounding has none to show
+_ROUNDING = 1e-9  # share of a run's duration by which a time that was computed may miss its ends
 _COINCIDE = 1e-4  # share of the size of the flock below which agents are drawn as one
 
 
@@ -83,16 +84,27 @@ def snapshot(
     Raises
     ------
     ArgumentError
-        If circles are asked for where there are none: of a law without a range, or on a line or in space.
+        On a time before or after the run, or if circles are asked for where there are none: of a law without a range,
+        or on a line or in space.
     """
-    when = trajectory.t[-1] if time is None else ensure_finite_scalar("time", time)
-    k = int(np.argmin(np.abs(trajectory.t - when)))
+    k = nearest_sample(trajectory.t, time)
     law = drawn_law(trajectory)
     moving = float(np.linalg.norm(trajectory.p[k], axis=1).max()) > _AT_REST * trajectory.scales.speed
     drawn = draw_sample(law, trajectory, k, ax=ax, velocities=velocities and moving, bar=bar)
     if ranges:
         _range_circles(drawn, trajectory.q[k], law)
     return drawn
+
+
+def nearest_sample(t: FloatArray, time: float | None) -> int:
+    """The sample nearest to a time of the run; the last for none."""
+    if time is None:
+        return len(t) - 1
+    when, first, last = ensure_finite_scalar("time", time), float(t[0]), float(t[-1])
+    room = _ROUNDING * (last - first)
+    if not first - room <= when <= last + room:
+        raise ArgumentError(f"time = {when:g}: expected a time of the run, {first:g} to {last:g}")
+    return int(np.argmin(np.abs(t - when)))
 
 
 def _range_circles(ax: Any, q: FloatArray, law: Any) -> None:

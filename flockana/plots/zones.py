@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.collections import PolyCollection
 from matplotlib.patches import Circle, Polygon, Rectangle
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar
+from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.vectors import lengths
 from flockana.environment.obstacles import Sphere
@@ -19,7 +19,7 @@ from flockana.measures.nets import links
 from flockana.plots.obstacles import bounds
 from flockana.plots.obstacles import obstacles as draw_obstacles
 from flockana.plots.series import pair_distances
-from flockana.plots.snapshot import configuration, draw_sample, in_view, velocity_arrows
+from flockana.plots.snapshot import configuration, draw_sample, in_view, nearest_sample, velocity_arrows
 from flockana.plots.style import (
     BLUE,
     FAINT,
@@ -77,13 +77,12 @@ def zones(
     Raises
     ------
     ArgumentError
-        If it is a run of another law, or of agents on a line.
+        If it is a run of another law, or of agents on a line, or on a time that is not of the run.
     """
     law, m = _law(trajectory), trajectory.m
     if m == 1:
         raise ArgumentError("the agents live on a line: expected m = 2 or 3")
-    when = trajectory.t[-1] if time is None else ensure_finite_scalar("time", time)
-    k = int(np.argmin(np.abs(trajectory.t - when)))
+    k = nearest_sample(trajectory.t, time)
     q, heading = trajectory.q[k], trajectory.extra["heading"][k]
     axes = ensure_axes(ax, m=m)
     seen = [q, _corners(law.world, m)]

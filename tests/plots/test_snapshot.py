@@ -216,6 +216,15 @@ def test_snapshot_of_bad_time_is_refused():
         plots.snapshot(a_run(), float("nan"), ax=axes())
 
 
+def test_a_time_before_or_after_the_run_is_refused_and_one_within_rounding_of_its_end_is_not():
+    run = simulate(Algorithm1(), [[0.0, 0.0], [6.0, 1.0]], np.zeros((2, 2)), (0.5, 1.0))
+    for time, shown in ((99, "99"), (0.0, "0"), (1.01, "1.01")):
+        with pytest.raises(ArgumentError, match=f"time = {shown}: expected a time of the run, 0.5 to 1$"):
+            plots.snapshot(run, time)
+    drawn = plots.snapshot(run, np.nextafter(1.0, 2.0), ax=axes(), velocities=False)
+    assert drawn.get_title(loc="left") == "$t$ = 1"
+
+
 def test_circles_of_interaction_stand_about_the_agents():
     """Radius r about each; that of each agent on a directed net; refused where there is none to draw."""
     q, p = [[0.0, 0.0], [6.0, 1.0]], [[1.0, 0.0], [0.0, 0.0]]

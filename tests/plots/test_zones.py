@@ -92,6 +92,8 @@ def test_other_laws_and_lines_are_refused():
             draw(other, ax=axes())
     with pytest.raises(ArgumentError, match="agents live on a line"):
         plots.zones(simulate(ZoneFlocking(), [[0.0]], [[1.0]], (0.0, 1.0)), ax=axes())
+    with pytest.raises(ArgumentError, match="time = 9: expected a time of the run, 0 to 1"):
+        plots.zones(simulate(ZoneFlocking(), [[0.0, 0.0]], [[1.0, 0.0]], (0.0, 1.0)), 9.0, ax=axes())
 
 
 def test_the_report_draws_a_law_by_its_own_module(run):
