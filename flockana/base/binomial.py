@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar, real_array
-from flockana.base.errors import ArgumentError
+from flockana.base.errors import ArgumentError, told
 
 
 def ensure_level(level: Any) -> float:
@@ -53,10 +53,12 @@ def clopper_pearson(successes: Any, trials: Any, *, level: float = 0.95) -> tupl
 
     try:
         k, n = np.broadcast_arrays(real_array(successes), real_array(trials))
-    except (TypeError, ValueError):
-        raise ArgumentError(f"successes = {successes!r}, trials = {trials!r}: expected counts") from None
+    except (TypeError, ValueError, OverflowError):
+        both = f"successes = {told(successes)}, trials = {told(trials)}"
+        raise ArgumentError(f"{both}: expected counts") from None
     if not ((k >= 0.0) & (k <= n)).all():
-        raise ArgumentError(f"successes = {successes}, trials = {trials}: expected 0 <= successes <= trials")
+        both = f"successes = {told(successes)}, trials = {told(trials)}"
+        raise ArgumentError(f"{both}: expected 0 <= successes <= trials")
     tail = 0.5 * (1.0 - ensure_level(level))
     # the arguments are kept positive where the end is known without them
     low = np.where(k > 0.0, betaincinv(np.maximum(k, 1.0), n - k + 1.0, tail), 0.0)

@@ -5,8 +5,36 @@ Every message names the value it got, what was expected, and the remedy. Anythin
 
 from __future__ import annotations
 
+import math
+from typing import Any
+
 _NEAREST = 3  # names that are suggested
 _FEW = 16  # names that are all told
+DIGITS = 40  # of a whole number beyond which it is told by its size: Python itself refuses to write some
+
+
+def told(value: Any) -> str:
+    """A value as a message writes it: on one line, and a whole number of very many digits by its size.
+
+    Parameters
+    ----------
+    value : object
+        What was given.
+
+    Examples
+    --------
+    >>> told("x"), told([1, 2]), told(-(10**400))
+    ("'x'", '[1, 2]', 'about -1e+400')
+    """
+    if isinstance(value, int) and abs(value) >= 10**DIGITS:
+        exponent = math.floor(math.log10(abs(value)))
+        return f"about {'-' if value < 0 else ''}1e+{exponent}"
+    if isinstance(value, str):
+        return repr(value)  # its own spaces stay
+    try:
+        return " ".join(repr(value).split())
+    except ValueError:  # such a number in a list
+        return f"a {type(value).__name__} that cannot be written"
 
 
 class FlockanaError(Exception):
@@ -41,14 +69,15 @@ class UnknownNameError(ArgumentError):
 
         names = sorted(str(k) for k in known) if isinstance(known, Iterable) else [str(known)]
         folded = {known_name.casefold(): known_name for known_name in names}
-        wanted = str(name).casefold()
+        text = name if isinstance(name, str) else told(name)
+        wanted = text.casefold()
         close = [folded[one] for one in get_close_matches(wanted, folded, n=1)]
         hint = f"did you mean {close[0]!r}? " if close else ""
         nearest = [folded[one] for one in get_close_matches(wanted, folded, n=_NEAREST, cutoff=0.0)]
         many = len(names) > _FEW
-        told = f"The nearest of {len(names)}: {', '.join(nearest)}" if many else f"Known: {', '.join(names)}"
-        super().__init__(f"unknown {kind} {name!r}; {hint}{told}")
-        self._arguments = (str(kind), str(name), names)
+        rest = f"The nearest of {len(names)}: {', '.join(nearest)}" if many else f"Known: {', '.join(names)}"
+        super().__init__(f"unknown {kind} {told(name)}; {hint}{rest}")
+        self._arguments = (str(kind), text, names)
 
     def __reduce__(self) -> tuple[type[UnknownNameError], tuple[str, str, list[str]]]:
         return type(self), self._arguments  # so that it travels between processes

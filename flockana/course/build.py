@@ -18,6 +18,7 @@ from typing import Any
 import jupytext
 import nbformat
 
+from flockana.base.checks import ensure_choice
 from flockana.base.errors import ArgumentError
 from flockana.course.grading import form_of
 from flockana.course.pages import course_map, header, map_page, notation_page, number_of, references
@@ -110,8 +111,7 @@ def notebook(source: Path, version: str) -> Any:
     ArgumentError
         If there is no such version.
     """
-    if version not in _LEFT_OUT:
-        raise ArgumentError(f"version = {version!r}: expected one of {', '.join(VERSIONS)}")
+    ensure_choice("version", version, VERSIONS)
     book = jupytext.read(source)
     book.metadata = nbformat.from_dict({"kernelspec": _KERNEL})
     book.cells = [cell for cell in book.cells if not _LEFT_OUT[version] & set(tags(cell))]

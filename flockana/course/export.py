@@ -12,7 +12,7 @@ from typing import Any
 
 import nbformat
 
-from flockana.base.errors import ArgumentError
+from flockana.base.checks import ensure_choice
 from flockana.course.build import Exercise, copy_companions, exercises, needs_companions, notebook, sources, tags
 from flockana.course.pages import number_of
 
@@ -42,8 +42,7 @@ def master(source: Path, grader: str) -> Any:
     ArgumentError
         If there is no such grader.
     """
-    if grader not in GRADERS:
-        raise ArgumentError(f"grader = {grader!r}: expected one of {', '.join(GRADERS)}")
+    ensure_choice("grader", grader, GRADERS)
     posed: Callable[..., Iterator[Any]] = _otter if grader == "otter" else _nbgrader
     book, asked = notebook(source, "solutions"), iter(exercises(source))
     cells: list[Any] = [_raw(_assignment(source))] if grader == "otter" else []

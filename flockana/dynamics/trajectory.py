@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, real_array
+from flockana.base.checks import FloatArray, ensure_choice, real_array
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.scales import Scales
 from flockana.base.units import rescale, times
@@ -99,8 +99,7 @@ class Trajectory:
         for name, kind in (("extra", Mapping), ("stats", Mapping), ("between", Between | None)):
             if not isinstance(getattr(self, name), kind):
                 raise ArgumentError(f"{name} = {getattr(self, name)!r}: expected {_KINDS[name]}")
-        if self.status not in STATUSES:
-            raise ArgumentError(f"status = {self.status!r}: expected one of {', '.join(STATUSES)}")
+        ensure_choice("status", self.status, STATUSES)
         try:
             shape = np.shape(self.q)
             others = [np.shape(each) for each in (self.t, self.p, self.u)]

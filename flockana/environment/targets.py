@@ -14,7 +14,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive, ensure_vector
-from flockana.base.errors import ArgumentError
+from flockana.base.errors import ArgumentError, told
 from flockana.base.units import Powers
 from flockana.environment.target import Harmonic, Target
 
@@ -155,8 +155,8 @@ class SineTarget(Target):
         _freeze_vector(self, "velocity", m)
         for name in ("amplitude", "frequency", "phase"):
             object.__setattr__(self, name, ensure_finite_scalar(name, getattr(self, name)))
-        if isinstance(self.axis, bool) or self.axis not in range(m):
-            raise ArgumentError(f"axis = {self.axis!r}: expected a coordinate of the flock, 0 to {m - 1}")
+        if isinstance(self.axis, bool | np.ndarray) or self.axis not in range(m):
+            raise ArgumentError(f"axis = {told(self.axis)}: expected a coordinate of the flock, 0 to {m - 1}")
         object.__setattr__(self, "axis", int(self.axis))
 
     def _swing(self, value: float) -> FloatArray:

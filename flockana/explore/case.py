@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from flockana.base.checks import ensure_finite_scalar, ensure_positive, ensure_time_span, ensure_vector
+from flockana.base.checks import ensure_choice, ensure_finite_scalar, ensure_positive, ensure_time_span, ensure_vector
 from flockana.base.errors import ArgumentError
 from flockana.explore.parameters import changed, expression, tree_of
 from flockana.explore.starts import Start, from_file, from_law, from_scenario
@@ -58,8 +58,7 @@ class Case:
     moved: Mapping[int, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        if self.kind not in KINDS:
-            raise ArgumentError(f"kind = {self.kind!r}: expected one of {', '.join(KINDS)}")
+        ensure_choice("kind", self.kind, KINDS)
         if not isinstance(self.name, str):
             raise ArgumentError(f"name = {self.name!r}: expected a text")
         for name in ("seed", "n", "m"):

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_count, ensure_fits, ensure_known, ensure_positive
+from flockana.base.errors import told
 
 _STEPS = np.array(
     [(1.0, 0.0), (0.5, 0.75**0.5), (-0.5, 0.75**0.5), (-1.0, 0.0), (-0.5, -(0.75**0.5)), (0.5, -(0.75**0.5))]
@@ -54,7 +55,7 @@ def max_ratio(name: str) -> float:
 
 def _ensure_fits(n: int, m: int) -> None:
     """Raise before a lattice is built that does not fit into memory."""
-    ensure_fits(f"a lattice of {n} agents, with what its making takes,", (_WORK, n, m), "ask for fewer agents")
+    ensure_fits(f"a lattice of {told(n)} agents, with what its making takes,", (_WORK, n, m), "ask for fewer agents")
 
 
 def _sites(basis: Any, cell: Any, counts: dict[str, int], d: float) -> FloatArray:

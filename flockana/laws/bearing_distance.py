@@ -14,7 +14,14 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_points, ensure_positive, ensure_state
+from flockana.base.checks import (
+    FloatArray,
+    ensure_choice,
+    ensure_nonnegative,
+    ensure_points,
+    ensure_positive,
+    ensure_state,
+)
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
@@ -198,8 +205,7 @@ class ZoneFlocking(DiscreteLaw):
         if self.base > 1.0:
             raise ArgumentError(f"base = {self.base:g}: expected at most 1, so that the zone lies in that of conflict")
         for name, names in CHOICES.items():
-            if getattr(self, name) not in names:
-                raise ArgumentError(f"{name} = {getattr(self, name)!r}: expected one of {', '.join(names)}")
+            ensure_choice(name, getattr(self, name), names)
         self._check_box()
 
     def _check_box(self) -> None:

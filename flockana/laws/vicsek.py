@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_nonnegative, ensure_positive
+from flockana.base.checks import FloatArray, ensure_choice, ensure_finite_scalar, ensure_nonnegative, ensure_positive
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
@@ -87,8 +87,7 @@ class HeadingAveraging(DiscreteLaw):
             object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
         object.__setattr__(self, "zero", ensure_finite_scalar("zero", self.zero))
         object.__setattr__(self, "noise", ensure_nonnegative("noise", self.noise))
-        if self.average not in AVERAGES:
-            raise ArgumentError(f"average = {self.average!r}: expected one of {', '.join(AVERAGES)}")
+        ensure_choice("average", self.average, AVERAGES)
         if self.noise > _TURN:
             raise ArgumentError(f"noise = {self.noise:g}: expected radians, at most 2π, a heading that forgets itself")
         if isinstance(self.seed, bool) or not isinstance(self.seed, int) or not 0 <= self.seed < _MOST:
