@@ -12,22 +12,24 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import ensure_nonnegative, ensure_positive
-from flockana.base.errors import ArgumentError
+from flockana.base.errors import ArgumentError, told
 from flockana.dynamics.trajectory import Trajectory
 
 BoolArray = npt.NDArray[np.bool_]
 
 
-def ensure_run(trajectory: Any) -> Trajectory:
+def ensure_run(trajectory: Any, name: str = "trajectory") -> Trajectory:
     """Return what is a run, or raise `ArgumentError`.
 
     Parameters
     ----------
     trajectory : Trajectory
         What was given as one.
+    name : str
+        Of the argument.
     """
     if not isinstance(trajectory, Trajectory):
-        raise ArgumentError(f"trajectory = {trajectory!r}: expected a run, as simulate(...) gives it")
+        raise ArgumentError(f"{name} = {told(trajectory)}: expected a run, as simulate(...) gives it")
     return trajectory
 
 

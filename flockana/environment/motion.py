@@ -7,14 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import is_dataclass
-from math import isfinite
+from math import inf, isfinite
 from threading import Lock
 from typing import Any
 
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.base.errors import ArgumentError, SolverError
+from flockana.base.errors import ArgumentError, SolverError, told
 from flockana.base.units import rescale
 from flockana.environment.spring import Spring
 
@@ -78,8 +78,11 @@ def motion_from(q: FloatArray, p: FloatArray, time: float, acceleration: Force) 
     with np.errstate(all="ignore"):
         first = acceleration(q, p)
     if first.shape != q.shape or not np.isfinite(first).all():
-        raise ArgumentError(f"force gives {first!r} at the start: expected {q.shape[-1]} finite components")
-    length = max(float(np.abs(x).max()) * time**k for k, x in enumerate((q, p, first))) or 1.0
+        raise ArgumentError(f"force gives {told(first)} at the start: expected {q.shape[-1]} finite components")
+    sizes = [float(np.abs(x).max()) for x in (q, p, first)]
+    length = max(sizes[0], sizes[1] * time, sizes[2] * (time * time)) or 1.0
+    if not (isfinite(time * time * _PIECE) and 0.0 < length / time < inf and isfinite(length)):
+        raise ArgumentError(f"time = {time:g}: expected about the time in which the motion changes, such as 1")
     units = np.repeat([length, length / time], q.size)
 
     def rate(y: FloatArray) -> FloatArray:

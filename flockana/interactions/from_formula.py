@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from flockana.base.errors import ArgumentError
+from flockana.base.errors import ArgumentError, told
 from flockana.base.units import Powers
 from flockana.interactions.formula import FormulaInteraction
 
@@ -58,6 +58,12 @@ def pair_law(
     """
     if (potential is None) == (force is None):
         raise ArgumentError("expected a potential or a force, one of the two")
+    for name, table in (("parameters", parameters), ("units", units)):
+        if not isinstance(table, Mapping | None):
+            raise ArgumentError(f"{name} = {told(table)}: expected a dictionary by the parameters' names")
+    for name, both in (units or {}).items():
+        if not (isinstance(both, Sequence) and len(both) == 2 and all(type(power) is int for power in both)):
+            raise ArgumentError(f"units[{name!r}] = {told(both)}: expected whole powers (length, time)")
     return FormulaInteraction(
         potential=_as_text("potential", potential),
         force_formula=_as_text("force", force),

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import ensure_nonnegative, ensure_points, ensure_positive
-from flockana.base.errors import ArgumentError
+from flockana.base.errors import ArgumentError, told
 from flockana.measures import nets
 from flockana.measures.nets import LinkArray, link_lengths
 
@@ -125,6 +125,9 @@ def classify(strain: float, *, lattice: float, quasi: float) -> str:
     >>> classify(1e-9, lattice=1e-6, quasi=0.1), classify(0.03, lattice=1e-6, quasi=0.1)
     ('α-lattice', 'quasi-α-lattice')
     """
+    for name, value in (("strain", strain), ("lattice", lattice), ("quasi", quasi)):
+        if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
+            raise ArgumentError(f"{name} = {told(value)}: expected one real number")
     if strain <= lattice:
         return "α-lattice"
     return "quasi-α-lattice" if strain <= quasi else "neither"

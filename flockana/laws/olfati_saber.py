@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from flockana.base.checks import ensure_state
-from flockana.base.errors import ArgumentError
+from flockana.base.errors import ArgumentError, told
 from flockana.base.scales import Scales
 from flockana.environment.target import Target
 from flockana.interactions import AlphaInteraction, Gains, PairInteraction
@@ -22,7 +22,7 @@ from flockana.measures.frame import moving_frame
 def ensure_part(name: str, value: Any, kind: type, example: str) -> None:
     """Raise unless a parameter is of its kind."""
     if not isinstance(value, kind):
-        raise ArgumentError(f"{name} = {value!r}: expected {example}")
+        raise ArgumentError(f"{name} = {told(value)}: expected {example}")
 
 
 PAIR, GAINS, TARGET = (
@@ -33,12 +33,13 @@ PAIR, GAINS, TARGET = (
 
 
 def ensure_one_gain(gains: Gains) -> None:
-    """Raise on per-agent gains, for what needs the split into a shape and a centre of mass.
+    """Raise on what is no Gains, and on per-agent gains, for what needs the split into a shape and a centre of mass.
 
     Examples
     --------
     >>> ensure_one_gain(Gains())
     """
+    ensure_part("gains", gains, Gains, GAINS)
     if gains.per_agent:
         raise ArgumentError(
             "c1_gamma or c2_gamma is given per agent: expected one of each, or the shape does not separate from the "

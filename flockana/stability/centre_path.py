@@ -14,6 +14,7 @@ from flockana.base.errors import ArgumentError
 from flockana.environment.target import Target
 from flockana.environment.targets import CircleTarget, LinearTarget, RescaledVelocity, SineTarget, StaticTarget
 from flockana.interactions import Gains
+from flockana.laws.olfati_saber import ensure_one_gain
 from flockana.stability.translational import CentreOfMass
 
 ComplexArray = npt.NDArray[np.complex128]
@@ -89,6 +90,7 @@ def motion(target: Target) -> Motion:
 
 def steady_motion(gains: Gains, moving: Motion) -> tuple[FloatArray, ComplexArray]:
     """(constant lag behind the line, swing of the centre of mass) once the transient is gone."""
+    ensure_one_gain(gains)
     c1, c2 = gains.c1_gamma, gains.c2_gamma
     if c1 == 0.0:
         raise ArgumentError("c1_gamma = 0: expected a pull > 0; without one the centre of mass follows no position")

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_count, ensure_known, ensure_positive
+from flockana.base.checks import FloatArray, ensure_count, ensure_known, ensure_nonnegative, ensure_positive
 from flockana.equilibria.curvature import EPS
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.stability.blocks import NEUTRAL, law_blocks
@@ -139,6 +139,7 @@ def scalar_margin(k: float, d: float) -> DelayMargin:
     >>> round(scalar_margin(0.0, 2.0).delay / pi, 12)
     0.25
     """
+    k, d = ensure_nonnegative("k", k), ensure_nonnegative("d", d)
     if k == 0.0 and d == 0.0:
         return DelayMargin(inf, float("nan"))
     omega = float(np.sqrt(0.5 * (d * d + np.hypot(d * d, 2.0 * k))))

@@ -7,7 +7,7 @@ from math import pi
 import numpy as np
 
 from flockana.base.checks import ensure_count, ensure_positive
-from flockana.base.errors import ArgumentError
+from flockana.base.errors import ArgumentError, told
 from flockana.dynamics.trajectory import Trajectory
 from flockana.stability.linearisation import Linearisation
 from flockana.stability.modes import Mode
@@ -57,6 +57,10 @@ def mode_motion(
     >>> run.q[0].ravel().round(12).tolist(), len(run.t)
     ([0.5, 6.5], 5)
     """
+    if not isinstance(linearisation, Linearisation):
+        raise ArgumentError(f"linearisation = {told(linearisation)}: expected what linearise(...) gives")
+    if not isinstance(mode, Mode):
+        raise ArgumentError(f"mode = {told(mode)}: expected one of linearisation.modes")
     q = linearisation.q
     if np.shape(mode.shape) != q.shape:
         raise ArgumentError(f"mode.shape is {np.shape(mode.shape)}: expected {q.shape}, a mode of this linearisation")

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray, ensure_known, ensure_nonnegative, ensure_points
-from flockana.base.errors import ArgumentError
+from flockana.base.errors import ArgumentError, told
 from flockana.equilibria.solve import find_equilibrium
 from flockana.interactions import Gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain
@@ -224,5 +224,7 @@ def margin_sweep(
 
 
 def _ensure_gain(law: Any, name: str) -> None:
+    if not isinstance(law, Algorithm1 | Algorithm2):
+        raise ArgumentError(f"law = {told(law)}: expected Algorithm1(...) or Algorithm2(...)")
     known = GAINS[:2] if law.target is None else GAINS
     ensure_known("gain", name, known)

@@ -9,6 +9,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
+from flockana.dynamics.predicates import ensure_run
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import CircleTarget, SineTarget
 from flockana.laws.msn import MSNDiscretisation
@@ -196,7 +197,7 @@ def tracking(run: Trajectory) -> Tracking:
     >>> [round(x, 4) for x in (quantities.quantity("period").predicted, quantities.quantity("period").measured)]
     [6.2832, 6.2832]
     """
-    law = run.law
+    law = ensure_run(run, "run").law
     if type(law) not in (Algorithm2, MSNDiscretisation) or law.target is None:
         raise ArgumentError(f"{type(law).__name__}: expected a run of Algorithm 2 or of the MSN project's map of it")
     moving = motion(law.target)

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar
-from flockana.base.errors import ArgumentError
+from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_series, real_array
+from flockana.base.errors import ArgumentError, told
 from flockana.equilibria.curvature import EPS
 from flockana.interactions import Gains
 from flockana.laws.msn import MSNDiscretisation
@@ -106,7 +106,10 @@ class CentreOfMass:
         omega : float or array_like
             Angular frequency, in radians per time unit.
         """
-        s = 1j * np.asarray(omega, dtype=np.float64)
+        try:
+            s = 1j * real_array(omega)
+        except (TypeError, ValueError, OverflowError):
+            raise ArgumentError(f"omega = {told(omega)}: expected real numbers") from None
         c1, c2 = self.gains.c1_gamma, self.gains.c2_gamma
         return (self.factor * c2 * s + c1) / (s * s + c2 * s + c1)
 
@@ -120,7 +123,7 @@ class CentreOfMass:
         """
         import control
 
-        return control.step_response(CentreOfMass(self.gains, 0.0).system(), np.asarray(t, dtype=np.float64))
+        return control.step_response(CentreOfMass(self.gains, 0.0).system(), ensure_series("t", t))
 
     def frequency_response(self, omega: Any) -> FrequencyResponseData:
         """Magnitude and phase over frequency, by python-control.
@@ -132,7 +135,7 @@ class CentreOfMass:
         """
         import control
 
-        return control.frequency_response(self.system(), np.asarray(omega, dtype=np.float64))
+        return control.frequency_response(self.system(), ensure_series("omega", omega))
 
 
 def predicted_gain(gains: Gains, omega: float, *, factor: float = 1.0) -> float:
@@ -152,7 +155,7 @@ def predicted_gain(gains: Gains, omega: float, *, factor: float = 1.0) -> float:
     >>> round(predicted_gain(Gains(c1_gamma=4.0, c2_gamma=3.0), 2.0, factor=0.0), 6)
     0.666667
     """
-    return float(abs(CentreOfMass(gains, factor).response(omega)))
+    return float(abs(CentreOfMass(gains, factor).response(ensure_finite_scalar("omega", omega))))
 
 
 def map_system(law: MSNDiscretisation) -> StateSpace:

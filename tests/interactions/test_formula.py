@@ -125,6 +125,10 @@ def test_no_start_may_coincide_where_the_force_has_no_limit():
 
 
 BAD = [
+    ({"parameters": 3}, "parameters = 3: expected a dictionary"),
+    ({"units": 3}, "units = 3: expected a dictionary"),
+    ({"units": {"k": 3}}, r"units\['k'\] = 3: expected whole powers"),
+    ({"units": {"k": (1, 0.5)}}, r"units\['k'\] = \(1, 0.5\): expected whole powers"),
     ({"potential": "k*s"}, "unknown name 'k'"),
     ({"parameters": {"q": 1.0}}, "'q' is in no formula"),
     ({"parameters": {"s": 1.0}}, "a name that has no meaning of its own"),

@@ -38,6 +38,10 @@ def test_without_links_nothing_is_a_lattice():
     assert np.isnan(edge_length_error([[0.0], [100.0]], D, R))
     assert not is_alpha_lattice([[0.0], [100.0]], D, R)
     assert classify(float("nan"), lattice=1.0, quasi=1.0) == "neither"
+    with pytest.raises(ArgumentError, match="strain = 'x': expected one real number"):
+        classify("x", lattice=0.1, quasi=0.2)
+    with pytest.raises(ArgumentError, match="quasi = None: expected one real number"):
+        classify(0.3, lattice=0.1, quasi=None)
 
 
 def test_the_bounds_of_the_names_belong_to_them():

@@ -100,6 +100,10 @@ def test_a_mode_moves_as_its_eigenvalue_says():
     assert np.linalg.norm(turn.q[0] - patch.q, axis=1).max() == pytest.approx(0.3 * 14.0 / (np.sqrt(7.0) - 1.0))
     with pytest.raises(ArgumentError, match=r"mode.shape is \(2, 1\): expected \(7, 2\)"):
         mode_motion(patch, mode)
+    with pytest.raises(ArgumentError, match=r"linearisation = 3: expected what linearise\(...\) gives"):
+        mode_motion(3, mode)
+    with pytest.raises(ArgumentError, match="mode = 3: expected one of linearisation"):
+        mode_motion(patch, 3)
 
 
 def test_a_film_of_a_mode(tmp_path):

@@ -228,6 +228,8 @@ def test_knowing_its_own_state_at_once_an_agent_bears_more_than_twice_the_delay(
             "the target has 2 components",
         ),
         (lambda: simulate_delayed(LAW, [[0.0, 0.0]], [[0.0, 0.0]], (0, 1), delay=-1.0), ArgumentError, "delay = -1"),
+        (lambda: scalar_margin("x", 1), ArgumentError, "k = 'x': expected one real number"),
+        (lambda: scalar_margin(1.0, -1.0), ArgumentError, "d = -1: expected a number >= 0"),
         (lambda: simulate_delayed(None, [[0.0]], [[0.0]], (0, 1), delay=0.1), ArgumentError, "law = None: expected"),
     ],
 )

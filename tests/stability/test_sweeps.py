@@ -97,6 +97,9 @@ def test_the_margin_of_the_sweep_is_that_of_the_state():
         (lambda: centre_locus(Gains(), "c1_gamma", [2.0, 1.0]), ArgumentError, "expected rising gains"),
         (lambda: centre_locus(Gains(), "c1_gamma", []), ArgumentError, "expected rising gains"),
         (lambda: centre_locus(Gains(c1_gamma=[1.0]), "c1_gamma", [1.0]), ArgumentError, "given per agent"),
+        (lambda: centre_locus(3, "c1_gamma", [1.0]), ArgumentError, "gains = 3: expected Gains"),
+        (lambda: gain_sweep(3, [[0.0]], "c1_gamma", [1.0]), ArgumentError, "law = 3: expected Algorithm1"),
+        (lambda: margin_sweep(3, [[0.0]], "c1_gamma", [1.0]), ArgumentError, "law = 3: expected Algorithm1"),
         (lambda: margin_sweep(Algorithm1(), [[0.0]], "c3", [1.0]), UnknownNameError, "unknown gain 'c3'"),
     ],
 )
