@@ -33,7 +33,7 @@ proofs: .venv/.dev  ## run every executable proof
 notebooks: wheel .venv/.dev  ## execute every notebook as it is delivered, where only the wheel is installed
 	$(BIN)/python tools/run_notebooks.py --wheel
 
-course: .venv/.dev  ## write course/student and course/solutions as .ipynb
+course: .venv/.dev  ## write course/student and course/solutions as .ipynb, unless a file there was changed
 	$(BIN)/flockana course course/student
 	$(BIN)/flockana course course/solutions --solutions
 

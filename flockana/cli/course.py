@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from flockana.base.errors import ArgumentError, FileError
+from flockana.base.errors import ArgumentError
 from flockana.cli.show import show_files
 from flockana.cli.status import OK
 
@@ -28,7 +28,10 @@ def course_command(
 ) -> int:
     """Write the lectures as notebooks that run wherever flockana is installed; a student's by default.
 
-    A student's copy checks the form of an answer only. Needs `pip install 'flockana[course]'`, which brings Jupyter.
+    A student's copy checks the form of an answer only. Where DIR holds a file that differs from what would be written,
+    such as a notebook with answers, nothing is written; files that are the same are no obstacle.
+
+    Needs `pip install 'flockana[course]'`, which brings Jupyter.
     """
     if solutions + self_study + slides + (grader is not None) > 1:
         raise ArgumentError("--solutions, --self-study, --slides, --grader: expected one of them; leave the others out")
@@ -44,14 +47,10 @@ def course_command(
     from flockana.report.build import ensure_directory
 
     ensure_directory(folder)
-    try:
-        if grader is not None:
-            notebooks = write_for(folder, grader)
-        else:
-            notebooks = write_slides(folder) if slides else write(folder, version)
-    except OSError as error:
-        reason = error.strerror or "some of its files could not be copied"  # as shutil tells it
-        raise FileError(f"cannot write all of the course to {folder}: {reason}; choose another folder") from error
+    if grader is not None:
+        notebooks = write_for(folder, grader)
+    else:
+        notebooks = write_slides(folder) if slides else write(folder, version)
     for written in notebooks:
         show_files(notebook=written)
     return OK

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import ast
 import re
-import shutil
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,6 +19,7 @@ import nbformat
 
 from flockana.base.checks import ensure_choice
 from flockana.base.errors import ArgumentError
+from flockana.course.delivery import deliver, notebook_bytes
 from flockana.course.grading import form_of
 from flockana.course.pages import course_map, header, map_page, notation_page, number_of, references
 
@@ -225,7 +225,7 @@ def write(folder: Path, version: str = "student") -> list[Path]:
     Parameters
     ----------
     folder : Path
-        Made if need be; files of the same names are replaced.
+        Made if need be.
     version : {"student", "self-study", "solutions"}, default "student"
         As in `notebook`.
 
@@ -233,30 +233,32 @@ def write(folder: Path, version: str = "student") -> list[Path]:
     -------
     list of Path
         The notebooks.
+
+    Raises
+    ------
+    FileError
+        If a file is there that differs from what would be written, such as one with answers: then none is written.
     """
-    folder.mkdir(parents=True, exist_ok=True)
-    copy_companions(folder)
-    for name, page in (("map.md", map_page), ("notation.md", notation_page)):
-        (folder / name).write_text(page(lectures()), encoding="utf-8")
-    written = []
-    for source in sources():
-        written.append(folder / f"{source.stem}.ipynb")
-        nbformat.write(notebook(source, version), written[-1])
-    return written
+    books = {f"{source.stem}.ipynb": notebook_bytes(notebook(source, version)) for source in sources()}
+    pages = {"map.md": map_page(lectures()).encode(), "notation.md": notation_page(lectures()).encode()}
+    return deliver(folder, books | pages | companions())[: len(books)]
+
+
+def companions() -> dict[str, bytes]:
+    """What lectures import, by name: the law of lecture 11, and the files of `proofs` that its proof needs."""
+    law, shipped = lectures() / "own_law", lectures() / "proofs"
+    proofs = shipped if shipped.is_dir() else _CHECKOUT / "proofs"
+    found = {path: f"own_law/{path.relative_to(law).as_posix()}" for path in sorted(law.rglob("*")) if path.is_file()}
+    found |= {proofs / name: f"proofs/{name}" for name in ("__init__.py", "proof.py")}
+    return {name: path.read_bytes() for path, name in found.items() if "__pycache__" not in path.parts}
 
 
 def copy_companions(folder: Path) -> None:
-    """Copy what lectures import: the law of lecture 11, and the one file of `proofs` that its proof needs.
+    """Write `companions` into the folder in which a notebook runs.
 
     Parameters
     ----------
     folder : Path
-        Where the notebooks go.
+        Where the notebooks are; a file there that differs is not replaced, but a `FileError`.
     """
-    no_caches = shutil.ignore_patterns("__pycache__")
-    shutil.copytree(lectures() / "own_law", folder / "own_law", dirs_exist_ok=True, ignore=no_caches)
-    shipped = lectures() / "proofs"
-    proofs = shipped if shipped.is_dir() else _CHECKOUT / "proofs"
-    (folder / "proofs").mkdir(exist_ok=True)
-    for name in ("__init__.py", "proof.py"):
-        shutil.copyfile(proofs / name, folder / "proofs" / name)
+    deliver(folder, companions())

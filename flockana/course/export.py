@@ -13,7 +13,8 @@ from typing import Any
 import nbformat
 
 from flockana.base.checks import ensure_choice
-from flockana.course.build import Exercise, copy_companions, exercises, needs_companions, notebook, sources, tags
+from flockana.course.build import Exercise, companions, exercises, needs_companions, notebook, sources, tags
+from flockana.course.delivery import deliver, notebook_bytes
 from flockana.course.pages import number_of
 
 _IMPORTS = "from flockana.course import answered, grade\n\n"
@@ -67,7 +68,7 @@ def write_for(folder: Path, grader: str) -> list[Path]:
     Parameters
     ----------
     folder : Path
-        Made if need be; files of the same names are replaced.
+        Made if need be.
     grader : {"otter", "nbgrader"}
         As in `master`.
 
@@ -75,18 +76,22 @@ def write_for(folder: Path, grader: str) -> list[Path]:
     -------
     list of Path
         The notebooks.
+
+    Raises
+    ------
+    FileError
+        If a file is there that differs from what would be written, such as one that was changed: then none is written.
     """
-    written = []
+    books: dict[str, bytes] = {}
+    others: dict[str, bytes] = {}
     for source in sources():
-        home = folder / "source" / source.stem if grader == "nbgrader" else folder
-        home.mkdir(parents=True, exist_ok=True)
-        written.append(home / f"{source.stem}.ipynb")
-        nbformat.write(master(source, grader), written[-1])
+        home = f"source/{source.stem}/" if grader == "nbgrader" else ""
+        books[f"{home}{source.stem}.ipynb"] = notebook_bytes(master(source, grader))
         if needs_companions(source):
-            copy_companions(home)
+            others |= {f"{home}{name}": content for name, content in companions().items()}
     if grader == "nbgrader":
-        (folder / "nbgrader_config.py").write_text(_NBGRADER_CONFIG, encoding="utf-8")
-    return written
+        others["nbgrader_config.py"] = _NBGRADER_CONFIG.encode()
+    return deliver(folder, books | others)[: len(books)]
 
 
 def _tests(check: str, exercise: Exercise) -> tuple[str, str]:

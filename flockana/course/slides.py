@@ -13,7 +13,8 @@ from typing import Any
 
 import nbformat
 
-from flockana.course.build import copy_companions, notebook, sources, tags
+from flockana.course.build import companions, notebook, sources, tags
+from flockana.course.delivery import deliver, notebook_bytes
 
 _LEFT_OUT = {"exercise", "answer", "check", "install"}
 _HEADING = re.compile(r"(?m)^(?=##? )")
@@ -76,17 +77,17 @@ def write_slides(folder: Path) -> list[Path]:
     Parameters
     ----------
     folder : Path
-        Made if need be; files of the same names are replaced.
+        Made if need be.
 
     Returns
     -------
     list of Path
         The notebooks.
+
+    Raises
+    ------
+    FileError
+        If a file is there that differs from what would be written, such as one that was changed: then none is written.
     """
-    folder.mkdir(parents=True, exist_ok=True)
-    copy_companions(folder)
-    written = []
-    for source in shown():
-        written.append(folder / f"{source.stem}.ipynb")
-        nbformat.write(slides(source), written[-1])
-    return written
+    books = {f"{source.stem}.ipynb": notebook_bytes(slides(source)) for source in shown()}
+    return deliver(folder, books | companions())[: len(books)]

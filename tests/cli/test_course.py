@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import sys
 
+import pytest
+
 COMMAND = ("course",)
 
 
@@ -45,6 +47,47 @@ def test_masters_for_a_grader(call, tmp_path):
     assert "notebook: masters/source/11_your_own_law/11_your_own_law.ipynb" in said
     assert (tmp_path / "masters" / "source" / "11_your_own_law" / "own_law" / "law.py").is_file()
     assert (tmp_path / "masters" / "nbgrader_config.py").is_file()
+
+
+@pytest.mark.parametrize(
+    ("options", "book"),
+    [
+        ((), "01_pair_potentials.ipynb"),
+        (("--slides",), "01_pair_potentials.ipynb"),
+        (("--grader", "otter"), "01_pair_potentials.ipynb"),
+        (("--grader", "nbgrader"), "source/01_pair_potentials/01_pair_potentials.ipynb"),
+    ],
+    ids=lambda value: "-".join(value) if isinstance(value, tuple) else "",
+)
+def test_answers_are_not_replaced(call, refused, tmp_path, options, book):
+    first = call("own", *options)
+    assert call("own", *options) == first  # what is the same is no obstacle
+    answered, lost = tmp_path / "own" / book, tmp_path / "own" / book.replace("01_pair_potentials", "02_algorithm_1")
+    text = answered.read_text().replace("import", "# my answer")
+    answered.write_text(text)
+    lost.unlink()
+    refused(
+        f"own/{book} is there and differs from what would be written: nothing is written, so that no answers are lost; "
+        "choose another folder, or move it away",
+        "own",
+        *options,
+    )
+    assert answered.read_text() == text
+    assert not lost.exists()
+
+
+@pytest.mark.parametrize("name", ["map.md", "own_law/law.py", "proofs/proof.py"])
+def test_other_files_of_the_course_are_not_replaced_either(refused, tmp_path, name):
+    path = tmp_path / "own" / name
+    path.parent.mkdir(parents=True)
+    path.write_text("mine")
+    refused(f"own/{name} is there and differs from what would be written", "own")
+    assert path.read_text() == "mine"
+    assert [each for each in (tmp_path / "own").rglob("*") if each.is_file()] == [path]
+
+
+def test_the_help_says_that_nothing_is_replaced(call):
+    assert "nothing is written; files that are the same" in " ".join(call("--help")[1].split())
 
 
 def test_without_the_extra_the_remedy_is_said(call, monkeypatch):

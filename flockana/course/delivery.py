@@ -1,0 +1,86 @@
+"""Put what a course consists of into a folder, where students may have answered already: nothing of theirs is lost."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import nbformat
+
+from flockana.base.errors import FileError
+from flockana.base.files import ensure_path, write_whole
+
+_REMEDY = "choose another folder"
+
+
+def notebook_bytes(book: Any) -> bytes:
+    """A notebook as its file holds it.
+
+    Parameters
+    ----------
+    book : NotebookNode
+        Of `flockana.course.build.notebook`, for instance.
+    """
+    return f"{nbformat.writes(book).rstrip()}\n".encode()
+
+
+def deliver(folder: str | os.PathLike[str], files: Mapping[str, bytes]) -> list[Path]:
+    """Write files into a folder, unless one is there that differs: then none is written.
+
+    Parameters
+    ----------
+    folder : path
+        Made if need be.
+    files : mapping of str to bytes
+        What each is to hold, by its name in the folder.
+
+    Returns
+    -------
+    list of Path
+        Where they are.
+
+    Raises
+    ------
+    FileError
+        If a file is there that differs from what would be written, or one cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     first = deliver(folder, {"map.md": b"as it is delivered"})
+    ...     again = deliver(folder, {"map.md": b"as it is delivered"})
+    ...     _ = first[0].write_text("with notes")
+    ...     deliver(folder, {"map.md": b"as it is delivered"})
+    Traceback (most recent call last):
+    flockana.base.errors.FileError: ...map.md is there and differs from what would be written: ...
+    """
+    home = ensure_path(folder, action="write to", remedy=_REMEDY)
+    paths = {home / name: content for name, content in files.items()}
+    missing = {path: content for path, content in paths.items() if not _is_there(path, content)}
+    try:
+        for path, content in missing.items():
+            path.parent.mkdir(parents=True, exist_ok=True)
+            write_whole(path, content, remedy=_REMEDY)
+    except OSError as error:
+        reason = getattr(error.__cause__, "strerror", None) or error.strerror or error
+        raise FileError(f"cannot write all of the course to {home}: {reason}; {_REMEDY}") from error
+    return list(paths)
+
+
+def _is_there(path: Path, content: bytes) -> bool:
+    """Whether a file is as it would be written; raise if something else is there."""
+    if not os.path.lexists(path):
+        return False
+    try:
+        same = path.is_file() and path.read_bytes() == content
+    except OSError as error:
+        raise FileError(f"cannot read {path}: {error.strerror or error}; {_REMEDY}") from error
+    if not same:
+        raise FileError(
+            f"{path} is there and differs from what would be written: nothing is written, so that no answers are lost; "
+            f"{_REMEDY}, or move it away"
+        )
+    return True
