@@ -25,7 +25,11 @@ def export_command(
         Literal["missing", "nearest"], typer.Option(help="Leave a consensus without a style out, or take the nearest.")
     ] = "missing",
 ) -> int:
-    """Write law, start and run of a scenario for LAMMPS: input script, data file, tabulated pair style, README.txt."""
+    """Write law, start and run of a scenario for LAMMPS: input script, data file, tabulated pair style, README.txt.
+
+    An export that the folder holds from before is replaced; where another's file has one of these names, nothing is
+    written.
+    """
     from flockana.lammps.export import export_lammps
     from flockana.scenarios import scenario
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from math import ceil
 from pathlib import Path
@@ -19,7 +21,7 @@ from flockana.base.checks import (
     ensure_time_span,
 )
 from flockana.base.errors import ArgumentError, FileError
-from flockana.base.files import ensure_path, replacing
+from flockana.base.files import ensure_path, ensure_target, replacing
 from flockana.lammps.script import (
     DATA,
     README,
@@ -41,6 +43,9 @@ from flockana.measures.metrics import min_distance
 CONSENSUS = ("missing", "nearest")
 _STEP = 0.02  # by default, in the law's own time
 _MOST_POINTS = 10**7
+# how each file of an export begins, by which one from before is known and may be replaced
+_FIRST_LINE = re.compile(rb"(# )?\d+ agents of \w+, t = \S+ to \S+\s*|# UNITS: lj CONTRIBUTOR: flockana\s*")
+_LONGEST_LINE = 1000  # bytes; ours are shorter
 
 
 @dataclass(frozen=True)
@@ -102,7 +107,7 @@ def export_lammps(
     t_span : (float, float)
         Start and end.
     folder : path
-        Folder to write to; it is made if it is not there.
+        Folder to write to; it is made if it is not there. An export from before is replaced, another's file is not.
     points : int
         Distances in the table.
     inner : float, optional
@@ -124,7 +129,7 @@ def export_lammps(
     ArgumentError
         On a law without a pair term, bad input, or two agents nearer than the table's first distance.
     FileError
-        If the folder cannot be written.
+        If the folder cannot be written, or holds a file of these names that is no export: then nothing is written.
 
     Examples
     --------
@@ -137,6 +142,7 @@ def export_lammps(
     """
     law, term = _translatable(law)
     folder = ensure_path(folder, action="write to", remedy="choose another folder")
+    _ensure_own(folder / name for name in (SCRIPT, DATA, TABLE, README))
     q0, p0 = ensure_state(q0, p0)
     law.check_dimension(q0.shape[1])
     law.check_start(q0, p0)
@@ -199,6 +205,27 @@ def _clock(law: Law, start: float, end: float, dt: float | None, samples: int) -
     longest = _STEP * law.scales.time if dt is None and law.scales is not None else ensure_positive("dt", dt)
     every = max(1, ceil((end - start) / (longest * samples) * (1.0 - 1e-12)))
     return Clock(start, (end - start) / (samples * every), samples * every, every)
+
+
+def _ensure_own(paths: Iterable[Path]) -> None:
+    """Raise if a file is there that no export wrote, such as a README.txt of the user's."""
+    for path in paths:
+        if not os.path.lexists(path):
+            continue
+        try:
+            with ensure_target(path, remedy="choose another folder").open("rb") as file:
+                own = _FIRST_LINE.fullmatch(file.readline(_LONGEST_LINE))
+        except FileNotFoundError:  # a link to nowhere
+            own = None
+        except FileError:
+            raise
+        except OSError as error:
+            raise FileError(f"cannot read {path}: {error.strerror or error}; choose another folder") from error
+        if own is None:
+            raise FileError(
+                f"{path} is there, and is no file of an export for LAMMPS: nothing is written, so that it is kept; "
+                "choose another folder, or move it away"
+            )
 
 
 def _written(folder: Path, texts: dict[str, str]) -> tuple[Path, ...]:

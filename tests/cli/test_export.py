@@ -39,3 +39,26 @@ def test_bad_input_is_told_and_nothing_is_written(call, tmp_path, arguments, mes
     assert code == 2
     assert message in error
     assert not (tmp_path / "new").exists()
+
+
+@pytest.mark.parametrize("name", ["in.flock", "flock.data", "pair.table", "README.txt"])
+@pytest.mark.parametrize("text", ["", "my own\n", "3 agents of mine\n", "\n" * 2000])
+def test_another_s_file_is_kept(refused, tmp_path, name, text):
+    (tmp_path / name).write_text(text)
+    refused(
+        f"{name} is there, and is no file of an export for LAMMPS: nothing is written, so that it is kept; choose "
+        "another folder, or move it away",
+        *("lammps", "hexagon", "--out", tmp_path, "--points", 50),
+    )
+    assert (tmp_path / name).read_text() == text
+    assert [path.name for path in tmp_path.iterdir()] == [name]
+
+
+def test_an_export_from_before_is_replaced(call, tmp_path):
+    for scenario in ("hexagon", "three-agents-1d"):
+        assert call("lammps", scenario, "--out", tmp_path, "--points", 50)[0] == 0
+    assert "3 agents" in (tmp_path / "README.txt").read_text()
+
+
+def test_the_help_says_what_is_replaced(call):
+    assert "nothing is written." in " ".join(call("--help")[1].split())
