@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from flockana._version import __version__
-from flockana.base.errors import FlockanaError
+from flockana.base.errors import FlockanaError, UnknownNameError
 from flockana.base.garbage import garbage_seldom_sought, look_no_more
 from flockana.base.interrupts import interrupts_recognised
 from flockana.cli.animate import animate_command
 from flockana.cli.catalogue import scenarios_command, theorems_command
 from flockana.cli.check import check_command
+from flockana.cli.command import Command
 from flockana.cli.course import course_command
 from flockana.cli.ensemble import ensemble_command
 from flockana.cli.equilibrium import equilibrium_command
@@ -77,8 +78,16 @@ def _app(asked: str) -> typer.Typer:
     )
     app.callback(invoke_without_command=True)(_flockana)
     for name in [asked] if asked in _COMMANDS else _COMMANDS:
-        app.command(name)(_COMMANDS[name])
+        app.command(name, cls=Command)(_COMMANDS[name])
     return app
+
+
+def _asked(arguments: Sequence[str]) -> str:
+    """The command that is asked for, or an option of the program's own, or nothing; raise on a command that is none."""
+    first = arguments[0] if arguments else ""
+    if arguments and not first.startswith("-") and first not in _COMMANDS:
+        raise UnknownNameError("command", first, _COMMANDS)
+    return first
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -88,7 +97,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     try:
         with interrupts_recognised(), garbage_seldom_sought():
             given = list(sys.argv[1:] if arguments is None else arguments)
-            code = _app(given[0] if given else "")(args=given, prog_name=_NAME, standalone_mode=False)
+            code = _app(_asked(given))(args=given, prog_name=_NAME, standalone_mode=False)
             if arguments is None:
                 look_no_more()
         finish_output()

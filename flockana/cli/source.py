@@ -16,7 +16,7 @@ import numpy as np
 from flockana import lattice
 from flockana.base.checks import FloatArray, ensure_positive
 from flockana.base.errors import ArgumentError, FileError, UnknownNameError
-from flockana.base.files import read_whole
+from flockana.base.files import ensure_path, read_whole
 
 D, KAPPA = 7.0, 1.2  # where neither the user nor a law says
 _MOST = 10**6  # agents that a builder makes at most
@@ -72,7 +72,7 @@ def read_source(name: str, *, d: float | None = None, r: float | None = None, ti
     >>> read_source("hexagonal-spiral:7").q.shape, read_source("square:2x2", d=2.0).r
     ((7, 2), 2.4)
     """
-    path = Path(name)
+    path = ensure_path(name)
     d, r = (None if v is None else ensure_positive(key, v) for key, v in (("--d", d), ("--r", r)))
     if path.suffix == ".nc":
         return _scaled(name, *_sample(path, time), d=d, r=r)
@@ -147,7 +147,7 @@ def ensure_source(name: str, more: tuple[str, ...] = ()) -> None:
     --------
     >>> ensure_source("line:3")
     """
-    path, builder = Path(name), name.partition(":")[0]
+    path, builder = ensure_path(name), name.partition(":")[0]
     if path.suffix not in _FILES and builder not in _BUILDERS and not os.path.exists(path):
         raise UnknownNameError("scenario, file or builder" if more else "file or builder", builder, (*more, *_BUILDERS))
 

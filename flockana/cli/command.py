@@ -1,0 +1,47 @@
+"""What all commands do with their arguments before they begin: refuse empty paths, and tell what was given."""
+
+from __future__ import annotations
+
+import inspect
+from pathlib import Path
+from typing import Any, get_args, get_type_hints
+
+from typer.core import TyperCommand
+
+from flockana.base.errors import ArgumentError, FileError
+
+_FOLDERS = ("DIR", "FOLDER")  # how options for folders are written in the help
+
+
+class Command(TyperCommand):
+    """A command that takes no empty name for a path, and names a value that it refuses."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Read the arguments as typer does."""
+        given, *_ = self.make_parser(ctx).parse_args(args=list(args))
+        try:
+            left = super().parse_args(ctx, args)
+        except Exception as error:  # typer's own kinds, or click's, depending on its version
+            value = given.get(str(getattr(getattr(error, "param", None), "name", "")))
+            told: Any = getattr(error, "format_message", None)
+            if not isinstance(value, str) or told is None or repr(value) in told():
+                raise
+            raise ArgumentError(f"{told().rstrip('.')}; got {value!r}") from error
+        paths = _paths(self.callback)
+        for param in self.params:
+            if param.name in paths and given.get(param.name) == "":
+                _refuse_empty(param)
+        return left
+
+
+def _paths(command: Any) -> set[str]:
+    """The parameters of a command that are paths: typer's own records of their types differ between its versions."""
+    hints = get_type_hints(inspect.unwrap(command))
+    return {name for name, kind in hints.items() if kind is Path or Path in get_args(kind)}
+
+
+def _refuse_empty(param: Any) -> None:
+    """Raise on a path that is '', as of a variable that is not set: it would stand for the current folder."""
+    name = param.opts[0] if param.param_type_name == "option" else param.metavar
+    here = "; this folder is '.'" if param.metavar in _FOLDERS else ""
+    raise FileError(f"{name} '': the name is empty; choose another name{here}")
