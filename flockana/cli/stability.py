@@ -221,7 +221,7 @@ def _or_none(value: float | None) -> str:
 def _mode_table(slow: tuple[Mode, ...]) -> Table:
     from flockana.report.tables import column, headed_table
 
-    headings = ("decay rate", "frequency (rad)", "damping ratio")
+    headings = ("decay rate (1/time)", "frequency (rad/time)", "damping ratio")
     table = headed_table(column("mode"), *(column(heading, right=True) for heading in headings))
     for mode in slow:
         table.add_row(mode.name, f"{mode.decay_rate:.5g}", f"{mode.frequency:.5g}", f"{mode.damping_ratio:.4g}")

@@ -65,6 +65,11 @@ def test_what_is_printed(call):
     assert "breathing 3.0563 21.358 0.1417" in text
 
 
+def test_rates_have_their_units(call):
+    _, out, _ = call("hexagonal-patch:1", "--modes", 1)
+    assert "decay rate (1/time)   frequency (rad/time)   damping ratio" in out
+
+
 def test_a_large_flock_is_not_made_dense(found, monkeypatch):
     from flockana.cli import stability
 
