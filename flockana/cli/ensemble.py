@@ -179,9 +179,8 @@ def share_table(table: xarray.Dataset, axes: list[str]) -> Table:
 
     from flockana.report.tables import column, headed_table
 
-    widths = {"runs": 4, "verified, %": 19, "refuted, %": 19, "vac.": 4, "inc.": 4}
-    columns = (column(heading, right=True, width=width) for heading, width in widths.items())
-    grid = headed_table(column("claim", wraps=True), *columns)
+    columns = (column(heading, right=True) for heading in ("runs", "verified, %", "refuted, %", "vac.", "inc."))
+    grid = headed_table(column("claim", wraps=True), *columns, collapse_padding=True)
     for values in product(*(table[name].values.tolist() for name in axes)):
         part = table.sel(dict(zip(axes, values, strict=True)))
         if axes:

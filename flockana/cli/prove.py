@@ -104,7 +104,7 @@ def _table(outcomes: Sequence[Any]) -> Table:
     from flockana.report.tables import column, headed_table
 
     others = (column(name, right=name in ("steps", "time")) for name in ("rigour", "steps", "status", "time"))
-    table = headed_table(Column("theorem, and what exactly is proved", ratio=1), *others)
+    table = headed_table(Column("theorem, and what exactly is proved", ratio=1, overflow="fold"), *others)
     for outcome in outcomes:
         table.add_row(
             Text.assemble(

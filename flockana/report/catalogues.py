@@ -12,7 +12,7 @@ from flockana.theorems import theorem, theorems
 
 def scenario_table() -> Table:
     """The catalogue of scenarios: size, law and time span, title, source, theorems."""
-    table = headed_table(column("scenario"), Column("what", ratio=1), show_lines=True)
+    table = headed_table(column("scenario"), Column("what", ratio=1, overflow="fold"), show_lines=True)
     for name in scenarios():
         item = scenario(name)
         n, m = item.shape
@@ -26,7 +26,9 @@ def scenario_table() -> Table:
 def theorem_table() -> Table:
     """The catalogue of theorems: id, title, what each is checked on, source."""
     name_column = Column("theorem", no_wrap=True, style="bold")
-    table = headed_table(name_column, Column("what, and where it is printed", ratio=1), column("checked on"))
+    table = headed_table(
+        name_column, Column("what, and where it is printed", ratio=1, overflow="fold"), column("checked on")
+    )
     kinds = {"trajectory": "a run", "configuration": "positions", "fixed": "itself"}
     for name in theorems():
         item = theorem(name)

@@ -14,7 +14,7 @@ from rich.text import Text
 from flockana.dynamics.trajectory import Trajectory
 from flockana.report.pages import Finding, Page, ScenarioPage
 from flockana.report.statistics import StatisticsSection
-from flockana.report.tables import column, fact_table, headed_table
+from flockana.report.tables import WholeTable, column, fact_table, headed_table
 from flockana.report.text import MARKS, deciding_claim, show
 from flockana.theorems import Verdict, theorem, theorems
 
@@ -79,8 +79,8 @@ def details(verdict: Verdict) -> Group:
     """A verdict in full: hypotheses and claims, each with its finding in words."""
     on = f" on {verdict.subject}" if verdict.subject else ""
     title = Text.assemble((verdict.theorem, "bold"), on, ": ", _status(verdict.status))
-    columns = Column(max_width=26), Column(no_wrap=True), Column(ratio=1)
-    table = Table(*columns, box=None, show_header=False, pad_edge=False, padding=(0, 1))
+    columns = Column(max_width=26, overflow="fold"), Column(no_wrap=True), Column(ratio=1, overflow="fold")
+    table = WholeTable(*columns, box=None, show_header=False, pad_edge=False, padding=(0, 1))
     for h in verdict.hypotheses:
         table.add_row(Text(f"given: {h.name}", style="bright_black"), h.status, Text(h.detail))
     for c in verdict.claims:
@@ -105,7 +105,7 @@ def summary(pages: Sequence[Page], seconds: float) -> str:
 def run_table(run: Trajectory) -> Table:
     """The metrics of a run at its start and its end."""
     times = (column(f"t = {run.t[k]:g}", right=True) for k in (0, -1))
-    table = headed_table("measure", *times)
+    table = headed_table(column("measure", wraps=True), *times)
     for name, series in run.metrics().items():
         label = f"{series.attrs['long_name']}"
         table.add_row(escape(f"{name}: {label}"), *(f"{float(series[k]):.5g}" for k in (0, -1)))

@@ -1,13 +1,118 @@
-"""The two kinds of tables on the terminal: rows under headings, and facts with their names."""
+"""The tables on the terminal: rows under headings, and facts with their names; as blocks where it is narrow."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
+from copy import copy
 from typing import Any, Literal
 
 from rich import box
+from rich.console import Console, ConsoleOptions, RenderableType, RenderResult
+from rich.measure import Measurement
+from rich.padding import Padding
 from rich.table import Column, Table
 from rich.text import Text
+
+_LEAST = 16  # letters in a line of a column that wraps: in fewer nobody reads a sentence
+_WIDE = 10_000  # no table is wider
+_PIECE = re.compile(r"[^\s\-/]*[-/]|[^\s\-/]+")  # a word may be broken after a hyphen, and nowhere else
+
+
+class WholeTable(Table):
+    """A table that cuts nothing: words that wrap break at hyphens, and where even that is too wide, rows are blocks.
+
+    Rich itself would cut numbers and names, or leave whole columns out.
+
+    Examples
+    --------
+    >>> table = WholeTable(column("claim"), column("margin", right=True), box=None)
+    >>> table.add_row("iv-printed", "1.411e+04")
+    >>> Console(width=12).print(table)
+    iv-printed
+      margin:
+      1.411e+04
+    """
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        """The table, or its rows as blocks."""
+        full = Measurement.get(console, options.update(max_width=_WIDE), self).maximum
+        rows = [[_text(console, cell) for cell in row] for row in zip(*(c.cells for c in self.columns), strict=True)]
+        heads = [_text(console, each.header) for each in self.columns]
+        spare, rooms = options.max_width - full, {}
+        for k, each in enumerate(self.columns):
+            if spare >= 0 or each.no_wrap:
+                continue
+            cells = [heads[k], *(row[k] for row in rows)]
+            widest = max(_clamped(each, cell.cell_len if "\n" not in cell else _lines(cell)) for cell in cells)
+            least = max(min(widest, _LEAST), *map(_longest_piece, cells))
+            rooms[k] = max(least, widest + spare)
+            spare += widest - rooms[k]
+        if spare < 0 and full > options.max_width:
+            yield from self._blocks(heads, rows)
+            return
+        broken = copy(self)
+        broken.columns, broken.rows = [each.copy() for each in self.columns], []
+        for row, old in zip(rows, self.rows, strict=True):
+            cells = [_broken(cell, rooms[k]) if k in rooms else cell for k, cell in enumerate(row)]
+            broken.add_row(*cells, style=old.style, end_section=old.end_section)
+        yield from super(WholeTable, broken).__rich_console__(console, options)
+
+    def _blocks(self, heads: list[Text], rows: list[list[Text]]) -> Iterable[RenderableType]:
+        """Each row as a name with its values under it."""
+        yield Text()
+        for name, *values in rows:
+            shown = name.copy()
+            shown.overflow, shown.no_wrap = "fold", False
+            yield shown
+            for head, value in zip(heads[1:], values, strict=True):
+                if value.plain.strip():
+                    before = Text(f"{head.plain}: " if self.show_header and head.plain else "", style="bright_black")
+                    line = Text.assemble(before, value, overflow="fold")
+                    yield Padding(line, (0, 0, 0, _indent(name) + 2), expand=False)
+        yield Text()
+
+
+def _text(console: Console, cell: RenderableType) -> Text:
+    return cell if isinstance(cell, Text) else console.render_str(str(cell), highlight=False)
+
+
+def _lines(text: Text) -> int:
+    return max(line.cell_len for line in text.split())
+
+
+def _clamped(each: Column, width: int) -> int:
+    return min(max(width, each.min_width or 0), each.max_width or _WIDE)
+
+
+def _indent(text: Text) -> int:
+    """How far a text is moved in under another."""
+    return len(text.plain) - len(text.plain.lstrip(" "))
+
+
+def _hang(text: Text) -> int:
+    """How far its further lines are: one that is moved in would look like two."""
+    return _indent(text) + 2 if _indent(text) else 0
+
+
+def _longest_piece(text: Text) -> int:
+    """The width without which a word would be broken elsewhere than after a hyphen."""
+    return max((len(piece) + _hang(text) for piece in _PIECE.findall(text.plain)), default=0)
+
+
+def _broken(text: Text, room: int) -> Text:
+    """The text with line breaks in the words that are longer than a line, after hyphens."""
+    ends = []
+    for word in re.finditer(r"\S+", text.plain):
+        if len(word[0]) + _indent(text) <= room:
+            continue
+        begin, indent = word.start(), _indent(text)
+        for piece in _PIECE.finditer(text.plain, word.start(), word.end()):
+            if piece.end() - begin + indent > room and piece.start() > begin:
+                ends.append(piece.start())
+                begin, indent = piece.start(), _hang(text)
+    lines = text.divide(ends)
+    return Text("\n" + " " * _hang(text)).join(lines) if ends else text
 
 
 def headed_table(*columns: Column | str, **options: Any) -> Table:
@@ -18,14 +123,13 @@ def headed_table(*columns: Column | str, **options: Any) -> Table:
     >>> headed_table(column("mode"), column("frequency", right=True)).columns[1].justify
     'right'
     """
-    return Table(*columns, box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), **options)
+    return WholeTable(*columns, box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), **options)
 
 
 def column(heading: str, *, right: bool = False, width: int | None = None, wraps: bool = False) -> Column:
     """A column that does not wrap unless told to; one with a width keeps it on a narrow terminal: others give way."""
-    overflow: Literal["fold", "ellipsis"] = "fold" if wraps else "ellipsis"
     justify: Literal["left", "right"] = "right" if right else "left"
-    return Column(heading, justify=justify, no_wrap=not wraps, min_width=width, overflow=overflow)
+    return Column(heading, justify=justify, no_wrap=not wraps, min_width=width, overflow="fold")
 
 
 def fact_table(facts: Iterable[tuple[str, str]]) -> Table:
@@ -36,8 +140,8 @@ def fact_table(facts: Iterable[tuple[str, str]]) -> Table:
     >>> fact_table([("links", "12"), ("graph", "planar")]).row_count
     2
     """
-    columns = Column(no_wrap=True, style="bright_black"), Column()
-    table = Table(*columns, box=box.SIMPLE, show_header=False, pad_edge=False, padding=(0, 1))
+    columns = Column(no_wrap=True, style="bright_black"), Column(overflow="fold")
+    table = WholeTable(*columns, box=box.SIMPLE, show_header=False, pad_edge=False, padding=(0, 1))
     for name, value in facts:
         table.add_row(name, Text(value))
     return table

@@ -12,6 +12,7 @@ from textwrap import indent
 import numpy as np
 import pytest
 from PIL import Image
+from rich.cells import cell_len
 
 from flockana.base.errors import FlockanaError, SolverError
 from flockana.cli import main as command_line
@@ -296,6 +297,31 @@ def test_no_name_is_cut_and_what_was_expected_is_seen_at_any_width(call, offer, 
     assert "alpha-flocking-strict " in table
     assert "…" not in table
     assert ("rigour" in table) == (width == 80)
+
+
+@pytest.mark.parametrize("width", [40, 50, 60])
+@pytest.mark.parametrize(
+    ("arguments", "whole"),
+    [
+        (
+            ("ensemble", "three-agents-1d", "--seeds", 1, "--jobs", 1),
+            ("iv-printed", "100.0 [2.5, 100.0]", "0.0 [0.0, 97.5]", "corrected"),
+        ),
+        (("falsify", "os-3", "--on", "three-agents-1d", "--budget", 1), ("iv-printed", "1.411e+04", "inconclusive")),
+        (("stability", "hexagon", "--start", "start"), ("breathing", "1.9637", "0.09292", "translation", "-1.96375")),
+        (("theorems",), ("alpha-flocking-strict", "Definition", "positions")),
+        (("scenarios",), ("algorithm1-flocks", "fragments")),
+        (("lattice", "line:4"), ("infinitesimally", "quantitative", "α-lattice")),
+        (("run", "three-agents-1d", "-o", "run.nc"), ("normalised_velocity_mismatch:", "3.2594e+05", "-0.00091")),
+    ],
+    ids=lambda value: str(value[0]),
+)
+def test_a_narrow_terminal_cuts_no_number_and_no_name(call, monkeypatch, width, arguments, whole):
+    monkeypatch.setenv("COLUMNS", str(width))
+    _, out, _ = call(*arguments)
+    assert max(map(cell_len, out.splitlines())) <= width
+    assert "…" not in out
+    assert [text for text in whole if text not in out] == []
 
 
 def test_errata_come_with_their_titles(call, monkeypatch):
