@@ -159,7 +159,7 @@ def ensure_series(name: str, value: Any, length: int | None = None) -> FloatArra
     return series
 
 
-def ensure_links(links: Any, n: int) -> npt.NDArray[np.int32]:
+def ensure_links(links: Any, n: int, name: str = "links") -> npt.NDArray[np.int32]:
     """Return links as an int32 array (M, 2) of agents 0 … n − 1.
 
     Examples
@@ -172,11 +172,11 @@ def ensure_links(links: Any, n: int) -> npt.NDArray[np.int32]:
     if array.size == 0:
         return np.empty((0, 2), dtype=np.int32)
     if array.ndim != 2 or array.shape[1] != 2 or array.dtype.kind not in "iu":
-        raise ArgumentError(f"links has shape {array.shape} of {array.dtype}: expected (M, 2) whole numbers")
+        raise ArgumentError(f"{name} has shape {array.shape} of {array.dtype}: expected (M, 2) whole numbers")
     bad = ((array < 0) | (array >= n)).any(axis=1) | (array[:, 0] == array[:, 1])
     if bad.any():
         k = int(np.argmax(bad))
-        raise ArgumentError(f"links[{k}] = {array[k].tolist()}: expected two different agents of 0 … {n - 1}")
+        raise ArgumentError(f"{name}[{k}] = {array[k].tolist()}: expected two different agents of 0 … {n - 1}")
     return np.ascontiguousarray(array, dtype=np.int32)
 
 

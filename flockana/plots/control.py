@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.ticker import FuncFormatter, MultipleLocator, NullFormatter
 
+from flockana.base.errors import ArgumentError, told
 from flockana.plots.style import (
     BLUE,
     FAINT,
@@ -23,8 +25,6 @@ from flockana.plots.style import (
 from flockana.plots.symbols import typeset
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from matplotlib.axes import Axes
 
     from flockana.stability.norms import NormTable
@@ -52,6 +52,13 @@ def bode(responses: Mapping[str, Any], *, marks: Mapping[str, float] | None = No
     -------
     ndarray of matplotlib.axes.Axes, shape (2,)
     """
+    if not isinstance(responses, Mapping):
+        raise ArgumentError(f"responses = {told(responses)}: expected frequency responses by label")
+    for label, response in responses.items():
+        if not (hasattr(response, "omega") and hasattr(response, "complex")):
+            raise ArgumentError(
+                f"responses[{label!r}] = {told(response)}: expected a frequency response, such as that of CentreOfMass"
+            )
     if ax is None:
         import matplotlib.pyplot as plt
 

@@ -9,6 +9,8 @@ import numpy as np
 from matplotlib.colors import Normalize
 from matplotlib.ticker import FixedLocator, NullFormatter, ScalarFormatter
 
+from flockana.base.checks import ensure_links, ensure_points, ensure_series
+from flockana.base.errors import ArgumentError
 from flockana.plots.style import (
     BLUE,
     GREEN,
@@ -88,7 +90,12 @@ def defect_map(
     -------
     matplotlib.axes.Axes
     """
-    points = np.asarray(q, dtype=np.float64)
+    points = ensure_points("q", q)
+    links, degrees = ensure_links(links, len(points)), ensure_series("coordination", coordination, len(points))
+    if not ((degrees >= 0.0) & (degrees % 1.0 == 0.0)).all():
+        raise ArgumentError("coordination has entries that are no counts: expected whole numbers >= 0")
+    if strain is not None:
+        strain = ensure_series("strain", strain, len(links))
     m = points.shape[1]
     x = in_plane(points)
     axes = ensure_axes(ax, m=m)
@@ -96,9 +103,9 @@ def defect_map(
         axes.computed_zorder = False  # else links are drawn across the agents in front of them
     raster = len(x) > _RASTER
     if len(links):
-        _draw_links(axes, x[np.asarray(links)], strain, limit, raster)
+        _draw_links(axes, x[links], strain, limit, raster)
     size = float(np.clip(2600.0 / len(x), 3.0, 70.0))
-    shown = np.minimum(coordination, _MOST + 1)
+    shown = np.minimum(degrees, _MOST + 1).astype(np.intp)
     for k in np.unique(shown).tolist():
         (marker, colour), these = _LOOKS[k], x[shown == k]
         label = f"{k if k <= _MOST else f'{k} or more'} neighbour{'' if k == 1 else 's'}: {len(these)}"

@@ -14,7 +14,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.colors import Normalize
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_points
+from flockana.base.checks import (
+    FloatArray,
+    ensure_finite_scalar,
+    ensure_links,
+    ensure_points,
+    ensure_positive,
+    ensure_series,
+)
 from flockana.base.errors import ArgumentError
 from flockana.environment.beta import ObstacleField
 from flockana.environment.obstacles import Obstacle
@@ -218,10 +225,11 @@ def configuration(
     """
     points = ensure_points("q", q)
     m = points.shape[1]
+    pairs = None if edges is None else ensure_links(edges, len(points), "edges")
+    d = None if d is None else _lengths(d, pairs)
     axes = ensure_axes(ax, m=m)
     x = in_plane(points)
-    if edges is not None:
-        pairs = np.asarray(edges, dtype=np.int64).reshape(-1, 2)
+    if pairs is not None:
         _links(axes, x, points, pairs, d, None, bar)
         _arrowheads(axes, x, pairs)
     elif r is not None and len(points) > 1:
@@ -243,6 +251,16 @@ def configuration(
             _beta_agents(axes, points, ObstacleField(tuple(obstacles), beta), size)
     head(axes, title + ("" if p is None else velocity_arrows(axes, points, p)), fontsize=9)
     return frame_space(axes, seen, m)
+
+
+def _lengths(d: Any, pairs: Any) -> Any:
+    """Desired distances: one number > 0, or as many as there are edges."""
+    if pairs is None or np.isscalar(d):
+        return ensure_positive("d", d)
+    lengths = ensure_series("d", d, len(pairs))
+    if not (lengths > 0.0).all():
+        raise ArgumentError(f"d has the entry {lengths.min():g}: expected numbers > 0")
+    return lengths
 
 
 def _multiplicities(ax: Any, x: FloatArray) -> None:

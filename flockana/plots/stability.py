@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from flockana.base.checks import ensure_links, ensure_points
+from flockana.base.errors import ArgumentError, told
 from flockana.plots.animation import animate
 from flockana.plots.style import (
     BLUE,
@@ -56,10 +58,15 @@ def pole_map(poles: Any, *, grid: bool = True, ax: Axes | None = None) -> Axes:
     -------
     matplotlib.axes.Axes
     """
-    axes = ensure_axes(ax)
     groups = dict(poles) if isinstance(poles, Mapping) else {"eigenvalues": poles}
-    values = {name: np.asarray(group, dtype=np.complex128).ravel() for name, group in groups.items()}
-    whole = np.concatenate(list(values.values()))
+    try:
+        values = {name: np.asarray(group, dtype=np.complex128).ravel() for name, group in groups.items()}
+    except (TypeError, ValueError, OverflowError):
+        raise ArgumentError(f"poles = {told(poles)}: expected complex numbers, or groups of them by label") from None
+    whole = np.concatenate([*values.values(), np.empty(0)])
+    if whole.size == 0:
+        raise ArgumentError(f"poles = {told(poles)}: expected at least one eigenvalue")
+    axes = ensure_axes(ax)
     axes.axhline(0.0, color=MUTED, linewidth=0.8, zorder=1)
     axes.axvline(0.0, color=INK, linewidth=1.0, zorder=1)
     for (marker, colour), (name, group) in zip(_LOOKS, values.items(), strict=False):
@@ -127,14 +134,17 @@ def mode_shape(q: Any, links: Any, shape: Any, *, target: Any = None, ax: Axes |
     -------
     matplotlib.axes.Axes
     """
-    points, moves = np.asarray(q, dtype=np.float64), np.asarray(shape)
+    points, moves = ensure_points("q", q), np.asarray(shape)
+    if moves.shape != points.shape or moves.dtype.kind not in "iufc":
+        raise ArgumentError(f"shape is {moves.shape} of {moves.dtype}: expected numbers {points.shape}, as q has")
+    links = ensure_links(links, len(points))
     m = points.shape[1]
     axes = ensure_axes(ax, m=m)
     points, moves = in_plane(points), in_plane(moves)
     extent = float(np.ptp(points, axis=0).max()) or 1.0
     moves = moves * (_ARROW * extent / (float(np.abs(moves).max()) or 1.0))
     if len(links):
-        axes.add_collection(lines(points[np.asarray(links)], colors=FAINT, linewidths=1.0, zorder=1))
+        axes.add_collection(lines(points[links], colors=FAINT, linewidths=1.0, zorder=1))
     if np.iscomplexobj(moves):
         orbits = points[:, None] + np.real(np.exp(1j * _RING)[None, :, None] * moves[:, None])
         axes.add_collection(lines(orbits, colors=VERMILLION, linewidths=0.9, zorder=2))

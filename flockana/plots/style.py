@@ -15,7 +15,7 @@ from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d.art3d import Line3DCollection  # type: ignore[import-untyped]
 
-from flockana.base.checks import FloatArray
+from flockana.base.checks import FloatArray, ensure_count
 from flockana.plots.symbols import typeset
 
 if TYPE_CHECKING:
@@ -124,6 +124,7 @@ def subplots(
     """
     import matplotlib.pyplot as plt
 
+    rows, columns = ensure_count("rows", rows), ensure_count("columns", columns)
     with style():
         kind = {"projection": "3d"} if m == 3 else {}
         return plt.subplots(rows, columns, figsize=size or (4.4 * columns, 3.4 * rows), subplot_kw=kind)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from matplotlib.figure import Figure
 
+from flockana.base.errors import ArgumentError
 from flockana.interactions import Gains
 from flockana.plots import control as draw
 from flockana.stability.norms import NormTable
@@ -83,3 +85,12 @@ def test_the_delay_chart_shades_what_is_stable():
     np.testing.assert_allclose(lines(ax)["pairs"][:, 1], [0.3, 0.2])
     assert ax.collections[0].get_paths()[0].vertices[:, 1].max() == 0.2
     assert (ax.get_xlabel(), ax.get_ylim()[0]) == (r"$c_1^\gamma$ (1/time$^2$)", 0.0)
+
+
+@pytest.mark.parametrize(
+    ("responses", "message"),
+    [(3, "responses = 3: expected frequency"), ({"a": 3}, r"responses\['a'\] = 3: expected a frequency response")],
+)
+def test_a_bode_plot_is_of_responses(responses, message):
+    with pytest.raises(ArgumentError, match=message):
+        draw.bode(responses)

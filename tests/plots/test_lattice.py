@@ -5,9 +5,12 @@ import pytest
 from matplotlib.collections import LineCollection
 
 from flockana import plots
+from flockana.base.errors import ArgumentError
 from flockana.equilibria.collapse import CollapseDiagram
 from flockana.lattice import coordination, hexagonal_patch, links
 from tests.plots.artists import axes
+
+Q = [[0.0, 0.0], [7.0, 0.0]]
 
 
 def groups(ax):
@@ -91,3 +94,19 @@ def test_the_barrier_is_the_difference_in_units_of_the_printed_bound():
     np.testing.assert_allclose(lines["least V"], [0.0, 1.8])
     np.testing.assert_allclose(lines["barrier"], [1.0, 1.2])
     assert ax.get_ylim()[0] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ((Q, [[0, 1]], [1]), r"coordination has shape \(1,\): expected a series of 2 numbers"),
+        ((Q, [[0, 1]], [1, -1]), "coordination has entries that are no counts"),
+        ((Q, [[0, 5]], [1, 1]), r"links\[0\] = \[0, 5\]: expected two different agents of 0 … 1"),
+        (("x", [], []), "q: expected numbers"),
+    ],
+)
+def test_a_map_of_defects_is_of_all_agents(given, message):
+    with pytest.raises(ArgumentError, match=message):
+        plots.defect_map(*given)
+    with pytest.raises(ArgumentError, match=r"strain has shape \(2,\): expected a series of 1 numbers"):
+        plots.defect_map(Q, [[0, 1]], [1, 1], strain=[0.0, 0.0])

@@ -268,3 +268,18 @@ def test_a_sphere_in_space_is_as_wide_as_it_is_high():
     shares = ax._box_aspect
     spans = [np.ptp(getattr(ax, f"get_{name}lim")()) for name in "xyz"]
     np.testing.assert_allclose(np.array(shares) / spans, shares[0] / spans[0])
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"d": 0, "r": 8}, "d = 0: expected a number > 0"),
+        ({"d": [7.0, 7.0], "r": 8}, r"d = \[7.0, 7.0\]: expected one real number"),
+        ({"d": [7.0, 7.0], "edges": [[0, 1]]}, r"d has shape \(2,\): expected a series of 1 numbers"),
+        ({"d": [0.0], "edges": [[0, 1]]}, "d has the entry 0: expected numbers > 0"),
+        ({"edges": [[0, 5]]}, r"edges\[0\] = \[0, 5\]: expected two different agents of 0 … 1"),
+    ],
+)
+def test_a_configuration_of_bad_links_is_refused(given, message):
+    with pytest.raises(ArgumentError, match=message):
+        plots.configuration([[0.0, 0.0], [7.0, 0.0]], **given)

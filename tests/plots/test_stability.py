@@ -120,3 +120,22 @@ def test_a_film_of_a_mode(tmp_path):
 
 def test_titles():
     assert plots.mode_title(Mode(-0.5 + 2.0j, np.ones((1, 1)), "4")) == "mode 4: s = −0.5 ± 2i, ζ = 0.24"
+
+
+@pytest.mark.parametrize(
+    ("draw", "message"),
+    [
+        (lambda: plots.pole_map([]), r"poles = \[\]: expected at least one eigenvalue"),
+        (lambda: plots.pole_map({}), r"poles = {}: expected at least one eigenvalue"),
+        (lambda: plots.pole_map("x"), "poles = 'x': expected complex numbers"),
+        (
+            lambda: plots.mode_shape([[0.0], [7.0]], [], [[1.0]]),
+            r"shape is \(1, 1\) of float64: expected numbers \(2, 1\)",
+        ),
+        (lambda: plots.mode_shape([[0.0], [7.0]], [], [["x"], ["y"]]), "shape is .* of <U1: expected numbers"),
+        (lambda: plots.mode_shape([[0.0], [7.0]], [[0, 2]], [[1.0], [1.0]]), r"links\[0\] = \[0, 2\]: expected two"),
+    ],
+)
+def test_what_is_no_mode_and_no_pole_is_refused(draw, message):
+    with pytest.raises(ArgumentError, match=message):
+        draw()

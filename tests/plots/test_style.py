@@ -7,6 +7,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from flockana import plots
+from flockana.base.errors import ArgumentError
 from flockana.plots.style import colour_bar, finish, finish_empty, finish_over_time, frame_space, head, in_plane, lines
 from tests.plots.artists import a_run
 
@@ -131,3 +132,9 @@ def test_films_are_asked_for_alike():
     for name in ("fps", "velocities", "progress"):
         assert mode[name].kind is run[name].kind is inspect.Parameter.KEYWORD_ONLY
         assert (name, mode[name].default) == (name, run[name].default) or callable(mode[name].default)
+
+
+@pytest.mark.parametrize(("grid", "message"), [((0,), "rows = 0: expected"), ((1, "x"), "columns = 'x': expected")])
+def test_a_grid_has_rows_and_columns(grid, message):
+    with pytest.raises(ArgumentError, match=message):
+        plots.subplots(*grid)
