@@ -273,8 +273,8 @@ def contact_scales(interaction: DeadZoneInteraction) -> Scales:
     return Scales(interaction.d1, float(np.sqrt(interaction.d1 / interaction.contact_force)))
 
 
-def ensure_apart(q: FloatArray) -> None:
-    """Raise if two agents coincide: their force has no direction.
+def ensure_apart(q: FloatArray, force: str = "the dead-zone force") -> None:
+    """Raise if two agents coincide: their force, in words, has no direction.
 
     Examples
     --------
@@ -288,6 +288,6 @@ def ensure_apart(q: FloatArray) -> None:
         if distance[i, 1] == 0.0:
             j = next(int(k) for k in neighbour[i] if k != i)
             raise ArgumentError(
-                f"agents {min(i, j)} and {max(i, j)} coincide: the dead-zone force is infinite there and has no "
-                "direction; expected distinct positions"
+                f"agents {min(i, j)} and {max(i, j)} coincide: {force} is infinite there and has no direction; "
+                "expected distinct positions"
             )

@@ -166,7 +166,7 @@ class ProximityFlocking(SwitchedLaw):
 
     def check_start(self, q: FloatArray, p: FloatArray) -> None:  # noqa: D102
         super().check_start(q, p)
-        ensure_apart(q)
+        ensure_apart(q, "the force of the logarithmic potential")
 
     def pieces(self, q: FloatArray) -> Pieces:
         """Of every pair, 0 within R and 1 beyond.
