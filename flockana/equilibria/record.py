@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.errors import FileError, FlockanaError
+from flockana.base.errors import FileError, FlockanaError, SolverError
 from flockana.base.files import read_whole, write_whole
 from flockana.base.seals import SEAL, opened, sealed
 from flockana.base.serialize import from_data, read_json, to_data
@@ -18,6 +18,8 @@ from flockana.equilibria.potential import Potential
 from flockana.equilibria.solve import Equilibrium, finish
 
 _FORMAT = "flockana equilibrium 1"
+_EXPECTED = f"expected JSON of the format {_FORMAT!r}, as 'flockana equilibrium SOURCE -o FILE' writes it"
+_REMEDY = "the file is damaged or was edited: take it as it was written, or find the equilibrium anew"
 _KEYS = ("format", "law", "q", "energy", "kind", "strain", "links", "rigid_modes", "hessian_eigenvalues")
 _AGREE = 1e-6  # relative: eigenvalues written on one machine and computed on another
 
@@ -40,17 +42,38 @@ def write_equilibrium(equilibrium: Equilibrium, path: str | Path) -> None:
 
 def read_equilibrium(path: str | Path) -> Equilibrium:
     """Read an equilibrium; everything is computed anew from its positions and must agree with the file."""
+    data = _read(path)
     try:
-        data = read_json(read_whole(path))
-        if data["format"] != _FORMAT:
-            raise ValueError(f"its format is {data['format']!r}, expected {_FORMAT!r}")
         law, q = from_data(data["law"]), np.array(data["q"], dtype=np.float64)
         equilibrium = finish(Potential(law), q, True, "read from a file and verified")
         _compare(equilibrium, data)
         _ensure_unharmed(data)
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError, FlockanaError) as error:
-        raise FileError(f"{path} holds no equilibrium: {error}") from error
+    except SolverError as error:  # whose advice is for those who seek one
+        raise _not_one(path, f"its positions are none of its law; {_REMEDY}") from error
+    except KeyError as error:
+        raise _not_one(path, f"it lacks {error}; {_REMEDY}") from error
+    except (ValueError, TypeError, AttributeError, RecursionError, FlockanaError) as error:
+        raise _not_one(path, f"{error}; {_REMEDY}") from error
     return equilibrium
+
+
+def _read(path: str | Path) -> dict[str, Any]:
+    """What the file says, if it says that it is an equilibrium."""
+    try:
+        data = read_json(read_whole(path))
+    except FlockanaError as error:
+        raise _not_one(path, error) from error
+    except ValueError as error:
+        raise _not_one(path, f"it is no JSON ({error}); {_EXPECTED}") from error
+    if not isinstance(data, dict) or "format" not in data:
+        raise _not_one(path, _EXPECTED)
+    if data["format"] != _FORMAT:
+        raise _not_one(path, f"its format is {data['format']!r}; {_EXPECTED}")
+    return data
+
+
+def _not_one(path: str | Path, reason: object) -> FileError:
+    return FileError(f"{path} holds no equilibrium: {reason}")
 
 
 def _ensure_unharmed(data: dict[str, Any]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -66,6 +67,40 @@ def test_a_record_is_verified_when_read(tmp_path):
             read_equilibrium(path)
     with pytest.raises(FileError, match="cannot write"):
         write_equilibrium(again, tmp_path / "no" / "such.json")
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("{}", "holds no equilibrium: expected JSON of the format 'flockana equilibrium 1', as 'flockana equilibrium "),
+        ("[]", "holds no equilibrium: expected JSON of the format 'flockana equilibrium 1'"),
+        ("3", "holds no equilibrium: expected JSON of the format 'flockana equilibrium 1'"),
+        ("x", "holds no equilibrium: it is no JSON (Expecting value: line 1 column 1 (char 0)); expected JSON of the "),
+        ('{"format": []}', "its format is []; expected JSON of the format 'flockana equilibrium 1'"),
+    ],
+)
+def test_what_is_no_record_says_what_is_expected(tmp_path, text, message):
+    (tmp_path / "obj.json").write_text(text)
+    with pytest.raises(FileError, match=re.escape(message)):
+        read_equilibrium(tmp_path / "obj.json")
+
+
+def test_what_was_changed_says_so_and_gives_no_advice_to_those_who_seek(tmp_path):
+    path = tmp_path / "found.json"
+    write_equilibrium(smallest_strained(), path)
+    data = json.loads(path.read_text())
+    moved, short = json.loads(path.read_text()), json.loads(path.read_text())
+    moved["q"][0][0] += 0.1
+    del short["q"]
+    for changed, message in (
+        (moved, "its positions are none of its law; the file is damaged or was edited: take it as it was written, or"),
+        (short, "it lacks 'q'; the file is damaged or was edited"),
+        (data | {"energy": 1.0}, "is computed; the file is damaged or was edited"),
+    ):
+        path.write_text(json.dumps(changed))
+        with pytest.raises(FileError, match=re.escape(message)) as told:
+            read_equilibrium(path)
+        assert "max_iter" not in str(told.value)
 
 
 def test_a_lattice_without_energy_reads_back(tmp_path):
