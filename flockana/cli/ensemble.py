@@ -53,9 +53,12 @@ def ensemble_command(
     Exit status: 0 done, 2 bad input, 3 some run did not complete, 130 interrupted.
     """
     from flockana.base.binomial import ensure_level
+    from flockana.base.errors import ArgumentError
     from flockana.cli.picture import KINDS, ensure_file, write_picture
     from flockana.ensemble import ensemble, shares
 
+    if retry and store is None:
+        raise ArgumentError("--retry: without a store no run is held as failed; give --store FILE too, or leave it out")
     parameters = read_options(options or [])
     axes = [name for name, values in parameters.items() if isinstance(values, list)]
     ensure_level(level)

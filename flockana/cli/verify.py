@@ -64,6 +64,8 @@ def verify_command(
     from flockana.ensemble.processes import cores
 
     started = time.perf_counter()
+    if no_report and report is not None:
+        raise ArgumentError(f"--report {report}: --no-report writes none; leave out one of them")
     if on is not None:
         _ensure_checkable(name, seeds, seed)
     seed = seed or 0
@@ -177,6 +179,7 @@ def _check_all(tasks: Sequence[Work], jobs: int) -> tuple[list[Done], int, Flock
 
 def _ensure_checkable(name: str | None, seeds: int | None, seed: int | None) -> None:
     from flockana.base.errors import UnknownNameError
+    from flockana.report.work import ERRATA
     from flockana.scenarios import scenarios
     from flockana.theorems import theorem, theorems
 
@@ -186,6 +189,10 @@ def _ensure_checkable(name: str | None, seeds: int | None, seed: int | None) -> 
         raise ArgumentError(f"--seed {seed}: a saved run was started already; leave out --seed or --on")
     if name is None:
         raise ArgumentError("--on FILE needs a NAME: the scenario that was run, or the theorem to check")
+    if name == ERRATA:
+        raise ArgumentError(
+            f"{name} --on FILE: a saved run is checked by one scenario or theorem; name one, such as os-1"
+        )
     if name not in (*scenarios(), *theorems()):
         raise UnknownNameError("scenario or theorem", name, (*scenarios(), *theorems()))
     if name in theorems() and theorem(name).kind != "trajectory":

@@ -134,6 +134,18 @@ def test_everything_is_every_scenario_with_all_its_verdicts(catalogue):
         (["verify", "os-1", "--on", "none.nc"], "no file none.nc"),
         (["verify", "E8", "--on", "none.nc"], "E8 is not about a run"),
         (["verify", "nothing", "--on", "none.nc"], "unknown scenario or theorem 'nothing'"),
+        (
+            ["verify", "errata", "--on", "none.nc"],
+            "a saved run is checked by one scenario or theorem; name one, such as",
+        ),
+        (
+            ["verify", "hexagon", "--no-report", "--report", "x"],
+            "--report x: --no-report writes none; leave out one of",
+        ),
+        (
+            ["ensemble", "hexagon", "--retry"],
+            "--retry: without a store no run is held as failed; give --store FILE too",
+        ),
         (["run", "hexagon"], "--output"),
         (["run", "hexagn", "-o", "x.nc"], "unknown scenario 'hexagn'; did you mean 'hexagon'?"),
         (["run", "hexagon", "-o", "."], ". is a folder"),
