@@ -27,6 +27,7 @@ def library_margin() -> tuple[Any, Any]:
     """(τ*, ω) of the library's code, executed on symbols."""
     numpy = SimpleNamespace(sqrt=sp.sqrt, hypot=lambda a, b: sp.sqrt(a**2 + b**2), arctan2=sp.atan2)
     known = {"np": numpy, "float": sp.nsimplify, "inf": inf, "DelayMargin": lambda delay, omega: (delay, omega)}
+    known["ensure_nonnegative"] = lambda name, symbol: symbol  # as it is declared to be
     margin: tuple[Any, Any] = FunctionType(scalar_margin.__code__, known)(K, D)
     return margin
 
