@@ -28,6 +28,7 @@ from flockana.base.units import Powers
 from flockana.environment.zone_world import ZoneWorld
 from flockana.interactions import ZoneNoise, ZoneRadii, ZoneWeights
 from flockana.kernels import zones as compiled
+from flockana.kernels.zone_counts import fragments, populations
 from flockana.laws.discrete import DiscreteLaw
 
 CHOICES: dict[str, tuple[str, ...]] = {
@@ -300,7 +301,7 @@ class ZoneFlocking(DiscreteLaw):
     ) -> Mapping[str, tuple[str, Any]]:
         n = q.shape[1]
         r, c, a, _ = self.radii.arrays(n)
-        parts, counts = compiled.fragments(q, a), cache(lambda: compiled.populations(q, r, c, a))
+        parts, counts = fragments(q, a), cache(lambda: populations(q, r, c, a))
         series = {
             "connectivity": (
                 "C = rank(L)/(n − 1), of agents within a",

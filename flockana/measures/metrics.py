@@ -367,7 +367,8 @@ def _headings(p: FloatArray) -> FloatArray:
     """Directions of motion; 0 of agents at rest."""
     with np.errstate(over="ignore"):
         speed = lengths(p)
-    if (far := ~((speed > _SQUARED[0]) & (speed < _SQUARED[1])) & (p != 0.0).any(axis=2)).any():
+    far = ~((speed > _SQUARED[0]) & (speed < _SQUARED[1]))
+    if far.any():
         powers = np.frexp(np.abs(p[far]).max(axis=1))[1]  # of two: nothing is rounded
         p, speed = p.copy(), speed.copy()
         p[far] = np.ldexp(p[far], -powers[:, None])

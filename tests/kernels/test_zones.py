@@ -12,7 +12,8 @@ from flockana.environment.zone_obstacles import Box, SimplePolygon
 from flockana.environment.zone_world import Alien, ZoneWorld
 from flockana.interactions import ZoneNoise, ZoneRadii, ZoneWeights
 from flockana.kernels.candidates import sort_into_cells
-from flockana.kernels.zones import fragments, populations, saturation
+from flockana.kernels.zone_counts import fragments, populations
+from flockana.kernels.zones import saturation
 from flockana.laws.bearing_distance import BEHAVIOURS, ZoneFlocking
 from tests.kernels.test_noise import uniform
 
