@@ -19,6 +19,7 @@ from flockana.theorems import Claim, Tolerances
 from flockana.theorems.dead_zone.case import dead_zone_law, final_components, velocities_match
 from flockana.theorems.dead_zone.range_limits import thinned
 from flockana.theorems.rounding import EPS
+from flockana.theorems.observed import Observed
 from flockana.theorems.theorem import Status
 
 _PRINTED = "Li, Yuan and Liu, section V: n = 50, r = 15, δ = 4.5, k_δ = 1.3, no more."
@@ -57,7 +58,8 @@ def _law(run: Trajectory) -> DeadZoneFlocking:
 
 def _consensus(run: Trajectory, tolerances: Tolerances) -> Claim:
     """All velocities agree in the limit: certain where a flock is held together, impossible where components part."""
-    return velocities_match(run, final_components(run, _law(run)), [], name="consensus")
+    seen = Observed.alone(run)
+    return velocities_match(seen, final_components(seen, _law(run)), [], name="consensus")
 
 
 def _together(run: Trajectory, tolerances: Tolerances) -> Claim:
@@ -65,7 +67,7 @@ def _together(run: Trajectory, tolerances: Tolerances) -> Claim:
     from scipy.sparse.csgraph import minimum_spanning_tree
     from scipy.spatial.distance import pdist, squareform
 
-    r, count = _law(run).interaction.r, final_components(run, _law(run)).count
+    r, count = _law(run).interaction.r, final_components(Observed.alone(run), _law(run)).count
     longest = float(minimum_spanning_tree(squareform(pdist(run.q[-1]))).max()) if run.n > 1 else 0.0
     detail = f"{count} component(s) at t = {run.t[-1]:g}: to join all takes links of up to {longest:.4g}, and r = {r:g}"
     error = _rounding(run, r)

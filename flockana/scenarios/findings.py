@@ -14,8 +14,10 @@ from flockana.base.units import rescale
 from flockana.dynamics.trajectory import Trajectory
 from flockana.measures.nets import components, links
 from flockana.scenarios.scenario import Report
+from flockana.theorems.claims import judged
+from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.limits import Certificate, limit_claim
-from flockana.theorems.theorem import Claim, Tolerances, judge
+from flockana.theorems.theorem import Claim, Tolerances
 
 Check = Callable[[Trajectory, Tolerances], Claim]
 ROUNDING = 1e-12  # relative, of what a report measures
@@ -44,8 +46,9 @@ def finding(
         counted = margin != 0.0 and float(2.0 * margin).is_integer()
         size = abs(computed) if isinstance(computed, float | int) else 0.0
         error = 0.0 if counted else ROUNDING * max(abs(margin), size)
-    status = judge(margin, error, [])
-    return Claim(name, status, "numeric", computed, stated, margin, error, witness, None, detail)
+    return judged(
+        name, Enclosure.around(margin, error), computed=computed, stated=stated, witness=witness, detail=detail
+    )
 
 
 def in_the_end(

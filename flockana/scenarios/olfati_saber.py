@@ -20,9 +20,9 @@ from flockana.scenarios.findings import ROUNDING, component_count, finding, in_t
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.scenarios.start import later
 from flockana.theorems import Claim, Tolerances
-from flockana.theorems.asymptotics import velocities_match
-from flockana.theorems.limits import decay
-from flockana.theorems.olfati_saber.attraction import final_basin
+from flockana.theorems.limits import Certificate
+from flockana.theorems.olfati_saber.attraction import attraction
+from flockana.theorems.olfati_saber.gamma_agent import consistent
 from flockana.theorems.theorem import Status
 
 _OURS = (
@@ -65,7 +65,9 @@ def _ends_as_lattice(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _ends_matched(run: Trajectory, tolerances: Tolerances) -> Claim:
-    return velocities_match(run, tolerances, [], name="matched", caught=[final_basin(run).certificate])
+    series, basin = run.metric("normalised_velocity_mismatch"), attraction(run.law, run.q[-1], run.p[-1])
+    detail = f"velocities match: K̃ goes from {series[0]:.3g} to {series[-1]:.3g} at t = {run.t[-1]:g}"
+    return in_the_end("matched", basin.certificate, detail, computed=float(series[-1]), stated="K̃ -> 0")
 
 
 def _topology_changes(run: Trajectory, tolerances: Tolerances) -> Claim:
@@ -125,12 +127,13 @@ def _meets(run: Trajectory, tolerances: Tolerances) -> Claim:
         np.linalg.norm(x.mean(axis=1) - np.array([state[k] for state in target]), axis=1) / unit
         for k, (x, unit) in enumerate(((run.q, run.scales.length), (run.p, run.scales.speed)))
     )
-    certificate = min(
-        (decay(run.t, off, floor=tolerances.agreement).certificate for off in (away, slip)),
-        key=lambda certificate: certificate.margin,
-    )
+    gains, target = run.law.gains, run.law.target
+    uniform = isinstance(target, StaticTarget | LinearTarget) and consistent(run).status == "met"
+    damped = not gains.per_agent and gains.c1_gamma > 0.0 and gains.c2_gamma > 0.0
+    exact = "(q_c − q_r)'' + c2γ (q_c − q_r)' + c1γ (q_c − q_r) = 0"
+    certificate = Certificate(1.0, exact) if uniform and damped else Certificate(-1.0, "the γ-agent accelerates")
     detail = f"the centre of mass ends {away[-1]:.2g} d from the γ-agent, at {slip[-1]:.2g} of the law's speed"
-    stated = f"both -> 0 (<= {tolerances.agreement:g})"
+    stated = "both -> 0"
     return in_the_end("meets", certificate, detail, computed=float(away[-1]), stated=stated)
 
 

@@ -18,7 +18,7 @@ from flockana.scenarios.enclosure import Enclosure
 from flockana.scenarios.given import SOURCE, ensure_judged, ensure_options, ensure_parts
 from flockana.scenarios.start import given_later
 from flockana.theorems import Claim, Tolerances, Verdict, verify
-from flockana.theorems.second_run import corroborated
+from flockana.theorems.observed import Observed, by_both_runs, with_doubt
 from flockana.theorems.theorem import Status
 
 
@@ -39,6 +39,18 @@ class Report:
     name: str
     text: str
     check: Callable[[Trajectory, Tolerances], Claim]
+
+    def judge(self, seen: Observed, tolerances: Tolerances) -> Claim:
+        """Return the claim on a run, its margin enclosed by the difference between the run and its second one.
+
+        Parameters
+        ----------
+        seen : Observed
+            The run.
+        tolerances : Tolerances
+            Thresholds.
+        """
+        return by_both_runs(seen, lambda run: self.check(run, tolerances))
 
 
 @given_later("q0", "p0")
@@ -183,11 +195,8 @@ class Scenario:
         if not self.reports:
             return ()
         used = Tolerances() if tolerances is None else tolerances
-
-        def judged(run: Trajectory) -> tuple[Claim, ...]:
-            return tuple(report.check(run, used) for report in self.reports)
-
-        claims = corroborated(judged(trajectory), trajectory, judged)
+        seen = Observed.of(trajectory)
+        claims = with_doubt((report.judge(seen, used) for report in self.reports), seen)
         return (Verdict(SOURCE, (), claims, used, self.name),)
 
     def in_units(self, length: float, time: float) -> Scenario:

@@ -13,6 +13,8 @@ off the rigid motions, g = ∇U(x), and let ∇²U be Lipschitz with constant L 
 3. If E - U(x*) <= K + |g|²/λ is less than that barrier, the flock never leaves. With damping of all relative motion
    (c2γ > 0, or damping along the links of a connected net) it converges to x*, and its velocities match, by LaSalle's
    principle.
+4. A state that is known to a distance Δ has U less than U(x) + |g|Δ + ½(Λ + LΔ)Δ², with Λ the largest eigenvalue of
+   ∇²U(x), and lies in the basin if δ + Δ <= ρ as well.
 
 No tolerance enters: the flock's own scales come in through λ, L and the barrier. What depends on the law, its force,
 its Hessian and the third derivatives of its pair potential, is in `olfati_saber.attraction` and `dead_zone.hold`.
@@ -34,7 +36,6 @@ from flockana.theorems.limits import Certificate
 from flockana.theorems.rounding import EPS
 
 WINDOWS = np.geomspace(1e-8, 0.25, 25)  # of the law's length: distances up to which L is taken
-_SAFETY = 1.25  # on a difference quotient of the stiffness: its curve is smooth but for a few kinks
 _SYMMETRIC = 1e-9  # of the largest: a rotation that moves the agents by less is no motion, as in `rigid_motions`
 _GROWTH = 10.0  # factor by which the energy of a map of steps may rise
 
@@ -55,8 +56,6 @@ class Basin:
         Least eigenvalue λ of ∇²U off the rigid motions, less its rounding.
     stability : float
         Of a map of steps, positive where every mode of it decays, with room to spare; 1 of a flow.
-    verb : str
-        How the certificate says that the flock stays, ``"caught"`` or ``"held"``.
     """
 
     excess: float = inf
@@ -64,7 +63,6 @@ class Basin:
     distance: float = inf
     curvature: float = nan
     stability: float = 1.0
-    verb: str = "caught"
 
     @property
     def reach(self) -> float:
@@ -75,13 +73,12 @@ class Basin:
     def certificate(self) -> Certificate:
         """That the energy above the minimum is less than the barrier; of a map of steps, than a tenth of it."""
         if not self.barrier > 0.0:
-            return Certificate(-1.0, f"it is not known to be {self.verb} by a minimum")
+            return Certificate(-1.0, "no basin of a strict minimum is certified here")
         if self.stability <= 0.0:
             return Certificate(max(-1.0, self.stability), "the step is too long for the stiffness of its contacts")
         ratio = self.excess / self.barrier * (_GROWTH if self.stability < 1.0 else 1.0)
-        stays, leaves = f"{self.verb} by a strict minimum for ever", "near a minimum, with energy enough to leave"
-        where = stays if ratio < 1.0 else leaves
-        text = f"it is {where}: {self.excess:.2g} above it, where leaving takes {self.barrier:.2g} at least"
+        where = "certified to stay" if ratio < 1.0 else "not certified to stay"
+        text = f"{where} near a strict minimum of U ({self.excess:.2g} above it; {self.barrier:.2g} needed to leave)"
         return Certificate(max(-1.0, min(1.0 - ratio, self.stability)), text)
 
 
@@ -98,8 +95,8 @@ def curvatures(stiffness: Any, rigid: FloatArray) -> tuple[float, float]:
     return float(values[0]) - 64.0 * len(rigid) * EPS * largest, largest
 
 
-def kinetic(p: FloatArray) -> float:
-    """K(v) = ½ Σ‖p_i − p_c‖², with the rounding of v added.
+def kinetic(p: FloatArray, off: float = 0.0) -> float:
+    """Return K(v) = ½ Σ‖p_i − p_c‖² at most, of velocities known to a distance, with the rounding of v added.
 
     Examples
     --------
@@ -107,7 +104,7 @@ def kinetic(p: FloatArray) -> float:
     True
     """
     rounding = sqrt(p.size) * 8.0 * EPS * float(np.abs(p).max())
-    return 0.5 * (float(np.linalg.norm(moving_frame(p))) + rounding) ** 2
+    return 0.5 * (float(np.linalg.norm(moving_frame(p))) + rounding + off) ** 2
 
 
 def gyration(q: FloatArray) -> float:
@@ -135,18 +132,35 @@ def connected_within(q: FloatArray, reach: float) -> bool:
 
 
 def barrier(
-    curvature: float, distance: float, windows: Iterable[float], lipschitz_within: Callable[[float], float]
-) -> float:
-    """The highest barrier of step 2 over a choice of windows w: a wide one has a large L, a narrow one a small ρ.
+    curvature: float,
+    distance: float,
+    windows: Iterable[float],
+    lipschitz_within: Callable[[float], float],
+    *,
+    off: float = 0.0,
+) -> tuple[float, float]:
+    """Return the highest barrier of step 2 over a choice of windows w, and L there; 0 and ∞ where there is none.
 
-    The widest is taken first, and the rest are left out when even with L = 0 they were no better.
+    A wide window has a large L, a narrow one a small ρ. The widest is taken first, and the rest are left out when even
+    with L = 0 they were no better.
+
+    Parameters
+    ----------
+    curvature, distance : float
+        λ and δ.
+    windows : iterable of float
+        Choices of w.
+    lipschitz_within : callable
+        L within a distance of x.
+    off : float
+        Δ, how far from x the state may be.
 
     Examples
     --------
     >>> barrier(2.0, 0.0, [1.0, 3.0], lambda window: 0.0)
-    9.0
+    (9.0, 0.0)
     """
-    best = 0.0
+    best, constant = 0.0, inf
     for window in sorted(windows, reverse=True):
         reach = window - distance
         if reach <= 0.0 or reach**2 * (0.5 * curvature) <= best:
@@ -155,9 +169,34 @@ def barrier(
         if lipschitz > 0.0:
             reach = min(reach, 0.5 * curvature / lipschitz)
         inner = curvature - lipschitz * distance  # 7/8 of the curvature at least, if the distance is reach/4 at most
-        if reach > 4.0 * distance:
-            best = max(best, reach**2 * (0.5 * inner - lipschitz * reach / 6.0))
-    return float(best)
+        height = reach**2 * (0.5 * inner - lipschitz * reach / 6.0)
+        if reach > max(4.0 * distance, distance + off) and height > best:
+            best, constant = float(height), lipschitz
+    return best, constant
+
+
+def excess(
+    p: FloatArray, p_off: float, force: float, curvature: float, off: float, stiffest: float, lipschitz: float
+) -> float:
+    """Return the energy above the minimum at most, of a state known to the distances `off` and `p_off`.
+
+    Parameters
+    ----------
+    p : ndarray, shape (n, m)
+        Velocities.
+    p_off : float
+        How far these may be off, over all coordinates.
+    force, curvature : float
+        |g| and λ.
+    off : float
+        Δ.
+    stiffest : float
+        Λ.
+    lipschitz : float
+        L within Δ of x.
+    """
+    height = kinetic(p, p_off) + force**2 / curvature
+    return height if off == 0.0 else height + force * off + 0.5 * (stiffest + lipschitz * off) * off**2
 
 
 def lipschitz_constant(n: int, pairs: LinkArray, third: FloatArray) -> float:
@@ -176,17 +215,3 @@ def lipschitz_constant(n: int, pairs: LinkArray, third: FloatArray) -> float:
         return 0.0
     ends = np.bincount(pairs.ravel(), weights=np.repeat(third, 2), minlength=n)
     return sqrt(2.0) * float((ends[pairs[:, 0]] + ends[pairs[:, 1]]).max())
-
-
-def third_derivative(
-    s: FloatArray, along: FloatArray, across: FloatArray, *, least_step: float, noise: FloatArray | float = 0.0
-) -> FloatArray:
-    """Norm of the third derivative of each pair's potential F(|x|), at worst over the lengths s, shape (points, M).
-
-    It is F''' along the pair three times, the slope of `along` = F'', and `across` = (F'/s)' along it once and across
-    twice; of unit vectors the second kind makes 3 e (1 - e²) <= 2/√3 at most. F''' is a difference quotient.
-    """
-    step = np.diff(s, axis=0)
-    change = np.divide(np.abs(np.diff(along, axis=0)), step, out=np.zeros_like(step), where=step > least_step)
-    norm: FloatArray = _SAFETY * change.max(axis=0) + noise + 2.0 / sqrt(3.0) * np.abs(across).max(axis=0)
-    return norm

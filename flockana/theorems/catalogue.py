@@ -11,7 +11,8 @@ from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.modules import modules
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
-from flockana.theorems.second_run import ensure_fits, examined_twice
+from flockana.theorems.observed import Observed, with_doubt
+from flockana.theorems.second_run import ensure_fits
 from flockana.theorems.theorem import Theorem, Tolerances, Verdict
 
 if TYPE_CHECKING:
@@ -168,4 +169,6 @@ def _verified_tube(item: Theorem, tube: Any, basin: Any, tolerances: Tolerances,
 
 def _verified_run(item: Theorem, run: Trajectory, tolerances: Tolerances, subject: str) -> Verdict:
     ensure_fits(run)
-    return Verdict(item.id, *examined_twice(item, run, tolerances), tolerances, subject)
+    seen = Observed.of(run)
+    hypotheses, claims = item.examine(seen, tolerances)
+    return Verdict(item.id, hypotheses, with_doubt(claims, seen), tolerances, subject)

@@ -1,52 +1,238 @@
-"""Claims by how they are decided, by a margin against 0 or by algebra, and theorems that are checked by themselves."""
+"""Constructors of claims, one for each kind of evidence: they alone decide a status.
+
+A claim about a run holds if a margin, an enclosure over time, is nowhere negative. Where its needs are met a proof
+decides instead, and the numbers stand beside it.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-from flockana.theorems.theorem import Claim, Hypothesis, Status, Theorem, Tolerances, judge, overall
+import numpy as np
+
+from flockana.theorems.enclosure import Enclosure
+from flockana.theorems.proofs import RIGOUR
+from flockana.theorems.theorem import About, Claim, Hypothesis, Rigour, Status, Theorem, Tolerances, overall
 
 
 def judged(
     name: str,
-    margin: float,
-    error: float,
+    margin: Enclosure,
     needs: Iterable[Hypothesis] = (),
     *,
-    verifies: bool = True,
-    refutes: bool = True,
+    about: About = "run",
+    rigour: Rigour = "numeric",
+    proof: str | None = None,
+    disproof: str | None = None,
+    detail: str = "",
     **fields: Any,
 ) -> Claim:
-    """A claim that holds if its margin is positive by more than an error, and its hypotheses are met.
+    """Return a claim that holds if no entry of its margin is negative.
+
+    Numbers of one run verify nothing about all cases, though they refute it, and decide nothing about a limit. A proof
+    or disproof decides where all needs are met; numbers that say the opposite make the claim inconclusive, and say so.
+
+    Parameters
+    ----------
+    name : str
+        Of the claim.
+    margin : Enclosure
+        At least 0 where the claim holds: a number, or one for each instant.
+    needs : iterable of Hypothesis
+        Hypotheses of the claim.
+    about : {"run", "limit", "all"}
+        What the claim speaks of.
+    rigour : {"numeric", "interval"}
+        How the margin is known.
+    proof, disproof : str, optional
+        Id of an executable proof of exactly this claim, or of its negation, under the needs.
+    detail : str
+        In words.
+    **fields
+        Further fields of the claim, such as `computed`, `stated` and `witness`.
+
+    Examples
+    --------
+    >>> [judged("i", Enclosure.around(margin, 0.1)).status for margin in (0.5, 0.05, -0.5)]
+    ['verified', 'inconclusive', 'refuted']
+    >>> judged("i", Enclosure.around(0.05, 0.1), proof="cohesion").status
+    'verified'
+    """
+    by_numbers, worst = _status_of(margin, about), margin.worst
+    return concluded(
+        name, by_numbers, worst, needs, about=about, rigour=rigour, proof=proof, disproof=disproof, detail=detail, **fields
+    )
+
+
+def concluded(
+    name: str,
+    by_numbers: Status,
+    margin: Enclosure,
+    needs: Iterable[Hypothesis] = (),
+    *,
+    about: About,
+    rigour: Rigour = "numeric",
+    proof: str | None = None,
+    disproof: str | None = None,
+    detail: str = "",
+    **fields: Any,
+) -> Claim:
+    """Return a claim from what numbers or certificates say, its hypotheses and its proof; parameters as in `judged`."""
+    needs = tuple(needs)
+    status, how, contradicts = _with_needs(by_numbers, needs, about), rigour, ""
+    proved: Status = "verified" if proof else "refuted"
+    if (key := proof or disproof) and all(need.status == "met" for need in needs):
+        if by_numbers in ("verified", "refuted") and by_numbers != proved:
+            status, contradicts = "inconclusive", key
+            detail = f"{detail}; the numbers contradict the proof {key!r}: the run or the library is at fault"
+        else:
+            status, how = proved, RIGOUR[key]
+    return Claim(
+        name,
+        status,
+        how,
+        margin=_finite(margin),
+        error=float(margin.half_width),
+        proof=proof,
+        disproof=disproof,
+        detail=detail.lstrip("; "),
+        needs=needs,
+        about=about,
+        contradicts=contradicts,
+        **fields,
+    )
+
+
+def _status_of(margin: Enclosure, about: About) -> Status:
+    """Status by the sign of the margin alone."""
+    if about == "limit":
+        return "inconclusive"
+    if (margin.hi < 0.0).any():
+        return "refuted"
+    return "verified" if about == "run" and (margin.lo >= 0.0).all() else "inconclusive"
+
+
+def _with_needs(status: Status, needs: tuple[Hypothesis, ...], about: About) -> Status:
+    """Status under hypotheses: vacuous if one is unmet; nothing but a fact about the run rests on an assumed one."""
+    known = {need.status for need in needs}
+    if "unmet" in known:
+        return "vacuous"
+    return status if "assumed" not in known or (status == "verified" and about == "run") else "inconclusive"
+
+
+def _finite(margin: Enclosure) -> float:
+    """The best value of a margin, or what is nearest to it and finite, so that a search can compare margins."""
+    ends = (float(margin.mid), float(margin.lo), float(margin.hi))
+    return next((end for end in ends if np.isfinite(end)), 0.0)
+
+
+def counted(
+    name: str, most: int, certain: int, possible: int, needs: Iterable[Hypothesis] = (), **fields: Any
+) -> Claim:
+    """Return a claim that at most so many things happen, of which some certainly do and some may.
+
+    Parameters
+    ----------
+    name : str
+        Of the claim.
+    most : int
+        How many there may be.
+    certain, possible : int
+        How many there are at least, and at most.
+    needs : iterable of Hypothesis
+        Hypotheses of the claim.
+    **fields
+        As in `judged`.
+
+    Examples
+    --------
+    >>> [counted("links", 3, *range_).status for range_ in ((2, 3), (2, 4), (4, 5))]
+    ['verified', 'inconclusive', 'refuted']
+    """
+    margin = most + 0.5 - Enclosure(certain, certain if certain > most else possible, possible)
+    return judged(name, margin, needs, **fields)
+
+
+def spectral(name: str, margin: float, error: float, needs: Iterable[Hypothesis] = (), **fields: Any) -> Claim:
+    """Return a claim about eigenvalues, roots or integrals, whose margin is known to an error by their residual.
 
     Parameters
     ----------
     name : str
         Of the claim.
     margin, error : float
-        The margin and its numerical error; 0 for a whole number.
+        The margin and how far it may be off: by a residual, Weyl's bound or the quadrature's estimate.
     needs : iterable of Hypothesis
         Hypotheses of the claim.
-    verifies, refutes : bool
-        Whether a margin beyond the error decides: a sample verifies no statement about all cases, and a finite run
-        refutes no limit. What would be decided is then inconclusive.
     **fields
-        Further fields of the claim, such as `computed`, `stated`, `witness` and `detail`.
+        As in `judged`.
 
     Examples
     --------
-    >>> judged("i", 0.5, 0.1).status, judged("i", -0.5, 0.1).status, judged("i", -0.5, 0.1, refutes=False).status
-    ('verified', 'refuted', 'inconclusive')
+    >>> spectral("stable", 0.5, 1e-12).status
+    'verified'
     """
-    status = judge(margin, error, needs)
-    if (status == "verified" and not verifies) or (status == "refuted" and not refutes):
-        status = "inconclusive"
-    return Claim(name, status, margin=margin, error=error, **fields)
+    return judged(name, Enclosure.around(margin, error), needs, **fields)
+
+
+def of_state(name: str, margin: float, rounding: float, needs: Iterable[Hypothesis] = (), **fields: Any) -> Claim:
+    """Return a claim about stored numbers, such as one configuration, whose margin is off by rounding alone.
+
+    Parameters
+    ----------
+    name : str
+        Of the claim.
+    margin, rounding : float
+        The margin and its rounding.
+    needs : iterable of Hypothesis
+        Hypotheses of the claim.
+    **fields
+        As in `judged`.
+
+    Examples
+    --------
+    >>> of_state("apart", -1.0, 1e-12).status
+    'refuted'
+    """
+    return judged(name, Enclosure.around(margin, rounding), needs, **fields)
+
+
+def of_map(name: str, margin: float, rounding: float, needs: Iterable[Hypothesis] = (), **fields: Any) -> Claim:
+    """Return a claim about the orbit of a map in floating point, which is its subject: no second run is nearer to it.
+
+    Parameters
+    ----------
+    name : str
+        Of the claim.
+    margin, rounding : float
+        The margin and the rounding of what it compares.
+    needs : iterable of Hypothesis
+        Hypotheses of the claim.
+    **fields
+        As in `judged`.
+
+    Examples
+    --------
+    >>> of_map("reunite", float("nan"), 0.0).status
+    'inconclusive'
+    """
+    return judged(name, Enclosure.around(margin, rounding), needs, **fields)
+
+
+def by_count(name: str, failures: int, needs: Iterable[Hypothesis] = (), **fields: Any) -> Claim:
+    """Return a claim by the number of instants or cases in which it fails, where no rounding can change a sign.
+
+    Examples
+    --------
+    >>> by_count("falls", 0).status, by_count("falls", 2).status
+    ('verified', 'refuted')
+    """
+    return judged(name, Enclosure.of(float(-failures or 1)), needs, **fields)
 
 
 def exact(name: str, holds: bool, **fields: Any) -> Claim:
-    """A claim that algebra decides, without a numerical error.
+    """Return a claim that algebra decides, without a numerical error.
 
     Parameters
     ----------
@@ -62,11 +248,11 @@ def exact(name: str, holds: bool, **fields: Any) -> Claim:
     >>> exact("printed", 1 + 1 == 3, detail="1 + 1 = 3").status
     'refuted'
     """
-    return Claim(name, "verified" if holds else "refuted", "symbolic", **fields)
+    return Claim(name, "verified" if holds else "refuted", "symbolic", about="all", **fields)
 
 
 def equal(name: str, residual: Any, **fields: Any) -> Claim:
-    """An identity by its residual, as computed by sympy, a number or several: it holds if all of it is 0.
+    """Return an identity that holds if the residual that sympy computed, a number or several, is 0.
 
     Parameters
     ----------
@@ -87,6 +273,31 @@ def equal(name: str, residual: Any, **fields: Any) -> Claim:
     computed = "residual 0" if holds else "a residual that is not 0"
     witness = [str(row) for row in residual] if several else str(residual)
     return exact(name, holds, computed=computed, witness=witness, **fields)
+
+
+def vacuous(name: str, reason: str | Hypothesis, **fields: Any) -> Claim:
+    """Return a claim that says nothing of this case, for a reason or under an unmet hypothesis.
+
+    Examples
+    --------
+    >>> vacuous("iv", Hypothesis("c1α > 0", "unmet", 0.0, "c1α = 0")).detail
+    'c1α > 0: c1α = 0'
+    """
+    unmet = isinstance(reason, Hypothesis)
+    detail = f"{reason.name}: {reason.detail}" if isinstance(reason, Hypothesis) else reason
+    return Claim(name, "vacuous", detail=detail, needs=(reason,) if unmet else (), **fields)  # type: ignore[arg-type]
+
+
+def undecided(name: str, detail: str, needs: Iterable[Hypothesis] = (), **fields: Any) -> Claim:
+    """Return a claim of which nothing is known here; vacuous if a hypothesis is unmet.
+
+    Examples
+    --------
+    >>> undecided("rate", "the velocities match from the start").status
+    'inconclusive'
+    """
+    status = _with_needs("inconclusive", needs := tuple(needs), "run")
+    return Claim(name, status, detail=detail, needs=needs, **fields)
 
 
 def erratum(

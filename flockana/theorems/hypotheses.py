@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import AlphaInteraction, BetaInteraction, FormulaInteraction, Gains
 from flockana.laws.composition import Composition
-from flockana.theorems.theorem import Claim, Hypothesis
+from flockana.theorems.enclosure import Enclosure
+from flockana.theorems.observed import Observed
+from flockana.theorems.theorem import Hypothesis
 
 if TYPE_CHECKING:
     from flockana.certified.tube import Tube
@@ -42,7 +43,7 @@ def condition(
     return Hypothesis(name, "met" if holds else "unmet", margin, detail, error)
 
 
-def law_is(name: str, *laws: type, formulas: bool = False) -> Callable[[Trajectory], Hypothesis]:
+def law_is(name: str, *laws: type, formulas: bool = False) -> Callable[[Observed], Hypothesis]:
     """The hypothesis that a run is of one of these laws, to be declared as a theorem's `law`.
 
     Parameters
@@ -61,13 +62,13 @@ def law_is(name: str, *laws: type, formulas: bool = False) -> Callable[[Trajecto
     'applied_to'
     """
 
-    def applied_to(run: Trajectory) -> Hypothesis:
+    def applied_to(run: Observed) -> Hypothesis:
         return applied(run, name, *laws, formulas=formulas)
 
     return applied_to
 
 
-def law_is_or_composed(name: str, *laws: type) -> Callable[[Trajectory], Hypothesis]:
+def law_is_or_composed(name: str, *laws: type) -> Callable[[Observed], Hypothesis]:
     """As `law_is`, or of a composition of their terms (`flockana.compose`), or with the pair law of a formula.
 
     Parameters
@@ -84,7 +85,7 @@ def law_is_or_composed(name: str, *laws: type) -> Callable[[Trajectory], Hypothe
     'applied_to'
     """
 
-    def applied_to(run: Trajectory) -> Hypothesis:
+    def applied_to(run: Observed) -> Hypothesis:
         if type(run.law) is not Composition:
             return applied(run, name, *laws, formulas=True)
         terms = ", ".join(type(term).__name__ for term in run.law.terms)
@@ -93,7 +94,7 @@ def law_is_or_composed(name: str, *laws: type) -> Callable[[Trajectory], Hypothe
     return applied_to
 
 
-def law_with_common_gains(name: str, *laws: type) -> Callable[[Trajectory], Hypothesis]:
+def law_with_common_gains(name: str, *laws: type) -> Callable[[Observed], Hypothesis]:
     """As `law_is`, and one c1γ and one c2γ for all agents.
 
     Parameters
@@ -110,19 +111,19 @@ def law_with_common_gains(name: str, *laws: type) -> Callable[[Trajectory], Hypo
     'applied_to'
     """
 
-    def applied_to(run: Trajectory) -> Hypothesis:
+    def applied_to(run: Observed) -> Hypothesis:
         law = applied(run, name, *laws)
         return law if law.status == "unmet" or not run.law.gains.per_agent else common_gains(run)
 
     return applied_to
 
 
-def applied(run: Trajectory, name: str, *laws: type, formulas: bool = False) -> Hypothesis:
+def applied(run: Observed, name: str, *laws: type, formulas: bool = False) -> Hypothesis:
     """The hypothesis that a run is of one of these laws, and not of a class derived from one, which may push otherwise.
 
     Parameters
     ----------
-    run : Trajectory
+    run : Observed
         The run.
     name : str
         The laws, as the hypothesis names them.
@@ -141,26 +142,26 @@ def applied(run: Trajectory, name: str, *laws: type, formulas: bool = False) -> 
     return condition(f"{name} is applied", type(law) in laws and not other, detail=detail)
 
 
-def smooth_pair(run: Trajectory) -> Hypothesis:
+def smooth_pair(run: Observed) -> Hypothesis:
     """The hypothesis that the pair law is C¹ wherever pairs stay apart, and ends smoothly at its range.
 
     A force without a limit where two agents meet is no fault here: runs that come to that point end.
 
     Parameters
     ----------
-    run : Trajectory
+    run : Observed
         A run of a law with a pair interaction.
     """
     faults = [] if run.law.pair is None else [x for x in run.law.pair.faults if not x.startswith("coincidence")]
     return condition("the pair law is C¹ and vanishes at its range", not faults, detail="; ".join(faults))
 
 
-def positive(run: Trajectory | Tube, **gains: str) -> Hypothesis:
+def positive(run: Observed | Tube, **gains: str) -> Hypothesis:
     """The hypothesis that some gains are positive.
 
     Parameters
     ----------
-    run : Trajectory or Tube
+    run : Observed or Tube
         A run of a law with gains.
     **gains : str
         How each is written, by its name in `Gains`; common to all agents.
@@ -171,12 +172,12 @@ def positive(run: Trajectory | Tube, **gains: str) -> Hypothesis:
     return condition(" and ".join(f"{text} > 0" for text in values), least > 0.0, least, detail)
 
 
-def common_gains(run: Trajectory) -> Hypothesis:
+def common_gains(run: Observed) -> Hypothesis:
     """The hypothesis that all agents have the same c1γ and c2γ: else the shape does not separate from the centre.
 
     Parameters
     ----------
-    run : Trajectory
+    run : Observed
         A run of a law with gains.
     """
     several = run.law.gains.per_agent
@@ -184,67 +185,48 @@ def common_gains(run: Trajectory) -> Hypothesis:
     return condition("one c1γ and one c2γ for all agents", not several, detail=detail)
 
 
-def has_lattice(run: Trajectory) -> Hypothesis:
+def has_lattice(run: Observed) -> Hypothesis:
     """The hypothesis that the law has a lattice scale d and an interaction range r.
 
     Parameters
     ----------
-    run : Trajectory
+    run : Observed
         The run.
     """
     known = run.law.lattice is not None
     return condition("the law has a scale d and a range r", known, detail=type(run.law).__name__)
 
 
-def alpha_gain(run: Trajectory) -> list[Hypothesis]:
+def alpha_gain(run: Observed) -> list[Hypothesis]:
     """c1α > 0, and common gains where the law has a γ-agent.
 
     Parameters
     ----------
-    run : Trajectory
+    run : Observed
         A run of a law with an α-interaction.
     """
     return [*([common_gains(run)] if run.law.target is not None else []), positive(run, c1_alpha="c1α")]
 
 
-def vacuous(missed: Hypothesis, names: Iterable[str]) -> list[Claim]:
-    """Claims that an unmet hypothesis makes vacuous, where it is not one of the whole theorem.
 
-    Parameters
-    ----------
-    missed : Hypothesis
-        The unmet hypothesis: the reason.
-    names : iterable of str
-        Names of the claims.
-
-    Examples
-    --------
-    >>> vacuous(Hypothesis("c1α > 0", "unmet", 0.0, "c1α = 0"), ["iv"])[0].detail
-    'c1α > 0: c1α = 0'
-    """
-    return [Claim(name, "vacuous", detail=f"{missed.name}: {missed.detail}") for name in names]
-
-
-def below(name: str, value: float, bound: float, error: float, detail: str) -> Hypothesis:
-    """The hypothesis that a number lies below a bound: assumed where rounding would decide it.
+def positive_room(name: str, room: Enclosure, detail: str) -> Hypothesis:
+    """Return the hypothesis that a number is positive: assumed where its enclosure holds 0.
 
     Parameters
     ----------
     name : str
         The condition.
-    value, bound : float
-        The two.
-    error : float
-        Of their difference.
+    room : Enclosure
+        The number, such as a bound less what lies below it.
     detail : str
         In words.
 
     Examples
     --------
-    >>> [below("x < 1", x, 1.0, 1e-9, "").status for x in (0.5, 1.0, 1.5)]
+    >>> [positive_room("x < 1", 1.0 - Enclosure.around(x, 1e-9), "").status for x in (0.5, 1.0, 1.5)]
     ['met', 'assumed', 'unmet']
     """
-    margin = bound - value
-    if abs(margin) <= error:
-        return Hypothesis(name, "assumed", margin, f"{detail}; equal but for rounding", error)
-    return condition(name, margin > 0.0, margin, detail, error=error)
+    margin, error = float(room.mid), float(room.half_width)
+    if room.lo > 0.0 or room.hi <= 0.0:
+        return condition(name, bool(room.lo > 0.0), margin, detail, error=error)
+    return Hypothesis(name, "assumed", margin, f"{detail}; equal but for its error", error)

@@ -13,7 +13,11 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray
+from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import AlphaInteraction, PairInteraction
+from flockana.laws.algorithm3 import Algorithm3
+from flockana.laws.composition import Composition
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 
 EPS = float(np.finfo(float).eps)
 _POTENTIAL = 1e-13  # of c*: to which ψ_α is known (`AlphaInteraction.psi_alpha`), and ψ_β of its own largest value
@@ -110,3 +114,20 @@ def deepest_of(pair: PairInteraction) -> float:
     with np.errstate(all="ignore"):
         sizes = np.abs(pair.energy_at(np.array([0.0, 0.1 * pair.length, pair.length])))
     return float(np.max([abs(pair.far_potential), *sizes[np.isfinite(sizes)]]))
+
+
+def energy_rounding(run: Trajectory) -> FloatArray:
+    """Bound of the rounding of a run's energy by instant: by its formula where that is known, else by its size.
+
+    Examples
+    --------
+    >>> from flockana import Algorithm1, simulate
+    >>> run = simulate(Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 1.0))
+    >>> bool(energy_rounding(run).max() < 1e-9)
+    True
+    """
+    energy = run.energy()
+    if isinstance(run.law, Algorithm1 | Algorithm2 | Algorithm3 | Composition):
+        return energy_error(run.law, run.q, run.p, energy)
+    bound: FloatArray = run.n**2 * EPS * np.abs(energy) + 2.0 * spread_error(run.p)
+    return bound

@@ -20,129 +20,141 @@ from flockana.base.vectors import lengths
 from flockana.dynamics.between import Course
 from flockana.dynamics.trajectory import Trajectory
 from flockana.kernels.paths import bernstein
-from flockana.laws.discrete import DiscreteLaw
 from flockana.measures.nets import LinkArray, components, link_lengths, links
+from flockana.theorems.enclosure import Enclosure, stacked
+from flockana.theorems.observed import Observed
 from flockana.theorems.rounding import EPS
 
 
-def _motion(run: Trajectory) -> FloatArray:
-    """Largest ‖p_i − p_c‖ and ‖u_i − u_c‖ on the paths, and how far these may be off, shape (3, T − 1)."""
-    path = run.path
+def _motion(seen: Observed) -> FloatArray:
+    """Largest ‖p_i − p_c‖ and ‖u_i − u_c‖ on the paths, and how far the paths may be off, shape (3, T − 1)."""
+    path = seen.run.path
     bounds = np.empty((3, len(path.t) - 1))
-    for k, h in enumerate(np.diff(path.t).tolist()):
-        ends = (x[k + side] for side in (0, 1) for x in (path.q, path.p, path.u))
-        points, _, allowance = bernstein(h, *ends)
+    for k, (points, off) in enumerate(_polygons(seen)):
+        h = float(path.t[k + 1] - path.t[k])
         legs = 5.0 / h * np.diff(points - points.mean(axis=0), axis=1)
-        sizes = [lengths(x).max() for x in (legs, 4.0 / h * np.diff(legs, axis=1))]
-        bounds[:, k] = *sizes, (allowance if path.slack is None else allowance + path.slack[k]).max()
-    return run.over_intervals(np.maximum, bounds)
+        bounds[:, k] = *(lengths(x).max() for x in (legs, 4.0 / h * np.diff(legs, axis=1))), off.max()
+    motion = seen.run.over_intervals(np.maximum, bounds)
+    motion[0] += seen.between_speed_error
+    motion[2] += seen.between_error
+    return motion
 
 
-def fastest_between(run: Trajectory) -> FloatArray:
-    """An upper bound of ‖p_i − p_c‖ over each interval between samples, of every agent, shape (T − 1,).
+def fastest_between(seen: Observed) -> FloatArray:
+    """Return an upper bound of ‖p_i − p_c‖ over each interval between samples, of every agent, shape (T − 1,).
 
     Examples
     --------
     >>> from flockana.dynamics.simulate import simulate
     >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> run = simulate(Algorithm1(), [[0.0], [99.0]], [[-1.0], [1.0]], (0.0, 1.0))
-    >>> bool(abs(fastest_between(run).max() - 1.0) < 1e-12)
+    >>> seen = Observed.of(simulate(Algorithm1(), [[0.0], [99.0]], [[-1.0], [1.0]], (0.0, 1.0)))
+    >>> bool(abs(fastest_between(seen).max() - 1.0) < 1e-6)
     True
     """
-    fastest: FloatArray = _motion(run)[0]
+    fastest: FloatArray = _motion(seen)[0]
     return fastest
 
 
-def mismatch_between(run: Trajectory) -> FloatArray:
-    """An upper bound of the normalised velocity mismatch K̃ over each interval between samples, shape (T − 1,).
+def mismatch_over(seen: Observed) -> Enclosure:
+    """Return the largest normalised velocity mismatch K̃ from each sample to the next, shape (T − 1,), or (1,) of one.
 
-    It is a convex function of velocities, and so at most what it is of the control points of the paths' velocities.
+    Between samples it is bounded by its values at the control points of the velocities, as it is convex.
 
     Examples
     --------
     >>> from flockana.dynamics.simulate import simulate
     >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> run = simulate(Algorithm1(), [[0.0], [99.0]], [[-1.0], [1.0]], (0.0, 1.0))
-    >>> bool(abs(mismatch_between(run).max() - 0.5) < 1e-12)
+    >>> seen = Observed.of(simulate(Algorithm1(), [[0.0], [99.0]], [[-1.0], [1.0]], (0.0, 1.0)))
+    >>> bool(abs(mismatch_over(seen).hi.max() - 0.5) < 1e-6)
     True
     """
-    if isinstance(run.law, DiscreteLaw):
-        mismatch = run.metric("normalised_velocity_mismatch")
-        ends: FloatArray = np.maximum(mismatch[:-1], mismatch[1:])
-        return ends
-    path, bounds = run.path, np.empty(len(run.path.t) - 1)
-    for k, h in enumerate(np.diff(path.t).tolist()):
-        points = bernstein(h, *(x[k + side] for side in (0, 1) for x in (path.q, path.p, path.u)))[0]
-        legs = 5.0 / h * np.diff(points - points.mean(axis=0), axis=1)
-        bounds[k] = 0.5 / run.n * np.sum(legs**2, axis=(0, 2)).max()
+    if seen.is_map or len(seen.t) == 1:
+        return _ends(seen.mismatch)
+    path, bounds = seen.run.path, np.empty(len(seen.run.path.t) - 1)
+    for k, (points, _) in enumerate(_polygons(seen)):
+        legs = 5.0 / float(path.t[k + 1] - path.t[k]) * np.diff(points - points.mean(axis=0), axis=1)
+        bounds[k] = np.sqrt(np.sum(legs**2, axis=(0, 2)).max())
     if path.slack is not None:  # of steps that were not kept it is known where they went, and not how fast
         bounds[path.slack.max(axis=1) > 0.0] = np.inf
-    between: FloatArray = run.over_intervals(np.maximum, bounds)
-    return between
+    size = seen.run.over_intervals(np.maximum, bounds) + np.sqrt(seen.n) * seen.between_speed_error
+    return _with_bound(_ends(seen.mismatch), size**2 / (2.0 * seen.n))
 
 
-def stretch_between(run: Trajectory) -> FloatArray:
-    """By how much any distance may leave the range of its values at both ends of each interval, shape (T − 1,).
+def stretch_between(seen: Observed) -> FloatArray:
+    """Return by how much any distance may leave the range of its values at both ends of each interval, shape (T − 1,).
 
     Examples
     --------
     >>> from flockana.dynamics.simulate import simulate
     >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> run = simulate(Algorithm1(), [[0.0], [99.0]], [[-1.0], [1.0]], (0.0, 1.0))
-    >>> bool(0.0 < stretch_between(run).max() <= 1.0)
+    >>> seen = Observed.of(simulate(Algorithm1(), [[0.0], [99.0]], [[-1.0], [1.0]], (0.0, 1.0)))
+    >>> bool(0.0 < stretch_between(seen).max() <= 1.0 + 1e-6)
     True
     """
-    if isinstance(run.law, DiscreteLaw):
-        return np.zeros(len(run.t) - 1)
-    (speed, force, off), h, least = _motion(run), np.diff(run.t), run.metric("min_distance")
+    if seen.is_map:
+        return np.zeros(len(seen.t) - 1)
+    (speed, force, off), h, least = _motion(seen), np.diff(seen.t), seen.run.metric("min_distance")
     low = np.maximum(np.minimum(least[:-1], least[1:]), np.finfo(float).tiny)
     with np.errstate(over="ignore"):
         stretch: FloatArray = _slack(low, low, h, 2.0 * speed, 2.0 * force) + 2.0 * off
     return stretch
 
 
-def radius_between(run: Trajectory) -> FloatArray:
-    """An upper bound of the cohesion radius over each interval between samples, shape (T − 1,).
+def radius_over(seen: Observed) -> Enclosure:
+    """Return the largest cohesion radius from each sample to the next, shape (T − 1,), or (1,) of one sample.
 
     Examples
     --------
     >>> from flockana.laws.olfati_saber import Algorithm1
     >>> from flockana.dynamics.simulate import simulate
-    >>> run = simulate(Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 1.0))
-    >>> bool(4.0 <= radius_between(run).max() < 4.0 + 1e-4)
+    >>> seen = Observed.of(simulate(Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 1.0)))
+    >>> bool(4.0 <= radius_over(seen).hi.max() < 4.0 + 1e-4)
     True
     """
-    if isinstance(run.law, DiscreteLaw):
-        radius = run.metric("cohesion_radius")
-        ends: FloatArray = np.maximum(radius[:-1], radius[1:])
-        return ends
-    return run.cohesion_bounds
+    if seen.is_map or len(seen.t) == 1:
+        return _ends(seen.radius)
+    return _with_bound(_ends(seen.radius), seen.run.cohesion_bounds + seen.between_error)
 
 
-def spread_between(run: Trajectory) -> float:
-    """An upper bound of √Σ‖q_i − q̄‖² on the paths, the samples included.
+def spread_over(seen: Observed) -> Enclosure:
+    """Return the largest √Σ‖q_i − q_c‖² from each sample to the next, shape (T − 1,), or (1,) of one sample.
 
     Examples
     --------
     >>> from flockana.dynamics.simulate import simulate
     >>> from flockana.laws.cucker_smale import CuckerSmale
-    >>> run = simulate(CuckerSmale(), [[0.0], [2.0]], [[1.0], [1.0]], (0.0, 1.0))
-    >>> bool(abs(spread_between(run) - 2.0**0.5) < 1e-9)
+    >>> seen = Observed.of(simulate(CuckerSmale(), [[0.0], [2.0]], [[1.0], [1.0]], (0.0, 1.0)))
+    >>> bool(abs(spread_over(seen).hi.max() - 2.0**0.5) < 1e-6)
     True
     """
-    most = 0.0
-    for points, off in _polygons(run):
+    if seen.is_map or len(seen.t) == 1:
+        return _ends(seen.spread)
+    bounds = np.empty(len(seen.run.path.t) - 1)
+    for k, (points, off) in enumerate(_polygons(seen)):
         sizes = np.sqrt(np.sum((points - points.mean(axis=0)) ** 2, axis=(0, 2)))
-        most = max(most, float(sizes.max() + np.linalg.norm(off)))
-    return most
+        bounds[k] = sizes.max() + np.linalg.norm(off)
+    most = seen.run.over_intervals(np.maximum, bounds) + np.sqrt(seen.n) * seen.between_error
+    return _with_bound(_ends(seen.spread), most)
 
 
-def least_between(run: Trajectory, i: Any, j: Any) -> float:
-    """A lower bound of the distances of some pairs on the paths: of their control points along one direction.
+def _ends(at_samples: Enclosure) -> Enclosure:
+    """Larger of the values at both ends of each interval; the value itself of one sample."""
+    if len(at_samples.mid) == 1:
+        return at_samples
+    return stacked([at_samples[:-1], at_samples[1:]]).max(axis=0)
+
+
+def _with_bound(at_ends: Enclosure, bound: FloatArray) -> Enclosure:
+    """What is at least its largest value at the ends, and at most a bound."""
+    return Enclosure(at_ends.lo, at_ends.mid, np.maximum(at_ends.hi, bound))
+
+
+def least_distance(seen: Observed, i: Any, j: Any) -> Enclosure:
+    """Return the least distance of some pairs over the run: reached at a sample, bounded by control points between.
 
     Parameters
     ----------
-    run : Trajectory
+    seen : Observed
         The run.
     i, j : int array
         The pairs, one at least.
@@ -153,24 +165,27 @@ def least_between(run: Trajectory, i: Any, j: Any) -> float:
 
     >>> from flockana.dynamics.simulate import simulate
     >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> start = [[0.0], [99.0]], [[1.0], [-1.0]]
-    >>> run = simulate(Algorithm1(), *start, (0.0, 9.0))
-    >>> bool(81.0 - 1e-9 < least_between(run, [0], [1]) <= 81.0)
+    >>> seen = Observed.of(simulate(Algorithm1(), [[0.0], [99.0]], [[1.0], [-1.0]], (0.0, 9.0)))
+    >>> bool(abs(least_distance(seen, [0], [1]).lo - 81.0) < 1e-5)
     True
     """
-    least = np.inf
-    for points, off in _polygons(run):
+    at_samples = seen.distances(i, j).min()
+    if seen.is_map or len(seen.t) == 1:
+        return at_samples
+    least = np.empty(len(seen.run.path.t) - 1)
+    for k, (points, off) in enumerate(_polygons(seen)):
         apart = points[j] - points[i]
         ways = apart.mean(axis=1, keepdims=True)
         ways /= np.maximum(np.linalg.norm(ways, axis=2, keepdims=True), np.finfo(float).tiny)
-        along = np.sum(apart * ways, axis=2).min(axis=1) - off[i] - off[j]
-        least = min(least, float(along.min()))
-    return max(least, 0.0)
+        least[k] = (np.sum(apart * ways, axis=2).min(axis=1) - off[i] - off[j]).min()
+    between = seen.run.over_intervals(np.minimum, least) - 2.0 * seen.between_error
+    low = max(min(float(between.min()), float(at_samples.lo)), 0.0)
+    return Enclosure(low, at_samples.mid, at_samples.hi)
 
 
-def _polygons(run: Trajectory) -> Iterator[tuple[FloatArray, FloatArray]]:
+def _polygons(seen: Observed) -> Iterator[tuple[FloatArray, FloatArray]]:
     """Control points of the agents' paths in each step, (n, 6, 3), and how far a path may be off each."""
-    path = run.path
+    path = seen.run.path
     for k, h in enumerate(np.diff(path.t).tolist()):
         points, _, allowance = bernstein(h, *(x[k + side] for side in (0, 1) for x in (path.q, path.p, path.u)))
         yield points, allowance if path.slack is None else allowance + path.slack[k]
@@ -200,29 +215,33 @@ class Nets:
     open_links: FloatArray
 
 
-def nets_at(run: Trajectory) -> Nets:
-    """The net at each sample of a run of a law with an α-interaction, but for rounding."""
-    return run.remembered("nets at samples", lambda: _nets_at(run))
+def nets_at(seen: Observed) -> Nets:
+    """Return the net at each sample of a run of a law with a range."""
+    return seen.run.remembered("nets at samples", lambda: _nets_at(seen))
 
 
-def _nets_at(run: Trajectory) -> Nets:
-    r, rounding, rows = run.law.lattice[1], _rounding(run), []
-    for k, q in enumerate(run.q):
-        pairs = links(q, r + rounding)
-        rows.append(_row(run, k, pairs, link_lengths(q, pairs) < r - rounding))
+def _nets_at(seen: Observed) -> Nets:
+    r, rows, doubt = seen.law.lattice[1], [], _rounding(seen) + 2.0 * seen.shape_error.max(axis=1)
+    for k, q in enumerate(seen.run.q):
+        if not np.isfinite(doubt[k]):
+            return _unknown_nets(seen, len(seen.t))
+        pairs = links(q, r + doubt[k])
+        rows.append(_row(seen.run, k, pairs, link_lengths(q, pairs) < r - doubt[k]))
     return _nets(rows)
 
 
-def nets_between(run: Trajectory) -> Nets:
-    """The net in each interval between samples: what is nearer to r than the motion may bridge is left open."""
-    return run.remembered("nets between samples", lambda: _nets_between(run))
+def nets_between(seen: Observed) -> Nets:
+    """Return the net in each interval between samples: what the motion may bring to r is left open."""
+    return seen.run.remembered("nets between samples", lambda: _nets_between(seen))
 
 
-def _nets_between(run: Trajectory) -> Nets:
-    if isinstance(run.law, DiscreteLaw):
-        return Nets(*(getattr(nets_at(run), field.name)[:-1] for field in fields(Nets)))
-    r, rounding, rows = run.law.lattice[1], _rounding(run), []
-    h, (speed, force, off), path = np.diff(run.t), _motion(run), run.path
+def _nets_between(seen: Observed) -> Nets:
+    if seen.is_map:
+        return Nets(*(getattr(nets_at(seen), field.name)[:-1] for field in fields(Nets)))
+    if seen.doubt:
+        return _unknown_nets(seen, len(seen.t) - 1)
+    run, r, rounding, rows = seen.run, seen.law.lattice[1], _rounding(seen), []
+    h, (speed, force, off), path = np.diff(run.t), _motion(seen), run.path
     first = np.searchsorted(path.t, run.t)
     for k in range(len(run.t) - 1):
         error = 2.0 * float(off[k]) + rounding
@@ -232,10 +251,17 @@ def _nets_between(run: Trajectory) -> Nets:
         slack = _slack(low, r, h[k], 2.0 * speed[k], 2.0 * force[k]) + error
         if (unsure := (low - slack < r) & (high + slack >= r)).any():  # those two do not move as fast as the fastest
             own = _relative(path, range(first[k], first[k + 1]), pairs[unsure])
+            own[0][:] += 2.0 * seen.between_speed_error[k]
             slack[unsure] = np.minimum(slack[unsure], _slack(low[unsure], r, h[k], *own) + error)
         near = low - slack < r
         rows.append(_row(run, k, pairs[near], (high + slack < r)[near]))
     return _nets(rows)
+
+
+def _unknown_nets(seen: Observed, count: int) -> Nets:
+    """Nets of which nothing is known."""
+    n = seen.n
+    return _nets([(n, 1, 1, n, 0, n * (n - 1) // 2)] * count)
 
 
 def _slack(low: FloatArray, r: Any, h: Any, speed: Any, force: Any) -> FloatArray:
@@ -257,9 +283,9 @@ def _relative(path: Course, steps: range, pairs: LinkArray) -> tuple[FloatArray,
     return speed, force
 
 
-def _rounding(run: Trajectory) -> float:
+def _rounding(seen: Observed) -> float:
     """Rounding of a distance of two agents, compared with r."""
-    return float(16.0 * EPS * (np.abs(run.q).max() + run.law.lattice[1]))
+    return float(16.0 * EPS * (np.abs(seen.run.q).max() + seen.law.lattice[1]))
 
 
 def _row(run: Trajectory, k: int, pairs: LinkArray, certain: npt.NDArray[np.bool_]) -> tuple[float, ...]:

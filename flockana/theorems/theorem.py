@@ -13,6 +13,7 @@ from flockana.base.errors import ArgumentError
 Status = Literal["verified", "refuted", "vacuous", "inconclusive"]
 Rigour = Literal["symbolic", "smt", "interval", "numeric"]
 HypothesisStatus = Literal["met", "unmet", "assumed"]
+About = Literal["run", "limit", "all"]
 Kind = Literal["trajectory", "configuration", "fixed"]
 
 _RIGOURS: tuple[Rigour, ...] = ("numeric", "interval", "smt", "symbolic")  # weakest first
@@ -133,15 +134,22 @@ class Claim:
         Numerical error of the margin; a margin below it is inconclusive.
     witness : object
         What shows it: a time, a pair of agents, an eigenvalue, an expression.
-    proof : str, optional
-        Identifier of an executable proof.
+    proof, disproof : str, optional
+        Identifier of an executable proof of exactly this claim, or of its negation, under its needs.
     detail : str
         The statement and the evidence, in one sentence.
+    needs : tuple of Hypothesis
+        Hypotheses under which it is claimed.
+    about : {"run", "limit", "all"}
+        What it speaks of: this run, a limit t → ∞, or all cases at once.
+    contradicts : str
+        Identifier of the proof that the decided numbers contradict; the run or the library is at fault then.
 
     Raises
     ------
     ArgumentError
-        On an error below 0, with which every margin would decide.
+        On an error below 0, and on a status that the needs do not allow: decided under an unmet one; refuted, or
+        verified of a limit or of all cases, under one that is only assumed.
     """
 
     name: str
@@ -154,10 +162,23 @@ class Claim:
     witness: Any = None
     proof: str | None = None
     detail: str = ""
+    disproof: str | None = None
+    needs: tuple[Hypothesis, ...] = ()
+    about: About = "run"
+    contradicts: str = ""
 
     def __post_init__(self) -> None:
         if self.error is not None and self.error < 0.0:
             raise ArgumentError(f"claim {self.name!r} has error = {self.error:g}: expected none below 0")
+        if self.status not in ("verified", "refuted"):
+            return
+        weak = self.status == "refuted" or self.about != "run"
+        barred = {"unmet", "assumed"} if weak else {"unmet"}
+        if (need := next((need for need in self.needs if need.status in barred), None)) is not None:
+            raise ArgumentError(
+                f"claim {self.name!r} is {self.status} though {need.name!r} is {need.status}: expected vacuous or "
+                "inconclusive"
+            )
 
 
 @dataclass(frozen=True)
@@ -188,6 +209,11 @@ class Verdict:
         return overall([claim.status for claim in self.claims])
 
     @property
+    def contradictions(self) -> tuple[Claim, ...]:
+        """Claims whose decided numbers contradict a proof."""
+        return tuple(claim for claim in self.claims if claim.contradicts)
+
+    @property
     def rigour(self) -> Rigour:
         """The weakest rigour among the claims that decide the status."""
         deciding = [c.rigour for c in self.claims if c.status == self.status] or ["numeric"]
@@ -214,6 +240,8 @@ class Verdict:
     def to_dict(self) -> dict[str, Any]:
         """Plain data for JSON; infinities and NaN become text."""
         data: dict[str, Any] = _plain(asdict(self))
+        for claim in data["claims"]:
+            claim["needs"] = [need["name"] for need in claim["needs"]]
         return {"theorem": data.pop("theorem"), "status": self.status, "rigour": self.rigour} | data
 
     def __str__(self) -> str:
@@ -335,37 +363,6 @@ def overall(statuses: Iterable[Status]) -> Status:
     given = set(statuses)
     order: tuple[Status, ...] = ("refuted", "inconclusive", "verified")
     return next((status for status in order if status in given), "vacuous")
-
-
-def judge(margin: float, error: float, hypotheses: Iterable[Hypothesis]) -> Status:
-    """Status of a claim from its margin: vacuous under an unmet hypothesis, inconclusive within the error.
-
-    What fails under a hypothesis that is only assumed is inconclusive too: it may be the hypothesis that does not hold.
-
-    Parameters
-    ----------
-    margin : float
-        Positive where the claim holds.
-    error : float
-        Numerical error of the margin.
-    hypotheses : iterable of Hypothesis
-        Those that the claim needs.
-
-    Examples
-    --------
-    >>> judge(0.5, 0.1, []), judge(0.05, 0.1, []), judge(-0.5, 0.1, []), judge(float("nan"), 0.0, [])
-    ('verified', 'inconclusive', 'refuted', 'inconclusive')
-    >>> judge(-0.5, 0.1, [Hypothesis("every solution stays together", "assumed")])
-    'inconclusive'
-    """
-    known = {hypothesis.status for hypothesis in hypotheses}
-    if "unmet" in known:
-        return "vacuous"
-    if not math.isfinite(error) or math.isnan(margin) or abs(margin) <= error:
-        return "inconclusive"
-    if margin > 0.0:
-        return "verified"
-    return "inconclusive" if "assumed" in known else "refuted"
 
 
 def _plain(value: Any) -> Any:

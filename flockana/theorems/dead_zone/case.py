@@ -2,24 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from math import inf, log
+from math import inf
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.measures.metrics import min_distance
 from flockana.theorems.claims import judged
 from flockana.theorems.dead_zone.parting import Components, components_of
+from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.hypotheses import condition
-from flockana.theorems.limits import Certificate, limit_claim
+from flockana.theorems.limits import Certificate, evidence, limit_claim
+from flockana.theorems.observed import DOUBT, Observed
+from flockana.theorems.olfati_saber.collisions import least_distance
 from flockana.theorems.rounding import EPS
-from flockana.theorems.theorem import Claim, Hypothesis, judge
+from flockana.theorems.theorem import Claim, Hypothesis
 
 PROOF = "dead-zone"
 _BOUND = 1e-9  # relative rounding of the explicit bound: that of H̄(0)/2k_r in an exponent
@@ -32,20 +34,31 @@ def dead_zone_law(run: Trajectory) -> DeadZoneFlocking | None:
     return law if exact else None
 
 
-def hypotheses(run: Trajectory) -> list[Hypothesis]:
+def hypotheses(seen: Observed) -> list[Hypothesis]:
     """The law, and distinct positions at the start."""
-    law = dead_zone_law(run)
-    least = min_distance(run.q[0])
+    law = dead_zone_law(seen.run)
+    least = min_distance(seen.run.q[0])
     return [
-        condition("the dead-zone law is applied", law is not None, detail=type(run.law).__name__),
+        condition("the dead-zone law is applied", law is not None, detail=type(seen.law).__name__),
         condition("agents start at distinct places", least > 0.0, least),
     ]
 
 
-def final_components(run: Trajectory, law: DeadZoneFlocking) -> Components:
-    """The components of the net in the last state of a run, and what is certain of them; kept with the run."""
-    dt = run.law.dt if isinstance(run.law, DiscreteLaw) else None
-    return run.remembered("dead-zone components", lambda: components_of(run.q[-1], run.p[-1], law, dt))
+def final_components(seen: Observed, law: DeadZoneFlocking) -> Components:
+    """Return the components of the net in the last state of a run, and what is certain of them; kept with the run."""
+    dt = seen.law.dt if seen.is_map else None
+    q, p, q_error, p_error = seen.end
+
+    def energy_off(agents: npt.NDArray[np.intp]) -> float:
+        ends = ((run.q[-1][agents], run.p[-1][agents]) for run in (seen.run, seen.other))
+        best, other = (law.hamiltonian(0.0, *end) for end in ends)
+        return float(DOUBT * abs(best - other) + (0.0 if seen.is_map else seen.floors.work))
+
+    def compute() -> Components:
+        off, p_off = float(np.linalg.norm(q_error)), float(np.linalg.norm(p_error))
+        return components_of(q, p, law, dt, off=off, p_off=p_off, energy_off=energy_off)
+
+    return seen.run.remembered("dead-zone components", compute)
 
 
 def settling(end: Components) -> Certificate:
@@ -53,57 +66,49 @@ def settling(end: Components) -> Certificate:
     return min((*(c.settles for c in end.members), end.apart), key=lambda certificate: certificate.margin)
 
 
-def velocities_match(run: Trajectory, end: Components, needs: list[Hypothesis], *, name: str) -> Claim:
-    """K̃ → 0: certain of one component that settles, refuted where components part, each at its own velocity."""
-    series = run.metric("normalised_velocity_mismatch")
-    claim = limit_claim(
+def velocities_match(seen: Observed, end: Components, needs: list[Hypothesis], *, name: str) -> Claim:
+    """Return K̃ → 0: certain of one component that settles, refuted where components part at different velocities."""
+    series = seen.mismatch.mid
+    return limit_claim(
         name,
         needs,
-        [settling(end) if end.count == 1 else Certificate(-1.0, end.apart.text)],
+        [settling(end)] if end.count == 1 else [],
+        escape=end.separation,
         computed=float(series[-1]),
         stated="K̃ -> 0: all velocities match",
-        witness={"time": float(run.t[-1]), "K̃ at the start": float(series[0])},
-        detail=f"K̃ goes from {series[0]:.3g} to {series[-1]:.3g} at t = {run.t[-1]:g}",
+        witness={"time": float(seen.t[-1]), "K̃ at the start": float(series[0])},
+        evidence=evidence(seen.t, series, "K̃"),
+        detail=f"K̃ goes from {series[0]:.3g} to {series[-1]:.3g} at t = {seen.t[-1]:g}",
     )
-    if not end.parting:
-        return claim
-    margin, error = -end.separation.margin, end.separation.error
-    detail = f"{claim.detail}: {end.count} parts keep their own for ever"
-    return replace(claim, status=judge(margin, error, needs), margin=margin, error=error, proof=PROOF, detail=detail)
 
 
-def no_collision(run: Trajectory, bound: float, unit: float, needs: list[Hypothesis], *, name: str) -> Claim:
-    """No two agents come closer than a bound: between the samples too, except for a map, which has nothing there.
+def no_collision(
+    seen: Observed, bound: float, unit: float, needs: list[Hypothesis], *, name: str, proof: str | None
+) -> Claim:
+    """Return the claim that no two agents come closer than a bound: between samples too, except for a map.
 
     The margin is ln(ρ/bound), as a bound may be exponentially small; ρ over the unit where the bound is 0.
     """
-    if isinstance(run.law, DiscreteLaw) or len(run.t) == 1:
-        series = run.metric("min_distance")
-        k = int(np.argmin(series))
-        lower, upper, where, time = float(series[k]), float(series[k]), "at the samples", float(run.t[k])
+    if seen.is_map:
+        series = seen.run.metric("min_distance")
+        least, time = Enclosure.of(series.min()), float(seen.t[int(np.argmin(series))])
     else:
-        closest = run.closest_approach()
-        lower, upper, where, time = closest.lower, closest.distance, "ever", closest.time
-    rounding = 4.0 * EPS * float(np.abs(run.q).max())
+        least, time = least_distance(seen), seen.run.closest_approach().time
+    where = "at the samples" if seen.is_map else "ever"
+    least = least.widened(4.0 * EPS * float(np.abs(seen.run.q).max())).clip(0.0)
+    if seen.n == 1:
+        margin = Enclosure.of(1.0)  # a single agent has no distances
+    else:
+        margin = least / unit if bound == 0.0 else (least / Enclosure.around(bound, _BOUND * bound)).log()
+    if bound == 0.0 and not margin.lo > 0.0:
+        margin = Enclosure(-inf, margin.mid, inf)
     return judged(
         name,
-        *_log_ratio(lower, bound, unit, rounding),
+        margin,
         needs,
-        refutes=not upper > bound,  # the lower bound is weak where samples are sparse
-        computed=lower,
+        computed=float(least.lo),
         stated=f"every distance > {bound:.4g}",
         witness={"time": time},
-        proof=PROOF,
-        detail=f"no two agents come closer than {lower:.4g} {where}; the bound is {bound:.3g}",
+        proof=proof,
+        detail=f"no two agents come closer than {least.lo:.4g} {where}; the bound is {bound:.3g}",
     )
-
-
-def _log_ratio(least: float, bound: float, unit: float, rounding: float) -> tuple[float, float]:
-    """Logarithm of a distance over a bound, and its error; a single agent has no distances."""
-    if least == inf:
-        return 1.0, EPS
-    if bound == 0.0:
-        return least / unit, rounding / unit + EPS
-    if least <= rounding:
-        return float("nan"), inf
-    return log(least / bound), 4.0 * rounding / least + _BOUND

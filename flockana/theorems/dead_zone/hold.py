@@ -1,4 +1,4 @@
-"""Whether a dead-zone flock is held for ever in the basin of a strict minimum of its potential.
+"""Basin of the strict minimum beside a dead-zone flock: a certificate of its limit.
 
 The argument is that of `flockana.theorems.basin`, with U = Σψ̄, whose Hessian has a finite Lipschitz constant only where
 no pair comes to a kink of its force: the ends of the ramps, of the dead zone, and the range. So the windows in which it
@@ -13,13 +13,13 @@ allowed there.
 
 from __future__ import annotations
 
-from dataclasses import replace
-from math import sqrt
+from math import inf, sqrt
 
 import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.equilibria.terminal import DENSE_LIMIT, rigid_motions
+from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.measures.nets import link_lengths, links
 from flockana.theorems.basin import (
@@ -29,20 +29,39 @@ from flockana.theorems.basin import (
     barrier,
     connected_within,
     curvatures,
+    excess,
     gyration,
-    kinetic,
     lipschitz_constant,
-    third_derivative,
 )
+from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.rounding import EPS
 
-_POINTS = 25  # of a difference quotient of the stiffness over the lengths that a pair may take
+_PIECES = 8  # into which the lengths that a pair may take are divided: each is enclosed by itself
 _CLEAR = 0.999  # of the way to the nearest kink: so wide the widest window is
-_UNKNOWN = Basin(verb="held")
+_UNKNOWN = Basin()
 
 
-def hold(law: DeadZoneFlocking, q: FloatArray, p: FloatArray, dt: float | None = None) -> Basin:
-    """The basin of the minimum beside a flock that meets no other; of the map of steps dt if given.
+def hold(
+    law: DeadZoneFlocking,
+    q: FloatArray,
+    p: FloatArray,
+    dt: float | None = None,
+    *,
+    off: float = 0.0,
+    p_off: float = 0.0,
+) -> Basin:
+    """Return the basin of the minimum beside a flock that meets no other; of the map of steps dt if given.
+
+    Parameters
+    ----------
+    law : DeadZoneFlocking
+        The law.
+    q, p : ndarray, shape (n, m)
+        Positions and velocities.
+    dt : float, optional
+        Step of the map of semi-implicit Euler steps.
+    off, p_off : float
+        How far positions and velocities may be from the true ones, over all coordinates.
 
     Examples
     --------
@@ -55,7 +74,7 @@ def hold(law: DeadZoneFlocking, q: FloatArray, p: FloatArray, dt: float | None =
     -1.0
     """
     if len(q) == 1:
-        return replace(ALONE, verb="held")
+        return ALONE
     if q.size > DENSE_LIMIT or law.k2 == 0.0:
         return _UNKNOWN
     curvature, stiffest = curvatures(law.interaction.hessian(q).toarray(), rigid_motions(q))
@@ -68,9 +87,10 @@ def hold(law: DeadZoneFlocking, q: FloatArray, p: FloatArray, dt: float | None =
         return _UNKNOWN
     room = _CLEAR * _nearest_kink(law, q) / sqrt(2.0)
     windows = [*(w for w in law.interaction.d1 * WINDOWS if w < room), room]
-    leaving = barrier(curvature, distance, windows, lambda window: _lipschitz(law, q, window))
+    leaving, lipschitz = barrier(curvature, distance, windows, lambda window: _lipschitz(law, q, window), off=off)
     stability = 1.0 if dt is None else _stability(law, q, stiffest, dt)
-    return Basin(kinetic(p) + force**2 / curvature, leaving, distance, curvature, stability, "held")
+    height = excess(p, p_off, force, curvature, off, stiffest, lipschitz) if leaving > 0.0 else inf
+    return Basin(height, leaving, distance + off, curvature, stability)
 
 
 def _force(law: DeadZoneFlocking, q: FloatArray, stiffest: float) -> float:
@@ -103,21 +123,41 @@ def _lipschitz(law: DeadZoneFlocking, q: FloatArray, window: float) -> float:
 
 
 def _third(law: DeadZoneFlocking, lengths: FloatArray, slack: float) -> FloatArray:
-    """Norm of the third derivative of each pair's potential, at worst over lengths within the slack."""
-    if not lengths.size:
-        return np.zeros(0)
-    s = np.maximum(lengths + slack * np.linspace(-1.0, 1.0, _POINTS)[:, None], 1e-12 * law.interaction.d1)
-    weight, slope = (x.reshape(s.shape) for x in _weights(law, s.ravel()))
-    along, across = weight + 2.0 * s * s * slope, 2.0 * s * slope  # F', and (F' - F/s)/s
-    noise = 16.0 * EPS * np.abs(along).max(axis=0) / np.diff(s, axis=0).max(axis=0)
-    return third_derivative(s, along, across, least_step=0.0, noise=noise)
+    """Upper bound of the norm of the third derivative of each pair's potential, over lengths within the slack.
+
+    It is F'' along the pair three times, and (F/s)' along it once and across twice; of unit vectors the second kind
+    makes 3 e (1 - e²) <= 2/√3 at most. No pair leaves its piece of F within the slack.
+    """
+    third, pair = np.zeros(lengths.shape), law.interaction
+    zones = np.searchsorted([pair.d1 - pair.ramp, pair.d1, pair.d2, pair.d2 + pair.ramp], lengths)
+    for zone in np.unique(zones):
+        here = np.flatnonzero(zones == zone)
+        ends = lengths[here] + slack * np.linspace(-1.0, 1.0, _PIECES + 1)[:, None]
+        s = Enclosure.between(np.maximum(ends[:-1], 0.0), ends[1:])
+        action, slope, bend = _action(pair, int(zone), s)
+        root = (1.0 + pair.eta * s.square()).sqrt()
+        cube = root * root.square()
+        curve = bend * s / root + 2.0 * slope / cube - 3.0 * pair.eta * s * action / (cube * root.square())
+        across = slope / root - pair.eta * s * action / cube
+        third[here] = (abs(curve) + 2.0 / sqrt(3.0) * abs(across)).max(axis=0).hi
+    return third
 
 
-def _weights(law: DeadZoneFlocking, s: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """(F/s, its slope in s²) at distances s: what the kernels have of a pair, of agents on a line from the first."""
-    line, others = np.concatenate([[0.0], s])[:, None], np.arange(1, s.size + 1, dtype=np.int32)
-    weight, _, slope = law.interaction.kernels.terms(line, np.zeros_like(others), others, law.interaction.par)
-    return weight, slope
+def _action(pair: DeadZoneInteraction, zone: int, s: Enclosure) -> tuple[Enclosure, Enclosure, Enclosure]:
+    """f, f' and f'' on one of five pieces: repulsion, its ramp, the dead zone, the ramp of attraction, attraction."""
+    if zone == 2:
+        return 0.0 * s, 0.0 * s, 0.0 * s
+    near = zone < 2
+    way = s if near else pair.r_d - s
+    square = way.square()
+    full = 2.0 * pair.k_r / square + pair.k_delta
+    turn = -1.0 if near else 1.0  # the full action grows towards its pole
+    slope, bend = turn * (4.0 * pair.k_r / (square * way)), 12.0 * pair.k_r / square.square()
+    if zone in (1, 3):
+        share, rise = (pair.d1 - s, -1.0) if near else (s - pair.d2, 1.0)
+        share, rise = share / pair.ramp, rise / pair.ramp
+        full, slope, bend = full * share, slope * share + rise * full, bend * share + 2.0 * rise * slope
+    return turn * full, turn * slope, turn * bend
 
 
 def _stability(law: DeadZoneFlocking, q: FloatArray, stiffest: float, dt: float) -> float:

@@ -18,11 +18,13 @@ is not held this is said of the flow from its last state.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from math import floor, inf, sqrt
 
 import numpy as np
+import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
 from flockana.laws.dead_zone import DeadZoneFlocking
@@ -47,12 +49,17 @@ class Component:
         Positions and velocities of its agents.
     dt : float, optional
         Step of the map of semi-implicit Euler steps; by default the flow.
+    off, p_off, energy_off : float
+        How far positions and velocities, over all coordinates, and the energy may be from the true ones.
     """
 
     law: DeadZoneFlocking
     q: FloatArray
     p: FloatArray
     dt: float | None = None
+    off: float = 0.0
+    p_off: float = 0.0
+    energy_off: float = 0.0
 
     @property
     def size(self) -> int:
@@ -67,13 +74,14 @@ class Component:
     @cached_property
     def basin(self) -> Basin:
         """The basin of the minimum of its potential beside it."""
-        return hold(self.law, self.q, self.p, self.dt)
+        return hold(self.law, self.q, self.p, self.dt, off=self.off, p_off=self.p_off)
 
     @cached_property
     def _out_of_range(self) -> float:
-        """H̄/ψ̄(r), the number of pairs that its energy can put out of range."""
+        """H̄/ψ̄(r), the number of pairs that its energy can put out of range, at most."""
         far = self.law.interaction.far_potential
-        return self.law.hamiltonian(0.0, self.q, self.p) / far if far > 0.0 else inf
+        energy: float = self.law.hamiltonian(0.0, self.q, self.p) + self.energy_off
+        return energy / far if far > 0.0 else inf
 
     @property
     def bond(self) -> Certificate:
@@ -83,7 +91,7 @@ class Component:
         if self.dt is not None or self.law.k2 == 0.0:
             return Certificate(-1.0, "no energy holds it together")
         margin = max(-1.0, 1.0 - self._out_of_range / (self.size - 1.0))
-        able = "too little to break it up for ever" if margin > 0.0 else "which might break it up"
+        able = "too few ever to break it up" if margin > 0.0 else "which might break it up"
         text = f"its energy can put {self._out_of_range:.3g} pairs out of range, {able}"
         return Certificate(margin, text, _WHOLE + self.size**2 * EPS)
 
@@ -98,7 +106,8 @@ class Component:
         if self.size == 1:
             return 0.0
         if self.basin.certificate.margin > 0.0:
-            return float(np.linalg.norm(self.q - self.q.mean(axis=0), axis=1).max()) + self.basin.reach
+            far = float(np.linalg.norm(self.q - self.q.mean(axis=0), axis=1).max())
+            return far + 2.0 * self.off + self.basin.reach
         pairs, n = self._out_of_range * (1.0 + _WHOLE) + _WHOLE, self.size
         return self.law.interaction.r * (n - 1 + floor(pairs)) / n if pairs < n - 1 else inf
 
@@ -159,7 +168,8 @@ class Components:
         bent = float((np.linalg.norm(x, axis=1) * np.where(blur > 0.0, turned, 0.0)).max())
         extent = max(float(np.abs(component.q).max()) for component in self.members)
         n = float(self._sizes.max())
-        error = (n + 16.0) * EPS * (extent + self.r) + bent
+        off = max(component.off for component in self.members)
+        error = (n + 16.0) * EPS * (extent + self.r) + bent + 2.0 * off
         return float((nearest - self.r - radius[a] - radius[b]).min()) / self.r, error / self.r
 
     @property
@@ -185,7 +195,9 @@ class Components:
     @cached_property
     def _velocity_error(self) -> FloatArray:
         """Rounding of the velocity of each component's centre: of a mean, so none of a single agent."""
-        several = [(c.size + 2) * EPS * float(np.abs(c.p).max()) if c.size > 1 else 0.0 for c in self.members]
+        several = [
+            c.p_off + ((c.size + 2) * EPS * float(np.abs(c.p).max()) if c.size > 1 else 0.0) for c in self.members
+        ]
         return np.array(several)
 
     @property
@@ -193,8 +205,30 @@ class Components:
         return np.array([component.size for component in self.members], dtype=np.float64)
 
 
-def components_of(q: FloatArray, p: FloatArray, law: DeadZoneFlocking, dt: float | None = None) -> Components:
-    """The components of the net at r.
+def components_of(
+    q: FloatArray,
+    p: FloatArray,
+    law: DeadZoneFlocking,
+    dt: float | None = None,
+    *,
+    off: float = 0.0,
+    p_off: float = 0.0,
+    energy_off: Callable[[npt.NDArray[np.intp]], float] = lambda agents: 0.0,
+) -> Components:
+    """Return the components of the net at r.
+
+    Parameters
+    ----------
+    q, p : ndarray, shape (n, m)
+        Positions and velocities.
+    law : DeadZoneFlocking
+        The law.
+    dt : float, optional
+        Step of the map of semi-implicit Euler steps.
+    off, p_off : float
+        How far the state may be from the true one, over all coordinates.
+    energy_off : callable
+        How far the energy of some agents, an index array, may be off.
 
     Examples
     --------
@@ -206,4 +240,5 @@ def components_of(q: FloatArray, p: FloatArray, law: DeadZoneFlocking, dt: float
     """
     label = components(len(q), links(q, law.interaction.r))
     groups = [np.flatnonzero(label == k) for k in range(int(label.max()) + 1)]
-    return Components(tuple(Component(law, q[g], p[g], dt) for g in groups), law.interaction.r)
+    members = (Component(law, q[g], p[g], dt, off, p_off, energy_off(g)) for g in groups)
+    return Components(tuple(members), law.interaction.r)

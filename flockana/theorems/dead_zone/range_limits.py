@@ -9,6 +9,7 @@ import numpy as np
 from flockana.dynamics.trajectory import Trajectory
 from flockana.kernels.ranges import follow_pairs, follow_steps
 from flockana.laws.discrete import DiscreteLaw
+from flockana.theorems.observed import Observed
 from flockana.theorems.rounding import EPS
 
 _NEXT = 1.5  # steps: samples of a map that are farther apart have states between them that were not kept
@@ -38,18 +39,19 @@ def thinned(run: Trajectory) -> bool:
     return isinstance(run.law, DiscreteLaw) and bool((np.diff(run.t) > _NEXT * run.law.dt).any())
 
 
-def first_entry(run: Trajectory, r: float) -> Entry:
-    """The first pair that comes into range in a run.
+def first_entry(seen: Observed, r: float) -> Entry:
+    """Return the first pair that comes into range in a run.
 
     Examples
     --------
     >>> from flockana.laws.dead_zone import DeadZoneFlocking
     >>> from flockana.dynamics.simulate import simulate
     >>> run = simulate(DeadZoneFlocking(), [[0.0], [16.0]], [[1.0], [-1.0]], (0.0, 2.0))
-    >>> first_entry(run, 15.0).pair
+    >>> first_entry(Observed.of(run), 15.0).pair
     (0, 1)
     """
-    if len(run.t) == 1:  # nothing was seen to happen
+    run = seen.run
+    if seen.doubt or len(run.t) == 1:  # nothing was seen to happen
         return Entry(None, None, True)
     pairs = run.n * (run.n - 1) // 2
     was_out, unsure = np.zeros(pairs, dtype=np.bool_), np.zeros(pairs, dtype=np.bool_)
@@ -62,6 +64,7 @@ def first_entry(run: Trajectory, r: float) -> Entry:
         return Entry(None, None, thinned(run) or bool(unsure.any()))
     t, q, p, u, slack = run.path  # its own steps too: an input that jumps at a switch has its other value beside it
     noise += 2.0 * float(slack.max()) if slack is not None else 0.0
+    noise += 2.0 * float(seen.between_error.max())
     for k in range(len(t) - 1):
         pair = follow_pairs(
             float(t[k + 1] - t[k]), q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1], r, noise, was_out, unsure

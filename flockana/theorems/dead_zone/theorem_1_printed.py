@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from math import nan
+from math import inf
 
-from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.measures.metrics import cohesion_radius
-from flockana.theorems.claims import judged
+from flockana.theorems.claims import counted
 from flockana.theorems.dead_zone.case import (
     PROOF,
     dead_zone_law,
@@ -18,80 +17,84 @@ from flockana.theorems.dead_zone.case import (
 )
 from flockana.theorems.dead_zone.parting import Components
 from flockana.theorems.dead_zone.range_limits import first_entry
+from flockana.theorems.enclosure import Enclosure
+from flockana.theorems.limits import Certificate, limit_claim
+from flockana.theorems.observed import Observed
 from flockana.theorems.rounding import EPS, frame_error
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
 
 
-def _certain_radius(run: Trajectory, end: Components, radius: float) -> tuple[float, float, str]:
-    """(1 - R/r of the limit, its error, how it is known); NaN where nothing is."""
+def _certain_radius(seen: Observed, end: Components, radius: float) -> tuple[Enclosure | None, str]:
+    """1 − R/r of the limit, and how it is known; None where nothing is."""
     if end.count > 1:
         apart = end.separation
-        return -apart.margin if end.parting else nan, apart.error, apart.text
+        return Enclosure.around(-apart.margin, apart.error) if end.parting else None, apart.text
     (whole,), r = end.members, end.r
     caught = whole.basin.certificate
-    if whole.size == 1 or caught.margin > 0.0:
-        return 1.0 - radius / r, (whole.basin.reach + 2.0 * frame_error(run.q[-1:])) / r + 4.0 * EPS, caught.text
+    if whole.size == 1 or caught.certain:
+        off = (whole.basin.reach + 2.0 * whole.off + 2.0 * frame_error(seen.run.q[-1:])) / r + 4.0 * EPS
+        return Enclosure.around(1.0 - radius / r, off), caught.text
     if whole.dt is None and whole.radius < r:
         text = f"{whole.bond.text}, and no agent {whole.radius:.4g} away from the centre"
-        return 1.0 - whole.radius / r, 4.0 * EPS, text
-    return nan, EPS, caught.text
+        return Enclosure.around(1.0 - whole.radius / r, 4.0 * EPS), text
+    return None, caught.text
 
 
-def _cohesion(run: Trajectory, end: Components, needs: list[Hypothesis]) -> Claim:
-    """R ≤ r in the end: of a flock that is held the limit is known, of one that parts as well."""
-    radius = cohesion_radius(run.q[-1])
-    margin, error, known = _certain_radius(run, end, radius)
-    return judged(
+def _cohesion(seen: Observed, end: Components, needs: list[Hypothesis]) -> Claim:
+    """R ≤ r in the end: of a flock that stays near a minimum the limit is known, of one that parts as well."""
+    radius = cohesion_radius(seen.run.q[-1])
+    room, known = _certain_radius(seen, end, radius)
+    room = Enclosure.around(0.0, inf) if room is None else room
+    return limit_claim(
         "cohesion",
-        margin,
-        error,
         needs,
+        [Certificate(float(room.lo), "", 0.0)],
+        escape=Certificate(float(-room.hi), "", 0.0),
         computed=radius,
         stated=f"in the end no agent is farther than r = {end.r:g} from the leader (read: the centre of mass)",
-        witness={"components": end.count, "time": float(run.t[-1])},
-        proof=PROOF if end.count > 1 else None,
-        detail=f"at t = {run.t[-1]:g} there are {end.count} component(s), R = {radius:.4g}; {known}",
+        witness={"components": end.count, "time": float(seen.t[-1])},
+        detail=f"at t = {seen.t[-1]:g} there are {end.count} component(s), R = {radius:.4g}; {known}",
     )
 
 
-def _energy(run: Trajectory, law: DeadZoneFlocking, needs: list[Hypothesis]) -> Claim:
+def _energy(seen: Observed, law: DeadZoneFlocking, needs: list[Hypothesis]) -> Claim:
     """The energy of neighbours only never rises: it does by ψ̄(r) > 0 at the very time at which a pair comes into range.
 
     Otherwise it is H̄ less a constant, or falls by ψ̄(r) as a pair leaves. That no pair comes in is a whole number.
     """
-    jump, entry = law.interaction.far_potential, first_entry(run, law.interaction.r)
+    jump, entry = law.interaction.far_potential, first_entry(seen, law.interaction.r)
     enters = entry.pair is not None and jump > 0.0
-    margin = -1.0 if enters else nan if entry.unsure and jump > 0.0 else 1.0
+    possible = int(enters or (entry.unsure and jump > 0.0))
     detail = "no pair comes into range"
     if enters:
         detail = f"agents {entry.pair} come into range of each other before t = {entry.time:.6g}: H rises by {jump:.4g}"
     elif jump == 0.0:
         detail = "the potential of a pair is 0 at r: nothing jumps"
     elif entry.unsure:
-        detail = "between the samples, or but for rounding, a pair may come into range"
-    return judged(
+        detail = "between the samples, or within the run's error, a pair may come into range"
+    return counted(
         "energy",
-        margin,
-        0.0,
+        0,
+        int(enters),
+        possible,
         needs,
         computed=jump if enters else 0.0,
         stated="H, summed over neighbours, never rises",
         witness={"agents": entry.pair, "time": entry.time},
-        proof=PROOF,
         detail=detail,
     )
 
 
-def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
-    needs, law = hypotheses(run), dead_zone_law(run)
+def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+    needs, law = hypotheses(seen), dead_zone_law(seen.run)
     if law is None or unmet(needs):
         return needs, []
-    end = final_components(run, law)
+    end = final_components(seen, law)
     return needs, [
-        _cohesion(run, end, needs),
-        _energy(run, law, needs),
-        velocities_match(run, end, needs, name="velocity"),
-        no_collision(run, 0.0, law.scales.length, needs, name="collision"),
+        _cohesion(seen, end, needs),
+        _energy(seen, law, needs),
+        velocities_match(seen, end, needs, name="velocity"),
+        no_collision(seen, 0.0, law.scales.length, needs, name="collision", proof=None if seen.is_map else PROOF),
     ]
 
 

@@ -1,16 +1,15 @@
-"""Whether a state of Algorithm 1 or 2 is caught for ever in the basin of a strict minimum: a certificate of its limit.
+"""Basin of the strict minimum beside a state of Algorithm 1 or 2: a certificate of its limit.
 
 The argument is that of `flockana.theorems.basin`, in the moving frame, with U the structural potential.
 """
 
 from __future__ import annotations
 
-from math import inf, sqrt
+from math import inf, pi, sqrt
 
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.dynamics.trajectory import Trajectory
 from flockana.equilibria.gradient_flow import structural_force
 from flockana.equilibria.terminal import DENSE_LIMIT, rigid_motions
 from flockana.interactions import AlphaInteraction
@@ -23,21 +22,33 @@ from flockana.theorems.basin import (
     barrier,
     connected_within,
     curvatures,
+    excess,
     gyration,
-    kinetic,
     lipschitz_constant,
-    third_derivative,
 )
+from flockana.theorems.enclosure import Enclosure
+from flockana.theorems.observed import Observed
 from flockana.theorems.rounding import EPS, pair_force_error
 
-_POINTS = 49  # of a difference quotient of the curvature over the lengths that a link may take
+_PIECES = 16  # into which the lengths that a link may take are divided: each is enclosed by itself
 
 
-def attraction(law: Algorithm1 | Algorithm2, q: FloatArray, p: FloatArray) -> Basin:
-    """The basin of the minimum beside a state.
+def attraction(
+    law: Algorithm1 | Algorithm2, q: FloatArray, p: FloatArray, *, off: float = 0.0, p_off: float = 0.0
+) -> Basin:
+    """Return the basin of the minimum beside a state that is known to some distance.
 
     Its barrier is 0 where nothing is known: at a saddle, in a flexible net, and of a flock with more coordinates than a
     dense Hessian is made for.
+
+    Parameters
+    ----------
+    law : Algorithm1 or Algorithm2
+        The law.
+    q, p : ndarray, shape (n, m)
+        Positions and velocities.
+    off, p_off : float
+        How far each may be from the true ones, over all coordinates.
 
     Examples
     --------
@@ -55,21 +66,25 @@ def attraction(law: Algorithm1 | Algorithm2, q: FloatArray, p: FloatArray) -> Ba
     if not (everywhere or law.gains.c2_alpha > 0.0):
         return Basin()
     force, stiffness = _force(law, q), law.stiffness(q)
-    curvature = curvatures(stiffness, rigid_motions(q))[0]
+    curvature, stiffest = curvatures(stiffness, rigid_motions(q))
     distance = float(2.0 * force / curvature) if curvature > 0.0 else inf
     if distance >= gyration(q):  # there is no turning to speak of: all agents are at one place
-        curvature = curvatures(stiffness, _translations(q))[0]
+        curvature, stiffest = curvatures(stiffness, _translations(q))
         distance = float(2.0 * force / curvature) if curvature > 0.0 else inf
     connected = everywhere or connected_within(q, paper_pair(law).r - sqrt(2.0) * distance)
-    if distance == inf or not connected:
+    if distance + off == inf or not connected:
         return Basin(inf, 0.0, distance, curvature)
-    leaving = barrier(curvature, distance, law.alpha.length * WINDOWS, lambda window: lipschitz_within(law, q, window))
-    return Basin(float(kinetic(p) + force**2 / curvature), leaving, distance, curvature)
+    windows = law.alpha.length * WINDOWS
+    leaving, lipschitz = barrier(curvature, distance, windows, lambda w: lipschitz_within(law, q, w), off=off)
+    height = excess(p, p_off, force, curvature, off, stiffest, lipschitz) if leaving > 0.0 else inf
+    return Basin(height, leaving, distance + off, curvature)
 
 
-def final_basin(run: Trajectory) -> Basin:
-    """`attraction` of the last state of a run, kept with the run."""
-    return run.remembered("attraction at the end", lambda: attraction(run.law, run.q[-1], run.p[-1]))
+def final_basin(seen: Observed) -> Basin:
+    """Return the basin beside the last state of a run, as far as that is known; kept with the run."""
+    q, p, q_error, p_error = seen.end
+    off, p_off = float(np.linalg.norm(q_error)), float(np.linalg.norm(p_error))
+    return seen.run.remembered("attraction at the end", lambda: attraction(seen.law, q, p, off=off, p_off=p_off))
 
 
 def _translations(q: FloatArray) -> FloatArray:
@@ -95,10 +110,46 @@ def lipschitz_within(law: Algorithm1 | Algorithm2, q: FloatArray, window: float)
 
 
 def _third(alpha: AlphaInteraction, lengths: FloatArray, slack: float) -> FloatArray:
-    """Norm of the third derivative of ψ_α(‖x‖_σ) for each pair, at worst over lengths within the slack."""
-    s = np.abs(lengths + slack * np.linspace(-1.0, 1.0, _POINTS)[:, None])
-    s = np.maximum(np.sort(s, axis=0), 1e-12 * alpha.d)
-    root, z = np.sqrt(1.0 + alpha.eps * s**2), alpha.sigma_norm(s)
-    action = alpha.phi_alpha(z)
-    along = alpha.phi_alpha_slope(z) * (s / root) ** 2 + action / root**3
-    return third_derivative(s, along, (along - action / root) / s, least_step=1e-12 * alpha.d)
+    """Upper bound of the norm of the third derivative of ψ_α(‖x‖_σ) for each pair, over lengths within the slack.
+
+    With F(s) = ψ_α(‖s‖_σ) it is F‴ along the pair three times and (F'/s)' along it once and across twice; of unit
+    vectors the second kind makes 3 e (1 - e²) <= 2/√3 at most.
+    """
+    ends = np.maximum(lengths + slack * np.linspace(-1.0, 1.0, _PIECES + 1)[:, None], 0.0)
+    s = Enclosure.between(ends[:-1], ends[1:])
+    root = (1.0 + alpha.eps * s.square()).sqrt()
+    slant, steep = s / root, 1.0 / (root * root * root)
+    phi, slope, bend = _action(alpha, (root - 1.0) / alpha.eps)
+    bowed = 3.0 * (slope * slant - alpha.eps * s * phi / root.square()) * steep
+    across = slope * slant / root - alpha.eps * s * phi * steep
+    norm: FloatArray = (abs(bend * slant * slant * slant + bowed) + 2.0 / sqrt(3.0) * abs(across)).max(axis=0).hi
+    return norm
+
+
+def _action(alpha: AlphaInteraction, z: Enclosure) -> tuple[Enclosure, Enclosure, Enclosure]:
+    """φ_α, φ_α' and φ_α'' over enclosures of z."""
+    rho, rho_slope, rho_bend = _bump(alpha, z)
+    area = alpha.unit**2
+    w = (z - alpha.d_alpha) / area + alpha.c
+    flat = 1.0 / (1.0 + w.square()).sqrt()
+    sigma = w.rising(lambda x: x / np.sqrt(1.0 + x * x))
+    cube = flat * flat * flat
+    phi = 0.5 * ((alpha.a + alpha.b) * sigma + (alpha.a - alpha.b))
+    slope, bend = (0.5 * (alpha.a + alpha.b) * x for x in (cube / area, -3.0 * w * cube * flat.square() / area**2))
+    return rho * phi, rho_slope * phi + rho * slope, rho_bend * phi + 2.0 * rho_slope * slope + rho * bend
+
+
+def _bump(alpha: AlphaInteraction, z: Enclosure) -> tuple[Enclosure, Enclosure, Enclosure]:
+    """ρ_h(z/r_α) and its first two derivatives in z; at z = h r_α and r_α the second one jumps."""
+    width = (1.0 - alpha.h) * alpha.r_alpha
+    angle = (z - alpha.h * alpha.r_alpha) * (pi / width)
+    inside = Enclosure(*(np.clip(end, 0.0, pi) for end in (angle.lo, angle.mid, angle.hi)))
+    cosine = inside.falling(np.cos)
+    peak = (inside.lo <= 0.5 * pi) & (inside.hi >= 0.5 * pi)
+    ends = np.sin(inside.lo), np.sin(inside.hi)
+    sine = Enclosure(np.minimum(*ends), np.sin(inside.mid), np.where(peak, 1.0, np.maximum(*ends))).widened(4.0 * EPS)
+    within = 1.0 - ((angle.hi < 0.0) | (angle.lo > pi))
+    partly = (angle.lo < 0.0) | (angle.hi > pi)
+    bend = -0.5 * (pi / width) ** 2 * cosine
+    low, high = np.where(partly, np.minimum(bend.lo, 0.0), bend.lo), np.where(partly, np.maximum(bend.hi, 0.0), bend.hi)
+    return 0.5 * (1.0 + cosine), -0.5 * pi / width * sine * within, Enclosure(low, bend.mid, high) * within

@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
-import numpy as np
-
-from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import AlphaInteraction
 from flockana.laws.composition import Composition
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.hypotheses import alpha_gain, condition, law_is_or_composed, positive
 from flockana.theorems.meeting import least_is_known, meeting
-from flockana.theorems.olfati_saber.collisions import below_multiple, no_collision
+from flockana.theorems.observed import Observed
+from flockana.theorems.olfati_saber.collisions import below_multiple, energy_at_start, no_collision
 from flockana.theorems.olfati_saber.energy import nothing_adds_energy
-from flockana.theorems.rounding import energy_error
 from flockana.theorems.theorem import Checked, Hypothesis, Theorem, Tolerances, unmet
 
 _MULTIPLES = {"below": 1, "twice": 2}  # of c*, by claim
 
 
-def _needs(run: Trajectory) -> list[Hypothesis]:
+def _needs(run: Observed) -> list[Hypothesis]:
     """A pair potential, and an energy that never rises: under Algorithms 1 and 2 with common gains it does not."""
     if type(run.law) is not Composition and isinstance(run.law.alpha, AlphaInteraction):
         return alpha_gain(run)
@@ -29,15 +26,13 @@ def _needs(run: Trajectory) -> list[Hypothesis]:
     return [has_pair, positive(run, c1_alpha="c1α"), *nothing_adds_energy(run), *least_is_known(run)]
 
 
-def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
+def _check(run: Observed, tolerances: Tolerances) -> Checked:
     needs = _needs(run)
     if unmet(needs):
         return needs, []
     pairs = meeting(run)
-    energy = run.law.structural_energy(run.q[0], run.p[0])
-    error = float(energy_error(run.law, run.q[:1], run.p[:1], np.array([energy]))[0])
-    above = energy - pairs.floor
-    bounds = {name: below_multiple(above, error, pairs.c_star, k) for name, k in _MULTIPLES.items()}
+    above = energy_at_start(run) - pairs.floor
+    bounds = {name: below_multiple(above, pairs.c_star, k) for name, k in _MULTIPLES.items()}
     return [*needs, *bounds.values()], [
         no_collision(run, [*needs, bound], tolerances, name=name) for name, bound in bounds.items()
     ]

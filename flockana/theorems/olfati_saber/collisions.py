@@ -8,7 +8,7 @@ ever leaves, certainly met; in between it is open. In the plane a numerical run 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from math import floor
+from itertools import combinations
 
 import numpy as np
 import numpy.typing as npt
@@ -19,9 +19,10 @@ from flockana.kernels.neighbours import pair_blocks
 from flockana.kernels.paths import control_points, touching_pairs
 from flockana.measures.metrics import pairs_at_one_place
 from flockana.measures.path_bounds import ROUNDING, Contact, contacts
-from flockana.theorems.claims import judged
-from flockana.theorems.hypotheses import below, condition
-from flockana.theorems.meeting import meeting
+from flockana.theorems.claims import counted, judged
+from flockana.theorems.enclosure import Enclosure
+from flockana.theorems.hypotheses import condition, positive_room
+from flockana.theorems.observed import Observed
 from flockana.theorems.rounding import energy_error
 from flockana.theorems.theorem import Claim, Hypothesis, HypothesisStatus, Tolerances
 
@@ -30,37 +31,48 @@ IndexArray = npt.NDArray[np.intp]
 
 
 def contacts_of(run: Trajectory, tolerances: Tolerances) -> tuple[Contact, ...]:
-    """Contacts of a run: pairs whose interpolated paths come within the contact distance."""
+    """Return contacts of a run: pairs whose interpolated paths come within the contact distance."""
     tol = tolerances.contact * run.law.alpha.length
     return run.remembered(
         f"contacts within {tol!r}", lambda: contacts(*run.path[:4], tol=tol, intervals=_intervals(run, tol)[0])
     )
 
 
-def passed(run: Trajectory, tolerances: Tolerances) -> dict[Pair, float]:
-    """Pairs that certainly met, and how far they go past each other: they change places on a line both keep to."""
-    depths, noise = {}, _noise(run, tolerances)
-    for contact in contacts_of(run, tolerances):
-        apart = run.path.q[:, contact.j] - run.path.q[:, contact.i]
+def passed(seen: Observed, tolerances: Tolerances) -> dict[Pair, float]:
+    """Return pairs that certainly met, and how far they go past each other: on a line both keep to, they change places.
+
+    How far they go past is known to the error of the run.
+    """
+    depths, noise = {}, _noise(seen, tolerances)
+    if seen.doubt:
+        return depths
+    off = float(2.0 * seen.shape_error.max())
+    path = seen.run.path.q
+    for contact in contacts_of(seen.run, tolerances):
+        apart = path[:, contact.j] - path[:, contact.i]
         moving = np.flatnonzero((apart != 0.0).any(axis=0))
         if moving.size == 1:
             depth = float(min(apart[:, moving[0]].max(), -apart[:, moving[0]].min()))
-            if depth > noise:
-                depths[contact.i, contact.j] = depth
+            if depth > noise + off:
+                depths[contact.i, contact.j] = depth - off
     return depths
 
 
-def near(run: Trajectory, tolerances: Tolerances) -> list[set[Pair]]:
-    """Pairs that may meet, by interval between samples: their paths, allowance included, come that near."""
-    noise = _noise(run, tolerances)
-    return run.remembered(f"near within {noise!r}", lambda: _near(run, noise))
+def near(seen: Observed, tolerances: Tolerances) -> list[set[Pair]]:
+    """Return pairs that may meet, by interval between samples: their paths, error included, come that near."""
+    noise = _noise(seen, tolerances) + 2.0 * seen.between_error
+    return seen.run.remembered(f"near within {noise.tobytes()!r}", lambda: _near(seen.run, noise))
 
 
-def _near(run: Trajectory, noise: float) -> list[set[Pair]]:
-    pairs: list[set[Pair]] = [set() for _ in run.t[1:]]
+def _near(run: Trajectory, noises: FloatArray) -> list[set[Pair]]:
+    everyone = set(combinations(range(run.n), 2)) if not np.isfinite(noises).all() else set()
+    pairs = [set() if np.isfinite(noise) else everyone for noise in noises]
     t, *states, slack = run.path
-    intervals, of_sample = _intervals(run, noise)
+    intervals, of_sample = _intervals(run, noises)
     for k in intervals:
+        noise = float(noises[of_sample[k]])
+        if not np.isfinite(noise):
+            continue
         points, reach, allowance = control_points(t[k + 1] - t[k], *(x[s] for s in (k, k + 1) for x in states))
         within = noise + 2.0 * float((allowance if slack is None else allowance + slack[k]).max())
         for i, j in pair_blocks(states[0][k], within + 2.0 * float(reach.max())):
@@ -71,147 +83,151 @@ def _near(run: Trajectory, noise: float) -> list[set[Pair]]:
     return pairs
 
 
-def _intervals(run: Trajectory, distance: float) -> tuple[IndexArray, IndexArray]:
+def _intervals(run: Trajectory, distance: FloatArray | float) -> tuple[IndexArray, IndexArray]:
     """Intervals of the path in which a pair may come so near; and between which samples each of its intervals lies."""
     lower = run.closest_approach().lower_by_interval
     of_sample = np.searchsorted(run.t, run.path[0][:-1], side="right") - 1
-    return np.flatnonzero(~(lower[of_sample] > distance)), of_sample
+    return np.flatnonzero(~(lower > distance)[of_sample]), of_sample
 
 
-def _noise(run: Trajectory, tolerances: Tolerances) -> float:
+def _noise(seen: Observed, tolerances: Tolerances) -> float:
     """Distance at which two agents count as coincident, the rounding of their coordinates added."""
-    return float(tolerances.contact * run.law.alpha.length + ROUNDING * np.abs(run.q).max())
+    return float(tolerances.contact * seen.law.alpha.length + ROUNDING * np.abs(seen.run.q).max())
 
 
-def below_the_barrier(run: Trajectory, energy: float, error: float) -> Hypothesis:
-    """The hypothesis H(0) < min{V : two agents coincide}: met below a proved bound, unmet above the V of such a state.
+def least_distance(seen: Observed) -> Enclosure:
+    """Return the least distance of any two agents over the run: a bound of the path, less its error, and one reached."""
+    closest = seen.run.closest_approach()
+    if len(seen.t) == 1 or seen.doubt:
+        return Enclosure(0.0, closest.distance, np.inf)
+    low = float((closest.lower_by_interval - 2.0 * seen.between_error).min())
+    high = closest.distance + 2.0 * float(max(seen.shape_error.max(), seen.between_error.max()))
+    return Enclosure(max(0.0, min(low, closest.distance)), closest.distance, high)
+
+
+def energy_at_start(seen: Observed) -> Enclosure:
+    """Return the energy of the start in the moving frame: exact but for rounding."""
+    run = seen.run
+    energy = run.law.structural_energy(run.q[0], run.p[0])
+    return Enclosure.around(energy, energy_error(run.law, run.q[:1], run.p[:1], np.array([energy]))[0])
+
+
+def below_the_barrier(seen: Observed, energy: Enclosure) -> Hypothesis:
+    """Return the hypothesis H(0) < min{V : two agents coincide}: met below a proved bound, unmet above a known state.
 
     Between the two it is assumed: `flockana.equilibria.barrier.collision_barrier` searches the minimum itself.
     """
     from flockana.equilibria.barrier import collision_bounds
 
-    low, high = (run.law.gains.c1_alpha * bound for bound in collision_bounds(run.law.alpha, run.n, run.m))
-    status: HypothesisStatus = "met" if energy + error < low else "unmet" if energy - error >= high else "assumed"
-    detail = f"H(0) = {energy:.5g}; the minimum is at least {low:.5g}, and a state of {high:.5g} is known"
+    low, high = (seen.law.gains.c1_alpha * bound for bound in collision_bounds(seen.law.alpha, seen.n, seen.m))
+    status: HypothesisStatus = "met" if energy.hi < low else "unmet" if energy.lo >= high else "assumed"
+    detail = f"H(0) = {energy.mid:.5g}; the minimum is at least {low:.5g}, and a state of {high:.5g} is known"
     bound = high if status == "unmet" else low
-    return Hypothesis("H(0) < min{V : two agents coincide}", status, bound - energy, detail, error)
+    margin = float(bound - energy.mid)
+    return Hypothesis("H(0) < min{V : two agents coincide}", status, margin, detail, float(energy.half_width))
 
 
-def below_multiple(energy: float, error: float, c_star: float, times: int = 1) -> Hypothesis:
-    """The hypothesis H(0) < k c*, the energy of k coincident pairs.
+def below_multiple(energy: Enclosure, c_star: float, times: int = 1) -> Hypothesis:
+    """Return the hypothesis H(0) < k c*, the energy of k coincident pairs.
 
     Examples
     --------
-    >>> below_multiple(1.0, 1e-12, 2.0).status, below_multiple(1.0, 1e-12, 0.5, 2).status
-    ('met', 'assumed')
+    >>> below_multiple(Enclosure.around(1.0, 1e-12), 2.0).status, below_multiple(Enclosure.of(1.0), 0.5, 2).status
+    ('met', 'unmet')
     """
     text = "c*" if times == 1 else f"{times} c*"
-    detail = f"H(0) = {energy:.5g}, {text} = {times * c_star:.5g}"
-    return below(f"H(0) < {text}", energy, times * c_star, error, detail)
+    detail = f"H(0) = {energy.mid:.5g}, {text} = {times * c_star:.5g}"
+    return positive_room(f"H(0) < {text}", times * c_star - energy, detail)
 
 
 def no_collision(
-    run: Trajectory, needs: Iterable[Hypothesis], tolerances: Tolerances, *, name: str, proof: str | None = None
+    seen: Observed, needs: Iterable[Hypothesis], tolerances: Tolerances, *, name: str, proof: str | None = None
 ) -> Claim:
-    """The claim that no two agents ever coincide: a lower bound of all distances is positive, between samples too."""
-    needs, closest, noise = list(needs), run.closest_approach(), _noise(run, tolerances)
-    pair, margin = closest.pair, closest.lower
-    if not margin > noise and (certain := passed(run, tolerances)):
-        pair = max(certain, key=lambda each: certain[each])
-        margin = -certain[pair]
-    error = noise if len(run.t) > 1 else float("inf")  # one instant excludes nothing
-    text = f"no distance falls below {closest.lower:.4g}" if margin >= 0.0 else f"they pass by {-margin:.4g}"
-    if margin < 0.0 and "work" in run.extra and _spare(run, pair, needs) <= float(np.abs(run.energy_residual).max()):
-        error = float("inf")
+    """Return the claim that no two agents ever coincide: a lower bound of all distances is positive at all times."""
+    closest, least = seen.run.closest_approach(), least_distance(seen)
+    pair, margin = closest.pair, least - _noise(seen, tolerances)
+    text = f"no two agents come nearer than {least.lo:.4g}"
+    if not margin.lo > 0.0:
+        margin = Enclosure(-np.inf, margin.mid, np.inf)  # in the plane nearness is no contact
+        text = f"the least distance is between {least.lo:.4g} and {least.hi:.4g}"
+        if certain := passed(seen, tolerances):
+            pair = max(certain, key=lambda each: certain[each])
+            margin = Enclosure.of(-certain[pair])
+            text = f"a collision: agents {pair[0]} and {pair[1]} change places on a line, by {certain[pair]:.4g}"
     return judged(
         name,
         margin,
-        error,
         needs,
-        computed=closest.lower,
+        computed=float(least.mid),
         stated="distance > 0 between any two agents, always",
         witness={"pair": pair, "time": closest.time},
         proof=proof,
-        detail=f"no collision: {text} (agents {pair[0]} and {pair[1]}; the closest approach is at t = "
-        f"{closest.time:.4g})",
+        detail=f"{text} (closest: agents {pair[0]} and {pair[1]} at t = {closest.time:.4g})",
     )
 
 
-def _spare(run: Trajectory, pair: Pair, needs: Iterable[Hypothesis]) -> float:
-    """Energy by which it is decided that a pair meets, and that the bounds on H(0) hold.
-
-    A pair meets at no less than c*, and the energy never rises. So at the last sample before the meeting it is above c*
-    by more than it is off, or the integrator may have lifted the pair over a top that turns it back in truth.
-    """
-    energies = (need for need in needs if need.name.startswith("H(0)") and need.status == "met")
-    met_by = [need.margin for need in energies if need.margin is not None]
-    apart = (run.q[:, pair[1]] - run.q[:, pair[0]]).sum(axis=1)  # on a line: the other components are 0
-    before = max(int(np.argmax(apart * np.sign(apart[0]) < 0.0)) - 1, 0)
-    pairs = meeting(run)
-    energy = run.law.structural_energy(run.q[before], run.p[before]) - pairs.floor
-    return float(min(*met_by, abs(energy - pairs.c_star), float("inf")))
-
-
 def distinct_pairs(
-    run: Trajectory, needs: Iterable[Hypothesis], tolerances: Tolerances, *, name: str, proof: str | None = None
+    seen: Observed, needs: Iterable[Hypothesis], tolerances: Tolerances, *, name: str, disproof: str | None = None
 ) -> Claim:
-    """The claim as printed that with H(0) < (k+1)c* at most k distinct pairs collide over the whole run (see E13)."""
-    c_star = run.law.gains.c1_alpha * run.law.alpha.c_star
-    energy, pairs = float(run.energy()[0]), run.n * (run.n - 1) // 2
-    error = float(energy_error(run.law, run.q[:1], run.p[:1], run.energy()[:1])[0])
-    least, most = floor((energy - error) / c_star), floor((energy + error) / c_star)
+    """Return the claim as printed that with H(0) < (k+1)c* at most k distinct pairs collide over the run (see E13)."""
+    c_star = seen.law.gains.c1_alpha * seen.law.alpha.c_star
+    energy, pairs = seen.energy[0], seen.n * (seen.n - 1) // 2
+    least, most = (int(np.clip(np.floor(end / c_star), 0, pairs)) for end in (energy.lo, energy.hi))
     bites = condition("k < n(n-1)/2", least < pairs, float(pairs - least - 1))
-    certain, possible = passed(run, tolerances), set().union(*near(run, tolerances))
+    certain, possible = passed(seen, tolerances), set().union(*near(seen, tolerances))
     refuted = len(certain) > most
-    counted = set(certain) if refuted else possible
-    first = [contact for contact in contacts_of(run, tolerances) if (contact.i, contact.j) in counted]
-    return judged(
+    counted_ones = set(certain) if refuted else possible
+    first = [c for c in contacts_of(seen.run, tolerances) if (c.i, c.j) in counted_ones]
+    return counted(
         name,
-        (most if refuted else least) + 0.5 - len(counted),
-        0.0,
+        most if refuted else least,
+        len(certain),
+        pairs if seen.doubt else max(len(possible), len(certain)),
         [*needs, bites],
-        verifies=len(run.t) > 1,
-        refutes=refuted and len(run.t) > 1,  # else it is open which pairs meet
-        computed=len(counted),
-        stated=f"at most {least} of {pairs} pairs collide, as H(0) = {energy / c_star:.4g} c*",
+        computed=len(counted_ones),
+        stated=f"at most {least} of {pairs} pairs collide, as H(0) = {energy.mid / c_star:.4g} c*",
         witness=[f"agents {c.i} and {c.j} at t = {c.time:.6g}{' (order changed)' if c.crossed else ''}" for c in first],
-        proof=proof,
-        detail=f"as printed: {len(certain)} distinct pairs certainly collide and {len(possible)} may, where at most "
-        f"{least} should" + ("; that is every pair, so nothing is claimed" if bites.status == "unmet" else ""),
+        disproof=disproof,
+        detail=f"{len(certain)} distinct pairs certainly collide and {len(possible)} may; printed: at most {least}"
+        + ("; that is every pair, so nothing is claimed" if bites.status == "unmet" else ""),
     )
 
 
 def pairs_at_one_instant(
-    run: Trajectory, needs: Iterable[Hypothesis], tolerances: Tolerances, *, name: str, proof: str | None = None
+    seen: Observed, needs: Iterable[Hypothesis], tolerances: Tolerances, *, name: str, proof: str | None = None
 ) -> Claim:
-    """The corrected claim that at any instant at most ⌊H/c*⌋ pairs coincide.
+    """Return the corrected claim that at any instant at most ⌊H/c*⌋ pairs coincide.
 
     Pairs that may meet between the same two samples count as if they met at once; those that were never apart by more
     than the contact distance at a sample, as coincident there.
     """
-    c_star = run.law.gains.c1_alpha * run.law.alpha.c_star
-    energy, error = run.energy(), energy_error(run.law, run.q, run.p, run.energy())
-    allowed = np.floor((energy - error) / c_star)
-    at_most = np.floor((energy + error) / c_star)
-    together = np.array([len(pairs) for pairs in near(run, tolerances)])
-    exactly = _at_one_place(run.q)  # nothing else is certain at an instant
+    c_star = seen.law.gains.c1_alpha * seen.law.alpha.c_star
+    allowed, at_most = np.floor(seen.energy.lo / c_star), np.floor(seen.energy.hi / c_star)
+    together = np.array([len(pairs) for pairs in near(seen, tolerances)])
+    exactly = _at_one_place(seen.run.q)  # nothing else is certain at an instant
     spare = np.minimum(allowed[:-1], allowed[1:]) - together
     worst, broken = (int(np.argmin(spare)) if spare.size else 0), int(np.argmin(at_most - exactly))
-    refuted = bool(at_most[broken] < exactly[broken])
+    high = float((at_most - exactly)[broken]) + 0.5
+    low = float(spare.min(initial=-np.inf if len(seen.t) == 1 else np.inf)) + 0.5
+    refuted = high < 0.0 and not seen.doubt
+    margin = Enclosure.of(high) if refuted else Enclosure(min(low, high), min(low, high), max(low, high))
     return judged(
         name,
-        float((at_most - exactly)[broken] if refuted else spare.min(initial=np.inf)) + 0.5,
-        0.0,
+        margin,
         needs,
-        verifies=len(run.t) > 1,
-        refutes=refuted and len(run.t) > 1,  # else it is open which pairs meet
         computed=int(together.max(initial=0)),
         stated="at most floor(H(t)/c*) pairs coincide at the same time t",
-        witness={"time": float(run.t[broken if refuted else worst]), "allowed": int(allowed[worst])},
+        witness={"time": float(seen.t[broken if refuted else worst]), "allowed": float(allowed[worst])},
         proof=proof,
-        detail=f"per instant: at most {int(together.max(initial=0))} pairs may coincide at one time; the energy never "
-        f"allows fewer than {int(allowed.min())}",
+        detail=_instant_text(int(together.max(initial=0)), float(allowed.min())),
     )
+
+
+def _instant_text(together: int, allowed: float) -> str:
+    """How many pairs may coincide at one time, in words."""
+    if not together:
+        return "no two agents can coincide at any time"
+    return f"at most {together} pairs may coincide at one time; the energy allows {allowed:g} or more at every time"
 
 
 def _at_one_place(q: FloatArray) -> IndexArray:

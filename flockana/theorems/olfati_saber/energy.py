@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 
@@ -14,79 +14,81 @@ from flockana.interactions import FormulaInteraction
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.composition import Composition
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.theorems.claims import judged
+from flockana.theorems.claims import judged, undecided
+from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.hypotheses import condition, law_is_or_composed, smooth_pair
 from flockana.theorems.olfati_saber.gamma_agent import declared_rate_is_true, target_rests
-from flockana.theorems.rounding import EPS, energy_error
+from flockana.theorems.observed import Observed
+from flockana.theorems.rounding import EPS
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, HypothesisStatus, Theorem, Tolerances
 
 
-def proved(run: Trajectory, proof: str = "energy-identities") -> str | None:
+def proved(run: Observed, proof: str = "energy-identities") -> str | None:
     """The id of the proof of this law's energy identity, which knows walls, spheres and gains common to all agents."""
     known = all(type(obstacle) in (Sphere, Wall) for obstacle in run.law.obstacles)
     return proof if known and not run.law.gains.per_agent and type(run.law) is not Composition else None
 
 
-def _rounding(run: Trajectory) -> float:
-    """Of the energy, at worst over the run."""
-    known = isinstance(run.law, Algorithm1 | Algorithm2 | Algorithm3 | Composition)
-    largest = float(np.abs(run.energy()).max())
-    own = float(energy_error(run.law, run.q, run.p, run.energy()).max()) if known else run.n**2 * EPS * largest
-    return own + int(run.stats.get("steps", len(run.t))) * EPS * float(np.abs(run.extra["work"]).max())
-
-
-def balance(run: Trajectory, needs: Iterable[Hypothesis], tolerances: Tolerances, *, proof: str | None = None) -> Claim:
-    """The claim that H(t) − H(0) agrees with the integral of the closed-form rate.
-
-    Whether a difference is the integrator's, a second, tighter run tells (`verify` makes it).
-    """
-    energy, residual = run.energy(), run.energy_residual
-    worst, largest = int(np.argmax(np.abs(residual))), float(np.abs(energy).max())
-    share = float(np.abs(residual[worst])) / (largest or 1.0)
-    error = 2.0 * _rounding(run) / (largest or 1.0) + EPS
+def balance(
+    seen: Observed, needs: Iterable[Hypothesis], tolerances: Tolerances, *, name: str = "balance", proof: str | None = None
+) -> Claim:
+    """Return the claim that H(t) − H(0) agrees with the integral of the closed-form rate."""
+    energy, largest = seen.energy.mid, float(np.abs(seen.energy.mid).max())
+    off = abs(seen.residual)
+    worst = int(np.argmax(off.mid))
+    residual, unit = float(seen.residual.mid[worst]), largest or 1.0
     course = "falls" if energy[-1] <= energy[0] else "rises"
     return judged(
-        "balance",
-        tolerances.energy - share,
-        error,
+        name,
+        tolerances.energy - off / unit,
         needs,
-        computed=share,
+        computed=abs(residual) / unit,
         stated=f"H(t) - H(0) = integral of dH/dt, to {tolerances.energy:g} of the largest |H|",
-        witness={"time": float(run.t[worst]), "residual": float(residual[worst])},
+        witness={"time": float(seen.t[worst]), "residual": residual},
         proof=proof,
-        detail=f"H {course} from {energy[0]:.6g} to {energy[-1]:.6g}; the balance is off by {share:.2g} of it at most",
+        detail=f"H {course} from {energy[0]:.6g} to {energy[-1]:.6g}; the balance is off by "
+        f"{abs(residual) / unit:.2g} of it at most",
     )
 
 
-def cancelling(run: Trajectory, since: int = 0) -> FloatArray:
-    """Magnitude of those terms of dH/dt that are differences, and may cancel, at each sample from `since` on.
+def _cancelling(run: Trajectory) -> FloatArray:
+    """Magnitude of those terms of dH/dt that are differences, and may cancel, at each sample.
 
     They are c2β ΣΣ b ⟨p_i, p̂_ik − p_i⟩, of β-agents no faster than their agent, c2γ Σ⟨p_i, p_i − p_r⟩, and the work
-    of a γ-agent that moves, or whose acceleration is told. The others, −c2α pᵀL̂p, −c2γ‖v‖² and those of drag, are sums
-    of squares.
+    of a γ-agent that moves, or whose acceleration is fed forward. The others, −c2α pᵀL̂p, −c2γ‖v‖² and those of drag,
+    are sums of squares.
     """
-    law, q, p = run.law, run.q[since:], run.p[since:]
+    law, q, p = run.law, run.q, run.p
     if law.moving or (law.target is None and not law.obstacles):
         return np.zeros(len(p))
     speed = lengths(p)
     size: FloatArray = law.gains.c2_beta * 2.0 * len(law.obstacles) * np.sum(speed**2, axis=1)
     if law.target is not None:
-        told = [(*law.target.state(t), law.target.rate(t)) for t in run.t[since:].tolist()]
+        told = [(*law.target.state(t), law.target.rate(t)) for t in run.t.tolist()]
         q_r, p_r, rate = (np.array(each)[:, None] for each in zip(*told, strict=True))
         size += np.max(law.gains.c2_gamma) * np.sum(speed * (speed + lengths(p_r)), axis=1)
         size += np.max(law.gains.c1_gamma) * np.sum(lengths(rate) * lengths(q - q_r), axis=1)
     return size
 
 
-def falling_share(run: Trajectory, rate: FloatArray, cancels: FloatArray) -> tuple[FloatArray, float]:
-    """−rate over the magnitude of its terms, from 1 (all of them fall) to −1, and its rounding."""
-    size = np.abs(rate) + 2.0 * cancels
-    share = np.divide(-rate, size, out=np.ones_like(rate), where=size > 0.0)
-    return share, (run.n**2 + 64) * EPS
+def falling_share(
+    seen: Observed, rate: Callable[[Trajectory], FloatArray], cancels: Callable[[Trajectory], FloatArray]
+) -> Enclosure:
+    """Return −rate over the magnitude of its terms, from 1 (all of them fall) to −1, at each sample."""
+
+    def share(run: Trajectory) -> FloatArray:
+        falls = -rate(run)
+        size = np.abs(falls) + 2.0 * cancels(run)
+        return np.divide(falls, size, out=np.ones_like(falls), where=size > 0.0)
+
+    rounding = (seen.n**2 + 64) * EPS
+    if not cancels(seen.run).any():  # a sum of terms of one sign keeps it whatever the state
+        return Enclosure.around(share(seen.run), 0.0)
+    return seen.series(share, floor=rounding)
 
 
 def never_rises(
-    run: Trajectory,
+    seen: Observed,
     needs: Iterable[Hypothesis],
     *,
     since: int = 0,
@@ -94,36 +96,57 @@ def never_rises(
     name: str = "rate",
     proof: str | None = None,
 ) -> Claim:
-    """The claim that dH/dt ≤ 0 at every sample from `since` on; the margin is the fall over its terms' magnitude.
+    """Return the claim that dH/dt ≤ 0 at every sample from `since` on, by its fall over its terms' magnitude.
 
-    A sum of terms of one sign keeps it in floating point, so that Algorithms 1 and 2 have the margin 1 at every state;
-    where terms may cancel (`cancelling`), the rest is held against their rounding. Where nothing moves, or nothing
-    damps, the rate is 0 without any term, and the claim holds. `squares` says that all terms are squares here.
+    A sum of terms of one sign keeps it in floating point, so that Algorithms 1 and 2 have the margin 1 at every state.
+    Where terms may cancel, the claim is judged as long as the agents' motion is above its error.
+
+    Parameters
+    ----------
+    seen : Observed
+        The run.
+    needs : iterable of Hypothesis
+        Hypotheses of the claim.
+    since : int
+        First sample.
+    squares : bool
+        Whether all terms of the rate are squares.
+    name : str
+        Of the claim.
+    proof : str, optional
+        Id of its proof.
     """
-    rate = run.energy_rate()[since:]
-    share, error = falling_share(run, rate, np.zeros(rate.shape) if squares else cancelling(run, since))
-    worst, highest = int(np.argmin(share)), float(rate.max())
-    margin = float(share[worst])
+    cancels = (lambda run: np.zeros(len(run.t))) if squares else _cancelling
+    share = falling_share(seen, Trajectory.energy_rate, cancels)
+    stop, until = len(seen.t), ""
+    if not squares and _cancelling(seen.run).any():
+        speeds = Enclosure.around(lengths(seen.run.p), seen.speed_error + seen.drift_error[:, None])
+        stop = seen.known_samples((speeds.max(axis=1).lo > 0.0) | (share.lo >= 0.0) | (np.arange(stop) < since))
+        until = "" if stop == len(seen.t) else f"; known {seen.until(stop)}"
+    if stop <= since:
+        return undecided(name, "the motion is not known well enough to tell the sign of dH/dt", needs, proof=proof)
+    share = share[since:stop]
+    worst, highest = share.worst_index, float(seen.run.energy_rate()[since:stop].max())
     return judged(
         name,
-        margin,
-        error,
+        share,
         needs,
         computed=highest,
-        stated="dH/dt <= 0" if since == 0 else f"dH/dt <= 0 for t >= {run.t[since]:.6g}",
-        witness={"time": float(run.t[since + worst])},
+        stated="dH/dt <= 0" if since == 0 else f"dH/dt <= 0 for t >= {seen.t[since]:.6g}",
+        witness={"time": float(seen.t[since + worst])},
         proof=proof,
-        detail=f"the closed-form rate is at most {highest:.3g} from t = {run.t[since]:.4g} on; what falls is at least "
-        f"{margin:.2g} of the magnitude of its terms",
+        detail=f"the closed-form rate is at most {highest:.3g} from t = {seen.t[since]:.4g} on; what falls is at least "
+        f"{share.mid.min():.2g} of the magnitude of its terms{until}",
     )
 
 
-def stays_outside(run: Trajectory) -> Hypothesis:
+def stays_outside(run: Observed) -> Hypothesis:
     """The hypothesis that no agent enters an obstacle: inside a sphere ⟨p_i, p̂_ik − p_i⟩ may be positive."""
-    name, least = "no agent enters an obstacle", run.clearance()
+    name, least = "no agent enters an obstacle", run.run.clearance()
     if not run.law.obstacles:
         return Hypothesis(name, "met", detail="there is none")
-    rounding = 64.0 * EPS * float(np.abs(run.q).max())
+    off = float((run.shape_error.max(axis=1) + run.centre_error).max(initial=0.0))
+    rounding = 64.0 * EPS * float(np.abs(run.run.q).max()) + off
     where = f"(agent {least.agent} at obstacles[{least.obstacle}], t = {least.time:.4g})"
     if least.lower > rounding:
         return Hypothesis(name, "met", least.lower, f"clearance at least {least.lower:.4g} {where}")
@@ -132,23 +155,23 @@ def stays_outside(run: Trajectory) -> Hypothesis:
     return Hypothesis(name, status, least.lower if status == "assumed" else least.reached, text)
 
 
-def smooth_where_needed(run: Trajectory) -> list[Hypothesis]:
+def smooth_where_needed(run: Observed) -> list[Hypothesis]:
     """The hypothesis that the pair law is C¹, of one that says that it is not."""
     return [smooth_pair(run)] if run.law.pair is not None and run.law.pair.faults else []
 
 
-def _heeding(run: Trajectory) -> list[Hypothesis]:
+def _heeding(run: Observed) -> list[Hypothesis]:
     """The hypothesis that a consensus draws velocities together, of a formula whose adjacency is negative somewhere."""
     pairs = [getattr(run.law, name, None) for name in ("alpha", "net")]
     least = min((pair.least_weight for pair in pairs if isinstance(pair, FormulaInteraction)), default=0.0)
     return [condition("a_ij >= 0 at every distance", False, least, f"it is {least:.3g}")] if least < 0.0 else []
 
 
-def nothing_adds_energy(run: Trajectory) -> list[Hypothesis]:
+def nothing_adds_energy(run: Observed) -> list[Hypothesis]:
     """What it takes that no term of the law adds energy, in the frame that the energy is in."""
     law, needs = run.law, [*smooth_where_needed(run), *_heeding(run)]
     if law.target is not None and not law.moving:
-        needs.append(target_rests(run, told=False))  # outside of the moving frame a moving γ-agent does work
+        needs.append(target_rests(run.run, told=False))  # outside of the moving frame a moving γ-agent does work
     if type(law) is Algorithm3 or law.obstacles:
         needs.append(stays_outside(run))
     if type(law) is Composition and law.thrust > 0.0:
@@ -156,16 +179,16 @@ def nothing_adds_energy(run: Trajectory) -> list[Hypothesis]:
     return needs
 
 
-def declared(run: Trajectory) -> list[Hypothesis]:
+def declared(run: Observed) -> list[Hypothesis]:
     """What the balance needs: outside of the moving frame, that the γ-agent's declared velocity is its own."""
-    return [declared_rate_is_true(run)] if run.law.target is not None and not run.law.moving else []
+    return [declared_rate_is_true(run.run)] if run.law.target is not None and not run.law.moving else []
 
 
-def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
-    rest, rates, proof = nothing_adds_energy(run), declared(run), proved(run)
+def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+    rest, rates, proof = nothing_adds_energy(seen), declared(seen), proved(seen)
     return [*rest, *rates], [
-        never_rises(run, rest, proof=proof),
-        balance(run, [*smooth_where_needed(run), *rates], tolerances, proof=proof),
+        never_rises(seen, rest, proof=proof),
+        balance(seen, [*smooth_where_needed(seen), *rates], tolerances, proof=proof),
     ]
 
 

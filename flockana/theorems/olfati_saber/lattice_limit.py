@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.asymptotics import lattice_limit
 from flockana.theorems.hypotheses import alpha_gain, law_is
 from flockana.theorems.leads import strained
+from flockana.theorems.observed import Observed
 from flockana.theorems.theorem import Checked, Theorem, Tolerances, unmet
 
 
-def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
+def _check(run: Observed, tolerances: Tolerances) -> Checked:
     needs = alpha_gain(run)
     return needs, [] if unmet(needs) else [lattice_limit(run, needs, tolerances, name="lattice")]
 

@@ -6,7 +6,6 @@ from math import sqrt
 
 import numpy as np
 
-from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import AlphaInteraction
 from flockana.lattice import harborth
 from flockana.laws.olfati_saber import Algorithm1, paper_pair
@@ -14,10 +13,11 @@ from flockana.theorems.asymptotics import lattice_limit, velocities_match
 from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.hypotheses import law_is, positive
 from flockana.theorems.leads import strained
+from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.attraction import final_basin
-from flockana.theorems.olfati_saber.collisions import below_multiple, below_the_barrier, no_collision
+from flockana.theorems.olfati_saber.collisions import below_multiple, below_the_barrier, energy_at_start, no_collision
 from flockana.theorems.olfati_saber.energy import proved
-from flockana.theorems.rounding import energy_error
+from flockana.theorems.sampling import nets_at
 from flockana.theorems.theorem import Checked, Hypothesis, Theorem, Tolerances, unmet
 
 
@@ -32,45 +32,39 @@ def disconnected_energy(law: Algorithm1, n: int, m: int) -> float:
     return law.gains.c1_alpha * law.alpha.far_potential * (n * (n - 1) // 2 - bonds)
 
 
-def _start(run: Trajectory) -> tuple[float, float]:
-    """The energy in the moving frame at the start, and its rounding."""
-    energy = run.law.structural_energy(run.q[0], run.p[0])
-    return energy, float(energy_error(run.law, run.q[:1], run.p[:1], np.array([energy]))[0])
-
-
-def _stays_together(run: Trajectory) -> Hypothesis:
+def _stays_together(seen: Observed) -> Hypothesis:
     """The hypothesis on all solutions from Ω_c: this run can break it, and so can a disconnected state in Ω_c."""
-    connectivity = run.metric("connectivity")
-    worst = int(np.argmin(connectivity))
+    parts = nets_at(seen).components_least
+    worst = int(np.argmax(parts))
     name = "every solution from Ω_c is a cohesive dynamic flock"
-    if connectivity[worst] < 1.0:
-        detail = f"this run is no flock at t = {run.t[worst]:.4g}, where C = {connectivity[worst]:.3f}"
-        return Hypothesis(name, "unmet", float(connectivity[worst]) - 1.0, detail)
-    (energy, error), apart = _start(run), disconnected_energy(run.law, run.n, run.m)
-    if energy - error >= apart:
-        detail = f"Ω_c holds a disconnected state at rest: its energy is {apart:.5g}, and c >= H(0) = {energy:.5g}"
-        return Hypothesis(name, "unmet", apart - energy, detail)
+    if parts[worst] > 1:
+        detail = f"this run is no flock at t = {seen.t[worst]:.4g}, where it has {int(parts[worst])} components"
+        return Hypothesis(name, "unmet", 1.0 - float(parts[worst]), detail)
+    energy, apart = energy_at_start(seen), disconnected_energy(seen.law, seen.n, seen.m)
+    if energy.lo >= apart:
+        detail = f"Ω_c holds a disconnected state at rest: its energy is {apart:.5g}, and c >= H(0) = {energy.mid:.5g}"
+        return Hypothesis(name, "unmet", apart - float(energy.mid), detail)
     return Hypothesis(name, "assumed", detail="this run is connected at every sample; the others are not known")
 
 
-def _barrier(run: Trajectory) -> str | None:
+def _barrier(seen: Observed) -> str | None:
     """The id of the proof of the barrier's bound, which counts up to 60 agents of the default law in the plane."""
-    counted = run.m == 2 and run.n <= 61 and run.law.alpha == AlphaInteraction()
-    return proved(run, "barrier") if counted else None
+    counted = seen.m == 2 and seen.n <= 61 and seen.law.alpha == AlphaInteraction()
+    return proved(seen, "barrier") if counted else None
 
 
-def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
-    needs = [positive(run, c1_alpha="c1α"), positive(run, c2_alpha="c2α")]
+def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+    needs = [positive(seen, c1_alpha="c1α"), positive(seen, c2_alpha="c2α")]
     if unmet(needs):
         return needs, []
-    energy, error = _start(run)
-    needs, c_star = [*needs, _stays_together(run)], run.law.gains.c1_alpha * run.law.alpha.c_star
-    low, barrier = below_multiple(energy, error, c_star), below_the_barrier(run, energy, error)
+    energy = energy_at_start(seen)
+    needs, c_star = [*needs, _stays_together(seen)], seen.law.gains.c1_alpha * seen.law.alpha.c_star
+    low, barrier = below_multiple(energy, c_star), below_the_barrier(seen, energy)
     return [*needs, low, barrier], [
-        lattice_limit(run, needs, tolerances, name="i"),
-        velocities_match(run, tolerances, needs, name="ii", caught=[final_basin(run).certificate]),
-        no_collision(run, [*needs, low], tolerances, name="iii", proof=proved(run, "collisions")),
-        no_collision(run, [*needs, barrier], tolerances, name="iii-barrier", proof=_barrier(run)),
+        lattice_limit(seen, needs, tolerances, name="i"),
+        velocities_match(seen, needs, name="ii", caught=[final_basin(seen).certificate]),
+        no_collision(seen, [*needs, low], tolerances, name="iii", proof=proved(seen, "collisions")),
+        no_collision(seen, [*needs, barrier], tolerances, name="iii-barrier", proof=_barrier(seen)),
     ]
 
 

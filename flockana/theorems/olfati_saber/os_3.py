@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from math import inf, sqrt
-
 import numpy as np
 
-from flockana.dynamics.trajectory import Trajectory
 from flockana.equilibria.terminal import terminal_state
 from flockana.lattice import classify
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.theorems.asymptotics import velocities_match
-from flockana.theorems.claims import judged
+from flockana.theorems.claims import judged, vacuous
+from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.from_tube import enclosed_by
-from flockana.theorems.hypotheses import condition, law_with_common_gains, positive, vacuous
+from flockana.theorems.hypotheses import condition, law_with_common_gains, positive
 from flockana.theorems.leads import pairs_apart
 from flockana.theorems.limits import limit_claim
+from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.attraction import final_basin
 from flockana.theorems.olfati_saber.collisions import (
     below_multiple,
@@ -25,74 +24,66 @@ from flockana.theorems.olfati_saber.collisions import (
     pairs_at_one_instant,
 )
 from flockana.theorems.olfati_saber.gamma_agent import consistent
-from flockana.theorems.rounding import energy_error, frame_error
-from flockana.theorems.sampling import radius_between
+from flockana.theorems.sampling import radius_over
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
 
 _COLLISIONS = ("iv-printed", "iv-instant", "iv-none", "iv-barrier")
 
 
-def _cohesive(run: Trajectory, needs: list[Hypothesis], error: float) -> Claim:
+def _cohesive(seen: Observed, needs: list[Hypothesis]) -> Claim:
     """Claim (i), R below an explicit bound: ½ c1γ R² <= λ J <= H_λ(t) <= H_λ(0), between samples too."""
-    radius, c1_gamma = run.metric("cohesion_radius"), run.law.gains.c1_gamma
-    worst, energy = int(np.argmax(radius)), float(run.energy()[0])
-    largest = float(radius[worst])
-    bound = sqrt(2.0 * energy / c1_gamma) if c1_gamma > 0.0 else inf
-    blur = sqrt(2.0 * error / c1_gamma) if c1_gamma > 0.0 else 0.0  # of the bound, at worst: √(a + e) - √a <= √e
-    off = min(blur, error / (c1_gamma * bound)) if c1_gamma > 0.0 and bound > 0.0 else blur
-    between = float(radius_between(run).max(initial=largest)) - largest if largest < bound else 0.0
-    error = off + sqrt(run.m) * frame_error(run.q) + between
+    radius, c1_gamma = radius_over(seen), seen.law.gains.c1_gamma
+    bound = (2.0 * seen.energy[0] / c1_gamma).sqrt() if c1_gamma > 0.0 else Enclosure.of(np.inf)
+    worst, largest = int(np.argmax(seen.radius.mid)), float(seen.radius.mid.max())
     return judged(
         "i",
-        bound - largest,
-        error,
+        bound - radius.max(),
         needs,
         computed=largest,
-        stated=f"R <= sqrt(2 H_λ(0)/c1γ) = {bound:.5g}",
-        witness={"time": float(run.t[worst])},
+        stated=f"R <= sqrt(2 H_λ(0)/c1γ) = {bound.mid:.5g}",
+        witness={"time": float(seen.t[worst])},
         proof="cohesion",
-        detail=f"cohesive: R <= {largest:.4g}, and H_λ(0) allows {bound:.4g}",
+        detail=f"cohesive: R <= {largest:.4g}, and H_λ(0) allows {bound.mid:.4g}",
     )
 
 
-def _minimum(run: Trajectory, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
+def _minimum(seen: Observed, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
     """Claim (ii), that the limit is a local minimum of U_λ, strict but for rotations; a run cannot refute it."""
-    end = terminal_state(run.law, run.q[-1], run.p[-1], contact=tolerances.contact)
+    end = terminal_state(seen.law, *seen.end[:2], contact=tolerances.contact)
     kind = classify(end.strain, lattice=tolerances.lattice, quasi=tolerances.quasi)
     links = f"links off d by up to {100.0 * end.strain:.2g} %" if end.links else "no links"
     return limit_claim(
         "ii",
         needs,
-        [final_basin(run).certificate],
+        [final_basin(seen).certificate],
         computed=end.curvature,
-        stated="the flock is caught by a strict local minimum of U_λ (modulo rotations)",
+        stated="the flock tends to a strict local minimum of U_λ (modulo rotations)",
         witness={"force": end.force, "K̃": end.mismatch, "strain": end.strain, "coincident pairs": end.coincident},
         detail=f"residual force {end.force:.2g}, curvature {end.curvature:.2g}; as a lattice: {kind}, {links}",
     )
 
 
-def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
-    gains = positive(run, c1_gamma="c1γ", c2_gamma="c2γ")
+def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+    gains = positive(seen, c1_gamma="c1γ", c2_gamma="c2γ")
     finite = condition("K(v(0)) and J(x(0)) are finite", True, detail="every state here is finite")
-    needs, repels = [gains, finite], positive(run, c1_alpha="c1α")
-    error = float(energy_error(run.law, run.q[:1], run.p[:1], run.energy()[:1])[0])
+    needs, repels = [gains, finite], positive(seen, c1_alpha="c1α")
     claims = [
-        _cohesive(run, needs, error),
-        _minimum(run, needs, tolerances),
-        velocities_match(run, tolerances, needs, name="iii", caught=[final_basin(run).certificate]),
+        _cohesive(seen, needs),
+        _minimum(seen, needs, tolerances),
+        velocities_match(seen, needs, name="iii", caught=[final_basin(seen).certificate]),
     ]
-    given = [*needs, consistent(run), repels]  # nothing below needs dq_r/dt = p_r: it is about the moving frame
+    given = [*needs, consistent(seen.run), repels]  # nothing below needs dq_r/dt = p_r: it is about the moving frame
     if unmet([repels]):
-        return given, [*claims, *vacuous(repels, _COLLISIONS)]
-    energy = float(run.energy()[0])
-    none = below_multiple(energy, error, run.law.gains.c1_alpha * run.law.alpha.c_star)
-    barrier = below_the_barrier(run, energy, error)  # U_λ >= c1α V: a bound of V will do
+        return given, [*claims, *(vacuous(name, repels) for name in _COLLISIONS)]
+    energy = seen.energy[0]
+    none = below_multiple(energy, seen.law.gains.c1_alpha * seen.law.alpha.c_star)
+    barrier = below_the_barrier(seen, energy)  # U_λ >= c1α V: a bound of V will do
     return [*given, none, barrier], [  # (iv) needs gains >= 0 only, which every run has
         *claims,
-        distinct_pairs(run, [repels], tolerances, name="iv-printed"),
-        pairs_at_one_instant(run, [repels], tolerances, name="iv-instant", proof="collisions"),
-        no_collision(run, [repels, none], tolerances, name="iv-none", proof="collisions"),
-        no_collision(run, [repels, barrier], tolerances, name="iv-barrier"),
+        distinct_pairs(seen, [repels], tolerances, name="iv-printed"),
+        pairs_at_one_instant(seen, [repels], tolerances, name="iv-instant", proof="collisions"),
+        no_collision(seen, [repels, none], tolerances, name="iv-none", proof="collisions"),
+        no_collision(seen, [repels, barrier], tolerances, name="iv-barrier"),
     ]
 
 

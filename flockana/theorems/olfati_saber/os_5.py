@@ -13,13 +13,13 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.dynamics.trajectory import Trajectory
 from flockana.lattice import classify, crossings, harborth, is_planar, kuratowski, links, planar_bound, separation
 from flockana.lattice.measure import GUARD
 from flockana.measures.metrics import min_distance
 from flockana.measures.nets import LinkArray, link_lengths
-from flockana.theorems.claims import judged
+from flockana.theorems.claims import by_count, counted, of_state, vacuous
 from flockana.theorems.hypotheses import condition, has_lattice
+from flockana.theorems.observed import Observed
 from flockana.theorems.rounding import EPS
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
 
@@ -96,9 +96,8 @@ def _far_apart(net: Net, length: float, name: str) -> Hypothesis:
 def uncrossed(net: Net, needs: list[Hypothesis], name: str, text: str) -> Claim:
     """The claim that no two links cross: exact for positions as stored; in space a clearance must exceed rounding."""
     count = net.crossing_count
-    if unmet(needs):
-        detail = f"{text}: {net.crossing_text}"
-        return Claim(name, "vacuous", computed=count, stated="no crossing", proof=_CROSSINGS, detail=detail)
+    if (missed := unmet(needs)) is not None:
+        return vacuous(name, missed, computed=count, stated="no crossing", proof=_CROSSINGS)
     if count:
         margin, error, which, near = -float(len(net.crossings)), 0.0, None, ""
     else:
@@ -106,7 +105,7 @@ def uncrossed(net: Net, needs: list[Hypothesis], name: str, text: str) -> Claim:
         margin, error = gap.distance / net.d, 2.0 * net.rounding / net.d
         which = None if gap.links is None else net.agents(gap.links)
         near = f"; links without a common agent stay {'at least ' if which is None else ''}{gap.distance:.4g} apart"
-    return judged(
+    return of_state(
         name,
         margin,
         error,
@@ -128,10 +127,9 @@ def _graph(net: Net, needs: list[Hypothesis]) -> Claim:
         witness = kuratowski(net.n, net.links)
     bound = planar_bound(net.n)
     subgraph = "" if witness is None else f", which holds a subdivided {witness.kind} of {len(witness.links)} links"
-    return judged(
+    return by_count(
         "i-graph",
-        1.0 if planar else -1.0,
-        0.0,
+        0 if planar else 1,
         needs,
         computed="planar" if planar else "not planar",
         stated="the graph of the net is planar (as printed)",
@@ -145,10 +143,11 @@ def _bound(
     net: Net, needs: list[Hypothesis], name: str, bound: int, text: str, *, proof: str | None = _COUNTS
 ) -> Claim:
     count = len(net.links)
-    return judged(
+    return counted(
         name,
-        bound - count + 0.5,
-        0.0,
+        bound,
+        count,
+        count,
         needs,
         computed=count,
         stated=f"at most {bound} links",
@@ -160,10 +159,9 @@ def _bound(
 
 def _incomplete(net: Net, needs: list[Hypothesis]) -> Claim:
     missing = net.n * (net.n - 1) // 2 - len(net.links)
-    return judged(
+    return by_count(
         "iii",
-        float(missing) - 0.5,
-        0.0,
+        0 if missing else 1,
         needs,
         computed=missing,
         stated="at least one pair is not linked",
@@ -185,7 +183,7 @@ def _quantitative(net: Net) -> Claim:
     """The claim that of two links that cross, of lengths at most ℓ, two agents are within ℓ/√2 of each other."""
     name, stated = "extension-quantitative", "of two crossing links of lengths at most ℓ, two agents are within ℓ/√2"
     if not len(net.crossings):
-        return Claim(name, "vacuous", computed=0, stated=stated, proof=_CROSSINGS, detail="no links cross")
+        return vacuous(name, "no links cross", computed=0, stated=stated, proof=_CROSSINGS)
     longest, shortest = crossing_lengths(net)
     spare = longest - 2.0 * shortest
     unclear = np.flatnonzero(np.abs(spare) <= _CERTAIN * longest)
@@ -193,13 +191,11 @@ def _quantitative(net: Net) -> Claim:
     failing = np.concatenate([np.flatnonzero(spare < -_CERTAIN * longest), unclear[~np.array(exact, dtype=bool)]])
     slack = np.sqrt(0.5 * longest) - np.sqrt(shortest)
     worst = int(failing[0]) if failing.size else int(np.argmin(slack))
-    return Claim(
+    return by_count(
         name,
-        "refuted" if failing.size else "verified",  # each sign is certain: in whole numbers where floats cannot tell
+        failing.size,  # each sign is certain: in whole numbers where floats cannot tell
         computed=net.crossing_count,
         stated=stated,
-        margin=0.5 - failing.size,
-        error=0.0,
         witness=net.agents(net.crossings[worst]),
         proof=_CROSSINGS,
         detail=f"{net.crossing_text}; the nearest pairs are within ℓ/√2 by {slack[worst] / net.d:.3g} d or more",
@@ -249,11 +245,11 @@ def check(q: FloatArray, d: float, r: float, tolerances: Tolerances) -> Checked:
     ]
 
 
-def _check_terminal(run: Trajectory, tolerances: Tolerances) -> Checked:
-    if run.law.lattice is None:
-        return [has_lattice(run)], []
-    d, r = run.law.lattice
-    return check(np.asarray(run.q[-1]), d, r, tolerances)
+def _check_terminal(seen: Observed, tolerances: Tolerances) -> Checked:
+    if seen.law.lattice is None:
+        return [has_lattice(seen)], []
+    d, r = seen.law.lattice
+    return check(np.asarray(seen.given.q[-1]), d, r, tolerances)
 
 
 _STATEMENT = (

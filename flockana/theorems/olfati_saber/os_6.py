@@ -10,6 +10,7 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.hypotheses import common_gains, law_with_common_gains
+from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.energy import balance, never_rises, proved, stays_outside
 from flockana.theorems.olfati_saber.gamma_agent import declared_rate_is_true, target_rests
 from flockana.theorems.rounding import EPS
@@ -24,16 +25,17 @@ def condition_76(run: Trajectory) -> FloatArray:
     return slack
 
 
-def _condition(run: Trajectory) -> tuple[Hypothesis, int]:
+def _condition(seen: Observed) -> tuple[Hypothesis, int]:
     """(76), and the first sample from which it holds to the end; the last sample if it does for too short a time.
 
     It must hold for the law's time scale at least: one instant at the end is no "from some t0 on". Where rounding
     decides, it is assumed to hold.
     """
-    slack = condition_76(run)
+    run, slack = seen.run, condition_76(seen.run)
     told = np.array([np.linalg.norm(run.law.target.state(float(t))[1]) for t in run.t])
     terms = 0.5 * np.sum(run.p**2, axis=(1, 2)) + 0.5 * told * lengths(run.p).sum(axis=1)
-    rounding = np.where(told > 0.0, (run.n + 8) * EPS * terms, 0.0)
+    off = seen.series(condition_76).half_width
+    rounding = np.where(told > 0.0, (run.n + 8) * EPS * terms + off, 0.0)
     broken = np.flatnonzero(slack < -rounding)
     since = 0 if broken.size == 0 else int(broken[-1]) + 1
     name = "(n/2)⟨p_c, p_d⟩ <= T from some t0 on (76)"
@@ -50,13 +52,14 @@ def _condition(run: Trajectory) -> tuple[Hypothesis, int]:
     return Hypothesis(name, "met" if sure else "assumed", float(slack[since:].min()), detail), since
 
 
-def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
-    slow_enough, since = _condition(run)
-    needs = [common_gains(run), target_rests(run, told=True), slow_enough, stays_outside(run)]
-    rate, proof = declared_rate_is_true(run), proved(run, "theorem6")
+def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+    run = seen.run
+    slow_enough, since = _condition(seen)
+    needs = [common_gains(seen), target_rests(run, told=True), slow_enough, stays_outside(seen)]
+    rate, proof = declared_rate_is_true(run), proved(seen, "theorem6")
     return [*needs, rate], [
-        never_rises(run, needs, since=since, proof=proof),
-        balance(run, [*needs, rate], tolerances, proof=proof),
+        never_rises(seen, needs, since=since, proof=proof),
+        balance(seen, [*needs, rate], tolerances, proof=proof),
     ]
 
 

@@ -1,0 +1,237 @@
+"""Interval arithmetic on observables: each number between two ends, with the best value in between."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError
+
+_ULPS = 4  # by which exp, log and powers of a processor's library may be off
+
+Real = Any  # a number, an array or an Enclosure
+
+
+@dataclass(frozen=True, eq=False)
+class Enclosure:
+    """Interval for each entry of an array: the quantity lies in [lo, hi], and `mid` is its best value.
+
+    All operations round outwards, so that a formula on enclosures encloses the formula. An end that is NaN, such as
+    ∞ − ∞, becomes infinite. Sums and differences that are exactly 0 stay 0.
+
+    Parameters
+    ----------
+    lo, mid, hi : array_like
+        Least, best and greatest value, of one shape.
+
+    Raises
+    ------
+    ArgumentError
+        If a lower end lies above an upper one.
+
+    Examples
+    --------
+    >>> x = Enclosure.around(2.0, 0.5)
+    >>> [round(float(end), 12) for end in ((1.0 / x).lo, (x * x - 4.0).hi, x.sqrt().mid)]
+    [0.4, 2.25, 1.414213562373]
+    """
+
+    lo: FloatArray
+    mid: FloatArray
+    hi: FloatArray
+
+    __array_ufunc__ = None  # a numpy array on the left leaves the operation to this class
+
+    def __post_init__(self) -> None:
+        mid = np.asarray(self.mid, dtype=np.float64)
+        lo, hi = (np.broadcast_to(np.asarray(end, dtype=np.float64), mid.shape) for end in (self.lo, self.hi))
+        lo, hi = np.where(np.isnan(lo), -np.inf, lo), np.where(np.isnan(hi), np.inf, hi)
+        if (lo > hi).any():
+            raise ArgumentError(f"lo = {lo[lo > hi][0]:g} above hi = {hi[lo > hi][0]:g}: expected lo <= hi")
+        for name, value in (("lo", lo), ("mid", mid), ("hi", hi)):
+            object.__setattr__(self, name, value)
+
+    @classmethod
+    def of(cls, x: Real) -> Enclosure:
+        """Return x itself, or the enclosure of exact numbers."""
+        return x if isinstance(x, Enclosure) else cls(x, x, x)
+
+    @classmethod
+    def around(cls, value: Real, half_width: Real = 0.0) -> Enclosure:
+        """Return the enclosure of half a width around a value; a half width of ∞ or NaN encloses everything."""
+        value, half = np.asarray(value, dtype=np.float64), np.asarray(half_width, dtype=np.float64)
+        with np.errstate(invalid="ignore"):
+            return _outward(value - half, value, value + half, exact=half == 0.0)
+
+    @classmethod
+    def between(cls, lo: Real, hi: Real) -> Enclosure:
+        """Return the enclosure of two ends, with the nearer finite end or the middle as best value."""
+        lo, hi = np.asarray(lo, dtype=np.float64), np.asarray(hi, dtype=np.float64)
+        with np.errstate(invalid="ignore"):
+            middle = np.where(np.isinf(lo), hi, np.where(np.isinf(hi), lo, 0.5 * lo + 0.5 * hi))
+        return cls(lo, middle, hi)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Shape of the array."""
+        return self.mid.shape
+
+    @property
+    def half_width(self) -> FloatArray:
+        """Distance from the best value to the farther end."""
+        with np.errstate(invalid="ignore"):
+            width: FloatArray = np.maximum(self.mid - self.lo, self.hi - self.mid)
+        return np.where(np.isnan(width), np.inf, width)
+
+    @property
+    def worst(self) -> Enclosure:
+        """The entry that decides whether none is negative, as a scalar enclosure; 1 of an empty array."""
+        if not self.mid.size:
+            return Enclosure.of(1.0)
+        k = self.worst_index
+        return Enclosure(self.lo.ravel()[k], self.mid.ravel()[k], self.hi.ravel()[k])
+
+    @property
+    def worst_index(self) -> int:
+        """Flat index of that entry: the most certainly negative one, else the one nearest to being so."""
+        return int(np.argmin(self.hi if (self.hi < 0.0).any() else self.lo))
+
+    def __getitem__(self, index: Any) -> Enclosure:
+        return Enclosure(self.lo[index], self.mid[index], self.hi[index])
+
+    def __neg__(self) -> Enclosure:
+        return Enclosure(-self.hi, -self.mid, -self.lo)
+
+    def __add__(self, other: Real) -> Enclosure:
+        x = Enclosure.of(other)
+        with np.errstate(invalid="ignore", over="ignore"):
+            return _outward(self.lo + x.lo, self.mid + x.mid, self.hi + x.hi)
+
+    def __sub__(self, other: Real) -> Enclosure:
+        return self + (-Enclosure.of(other))
+
+    def __rsub__(self, other: Real) -> Enclosure:
+        return Enclosure.of(other) - self
+
+    __radd__ = __add__
+
+    def __mul__(self, other: Real) -> Enclosure:
+        x = Enclosure.of(other)
+        ends = [_product(a, b) for a in (self.lo, self.hi) for b in (x.lo, x.hi)]
+        exact = ((self.lo == 0.0) & (self.hi == 0.0)) | ((x.lo == 0.0) & (x.hi == 0.0))
+        lo, hi = np.minimum.reduce(ends), np.maximum.reduce(ends)
+        sign = ((self.lo >= 0.0) & (x.lo >= 0.0)) | ((self.hi <= 0.0) & (x.hi <= 0.0))
+        made = _outward(lo, _product(self.mid, x.mid), hi, exact=exact, keep_zero=False)
+        return Enclosure(np.where(sign, np.maximum(made.lo, 0.0), made.lo), made.mid, made.hi)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Real) -> Enclosure:
+        x = Enclosure.of(other)
+        holds_zero = (x.lo <= 0.0) & (x.hi >= 0.0)
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            inverse = _outward(
+                np.where(holds_zero, -np.inf, 1.0 / x.hi),
+                1.0 / x.mid,
+                np.where(holds_zero, np.inf, 1.0 / x.lo),
+                keep_zero=False,
+            )
+            # a quotient of numbers of one sign keeps its sign, however small the divisor
+            lo = np.where(holds_zero & (x.lo >= 0.0), 0.0, inverse.lo)
+            made = self * Enclosure(lo, inverse.mid, inverse.hi)
+        return Enclosure(made.lo, np.where(x.mid == 0.0, np.nan, self.mid / np.where(x.mid == 0.0, 1.0, x.mid)), made.hi)
+
+    def __rtruediv__(self, other: Real) -> Enclosure:
+        return Enclosure.of(other) / self
+
+    def __abs__(self) -> Enclosure:
+        lo = np.where((self.lo <= 0.0) & (self.hi >= 0.0), 0.0, np.minimum(np.abs(self.lo), np.abs(self.hi)))
+        return Enclosure(lo, np.abs(self.mid), np.maximum(np.abs(self.lo), np.abs(self.hi)))
+
+    def square(self) -> Enclosure:
+        """Return x², at least 0."""
+        size = abs(self)
+        return size * size
+
+    def sqrt(self) -> Enclosure:
+        """Return √x, of the part of the enclosure that is not negative."""
+        return self.clip(0.0).rising(np.sqrt, ulps=1).clip(0.0)
+
+    def exp(self) -> Enclosure:
+        """Return e^x."""
+        return self.rising(np.exp).clip(0.0)
+
+    def log(self) -> Enclosure:
+        """Return ln x, of the part of the enclosure that is not negative; -∞ where it holds 0."""
+        return self.clip(0.0).rising(np.log)
+
+    def rising(self, function: Callable[[FloatArray], Any], *, ulps: int = _ULPS) -> Enclosure:
+        """Return a non-decreasing function, at both ends and in between, rounded outwards by so many ulp."""
+        with np.errstate(all="ignore"):
+            lo, mid, hi = (np.asarray(function(end), dtype=np.float64) for end in (self.lo, self.mid, self.hi))
+        return _outward(lo, mid, hi, ulps=ulps)
+
+    def falling(self, function: Callable[[FloatArray], Any], *, ulps: int = _ULPS) -> Enclosure:
+        """Return a non-increasing function, as `rising`."""
+        return -self.rising(lambda x: -np.asarray(function(x), dtype=np.float64), ulps=ulps)
+
+    def clip(self, least: float) -> Enclosure:
+        """Return max(x, least)."""
+        return Enclosure(*(np.maximum(end, least) for end in (self.lo, self.mid, self.hi)))
+
+    def widened(self, by: Real) -> Enclosure:
+        """Return the enclosure with both ends moved outwards by a number >= 0."""
+        by = np.asarray(by, dtype=np.float64)
+        with np.errstate(invalid="ignore"):
+            return _outward(self.lo - by, self.mid, self.hi + by, exact=by == 0.0)
+
+    def max(self, axis: int | None = None) -> Enclosure:
+        """Return the largest entry."""
+        return Enclosure(*(end.max(axis=axis) for end in (self.lo, self.mid, self.hi)))
+
+    def min(self, axis: int | None = None) -> Enclosure:
+        """Return the smallest entry."""
+        return Enclosure(*(end.min(axis=axis) for end in (self.lo, self.mid, self.hi)))
+
+    def sum(self, axis: int | None = None) -> Enclosure:
+        """Return the sum, widened by the rounding of so many terms."""
+        terms = self.mid.size if axis is None else self.mid.shape[axis]
+        sizes = np.maximum(np.abs(self.lo), np.abs(self.hi)).sum(axis=axis)
+        with np.errstate(invalid="ignore", over="ignore"):
+            made = Enclosure(*(end.sum(axis=axis) for end in (self.lo, self.mid, self.hi)))
+            return made.widened(terms * np.finfo(float).eps * sizes)
+
+    def largest_so_far(self) -> Enclosure:
+        """Return the largest entry up to each, along the first axis."""
+        return Enclosure(*(np.maximum.accumulate(end, axis=0) for end in (self.lo, self.mid, self.hi)))
+
+
+def stacked(enclosures: Any) -> Enclosure:
+    """Return several enclosures along a new first axis."""
+    given = [Enclosure.of(x) for x in enclosures]
+    return Enclosure(*(np.stack([getattr(x, end) for x in given]) for end in ("lo", "mid", "hi")))
+
+
+def _product(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Product with 0 times ∞ as 0: an end that is infinite stands for arbitrarily large numbers."""
+    with np.errstate(invalid="ignore", over="ignore", under="ignore"):
+        product: FloatArray = a * b
+    return np.where((a == 0.0) | (b == 0.0), 0.0, product)
+
+
+def _outward(
+    lo: Any, mid: Any, hi: Any, *, ulps: int = 1, exact: Any = False, keep_zero: bool = True
+) -> Enclosure:
+    """Enclosure of computed ends, moved outwards by their rounding; ends that are exact, or exactly 0, stay."""
+    lo, hi = np.asarray(lo, dtype=np.float64), np.asarray(hi, dtype=np.float64)
+    down, up = lo, hi
+    for _ in range(ulps):
+        down, up = np.nextafter(down, -np.inf), np.nextafter(up, np.inf)
+    stay: npt.NDArray[np.bool_] = np.asarray(exact, dtype=np.bool_)
+    low_stays, high_stays = (stay | (end == 0.0) if keep_zero else stay for end in (lo, hi))
+    return Enclosure(np.where(low_stays, lo, down), mid, np.where(high_stays, hi, up))

@@ -1,0 +1,440 @@
+"""A run with what is known of its error: enclosures of what can be observed on it, from the run and a second one.
+
+The second run starts alike and is a hundred times tighter, or looser where that cannot be. By how much the two differ,
+doubled, encloses the state: each agent seen from the centre of mass, and the centre apart, at worst within one time
+unit of the law before and after. No half width is below the solver's own floors. The start is exact, and so is the
+orbit of a map, but for rounding. A run that failed, and one whose second run ends early, encloses nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.base.scales import Scales
+from flockana.base.vectors import centres, lengths
+from flockana.dynamics.between import Between
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.tolerance import FINEST, Floors
+from flockana.dynamics.trajectory import Trajectory
+from flockana.laws.discrete import DiscreteLaw
+from flockana.theorems.enclosure import Enclosure
+from flockana.theorems.rounding import EPS, energy_rounding
+from flockana.theorems.theorem import Claim, Status
+
+TIGHTER = 1e-2  # the second run's tolerances over the first's
+DOUBT = 2.0  # times what two runs differ by: all of the error, if the tighter one's is at most half as large
+RK4_SECOND = 1e-10  # relative tolerance of the second run of one with a fixed step
+_MOST = 2**23  # numbers of the second run that are kept at the steps of the first
+_LOW_ORDER = ("RK23", "RK45")  # methods that take many times the steps of DOP853 to a tight tolerance
+
+
+class End(NamedTuple):
+    """Last state of a run: positions and velocities, and how far each may be off, seen from the centre of mass."""
+
+    q: FloatArray
+    p: FloatArray
+    q_error: FloatArray
+    p_error: FloatArray
+
+    @property
+    def distance(self) -> float:
+        """Largest distance from the true state, over all coordinates."""
+        return float(np.linalg.norm(self.q_error))
+
+
+class _Errors(NamedTuple):
+    """Half widths of x_i − x_c, of v_i − v_c, shape (S, n), and of x_c and v_c, shape (S,), at some times."""
+
+    t: FloatArray
+    shape: FloatArray
+    speed: FloatArray
+    centre: FloatArray
+    drift: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Observed:
+    """A run and a second one from the same start, with enclosures of what both show.
+
+    Parameters
+    ----------
+    given : Trajectory
+        The run that is judged.
+    run : Trajectory
+        The tighter of the two, at the same samples: best values are its own.
+    other : Trajectory
+        The looser of the two.
+    errors : tuple
+        Half widths at the steps that both have in common.
+    doubt : str
+        Why nothing is known, or an empty text.
+    """
+
+    given: Trajectory
+    run: Trajectory
+    other: Trajectory
+    errors: _Errors
+    doubt: str = ""
+
+    @classmethod
+    def of(cls, run: Trajectory) -> Observed:
+        """Return a run as observed, with its second run; kept with the run."""
+        return run.remembered("observed", lambda: _observed(run))
+
+    @classmethod
+    def alone(cls, run: Trajectory) -> Observed:
+        """Return a run as if it were exact but for rounding: of one of two runs whose claims are compared."""
+        zeros = np.zeros((len(run.t), run.n))
+        return cls(run, run, run, _Errors(run.t, zeros, zeros, zeros[:, 0], zeros[:, 0]), _own_doubt(run))
+
+    @property
+    def law(self) -> Any:
+        """The law."""
+        return self.run.law
+
+    @property
+    def n(self) -> int:
+        """Number of agents."""
+        return self.run.n
+
+    @property
+    def m(self) -> int:
+        """Dimension of space."""
+        return self.run.m
+
+    @property
+    def scales(self) -> Scales:
+        """The law's natural length and time."""
+        return self.run.scales
+
+    @property
+    def t(self) -> FloatArray:
+        """Sample times, shape (T,)."""
+        return self.run.t
+
+    @property
+    def is_map(self) -> bool:
+        """Whether the law is a map, which has no state between its steps."""
+        return isinstance(self.law, DiscreteLaw)
+
+    @property
+    def floors(self) -> Floors:
+        """Least errors of the looser run: of a place, a speed and the work."""
+        return self.other.floors
+
+    # half widths ---------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def shape_error(self) -> FloatArray:
+        """Half width of ‖q_i − q_c‖ of each agent at each sample, shape (T, n)."""
+        return self._at_samples(self.errors.shape, _rounding(self.run.q))
+
+    @cached_property
+    def speed_error(self) -> FloatArray:
+        """Half width of ‖p_i − p_c‖ of each agent at each sample, shape (T, n)."""
+        return self._at_samples(self.errors.speed, _rounding(self.run.p))
+
+    @cached_property
+    def centre_error(self) -> FloatArray:
+        """Half width of q_c at each sample, shape (T,)."""
+        return self._at_samples(self.errors.centre, _rounding(self.run.q))
+
+    @cached_property
+    def drift_error(self) -> FloatArray:
+        """Half width of p_c at each sample, shape (T,)."""
+        return self._at_samples(self.errors.drift, _rounding(self.run.p))
+
+    def _at_samples(self, errors: FloatArray, rounding: float) -> FloatArray:
+        widths = self._windowed(errors, self.t, self.t)
+        if self.begins_exactly:
+            widths[0] = 0.0
+        return widths + rounding
+
+    @property
+    def begins_exactly(self) -> bool:
+        """Whether the first sample is the start itself."""
+        return not self.doubt and bool(self.t[0] == self.errors.t[0])
+
+    def window(self, start: float, end: float) -> Observed:
+        """Return the part of the run within some times, with what is known of its error there."""
+        parts = (run.window(start, end) for run in (self.given, self.run, self.other))
+        return Observed(*parts, self.errors, self.doubt)
+
+    def _windowed(self, errors: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
+        """Largest half width from one law time before each start to one after each end."""
+        if self.is_map:
+            return np.zeros((len(start), *errors.shape[1:]))
+        unit, times = self.run.scales.time, self.errors.t
+        first = np.searchsorted(times, start - unit)
+        return _largest(errors, first, np.maximum(np.searchsorted(times, end + unit, side="right"), first + 1))
+
+    @cached_property
+    def between_error(self) -> FloatArray:
+        """Half width of any q_i − q_c over each interval between samples, shape (T − 1,)."""
+        worst = self._windowed(self.errors.shape, self.t[:-1], self.t[1:]).max(axis=1)
+        return worst + _rounding(self.run.q)
+
+    @cached_property
+    def between_speed_error(self) -> FloatArray:
+        """Half width of any p_i − p_c over each interval between samples, shape (T − 1,)."""
+        worst = self._windowed(self.errors.speed, self.t[:-1], self.t[1:]).max(axis=1)
+        return worst + _rounding(self.run.p)
+
+    # observables ---------------------------------------------------------------------------------------------------
+
+    def series(self, observable: Callable[[Trajectory], Any], *, floor: Any = 0.0) -> Enclosure:
+        """Return an observable over time, enclosed by its own difference between the two runs.
+
+        Parameters
+        ----------
+        observable : callable
+            Of a run: the series, shape (T, ...).
+        floor : float or ndarray
+            Least half width: rounding, and what the solver allows.
+        """
+        best, loose = (np.asarray(observable(run), dtype=np.float64) for run in (self.run, self.other))
+        if self.doubt or len(best) != len(loose):
+            return Enclosure.around(best, np.inf)
+        with np.errstate(invalid="ignore"):
+            apart = DOUBT * np.abs(best - loose)
+        if not self.is_map:
+            unit = self.run.scales.time
+            first = np.searchsorted(self.t, self.t - unit)
+            apart = _largest(apart, first, np.searchsorted(self.t, self.t + unit, side="right"))
+            if self.begins_exactly:
+                apart[0] = 0.0
+        return Enclosure.around(best, apart + floor)
+
+    @cached_property
+    def energy(self) -> Enclosure:
+        """H at each sample, shape (T,)."""
+        floor = np.where(self.t == self.errors.t[0], 0.0, self.floors.work)
+        return self.series(Trajectory.energy, floor=floor + energy_rounding(self.run))
+
+    @cached_property
+    def residual(self) -> Enclosure:
+        """H − ∫ dH/dt less that of the start, at each sample, shape (T,)."""
+        rounding = 2.0 * energy_rounding(self.run) + _work_rounding(self.run)
+        return self.series(lambda run: run.energy_residual, floor=self.floors.work + rounding)
+
+    @cached_property
+    def distances_from_centre(self) -> Enclosure:
+        """‖q_i − q_c‖ at each sample, shape (T, n)."""
+        return Enclosure.around(lengths(_centred(self.run.q)), self.shape_error).clip(0.0)
+
+    @cached_property
+    def radius(self) -> Enclosure:
+        """Cohesion radius at each sample, shape (T,)."""
+        return self.distances_from_centre.max(axis=1)
+
+    @cached_property
+    def relative_speeds(self) -> Enclosure:
+        """‖p_i − p_c‖ at each sample, shape (T, n)."""
+        return Enclosure.around(lengths(_centred(self.run.p)), self.speed_error).clip(0.0)
+
+    @cached_property
+    def spread(self) -> Enclosure:
+        """√Σ‖q_i − q_c‖² at each sample, shape (T,)."""
+        return _norm(_centred(self.run.q), self.shape_error)
+
+    @cached_property
+    def velocity_spread(self) -> Enclosure:
+        """√Σ‖p_i − p_c‖² at each sample, shape (T,)."""
+        return _norm(_centred(self.run.p), self.speed_error)
+
+    @cached_property
+    def mismatch(self) -> Enclosure:
+        """Normalised velocity mismatch K̃ = Σ‖p_i − p_c‖²/2n at each sample, shape (T,)."""
+        return self.velocity_spread.square() / (2.0 * self.n)
+
+    def distances(self, i: Any, j: Any) -> Enclosure:
+        """Return distances of pairs of agents at each sample, shape (T, pairs).
+
+        Parameters
+        ----------
+        i, j : int array
+            The pairs.
+        """
+        apart = lengths(self.run.q[:, j] - self.run.q[:, i])
+        return Enclosure.around(apart, self.shape_error[:, i] + self.shape_error[:, j]).clip(0.0)
+
+    @cached_property
+    def end(self) -> End:
+        """The last state."""
+        return End(self.run.q[-1], self.run.p[-1], self.shape_error[-1], self.speed_error[-1])
+
+    # spans ---------------------------------------------------------------------------------------------------------
+
+    def known_samples(self, known: Any) -> int:
+        """Return how many samples from the start on are known, without a gap; 0 if they span less than a law time.
+
+        Parameters
+        ----------
+        known : bool array, shape (T,)
+            Whether something is known at each sample.
+        """
+        unknown = np.flatnonzero(~np.asarray(known))
+        count = int(unknown[0]) if unknown.size else len(self.t)
+        whole = count == len(self.t) and count > 1
+        long_enough = count > 1 and self.t[count - 1] - self.t[0] >= self.run.scales.time
+        return count if whole or long_enough else 0
+
+    def until(self, count: int) -> str:
+        """Return up to which time the first so many samples reach, in words."""
+        return f"to t = {self.t[count - 1]:.4g}" if count else "at no time"
+
+
+def _observed(run: Trajectory) -> Observed:
+    if isinstance(run.law, DiscreteLaw):
+        return Observed(run, run, run, _nothing_known(run), _own_doubt(run))
+    doubt = _own_doubt(run)
+    if doubt:
+        return Observed(run, run, run, _nothing_known(run), doubt)
+    steps, states = _steps_in_common(run)
+    tight = "rtol" not in run.stats or TIGHTER * run.stats["rtol"] >= FINEST
+    again = integrated(run, 0, steps, TIGHTER if tight else 1.0 / TIGHTER)
+    if again.status != "complete" or len(again.t) != len(steps):
+        kind = "tighter" if tight else "looser"
+        doubt = f"a {kind} second run ended at t = {again.t[-1]:.6g}: {again.message}"
+        return Observed(run, run, run, _nothing_known(run), doubt)
+    errors = _errors(again, states)
+    thinned = _at_samples_of(again, run.t)
+    first, second = (thinned, run) if tight else (run, thinned)
+    found = Observed(run, first, second, errors)
+    low = found.floors
+    widened = _Errors(
+        errors.t, errors.shape + low.place, errors.speed + low.speed, errors.centre + low.place, errors.drift + low.speed
+    )
+    return replace(found, errors=widened)
+
+
+def with_doubt(claims: Iterable[Claim], seen: Observed) -> tuple[Claim, ...]:
+    """Return claims with the reason why nothing is known of a run, if so; a failed run decides nothing at all."""
+    if not seen.doubt:
+        return tuple(claims)
+    failed = seen.given.status == "failed"
+    told: list[Claim] = []
+    for claim in claims:
+        decided = claim.status in ("verified", "refuted") and failed and claim.rigour != "symbolic"
+        status: Status = "inconclusive" if decided else claim.status
+        detail = f"{claim.detail}; {seen.doubt}" if status == "inconclusive" else claim.detail
+        told.append(replace(claim, status=status, detail=detail.lstrip("; ")))
+    return tuple(told)
+
+
+def by_both_runs(seen: Observed, check: Callable[[Trajectory], Claim]) -> Claim:
+    """Return a claim that a function makes of one run, its margin enclosed by the difference between the two runs.
+
+    For margins that are observables themselves. What is nonlinear in an error, such as a logarithm of what decays, is
+    made from enclosures of its parts instead.
+    """
+    best, other = check(seen.run), check(seen.other)
+    if best.margin is None or best.status not in ("verified", "refuted"):
+        return best
+    apart = abs(best.margin - other.margin) if other.margin is not None else np.inf
+    error = (best.error or 0.0) + (DOUBT * apart if best.margin != other.margin else 0.0)
+    if other.status == best.status and abs(best.margin) > error:
+        return replace(best, error=error)
+    detail = f"{best.detail}; the second run reads {other.status}, and differs by {apart:.2g}"
+    return replace(best, status="inconclusive", error=error, detail=detail.lstrip("; "))
+
+
+def _own_doubt(run: Trajectory) -> str:
+    if run.status == "failed":
+        return f"the run failed: {run.message}"
+    return "one sample shows no motion" if len(run.t) == 1 else ""
+
+
+def _nothing_known(run: Trajectory) -> _Errors:
+    unknown = np.full((1, run.n), np.inf)
+    return _Errors(run.t[:1], unknown, unknown, unknown[:, 0], unknown[:, 0])
+
+
+def _steps_in_common(run: Trajectory) -> tuple[FloatArray, tuple[FloatArray, FloatArray]]:
+    """Times at which the two runs are compared, samples and steps of the first, and its states there."""
+    path = run.path
+    stride = max(1, int(np.ceil(3.0 * path.q.size / _MOST)))
+    keep = np.isin(path.t, run.t)
+    keep[::stride] = True
+    return path.t[keep], (path.q[keep], path.p[keep])
+
+
+def _errors(again: Trajectory, states: tuple[FloatArray, FloatArray]) -> _Errors:
+    """Half widths from the difference of two runs at their common times."""
+    apart = [(_centred(x - y), centres(x - y)) for x, y in zip((again.q, again.p), states, strict=True)]
+    (shape, centre), (speed, drift) = ((DOUBT * lengths(a), DOUBT * lengths(b)) for a, b in apart)
+    return _Errors(again.t, shape, speed, centre, drift)
+
+
+def _at_samples_of(run: Trajectory, t: FloatArray) -> Trajectory:
+    """The run at some of its samples, the others kept as steps between them."""
+    if len(t) == len(run.t):
+        return run
+    keep, path = np.isin(run.t, t), run.path
+    between = ~np.isin(path.t, t)
+    extra = {name: series[keep] for name, series in run.extra.items()}
+    steps = Between(path.t[between], path.q[between], path.p[between], path.u[between], path.slack)
+    return replace(run, t=run.t[keep], q=run.q[keep], p=run.p[keep], u=run.u[keep], extra=extra, between=steps)
+
+
+def integrated(
+    run: Trajectory, first: int, times: FloatArray, factor: float, *, own_step: bool = False
+) -> Trajectory:
+    """Return the law integrated from a sample of a run through some times, its tolerances multiplied by a factor.
+
+    A run with a fixed step is followed by an adaptive method, or with `own_step` by its own.
+    """
+    stats, span = run.stats, (float(times[0]), float(times[-1]))
+    options: dict[str, Any] = {"method": "DOP853", "rtol": RK4_SECOND}
+    if "rtol" in stats:
+        method = stats.get("method", "DOP853")
+        options = {"method": "DOP853" if method in _LOW_ORDER else method, "rtol": max(factor * stats["rtol"], FINEST)}
+        options["atol"] = _scaled(stats.get("atol"), factor)
+    elif own_step and "dt" in stats:
+        options = {"method": "RK4", "dt": stats["dt"]}
+    return simulate(run.law, run.q[first], run.p[first], span, t_eval=times, **options)
+
+
+def _scaled(atol: Any, factor: float) -> Any:
+    """An absolute tolerance, one number or several, multiplied by a factor; None stays None."""
+    return None if atol is None else tuple(factor * x for x in atol) if isinstance(atol, tuple) else factor * atol
+
+
+def _centred(x: FloatArray) -> FloatArray:
+    centred: FloatArray = x - centres(x)[:, None]
+    return centred
+
+
+def _norm(x: FloatArray, errors: FloatArray) -> Enclosure:
+    """Norm over all agents of vectors, each known to an error."""
+    sizes = Enclosure.around(lengths(x), 0.0).square().sum(axis=1).sqrt()
+    return sizes.widened(np.linalg.norm(errors, axis=1)).clip(0.0)
+
+
+def _rounding(x: FloatArray) -> float:
+    """Rounding of each x_i − x_c, x_c a mean of n numbers."""
+    return float((x.shape[1] + 4) * EPS * np.abs(x).max())
+
+
+def _work_rounding(run: Trajectory) -> float:
+    return float(run.stats.get("steps", len(run.t)) * EPS * np.abs(run.extra["work"]).max())
+
+
+def _largest(values: FloatArray, first: Any, stop: Any) -> FloatArray:
+    """Largest of the rows from `first` to before `stop`, one result for each range, by ranges of doubled lengths."""
+    first, stop = np.asarray(first), np.minimum(stop, len(values))
+    first = np.minimum(first, stop - 1)
+    level = np.floor(np.log2(stop - first)).astype(int)
+    largest, table, size = np.empty((len(first), *values.shape[1:])), values, 1
+    for k in range(int(level.max(initial=0)) + 1):
+        here = np.flatnonzero(level == k)
+        largest[here] = np.maximum(table[first[here]], table[stop[here] - size])
+        table = np.maximum(table[:-size], table[size:]) if len(table) > size else table
+        size *= 2
+    return largest

@@ -1,0 +1,40 @@
+"""Rigour of the executable proofs that claims name; a test holds the table against the proofs themselves."""
+
+from __future__ import annotations
+
+from flockana.theorems.theorem import Rigour
+
+RIGOUR: dict[str, Rigour] = {
+    "barrier": "interval",
+    "bearing-distance": "smt",
+    "bearing-distance-printed": "smt",
+    "certified-basins": "symbolic",
+    "cohesion": "smt",
+    "collisions": "smt",
+    "compressed-patches": "interval",
+    "constant-acceleration": "symbolic",
+    "cucker-smale": "smt",
+    "dead-zone": "smt",
+    "delayed-consensus": "interval",
+    "deviation-energy": "symbolic",
+    "distinct-pairs": "interval",
+    "double-agent": "interval",
+    "energy-identities": "symbolic",
+    "headings": "smt",
+    "informed-agents": "smt",
+    "links-kept": "smt",
+    "n-max": "interval",
+    "net-measures": "smt",
+    "nonplanar-fcc": "symbolic",
+    "second-order-modes": "smt",
+    "smoothness": "symbolic",
+    "speed-bound": "interval",
+    "stand-off": "symbolic",
+    "strained-thirteen": "interval",
+    "tanner": "smt",
+    "theorem5-counts": "smt",
+    "theorem5-crossings": "smt",
+    "theorem6": "smt",
+    "tracking-gain": "interval",
+    "turned-axes": "symbolic",
+}
