@@ -61,7 +61,16 @@ def judged(
     """
     by_numbers, worst = _status_of(margin, about), margin.worst
     return concluded(
-        name, by_numbers, worst, needs, about=about, rigour=rigour, proof=proof, disproof=disproof, detail=detail, **fields
+        name,
+        by_numbers,
+        worst,
+        needs,
+        about=about,
+        rigour=rigour,
+        proof=proof,
+        disproof=disproof,
+        detail=detail,
+        **fields,
     )
 
 

@@ -7,7 +7,7 @@ from flockana.equilibria.solve import find_equilibrium
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.stability.delay import DelaySystem, delay_margin, delay_system, rightmost_roots, root_error, scalar_margin
-from flockana.theorems.claims import judged
+from flockana.theorems.claims import of_state
 from flockana.theorems.rounding import EPS
 from flockana.theorems.theorem import Checked, Claim, Theorem, Tolerances
 
@@ -31,7 +31,7 @@ def _pair(law: Algorithm1) -> Claim:
     stiffness, damping = (float(matrix[0, 0] - matrix[0, 1]) for matrix in system.late)
     swept, exact = delay_margin(system).delay, scalar_margin(stiffness, damping).delay
     off = abs(swept - exact) / exact
-    return judged(
+    return of_state(
         "pair",
         _ALIKE - off,
         64.0 * EPS,
@@ -49,7 +49,7 @@ def _delay(law: Algorithm1 | Algorithm2, delayed: str) -> Claim:
     critical = delay_margin(system)
     below, error_below = _rightmost(system, (1.0 - _AROUND) * critical.delay)
     above, error_above = _rightmost(system, (1.0 + _AROUND) * critical.delay)
-    return judged(
+    return of_state(
         f"algorithm-{kind}-{delayed}",
         *min((-below, error_below), (above, error_above)),
         computed={"n": len(q), "delay": critical.delay, "frequency": critical.frequency},

@@ -144,7 +144,9 @@ class Enclosure:
             # a quotient of numbers of one sign keeps its sign, however small the divisor
             lo = np.where(holds_zero & (x.lo >= 0.0), 0.0, inverse.lo)
             made = self * Enclosure(lo, inverse.mid, inverse.hi)
-        return Enclosure(made.lo, np.where(x.mid == 0.0, np.nan, self.mid / np.where(x.mid == 0.0, 1.0, x.mid)), made.hi)
+        return Enclosure(
+            made.lo, np.where(x.mid == 0.0, np.nan, self.mid / np.where(x.mid == 0.0, 1.0, x.mid)), made.hi
+        )
 
     def __rtruediv__(self, other: Real) -> Enclosure:
         return Enclosure.of(other) / self
@@ -224,9 +226,7 @@ def _product(a: FloatArray, b: FloatArray) -> FloatArray:
     return np.where((a == 0.0) | (b == 0.0), 0.0, product)
 
 
-def _outward(
-    lo: Any, mid: Any, hi: Any, *, ulps: int = 1, exact: Any = False, keep_zero: bool = True
-) -> Enclosure:
+def _outward(lo: Any, mid: Any, hi: Any, *, ulps: int = 1, exact: Any = False, keep_zero: bool = True) -> Enclosure:
     """Enclosure of computed ends, moved outwards by their rounding; ends that are exact, or exactly 0, stay."""
     lo, hi = np.asarray(lo, dtype=np.float64), np.asarray(hi, dtype=np.float64)
     down, up = lo, hi

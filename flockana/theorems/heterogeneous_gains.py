@@ -10,7 +10,7 @@ from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_spiral
 from flockana.stability.design import GainDesign, design_gains, gain_problem
 from flockana.stability.rounding import eigen
-from flockana.theorems.claims import judged
+from flockana.theorems.claims import of_state
 from flockana.theorems.theorem import Checked, Claim, Theorem, Tolerances
 
 _WORTH = 0.01  # gain in the rate that counts: both searches end at roots that coalesce, and near the best only
@@ -31,11 +31,11 @@ def _design(name: str, n: int, options: dict[str, Any], words: str) -> Claim:
     alpha = AlphaInteraction()
     problem = gain_problem(hexagonal_spiral(n, alpha.d), alpha=alpha, gains=Gains(), **options)
     best = design_gains(problem, starts=1)
-    return judged(
+    return of_state(
         name,
         best.ratio - 1.0 - _WORTH,
         _ratio_error(best),
-        refutes=False,
+        about="limit",
         computed={"n": n, "alike": best.rate_homogeneous, "per agent": best.rate_heterogeneous},
         stated="gains of its own for each agent make the slowest mode die out faster than one pair for all, by "
         f"more than {_WORTH:.0%}",

@@ -208,7 +208,6 @@ def alpha_gain(run: Observed) -> list[Hypothesis]:
     return [*([common_gains(run)] if run.law.target is not None else []), positive(run, c1_alpha="c1α")]
 
 
-
 def positive_room(name: str, room: Enclosure, detail: str) -> Hypothesis:
     """Return the hypothesis that a number is positive: assumed where its enclosure holds 0.
 

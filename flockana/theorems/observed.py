@@ -309,9 +309,31 @@ def _observed(run: Trajectory) -> Observed:
     found = Observed(run, first, second, errors)
     low = found.floors
     widened = _Errors(
-        errors.t, errors.shape + low.place, errors.speed + low.speed, errors.centre + low.place, errors.drift + low.speed
+        errors.t,
+        errors.shape + low.place,
+        errors.speed + low.speed,
+        errors.centre + low.place,
+        errors.drift + low.speed,
     )
     return replace(found, errors=widened)
+
+
+def observed(law: Any, q0: Any, p0: Any, t_span: tuple[float, float], **options: Any) -> Observed:
+    """Return a run of a law as observed: what errata show their cases on.
+
+    Parameters
+    ----------
+    law, q0, p0, t_span, **options
+        As `flockana.simulate` takes them.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> seen = observed(Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 1.0))
+    >>> bool(0.0 < seen.radius.half_width[-1] < 1e-6)
+    True
+    """
+    return Observed.of(simulate(law, q0, p0, t_span, **options))
 
 
 def with_doubt(claims: Iterable[Claim], seen: Observed) -> tuple[Claim, ...]:
@@ -383,9 +405,7 @@ def _at_samples_of(run: Trajectory, t: FloatArray) -> Trajectory:
     return replace(run, t=run.t[keep], q=run.q[keep], p=run.p[keep], u=run.u[keep], extra=extra, between=steps)
 
 
-def integrated(
-    run: Trajectory, first: int, times: FloatArray, factor: float, *, own_step: bool = False
-) -> Trajectory:
+def integrated(run: Trajectory, first: int, times: FloatArray, factor: float, *, own_step: bool = False) -> Trajectory:
     """Return the law integrated from a sample of a run through some times, its tolerances multiplied by a factor.
 
     A run with a fixed step is followed by an adaptive method, or with `own_step` by its own.

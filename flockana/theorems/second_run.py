@@ -89,7 +89,9 @@ def _ensure_leads_on(run: Trajectory, k: int) -> None:
     if run.status == "failed" and k == len(run.t) - 2:
         return
     try:
-        near, exact = (integrated(run, k, run.t[k : k + 2], factor, own_step=factor == 1.0) for factor in (1.0, TIGHTER))
+        near, exact = (
+            integrated(run, k, run.t[k : k + 2], factor, own_step=factor == 1.0) for factor in (1.0, TIGHTER)
+        )
     except FlockanaError:  # the state may be one from which no run may start
         return
     if len(near.t) < 2 or len(exact.t) < 2:

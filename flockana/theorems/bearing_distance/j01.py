@@ -12,7 +12,7 @@ from flockana.measures.nets import components
 from flockana.measures.perception import Edges, edge_vectors, random_out_tree
 from flockana.theorems.bearing_distance.tree_case import TreeCase, tree_case
 from flockana.theorems.bearing_distance.tree_limits import length_kept, settles
-from flockana.theorems.claims import erratum, judged
+from flockana.theorems.claims import erratum, of_state
 from flockana.theorems.limits import limit_claim
 from flockana.theorems.shares import CONFIDENCE, INTERVAL_ERROR, interval
 from flockana.theorems.theorem import Claim, Tolerances
@@ -67,11 +67,11 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     (least, most), (low, high) = interval(settled, _TREES), interval(vanished, _TREES)
     case = {"trees": _TREES, "agents": f"2 to {_MOST_AGENTS}", "seed": _SEED, "t": _END}
     return [
-        judged(
+        of_state(
             "printed",
             high - 1.0,
             INTERVAL_ERROR,
-            verifies=False,
+            about="all",
             computed={"trees whose edges might all vanish": vanished, "interval": [low, high]},
             stated="|x_e| -> 0 on every edge of every spanning tree (share 1)",
             witness=case | {"shortest edge at the end": float(lengths.min())},

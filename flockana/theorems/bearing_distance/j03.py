@@ -9,7 +9,7 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import both_ways
-from flockana.theorems.claims import erratum, exact, judged
+from flockana.theorems.claims import erratum, exact, of_state
 from flockana.theorems.theorem import Claim, Tolerances
 
 _EIGENVALUES = 1e-6  # of matrices of 6 rows and entries up to 4000, well apart: 1e-12 of these entries times 100
@@ -64,7 +64,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     error, abscissa = _pairing(400.0)
     _, stiffer = _pairing(4000.0)
     return [
-        judged(
+        of_state(
             "printed",
             -error,
             _EIGENVALUES,
@@ -75,7 +75,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             detail=f"on an undirected path the best pairing misses an eigenvalue by {error:.3f}: the matrices do not "
             "commute",
         ),
-        judged(
+        of_state(
             "hurwitz",
             -stiffer,
             _EIGENVALUES,

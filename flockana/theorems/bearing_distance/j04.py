@@ -6,7 +6,7 @@ import numpy as np
 
 from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import edge_vectors, incidence, receivers
-from flockana.theorems.claims import equal, erratum, judged
+from flockana.theorems.claims import equal, erratum, of_state
 from flockana.theorems.theorem import Claim, Tolerances
 
 _TREE = ((0, 1), (1, 2), (1, 3), (0, 4))
@@ -32,7 +32,7 @@ def _loop() -> Claim:
     error, undirected = (
         float(np.abs(-left * w @ D.T @ q - left @ D.T @ p - u).max()) for left in (D_in, D)
     )  # W^a = I on a tree
-    return judged(
+    return of_state(
         "loop",
         _SAME - error / float(np.abs(u).max()),
         _ROUNDING,

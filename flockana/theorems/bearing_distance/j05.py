@@ -8,7 +8,7 @@ from flockana.base.checks import FloatArray
 from flockana.dynamics.simulate import simulate
 from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import both_ways, incidence
-from flockana.theorems.claims import erratum, judged
+from flockana.theorems.claims import erratum, of_state
 from flockana.theorems.limits import Certificate, limit_claim
 from flockana.theorems.theorem import Claim, Tolerances
 
@@ -47,11 +47,11 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     )
     off = float(np.abs(ends[:, 1:3] - 1.0).min())
     return [
-        judged(
+        of_state(
             "printed",
             -min(off, attracted.margin),
             attracted.error,
-            verifies=False,
+            about="all",
             refutes=attracted.margin > 0.0,
             computed={"edges": float(ends[:, 1:3].mean()), "wanted by the ends": 1.0, "wanted by the middle": 2.0},
             stated="| |x_e| - α_i r_i | -> 0 for all agents, with α_i r_i = |N_i|",

@@ -10,7 +10,7 @@ from flockana.base.vectors import lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.theorems.bearing_distance.random_starts import runs_from_random_starts
-from flockana.theorems.claims import erratum, judged
+from flockana.theorems.claims import erratum, of_state
 from flockana.theorems.shares import always, mostly
 from flockana.theorems.theorem import Claim, Tolerances
 
@@ -49,7 +49,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     ]
     near = 0.05 * law.desired_speed
     return [
-        judged(
+        of_state(
             "step",
             _SAME - off,
             _ROUNDING,
@@ -59,7 +59,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             proof="speed-bound",
             detail=f"applied to the state, (10) makes a speed of 3 into {step:.4g} in every step: a drag",
         ),
-        judged(
+        of_state(
             "reachable",
             shortfall,
             _ROUNDING,

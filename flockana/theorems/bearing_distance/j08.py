@@ -7,7 +7,7 @@ import numpy as np
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.measures.nets import components, links
 from flockana.theorems.bearing_distance.random_starts import SEEDS, runs_from_random_starts, zone_start
-from flockana.theorems.claims import erratum, judged
+from flockana.theorems.claims import erratum, of_state
 from flockana.theorems.shares import always, mostly
 from flockana.theorems.theorem import Claim, Tolerances
 
@@ -22,7 +22,7 @@ def _forms(tolerances: Tolerances) -> Claim:
         position, bearing = (ZoneFlocking(form=form).behaviours(q, p) for form in ("position", "bearing"))
         largest = max(float(np.abs(term).max()) for term in position.values())
         worst = max(worst, *(float(np.abs(position[name] - bearing[name]).max()) / largest for name in position))
-    return judged(
+    return of_state(
         "forms",
         _SAME - worst,
         _ROUNDING,

@@ -9,7 +9,7 @@ from flockana.environment.zone_world import Alien, ZoneWorld
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.theorems.bearing_distance.random_starts import DURATION, runs_from_random_starts
-from flockana.theorems.claims import erratum, judged
+from flockana.theorems.claims import erratum, of_state
 from flockana.theorems.shares import INTERVAL_ERROR, share
 from flockana.theorems.theorem import Claim, Tolerances
 
@@ -36,7 +36,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     clear = sum(d > a for d, a in zip(disc, annulus, strict=True))
     _, size, (_, high) = share([distance > 1.5 for distance in annulus])
     return [
-        judged(
+        of_state(
             "printed",
             through / stand_off,
             _ROUNDING,
@@ -46,7 +46,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             proof="stand-off",
             detail="N_i^s ends at a_i: nearer than 5 m the alien exerts no force: an agent runs straight through it",
         ),
-        judged(
+        of_state(
             "corrected",
             1e-3 - abs(gap / stand_off - 1.0),
             _ROUNDING,
@@ -56,11 +56,11 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             proof="stand-off",
             detail=f"with 0 < d <= s_i it stops at {gap:.4f} m, where s - v^d w^ga/w^ss = {stand_off:g}",
         ),
-        judged(
+        of_state(
             "flock",
             high - 1.0,
             INTERVAL_ERROR,
-            verifies=False,
+            about="all",
             computed={"median, printed": float(np.median(annulus)), "median, corrected": float(np.median(disc))},
             stated="the flock keeps more than 1.5 m from an alien that hunts it (share 1)",
             witness={"printed": annulus, "corrected": disc},

@@ -9,7 +9,7 @@ from flockana.interactions import ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.measures.metrics import coordination, min_distance
 from flockana.theorems.bearing_distance.random_starts import SEEDS, runs_from_random_starts, separated_start, zone_start
-from flockana.theorems.claims import erratum, judged
+from flockana.theorems.claims import erratum, of_state
 from flockana.theorems.shares import always, mostly
 from flockana.theorems.theorem import Claim, Tolerances
 
@@ -35,7 +35,7 @@ def _weights_cancel() -> Claim:
         forces, other_forces = (law.behaviours(q, p) for law in (printed, other))
         pairs = [(forces[name], other_forces[name]) for name in ("cohesion", "alignment")]
         worst = max(worst, *(float(np.abs(a - b).max() / np.abs(a).max()) for a, b in pairs))
-    return judged(
+    return of_state(
         "weights",
         worst - _SAME,
         _ROUNDING,

@@ -9,7 +9,7 @@ from flockana.environment.zone_obstacles import Box, SimplePolygon
 from flockana.environment.zone_world import ZoneWorld
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
-from flockana.theorems.claims import erratum, judged
+from flockana.theorems.claims import erratum, of_state
 from flockana.theorems.theorem import Claim, Tolerances
 
 _ROUNDING = 1e-11  # relative: of a few hundred steps
@@ -82,7 +82,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
         min(at_wall, least_gap) / c,
     )
     return [
-        judged(
+        of_state(
             "printed",
             printed,
             _ROUNDING,
@@ -97,7 +97,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             detail=f"inside, b - p_i points outwards and (8) pushes in: {outward:.3g} in an obstacle, {inward:.3g} "
             f"beyond a wall, and after 3 s the agent is {beyond:.3g} m beyond it",
         ),
-        judged(
+        of_state(
             "corrected",
             mended,
             _ROUNDING,
@@ -108,7 +108,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             detail=f"pushed out by {mended_outward:.3g}, back by {mended_inward:.3g}: after 3 s the second is "
             f"{-mended_beyond:.3g} m inside",
         ),
-        judged(
+        of_state(
             "stand-off",
             1e-6 - error / c,
             _ROUNDING,
@@ -119,7 +119,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             detail="agents that run head on at a wall, or at each other, come to c - v^d w^ga/w in "
             f"{len(stand_offs)} cases (off by {error:.1g} m)",
         ),
-        judged(
+        of_state(
             "contact",
             clearance,
             _ROUNDING,

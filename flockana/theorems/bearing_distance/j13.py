@@ -9,7 +9,7 @@ from flockana.environment.zone_obstacles import Box
 from flockana.environment.zone_world import ZoneWorld
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
-from flockana.theorems.claims import erratum, judged
+from flockana.theorems.claims import erratum, of_state
 from flockana.theorems.theorem import Claim, Tolerances
 
 _ROUNDING = 1e-11  # relative: of a few hundred steps
@@ -51,7 +51,7 @@ def _head_on(law: ZoneFlocking) -> FloatArray:
 def _letter() -> Claim:
     between = 0.5 * (_C + _A)
     braking = _braking(_law("attraction", "literal"), between, _DESIRED)
-    return judged(
+    return of_state(
         "letter",
         braking,
         _ROUNDING,
@@ -65,7 +65,7 @@ def _letter() -> Claim:
 def _clamped() -> Claim:
     long, short = (_head_on(_law(name)) for name in ("attraction", "conflict"))
     different = np.flatnonzero(np.abs(long - short) > _ROUNDING * _SIDE).size
-    return judged(
+    return of_state(
         "clamped",
         different - 0.5,
         0.0,
@@ -87,7 +87,7 @@ def _reaching() -> Claim:
         expected = _NEAR * reach / _C  # of w (h − d) over w c
         wrong += [abs(within / expected - 1.0), abs(beyond) / expected]
         rows[speed] = reach
-    return judged(
+    return of_state(
         "reaching",
         1e-6 - float(np.max(wrong)),
         1e-8,  # relative: of a difference of positions, a thousandth of their distance
@@ -103,7 +103,7 @@ def _slow() -> Claim:
     """An agent at rest before a wall has the short zone: it stands off at r − v^d w^ga/w^oa."""
     measured = float(_head_on(_law("speed", "reaching"))[-1])
     stated = _R - _DESIRED * _DRIVE / _WEIGHT
-    return judged(
+    return of_state(
         "stand-off",
         1e-6 - abs(measured - stated) / _C,
         _ROUNDING,

@@ -10,7 +10,7 @@ from flockana.dynamics.simulate import simulate
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.theorems.bearing_distance.random_starts import separated_start
-from flockana.theorems.claims import erratum, judged
+from flockana.theorems.claims import erratum, of_state
 from flockana.theorems.shares import always, mostly
 from flockana.theorems.theorem import Claim, Tolerances
 
@@ -45,7 +45,7 @@ def _told_and_not() -> list[Claim]:
     alone, _ = _pair(0, (1.0, 2.0))
     spread = float(np.abs(alone[-1] - 1.5).max()) / 1.5
     return [
-        judged(
+        of_state(
             "one-informed",
             _SAME - float(np.maximum(off, left)),
             _ROUNDING,
@@ -55,7 +55,7 @@ def _told_and_not() -> list[Claim]:
             detail=f"of two at 1 m/s one is told v^d = {_DESIRED:g}: both take it over, as x' = M x has it, whose "
             f"polynomial λ² + (2g + w) λ + g w is Hurwitz (off by {off:.1g})",
         ),
-        judged(
+        of_state(
             "none-informed",
             _SAME - spread,
             _ROUNDING,

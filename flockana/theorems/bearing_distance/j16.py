@@ -9,7 +9,7 @@ from flockana.environment.zone_obstacles import Box
 from flockana.environment.zone_world import ZoneWorld
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
-from flockana.theorems.claims import erratum, judged
+from flockana.theorems.claims import erratum, of_state
 from flockana.theorems.shares import always
 from flockana.theorems.theorem import Claim, Tolerances
 
@@ -32,7 +32,7 @@ def _at_rest() -> Claim:
     q, p = np.array([[10.0, 10.0], [40.0, 40.0]]), np.zeros((2, 2))
     path = _positions(law, q, p, 100)
     moved, apart = float(np.abs(path - q).max()), float(np.linalg.norm(path[-1, 1] - path[-1, 0]))
-    return judged(
+    return of_state(
         "at-rest",
         1.0 - apart / _A if moved == 0.0 else float("nan"),  # a state that a map keeps to the bit it keeps for ever
         _ROUNDING,
@@ -66,7 +66,7 @@ def _lone() -> Claim:
     """Remark 2: two who fly apart in the open find each other once their radii of attraction grow."""
     q, p = np.array([[0.0, 0.0], [20.0, 3.0]]), np.array([[-_SPEED, 0.0], [_SPEED, 0.0]])
     gap = {growth: _last_gap(growth, q, p) for growth in (0.0, _SLOWER, _GROWTH)}
-    return judged(
+    return of_state(
         "growing",
         float(np.min([gap[0.0] / _A - 1.0, gap[_SLOWER] / _A - 1.0, 1.0 - gap[_GROWTH] / _A])),
         _ROUNDING,
@@ -91,7 +91,7 @@ def _pairs() -> Claim:
     gap = _positions(law, q, p, 600)[-1]
     parted = float(gap[2, 0] - gap[0, 0])
     straight = 20.0 + 2.0 * _SPEED * 60.0
-    return judged(
+    return of_state(
         "fragments",
         0.5 - parted / straight,
         _ROUNDING,

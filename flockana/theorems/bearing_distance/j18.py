@@ -11,7 +11,7 @@ from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.measures.metrics import coordination, min_distance
 from flockana.measures.nets import components, links
 from flockana.theorems.bearing_distance.random_starts import crowd_start
-from flockana.theorems.claims import erratum, judged
+from flockana.theorems.claims import erratum, of_state
 from flockana.theorems.shares import always, mostly
 from flockana.theorems.theorem import Claim, Tolerances
 
@@ -51,7 +51,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     turned = _ends(_SIZES[-1], any_direction=True)
     return [
         *(_flocks(n, ends[n]) for n in _SIZES),
-        judged(
+        of_state(
             "local",
             _MORE - many / some,
             _ROUNDING,

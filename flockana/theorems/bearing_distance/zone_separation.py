@@ -12,7 +12,7 @@ from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import both_ways, edge_vectors
-from flockana.theorems.claims import erratum, judged
+from flockana.theorems.claims import erratum, of_state
 from flockana.theorems.theorem import Claim, Tolerances
 
 _RHO, _MU, _STRETCH = 2.0, 3.0, 0.5
@@ -40,7 +40,7 @@ def _pair(tolerances: Tolerances) -> Claim:
     measured = float(np.diff(_crossings(run.t, y)).mean())
     amplitude = float(np.abs(y[-400:]).max())
     worst = max(abs(measured / period - 1.0), abs(amplitude / _STRETCH - 1.0))
-    return judged(
+    return of_state(
         "alone",
         tolerances.agreement - worst,
         _MEASURED,
@@ -63,7 +63,7 @@ def _conserved(tolerances: Tolerances) -> Claim:
     """Five agents on a frozen path: H is conserved without alignment, so nothing ever settles; with it H falls to 0."""
     alone, aligned = (run.energy() for run in map(_path_run, (0.0, 1.0)))
     drift, left = float(np.abs(alone / alone[0] - 1.0).max()), float(aligned[-1] / aligned[0])
-    return judged(
+    return of_state(
         "energy",
         min(tolerances.energy - drift, tolerances.energy - left),
         _DRIFT,
@@ -85,7 +85,7 @@ def _resonance(tolerances: Tolerances) -> Claim:
     run = simulate(law, start, 0.0 * start, (0.0, end), t_eval=times, **_TIGHT)
     y = np.abs(edge_vectors(run.q, law.edges or ())[:, 1, 0]) - _RHO
     ratio, stated = float(np.abs(y[-400:]).max()) / a, 0.5 * omega * (end - 0.5 * pi / omega)
-    return judged(
+    return of_state(
         "chain",
         tolerances.agreement - abs(ratio / stated - 1.0),
         _MEASURED,
@@ -103,7 +103,7 @@ def _close_encounter() -> Claim:
     q, p = np.array([[0.0], [1.0]]), np.array([[2.0], [-2.0]])
     run = simulate(law, q, p, (0.0, 2.0), **_TIGHT)
     least = float((run.q[:, 1, 0] - run.q[:, 0, 0]).min())
-    return judged(
+    return of_state(
         "close-encounters",
         least,
         _MEASURED,

@@ -16,7 +16,7 @@ from flockana.laws.olfati_saber import Algorithm1
 from flockana.measures.nets import laplacian
 from flockana.stability.consensus import consensus_root, consensus_system
 from flockana.stability.delay import DelaySystem, delay_margin, delay_system, rightmost_roots, root_error
-from flockana.theorems.claims import erratum, judged
+from flockana.theorems.claims import erratum, of_state
 from flockana.theorems.rounding import EPS
 from flockana.theorems.theorem import Claim, Status, Tolerances
 
@@ -57,7 +57,7 @@ def _margin(nets: dict[str, tuple[DelaySystem, float]]) -> Claim:
         found = delay_margin(system)
         listed[name] = found.delay
         off = max(off, abs(found.delay * 2.0 * largest / pi - 1.0), abs(found.frequency / largest - 1.0))
-    return judged(
+    return of_state(
         "margin",
         _SWEEP - off,
         0.0,
@@ -81,7 +81,7 @@ def _side(name: str, sign: int, nets: dict[str, tuple[DelaySystem, float]]) -> C
             margin, error = sign * root.real / largest, sharp / largest
     words = "grows" if sign > 0 else "decays"
     closed = f"; it is Lambert's W(-λ_n τ)/τ, to {off:.1g}" if sign > 0 else ""
-    return judged(
+    return of_state(
         name,
         margin,
         error,
@@ -137,7 +137,7 @@ def _average(nets: dict[str, tuple[DelaySystem, float]]) -> Claim:
     """Σ x_i' = −1ᵀL x(t − τ) = 0 whatever the delay: what is agreed on is the mean of the start."""
     off = max(float(np.abs(system.late[1].sum(axis=0)).max()) / largest for system, largest in nets.values())
     size = max(len(system.late[1]) for system, _ in nets.values())
-    return judged(
+    return of_state(
         "average",
         size * EPS - off,
         0.0,

@@ -10,7 +10,7 @@ from flockana.base.checks import FloatArray
 from flockana.base.vectors import lengths
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.theorems.claims import erratum, judged
+from flockana.theorems.claims import erratum, of_state
 from flockana.theorems.theorem import Claim, Tolerances
 
 _SAME = 1e-9  # relative: two forces that differ by less are the same
@@ -43,14 +43,14 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
     printed_change, corrected_change = change_by_turning(printed), change_by_turning(corrected)
     return [
-        judged(
+        of_state(
             "printed",
             _SAME - printed_change,
             _ROUNDING,
             proof="turned-axes",
             detail=f"read by components, turning the axes changes the force by {printed_change:.3g} of itself",
         ),
-        judged(
+        of_state(
             "corrected",
             _SAME - corrected_change,
             _ROUNDING,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import sqrt
 
 from flockana.interactions.dead_zone import DeadZoneInteraction
-from flockana.theorems.claims import erratum, judged
+from flockana.theorems.claims import erratum, of_state
 from flockana.theorems.dead_zone.case import PROOF
 from flockana.theorems.theorem import Claim, Tolerances
 
@@ -22,7 +22,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     # two agents at rest under −F: ½ρ'² = 2(ψ(ρ) − ψ(3)), and with ρ = 3(1 − x²) the integrand is smooth at the start
     fall = quad(lambda x: 3.0 * x / sqrt(pair.psi(start * (1.0 - x * x)) - level), 0.0, 1.0, limit=200)[0]
     return [
-        judged(
+        of_state(
             "printed",
             attraction,
             _ROUNDING,
@@ -32,7 +32,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             detail=f"with n = q_i - q_j two agents at rest {start:g} apart, nearer than d1, are drawn together and "
             f"meet after {fall:.4g}",
         ),
-        judged(
+        of_state(
             "corrected",
             -attraction,
             _ROUNDING,

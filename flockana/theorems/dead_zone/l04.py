@@ -7,7 +7,7 @@ import numpy as np
 from flockana.dynamics.simulate import simulate
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.measures.metrics import connectivity, min_distance
-from flockana.theorems.claims import erratum, judged
+from flockana.theorems.claims import erratum, of_state
 from flockana.theorems.dead_zone.case import PROOF
 from flockana.theorems.dead_zone.motions import advance, parting_pair
 from flockana.theorems.dead_zone.parting import components_of
@@ -36,7 +36,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     least, most = interval(narrow, _SEEDS)[0], interval(wide, _SEEDS)[1]
     radius = 0.5 * min_distance(run.q[-1])
     return [
-        judged(
+        of_state(
             "printed",
             -end.separation.margin,
             end.separation.error,
@@ -46,7 +46,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             detail=f"two agents {q[1, 0]:g} apart that leave each other at {2.0 * p[1, 0]:g} part for ever: at t = 10 "
             f"they are {radius:.4g} from their centre, where {end.separation.text}",
         ),
-        judged(
+        of_state(
             "wide-starts",
             least - most,
             INTERVAL_ERROR,

@@ -7,7 +7,7 @@ import numpy as np
 from flockana.dynamics.simulate import simulate
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.theorems.claims import erratum, exact, judged
+from flockana.theorems.claims import erratum, exact, of_state
 from flockana.theorems.dead_zone.case import PROOF
 from flockana.theorems.theorem import Claim, Tolerances
 
@@ -25,7 +25,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     far = law.interaction.far_potential
     identities = [saturated_energy_identity(m) for m in (1, 2, 3)]
     return [
-        judged(
+        of_state(
             "printed",
             -rise / far,
             10.0 * error / far,
@@ -42,7 +42,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             proof=PROOF,
             detail="the identity holds for a generic pair, so for every n, in 1, 2 and 3 dimensions",
         ),
-        judged(
+        of_state(
             "across-the-switch",
             1.0 - error / (tolerances.energy * float(run.energy()[0])),
             _ROUNDING / tolerances.energy,

@@ -9,7 +9,7 @@ import numpy as np
 from flockana.dynamics.simulate import simulate
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.theorems.claims import erratum, judged
+from flockana.theorems.claims import erratum, of_state
 from flockana.theorems.dead_zone.case import PROOF
 from flockana.theorems.theorem import Claim, Tolerances
 
@@ -30,7 +30,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     gap = max(abs(a / b - 1.0) for a, b in zip(closest, bounds, strict=True))
     distances = ", ".join(f"{a:.3g}" for a in closest)
     return [
-        judged(
+        of_state(
             "printed",
             min(closest) / law.scales.length,
             _MEASURED,
@@ -40,7 +40,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             detail=f"head-on at {', '.join(f'{s:g}' for s in speeds)} each, two agents come as near as {distances} "
             "and never meet",
         ),
-        judged(
+        of_state(
             "bound",
             _ATTAINED - gap,
             _MEASURED,

@@ -11,7 +11,7 @@ from flockana.dynamics.simulate import simulate
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.measures.metrics import spreads
-from flockana.theorems.claims import erratum, judged
+from flockana.theorems.claims import erratum, of_state
 from flockana.theorems.dead_zone.hold import hold
 from flockana.theorems.dead_zone.motions import advance, parting_pair
 from flockana.theorems.dead_zone.parting import components_of
@@ -44,20 +44,20 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     ramped = hold(law, q, p, 0.01).certificate
     held = simulate(hard, [[0.0, 0.0], [5.0, 0.0]], np.zeros((2, 2)), (0.0, 200.0))
     return [
-        judged(
+        of_state(
             "printed",
             -end.separation.margin,
             end.separation.error,
             stated="all velocities match",
             detail=f"two agents that part keep a velocity mismatch of {end.drift:.4g} for ever",
         ),
-        judged(
+        of_state(
             "components",
             1.0 if all(component.size == 1 for component in end.members) else nan,
             0.0,
             detail="each of the two components is one agent",
         ),
-        judged(
+        of_state(
             "chatter",
             1.0 - fine / coarse,
             _SPREAD,
@@ -65,14 +65,14 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             stated="the scheme chatters, the less the shorter its step",
             detail=f"with the printed jumps √K̃ stays at {coarse:.3g} with a step of 0.01 and at {fine:.3g} with 0.002",
         ),
-        judged(
+        of_state(
             "sliding",
             1.0 if "sliding" in held.stats else -1.0,
             0.0,
             stated="a pair at d1 is held there in a sliding mode",
             detail=f"with every switch located: {held.message}",
         ),
-        judged(
+        of_state(
             "ramp",
             ramped.margin,
             ramped.error,

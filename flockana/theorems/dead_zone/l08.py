@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from flockana.interactions.dead_zone import DeadZoneInteraction
-from flockana.theorems.claims import erratum, judged
+from flockana.theorems.claims import erratum, of_state
 from flockana.theorems.dead_zone.case import PROOF
 from flockana.theorems.theorem import Claim, Tolerances
 
@@ -20,7 +20,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     contact = float(brentq(pair.force, pair.d1 - pair.ramp, pair.d1))
     off_r_b, off_d1 = (abs(contact - at) / pair.ramp for at in (pair.r_b, pair.d1))
     return [
-        judged(
+        of_state(
             "printed",
             float(2 - rank),
             0.0,
@@ -30,7 +30,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             proof=PROOF,
             detail=f"four points at equal distances have a Gram matrix of rank {rank}, but the plane has 2 dimensions",
         ),
-        judged(
+        of_state(
             "balance-distance",
             1.0 - off_r_b,
             _ROUNDING / pair.ramp,
@@ -38,7 +38,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             stated="r_b",
             detail=f"two agents rest {contact:.5g} apart, not at the balance distance r_b = {pair.r_b:g}",
         ),
-        judged(
+        of_state(
             "contact",
             1.0 - off_d1,
             _ROUNDING / pair.ramp,

@@ -16,7 +16,7 @@ from flockana.lattice import hexagonal_patch
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.led_dead_zone import LedDeadZoneFlocking
 from flockana.laws.semi_implicit import SemiImplicitEuler
-from flockana.theorems.claims import equal, erratum, judged
+from flockana.theorems.claims import equal, erratum, of_state
 from flockana.theorems.dead_zone.parting import components_of
 from flockana.theorems.theorem import Claim, Tolerances
 
@@ -49,7 +49,7 @@ def _printed() -> Claim:
     """Two agents that have different leaders, under (9): it has none, and bonds them."""
     law, q, p = DeadZoneFlocking(), np.array([[0.0, 0.0], [8.0, 0.0]]), np.array([[-0.2, 0.0], [0.2, 0.0]])
     bond = components_of(q, p, law).members[0].bond
-    return judged(
+    return of_state(
         "printed",
         -bond.margin,
         bond.error,
@@ -73,14 +73,14 @@ def _runs() -> dict[str, Trajectory]:
 def _follow(name: str, run: Trajectory, stated: str, what: str) -> Claim:
     slip = float(_slip(run).max())
     detail = f"{what} velocities are within {slip:.2g} of the leader's speed of it at t = {run.t[-1]:g}"
-    return judged(name, _CLOSE - slip, _ROUNDING, refutes=False, computed=slip, stated=stated, detail=detail)
+    return of_state(name, _CLOSE - slip, _ROUNDING, about="limit", computed=slip, stated=stated, detail=detail)
 
 
 def _apart(run: Trajectory) -> Claim:
     group = np.array(run.law.continuous.group)
     first, second = (run.p[-1][group == leader].mean(axis=0) for leader in (0, 1))
     difference = float(np.linalg.norm(first - second))
-    return judged(
+    return of_state(
         "different-leaders",
         difference / 2.0 - (1.0 - _CLOSE),
         _ROUNDING,
@@ -97,7 +97,7 @@ def _fraction() -> Claim:
     q, p = np.array([[0.0, 0.0], [20.0, 0.0]]), np.array([[-1.0, 0.0], [0.0, 0.0]])
     force = float(np.abs(law.flow(0.0, q, p)[0]).max())
     r = law.interaction.r
-    return judged(
+    return of_state(
         "fraction",
         -1.0 if force == 0.0 and q[1, 0] >= r else 1.0,
         0.0,
@@ -129,7 +129,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
         _apart(runs["two"]),
         _fraction(),
         _follow("acceleration", runs["told"], "a leader that turns is followed if its acceleration is known", "told,"),
-        judged(
+        of_state(
             "acceleration-needed",
             deaf - _CLOSE,
             _ROUNDING,

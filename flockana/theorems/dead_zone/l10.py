@@ -9,7 +9,7 @@ from flockana.dynamics.simulate import simulate
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.measures.metrics import min_distance
-from flockana.theorems.claims import erratum, judged
+from flockana.theorems.claims import erratum, of_state
 from flockana.theorems.dead_zone.motions import parting_pair
 from flockana.theorems.dead_zone.parting import Component, components_of
 from flockana.theorems.rounding import EPS
@@ -61,7 +61,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     nothing = _excludes_nothing()
     status: Status = "inconclusive" if nothing is None else "refuted" if nothing else "verified"
     return [
-        judged(
+        of_state(
             "printed-sufficient",
             -away.separation.margin,
             away.separation.error,
@@ -77,7 +77,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             detail="a pair's potential is finite at every distance > 0: every start from distinct places meets it, so "
             "that as a necessary condition it says nothing. No other is stated, nor the particular case",
         ),
-        judged(
+        of_state(
             "sufficient",
             calm.bond.margin,
             calm.bond.error,
@@ -85,7 +85,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             stated="a condition that suffices: a connected flock with H̄ < (n - 1) ψ̄(r) stays connected and matches",
             detail=f"two agents in contact that leave at {0.2 * v[1, 0]:.3g} m/s: {calm.bond.text}",
         ),
-        judged(
+        of_state(
             "not-necessary",
             float(np.minimum(share - 1.0, kept.margin)),
             kept.error + 64.0 * EPS + _INTEGRATED,

@@ -20,7 +20,7 @@ from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.stability.decay import Decay, LinearRange, decay, decay_table, linear_range
 from flockana.stability.linearisation import Linearisation
 from flockana.stability.linearise import linearise
-from flockana.theorems.claims import erratum, judged
+from flockana.theorems.claims import erratum, of_state
 from flockana.theorems.hypotheses import condition
 from flockana.theorems.slides.e05 import fcc_star
 from flockana.theorems.theorem import Checked, Claim, Theorem, Tolerances
@@ -73,7 +73,7 @@ def _agreement(decays: Sequence[Decay], tolerances: Tolerances) -> list[Claim]:
     other = max(decays, key=lambda each: each.random_difference)
     error = max(each.error / each.predicted for each in decays)
     return [
-        judged(
+        of_state(
             "decay",
             tolerances.agreement - worst.difference,
             error,
@@ -83,7 +83,7 @@ def _agreement(decays: Sequence[Decay], tolerances: Tolerances) -> list[Claim]:
             detail=f"measured rates differ from the predicted ones by {worst.difference:.2g} at most ({worst.name}: "
             f"{worst.measured:.6g} for {worst.predicted:.6g})",
         ),
-        judged(
+        of_state(
             "random",
             tolerances.agreement - other.random_difference,
             error,
@@ -106,7 +106,7 @@ def _range(ranges: Mapping[str, LinearRange], alpha: AlphaInteraction) -> Claim:
     limits = "; ".join(
         f"{name}: 1 % at {each.limit(0.01):.2g} d, 10 % at {each.limit(0.1):.2g} d" for name, each in ranges.items()
     )
-    return judged(
+    return of_state(
         "range",
         margin,
         error,

@@ -30,7 +30,12 @@ def proved(run: Observed, proof: str = "energy-identities") -> str | None:
 
 
 def balance(
-    seen: Observed, needs: Iterable[Hypothesis], tolerances: Tolerances, *, name: str = "balance", proof: str | None = None
+    seen: Observed,
+    needs: Iterable[Hypothesis],
+    tolerances: Tolerances,
+    *,
+    name: str = "balance",
+    proof: str | None = None,
 ) -> Claim:
     """Return the claim that H(t) − H(0) agrees with the integral of the closed-form rate."""
     energy, largest = seen.energy.mid, float(np.abs(seen.energy.mid).max())

@@ -10,7 +10,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.dynamics.trajectory import Trajectory
-from flockana.theorems.claims import exact, judged
+from flockana.theorems.claims import exact, of_state
 from flockana.theorems.rounding import energy_error
 from flockana.theorems.second_run import corroborated
 from flockana.theorems.theorem import Claim, Hypothesis
@@ -48,7 +48,7 @@ def run_claim(run: Trajectory, excess: FloatArray, where: str, needs: Iterable[H
     error = 2.0 * (float(np.abs(run.energy_residual).max()) + rounding)
     rise, falls = float(above[peak]), float(np.diff(true).max(initial=-np.inf)) <= error
     course = f"the printed H rises by {rise:.4g} until t = {run.t[peak]:.3g}" if rise > 0.0 else "the printed H falls"
-    claim = judged(
+    claim = of_state(
         "printed-run",
         -rise if falls else 0.0,
         error,

@@ -8,7 +8,7 @@ import numpy as np
 
 from flockana.interactions import AlphaInteraction
 from flockana.measures.metrics import deviation_energy
-from flockana.theorems.claims import erratum, judged
+from flockana.theorems.claims import erratum, of_state
 from flockana.theorems.theorem import Claim, Tolerances
 
 _NEAR = 2.0**-20  # of r: how close to the range from within, and of d to coincidence
@@ -38,7 +38,7 @@ def _jump(name: str, energy: Callable[[float], float], r: float, stated: float, 
     """The step of an energy at the range: its value just within less its value there, which is near the limit."""
     within, at = energy(r * (1.0 - _NEAR)), energy(r)
     scale = max(within, at)
-    return judged(
+    return of_state(
         name,
         32.0 * _NEAR * scale - abs(within - at - stated),
         0.0,
@@ -57,7 +57,7 @@ def _corner(
     """The change of slope as one agent passes through the other, by a difference quotient; units: of slope, length."""
     step = _NEAR * units[1]
     change = -2.0 * (energy(step) - energy(0.0)) / step  # of |x|: the slope on the left is the opposite
-    return judged(
+    return of_state(
         name,
         64.0 * _NEAR * units[0] - abs(change - stated),
         0.0,

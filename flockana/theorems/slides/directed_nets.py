@@ -11,7 +11,7 @@ from flockana.environment.targets import LinearTarget
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.directed import DirectedNet
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.theorems.claims import erratum, judged
+from flockana.theorems.claims import erratum, of_state
 from flockana.theorems.theorem import Claim, Tolerances
 
 _ROUNDING = 1e-12  # of the largest input; sums in another order differ by a few eps
@@ -32,7 +32,7 @@ def _undirected() -> Claim:
         u, again = law.acceleration(0.0, q, p), DirectedNet(law, ranges=[law.alpha.range] * 40).acceleration(0.0, q, p)
         each.append(float(np.abs(u - again).max() / np.abs(u).max()))
     off = float(np.max(each))
-    return judged(
+    return of_state(
         "undirected",
         _ROUNDING - off,
         0.0,
@@ -52,7 +52,7 @@ def _momentum() -> Claim:
     law = _pair()
     u = law.acceleration(0.0, [[0.0], [7.5]], [[0.0], [0.0]])
     total = abs(float(u.sum())) / (law.law.gains.c1_alpha * law.alpha.strength)
-    return judged(
+    return of_state(
         "momentum",
         -total,
         _ROUNDING,
@@ -75,7 +75,7 @@ def _following() -> list[Claim]:
     climbed, size = float(np.diff(own).max()), float(own[0])
     swerve, off = float(np.abs(run.p[:, 1, 0] - speed).max()), abs(float(lengths[-1]) / alpha.d - 1.0)
     return [
-        judged(
+        of_state(
             "energy",
             -rise,
             _NUMERICAL * float(energy.max()),
@@ -84,7 +84,7 @@ def _following() -> list[Claim]:
             witness={"H": [float(energy[0]), float(energy[-1])]},
             detail=f"agent 1 moves away at {speed:g}, agent 0 takes on its velocity: H rises by {rise:.6g} = ½v²",
         ),
-        judged(
+        of_state(
             "follower",
             _NUMERICAL * size - climbed,
             0.0,
@@ -94,7 +94,7 @@ def _following() -> list[Claim]:
             witness={"from": size, "to": float(own[-1])},
             detail=f"it falls from {size:.4g} to {float(own[-1]):.2g} and between no two samples rises",
         ),
-        judged(
+        of_state(
             "leader",
             float(np.minimum(_NUMERICAL - swerve, 1e-3 - off)),
             0.0,

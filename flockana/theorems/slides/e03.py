@@ -16,7 +16,7 @@ from flockana.equilibria.terminal import TerminalState, terminal_state
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.measures.nets import components, links
-from flockana.theorems.claims import erratum, judged
+from flockana.theorems.claims import erratum, of_state
 from flockana.theorems.olfati_saber.attraction import attraction
 from flockana.theorems.shares import CONFIDENCE, INTERVAL_ERROR, interval
 from flockana.theorems.theorem import Claim, Tolerances
@@ -60,11 +60,11 @@ def _shares(law: Algorithm1, tolerances: Tolerances) -> Claim:
         rows[n] = {"exact": exact, "of": len(ends), "share": list(interval(exact, len(ends)))}
     highest = min(row["share"][1] for row in rows.values())
     table = ", ".join(f"n = {n}: {row['exact']} of {row['of']}" for n, row in rows.items())
-    return judged(
+    return of_state(
         "share",
         highest - 1.0,
         INTERVAL_ERROR,
-        verifies=False,  # a sample verifies no share of 1
+        about="all",  # a sample verifies no share of 1
         computed=rows,
         stated="almost every gradient-flow limit of a random start is an α-lattice (share 1)",
         witness=f"exact Clopper-Pearson intervals of {CONFIDENCE:.0%}",
@@ -76,11 +76,11 @@ def _double_agent(law: Algorithm1) -> Claim:
     """The smallest known strict minimum that is no lattice: a coincident pair, kept by its three common neighbours."""
     q = rhombus_with_double_agent(law.alpha.length)
     end, caught = terminal_state(law, q, 0.0 * q), attraction(law, q, 0.0 * q).certificate
-    return judged(
+    return of_state(
         "double-agent",
         -caught.margin,
         caught.error,
-        verifies=False,
+        about="all",
         refutes=end.coincident > 0,
         computed=end.curvature,
         stated="every strict local minimum of V is an α-lattice of distinct agents",
@@ -99,11 +99,11 @@ def _strained(law: Algorithm1, tolerances: Tolerances) -> Claim:
     ends = [terminal_state(law, group, 0.0 * group) for group in groups]
     worst = max(range(len(groups)), key=lambda k: np.nan_to_num(ends[k].strain))
     end = ends[worst]
-    return judged(
+    return of_state(
         "strained",
         tolerances.lattice - end.strain,
         limit.force / tolerances.curvature,  # what moves under the residual force gives way by its curvature
-        verifies=False,
+        about="all",
         refutes=limit.converged and end.coincident == 0 and end.curvature > -tolerances.curvature,
         computed=end.strain,
         stated="|link - d|/d = 0 in the limit of every solution but a null set",
@@ -120,7 +120,7 @@ def _no_lattice(
     basin = attraction(law, q, 0.0 * q)
     error = sqrt(2.0) * basin.distance / law.alpha.length + basin.certificate.error
     strict = basin.certificate.margin > basin.certificate.error
-    return judged(name, tolerances.lattice - end.strain, error, verifies=False, refutes=strict, **fields)
+    return of_state(name, tolerances.lattice - end.strain, error, about="all", refutes=strict, **fields)
 
 
 def _smallest(tolerances: Tolerances) -> Claim:

@@ -7,7 +7,7 @@ import numpy as np
 from flockana.equilibria.barrier import bound_range, collision_barrier, energy_floor, lattice_reach, none_from
 from flockana.interactions import AlphaInteraction
 from flockana.lattice import harborth, hexagonal_spiral
-from flockana.theorems.claims import erratum, judged
+from flockana.theorems.claims import erratum, of_state
 from flockana.theorems.rounding import EPS
 from flockana.theorems.theorem import Claim, Tolerances
 
@@ -39,7 +39,7 @@ def _implication(alpha: AlphaInteraction) -> Claim:
     off = (z - alpha.d_alpha) ** 2
     ratio, error = alpha.psi_alpha(z) / off, 1e-13 * alpha.c_star / float(off.min())
     least = float(min(ratio.min(), 0.5 * alpha.phi_alpha_slope(alpha.d_alpha)))
-    return judged(
+    return of_state(
         "printed",
         least,
         error,
@@ -56,7 +56,7 @@ def _reached(alpha: AlphaInteraction) -> Claim:
     n = lattice_reach(alpha) or 0
     energies = [alpha.potential_energy(hexagonal_spiral(size, alpha.d)) for size in (n, n + 1)]
     margin, error = min(alpha.c_star - energies[0], energies[1] - alpha.c_star), _error(alpha, n + 1)
-    return judged(
+    return of_state(
         "found",
         margin,
         error,
@@ -74,7 +74,7 @@ def _none(alpha: AlphaInteraction) -> Claim:
     n = none_from(alpha)
     shortest, longest = bound_range(alpha)
     table = {name: {m: [lattice_reach(own, m), none_from(own, m)] for m in (1, 2, 3)} for name, own in _SETS.items()}
-    return judged(
+    return of_state(
         "vacuous",
         float("nan") if n is None else energy_floor(alpha, n) - alpha.c_star,
         _error(alpha, n or 1),
@@ -93,7 +93,7 @@ def _barrier(alpha: AlphaInteraction) -> Claim:
     barriers = {n: collision_barrier(alpha, n, starts=_STARTS) for n in _SIZES}
     error = 1e-6 * alpha.c_star  # the search ends where the constraint is met to 1e-8 d, at forces of about c*/d
     heights = ", ".join(f"{barrier.height:.3f} at n = {n}" for n, barrier in barriers.items())
-    return judged(
+    return of_state(
         "barrier",
         min(barrier.together - alpha.c_star for n, barrier in barriers.items() if n > _TRIANGLE),
         error,

@@ -12,7 +12,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.lattice import is_planar, kuratowski, planar_bound
-from flockana.theorems.claims import erratum, judged
+from flockana.theorems.claims import erratum, of_state
 from flockana.theorems.olfati_saber.os_5 import check
 from flockana.theorems.theorem import Claim, Tolerances
 
@@ -114,7 +114,7 @@ def _counterexample(name: str, q: FloatArray, sites: tuple[Site, ...], tolerance
     uncrossed, graph = claims["i"], claims["i-graph"]
     bound, planar = planar_bound(len(sites)), is_planar(len(sites), edges)
     return [
-        judged(
+        of_state(
             f"printed-{name}",
             1.0 if planar else -1.0,
             0.0,
@@ -138,7 +138,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     return [
         *_counterexample("13", fcc_star(_D), STAR, tolerances),
         *_counterexample("8", fcc_eight(_D), EIGHT, tolerances),
-        judged(
+        of_state(
             "six",
             0.5 - bad,
             0.0,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from flockana.lattice import harborth, hexagonal_spiral, links
-from flockana.theorems.claims import erratum, judged
+from flockana.theorems.claims import erratum, of_state
 from flockana.theorems.theorem import Claim, Tolerances
 
 _MOST = 60
@@ -29,7 +29,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     slack = min(table[n][1] - table[n][0] for n in range(3, _MOST + 1))
     off = [n for n, (count, _, sharp) in table.items() if count != sharp]
     return [
-        judged(
+        of_state(
             "printed",
             0.5 - len(exceeding),
             0.0,
@@ -39,7 +39,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             proof=_PROOF,
             detail="two agents at distance d have 1 link; 3n - 6 is 0",
         ),
-        judged(
+        of_state(
             "corrected",
             slack + 0.5,
             0.0,
@@ -49,7 +49,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             proof=_PROOF,
             detail=f"hexagonal spirals of 3 to {_MOST} agents have at most 3n - 6 links, and that many only if n = 3",
         ),
-        judged(
+        of_state(
             "sharp",
             0.5 - len(off),
             0.0,

@@ -7,7 +7,7 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.measures.metrics import connectivity, giant_share
 from flockana.measures.nets import links, printed_edge_share
-from flockana.theorems.claims import erratum, judged
+from flockana.theorems.claims import erratum, of_state
 from flockana.theorems.theorem import Claim, Tolerances
 
 _SPACE = 1000.0  # between components; within one, neighbours are 1 apart and the range is 1.5
@@ -43,7 +43,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 def _share(name: str, share: float, witness: str, detail: str, *, stated: int = 96) -> Claim:
     """Whether a share of the hundred agents is the source's, as a whole number."""
     margin = 0.5 - abs(round(100.0 * share) - stated)
-    return judged(
+    return of_state(
         name, margin, 0.0, computed=share, stated=stated / 100.0, witness=witness, proof="net-measures", detail=detail
     )
 
@@ -52,7 +52,7 @@ def _relative(name: str, share: float, witness: str) -> Claim:
     """Whether C is 95/99: both nets have five components, and C cannot tell them apart."""
     margin = 0.5 - abs(round(99.0 * share) - 95)
     detail = f"C = {round(99.0 * share)}/99 for {witness}: five components, whatever their sizes"
-    return judged(
+    return of_state(
         name, margin, 0.0, computed=share, stated="95/99", witness=witness, proof="net-measures", detail=detail
     )
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from flockana.measures.metrics import connectivity
 from flockana.measures.nets import links, printed_rank_connectivity
-from flockana.theorems.claims import erratum, judged
+from flockana.theorems.claims import erratum, of_state
 from flockana.theorems.theorem import Claim, Tolerances
 
 
@@ -21,7 +21,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 def _rank(name: str, share: float, full: int, detail: str) -> Claim:
     """Whether the measure is 1, as it must be on a connected net: by the rank it comes from, a whole number."""
     margin = 0.5 - (full - round(full * share))
-    return judged(
+    return of_state(
         name,
         margin,
         0.0,

@@ -8,7 +8,7 @@ from flockana.environment.targets import StaticTarget
 from flockana.interactions import Gains
 from flockana.laws.msn import CONSTANT_ACCELERATION, PRINTED, MSNDiscretisation
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.theorems.claims import erratum, exact, judged
+from flockana.theorems.claims import erratum, exact, of_state
 from flockana.theorems.rounding import EPS
 from flockana.theorems.theorem import Claim, Tolerances
 
@@ -41,7 +41,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     return [
         _by_algebra("printed", "end", PRINTED),
         _by_algebra("corrected", "start", CONSTANT_ACCELERATION),
-        judged(
+        of_state(
             "excess",
             tolerances.agreement * abs(swept) - abs(measured - swept),
             8.0 * EPS * _Q_R,

@@ -16,7 +16,7 @@ from flockana.interactions import AlphaInteraction
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm2, paper_pair
 from flockana.measures.metrics import coincident_pairs, velocity_mismatch
-from flockana.theorems.claims import judged
+from flockana.theorems.claims import of_state
 from flockana.theorems.hypotheses import condition, law_is
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
 
@@ -70,7 +70,7 @@ def _printed(run: Trajectory, end: TerminalState, caught: bool, tolerances: Tole
     ratio = run.law.gains.c1_gamma / run.law.gains.c1_alpha
     at_rest = "" if caught else "; it is not known to rest there"
     lengths = f"{end.coincident} coincident pairs; its shortest link is {end.shortest:.3g}"
-    return judged(
+    return of_state(
         "printed",
         margin,
         error,
@@ -84,12 +84,12 @@ def _printed(run: Trajectory, end: TerminalState, caught: bool, tolerances: Tole
 
 
 def _minimum(end: TerminalState, caught: bool, tolerances: Tolerances) -> Claim:
-    return judged(
+    return of_state(
         "minimum",
         end.curvature - tolerances.curvature,
         end.curvature_error,
         verifies=caught,
-        refutes=False,
+        about="limit",
         computed=end.curvature,
         stated="the limit is a strict local minimum of U_λ off the rotations, so that it attracts an open set",
         witness={"force": end.force, "K̃": end.mismatch},
@@ -121,7 +121,7 @@ def _thresholds(law: Algorithm2) -> Claim:
     falls = [(0.5 * (a + b - c - d), 0.5 * (b - a + d - c)) for (a, b), (c, d) in pairwise(spans)]
     margin, error = min(falls, key=lambda fall: fall[0] - fall[1])
     table = ", ".join(f"n = {n}: {low:.3g} to {high:.3g}" for n, (low, high) in brackets.items())
-    return judged(
+    return of_state(
         "threshold",
         margin,
         error,

@@ -14,7 +14,7 @@ from flockana.laws.olfati_saber import Algorithm2
 from flockana.stability.centre_path import centre_path, motion, path_and_factor
 from flockana.stability.tracking import response_ratio, whole_period
 from flockana.stability.translational import predicted_gain
-from flockana.theorems.claims import judged
+from flockana.theorems.claims import of_state
 from flockana.theorems.hypotheses import condition
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
 
@@ -37,7 +37,7 @@ def _hypotheses(run: Trajectory) -> list[Hypothesis]:
 def _agrees(name: str, ratio: tuple[float, float], gain: float, tolerances: Tolerances, detail: str) -> Claim:
     """The claim that a measured ratio and its error agree with a predicted gain, relative to that unless it is 0."""
     (measured, error), scale = ratio, gain or 1.0
-    return judged(
+    return of_state(
         name,
         tolerances.agreement - abs(measured - gain) / scale,
         error / scale,
@@ -73,7 +73,7 @@ def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
     return needs, [
         _agrees("predicted", handed, predicted, tolerances, f"with the p_r that was handed over, {factor:g} dq_r/dt"),
         _agrees("consistent", (true, error), predicted_gain(law.gains, omega), tolerances, "with p_r = dq_r/dt"),
-        judged(
+        of_state(
             "printed",
             1.0 - true,
             error,

@@ -8,7 +8,7 @@ from flockana.base.checks import FloatArray
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.measures.reynolds import reynolds
-from flockana.theorems.claims import equal, erratum, judged
+from flockana.theorems.claims import equal, erratum, of_state
 from flockana.theorems.theorem import Claim, Tolerances
 
 _SHIFT = 10.0  # of d
@@ -55,7 +55,7 @@ def _example() -> Claim:
     alpha, q = _three()
     here, there = (float(_forces(alpha, q + w, printed=True)[1, 0]) for w in (0.0, _SHIFT * alpha.d))
     size = float(np.abs(q).max() + _SHIFT * alpha.d) * alpha.strength
-    return judged(
+    return of_state(
         "translation",
         -abs(there - here),
         16.0 * np.finfo(float).eps * size,
@@ -77,7 +77,7 @@ def _state() -> Claim:
     bound = 64.0 * np.finfo(float).eps * (1.0 + _SHIFT) * alpha.strength * 2.0
     moved = [q + w for w in (0.0, _SHIFT * alpha.d)]
     worst = float(np.max([np.abs(_forces(alpha, x, printed=False) - _law(alpha, x)).max() for x in moved]))
-    return judged(
+    return of_state(
         "state",
         bound - worst,
         0.0,

@@ -17,7 +17,7 @@ from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.stability.tracking import response_ratio
 from flockana.stability.translational import CentreOfMass, predicted_gain
-from flockana.theorems.claims import equal, erratum, judged
+from flockana.theorems.claims import equal, erratum, of_state
 from flockana.theorems.theorem import Claim, Tolerances
 
 _DT, _RADIUS, _CENTRE = 0.009, 100.0, (50.0, 50.0)  # the project's
@@ -72,14 +72,14 @@ def _falls(name: str, ratios: list[Ratio], stated: str, text: str) -> Claim:
     values = [ratio for ratio, _ in ratios]
     listed = ", ".join(f"{value:.3f}" for value in values)
     detail = f"at ¼, ½, 1, 2 and 4 times the γ-agent's speed {text} the ratio is {listed}"
-    return judged(name, margin, error, computed=values, stated=stated, detail=detail)
+    return of_state(name, margin, error, computed=values, stated=stated, detail=detail)
 
 
 def _agree(ratios: list[Ratio], gains: list[float], tolerances: Tolerances) -> Claim:
     off = [(abs(ratio / gain - 1.0), error / gain) for (ratio, error), gain in zip(ratios, gains, strict=True)]
     margin, error = _least_sure([(tolerances.agreement - each, error) for each, error in off])
     worst = tolerances.agreement - margin
-    return judged(
+    return of_state(
         "predicted",
         margin,
         error,
@@ -104,7 +104,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     home = predicted_gain(_GAINS, 2.0 * pi * _FREQUENCY, factor=_DT)
     margin = CentreOfMass(_GAINS, _DT).falling
     return [
-        judged(
+        of_state(
             "printed-start",
             outside[0] - 1.0,
             outside[1],
@@ -114,7 +114,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             detail=f"from {_AWAY:g} radii away it describes {outside[0]:.4f} of the γ-agent's circle, from the centre "
             f"{inside[0]:.4f}: smaller wherever it starts",
         ),
-        judged(
+        of_state(
             "printed-speed",
             largest - 1.0,
             error,

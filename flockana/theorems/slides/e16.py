@@ -11,7 +11,7 @@ from flockana.equilibria.gradient_flow import gradient_flow
 from flockana.equilibria.terminal import TerminalState, terminal_state
 from flockana.interactions import AlphaInteraction
 from flockana.lattice import hexagonal_patch
-from flockana.theorems.claims import erratum, judged
+from flockana.theorems.claims import erratum, of_state
 from flockana.theorems.theorem import Claim, Tolerances
 
 _ALPHA = AlphaInteraction(d=15.0, r=18.0, eps=0.1, h=0.1, a=3.0, b=3.0)  # the project's
@@ -34,28 +34,28 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     many, few = (pressed_patch(*case, tolerances.contact) for case in ((_MANY, _RATIO), (_FEW, _REVERSED)))
     least = min((many, few), key=lambda end: end.curvature - end.curvature_error)
     return [
-        judged(
+        of_state(
             "sufficient",
             0.5 - many.coincident,
             0.0,
-            verifies=False,
+            about="all",
             computed=many.coincident,
             stated="no pair coincides as long as c1α > c1γ",
             witness="a hexagonal patch of 61 agents relaxed by gradient flow, c1γ/c1α = 0.7",
             detail=f"at the project's 100 : 70, {many.coincident} pairs of 61 agents end in the same place (of its own "
             "100 agents more: scenario msn-static)",
         ),
-        judged(
+        of_state(
             "necessary",
             tolerances.contact - few.shortest / _ALPHA.d,
             sqrt(2.0) * few.distance,
-            verifies=False,
+            about="all",
             computed=few.shortest / _ALPHA.d,
             stated="pairs coincide unless c1α > c1γ",
             witness="a hexagonal patch of 7 agents relaxed by gradient flow, c1γ/c1α = 2",
             detail=f"with c1γ = 2 c1α seven agents rest {few.shortest:.3g} or more apart, where d = {_ALPHA.d:g}",
         ),
-        judged(
+        of_state(
             "minima",
             least.curvature - tolerances.curvature,
             least.curvature_error,
@@ -63,7 +63,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             stated="both are strict local minima of U_λ off the rotations, so that they attract open sets",
             detail=f"least curvatures {many.curvature:.3g} and {few.curvature:.3g} of the largest",
         ),
-        judged(
+        of_state(
             "lattice",
             few.strain - tolerances.quasi,
             few.distance,
