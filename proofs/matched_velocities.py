@@ -69,13 +69,7 @@ def _algorithm_2() -> Iterator[Step]:
 
 def _paths() -> Iterator[Step]:
     """A connected net ties all velocities together: what differs anywhere differs along a link."""
-    for count in (1, 2, 3, 4, 5):
-        steps = sp.symbols(f"d_1:{count + 1}", real=True)
-        squares = sp.Add(*((a - b) ** 2 for k, a in enumerate(steps) for b in steps[:k]))
-        yield Step(
-            f"over {count} links (Σ d_k)² = {count} Σ d_k² - Σ_k<l (d_k - d_l)² <= {count} Σ d_k²",
-            sp.expand(count * sp.Add(*(d**2 for d in steps)) - sp.Add(*steps) ** 2 - squares) == 0,
-        )
+    yield from (over_links(count, count) for count in (1, 2, 3, 4, 5))
     total, along, spread, n = z3.Reals("total along spread n")
     yield implication(
         "so on a connected net of n agents each ‖v_i - v_j‖² <= (n - 1) Σ over links, and n‖v‖² = Σ_i<j <= n(n-1)²/2 Σ",
@@ -84,16 +78,33 @@ def _paths() -> Iterator[Step]:
     )
 
 
-def _algorithm_1() -> Iterator[Step]:
-    for m in (1, 2, 3):
-        yield Step(f"Algorithm 1, m = {m}: dH/dt = -c2α pᵀL̂p", algorithm1_identity(m).holds)
-    n, k, psi, energy, c1 = z3.Reals("n k psi_far H c1_alpha")
-    yield implication(
-        "a cut leaves k(n - k) >= n - 1 pairs out of range",
-        k * (n - k) >= n - 1,
+def cut(less: int) -> Step:
+    """A cut of n agents leaves n less so many pairs out of range."""
+    n, k = z3.Reals("n k")
+    return implication(
+        f"a cut leaves k(n - k) >= n - {less} pairs out of range",
+        k * (n - k) >= n - less,
         *(k >= 1, n - k >= 1),
         latex=r"k(n-k) - (n-1) = (k-1)(n-k-1) \ge 0",
     )
+
+
+def over_links(count: int, factor: int) -> Step:
+    """Cauchy's inequality along a path of links, for a factor."""
+    steps = sp.symbols(f"d_1:{count + 1}", real=True)
+    squares = sp.Add(*((a - b) ** 2 for k, a in enumerate(steps) for b in steps[:k]))
+    left = factor * sp.Add(*(d**2 for d in steps)) - sp.Add(*steps) ** 2
+    return Step(
+        f"over {count} links (Σ d_k)² = {factor} Σ d_k² - Σ_k<l (d_k - d_l)² <= {factor} Σ d_k²",
+        sp.expand(left - squares) == 0,
+    )
+
+
+def _algorithm_1() -> Iterator[Step]:
+    for m in (1, 2, 3):
+        yield Step(f"Algorithm 1, m = {m}: dH/dt = -c2α pᵀL̂p", algorithm1_identity(m).holds)
+    n, psi, energy, c1 = z3.Reals("n psi_far H c1_alpha")
+    yield cut(1)
     pairs = z3.Real("pairs")
     yield implication(
         "so a disconnected state has H >= (n - 1) c1α ψ_α(r_α): below it no solution from there is ever disconnected",
