@@ -17,8 +17,8 @@ from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.claims import judged, undecided
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.hypotheses import condition, law_is_or_composed, smooth_pair
-from flockana.theorems.olfati_saber.gamma_agent import declared_rate_is_true, target_rests
 from flockana.theorems.observed import Observed
+from flockana.theorems.olfati_saber.gamma_agent import declared_rate_is_true, target_rests
 from flockana.theorems.rounding import EPS
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, HypothesisStatus, Theorem, Tolerances
 
