@@ -11,7 +11,7 @@ import pytest
 from flockana import MinimalFlocking, Tolerances, simulate
 from flockana.measures.perception import both_ways
 from flockana.theorems import theorem
-from flockana.theorems.rounding import EPS
+from flockana.theorems.observed import Observed
 
 PAIR, MU, RHO = ((0, 1),), 4.0, 2.0
 LAW = MinimalFlocking(edges=PAIR, spacing=RHO, mu=MU)
@@ -20,7 +20,7 @@ BOTH = MinimalFlocking(edges=both_ways(PAIR), spacing=RHO, mu=MU, normalised=Fal
 
 def claim_of(run, name):
     """On this run alone."""
-    return next(c for c in theorem("zone-1-corrected").examine(run, Tolerances())[1] if c.name == name)
+    return next(c for c in theorem("zone-1-corrected").examine(Observed.of(run), Tolerances())[1] if c.name == name)
 
 
 def edge(stretch, law=LAW, far=0.0, until=1.0):

@@ -15,7 +15,8 @@ from flockana.laws.olfati_saber import Algorithm2
 from flockana.measures.perception import both_ways, edge_vectors, random_out_tree
 from flockana.theorems import Tolerances, theorem, verify
 from flockana.theorems.bearing_distance.tree_case import characteristic_residual, tree_case
-from flockana.theorems.bearing_distance.tree_limits import edge_shares
+from flockana.theorems.bearing_distance.tree_limits import edge_shares, state
+from flockana.theorems.observed import Observed
 
 TREE = ((0, 1), (1, 2), (1, 3), (0, 4))
 CORRECTED = ("lengths", "velocities", "spectrum", "exponential", "root-edge", "energy", "no-collision")
@@ -30,7 +31,7 @@ def run_on(edges, *, m=2, seed=0, end=80.0, size=2.0, speed=0.5, **options):
 
 def claim_of(name, run, claim):
     """A claim on a run as it is, edited or not."""
-    return next(c for c in theorem(name).examine(run, Tolerances())[1] if c.name == claim)
+    return next(c for c in theorem(name).examine(Observed.of(run), Tolerances())[1] if c.name == claim)
 
 
 @pytest.fixture(scope="module")
@@ -63,7 +64,7 @@ def test_as_printed_it_is_refuted_with_its_counterexample(directed):
 def test_a_limit_is_not_refuted_before_the_certificate_bites():
     """At the start V is far above μρ²/2 on both edges from the root: no bound, and no verdict on the limit."""
     run = run_on(TREE, end=0.1, size=9.0)
-    assert edge_shares(tree_case(run.law, 5), run.q[-1], run.p[-1]).min() > 1.0
+    assert edge_shares(tree_case(run.law, 5), state(run.q[-1], run.p[-1])).min() > 1.0
     assert verify("zone-1-printed", run).claim("edges").status == "inconclusive"
     assert verify("zone-1-corrected", run).claim("lengths").status == "inconclusive"
 
