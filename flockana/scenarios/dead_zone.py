@@ -18,8 +18,8 @@ from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.dead_zone.case import dead_zone_law, final_components, velocities_match
 from flockana.theorems.dead_zone.range_limits import thinned
-from flockana.theorems.rounding import EPS
 from flockana.theorems.observed import Observed
+from flockana.theorems.rounding import EPS
 from flockana.theorems.theorem import Status
 
 _PRINTED = "Li, Yuan and Liu, section V: n = 50, r = 15, δ = 4.5, k_δ = 1.3, no more."

@@ -133,20 +133,15 @@ class Enclosure:
 
     def __truediv__(self, other: Real) -> Enclosure:
         x = Enclosure.of(other)
-        holds_zero = (x.lo <= 0.0) & (x.hi >= 0.0)
+        crosses = (x.lo <= 0.0) & (x.hi >= 0.0)
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             inverse = _outward(
-                np.where(holds_zero, -np.inf, 1.0 / x.hi),
+                np.where(crosses & (x.lo < 0.0), -np.inf, 1.0 / x.hi),
                 1.0 / x.mid,
-                np.where(holds_zero, np.inf, 1.0 / x.lo),
-                keep_zero=False,
+                np.where(crosses & (x.hi > 0.0), np.inf, 1.0 / x.lo),
             )
-            # a quotient of numbers of one sign keeps its sign, however small the divisor
-            lo = np.where(holds_zero & (x.lo >= 0.0), 0.0, inverse.lo)
-            made = self * Enclosure(lo, inverse.mid, inverse.hi)
-        return Enclosure(
-            made.lo, np.where(x.mid == 0.0, np.nan, self.mid / np.where(x.mid == 0.0, 1.0, x.mid)), made.hi
-        )
+            made, mid = self * inverse, np.divide(self.mid, x.mid)
+        return Enclosure(made.lo, mid, made.hi)
 
     def __rtruediv__(self, other: Real) -> Enclosure:
         return Enclosure.of(other) / self
@@ -191,6 +186,12 @@ class Enclosure:
         by = np.asarray(by, dtype=np.float64)
         with np.errstate(invalid="ignore"):
             return _outward(self.lo - by, self.mid, self.hi + by, exact=by == 0.0)
+
+    def scaled_out(self, share: float) -> Enclosure:
+        """Return the enclosure widened by a share of each end's size; infinite ends stay."""
+        with np.errstate(invalid="ignore"):
+            lo, hi = self.lo - share * np.abs(self.lo), self.hi + share * np.abs(self.hi)
+        return Enclosure(np.where(np.isinf(self.lo), self.lo, lo), self.mid, np.where(np.isinf(self.hi), self.hi, hi))
 
     def max(self, axis: int | None = None) -> Enclosure:
         """Return the largest entry."""

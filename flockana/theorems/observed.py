@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.vectors import centres, lengths
 from flockana.dynamics.between import Between
@@ -31,6 +32,7 @@ TIGHTER = 1e-2  # the second run's tolerances over the first's
 DOUBT = 2.0  # times what two runs differ by: all of the error, if the tighter one's is at most half as large
 RK4_SECOND = 1e-10  # relative tolerance of the second run of one with a fixed step
 _MOST = 2**23  # numbers of the second run that are kept at the steps of the first
+_LOOKED_AT = 9  # samples at which a run is asked whether it is in its law's domain
 _LOW_ORDER = ("RK23", "RK45")  # methods that take many times the steps of DOP853 to a tight tolerance
 
 
@@ -174,6 +176,16 @@ class Observed:
         first = np.searchsorted(times, start - unit)
         return _largest(errors, first, np.maximum(np.searchsorted(times, end + unit, side="right"), first + 1))
 
+    def transformed(self, change: Callable[[Trajectory], Trajectory]) -> Observed:
+        """Return both runs as seen from another frame, in which no distance between agents is another.
+
+        Parameters
+        ----------
+        change : callable
+            Of one run.
+        """
+        return Observed(*(change(run) for run in (self.given, self.run, self.other)), self.errors, self.doubt)
+
     @cached_property
     def between_error(self) -> FloatArray:
         """Half width of any q_i − q_c over each interval between samples, shape (T − 1,)."""
@@ -307,15 +319,9 @@ def _observed(run: Trajectory) -> Observed:
     thinned = _at_samples_of(again, run.t)
     first, second = (thinned, run) if tight else (run, thinned)
     found = Observed(run, first, second, errors)
-    low = found.floors
-    widened = _Errors(
-        errors.t,
-        errors.shape + low.place,
-        errors.speed + low.speed,
-        errors.centre + low.place,
-        errors.drift + low.speed,
-    )
-    return replace(found, errors=widened)
+    place, speed, _ = found.floors
+    least = (place, speed, place, speed)
+    return replace(found, errors=_Errors(errors.t, *map(np.maximum, errors[1:], least)))
 
 
 def observed(law: Any, q0: Any, p0: Any, t_span: tuple[float, float], **options: Any) -> Observed:
@@ -340,7 +346,7 @@ def with_doubt(claims: Iterable[Claim], seen: Observed) -> tuple[Claim, ...]:
     """Return claims with the reason why nothing is known of a run, if so; a failed run decides nothing at all."""
     if not seen.doubt:
         return tuple(claims)
-    failed = seen.given.status == "failed"
+    failed = bool(failure(seen.given))
     told: list[Claim] = []
     for claim in claims:
         decided = claim.status in ("verified", "refuted") and failed and claim.rigour != "symbolic"
@@ -368,9 +374,21 @@ def by_both_runs(seen: Observed, check: Callable[[Trajectory], Claim]) -> Claim:
 
 
 def _own_doubt(run: Trajectory) -> str:
+    if reason := failure(run):
+        return reason
+    return "one sample shows no motion" if len(run.t) == 1 else ""
+
+
+def failure(run: Trajectory) -> str:
+    """Return why a run is none of its law, or an empty text: it failed, or a state is outside the law's domain."""
     if run.status == "failed":
         return f"the run failed: {run.message}"
-    return "one sample shows no motion" if len(run.t) == 1 else ""
+    for k in np.unique(np.linspace(0, len(run.t) - 1, _LOOKED_AT).astype(int)):
+        try:
+            run.law.check_start(run.q[k], run.p[k])
+        except ArgumentError as error:
+            return f"the run left the domain of its law before t = {run.t[k]:.6g}: {error}"
+    return ""
 
 
 def _nothing_known(run: Trajectory) -> _Errors:

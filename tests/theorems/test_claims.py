@@ -1,81 +1,149 @@
-"""Claims by a margin and by algebra, and errata: what decides them, and what they carry."""
+"""Each constructor of claims: what a margin, a proof and hypotheses come to; and what no claim may say."""
 
-from __future__ import annotations
-
+import numpy as np
 import pytest
+import sympy as sp
 
-from flockana.theorems import Claim, Hypothesis, Tolerances, verify
-from flockana.theorems.claims import equal, erratum, exact, judged
+from flockana.base.errors import ArgumentError
+from flockana.theorems import Claim, Hypothesis, Tolerances
+from flockana.theorems.claims import by_count, counted, equal, erratum, exact, judged, undecided, vacuous
+from flockana.theorems.enclosure import Enclosure
+from flockana.theorems.limits import Certificate, limit_claim
 
-UNMET, ASSUMED = Hypothesis("a", "unmet"), Hypothesis("b", "assumed")
-
-
-def test_a_judged_claim_keeps_what_decides_it():
-    claim = judged("i", 0.5, 0.1, computed=3.0, stated="x", witness="w", proof="p", rigour="interval", detail="d")
-    assert claim == Claim("i", "verified", "interval", 3.0, "x", 0.5, 0.1, "w", "p", "d")
-
-
-@pytest.mark.parametrize(
-    ("margin", "options", "expected"),
-    [
-        (0.5, {}, "verified"),
-        (-0.5, {}, "refuted"),
-        (0.05, {}, "inconclusive"),
-        (0.5, {"verifies": False}, "inconclusive"),
-        (-0.5, {"verifies": False}, "refuted"),
-        (0.5, {"refutes": False}, "verified"),
-        (-0.5, {"refutes": False}, "inconclusive"),
-        (0.5, {"needs": [UNMET], "verifies": False}, "vacuous"),
-        (-0.5, {"needs": [UNMET], "refutes": False}, "vacuous"),
-        (-0.5, {"needs": [ASSUMED]}, "inconclusive"),
-        (0.5, {"needs": [ASSUMED]}, "verified"),
-    ],
-)
-def test_what_a_margin_may_decide(margin, options, expected):
-    assert judged("i", margin, 0.1, **options).status == expected
-
-
-def test_algebra_decides_without_an_error():
-    assert exact("i", True, computed="0").rigour == "symbolic"
-    assert [exact("i", holds).status for holds in (True, False)] == ["verified", "refuted"]
+MET, ASSUMED, UNMET = (Hypothesis(status, status) for status in ("met", "assumed", "unmet"))
+HOLDS, OPEN, FAILS = Enclosure.around(1.0, 0.1), Enclosure.around(0.0, 0.1), Enclosure.around(-1.0, 0.1)
 
 
 @pytest.mark.parametrize(
-    ("residual", "status", "witness"),
+    ("margin", "need", "status"),
     [
-        (0, "verified", "0"),
-        (1, "refuted", "1"),
-        ([0, 0], "verified", ["0", "0"]),
-        ((0, 2), "refuted", ["0", "2"]),
-        ((2, 0), "refuted", ["2", "0"]),
+        (HOLDS, MET, "verified"),
+        (OPEN, MET, "inconclusive"),
+        (FAILS, MET, "refuted"),
+        (HOLDS, ASSUMED, "verified"),  # a fact about the run
+        (FAILS, ASSUMED, "inconclusive"),
+        (HOLDS, UNMET, "vacuous"),
+        (FAILS, UNMET, "vacuous"),
+        (Enclosure.of(0.0), MET, "verified"),  # >= 0 is what is claimed
+        (Enclosure.around(np.nan, 0.0), MET, "inconclusive"),
+        (Enclosure.around(1.0, np.inf), MET, "inconclusive"),
     ],
 )
-def test_an_identity_is_judged_by_all_of_its_residual(residual, status, witness):
-    claim = equal("i", residual, detail="d")
-    assert (claim.status, claim.witness, claim.detail) == (status, witness, "d")
-    assert claim.computed == ("residual 0" if status == "verified" else "a residual that is not 0")
+def test_a_claim_about_a_run_is_judged_by_the_sign_of_its_margin(margin, need, status):
+    assert judged("i", margin, [need]).status == status
 
 
-@pytest.mark.parametrize(
-    ("statuses", "whole"),
-    [
-        (("verified", "refuted"), "refuted"),
-        (("verified", "verified"), "verified"),
-        (("inconclusive", "verified"), "inconclusive"),
-    ],
-)
-def test_an_erratum_expects_of_the_whole_what_its_claims_make_of_it(statuses, whole):
-    item = erratum(
-        "X1",
-        title="t",
-        statement="s",
-        source="o",
-        check=lambda tolerances: [judged("a", tolerances.energy, 0.0), exact("b-c", False)],
-        expected=dict(zip(("a", "b-c"), statuses, strict=True)),
-        references=("key",),
+def test_over_time_one_instant_that_certainly_fails_refutes_and_one_that_may_leaves_open():
+    good, bad = Enclosure.around(np.array([1.0, 2.0, 3.0]), 0.5), Enclosure.around(np.array([1.0, -2.0, 3.0]), 0.5)
+    assert judged("i", good).status == "verified"
+    refuted = judged("i", bad)
+    assert (refuted.status, refuted.margin) == ("refuted", -2.0)
+    assert refuted.error == pytest.approx(0.5, rel=1e-15)
+    wide = Enclosure.around(np.array([1.0, 2.0, 3.0]), np.array([0.5, 2.5, 0.5]))
+    assert judged("i", wide).status == "inconclusive"
+
+
+@pytest.mark.parametrize(("about", "statuses"), [("all", ("inconclusive", "refuted")), ("limit", ("inconclusive",) * 2)])
+def test_numbers_of_one_run_verify_nothing_about_all_cases_and_decide_no_limit(about, statuses):
+    assert tuple(judged("i", margin, about=about).status for margin in (HOLDS, FAILS)) == statuses
+
+
+def test_a_proof_decides_where_its_needs_are_met_and_numbers_stand_beside_it():
+    proved = judged("i", OPEN, [MET], proof="energy-identities")
+    assert (proved.status, proved.rigour, proved.margin) == ("verified", "symbolic", 0.0)
+    refuted = judged("i", OPEN, [MET], disproof="collisions")
+    assert (refuted.status, refuted.rigour) == ("refuted", "smt")
+    for need, status in ((ASSUMED, "inconclusive"), (UNMET, "vacuous")):
+        assert judged("i", OPEN, [need], proof="cohesion").status == status
+    assert judged("i", HOLDS, about="all", proof="cohesion").status == "verified"
+
+
+@pytest.mark.parametrize(("margin", "fields"), [(FAILS, {"proof": "cohesion"}), (HOLDS, {"disproof": "cohesion"})])
+def test_numbers_against_a_proof_decide_nothing_and_say_so(margin, fields):
+    claim = judged("i", margin, [MET], detail="R <= 3", **fields)
+    assert (claim.status, claim.contradicts) == ("inconclusive", "cohesion")
+    assert claim.detail == (
+        "R <= 3; the numbers contradict the proof 'cohesion': the run or the library is at fault"
     )
-    assert dict(item.expected) == {"X1": whole, "X1:a": statuses[0], "X1:b-c": statuses[1]}
-    assert (item.kind, item.references) == ("fixed", ("key",))
-    verdict = verify(item, tolerances=Tolerances(energy=0.25))
-    assert verdict.claim("a").margin == 0.25
-    assert [claim.status for claim in verdict.claims] == ["verified", "refuted"]
+
+
+@pytest.mark.parametrize(
+    ("status", "about", "need", "allowed"),
+    [
+        ("verified", "run", ASSUMED, True),
+        ("verified", "limit", ASSUMED, False),
+        ("verified", "all", ASSUMED, False),
+        ("refuted", "run", ASSUMED, False),
+        ("verified", "run", UNMET, False),
+        ("refuted", "all", MET, True),
+        ("vacuous", "limit", UNMET, True),
+        ("inconclusive", "limit", ASSUMED, True),
+    ],
+)
+def test_a_claim_refuses_a_status_that_its_hypotheses_do_not_allow(status, about, need, allowed):
+    if allowed:
+        assert Claim("i", status, about=about, needs=(need,)).status == status
+        return
+    with pytest.raises(ArgumentError, match=rf"claim 'i' is {status} though '{need.name}' is {need.status}"):
+        Claim("i", status, about=about, needs=(need,))
+
+
+def test_a_claim_refuses_an_error_below_0():
+    with pytest.raises(ArgumentError, match=r"claim 'i' has error = -1: expected none below 0"):
+        Claim("i", "verified", error=-1.0)
+
+
+@pytest.mark.parametrize(
+    ("certain", "possible", "status"), [(0, 3, "verified"), (3, 4, "inconclusive"), (4, 9, "refuted"), (3, 3, "verified")]
+)
+def test_whole_numbers_are_judged_by_what_certainly_and_what_possibly_happens(certain, possible, status):
+    claim = counted("links", 3, certain, possible)
+    assert claim.status == status
+    assert claim.margin == (3.5 - certain if status == "refuted" else 3.5 - possible)
+
+
+def test_failures_are_counted_where_no_rounding_can_change_a_sign():
+    assert [by_count("falls", k).margin for k in (0, 1, 5)] == [1.0, -1.0, -5.0]
+
+
+def test_a_margin_that_a_search_compares_is_finite():
+    assert judged("i", Enclosure(-np.inf, np.nan, -2.0)).margin == -2.0
+    assert judged("i", Enclosure(-np.inf, np.nan, np.inf)).margin == 0.0
+
+
+def test_vacuous_and_undecided_claims_name_their_reason():
+    assert vacuous("iv", Hypothesis("c1α > 0", "unmet", 0.0, "c1α = 0")).detail == "c1α > 0: c1α = 0"
+    assert undecided("rate", "at rest from the start", [UNMET]).status == "vacuous"
+    assert undecided("rate", "at rest from the start", [ASSUMED]).status == "inconclusive"
+
+
+def test_a_limit_needs_a_certificate_and_nothing_assumed():
+    sure, unsure = Certificate(0.5, "certified to stay"), Certificate(-1.0, "a saddle")
+    assert limit_claim("ii", [MET], [unsure, sure]).status == "verified"
+    assert limit_claim("ii", [ASSUMED], [sure]).status == "inconclusive"
+    assert limit_claim("ii", [MET], [unsure], evidence="consistent: K̃ falls").detail == "a saddle; consistent: K̃ falls"
+    assert limit_claim("ii", [MET], [unsure]).status == "inconclusive"
+    assert limit_claim("ii", [MET], proof="cucker-smale").status == "verified"
+    assert limit_claim("ii", [MET], [unsure], escape=Certificate(0.2, "they part")).status == "refuted"
+    assert limit_claim("ii", [ASSUMED], escape=Certificate(0.2, "they part")).status == "inconclusive"
+    assert limit_claim("ii", [MET], [Certificate(1e-13, "rounding")]).status == "inconclusive"
+
+
+def test_algebra_decides_all_cases():
+    x = sp.Symbol("x")
+    assert equal("identity", sp.expand((x + 1) ** 2 - x**2 - 2 * x - 1)).status == "verified"
+    assert equal("printed", [0, x]).witness == ["0", "x"]
+    assert exact("sum", False).about == "all"
+
+
+def test_an_erratum_has_the_status_of_its_claims():
+    item = erratum(
+        "E0",
+        title="1 + 1 is 2",
+        statement="1 + 1 = 2",
+        source="arithmetic",
+        check=lambda tolerances: [exact("printed", 1 + 1 == 3), exact("corrected", 1 + 1 == 2)],
+        expected={"printed": "refuted", "corrected": "verified"},
+    )
+    assert dict(item.expected) == {"E0": "refuted", "E0:printed": "refuted", "E0:corrected": "verified"}
+    assert [claim.status for claim in item.examine(Tolerances())[1]] == ["refuted", "verified"]

@@ -8,22 +8,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import asinh, cosh, inf, sqrt
+from math import asinh, cosh, inf
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
-from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions.weights import RationalWeight
-from flockana.laws.cucker_smale import spread
-from flockana.theorems.claims import judged
-from flockana.theorems.hypotheses import below
-from flockana.theorems.limits import Certificate, limit_claim
-from flockana.theorems.rounding import EPS, frame_error
-from flockana.theorems.sampling import spread_between
+from flockana.theorems.claims import judged, undecided
+from flockana.theorems.enclosure import Enclosure
+from flockana.theorems.hypotheses import positive_room
+from flockana.theorems.limits import limit_claim
+from flockana.theorems.observed import Observed
+from flockana.theorems.sampling import spread_over
 from flockana.theorems.theorem import Claim, Hypothesis
 
-_QUADRATURE = 1e-11  # of an integral: what quadrature, the incomplete beta function and a root are off by, together
+QUADRATURE = 1e-11  # of an integral: what quadrature, the incomplete beta function and a root are off by, together
 _FARTHEST = 300.0  # w, beyond which a distance e^w has no meaning any more
 
 
@@ -124,6 +122,15 @@ class Decline:
         w = float(brentq(lambda at: self._over(low, at) - asked, low, high, xtol=1e-14, rtol=1e-14))
         return self.weight.length / self.stretch * float(np.sinh(w))
 
+    def beyond_all(self, start: Enclosure) -> Enclosure:
+        """Return `beyond` of an enclosed start."""
+        return start.falling(np.vectorize(self.beyond, otypes=[float])).scaled_out(QUADRATURE)
+
+    def reached_by(self, start: Enclosure, speed: Enclosure) -> Enclosure:
+        """Return `reached` of an enclosed start and speed, of which it is a rising function."""
+        ends = (self.reached(float(getattr(start, end)), float(getattr(speed, end))) for end in ("lo", "mid", "hi"))
+        return Enclosure(*ends).scaled_out(QUADRATURE)
+
 
 @dataclass(frozen=True, eq=False)
 class Guarantee:
@@ -131,122 +138,90 @@ class Guarantee:
 
     Parameters
     ----------
-    run : Trajectory
+    seen : Observed
         A run of `CuckerSmale`.
     stretch : float
         c of φ.
     """
 
-    run: Trajectory
+    seen: Observed
     stretch: float
 
     @cached_property
     def phi(self) -> Decline:
         """φ, with λ = K where sums are divided by n and λ = nK where they are not."""
-        law = self.run.law
-        return Decline(law.weight, law.weight.strength * (1.0 if law.mean else self.run.n), self.stretch)
+        law = self.seen.law
+        return Decline(law.weight, law.weight.strength * (1.0 if law.mean else self.seen.n), self.stretch)
 
     @cached_property
-    def x(self) -> FloatArray:
-        """‖x‖ at the samples."""
-        return spread(self.run.q)
-
-    @cached_property
-    def v(self) -> FloatArray:
-        """‖v‖ at the samples."""
-        return spread(self.run.p)
-
-    @property
-    def _blur(self) -> tuple[float, float]:
-        """Rounding of ‖x‖ and of ‖v‖."""
-        root = sqrt(self.run.n * self.run.m)
-        return root * frame_error(self.run.q), root * frame_error(self.run.p)
-
-    @cached_property
-    def room(self) -> float:
+    def room(self) -> Enclosure:
         """∫φ from ‖x(0)‖ on."""
-        return self.phi.beyond(float(self.x[0]))
+        return self.phi.beyond_all(self.seen.spread[0])
 
     @cached_property
-    def bound(self) -> float:
+    def bound(self) -> Enclosure:
         """x_M."""
-        return self.phi.reached(float(self.x[0]), float(self.v[0]))
-
-    @cached_property
-    def _error(self) -> float:
-        """Of the difference of ‖v(0)‖ and an integral of φ from ‖x(0)‖ on."""
-        blur_x, blur_v = self._blur
-        size = float(self.v[0]) + (0.0 if self.room == inf else self.room)
-        return blur_v + self.phi(float(self.x[0])) * blur_x + _QUADRATURE * size
+        return self.phi.reached_by(self.seen.spread[0], self.seen.velocity_spread[0])
 
     def hypothesis(self, name: str) -> Hypothesis:
         """‖v(0)‖ < ∫φ from ‖x(0)‖ on, which always holds for β <= ½."""
-        v0 = float(self.v[0])
-        if self.room == inf:
-            return Hypothesis(name, "met", 1.0, f"β = {self.run.law.weight.decay:g}: the integral is infinite")
-        return below(name, v0, self.room, self._error, f"‖v(0)‖ = {v0:.6g}, the integral {self.room:.6g}")
+        v0 = self.seen.velocity_spread[0]
+        if self.room.lo == inf:
+            return Hypothesis(name, "met", 1.0, f"β = {self.seen.law.weight.decay:g}: the integral is infinite")
+        detail = f"‖v(0)‖ = {v0.mid:.6g}, the integral {self.room.mid:.6g}"
+        return positive_room(name, self.room - v0, detail)
 
-    def claims(self, names: tuple[str, str, str], proof: str) -> list[Claim]:
-        """The spread of positions is bounded, that of velocities falls at the rate told, and so the flock is one."""
-        bounded = self._bounded(names[0])
-        return [bounded, self._falls(names[1], bounded), self._limit(names[2], proof)]
+    def claims(self, names: tuple[str, str, str], needs: list[Hypothesis], proof: str) -> list[Claim]:
+        """Return that positions spread no farther than x_M, that velocities come together at a rate, and the limit."""
+        bounded, rate, limit = names
+        return [self._bounded(bounded, needs, proof), self._falls(rate, needs, proof), self._limit(limit, needs, proof)]
 
-    def _bounded(self, name: str) -> Claim:
-        """By a bound of the path between the samples; refuted by a sample alone."""
-        k, x_m = int(self.x.argmax()), self.bound
-        most = max(spread_between(self.run), float(self.x[k]))
-        share = 1.0 - float(self.x[k]) / x_m if 0.0 < x_m < inf else 0.0
-        error = (self._blur[0] + self._error / self.phi(x_m)) / x_m if 0.0 < x_m < inf else inf
-        error += (most - float(self.x[k])) / x_m if share > 0.0 else 0.0
+    def _bounded(self, name: str, needs: list[Hypothesis], proof: str) -> Claim:
+        x, x_m = spread_over(self.seen).max(), self.bound
+        known = x_m.mid > 0.0 and x_m.mid < inf
+        k = int(self.seen.spread.mid.argmax())
         return judged(
             name,
-            share,
-            error,
-            computed=float(self.x[k]),
-            stated=f"‖x(t)‖ <= x_M = {x_m:.6g}",
-            witness={"time": float(self.run.t[k])},
-            detail=f"‖x‖ is at most {self.x[k]:.6g} at the samples, {most:.6g} between them, and x_M = {x_m:.6g}",
+            1.0 - x / x_m if known else Enclosure.around(0.0, inf),
+            needs,
+            computed=float(x.mid),
+            stated=f"‖x(t)‖ <= x_M = {x_m.mid:.6g}",
+            witness={"time": float(self.seen.t[k])},
+            proof=proof,
+            detail=f"‖x‖ is at most {x.mid:.6g} at the samples, {x.hi:.6g} between them, and x_M = {x_m.mid:.6g}",
         )
 
-    def _falls(self, name: str, bounded: Claim) -> Claim:
-        """At the samples; between two of them ‖v‖ falls at φ(x_M) or more wherever ‖x‖ <= x_M, which is `bounded`."""
-        t, v = self.run.t[1:] - self.run.t[0], self.v[1:]
-        rate = self.phi(self.bound) if self.bound < inf else 0.0
-        if not (t.size and rate > 0.0 and self.v.min() > 0.0):
-            return judged(name, 0.0, inf, detail="no fall to be seen: the velocities match from the start")
-        seen = np.log(self.v[0] / v) / t
-        margin = seen / rate - 1.0
-        known = 2.0 * self.run.law.weight.decay * self._error / (rate * max(self.bound, self.run.law.weight.length))
-        with np.errstate(over="ignore"):  # at the threshold x_M is anything, and the error infinite
-            error = (self._blur[1] * (1.0 / v + 1.0 / self.v[0]) + 4.0 * EPS) / (t * rate) + known * (
-                1.0 + np.abs(seen) / rate
-            )
-        k = int(np.argmin(margin + error))
-        if margin[k] + error[k] >= 0.0:
-            k = int(np.argmin(margin - error))
+    def _falls(self, name: str, needs: list[Hypothesis], proof: str) -> Claim:
+        """From the start to each sample at which ‖v‖ is above its error; between two, ‖x‖ <= x_M makes it fall."""
+        seen, v, rate = self.seen, self.seen.velocity_spread, self.bound.falling(np.vectorize(self.phi))
+        count = seen.known_samples(v.lo > 0.0)
+        if count < 2 or not rate.lo > 0.0:
+            return undecided(name, "no fall above the error of the run", needs, proof=proof)
+        t = seen.t[1:count] - seen.t[0]
+        fall = (v[0] / v[1:count]).log() / t
+        margin = fall / rate - 1.0
+        k = margin.worst_index
         return judged(
             name,
-            float(np.clip(margin[k], -1.0, 1.0)),
-            float(error[k]),
-            verifies=bounded.status == "verified",
-            computed=float(seen[k]),
-            stated=f"‖v(t)‖ <= ‖v(0)‖ exp(-φ(x_M) t), φ(x_M) = {rate:.6g}",
-            witness={"time": float(t[k] + self.run.t[0])},
-            detail=f"from the start to any sample ‖v‖ falls at a mean rate of {seen[k]:.6g} at least",
+            margin,
+            needs,
+            computed=float(fall.mid[k]),
+            stated=f"‖v(t)‖ <= ‖v(0)‖ exp(-φ(x_M) t), φ(x_M) = {rate.mid:.6g}",
+            witness={"time": float(t[k] + seen.t[0])},
+            proof=proof,
+            detail=f"from the start to any sample ‖v‖ falls at a mean rate of {fall.mid[k]:.6g} at least, "
+            f"{seen.until(count)}",
         )
 
-    def _limit(self, name: str, proof: str) -> Claim:
-        v0, known = float(self.v[0]), self.bound < inf
-        margin, error = (1.0, 0.0) if self.room == inf else ((self.room - v0) / self.room, self._error / self.room)
-        bound = f"‖x‖ <= {self.bound:.6g} for ever, so ‖v‖ falls exponentially"
-        text = bound if known else "x_M is farther than can be told"
+    def _limit(self, name: str, needs: list[Hypothesis], proof: str) -> Claim:
+        v, x_m = self.seen.velocity_spread.mid, float(self.bound.mid)
+        text = f"‖x‖ never exceeds {x_m:.6g}, so ‖v‖ falls exponentially" if x_m < inf else "x_M cannot be computed"
         return limit_claim(
             name,
-            [],
-            [Certificate(margin if known else -1.0, text, error)],
-            computed=float(self.v[-1]),
+            needs,
+            computed=float(v[-1]),
             stated="‖v(t)‖ -> 0, and every q_j - q_i has a limit",
-            witness={"time": float(self.run.t[-1])},
+            witness={"time": float(self.seen.t[-1])},
             proof=proof,
-            detail=f"‖v‖ goes from {v0:.4g} to {self.v[-1]:.4g} at t = {self.run.t[-1]:g}",
+            detail=f"‖v‖ goes from {v[0]:.4g} to {v[-1]:.4g} at t = {self.seen.t[-1]:g}; {text}",
         )

@@ -107,7 +107,7 @@ def blocks(nets: Sequence[LinkArray], headings: FloatArray, windows: Sequence[tu
     return tuple(found)
 
 
-def for_ever_connected(law: HeadingAveraging, q: FloatArray, heading: FloatArray) -> Certificate:
+def permanently_connected(law: HeadingAveraging, q: FloatArray, heading: FloatArray) -> Certificate:
     """Certificate that a connected net never changes again, so that all headings tend to one.
 
     With an unchanged net √w (θ − θ∞) shrinks by ρ in each step, w_i counting agent i and its neighbours, θ∞ the mean
@@ -190,7 +190,7 @@ def _rooms(law: HeadingAveraging, q: FloatArray) -> tuple[FloatArray, IndexArray
     return np.abs(np.linalg.norm(q[i] - q[j], axis=1) - law.range), i, j
 
 
-def for_ever_parted(law: HeadingAveraging, q: FloatArray, heading: FloatArray) -> Certificate:
+def permanently_separated(law: HeadingAveraging, q: FloatArray, heading: FloatArray) -> Certificate:
     """Certificate that a component of the net never meets the other agents again.
 
     There is a direction in which all its agents are more than r ahead of all others, and in which each of its headings

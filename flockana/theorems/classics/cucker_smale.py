@@ -4,19 +4,20 @@ from __future__ import annotations
 
 from math import sqrt
 
-from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.cucker_smale import CuckerSmale
 from flockana.theorems.classics.alignment_bounds import Guarantee
 from flockana.theorems.hypotheses import condition, law_is
+from flockana.theorems.observed import Observed
 from flockana.theorems.theorem import Checked, Theorem, Tolerances, unmet
 
 
-def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
-    beta = run.law.weight.decay
+def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+    beta = seen.law.weight.decay
     needs = [condition("β < ½", beta < 0.5, 0.5 - beta, f"β = {beta:g}")]
     if unmet(needs):
         return needs, []
-    bounded, _, velocities = Guarantee(run, sqrt(2.0)).claims(("bounded", "rate", "velocities"), proof="cucker-smale")
+    guarantee = Guarantee(seen, sqrt(2.0))
+    bounded, _, velocities = guarantee.claims(("bounded", "rate", "velocities"), needs, proof="cucker-smale")
     return needs, [bounded, velocities]
 
 

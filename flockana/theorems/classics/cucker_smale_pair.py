@@ -2,89 +2,98 @@
 
 from __future__ import annotations
 
-from math import inf
-
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.cucker_smale import CuckerSmale
-from flockana.theorems.claims import judged
-from flockana.theorems.classics.alignment_bounds import Decline
-from flockana.theorems.hypotheses import below, condition, law_is, vacuous
-from flockana.theorems.rounding import EPS
+from flockana.theorems.claims import judged, vacuous
+from flockana.theorems.classics.alignment_bounds import QUADRATURE, Decline
+from flockana.theorems.enclosure import Enclosure
+from flockana.theorems.hypotheses import condition, law_is, positive_room
+from flockana.theorems.limits import limit_claim
+from flockana.theorems.observed import Observed
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
 
-_KNOWN = 1e-11  # of an integral
 
-
-def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
-    needs = [condition("two agents on a line", (run.n, run.m) == (2, 1), detail=f"n = {run.n}, m = {run.m}")]
+def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+    needs = [condition("two agents on a line", (seen.n, seen.m) == (2, 1), detail=f"n = {seen.n}, m = {seen.m}")]
     if unmet(needs):
         return needs, []
-    x, w = run.q[:, 1, 0] - run.q[:, 0, 0], run.p[:, 1, 0] - run.p[:, 0, 0]
-    needs.append(condition("different velocities", w[0] != 0.0, abs(float(w[0])), f"w(0) = {w[0]:g}"))
+    way = float(np.sign(seen.run.p[0, 1, 0] - seen.run.p[0, 0, 0]))
+    x, w = (_along(way, series, error) for series, error in _states(seen))
+    needs.append(condition("different velocities", way != 0.0, float(w.mid[0]), f"w(0) = {w.mid[0]:g}"))
     if unmet(needs):
         return needs, []
-    way = float(np.sign(w[0]))
-    x, w = way * x, way * w
-    weight = run.law.weight
-    psi = Decline(weight, weight.strength * (1.0 if run.law.mean else 2.0), 1.0)
-    speed, room = float(w[0]), psi.beyond(float(x[0]))
-    blur = 4.0 * EPS * (float(np.abs(run.p).max()) + psi(0.0) * float(np.abs(run.q).max()))
-    error = blur + _KNOWN * (speed + (0.0 if room == inf else room))
-    slow = below("w(0) < ∫λψ from x(0) on", speed, room, error, f"w(0) = {speed:.6g}, the integral {room:.6g}")
-    fast = below("w(0) > ∫λψ from x(0) on", room, speed, error, slow.detail)
-    return needs, [_invariant(run, psi, x, w, error, tolerances), *_side(psi, x, w, room, error, slow, fast)]
+    weight = seen.law.weight
+    psi = Decline(weight, weight.strength * (1.0 if seen.law.mean else 2.0), 1.0)
+    room = psi.beyond_all(x[0])
+    detail = f"w(0) = {w.mid[0]:.6g}, the integral {room.mid:.6g}"
+    slow = positive_room("w(0) < ∫λψ from x(0) on", room - w[0], detail)
+    fast = positive_room("w(0) > ∫λψ from x(0) on", w[0] - room, detail)
+    return needs, [_invariant(seen, psi, x, w, needs, tolerances), *_sides(psi, x, w, room, needs, slow, fast)]
+
+
+def _states(seen: Observed) -> tuple[tuple[FloatArray, FloatArray], tuple[FloatArray, FloatArray]]:
+    """Positions and velocities with their errors."""
+    return (seen.run.q, seen.shape_error), (seen.run.p, seen.speed_error)
+
+
+def _along(way: float, series: FloatArray, error: FloatArray) -> Enclosure:
+    """Difference of the two agents along their relative velocity, over time."""
+    return Enclosure.around(way * (series[:, 1, 0] - series[:, 0, 0]), error.sum(axis=1))
 
 
 def _invariant(
-    run: Trajectory, psi: Decline, x: FloatArray, w: FloatArray, error: float, tolerances: Tolerances
+    seen: Observed, psi: Decline, x: Enclosure, w: Enclosure, needs: list[Hypothesis], tolerances: Tolerances
 ) -> Claim:
     """That w + ∫λψ stays what it was."""
-    kept = np.array([v + psi.between(float(x[0]), float(at)) for at, v in zip(x, w, strict=True)])
-    off = np.abs(kept / w[0] - 1.0)
-    k = int(off.argmax())
+    start = float(x.mid[0])
+    passed = x.rising(np.vectorize(lambda at: psi.between(start, at), otypes=[float])).scaled_out(QUADRATURE)
+    off = abs((w + passed) / w[0] - 1.0)
+    k = int(off.mid.argmax())
     return judged(
         "invariant",
-        tolerances.energy - float(off[k]),
-        error / float(w[0]),
-        computed=float(off[k]),
+        tolerances.energy - off,
+        needs,
+        computed=float(off.mid[k]),
         stated=f"w + ∫λψ from x(0) to x is w(0), to {tolerances.energy:g} of it",
-        witness={"time": float(run.t[k])},
+        witness={"time": float(seen.t[k])},
         proof="cucker-smale",
-        detail=f"the invariant is off by {off[k]:.2g} of w(0) at most",
+        detail=f"the invariant is off by {off.mid[k]:.2g} of w(0) at most",
     )
 
 
-def _side(
-    psi: Decline, x: FloatArray, w: FloatArray, room: float, error: float, slow: Hypothesis, fast: Hypothesis
+def _sides(
+    psi: Decline,
+    x: Enclosure,
+    w: Enclosure,
+    room: Enclosure,
+    needs: list[Hypothesis],
+    slow: Hypothesis,
+    fast: Hypothesis,
 ) -> list[Claim]:
-    """The claim of the side of the threshold that the start is on; the other is vacuous."""
-    speed = float(w[0])
-    if slow.status == "unmet":
-        left = speed - room
-        claim = judged(
-            "parts",
-            left / speed,
-            error / speed,
-            computed=float(w[-1]),
-            stated="the two part for ever",
-            proof="cucker-smale",
-            detail=f"{fast.detail}: they part at {left:.6g} or more for ever, and did at {w[-1]:.6g} in the end",
-        )
-        return [*vacuous(slow, ["bounded"]), claim]
-    far = psi.reached(float(x[0]), speed)
-    claim = judged(
+    """The claims of both sides of the threshold: that the start is not on is vacuous."""
+    far, least = psi.reached(float(x.mid[0]), float(w.mid[0])), float((w[0] - room).mid)
+    bounded = limit_claim(
         "bounded",
-        1.0 if room == inf else (room - speed) / room,
-        inf if far == inf else 0.0 if room == inf else error / room,
-        computed=float(x[-1]),
+        [*needs, slow],
+        computed=float(x.mid[-1]),
         stated="the two match, at a distance that is known",
         proof="cucker-smale",
-        detail=f"{slow.detail}: they end {far:.6g} apart, and got to {x[-1]:.6g}",
+        detail=f"{slow.detail}: they end {far:.6g} apart, and got to {x.mid[-1]:.6g}",
     )
-    return [claim, *vacuous(fast, ["parts"])]
+    parts = limit_claim(
+        "parts",
+        [*needs, fast],
+        computed=float(w.mid[-1]),
+        stated="the two part for ever",
+        proof="cucker-smale",
+        detail=f"{fast.detail}: their relative speed never falls below {least:.6g}, and ended at {w.mid[-1]:.6g}",
+    )
+    return [
+        vacuous("bounded", slow) if slow.status == "unmet" else bounded,
+        vacuous("parts", fast) if fast.status == "unmet" else parts,
+    ]
 
 
 THEOREM = Theorem(

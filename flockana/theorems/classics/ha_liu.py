@@ -5,19 +5,19 @@ from __future__ import annotations
 from functools import partial
 from math import sqrt
 
-from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.cucker_smale import CuckerSmale
 from flockana.theorems.classics.alignment_bounds import Guarantee
 from flockana.theorems.hypotheses import law_is
+from flockana.theorems.observed import Observed
 from flockana.theorems.theorem import Checked, Theorem, Tolerances, unmet
 
 _NAMES = ("bounded", "rate", "flock")
 
 
-def _check(run: Trajectory, tolerances: Tolerances, *, stretch: float) -> Checked:
-    told = Guarantee(run, stretch)
-    needs = [told.hypothesis("‖v(0)‖ < ∫φ from ‖x(0)‖ on")]
-    return needs, [] if unmet(needs) else told.claims(_NAMES, proof="cucker-smale")
+def _check(seen: Observed, tolerances: Tolerances, *, stretch: float) -> Checked:
+    guarantee = Guarantee(seen, stretch)
+    needs = [guarantee.hypothesis("‖v(0)‖ < ∫φ from ‖x(0)‖ on")]
+    return needs, [] if unmet(needs) else guarantee.claims(_NAMES, needs, proof="cucker-smale")
 
 
 THEOREM = (

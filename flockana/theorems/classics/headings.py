@@ -10,17 +10,18 @@ from flockana.base.checks import FloatArray
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.vicsek import HeadingAveraging
 from flockana.measures.windows import joint_windows
-from flockana.theorems.claims import judged
+from flockana.theorems.claims import by_count
 from flockana.theorems.classics.averaging import (
     Block,
     blocks,
     final_heading,
-    for_ever_connected,
-    for_ever_parted,
     neighbourhoods,
+    permanently_connected,
+    permanently_separated,
 )
 from flockana.theorems.hypotheses import condition, law_is
 from flockana.theorems.limits import Certificate, limit_claim
+from flockana.theorems.observed import Observed
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
 
 _PROOF = "headings"
@@ -39,26 +40,26 @@ def _every_step(run: Trajectory) -> Hypothesis:
     return condition("every step is kept", kept, detail=f"{len(run.t)} samples")
 
 
-def _for_ever(windows: Any, connected: Certificate, parted: Certificate) -> Hypothesis:
+def _at_all_later_times(windows: Any, connected: Certificate, parted: Certificate) -> Hypothesis:
     """Joint connectivity over windows without end: shown, shown to fail, or seen so far."""
     name = "the nets are jointly connected over contiguous bounded windows, for ever"
     longest = max((stop - start for start, stop in windows), default=0)
     seen = f"{len(windows)} windows seen, of {longest} steps at most"
-    if connected.margin > connected.error:
+    if connected.certain:
         return Hypothesis(name, "met", connected.margin, f"{seen}; {connected.text}")
-    if parted.margin > parted.error:
+    if parted.certain:
         return Hypothesis(name, "unmet", -parted.margin, f"{seen}, and no more: {parted.text}")
     return Hypothesis(name, "assumed", None, f"{seen}; what comes after the run is not known")
 
 
-def _hull(headings: FloatArray) -> Claim:
+def _hull(headings: FloatArray, needs: list[Hypothesis]) -> Claim:
     """No heading leaves the span of those before: means are kept in it to the bit, so that no rounding counts."""
     least, most = headings.min(axis=1), headings.max(axis=1)
     out = np.flatnonzero((np.diff(least) < 0.0) | (np.diff(most) > 0.0))
-    return judged(
+    return by_count(
         "hull",
-        float(-out.size or 1),
-        0.0,
+        out.size,
+        needs,
         computed=float(most[-1] - least[-1]),
         stated="the greatest heading never rises, the least never falls",
         witness={"steps at which one does": int(out.size), "first": int(out[0]) if out.size else None},
@@ -67,7 +68,7 @@ def _hull(headings: FloatArray) -> Claim:
     )
 
 
-def _contraction(headings: FloatArray, found: tuple[Block, ...]) -> Claim:
+def _contraction(headings: FloatArray, found: tuple[Block, ...], needs: list[Hypothesis]) -> Claim:
     """Over each block of n − 1 windows the span shrinks by what its nets guarantee, but for rounding."""
     n = headings.shape[1]
     span = np.ptp(headings, axis=1)
@@ -76,11 +77,10 @@ def _contraction(headings: FloatArray, found: tuple[Block, ...]) -> Claim:
         f"n - 1 = {n - 1} jointly connected windows in a row", bool(found), detail=f"{len(found)} times in the run"
     )
     slowest = max((b.factor for b in found), default=float("nan"))
-    return judged(
+    return by_count(
         "contraction",
-        float(-len(missed) or 1),
-        0.0,
-        [enough],
+        len(missed),
+        [*needs, enough],
         computed=slowest,
         stated="over n - 1 windows the span shrinks by a factor below 1 that the nets alone guarantee",
         witness={
@@ -102,13 +102,14 @@ def _limit(run: Trajectory, heading: FloatArray, needs: list[Hypothesis], connec
         [connected],
         computed=float(np.ptp(heading)),
         stated="all headings tend to a common one",
-        witness={"heading": final_heading(heading, weights)} if connected.margin > connected.error else None,
+        witness={"heading": final_heading(heading, weights)} if connected.certain else None,
         proof=_PROOF,
         detail=f"at the end the headings differ by {np.ptp(heading):.3g} radians",
     )
 
 
-def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
+def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+    run = seen.run
     needs = [_plain(run.law), _every_step(run)]
     if unmet(needs):
         return needs, []
@@ -116,12 +117,12 @@ def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
     nets = [run.law.links(q) for q in run.q[:-1]]
     windows = joint_windows(run.n, nets)
     at_end = run.law, run.q[-1], headings[-1]
-    connected = for_ever_connected(*at_end)
-    for_ever = _for_ever(windows, connected, for_ever_parted(*at_end))
-    return [*needs, for_ever], [
-        _hull(headings),
-        _contraction(headings, blocks(nets, headings, windows)),
-        _limit(run, headings[-1], [for_ever], connected),
+    connected = permanently_connected(*at_end)
+    lasting = _at_all_later_times(windows, connected, permanently_separated(*at_end))
+    return [*needs, lasting], [
+        _hull(headings, needs),
+        _contraction(headings, blocks(nets, headings, windows), needs),
+        _limit(run, headings[-1], [*needs, lasting], connected),
     ]
 
 

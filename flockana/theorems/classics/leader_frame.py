@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 from itertools import pairwise
 from typing import Any
@@ -16,11 +17,11 @@ from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.laws.terms.told import acceleration
 from flockana.measures.nets import components, links
-from flockana.theorems.asymptotics import numerical_noise
 from flockana.theorems.hypotheses import condition
-from flockana.theorems.limits import decay, limit_claim
+from flockana.theorems.limits import Certificate, evidence, limit_claim
+from flockana.theorems.observed import Observed
 from flockana.theorems.rounding import EPS
-from flockana.theorems.theorem import Claim, Hypothesis, Tolerances
+from flockana.theorems.theorem import Claim, Hypothesis
 
 WINDOWS = 4  # of equal length, of the last half of a run: in each of them an agent must be linked to the informed
 
@@ -62,12 +63,12 @@ def constant_velocity(run: Trajectory) -> Hypothesis:
     return Hypothesis(name, "assumed", detail="it is, at all samples")
 
 
-def as_the_leader_sees(run: Trajectory) -> Trajectory:
-    """The same run in the frame of its leader, where Algorithm 2 has a γ-agent at rest; kept with the run.
+def as_the_leader_sees(seen: Observed) -> Observed:
+    """Return a run in the frame of its leader, where Algorithm 2 has a γ-agent at rest; kept with the run.
 
     Of a leader that accelerates, this is so where all agents are told: the acceleration of the frame takes theirs away.
     """
-    return run.remembered("leader's frame", lambda: _seen(run))
+    return seen.run.remembered("leader's frame", lambda: seen.transformed(_seen))
 
 
 def _seen(run: Trajectory) -> Trajectory:
@@ -106,20 +107,25 @@ def linked_to_informed(run: Trajectory) -> np.ndarray:
 
 
 def comes_to_rest(
-    run: Trajectory, who: np.ndarray, needs: list[Hypothesis], tolerances: Tolerances, name: str
+    seen: Observed,
+    who: np.ndarray,
+    needs: list[Hypothesis],
+    name: str,
+    certificates: Iterable[Certificate] = (),
+    *,
+    proof: str | None = None,
 ) -> Claim:
-    """The claim that the velocities of some agents, of a run in its leader's frame, die out."""
-    speeds = lengths(run.p[:, who]).max(axis=1, initial=0.0)
-    scale = run.scales.speed
-    amplitude = speeds + numerical_noise(run, scale) + 4.0 * EPS * float(np.abs(run.p).max())
-    falls = decay(run.t, amplitude, floor=float(np.sqrt(tolerances.velocity)) * scale).certificate
+    """Return the claim that the velocities of some agents, of a run in its leader's frame, die out."""
+    speeds, count = lengths(seen.run.p[:, who]).max(axis=1, initial=0.0), int(np.count_nonzero(who))
     return limit_claim(
         name,
         needs,
-        [falls],
+        certificates,
+        proof=proof,
         computed=float(speeds[-1]),
         stated="p_i - p_r -> 0",
-        witness={"time": float(run.t[-1]), "agents": int(np.count_nonzero(who))},
-        detail=f"the largest of {int(np.count_nonzero(who))} differences from the leader's velocity goes from "
-        f"{speeds[0]:.3g} to {speeds[-1]:.3g} at t = {run.t[-1]:g}",
+        witness={"time": float(seen.t[-1]), "agents": count},
+        evidence=evidence(seen.t, speeds, "the largest difference"),
+        detail=f"the largest of {count} differences from the leader's velocity goes from {speeds[0]:.3g} to "
+        f"{speeds[-1]:.3g} at t = {seen.t[-1]:g}",
     )

@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from flockana.base.vectors import lengths
-from flockana.dynamics.trajectory import Trajectory
 from flockana.kernels.paths import control_points
 from flockana.laws.link_keeping import LinkKeeping
 from flockana.measures.nets import components
 from flockana.measures.path_bounds import ROUNDING
 from flockana.theorems.claims import judged
+from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.hypotheses import condition, law_is
+from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.energy import balance, never_rises
 from flockana.theorems.rounding import EPS
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances
@@ -19,55 +20,55 @@ from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Toler
 _PROOF = "links-kept"
 
 
-def _joined(run: Trajectory) -> Hypothesis:
+def _joined(seen: Observed) -> Hypothesis:
     """The hypothesis that the links join all agents."""
-    ends = np.array(run.law.links, dtype=np.int32).reshape(-1, 2)
-    parts = len({*components(run.n, ends).tolist()})
+    ends = np.array(seen.law.links, dtype=np.int32).reshape(-1, 2)
+    parts = len({*components(seen.n, ends).tolist()})
     return condition("the links join all agents", parts == 1, float(1 - parts), f"{parts} parts, {len(ends)} links")
 
 
-def _length_bound(run: Trajectory) -> float:
-    """No link is longer than this on the interpolated path: its control points are not."""
-    ends = np.array(run.law.links, dtype=np.int64).reshape(-1, 2)
-    t, *states, slack = run.path
-    bound = 0.0
+def longest_link(seen: Observed) -> Enclosure:
+    """Return the length of the longest link over the run: reached at a sample, bounded between."""
+    ends = np.array(seen.law.links, dtype=np.int64).reshape(-1, 2)
+    if not len(ends):
+        return Enclosure.of(0.0)
+    at_samples = seen.distances(ends[:, 0], ends[:, 1]).max()
+    t, *states, slack = seen.run.path
+    bound = float(at_samples.hi)
     for k in range(len(t) - 1):
         points, _, allowance = control_points(t[k + 1] - t[k], *(x[s] for s in (k, k + 1) for x in states))
         off = allowance if slack is None else allowance + slack[k]
         apart = lengths(points[ends[:, 1]] - points[ends[:, 0]]).max(axis=1)
         bound = max(bound, float((apart + 2.0 * np.max(off)).max(initial=0.0)))
-    return bound
+    error = 2.0 * float(seen.between_error.max(initial=0.0)) + ROUNDING * float(np.abs(seen.run.q).max())
+    return Enclosure(at_samples.lo, at_samples.mid, bound + error + 64.0 * EPS * seen.law.r)
 
 
-def _below(run: Trajectory, name: str, most: float, rounding: float, stated: str, needs: list[Hypothesis]) -> Claim:
+def _below(seen: Observed, name: str, most: Enclosure, stated: str, needs: list[Hypothesis]) -> Claim:
     """The claim that no link is longer than `most`: by a bound of the path, refuted by a sample alone."""
-    reached = max(float(run.law.lengths(q).max(initial=0.0)) for q in run.q)
-    bound = max(_length_bound(run), reached)
-    length = reached if most - bound <= rounding else bound
+    reached = longest_link(seen)
     return judged(
         name,
-        (most - length) / run.law.r,
-        rounding / run.law.r,
+        (most - reached) / seen.law.r,
         needs,
-        verifies=length == bound and len(run.t) > 1,
-        computed=reached,
+        computed=float(reached.mid),
         stated=stated,
         proof=_PROOF,
-        detail=f"the longest link is {reached:.4g} at a sample and at most {bound:.4g} between; r = {run.law.r:g}",
+        detail=f"the longest link is {reached.mid:.4g} at a sample and at most {reached.hi:.4g} between; "
+        f"r = {seen.law.r:g}",
     )
 
 
-def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
-    law, joined = run.law, _joined(run)
-    energy = float(run.energy()[0])
-    rounding = ROUNDING * float(np.abs(run.q).max()) + 64.0 * EPS * law.r
-    longest = law.longest(energy * (1.0 + run.n**2 * EPS))
-    level = f"no link is longer than the {longest:.5g} at which it alone has H(0) = {energy:.5g}"
+def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+    law, joined, energy = seen.law, _joined(seen), seen.energy[0]
+    longest = energy.rising(np.vectorize(law.longest, otypes=[float])).scaled_out(64.0 * EPS)
+    level = f"no link is longer than the {longest.mid:.5g} at which it alone has H(0) = {energy.mid:.5g}"
+    whole = "the links, all shorter than r, join all agents always"
     return [joined], [
-        never_rises(run, [], proof=_PROOF),
-        balance(run, [], tolerances, proof=_PROOF),
-        _below(run, "links", longest, rounding, level, []),
-        _below(run, "connected", law.r, rounding, "the links, all shorter than r, join all agents always", [joined]),
+        never_rises(seen, [], proof=_PROOF),
+        balance(seen, [], tolerances, proof=_PROOF),
+        _below(seen, "links", longest, level, []),
+        _below(seen, "connected", Enclosure.of(law.r), whole, [joined]),
     ]
 
 

@@ -18,9 +18,9 @@ from flockana.theorems.classics.leader_frame import (
 from flockana.theorems.composed.cohesion import stays_within
 from flockana.theorems.hypotheses import law_is, positive
 from flockana.theorems.leads import pairs_apart
+from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.collisions import below_multiple, distinct_pairs, no_collision, pairs_at_one_instant
 from flockana.theorems.olfati_saber.energy import never_rises
-from flockana.theorems.rounding import energy_error
 from flockana.theorems.theorem import Checked, Hypothesis, Theorem, Tolerances, unmet
 
 PROOF = "informed-agents"
@@ -36,20 +36,19 @@ def _lasting(run: Trajectory) -> tuple[Hypothesis, np.ndarray]:
     return Hypothesis(name, "assumed" if count else "unmet", float(count), text), who
 
 
-def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
-    needs = [some_informed(run), positive(run, c1_alpha="c1α", c2_alpha="c2α"), constant_velocity(run)]
+def _check(observed: Observed, tolerances: Tolerances) -> Checked:
+    run = observed.run
+    needs = [some_informed(run), positive(observed, c1_alpha="c1α", c2_alpha="c2α"), constant_velocity(run)]
     if unmet(needs):
         return needs, []
-    seen = as_the_leader_sees(run)
-    energy = float(seen.energy()[0])
-    error = float(energy_error(seen.law, seen.q[:1], seen.p[:1], seen.energy()[:1])[0])
-    below = below_multiple(energy, error, run.law.gains.c1_alpha * run.law.alpha.c_star)
+    seen = as_the_leader_sees(observed)
+    below = below_multiple(seen.energy[0], run.law.gains.c1_alpha * run.law.alpha.c_star)
     lasting, linked = _lasting(run)
     return [*needs, lasting, below], [
         never_rises(seen, needs, squares=True, name="energy", proof=PROOF),
         stays_within(seen, needs, name="distance", proof=PROOF),
-        comes_to_rest(seen, informed(run), needs, tolerances, "informed"),
-        comes_to_rest(seen, linked, [*needs, lasting], tolerances, "linked"),
+        comes_to_rest(seen, informed(run), needs, "informed", proof="matched-velocities"),
+        comes_to_rest(seen, linked, [*needs, lasting], "linked"),
         distinct_pairs(seen, needs, tolerances, name="pairs"),
         pairs_at_one_instant(seen, needs, tolerances, name="one-instant"),
         no_collision(seen, [*needs, below], tolerances, name="no-collision"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import sqrt
 
 import numpy as np
@@ -16,9 +17,12 @@ from flockana.laws.terms.told import ToldAcceleration
 from flockana.theorems.claims import judged
 from flockana.theorems.classics.leader_frame import as_the_leader_sees, comes_to_rest, constant_velocity
 from flockana.theorems.composed.cohesion import stays_within
+from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.hypotheses import condition, law_is_or_composed, positive
+from flockana.theorems.limits import Certificate
+from flockana.theorems.observed import Observed
+from flockana.theorems.olfati_saber.attraction import attraction
 from flockana.theorems.olfati_saber.collisions import below_multiple, no_collision
-from flockana.theorems.rounding import EPS, energy_error
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
 
 PROOF = "informed-agents"
@@ -55,7 +59,7 @@ def _all_alike(run: Trajectory) -> Hypothesis:
 
 
 def centre_of(run: Trajectory) -> tuple[FloatArray, FloatArray]:
-    """q_c − q_r and p_c − p_r of a run in its leader's frame, as they are and as the closed form says, (T, 2 m)."""
+    """Return q_c − q_r and p_c − p_r of a run in its leader's frame, and the closed form, (T, 2 m)."""
     found = np.concatenate([run.q.mean(axis=1), run.p.mean(axis=1)], axis=1)
     c1, c2 = run.law.gains.c1_gamma[0], run.law.gains.c2_gamma[0]
     flow = np.array([[0.0, 1.0], [-c1, -c2]])
@@ -66,41 +70,49 @@ def centre_of(run: Trajectory) -> tuple[FloatArray, FloatArray]:
     return found, said
 
 
-def _centre(run: Trajectory, gains: Gains, needs: list[Hypothesis]) -> Claim:
-    found, said = centre_of(run)
-    units = np.repeat([1.0, run.scales.time], run.m)  # velocities as lengths
-    size = max(float(np.abs(found[0] * units).max()), run.scales.length)
-    off = np.abs((found - said) * units).max(axis=1) / size
-    worst, rate = int(np.argmax(off)), convergence_rate(gains)
-    rounding = (run.n + 64) * EPS * (float(np.abs(run.q).max()) + float(np.abs(run.p).max()) * run.scales.time) / size
+def _centre(seen: Observed, gains: Gains, needs: list[Hypothesis]) -> Claim:
+    run = seen.run
+    (found, said), unit = centre_of(run), seen.scales.time
+    units = np.repeat([1.0, unit], run.m)  # velocities as lengths
+    size = max(float(np.abs(found[0] * units).max()), seen.scales.length)
+    error = np.maximum(seen.centre_error, seen.drift_error * unit)[:, None]
+    off = (Enclosure.around(np.abs((found - said) * units), error).max(axis=1) / size).clip(0.0)
+    worst, rate = int(np.argmax(off.mid)), convergence_rate(gains)
     return judged(
         "centre",
-        _AGREES - float(off[worst]),
-        rounding,
+        _AGREES - off,
         needs,
-        computed=float(off[worst]),
+        computed=float(off.mid[worst]),
         stated=f"q_c − q_r solves z'' = −c1 z − c2 z', and dies out as exp(−{rate:.4g} t)",
         witness={"time": float(run.t[worst])},
         proof=PROOF,
-        detail=f"q_c − q_r and p_c − p_r are off the solution of z'' = −c1 z − c2 z' by {off[worst]:.2g} of its size "
-        f"at most; the slower root has the rate {rate:.4g}",
+        detail=f"q_c − q_r and p_c − p_r are off the solution of z'' = −c1 z − c2 z' by {off.mid[worst]:.2g} of its "
+        f"size at most; the slower root has the rate {rate:.4g}",
     )
 
 
-def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
+def _caught(seen: Observed, gains: Gains) -> list[Certificate]:
+    """The basin of the shape, whose centre comes to the leader by itself; none is known of another pair law."""
+    if type(seen.law.alpha) is not AlphaInteraction:
+        return []
+    q, p, *errors = seen.end
+    off, p_off = (float(np.linalg.norm(error)) for error in errors)
+    return [attraction(replace(seen.law, gains=gains), q, p, off=off, p_off=p_off).certificate]
+
+
+def _check(observed: Observed, tolerances: Tolerances) -> Checked:
+    run = observed.run
     needs = [_all_alike(run), _only_told(run)]
     if unmet(needs):
         return needs, []
-    needs = [*needs, positive(run, c1_alpha="c1α", c2_alpha="c2α", c1_gamma="c1", c2_gamma="c2")]
+    needs = [*needs, positive(observed, c1_alpha="c1α", c2_alpha="c2α", c1_gamma="c1", c2_gamma="c2")]
     if unmet(needs):
         return needs, []
-    seen = as_the_leader_sees(run)
-    energy = float(seen.energy()[0])
-    error = float(energy_error(seen.law, seen.q[:1], seen.p[:1], seen.energy()[:1])[0])
-    below = below_multiple(energy, error, run.law.gains.c1_alpha * run.law.alpha.c_star)
+    seen, gains = as_the_leader_sees(observed), run.law.gains
+    below = below_multiple(seen.energy[0], gains.c1_alpha * run.law.alpha.c_star)
     return [*needs, below], [
-        _centre(seen, run.law.gains, needs),
-        comes_to_rest(seen, np.ones(run.n, dtype=bool), needs, tolerances, "velocities"),
+        _centre(seen, gains, needs),
+        comes_to_rest(seen, np.ones(run.n, dtype=bool), needs, "velocities", _caught(seen, gains)),
         stays_within(seen, needs, name="distance", proof=PROOF),
         no_collision(seen, [*needs, below], tolerances, name="no-collision"),
     ]

@@ -4,24 +4,25 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.tanner import FixedNetFlocking
 from flockana.measures.nets import components
-from flockana.theorems.classics.tanner_claims import comes_to_rest, energy_falls, no_collision
+from flockana.theorems.classics.tanner_claims import comes_to_rest, no_collision
 from flockana.theorems.hypotheses import condition, law_is
+from flockana.theorems.observed import Observed
+from flockana.theorems.olfati_saber.energy import balance
 from flockana.theorems.theorem import Checked, Theorem, Tolerances, unmet
 
 
-def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
-    edges = np.array(run.law.edges, dtype=np.int32).reshape(-1, 2)
-    parts = 1 + int(components(run.n, edges).max())
+def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+    edges = np.array(seen.law.edges, dtype=np.int32).reshape(-1, 2)
+    parts = 1 + int(components(seen.n, edges).max())
     needs = [condition("the net is connected", parts == 1, 1.5 - parts, f"{parts} component(s)")]
     if unmet(needs):
         return needs, []
     return needs, [
-        energy_falls(run, tolerances, proof="tanner"),
-        no_collision(run, edges[:, 0], edges[:, 1], proof="tanner"),
-        *comes_to_rest(run, tolerances, ("velocities", "critical")),
+        balance(seen, needs, tolerances, name="energy", proof="tanner"),
+        no_collision(seen, edges[:, 0], edges[:, 1], "tanner", needs),
+        *comes_to_rest(seen, needs, ("velocities", "critical"), proof="matched-velocities"),
     ]
 
 

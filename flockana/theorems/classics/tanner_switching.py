@@ -4,38 +4,39 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.tanner import ProximityFlocking
 from flockana.measures.nets import components, links
-from flockana.theorems.classics.tanner_claims import comes_to_rest, energy_falls, no_collision, out_of_range
+from flockana.theorems.classics.tanner_claims import comes_to_rest, no_collision, out_of_range
 from flockana.theorems.hypotheses import condition, law_is
+from flockana.theorems.observed import Observed
+from flockana.theorems.olfati_saber.energy import balance
 from flockana.theorems.rounding import EPS
 from flockana.theorems.theorem import Checked, Hypothesis, Theorem, Tolerances, unmet
 
 
-def _connected(run: Trajectory) -> Hypothesis:
-    """Connected for ever: certain if too few pairs can leave, not so if it is apart at a sample, else assumed."""
-    name = "the net is connected at all times"
-    blur = 8.0 * EPS * float(np.abs(run.q).max())
-    for q, t in zip(run.q, run.t, strict=True):
-        if components(run.n, links(q, run.law.r + blur)).max() > 0:
+def _connected(seen: Observed) -> Hypothesis:
+    """Connected at all times: certain if too few pairs can leave, not so if it is apart at a sample, else assumed."""
+    name, run = "the net is connected at all times", seen.run
+    blur = 8.0 * EPS * float(np.abs(run.q).max()) + 2.0 * seen.shape_error.max(axis=1)
+    for q, t, off in zip(run.q, run.t, blur, strict=True):
+        if components(run.n, links(q, run.law.r + float(off))).max() > 0:
             return condition(name, False, detail=f"it is in several parts at t = {t:.6g}")
-    pairs = out_of_range(run)
-    start = components(run.n, links(run.q[0], run.law.r - blur)).max() == 0
-    if start and pairs * (1.0 + 1e-12) < run.n - 1:
-        text = f"the energy of the start can put {pairs:.3g} pairs out of range, and {run.n - 1} would be needed"
-        return condition(name, True, (run.n - 1 - pairs) / (run.n - 1), text)
+    pairs = out_of_range(seen)
+    start = components(run.n, links(run.q[0], run.law.r - float(blur[0]))).max() == 0
+    if start and pairs.hi < run.n - 1:
+        text = f"the energy of the start can put {pairs.mid:.3g} pairs out of range, and {run.n - 1} would be needed"
+        return condition(name, True, float((run.n - 1 - pairs).mid) / (run.n - 1), text)
     return Hypothesis(name, "assumed", None, "it is at every sample; its energy does not say that it stays so")
 
 
-def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
-    needs = [_connected(run)]
+def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+    needs = [_connected(seen)]
     if unmet(needs):
         return needs, []
     return needs, [
-        energy_falls(run, tolerances, proof="tanner"),
-        no_collision(run, *np.triu_indices(run.n, 1), proof="tanner"),
-        *comes_to_rest(run, tolerances, ("velocities", "critical")),
+        balance(seen, [], tolerances, name="energy", proof="tanner"),
+        no_collision(seen, *np.triu_indices(seen.n, 1), "tanner", []),
+        *comes_to_rest(seen, needs, ("velocities", "critical")),
     ]
 
 

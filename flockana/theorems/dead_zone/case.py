@@ -18,7 +18,7 @@ from flockana.theorems.dead_zone.parting import Components, components_of
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.hypotheses import condition
 from flockana.theorems.limits import Certificate, evidence, limit_claim
-from flockana.theorems.observed import DOUBT, Observed
+from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.collisions import least_distance
 from flockana.theorems.rounding import EPS
 from flockana.theorems.theorem import Claim, Hypothesis
@@ -48,11 +48,13 @@ def final_components(seen: Observed, law: DeadZoneFlocking) -> Components:
     """Return the components of the net in the last state of a run, and what is certain of them; kept with the run."""
     dt = seen.law.dt if seen.is_map else None
     q, p, q_error, p_error = seen.end
+    late = seen.window(seen.t[-1] - seen.scales.time, seen.t[-1])
 
     def energy_off(agents: npt.NDArray[np.intp]) -> float:
-        ends = ((run.q[-1][agents], run.p[-1][agents]) for run in (seen.run, seen.other))
-        best, other = (law.hamiltonian(0.0, *end) for end in ends)
-        return float(DOUBT * abs(best - other) + (0.0 if seen.is_map else seen.floors.work))
+        def energies(run: Trajectory) -> list[float]:
+            return [law.hamiltonian(0.0, q[agents], p[agents]) for q, p in zip(run.q, run.p, strict=True)]
+
+        return float(late.series(energies, floor=0.0 if seen.is_map else seen.floors.work).half_width[-1])
 
     def compute() -> Components:
         off, p_off = float(np.linalg.norm(q_error)), float(np.linalg.norm(p_error))
@@ -63,7 +65,7 @@ def final_components(seen: Observed, law: DeadZoneFlocking) -> Components:
 
 def settling(end: Components) -> Certificate:
     """Certificate that velocities match within each component: each settles by itself, and no two of them meet."""
-    return min((*(c.settles for c in end.members), end.apart), key=lambda certificate: certificate.margin)
+    return min((*(c.settles for c in end.members), end.apart), key=lambda each: each.margin - each.error)
 
 
 def velocities_match(seen: Observed, end: Components, needs: list[Hypothesis], *, name: str) -> Claim:
@@ -82,12 +84,18 @@ def velocities_match(seen: Observed, end: Components, needs: list[Hypothesis], *
     )
 
 
+def distance_bound(seen: Observed, law: DeadZoneFlocking) -> Enclosure:
+    """Return the explicit distance that no pair comes closer than, from the saturated energy of the first sample."""
+    bound = seen.energy[0].falling(np.vectorize(law.interaction.least_distance, otypes=[float]))
+    return bound.widened(_BOUND * bound.hi).clip(0.0)
+
+
 def no_collision(
-    seen: Observed, bound: float, unit: float, needs: list[Hypothesis], *, name: str, proof: str | None
+    seen: Observed, bound: Enclosure, unit: float, needs: list[Hypothesis], *, name: str, proof: str | None
 ) -> Claim:
     """Return the claim that no two agents come closer than a bound: between samples too, except for a map.
 
-    The margin is ln(ρ/bound), as a bound may be exponentially small; ρ over the unit where the bound is 0.
+    The margin is ln(ρ/bound), as a bound may be exponentially small; ρ over the unit where the bound is exactly 0.
     """
     if seen.is_map:
         series = seen.run.metric("min_distance")
@@ -98,17 +106,17 @@ def no_collision(
     least = least.widened(4.0 * EPS * float(np.abs(seen.run.q).max())).clip(0.0)
     if seen.n == 1:
         margin = Enclosure.of(1.0)  # a single agent has no distances
+    elif bound.hi > 0.0:
+        margin = (least / bound).log()
     else:
-        margin = least / unit if bound == 0.0 else (least / Enclosure.around(bound, _BOUND * bound)).log()
-    if bound == 0.0 and not margin.lo > 0.0:
-        margin = Enclosure(-inf, margin.mid, inf)
+        margin = least / unit if least.lo > 0.0 else Enclosure(-inf, least.mid / unit, inf)
     return judged(
         name,
         margin,
         needs,
         computed=float(least.lo),
-        stated=f"every distance > {bound:.4g}",
+        stated=f"every distance > {bound.mid:.4g}",
         witness={"time": time},
         proof=proof,
-        detail=f"no two agents come closer than {least.lo:.4g} {where}; the bound is {bound:.3g}",
+        detail=f"no two agents come closer than {least.lo:.4g} {where}; the bound is {bound.mid:.3g}",
     )

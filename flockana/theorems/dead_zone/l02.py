@@ -28,7 +28,8 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             _ROUNDING,
             computed=fall,
             stated="repulsion below r_b - δ",
-            proof=PROOF,
+            about="all",
+            disproof=PROOF,
             detail=f"with n = q_i - q_j two agents at rest {start:g} apart, nearer than d1, are drawn together and "
             f"meet after {fall:.4g}",
         ),

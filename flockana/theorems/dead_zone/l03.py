@@ -22,7 +22,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             computed=str(growth),
             stated="φ_z is a bounded, positive definite potential",
             witness="limit of ρ² |f| at 0",
-            proof=PROOF,
+            disproof=PROOF,
             detail="φ_z is a force, and ρ²|φ_z| tends to 2 k_r at 0: it is unbounded",
         ),
         exact(

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.dynamics.simulate import simulate
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.measures.metrics import connectivity, min_distance
-from flockana.theorems.claims import erratum, of_state
-from flockana.theorems.dead_zone.case import PROOF
+from flockana.theorems.claims import erratum, of_map
+from flockana.theorems.dead_zone.case import PROOF, final_components
 from flockana.theorems.dead_zone.motions import advance, parting_pair
-from flockana.theorems.dead_zone.parting import components_of
+from flockana.theorems.limits import limit_claim
+from flockana.theorems.observed import observed
 from flockana.theorems.shares import INTERVAL_ERROR, interval
 from flockana.theorems.theorem import Claim, Tolerances
 
@@ -30,23 +30,23 @@ def connected_count(box: float, *, seeds: int, n: int = 50, t_end: float = 60.0)
 def _check(tolerances: Tolerances) -> list[Claim]:
     """A pair of agents that part for ever, and the share of flocks that end connected by the width of their start."""
     law, q, p = parting_pair()
-    run = simulate(law, q, p, (0.0, 10.0))
-    end = components_of(run.q[-1], run.p[-1], law)
+    seen = observed(law, q, p, (0.0, 10.0))
+    end = final_components(seen, law)
     narrow, wide = (connected_count(box, seeds=_SEEDS) for box in (40.0, 150.0))
     least, most = interval(narrow, _SEEDS)[0], interval(wide, _SEEDS)[1]
-    radius = 0.5 * min_distance(run.q[-1])
+    radius = 0.5 * min_distance(seen.end.q)
     return [
-        of_state(
+        limit_claim(
             "printed",
-            -end.separation.margin,
-            end.separation.error,
+            [],
+            escape=end.separation,
             computed=radius,
             stated="no agent farther than r from the leader",
-            proof=PROOF,
+            disproof=PROOF,
             detail=f"two agents {q[1, 0]:g} apart that leave each other at {2.0 * p[1, 0]:g} part for ever: at t = 10 "
-            f"they are {radius:.4g} from their centre, where {end.separation.text}",
+            f"they are {radius:.4g} from their centre",
         ),
-        of_state(
+        of_map(
             "wide-starts",
             least - most,
             INTERVAL_ERROR,

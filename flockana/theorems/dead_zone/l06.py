@@ -6,15 +6,16 @@ from typing import Any
 
 import numpy as np
 
-from flockana.dynamics.simulate import simulate
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.theorems.claims import erratum, of_state
-from flockana.theorems.dead_zone.case import PROOF
+from flockana.theorems.claims import erratum, judged
+from flockana.theorems.dead_zone.case import PROOF, distance_bound
+from flockana.theorems.enclosure import stacked
+from flockana.theorems.observed import observed
+from flockana.theorems.olfati_saber.collisions import least_distance
 from flockana.theorems.theorem import Claim, Tolerances
 
 _TIGHT: dict[str, Any] = {"rtol": 1e-11, "atol": 1e-12}
-_MEASURED = 1e-4  # relative, of a closest approach at that tolerance: it moves by less than 1e-5 with the tolerance
 _ATTAINED = 1e-3  # relative: so near the bound is attained
 
 
@@ -24,30 +25,30 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     speeds, closest, bounds = (5.0, 20.0, 40.0), [], []
     for speed in speeds:
         p = np.array([[speed, 0.0], [-speed, 0.0]])
-        run = simulate(law, [[0.0, 0.0], [6.0, 0.0]], p, (0.0, 6.0 / speed), **_TIGHT)
-        closest.append(run.closest_approach().distance)
-        bounds.append(law.interaction.least_distance(float(run.energy()[0])))
-    gap = max(abs(a / b - 1.0) for a, b in zip(closest, bounds, strict=True))
-    distances = ", ".join(f"{a:.3g}" for a in closest)
+        seen = observed(law, [[0.0, 0.0], [6.0, 0.0]], p, (0.0, 6.0 / speed), **_TIGHT)
+        closest.append(least_distance(seen))
+        bounds.append(distance_bound(seen, law))
+    least, bound = stacked(closest), stacked(bounds)
+    gap = abs(least / bound - 1.0)
+    distances = ", ".join(f"{a:.3g}" for a in least.mid)
     return [
-        of_state(
+        judged(
             "printed",
-            min(closest) / law.scales.length,
-            _MEASURED,
-            computed=closest,
+            least / law.scales.length,
+            about="all",
+            computed=least.mid.tolist(),
             stated="no collision",
             proof=PROOF,
             detail=f"head-on at {', '.join(f'{s:g}' for s in speeds)} each, two agents come as near as {distances} "
             "and never meet",
         ),
-        of_state(
+        judged(
             "bound",
             _ATTAINED - gap,
-            _MEASURED,
-            computed=bounds,
+            computed=bound.mid.tolist(),
             stated="ρ >= 1/(√η sinh(H̄(0)/2k_r + asinh(1/(√η d₁))))",
             proof=PROOF,
-            detail=f"the explicit bound is attained where nothing is lost: the two agree to {gap:.1g}, and it falls "
+            detail=f"the explicit bound is attained where nothing is lost: the two agree to {gap.mid.max():.1g}, and it falls "
             "exponentially with the energy",
         ),
     ]

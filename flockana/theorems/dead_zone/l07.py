@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from math import nan
-
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.dynamics.simulate import simulate
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.measures.metrics import spreads
-from flockana.theorems.claims import erratum, of_state
+from flockana.theorems.claims import by_count, erratum, of_map
+from flockana.theorems.dead_zone.case import final_components, settling
 from flockana.theorems.dead_zone.hold import hold
 from flockana.theorems.dead_zone.motions import advance, parting_pair
-from flockana.theorems.dead_zone.parting import components_of
+from flockana.theorems.limits import limit_claim
+from flockana.theorems.observed import observed
 from flockana.theorems.theorem import Claim, Tolerances
 
 _SPREAD = 0.2  # of a ratio of two means of a chattering scheme: over starts they differ by 7 %
@@ -36,28 +35,22 @@ def _chatter(law: DeadZoneFlocking, dt: float) -> float:
 def _check(tolerances: Tolerances) -> list[Claim]:
     """Velocities of a pair that parts, and of a flock whose contacts chatter with hard jumps and rest with a ramp."""
     law, q, p = parting_pair()
-    run = simulate(law, q, p, (0.0, 10.0))
-    end = components_of(run.q[-1], run.p[-1], law)
+    end = final_components(observed(law, q, p, (0.0, 10.0)), law)
     hard = DeadZoneFlocking(DeadZoneInteraction(ramp=0.0))
     coarse, fine = _chatter(hard, 0.01), _chatter(hard, 0.002)
     q, p = _settled(law, 0.01)
     ramped = hold(law, q, p, 0.01).certificate
-    held = simulate(hard, [[0.0, 0.0], [5.0, 0.0]], np.zeros((2, 2)), (0.0, 200.0))
+    held = observed(hard, [[0.0, 0.0], [5.0, 0.0]], np.zeros((2, 2)), (0.0, 200.0)).given
     return [
-        of_state(
+        limit_claim(
             "printed",
-            -end.separation.margin,
-            end.separation.error,
+            [],
+            escape=end.separation,
             stated="all velocities match",
             detail=f"two agents that part keep a velocity mismatch of {end.drift:.4g} for ever",
         ),
-        of_state(
-            "components",
-            1.0 if all(component.size == 1 for component in end.members) else nan,
-            0.0,
-            detail="each of the two components is one agent",
-        ),
-        of_state(
+        limit_claim("components", [], [settling(end)], detail="each of the two components is one agent"),
+        of_map(
             "chatter",
             1.0 - fine / coarse,
             _SPREAD,
@@ -65,19 +58,18 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             stated="the scheme chatters, the less the shorter its step",
             detail=f"with the printed jumps √K̃ stays at {coarse:.3g} with a step of 0.01 and at {fine:.3g} with 0.002",
         ),
-        of_state(
+        by_count(
             "sliding",
-            1.0 if "sliding" in held.stats else -1.0,
-            0.0,
+            int("sliding" not in held.stats),
             stated="a pair at d1 is held there in a sliding mode",
             detail=f"with every switch located: {held.message}",
         ),
-        of_state(
+        limit_claim(
             "ramp",
-            ramped.margin,
-            ramped.error,
+            [],
+            [ramped],
             computed=float(np.sqrt(spreads(p[None])[0] / len(p))),
-            detail=f"with a ramp of 0.25 the mismatch vanishes: {ramped.text}",
+            detail=f"with a ramp of 0.25 the mismatch vanishes",
         ),
     ]
 

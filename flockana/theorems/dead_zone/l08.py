@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from flockana.interactions.dead_zone import DeadZoneInteraction
-from flockana.theorems.claims import erratum, of_state
+from flockana.theorems.claims import erratum, exact, spectral
 from flockana.theorems.dead_zone.case import PROOF
 from flockana.theorems.theorem import Claim, Tolerances
 
@@ -20,31 +20,29 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     contact = float(brentq(pair.force, pair.d1 - pair.ramp, pair.d1))
     off_r_b, off_d1 = (abs(contact - at) / pair.ramp for at in (pair.r_b, pair.d1))
     return [
-        of_state(
+        exact(
             "printed",
-            float(2 - rank),
-            0.0,
-            rigour="symbolic",
+            rank <= 2,
             computed=rank,
             stated="all pairs of a flock at distance d",
-            proof=PROOF,
+            disproof=PROOF,
             detail=f"four points at equal distances have a Gram matrix of rank {rank}, but the plane has 2 dimensions",
         ),
-        of_state(
+        spectral(
             "balance-distance",
             1.0 - off_r_b,
             _ROUNDING / pair.ramp,
             computed=contact,
             stated="r_b",
+            disproof=PROOF,
             detail=f"two agents rest {contact:.5g} apart, not at the balance distance r_b = {pair.r_b:g}",
         ),
-        of_state(
+        spectral(
             "contact",
             1.0 - off_d1,
             _ROUNDING / pair.ramp,
             computed=contact,
             stated="r_b - δ",
-            proof=PROOF,
             detail=f"but at r_b - δ = {pair.d1:g}, where repulsion ends, less {pair.d1 - contact:.2g} up the ramp",
         ),
     ]

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import CircleTarget, LinearTarget
 from flockana.interactions.dead_zone import DeadZoneInteraction
@@ -16,8 +15,10 @@ from flockana.lattice import hexagonal_patch
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.led_dead_zone import LedDeadZoneFlocking
 from flockana.laws.semi_implicit import SemiImplicitEuler
-from flockana.theorems.claims import equal, erratum, of_state
+from flockana.theorems.claims import by_count, equal, erratum, of_map
 from flockana.theorems.dead_zone.parting import components_of
+from flockana.theorems.limits import limit_claim
+from flockana.theorems.observed import Observed, observed
 from flockana.theorems.theorem import Claim, Tolerances
 
 _CLOSE = 0.02  # of a leader's speed: within it an agent's velocity is its leader's
@@ -25,14 +26,14 @@ _APART = 30.0  # between two groups
 _ROUNDING = 1e-9  # of what steps of a fixed size come to, relative
 
 
-def led_run(leaders: tuple[Any, ...], centres: tuple[tuple[float, float], ...], *, told: bool = True) -> Trajectory:
+def led_run(leaders: tuple[Any, ...], centres: tuple[tuple[float, float], ...], *, told: bool = True) -> Observed:
     """Seven agents about each centre, the middle one pinned to the leader of that number; for 60 time units."""
     pair = DeadZoneInteraction()
     q = np.concatenate([hexagonal_patch(1, pair.d1) + np.array(centre) for centre in centres])
     middle = [k for k, centre in enumerate(np.repeat(np.array(centres), 7, axis=0)) if np.allclose(q[k], centre)]
     group = np.arange(len(q)) // 7
     law = LedDeadZoneFlocking(pair, leaders=leaders, group=group, pinned=middle, c1=2.0, c2=3.0, told=told)
-    return simulate(SemiImplicitEuler(law, 0.01), q, 0.0 * q, (0.0, 60.0), t_eval=[0.0, 54.0, 60.0])
+    return observed(SemiImplicitEuler(law, 0.01), q, 0.0 * q, (0.0, 60.0), t_eval=[0.0, 54.0, 60.0])
 
 
 def _slip(run: Trajectory) -> FloatArray:
@@ -49,17 +50,17 @@ def _printed() -> Claim:
     """Two agents that have different leaders, under (9): it has none, and bonds them."""
     law, q, p = DeadZoneFlocking(), np.array([[0.0, 0.0], [8.0, 0.0]]), np.array([[-0.2, 0.0], [0.2, 0.0]])
     bond = components_of(q, p, law).members[0].bond
-    return of_state(
+    return limit_claim(
         "printed",
-        -bond.margin,
-        bond.error,
+        [],
+        escape=bond,
         stated="under (9) agents with different leaders do not match",
-        detail=f"(9) has no leader: two agents 8 m apart that should part at 0.4 m/s match for ever, as {bond.text}",
+        detail="(9) has no leader: two agents 8 m apart that should part at 0.4 m/s match in the limit",
     )
 
 
 @lru_cache(maxsize=1)
-def _runs() -> dict[str, Trajectory]:
+def _runs() -> dict[str, Observed]:
     straight, circle = LinearTarget((3.0, 0.0), (0.5, 0.0)), CircleTarget((-4.0, 0.0), 4.0, frequency=0.05)
     apart = LinearTarget((0.0, 0.0), (-1.0, 0.0)), LinearTarget((_APART, 0.0), (1.0, 0.0))
     return {
@@ -70,22 +71,25 @@ def _runs() -> dict[str, Trajectory]:
     }
 
 
-def _follow(name: str, run: Trajectory, stated: str, what: str) -> Claim:
-    slip = float(_slip(run).max())
-    detail = f"{what} velocities are within {slip:.2g} of the leader's speed of it at t = {run.t[-1]:g}"
-    return of_state(name, _CLOSE - slip, _ROUNDING, about="limit", computed=slip, stated=stated, detail=detail)
+def _follow(name: str, seen: Observed, stated: str, what: str) -> Claim:
+    """The claim that all velocities are the leader's late in a run; what comes after it is not claimed."""
+    slip = float(_slip(seen.run).max())
+    times = " and ".join(f"{t:g}" for t in seen.t[1:])
+    detail = f"{what} each velocity differs from the leader's by at most {slip:.2g} of its speed"
+    stated = f"at t = {times} {stated}, to {_CLOSE:g} of its speed"
+    return of_map(name, _CLOSE - slip, _ROUNDING, computed=slip, stated=stated, detail=detail)
 
 
-def _apart(run: Trajectory) -> Claim:
-    group = np.array(run.law.continuous.group)
-    first, second = (run.p[-1][group == leader].mean(axis=0) for leader in (0, 1))
+def _apart(seen: Observed) -> Claim:
+    group = np.array(seen.law.continuous.group)
+    first, second = (seen.end.p[group == leader].mean(axis=0) for leader in (0, 1))
     difference = float(np.linalg.norm(first - second))
-    return of_state(
+    return of_map(
         "different-leaders",
         difference / 2.0 - (1.0 - _CLOSE),
         _ROUNDING,
         computed=difference,
-        stated="agents with different leaders do not match, by the law with leaders",
+        stated=f"at t = {seen.t[-1]:g} agents with different leaders do not match, under the law with leaders",
         detail=f"two groups {_APART:g} m apart whose leaders part at 2 m/s part at {difference:.4g}; of groups that "
         "start mixed, agents that are not pinned are carried off by the other (scenario dead-zone-leaders)",
     )
@@ -97,10 +101,10 @@ def _fraction() -> Claim:
     q, p = np.array([[0.0, 0.0], [20.0, 0.0]]), np.array([[-1.0, 0.0], [0.0, 0.0]])
     force = float(np.abs(law.flow(0.0, q, p)[0]).max())
     r = law.interaction.r
-    return of_state(
+    return by_count(
         "fraction",
-        -1.0 if force == 0.0 and q[1, 0] >= r else 1.0,
-        0.0,
+        int(force == 0.0 and q[1, 0] >= r),
+        about="all",
         stated="to pin a fraction of the agents makes all follow",
         witness={"force": force, "distance": float(q[1, 0])},
         detail=f"an agent at rest {q[1, 0]:g} m from the only pinned one, which leaves with its leader, feels nothing "
@@ -113,7 +117,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     from flockana.symbolic.led_dead_zone import led_energy_identity
 
     runs, residuals = _runs(), [row for m in (1, 2, 3) for row in led_energy_identity(m).residuals]
-    deaf, late = float(_slip(runs["not told"]).min()), runs["not told"].t[1:]
+    deaf, late = float(_slip(runs["not told"].run).min()), runs["not told"].t[1:]
     return [
         _printed(),
         equal(
@@ -124,18 +128,18 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             "neighbours feed or drain it",
         ),
         _follow(
-            "one-leader", runs["one"], "one agent of seven pinned makes all follow one leader", "with 1 of 7 pinned"
+            "one-leader", runs["one"], "all follow one leader that one agent of seven is pinned to", "with 1 of 7 pinned"
         ),
         _apart(runs["two"]),
         _fraction(),
-        _follow("acceleration", runs["told"], "a leader that turns is followed if its acceleration is known", "told,"),
-        of_state(
+        _follow("acceleration", runs["told"], "all follow a leader that turns, its acceleration known", "with feedforward"),
+        of_map(
             "acceleration-needed",
             deaf - _CLOSE,
             _ROUNDING,
             computed=deaf,
-            stated="and it is not, if its acceleration is not known",
-            detail=f"without it a velocity is {deaf:.2g} of the leader's speed off at t = {late[0]:g} and {late[1]:g}",
+            stated="at those times they do not, if its acceleration is not known",
+            detail=f"without it some velocity is off by {deaf:.2g} of the leader's speed at t = {late[0]:g} and {late[1]:g}",
         ),
     ]
 

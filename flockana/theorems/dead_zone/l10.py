@@ -5,17 +5,18 @@ from __future__ import annotations
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.dynamics.simulate import simulate
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.measures.metrics import min_distance
-from flockana.theorems.claims import erratum, of_state
+from flockana.theorems.claims import erratum, exact, undecided
+from flockana.theorems.dead_zone.case import final_components
 from flockana.theorems.dead_zone.motions import parting_pair
-from flockana.theorems.dead_zone.parting import Component, components_of
+from flockana.theorems.dead_zone.parting import Component
+from flockana.theorems.limits import Certificate, limit_claim
+from flockana.theorems.observed import observed
 from flockana.theorems.rounding import EPS
-from flockana.theorems.theorem import Claim, Status, Tolerances
+from flockana.theorems.theorem import Claim, Tolerances
 
-_INTEGRATED = 1e-6  # of an energy over ψ̄(r) after an integration to the usual tolerances
 _TIMES = 2.0  # as much energy as can put the pair out of range
 
 
@@ -48,51 +49,54 @@ def _excludes_nothing() -> bool | None:
     return None if None in known else all(known)
 
 
+def _necessary() -> Claim:
+    """The claim that the condition leaves some start out, by algebra."""
+    nothing, stated = _excludes_nothing(), "the condition leaves some start out"
+    if nothing is None:
+        return undecided("printed-necessary", "sympy cannot tell whether the potential is finite", stated=stated)
+    detail = (
+        "a pair's potential is finite at every distance > 0: every start from distinct places meets it, so that as a "
+        "necessary condition it says nothing. No other is stated, nor the particular case"
+    )
+    return exact("printed-necessary", not nothing, stated=stated, detail=detail)
+
+
 def _check(tolerances: Tolerances) -> list[Claim]:
     """The paper's condition on a pair that parts, and that of an energy, sufficient but not necessary."""
     law, q, p = parting_pair()
-    run = simulate(law, q, p, (0.0, 10.0))
-    away = components_of(run.q[-1], run.p[-1], law)
+    away = final_components(observed(law, q, p, (0.0, 10.0)), law)
     wild, x, v = wild_pair()
     share = energy_share(wild, x, v)
-    later = simulate(wild, x, v, (0.0, 10.0))
-    kept = components_of(later.q[-1], later.p[-1], wild).members[0].bond
+    later = observed(wild, x, v, (0.0, 10.0))
+    kept = final_components(later, wild).members[0].bond
+    left = kept.text.replace("its energy", "the energy left")
     calm = Component(law, x, 0.1 * v)
-    nothing = _excludes_nothing()
-    status: Status = "inconclusive" if nothing is None else "refuted" if nothing else "verified"
     return [
-        of_state(
+        limit_claim(
             "printed-sufficient",
-            -away.separation.margin,
-            away.separation.error,
+            [],
+            escape=away.separation,
             stated="limited mismatch, inertia and energy H0 suffice for Theorem 1",
             detail=f"two agents meet them, at H0 = {law.hamiltonian(0.0, q, p):.4g}, and part for ever: neither "
             "cohesion nor one velocity (L4, L7)",
         ),
-        Claim(
-            "printed-necessary",
-            status,
-            "symbolic",
-            stated="the condition leaves some start out",
-            detail="a pair's potential is finite at every distance > 0: every start from distinct places meets it, so "
-            "that as a necessary condition it says nothing. No other is stated, nor the particular case",
-        ),
-        of_state(
+        _necessary(),
+        limit_claim(
             "sufficient",
-            calm.bond.margin,
-            calm.bond.error,
+            [],
+            [calm.bond],
             computed=energy_share(law, x, 0.1 * v),
             stated="a condition that suffices: a connected flock with H̄ < (n - 1) ψ̄(r) stays connected and matches",
-            detail=f"two agents in contact that leave at {0.2 * v[1, 0]:.3g} m/s: {calm.bond.text}",
+            detail=f"two agents in contact that leave at {0.2 * v[1, 0]:.3g} m/s",
         ),
-        of_state(
+        limit_claim(
             "not-necessary",
-            float(np.minimum(share - 1.0, kept.margin)),
-            kept.error + 64.0 * EPS + _INTEGRATED,
+            [],
+            [Certificate(min(share - 1.0, kept.margin), left, kept.error + 64.0 * EPS)],
             computed=share,
             stated="and is not necessary: a flock with more energy may stay together all the same",
             detail=f"two agents with H̄ = {share:.4g} ψ̄(r) leave at {2.0 * v[1, 0]:.3g} m/s, k₂ = 10; at t = 10 "
-            f"they are {min_distance(later.q[-1]):.3g} apart, and {kept.text.replace('its energy', 'the energy left')}",
+            f"they are {min_distance(later.end.q):.3g} apart",
         ),
     ]
 

@@ -98,14 +98,14 @@ class Component:
     @property
     def settles(self) -> Certificate:
         """Its velocities will match: by the better of the two certificates."""
-        return self.bond if self.bond.margin > 0.0 else self.basin.certificate
+        return self.bond if self.bond.certain else self.basin.certificate
 
     @cached_property
     def radius(self) -> float:
         """How far from its centre an agent ever gets, at most; ∞ if it might break up."""
         if self.size == 1:
             return 0.0
-        if self.basin.certificate.margin > 0.0:
+        if self.basin.certificate.certain:
             far = float(np.linalg.norm(self.q - self.q.mean(axis=0), axis=1).max())
             return far + 2.0 * self.off + self.basin.reach
         pairs, n = self._out_of_range * (1.0 + _WHOLE) + _WHOLE, self.size
@@ -175,7 +175,7 @@ class Components:
     @property
     def parting(self) -> bool:
         """Whether it is certain that the components part."""
-        return self.separation.margin > self.separation.error
+        return self.separation.certain
 
     @cached_property
     def separation(self) -> Certificate:

@@ -5,7 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from flockana.theorems.claims import by_count, vacuous
-from flockana.theorems.dead_zone.case import PROOF, dead_zone_law, final_components, hypotheses, no_collision, settling
+from flockana.theorems.dead_zone.case import (
+    PROOF,
+    dead_zone_law,
+    distance_bound,
+    final_components,
+    hypotheses,
+    no_collision,
+    settling,
+)
 from flockana.theorems.dead_zone.parting import Components
 from flockana.theorems.limits import limit_claim
 from flockana.theorems.observed import Observed
@@ -53,7 +61,7 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
         return needs, []
     run, proof = seen.run, None if seen.is_map else PROOF
     rate = np.array([law.flow(float(t), q, p)[1] for t, q, p in zip(run.t, run.q, run.p, strict=True)])
-    bound = law.interaction.least_distance(float(run.energy()[0]))
+    bound = distance_bound(seen, law)
     return needs, [
         _rate(seen, rate, needs),
         _balance(seen, needs, tolerances),

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from math import inf
-
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.measures.metrics import cohesion_radius
 from flockana.theorems.claims import counted
@@ -44,12 +42,12 @@ def _cohesion(seen: Observed, end: Components, needs: list[Hypothesis]) -> Claim
     """R ≤ r in the end: of a flock that stays near a minimum the limit is known, of one that parts as well."""
     radius = cohesion_radius(seen.run.q[-1])
     room, known = _certain_radius(seen, end, radius)
-    room = Enclosure.around(0.0, inf) if room is None else room
+    within, beyond = (-1.0, -1.0) if room is None else (float(room.lo), float(-room.hi))
     return limit_claim(
         "cohesion",
         needs,
-        [Certificate(float(room.lo), "", 0.0)],
-        escape=Certificate(float(-room.hi), "", 0.0),
+        [Certificate(within, "", 0.0)],
+        escape=Certificate(beyond, "", 0.0),
         computed=radius,
         stated=f"in the end no agent is farther than r = {end.r:g} from the leader (read: the centre of mass)",
         witness={"components": end.count, "time": float(seen.t[-1])},
@@ -94,7 +92,7 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
         _cohesion(seen, end, needs),
         _energy(seen, law, needs),
         velocities_match(seen, end, needs, name="velocity"),
-        no_collision(seen, 0.0, law.scales.length, needs, name="collision", proof=None if seen.is_map else PROOF),
+        no_collision(seen, Enclosure.of(0.0), law.scales.length, needs, name="collision", proof=None if seen.is_map else PROOF),
     ]
 
 

@@ -96,7 +96,7 @@ def _noise(seen: Observed, tolerances: Tolerances) -> float:
 
 
 def least_distance(seen: Observed) -> Enclosure:
-    """Return the least distance of any two agents over the run: a bound of the path, less its error, and one reached."""
+    """Return the least distance of any two agents over the run: bounded by the path, reached at a time."""
     closest = seen.run.closest_approach()
     if len(seen.t) == 1 or seen.doubt:
         return Enclosure(0.0, closest.distance, np.inf)

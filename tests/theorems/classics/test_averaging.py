@@ -13,8 +13,8 @@ from flockana.theorems.classics.averaging import (
     averaging_matrix,
     blocks,
     contraction,
-    for_ever_connected,
-    for_ever_parted,
+    permanently_connected,
+    permanently_separated,
     neighbourhoods,
 )
 from flockana.theorems.classics.headings import _contraction
@@ -35,7 +35,7 @@ def test_a_net_that_is_certified_stays_as_it_is():
     seen = 0
     for seed in range(60):
         q, heading = flock(seed, 1.1, 1.0, 1.0 + 0.02 * (seed % 10))
-        if not certain(for_ever_connected(LAW, q, heading)):
+        if not certain(permanently_connected(LAW, q, heading)):
             continue
         seen += 1
         run = simulate(LAW, q, LAW.velocities(heading), (0.0, 200.0))
@@ -49,10 +49,10 @@ def test_the_bound_of_what_may_change_is_near_what_does():
     """Two agents: headings agree after one step, so that only it counts, and ρ = 0."""
     q, step = np.array([[0.0, 0.0], [0.9, 0.0]]), 0.05
     alike = np.array([1.5, 1.5])
-    assert certain(for_ever_connected(LAW, q, alike))
+    assert certain(permanently_connected(LAW, q, alike))
     for half in (0.9, 1.1):  # v dt √(1/2 + 1/2) 2 half, against a room of 0.1
         heading = np.array([1.5 + half, 1.5 - half])
-        assert certain(for_ever_connected(LAW, q, heading)) == (2.0 * step * half < 0.1)
+        assert certain(permanently_connected(LAW, q, heading)) == (2.0 * step * half < 0.1)
 
 
 def test_a_net_that_averages_slowly_may_change_for_long():
@@ -61,20 +61,20 @@ def test_a_net_that_averages_slowly_may_change_for_long():
     limit = room / (0.05 * np.sqrt(1.0 / 2.0 + 1.0 / 3.0) * 2.0 / 0.5)
     for share in (0.98, 1.02):
         heading = 1.5 + share * limit * np.array([1.0, 0.0, -1.0])
-        assert certain(for_ever_connected(LAW, q, heading)) == (share < 1.0)
+        assert certain(permanently_connected(LAW, q, heading)) == (share < 1.0)
 
 
 def test_no_certificate_on_the_circle_or_apart():
     heading = np.array([1.0, 1.0])
-    assert not certain(for_ever_connected(LAW, np.array([[0.0, 0.0], [1.0, 0.0]]), heading))
-    assert not certain(for_ever_connected(LAW, np.array([[0.0, 0.0], [1.5, 0.0]]), heading))
+    assert not certain(permanently_connected(LAW, np.array([[0.0, 0.0], [1.0, 0.0]]), heading))
+    assert not certain(permanently_connected(LAW, np.array([[0.0, 0.0], [1.5, 0.0]]), heading))
 
 
 def test_groups_that_are_certified_to_part_never_meet():
     seen = 0
     for seed in range(60):
         q, heading = flock(seed, 3.0, 0.2, 6.0, n=4)
-        if not certain(for_ever_parted(LAW, q, heading)):
+        if not certain(permanently_separated(LAW, q, heading)):
             continue
         seen += 1
         run = simulate(LAW, q, LAW.velocities(heading), (0.0, 300.0))
@@ -85,22 +85,22 @@ def test_groups_that_are_certified_to_part_never_meet():
 
 def test_who_meets_later_is_not_parted():
     q = np.array([[0.0, 0.0], [1.5, 0.0]])
-    assert not certain(for_ever_parted(LAW, q, np.array([0.0, np.pi])))
-    assert not certain(for_ever_parted(LAW, q, np.array([1.0, 1.0])))
-    assert certain(for_ever_parted(LAW, q, np.array([np.pi, 0.0])))
+    assert not certain(permanently_separated(LAW, q, np.array([0.0, np.pi])))
+    assert not certain(permanently_separated(LAW, q, np.array([1.0, 1.0])))
+    assert certain(permanently_separated(LAW, q, np.array([np.pi, 0.0])))
 
 
 def test_who_passes_within_range_is_not_parted():
     """Ahead along x and faster there, but by less than r: the second comes down past the first and meets it."""
     q, heading = np.array([[0.0, 0.0], [0.5, 1.5]]), np.radians([85.0, 280.0])
     assert simulate(LAW, q, LAW.velocities(heading), (0.0, 20.0)).metric("connectivity").max() == 1.0
-    assert not certain(for_ever_parted(LAW, q, heading))
+    assert not certain(permanently_separated(LAW, q, heading))
 
 
 def test_a_span_that_passes_a_turn_parts_from_nothing():
     """The first two may come to head as the third does: nothing is certain."""
     q = np.array([[0.0, 0.0], [0.5, 0.0], [3.0, 0.0]])
-    assert not certain(for_ever_parted(LAW, q, np.array([0.1, 6.2, 3.0])))
+    assert not certain(permanently_separated(LAW, q, np.array([0.1, 6.2, 3.0])))
 
 
 def test_contraction_is_dobrushins():
@@ -160,6 +160,6 @@ def test_nothing_is_certain_where_rounding_hides_how_fast_the_net_averages(monke
     q, heading = np.array([[0.0, 0.0], [0.7, 0.0], [1.4, 0.0]]), np.full(3, 1.5)
     for eps, certainly in ((1e-6, True), (0.51 / 7.0, False), (0.9 / 7.0, False)):
         monkeypatch.setattr(sys.modules["flockana.theorems.classics.averaging"], "EPS", eps)
-        found = for_ever_connected(LAW, q, heading)
+        found = permanently_connected(LAW, q, heading)
         assert certain(found) is certainly
         assert ("rounding hides" in found.text) is not certainly

@@ -1,0 +1,57 @@
+"""Theorem files make no claims and no runs of their own: statuses are decided in one place."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+import flockana.theorems as room
+from flockana.theorems.proofs import CITES, RIGOUR
+from proofs.proof import load
+
+FILES = sorted(Path(room.__file__).parent.rglob("*.py"))
+ALLOWED = {
+    "simulate": {"observed.py", "second_run.py", "catalogue.py"},
+    "Claim": {"claims.py", "theorem.py"},
+}
+
+
+def calls(tree):
+    """Names of the functions that a module calls."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call):
+            function = node.func
+            yield function.attr if isinstance(function, ast.Attribute) else getattr(function, "id", "")
+
+
+@pytest.mark.parametrize("file", FILES, ids=lambda file: str(file.relative_to(FILES[0].parent)))
+def test_no_theorem_file_simulates_or_makes_a_claim_by_itself(file):
+    made = {*calls(ast.parse(file.read_text(encoding="utf-8")))}
+    assert [name for name, files in ALLOWED.items() if name in made and file.name not in files] == []
+
+
+@pytest.mark.parametrize("name", RIGOUR)
+def test_the_rigour_of_a_proof_is_that_of_its_weakest_step(name):
+    proof = load(name)
+    assert (proof.rigour, proof.cites) == (RIGOUR[name], CITES.get(name, ()))
+
+
+def named_proofs():
+    """Ids that theorem files give as `proof=` or `disproof=`, as literals or by a constant of the module."""
+    for file in FILES:
+        tree = ast.parse(file.read_text(encoding="utf-8"))
+        constants = {
+            node.targets[0].id: node.value.value
+            for node in tree.body
+            if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name) and isinstance(node.value, ast.Constant)
+        }
+        for node in ast.walk(tree):
+            if isinstance(node, ast.keyword) and node.arg in ("proof", "disproof"):
+                value = node.value
+                name = value.value if isinstance(value, ast.Constant) else constants.get(getattr(value, "id", ""))
+                if isinstance(name, str):
+                    yield name
+
+
+def test_every_proof_that_a_claim_names_is_in_the_table():
+    assert {*named_proofs()} - {*RIGOUR} == set()
