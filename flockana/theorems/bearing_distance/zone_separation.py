@@ -9,14 +9,14 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.laws.minimal import MinimalFlocking
-from flockana.measures.perception import both_ways, edge_vectors
+from flockana.measures.perception import both_ways
 from flockana.theorems.claims import erratum, judged
 from flockana.theorems.enclosure import Enclosure, stacked
 from flockana.theorems.observed import observed
 from flockana.theorems.theorem import Claim, Tolerances
 
 _RHO, _MU, _STRETCH = 2.0, 3.0, 0.5
-_PERIODS, _PER_PERIOD = 20, 100  # how many, and samples of each
+_PERIODS, _PER_PERIOD = 20, 40  # how many, and samples of each
 _PATH = both_ways([(0, 1), (1, 2), (2, 3), (3, 4)])
 _TIGHT: dict[str, Any] = {"rtol": 1e-11, "atol": 1e-12}
 
