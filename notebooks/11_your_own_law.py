@@ -267,10 +267,9 @@ class LinearConsensus(fl.Law):
         return 0.5 * float(np.sum((p - p.mean(axis=0)) ** 2))
 
 
-def decays(run, tolerances):
-    bound = run.energy()[0] * np.exp(-2.0 * run.law.strength * (run.t - run.t[0]))
-    slack = float((1.001 * bound - run.energy()).min())
-    return [], [judged("decay", slack, float(np.abs(run.energy_residual).max()), detail="K stays below its bound")]
+def decays(seen, tolerances):
+    bound = seen.energy[0] * np.exp(-2.0 * seen.law.strength * (seen.t - seen.t[0]))
+    return [], [judged("decay", 1.001 * bound - seen.energy, detail="K stays below its bound")]
 
 
 def proof_steps():

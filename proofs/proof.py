@@ -36,7 +36,8 @@ class Proof:
     name of the file, with hyphens. A proof that has other than `size` steps is none: a loop may have run short.
     `values` holds the numbers that the statement and the hypotheses print, by name: a proof is none unless its steps
     found each, the same. `theorems` names the entries of the catalogue that it backs; a run that takes longer
-    than `time_limit` seconds, its import aside, is killed, and nothing is proved.
+    than `time_limit` seconds, its import aside, is killed, and nothing is proved. `cites` names lemmas of analysis that
+    no step checks, such as ``"Barbalat"``.
     """
 
     id: str
@@ -49,6 +50,7 @@ class Proof:
     time_limit: float = 120.0
     size: int | None = None
     values: Mapping[str, str] = field(default_factory=dict)
+    cites: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if self.rigour not in RIGOURS:

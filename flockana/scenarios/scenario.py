@@ -232,7 +232,9 @@ class Scenario:
 
 
 def differences(verdict: Verdict, expected: Mapping[str, Status]) -> tuple[str, ...]:
-    """Where a verdict differs from expected statuses, keyed by theorem id and by ``"id:claim"``.
+    """Return where a verdict differs from expected statuses or contradicts a proof, one line each.
+
+    Statuses are keyed by theorem id and by ``"id:claim"``.
 
     Parameters
     ----------
@@ -242,11 +244,13 @@ def differences(verdict: Verdict, expected: Mapping[str, Status]) -> tuple[str, 
         The expectation; what it does not name may be anything.
     """
     statuses = {verdict.theorem: verdict.status} | {f"{verdict.theorem}:{c.name}": c.status for c in verdict.claims}
-    return tuple(
+    differ = (
         f"{key} is {statuses.get(key, 'missing')}, expected {status}"
         for key, status in expected.items()
         if key.split(":")[0] == verdict.theorem and statuses.get(key) != status
     )
+    faults = (f"{verdict.theorem}:{c.name} contradicts the proof {c.contradicts}" for c in verdict.contradictions)
+    return (*differ, *faults)
 
 
 @cache

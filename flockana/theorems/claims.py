@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.proofs import RIGOUR
+from flockana.theorems.proofs import CITES, RIGOUR
 from flockana.theorems.theorem import About, Claim, Hypothesis, Rigour, Status, Theorem, Tolerances, overall
 
 
@@ -90,13 +90,14 @@ def concluded(
     """Return a claim from what numbers or certificates say, its hypotheses and its proof; parameters as in `judged`."""
     needs = tuple(needs)
     status, how, contradicts = _with_needs(by_numbers, needs, about), rigour, ""
+    cites: tuple[str, ...] = ()
     proved: Status = "verified" if proof else "refuted"
     if (key := proof or disproof) and all(need.status == "met" for need in needs):
         if by_numbers in ("verified", "refuted") and by_numbers != proved:
             status, contradicts = "inconclusive", key
             detail = f"{detail}; the numbers contradict the proof {key!r}: the run or the library is at fault"
         else:
-            status, how = proved, RIGOUR[key]
+            status, how, cites = proved, RIGOUR[key], CITES.get(key, ())
     return Claim(
         name,
         status,
@@ -109,6 +110,7 @@ def concluded(
         needs=needs,
         about=about,
         contradicts=contradicts,
+        cites=cites,
         **fields,
     )
 

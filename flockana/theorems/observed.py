@@ -319,15 +319,9 @@ def _observed(run: Trajectory) -> Observed:
     thinned = _at_samples_of(again, run.t)
     first, second = (thinned, run) if tight else (run, thinned)
     found = Observed(run, first, second, errors)
-    low = found.floors
-    widened = _Errors(
-        errors.t,
-        errors.shape + low.place,
-        errors.speed + low.speed,
-        errors.centre + low.place,
-        errors.drift + low.speed,
-    )
-    return replace(found, errors=widened)
+    place, speed, _ = found.floors
+    least = (place, speed, place, speed)
+    return replace(found, errors=_Errors(errors.t, *map(np.maximum, errors[1:], least)))
 
 
 def observed(law: Any, q0: Any, p0: Any, t_span: tuple[float, float], **options: Any) -> Observed:

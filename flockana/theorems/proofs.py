@@ -1,4 +1,4 @@
-"""Rigour of the executable proofs that claims name; a test holds the table against the proofs themselves."""
+"""Rigour of the executable proofs that claims name, and what they cite; a test holds both against the proofs."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ RIGOUR: dict[str, Rigour] = {
     "headings": "smt",
     "informed-agents": "smt",
     "links-kept": "smt",
+    "matched-velocities": "smt",
     "n-max": "interval",
     "net-measures": "smt",
     "nonplanar-fcc": "symbolic",
@@ -38,3 +39,5 @@ RIGOUR: dict[str, Rigour] = {
     "tracking-gain": "interval",
     "turned-axes": "symbolic",
 }
+
+CITES: dict[str, tuple[str, ...]] = {"matched-velocities": ("Barbalat",)}

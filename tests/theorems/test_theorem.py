@@ -11,7 +11,6 @@ from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.scenarios.scenario import differences
 from flockana.theorems import Claim, Hypothesis, Theorem, Tolerances, Verdict, theorem, theorems, verify
-from flockana.theorems.theorem import judge
 
 UNMET = Hypothesis("connected", "unmet")
 ASSUMED = Hypothesis("connected", "assumed")
@@ -38,29 +37,6 @@ def test_the_rigour_of_a_verdict_is_the_weakest_among_the_claims_that_decide_it(
     assert Verdict("x", (), claims).rigour == "interval"
 
 
-@pytest.mark.parametrize(
-    ("margin", "error", "hypotheses", "expected"),
-    [
-        (1.0, 0.1, [], "verified"),
-        (-1.0, 0.1, [], "refuted"),
-        (0.05, 0.1, [], "inconclusive"),
-        (-0.05, 0.1, [], "inconclusive"),
-        (0.0, 0.0, [], "inconclusive"),
-        (1.0, 0.1, [UNMET], "vacuous"),
-        (-1.0, 0.1, [ASSUMED, UNMET], "vacuous"),
-        (1.0, 0.1, [ASSUMED], "verified"),
-        (-1.0, 0.1, [ASSUMED], "inconclusive"),
-        (0.05, 0.1, [ASSUMED], "inconclusive"),
-        (-1.0, 0.1, [MET], "refuted"),
-        (float("nan"), 0.0, [], "inconclusive"),
-        (1.0, float("nan"), [], "inconclusive"),
-        (float("inf"), 0.0, [], "verified"),
-    ],
-)
-def test_judge(margin, error, hypotheses, expected):
-    assert judge(margin, error, hypotheses) == expected
-
-
 def test_a_verdict_is_plain_json_whatever_its_witness():
     claim = Claim("i", "verified", computed=np.float64(2.0), margin=float("inf"), witness={"q": np.eye(2), 3: {1, 2}})
     data = json.loads(json.dumps(Verdict("x", (ASSUMED,), (claim,)).to_dict()))
@@ -69,6 +45,7 @@ def test_a_verdict_is_plain_json_whatever_its_witness():
     assert data["claims"][0]["witness"]["q"] == [[1.0, 0.0], [0.0, 1.0]]
     assert data["tolerances"]["energy"] == Tolerances().energy
     assert data["status"] == "verified"
+    assert data["claims"][0]["needs"] == []
 
 
 def test_every_theorem_has_what_its_users_read():

@@ -5,16 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.dynamics.simulate import simulate
-from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.nets import components
 from flockana.measures.perception import Edges, edge_vectors, random_out_tree
 from flockana.theorems.bearing_distance.tree_case import TreeCase, tree_case
-from flockana.theorems.bearing_distance.tree_limits import length_kept, settles
-from flockana.theorems.claims import erratum, of_state
+from flockana.theorems.bearing_distance.tree_limits import kept, settles
+from flockana.theorems.claims import erratum, judged
+from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.limits import limit_claim
-from flockana.theorems.shares import CONFIDENCE, INTERVAL_ERROR, interval
+from flockana.theorems.observed import End, Observed, observed
+from flockana.theorems.shares import CONFIDENCE, interval
 from flockana.theorems.theorem import Claim, Tolerances
 
 _TREES, _MOST_AGENTS, _SEED, _END = 200, 8, 1, 80.0  # agents of a tree at most; s
@@ -40,49 +40,45 @@ def random_forest(count: int, seed: int, *, rho: float = 1.0) -> tuple[MinimalFl
     return MinimalFlocking(edges=tuple(edges), spacing=rho), q, p
 
 
-def _trees(run: Trajectory) -> list[tuple[TreeCase, FloatArray, FloatArray]]:
-    """Each tree of a forest, with its positions and velocities at the end of the run."""
-    edges: Edges = run.law.edges
-    label = components(run.n, np.array(edges, dtype=np.int32))
+def _trees(seen: Observed) -> list[tuple[TreeCase, End]]:
+    """Each tree of a forest, with its state at the end of the run."""
+    edges: Edges = seen.law.edges
+    label = components(seen.n, np.array(edges, dtype=np.int32))
     trees = []
     for k in range(int(label.max()) + 1):
         agents = np.flatnonzero(label == k)
         own = {int(agent): number for number, agent in enumerate(agents)}
-        law = MinimalFlocking(edges=tuple((own[j], own[i]) for j, i in edges if j in own), spacing=run.law.spacing)
+        law = MinimalFlocking(edges=tuple((own[j], own[i]) for j, i in edges if j in own), spacing=seen.law.spacing)
         case = tree_case(law, len(agents))
         assert case is not None
-        trees.append((case, run.q[-1][agents], run.p[-1][agents]))
+        trees.append((case, End(*(part[agents] for part in seen.end))))
     return trees
 
 
 def _check(tolerances: Tolerances) -> list[Claim]:
     law, q, p = random_forest(_TREES, _SEED)
-    run = simulate(law, q, p, (0.0, _END), t_eval=(0.0, _END))
-    lengths = np.linalg.norm(edge_vectors(run.q[-1], law.edges or ()), axis=1)
-    trees = _trees(run)
+    seen = observed(law, q, p, (0.0, _END), t_eval=(0.0, _END))
+    lengths, trees = np.linalg.norm(edge_vectors(seen.end.q, law.edges or ()), axis=1), _trees(seen)
     certificates = [settles(*tree) for tree in trees]
-    weakest = min(certificates, key=lambda certificate: certificate.margin)
-    settled = sum(certificate.margin > certificate.error for certificate in certificates)
-    vanished = sum(not length_kept(*tree)[0] > 0.0 for tree in trees)
-    (least, most), (low, high) = interval(settled, _TREES), interval(vanished, _TREES)
+    settled, keeping = sum(each.certain for each in certificates), [kept(*tree) for tree in trees]
+    vanished, (least, most) = sum(not keeps > 0.0 for keeps in keeping), interval(settled, _TREES)
     case = {"trees": _TREES, "agents": f"2 to {_MOST_AGENTS}", "seed": _SEED, "t": _END}
     return [
-        of_state(
+        judged(
             "printed",
-            high - 1.0,
-            INTERVAL_ERROR,
+            Enclosure.of(-max(keeping)),
             about="all",
-            computed={"trees whose edges might all vanish": vanished, "interval": [low, high]},
-            stated="|x_e| -> 0 on every edge of every spanning tree (share 1)",
+            computed={"trees whose edges might all vanish": vanished},
+            stated="|x_e| -> 0 on every edge of every spanning tree",
             witness=case | {"shortest edge at the end": float(lengths.min())},
-            proof="bearing-distance-printed",
+            disproof="bearing-distance-printed",
             detail=f"of {_TREES} random directed trees {_TREES - vanished} keep an edge at a length > 0 for ever; the "
             f"shortest of all is {lengths.min():.8g} αr at the end",
         ),
         limit_claim(
             "corrected",
             [],
-            [weakest],
+            [min(certificates, key=lambda certificate: certificate.margin)],
             computed={"trees": settled, "interval": [least, most]},
             stated="what converges is | |x_e| - α_i r_i | and the velocity difference, on every edge",
             witness=case | {"largest length error": float(np.abs(lengths - 1.0).max())},

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flockana.laws.minimal import MinimalFlocking
-from flockana.theorems.claims import erratum, exact
+from flockana.theorems.claims import erratum, exact, undecided
 from flockana.theorems.theorem import Claim, Tolerances
 
 
@@ -17,15 +17,35 @@ def _two_agents_abscissa(ratio: float) -> float:
     return float(np.linalg.eigvals(np.asarray(A)[np.ix_(child, child)]).real.max())
 
 
+def _positive_definite() -> Claim:
+    """The edge matrices of a spanning tree whose root has one child, with five children of its own."""
+    from flockana.symbolic.spanning_trees import symmetric_part
+
+    name, five_children = "positive-definite", symmetric_part(5)
+    if not five_children.holds:
+        return undecided(name, "the least eigenvalue is not the stated one")
+    return exact(
+        name,
+        not five_children.result.is_negative,
+        computed=str(five_children.result),
+        stated="the edge matrices of a spanning tree are positive definite",
+        margin=float(five_children.result),
+        error=0.0,
+        witness="root -> a -> five children, unit weights",
+        disproof="bearing-distance-printed",
+        detail=f"the symmetric part of DᵀD_in has least eigenvalue 1 - √k/2 for a node of k children: "
+        f"{float(five_children.result):.4f} for five",
+    )
+
+
 def _check(tolerances: Tolerances) -> list[Claim]:
     import sympy as sp
 
-    from flockana.symbolic.spanning_trees import frozen_eigenvalues, symmetric_part
+    from flockana.symbolic.spanning_trees import frozen_eigenvalues
 
     eigenvalues = {ratio: frozen_eigenvalues(sp.Rational(ratio)) for ratio in ("1/2", "1", "2")}
     abscissas = {ratio: sp.re(values[0]) for ratio, values in eigenvalues.items()}
     measured = _two_agents_abscissa(0.5)
-    five_children = symmetric_part(5)
     return [
         exact(
             "hurwitz",
@@ -35,7 +55,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             margin=-float(abscissas["1/2"]),
             error=0.0,
             witness={"|x|/αr": 0.5, "largest real part of the law's Jacobian there": measured},
-            proof="bearing-distance-printed",
+            disproof="bearing-distance-printed",
             detail=f"two agents at half the spacing: eigenvalue {float(abscissas['1/2']):.3f}, unstable (the law's own "
             f"Jacobian: {measured:.3f}); at the spacing {abscissas['1']}, singular",
         ),
@@ -50,19 +70,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             proof="bearing-distance",
             detail=f"at twice the spacing the real parts are {float(abscissas['2']):g}: negative",
         ),
-        Claim(
-            "positive-definite",
-            "refuted" if five_children.holds and five_children.result.is_negative else "inconclusive",
-            "symbolic",
-            computed=str(five_children.result),
-            stated="the edge matrices of a spanning tree are positive definite",
-            margin=float(five_children.result),
-            error=0.0,
-            witness="root -> a -> five children, unit weights",
-            proof="bearing-distance-printed",
-            detail=f"the symmetric part of DᵀD_in has least eigenvalue 1 - √k/2 for a node of k children: "
-            f"{float(five_children.result):.4f} for five",
-        ),
+        _positive_definite(),
     ]
 
 

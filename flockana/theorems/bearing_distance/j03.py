@@ -9,7 +9,7 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import both_ways
-from flockana.theorems.claims import erratum, exact, of_state
+from flockana.theorems.claims import erratum, exact, spectral
 from flockana.theorems.theorem import Claim, Tolerances
 
 _EIGENVALUES = 1e-6  # of matrices of 6 rows and entries up to 4000, well apart: 1e-12 of these entries times 100
@@ -64,25 +64,27 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     error, abscissa = _pairing(400.0)
     _, stiffer = _pairing(4000.0)
     return [
-        of_state(
+        spectral(
             "printed",
             -error,
             _EIGENVALUES,
             computed=error,
             stated="λ² + λ μ_i + γ_i = 0, index by index, for any graph",
             witness={"graph": "undirected path of four", "|x|": _PATH_LENGTHS, "α_i r_i": _PATH_SPACING, "μ": 400.0},
-            proof="bearing-distance-printed",
+            about="all",
+            disproof="bearing-distance-printed",
             detail=f"on an undirected path the best pairing misses an eigenvalue by {error:.3f}: the matrices do not "
             "commute",
         ),
-        of_state(
+        spectral(
             "hurwitz",
             -stiffer,
             _EIGENVALUES,
             computed=stiffer,
             stated="negative real parts of all eigenvalues, since μ_i and γ_i have positive ones",
             witness={"graph": "the same path, every |x_e| > α_i r_i", "μ": 4000.0, "at μ = 400": abscissa},
-            proof="bearing-distance-printed",
+            about="all",
+            disproof="bearing-distance-printed",
             detail=f"with μ = 4000 an eigenvalue has real part {stiffer:.4f}, though every edge is longer than α_i r_i",
         ),
         exact(

@@ -10,15 +10,16 @@ from flockana.theorems.claims import equal, erratum, of_state
 from flockana.theorems.theorem import Claim, Tolerances
 
 _TREE = ((0, 1), (1, 2), (1, 3), (0, 4))
+_PROOF = "bearing-distance-printed"
 _SAME, _ROUNDING = 1e-9, 1e-13  # relative: forces that differ by less are the same; their rounding
 
 
-def _identity(name: str, stated: str, detail: str) -> Claim:
+def _identity(name: str, stated: str, detail: str, **backed: str) -> Claim:
     """An identity of the separation forces on a directed tree of five, by algebra."""
     from flockana.symbolic.spanning_trees import separation_forms
 
     residuals = separation_forms(_TREE)[name].residuals
-    return equal(name, residuals, stated=stated, proof="bearing-distance-printed", detail=detail)
+    return equal(name, residuals, stated=stated, detail=detail, **backed)
 
 
 def _loop() -> Claim:
@@ -46,9 +47,9 @@ def _loop() -> Claim:
 
 def _check(tolerances: Tolerances) -> list[Claim]:
     return [
-        _identity("28", "separation = -(d W Dᵀ) p + (d W) q", "(28) as printed has the wrong sign before q"),
-        _identity("identity", "(d W) q = α r (d W W^q Dᵀ) p", "so has the identity before (34)"),
-        _identity("34", "separation = -(d W (I - α r W^q) Dᵀ) p", "the two errors cancel: (34) is right"),
+        _identity("28", "separation = -(d W Dᵀ) p + (d W) q", "(28) as printed has the wrong sign before q", disproof=_PROOF),
+        _identity("identity", "(d W) q = α r (d W W^q Dᵀ) p", "so has the identity before (34)", disproof=_PROOF),
+        _identity("34", "separation = -(d W (I - α r W^q) Dᵀ) p", "the two errors cancel: (34) is right", proof=_PROOF),
         _loop(),
     ]
 

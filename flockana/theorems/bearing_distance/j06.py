@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.dynamics.simulate import simulate
 from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import both_ways
 from flockana.theorems.bearing_distance import zone_1_corrected
-from flockana.theorems.claims import erratum
-from flockana.theorems.second_run import examined_twice
+from flockana.theorems.claims import counted, erratum
+from flockana.theorems.observed import observed, with_doubt
 from flockana.theorems.theorem import Claim, Tolerances, Verdict
 
 _TREE = ((0, 1), (1, 2), (1, 3), (0, 4))
@@ -19,18 +18,20 @@ def _on_run(name: str, law: MinimalFlocking, m: int, tolerances: Tolerances) -> 
     """Theorem zone-1-corrected on a run of a tree of five in m dimensions, as one claim."""
     theorem, rng = zone_1_corrected.THEOREM, np.random.default_rng(m)
     q, p = rng.uniform(-2.0, 2.0, (5, m)), rng.uniform(-0.5, 0.5, (5, m))
-    run = simulate(law, q, p, (0.0, 80.0))
-    verdict = Verdict(theorem.id, *examined_twice(theorem, run, tolerances))
-    spectrum = verdict.claim("spectrum").computed or {}
-    return Claim(
+    seen = observed(law, q, p, (0.0, 80.0))
+    hypotheses, claims = theorem.examine(seen, tolerances)
+    verdict = Verdict(theorem.id, hypotheses, with_doubt(claims, seen))
+    said = [claim.status for claim in verdict.claims]
+    wrong, zeros = said.count("refuted"), (verdict.claim("spectrum").computed or {}).get("zero modes", "no")
+    return counted(
         f"{name}-{m}",
-        verdict.status,
+        0,
+        wrong,
+        wrong + said.count("inconclusive"),
         computed={claim.name: claim.status for claim in verdict.claims},
         stated=f"every claim of zone-1-corrected, with {4 * (m - 1)} zero modes",
         witness={"edges": _TREE, "q(0)": q.tolist(), "p(0)": p.tolist()},
-        proof="bearing-distance",
-        detail=f"{name} tree of five in {m} dimensions: {verdict.claim('lengths').detail}; "
-        f"{spectrum.get('zero modes', 'no')} zero modes",
+        detail=f"{name} tree of five in {m} dimensions: {verdict.claim('lengths').detail}; {zeros} zero modes",
     )
 
 

@@ -10,7 +10,7 @@ from flockana.base.vectors import lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.theorems.bearing_distance.random_starts import runs_from_random_starts
-from flockana.theorems.claims import erratum, of_state
+from flockana.theorems.claims import erratum, of_map, spectral
 from flockana.theorems.shares import always, mostly
 from flockana.theorems.theorem import Claim, Tolerances
 
@@ -49,7 +49,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     ]
     near = 0.05 * law.desired_speed
     return [
-        of_state(
+        of_map(
             "step",
             _SAME - off,
             _ROUNDING,
@@ -59,14 +59,14 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             proof="speed-bound",
             detail=f"applied to the state, (10) makes a speed of 3 into {step:.4g} in every step: a drag",
         ),
-        of_state(
+        spectral(
             "reachable",
             shortfall,
             _ROUNDING,
             computed=bound,
             stated=f"the desired speed {law.desired_speed:g} is below the bound 4, so it can be kept",
             witness={dt: dragged_speed(dt) for dt in (0.1, 0.05, 0.01, 0.001)},
-            proof="speed-bound",
+            disproof="speed-bound",
             detail=f"with all inputs within u^max = 2 no speed above {bound:.4f} lasts (steps of 0.1 s); with "
             "finer steps less still",
         ),

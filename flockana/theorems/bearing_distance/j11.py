@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.dynamics.simulate import simulate
 from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.metrics import coordination, min_distance
 from flockana.measures.nets import components
 from flockana.theorems.claims import erratum
+from flockana.theorems.observed import observed
 from flockana.theorems.shares import always, mostly
 from flockana.theorems.theorem import Claim, Tolerances
 
@@ -50,7 +50,7 @@ def _ends(law: MinimalFlocking, m: int, duration: float, seeds: int) -> FloatArr
     """Coordination, number of components and least distance at the end of a run, one row for each seed."""
     rows = []
     for seed in range(seeds):
-        run = simulate(law.discrete(DT), *minimal_start(m, seed), (0.0, duration), t_eval=(0.0, duration))
+        run = observed(law.discrete(DT), *minimal_start(m, seed), (0.0, duration), t_eval=(0.0, duration)).run
         rows.append([coordination(run.p[-1]), perceived_components(law, run.q[-1]), min_distance(run.q[-1])])
     return np.array(rows)
 

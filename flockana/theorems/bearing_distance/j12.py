@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.dynamics.simulate import simulate
 from flockana.environment.zone_obstacles import Box, SimplePolygon
 from flockana.environment.zone_world import ZoneWorld
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
-from flockana.theorems.claims import erratum, of_state
+from flockana.theorems.claims import erratum, of_map, of_state
+from flockana.theorems.observed import observed
 from flockana.theorems.theorem import Claim, Tolerances
 
 _ROUNDING = 1e-11  # relative: of a few hundred steps
@@ -43,7 +43,7 @@ def _inside(reading: str) -> tuple[float, float, float]:
 
 def _head_on(law: ZoneFlocking) -> tuple[float, float]:
     """(last, least) signed gap of two agents that run head on at each other."""
-    run = simulate(law, [[0.0, 0.0], [20.0, 0.0]], [[3.0, 0.0], [-3.0, 0.0]], (0.0, 60.0))
+    run = observed(law, [[0.0, 0.0], [20.0, 0.0]], [[3.0, 0.0], [-3.0, 0.0]], (0.0, 60.0)).run
     gap = run.q[:, 1, 0] - run.q[:, 0, 0]
     return float(gap[-1]), float(gap.min())
 
@@ -51,7 +51,7 @@ def _head_on(law: ZoneFlocking) -> tuple[float, float]:
 def _at_wall(speed: float, weight: float) -> float:
     """Distance from the wall at which an agent that runs head on at it comes to rest."""
     law = ZoneFlocking(_RADII, ZoneWeights(speed=speed, obstacle=weight), ZoneWorld(box=_BOX), u_max=_UNBOUNDED)
-    return 50.0 - float(simulate(law, [[25.0, 25.0]], [[3.0, 0.0]], (0.0, 60.0)).q[-1, 0, 0])
+    return 50.0 - float(observed(law, [[25.0, 25.0]], [[3.0, 0.0]], (0.0, 60.0)).run.q[-1, 0, 0])
 
 
 def _separation_only(speed: float, weight: float) -> ZoneFlocking:
@@ -93,33 +93,31 @@ def _check(tolerances: Tolerances) -> list[Claim]:
                 "beyond the wall x = 50": (50.1, 25.0),
                 "beyond it after 3 s": beyond,
             },
-            proof="stand-off",
+            disproof="stand-off",
             detail=f"inside, b - p_i points outwards and (8) pushes in: {outward:.3g} in an obstacle, {inward:.3g} "
             f"beyond a wall, and after 3 s the agent is {beyond:.3g} m beyond it",
         ),
-        of_state(
+        of_map(
             "corrected",
             mended,
             _ROUNDING,
             computed={"outward force in an obstacle": mended_outward, "inward force beyond a wall": mended_inward},
             stated="with d + c along b - p_i it is pushed out of obstacles and back behind walls",
             witness="the same agents",
-            proof="stand-off",
             detail=f"pushed out by {mended_outward:.3g}, back by {mended_inward:.3g}: after 3 s the second is "
             f"{-mended_beyond:.3g} m inside",
         ),
-        of_state(
+        of_map(
             "stand-off",
             1e-6 - error / c,
             _ROUNDING,
             computed={case: pair[1] for case, pair in stand_offs.items()},
             stated={case: pair[0] for case, pair in stand_offs.items()},
             witness="head on, inputs unbounded, weights that damp the approach",
-            proof="stand-off",
             detail="agents that run head on at a wall, or at each other, come to c - v^d w^ga/w in "
             f"{len(stand_offs)} cases (off by {error:.1g} m)",
         ),
-        of_state(
+        of_map(
             "contact",
             clearance,
             _ROUNDING,

@@ -9,7 +9,7 @@ from flockana.environment.zone_obstacles import Box
 from flockana.environment.zone_world import ZoneWorld
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
-from flockana.theorems.claims import erratum, of_state
+from flockana.theorems.claims import erratum, of_map, of_state
 from flockana.theorems.theorem import Claim, Tolerances
 
 _ROUNDING = 1e-11  # relative: of a few hundred steps
@@ -65,7 +65,7 @@ def _letter() -> Claim:
 def _clamped() -> Claim:
     long, short = (_head_on(_law(name)) for name in ("attraction", "conflict"))
     different = np.flatnonzero(np.abs(long - short) > _ROUNDING * _SIDE).size
-    return of_state(
+    return of_map(
         "clamped",
         different - 0.5,
         0.0,
@@ -103,7 +103,7 @@ def _slow() -> Claim:
     """An agent at rest before a wall has the short zone: it stands off at r − v^d w^ga/w^oa."""
     measured = float(_head_on(_law("speed", "reaching"))[-1])
     stated = _R - _DESIRED * _DRIVE / _WEIGHT
-    return of_state(
+    return of_map(
         "stand-off",
         1e-6 - abs(measured - stated) / _C,
         _ROUNDING,

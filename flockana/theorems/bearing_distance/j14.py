@@ -6,11 +6,11 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.vectors import lengths
-from flockana.dynamics.simulate import simulate
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.theorems.bearing_distance.random_starts import separated_start
-from flockana.theorems.claims import erratum, of_state
+from flockana.theorems.claims import erratum, of_map
+from flockana.theorems.observed import observed
 from flockana.theorems.shares import always, mostly
 from flockana.theorems.theorem import Claim, Tolerances
 
@@ -45,7 +45,7 @@ def _told_and_not() -> list[Claim]:
     alone, _ = _pair(0, (1.0, 2.0))
     spread = float(np.abs(alone[-1] - 1.5).max()) / 1.5
     return [
-        of_state(
+        of_map(
             "one-informed",
             _SAME - float(np.maximum(off, left)),
             _ROUNDING,
@@ -55,7 +55,7 @@ def _told_and_not() -> list[Claim]:
             detail=f"of two at 1 m/s one is told v^d = {_DESIRED:g}: both take it over, as x' = M x has it, whose "
             f"polynomial λ² + (2g + w) λ + g w is Hurwitz (off by {off:.1g})",
         ),
-        of_state(
+        of_map(
             "none-informed",
             _SAME - spread,
             _ROUNDING,
@@ -70,7 +70,7 @@ def _told_and_not() -> list[Claim]:
 def _speeds(informed: int) -> list[float]:
     """Mean speed over the second half of runs of ten agents of whom so many are informed, by seed."""
     weights = ZoneWeights(speed=tuple([5.0] * informed + [0.0] * (_AGENTS - informed)))
-    runs = (simulate(ZoneFlocking(_RADII, weights), *separated_start(k), (0.0, _DURATION)) for k in range(_SEEDS))
+    runs = (observed(ZoneFlocking(_RADII, weights), *separated_start(k), (0.0, _DURATION)).run for k in range(_SEEDS))
     return [float(lengths(run.p[len(run.t) // 2 :]).mean()) for run in runs]
 
 

@@ -8,7 +8,7 @@ from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.measures.metrics import min_distance
 from flockana.theorems.bearing_distance.random_starts import runs_from_random_starts, separated_start
-from flockana.theorems.claims import erratum, of_state
+from flockana.theorems.claims import erratum, of_map
 from flockana.theorems.shares import always
 from flockana.theorems.theorem import Claim, Tolerances
 
@@ -33,7 +33,7 @@ def _pair() -> list[Claim]:
     error = float(np.max([abs(stated - found) for stated, found in rows.values()]))
     printed, alone = next(iter(rows.values()))[1], _rest(5.0, 0.0, 2.0)
     return [
-        of_state(
+        of_map(
             "printed",
             printed / _C - 1.0,
             _ROUNDING,
@@ -43,7 +43,7 @@ def _pair() -> list[Claim]:
             detail=f"cohesion acts in the zone of conflict as well: a pair as printed rests {printed:.4g} "
             f"m apart, not {_C:g}",
         ),
-        of_state(
+        of_map(
             "rest",
             _SAME - error / _C,
             _ROUNDING,
@@ -53,7 +53,7 @@ def _pair() -> list[Claim]:
             detail=f"a pair rests at c w^ls/(w^ls + g_c) in {len(rows)} cases (off by {error:.1g} m): below c for any "
             "cohesion",
         ),
-        of_state(
+        of_map(
             "alone",
             _SAME - abs(alone / _C - 1.0),
             _ROUNDING,

@@ -9,16 +9,18 @@ from flockana.environment.zone_obstacles import Box
 from flockana.environment.zone_world import ZoneWorld
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
-from flockana.theorems.claims import erratum, of_state
-from flockana.theorems.shares import always
+from flockana.theorems.claims import erratum, of_map
+from flockana.theorems.limits import Certificate, limit_claim
 from flockana.theorems.theorem import Claim, Tolerances
 
 _ROUNDING = 1e-11  # relative: of a few thousand steps straight on
-_A, _SIDE, _SPEED = 5.0, 50.0, 3.0
-_RADII = ZoneRadii(1.5, c=3.0, a=_A)
+_A, _C, _SIDE, _SPEED = 5.0, 3.0, 50.0, 3.0
+_RADII = ZoneRadii(1.5, c=_C, a=_A)
 _PRINTED = ZoneWeights(cohesion_gain=1.0, alignment_gain=1.0)
 _WALLED = ZoneWorld(box=Box((0.0, 0.0), (_SIDE, _SIDE)))
 _SEEDS, _STEPS, _CLEAR = 40, 6000, 4.0  # of 0.1 s; m from the walls at first
+_UNBOUNDED, _STEPS_AT_WALLS, _LINEAR = 1e6, 200, 1e-9  # an input bound that never acts; m
+_REUNITE = "in a box separated agents eventually reunite"
 _GROWTH, _SLOWER = 10.0, 5.0  # m/s: faster than two part at v^d each, and slower
 
 
@@ -32,15 +34,46 @@ def _at_rest() -> Claim:
     q, p = np.array([[10.0, 10.0], [40.0, 40.0]]), np.zeros((2, 2))
     path = _positions(law, q, p, 100)
     moved, apart = float(np.abs(path - q).max()), float(np.linalg.norm(path[-1, 1] - path[-1, 0]))
-    return of_state(
+    same = moved == 0.0  # a state that a map keeps to the bit it keeps for ever
+    return limit_claim(
         "at-rest",
-        1.0 - apart / _A if moved == 0.0 else float("nan"),  # a state that a map keeps to the bit it keeps for ever
-        _ROUNDING,
+        [],
+        escape=Certificate(1.0 - _A / apart if same else -1.0, "no behaviour acts", _ROUNDING),
         computed=moved,
-        stated="in a box separated agents eventually reunite",
+        stated=_REUNITE,
         witness={"q": q.tolist(), "p": "0"},
         detail="two agents at rest, farther apart than a_i and than c_i from the walls: every behaviour is exactly "
         "zero (at rest (5) is 0/0, and read as 0), and they stay where they are",
+    )
+
+
+def _at_walls() -> Claim:
+    """Two agents head on at opposite walls: each slows down for ever before its own, and there both stay.
+
+    With e = d - d*, the speed and e obey v' = (1 - gδ)v + wδe and e' = e - δv'. Of a matrix with two real eigenvalues
+    in (0, 1) all states with e/v above that of the faster mode stay so, with v > 0: e falls, and never to 0.
+    """
+    law = ZoneFlocking(_RADII, _PRINTED, _WALLED, u_max=_UNBOUNDED)
+    q, p = np.array([[_C, 25.0], [_SIDE - _C, 25.0]]), np.array([[-_SPEED, 0.0], [_SPEED, 0.0]])
+    g, w, dt = _PRINTED.speed, _PRINTED.obstacle, law.dt
+    step = np.array([[1.0 - g * dt, w * dt], [-dt * (1.0 - g * dt), 1.0 - w * dt**2]])
+    fast, slow = np.sort(np.linalg.eigvals(step))
+    e = _SPEED * g / w  # d - d* at d = c
+    states = np.array([np.linalg.matrix_power(step, k) @ (_SPEED, e) for k in range(1, _STEPS_AT_WALLS + 1)])
+    path = _positions(law, q, p, _STEPS_AT_WALLS)[:, :, 0]
+    gone = np.stack([_C - path[:, 0], path[:, 1] - (_SIDE - _C)])
+    off = float(np.abs(gone - (e - states[:, 1])).max())
+    real = bool(np.isrealobj(fast) and 0.0 < fast < slow < 1.0)
+    margin = min(e / _SPEED - (fast - step[0, 0]) / step[0, 1], 1.0 - off / _LINEAR) if real else -1.0
+    return limit_claim(
+        "at-walls",
+        [],
+        escape=Certificate(float(margin), "their speeds towards the walls stay positive for ever", _ROUNDING),
+        computed={"steps off the linear recursion by": off, "eigenvalues": [float(fast.real), float(slow.real)]},
+        stated=_REUNITE,
+        witness={"q(0)": q.tolist(), "p(0)": p.tolist(), "bound of inputs": _UNBOUNDED},
+        detail=f"two agents that head for opposite walls at v^d come to rest at them, {_SIDE - 2.0 * _C:g} m apart "
+        "or more: in the zones of the walls each obeys a linear recursion",
     )
 
 
@@ -53,12 +86,15 @@ def _circling() -> Claim:
         q, angle = rng.uniform(_CLEAR, _SIDE - _CLEAR, (2, 2)), rng.uniform(0.0, 2.0 * np.pi, 2)
         path = _positions(law, q, _SPEED * np.column_stack([np.cos(angle), np.sin(angle)]), _STEPS)
         nearest.append(float(np.linalg.norm(path[:, 1] - path[:, 0], axis=1).min()))
-    return always(
+    met = sum(distance <= _A for distance in nearest)
+    return limit_claim(
         "circling",
-        [distance <= _A for distance in nearest],
-        f"two agents in a box of {_SIDE:g} m meet within {0.1 * _STEPS:g} s",
-        "lone agents in a box meet sooner or later",
+        [],
+        computed={"meet": met, "of": _SEEDS},
+        stated="lone agents in a box meet sooner or later, wherever they start",
         witness={"least distance by seed": nearest},
+        detail=f"from {met} of {_SEEDS} random starts two agents in a box of {_SIDE:g} m meet within "
+        f"{0.1 * _STEPS:g} s; the others run along the walls, one behind the other, which decides nothing about later",
     )
 
 
@@ -66,7 +102,7 @@ def _lone() -> Claim:
     """Remark 2: two who fly apart in the open find each other once their radii of attraction grow."""
     q, p = np.array([[0.0, 0.0], [20.0, 3.0]]), np.array([[-_SPEED, 0.0], [_SPEED, 0.0]])
     gap = {growth: _last_gap(growth, q, p) for growth in (0.0, _SLOWER, _GROWTH)}
-    return of_state(
+    return of_map(
         "growing",
         float(np.min([gap[0.0] / _A - 1.0, gap[_SLOWER] / _A - 1.0, 1.0 - gap[_GROWTH] / _A])),
         _ROUNDING,
@@ -91,7 +127,7 @@ def _pairs() -> Claim:
     gap = _positions(law, q, p, 600)[-1]
     parted = float(gap[2, 0] - gap[0, 0])
     straight = 20.0 + 2.0 * _SPEED * 60.0
-    return of_state(
+    return of_map(
         "fragments",
         0.5 - parted / straight,
         _ROUNDING,
@@ -104,7 +140,7 @@ def _pairs() -> Claim:
 
 
 def _check(tolerances: Tolerances) -> list[Claim]:
-    return [_at_rest(), _circling(), _lone(), _pairs()]
+    return [_at_rest(), _at_walls(), _circling(), _lone(), _pairs()]
 
 
 THEOREM = erratum(
@@ -112,11 +148,17 @@ THEOREM = erratum(
     title="In a box fragments need not reunite",
     statement=(
         "Remark 2 says that in a confined environment separated agents eventually reunite, and that else radii of "
-        "attraction may grow until a flockmate is found. Agents at rest never meet, and lone ones may run along the "
-        "walls one behind the other. Growing radii bring lone agents back; fragments of two or more they leave apart."
+        "attraction may grow until a flockmate is found. Agents at rest never meet, nor do two that head for opposite "
+        "walls; others run along the walls one behind the other, for as long as is seen. Growing radii bring lone agents back; fragments of two or more they leave apart."
     ),
     source="Jond, bearing-distance flocking, Remark 2",
     check=_check,
     references=("jond-2025",),
-    expected={"at-rest": "refuted", "circling": "refuted", "growing": "verified", "fragments": "refuted"},
+    expected={
+        "at-rest": "refuted",
+        "at-walls": "refuted",
+        "circling": "inconclusive",
+        "growing": "verified",
+        "fragments": "refuted",
+    },
 )

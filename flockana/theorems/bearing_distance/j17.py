@@ -8,7 +8,7 @@ import numpy.typing as npt
 from flockana.environment.zone_world import Alien, ZoneWorld
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
-from flockana.theorems.claims import erratum, of_state
+from flockana.theorems.claims import erratum, of_map
 from flockana.theorems.theorem import Claim, Tolerances
 
 _DETECTION, _PURSUIT, _SPEED, _AT = 9.0, 1.5, 3.0, 20.0
@@ -39,7 +39,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     delay, none = heeded - hunted, at_once - hunted_too
     predicted, step = (_DETECTION - _SHORT) / (_SPEED + _PURSUIT), 0.1
     return [
-        of_state(
+        of_map(
             "delay",
             1.75 * step - abs(delay - predicted),
             _ROUNDING,
@@ -49,7 +49,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             detail=f"head on, an agent that sees {_SHORT:g} m heeds the alien {delay:.2g} s after it was detected: "
             f"(9 - s)/(v + v_alien) = {predicted:.2g} s, to a step of {step:g} s",
         ),
-        of_state(
+        of_map(
             "none",
             1.75 * step - abs(none),
             _ROUNDING,
@@ -58,7 +58,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             witness={"s": _DETECTION, "detection": _DETECTION},
             detail=f"with s = {_DETECTION:g}, the alien's own range, it reacts within {abs(none):.2g} s: the next step",
         ),
-        of_state(
+        of_map(
             "nearer",
             (far - near) / _DETECTION,
             _ROUNDING,

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.dynamics.simulate import simulate
 from flockana.interactions import ZoneRadii
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.measures.metrics import coordination, min_distance
 from flockana.measures.nets import components, links
 from flockana.theorems.bearing_distance.random_starts import crowd_start
-from flockana.theorems.claims import erratum, of_state
+from flockana.theorems.claims import erratum, of_map
+from flockana.theorems.observed import observed
 from flockana.theorems.shares import always, mostly
 from flockana.theorems.theorem import Claim, Tolerances
 
@@ -28,7 +28,7 @@ def _ends(n: int, *, any_direction: bool = False) -> FloatArray:
     rows = []
     for seed in range(_SEEDS[n]):
         start = crowd_start(seed, n, any_direction=any_direction)
-        run = simulate(_LAW, *start, (0.0, _DURATION), t_eval=(_DURATION,))
+        run = observed(_LAW, *start, (0.0, _DURATION), t_eval=(_DURATION,)).run
         q, p = run.q[-1], run.p[-1]
         edges = links(q, _LAW.radii.reach[2])
         rows.append([coordination(p), components(n, edges).max() + 1, min_distance(q), 2.0 * len(edges) / n])
@@ -51,7 +51,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     turned = _ends(_SIZES[-1], any_direction=True)
     return [
         *(_flocks(n, ends[n]) for n in _SIZES),
-        of_state(
+        of_map(
             "local",
             _MORE - many / some,
             _ROUNDING,

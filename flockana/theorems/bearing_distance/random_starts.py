@@ -7,10 +7,10 @@ from collections.abc import Callable
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.measures.nets import components, links
+from flockana.theorems.observed import observed
 
 SEEDS, DURATION = 20, 20.0  # runs of an ensemble; s
 
@@ -70,4 +70,4 @@ def runs_from_random_starts(
     law: ZoneFlocking, start: Callable[[int], tuple[FloatArray, FloatArray]] = zone_start
 ) -> list[Trajectory]:
     """One run of 20 s from each of twenty random starts."""
-    return [simulate(law, *start(seed), (0.0, DURATION)) for seed in range(SEEDS)]
+    return [observed(law, *start(seed), (0.0, DURATION)).run for seed in range(SEEDS)]

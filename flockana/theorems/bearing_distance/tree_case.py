@@ -8,18 +8,20 @@ from functools import cached_property
 from math import sqrt
 
 import numpy as np
+import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
-from flockana.dynamics.trajectory import Trajectory
-from flockana.kernels.paths import closest_pair, control_points
 from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import Edges, edge_vectors, incidence, is_connected, out_tree_root
 from flockana.stability import linearise
+from flockana.theorems.enclosure import Enclosure, stacked
 from flockana.theorems.hypotheses import condition
+from flockana.theorems.observed import Observed
 from flockana.theorems.rounding import EPS
+from flockana.theorems.sampling import least_distance
 from flockana.theorems.theorem import Hypothesis
 
-_RESOLVED = 1e-9  # of a length between samples: far below the allowance for the path itself
+PROOF = "bearing-distance"
 
 
 @dataclass(frozen=True)
@@ -90,25 +92,30 @@ class TreeCase:
         lengths: FloatArray = np.linalg.norm(edge_vectors(q, self.links), axis=-1)
         return lengths
 
-    def energies(self, q: FloatArray, p: FloatArray) -> FloatArray:
-        """V = ½‖x'‖² + ½μ(‖x‖ − ρ)² of each edge, shape (n − 1,). At the root it falls: V' = −a‖x'‖²."""
-        rate = edge_vectors(p, self.links)
-        V: FloatArray = 0.5 * (np.sum(rate * rate, axis=1) + self.mu * (self.lengths(q) - self.rho) ** 2)
-        return V
+    @property
+    def ends(self) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
+        """Tails and heads of the edges."""
+        tails, heads = np.array(self.links, dtype=np.intp).T
+        return tails, heads
 
-    def shortest(self, run: Trajectory) -> FloatArray:
-        """A lower bound of the length of each edge over a run, between its samples too, shape (n − 1,)."""
-        at = self.lengths(run.q)
-        least: FloatArray = at.min(axis=0)
-        ends = [(np.array([j], dtype=np.int32), np.array([i], dtype=np.int32)) for j, i in self.links]
-        for k in range(len(run.t) - 1):
-            h = run.t[k + 1] - run.t[k]
-            path = control_points(h, run.q[k], run.p[k], run.u[k], run.q[k + 1], run.p[k + 1], run.u[k + 1])
-            for e, (tail, head) in enumerate(ends):
-                stop = float(min(at[k, e], at[k + 1, e]))
-                if stop > 0.0:
-                    least[e] = min(least[e], closest_pair(*path, tail, head, stop, _RESOLVED * self.rho[e])[0])
-        return least
+    @property
+    def proved(self) -> str | None:
+        """Id of the proof, which is about edges with one weight of alignment, 1, on a directed tree."""
+        return PROOF if self.root is None or bool((self.align == 1.0).all()) else None
+
+    def edges_of(self, x: FloatArray, error: FloatArray) -> Enclosure:
+        """Enclose the length of x_j − x_i over each edge, of vectors that are known to an error each."""
+        tails, heads = self.ends
+        apart = np.linalg.norm(x[..., heads, :] - x[..., tails, :], axis=-1)
+        return Enclosure.around(apart, error[..., tails] + error[..., heads] + 4.0 * EPS * apart).clip(0.0)
+
+    def energies(self, lengths: Enclosure, rates: Enclosure) -> Enclosure:
+        """V = ½‖x'‖² + ½μ(‖x‖ − ρ)² of each edge, from ‖x‖ and ‖x'‖. At the root it falls: V' = −a‖x'‖²."""
+        return 0.5 * (rates.square() + self.mu * (lengths - self.rho).square())
+
+    def shortest(self, seen: Observed) -> Enclosure:
+        """Enclose the least length of each edge over a run, between its samples too, shape (n − 1,)."""
+        return stacked([least_distance(seen, [j], [i]) for j, i in self.links])
 
 
 def tree_case(law: MinimalFlocking, n: int) -> TreeCase | None:
@@ -139,14 +146,14 @@ def characteristic_residual(A: FloatArray, factors: Sequence[tuple[float, float]
     return float(np.abs(determinants[:, 0] * np.exp(determinants[:, 1] - stated) - 1.0).max())
 
 
-def minimal_law(run: Trajectory) -> Hypothesis:
+def minimal_law(seen: Observed) -> Hypothesis:
     """The hypothesis that a run is of the minimal law."""
-    return condition("the minimal law is applied", type(run.law) is MinimalFlocking, detail=type(run.law).__name__)
+    return condition("the minimal law is applied", type(seen.law) is MinimalFlocking, detail=type(seen.law).__name__)
 
 
-def tree_hypotheses(run: Trajectory) -> tuple[list[Hypothesis], TreeCase | None]:
+def tree_hypotheses(seen: Observed) -> tuple[list[Hypothesis], TreeCase | None]:
     """Hypotheses that both forms of the theorem have in common, and the tree if there is one."""
-    case, frozen = tree_case(run.law, run.n), run.law.edges is not None
+    case, frozen = tree_case(seen.law, seen.n), seen.law.edges is not None
     kind = "no frozen graph" if not frozen else "neither a rooted out-tree nor a reciprocal undirected tree"
     if case is not None:
         kind = "an undirected tree" if case.root is None else f"an out-tree from agent {case.root}, which reaches all"
@@ -159,8 +166,3 @@ def tree_hypotheses(run: Trajectory) -> tuple[list[Hypothesis], TreeCase | None]
             least = float(weights.min())
             needs.append(condition(name, least > 0.0, least))
     return needs, case
-
-
-def length_error(case: TreeCase, run: Trajectory) -> float:
-    """Rounding of |x_e|/ρ_e along a run: of positions that far from the origin."""
-    return 8.0 * EPS * (1.0 + float(np.abs(run.q).max()) / float(case.rho.min()))

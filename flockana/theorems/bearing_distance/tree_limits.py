@@ -23,17 +23,23 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.vectors import lengths
-from flockana.dynamics.trajectory import Trajectory
 from flockana.measures.perception import edge_vectors
 from flockana.theorems.bearing_distance.tree_case import TreeCase
-from flockana.theorems.limits import Certificate, limit_claim
-from flockana.theorems.rounding import EPS, spread_error
+from flockana.theorems.enclosure import Enclosure
+from flockana.theorems.limits import Certificate, evidence, limit_claim
+from flockana.theorems.observed import End, Observed
+from flockana.theorems.rounding import EPS, frame_error
 from flockana.theorems.theorem import Claim, Hypothesis
 
 _ERROR = 1e-12  # of a share: all roundings in it are taken outwards
 
 
-def edge_shares(case: TreeCase, q: FloatArray, p: FloatArray) -> FloatArray:
+def state(q: FloatArray, p: FloatArray) -> End:
+    """Return a stored state as an end that is exact."""
+    return End(q, p, np.zeros(len(q)), np.zeros(len(q)))
+
+
+def edge_shares(case: TreeCase, end: End) -> FloatArray:
     """V̂/(½μρ²) of each edge, shape (n − 1,): below 1 it never comes to length 0; ∞ where nothing is known.
 
     Examples
@@ -42,26 +48,21 @@ def edge_shares(case: TreeCase, q: FloatArray, p: FloatArray) -> FloatArray:
     >>> from flockana.theorems.bearing_distance.tree_case import tree_case
     >>> chain = tree_case(MinimalFlocking(edges=((0, 1), (1, 2)), spacing=1.0), 3)
     >>> q = np.array([[0.0], [0.5], [1.5]])
-    >>> edge_shares(chain, q, 0.0 * q).round(3).tolist()
+    >>> edge_shares(chain, state(q, 0.0 * q)).round(3).tolist()
     [0.25, 3.5]
     """
-    if case.root is None:
-        off = float(spread_error(p[None])[0]) + float(case.mu @ _stretch_error(case, q))
-        energy: float = case.law.hamiltonian(0.0, q, p) + off
-        return energy * (1.0 + case.n**2 * EPS) / case.barrier
-    return _directed(case, q, p)
+    lengths, rates = case.edges_of(end.q, end.q_error), case.edges_of(end.p, end.p_error)
+    if case.root is not None:
+        return _directed(case, case.energies(lengths, rates).hi)
+    speeds = np.linalg.norm(end.p - end.p.mean(axis=0), axis=1)
+    off = end.p_error + sqrt(end.p.shape[1]) * frame_error(end.p)
+    H = 0.5 * Enclosure.around(speeds, off).square().sum() + case.energies(lengths, 0.0 * rates).sum()
+    shares: FloatArray = H.hi * (1.0 + case.n * EPS) / case.barrier
+    return shares
 
 
-def _stretch_error(case: TreeCase, q: FloatArray) -> FloatArray:
-    """Rounding of ½y² of each edge."""
-    lengths = case.lengths(q)
-    off = 4.0 * EPS * (lengths + case.rho)
-    error: FloatArray = (np.abs(lengths - case.rho) + off) * off
-    return error
-
-
-def _directed(case: TreeCase, q: FloatArray, p: FloatArray) -> FloatArray:
-    start = case.energies(q, p) * (1.0 + 16.0 * EPS) + case.mu * _stretch_error(case, q)
+def _directed(case: TreeCase, start: FloatArray) -> FloatArray:
+    """Bounds from the root outwards, from V of each edge at most."""
     shares, felt = np.full(len(case.links), inf), {case.root: 0.0}
     for e, parent, child in case.walk:
         W, mu, a = felt[parent], float(case.mu[e]), float(case.align[e])
@@ -76,29 +77,30 @@ def _directed(case: TreeCase, q: FloatArray, p: FloatArray) -> FloatArray:
     return shares
 
 
-def settles(case: TreeCase, q: FloatArray, p: FloatArray) -> Certificate:
+def settles(case: TreeCase, end: End) -> Certificate:
     """Certificate that from this state every edge goes to its desired length, every velocity difference to 0."""
-    share = float(edge_shares(case, q, p).max())
+    share = float(edge_shares(case, end).max())
     never = "no edge can ever shrink to 0 from here" if share < 1.0 else "an edge might still shrink to 0"
     text = f"{never}: the energy that one may get is {share:.2g} of what that takes"
     return Certificate(max(-1.0, 1.0 - share), text, _ERROR)
 
 
-def velocity_claim(case: TreeCase, run: Trajectory, needs: list[Hypothesis], *, stated: str) -> Claim:
+def velocity_claim(case: TreeCase, seen: Observed, needs: list[Hypothesis], *, stated: str) -> Claim:
     """The claim that the velocities at both ends of every edge match in the limit."""
-    speeds = lengths(edge_vectors(run.p[[0, -1]], case.links)).max(axis=1)
+    speeds = lengths(edge_vectors(seen.run.p, case.links)).max(axis=1)
     return limit_claim(
         "velocities",
         needs,
-        [settles(case, run.q[-1], run.p[-1])],
-        computed=float(speeds[1]),
+        [settles(case, seen.end)],
+        computed=float(speeds[-1]),
         stated=stated,
-        witness={"time": float(run.t[-1]), "at the start": float(speeds[0])},
-        detail=f"velocities match: |x_e'| goes from {speeds[0]:.3g} to {speeds[1]:.3g} at t = {run.t[-1]:g}",
+        witness={"time": float(seen.t[-1]), "at the start": float(speeds[0])},
+        evidence=evidence(seen.t, speeds, "|x_e'|"),
+        detail=f"velocities match: |x_e'| goes from {speeds[0]:.3g} to {speeds[-1]:.3g} at t = {seen.t[-1]:g}",
     )
 
 
-def length_kept(case: TreeCase, q: FloatArray, p: FloatArray) -> tuple[float, float]:
-    """(least |x|/ρ that the edge farthest from collision keeps for ever, its error); <= 0 where nothing is known."""
-    share = float(edge_shares(case, q, p).min())
-    return (1.0 - sqrt(share) if share < 4.0 else -1.0), sqrt(_ERROR)
+def kept(case: TreeCase, end: End) -> float:
+    """Return the least |x|/ρ that the edge farthest from collision keeps for ever; <= 0 where nothing is known."""
+    share = float(edge_shares(case, end).min())
+    return 1.0 - sqrt(share) - sqrt(_ERROR) if share < 4.0 else -1.0

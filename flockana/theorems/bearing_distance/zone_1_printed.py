@@ -2,54 +2,50 @@
 
 from __future__ import annotations
 
-from math import inf, nan, sqrt
+from math import inf, sqrt
 
 import numpy as np
 
-from flockana.dynamics.trajectory import Trajectory
-from flockana.theorems.bearing_distance.tree_case import TreeCase, length_error, minimal_law, tree_hypotheses
-from flockana.theorems.bearing_distance.tree_limits import length_kept, velocity_claim
+from flockana.theorems.bearing_distance.tree_case import TreeCase, minimal_law, tree_hypotheses
+from flockana.theorems.bearing_distance.tree_limits import kept, state, velocity_claim
 from flockana.theorems.claims import judged
+from flockana.theorems.enclosure import Enclosure
+from flockana.theorems.limits import Certificate, limit_claim
+from flockana.theorems.observed import Observed
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
 
-_PROOF = "bearing-distance-printed"
 
-
-def _at_rest(case: TreeCase, run: Trajectory, needs: list[Hypothesis]) -> Claim:
+def _at_rest(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:
     """The counterexample: at rest with every edge at its desired length, where nothing moves and x is not 0."""
-    q = case.on_manifold(run.q[-1])
+    q = case.on_manifold(seen.run.q[-1])
     u = float(np.abs(case.law.flow(0.0, q, 0.0 * q)[0]).max())
-    kept, error = length_kept(case, q, 0.0 * q)
+    least = kept(case, state(q, 0.0 * q))
     return judged(
         "equilibrium",
-        -kept,
-        error,
+        Enclosure(-1.0, -least, -least),
         needs,
-        verifies=False,
-        computed=kept * float(case.rho.min()),
+        about="all",
+        computed=least * float(case.rho.min()),
         stated="x -> 0 from any initial condition",
         witness={"q": q.tolist(), "p": "0", "largest |u|": u},
-        proof=_PROOF,
+        disproof="bearing-distance-printed",
         detail=f"at rest with every edge at its desired length nothing moves (|u| <= {u:.1g}): |x_e| stays "
         f"{case.rho.min():.4g} or more for ever",
     )
 
 
-def _edges_vanish(case: TreeCase, run: Trajectory, needs: list[Hypothesis]) -> Claim:
+def _edges_vanish(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:
     """The claim x -> 0 on this run: refuted by an edge that has too little energy ever to shorten to 0."""
-    length = case.lengths(run.q[-1])
-    kept, error = length_kept(case, run.q[-1], run.p[-1])
-    return judged(
+    length, least = case.lengths(seen.run.q[-1]), kept(case, seen.end)
+    text = f"one edge keeps {least:.4g} of its desired length or more for ever"
+    return limit_claim(
         "edges",
-        -kept if kept > 0.0 else nan,
-        error,
         needs,
+        escape=Certificate(least, text, 0.0),
         computed=[float(length.min()), float(length.max())],
         stated="|x_e| -> 0 on every edge",
-        witness={"q(0)": run.q[0].tolist(), "p(0)": run.p[0].tolist(), "time": float(run.t[-1])},
-        proof=_PROOF,
-        detail=f"at t = {run.t[-1]:g} edges are {length.min():.6g} to {length.max():.6g} long"
-        + (f", and one keeps {kept:.4g} of its desired length or more for ever" if kept > 0.0 else ""),
+        witness={"q(0)": seen.run.q[0].tolist(), "p(0)": seen.run.p[0].tolist(), "time": float(seen.t[-1])},
+        detail=f"at t = {seen.t[-1]:g} edges are {length.min():.6g} to {length.max():.6g} long",
     )
 
 
@@ -62,41 +58,37 @@ def _abscissa(case: TreeCase, lengths: np.ndarray) -> float:
     return abscissa
 
 
-def _hurwitz(case: TreeCase, run: Trajectory, needs: list[Hypothesis]) -> Claim:
+def _hurwitz(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:
     """The claim that A_cl is Hurwitz all along the run: it is if and only if every edge is longer than desired.
 
     det(sI - A_cl) is the product of s² + a s + w_e, and w_e has the sign of |x_e| - ρ_e: the lengths decide.
     """
-    at = case.lengths(run.q) / case.rho
+    at = case.lengths(seen.run.q) / case.rho
     k = int(np.argmin(at.min(axis=1)))
-    least = float(at[k].min())
-    between = float((case.shortest(run) / case.rho).min()) if least > 1.0 else least
-    error, abscissa = length_error(case, run), _abscissa(case, at[k] * case.rho)
+    abscissa = _abscissa(case, at[k] * case.rho)
     return judged(
         "hurwitz",
-        nan if least > 1.0 >= between else between - 1.0,
-        error,
+        case.shortest(seen) / case.rho - 1.0,
         needs,
         computed=abscissa,
         stated="all eigenvalues of A_cl have negative real parts",
-        witness={"time": float(run.t[k]), "|x_e|/ρ": at[k].tolist()},
-        proof=_PROOF,
-        detail=f"at t = {run.t[k]:.4g}, with an edge at {least:.4g} of its desired length, A_cl has an eigenvalue with "
-        f"real part {abscissa:.4g}; Hurwitz it is only while all edges are too long",
+        witness={"time": float(seen.t[k]), "|x_e|/ρ": at[k].tolist()},
+        detail=f"at t = {seen.t[k]:.4g}, with an edge at {at[k].min():.4g} of its desired length, A_cl has an "
+        f"eigenvalue with real part {abscissa:.4g}; Hurwitz it is only while all edges are too long",
     )
 
 
-def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
-    needs, case = tree_hypotheses(run)
+def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+    needs, case = tree_hypotheses(seen)
     if case is not None and case.root is None:
         needs[1] = Hypothesis("the graph is a spanning tree", "unmet", detail="undirected: no agent is a root")
     if case is None or unmet(needs):
         return needs, []
     return needs, [
-        _at_rest(case, run, needs),
-        _edges_vanish(case, run, needs),
-        velocity_claim(case, run, needs, stated="x' -> 0 on every edge"),
-        _hurwitz(case, run, needs),
+        _at_rest(case, seen, needs),
+        _edges_vanish(case, seen, needs),
+        velocity_claim(case, seen, needs, stated="x' -> 0 on every edge"),
+        _hurwitz(case, seen, needs),
     ]
 
 

@@ -8,17 +8,16 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.dynamics.simulate import simulate
-from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import both_ways, edge_vectors
-from flockana.theorems.claims import erratum, of_state
+from flockana.theorems.claims import erratum, judged
+from flockana.theorems.enclosure import Enclosure, stacked
+from flockana.theorems.observed import observed
 from flockana.theorems.theorem import Claim, Tolerances
 
 _RHO, _MU, _STRETCH = 2.0, 3.0, 0.5
 _PERIODS = 20
 _PATH = both_ways([(0, 1), (1, 2), (2, 3), (3, 4)])
-_MEASURED, _DRIFT = 1e-6, 1e-8  # relative: of periods and distances by this integration, and of an energy
 _TIGHT: dict[str, Any] = {"rtol": 1e-11, "atol": 1e-12}
 
 
@@ -35,15 +34,13 @@ def _pair(tolerances: Tolerances) -> Claim:
     period = 2.0 * pi / sqrt(2.0 * _MU)
     times = np.linspace(0.0, _PERIODS * period, 400 * _PERIODS + 1)
     start = np.array([[0.0, 0.0], [_RHO + _STRETCH, 0.0]])
-    run = simulate(law, start, 0.0 * start, (0.0, times[-1]), t_eval=times, **_TIGHT)
-    y = np.linalg.norm(edge_vectors(run.q, ((0, 1),))[:, 0], axis=1) - _RHO
-    measured = float(np.diff(_crossings(run.t, y)).mean())
-    amplitude = float(np.abs(y[-400:]).max())
-    worst = max(abs(measured / period - 1.0), abs(amplitude / _STRETCH - 1.0))
-    return of_state(
+    seen = observed(law, start, 0.0 * start, (0.0, times[-1]), t_eval=times, **_TIGHT)
+    y = seen.distances([0], [1])[:, 0] - _RHO
+    measured = float(np.diff(_crossings(seen.t, y.mid)).mean())
+    amplitude = float(np.abs(y.mid[-400:]).max())
+    return judged(
         "alone",
-        tolerances.agreement - worst,
-        _MEASURED,
+        tolerances.agreement - abs(y - _STRETCH * np.cos(2.0 * pi / period * times)) / _STRETCH,
         computed={"period": measured, "amplitude at the end": amplitude},
         stated={"period": period, "amplitude": _STRETCH},
         witness={"q(0)": start.tolist(), "p(0)": "0"},
@@ -52,26 +49,25 @@ def _pair(tolerances: Tolerances) -> Claim:
     )
 
 
-def _path_run(sigma: float) -> Trajectory:
+def _path_energy(sigma: float) -> Enclosure:
     law = MinimalFlocking(edges=_PATH, spacing=_RHO, mu=_MU, sigma=sigma, normalised=False)
     rng = np.random.default_rng(4)
     q = np.cumsum(rng.uniform(-_RHO, _RHO, (5, 2)), axis=0)
-    return simulate(law, q, rng.uniform(-1.0, 1.0, q.shape), (0.0, 60.0), **_TIGHT)
+    return observed(law, q, rng.uniform(-1.0, 1.0, q.shape), (0.0, 60.0), **_TIGHT).energy
 
 
 def _conserved(tolerances: Tolerances) -> Claim:
-    """Five agents on a frozen path: H is conserved without alignment, so nothing ever settles; with it H falls to 0."""
-    alone, aligned = (run.energy() for run in map(_path_run, (0.0, 1.0)))
-    drift, left = float(np.abs(alone / alone[0] - 1.0).max()), float(aligned[-1] / aligned[0])
-    return of_state(
+    """Five agents on a frozen path: H is conserved without alignment, so nothing ever settles; with it H is lost."""
+    alone, aligned = map(_path_energy, (0.0, 1.0))
+    drift, left = abs(alone / alone[0] - 1.0).max(), aligned[-1] / aligned[0]
+    return judged(
         "energy",
-        min(tolerances.energy - drift, tolerances.energy - left),
-        _DRIFT,
-        computed={"drift of H without alignment": drift, "H(T)/H(0) with it": left},
-        stated="H is conserved by separation alone, and falls to 0 with alignment",
-        witness={"agents": 5, "graph": "a frozen undirected path", "H(0)": float(alone[0])},
-        detail=f"on a path of five H keeps its value to {drift:.1g} over 60 time units; with alignment {left:.1g} of "
-        "it is left",
+        tolerances.energy - stacked([drift, left]),
+        computed={"drift of H without alignment": float(drift.mid), "H(T)/H(0) with it": float(left.mid)},
+        stated=f"H keeps its value by separation alone, and with alignment {tolerances.energy:g} of it is left at most",
+        witness={"agents": 5, "graph": "a frozen undirected path", "H(0)": float(alone.mid[0])},
+        detail=f"on a path of five H keeps its value to {drift.mid:.1g} over 60 time units; with alignment "
+        f"{left.mid:.1g} of it is left",
     )
 
 
@@ -82,13 +78,12 @@ def _resonance(tolerances: Tolerances) -> Claim:
     start = np.array([[0.0], [_RHO + a], [2.0 * _RHO + a]])
     end = 2.0 * pi * _PERIODS / omega
     times = np.linspace(0.0, end, 400 * _PERIODS + 1)
-    run = simulate(law, start, 0.0 * start, (0.0, end), t_eval=times, **_TIGHT)
-    y = np.abs(edge_vectors(run.q, law.edges or ())[:, 1, 0]) - _RHO
-    ratio, stated = float(np.abs(y[-400:]).max()) / a, 0.5 * omega * (end - 0.5 * pi / omega)
-    return of_state(
+    seen = observed(law, start, 0.0 * start, (0.0, end), t_eval=times, **_TIGHT)
+    y = seen.distances([1], [2])[:, 0] - _RHO
+    ratio, stated = float(np.abs(y.mid[-400:]).max()) / a, 0.5 * omega * (end - 0.5 * pi / omega)
+    return judged(
         "chain",
-        tolerances.agreement - abs(ratio / stated - 1.0),
-        _MEASURED,
+        tolerances.agreement - abs(y / a - 0.5 * omega * times * np.sin(omega * times)) / stated,
         computed=ratio,
         stated=stated,
         witness={"q(0)": start.tolist(), "edges": law.edges},
@@ -101,13 +96,13 @@ def _close_encounter() -> Claim:
     """Alignment does not prevent collisions: y(t) = −v exp(−t) sin t with σ = μ = 1, and v > 3.1 ρ reaches −ρ."""
     law = MinimalFlocking(edges=both_ways([(0, 1)]), spacing=1.0)
     q, p = np.array([[0.0], [1.0]]), np.array([[2.0], [-2.0]])
-    run = simulate(law, q, p, (0.0, 2.0), **_TIGHT)
-    least = float((run.q[:, 1, 0] - run.q[:, 0, 0]).min())
-    return of_state(
+    seen = observed(law, q, p, (0.0, 2.0), **_TIGHT)
+    gap = Enclosure.around(seen.run.q[:, 1, 0] - seen.run.q[:, 0, 0], seen.shape_error.sum(axis=1)).min()
+    return judged(
         "close-encounters",
-        least,
-        _MEASURED,
-        computed=least,
+        gap,
+        about="all",
+        computed=float(gap.mid),
         stated="with alignment agents avoid close encounters (separation > 0)",
         witness={"q(0)": q.tolist(), "p(0)": p.tolist()},
         detail="two agents at the desired spacing, closing in by four of it per time unit, pass through each other",

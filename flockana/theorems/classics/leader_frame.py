@@ -107,7 +107,13 @@ def linked_to_informed(run: Trajectory) -> np.ndarray:
 
 
 def comes_to_rest(
-    seen: Observed, who: np.ndarray, needs: list[Hypothesis], name: str, certificates: Iterable[Certificate] = ()
+    seen: Observed,
+    who: np.ndarray,
+    needs: list[Hypothesis],
+    name: str,
+    certificates: Iterable[Certificate] = (),
+    *,
+    proof: str | None = None,
 ) -> Claim:
     """Return the claim that the velocities of some agents, of a run in its leader's frame, die out."""
     speeds, count = lengths(seen.run.p[:, who]).max(axis=1, initial=0.0), int(np.count_nonzero(who))
@@ -115,6 +121,7 @@ def comes_to_rest(
         name,
         needs,
         certificates,
+        proof=proof,
         computed=float(speeds[-1]),
         stated="p_i - p_r -> 0",
         witness={"time": float(seen.t[-1]), "agents": count},

@@ -47,7 +47,7 @@ def _check(observed: Observed, tolerances: Tolerances) -> Checked:
     return [*needs, lasting, below], [
         never_rises(seen, needs, squares=True, name="energy", proof=PROOF),
         stays_within(seen, needs, name="distance", proof=PROOF),
-        comes_to_rest(seen, informed(run), needs, "informed"),
+        comes_to_rest(seen, informed(run), needs, "informed", proof="matched-velocities"),
         comes_to_rest(seen, linked, [*needs, lasting], "linked"),
         distinct_pairs(seen, needs, tolerances, name="pairs"),
         pairs_at_one_instant(seen, needs, tolerances, name="one-instant"),

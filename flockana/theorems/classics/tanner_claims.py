@@ -45,7 +45,9 @@ def _energy_error(seen: Observed, i: Any, j: Any) -> float:
     return float(potential.strength * np.sum(np.abs(x - 1.0) * e + e * e))
 
 
-def comes_to_rest(seen: Observed, needs: list[Hypothesis], names: tuple[str, str]) -> list[Claim]:
+def comes_to_rest(
+    seen: Observed, needs: list[Hypothesis], names: tuple[str, str], *, proof: str | None = None
+) -> list[Claim]:
     """Return the claims that relative velocities, and the forces of the potentials, tend to 0."""
     still = np.zeros_like(seen.run.p[0])
     force = np.array([float(np.abs(seen.law.flow(0.0, q, still)[0]).max()) for q in seen.run.q])
@@ -53,12 +55,13 @@ def comes_to_rest(seen: Observed, needs: list[Hypothesis], names: tuple[str, str
         names[1],
         needs,
         computed=float(force[-1]),
+        proof=proof,
         stated="the largest force -> 0",
         witness={"time": float(seen.t[-1])},
         evidence=evidence(seen.t, force, "the largest force"),
         detail=f"the largest force goes from {force[0]:.3g} to {force[-1]:.3g} at t = {seen.t[-1]:g}",
     )
-    return [velocities_match(seen, needs, name=names[0]), extremal]
+    return [velocities_match(seen, needs, name=names[0], proof=proof), extremal]
 
 
 def out_of_range(seen: Observed) -> Enclosure:

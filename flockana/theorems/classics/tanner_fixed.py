@@ -22,7 +22,7 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     return needs, [
         balance(seen, needs, tolerances, name="energy", proof="tanner"),
         no_collision(seen, edges[:, 0], edges[:, 1], "tanner", needs),
-        *comes_to_rest(seen, needs, ("velocities", "critical")),
+        *comes_to_rest(seen, needs, ("velocities", "critical"), proof="matched-velocities"),
     ]
 
 

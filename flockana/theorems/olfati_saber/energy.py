@@ -56,7 +56,7 @@ def balance(
     )
 
 
-def _cancelling(run: Trajectory) -> FloatArray:
+def cancelling(run: Trajectory) -> FloatArray:
     """Magnitude of those terms of dH/dt that are differences, and may cancel, at each sample.
 
     They are c2β ΣΣ b ⟨p_i, p̂_ik − p_i⟩, of β-agents no faster than their agent, c2γ Σ⟨p_i, p_i − p_r⟩, and the work
@@ -97,6 +97,8 @@ def never_rises(
     needs: Iterable[Hypothesis],
     *,
     since: int = 0,
+    rate: Callable[[Trajectory], FloatArray] = Trajectory.energy_rate,
+    cancels: Callable[[Trajectory], FloatArray] = cancelling,
     squares: bool = False,
     name: str = "rate",
     proof: str | None = None,
@@ -114,6 +116,8 @@ def never_rises(
         Hypotheses of the claim.
     since : int
         First sample.
+    rate, cancels : callable
+        Of a run: dH/dt in closed form, and the magnitude of those of its terms that may cancel.
     squares : bool
         Whether all terms of the rate are squares.
     name : str
@@ -121,17 +125,17 @@ def never_rises(
     proof : str, optional
         Id of its proof.
     """
-    cancels = (lambda run: np.zeros(len(run.t))) if squares else _cancelling
-    share = falling_share(seen, Trajectory.energy_rate, cancels)
+    cancels = (lambda run: np.zeros(len(run.t))) if squares else cancels
+    share = falling_share(seen, rate, cancels)
     stop, until = len(seen.t), ""
-    if not squares and _cancelling(seen.run).any():
+    if cancels(seen.run).any():
         speeds = Enclosure.around(lengths(seen.run.p), seen.speed_error + seen.drift_error[:, None])
         stop = seen.known_samples((speeds.max(axis=1).lo > 0.0) | (share.lo >= 0.0) | (np.arange(stop) < since))
         until = "" if stop == len(seen.t) else f"; known {seen.until(stop)}"
     if stop <= since:
         return undecided(name, "the motion is not known well enough to tell the sign of dH/dt", needs, proof=proof)
     share = share[since:stop]
-    worst, highest = share.worst_index, float(seen.run.energy_rate()[since:stop].max())
+    worst, highest = share.worst_index, float(rate(seen.run)[since:stop].max())
     return judged(
         name,
         share,

@@ -44,6 +44,10 @@ def _stays_together(seen: Observed) -> Hypothesis:
     if energy.lo >= apart:
         detail = f"Ω_c holds a disconnected state at rest: its energy is {apart:.5g}, and c >= H(0) = {energy.mid:.5g}"
         return Hypothesis(name, "unmet", apart - float(energy.mid), detail)
+    parted = (seen.n - 1) * seen.law.gains.c1_alpha * seen.law.alpha.far_potential
+    if energy.hi < parted:
+        detail = f"H(0) = {energy.mid:.5g} < {parted:.5g} = (n-1) c1α ψ_α(r_α), and no state below that is disconnected"
+        return Hypothesis(name, "met", parted - float(energy.mid), detail, float(energy.half_width))
     return Hypothesis(name, "assumed", detail="this run is connected at every sample; the others are not known")
 
 
@@ -62,7 +66,7 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     low, barrier = below_multiple(energy, c_star), below_the_barrier(seen, energy)
     return [*needs, low, barrier], [
         lattice_limit(seen, needs, tolerances, name="i"),
-        velocities_match(seen, needs, name="ii", caught=[final_basin(seen).certificate]),
+        velocities_match(seen, needs, name="ii", caught=[final_basin(seen).certificate], proof="matched-velocities"),
         no_collision(seen, [*needs, low], tolerances, name="iii", proof=proved(seen, "collisions")),
         no_collision(seen, [*needs, barrier], tolerances, name="iii-barrier", proof=_barrier(seen)),
     ]

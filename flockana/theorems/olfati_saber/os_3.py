@@ -27,6 +27,7 @@ from flockana.theorems.olfati_saber.gamma_agent import consistent
 from flockana.theorems.sampling import radius_over
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
 
+PROOF = "matched-velocities"
 _COLLISIONS = ("iv-printed", "iv-instant", "iv-none", "iv-barrier")
 
 
@@ -70,7 +71,7 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     claims = [
         _cohesive(seen, needs),
         _minimum(seen, needs, tolerances),
-        velocities_match(seen, needs, name="iii", caught=[final_basin(seen).certificate]),
+        velocities_match(seen, needs, name="iii", caught=[final_basin(seen).certificate], proof=PROOF),
     ]
     given = [*needs, consistent(seen.run), repels]  # nothing below needs dq_r/dt = p_r: it is about the moving frame
     if unmet([repels]):

@@ -3,23 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.dynamics.trajectory import Trajectory
-from flockana.theorems.claims import exact, of_state
+from flockana.theorems.claims import exact, judged
+from flockana.theorems.enclosure import Enclosure
+from flockana.theorems.observed import Observed
 from flockana.theorems.rounding import energy_error
-from flockana.theorems.second_run import corroborated
 from flockana.theorems.theorem import Claim, Hypothesis
 
 PROOF = "energy-identities"
 
 
 def state_claim(state: Any) -> Claim:
-    """The claim that the printed energy does not rise, at a rational state where its exact rate is known."""
+    """Return the claim that the printed energy does not rise, at a rational state where its exact rate is known."""
     rate, true_rate = float(state.rate), float(state.true_rate)
     return exact(
         "printed-state",
@@ -29,41 +29,51 @@ def state_claim(state: Any) -> Claim:
         margin=-rate,
         error=0.0,
         witness={"q": [str(x) for x in state.q], "p": [str(x) for x in state.p]},
-        proof=PROOF,
+        disproof=PROOF,
         detail=f"at an exact state of two agents the printed H has rate {rate:.4g}, the true one {true_rate:g}",
     )
 
 
-def run_claim(run: Trajectory, excess: FloatArray, where: str, needs: Iterable[Hypothesis] = ()) -> Claim:
-    """The claim that the printed energy, the true one plus an excess, never rises while the true one falls.
+def rises(energy: Enclosure) -> Enclosure:
+    """Return by how much an energy is above its least value so far, at each sample.
 
-    It is refuted by a rise from any sample to a later one, by more than the balance of the true energy is off; samples
-    at which it does not rise verify nothing.
+    Examples
+    --------
+    >>> rises(Enclosure.of([2.0, 1.0, 4.0])).mid.tolist()
+    [0.0, 0.0, 3.0]
     """
-    true = run.energy()
-    printed = true + excess
-    above = printed - np.minimum.accumulate(printed)
-    peak = int(np.argmax(above))
-    rounding = float(energy_error(run.law, run.q, run.p, np.abs(true) + np.abs(excess)).max())
-    error = 2.0 * (float(np.abs(run.energy_residual).max()) + rounding)
-    rise, falls = float(above[peak]), float(np.diff(true).max(initial=-np.inf)) <= error
-    course = f"the printed H rises by {rise:.4g} until t = {run.t[peak]:.3g}" if rise > 0.0 else "the printed H falls"
-    claim = of_state(
+    return energy + (-energy).largest_so_far()
+
+
+def printed_energy(seen: Observed, excess: Callable[[Trajectory], FloatArray]) -> Enclosure:
+    """Return an energy that is the true one and an excess, at each sample."""
+
+    def rounding(run: Trajectory) -> FloatArray:
+        return energy_error(run.law, run.q, run.p, np.abs(run.energy()) + np.abs(excess(run)))
+
+    floor = 2.0 * seen.floors.work + rounding(seen.run)
+    return seen.series(lambda run: run.energy() + excess(run), floor=floor)
+
+
+def run_claim(
+    seen: Observed, excess: Callable[[Trajectory], FloatArray], where: str, needs: Iterable[Hypothesis] = ()
+) -> Claim:
+    """Return the claim that the printed energy, the true one and an excess, never rises; `where` names the run.
+
+    A rise from a sample to a later one refutes it; samples at which it does not rise verify nothing.
+    """
+    above = rises(printed_energy(seen, excess))
+    peak, true = int(np.argmax(above.lo)), seen.energy
+    rise = float(above.mid[peak])
+    course = f"rises by {rise:.4g} until t = {seen.t[peak]:.3g}" if above.lo[peak] > 0.0 else "is not seen to rise"
+    return judged(
         "printed-run",
-        -rise if falls else 0.0,
-        error,
+        -above,
         needs,
+        about="all",
         computed=rise,
         stated="the printed H never rises",
-        witness={"q(0)": run.q[0].tolist(), "p(0)": run.p[0].tolist(), "time": float(run.t[peak])},
-        detail=f"along a run of {where} {course}; the true one {'falls throughout' if falls else 'rises too'}",
+        witness={"q(0)": seen.run.q[0].tolist(), "p(0)": seen.run.p[0].tolist(), "time": float(seen.t[peak])},
+        detail=f"along a run of {where} the printed H {course}; the true one goes from {true.mid[0]:.4g} to "
+        f"{true.mid[-1]:.4g}",
     )
-    return replace(claim, margin=-rise)
-
-
-def corroborated_run_claim(run: Trajectory, excess: Callable[[Trajectory], FloatArray], where: str) -> Claim:
-    """`run_claim` of an erratum's own run, with the error that a tighter second run of it shows."""
-    (claim,) = corroborated(
-        [run_claim(run, excess(run), where)], run, lambda again: [run_claim(again, excess(again), where)]
-    )
-    return claim

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.dynamics.simulate import simulate
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.theorems.claims import equal, erratum
-from flockana.theorems.slides.claims_on_energy import PROOF, corroborated_run_claim, state_claim
+from flockana.theorems.observed import observed
+from flockana.theorems.slides.claims_on_energy import PROOF, run_claim, state_claim
 from flockana.theorems.theorem import Claim, Tolerances
 
 
 def _rising_run() -> Claim:
     """Two agents at rest, 8 apart: they fall towards each other, and the printed energy climbs."""
-    run = simulate(Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 2.0))
-    return corroborated_run_claim(run, lambda again: 0.5 * np.sum(again.p**2, axis=(1, 2)), "two agents")
+    seen = observed(Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 2.0))
+    return run_claim(seen, lambda run: 0.5 * np.sum(run.p**2, axis=(1, 2)), "two agents")
 
 
 def _check(tolerances: Tolerances) -> list[Claim]:
@@ -25,7 +25,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             "printed",
             e1_identity(m=2).residual,
             stated="d/dt (V + Σ‖p_i‖²) = -c2α pᵀL̂p",
-            proof=PROOF,
+            disproof=PROOF,
             detail="with the printed H a term -dV/dt is left over, and it has no sign",
         ),
         state_claim(e1_counterexample()),

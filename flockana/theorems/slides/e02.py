@@ -2,28 +2,21 @@
 
 from __future__ import annotations
 
-import numpy as np
-
-from flockana.base.checks import FloatArray
-from flockana.dynamics.simulate import simulate
-from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.obstacles import Sphere
 from flockana.environment.targets import StaticTarget
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.theorems.claims import equal, erratum
-from flockana.theorems.slides.claims_on_energy import PROOF, corroborated_run_claim, state_claim
+from flockana.theorems.observed import observed
+from flockana.theorems.slides.claims_on_energy import PROOF, run_claim, state_claim
+from flockana.theorems.slides.energy_printed import pair_energy
 from flockana.theorems.theorem import Claim, Tolerances
 
 
 def _rising_run() -> Claim:
     """Two agents too close that approach further, a sphere beside them, the γ-agent at rest between them."""
     law = Algorithm3(target=StaticTarget((2.0, 0.0)), obstacles=(Sphere((2.0, 5.8), 2.0),))
-    run = simulate(law, [[0.0, 0.0], [4.0, 0.0]], [[5.0, 0.0], [-5.0, 0.0]], (0.0, 1.0))
-
-    def pair_energy(again: Trajectory) -> FloatArray:
-        return np.array([law.gains.c1_alpha * law.alpha.potential_energy(q) for q in again.q])
-
-    return corroborated_run_claim(run, pair_energy, "two agents beside a sphere")
+    seen = observed(law, [[0.0, 0.0], [4.0, 0.0]], [[5.0, 0.0], [-5.0, 0.0]], (0.0, 1.0))
+    return run_claim(seen, pair_energy, "two agents beside a sphere")
 
 
 def _check(tolerances: Tolerances) -> list[Claim]:
@@ -35,7 +28,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             "printed",
             e2_identity(m=2).residual,
             stated=f"{stated} for V_α = Σ_i Σ_(j≠i) ψ_α",
-            proof=PROOF,
+            disproof=PROOF,
             detail="the printed V_α has twice the gradient that u^α uses: dV_α/dt is left over, and it has no sign",
         ),
         state_claim(e2_counterexample()),

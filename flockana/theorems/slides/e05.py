@@ -6,13 +6,12 @@ from collections.abc import Iterator
 from dataclasses import replace
 from itertools import combinations, product
 from math import sqrt
-from typing import Any
 
 import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.lattice import is_planar, kuratowski, planar_bound
-from flockana.theorems.claims import erratum, of_state
+from flockana.theorems.claims import by_count, erratum
 from flockana.theorems.olfati_saber.os_5 import check
 from flockana.theorems.theorem import Claim, Tolerances
 
@@ -107,29 +106,24 @@ def non_planar_fragments(size: int) -> tuple[int, int]:
 
 
 def _counterexample(name: str, q: FloatArray, sites: tuple[Site, ...], tolerances: Tolerances) -> list[Claim]:
-    """The claims of Theorem 5(i) on a lattice in space: its graph is planar, and its edges do not cross."""
-    claims = {claim.name: claim for claim in check(q, _D, _R, tolerances)[1]}
+    """Return the claims of Theorem 5(i) on a lattice in space: its graph is planar, and its edges do not cross."""
+    uncrossed = next(claim for claim in check(q, _D, _R, tolerances)[1] if claim.name == "i")
     edges = site_links(sites)
-    witness: Any = kuratowski(len(sites), edges)
-    uncrossed, graph = claims["i"], claims["i-graph"]
-    bound, planar = planar_bound(len(sites)), is_planar(len(sites), edges)
+    witness, planar = kuratowski(len(sites), edges), is_planar(len(sites), edges)
+    bound, kind = planar_bound(len(sites)), "planar" if planar else "not planar"
     return [
-        of_state(
+        by_count(
             f"printed-{name}",
-            1.0 if planar else -1.0,
-            0.0,
-            computed={"links": len(edges), "bound": bound, "graph": graph.computed},
+            0 if planar else 1,
+            about="all",
+            computed={"links": len(edges), "bound": bound, "graph": kind},
             stated="the graph is planar",
             witness={"q": q} | (vars(witness) if witness else {}),
-            proof=_PROOF,
-            detail=f"{len(sites)} face-centred cubic sites: {graph.detail}",
+            disproof=_PROOF,
+            detail=f"{len(sites)} face-centred cubic sites: the graph of {len(edges)} links is {kind}; a planar one has "
+            f"at most {bound}",
         ),
-        replace(
-            uncrossed,
-            name=f"uncrossed-{name}",
-            proof=_PROOF,
-            detail=f"in space its edges do not cross: {uncrossed.detail}",
-        ),
+        replace(uncrossed, name=f"uncrossed-{name}"),
     ]
 
 
@@ -138,10 +132,10 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     return [
         *_counterexample("13", fcc_star(_D), STAR, tolerances),
         *_counterexample("8", fcc_eight(_D), EIGHT, tolerances),
-        of_state(
+        by_count(
             "six",
-            0.5 - bad,
-            0.0,
+            bad,
+            about="all",
             computed={"fragments": total, "not planar": bad},
             stated="every fragment of six sites is planar",
             witness="every connected fragment, up to translation",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from flockana.lattice import harborth, hexagonal_spiral, links
-from flockana.theorems.claims import erratum, of_state
+from flockana.theorems.claims import by_count, counted, erratum
 from flockana.theorems.theorem import Claim, Tolerances
 
 _MOST = 60
@@ -26,33 +26,34 @@ def link_counts() -> dict[int, tuple[int, int, int]]:
 def _check(tolerances: Tolerances) -> list[Claim]:
     table = link_counts()
     exceeding = [n for n, (count, printed, _) in table.items() if count > printed]
-    slack = min(table[n][1] - table[n][0] for n in range(3, _MOST + 1))
+    count, printed, _ = min((table[n] for n in range(3, _MOST + 1)), key=lambda row: row[1] - row[0])
     off = [n for n, (count, _, sharp) in table.items() if count != sharp]
     return [
-        of_state(
+        by_count(
             "printed",
-            0.5 - len(exceeding),
-            0.0,
+            len(exceeding),
+            about="all",
             computed=table[2][0],
             stated=table[2][1],
             witness={"n": exceeding},
-            proof=_PROOF,
+            disproof=_PROOF,
             detail="two agents at distance d have 1 link; 3n - 6 is 0",
         ),
-        of_state(
+        counted(
             "corrected",
-            slack + 0.5,
-            0.0,
+            printed,
+            count,
+            count,
+            about="all",
             computed={n: (count, printed) for n, (count, printed, _) in table.items() if n >= 3},
             stated="at most 3n - 6 links for n >= 3",
             witness={"n with 3n - 6 links": [n for n in range(3, _MOST + 1) if table[n][0] == table[n][1]]},
             proof=_PROOF,
             detail=f"hexagonal spirals of 3 to {_MOST} agents have at most 3n - 6 links, and that many only if n = 3",
         ),
-        of_state(
+        by_count(
             "sharp",
-            0.5 - len(off),
-            0.0,
+            len(off),
             computed={n: (count, sharp) for n, (count, _, sharp) in table.items()},
             stated="floor(3n - sqrt(12n - 3)) links",
             witness={"n": off},

@@ -7,7 +7,7 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.measures.metrics import connectivity, giant_share
 from flockana.measures.nets import links, printed_edge_share
-from flockana.theorems.claims import erratum, of_state
+from flockana.theorems.claims import by_count, erratum
 from flockana.theorems.theorem import Claim, Tolerances
 
 _SPACE = 1000.0  # between components; within one, neighbours are 1 apart and the range is 1.5
@@ -24,37 +24,33 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     uneven, even = _components(1, 1, 1, 1, 96), _components(20, 20, 20, 20, 20)
     printed, true = printed_edge_share(100, links(uneven, 1.5)), giant_share(uneven, 1.5)
     few, both = "components of 1, 1, 1, 1 and 96 agents", "five components of 20 agents"
+    nodes, edges = giant_share(even, 1.5), printed_edge_share(100, links(even, 1.5))
+    text = f"C* = {nodes:g}; the share of edges, {edges:g}, is the same here, for the components are alike"
     return [
         _share("printed", printed, few, f"as printed, the share of edges in the giant component is {printed:g}"),
         _share("corrected", true, few, f"the share of nodes is {true:g}, the example's number"),
         _relative("connectivity-1", connectivity(uneven, 1.5), few),
         _relative("connectivity-2", connectivity(even, 1.5), both),
-        _share(
-            "share-2",
-            giant_share(even, 1.5),
-            both,
-            f"C* = {giant_share(even, 1.5):g}; the share of edges, {printed_edge_share(100, links(even, 1.5)):g}, is "
-            "the same here, for the components are alike",
-            stated=20,
-        ),
+        _share("share-2", nodes, both, text, stated=20),
     ]
 
 
 def _share(name: str, share: float, witness: str, detail: str, *, stated: int = 96) -> Claim:
-    """Whether a share of the hundred agents is the source's, as a whole number."""
-    margin = 0.5 - abs(round(100.0 * share) - stated)
-    return of_state(
-        name, margin, 0.0, computed=share, stated=stated / 100.0, witness=witness, proof="net-measures", detail=detail
-    )
+    """Return the claim that a share of the hundred agents is the source's, as a whole number."""
+    return _number(name, share, 100, stated, f"{stated / 100.0:g}", witness, detail)
 
 
 def _relative(name: str, share: float, witness: str) -> Claim:
-    """Whether C is 95/99: both nets have five components, and C cannot tell them apart."""
-    margin = 0.5 - abs(round(99.0 * share) - 95)
+    """Return the claim that C is 95/99: both nets have five components, and C cannot tell them apart."""
     detail = f"C = {round(99.0 * share)}/99 for {witness}: five components, whatever their sizes"
-    return of_state(
-        name, margin, 0.0, computed=share, stated="95/99", witness=witness, proof="net-measures", detail=detail
-    )
+    return _number(name, share, 99, 95, "95/99", witness, detail)
+
+
+def _number(name: str, share: float, of: int, count: int, stated: str, witness: str, detail: str) -> Claim:
+    """Return the claim that a share is a whole number of so many."""
+    proof = {"disproof" if name == "printed" else "proof": "net-measures"}
+    off = abs(round(of * share) - count)
+    return by_count(name, off, computed=share, stated=stated, witness=witness, detail=detail, **proof)
 
 
 THEOREM = erratum(

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from flockana.measures.metrics import connectivity
 from flockana.measures.nets import links, printed_rank_connectivity
-from flockana.theorems.claims import erratum, of_state
+from flockana.theorems.claims import by_count, erratum
 from flockana.theorems.theorem import Claim, Tolerances
+
+_PROOF = "net-measures"
 
 
 def _check(tolerances: Tolerances) -> list[Claim]:
@@ -13,23 +15,21 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     q = [[0.0], [1.0], [2.0]]
     printed, true = printed_rank_connectivity(3, links(q, 1.5)), connectivity(q, 1.5)
     return [
-        _rank("printed", printed, 3, f"rank(A)/n of the adjacency matrix is {printed:.4g} on a connected path"),
-        _rank("corrected", true, 2, f"rank(L)/(n - 1) of the Laplacian is {true:.4g}"),
+        _rank("printed", printed, 3, f"rank(A)/n is {printed:.4g} on a connected path", disproof=_PROOF),
+        _rank("corrected", true, 2, f"rank(L)/(n - 1) of the Laplacian is {true:.4g}", proof=_PROOF),
     ]
 
 
-def _rank(name: str, share: float, full: int, detail: str) -> Claim:
-    """Whether the measure is 1, as it must be on a connected net: by the rank it comes from, a whole number."""
-    margin = 0.5 - (full - round(full * share))
-    return of_state(
+def _rank(name: str, share: float, full: int, detail: str, **proof: str) -> Claim:
+    """Return the claim that the measure is 1, as it must be on a connected net: by the rank it comes from, a whole number."""
+    return by_count(
         name,
-        margin,
-        0.0,
+        full - round(full * share),
         computed=share,
         stated=1.0,
         witness="a path of three agents",
-        proof="net-measures",
         detail=detail,
+        **proof,
     )
 
 

@@ -8,11 +8,12 @@ from flockana.environment.targets import StaticTarget
 from flockana.interactions import Gains
 from flockana.laws.msn import CONSTANT_ACCELERATION, PRINTED, MSNDiscretisation
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.theorems.claims import erratum, exact, of_state
+from flockana.theorems.claims import erratum, exact, of_map
 from flockana.theorems.rounding import EPS
 from flockana.theorems.theorem import Claim, Tolerances
 
 _Q, _P, _Q_R, _DT = 3.0, -2.0, 11.0, 0.125  # binary fractions: the step below is exact in floating point
+_PROOF = "constant-acceleration"
 
 
 def _step(factor: float) -> tuple[float, float]:
@@ -39,9 +40,9 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     """One step under a constant u: exactly by algebra, and on the map itself."""
     measured, swept = _step(PRINTED)
     return [
-        _by_algebra("printed", "end", PRINTED),
-        _by_algebra("corrected", "start", CONSTANT_ACCELERATION),
-        of_state(
+        _by_algebra("printed", "end", PRINTED, disproof=_PROOF),
+        _by_algebra("corrected", "start", CONSTANT_ACCELERATION, proof=_PROOF),
+        of_map(
             "excess",
             tolerances.agreement * abs(swept) - abs(measured - swept),
             8.0 * EPS * _Q_R,
@@ -53,7 +54,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     ]
 
 
-def _by_algebra(name: str, v: str, factor: float) -> Claim:
+def _by_algebra(name: str, v: str, factor: float, **proof: str) -> Claim:
     """The claim that a step goes as far as a constant u does, with the velocity of its start or of its end."""
     text, zero = _symbolic_excess(v)
     measured, swept = _step(factor)
@@ -63,8 +64,8 @@ def _by_algebra(name: str, v: str, factor: float) -> Claim:
         computed=text,
         stated="0",
         witness={"u dt²": swept, "excess of one step of the map": measured},
-        proof="constant-acceleration",
         detail=f"with the velocity of the {v} of the step, q moves {text} beyond q + p dt + ½ u dt²",
+        **proof,
     )
 
 

@@ -26,7 +26,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             computed=f"ρ₁(1⁻) - ρ₁(1⁺) = {jump}",
             stated="differentiable at h = 1",
             witness="z = 1",
-            proof="smoothness",
+            disproof="smoothness",
             detail=f"at h = 1 the function jumps by {jump} at z = 1",
         ),
         exact(

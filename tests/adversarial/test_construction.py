@@ -1,0 +1,169 @@
+"""Verdicts that the mechanism makes impossible: cases that were wrong, and a fuzz over laws, starts and tolerances."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import flockana as fl
+from flockana.interactions.log_potential import LogPotential
+from flockana.interactions.weights import RationalWeight
+from flockana.laws.link_keeping import LinkKeeping
+from flockana.laws.tanner import FixedNetFlocking
+from flockana.theorems import Tolerances, theorem, theorems, verify
+from tests.adversarial.cases import effort
+
+TRIANGLE = ([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], [[0.1, 0.0], [0.0, -0.2], [0.0, 0.1]])
+TOLERANCES = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14]
+
+
+# --- what decays into the noise of its run (V1, V2) -------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("decay", [0.0, 0.25, 0.5, 1.0])
+@pytest.mark.parametrize("until", [10.0, 30.0, 100.0, 300.0])
+@pytest.mark.parametrize("rtol", TOLERANCES)
+def test_a_true_rate_is_never_refuted_however_long_and_loose_the_run(decay, until, rtol):
+    law = fl.CuckerSmale(RationalWeight(1.0, decay, 1.0))
+    run = fl.simulate(law, *TRIANGLE, (0.0, until), rtol=rtol)
+    for name in ("ha-liu", "ha-liu-sharp", "cucker-smale"):
+        for claim in verify(name, run).claims:
+            assert claim.status in ("verified", "vacuous"), (name, claim)
+            assert not claim.contradicts
+
+
+def test_without_its_proof_the_rate_is_open_in_the_noise_and_verified_before():
+    """The numbers alone: they reach as far as the spread is above the error of the run, and say so."""
+    from flockana.theorems.classics.alignment_bounds import Guarantee
+    from flockana.theorems.observed import Observed
+
+    law = fl.CuckerSmale(RationalWeight(1.0, 0.5, 1.0))
+    for until in (10.0, 100.0):
+        seen = Observed.of(fl.simulate(law, *TRIANGLE, (0.0, until)))
+        bounded, rate, limit = Guarantee(seen, 2.0).claims(("bounded", "rate", "flock"), [], proof="")
+        assert (bounded.status, rate.status, limit.status) == ("verified", "verified", "inconclusive")
+        assert f"to t = {min(until, 11.57):.4g}" in rate.detail
+
+
+@pytest.mark.parametrize("unit", [1e-6, 1.0, 1e5])
+def test_a_true_rate_reads_alike_in_all_units(unit):
+    law = fl.CuckerSmale(RationalWeight(1.0, 0.5, unit))
+    q, p = (unit * np.array(x) for x in TRIANGLE)
+    assert verify("ha-liu", law=law, q0=q, p0=p, t_span=(0.0, 100.0)).status == "verified"
+
+
+def test_a_search_finds_no_counterexample_to_a_theorem_that_is_proved():
+    case = replace(fl.scenario("cucker-smale"), t_span=(0.0, 100.0))
+    assert not fl.falsify("ha-liu", case, claim="rate", budget=10, seed=1).found
+
+
+# --- limits (V3) ------------------------------------------------------------------------------------------------------
+
+
+def test_an_agent_that_is_dragged_away_after_the_run_is_not_said_to_follow():
+    law = fl.Algorithm2(gains=fl.Gains(c1_gamma=(4, 0, 0), c2_gamma=(2, 0, 0)), target=fl.StaticTarget((0.0, 0.0)))
+    q, p = [[0.1, 0.0], [7.2, 0.0], [9.0, -6000.0]], [[3.0, 0.0], [-5.0, 0.0], [0.0, 60.0]]
+    run = fl.simulate(law, q, p, (0.0, 50.0), t_eval=np.linspace(0.0, 50.0, 401), rtol=1e-10)
+    assert verify("su-informed", run).claim("linked").status == "inconclusive"
+
+
+# --- the solver leaps over a pole (V7) --------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("how", [{"rtol": 1e-4}, {"method": "RK45", "rtol": 1e-3}, {}])
+@pytest.mark.parametrize("gap", [1e-8, 1e-5, 1e-2])
+def test_a_link_that_is_kept_is_never_refuted(how, gap):
+    law = LinkKeeping(((0, 1),), r=1.0, k=1.0, c=0.0)
+    run = fl.simulate(law, [[0.0], [1.0 - gap]], [[0.0], [1e-3]], (0.0, 2.0), **how)
+    assert {claim.status for claim in verify("links-kept", run).claims} <= {"verified", "inconclusive"}
+
+
+# --- energies below what the solver resolves (V9) ---------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("speed", [1e-13, 1e-9, 1e-5, 1.0])
+def test_the_balance_of_a_tiny_energy_is_not_refuted(speed):
+    law = fl.compose(pair=fl.AlphaInteraction(), gradient=30.0, consensus=10.0, drag=0.1)
+    run = fl.simulate(law, [[0.0, 0.0]], [[speed, 0.0]], (0.0, 60.0))
+    assert verify("energy", run).claim("balance").status in ("verified", "inconclusive")
+    if speed >= 1e-5:
+        assert verify("energy", run).claim("balance").status == "verified"
+
+
+# --- a fuzz -----------------------------------------------------------------------------------------------------------
+
+LAWS = {
+    "algorithm 1": lambda: fl.Algorithm1(),
+    "undamped": lambda: fl.Algorithm1(gains=fl.Gains(c2_alpha=0.0)),
+    "algorithm 2": lambda: fl.Algorithm2(target=fl.StaticTarget((0.0, 0.0))),
+    "weak centre": lambda: fl.Algorithm2(gains=fl.Gains(c1_gamma=1e-3, c2_gamma=1e-3), target=fl.StaticTarget((0.0, 0.0))),
+    "one informed": lambda: fl.Algorithm2(
+        gains=fl.Gains(c1_gamma=(2.0, 0.0, 0.0), c2_gamma=(2.0, 0.0, 0.0)), target=fl.LinearTarget((0.0, 0.0), (1.0, 0.0))
+    ),
+    "cucker-smale": lambda: fl.CuckerSmale(RationalWeight(1.0, 0.5, 7.0)),
+    "sum of all": lambda: fl.CuckerSmale(RationalWeight(1.0, 1.0, 7.0), mean=False),
+    "fixed net": lambda: FixedNetFlocking(((0, 1), (1, 2)), LogPotential(49.0, 7.0)),
+    "links kept": lambda: LinkKeeping(((0, 1), (1, 2)), r=12.0, k=30.0, c=1.0),
+    "dead zone": lambda: fl.DeadZoneFlocking(),
+}
+TRUE_CLAIMS = {  # true of every run of the laws that each theorem is about
+    "energy": ("rate", "balance"),
+    "os-3": ("i", "iv-instant", "iv-none"),
+    "os-1": ("iii",),
+    "collision-energy": ("below",),
+    "cohesion": ("bound",),
+    "ha-liu": ("bounded", "rate", "flock"),
+    "ha-liu-sharp": ("bounded", "rate", "flock"),
+    "tanner-fixed": ("energy", "no-collision", "velocities", "critical"),
+    "links-kept": ("rate", "balance", "links", "connected"),
+    "su-informed": ("energy", "distance", "informed", "one-instant", "no-collision"),
+    "dead-zone-1-corrected": ("rate", "balance", "components", "distance"),
+    "dead-zone-1-printed": ("collision",),
+}
+LIMITS = {"os-1": ("i", "ii"), "os-3": ("ii", "iii"), "su-informed": ("informed", "linked"), "tanner-fixed": ("velocities", "critical")}
+
+
+@effort(1.0)
+@given(
+    st.sampled_from(list(LAWS)),
+    st.integers(0, 2**32 - 1),
+    st.sampled_from((0.3, 1.0, 1.5)),
+    st.sampled_from((0.0, 1e-8, 1e-2, 1.0, 5.0)),
+    st.sampled_from((1e-3, 0.3, 3.0, 40.0)),
+    st.sampled_from(TOLERANCES[:5]),
+)
+def test_no_true_claim_reads_refuted_and_no_limit_verified_without_a_certificate(law, seed, spread, speed, until, rtol):
+    rng = np.random.default_rng(seed)
+    q = 7.0 * np.array([[0.0, 0.0], [1.0, 0.0], [0.5, 0.9]]) * spread + rng.uniform(-0.5, 0.5, (3, 2))
+    p = speed * rng.uniform(-1.0, 1.0, (3, 2))
+    run = fl.simulate(LAWS[law](), q, p, (0.0, until), rtol=rtol)
+    for name in theorems():
+        if theorem(name).kind != "trajectory" or name in ("E11", "E12", "linearised-decay-terminal"):
+            continue
+        verdict = verify(name, run)
+        statuses = {claim.name: claim.status for claim in verdict.claims}
+        assert not verdict.contradictions, verdict
+        for claim in TRUE_CLAIMS.get(name, ()):
+            assert statuses[claim] != "refuted", verdict
+        for claim in verdict.claims:
+            if claim.name in LIMITS.get(name, ()) and claim.status == "verified":
+                assert "certified to stay" in claim.detail or claim.proof, claim
+
+
+def test_a_longer_or_looser_run_never_turns_one_decision_into_the_other():
+    """Seven agents of Algorithm 2: statuses over spans and tolerances, decided ones alike."""
+    law = fl.Algorithm2(target=fl.StaticTarget((0.0, 0.0)))
+    rng = np.random.default_rng(5)
+    q, p = rng.uniform(-9.0, 9.0, (7, 2)), rng.uniform(-1.0, 1.0, (7, 2))
+    seen: dict[tuple[str, str], set[str]] = {}
+    for rtol in (1e-2, 1e-5, 1e-8, 1e-11):
+        for until in (20.0, 60.0, 200.0):
+            run = fl.simulate(law, q, p, (0.0, until), rtol=rtol)
+            for name in ("os-3", "energy", "collision-energy", "cohesion"):
+                for claim in verify(name, run, tolerances=Tolerances()).claims:
+                    seen.setdefault((name, claim.name), set()).add(claim.status)
+    assert [key for key, statuses in seen.items() if {"verified", "refuted"} <= statuses] == []

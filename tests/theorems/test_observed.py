@@ -1,0 +1,168 @@
+"""What is known of a run: enclosures hold the exact motion where that is known, however the run was integrated."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import flockana as fl
+from flockana.interactions.weights import RationalWeight
+from flockana.laws.link_keeping import LinkKeeping
+from flockana.laws.semi_implicit import SemiImplicitEuler
+from flockana.theorems import Claim
+from flockana.theorems import observed as module
+from flockana.theorems.observed import Observed, by_both_runs, failure, observed, with_doubt
+
+SPRING = fl.Algorithm2(
+    gains=fl.Gains(c1_alpha=0.0, c2_alpha=0.0, c1_gamma=1.0, c2_gamma=0.0), target=fl.StaticTarget((0.0,))
+)
+START = ([[1.0], [-1.0]], [[0.0], [0.0]], (0.0, 6.0))
+HOW = [
+    {"method": "RK4", "dt": 0.2},
+    {"rtol": 1e-2},
+    {"rtol": 1e-5, "atol": 1e-4},
+    {},
+    {"rtol": 1e-13},
+    {"method": "RK23", "rtol": 1e-3},
+    {"t_eval": [0.0, 5.0, 6.0]},
+]
+
+
+@pytest.mark.parametrize("how", HOW, ids=str)
+def test_two_springs_swing_as_the_cosine_within_every_enclosure(how):
+    seen = observed(SPRING, *START, **how)
+    exact = np.abs(np.cos(seen.t))
+    for found, true in (
+        (seen.radius, exact),
+        (seen.distances([0], [1])[:, 0], 2.0 * exact),
+        (seen.relative_speeds[:, 0], np.abs(np.sin(seen.t))),
+        (seen.spread, np.sqrt(2.0) * exact),
+        (seen.mismatch, 0.5 * np.sin(seen.t) ** 2),
+    ):
+        assert (found.lo <= true).all()
+        assert (true <= found.hi).all()
+    assert (seen.energy.lo <= 1.0).all()
+    assert (seen.energy.hi >= 1.0).all()
+    assert np.abs(seen.residual.mid).max() <= seen.residual.half_width.max()
+
+
+def test_the_start_is_exact_and_what_comes_after_is_as_wide_as_the_runs_differ():
+    seen = observed(SPRING, *START, rtol=1e-4)
+    assert seen.radius.half_width[0] < 1e-14
+    apart = np.abs(seen.given.q - seen.run.q).max()
+    assert seen.shape_error.max() == pytest.approx(max(2.0 * apart, seen.floors.place), rel=0.01)
+    assert seen.run.stats["rtol"] == pytest.approx(1e-6)
+    assert seen.other is seen.given
+    assert Observed.of(seen.given) is seen
+
+
+def test_of_the_finest_run_the_second_one_is_looser_and_the_run_itself_the_best():
+    run = fl.simulate(SPRING, *START, rtol=1e-13)
+    seen = Observed.of(run)
+    assert seen.run is run
+    assert seen.other.stats["rtol"] == pytest.approx(1e-11)
+
+
+def test_a_difference_of_0_proves_nothing_below_the_solvers_floors():
+    """Two agents out of each other's range fly straight on: both runs agree to the bit."""
+    seen = observed(fl.Algorithm1(), [[0.0], [99.0]], [[-1.0], [1.0]], (0.0, 1.0))
+    assert np.array_equal(seen.run.q, seen.other.q)
+    assert seen.shape_error[-1].min() >= seen.other.floors.place > 0.0
+
+
+def test_widths_follow_the_motion_and_forget_what_was_longer_ago_than_a_law_time():
+    case = fl.scenario("paper-flocking")
+    seen = Observed.of(fl.simulate(case.law, case.q0, case.p0, case.t_span))
+    widths = seen.shape_error.max(axis=1)
+    assert widths.max() > 1e-4
+    assert widths[-1] < 1e-5
+
+
+def test_the_output_times_change_no_enclosure_by_much():
+    dense, sparse = (observed(SPRING, *START, rtol=1e-5, t_eval=t) for t in (np.linspace(0.0, 6.0, 61), [0.0, 6.0]))
+    ratio = dense.shape_error[-1].max() / sparse.shape_error[-1].max()  # samples between steps are interpolated
+    assert 0.5 < ratio < 10.0
+
+
+@pytest.mark.parametrize(("length", "time"), [(1e-6, 1.0), (25.4, 60.0), (2.0**30, 2.0**-12)])
+def test_half_widths_have_their_units(length, time):
+    run = fl.simulate(SPRING, *START, rtol=1e-5)
+    one, two = Observed.of(run), Observed.of(fl.rescale(run, length=length, time=time))
+    assert two.shape_error[1:] == pytest.approx(length * one.shape_error[1:], rel=0.5)
+    assert two.mismatch.half_width[1:] == pytest.approx((length / time) ** 2 * one.mismatch.half_width[1:], rel=0.5)
+
+
+def test_what_decays_is_known_until_it_is_noise_and_to_no_time_if_that_is_too_soon():
+    law = fl.CuckerSmale(RationalWeight(1.0, 0.0, 1.0))
+    seen = observed(law, [[0.0], [1.0]], [[0.1], [-0.1]], (0.0, 100.0))
+    count = seen.known_samples(seen.velocity_spread.lo > 0.0)
+    assert 5.0 < seen.t[count - 1] < 40.0  # 0.1 e^(-2t) is 1e-10 at t = 10
+    assert seen.until(count) == f"to t = {seen.t[count - 1]:.4g}"
+    known = np.ones(len(seen.t), dtype=bool)
+    assert seen.known_samples(known) == len(seen.t)
+    known[1:] = seen.t[1:] < 0.5 * seen.scales.time
+    assert seen.known_samples(known) == 0
+    assert seen.until(0) == "at no time"
+
+
+def test_a_map_has_no_second_run_and_rounding_alone():
+    seen = observed(SemiImplicitEuler(fl.DeadZoneFlocking(), dt=0.02), [[0.0], [8.0]], [[0.1], [0.0]], (0.0, 1.0))
+    assert seen.run is seen.given is seen.other
+    assert 0.0 < seen.radius.half_width.max() < 1e-13
+
+
+@pytest.mark.parametrize(
+    ("spoil", "doubt"),
+    [
+        (lambda run: replace(run, status="failed", message="no step"), "the run failed: no step"),
+        (lambda run: run.window(0.0, 0.0), "one sample shows no motion"),
+    ],
+)
+def test_of_a_run_that_shows_no_motion_nothing_is_known(spoil, doubt):
+    seen = Observed.of(spoil(fl.simulate(SPRING, *START)))
+    assert seen.doubt == doubt
+    assert np.isinf(seen.radius.half_width).all()
+
+
+def test_a_second_run_that_ends_early_leaves_nothing_known(monkeypatch):
+    run = fl.simulate(SPRING, *START)
+    short = SimpleNamespace(status="failed", t=run.t[:2], message="no step")
+    monkeypatch.setattr(module, "integrated", lambda *of, **how: short)
+    seen = Observed.of(run)
+    assert seen.doubt == f"a tighter second run ended at t = {run.t[1]:.6g}: no step"
+    assert np.isinf(seen.energy.half_width).all()
+
+
+def test_a_run_that_left_the_domain_of_its_law_decides_nothing():
+    """A coarse step carries the pair over the pole of ψ = k s²/(r − s) at r."""
+    law = LinkKeeping(((0, 1),), r=1.0, k=1.0, c=0.0)
+    run = fl.simulate(law, [[0.0], [1.0 - 1e-5]], [[0.0], [1e-3]], (0.0, 10.0), rtol=1e-4)
+    assert (run.status == "failed") or failure(run).startswith("the run left the domain of its law before t = ")
+    told = with_doubt([Claim("links", "verified", "smt"), Claim("a", "verified", "symbolic")], Observed.of(run))
+    assert [claim.status for claim in told] == ["inconclusive", "verified"]
+
+
+def test_a_claim_of_both_runs_is_as_sure_as_they_agree():
+    seen = observed(SPRING, *START, rtol=1e-4)
+
+    def claimed(*margins):
+        by_run = dict(zip((id(seen.run), id(seen.other)), margins, strict=True))
+        status = {True: "verified", False: "refuted"}
+        return by_both_runs(seen, lambda run: Claim("i", status[by_run[id(run)] > 0], margin=by_run[id(run)], error=0.1))
+
+    assert (claimed(1.0, 0.9).status, claimed(1.0, 0.9).error) == ("verified", pytest.approx(0.3))
+    assert claimed(1.0, 0.4).status == "inconclusive"
+    assert claimed(1.0, -1.0).status == "inconclusive"
+    assert claimed(-1.0, -1.0).status == "refuted"
+
+
+def test_a_window_keeps_what_is_known_and_begins_inexactly():
+    seen = observed(SPRING, *START, rtol=1e-5)
+    part = seen.window(2.0, 6.0)
+    assert seen.begins_exactly
+    assert not part.begins_exactly
+    assert part.shape_error[-1] == pytest.approx(seen.shape_error[-1], rel=1e-12)
+    assert part.shape_error[0].min() > 0.0
