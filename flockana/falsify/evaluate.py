@@ -15,6 +15,7 @@ from flockana.falsify.grade import FAILED, grade
 from flockana.falsify.space import Space
 from flockana.scenarios import Scenario
 from flockana.theorems import Claim, Theorem, Tolerances, Verdict, theorem, verify
+from flockana.theorems.claims import vacuous
 from flockana.theorems.leads import squash
 from flockana.theorems.theorem import Lead, unmet
 
@@ -102,7 +103,7 @@ class Problem:
     def graded(self, run: Trajectory, verdict: Verdict) -> Evaluation:
         """Grade a verdict."""
         if self.claim is not None and all(claim.name != self.claim for claim in verdict.claims):
-            verdict = replace(verdict, claims=(*verdict.claims, Claim(self.claim, "vacuous", detail="not judged")))
+            verdict = replace(verdict, claims=(*verdict.claims, vacuous(self.claim, "not judged")))
         chosen = [claim for claim in verdict.claims if self.claim in (None, claim.name)]
         grades = {claim.name: self._grade(run, verdict, claim) for claim in chosen}
         worst = min(grades, key=grades.__getitem__)
@@ -113,9 +114,8 @@ class Problem:
         lead = self.surrogate or checked.leads.get(claim.name)
         if claim.status == "vacuous" and unmet(verdict.hypotheses):
             lead = None  # unmet hypotheses lead back; and the law may not have what a surrogate measures
-        aid = 0.0 if lead is None else min(max(float(lead(run, claim)), 0.0), 1.0)
-        unit = self.scales.get(claim.name, 1.0)
-        value = grade(claim, verdict.hypotheses, scale=unit, lead=aid, limit=claim.name in checked.limits)
+        aid = None if lead is None else min(max(float(lead(run, claim)), 0.0), 1.0)
+        value = grade(claim, verdict.hypotheses, scale=self.scales.get(claim.name, 1.0), lead=aid)
         if self.claim is None and claim.status == "inconclusive":
             return max(value, 0.0)  # its margin does not decide it, so a lower one must not draw the search
         return value
