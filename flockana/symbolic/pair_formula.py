@@ -175,43 +175,60 @@ class Cut:
     @cached_property
     def marks(self) -> tuple[float, ...]:
         """0, the distances at which pieces meet, rising, and the end."""
-        both = sp.Tuple(self.formula.main, self.formula.adjacency)
-        meet = {self._meeting(condition) for condition in _conditions(both)}
-        return (0.0, *sorted(x for x in meet if 0.0 < x < self.end), self.end)
+        return (0.0, *self._meetings, self.end)
 
-    def _meeting(self, condition: Any) -> float:
+    @cached_property
+    def written(self) -> tuple[sp.Expr, ...]:
+        """The marks as they are written in parameters; the end as a number."""
+        return (sp.Integer(0), *self._meetings.values(), sp.Float(self.end))
+
+    @cached_property
+    def _meetings(self) -> dict[float, sp.Expr]:
+        both = sp.Tuple(self.formula.main, self.formula.adjacency)
+        meet = {float(self.value(at)): at for at in map(self._meeting, _conditions(both))}
+        return {x: meet[x] for x in sorted(meet) if 0.0 < x < self.end}
+
+    def _meeting(self, condition: Any) -> sp.Expr:
         """Where a condition begins or ceases to hold."""
         y, gap = self.formula.distance, condition.lhs - condition.rhs
         steep = sp.diff(gap, y)
         if gap.has(sp.Piecewise) or y in steep.free_symbols:
             raise ArgumentError(f"the condition {condition} is not linear in {y}: expected one such as {y} < r/2")
         if y not in gap.free_symbols:
-            return -1.0  # it holds everywhere, or nowhere
-        return float(self.value(-gap.subs(y, 0) / steep))
+            return sp.Integer(-1)  # it holds everywhere, or nowhere
+        return -gap.subs(y, 0) / steep
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
         """What follows from the formula between each two marks."""
         return tuple(
             derive_piece(
-                self._chosen(self.formula.main, 0.5 * (left + right)),
-                self._chosen(self.formula.adjacency, 0.5 * (left + right)),
+                self.chosen(self.formula.main, 0.5 * (left + right)),
+                self.chosen(self.formula.adjacency, 0.5 * (left + right)),
                 self.formula.distance,
                 forces=self.formula.forces,
             )
             for left, right in zip(self.marks[:-1], self.marks[1:], strict=True)
         )
 
-    def _chosen(self, expression: sp.Expr, at: float) -> sp.Expr:
-        """An expression without its pieces, those chosen that hold at a distance."""
+    def chosen(self, expression: sp.Expr, at: float) -> sp.Expr:
+        """An expression without its pieces, those chosen that hold at a distance.
+
+        Parameters
+        ----------
+        expression : sympy.Expr
+            Of the distance.
+        at : float
+            In the distance of the formula.
+        """
         if isinstance(expression, sp.Piecewise):
             for value, condition in expression.args:
                 if condition == sp.true or (condition != sp.false and self._holds(condition, at)):
-                    return self._chosen(value, at)
+                    return self.chosen(value, at)
             raise ArgumentError(f"no piece holds at {self.formula.distance} = {at:g}: end Piecewise with (0, True)")
         if not expression.args or not expression.has(sp.Piecewise):
             return expression
-        return expression.func(*(self._chosen(each, at) for each in expression.args))
+        return expression.func(*(self.chosen(each, at) for each in expression.args))
 
     def _holds(self, condition: Any, at: float) -> bool:
         sign = self.value((condition.lhs - condition.rhs).subs(self.formula.distance, sp.Rational(at)))
