@@ -87,3 +87,8 @@ class PairFacts:
     least: tuple[float, float]
     contact: tuple[float, float]
     least_weight: tuple[float, float]
+
+    @property
+    def faults(self) -> tuple[str, ...]:
+        """What the pair law certainly lacks of `smooth`, each in words."""
+        return tuple(self.smooth.detail.split("; ")) if self.smooth.status == "unmet" else ()

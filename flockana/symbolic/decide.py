@@ -24,7 +24,8 @@ _FEW = 4  # points that stay open
 _SEEN = 1e-6  # of the scale: a change within less than 1e-15 of the interval that counts as a jump
 _STRICT = 12  # halvings, for a sign that is not certainly strict
 _ORDERS = 8  # of the first derivative that is not 0
-_CLOSED = 1e-13  # of the scale: to which a least value is known
+_CLOSED, _CLOSED_OF_SCALE = 1e-13, 1e-15  # to which a least value is known, relative to it or to the scale
+_NARROWEST = 80  # halvings of an interval on which a least value is sought
 _BITS = 96
 Place = Callable[[float], float]
 
@@ -278,7 +279,7 @@ def least_on(region: Region, scale: float) -> Least:
     region : Region
         Formula and interval.
     scale : float
-        Of its values: the width that is enough is 1e-13 of it.
+        Of its values: the width that is enough is 1e-15 of it, or 1e-13 of the value.
     """
     of, number = region.enclosed, count()
     best, where, looked = arb.pos_inf(), region.left, 0
@@ -296,7 +297,9 @@ def least_on(region: Region, scale: float) -> Least:
         while looked < MOST:
             looked += 1
             low, _, left, right = heap[0]
-            if low >= down(best) - _CLOSED * max(scale, abs(down(best))):
+            if low >= down(best) - max(_CLOSED_OF_SCALE * scale, _CLOSED * abs(down(best))):
+                break
+            if (right - left) * 2**_NARROWEST < region.right - region.left:
                 break
             heapq.heappop(heap)
             middle = (left + right) / 2

@@ -17,7 +17,9 @@ from flockana.theorems.claims import judged
 from flockana.theorems.classics.leader_frame import as_the_leader_sees, comes_to_rest, constant_velocity
 from flockana.theorems.composed.cohesion import stays_within
 from flockana.theorems.hypotheses import condition, law_is_or_composed, positive
+from flockana.theorems.meeting import least_is_known, meeting
 from flockana.theorems.olfati_saber.collisions import below_multiple, no_collision
+from flockana.theorems.olfati_saber.energy import pairs_dissipate
 from flockana.theorems.rounding import EPS, energy_error
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
 
@@ -92,12 +94,14 @@ def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
     if unmet(needs):
         return needs, []
     needs = [*needs, positive(run, c1_alpha="c1α", c2_alpha="c2α", c1_gamma="c1", c2_gamma="c2")]
+    needs += [*pairs_dissipate(run), *least_is_known(run)]
     if unmet(needs):
         return needs, []
     seen = as_the_leader_sees(run)
     energy = float(seen.energy()[0])
     error = float(energy_error(seen.law, seen.q[:1], seen.p[:1], seen.energy()[:1])[0])
-    below = below_multiple(energy, error, run.law.gains.c1_alpha * run.law.alpha.c_star)
+    pairs = meeting(seen)
+    below = below_multiple(energy - pairs.floor, error, pairs.c_star)
     return [*needs, below], [
         _centre(seen, run.law.gains, needs),
         comes_to_rest(seen, np.ones(run.n, dtype=bool), needs, tolerances, "velocities"),
