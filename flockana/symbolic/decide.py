@@ -281,7 +281,7 @@ def least_on(region: Region, scale: float) -> Least:
     scale : float
         Of its values: the width that is enough is 1e-15 of it, or 1e-13 of the value.
     """
-    of, number = region.enclosed, count()
+    of, number = region.enclosed, count(0, -1)  # of two that are as low the later first
     best, where, looked = arb.pos_inf(), region.left, 0
     heap: list[tuple[float, int, fmpq, fmpq]] = []
 
@@ -294,7 +294,7 @@ def least_on(region: Region, scale: float) -> Least:
 
     with precision(_BITS, 3):
         take(region.left, region.right)
-        while looked < MOST:
+        while looked < MOST // 2:
             looked += 1
             low, _, left, right = heap[0]
             if low >= down(best) - max(_CLOSED_OF_SCALE * scale, _CLOSED * abs(down(best))):

@@ -15,7 +15,7 @@ import sympy as sp
 from flint import arb, arb_series, ctx, fmpq
 
 POSITIVE, NONNEGATIVE, OPEN = 2, 1, 0  # what is certain about a sign
-_LARGEST = 2**60  # argument of an exponential
+_LARGEST = 2**120  # argument of an exponential
 
 
 @contextmanager
@@ -104,7 +104,7 @@ class Enclosed:
                 value = operation(x, *(each for each, _ in given))
                 if centre is not None and (node.is_Add or node.is_Mul):
                     value = _tightened(value, centre[k][0], x - middle)
-                if not all(each.is_finite() for each in _coefficients(value)):
+                if not all(map(arb.is_finite, value.coeffs())):
                     return None
                 values.append((value, _sign(node, value, [sign for _, sign in given])))
                 if not varies:
@@ -148,7 +148,8 @@ def _operation(node: sp.Expr, variable: sp.Symbol) -> Callable[..., Any]:
     if node.is_Mul:
         return lambda x, *factors: _product(factors)
     if node.is_Pow and node.exp.is_Rational:
-        return lambda x, base: _power(base, node.exp)
+        whole, root, up = int(abs(node.exp.p)), int(node.exp.q), bool(node.exp.p > 0)
+        return lambda x, base: _power(base, whole, root, up=up)
     if node.is_Pow:
         return lambda x, base, exponent: _exp(exponent * _positive(base).log())
     if (of := _FUNCTIONS.get(node.func)) is not None:
@@ -192,16 +193,11 @@ def _positive(series: Any) -> Any:
     return series
 
 
-def _power(base: Any, exponent: sp.Rational) -> Any:
-    """A plain power: whole ones of any base, others of a positive one."""
-    whole, of = int(abs(exponent.p)), base
-    if exponent.q != 1:
-        if exponent.q == 2:
-            of = _positive(base).sqrt()
-        else:
-            return (_positive(base).log() * arb(rational(exponent))).exp()
+def _power(base: Any, whole: int, root: int = 1, *, up: bool = True) -> Any:
+    """A plain power, its inverse unless `up`: whole ones of any base, roots of a positive one."""
+    of = base if root == 1 else _positive(base).sqrt() if root == 2 else (_positive(base).log() / root).exp()
     value = _with_value(_multiplied(of, whole), _power_range(_value(of), whole)) if whole > 1 else of
-    if exponent > 0:
+    if up:
         return value
     if not abs(_value(value)) > 0:
         raise Undefined
@@ -303,7 +299,7 @@ _FUNCTIONS: dict[Any, Callable[[Any], Any]] = {
     sp.sinh: lambda x: _hyperbolic(x, odd=True),
     sp.cosh: lambda x: _hyperbolic(x, odd=False),
     sp.tanh: _tanh,
-    sp.asinh: lambda x: _integrated(_value(x).asinh(), _power(1 + _power(x, sp.Integer(2)), -sp.S.Half), x),
+    sp.asinh: lambda x: _integrated(_value(x).asinh(), _power(1 + _power(x, 2), 1, 2, up=False), x),
     sp.acosh: _acosh,
     sp.atanh: lambda x: _integrated(_value(_inside(x)).atanh(), 1 / (1 - x * x), x),
 }

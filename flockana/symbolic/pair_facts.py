@@ -12,7 +12,7 @@ from typing import Any
 import sympy as sp
 from flint import arb, fmpq
 
-from flockana.base.facts import Fact, PairFacts, together
+from flockana.base.facts import Fact, FactStatus, PairFacts, together
 from flockana.symbolic.decide import Least, Region, down, is_zero, least_on, sign_on, smooth_on, up
 from flockana.symbolic.enclosed import Enclosed, interval, precision, rational
 from flockana.symbolic.germs import Germ, germ
@@ -20,7 +20,7 @@ from flockana.symbolic.integrals import integral_least
 from flockana.symbolic.pair_formula import EPS, Z, Cut
 
 _SMALL = 1e-9  # of the scale: a jump below it may be rounding of the parameters
-_NEAR = (0, 2, 4, 8, 16, 32, 64, 128)  # halvings of the range: how far a germ at contact may reach
+_NEAR = (0, 2, 4, 8, 16, 32, 64)  # halvings of the range: how far a germ at contact may reach
 _CLOSE = 400  # the same, where the limit at contact is read
 _BITS = 200
 _PROOF = "every operation of the formula is analytic between the cuts, and both sides agree at them"
@@ -211,20 +211,35 @@ class _Decided:
                 found.append((fact, fact))
                 region = region._replace(left=width)
             found.append(sign_on(region, "the adjacency"))
+            found += [(Fact("met"), fact) for fact in self._zeros(region)]
         return together([one for one, _ in found], "its sign is enclosed at every distance"), together(
             [two for _, two in found], "its sign is enclosed at every distance below the range"
         )
+
+    def _zeros(self, region: Region) -> Iterator[Fact]:
+        """Ends of a region, other than contact and the range, at which the adjacency vanishes or may."""
+        for end, at in zip(region.ends, (region.left, region.right), strict=True):
+            zero = is_zero(region.expression.subs(self._y, end), self._numbers)
+            if end not in (self._marks[0], self._marks[-1]) and zero is not False:
+                place = self.place(float(arb(at)))
+                status: FactStatus = "unmet" if zero else "assumed"
+                yield Fact(status, f"the adjacency vanishes at s = {place:.6g}", (place, place))
 
     def _sign_near(self, region: Region) -> tuple[Fact, fmpq] | None:
         """The sign of a formula that has no value at contact, beside it."""
         for halving in _NEAR:
             width = region.right / 2**halving
             with precision(_BITS):
-                found = germ(region.exact, self._y, width)
+                found, falls = (germ(each, self._y, width) for each in (region.exact, sp.diff(region.exact, self._y)))
+                end = region.enclosed.series(arb(width))
+            far = self.place(float(arb(width)))
+            fault = Fact("unmet", "the adjacency is negative near contact", (0.0, far))
             if found is not None and not found.factor.contains(0):
-                far = self.place(float(arb(width)))
-                fault = Fact("unmet", "the adjacency is negative near contact", (0.0, far))
                 return Fact("met") if found.factor > 0 else fault, width
+            if falls is None or end is None or falls.factor.contains(0) or end[0].contains(0):
+                continue
+            if (falls.factor < 0) == (end[0] > 0):  # it rises to contact from above 0, or falls to it from below
+                return Fact("met") if end[0] > 0 else fault, width
         return None
 
     def _limit(self, formula: sp.Expr) -> arb | None:
@@ -288,7 +303,12 @@ class _Decided:
             if limit is None:
                 continue
             return limit, at_width if falls.factor < 0 else Least(*limit, 0.0), width
-        return (-inf, inf), Least(-inf, inf, 0.0), region.right / 2 ** _NEAR[-1]
+        if own is not None and (limit := _bounds(own)) is not None:  # of the narrowest, whose slope has no sign known
+            with precision(_BITS):
+                power = (arb(width).log() * arb(fmpq(own.power.numerator, own.power.denominator))).exp()
+                low = down(own.factor * arb(0).union(power) if own.power > 0 else own.factor)
+            return limit, Least(min(low, limit[0]), limit[1], 0.0), width
+        return (-inf, inf), Least(-inf, inf, 0.0), width
 
     def _close(self, formula: sp.Expr, slope: Germ) -> tuple[float, float] | None:
         """The limit at contact, from a value close to it and what the slope adds at most."""
