@@ -14,12 +14,13 @@ from typing import Any
 import numpy as np
 
 from flockana.base.errors import ArgumentError, FlockanaError
+from flockana.base.seals import is_sealed
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.tolerance import FINEST
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.switched import SwitchedLaw
-from flockana.theorems.map_steps import as_simulated, ensure_steps_of_map
+from flockana.theorems.map_steps import ensure_steps_of_map
 from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, judge
 
 TIGHTER = 1e-2  # the second run's tolerances over the first's
@@ -154,14 +155,14 @@ def _at_switches(law: SwitchedLaw, run: Trajectory) -> list[bool]:
 def _suspicious_intervals(run: Trajectory) -> list[int]:
     """Intervals to integrate again: evenly spread ones, and those whose ends lie farthest from a smooth path.
 
-    A run whose samples have the digest that `simulate` noted was not edited: of it the evenly spread ones are enough to
+    A run that carries the seal of `simulate` was not edited: of it the evenly spread ones are enough to
     show a law that is plainly another function each time.
     """
     count = len(run.t) - 1
     if count == 0:
         return []
     spread = np.linspace(0, count - 1, INTERVALS)
-    if as_simulated(run):
+    if is_sealed(run):
         return sorted({int(k) for k in spread})
     h = np.diff(run.t)[:, None, None]
     (q0, q1), (p0, p1), (u0, u1) = ((x[:-1], x[1:]) for x in (run.q, run.p, run.u))

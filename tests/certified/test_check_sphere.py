@@ -12,7 +12,7 @@ from flint import arb, arb_series
 
 from flockana import Algorithm3, BetaInteraction, Gains, LinearTarget, Sphere, StaticTarget, enclose
 from flockana.base.errors import ArgumentError
-from flockana.base.seals import sealed
+from flockana.base.seals import with_digest
 from flockana.certified.check import RejectedError, check_data
 from flockana.certified.check_tube import Run, capped
 from flockana.certified.tube_certificate import tube_certificate
@@ -46,7 +46,7 @@ def altered(data, *at, change):
 
 
 def resealed(data):
-    return sealed({key: value for key, value in data.items() if key != "digest"})
+    return with_digest({key: value for key, value in data.items() if key != "digest"})
 
 
 def more(value):

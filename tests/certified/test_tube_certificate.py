@@ -13,7 +13,7 @@ from flint import arb, ctx
 
 from flockana import Algorithm1, Algorithm2, Gains, StaticTarget, certify, check_certificate, enclose, find_equilibrium
 from flockana.base.errors import ArgumentError
-from flockana.base.seals import sealed
+from flockana.base.seals import with_digest
 from flockana.certified import check_tube
 from flockana.certified.check import RejectedError, check_data
 from flockana.certified.tube_certificate import tube_certificate, write_tube_certificate
@@ -52,7 +52,7 @@ def with_leaf(data, at, change):
 
 
 def resealed(data):
-    return sealed({key: value for key, value in data.items() if key != "digest"})
+    return with_digest({key: value for key, value in data.items() if key != "digest"})
 
 
 def test_it_holds_and_says_what_was_verified(data, tmp_path, tube):
