@@ -26,6 +26,7 @@ from flockana.base.errors import ArgumentError, FileError, told
 
 SEAL = "digest"  # the key of a file's digest
 _ATTRIBUTE = "_seal"  # no field: `dataclasses.replace` leaves it out
+_SHOWN = 120  # characters of a value in a message
 _NUMBERS = {"b": "|b1", "i": "<i8", "u": "<u8", "f": "<f8"}  # however wide they are, and wherever
 
 _Evidence = TypeVar("_Evidence")
@@ -141,7 +142,9 @@ def ensure_sealed(name: str, evidence: Any, source: str, remedy: str) -> None:
         if not other:
             return
         fault = f"was changed by hand since ({', '.join(other)})"
-    raise ArgumentError(f"{name} = {told(evidence)} {fault}: expected {source}; {remedy}")
+    text = told(evidence)
+    shown = text if len(text) <= _SHOWN else f"<{type(evidence).__name__}>"
+    raise ArgumentError(f"{name} = {shown} {fault}: expected {source}; {remedy}")
 
 
 def _feed(total: Any, value: Any, within: tuple[int, ...]) -> None:

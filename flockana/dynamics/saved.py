@@ -1,9 +1,9 @@
 """Runs as labelled data and as netCDF-4 files, and back.
 
 A file carries the seal of the run in it, a checksum of each of its fields, and so does the dataset of `to_xarray`: one
-without is refused. What was made by hand is marked as a recording, and read as one. After the netCDF comes one line with
-the digest of all bytes before it, which HDF5 does not read. That line is looked at first, so that HDF5 never sees damaged
-bytes; the seal holds where another program wrote the file anew, too.
+without is refused. What was made by hand is marked as a recording, and read as one. After the netCDF comes one line
+with the digest of all bytes before it, which HDF5 does not read. That line is looked at first, so that HDF5 never sees
+damaged bytes; the seal holds where another program wrote the file anew, too.
 """
 
 from __future__ import annotations

@@ -54,7 +54,7 @@ def _frozen_series(name: str, values: Any, samples: int) -> FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class Trajectory:
-    """A sampled run: of `simulate`, or, made by hand, a recording, of which there are metrics and plots but no verdicts.
+    """A sampled run of `simulate`; made by hand, a recording, which has metrics and plots but no verdicts.
 
     Parameters
     ----------

@@ -191,7 +191,7 @@ def test_what_is_no_certificate_is_no_certificate(tmp_path):
         check_data(resealed({**small(), "kind": "wish"}))
     data = small()
     del data["bonds"]
-    with pytest.raises(RejectedError, match="incomplete or out of form: KeyError"):
+    with pytest.raises(RejectedError, match="it lacks 'bonds': expected format, kind,"):
         check_data(resealed(data))
 
 

@@ -139,8 +139,11 @@ def test_any_one_number_that_is_altered_is_rejected(data):
 
 
 def test_a_sphere_left_out_or_turned_is_rejected(data):
+    bare = altered(data, "law", "spheres", change=lambda spheres: [])
+    with pytest.raises(RejectedError, match=r"clearance = .*: expected null"):
+        check_data(resealed(bare))
     with pytest.raises(RejectedError, match="the error may exceed"):
-        check_data(resealed(altered(data, "law", "spheres", change=lambda spheres: [])))
+        check_data(resealed(bare | {"clearance": None}))
     with pytest.raises(RejectedError, match="another dimension"):
         check_data(resealed(altered(data, "law", "spheres", 0, "centre", change=lambda centre: centre[:1])))
     with pytest.raises(RejectedError, match="another dimension"):
