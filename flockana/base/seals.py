@@ -22,11 +22,10 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.errors import ArgumentError, FileError, told
+from flockana.base.errors import ArgumentError, FileError
 
 SEAL = "digest"  # the key of a file's digest
 _ATTRIBUTE = "_seal"  # no field: `dataclasses.replace` leaves it out
-_SHOWN = 120  # characters of a value in a message
 _NUMBERS = {"b": "|b1", "i": "<i8", "u": "<u8", "f": "<f8"}  # however wide they are, and wherever
 
 _Evidence = TypeVar("_Evidence")
@@ -128,11 +127,10 @@ def ensure_sealed(name: str, evidence: Any, source: str, remedy: str) -> None:
 
     Examples
     --------
-    >>> from fractions import Fraction
     >>> from flockana.base.scales import Scales
-    >>> ensure_sealed("scales", Scales(1.0, 2.0), "as its law has them", "take law.scales")
+    >>> ensure_sealed("scales", Scales(1.0, 2.0), "those of a law", "take law.scales")
     Traceback (most recent call last):
-    flockana.base.errors.ArgumentError: scales = Scales(length=1.0, time=2.0) was made or changed by hand: ...
+    flockana.base.errors.ArgumentError: scales: this Scales was made or changed by hand: expected those of a law; take ...
     """
     seal = vars(evidence).get(_ATTRIBUTE)
     if seal is None:
@@ -142,9 +140,7 @@ def ensure_sealed(name: str, evidence: Any, source: str, remedy: str) -> None:
         if not other:
             return
         fault = f"was changed by hand since ({', '.join(other)})"
-    text = told(evidence)
-    shown = text if len(text) <= _SHOWN else f"<{type(evidence).__name__}>"
-    raise ArgumentError(f"{name} = {shown} {fault}: expected {source}; {remedy}")
+    raise ArgumentError(f"{name}: this {type(evidence).__name__} {fault}: expected {source}; {remedy}")
 
 
 def _feed(total: Any, value: Any, within: tuple[int, ...]) -> None:
@@ -178,7 +174,8 @@ def _feed(total: Any, value: Any, within: tuple[int, ...]) -> None:
         parts = {"function": value.func, "arguments": value.args, "keywords": value.keywords}
     elif kind.__module__.partition(".")[0] == "flint":
         parts = {"entries": value.entries()} if hasattr(value, "entries") else None
-        text += "" if parts else value.repr()  # a ball to the bit
+        ball = hasattr(value, "rad") and value.is_finite()  # to the bit
+        text += str((value.mid().man_exp(), value.rad().man_exp())) if ball else "" if parts else value.repr()
     elif isinstance(value, Mapping):
         parts = value
     elif isinstance(value, Set):

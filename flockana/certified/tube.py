@@ -39,6 +39,9 @@ class BasinLike(Protocol):
     def proof(self) -> Any:
         """Balls that hold that equilibrium, and the structure that it is one of."""
 
+    def ensure_whole(self) -> None:
+        """Raise unless it is as it was proved."""
+
     def holds(self, q: Any, p: Any) -> bool:
         """Whether every state in a box certainly lies in it."""
 
@@ -274,6 +277,7 @@ class Tube:
             If either was made or changed by hand.
         """
         self.ensure_whole()
+        basin.ensure_whole()
         return bool(basin.law == self.law and basin.holds(*self.state(-1)))
 
 

@@ -21,6 +21,7 @@ class Weight(ABC):
     """A weight a(s) of the distance; a subclass is a frozen dataclass with `kernels`, `par` and, if finite, `range`."""
 
     kernels: ClassVar[WeightKernels]
+    derives: ClassVar[Mapping[str, tuple[str, ...]]] = {"kernels": ("__call__",)}
 
     @property
     @abstractmethod

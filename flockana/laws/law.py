@@ -72,6 +72,7 @@ class LawOfMotion(ABC):  # noqa: B024  # each of its two kinds has an abstract m
     """
 
     references: ClassVar[tuple[str, ...]] = ()
+    derives: ClassVar[Mapping[str, tuple[str, ...]]] = {}  # public methods by the one that integrators ask for
 
     if TYPE_CHECKING:
         pair: PairInteraction | None
@@ -213,6 +214,11 @@ class Law(LawOfMotion):
     `flow` and `hamiltonian` are the unchecked inner loop of the integrators; `acceleration`, `energy` and
     `energy_rate` are the validated public face of the same functions.
     """
+
+    derives: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "flow": ("acceleration", "energy_rate"),
+        "hamiltonian": ("energy",),
+    }
 
     @property
     def continuous(self) -> Law:
