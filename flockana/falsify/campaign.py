@@ -12,6 +12,7 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_count, ensure_seed
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.progress import progress_bar
+from flockana.base.seals import sealed
 from flockana.falsify.evaluate import Evaluation, Problem, units
 from flockana.falsify.falsification import Ending, Falsification
 from flockana.falsify.grade import FAILED
@@ -130,7 +131,7 @@ def falsify(
     if record.best.found and not deepen:
         ended = "found"
     case = begin if record.point is None else space.case(record.point)
-    return Falsification(
+    found = Falsification(
         theorem=item.id,
         claim=record.best.claim or claim or "",
         case=case,
@@ -143,6 +144,7 @@ def falsify(
         ended=ended,
         message=record.message,
     )
+    return sealed(found)
 
 
 def _ensure_kinds(theorem: Any, scenario: Any, tolerances: Any, surrogate: Any) -> None:

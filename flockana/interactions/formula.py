@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -66,6 +67,8 @@ class FormulaInteraction(PairInteraction):
     d: float = 1.0
     parameters: tuple[tuple[str, float], ...] = ()
     powers: tuple[tuple[str, int, int], ...] = ()
+
+    derives: ClassVar[Mapping[str, tuple[str, ...]]] = {"kernels": ("force", "stress", "weight", "energy_at")}
 
     def __post_init__(self) -> None:
         if bool(self.potential) == bool(self.force_formula):

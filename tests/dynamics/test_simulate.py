@@ -221,13 +221,19 @@ def test_a_law_broken_from_the_start_is_named(method, bad):
 @pytest.mark.parametrize(
     ("found", "energy", "message"),
     [
-        (None, 1.0, "Returns gives None at the start, t = 0: expected (u, dH/dt)"),
-        (np.zeros((1, 2)), 1.0, "Returns gives array([[0., 0.]]) at the start, t = 0: expected (u, dH/dt)"),
-        ((None, 0.0), 1.0, "gives u as object of shape ()"),
-        ((np.zeros((2, 1)), 0.0), 1.0, "gives u as float64 of shape (2, 1) at the start, t = 0: expected real numbers"),
+        (None, 1.0, "Returns gives None at t = 0: expected (u, dH/dt)"),
+        (np.zeros((1, 2)), 1.0, "Returns gives array([[0., 0.]]) at t = 0: expected (u, dH/dt)"),
+        ((None, 0.0), 1.0, "gives u as NoneType at t = 0: expected an array of real numbers of shape (1, 2)"),
+        (([[0.0, 0.0]], 0.0), 1.0, "gives u as list at t = 0: expected an array of real numbers"),
+        ([np.zeros((1, 2)), 0.0], 1.0, "gives [array([[0., 0.]]), 0.0] at t = 0: expected (u, dH/dt)"),
+        (
+            (np.zeros((2, 1)), 0.0),
+            1.0,
+            "gives u as float64 of shape (2, 1) at t = 0: expected an array of real numbers",
+        ),
         ((np.zeros((1, 2), complex), 0.0), 1.0, "gives u as complex128 of shape (1, 2)"),
-        ((np.zeros((1, 2)), None), 1.0, "gives dH/dt = None at the start"),
-        ((np.zeros((1, 2)), 1j), 1.0, "gives dH/dt = 1j at the start"),
+        ((np.zeros((1, 2)), None), 1.0, "gives dH/dt = None at t = 0"),
+        ((np.zeros((1, 2)), 1j), 1.0, "gives dH/dt = 1j at t = 0"),
         ((np.zeros((1, 2)), np.zeros(2)), 1.0, "gives dH/dt = array([0., 0.])"),
         ((np.zeros((1, 2)), np.nan), 1.0, "gives H = 1, but dH/dt = nan at the start, t = 0: expected the rate of"),
         ((np.zeros((1, 2)), np.inf), 1.0, "gives H = 1, but dH/dt = inf"),
@@ -239,6 +245,13 @@ def test_what_is_no_law_of_motion_is_named_before_the_run(found, energy, message
     for method in ("DOP853", "RK4"):
         with pytest.raises(ArgumentError, match=re.escape(message)):
             simulate(Returns(found, energy), [[0.0, 0.0]], [[0.0, 0.0]], (0.0, 1.0), **kwargs(method))
+
+
+@pytest.mark.parametrize("found", [None, [[0.0, 0.0]], (None, 0.0), ([[0.0, 0.0]], 0.0), (np.zeros((1, 2)), None)])
+def test_the_public_face_of_a_law_names_it_too(found):
+    for ask in (Returns(found).acceleration, Returns(found).energy_rate):
+        with pytest.raises(ArgumentError, match=r"^Returns gives .* at t = 2: expected"):
+            ask(2.0, [[0.0, 0.0]], [[0.0, 0.0]])
 
 
 def test_what_is_no_map_is_named_before_the_run():
