@@ -20,7 +20,7 @@ from flockana.dynamics.sample import Sample, Samples, Tally, finite, has_energy
 from flockana.dynamics.stepping import ONE_STEP, Balance, Check, Flow, Frame, Meetings, Stepper
 from flockana.dynamics.switches import Switches
 from flockana.dynamics.threads import ensure_one_thread
-from flockana.dynamics.tolerance import Floor
+from flockana.dynamics.tolerance import Floors
 from flockana.kernels.advance import TOO_SMALL
 from flockana.laws.law import Law
 from flockana.laws.switched import SwitchedLaw
@@ -35,7 +35,7 @@ def adaptive(
     t_span: tuple[float, float],
     method: str,
     rtol: float,
-    floor: Floor,
+    floor: Floors,
     keep: FloatArray | None,
     tally: Tally,
     threads: int = 1,
@@ -63,7 +63,7 @@ def _by_scipy(
     t_span: tuple[float, float],
     method: str,
     rtol: float,
-    floor: Floor,
+    floor: Floors,
     keep: FloatArray | None,
     tally: Tally,
     switches: Switches | None,
@@ -146,7 +146,7 @@ def _solver(
     t_span: tuple[float, float],
     method: str,
     rtol: float,
-    floor: Floor,
+    floor: Floors,
 ) -> Stepper:
     """One of scipy's solvers at the start of a run."""
     sizes = (frame.size, frame.size, int(frame.energetic))
@@ -154,12 +154,12 @@ def _solver(
     return Stepper(method, frame, flow, t_span[0], frame.start(q0, p0), t_span[1], rtol=rtol, atol=atol)
 
 
-def _checks(law: Law, frame: Frame, method: str, rtol: float, floor: Floor) -> tuple[Check, ...]:
+def _checks(law: Law, frame: Frame, method: str, rtol: float, floor: Floors) -> tuple[Check, ...]:
     """What every step of a law without jumps must stand up to."""
     encounters = Encounters.of(law, frame.shape[0])
     checks: list[Check] = [Meetings(encounters)] if encounters.any else []
     if frame.energetic and method in ONE_STEP:
-        checks.append(Balance(law, rtol, floor.energy))
+        checks.append(Balance(law, rtol, floor.work))
     return tuple(checks)
 
 

@@ -18,7 +18,7 @@ from flockana.dynamics.encounters import Encounters
 from flockana.dynamics.sample import Sample, Samples, Tally
 from flockana.dynamics.stepping import BALANCED, ONE_STEP, Frame
 from flockana.dynamics.threads import threads_of_numba
-from flockana.dynamics.tolerance import Floor
+from flockana.dynamics.tolerance import Floors
 from flockana.kernels.advance import CROWDED, RUNNING, advance
 from flockana.kernels.bodies import no_guard
 from flockana.kernels.sweep import BLOCK
@@ -30,14 +30,14 @@ from flockana.laws.terms.term import Compiled
 METHODS = ("DOP853", "RK45", "RK23", "RK4")  # that there are compiled
 _STEPS, _NUMBERS = 512, 6_000_000  # in one call, at most: steps, and numbers kept of them
 _UNLISTED = "scipy-DOP853"  # which looks at pairs in blocks
-EXACT = Floor(0.0, 0.0, 0.0)
+EXACT = Floors(0.0, 0.0, 0.0)
 
 
 class Allowed(NamedTuple):
     """Relative tolerance, absolute ones, and (share of the energy, energy) that a step's balance may be off by."""
 
     rtol: float
-    floor: Floor
+    floor: Floors
     balance: tuple[float, float]
 
 
@@ -145,7 +145,7 @@ def engine_of(
     t0: float,
     method: str,
     rtol: float = 0.0,
-    floor: Floor = EXACT,
+    floor: Floors = EXACT,
     threads: int = 1,
 ) -> Engine | None:
     """The law and the method, compiled; None where one has no such form, or pairs are too many (RK4: no tolerances)."""
@@ -156,7 +156,7 @@ def engine_of(
     bodies = 0 if encounters.bodies is None else len(encounters.bodies.kinds)
     if sum(term.guard is not None for term in form.terms) != bodies:
         return None  # obstacles that no term, or more than one, keeps from being leapt over
-    balance = (BALANCED * rtol, BALANCED * floor.energy) if method in ONE_STEP else (0.0, 0.0)
+    balance = (BALANCED * rtol, BALANCED * floor.work) if method in ONE_STEP else (0.0, 0.0)
     frame = Frame.of(t0, q0, p0, energetic=True)
     engine = Engine(law, form, frame, tableau(method), encounters, Allowed(rtol, floor, balance), threads)
     return engine if engine.fits(q0, p0) else None

@@ -134,6 +134,7 @@ def simulate(
         how = {"rtol": ensure_positive("rtol", rtol), "atol": None if atol is None else ensure_positive("atol", atol)}
         floor = error_floor(law, q0, p0, t_span, **how)
         samples = adaptive(law, q0, p0, t_span, method, how["rtol"], floor, keep, tally, threads)
+        how["floors"] = list(floor)
     started = time.perf_counter()
     kept, between = _collect(samples, t_span, tally, progress, watch)
     counts = {"method": method, "steps": tally.steps, "evaluations": tally.evaluations}

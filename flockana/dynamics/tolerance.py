@@ -16,17 +16,17 @@ _ROUNDINGS = 1.0  # of the largest coordinate, at that tolerance: what a force m
 _COARSER = 0.25  # power of the tolerance by which more is allowed: runs at two tolerances differ, and so tell the error
 
 
-class Floor(NamedTuple):
-    """Errors that are always allowed, whatever the state: of a position, a velocity, and the work."""
+class Floors(NamedTuple):
+    """Absolute errors that a run allows whatever its state: of a coordinate, a velocity, and the energy balance."""
 
-    length: float
+    place: float
     speed: float
-    energy: float
+    work: float
 
 
 def error_floor(
     law: Law, q0: FloatArray, p0: FloatArray, t_span: tuple[float, float], rtol: float, atol: float | None
-) -> Floor:
+) -> Floors:
     """Absolute tolerances: the same number for all, or by default a hundredth of `rtol` times the law's own scales.
 
     A law without scales is measured by the extent of its start and by the duration. Work is measured against the energy
@@ -46,4 +46,12 @@ def error_floor(
     length, speed = max(length, blur * scales.length), max(speed, blur * scales.speed)
     energy = max(energy, blur * len(q0) * scales.energy)
     start = law.hamiltonian(t_span[0], q0, p0)
-    return Floor(length, speed, max(energy, rtol * abs(start)) if np.isfinite(start) else energy)
+    return Floors(length, speed, max(energy, rtol * abs(start)) if np.isfinite(start) else energy)
+
+
+def rounding_floors(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, energies: FloatArray) -> Floors:
+    """Roundings of the largest numbers in a run, and what the rounding of the time makes of its fastest motion."""
+    late, far, fast, hard, much = (float(np.abs(x).max()) if x.size else 0.0 for x in (t, q, p, u, energies))
+    tick = float(np.spacing(late))
+    place, speed, work = (float(np.spacing(x)) for x in (far, fast, much))
+    return Floors(place + tick * fast, speed + tick * hard, work)

@@ -20,6 +20,7 @@ from flockana.base.units import rescale, times
 from flockana.base.vectors import centres, lengths
 from flockana.dynamics import saved
 from flockana.dynamics.between import Between, Course, merged
+from flockana.dynamics.tolerance import Floors, error_floor, rounding_floors
 from flockana.laws.discrete import ensure_law
 from flockana.measures.clearance import Clearance, clearance
 from flockana.measures.measure import Flock, Measure, Series, measures
@@ -152,6 +153,9 @@ class Trajectory:
         q, p, u = self.q * length, self.p * (length / time), self.u * (length / time**2)
         units = {"dt": time, "atol": length}  # an absolute tolerance is in the state's own units: places first
         stats = {key: times(value, units[key]) if key in units else value for key, value in self.stats.items()}
+        if "floors" in stats:
+            factors = length, length / time, (length / time) ** 2
+            stats["floors"] = [value * factor for value, factor in zip(stats["floors"], factors, strict=True)]
         law = rescale(self.law, length=length, time=time)
         between = None if self.between is None else rescale(self.between, length=length, time=time)
         return replace(self, t=self.t * time, q=q, p=p, u=u, law=law, extra=extra, stats=stats, between=between)
@@ -198,6 +202,27 @@ class Trajectory:
         energy, work = self.energy(), self.extra["work"]
         residual: FloatArray = energy - energy[0] - (work - work[0])  # the first may be later than the start
         return residual
+
+    @cached_property
+    def floors(self) -> Floors:
+        """Least absolute error (place, speed, work) that any sample may carry: the tolerance of one step, or rounding.
+
+        An adaptive solver lets every step be wrong by this much whatever the state, so that positions, velocities and
+        the energy balance mean nothing below it. It bounds no error from above: steps add up, and stiff forces at rest
+        were seen to shake a flock by 300 times it. A fixed step and a map have no tolerance: only rounding counts.
+        """
+        energies = [self.extra[name] for name in ("work",) if name in self.extra]
+        if energies:
+            energies.append(self.energy())
+        rounding = rounding_floors(self.t, self.q, self.p, self.u, np.concatenate(energies or [np.empty(0)]))
+        if "rtol" not in self.stats:
+            return rounding
+        kept, span = self.stats.get("floors"), (float(self.t[0]), float(self.t[-1]))
+        if kept is None:  # of a file from before they were
+            allowed = error_floor(self.law, self.q[0], self.p[0], span, self.stats["rtol"], self.stats.get("atol"))
+        else:
+            allowed = Floors(*kept)
+        return Floors(*map(max, allowed, rounding))
 
     def metrics(self) -> xarray.Dataset:
         """C, R, Ẽ, K̃ and their companions, and the law's own `measures`, over time: a Dataset of dimension ``time``."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import pickle
 import re
 
@@ -253,3 +254,31 @@ def test_a_run_travels_after_its_measures_were_taken():
     metrics = run.metrics()
     again = pickle.loads(pickle.dumps(run))
     np.testing.assert_array_equal(again.metrics()["literal_energy"], metrics["literal_energy"])
+
+
+def test_floors_are_what_the_solver_was_allowed():
+    law = fl.compose(pair=fl.AlphaInteraction(), gradient=30, consensus=10, drag=0.1)
+    run = simulate(law, [[0.0, 0.0]], [[1e-13, 0.0]], (0.0, 60.0))
+    place, speed, work = run.floors
+    unit = law.scales
+    assert (place, speed, work) == pytest.approx((1e-10 * unit.length, 1e-10 * unit.speed, 1e-10 * unit.energy))
+    assert np.abs(run.energy()).max() < 1e-9 * work  # a balance of such energies means nothing
+
+
+def test_floors_in_other_units_from_a_file_and_of_a_part(tmp_path):
+    path = tmp_path / "run.nc"
+    assert Trajectory.load(RUN.save(path)).floors == RUN.floors
+    tampered(path, stats=json.dumps({"rtol": 1e-8}))  # of before floors were kept
+    assert Trajectory.load(path).floors == pytest.approx(RUN.floors, rel=1e-9)
+    assert RUN.window(0.5, 1.0).floors == RUN.floors
+    other = RUN.in_units(2.0**20, 2.0**-10).floors
+    assert other == (RUN.floors.place * 2.0**20, RUN.floors.speed * 2.0**30, RUN.floors.work * 2.0**60)
+
+
+def test_floors_without_tolerances_are_roundings():
+    run = simulate(Algorithm1(), [[1e6], [1e6 + 8.0]], [[3.0], [-3.0]], (1e3, 1e3 + 1.0), method="RK4", dt=0.01)
+    assert run.floors.place == np.spacing(1e6) + np.spacing(1e3) * np.abs(run.p).max()
+    assert run.floors.speed == np.spacing(np.abs(run.p).max()) + np.spacing(1e3) * np.abs(run.u).max()
+    assert run.floors.work == np.spacing(max(np.abs(run.energy()).max(), np.abs(run.extra["work"]).max()))
+    parts = {name: getattr(run, name) for name in ("t", "q", "p", "u", "law")}
+    assert Trajectory(**parts).floors == run.floors._replace(work=np.spacing(0.0))
