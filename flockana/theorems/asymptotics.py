@@ -30,7 +30,7 @@ def numerical_noise(run: Trajectory, scale: float) -> float:
     if "rtol" not in run.stats:
         return 0.0
     given = run.stats.get("atol")
-    return _NOISE * float(FLOOR * run.stats["rtol"] * scale if given is None else given)
+    return _NOISE * float(FLOOR * run.stats["rtol"] if given is None else given / run.scales.length) * scale
 
 
 def rest_certificate(run: Trajectory, tolerances: Tolerances) -> Certificate:
