@@ -176,8 +176,8 @@ def _places(snapshot: Snapshot, m: int, path: object) -> FloatArray:
         faces, axes = ", ".join(AXES[k] for k in lost), [AXES[k] for k in wrapped]
         raise ArgumentError(
             f"{path}: the box {known} in {faces}, and {' '.join(axes)} are wrapped into it: expected "
-            f"{' '.join(f'{axis}u' for axis in axes)}, or {' '.join(f'i{AXES[k]}' for k in lost)} beside them; dump them, "
-            "or run LAMMPS with `boundary s s s`"
+            f"{' '.join(f'{axis}u' for axis in axes)}, or {' '.join(f'i{AXES[k]}' for k in lost)} beside them; "
+            "dump them, or run LAMMPS with `boundary s s s`"
         )
     for k in images:
         q[:, wrapped] += columns[f"i{AXES[k]}"][:, None] * snapshot.box.edges[k, wrapped]
