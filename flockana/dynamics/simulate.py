@@ -78,8 +78,8 @@ def simulate(
         that neither the origin nor a common drift matters. The default keeps energy residuals well below 1e-6 of the
         energy in a run; scipy's own 1e-3 is never used.
     atol : float, optional
-        Absolute tolerance, in the state's own units; by default a hundredth of `rtol` times the law's own length for
-        positions, and length over time for velocities.
+        Absolute tolerance of positions, a length; velocities and energies are allowed the same share of the law's own
+        speed and energy. By default a hundredth of `rtol` times the law's own length.
     dt : float, optional
         Step of RK4 (required there, meaningless elsewhere). The last step is shortened to end on time.
     t_eval : array_like, optional

@@ -154,7 +154,7 @@ class Trajectory:
             for name, series in self.extra.items()
         }
         q, p, u = self.q * length, self.p * (length / time), self.u * (length / time**2)
-        units = {"dt": time, "atol": length}  # an absolute tolerance is in the state's own units: places first
+        units = {"dt": time, "atol": length}
         stats = {key: times(value, units[key]) if key in units else value for key, value in self.stats.items()}
         if "floors" in stats:
             factors = length, length / time, (length / time) ** 2
@@ -198,10 +198,13 @@ class Trajectory:
         Raises
         ------
         ArgumentError
-            If the run carries no ``extra["work"]`` (its law has no energy).
+            If the run carries no ``extra["work"]``: its law has no energy, or `simulate` did not make it.
         """
         if "work" not in self.extra:
-            raise ArgumentError("this run has no energy balance: its law has no energy")
+            raise ArgumentError(
+                "this run has no energy balance: it carries no extra['work'], the integral of dH/dt, which simulate "
+                "adds where the law has an energy; energy() gives H alone"
+            )
         energy, work = self.energy(), self.extra["work"]
         residual: FloatArray = energy - energy[0] - (work - work[0])  # the first may be later than the start
         return residual

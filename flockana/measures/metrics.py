@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_points, ensure_positive
-from flockana.base.vectors import centres, lengths
+from flockana.base.vectors import centres, lengths, near_one
 from flockana.kernels.components import labelled, squared_excess, unite
 from flockana.kernels.instants import greatest_distances, least_distances
 from flockana.kernels.neighbours import pair_blocks
@@ -36,13 +36,14 @@ def net_measures(q: Any, d: float, r: float) -> tuple[float, float, float]:
 
 
 def _net_measures(q: FloatArray, d: float, r: float) -> tuple[float, float, float]:
+    q, (d, r), unit = near_one(q, d, r)
     n, known, count, excess = len(q), np.arange(len(q)), 0, 0.0
     for first, second in pair_blocks(q, r):
         unite(known, first, second)
         count, excess = count + first.size, excess + squared_excess(q, first, second, d)
     sizes = np.bincount(labelled(known))
     connectivity = 1.0 if n == 1 else (n - sizes.size) / (n - 1)
-    return connectivity, float(sizes.max()) / n, 2.0 * excess / (2 * count + 1)
+    return connectivity, float(sizes.max()) / n, 2.0 * excess / (2 * count + 1) * unit * unit
 
 
 def connectivity(q: Any, r: float) -> float:
@@ -244,7 +245,8 @@ def coincident_pairs(q: Any, tol: float) -> int:
     3
     """
     q = ensure_points("q", q)
-    return sum(i.size for i, _ in pair_blocks(q, ensure_positive("tol", tol)))
+    q, (tol,), _ = near_one(q, ensure_positive("tol", tol))
+    return sum(i.size for i, _ in pair_blocks(q, tol))
 
 
 def pairs_at_one_place(q: Any) -> int:
@@ -288,7 +290,8 @@ def cohesion_radii(q: FloatArray) -> FloatArray:
     q : ndarray, shape (T, n, m)
         Positions.
     """
-    radii: FloatArray = lengths(_centred(q)).max(axis=1)
+    q, _, unit = near_one(q)
+    radii: FloatArray = lengths(_centred(q)).max(axis=1) * unit
     return radii
 
 
@@ -312,12 +315,13 @@ def min_distances(q: FloatArray) -> FloatArray:
     q : ndarray, shape (T, n, m)
         Positions.
     """
+    q, _, unit = near_one(q)
     if q.shape[1] < _TREE:
-        distances: FloatArray = least_distances(q)
+        distances: FloatArray = least_distances(q) * unit
         return distances
     from scipy.spatial import KDTree
 
-    return np.array([np.asarray(KDTree(x).query(x, k=2)[0])[:, 1].min() for x in q])
+    return unit * np.array([np.asarray(KDTree(x).query(x, k=2)[0])[:, 1].min() for x in q])
 
 
 def diameters(x: FloatArray) -> FloatArray:
@@ -328,7 +332,8 @@ def diameters(x: FloatArray) -> FloatArray:
     x : ndarray, shape (T, n, m)
         Positions or velocities.
     """
-    distances: FloatArray = greatest_distances(np.ascontiguousarray(x))
+    x, _, unit = near_one(x)
+    distances: FloatArray = greatest_distances(np.ascontiguousarray(x)) * unit
     return distances
 
 

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray, ensure_count, ensure_links, ensure_points, ensure_positive, ensure_series
-from flockana.base.vectors import lengths
+from flockana.base.vectors import lengths, near_one
 from flockana.kernels.components import labelled, unite
 from flockana.kernels.neighbours import pair_list
 from flockana.kernels.rank import rank_modulo
@@ -42,7 +42,8 @@ def links(q: Any, r: float) -> LinkArray:
     >>> links([[0.0], [1.0], [2.5]], 1.2).tolist()
     [[0, 1]]
     """
-    return np.column_stack(pair_list(ensure_points("q", q), ensure_positive("r", r)))
+    q, (r,), _ = near_one(ensure_points("q", q), ensure_positive("r", r))
+    return np.column_stack(pair_list(q, r))
 
 
 def link_lengths(q: FloatArray, pairs: LinkArray) -> FloatArray:
@@ -60,7 +61,8 @@ def link_lengths(q: FloatArray, pairs: LinkArray) -> FloatArray:
     >>> link_lengths(np.array([[0.0, 0.0], [3.0, 4.0]]), np.array([[0, 1]], dtype=np.int32)).tolist()
     [5.0]
     """
-    return lengths(q[pairs[:, 1]] - q[pairs[:, 0]])
+    q, _, unit = near_one(q)
+    return lengths(q[pairs[:, 1]] - q[pairs[:, 0]]) * unit
 
 
 def components(n: int, pairs: LinkArray) -> npt.NDArray[np.int32]:

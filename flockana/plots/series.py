@@ -148,7 +148,7 @@ def energy_residual(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     ax = ensure_axes(ax)
     label = "H − H(0) − ∫ dH/dt"
     if "work" not in trajectory.extra:
-        return finish_empty(ax, label, "no energy balance: this law has no energy")
+        return finish_empty(ax, label, "no energy balance: the run carries no ∫ dH/dt")
     ax.axhline(0.0, color=MUTED, linewidth=0.8, linestyle="-")
     ax.plot(trajectory.t, trajectory.energy_residual, color=VERMILLION, linestyle="-", linewidth=1.0)
     return finish_over_time(ax, trajectory.t, label)

@@ -179,9 +179,7 @@ class MarginSweep:
     delayed: str
 
 
-def margin_sweep(
-    law: Algorithm1 | Algorithm2, q: Any, name: str, values: Any, *, delayed: str = "all", grid: int = 120
-) -> MarginSweep:
+def margin_sweep(law: Algorithm1 | Algorithm2, q: Any, name: str, values: Any, *, delayed: str = "all") -> MarginSweep:
     """Delay margin of the followed equilibrium as one gain varies.
 
     Parameters
@@ -196,8 +194,6 @@ def margin_sweep(
         Its values, rising.
     delayed : {"all", "pairs", "neighbours"}
         As in `delay_system`.
-    grid : int
-        As in `delay_margin`.
 
     Raises
     ------
@@ -218,7 +214,7 @@ def margin_sweep(
     for level in levels.tolist():
         here = replace(law, gains=replace(law.gains, **{name: level}))
         q = np.array(find_equilibrium(here, q).q)
-        delays.append(delay_margin(delay_system(here, q, delayed=delayed), grid=grid))
+        delays.append(delay_margin(delay_system(here, q, delayed=delayed)))
     margins, frequencies = (np.array([getattr(x, kind) for x in delays]) for kind in ("delay", "frequency"))
     return MarginSweep(name, levels, margins, frequencies, delayed)
 

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import flockana as fl
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.dynamics.iterate import _nearest
 from flockana.dynamics.simulate import ADAPTIVE, METHODS, simulate
@@ -402,7 +403,7 @@ def test_a_law_without_energy_has_no_balance():
         run = simulate(Drift(), [[0.0]], [[1.0]], (0.0, 1.0), **options)
         assert run.status == "complete"
         assert dict(run.extra) == {}
-        with pytest.raises(ArgumentError, match="no energy balance: its law has no energy"):
+        with pytest.raises(ArgumentError, match=r"it carries no extra\['work'\].* where the law has an energy"):
             _ = run.energy_residual
 
 
@@ -480,3 +481,21 @@ def test_a_map_ends_no_later_than_its_span():
     assert 1000 * law.dt > end == run.t[-1]
     again = simulate(law, run.q[0], run.p[0], (0.0, end), t_eval=run.t)
     np.testing.assert_array_equal(again.q, run.q)
+
+
+@pytest.mark.parametrize("method", ["DOP853", "scipy-RK45", "LSODA"])
+def test_an_absolute_tolerance_is_a_length_so_that_units_do_not_matter(method):
+    law, q, p = Algorithm1(), np.array([[0.0], [8.0], [15.0]]), np.array([[0.3], [0.0], [-0.3]])
+    length, time = 2.0**30, 1.0  # the first step of scipy's solvers, and of ours, knows the unit of time
+    run = simulate(law, q, p, (0.0, 1.0), method=method, rtol=1e-6, atol=1e-6)
+    other = simulate(
+        fl.rescale(law, length=length, time=time), q * length, p * (length / time), (0.0, time),
+        method=method, rtol=1e-6, atol=1e-6 * length,
+    )  # fmt: skip
+    np.testing.assert_array_equal(other.q, run.q * length)
+    np.testing.assert_array_equal(other.extra["work"], run.extra["work"] * (length / time) ** 2)
+    assert other.floors == run.in_units(length, time).floors
+    assert run.floors[:2] == pytest.approx((1e-6, 1e-6 / law.scales.time))
+    slow = fl.rescale(law, time=2.0**-20)
+    there = simulate(slow, q, p * 2.0**20, (0.0, 2.0**-20), method=method, rtol=1e-6, atol=1e-6)
+    assert there.floors == run.in_units(1.0, 2.0**-20).floors
