@@ -15,11 +15,11 @@ from flockana.base.checks import FloatArray, ensure_count, ensure_links, ensure_
 from flockana.base.vectors import lengths
 from flockana.kernels.components import labelled, unite
 from flockana.kernels.neighbours import pair_list
-from flockana.kernels.rank import rank_modulo
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
+_PRIME = 2147483647  # a rank modulo 2³¹ − 1 is exact unless that divides every minor of its size
 LinkArray = npt.NDArray[np.int32]
 
 
@@ -140,7 +140,7 @@ def printed_edge_share(n: int, pairs: LinkArray) -> float:
 
 
 def printed_rank_connectivity(n: int, pairs: LinkArray, *, typeset: bool = False) -> float:
-    """The MSN project's C = rank(A)/n of the adjacency matrix, as printed (erratum E8); dense, for small n.
+    """The MSN project's C = rank(A)/n of the adjacency matrix, as printed (erratum E8).
 
     Parameters
     ----------
@@ -161,9 +161,11 @@ def printed_rank_connectivity(n: int, pairs: LinkArray, *, typeset: bool = False
     >>> printed_rank_connectivity(3, path[:0], typeset=True) == 2 / 3  # of three agents without a link
     True
     """
+    from flint import nmod_mat
+
     n = ensure_count("n", n)
     pairs = ensure_links(pairs, n)
-    adjacency = np.eye(n, dtype=np.int64) if typeset else np.zeros((n, n), dtype=np.int64)
-    adjacency[-1, -1] = 0
-    adjacency[pairs[:, 0], pairs[:, 1]] = adjacency[pairs[:, 1], pairs[:, 0]] = 1
-    return float(rank_modulo(adjacency)) / n
+    adjacency = nmod_mat(n, n, _PRIME)
+    for i, j in [*pairs.tolist(), *((k, k) for k in range(n - 1) if typeset)]:
+        adjacency[i, j] = adjacency[j, i] = 1
+    return float(adjacency.rank()) / n
