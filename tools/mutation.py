@@ -76,9 +76,11 @@ def draw(paths: Sequence[str], size: int | None, salt: str) -> tuple[int, list[d
                 for start, end in operator.mutation_positions(node):
                     place = {"path": path, "operator": name, "occurrence": counts[name], "start": start, "end": end}
                     counts[name] += 1
-                    if any(span[:2] <= start < span[2:] for span in spans):
+                    line = lines[start[0] - 1]
+                    star = line[start[1] :].startswith("*,")  # before parameters that go by name
+                    if star or any(span[:2] <= start < span[2:] for span in spans):
                         continue
-                    line = lines[start[0] - 1].strip()
+                    line = line.strip()
                     said = "\n".join((salt, path, name, line, str(same[name, line])))
                     same[name, line] += 1
                     found.append((hashlib.sha256(said.encode()).hexdigest()[:16], place))
