@@ -290,6 +290,14 @@ def report(matrix: Matrix, options: argparse.Namespace) -> int:
     return CHANGED if rows else UNCHANGED
 
 
+def interrupt(*_: object) -> None:
+    """Raise KeyboardInterrupt once: `timeout` sends its signal twice, and what was found is still to be reported."""
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.SIG_IGN)
+    raise KeyboardInterrupt
+
+
 if __name__ == "__main__":
-    signal.signal(signal.SIGTERM, signal.default_int_handler)  # a time limit is no reason to lose what was found
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, interrupt)
     sys.exit(main())
