@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from flockana import plots
 from flockana.report.figures import Picture
 from flockana.report.image import svg
-from flockana.report.work import MANY_LAWS
+from flockana.report.section import MANY_LAWS
 from flockana.scenarios.one_start import UNTIL, Outcome, compare
 from flockana.theorems.theorem import Verdict, unmet
 

@@ -20,7 +20,7 @@ from flockana.report.control import Download, control_pictures, state_space
 from flockana.report.figures import Picture
 from flockana.report.image import svg
 from flockana.report.pages import Page
-from flockana.report.work import LINEARISED
+from flockana.report.section import LINEARISED
 from flockana.scenarios import scenario, scenarios
 from flockana.stability import Linearisation, linearise
 from flockana.stability.centre_path import path_and_factor

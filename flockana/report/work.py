@@ -12,6 +12,7 @@ from flockana.ensemble.batches import work_through
 from flockana.ensemble.executors import crew
 from flockana.laws.discrete import DiscreteLaw
 from flockana.report.pages import FixedResult, Page, ScenarioResult, page
+from flockana.report.section import MANY_LAWS, Section
 from flockana.report.surveys import Survey, SurveyResult, make_survey
 from flockana.scenarios import scenario, scenarios
 from flockana.theorems import theorem, theorems, verify
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
     from flockana.report.stability import LinearisedFlocks
 
 ERRATA = "errata"
-MANY_LAWS, LINEARISED = "one start under many laws", "linearised flocks"
 
 
 @dataclass(frozen=True)
@@ -47,22 +47,6 @@ class Task:
     seed: int = 0
     only: tuple[str, ...] = ()
     figures: bool = True
-
-
-@dataclass(frozen=True)
-class Section:
-    """What the report shows beside verdicts, to be made; a name and a number only, so it can be sent.
-
-    Parameters
-    ----------
-    name : str
-        `MANY_LAWS` or `LINEARISED`.
-    seed : int
-        Of the start.
-    """
-
-    name: str
-    seed: int = 0
 
 
 Work = Task | Survey | Section

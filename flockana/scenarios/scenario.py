@@ -109,7 +109,7 @@ class Scenario:
     enclosed: Enclosure | None = None
 
     def __post_init__(self) -> None:
-        ensure_parts(self)
+        ensure_parts(vars(self))
         if self.seed == 0:
             object.__setattr__(self, "expected", {**self.expected, **self.shipped})
 
