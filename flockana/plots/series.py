@@ -41,16 +41,8 @@ def measure(trajectory: Trajectory, name: str, *, ax: Axes | None = None) -> Axe
 
     Parameters
     ----------
-    trajectory : Trajectory
-        The run.
     name : str
         A variable of ``trajectory.metrics()``.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Raises
     ------
@@ -73,15 +65,7 @@ def measure(trajectory: Trajectory, name: str, *, ax: Axes | None = None) -> Axe
 
 
 def has_metric(trajectory: Trajectory, name: str) -> bool:
-    """Whether a run has a metric, asked without all the others (which xarray holds, whose import takes longer).
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        The run.
-    name : str
-        Of the metric.
-    """
+    """Whether a run has a metric, asked without all the others (which xarray holds, whose import takes longer)."""
     try:
         trajectory.metric(name)
     except UnknownNameError:
@@ -94,8 +78,6 @@ def panel(trajectory: Trajectory, *, ax: Any = None) -> Any:
 
     Parameters
     ----------
-    trajectory : Trajectory
-        The run.
     ax : sequence of four Axes, optional
         Where to draw; by default a new figure of two by two.
 
@@ -110,19 +92,7 @@ def panel(trajectory: Trajectory, *, ax: Any = None) -> Any:
 
 
 def energy(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
-    """Draw the law's energy H over time, if it has one.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        The run.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-    """
+    """Draw the law's energy H over time, if it has one."""
     ax = ensure_axes(ax)
     values = trajectory.energy()
     if not np.isfinite(values).any():
@@ -132,19 +102,7 @@ def energy(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
 
 
 def energy_residual(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
-    """Draw H(t) − H(0) − ∫ dH/dt: what the integration got wrong, by the energy identity.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        The run.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-    """
+    """Draw H(t) − H(0) − ∫ dH/dt: what the integration got wrong, by the energy identity."""
     ax = ensure_axes(ax)
     label = "H − H(0) − ∫ dH/dt"
     if "work" not in trajectory.extra:
@@ -161,12 +119,6 @@ def distances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     ----------
     trajectory : Trajectory
         The run. Between the steps of a map there is nothing to bound.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
     """
     ax = ensure_axes(ax)
     label = "least distance (length)"
@@ -186,19 +138,7 @@ def distances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
 
 
 def pair_distances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
-    """Draw the profile of all pairs' distances over time: least, quarters, median and largest.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        The run.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-    """
+    """Draw the profile of all pairs' distances over time: least, quarters, median and largest."""
     ax, label = ensure_axes(ax), "distance of two agents (length)"
     if trajectory.n == 1:
         return finish_empty(ax, label, "one agent has no distances")
@@ -212,19 +152,7 @@ def pair_distances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
 
 
 def components(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
-    """Draw the number of components of the net over time (logarithmic where many), if the law has an interaction range.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        The run.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-    """
+    """Draw the number of components of the net over time (logarithmic where many), if the law has an interaction range."""
     ax = ensure_axes(ax)
     label = "components of the net"
     if not has_metric(trajectory, "connectivity"):
@@ -242,19 +170,7 @@ def components(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
 
 
 def clearances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
-    """Draw the least clearance of any agent from each obstacle at the samples, d', and the bound for all times.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        The run.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-    """
+    """Draw the least clearance of any agent from each obstacle at the samples, d', and the bound for all times."""
     ax = ensure_axes(ax)
     label = "least clearance (length)"
     solids = trajectory.law.obstacles
@@ -277,19 +193,7 @@ def clearances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
 
 
 def speeds(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
-    """Draw every agent's speed, the speed of the centre of mass, and the γ-agent's as handed to the law.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        The run.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-    """
+    """Draw every agent's speed, the speed of the centre of mass, and the γ-agent's as handed to the law."""
     ax = ensure_axes(ax)
     (t, p), target = velocities_between(trajectory), trajectory.law.target
     speed = lengths(p)
@@ -306,19 +210,7 @@ def speeds(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
 
 
 def centre_of_mass(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
-    """Draw each coordinate of the centre of mass over time (solid), against the γ-agent's (dashed).
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        The run.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-    """
+    """Draw each coordinate of the centre of mass over time (solid), against the γ-agent's (dashed)."""
     ax = ensure_axes(ax)
     t, centre, target = trajectory.t, trajectory.q.mean(axis=1), trajectory.law.target
     for k, colour in zip(range(trajectory.m), (BLUE, GREEN, PURPLE), strict=False):

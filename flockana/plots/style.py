@@ -184,21 +184,7 @@ def legend_above(ax: Any) -> None:
 
 
 def colour_bar(ax: Any, colours: Any, label: str, *, extend: str = "neither", share: float = 0.75) -> Any:
-    """A colour bar beside axes, of which it is a part: wherever they are put, it stands a little to the right of them.
-
-    Parameters
-    ----------
-    ax : matplotlib.axes.Axes
-        Of the plane or of space.
-    colours : matplotlib.cm.ScalarMappable
-        What is coloured.
-    label : str
-        Of the bar.
-    extend : {"neither", "min", "max", "both"}
-        Ends beyond which there are values.
-    share : float
-        Of the height of the axes.
-    """
+    """A colour bar beside axes, of which it is a part: wherever they are put, it stands a little to the right of them."""
     beside = ax.inset_axes((1.03, 0.5 - 0.5 * share, 0.03, share))
     scale = ax.get_figure().colorbar(colours, cax=beside, extend=extend, label=typeset(label))
     scale.outline.set_visible(False)

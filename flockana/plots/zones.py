@@ -61,18 +61,8 @@ def zones(
 
     Parameters
     ----------
-    trajectory : Trajectory
-        A run of ZoneFlocking.
     time : float, optional
         By default the end.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw; three-dimensional for m = 3.
-    velocities : bool
-        Draw arrows.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Raises
     ------
@@ -174,17 +164,6 @@ def zone_distances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     """Draw the distances of all pairs over time, the least of them, and the radii of the zones.
 
     Of more than some hundred agents the profile is drawn (`pair_distances`), as lines would be one blot.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        A run of ZoneFlocking.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
     """
     law, ax = _law(trajectory), ensure_axes(ax)
     first, second = np.triu_indices(trajectory.n, 1)
@@ -205,19 +184,7 @@ def zone_distances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
 
 
 def zone_speeds(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
-    """Draw the speeds of all agents, their mean, the desired speed and the bound.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        A run of ZoneFlocking.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-    """
+    """Draw the speeds of all agents, their mean, the desired speed and the bound."""
     law, ax = _law(trajectory), ensure_axes(ax)
     _agents(ax, trajectory, lengths(trajectory.p))
     ax.axhline(law.desired_speed, color=GREEN, linestyle=":", linewidth=1.2, label="desired")
@@ -227,19 +194,7 @@ def zone_speeds(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
 
 
 def zone_controls(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
-    """Draw the inputs of all agents, their mean and the bound.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        A run of ZoneFlocking.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-    """
+    """Draw the inputs of all agents, their mean and the bound."""
     law, ax = _law(trajectory), ensure_axes(ax)
     _agents(ax, trajectory, lengths(trajectory.u))
     ax.axhline(law.u_max, color=VERMILLION, linestyle="--", linewidth=1.1, label="bound")
@@ -248,19 +203,7 @@ def zone_controls(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
 
 
 def zone_safety(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
-    """Draw how near the flock comes to obstacles (bound between the steps too), to walls and to aliens.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        A run of ZoneFlocking.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-    """
+    """Draw how near the flock comes to obstacles (bound between the steps too), to walls and to aliens."""
     _law(trajectory)
     ax, metrics = ensure_axes(ax), trajectory.metrics()
     shown = (
@@ -280,19 +223,7 @@ def zone_safety(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
 
 
 def zone_populations(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
-    """Draw how many agents are in the zones of repulsion, conflict and attraction of an agent, on the mean.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        A run of ZoneFlocking.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-    """
+    """Draw how many agents are in the zones of repulsion, conflict and attraction of an agent, on the mean."""
     _law(trajectory)
     ax, metrics = ensure_axes(ax), trajectory.metrics()
     for zone, colour, dash in (("repulsion", VERMILLION, "--"), ("conflict", PURPLE, "-."), ("attraction", GREEN, ":")):
