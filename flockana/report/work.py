@@ -26,27 +26,14 @@ ERRATA = "errata"
 
 @dataclass(frozen=True)
 class Task:
-    """A scenario to run and verify, or a theorem to check by itself; names and numbers only, so it can be sent.
+    """A scenario to run and verify, or a theorem to check by itself; names and numbers only, so it can be sent."""
 
-    Parameters
-    ----------
-    name : str
-        Of the scenario or the theorem.
-    fixed : bool
-        True for a theorem by itself.
-    seed : int
-        Of the scenario's random start.
-    only : tuple of str
-        Theorems to check on the scenario; empty for all of its own and what its source reports.
-    figures : bool
-        Draw the scenario's figures.
-    """
-
-    name: str
-    fixed: bool = False
-    seed: int = 0
+    name: str  # of the scenario or the theorem
+    fixed: bool = False  # true for a theorem by itself
+    seed: int = 0  # of the scenario's random start
+    # theorems to check on the scenario; empty for all of its own and what its source reports
     only: tuple[str, ...] = ()
-    figures: bool = True
+    figures: bool = True  # draw the scenario's figures
 
 
 Work = Task | Survey | Section
