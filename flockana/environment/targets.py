@@ -342,12 +342,6 @@ class CallableTarget(Target):
         return self._call(t)
 
     def rate(self, t: float) -> FloatArray:
-        """dq_r/dt by central difference.
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        """
+        """dq_r/dt by central difference."""
         step = max(_STEP * self.time, _RESOLVED * abs(t))
         return (self.position(t + step) - self.position(t - step)) / (2.0 * step)
