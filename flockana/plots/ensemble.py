@@ -134,7 +134,7 @@ def share_bars(
 def draw_bars(
     axes: Any, claims: Sequence[str], shares: Mapping[str, FloatArray], runs: Any, level: float, title: str = ""
 ) -> Axes:
-    """Draw rows of `share_bars`: shares, and the ends of their intervals, of claims verified and refuted, shape (3, M)."""
+    """Draw rows of `share_bars`: shares and the ends of their intervals, shape (3, M), by status."""
     rows = np.arange(len(claims))[::-1]
     for of, colour, mark, shift in (("verified", BLUE, "o", 0.12), ("refuted", VERMILLION, "s", -0.12)):
         share, low, high = shares[of]
