@@ -74,10 +74,6 @@ class Obstacle(ABC):
         q, p : array_like, shape (n, m)
             Positions and velocities of the agents.
 
-        Returns
-        -------
-        BetaAgents
-
         Raises
         ------
         ArgumentError
@@ -94,7 +90,6 @@ class Obstacle(ABC):
         Parameters
         ----------
         q : array_like, shape (n, m)
-            Points.
         """
         q = ensure_points("q", q)
         return self.beta_agents(q, np.zeros_like(q)).clearance
@@ -105,7 +100,6 @@ class Obstacle(ABC):
         Parameters
         ----------
         q : array_like, shape (n, m)
-            Points.
         """
         inside: npt.NDArray[np.bool_] = self.clearance(q) <= 0.0
         return inside

@@ -356,13 +356,7 @@ class CallableTarget(Target):
         return self._call(t)
 
     def rate(self, t: float) -> FloatArray:
-        """dq_r/dt by central difference; by one of three points to one side where the span ends.
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        """
+        """dq_r/dt by central difference; by one of three points to one side where the span ends."""
         step = max(_STEP * self.time, _RESOLVED * abs(t))
         if self.span[0] <= t - step and t + step <= self.span[1]:
             return (self.position(t + step) - self.position(t - step)) / (2.0 * step)

@@ -53,8 +53,6 @@ class Equilibrium:
 
     Parameters
     ----------
-    law : Algorithm1, Algorithm2, Algorithm3 or DeadZoneFlocking
-        The law.
     q : ndarray, shape (n, m)
         Positions; under Algorithm 2 with one c1γ their centre is the γ-agent.
     energy : float
@@ -152,10 +150,6 @@ def find_equilibrium(
         Most iterations of a solve.
     strict : bool
         Raise on failure; else return the last point with ``success=False`` and the reason.
-
-    Returns
-    -------
-    Equilibrium
 
     Raises
     ------

@@ -73,8 +73,6 @@ def falsify(
     surrogate : callable, optional
         ``surrogate(trajectory, claim) -> float`` in [0, 1], lower the nearer to breaking: it orders runs of equal
         margins, which counts often have. Some claims have one of ours. None is asked where unmet hypotheses lead back.
-    tolerances : Tolerances, optional
-        Thresholds of the verdicts.
     deepen : bool
         Use up the budget after a counterexample is found, for a worse one.
     executor : concurrent.futures.Executor, optional

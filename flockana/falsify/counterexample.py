@@ -46,10 +46,6 @@ class Counterexample:
         The law of motion.
     q0, p0 : ndarray, shape (n, m)
         The start.
-    t_span : (float, float)
-        Start and end.
-    options : mapping
-        Keyword arguments of `simulate`.
     tolerances : Tolerances
         Thresholds of the verdict.
     margin, error : float
@@ -125,11 +121,6 @@ class Counterexample:
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write the counterexample as JSON; numbers read back exactly, an existing file is replaced only when whole.
-
-        Parameters
-        ----------
-        path : path-like
-            File to write.
 
         Raises
         ------

@@ -194,11 +194,6 @@ class Falsification:
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write the counterexample as JSON, for `replay`.
 
-        Parameters
-        ----------
-        path : path-like
-            File to write.
-
         Raises
         ------
         ArgumentError

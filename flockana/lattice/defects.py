@@ -22,10 +22,7 @@ def coordination(n: int, links: Any) -> IntArray:
 
     Parameters
     ----------
-    n : int
-        Number of agents.
     links : array_like, shape (M, 2)
-        Links.
 
     Examples
     --------
@@ -69,7 +66,6 @@ def defects(q: Any, links: Any) -> Defects:
     Parameters
     ----------
     q : array_like, shape (n, 2)
-        Positions.
     links : array_like, shape (M, 2)
         Links, each once; where they cross, an agent may be called interior that is in no triangulation.
 

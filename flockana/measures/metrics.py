@@ -22,9 +22,6 @@ def net_measures(q: Any, d: float, r: float) -> tuple[float, float, float]:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
-    d, r : float
-        Desired distance and interaction range.
 
     Examples
     --------
@@ -52,9 +49,6 @@ def connectivity(q: Any, r: float) -> float:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
-    r : float
-        Interaction range.
 
     Returns
     -------
@@ -75,9 +69,6 @@ def giant_share(q: Any, r: float) -> float:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
-    r : float
-        Interaction range.
 
     Examples
     --------
@@ -93,7 +84,6 @@ def cohesion_radius(q: Any) -> float:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
 
     Examples
     --------
@@ -109,9 +99,6 @@ def deviation_energy(q: Any, d: float, r: float) -> float:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
-    d, r : float
-        Desired distance and interaction range.
 
     Returns
     -------
@@ -132,7 +119,6 @@ def velocity_mismatch(p: Any) -> float:
     Parameters
     ----------
     p : array_like, shape (n, m)
-        Velocities.
 
     Examples
     --------
@@ -148,7 +134,6 @@ def inertia(q: Any) -> float:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
 
     Examples
     --------
@@ -164,7 +149,6 @@ def min_distance(q: Any) -> float:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
 
     Examples
     --------
@@ -201,7 +185,6 @@ def order(p: Any) -> float:
     Parameters
     ----------
     p : array_like, shape (n, m)
-        Velocities.
 
     Examples
     --------
@@ -219,7 +202,6 @@ def coordination(p: Any) -> float:
     Parameters
     ----------
     p : array_like, shape (n, m)
-        Velocities.
 
     Examples
     --------
@@ -235,7 +217,6 @@ def coincident_pairs(q: Any, tol: float) -> int:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
     tol : float
         Distance below which two agents count as coincident.
 
@@ -255,7 +236,6 @@ def pairs_at_one_place(q: Any) -> int:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
 
     Examples
     --------
@@ -275,9 +255,6 @@ def nets(q: FloatArray, d: float, r: float) -> FloatArray:
     Parameters
     ----------
     q : ndarray, shape (T, n, m)
-        Positions.
-    d, r : float
-        Desired distance and interaction range.
     """
     return np.array([_net_measures(x, d, r) for x in q]).T
 
@@ -288,7 +265,6 @@ def cohesion_radii(q: FloatArray) -> FloatArray:
     Parameters
     ----------
     q : ndarray, shape (T, n, m)
-        Positions.
     """
     q, _, unit = near_one(q)
     radii: FloatArray = lengths(_centred(q)).max(axis=1) * unit
@@ -313,7 +289,6 @@ def min_distances(q: FloatArray) -> FloatArray:
     Parameters
     ----------
     q : ndarray, shape (T, n, m)
-        Positions.
     """
     q, _, unit = near_one(q)
     if q.shape[1] < _TREE:
@@ -343,7 +318,6 @@ def orders(p: FloatArray) -> FloatArray:
     Parameters
     ----------
     p : ndarray, shape (T, n, m)
-        Velocities.
     """
     return lengths(centres(_headings(p)))
 
@@ -354,7 +328,6 @@ def coordinations(p: FloatArray) -> FloatArray:
     Parameters
     ----------
     p : ndarray, shape (T, n, m)
-        Velocities.
     """
     k = np.count_nonzero(np.any(p != 0.0, axis=2), axis=1)
     # |Σ ĥ|² counts every pair twice and every agent once

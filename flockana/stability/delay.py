@@ -31,21 +31,11 @@ _LOWEST = 1e-6  # of the highest frequency at which roots can cross: with neutra
 
 @dataclass(frozen=True)
 class DelaySystem:
-    """x'' = −K₀ x − D₀ x' − K₁ x(t−τ) − D₁ x'(t−τ).
+    """x'' = −K₀ x − D₀ x' − K₁ x(t−τ) − D₁ x'(t−τ)."""
 
-    Parameters
-    ----------
-    prompt : tuple of ndarray
-        (K₀, D₀), shape (N, N).
-    late : tuple of ndarray
-        (K₁, D₁).
-    neutral : int
-        Roots at s = 0, whatever the delay: of rigid motions that nothing holds.
-    """
-
-    prompt: tuple[FloatArray, FloatArray]
-    late: tuple[FloatArray, FloatArray]
-    neutral: int = 0
+    prompt: tuple[FloatArray, FloatArray]  # (K₀, D₀), shape (N, N)
+    late: tuple[FloatArray, FloatArray]  # (K₁, D₁)
+    neutral: int = 0  # roots at s = 0, whatever the delay: of rigid motions that nothing holds
 
     @property
     def highest(self) -> float:
@@ -93,8 +83,6 @@ def delay_system(law: Algorithm1 | Algorithm2, q: Any, *, delayed: str = "all", 
 
     Parameters
     ----------
-    law : Algorithm1 or Algorithm2
-        The law.
     q : array_like, shape (n, m)
         Equilibrium.
     delayed : {"all", "pairs", "neighbours"}
@@ -170,10 +158,6 @@ def delay_margin(system: DelaySystem) -> DelayMargin:
     ----------
     system : DelaySystem
         Stable without delay, but for neutral motions.
-
-    Returns
-    -------
-    DelayMargin
 
     Examples
     --------

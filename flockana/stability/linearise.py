@@ -74,10 +74,6 @@ def linearise(
         See `Linearisation`; by default 1e-8, or what takes in the soft modes that an `Equilibrium` tells of (a link
         that lets go at r is as stiff as the solver left it).
 
-    Returns
-    -------
-    Linearisation
-
     Raises
     ------
     ArgumentError

@@ -50,20 +50,6 @@ _RELATIONS: Mapping[type, type] = {ast.Lt: sp.Lt, ast.LtE: sp.Le, ast.Gt: sp.Gt,
 def read_formula(text: str, symbols: Mapping[str, sp.Expr], *, where: str = "the formula") -> sp.Expr:
     """The sympy expression that a text says, in the names given.
 
-    Parameters
-    ----------
-    text : str
-        At most 4000 characters.
-    symbols : mapping of str to sympy.Expr
-        What each name stands for; no other name is known, but pi and the functions.
-    where : str
-        What is read, for messages.
-
-    Raises
-    ------
-    ArgumentError
-        On anything outside the grammar, and on numbers that powers make too large.
-
     Examples
     --------
     >>> s, k = sp.symbols("s k")
@@ -135,11 +121,6 @@ def _ensure_plain(value: sp.Expr, where: str) -> None:
 
 def write_formula(expression: sp.Expr) -> str:
     """The text that `read_formula` reads as the same expression, every number to the last bit.
-
-    Parameters
-    ----------
-    expression : sympy.Expr
-        In plain symbols.
 
     Examples
     --------

@@ -31,17 +31,6 @@ RESERVED = frozenset((*OWN, "s", "z", "s2", "root", "pi", "Piecewise", *FUNCTION
 class PairFormula:
     """A potential or a force, and an adjacency, as read from their texts.
 
-    Parameters
-    ----------
-    main : sympy.Expr
-        ψ, or ψ' where `forces`, as a function of the distance.
-    adjacency : sympy.Expr
-        a_ij, of the same distance.
-    distance : sympy.Symbol
-        `S` or `Z`.
-    forces : bool
-        Whether `main` is the derivative of the potential in the distance.
-
     Examples
     --------
     >>> formula = read_pair("k*(s - d)**2/2", "", "0", ["k"])
@@ -49,10 +38,10 @@ class PairFormula:
     (s, k*(-2*d + 2*s)/2)
     """
 
-    main: sp.Expr
-    adjacency: sp.Expr
-    distance: sp.Symbol
-    forces: bool
+    main: sp.Expr  # ψ, or ψ' where `forces`, as a function of the distance
+    adjacency: sp.Expr  # a_ij, of the same distance
+    distance: sp.Symbol  # `S` or `Z`
+    forces: bool  # whether `main` is the derivative of the potential in the distance
 
     @property
     def derivative(self) -> sp.Expr:
@@ -61,22 +50,7 @@ class PairFormula:
 
 
 def read_pair(potential: str, force: str, adjacency: str, names: list[str]) -> PairFormula:
-    """Read a pair law of which either the potential or its derivative is given.
-
-    Parameters
-    ----------
-    potential, force : str
-        One of them, the other empty.
-    adjacency : str
-        Of the same distance.
-    names : list of str
-        Parameters.
-
-    Raises
-    ------
-    ArgumentError
-        If both distances are used, a parameter is used nowhere, or has a name that means something else.
-    """
+    """Read a pair law of which either the potential or its derivative is given."""
     taken = sorted(RESERVED & {*names})
     if taken or not all(name.isidentifier() for name in names):
         bad = taken or [name for name in names if not name.isidentifier()]
@@ -122,15 +96,6 @@ class Piece:
 def derive_piece(main: sp.Expr, adjacency: sp.Expr, distance: sp.Symbol, *, forces: bool) -> Piece:
     """Weight w of q_j − q_i, its slope dw/d(s²), adjacency and da/d(s²), of smooth expressions.
 
-    Parameters
-    ----------
-    main, adjacency : sympy.Expr
-        Without pieces.
-    distance : sympy.Symbol
-        `S` or `Z`.
-    forces : bool
-        Whether `main` is ψ'.
-
     Examples
     --------
     >>> piece = derive_piece(S**2 * (S - 1) ** 2 / 2, sp.Integer(1), S, forces=False)
@@ -162,15 +127,6 @@ def _ensure_derived(derivative: sp.Expr, most: int) -> None:
 class Cut:
     """A pair formula with numbers for its parameters, cut where its pieces meet.
 
-    Parameters
-    ----------
-    formula : PairFormula
-        As read.
-    numbers : mapping of sympy.Symbol to float
-        Of the parameters, r, d and their σ-norms.
-    end : float
-        The range, in the distance of the formula.
-
     Examples
     --------
     >>> formula = read_pair("Piecewise((s**2, s < k), (0, True))", "", "0", ["k"])
@@ -178,9 +134,9 @@ class Cut:
     (0.0, 2.0, 5.0)
     """
 
-    formula: PairFormula
-    numbers: Mapping[sp.Symbol, float]
-    end: float
+    formula: PairFormula  # as read
+    numbers: Mapping[sp.Symbol, float]  # of the parameters, r, d and their σ-norms
+    end: float  # the range, in the distance of the formula
 
     @cached_property
     def marks(self) -> tuple[float, ...]:
@@ -254,26 +210,14 @@ class Cut:
         return bool(condition.func(sp.Rational(float(sign)), 0))
 
     def value(self, expression: sp.Expr) -> Any:
-        """The value of an expression in parameters alone, to `DIGITS`.
-
-        Parameters
-        ----------
-        expression : sympy.Expr
-            Without a distance.
-        """
+        """The value of an expression in parameters alone, to `DIGITS`."""
         try:
             return self.function(expression)(mpmath.mpf(1))
         except (ZeroDivisionError, ValueError, OverflowError):
             raise ArgumentError(f"{expression} has no value for these parameters: expected a finite number") from None
 
     def function(self, expression: sp.Expr) -> Callable[[Any], Any]:
-        """An expression of a piece as a function of y, to `DIGITS`; NaN where it has no real value.
-
-        Parameters
-        ----------
-        expression : sympy.Expr
-            Of `SQUARE`, or of `Z` and `ROOT`.
-        """
+        """An expression of a piece as a function of y, to `DIGITS`; NaN where it has no real value."""
         y = Z if self.formula.distance == Z else SQUARE
         expression = expression.subs(ROOT, 1 + EPS * Z)
         symbols = list(self.numbers)
