@@ -411,8 +411,9 @@ class Trajectory:
         path, obstacles = self.path, self.law.obstacles
         if self.resolved or len(self.t) == 1 or not obstacles:
             return clearance(path.t, path.q, path.p, path.u, obstacles, path.slack)
-        each = (clearance(*(x[k : k + 1] for x in path[:4]), obstacles) for k in range(len(path.t)))
-        seen = min(each, key=lambda one: one.reached)
+        one = (slice(k, k + 1) for k in range(len(self.t)))
+        each = (clearance(self.t[k], self.q[k], self.p[k], self.u[k], obstacles) for k in one)
+        seen = min(each, key=lambda found: found.reached)
         return replace(seen, lower=-np.inf, lower_by_obstacle=np.full(len(obstacles), -np.inf))
 
     def animate(
