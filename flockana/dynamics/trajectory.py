@@ -21,7 +21,7 @@ from flockana.base.vectors import centres, lengths
 from flockana.dynamics import saved
 from flockana.dynamics.between import Between, Course, merged
 from flockana.dynamics.tolerance import Floors, error_floor, rounding_floors
-from flockana.laws.discrete import ensure_law
+from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.measures.clearance import Clearance, clearance
 from flockana.measures.measure import Flock, Measure, Series, measures
 from flockana.measures.metrics import cohesion_radius
@@ -340,12 +340,26 @@ class Trajectory:
         """The samples and the solver's own steps between them, in order of time: what bounds at all times rest on."""
         return merged(self.t, self.q, self.p, self.u, self.between)
 
+    @property
+    def resolved(self) -> bool:
+        """Whether the solver's own steps are known, so that the run can be bounded between its samples.
+
+        They are of a run that `simulate` made, of its windows and files, and of a map; of arrays from elsewhere, or a
+        dump that left steps out, nothing is known between samples, and bounds at all times are the trivial ones.
+        """
+        steps = self.stats.get("steps", np.inf)
+        return isinstance(self.law, DiscreteLaw) or self.between is not None or len(self.t) - 1 >= steps
+
     def closest_approach(self) -> ClosestApproach:
         """The closest two agents come, between samples too; intervals are those between samples."""
         return self._closest
 
     @cached_property
     def _closest(self) -> ClosestApproach:
+        if not self.resolved and len(self.t) > 1 < self.n:
+            k = slice(at := int(np.argmin(self.metric("min_distance"))), at + 1)
+            seen = closest_approach(self.t[k], self.q[k], self.p[k], self.u[k])
+            return replace(seen, lower=0.0, lower_by_interval=np.zeros(len(self.t) - 1))
         approach = closest_approach(*self.path)
         return replace(approach, lower_by_interval=self.over_intervals(np.minimum, approach.lower_by_interval))
 
@@ -367,7 +381,8 @@ class Trajectory:
     def min_distance(self) -> float:
         """A lower bound of every distance between two agents at every time of the run.
 
-        It holds given the integrator's accuracy, on steps that resolve the motion (`flockana.kernels.paths`).
+        It holds given the integrator's accuracy, on steps that resolve the motion (`flockana.kernels.paths`), and is 0
+        where the steps are not known (`resolved`); the least distance at the samples is ``metric("min_distance")``.
         """
         return self._closest.lower
 
@@ -379,6 +394,8 @@ class Trajectory:
     @cached_property
     def cohesion_bounds(self) -> FloatArray:
         """That of each interval between samples, shape (T − 1,)."""
+        if not self.resolved:
+            return np.full(len(self.t) - 1, np.inf)
         return self.over_intervals(np.maximum, cohesion_bound(*self.path))
 
     def clearance(self) -> Clearance:
@@ -388,7 +405,12 @@ class Trajectory:
     @cached_property
     def _clearance(self) -> Clearance:
         path, obstacles = self.path, self.law.obstacles
-        return clearance(path.t, path.q, path.p, path.u, obstacles, path.slack)
+        if self.resolved or len(self.t) == 1 or not obstacles:
+            return clearance(path.t, path.q, path.p, path.u, obstacles, path.slack)
+        one = (slice(k, k + 1) for k in range(len(self.t)))
+        each = (clearance(self.t[k], self.q[k], self.p[k], self.u[k], obstacles) for k in one)
+        seen = min(each, key=lambda found: found.reached)
+        return replace(seen, lower=-np.inf, lower_by_obstacle=np.full(len(obstacles), -np.inf))
 
     def animate(
         self, *, seconds: float = 10.0, fps: float = 15.0, velocities: bool = False, ranges: bool = False
@@ -453,10 +475,11 @@ class Trajectory:
         extra = {name: series[keep] for name, series in self.extra.items()}
         if "work" in extra:
             extra["work"] = extra["work"] - extra["work"][0]
-        between = None if self.between is None else self.between.within(self.t, self.t[keep])
-        return changed(
-            self, t=self.t[keep], q=self.q[keep], p=self.p[keep], u=self.u[keep], extra=extra, between=between
-        )
+        between, stats = None if self.between is None else self.between.within(self.t, self.t[keep]), self.stats
+        if self.resolved and self.between is None and "steps" in stats:
+            stats = {**stats, "steps": min(stats["steps"], int(keep.sum()) - 1)}
+        part = {name: getattr(self, name)[keep] for name in ("t", "q", "p", "u")}
+        return changed(self, **part, extra=extra, between=between, stats=stats)
 
     def to_xarray(self) -> xarray.Dataset:
         """The run as an `xarray.Dataset` with dimensions time, agent and axis; the law is in the attributes."""
