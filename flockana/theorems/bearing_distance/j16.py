@@ -149,7 +149,8 @@ THEOREM = erratum(
     statement=(
         "Remark 2 says that in a confined environment separated agents eventually reunite, and that else radii of "
         "attraction may grow until a flockmate is found. Agents at rest never meet, nor do two that head for opposite "
-        "walls; others run along the walls one behind the other, for as long as is seen. Growing radii bring lone agents back; fragments of two or more they leave apart."
+        "walls; others run along the walls, one behind the other, for as long as is seen. Growing radii bring lone "
+        "agents back; fragments of two or more they leave apart."
     ),
     source="Jond, bearing-distance flocking, Remark 2",
     check=_check,
