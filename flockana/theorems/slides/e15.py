@@ -61,7 +61,7 @@ def _condition() -> Any:
     return sp.expand(gain_slope(factor, square=w) - told)
 
 
-def _falls(name: str, ratios: list[Enclosure], stated: str, text: str, **proof: str) -> Claim:
+def _falls(name: str, ratios: list[Enclosure], stated: str, text: str, **proof: Any) -> Claim:
     """Return the claim that each ratio is below the one before."""
     values, listed = _values(ratios), ", ".join(f"{ratio.mid:.3f}" for ratio in ratios)
     detail = f"at ¼, ½, 1, 2 and 4 times the γ-agent's speed {text} the ratio is {listed}"
