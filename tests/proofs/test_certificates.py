@@ -49,7 +49,7 @@ def cited(module, name, seen):
         return set()
     seen.add((module, name))
     node, found = own[name], set()
-    if isinstance(node, (ast.Assign, ast.AnnAssign)) and name.lstrip("_").isupper() and name not in ("THEOREM", "RIGOUR"):
+    if isinstance(node, (ast.Assign, ast.AnnAssign)) and name.lstrip("_").isupper() and name not in ("THEOREM", "RIGOUR", "CITES"):
         found |= strings(node.value)  # PROOF = "..."
     for one in ast.walk(node):
         if isinstance(one, ast.keyword) and one.arg in ("proof", "disproof"):
