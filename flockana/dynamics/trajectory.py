@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -13,9 +12,10 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_choice, real_array
+from flockana.base.checks import FloatArray, ensure_choice, ensure_positive, real_array
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.scales import Scales
+from flockana.base.seals import changed
 from flockana.base.units import rescale, times
 from flockana.base.vectors import centres, lengths
 from flockana.dynamics import saved
@@ -55,7 +55,7 @@ def _frozen_series(name: str, values: Any, samples: int) -> FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class Trajectory:
-    """A sampled run.
+    """A sampled run of `simulate`; made by hand, a recording, which has metrics and plots but no verdicts.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ class Trajectory:
     ------
     ArgumentError
         On arrays that do not fit each other, numbers that are not real and finite, times that do not rise, an unknown
-        status, or something that is no law.
+        status, a step or a tolerance in `stats` that is no number > 0, or something that is no law.
     """
 
     t: FloatArray
@@ -101,6 +101,9 @@ class Trajectory:
             if not isinstance(getattr(self, name), kind):
                 raise ArgumentError(f"{name} = {getattr(self, name)!r}: expected {_KINDS[name]}")
         ensure_choice("status", self.status, STATUSES)
+        for name in ("rtol", "atol", "dt"):
+            if self.stats.get(name) is not None:
+                ensure_positive(f"stats[{name!r}]", self.stats[name])
         try:
             shape = np.shape(self.q)
             others = [np.shape(each) for each in (self.t, self.p, self.u)]
@@ -151,14 +154,14 @@ class Trajectory:
             for name, series in self.extra.items()
         }
         q, p, u = self.q * length, self.p * (length / time), self.u * (length / time**2)
-        units = {"dt": time, "atol": length}  # an absolute tolerance is in the state's own units: places first
+        units = {"dt": time, "atol": length}
         stats = {key: times(value, units[key]) if key in units else value for key, value in self.stats.items()}
         if "floors" in stats:
             factors = length, length / time, (length / time) ** 2
             stats["floors"] = [value * factor for value, factor in zip(stats["floors"], factors, strict=True)]
         law = rescale(self.law, length=length, time=time)
         between = None if self.between is None else rescale(self.between, length=length, time=time)
-        return replace(self, t=self.t * time, q=q, p=p, u=u, law=law, extra=extra, stats=stats, between=between)
+        return changed(self, t=self.t * time, q=q, p=p, u=u, law=law, extra=extra, stats=stats, between=between)
 
     @cached_property
     def _flows(self) -> tuple[FloatArray, FloatArray]:
@@ -178,7 +181,7 @@ class Trajectory:
 
     def energy(self) -> FloatArray:
         """The law's energy H at each sample, shape (T,)."""
-        return self._energy
+        return self._energy.copy()
 
     @cached_property
     def _energy(self) -> FloatArray:
@@ -186,7 +189,7 @@ class Trajectory:
 
     def energy_rate(self) -> FloatArray:
         """dH/dt in closed form at each sample, shape (T,)."""
-        return self._flows[1]
+        return self._flows[1].copy()
 
     @property
     def energy_residual(self) -> FloatArray:
@@ -195,10 +198,13 @@ class Trajectory:
         Raises
         ------
         ArgumentError
-            If the run carries no ``extra["work"]`` (its law has no energy).
+            If the run carries no ``extra["work"]``: its law has no energy, or `simulate` did not make it.
         """
         if "work" not in self.extra:
-            raise ArgumentError("this run has no energy balance: its law has no energy")
+            raise ArgumentError(
+                "this run has no energy balance: it carries no extra['work'], the integral of dH/dt, which simulate "
+                "adds where the law has an energy; energy() gives H alone"
+            )
         energy, work = self.energy(), self.extra["work"]
         residual: FloatArray = energy - energy[0] - (work - work[0])  # the first may be later than the start
         return residual
@@ -288,7 +294,7 @@ class Trajectory:
             else:
                 raise UnknownNameError("metric", name, self._metric_names)
             self._measured[name] = values
-        return self._measured[name]
+        return self._measured[name].copy()
 
     def remembered(self, name: str, compute: Callable[[], _Value]) -> _Value:
         """What was computed from this run before, or is now: kept as long as the run.
@@ -303,13 +309,6 @@ class Trajectory:
         if name not in self._memory:
             self._memory[name] = compute()
         return self._memory[name]  # type: ignore[no-any-return]
-
-    def samples_digest(self) -> bytes:
-        """Of all times, positions, velocities, accelerations and further series, to the bit."""
-        digest = hashlib.sha256()
-        for series in (self.t, self.q, self.p, self.u, *(self.extra[name] for name in sorted(self.extra))):
-            digest.update(np.ascontiguousarray(series).data)
-        return digest.digest()
 
     def __getstate__(self) -> dict[str, Any]:
         """All but what is remembered: a copy can be written to, and some measures are functions that do not travel."""
@@ -455,7 +454,7 @@ class Trajectory:
         if "work" in extra:
             extra["work"] = extra["work"] - extra["work"][0]
         between = None if self.between is None else self.between.within(self.t, self.t[keep])
-        return replace(
+        return changed(
             self, t=self.t[keep], q=self.q[keep], p=self.p[keep], u=self.u[keep], extra=extra, between=between
         )
 

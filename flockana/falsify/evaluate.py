@@ -15,30 +15,19 @@ from flockana.falsify.grade import FAILED, grade
 from flockana.falsify.space import Space
 from flockana.scenarios import Scenario
 from flockana.theorems import Claim, Theorem, Tolerances, Verdict, theorem, verify
+from flockana.theorems.claims import vacuous
 from flockana.theorems.leads import squash
 from flockana.theorems.theorem import Lead, unmet
 
 
 @dataclass(frozen=True)
 class Evaluation:
-    """Grade, deciding claim and verdict of one point of the search space.
+    """Grade, deciding claim and verdict of one point of the search space."""
 
-    Parameters
-    ----------
-    grade : float
-        What the search minimises.
-    claim : str
-        The claim that decided it.
-    verdict : Verdict or None
-        None if the run, or its check, failed.
-    message : str
-        Why it failed.
-    """
-
-    grade: float
-    claim: str = ""
-    verdict: Verdict | None = None
-    message: str = ""
+    grade: float  # what the search minimises
+    claim: str = ""  # the claim that decided it
+    verdict: Verdict | None = None  # none if the run, or its check, failed
+    message: str = ""  # why it failed
 
     @property
     def found(self) -> bool:
@@ -48,30 +37,15 @@ class Evaluation:
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """A theorem to be refuted in a search space; called with a point it gives an `Evaluation`, errors included.
-
-    Parameters
-    ----------
-    space : Space
-        The search space.
-    theorem : str or Theorem
-        The theorem.
-    tolerances : Tolerances
-        Thresholds.
-    claim : str or None
-        The claim whose grade counts; None for the least grade of all.
-    surrogate : callable or None
-        ``surrogate(trajectory, claim) -> float`` in [0, 1], instead of the theorem's own `leads`.
-    scales : mapping of str to float
-        Units of the margins by claim, 1 where none is given.
-    """
+    """A theorem to be refuted in a search space; called with a point it gives an `Evaluation`, errors included."""
 
     space: Space
     theorem: str | Theorem
     tolerances: Tolerances
-    claim: str | None = None
+    claim: str | None = None  # the claim whose grade counts; None for the least grade of all
+    # ``surrogate(trajectory, claim) -> float`` in [0, 1], instead of the theorem's own `leads`
     surrogate: Lead | None = None
-    scales: Mapping[str, float] = field(default_factory=dict)
+    scales: Mapping[str, float] = field(default_factory=dict)  # units of the margins by claim, 1 where none is given
 
     def __call__(self, point: FloatArray) -> Evaluation:
         """Evaluate a point; an error becomes the grade of a failed run."""
@@ -102,7 +76,7 @@ class Problem:
     def graded(self, run: Trajectory, verdict: Verdict) -> Evaluation:
         """Grade a verdict."""
         if self.claim is not None and all(claim.name != self.claim for claim in verdict.claims):
-            verdict = replace(verdict, claims=(*verdict.claims, Claim(self.claim, "vacuous", detail="not judged")))
+            verdict = replace(verdict, claims=(*verdict.claims, vacuous(self.claim, "not judged")))
         chosen = [claim for claim in verdict.claims if self.claim in (None, claim.name)]
         grades = {claim.name: self._grade(run, verdict, claim) for claim in chosen}
         worst = min(grades, key=grades.__getitem__)
@@ -113,9 +87,8 @@ class Problem:
         lead = self.surrogate or checked.leads.get(claim.name)
         if claim.status == "vacuous" and unmet(verdict.hypotheses):
             lead = None  # unmet hypotheses lead back; and the law may not have what a surrogate measures
-        aid = 0.0 if lead is None else min(max(float(lead(run, claim)), 0.0), 1.0)
-        unit = self.scales.get(claim.name, 1.0)
-        value = grade(claim, verdict.hypotheses, scale=unit, lead=aid, limit=claim.name in checked.limits)
+        aid = None if lead is None else min(max(float(lead(run, claim)), 0.0), 1.0)
+        value = grade(claim, verdict.hypotheses, scale=self.scales.get(claim.name, 1.0), lead=aid)
         if self.claim is None and claim.status == "inconclusive":
             return max(value, 0.0)  # its margin does not decide it, so a lower one must not draw the search
         return value

@@ -1,7 +1,8 @@
 """The grade that the search minimises: a number for each run, lower the nearer it comes to refuting the claim.
 
 Refuted runs are graded in [-3, -2], judged ones in (-1, 1.001], vacuous ones from 2 on, failed ones 1000. So a search
-that leaves the hypotheses is led back by how far they are missed, and comes to the margin when they are met.
+that leaves the hypotheses is led back by how far they are missed, and comes to the margin when they are met. A run
+whose numbers contradict a proof is no counterexample, and its margin leads no search.
 """
 
 from __future__ import annotations
@@ -17,10 +18,10 @@ _REFUTED, _VACUOUS = -2.0, 2.0
 _LEAD = 1e-3  # of a surrogate: less than a step of any count, so it orders only what the margin leaves equal
 
 
-def grade(
-    claim: Claim, hypotheses: Iterable[Hypothesis], *, scale: float = 1.0, lead: float = 0.0, limit: bool = False
-) -> float:
-    """The grade of one claim on one run.
+def grade(claim: Claim, hypotheses: Iterable[Hypothesis], *, scale: float = 1.0, lead: float | None = None) -> float:
+    """Return the grade of one claim on one run.
+
+    A claim about a limit that has a lead is graded by it: how well a limit is known tells nothing of what it is.
 
     Examples
     --------
@@ -29,19 +30,20 @@ def grade(
     True
     """
     margin = float("nan") if claim.margin is None else float(claim.margin)
+    aid = 0.0 if lead is None else _LEAD * lead
     if claim.status == "vacuous":
-        return _VACUOUS + missing(hypotheses) + _LEAD * lead
+        return _VACUOUS + missing(hypotheses) + aid
     if claim.status == "refuted":
         return _REFUTED + (squash(margin / scale) if margin < 0.0 else 0.0)
-    if limit:
+    if claim.about == "limit" and lead is not None:
         return lead
-    if isnan(margin):
-        return (1.0 if claim.status == "verified" else 0.0) + _LEAD * lead
-    return squash(margin / scale) + _LEAD * lead
+    if isnan(margin) or claim.contradicts:
+        return (1.0 if claim.status == "verified" else 0.0) + aid
+    return squash(margin / scale) + aid
 
 
 def missing(hypotheses: Iterable[Hypothesis]) -> float:
-    """How far hypotheses are from being met: the sum over the unmet ones, each below 1, or 1 if it has no margin.
+    """Return how far hypotheses are from being met: the sum over the unmet ones, each below 1, or 1 without a margin.
 
     Examples
     --------

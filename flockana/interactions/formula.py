@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive
 from flockana.base.errors import ArgumentError
+from flockana.base.facts import PairFacts
 from flockana.base.units import Powers
 from flockana.interactions.formula_parts import FormulaParts, formula_parts
 from flockana.interactions.pair import PairInteraction, evaluate
@@ -66,6 +68,8 @@ class FormulaInteraction(PairInteraction):
     parameters: tuple[tuple[str, float], ...] = ()
     powers: tuple[tuple[str, int, int], ...] = ()
 
+    derives: ClassVar[Mapping[str, tuple[str, ...]]] = {"kernels": ("force", "stress", "weight", "energy_at")}
+
     def __post_init__(self) -> None:
         if bool(self.potential) == bool(self.force_formula):
             raise ArgumentError("expected a potential or a force, one of the two")
@@ -116,9 +120,15 @@ class FormulaInteraction(PairInteraction):
         return self._parts.surfaces
 
     @property
+    def facts(self) -> PairFacts:
+        """What is proved of the formula over its whole range, by branch and bound; decided when first asked for."""
+        return self._parts.facts
+
+    @property
     def faults(self) -> tuple[str, ...]:
         """Where it is not C¹, does not end smoothly or has no limit, each in words."""
-        return self._parts.faults
+        none = "coincidence is excluded: the force has no limit where two agents meet"
+        return (*(() if self.coincidence else (none,)), *self.facts.faults)
 
     @property
     def coincidence(self) -> bool:
@@ -129,16 +139,6 @@ class FormulaInteraction(PairInteraction):
     def strength(self) -> float:
         """The largest force, on a grid; from d/2 on, and up to 0.9 r, where it is unbounded."""
         return self._parts.strength
-
-    @property
-    def least_weight(self) -> float:
-        """The least adjacency, on the grid of `strength`: negative where agents drive each other's velocities apart."""
-        return float(self._parts.looks[1].min())
-
-    @property
-    def c_star(self) -> float:
-        """The largest |ψ| within the range, on the grid of `strength`: what rounding of energies counts in."""
-        return self._parts.most_energy
 
     @property
     def far_potential(self) -> float:

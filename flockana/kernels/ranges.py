@@ -54,8 +54,8 @@ def _slopes(c):
 
 
 @njit(cache=True)
-def _follow(stack, widths, band, was_out):
-    """(was out of range, what is known of entries) along the polynomial stack[0], within a band of what is certain."""
+def _follow(stack, widths, band, wiggle, was_out):
+    """(was out of range, what is known of entries) along stack[0], known to a band, and its slope to a wiggle."""
     known = NEVER
     widths[0], top = 1.0, 0
     while top >= 0:
@@ -68,12 +68,12 @@ def _follow(stack, widths, band, was_out):
             if was_out:
                 return was_out, ENTERS
             top -= 1
-        elif slopes[0] * 10.0 > _WIGGLE * band * width:  # it rises: from within the range, if it was
+        elif slopes[0] * 10.0 > wiggle * width:  # it rises: from within the range, if it was
             if was_out and c[0] < -band:
                 return was_out, ENTERS
             was_out = was_out or c[10] > band
             top -= 1
-        elif slopes[1] * 10.0 < -_WIGGLE * band * width and (c[0] > band or was_out) and c[10] < -band:
+        elif slopes[1] * 10.0 < -wiggle * width and (c[0] > band or was_out) and c[10] < -band:
             return True, ENTERS
         elif width < 2.0**-_DEPTH or (least >= -band and most <= band):
             was_out = was_out or c[0] > band or c[10] > band
@@ -89,8 +89,10 @@ def _follow(stack, widths, band, was_out):
 def follow_pairs(h, q0, p0, u0, q1, p1, u1, r, noise, was_out, unsure):
     """Go on by one interval with every pair: the first that comes into range for certain, or (-1, -1).
 
-    `was_out` and `unsure` are flags of all pairs in lexicographic order; `noise` is the rounding of a distance.
+    `was_out` and `unsure` are flags of all pairs in lexicographic order; `noise` is (the rounding of a distance, and by
+    how much it and its rate may be off the true ones).
     """
+    rounding, place, speed = noise
     n = q0.shape[0]
     points, reach, allowance = control_points(h, q0, p0, u0, q1, p1, u1)
     stack, widths, k = np.empty((_DEPTH + 3, 11)), np.empty(_DEPTH + 3), -1
@@ -100,16 +102,19 @@ def follow_pairs(h, q0, p0, u0, q1, p1, u1, r, noise, was_out, unsure):
             s2 = 0.0
             for x in range(3):
                 s2 += (points[j, 0, x] - points[i, 0, x]) ** 2
-            s, way = np.sqrt(s2), reach[i] + reach[j] + noise
+            s, way = np.sqrt(s2), reach[i] + reach[j] + rounding + place
             if s - way > r:
                 was_out[k] = True
                 continue
             if s + way < r and not was_out[k]:
                 continue
-            slack = allowance[i] + allowance[j] + noise
+            off = allowance[i] + allowance[j] + rounding
+            slack = off + place
             _squared(points, i, j, r, stack[0])
-            band = (4.0 * r + slack) * slack + _ROUNDING * np.abs(stack[0]).max()
-            was_out[k], known = _follow(stack, widths, band, was_out[k])
+            least = _ROUNDING * np.abs(stack[0]).max()
+            band = (4.0 * r + slack) * slack + least
+            wiggle = _WIGGLE * ((4.0 * r + slack) * off + least) + 4.0 * ((r + slack) * speed * h + way * place)
+            was_out[k], known = _follow(stack, widths, band, wiggle, was_out[k])
             if known == ENTERS:
                 return i, j
             if known == UNSURE:

@@ -7,7 +7,7 @@ from flockana.equilibria.solve import find_equilibrium
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.stability.delay import DelaySystem, delay_margin, delay_system, rightmost_roots, root_error, scalar_margin
-from flockana.theorems.claims import of_state
+from flockana.theorems.claims import spectral
 from flockana.theorems.rounding import EPS
 from flockana.theorems.theorem import Checked, Claim, Theorem, Tolerances
 
@@ -31,14 +31,14 @@ def _pair(law: Algorithm1) -> Claim:
     stiffness, damping = (float(matrix[0, 0] - matrix[0, 1]) for matrix in system.late)
     swept, exact = delay_margin(system).delay, scalar_margin(stiffness, damping).delay
     off = abs(swept - exact) / exact
-    return of_state(
+    return spectral(
         "pair",
         _ALIKE - off,
         64.0 * EPS,
         computed={"sweep": swept, "closed form": exact},
-        stated=f"τ* = atan2(ωd, k)/ω with ω² = ½(d² + √(d⁴ + 4k²)), to {_ALIKE:g} of it",
+        stated="τ* = atan2(ωd, k)/ω with ω² = ½(d² + √(d⁴ + 4k²))",
         proof="second-order-modes",
-        detail=f"k = {stiffness:.5g}, d = {damping:.4g}: τ* = {exact:.6g}, off by {off:.1g} of it",
+        detail=f"k = {stiffness:.5g}, d = {damping:.4g}: τ* = {exact:.6g}, off by {off:.1g} of it in a sweep",
     )
 
 
@@ -49,7 +49,7 @@ def _delay(law: Algorithm1 | Algorithm2, delayed: str) -> Claim:
     critical = delay_margin(system)
     below, error_below = _rightmost(system, (1.0 - _AROUND) * critical.delay)
     above, error_above = _rightmost(system, (1.0 + _AROUND) * critical.delay)
-    return of_state(
+    return spectral(
         f"algorithm-{kind}-{delayed}",
         *min((-below, error_below), (above, error_above)),
         computed={"n": len(q), "delay": critical.delay, "frequency": critical.frequency},

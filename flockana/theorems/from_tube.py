@@ -1,7 +1,7 @@
 """Claims decided by a tube (`flockana.enclose`): of rigour interval, for every start that it encloses.
 
-A margin is a ball. Where it lies on one side of 0, it decides; where it does not, the tube is too wide, and the claim
-is inconclusive. A limit is claimed from the certified basin that the tube ends in.
+A margin is a ball. Where it lies on one side of 0, it decides; where it does not, it is too wide, and the claim is
+inconclusive. A limit is claimed from the certified basin that the tube ends in.
 """
 
 from __future__ import annotations
@@ -13,7 +13,9 @@ from math import inf
 from typing import TYPE_CHECKING, Any
 
 from flockana.theorems.claims import judged
-from flockana.theorems.hypotheses import condition
+from flockana.theorems.enclosure import Enclosure
+from flockana.theorems.hypotheses import positive_room
+from flockana.theorems.limits import Certificate, limit_claim
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances
 
 if TYPE_CHECKING:
@@ -74,8 +76,22 @@ def enclosed_by(name: str, module: str = "enclosed") -> Callable[..., Checked]:
     return check
 
 
-def decided(name: str, margin: arb, needs: Iterable[Hypothesis] = (), **fields: Any) -> Claim:
-    """A claim that holds if its margin is certainly positive, and fails if it is certainly negative.
+def ends(ball: arb) -> Enclosure:
+    """Return a ball as an enclosure in floating point, with infinite ends if it is not finite.
+
+    Examples
+    --------
+    >>> from flint import arb
+    >>> [round(float(end), 9) for end in (ends(arb(1, 0.5)).lo, ends(arb("inf")).hi)]
+    [0.5, inf]
+    """
+    from flockana.certified.tube import down, up
+
+    return Enclosure.between(*((down(ball.lower()), up(ball.upper())) if ball.is_finite() else (-inf, inf)))
+
+
+def decided(name: str, margin: arb, needs: Iterable[Hypothesis] = (), *, detail: str = "", **fields: Any) -> Claim:
+    """Return a claim that holds if its margin is certainly not negative, and fails if it is certainly negative.
 
     Examples
     --------
@@ -83,29 +99,17 @@ def decided(name: str, margin: arb, needs: Iterable[Hypothesis] = (), **fields: 
     >>> [decided("i", x).status for x in (arb(1, 0.5), arb(0, 1), arb(-1, 0.5))]
     ['verified', 'inconclusive', 'refuted']
     """
-    from flockana.certified.tube import down, up
-
-    low, high = (down(margin.lower()), up(margin.upper())) if margin.is_finite() else (-inf, inf)
-    if low > 0.0 or high < 0.0:
-        return judged(name, low if low > 0.0 else high, 0.0, needs, rigour="interval", **fields)
-    wide = f"the tube is too wide to tell: the margin is between {low:.3g} and {high:.3g}"
-    fields["detail"] = "; ".join(text for text in (fields.get("detail", ""), wide) if text)
-    return judged(name, 0.0, max(high, -low), needs, rigour="interval", **fields)
-
-
-def known(name: str, reason: str, needs: Iterable[Hypothesis], *, holds: bool, **fields: Any) -> Claim:
-    """A claim that is verified if something is known, and inconclusive for a reason if it is not."""
-    detail = "; ".join(text for text in (fields.pop("detail", ""), "" if holds else reason) if text)
-    margin, error = (1.0, 0.0) if holds else (0.0, inf)
-    return judged(name, margin, error, needs, rigour="interval", detail=detail, **fields)
+    room = ends(margin)
+    if room.lo < 0.0 <= room.hi:
+        wide = f"the enclosure alone is too wide to tell: the margin is between {room.lo:.3g} and {room.hi:.3g}"
+        detail = f"{detail}; {wide}".lstrip("; ")
+    return judged(name, room, needs, rigour="interval", detail=detail, **fields)
 
 
 def below(name: str, energy: arb, bound: arb) -> Hypothesis:
-    """The hypothesis that an energy lies below a bound, by balls: assumed where they overlap."""
+    """Return the hypothesis that an energy lies below a bound: assumed where balls leave it open."""
     text = f"H(0) is in [{float(energy.lower()):.6g}, {float(energy.upper()):.6g}], the bound is {float(bound):.6g}"
-    if energy < bound or energy >= bound:
-        return condition(name, bool(energy < bound), float((bound - energy).mid()), text)
-    return Hypothesis(name, "assumed", 0.0, f"{text}; the tube is too wide to tell")
+    return positive_room(name, ends(bound - energy), text)
 
 
 def met(tube: Tube) -> dict[Pair, float]:
@@ -156,13 +160,28 @@ def no_collision(case: Enclosed, needs: Iterable[Hypothesis], *, name: str, proo
     )
 
 
+def in_the_limit(
+    case: Enclosed, needs: Iterable[Hypothesis], margin: arb | None = None, *, name: str, **fields: Any
+) -> Claim:
+    """Return a claim about the limit of every start: by a margin of the basin that the tube ends in, if it has one."""
+    if case.basin is None:
+        return limit_claim(name, needs, [Certificate(-1.0, case.doubt)], rigour="interval", **fields)
+    room = Enclosure.of(1.0) if margin is None else ends(margin)
+    return limit_claim(
+        name,
+        needs,
+        [Certificate(float(room.lo), "", 0.0)],
+        escape=Certificate(float(-room.hi), "", 0.0),
+        rigour="interval",
+        **fields,
+    )
+
+
 def converges(case: Enclosed, needs: Iterable[Hypothesis], *, name: str, stated: str, detail: str) -> Claim:
     """The claim that every start of the tube converges to the orbit of the basin that it ends in."""
     last = case.tube.t[-1]
     caught = f"{detail}; all states at t = {last:g} lie in a certified basin" if case.basin is not None else detail
-    return known(
-        name, case.doubt, needs, holds=case.basin is not None, stated=stated, witness={"time": last}, detail=caught
-    )
+    return in_the_limit(case, needs, name=name, stated=stated, witness={"time": last}, detail=caught)
 
 
 def certain_links(distances: Mapping[Pair, arb], reach: arb) -> tuple[list[Pair], list[Pair]]:

@@ -289,8 +289,6 @@ class Theorem:
     leads : mapping of str to callable
         By claim, a surrogate ``lead(trajectory, claim)`` in [0, 1] that leads a search for a counterexample where the
         claim's margin gives no slope.
-    limits : tuple of str
-        Claims about limits that a run may refute all the same: until one does, their margin leads no search.
     law : callable, optional
         Of a theorem about runs: ``law(run)`` is the hypothesis that the run is of a law that the theorem is about. Only
         if it is met is `check` called.
@@ -311,7 +309,6 @@ class Theorem:
     references: tuple[str, ...] = ("olfati-saber-2006",)
     expected: Mapping[str, Status] = field(default_factory=dict)
     leads: Mapping[str, Lead] = field(default_factory=dict)
-    limits: tuple[str, ...] = ()
     law: Callable[[Any], Hypothesis] | None = None
     claims: tuple[str, ...] = ()
     reason: str = "{name}: {detail}"

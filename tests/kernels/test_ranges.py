@@ -11,10 +11,10 @@ from flockana.kernels.ranges import follow_pairs, follow_steps
 R = 1.0
 
 
-def found(h, start, end, was_out=False, noise=1e-12):
+def found(h, start, end, was_out=False, noise=1e-12, place=0.0, speed=0.0):
     """(enters, unsure, is out afterwards) of one pair over one interval."""
     out, unsure = np.array([was_out]), np.array([False])
-    pair = follow_pairs(h, *start, *end, R, noise, out, unsure)
+    pair = follow_pairs(h, *start, *end, R, (noise, place, speed), out, unsure)
     return pair == (0, 1), bool(unsure[0]), bool(out[0])
 
 
@@ -107,3 +107,11 @@ def test_steps_of_a_map_have_nothing_between_them():
     assert not unsure.any()
     follow_steps(np.array([[0.0], [1.0 + 1e-13], [5.0]]), R, 1e-12, out, unsure)
     assert unsure.tolist() == [True, False, False]
+
+
+@pytest.mark.parametrize(("speed", "unsure"), [(0.0, False), (0.4, False), (2.0, True)])
+def test_who_leaves_at_a_known_speed_does_not_come_in_however_little_is_known_of_the_place(speed, unsure):
+    """From R − 1e-9 to R + 1e-9, known to 1e-6 and parting at 1: in so short a step the sign of the rate decides."""
+    zero = np.zeros((2, 1))
+    states = [(np.array([[0.0], [R + x]]), np.array([[0.0], [1.0]]), zero) for x in (-1e-9, 1e-9)]
+    assert found(2e-9, *states, place=1e-6, speed=speed)[:2] == (False, unsure)

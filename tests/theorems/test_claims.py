@@ -43,7 +43,9 @@ def test_over_time_one_instant_that_certainly_fails_refutes_and_one_that_may_lea
     assert judged("i", wide).status == "inconclusive"
 
 
-@pytest.mark.parametrize(("about", "statuses"), [("all", ("inconclusive", "refuted")), ("limit", ("inconclusive",) * 2)])
+@pytest.mark.parametrize(
+    ("about", "statuses"), [("all", ("inconclusive", "refuted")), ("limit", ("inconclusive",) * 2)]
+)
 def test_numbers_of_one_run_verify_nothing_about_all_cases_and_decide_no_limit(about, statuses):
     assert tuple(judged("i", margin, about=about).status for margin in (HOLDS, FAILS)) == statuses
 
@@ -62,9 +64,7 @@ def test_a_proof_decides_where_its_needs_are_met_and_numbers_stand_beside_it():
 def test_numbers_against_a_proof_decide_nothing_and_say_so(margin, fields):
     claim = judged("i", margin, [MET], detail="R <= 3", **fields)
     assert (claim.status, claim.contradicts) == ("inconclusive", "cohesion")
-    assert claim.detail == (
-        "R <= 3; the numbers contradict the proof 'cohesion': the run or the library is at fault"
-    )
+    assert claim.detail == ("R <= 3; the numbers contradict the proof 'cohesion': the run or the library is at fault")
 
 
 @pytest.mark.parametrize(
@@ -94,7 +94,8 @@ def test_a_claim_refuses_an_error_below_0():
 
 
 @pytest.mark.parametrize(
-    ("certain", "possible", "status"), [(0, 3, "verified"), (3, 4, "inconclusive"), (4, 9, "refuted"), (3, 3, "verified")]
+    ("certain", "possible", "status"),
+    [(0, 3, "verified"), (3, 4, "inconclusive"), (4, 9, "refuted"), (3, 3, "verified")],
 )
 def test_whole_numbers_are_judged_by_what_certainly_and_what_possibly_happens(certain, possible, status):
     claim = counted("links", 3, certain, possible)

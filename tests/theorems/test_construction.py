@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-import flockana.theorems as room
+import flockana
 from flockana.theorems.proofs import CITES, RIGOUR
 from proofs.proof import load
 
-FILES = sorted(Path(room.__file__).parent.rglob("*.py"))
+FILES = sorted((Path(flockana.__file__).parent / "theorems").rglob("*.py"))
 ALLOWED = {
     "simulate": {"observed.py", "second_run.py", "catalogue.py"},
     "Claim": {"claims.py", "theorem.py"},
@@ -43,7 +43,9 @@ def named_proofs():
         constants = {
             node.targets[0].id: node.value.value
             for node in tree.body
-            if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name) and isinstance(node.value, ast.Constant)
+            if isinstance(node, ast.Assign)
+            and isinstance(node.targets[0], ast.Name)
+            and isinstance(node.value, ast.Constant)
         }
         for node in ast.walk(tree):
             if isinstance(node, ast.keyword) and node.arg in ("proof", "disproof"):

@@ -45,7 +45,11 @@ def test_functions_hold_the_value_that_mpmath_computes(value, width, share):
     x, exact = drawn(value, width * value, share)
     with mpmath.workdps(40):
         at = mpmath.mpf(exact.numerator) / exact.denominator
-        for found, true in ((x.sqrt(), mpmath.sqrt(at)), (x.log(), mpmath.log(at)), ((x / 1e4).exp(), mpmath.exp(at / 10**4))):
+        for found, true in (
+            (x.sqrt(), mpmath.sqrt(at)),
+            (x.log(), mpmath.log(at)),
+            ((x / 1e4).exp(), mpmath.exp(at / 10**4)),
+        ):
             assert mpmath.mpf(float(found.lo)) <= true <= mpmath.mpf(float(found.hi))
 
 

@@ -16,9 +16,10 @@ from flockana.laws.olfati_saber import Algorithm1
 from flockana.measures.nets import laplacian
 from flockana.stability.consensus import consensus_root, consensus_system
 from flockana.stability.delay import DelaySystem, delay_margin, delay_system, rightmost_roots, root_error
-from flockana.theorems.claims import erratum, of_state
+from flockana.theorems.claims import erratum, of_state, spectral
+from flockana.theorems.from_tube import decided
 from flockana.theorems.rounding import EPS
-from flockana.theorems.theorem import Claim, Status, Tolerances
+from flockana.theorems.theorem import Claim, Tolerances
 
 _PROOF = "delayed-consensus"
 _AROUND = Fraction(1, 100)  # of the margin: how far to either side roots are looked at
@@ -57,7 +58,7 @@ def _margin(nets: dict[str, tuple[DelaySystem, float]]) -> Claim:
         found = delay_margin(system)
         listed[name] = found.delay
         off = max(off, abs(found.delay * 2.0 * largest / pi - 1.0), abs(found.frequency / largest - 1.0))
-    return of_state(
+    return spectral(
         "margin",
         _SWEEP - off,
         0.0,
@@ -81,7 +82,7 @@ def _side(name: str, sign: int, nets: dict[str, tuple[DelaySystem, float]]) -> C
             margin, error = sign * root.real / largest, sharp / largest
     words = "grows" if sign > 0 else "decays"
     closed = f"; it is Lambert's W(-λ_n τ)/τ, to {off:.1g}" if sign > 0 else ""
-    return of_state(
+    return spectral(
         name,
         margin,
         error,
@@ -120,11 +121,9 @@ def _exact(name: str, sign: int) -> Claim:
     """The rightmost root of one mode, enclosed: W₀ has the greatest real part of all branches."""
     share = 1 + sign * _AROUND
     root = root_enclosure(share)
-    status: Status = "verified" if sign * root.real > 0 else "refuted" if sign * root.real < 0 else "inconclusive"
-    return Claim(
+    return decided(
         name,
-        status,
-        "interval",
+        sign * root.real,
         computed=str(root.real),
         stated=f"Re s {'>' if sign > 0 else '<'} 0 at λτ = {share} π/2",
         witness=str(root),

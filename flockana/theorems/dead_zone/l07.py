@@ -69,7 +69,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             [],
             [ramped],
             computed=float(np.sqrt(spreads(p[None])[0] / len(p))),
-            detail=f"with a ramp of 0.25 the mismatch vanishes",
+            detail="with a ramp of 0.25 the mismatch vanishes",
         ),
     ]
 

@@ -128,18 +128,24 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             "neighbours feed or drain it",
         ),
         _follow(
-            "one-leader", runs["one"], "all follow one leader that one agent of seven is pinned to", "with 1 of 7 pinned"
+            "one-leader",
+            runs["one"],
+            "all follow one leader that one agent of seven is pinned to",
+            "with 1 of 7 pinned",
         ),
         _apart(runs["two"]),
         _fraction(),
-        _follow("acceleration", runs["told"], "all follow a leader that turns, its acceleration known", "with feedforward"),
+        _follow(
+            "acceleration", runs["told"], "all follow a leader that turns, its acceleration known", "with feedforward"
+        ),
         of_map(
             "acceleration-needed",
             deaf - _CLOSE,
             _ROUNDING,
             computed=deaf,
             stated="at those times they do not, if its acceleration is not known",
-            detail=f"without it some velocity is off by {deaf:.2g} of the leader's speed at t = {late[0]:g} and {late[1]:g}",
+            detail=f"without it some velocity is off by {deaf:.2g} of the leader's speed at t = {late[0]:g} and "
+            f"{late[1]:g}",
         ),
     ]
 

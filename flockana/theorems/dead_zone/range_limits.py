@@ -64,10 +64,10 @@ def first_entry(seen: Observed, r: float) -> Entry:
         return Entry(None, None, thinned(run) or bool(unsure.any()))
     t, q, p, u, slack = run.path  # its own steps too: an input that jumps at a switch has its other value beside it
     noise += 2.0 * float(slack.max()) if slack is not None else 0.0
-    noise += 2.0 * float(seen.between_error.max())
+    known = (noise, 2.0 * float(seen.between_error.max()), 2.0 * float(seen.between_speed_error.max()))
     for k in range(len(t) - 1):
         pair = follow_pairs(
-            float(t[k + 1] - t[k]), q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1], r, noise, was_out, unsure
+            float(t[k + 1] - t[k]), q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1], r, known, was_out, unsure
         )
         if pair[0] >= 0:
             return Entry(pair, float(t[k + 1]), True)

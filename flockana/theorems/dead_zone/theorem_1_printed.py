@@ -92,7 +92,9 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
         _cohesion(seen, end, needs),
         _energy(seen, law, needs),
         velocities_match(seen, end, needs, name="velocity"),
-        no_collision(seen, Enclosure.of(0.0), law.scales.length, needs, name="collision", proof=None if seen.is_map else PROOF),
+        no_collision(
+            seen, Enclosure.of(0.0), law.scales.length, needs, name="collision", proof=None if seen.is_map else PROOF
+        ),
     ]
 
 

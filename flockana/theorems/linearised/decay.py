@@ -9,7 +9,6 @@ from typing import Any
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError, FlockanaError
-from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.obstacles import Wall
 from flockana.environment.targets import StaticTarget
 from flockana.equilibria.solve import find_equilibrium
@@ -20,8 +19,9 @@ from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.stability.decay import Decay, LinearRange, decay, decay_table, linear_range
 from flockana.stability.linearisation import Linearisation
 from flockana.stability.linearise import linearise
-from flockana.theorems.claims import erratum, of_state
+from flockana.theorems.claims import erratum, spectral, undecided
 from flockana.theorems.hypotheses import condition
+from flockana.theorems.observed import Observed
 from flockana.theorems.slides.e05 import fcc_star
 from flockana.theorems.theorem import Checked, Claim, Theorem, Tolerances
 
@@ -73,7 +73,7 @@ def _agreement(decays: Sequence[Decay], tolerances: Tolerances) -> list[Claim]:
     other = max(decays, key=lambda each: each.random_difference)
     error = max(each.error / each.predicted for each in decays)
     return [
-        of_state(
+        spectral(
             "decay",
             tolerances.agreement - worst.difference,
             error,
@@ -83,7 +83,7 @@ def _agreement(decays: Sequence[Decay], tolerances: Tolerances) -> list[Claim]:
             detail=f"measured rates differ from the predicted ones by {worst.difference:.2g} at most ({worst.name}: "
             f"{worst.measured:.6g} for {worst.predicted:.6g})",
         ),
-        of_state(
+        spectral(
             "random",
             tolerances.agreement - other.random_difference,
             error,
@@ -106,7 +106,7 @@ def _range(ranges: Mapping[str, LinearRange], alpha: AlphaInteraction) -> Claim:
     limits = "; ".join(
         f"{name}: 1 % at {each.limit(0.01):.2g} d, 10 % at {each.limit(0.1):.2g} d" for name, each in ranges.items()
     )
-    return of_state(
+    return spectral(
         "range",
         margin,
         error,
@@ -126,32 +126,32 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     return [*_agreement(decay_table(flocks), tolerances), _range(ranges, AlphaInteraction())]
 
 
-def _terminal(run: Trajectory) -> tuple[Linearisation | None, str]:
+def _terminal(seen: Observed) -> tuple[Linearisation | None, str]:
     """The equilibrium beside the run's last state, linearised; or None and why there is none."""
-    law: Any = run.law
+    law: Any = seen.law
     if type(law) not in (Algorithm1, Algorithm2, Algorithm3):  # a subclass may push otherwise
         return None, f"{type(law).__name__} has no equilibria that are sought here"
-    if run.n > _MOST:
-        return None, f"n = {run.n}: more than {_MOST}"
+    if seen.n > _MOST:
+        return None, f"n = {seen.n}: more than {_MOST}"
     if law.target is not None:
-        law = replace(law, target=StaticTarget(law.target.position(float(run.t[-1]))))
+        law = replace(law, target=StaticTarget(law.target.position(float(seen.t[-1]))))
     try:
-        linear = linearise(law, find_equilibrium(law, run.q[-1], method="descent"))  # from beside it, a few steps
+        linear = linearise(law, find_equilibrium(law, seen.end.q, method="descent"))  # from beside it, a few steps
     except FlockanaError as error:
         return None, str(error)
     return linear, f"residual {linear.residual:.2g}, decay rate {linear.decay_rate:.4g}"
 
 
-def _check_terminal(run: Trajectory, tolerances: Tolerances) -> Checked:
-    linear, why = _terminal(run)
+def _check_terminal(seen: Observed, tolerances: Tolerances) -> Checked:
+    linear, why = _terminal(seen)
     stable = linear is not None and bool(linear.modes) and linear.stable
     given = [condition("an equilibrium near the last state is stable", stable, detail=why)]
     if linear is None or not stable:
         return given, []
     try:
-        rates = decay(linear, name=f"n = {run.n}, last state")
+        rates = decay(linear, name=f"n = {seen.n}, last state")
     except ArgumentError as error:  # it has no shape, or hardly any damping
-        return given, [Claim(name, "inconclusive", detail=f"no rate was measured: {error}") for name in _NAMES]
+        return given, [undecided(name, f"no rate was measured: {error}") for name in _NAMES]
     return given, _agreement([rates], tolerances)
 
 

@@ -10,6 +10,7 @@ from flockana.certified.intervals import c_star, exact
 from flockana.certified.levels import coincident_floor, coincident_state, disconnected_state, gain
 from flockana.certified.structural_energy import BITS, scaled
 from flockana.certified.tube import Tube, down, up
+from flockana.theorems.claims import undecided, vacuous
 from flockana.theorems.from_tube import (
     Enclosed,
     below,
@@ -17,11 +18,11 @@ from flockana.theorems.from_tube import (
     converges,
     decided,
     groups,
-    known,
+    in_the_limit,
     no_collision,
     rest_strain,
 )
-from flockana.theorems.hypotheses import condition, positive, vacuous
+from flockana.theorems.hypotheses import condition, positive
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, unmet
 
 if TYPE_CHECKING:
@@ -95,12 +96,12 @@ def _lattice(case: Enclosed, needs: list[Hypothesis], tolerances: Tolerances) ->
     """Claim (i): the limit is an equilibrium whose links are d long, within the tolerance."""
     alpha, stated = case.tube.law.alpha, f"|link - d|/d <= {tolerances.lattice:g} in the limit"
     if case.basin is None:
-        return known("i", case.doubt, needs, holds=False, stated=stated, detail="an α-lattice in the limit")
+        return in_the_limit(case, needs, name="i", stated=stated, detail="an α-lattice in the limit")
     with ctx.workprec(BITS):
         strain = rest_strain(case.basin, alpha)
         margin, largest = arb(tolerances.lattice) - strain, up(strain.upper())
     detail = f"every start converges to the basin's equilibrium, whose links are off d by up to {largest:.2g} d"
-    return decided("i", margin, needs, computed=largest, stated=stated, detail=detail)
+    return in_the_limit(case, needs, margin, name="i", computed=largest, stated=stated, detail=detail)
 
 
 def os_3(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
@@ -121,7 +122,7 @@ def os_3(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked
     ]
     names = ("iv-printed", "iv-instant", "iv-none", "iv-barrier")
     if unmet([repels]):
-        return [*needs, repels], [*claims, *vacuous(repels, names)]
+        return [*needs, repels], [*claims, *(vacuous(name, repels) for name in names)]
     none, barrier = _below_c_star(tube), _below_barrier(tube)
     return [*needs, repels, none, barrier], [
         *claims,
@@ -136,7 +137,7 @@ def _cohesive(case: Enclosed, needs: list[Hypothesis]) -> Claim:
     """Claim (i): R stays below the bound that the energy at the start allows, √(2 H(0)/c1γ)."""
     tube = case.tube
     if not tube.taken:
-        return known("i", tube.message, needs, holds=False, stated="R <= sqrt(2 H_λ(0)/c1γ)", proof="cohesion")
+        return undecided("i", tube.message, needs, stated="R <= sqrt(2 H_λ(0)/c1γ)")
     with ctx.workprec(BITS):
         gain = arb(exact(tube.law.gains.c1_gamma))
         largest = float(tube.cohesion_radius().max())
@@ -165,7 +166,7 @@ def _few_pairs(case: Enclosed, repels: Hypothesis) -> Claim:
     apart = no_collision(case, [repels, bites], name="iv-printed")
     if apart.status in ("verified", "vacuous"):
         return apart
-    return known("iv-printed", "whether more pairs meet is open", [repels, bites], holds=False, detail=apart.detail)
+    return undecided("iv-printed", f"{apart.detail}; whether more pairs meet is open", [repels, bites])
 
 
 def collision_energy(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:

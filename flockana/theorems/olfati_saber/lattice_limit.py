@@ -30,5 +30,4 @@ THEOREM = Theorem(
     claims=("lattice",),
     references=("geschwender-2016", "olfati-saber-2006"),
     leads={"lattice": strained},
-    limits=("lattice",),
 )

@@ -13,7 +13,8 @@ from flockana.certified.series import Piece
 from flockana.certified.structural_energy import BITS
 from flockana.certified.total_energy import powers_during, total_energy, work
 from flockana.certified.tube import Tube, up
-from flockana.theorems.from_tube import decided, known
+from flockana.theorems.claims import undecided
+from flockana.theorems.from_tube import decided
 from flockana.theorems.hypotheses import common_gains, condition
 from flockana.theorems.olfati_saber.energy import proved
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances
@@ -129,5 +130,5 @@ def os_6(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked
         needs = [common_gains(law), rests, slow, _stays_outside(tube)]
         if tube.status != "complete":
             reason, stated = f"the tube ends early: {tube.message}", "over the whole time span"
-            return needs, [known(name, reason, needs, holds=False, stated=stated) for name in ("rate", "balance")]
+            return needs, [undecided(name, reason, needs, stated=stated) for name in ("rate", "balance")]
         return needs, [_never_rises(tube, flow, since, needs), _balance(tube, [rests, needs[0]], tolerances)]

@@ -87,5 +87,4 @@ THEOREM = Theorem(
     enclosed=enclosed_by("os_1"),
     claims=("i", "ii", "iii", "iii-barrier"),
     leads={"i": strained},
-    limits=("i",),
 )

@@ -21,7 +21,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 
 def _rank(name: str, share: float, full: int, detail: str, **proof: str) -> Claim:
-    """Return the claim that the measure is 1, as it must be on a connected net: by the rank it comes from, a whole number."""
+    """Return the claim that a connected net has the measure 1: by the rank that it comes from, a whole number."""
     return by_count(
         name,
         full - round(full * share),

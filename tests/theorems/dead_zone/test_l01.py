@@ -39,10 +39,12 @@ def test_by_components_the_axes_matter_and_with_one_sum_they_do_not(verdict_of):
     assert (printed.status, corrected.status) == ("refuted", "verified")
     assert printed.margin == pytest.approx(1e-9 - change, rel=1e-12)
     assert corrected.margin == pytest.approx(1e-9, rel=1e-5, abs=0.0)
-    assert printed.error == corrected.error == 1e-12
+    assert printed.error == pytest.approx(1e-12, rel=1e-3)
+    assert corrected.error == pytest.approx(1e-12, rel=1e-3)
+    assert (printed.disproof, corrected.proof) == ("turned-axes", "turned-axes")
 
 
-def test_a_force_that_keeps_its_direction_is_told(monkeypatch):
+def test_a_force_that_keeps_its_direction_contradicts_the_proof(monkeypatch):
     """10 along the first axis in both, where turned by (0.6, 0.8) it would be (6, 8): off by 8 of the largest."""
 
     class Pushed(DeadZoneFlocking):
@@ -53,5 +55,5 @@ def test_a_force_that_keeps_its_direction_is_told(monkeypatch):
     claim = {claim.name: claim for claim in theorem("L1").examine(Tolerances())[1]}["corrected"]
     law = Pushed(l01.DeadZoneInteraction(k1=0.0))
     largest = np.abs(law.acceleration(0.0, PLACES, 0.0 * PLACES)).max()
-    assert claim.status == "refuted"
+    assert (claim.status, claim.contradicts) == ("inconclusive", "turned-axes")  # the library is at fault
     assert claim.margin == pytest.approx(1e-9 - 8.0 / largest, rel=1e-9)

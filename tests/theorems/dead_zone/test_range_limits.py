@@ -22,6 +22,7 @@ from flockana.theorems import verify
 from flockana.theorems.dead_zone.hold import hold
 from flockana.theorems.dead_zone.parting import components_of
 from flockana.theorems.dead_zone.range_limits import first_entry
+from flockana.theorems.observed import Observed
 from tests.theorems.made_up import said
 
 UNITS = [(1.0, 1.0), (1e6, 1.0), (1e-3, 1.0), (1.0, 1e3), (1e-3, 1e-3)]  # metres to µm, km; seconds to ms, ks
@@ -67,7 +68,7 @@ def test_the_energy_that_breaks_a_pair_up_is_sharp_but_for_rounding(excess):
     run = simulate(pair, [[0.0], [CONTACT]], [[-speed], [speed]], (0.0, 1e-9))  # damping takes 4e-12 of H̄
     status = said("dead-zone-1-printed", run)["velocity"]
     assert status in ("verified", "inconclusive")
-    if abs(excess) >= 1e-9:
+    if abs(excess) >= 1e-6:  # the state at the end is known to some 1e-8
         assert status == ("verified" if excess < 0.0 else "inconclusive")
 
 
@@ -109,7 +110,8 @@ def test_two_contacts_that_part_however_slowly(drift, units):
     assert "verified" not in (printed["velocity"], printed["cohesion"])
     if drift >= 1e-3:
         assert (printed["velocity"], printed["cohesion"]) == ("refuted", "refuted")
-    assert said("dead-zone-1-corrected", run)["components"] == "verified"
+    corrected = said("dead-zone-1-corrected", run)["components"]
+    assert corrected == "verified" if drift >= 1e-3 else corrected in ("verified", "inconclusive")
 
 
 @pytest.mark.parametrize("offset", [s * sign for s in (3.0, *SIZES) for sign in (1.0, -1.0)])
@@ -122,7 +124,9 @@ def test_two_agents_that_pass_at_the_edge_of_their_range(offset):
     else:
         assert not found.parting
     run = simulate(LAW, q, p, (0.0, 10.0))
-    assert said("dead-zone-1-printed", run)["velocity"] == ("refuted" if found.parting else "inconclusive")
+    status = said("dead-zone-1-printed", run)["velocity"]
+    assert status == ("refuted" if offset >= 1e-6 else "inconclusive") or 0.0 < offset < 1e-6
+    assert status != "verified"
 
 
 def shaken_hexagon(seed):
@@ -234,7 +238,7 @@ def test_leaving_does_not_lift_it_and_without_a_potential_at_r_nothing_does(unit
     flat = DeadZoneFlocking(DeadZoneInteraction(r_b=12.0, k1=0.0))
     assert flat.interaction.far_potential == 0.0
     enters = run_in(units, flat, [[0.0, 0.0], [16.0, 0.0]], [[1.0, 0.0], [-1.0, 0.0]], 2.0)
-    assert first_entry(enters, enters.law.interaction.r).pair == (0, 1)
+    assert first_entry(Observed.of(enters), enters.law.interaction.r).pair == (0, 1)
     assert said("dead-zone-1-printed", enters)["energy"] == "verified"
     same = run_in(units, LAW, [[0.0, 0.0], [16.0, 0.0]], [[1.0, 0.0], [-1.0, 0.0]], 2.0)
     assert said("dead-zone-1-printed", same)["energy"] == "refuted"
@@ -327,7 +331,8 @@ def test_one_agent_is_a_flock():
     assert said("dead-zone-1-corrected", run)["components"] == "verified"
     one_sample = run.window(0.0, 0.0)  # shows no motion, by which its samples could be told to be the law's
     for name in ("dead-zone-1-printed", "dead-zone-1-corrected"):
-        assert not {"verified", "refuted"} & set(said(name, one_sample).values())
+        assert "refuted" not in said(name, one_sample).values()
+    assert said("dead-zone-1-printed", one_sample)["energy"] == "inconclusive"
 
 
 def test_one_sample_shows_nothing_of_what_happens():
@@ -335,9 +340,10 @@ def test_one_sample_shows_nothing_of_what_happens():
     assert said("dead-zone-1-printed", run)["energy"] == "inconclusive"
 
 
-@pytest.mark.parametrize("law", [DeadZoneFlocking(), SemiImplicitEuler(DeadZoneFlocking(), 0.01)], ids=["flow", "map"])
-@pytest.mark.parametrize(("beyond", "pair"), [(0.0, None), (1e-15, None), (1e-13, (0, 1))])
-def test_what_starts_at_the_range_but_for_rounding_does_not_enter(law, beyond, pair):
-    """Places of 15 are rounded to 2e-15, and so is their difference."""
+@pytest.mark.parametrize(("law", "known"), [(LAW, 1e-7), (SemiImplicitEuler(LAW, 0.01), 1e-13)], ids=["flow", "map"])
+@pytest.mark.parametrize("beyond", [0.0, 1e-15, 1e-13, 1e-11, 1e-7])
+def test_what_starts_at_the_range_but_for_what_is_known_of_it_does_not_enter(law, known, beyond):
+    """Places of 15 are rounded to 2e-15, and so is their difference; those of a flow are known to some 1e-9."""
+    pair = (0, 1) if beyond >= known else None
     run = simulate(law, [[0.0], [15.0 * (1.0 + beyond)]], [[1.0], [-1.0]], (0.0, 0.5))
-    assert first_entry(run, 15.0).pair == pair
+    assert first_entry(Observed.of(run), 15.0).pair == pair

@@ -82,14 +82,15 @@ def test_a_flock_narrow_now_that_parts_for_ever_is_not_cohesive():
 
 def test_claims_name_the_proof_of_what_they_say():
     run = simulate(DeadZoneFlocking(), [[0.0], [4.0]], [[0.0], [0.0]], (0.0, 1.0))
-    for key, expected in (("corrected", {"rate", "distance"}), ("printed", {"energy", "collision"})):
+    for key, expected in (("corrected", {"rate", "distance"}), ("printed", {"collision"})):
         claims = verify(f"dead-zone-1-{key}", run).claims
         assert {claim.name for claim in claims if claim.proof == "dead-zone"} == expected
 
 
 def test_every_sample_at_which_the_energy_rises_counts_however_slowly():
-    run = SimpleNamespace(t=np.array([0.0, 1.0, 2.0, 3.0]), energy=lambda: np.zeros(4))
-    claim = _rate(run, np.array([-3.0, 0.5, 1e-300, 0.0]), [])
+    run = SimpleNamespace(energy=lambda: np.zeros(4))
+    seen = SimpleNamespace(t=np.array([0.0, 1.0, 2.0, 3.0]), run=run, is_map=True)
+    claim = _rate(seen, np.array([-3.0, 0.5, 1e-300, 0.0]), [])
     assert (claim.status, claim.margin, claim.computed) == ("refuted", -2.0, 0.5)
     assert claim.witness == {"time": 1.0, "samples at which it is positive": 2}
-    assert _rate(run, np.array([-3.0, -0.5, -1e-300, 0.0]), []).status == "verified"
+    assert _rate(seen, np.array([-3.0, -0.5, -1e-300, 0.0]), []).status == "verified"

@@ -25,30 +25,30 @@ def of_line(*places, speeds=None, law=LAW):
 
 def test_one_agent_is_its_own_centre():
     claim = of_line(3.0).claim("cohesion")
-    assert (claim.status, claim.margin, claim.computed) == ("verified", 1.0, 0.0)
+    assert (claim.status, claim.margin, claim.computed) == ("verified", pytest.approx(1.0, abs=1e-14), 0.0)
 
 
 def test_far_from_the_origin_the_centre_is_known_less_well():
-    """Of one agent by twice the rounding of a place in its frame, of r = 15."""
+    """Of one agent by some roundings of a place in its frame, of r = 15."""
     for place in (0.0, 3.0, 1e6):
         claim, eps = of_line(place).claim("cohesion"), np.finfo(float).eps
-        assert claim.error == pytest.approx(2.0 * 5.0 * eps * place / 15.0 + 4.0 * eps, rel=1e-9, abs=0.0)
+        known = 2.0 * 5.0 * eps * place / 15.0  # the last state, and the centre again
+        assert known + 4.0 * eps <= 1.0 - claim.margin <= 2.0 * known + 10.0 * eps
 
 
 def test_two_at_their_contact_are_half_of_it_away():
     claim = of_line(0.0, CONTACT).claim("cohesion")
     assert claim.status == "verified"
     assert claim.computed == pytest.approx(0.5 * CONTACT, rel=1e-12)
-    assert claim.margin == pytest.approx(1.0 - 0.5 * CONTACT / 15.0, rel=1e-12)
     reach = hold(LAW, np.array([[0.0], [CONTACT]]), np.zeros((2, 1))).reach  # the way to the minimum, and about it
-    assert 1e-5 > claim.error == pytest.approx(reach / 15.0, rel=1e-6, abs=0.0)
+    assert reach < 1e-4
+    assert claim.margin == pytest.approx(1.0 - (0.5 * CONTACT + reach) / 15.0, rel=1e-12)
 
 
 def test_two_whose_energy_binds_them_are_nowhere_beyond_half_of_the_range():
     """In the dead zone no minimum is near; none of their one pair gets out of range, so (n − 1 + 0) r/n."""
     claim = of_line(0.0, 5.0).claim("cohesion")
     assert (claim.status, claim.margin) == ("verified", pytest.approx(0.5, rel=1e-12))
-    assert claim.error == pytest.approx(4.0 * np.finfo(float).eps, rel=1e-9, abs=0.0)
     assert claim.computed == pytest.approx(2.5)
 
 
@@ -75,16 +75,17 @@ FLAT = DeadZoneFlocking(DeadZoneInteraction(r=10.0, r_b=8.0, delta=4.5, k1=0.0))
 @pytest.mark.parametrize(
     ("law", "places", "speeds", "status", "margin"),
     [
-        (LAW, (0.0, 16.0), (1.0, -1.0), "refuted", -1.0),  # comes into range: H rises by ψ̄(15)
-        (LAW, (0.0, 18.0), (1.0, -1.0), "verified", 1.0),  # not yet
-        (LAW, (0.0, 14.0), (-1.0, 1.0), "verified", 1.0),  # leaves
-        (LAW, (0.0, 14.0), (1.0, -1.0), "verified", 1.0),  # is in range all the time
-        (FLAT, (0.0, 11.0), (1.0, -1.0), "verified", 1.0),  # comes in, and nothing jumps
+        (LAW, (0.0, 16.0), (1.0, -1.0), "refuted", -0.5),  # comes into range: H rises by ψ̄(15)
+        (LAW, (0.0, 18.0), (1.0, -1.0), "verified", 0.5),  # not yet
+        (LAW, (0.0, 14.0), (-1.0, 1.0), "verified", 0.5),  # leaves
+        (LAW, (0.0, 14.0), (1.0, -1.0), "verified", 0.5),  # is in range all the time
+        (FLAT, (0.0, 11.0), (1.0, -1.0), "verified", 0.5),  # comes in, and nothing jumps
     ],
 )
 def test_the_energy_of_neighbours_rises_as_a_pair_comes_into_range(law, places, speeds, status, margin):
     claim = of_line(*places, speeds=speeds, law=law).claim("energy")
-    assert (claim.status, claim.margin, claim.error) == (status, margin, 0.0)
+    assert (claim.status, claim.margin) == (status, margin)
+    assert claim.error < 1e-15
     jump = law.interaction.far_potential
     assert (jump > 0.0) == (law is LAW)
     assert claim.computed == (jump if status == "refuted" else 0.0)
