@@ -16,6 +16,7 @@ from flockana.theorems.theorem import Theorem
 from proofs.proof import load, names
 
 IDS = set(names())
+TABLES = ("THEOREM", "RIGOUR", "CITES")  # of all proofs, or followed by themselves
 
 
 @cache
@@ -49,7 +50,7 @@ def cited(module, name, seen):
         return set()
     seen.add((module, name))
     node, found = own[name], set()
-    if isinstance(node, (ast.Assign, ast.AnnAssign)) and name.lstrip("_").isupper() and name not in ("THEOREM", "RIGOUR"):
+    if isinstance(node, (ast.Assign, ast.AnnAssign)) and name.lstrip("_").isupper() and name not in TABLES:
         found |= strings(node.value)  # PROOF = "..."
     for one in ast.walk(node):
         if isinstance(one, ast.keyword) and one.arg in ("proof", "disproof"):

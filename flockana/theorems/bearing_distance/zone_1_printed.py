@@ -9,7 +9,7 @@ import numpy as np
 from flockana.theorems.bearing_distance.tree_case import TreeCase, minimal_law, tree_hypotheses
 from flockana.theorems.bearing_distance.tree_limits import kept, state, velocity_claim
 from flockana.theorems.claims import judged
-from flockana.theorems.enclosure import Enclosure, stacked
+from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.limits import Certificate, limit_claim
 from flockana.theorems.observed import Observed
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
@@ -63,12 +63,13 @@ def _hurwitz(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:
 
     det(sI - A_cl) is the product of s² + a s + w_e, and w_e has the sign of |x_e| - ρ_e: the lengths decide.
     """
-    at, seen_at = case.lengths(seen.run.q) / case.rho, case.edges_of(seen.run.q, seen.shape_error) / case.rho
+    at = case.lengths(seen.run.q) / case.rho
+    sampled = (case.edges_of(seen.run.q, seen.shape_error) / case.rho - 1.0).worst
     k = int(np.argmin(at.min(axis=1)))
     abscissa = _abscissa(case, at[k] * case.rho)
     return judged(
         "hurwitz",
-        stacked([x.worst for x in (seen_at - 1.0, case.shortest(seen) / case.rho - 1.0)]),  # at samples, and between
+        sampled if sampled.hi < 0.0 else case.shortest(seen) / case.rho - 1.0,
         needs,
         computed=abscissa,
         stated="all eigenvalues of A_cl have negative real parts",
