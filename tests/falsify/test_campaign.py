@@ -23,10 +23,10 @@ from flockana.falsify.space import law_parameter, search_space
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.scenarios import scenario
 from flockana.theorems import Claim, Hypothesis, Theorem, Tolerances, Verdict, theorem, theorems, verify
-from flockana.theorems.leads import bridge, pairs_apart, squash, strained
-from flockana.theorems.olfati_saber.attraction import final_basin
 from flockana.theorems.claims import judged
 from flockana.theorems.enclosure import Enclosure
+from flockana.theorems.leads import bridge, pairs_apart, squash, strained
+from flockana.theorems.olfati_saber.attraction import final_basin
 from tests.programs import Starts, out_of_a_kernel
 
 HEAD_ON = scenario("head-on")
