@@ -183,7 +183,6 @@ class Claim:
                 "inconclusive"
             )
 
-
     @property
     def cited(self) -> str:
         """What its proof takes from the literature, in words, or an empty text."""

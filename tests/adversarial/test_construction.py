@@ -100,9 +100,12 @@ LAWS = {
     "algorithm 1": lambda: fl.Algorithm1(),
     "undamped": lambda: fl.Algorithm1(gains=fl.Gains(c2_alpha=0.0)),
     "algorithm 2": lambda: fl.Algorithm2(target=fl.StaticTarget((0.0, 0.0))),
-    "weak centre": lambda: fl.Algorithm2(gains=fl.Gains(c1_gamma=1e-3, c2_gamma=1e-3), target=fl.StaticTarget((0.0, 0.0))),
+    "weak centre": lambda: fl.Algorithm2(
+        gains=fl.Gains(c1_gamma=1e-3, c2_gamma=1e-3), target=fl.StaticTarget((0.0, 0.0))
+    ),
     "one informed": lambda: fl.Algorithm2(
-        gains=fl.Gains(c1_gamma=(2.0, 0.0, 0.0), c2_gamma=(2.0, 0.0, 0.0)), target=fl.LinearTarget((0.0, 0.0), (1.0, 0.0))
+        gains=fl.Gains(c1_gamma=(2.0, 0.0, 0.0), c2_gamma=(2.0, 0.0, 0.0)),
+        target=fl.LinearTarget((0.0, 0.0), (1.0, 0.0)),
     ),
     "cucker-smale": lambda: fl.CuckerSmale(RationalWeight(1.0, 0.5, 7.0)),
     "sum of all": lambda: fl.CuckerSmale(RationalWeight(1.0, 1.0, 7.0), mean=False),
@@ -124,7 +127,12 @@ TRUE_CLAIMS = {  # true of every run of the laws that each theorem is about
     "dead-zone-1-corrected": ("rate", "balance", "components", "distance"),
     "dead-zone-1-printed": ("collision",),
 }
-LIMITS = {"os-1": ("i", "ii"), "os-3": ("ii", "iii"), "su-informed": ("informed", "linked"), "tanner-fixed": ("velocities", "critical")}
+LIMITS = {
+    "os-1": ("i", "ii"),
+    "os-3": ("ii", "iii"),
+    "su-informed": ("informed", "linked"),
+    "tanner-fixed": ("velocities", "critical"),
+}
 
 
 @effort(1.0)

@@ -16,16 +16,17 @@ from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import StaticTarget
 from flockana.falsify import Counterexample, falsify, replay
-from flockana.falsify.evaluate import Problem, units
+from flockana.falsify.evaluate import Evaluation, Problem, units
 from flockana.falsify.grade import FAILED, grade, missing
 from flockana.falsify.search import Search
 from flockana.falsify.space import law_parameter, search_space
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.scenarios import scenario
 from flockana.theorems import Claim, Hypothesis, Theorem, Tolerances, Verdict, theorem, theorems, verify
+from flockana.theorems.claims import judged
+from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.leads import bridge, pairs_apart, squash, strained
 from flockana.theorems.olfati_saber.attraction import final_basin
-from flockana.theorems.theorem import judge
 from tests.programs import Starts, out_of_a_kernel
 
 HEAD_ON = scenario("head-on")
@@ -34,9 +35,9 @@ THREE_AT_REST = replace(scenario("three-agents-1d"), p0=np.zeros((3, 1)))
 
 def fast(run, tolerances):
     """The last agent never moves faster than 10 in the first second: false, and with a slope."""
-    speed = float(np.abs(run.p).max())
-    unmet = Hypothesis("agent 0 starts left of 1", "met" if run.q[0, 0, 0] < 1.0 else "unmet", 1.0 - run.q[0, 0, 0])
-    return [unmet], [Claim("slow", judge(35.0 - speed, 0.0, [unmet]), margin=35.0 - speed, error=0.0)]
+    q, speed = run.run.q, float(np.abs(run.run.p).max())
+    unmet = Hypothesis("agent 0 starts left of 1", "met" if q[0, 0, 0] < 1.0 else "unmet", 1.0 - q[0, 0, 0])
+    return [unmet], [judged("slow", Enclosure.of(35.0 - speed), [unmet])]
 
 
 OWN = Theorem("slow", "Agents are slow", "No agent ever moves faster than 35, " * 2, "ours", "trajectory", fast)
@@ -159,11 +160,20 @@ class TestGrades:
 
     def test_how_well_a_limit_is_known_does_not_draw_the_search(self):
         """A flock that parts for ever has the margin −1 of no certificate: it is no nearer to a strained limit."""
-        parts, settles = Claim("i", "inconclusive", margin=-1.0), Claim("i", "verified", margin=1e-6)
-        assert grade(settles, [], lead=0.9, limit=True) < grade(parts, [], lead=0.99, limit=True)
-        assert grade(Claim("i", "refuted", margin=-1.0), [], lead=1.0, limit=True) == -2.5
-        assert grade(Claim("i", "vacuous"), [], limit=True) == 2.0
-        assert all(set(theorem(name).limits) <= set(theorem(name).leads) for name in theorems())
+        parts, settles, breaks, nothing = (
+            Claim("i", status, margin=margin, about="limit")
+            for status, margin in (("inconclusive", -1.0), ("verified", 1e-6), ("refuted", -1.0), ("vacuous", None))
+        )
+        assert grade(settles, [], lead=0.9) < grade(parts, [], lead=0.99)
+        assert grade(breaks, [], lead=1.0) == -2.5
+        assert grade(nothing, []) == 2.0
+
+    @pytest.mark.parametrize("margin", [-1e9, -1.0, -1e-12])
+    def test_numbers_that_contradict_a_proof_neither_break_it_nor_draw_the_search(self, margin):
+        claim = judged("i", Enclosure.of(margin), proof="cohesion")
+        assert (claim.status, claim.contradicts) == ("inconclusive", "cohesion")
+        assert grade(claim, []) == 0.0
+        assert not Evaluation(0.0, "i", Verdict("x", (), (claim,))).found
 
     def test_a_surrogate_never_outweighs_a_count(self):
         for k in range(30):
@@ -375,7 +385,7 @@ class TestTheOutcome:
         starts = Starts()
 
         def broken(run, tolerances):
-            if starts.number(run) % 3 == 1:
+            if starts.number(run.run) % 3 == 1:
                 raise np.linalg.LinAlgError("no\nluck")
             return fast(run, tolerances)
 
@@ -396,7 +406,7 @@ class TestTheOutcome:
         starts = Starts()
 
         def interrupted(run, tolerances):
-            if starts.number(run) == 5:
+            if starts.number(run.run) == 5:
                 raise error
             return fast(run, tolerances)
 

@@ -151,7 +151,9 @@ def test_a_claim_of_both_runs_is_as_sure_as_they_agree():
     def claimed(*margins):
         by_run = dict(zip((id(seen.run), id(seen.other)), margins, strict=True))
         status = {True: "verified", False: "refuted"}
-        return by_both_runs(seen, lambda run: Claim("i", status[by_run[id(run)] > 0], margin=by_run[id(run)], error=0.1))
+        return by_both_runs(
+            seen, lambda run: Claim("i", status[by_run[id(run)] > 0], margin=by_run[id(run)], error=0.1)
+        )
 
     assert (claimed(1.0, 0.9).status, claimed(1.0, 0.9).error) == ("verified", pytest.approx(0.3))
     assert claimed(1.0, 0.4).status == "inconclusive"

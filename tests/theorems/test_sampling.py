@@ -134,7 +134,10 @@ def test_a_map_moves_at_its_samples_only():
 def test_what_the_run_is_off_by_is_added_to_every_bound(runs):
     """Two runs that differ by a shift of one agent: bounds grow by the error that stands for it."""
     coarse, _ = runs
-    exact, loose = Observed.alone(coarse), Observed.of(fl.simulate(coarse.law, coarse.q[0], coarse.p[0], (0.0, 3.0), t_eval=COARSE, rtol=1e-3))
+    exact, loose = (
+        Observed.alone(coarse),
+        Observed.of(fl.simulate(coarse.law, coarse.q[0], coarse.p[0], (0.0, 3.0), t_eval=COARSE, rtol=1e-3)),
+    )
     assert (loose.between_error > 1e-6).all()
     assert (radius_over(loose).hi - radius_over(exact).hi > 0.5 * loose.between_error).all()
     assert (stretch_between(loose) > stretch_between(exact)).all()

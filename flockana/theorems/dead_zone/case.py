@@ -86,7 +86,11 @@ def velocities_match(seen: Observed, end: Components, needs: list[Hypothesis], *
 
 def distance_bound(seen: Observed, law: DeadZoneFlocking) -> Enclosure:
     """Return the explicit distance that no pair comes closer than, from the saturated energy of the first sample."""
-    bound = seen.energy[0].falling(np.vectorize(law.interaction.least_distance, otypes=[float]))
+
+    def distance(energy: npt.NDArray[np.float64]) -> float:
+        return law.interaction.least_distance(float(energy)) if np.isfinite(energy) else 0.0
+
+    bound = seen.energy[0].clip(0.0).falling(distance)
     return bound.widened(_BOUND * bound.hi).clip(0.0)
 
 
