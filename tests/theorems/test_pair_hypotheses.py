@@ -115,4 +115,3 @@ def test_a_user_s_weight_is_nonnegative_by_its_proof_only():
         law = compose(pair=law_of().alpha, consensus=weight)
         found = [one for one in verdict_of("energy", law).hypotheses if "a_ij" in one.name]
         assert [one.status for one in found] == ([] if status == "met" else ["assumed"])
-
