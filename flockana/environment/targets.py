@@ -323,7 +323,9 @@ class CallableTarget(Target):
         first = min(max(0.0, start), end)
         q, p = self._call(first)
         if q.size != p.size:
-            raise ArgumentError(f"function({first:g}) gave q_r of {q.size} and p_r of {p.size} components: expected equal")
+            raise ArgumentError(
+                f"function({first:g}) gave q_r of {q.size} and p_r of {p.size} components: expected equal"
+            )
 
     def in_units(self, length: float, time: float) -> CallableTarget:
         """The same path in other units (`flockana.rescale`).

@@ -19,6 +19,7 @@ from flockana.kernels.generated import generated_kernels, generated_potential
 if TYPE_CHECKING:
     from flockana.kernels.lift import PairKernels
     from flockana.symbolic.derivation import Derivation
+    from flockana.symbolic.slopes import SlopeBound
 
 _SAME = 1e-9  # relative: a formula without a hidden unit changes with the units to rounding
 
@@ -129,6 +130,22 @@ class FormulaInteraction(PairInteraction):
         """Where it is not C¹, does not end smoothly or has no limit, each in words."""
         none = "coincidence is excluded: the force has no limit where two agents meet"
         return (*(() if self.coincidence else (none,)), *self.facts.faults)
+
+    def slopes(self, parts: int = 64) -> tuple[SlopeBound, ...]:
+        """Bounds of |dF/ds| and |da/ds| on parts of the range; infinite where none is known.
+
+        Parameters
+        ----------
+        parts : int
+            Equal parts of the range, which are split where pieces of the formula meet.
+
+        Examples
+        --------
+        >>> law = FormulaInteraction("s**2/2", r=2.0, adjacency="1 - s/r")
+        >>> [(bound.force, round(bound.adjacency, 9)) for bound in law.slopes(2)]
+        [(1.0, 0.5), (1.0, 0.5)]
+        """
+        return self._parts.slopes(parts)
 
     @property
     def coincidence(self) -> bool:

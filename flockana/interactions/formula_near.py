@@ -90,7 +90,9 @@ def _cancels(cut: Cut, piece: Any, end: float, scale: float) -> bool:
         parts.append((piece.potential, scale * end))
     for part, size in parts:
         plain = sp.lambdify(
-            [y, *symbols], part.subs(pf.ROOT, sp.sqrt(1 + pf.EPS * (2 * pf.Z + pf.EPS * pf.Z**2))), "math",
+            [y, *symbols],
+            part.subs(pf.ROOT, sp.sqrt(1 + pf.EPS * (2 * pf.Z + pf.EPS * pf.Z**2))),
+            "math",
             dummify=True,
         )
         exact = cut.function(part)

@@ -18,6 +18,7 @@ from flockana.kernels.tables import integral_panels, series_nodes, series_of
 
 if TYPE_CHECKING:
     from flockana.symbolic.pair_formula import Cut
+    from flockana.symbolic.slopes import SlopeBound
 
 _KEPT = 64  # formulas
 _GRID = 257  # distances at which the force is looked at
@@ -49,6 +50,15 @@ class FormulaParts:
         from flockana.symbolic.pair_facts import pair_facts
 
         return pair_facts(self.cut, float(self.par[2]), self.strength, float(np.abs(self.looks[1]).max()) or 1.0)
+
+    def slopes(self, parts: int) -> tuple[SlopeBound, ...]:
+        """Bounds of the slopes of force and adjacency on parts of the range."""
+        from flockana.symbolic.slopes import slope_bounds
+
+        eps, squares = float(self.par[2]), self.par[0]
+        marks = self.cut.marks[1:-1]
+        places = [float(np.sqrt(mark * (2.0 + eps * mark))) if eps else mark for mark in marks]
+        return slope_bounds(self.cut, eps, float(np.sqrt(squares)), places, parts)
 
     def same_as(self, other: FormulaParts, length: float, force: float, tolerance: float) -> bool:
         """Whether another formula's law is this one in other units: on the grid, its forces and weights scale."""

@@ -10,13 +10,13 @@ import heapq
 from collections.abc import Callable
 from itertools import count
 from math import inf, nextafter
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import sympy as sp
 from flint import arb, fmpq
 
 from flockana.base.facts import Fact
-from flockana.symbolic.enclosed import NONNEGATIVE, OPEN, POSITIVE, Enclosed, interval, precision, rational
+from flockana.symbolic.enclosed import NONNEGATIVE, POSITIVE, Enclosed, interval, precision
 
 MOST = 6000  # intervals looked at
 _DEEPEST = 130  # halvings; then the point is looked at from both sides

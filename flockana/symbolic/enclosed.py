@@ -40,7 +40,7 @@ def interval(left: fmpq, right: fmpq) -> arb:
     return arb(left).union(arb(right))
 
 
-class Undefined(ArithmeticError):
+class UndefinedError(ArithmeticError):
     """An operation is not analytic on an interval."""
 
 
@@ -109,7 +109,7 @@ class Enclosed:
                 values.append((value, _sign(node, value, [sign for _, sign in given])))
                 if not varies:
                     kept[k] = values[-1]
-        except (Undefined, ValueError, ZeroDivisionError, OverflowError):
+        except (UndefinedError, ValueError, ZeroDivisionError, OverflowError):
             return None
         return values
 
@@ -160,7 +160,7 @@ def _operation(node: sp.Expr, variable: sp.Symbol) -> Callable[..., Any]:
 
 
 def _undefined(x: arb, *arguments: Any) -> Any:
-    raise Undefined
+    raise UndefinedError
 
 
 def _total(terms: tuple[Any, ...]) -> Any:
@@ -189,7 +189,7 @@ def _with_value(series: Any, value: arb) -> Any:
 
 def _positive(series: Any) -> Any:
     if not _value(series) > 0:
-        raise Undefined
+        raise UndefinedError
     return series
 
 
@@ -200,7 +200,7 @@ def _power(base: Any, whole: int, root: int = 1, *, up: bool = True) -> Any:
     if up:
         return value
     if not abs(_value(value)) > 0:
-        raise Undefined
+        raise UndefinedError
     return 1 / value
 
 
@@ -232,7 +232,7 @@ def _exp(x: Any) -> Any:
     if _value(x) < _LARGEST and _value(x) > -_LARGEST:
         return x.exp()
     if not _value(x) < _LARGEST:
-        raise Undefined
+        raise UndefinedError
     least = interval_of(arb(0), arb(-_LARGEST).max(_value(x).upper()).exp().upper())
     return _with_value(x, arb(0)).exp() * least
 
@@ -259,20 +259,20 @@ def _wave(x: arb) -> arb:
     ends = interval_of(x.lower().cos(), x.upper().cos())
     if not turns.contains_integer():
         return ends
-    whole = int(round(float(turns.mid())))
+    whole = round(float(turns.mid()))
     return interval_of(ends, arb(1 - 2 * (whole % 2))).intersection(interval_of(arb(-1), arb(1)))
 
 
 def _tan(x: Any) -> Any:
     if not abs(_value(x).cos()) > 0 or not 2 * _value(x).rad() < arb.pi():
-        raise Undefined
+        raise UndefinedError
     return x.tan()
 
 
 def _inside(x: Any) -> Any:
     """A series whose value is certainly within (−1, 1)."""
     if not (_value(x) > -1 and _value(x) < 1):
-        raise Undefined
+        raise UndefinedError
     return x
 
 
@@ -283,7 +283,7 @@ def _hyperbolic(x: Any, *, odd: bool) -> Any:
 
 def _acosh(x: Any) -> Any:
     if not _value(x) > 1:
-        raise Undefined
+        raise UndefinedError
     return _integrated(_value(x).acosh(), (x * x - 1).rsqrt(), x)
 
 

@@ -22,7 +22,7 @@ class Germ(NamedTuple):
     factor: arb
 
 
-class _Unknown(ArithmeticError):
+class _UnknownError(ArithmeticError):
     """No germ is known."""
 
 
@@ -38,7 +38,7 @@ def germ(expression: sp.Expr, variable: sp.Symbol, width: fmpq) -> Germ | None:
     """
     try:
         return _Near(variable, width).of(expression)
-    except (_Unknown, ValueError, ZeroDivisionError, OverflowError):
+    except (_UnknownError, ValueError, ZeroDivisionError, OverflowError):
         return None
 
 
@@ -53,7 +53,7 @@ class _Near:
         if node not in self._known:
             found = self._of(node)
             if not found.factor.is_finite():
-                raise _Unknown
+                raise _UnknownError
             self._known[node] = found
         return self._known[node]
 
@@ -114,19 +114,19 @@ class _Near:
         least = abs(argument.factor).lower() * (1 / self._until(-argument.power).upper())
         rises = bool(argument.factor > 0)
         if not (rises or argument.factor < 0):
-            raise _Unknown
+            raise _UnknownError
         if of is sp.exp and not rises:
             return Germ(none, interval_of(arb(0), (-least).exp().upper()))
         if of in (sp.atan, sp.tanh):
             limit, value = (arb.pi() / 2, least.atan()) if of is sp.atan else (arb(1), least.tanh())
             found = interval_of(value.lower(), limit.upper())
             return Germ(none, found if rises else -found)
-        raise _Unknown
+        raise _UnknownError
 
     def _logarithm(self, argument: Germ) -> Germ:
         """log(t^k N) = k log t + log N, by t^(1/64) |log t| <= max of its course up to the width."""
         if not argument.factor > 0 or not self.width < 1:
-            raise _Unknown
+            raise _UnknownError
         slow = arb(fmpq(_SLOW.numerator, _SLOW.denominator))
         turn = (-1 / slow).exp()  # where t^slow |log t| is largest, 1/(slow e)
         most = 1 / (slow * arb(1).exp()) if self.width >= turn else -self.width.log() * (self.width.log() * slow).exp()
@@ -137,5 +137,5 @@ class _Near:
 def _first(of: Enclosed, at: arb) -> arb:
     found = of.series(at)
     if found is None:
-        raise _Unknown
+        raise _UnknownError
     return found[0]

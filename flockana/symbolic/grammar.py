@@ -249,7 +249,9 @@ class _Reader:
         with precision(_DIVISOR_BITS):
             found = Enclosed(value, sp.Dummy()).series(arb(0))
         if found is None or found[0].contains(0):
-            raise ArgumentError(f"{self.where}: the divisor {_short(ast.unparse(node))} is 0, or too near to it to tell")
+            raise ArgumentError(
+                f"{self.where}: the divisor {_short(ast.unparse(node))} is 0, or too near to it to tell"
+            )
 
     def _ensure_small_power(self, base: sp.Expr, power: sp.Expr) -> None:
         """Refuse 9**9**9 before it is computed."""

@@ -1,4 +1,4 @@
-"""What a pair law's formula is proved to be over its whole range: smoothness, sign of the adjacency, least potential."""
+"""What is proved of a pair law by a formula: smoothness, sign of the adjacency, least potential over its range."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from math import inf, isfinite, sqrt
-from typing import Any
 
 import sympy as sp
 from flint import arb, fmpq
@@ -17,7 +16,7 @@ from flockana.symbolic.decide import Least, Region, down, is_zero, least_on, sig
 from flockana.symbolic.enclosed import Enclosed, interval, precision, rational
 from flockana.symbolic.germs import Germ, germ
 from flockana.symbolic.integrals import integral_least
-from flockana.symbolic.pair_formula import EPS, Z, Cut
+from flockana.symbolic.pair_formula import EPS, Cut, Z
 
 _SMALL = 1e-9  # of the scale: a jump below it may be rounding of the parameters
 _NEAR = (0, 2, 4, 8, 16, 32, 64)  # halvings of the range: how far a germ at contact may reach

@@ -120,7 +120,9 @@ def _ensure_derived(derivative: sp.Expr, most: int) -> None:
     """Refuse a formula whose derivatives are too large to be compiled."""
     nodes = measured(derivative, {})[0]
     if nodes > most:
-        raise ArgumentError(f"a derivative of the formula has {nodes} parts: expected at most {most}, a simpler formula")
+        raise ArgumentError(
+            f"a derivative of the formula has {nodes} parts: expected at most {most}, a simpler formula"
+        )
 
 
 @dataclass(frozen=True)

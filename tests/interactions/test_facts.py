@@ -1,6 +1,7 @@
 """What is decided about formulas: hidden jumps, poles, kinks and spikes are found, smooth laws are proved."""
 
 import dataclasses
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -162,7 +163,7 @@ class Changed(AlphaInteraction):
 class Proved(AlphaInteraction):
     """A derived law that names what is proved of it."""
 
-    proofs = {"smooth": "a theorem of ours", "weight": "the same"}
+    proofs: ClassVar = {"smooth": "a theorem of ours", "weight": "the same"}
 
 
 def test_other_pair_laws_name_their_proofs_or_are_assumed():
@@ -184,3 +185,20 @@ def test_together():
     assert together([one, two, Fact("met")]) == Fact("assumed", "a; b", (0.0, 1.0), 1.5)
     assert together([Fact("met")], "why") == Fact("met", "why")
     assert isinstance(spring(), FormulaInteraction)
+
+
+@pytest.mark.parametrize("law", [spring(), alpha_formula()], ids=["in s", "in the norm"])
+def test_slopes_are_bounded_on_parts_of_the_range(law):
+    """Against differences: never below them, and within a factor of 3 of the largest."""
+    s = np.linspace(1e-3, law.range * (1.0 - 1e-9), 40001)
+    force, weight = (np.abs(np.diff(of(s)) / np.diff(s)) for of in (law.force, law.weight))
+    for bound in law.slopes(16):
+        inside = (s[:-1] >= bound.left) & (s[1:] <= bound.right)
+        for most, seen in ((bound.force, force[inside].max()), (bound.adjacency, weight[inside].max())):
+            assert seen * (1.0 - 1e-6) - 1e-9 <= most <= 3.0 * seen + 1e-6 * law.strength
+
+
+def test_slopes_at_a_pole_have_no_bound():
+    slopes = [bound.force for bound in pair("k*s**2/(r - s)", k=1.0).slopes(4)]
+    assert np.isfinite(slopes[:3]).all()
+    assert slopes[3] == np.inf

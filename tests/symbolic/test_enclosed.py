@@ -53,7 +53,8 @@ def test_nothing_is_enclosed_across_a_point_where_an_operation_is_not_analytic(t
 
 @pytest.mark.parametrize(
     ("text", "sign"),
-    [("(s - 1)**2", NONNEGATIVE), ("(s - 1)**2*exp(s)", NONNEGATIVE), ("(s - 1)**3", OPEN), ("1 + (s - 1)**2", POSITIVE),
+    [("(s - 1)**2", NONNEGATIVE), ("(s - 1)**2*exp(s)", NONNEGATIVE), ("(s - 1)**3", OPEN),
+     ("1 + (s - 1)**2", POSITIVE),
      ("s - 3/4", OPEN), ("exp(-s)", POSITIVE), ("(s - 1)**2*(s - 5)", OPEN)],
 )  # fmt: skip
 def test_signs_follow_from_what_a_formula_is_made_of(text, sign):

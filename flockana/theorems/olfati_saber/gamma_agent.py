@@ -1,8 +1,9 @@
 """Whether the γ-agent rests, and moves as it declares, by its positions during a run, between the samples too.
 
 A target declares its own velocity and rate, and may be wrong about either. Here the difference of its positions over
-each interval between samples, of a target of a user's own over each half of the solver's steps, is compared with the integral of what it declares, and rest means that no position seen
-differs. A function cannot be seen everywhere: of a target of a user's own, rest that was seen is assumed.
+each interval between samples is compared with the integral of what it declares, and rest means that no position seen
+differs. A function cannot be seen everywhere: of a target of a user's own each half of the solver's steps is such an
+interval, and rest that was seen is assumed.
 """
 
 from __future__ import annotations
