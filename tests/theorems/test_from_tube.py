@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -11,6 +11,7 @@ from flint import arb
 
 from flockana import Algorithm1, Algorithm2, Gains, StaticTarget, Tolerances, enclose, simulate, verify
 from flockana.base.errors import ArgumentError
+from flockana.certified.basin import Basin
 from flockana.certified.structure import Structure
 from flockana.theorems.from_tube import met, rest_strain
 
@@ -18,16 +19,15 @@ LED = Algorithm2(target=StaticTarget((0.0,)))
 NEAR = np.array([[-3.5], [3.5]])
 
 
-@dataclass(frozen=True)
-class Everything:
-    """A basin that says of every state whether it holds it."""
+class Everything(Basin):
+    """A basin that says of every state whether it holds it, and of itself that it is whole."""
 
-    law: object
-    answer: bool = True
-    rest: np.ndarray = None
+    def __init__(self, law, answer=True):
+        for name, value in {"law": law, "answer": answer, "rest": NEAR}.items():
+            object.__setattr__(self, name, value)
 
-    def __post_init__(self):
-        object.__setattr__(self, "rest", NEAR)
+    def ensure_whole(self):
+        pass
 
     @property
     def proof(self):

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from flockana.base.errors import ArgumentError
+from flockana.base.seals import sealed
 from flockana.base.units import rescale
 from flockana.dynamics.simulate import simulate
 from flockana.environment.targets import CircleTarget, RescaledVelocity, SineTarget, StaticTarget
@@ -66,7 +67,7 @@ def test_e12_does_not_pass_a_gain_that_is_wrong():
     run = simulate(law, [[1.0, 1.0]], [[0.0, 0.0]], (0.0, 20.0))
     mislabelled = replace(run, law=replace(law, target=RescaledVelocity(law.target, 0.25)))
     with pytest.raises(ArgumentError, match="of another law"):
-        verify("E12", mislabelled)
+        verify("E12", sealed(mislabelled))
     claims = {claim.name: claim.status for claim in theorem("E12").examine(mislabelled, Tolerances())[1]}
     assert (claims["predicted"], claims["consistent"]) == ("refuted", "verified")
 
