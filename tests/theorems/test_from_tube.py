@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -135,7 +134,7 @@ def test_theorem_1_from_a_tube():
     verdict = verify("os-1", tube, basin=Everything(law))
     assert statuses(verdict) == {"i": "verified", "ii": "verified", "iii": "verified", "iii-barrier": "verified"}
     assert verdict.hypotheses[3].status == "assumed"  # of all solutions from Ω_c one tube says nothing
-    stretched = replace(Everything(law))
+    stretched = Everything(law)
     object.__setattr__(stretched, "rest", 1.1 * NEAR)
     assert verify("os-1", tube, basin=stretched).claim("i").status == "inconclusive"  # refuted, but for what is assumed
     apart = enclose(law, 3.0 * NEAR, 0.0 * NEAR, (0.0, 0.125))
@@ -168,7 +167,7 @@ def test_what_a_tube_cannot_decide_is_said(pair):
 
 
 def test_the_strain_of_an_equilibrium_is_a_ball_of_its_links():
-    basin = replace(Everything(LED))
+    basin = Everything(LED)
     object.__setattr__(basin, "rest", np.array([[-3.5], [3.5], [10.85]]))  # links of 7 and 7.35, a pair of 14.35
     assert abs(rest_strain(basin, LED.alpha) - arb("0.05")) < 1e-12
     object.__setattr__(basin, "rest", 2.0 * NEAR)
