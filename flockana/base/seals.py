@@ -113,7 +113,7 @@ def seal_of(evidence: Any) -> dict[str, str]:
 
 def is_sealed(evidence: Any) -> bool:
     """Whether a dataclass carries a seal, and holds what was sealed."""
-    return vars(evidence).get(_ATTRIBUTE) == seal_of(evidence)
+    return bool(vars(evidence).get(_ATTRIBUTE) == seal_of(evidence))
 
 
 def changed(evidence: _Evidence, **changes: Any) -> _Evidence:
@@ -130,7 +130,7 @@ def ensure_sealed(name: str, evidence: Any, source: str, remedy: str) -> None:
     >>> from flockana.base.scales import Scales
     >>> ensure_sealed("scales", Scales(1.0, 2.0), "those of a law", "take law.scales")
     Traceback (most recent call last):
-    flockana.base.errors.ArgumentError: scales: this Scales was made or changed by hand: expected those of a law; take ...
+    flockana.base.errors.ArgumentError: scales: this Scales was made or changed by hand: expected ...
     """
     seal = vars(evidence).get(_ATTRIBUTE)
     if seal is None:

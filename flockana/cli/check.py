@@ -25,7 +25,8 @@ def check_command(
     """
     from dataclasses import asdict
 
-    from flockana.certified.check import RejectedError, check_certificate
+    from flockana.certified.check import check_certificate
+    from flockana.certified.forms import RejectedError
 
     try:
         found = check_certificate(file)

@@ -60,16 +60,12 @@ def changes_of_run(name, run, verdicts):
 
 
 def _said_of_run(verdict, run):
-    """Status and margin of each hypothesis; of each claim its errors, with a second run and alone, its value, and how
-    it is known."""
-    named, alone = theorems(), {}
-    if verdict.theorem in named:
-        alone = {claim.name: claim.error for claim in theorem(verdict.theorem).examine(run, verdict.tolerances)[1]}
+    """Status and margin of each hypothesis; of each claim its error, its value, and how it is known."""
     said = verdict.to_dict()
     needs = {need["name"]: [need["status"], need["margin"]] for need in said["hypotheses"]}
     kept = ("status", "margin", "error", "computed")
     claims = {
-        claim["name"]: [*(claim[key] for key in kept), alone.get(claim["name"]), claim["rigour"], claim["proof"]]
+        claim["name"]: [*(claim[key] for key in kept), claim["rigour"], claim["proof"], claim["disproof"]]
         for claim in said["claims"]
     }
     return needs | claims

@@ -215,11 +215,11 @@ def test_coincident_agents_have_no_derivative_where_their_force_has_no_limit(for
             derivative()
 
 
-def test_a_run_that_was_edited_so_that_agents_coincide_is_refused_as_such():
+def test_a_run_that_was_edited_so_that_agents_coincide_is_refused():
     run = fl.simulate(fl.DeadZoneFlocking(), [[0.0, 0.0], [5.0, 0.0], [3.0, 6.0]], np.eye(3, 2), (0.0, 3.0))
     q = run.q.copy()
     q[-1, 0] = q[-1, 1]
-    with pytest.raises(ArgumentError, match=r"u at t = 3 is off by nan .* was it edited"):
+    with pytest.raises(ArgumentError, match="was made or changed by hand"):
         fl.verify("energy", replace(run, q=q))
     with pytest.raises(ArgumentError, match="agents 0 and 1 are 0 apart"):
         fl.DeadZoneFlocking().jacobian(0.0, q[-1], run.p[-1])

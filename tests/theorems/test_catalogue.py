@@ -87,6 +87,6 @@ def test_configurations_are_checked_in_all_units():
         verify(name, q=q, d=7.0, r=0.0)
 
 
-def test_a_run_whose_samples_are_not_its_laws_is_refused():
-    with pytest.raises(ArgumentError, match="sample"):
+def test_a_run_that_no_integrator_made_is_refused():
+    with pytest.raises(ArgumentError, match="expected a run as simulate returned it"):
         verify("os-1", made_up(Algorithm1(), [PAIR, 2.0 * PAIR]))

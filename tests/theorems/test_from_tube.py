@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -11,6 +10,7 @@ from flint import arb
 
 from flockana import Algorithm1, Algorithm2, Gains, StaticTarget, Tolerances, enclose, simulate, verify
 from flockana.base.errors import ArgumentError
+from flockana.certified.basin import Basin
 from flockana.certified.structure import Structure
 from flockana.theorems.from_tube import met, rest_strain
 
@@ -18,16 +18,15 @@ LED = Algorithm2(target=StaticTarget((0.0,)))
 NEAR = np.array([[-3.5], [3.5]])
 
 
-@dataclass(frozen=True)
-class Everything:
-    """A basin that says of every state whether it holds it."""
+class Everything(Basin):
+    """A basin that says of every state whether it holds it, and of itself that it is whole."""
 
-    law: object
-    answer: bool = True
-    rest: np.ndarray = None
+    def __init__(self, law, answer=True):
+        for name, value in {"law": law, "answer": answer, "rest": NEAR}.items():
+            object.__setattr__(self, name, value)
 
-    def __post_init__(self):
-        object.__setattr__(self, "rest", NEAR)
+    def ensure_whole(self):
+        pass
 
     @property
     def proof(self):
@@ -137,7 +136,7 @@ def test_theorem_1_from_a_tube():
     limits = dict.fromkeys(("i", "ii"), "inconclusive")  # which a limit must not rest on
     assert statuses(verdict) == {**limits, "iii": "verified", "iii-barrier": "verified"}
     assert [verdict.claim(name).margin > verdict.claim(name).error for name in limits] == [True, True]
-    stretched = replace(Everything(law))
+    stretched = Everything(law)
     object.__setattr__(stretched, "rest", 1.1 * NEAR)
     strained = verify("os-1", tube, basin=stretched).claim("i")
     assert (strained.status, strained.margin < -strained.error) == ("inconclusive", True)
@@ -171,7 +170,7 @@ def test_what_a_tube_cannot_decide_is_said(pair):
 
 
 def test_the_strain_of_an_equilibrium_is_a_ball_of_its_links():
-    basin = replace(Everything(LED))
+    basin = Everything(LED)
     object.__setattr__(basin, "rest", np.array([[-3.5], [3.5], [10.85]]))  # links of 7 and 7.35, a pair of 14.35
     assert abs(rest_strain(basin, LED.alpha) - arb("0.05")) < 1e-12
     object.__setattr__(basin, "rest", 2.0 * NEAR)

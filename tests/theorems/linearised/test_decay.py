@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from flockana.base.errors import ArgumentError
+from flockana.base.seals import sealed
 from flockana.base.units import rescale
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
@@ -222,7 +223,8 @@ def test_what_cannot_be_linearised_is_vacuous():
         for law in (Algorithm1(), DeadZoneFlocking())  # the first has no link: nothing decays
     )
     many = np.zeros((2, 201, 2))
-    large = verify("linearised-decay-terminal", Trajectory(np.array([0.0, 1.0]), many, many, many, Algorithm1()))
+    flock = sealed(Trajectory(np.array([0.0, 1.0]), many, many, many, Algorithm1()))
+    large = verify("linearised-decay-terminal", flock)
     assert [v.status for v in (apart, other, large)] == ["vacuous"] * 3
     assert "DeadZoneFlocking has no equilibria" in other.hypotheses[0].detail
     assert "n = 201: more than 200" in large.hypotheses[0].detail
